@@ -1,0 +1,77 @@
+# make run, make test: all a fresh Debian 12 needs.  MODE=asan|tsan|debug, CC=clang, T=substring of test names.
+MODE ?= release
+B    := build/$(MODE)
+
+MODE.release := -O2 -g
+MODE.asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+MODE.tsan    := -O1 -g -fsanitize=thread
+WARN     := -Wall -Wextra -Werror -Wmissing-prototypes -Wshadow -Wvla -Wno-psabi
+CPPFLAGS += -I. -D_GNU_SOURCE
+CFLAGS   += -std=c17 $(WARN) -ffp-contract=off -fno-math-errno -fstack-protector-strong -MMD -MP $(MODE.$(MODE))
+
+# march.c is compiled once per lane count; width 1 is portable and the reference the tests compare with
+LANES.1 :=
+LANES.4 := -mavx2 -mfma
+LANES.8 := -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
+
+PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libcjson-dev librandom123-dev \
+            nettle-dev libcurl4-openssl-dev libcmocka-dev
+
+LIBS.engine := -lgsl -lgslcblas -lm
+LIBS.schema := -lcjson -lnettle
+LIBS.server := -lmicrohttpd -lsqlite3 -lpthread
+LIBS.client := -lcurl -lcjson -lpthread
+LIBS.tests  := -lcmocka -lcurl
+
+objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
+ENGINE := $(call objs,engine,engine/march.c) $(foreach w,1 4 8,$(B)/engine/march_w$(w).o)
+SCHEMA := $(call objs,schema)
+SERVER := $(call objs,server,server/main.c)
+CLIENT := $(call objs,client)
+# tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
+TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c))
+FIXTURE := $(call objs,tests,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c tests/fuzz_*.c tests/bench*.c \
+             tests/paper*.c tests/statistics*.c))
+
+all: $(B)/poundd $(B)/pound
+
+$(B)/libpound.a: $(ENGINE)
+	@rm -f $@; $(AR) rcs $@ $^
+$(B)/poundd: $(B)/server/main.o $(SERVER) $(SCHEMA) $(B)/libpound.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
+$(B)/pound: $(CLIENT) $(SCHEMA) $(B)/libpound.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.client) $(LIBS.schema) $(LIBS.engine)
+$(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.tests) $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
+
+$(B)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
+$(B)/engine/march_w%.o: engine/march.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_LANES=$* -c -o $@ $<
+
+# install what is missing, and only that
+deps:
+	@missing=$$(for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || echo $$p; done); \
+	[ -z "$$missing" ] || { as=$$([ $$(id -u) = 0 ] || echo sudo); $$as apt-get update -q && \
+	  $$as env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends $$missing; }
+
+run: deps
+	@$(MAKE) --no-print-directory -s all
+	@tests/run-paper $(B)
+test: deps
+	@$(MAKE) --no-print-directory -j$$(nproc) -s check
+check: all $(TESTS)
+	@tests/run-tests $(B) $(T)
+asan tsan:
+	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
+
+fmt:
+	clang-format -i $$(git ls-files '*.c' '*.h')
+clean:
+	$(RM) -r build
+
+.PHONY: all deps run test check asan tsan fmt clean
+.SECONDARY:
+-include $(shell find build -name '*.d' 2>/dev/null)

@@ -1,0 +1,278 @@
+/* pound.h - what the engine takes (a study) and what it gives back (a result).
+ *
+ * The only engine header other folders include.  Units are SI: m, kg, s, N, rad/s; a name that ends in a unit
+ * (_hz) is the exception it states.  Arrays are row-major, the shape stands behind the field.
+ * Any function may run in any thread; two threads may run blocks of one run at once with different worker numbers. */
+#ifndef POUND_H
+#define POUND_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define POUND_VERSION "0.1.0"
+
+enum {
+	POUND_OSCILLATORS = 2, /* left, right */
+	POUND_INPUTS_MAX = 16, /* inputs of one sensitivity study */
+	POUND_OUTPUTS_MAX = 8, /* outputs of one study */
+	POUND_SWEEPS_MAX = 8,  /* swept fields of one study */
+};
+
+// clang-format off
+#define POUND_STATUS(X)                                                                   \
+	X(POUND_OK,       0, "ok")                                                            \
+	X(POUND_NOMEM,   -1, "out of memory")                                                 \
+	X(POUND_STOPPED, -2, "stopped by the caller")                                         \
+	X(POUND_CHATTER, -3, "more events in one sample interval than allowed")               \
+	X(POUND_FAILED,  -4, "too few rows of the design could be computed")
+// clang-format on
+
+enum pound_status {
+#define X(name, value, text) name = value,
+	POUND_STATUS(X)
+#undef X
+};
+
+/* The study: one in-memory form.  `type`, `model`, `method` and `outputs[]` are row numbers of the engine's tables;
+ * pound_*_name(row) is the name in a study document, NULL past the last row. */
+
+enum pound_kind { POUND_KIND_RESPONSE, POUND_KIND_SENSITIVITY };
+
+struct pound_law {
+	int type;                  /* row of the laws, pound_law_name */
+	double hardening_ratio;    /* second slope over first  [0, 1] */
+	double target_demand;      /* mu_d, wanted max |u| / yield displacement without pounding  >= 1 */
+	double yield_displacement; /* [m]  > 0 given by the user, 0: found from target_demand for every signal */
+	int corrections;           /* times the yield displacement is corrected  >= 0 */
+};
+
+struct pound_oscillator {
+	double mass;          /* [kg]  > 0 */
+	double frequency_hz;  /* undamped, of the initial stiffness  > 0 */
+	double damping_ratio; /* fraction of critical  [0, 1) */
+	bool rigid_wall;      /* follows the ground for ever; only the right one may be */
+	bool has_law;         /* law below instead of the scene's */
+	struct pound_law law;
+};
+
+struct pound_contact {
+	bool present;           /* false: no pounding at all */
+	int model;              /* row of the contact models, pound_contact_name */
+	double stiffness_ratio; /* contact stiffness over the larger oscillator stiffness  > 0 */
+	double restitution;     /* [0, 1] */
+	double gap;             /* clear distance at rest [m]  >= 0 */
+	bool tension;           /* the dashpot may pull just before separation */
+};
+
+struct pound_excitation {
+	int type;               /* row of the excitations, pound_excitation_name */
+	double frequency_hz;    /* filter (Kanai-Tajimi) or sine  > 0 */
+	double damping_ratio;   /* of the filter  > 0 */
+	double high_pass_ratio; /* high-pass corner over filter frequency  > 0 */
+	double cycles;          /* duration times filter frequency  > 0 */
+	double duration;        /* [s]  > 0 (white_noise, harmonic) */
+	double rise, fall;      /* fractions of the duration, rise + fall <= 1 */
+	double time_step;       /* between samples [s]  > 0 */
+	double peak;            /* largest |a_g| of the samples [m/s2]  > 0 */
+	int signals;            /* random signals of each scene  >= 1; 1 for harmonic and record */
+	int n_record;           /* samples of the record, 0 for the other types */
+	const double *record;   /* ground acceleration [m/s2]  (n_record), not owned */
+};
+
+struct pound_scene {
+	struct pound_law law;
+	struct pound_oscillator oscillators[POUND_OSCILLATORS];
+	struct pound_contact contact;
+	struct pound_excitation excitation;
+};
+
+struct pound_distribution {
+	int type;    /* row of the distributions, pound_distribution_name */
+	double p[4]; /* parameters in the order of pound_distribution_parameter(type, k) */
+};
+
+/* what a varied field of the scene holds; a varied value is a double whatever it holds */
+enum pound_field_type { POUND_FIELD_REAL, POUND_FIELD_COUNT, POUND_FIELD_CHOICE, POUND_FIELD_BOOL };
+
+struct pound_field {
+	enum pound_field_type type;
+	size_t offset; /* of the field in struct pound_scene */
+};
+
+struct pound_input {
+	const char *path; /* JSON Pointer into the scene */
+	const char *name; /* for people */
+	struct pound_field field;
+	struct pound_distribution distribution;
+};
+
+struct pound_sweep {
+	const char *path;
+	struct pound_field field;
+	int n_values;
+	const double *values; /* (n_values) */
+};
+
+struct pound_design {
+	int method; /* row of the designs, pound_design_name */
+	int rows;   /* n, rows of the matrices A and B  >= 2 */
+	uint64_t seed;
+	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
+};
+
+struct pound_solver {
+	int method;       /* row of the solvers, pound_solver_name */
+	double tolerance; /* relative; the event solver is exact and does not need it */
+};
+
+struct pound_study {
+	enum pound_kind kind;
+	const char *name; /* NULL: none */
+	struct pound_scene scene;
+	int n_inputs;
+	struct pound_input *inputs; /* (n_inputs) */
+	int n_sweeps;
+	struct pound_sweep *sweeps; /* (n_sweeps); the cells are their product, the last sweep fastest */
+	struct pound_design design;
+	int n_outputs;
+	int outputs[POUND_OUTPUTS_MAX]; /* rows of the outputs, pound_output_name */
+	struct pound_solver solver;
+};
+
+/* The tables' names, NULL past the last row. */
+const char *pound_law_name(int row);
+const char *pound_contact_name(int row);
+const char *pound_excitation_name(int row);
+const char *pound_distribution_name(int row);
+const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
+const char *pound_design_name(int row);
+const char *pound_solver_name(int row);
+const char *pound_output_name(int row);
+
+/* What is wrong with the parameters of a distribution, in words, or NULL. */
+const char *pound_distribution_fault(const struct pound_distribution *distribution);
+
+/* The law an oscillator follows: its own or the scene's. */
+const struct pound_law *pound_scene_law(const struct pound_scene *scene, int oscillator);
+void pound_scene_assign(struct pound_scene *scene, struct pound_field field, double value);
+double pound_scene_field(const struct pound_scene *scene, struct pound_field field);
+
+/* Whether an output is defined for a scene (force amplification: linear left oscillator, ...). */
+bool pound_output_applies(int row, const struct pound_scene *scene);
+
+/* The result. */
+
+// one row per quantity of one run of one signal: X(member, name in a result, oscillator or -1)
+// clang-format off
+#define POUND_MEASURES(X)                                                                 \
+	X(displacement_max_1,      "displacement_max_m",      0)                              \
+	X(displacement_max_free_1, "displacement_max_free_m", 0)                              \
+	X(force_max_1,             "force_max_n",             0)                              \
+	X(yield_displacement_1,    "yield_displacement_m",    0)                              \
+	X(demand_1,                "demand",                  0)                              \
+	X(demand_free_1,           "demand_free",             0)                              \
+	X(displacement_max_2,      "displacement_max_m",      1)                              \
+	X(displacement_max_free_2, "displacement_max_free_m", 1)                              \
+	X(force_max_2,             "force_max_n",             1)                              \
+	X(yield_displacement_2,    "yield_displacement_m",    1)                              \
+	X(demand_2,                "demand",                  1)                              \
+	X(demand_free_2,           "demand_free",             1)                              \
+	X(impulse_max,             "impulse_max_n_s",        -1)                              \
+	X(contact_count,           "contact_count",          -1)                              \
+	X(contact_time,            "contact_time_s",         -1)                              \
+	X(end_u1,                  "u1_m",                   -1)                              \
+	X(end_v1,                  "v1_m_s",                 -1)                              \
+	X(end_u2,                  "u2_m",                   -1)                              \
+	X(end_v2,                  "v2_m_s",                 -1)
+// clang-format on
+
+/* One signal's response.  NAN where the scene has no such value (the yield displacement of a linear law). */
+struct pound_response {
+#define X(member, name, oscillator) double member;
+	POUND_MEASURES(X)
+#undef X
+};
+
+struct pound_estimate {
+	double value, low, high; /* low and high: 95 % interval; NAN: undefined */
+};
+
+struct pound_indices {
+	double mean, variance; /* of the output over the rows of A and B */
+	double noise_share;    /* share of that variance due to the excitation's randomness; NAN: one signal */
+	struct pound_estimate *first; /* (n_inputs) */
+	struct pound_estimate *total; /* (n_inputs) */
+};
+
+struct pound_cell {
+	double sweep[POUND_SWEEPS_MAX];    /* the value of each sweep, (n_sweeps) used */
+	int64_t runs, runs_failed;         /* pounding runs asked, and those among them without a result */
+	int rows_dropped;                  /* rows of the design left out because one of their runs failed */
+	int n_signals;                     /* response: signals */
+	struct pound_response *signals;    /* response: (n_signals) */
+	double outputs[POUND_OUTPUTS_MAX]; /* response: ratio of means of each asked output */
+	struct pound_indices *indices;     /* sensitivity: (n_outputs) */
+};
+
+/* What was asked by the samples of the design and what was run after nothing is run twice. */
+// clang-format off
+#define POUND_STAGES(X)                                                                   \
+	X(signals,    "ground motions")                                                       \
+	X(free_runs,  "linear responses without pounding")                                    \
+	X(yield_runs, "nonlinear responses without pounding")                                 \
+	X(pounding_runs, "responses with pounding")
+// clang-format on
+
+struct pound_stage_work {
+	int64_t asked, run;
+};
+
+struct pound_work {
+#define X(member, text) struct pound_stage_work member;
+	POUND_STAGES(X)
+#undef X
+	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
+	int64_t moving_alike;   /* pounding runs not made: equal linear oscillators never touch with force */
+	int64_t contacts;       /* contacts in the runs made */
+};
+
+struct pound_result {
+	int n_cells;
+	struct pound_cell *cells; /* (n_cells) */
+	struct pound_work work;
+};
+
+/* One study being computed; owns all its memory.  The study must outlive it.
+ *
+ *   create -> block 0 .. blocks-1 (any order, any thread) -> reduce 0 .. reductions-1 (likewise) -> result
+ *
+ * A finished block is pound_run_block_size() doubles at pound_run_block_values(); restoring them stands for
+ * running the block, so a caller can store blocks and go on after a restart with the same bytes. */
+struct pound_run;
+
+struct pound_run *pound_run_create(const struct pound_study *study, int n_workers); /* NULL: out of memory */
+void pound_run_free(struct pound_run *run);
+int pound_run_blocks(const struct pound_run *run);
+int64_t pound_run_block_runs(const struct pound_run *run, int block); /* pounding runs asked, for progress */
+enum pound_status pound_run_block(struct pound_run *run, int block, int worker);
+size_t pound_run_block_size(const struct pound_run *run, int block); /* doubles */
+const double *pound_run_block_values(const struct pound_run *run, int block);
+void pound_run_block_restore(struct pound_run *run, int block, const double *values);
+int pound_run_reductions(const struct pound_run *run);
+enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker);
+const struct pound_result *
+pound_run_result(struct pound_run *run);    /* after the last reduction; owned by run */
+void pound_run_stop(struct pound_run *run); /* blocks and reductions return POUND_STOPPED soon */
+
+/* The sample behind row `row` and design block `sample` (0: A, 1: B, 2 + j: A with column j from B), after all
+ * blocks: the input values, and of each output in a cell the ratio of means and the variance of that mean
+ * over its signals divided by their number (NAN: failed run, or a variance of one signal). */
+int pound_run_samples(const struct pound_run *run); /* design blocks: n_inputs + 2 */
+void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x);
+void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
+                             double *mean, double *variance);
+
+const char *pound_status_text(enum pound_status status);
+
+#endif

@@ -1,0 +1,33 @@
+/* check.h - what every test program includes: cmocka, and a comparison that shows both numbers to 17 digits.
+ *
+ * A program is `tests/unit_<stem>.c` with one CHECK_MAIN(test, test, ...) line; T=substring runs the tests it names. */
+#ifndef CHECK_H
+#define CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#define check_near(got, want, allowed) check_near_at((got), (want), (allowed), #got, __FILE__, __LINE__)
+
+/* |got - want| <= allowed, all finite; prints both, the difference and the allowance when not. */
+void check_near_at(double got, double want, double allowed, const char *what, const char *file, int line);
+
+/* Runs a table of tests under the name of the program, only those that T names when it is set. */
+int check_run(const char *program, const struct CMUnitTest *tests, int n);
+
+#define CHECK_MAIN(...)                                                          \
+	int main(int argc, char **argv)                                              \
+	{                                                                            \
+		const struct CMUnitTest tests[] = {__VA_ARGS__};                         \
+		(void)argc;                                                              \
+		return check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0])); \
+	}
+
+#endif
