@@ -152,6 +152,9 @@ const char *pound_output_name(int row);
 
 /* What is wrong with the parameters of a distribution, in words, or NULL. */
 const char *pound_distribution_fault(const struct pound_distribution *distribution);
+double pound_distribution_quantile(const struct pound_distribution *distribution, double u); /* u in [0, 1] */
+/* The ends of the interval that holds every value; infinite for a normal. */
+void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high);
 
 /* The law an oscillator follows: its own or the scene's. */
 const struct pound_law *pound_scene_law(const struct pound_scene *scene, int oscillator);

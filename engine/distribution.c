@@ -1,0 +1,239 @@
+/* distribution.c - the distributions an input may follow, by name, each through its quantile function.
+ *
+ * A quantile takes u in [0, 1]; u = 0 and u = 1 give the ends of the support, exactly where they are parameters. */
+#include "engine/pound.h"
+
+#include <assert.h>
+#include <float.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_randist.h>
+#include <math.h>
+
+struct distribution {
+	const char *name;
+	const char *parameters[5];             /* up to the first NULL */
+	const char *(*fault)(const double *p); /* parameters that are finite but make no distribution, in words */
+	double (*quantile)(const double *p, double u);
+};
+
+static double within(double x, double low, double high)
+{
+	return x < low ? low : x > high ? high : x;
+}
+
+static const char *min_max_fault(const double *p)
+{
+	return p[0] < p[1] ? NULL : "min must be less than max";
+}
+
+static double uniform(const double *p, double u)
+{
+	return within((1.0 - u) * p[0] + u * p[1], p[0], p[1]);
+}
+
+static const char *log_uniform_fault(const double *p)
+{
+	return p[0] > 0.0 ? min_max_fault(p) : "min must be greater than 0";
+}
+
+static double log_uniform(const double *p, double u)
+{
+	return within(pow(p[0], 1.0 - u) * pow(p[1], u), p[0], p[1]);
+}
+
+static const char *reciprocal_uniform_fault(const double *p)
+{
+	return p[0] > 1.0 ? NULL : "max must be greater than 1";
+}
+
+/* Quantile of a ratio that is as likely as its inverse, and uniform above 1.
+ *
+ * Given    p         (1)       -       max, the largest ratio M  > 1
+ *          u         -         -       probability [0, 1]
+ * Returns  value     r         -       [1/M, M]
+ *
+ *   pdf  1 / (2 (M-1)) on [1, M],   1 / (2 (M-1) r^2) on [1/M, 1]
+ *
+ * Source   mass ratio of the pounding study, M = 6
+ * Test     unit_distribution: mass_ratio_quantiles_and_moments_are_those_of_the_closed_form
+ */
+static double reciprocal_uniform(const double *p, double u)
+{
+	double larger = p[0] - 2.0 * (p[0] - 1.0) * fmin(u, 1.0 - u);
+	return u < 0.5 ? 1.0 / larger : larger;
+}
+
+static const char *deviation_fault(const double *p)
+{
+	return p[1] > 0.0 ? NULL : "standard_deviation must be greater than 0";
+}
+
+static double normal(const double *p, double u)
+{
+	return p[0] + p[1] * gsl_cdf_ugaussian_Pinv(u);
+}
+
+static const char *truncated_normal_fault(const double *p)
+{
+	if (deviation_fault(p) || min_max_fault(p + 2))
+		return deviation_fault(p) ? deviation_fault(p) : min_max_fault(p + 2);
+	double a = (p[2] - p[0]) / p[1], b = (p[3] - p[0]) / p[1];
+	double kept = a < 0.0 ? gsl_cdf_ugaussian_P(b) - gsl_cdf_ugaussian_P(a)
+	                      : gsl_cdf_ugaussian_Q(a) - gsl_cdf_ugaussian_Q(b);
+	// below this the tail has lost its digits
+	return kept > DBL_MIN / DBL_EPSILON ? NULL : "min and max are too many standard deviations from the mean";
+}
+
+/* Quantile of a normal variable known to lie between two bounds.
+ *
+ * Given    p         (4)       -       mean, standard deviation, min, max
+ *          u         -         -       probability [0, 1]
+ * Returns  value     x         -       [min, max]
+ *
+ * With a, b the standardised bounds, P(z) = (1-u) P(a) + u P(b) and likewise for Q = 1 - P: the smaller of the
+ * two keeps its digits, so that both tails are as good as the middle.
+ *
+ * Test     unit_distribution: every_quantile_inverts_its_distribution_function
+ */
+static double truncated_normal(const double *p, double u)
+{
+	double a = (p[2] - p[0]) / p[1], b = (p[3] - p[0]) / p[1];
+	double lower = (1.0 - u) * gsl_cdf_ugaussian_P(a) + u * gsl_cdf_ugaussian_P(b);
+	double upper = (1.0 - u) * gsl_cdf_ugaussian_Q(a) + u * gsl_cdf_ugaussian_Q(b);
+	double z = lower < upper ? gsl_cdf_ugaussian_Pinv(lower) : gsl_cdf_ugaussian_Qinv(upper);
+	if (u == 0.0 || u == 1.0)
+		return u == 0.0 ? p[2] : p[3];
+	return within(p[0] + p[1] * z, p[2], p[3]);
+}
+
+static const char *lognormal_fault(const double *p)
+{
+	return p[1] > 0.0 ? NULL : "log_standard_deviation must be greater than 0";
+}
+
+static double lognormal(const double *p, double u)
+{
+	return exp(normal(p, u));
+}
+
+static const char *triangular_fault(const double *p)
+{
+	if (!(p[0] < p[2]))
+		return "min must be less than max";
+	return p[0] <= p[1] && p[1] <= p[2] ? NULL : "mode must lie between min and max";
+}
+
+static double triangular(const double *p, double u)
+{
+	double width = p[2] - p[0];
+	double c = (p[1] - p[0]) / width;
+	return u < c ? p[0] + width * sqrt(u * c) : p[2] - width * sqrt((1.0 - u) * (1.0 - c));
+}
+
+enum { BETA_MAX = 10000 }; // largest exponent for which GSL's continued fraction surely converges
+
+static const char *beta_fault(const double *p)
+{
+	for (int k = 0; k < 2; k++)
+		if (!(p[k] > 0.0 && p[k] <= BETA_MAX))
+			return k ? "beta must be in (0, 10000]" : "alpha must be in (0, 10000]";
+	return min_max_fault(p + 2);
+}
+
+/* Quantile of the standard beta distribution.
+ *
+ * Given    a, b      -         -       exponents (0, BETA_MAX]
+ *          p, q      -         -       probability (0, 1) and its complement
+ * Returns  value     x         -       (0, 1)
+ *
+ * Newton on log P (or log Q, the smaller) against log x, where P is nearly straight (P ~ x^a), kept inside a
+ * shrinking bracket.  gsl_cdf_beta_Pinv calls the error handler when its iteration does not converge; this
+ * one always ends.
+ *
+ * Valid    full relative accuracy for x <= 1/2; ask for 1 - x by (b, a, q, p) above
+ * Test     unit_distribution: beta_quantiles_end_for_any_allowed_exponents
+ */
+static double beta_standard(double a, double b, double p, double q)
+{
+	double low = DBL_MIN, high = 1.0, x = a / (a + b);
+	for (int k = 0; k < 100; k++) {
+		double tail = p < q ? gsl_cdf_beta_P(x, a, b) : gsl_cdf_beta_Q(x, a, b);
+		double excess = p < q ? log(tail / p) : log(q / tail); // > 0: x is too large
+		if (excess > 0.0)
+			high = x;
+		else
+			low = x;
+		double next = x * exp(-excess * tail / (x * gsl_ran_beta_pdf(x, a, b)));
+		if (!(next > low && next < high))
+			next = sqrt(low) * sqrt(high);
+		if (fabs(next - x) <= 4.0 * DBL_EPSILON * x)
+			return next;
+		x = next;
+	}
+	return x;
+}
+
+static double beta(const double *p, double u)
+{
+	if (u == 0.0 || u == 1.0)
+		return u == 0.0 ? p[2] : p[3];
+	double width = p[3] - p[2];
+	double x = u < gsl_cdf_beta_P(0.5, p[0], p[1]) ? p[2] + width * beta_standard(p[0], p[1], u, 1.0 - u)
+	                                               : p[3] - width * beta_standard(p[1], p[0], 1.0 - u, u);
+	return within(x, p[2], p[3]);
+}
+
+// clang-format off
+static const struct distribution distributions[] = {
+	{"uniform",            {"min", "max"},                                 min_max_fault,            uniform},
+	{"log_uniform",        {"min", "max"},                                 log_uniform_fault,        log_uniform},
+	{"reciprocal_uniform", {"max"},                                        reciprocal_uniform_fault, reciprocal_uniform},
+	{"normal",             {"mean", "standard_deviation"},                 deviation_fault,          normal},
+	{"truncated_normal",   {"mean", "standard_deviation", "min", "max"},   truncated_normal_fault,   truncated_normal},
+	{"lognormal",          {"log_mean", "log_standard_deviation"},         lognormal_fault,          lognormal},
+	{"triangular",         {"min", "mode", "max"},                         triangular_fault,         triangular},
+	{"beta",               {"alpha", "beta", "min", "max"},                beta_fault,               beta},
+};
+// clang-format on
+
+enum { DISTRIBUTIONS = sizeof distributions / sizeof distributions[0] };
+
+const char *pound_distribution_name(int row)
+{
+	return row >= 0 && row < DISTRIBUTIONS ? distributions[row].name : NULL;
+}
+
+const char *pound_distribution_parameter(int row, int k)
+{
+	assert(row >= 0 && row < DISTRIBUTIONS && k >= 0 && k <= 4);
+	return distributions[row].parameters[k];
+}
+
+const char *pound_distribution_fault(const struct pound_distribution *distribution)
+{
+	const struct distribution *row = &distributions[distribution->type];
+	for (int k = 0; row->parameters[k]; k++)
+		if (!(fabs(distribution->p[k]) <= 1e100)) // products of two stay finite
+			return "every parameter must be a number between -1e100 and 1e100";
+	return row->fault(distribution->p);
+}
+
+/* Value that a variable of a distribution falls below with a given probability.
+ *
+ * Given    distribution  -     -       without fault
+ *          u             -     -       probability [0, 1]
+ * Returns  value         -     the input's   the ends of the support for u = 0 and u = 1 (infinite for a normal)
+ *
+ * Test     unit_distribution: every_quantile_inverts_its_distribution_function
+ */
+double pound_distribution_quantile(const struct pound_distribution *distribution, double u)
+{
+	assert(u >= 0.0 && u <= 1.0);
+	return distributions[distribution->type].quantile(distribution->p, u);
+}
+
+void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high)
+{
+	*low = pound_distribution_quantile(distribution, 0.0);
+	*high = pound_distribution_quantile(distribution, 1.0);
+}
