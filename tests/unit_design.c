@@ -1,0 +1,166 @@
+/* unit_design.c - stratification exactly, uniformity and independence within derived bounds. */
+#include "engine/design.h"
+#include "tests/check.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { D = 4 };
+
+static int row_named(const char *name)
+{
+	int row = 0;
+	while (strcmp(pound_design_name(row), name))
+		row++;
+	return row;
+}
+
+/* A study of D inputs, uniform on (0, 1), and its filled design; freed by the caller. */
+static double *unit_design(const char *method, int rows, uint64_t seed)
+{
+	struct pound_input inputs[D];
+	memset(inputs, 0, sizeof inputs);
+	for (int j = 0; j < D; j++)
+		inputs[j].distribution = (struct pound_distribution){0, {0.0, 1.0}};
+	struct pound_study study = {
+	    .n_inputs = D, .inputs = inputs, .design = {.method = row_named(method), .rows = rows, .seed = seed}};
+	double *x = malloc(sizeof *x * 2 * D * (size_t)rows);
+	pound_design_fill(&study, x);
+	return x;
+}
+
+static void a_latin_hypercube_has_one_point_in_every_stratum_of_every_column(void **state)
+{
+	(void)state;
+	static const int sizes[] = {2, 3, 7, 100, 1000, 4097, (1 << 17) - 1};
+	for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+		int n = sizes[k];
+		double *x = unit_design("lhs", n, 42 + k);
+		char *hit = malloc(n);
+		for (int c = 0; c < 2 * D; c++) {
+			memset(hit, 0, n);
+			for (int i = 0; i < n; i++) {
+				double u = x[(size_t)i * 2 * D + c];
+				assert_true(u > 0.0 && u < 1.0);
+				hit[(int)(u * n)]++;
+			}
+			assert_null(memchr(hit, 0, n));
+		}
+		free(hit);
+		free(x);
+	}
+}
+
+/* Largest distance between the distribution function of n points and that of a uniform variable. */
+static double kolmogorov(const double *u, int n, int stride)
+{
+	enum { CELLS = 1 << 14 };
+	static int below[CELLS + 1];
+	memset(below, 0, sizeof below);
+	for (int i = 0; i < n; i++)
+		below[(int)(u[(size_t)i * stride] * CELLS) + 1]++;
+	double distance = 0.0;
+	for (int c = 1; c <= CELLS; c++) {
+		below[c] += below[c - 1];
+		distance = fmax(distance, fabs((double)below[c] / n - (double)c / CELLS));
+	}
+	return distance;
+}
+
+static void random_columns_are_uniform_and_unrelated(void **state)
+{
+	(void)state;
+	enum { N = 20000 };
+	static const char *const methods[] = {"random", "lhs"};
+	for (int m = 0; m < 2; m++) {
+		double *x = unit_design(methods[m], N, 7);
+		for (int c = 0; c < 2 * D; c++) {
+			// P(sqrt(n) distance > 2.5) = 2 exp(-2 * 2.5^2) = 7e-6 for independent points, less for strata
+			assert_true(kolmogorov(x + c, N, 2 * D) < 2.5 / sqrt(N));
+			for (int e = 0; e < c; e++) {
+				double covariance = 0.0;
+				for (int i = 0; i < N; i++)
+					covariance += (x[i * 2 * D + c] - 0.5) * (x[i * 2 * D + e] - 0.5);
+				// a correlation has standard deviation 1 / sqrt(n); 5 of them
+				check_near(12.0 * covariance / N, 0.0, 5.0 / sqrt(N));
+			}
+			double lagged = 0.0;
+			for (int i = 1; i < N; i++)
+				lagged += (x[i * 2 * D + c] - 0.5) * (x[(i - 1) * 2 * D + c] - 0.5);
+			check_near(12.0 * lagged / N, 0.0, 5.0 / sqrt(N));
+		}
+		free(x);
+	}
+}
+
+static void every_order_of_three_strata_is_as_likely(void **state)
+{
+	(void)state;
+	enum { SEEDS = 6000 };
+	int seen[27] = {0};
+	for (int seed = 0; seed < SEEDS; seed++) {
+		double *x = unit_design("lhs", 3, seed);
+		seen[(int)(3 * x[0]) * 9 + (int)(3 * x[2 * D]) * 3 + (int)(3 * x[4 * D])]++;
+		free(x);
+	}
+	int orders = 0;
+	for (int k = 0; k < 27; k++)
+		if (seen[k]) {
+			orders++;
+			check_near(seen[k], SEEDS / 6.0, 5.0 * sqrt(SEEDS * 5.0 / 36.0)); // 5 binomial deviations
+		}
+	assert_int_equal(orders, 6);
+}
+
+static void a_column_depends_on_the_seed_and_the_input_only(void **state)
+{
+	(void)state;
+	static const char *const methods[] = {"random", "lhs"};
+	for (int m = 0; m < 2; m++) {
+		double *x = unit_design(methods[m], 50, 1), *again = unit_design(methods[m], 50, 1);
+		double *other = unit_design(methods[m], 50, 2);
+		assert_memory_equal(x, again, sizeof *x * 2 * D * 50);
+		int same = 0;
+		for (int k = 0; k < 2 * D * 50; k++)
+			same += x[k] == other[k];
+		assert_int_equal(same, 0);
+		free(x), free(again), free(other);
+	}
+	double *fewer = unit_design("random", 20, 1), *more = unit_design("random", 50, 1);
+	assert_memory_equal(fewer, more, sizeof *fewer * 2 * D * 20);
+	free(fewer), free(more);
+}
+
+static void values_are_quantiles_of_the_inputs_distributions(void **state)
+{
+	(void)state;
+	enum { N = 100 };
+	struct pound_input inputs[2] = {{.distribution = {.type = 0, .p = {0.5, 5.0}}},
+	                                {.distribution = {.type = 2, .p = {6.0}}}};
+	struct pound_input plain[2] = {{.distribution = {.type = 0, .p = {0.0, 1.0}}},
+	                               {.distribution = {.type = 0, .p = {0.0, 1.0}}}};
+	struct pound_study study = {.n_inputs = 2, .inputs = inputs, .design = {.rows = N, .seed = 3}};
+	double x[N * 4], u[N * 4];
+	pound_design_fill(&study, x);
+	study.inputs = plain;
+	pound_design_fill(&study, u);
+	for (int k = 0; k < N * 4; k++)
+		check_near(x[k], pound_distribution_quantile(&inputs[k % 2].distribution, u[k]), 0.0);
+}
+
+static void a_mixed_sample_takes_one_column_from_b(void **state)
+{
+	(void)state;
+	const double x[] = {1, 2, 3, /* A */ 11, 12, 13, /* B */ 4, 5, 6, 14, 15, 16};
+	static const double want[5][3] = {{4, 5, 6}, {14, 15, 16}, {14, 5, 6}, {4, 15, 6}, {4, 5, 16}};
+	for (int sample = 0; sample < 5; sample++)
+		for (int j = 0; j < 3; j++)
+			check_near(pound_design_input(x, 3, 1, sample, j), want[sample][j], 0.0);
+}
+
+CHECK_MAIN(cmocka_unit_test(a_latin_hypercube_has_one_point_in_every_stratum_of_every_column),
+           cmocka_unit_test(random_columns_are_uniform_and_unrelated),
+           cmocka_unit_test(every_order_of_three_strata_is_as_likely),
+           cmocka_unit_test(a_column_depends_on_the_seed_and_the_input_only),
+           cmocka_unit_test(values_are_quantiles_of_the_inputs_distributions),
+           cmocka_unit_test(a_mixed_sample_takes_one_column_from_b))
