@@ -1,0 +1,12 @@
+/* excitation.h - the samples of a ground acceleration: at times 0, dt, ..., (n - 1) dt, linear in between. */
+#ifndef EXCITATION_H
+#define EXCITATION_H
+
+#include "engine/pound.h"
+#include "engine/random.h"
+
+int pound_excitation_samples(const struct pound_excitation *e); /* n >= 2 */
+void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream noise,
+                           double *a); /* [m/s2] (n) */
+
+#endif

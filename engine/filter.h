@@ -1,0 +1,23 @@
+/* filter.h - the Kanai-Tajimi filter with its high pass, as an exact recurrence from sample to sample. */
+#ifndef FILTER_H
+#define FILTER_H
+
+#include "engine/random.h"
+
+enum { FILTER_STATES = 4 };
+
+/* x_0 = start z_0,  x_k = transition x_k-1 + step z_k,  a_k = output x_k,  z_k: four normals of draw k */
+struct pound_filter {
+	double transition[FILTER_STATES][FILTER_STATES];
+	double step[FILTER_STATES][FILTER_STATES];  /* lower triangle, zeros above */
+	double start[FILTER_STATES][FILTER_STATES]; /* lower triangle, zeros above */
+	double output[2];                           /* of the first two states */
+};
+
+/* theta: 2 pi filter frequency * sample step; white noise of intensity 1 per sample step */
+void pound_filter_init(struct pound_filter *f, double theta, double damping_ratio, double high_pass_ratio);
+
+/* a[k], k < n: the stationary output  (n) */
+void pound_filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a);
+
+#endif
