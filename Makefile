@@ -51,6 +51,13 @@ $(B)/engine/march_w%.o: engine/march.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_LANES=$* -c -o $@ $<
 
+# the database's schema is built into the server, as a C string
+$(B)/schema/store.sql.inc: schema/store.sql
+	@mkdir -p $(@D)
+	sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $< > $@
+$(B)/server/store.o: $(B)/schema/store.sql.inc
+$(B)/server/store.o: CPPFLAGS += -I$(B)
+
 # install what is missing, and only that
 deps:
 	@missing=$$(for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || echo $$p; done); \

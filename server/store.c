@@ -1,0 +1,545 @@
+/* Studies in SQLite.
+ *
+ * 1. One connection makes every change and every checkpoint, behind one mutex; the others are read-only and never
+ *    checkpoint.  (SQLite before 3.51.3 can damage a WAL database when one connection checkpoints while another commits.)
+ * 2. A lock file keeps a second server away from the database.
+ * 3. synchronous=FULL: a COMMIT that returned survives a power cut.
+ * 4. A prepared statement per question; a client's bytes are only ever bound. */
+#include "server/store.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <nettle/sha2.h>
+#include <sqlite3.h>
+
+#include "engine/pound.h"
+#include "server/log.h"
+
+static const char schema_text[] =
+#include "schema/store.sql.inc"
+    ;
+
+enum {
+	READERS = 4,
+	APPLICATION_ID = 0x706f756e, /* as in store.sql */
+	USER_VERSION = 1,            /* as in store.sql */
+};
+
+// clang-format off
+#define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
+#define STUDY_ROW                                                                                         \
+	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
+	"error, runs, (SELECT total(runs) FROM block WHERE study = id), "                                     \
+	"(SELECT total(cpu_s) FROM block WHERE study = id) FROM study "
+
+// those that read, then those that write
+#define STATEMENTS(X)                                                                                     \
+	X(STUDY,    STUDY_ROW "WHERE id = ?1")                                                                \
+	X(LIST,     STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2")                                      \
+	X(LIST_OF,  STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2")                      \
+	X(DOCUMENT, "SELECT sha256, content FROM document WHERE study = ?1 AND name = ?2")                    \
+	X(BLOCKS,   "SELECT sha256, content, number, runs, cpu_s FROM block WHERE study = ?1 ORDER BY number") \
+	X(BEGIN,    "BEGIN IMMEDIATE")                                                                        \
+	X(COMMIT,   "COMMIT")                                                                                 \
+	X(ROLLBACK, "ROLLBACK")                                                                               \
+	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash) "                        \
+	            "VALUES (?1, 'queued', ?2, ?3, ?4, ?5, ?6)")                                              \
+	X(ADD,      "INSERT INTO document (study, name, content, sha256) VALUES (?1, ?2, ?3, ?4)")            \
+	X(CANCEL,   "UPDATE study SET status = 'cancelled', finished = max(?2, created) "                     \
+	            "WHERE id = ?1 AND status IN ('queued', 'running')")                                      \
+	X(DELETE,   "DELETE FROM study WHERE id = ?1")                                                        \
+	X(CLAIM,    "UPDATE study SET status = 'running', attempt = attempt + 1, "                            \
+	            "started = coalesce(started, max(?1, created)) WHERE id = "                               \
+	            "(SELECT id FROM study WHERE status = 'queued' ORDER BY id LIMIT 1) RETURNING id")        \
+	X(KEEP,     "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, content, sha256) "    \
+	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6 FROM study WHERE id = ?1 AND status = 'running'") \
+	X(FINISH,   "UPDATE study SET status = ?2, finished = max(?3, started), error = ?4 "                  \
+	            "WHERE id = ?1 AND status = 'running'")
+// clang-format on
+
+enum statement {
+#define X(name, sql) name,
+	STATEMENTS(X)
+#undef X
+	    N_STATEMENTS
+};
+
+static const char *const statement_text[N_STATEMENTS] = {
+#define X(name, sql) sql,
+    STATEMENTS(X)
+#undef X
+};
+
+struct connection {
+	pthread_mutex_t lock;
+	sqlite3 *db;
+	sqlite3_stmt *statements[N_STATEMENTS]; /* a reader has those before BEGIN */
+};
+
+struct store {
+	int lock_file;
+	int64_t id_last; /* largest id given out, under the writer's lock */
+	struct connection writer, readers[READERS];
+};
+
+static int64_t now_ms(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_REALTIME, &now);
+	return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+/* types: i int64_t, d double, t text (NULL: null), b bytes and their size_t; bound until the statement has ended */
+static void bind(sqlite3_stmt *statement, const char *types, va_list values)
+{
+	for (int i = 1; types[i - 1]; i++)
+		if (types[i - 1] == 'i')
+			sqlite3_bind_int64(statement, i, va_arg(values, int64_t));
+		else if (types[i - 1] == 'd')
+			sqlite3_bind_double(statement, i, va_arg(values, double));
+		else if (types[i - 1] == 't')
+			sqlite3_bind_text(statement, i, va_arg(values, const char *), -1, SQLITE_STATIC);
+		else {
+			const void *bytes = va_arg(values, const void *);
+			sqlite3_bind_blob64(statement, i, bytes, va_arg(values, size_t), SQLITE_STATIC);
+		}
+}
+
+static sqlite3_stmt *query(struct connection *c, enum statement s, const char *types, ...)
+{
+	va_list values;
+	va_start(values, types);
+	bind(c->statements[s], types, values);
+	va_end(values);
+	return c->statements[s];
+}
+
+/* After the last step of a statement that came to n rows. */
+static enum store_status ended(struct connection *c, sqlite3_stmt *statement, int n)
+{
+	bool failed = sqlite3_reset(statement) != SQLITE_OK;
+	if (failed)
+		log_line("database: %s (%d): %.60s", sqlite3_errmsg(c->db), sqlite3_extended_errcode(c->db),
+		         sqlite3_sql(statement));
+	sqlite3_clear_bindings(statement);
+	return failed ? STORE_FAILED : n == 0 ? STORE_NONE : STORE_OK;
+}
+
+static enum store_status change(struct connection *c, enum statement s, const char *types, ...)
+{
+	va_list values;
+	va_start(values, types);
+	bind(c->statements[s], types, values);
+	va_end(values);
+	sqlite3_step(c->statements[s]);
+	return ended(c, c->statements[s], sqlite3_changes(c->db));
+}
+
+/* Ends a transaction that has come to `status`; a full disk may have rolled it back already. */
+static enum store_status conclude(struct connection *c, enum store_status status)
+{
+	if (status == STORE_OK && change(c, COMMIT, "") == STORE_FAILED)
+		status = STORE_FAILED;
+	if (!sqlite3_get_autocommit(c->db))
+		change(c, ROLLBACK, "");
+	return status;
+}
+
+/* Any connection that is free, its lock taken. */
+static struct connection *reader(struct store *store)
+{
+	for (int i = 0; i < READERS; i++)
+		if (pthread_mutex_trylock(&store->readers[i].lock) == 0)
+			return &store->readers[i];
+	pthread_mutex_lock(&store->readers[0].lock);
+	return &store->readers[0];
+}
+
+static struct connection *writer(struct store *store)
+{
+	pthread_mutex_lock(&store->writer.lock);
+	return &store->writer;
+}
+
+static enum store_status released(struct connection *c, enum store_status status)
+{
+	pthread_mutex_unlock(&c->lock);
+	return status;
+}
+
+static int64_t number(sqlite3 *db, const char *sql)
+{
+	sqlite3_stmt *read = NULL;
+	int64_t value = -1;
+	if (sqlite3_prepare_v2(db, sql, -1, &read, NULL) == SQLITE_OK && sqlite3_step(read) == SQLITE_ROW)
+		value = sqlite3_column_int64(read, 0);
+	sqlite3_finalize(read);
+	return value;
+}
+
+static bool connect(struct connection *c, const char *path, int flags)
+{
+	static const char settings[] =
+	    "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA "
+	    "trusted_schema = OFF;"
+	    "PRAGMA cell_size_check = ON; PRAGMA busy_timeout = 5000; PRAGMA journal_size_limit = 67108864";
+	static const char settings_hold[] =
+	    "SELECT journal_mode = 'wal' AND synchronous = 2 AND foreign_keys AND NOT trusted_schema AND "
+	    "cell_size_check "
+	    "FROM pragma_journal_mode, pragma_synchronous, pragma_foreign_keys, pragma_trusted_schema, "
+	    "pragma_cell_size_check";
+	pthread_mutex_init(&c->lock, NULL);
+	if (sqlite3_open_v2(path, &c->db, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, NULL) ==
+	    SQLITE_OK) {
+		sqlite3_db_config(c->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+		sqlite3_db_config(c->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !(flags & SQLITE_OPEN_READWRITE), NULL);
+		sqlite3_exec(c->db, settings, NULL, NULL, NULL);
+		if (number(c->db, settings_hold) == 1)
+			return true;
+	}
+	log_line("cannot open the database %s as it must be: %s", path, sqlite3_errmsg(c->db));
+	return false;
+}
+
+static void prepare(struct connection *c, int n)
+{
+	for (int s = 0; s < n; s++)
+		if (sqlite3_prepare_v3(c->db, statement_text[s], -1, SQLITE_PREPARE_PERSISTENT, &c->statements[s],
+		                       NULL) != SQLITE_OK) {
+			log_line("database: %s: %s", statement_text[s], sqlite3_errmsg(c->db));
+			abort();
+		}
+}
+
+/* Makes a new database, or finds that this one is ours and of our version. */
+static bool founded(sqlite3 *db, const char *path)
+{
+	if (number(db, "SELECT count(*) FROM sqlite_schema") == 0 && number(db, "PRAGMA application_id") == 0) {
+		bool made = sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL) == SQLITE_OK &&
+		            sqlite3_exec(db, schema_text, NULL, NULL, NULL) == SQLITE_OK &&
+		            sqlite3_exec(db, "COMMIT", NULL, NULL, NULL) == SQLITE_OK;
+		if (!made)
+			log_line("cannot make the database %s: %s", path, sqlite3_errmsg(db));
+		return made;
+	}
+	int64_t version = number(db, "PRAGMA user_version");
+	bool ours = number(db, "PRAGMA application_id") == APPLICATION_ID && version == USER_VERSION;
+	if (!ours)
+		log_line("%s is not a database of poundd, or of another version: %lld, not %d", path,
+		         (long long)version, USER_VERSION);
+	return ours;
+}
+
+static bool locked(struct store *store, const char *path)
+{
+	char name[4096];
+	snprintf(name, sizeof name, "%s-lock", path);
+	store->lock_file = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+	bool ours = store->lock_file >= 0 && flock(store->lock_file, LOCK_EX | LOCK_NB) == 0;
+	if (!ours && errno == EWOULDBLOCK)
+		log_line("another server uses the database %s", path);
+	else if (!ours)
+		log_line("cannot lock %s: %s", name, strerror(errno));
+	return ours;
+}
+
+/* Opens a database, making it if there is none; studies that were running are queued again.
+ *
+ * Given    path    of the database file; PATH-lock, PATH-wal and PATH-shm stand beside it
+ * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
+ * Test     service_store: a_second_server_on_one_database_is_refused
+ */
+struct store *store_open(const char *path)
+{
+	struct store *store = calloc(1, sizeof *store);
+	if (!store)
+		return NULL;
+	struct connection *w = &store->writer;
+	bool ok = locked(store, path) && connect(w, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) &&
+	          founded(w->db, path) &&
+	          sqlite3_exec(w->db, "UPDATE study SET status = 'queued' WHERE status = 'running'", NULL, NULL,
+	                       NULL) == SQLITE_OK;
+	for (int i = 0; ok && i < READERS; i++)
+		ok = connect(&store->readers[i], path, SQLITE_OPEN_READONLY);
+	if (!ok) {
+		store_close(store);
+		return NULL;
+	}
+	prepare(w, N_STATEMENTS);
+	for (int i = 0; i < READERS; i++)
+		prepare(&store->readers[i], BEGIN);
+	store->id_last = number(w->db, "SELECT coalesce(max(id), 0) FROM study");
+	return store;
+}
+
+static void disconnect(struct connection *c)
+{
+	for (int s = 0; s < N_STATEMENTS; s++)
+		sqlite3_finalize(c->statements[s]);
+	sqlite3_close(c->db);
+}
+
+/* Closes a store; the writing connection goes last and leaves no WAL behind. */
+void store_close(struct store *store)
+{
+	for (int i = 0; i < READERS; i++)
+		disconnect(&store->readers[i]);
+	disconnect(&store->writer);
+	if (store->lock_file >= 0)
+		close(store->lock_file);
+	free(store);
+}
+
+/* The time and 20 random bits, and always above the last one. */
+static int64_t id_next(struct store *store, int64_t now)
+{
+	uint32_t bits = 0;
+	getrandom(&bits, sizeof bits, 0);
+	int64_t id = now << 20 | (bits & 0xfffff);
+	return store->id_last = id > store->id_last ? id : store->id_last + 1;
+}
+
+/* What stored bytes are checked with: SHA-256 over where they belong and themselves. */
+static void digest(const char *place, const void *bytes, size_t n, uint8_t sha256[SHA256_DIGEST_SIZE])
+{
+	struct sha256_ctx hash;
+	sha256_init(&hash);
+	sha256_update(&hash, strlen(place), (const uint8_t *)place);
+	sha256_update(&hash, n, bytes);
+	sha256_digest(&hash, SHA256_DIGEST_SIZE, sha256);
+}
+
+/* The bytes of a row that starts with sha256 and content: copied, for they may lie unaligned, and a zero added. */
+static enum store_status checked(sqlite3_stmt *row, const char *place, char **content, size_t *length)
+{
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	*length = (size_t)sqlite3_column_bytes(row, 1);
+	*content = malloc(*length + 1);
+	if (!*content)
+		return STORE_FAILED;
+	memcpy(*content, sqlite3_column_blob(row, 1), *length);
+	(*content)[*length] = '\0';
+	digest(place, *content, *length, sha256);
+	if (sqlite3_column_bytes(row, 0) == sizeof sha256 &&
+	    !memcmp(sqlite3_column_blob(row, 0), sha256, sizeof sha256))
+		return STORE_OK;
+	free(*content);
+	*content = NULL;
+	return STORE_CORRUPT;
+}
+
+static enum store_status add(struct connection *c, int64_t id, const char *name, const char *content,
+                             size_t length)
+{
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	digest(name, content, length, sha256);
+	return change(c, ADD, "itbb", id, name, content, length, sha256, sizeof sha256);
+}
+
+/* Queues a new study; it is on the disk when this returns.
+ *
+ * Given    study     its kind, name and runs; the rest is not read
+ *          hash      of its meaning, hex
+ *          request   (length) bytes   as the client sent them
+ * Returns  id        of the study
+ * Status   STORE_FAILED   nothing is stored
+ * Test     service_resume: accepted_studies_survive_sigkill
+ */
+enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
+                               const char *request, size_t length, int64_t *id)
+{
+	struct connection *c = writer(store);
+	int64_t now = now_ms();
+	enum store_status status = change(c, BEGIN, "");
+	*id = id_next(store, now);
+	if (status != STORE_FAILED)
+		status = change(c, SUBMIT, "iittit", *id, now, study->kind, study->name, study->runs, hash);
+	if (status == STORE_OK)
+		status = add(c, *id, "request", request, length);
+	return released(c, conclude(c, status));
+}
+
+static const char *text(sqlite3_stmt *row, int column)
+{
+	return (const char *)sqlite3_column_text(row, column);
+}
+
+static enum store_status studies(struct connection *c, sqlite3_stmt *rows, store_study_reader *each, void *to)
+{
+	int n = 0;
+	for (; sqlite3_step(rows) == SQLITE_ROW; n++) {
+		const struct store_study study = {
+		    .id = sqlite3_column_int64(rows, 0),
+		    .status = text(rows, 1),
+		    .kind = text(rows, 2),
+		    .name = text(rows, 3),
+		    .created = text(rows, 4),
+		    .started = text(rows, 5),
+		    .finished = text(rows, 6),
+		    .error = text(rows, 7),
+		    .runs = sqlite3_column_int64(rows, 8),
+		    .runs_done = sqlite3_column_int64(rows, 9),
+		    .cpu_s = sqlite3_column_double(rows, 10),
+		};
+		each(to, &study);
+	}
+	return released(c, ended(c, rows, n));
+}
+
+/* Hands over one study.
+ *
+ * Given    each    called once with `to` and the study; not if there is none
+ */
+enum store_status store_study(struct store *store, int64_t id, store_study_reader *each, void *to)
+{
+	struct connection *c = reader(store);
+	return studies(c, query(c, STUDY, "i", id), each, to);
+}
+
+/* Hands over a page of studies, newest first.
+ *
+ * Given    status   only these; NULL: any
+ *          before   only ids below; INT64_MAX: all
+ *          limit    at most so many
+ *          each     called with `to` and each study
+ * Test     service_routes: the_list_is_newest_first_and_pages_by_cursor
+ */
+enum store_status store_list(struct store *store, const char *status, int64_t before, int limit,
+                             store_study_reader *each, void *to)
+{
+	struct connection *c = reader(store);
+	int64_t n = limit;
+	return studies(c, status ? query(c, LIST_OF, "iit", before, n, status) : query(c, LIST, "ii", before, n),
+	               each, to);
+}
+
+/* Reads a document of a study: its "request" or its "result".
+ *
+ * Returns  content   (length) bytes, and a zero behind them; allocated when STORE_OK
+ * Status   STORE_NONE      no such study, or no result yet
+ *          STORE_CORRUPT   these are not the bytes that were stored
+ */
+enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
+                                 size_t *length)
+{
+	struct connection *c = reader(store);
+	sqlite3_stmt *row = query(c, DOCUMENT, "it", id, name);
+	enum store_status status = STORE_NONE;
+	if (sqlite3_step(row) == SQLITE_ROW)
+		status = checked(row, name, content, length);
+	if (ended(c, row, 1) == STORE_FAILED)
+		status = STORE_FAILED;
+	if (status == STORE_CORRUPT)
+		log_line("study %016llx: its %s is damaged", (unsigned long long)id, name);
+	return released(c, status);
+}
+
+/* Cancels a study; STORE_NONE when it is neither queued nor running. */
+enum store_status store_cancel(struct store *store, int64_t id)
+{
+	struct connection *c = writer(store);
+	return released(c, change(c, CANCEL, "ii", id, now_ms()));
+}
+
+/* Deletes a study with its documents and blocks. */
+enum store_status store_delete(struct store *store, int64_t id)
+{
+	struct connection *c = writer(store);
+	return released(c, change(c, DELETE, "i", id));
+}
+
+/* Takes the oldest queued study: when this returns it is running, and the attempt counted.
+ *
+ * Returns  id      of the study
+ * Status   STORE_NONE   nothing is queued
+ */
+enum store_status store_claim(struct store *store, int64_t *id)
+{
+	struct connection *c = writer(store);
+	sqlite3_stmt *row = query(c, CLAIM, "i", now_ms());
+	int n = 0;
+	for (; sqlite3_step(row) == SQLITE_ROW; n++)
+		*id = sqlite3_column_int64(row, 0);
+	return released(c, ended(c, row, n));
+}
+
+/* A block belongs to a study, a number and the engine version that made it. */
+static void block_place(int64_t id, int block, char place[64])
+{
+	snprintf(place, 64, "%s %lld %d ", POUND_VERSION, (long long)id, block);
+}
+
+/* Keeps a finished block of a running study.
+ *
+ * Status   STORE_NONE   the study is not running any more: cancelled or deleted
+ * Test     service_resume: stored_blocks_are_not_run_again
+ */
+enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block)
+{
+	char place[64];
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	size_t length = (size_t)block->n * sizeof(double);
+	block_place(id, block->number, place);
+	digest(place, block->values, length, sha256);
+	struct connection *c = writer(store);
+	return released(c, change(c, KEEP, "iiidbb", id, (int64_t)block->number, block->runs, block->cpu_s,
+	                          block->values, length, sha256, sizeof sha256));
+}
+
+/* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out.
+ *
+ * Given    each    called with `to` and each block
+ */
+enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *each, void *to)
+{
+	struct connection *c = reader(store);
+	sqlite3_stmt *rows = query(c, BLOCKS, "i", id);
+	int n = 0;
+	for (; sqlite3_step(rows) == SQLITE_ROW; n++) {
+		char place[64], *content;
+		size_t length;
+		struct store_block block = {.number = sqlite3_column_int(rows, 2),
+		                            .runs = sqlite3_column_int64(rows, 3),
+		                            .cpu_s = sqlite3_column_double(rows, 4)};
+		block_place(id, block.number, place);
+		if (checked(rows, place, &content, &length) != STORE_OK) {
+			log_line("study %016llx: block %d cannot be used", (unsigned long long)id, block.number);
+			continue;
+		}
+		block.n = (int)(length / sizeof(double));
+		block.values = (const double *)content;
+		each(to, &block);
+		free(content);
+	}
+	return released(c, ended(c, rows, n));
+}
+
+/* Ends a running study.
+ *
+ * Given    result   (length) bytes   what the client gets; NULL: it failed
+ *          error    why it failed, a sentence; NULL: it did not
+ * Status   STORE_NONE   it is not running any more; nothing is stored
+ */
+enum store_status store_finish(struct store *store, int64_t id, const char *result, size_t length,
+                               const char *error)
+{
+	assert(!result != !error);
+	struct connection *c = writer(store);
+	enum store_status status = change(c, BEGIN, "");
+	if (status != STORE_FAILED)
+		status = change(c, FINISH, "itit", id, result ? "succeeded" : "failed", now_ms(), error);
+	if (status == STORE_OK && result)
+		status = add(c, id, "result", result, length);
+	return released(c, conclude(c, status));
+}

@@ -1,0 +1,67 @@
+/* store.h - studies on disk: an SQLite database in WAL with synchronous=FULL, one writing connection.
+ *
+ * What a function reports as done is on the disk.  Times are milliseconds since 1970.  Any thread. */
+#ifndef STORE_H
+#define STORE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum store_status {
+	STORE_OK,
+	STORE_NONE,    /* no such study or document, or the study is not in the state asked for */
+	STORE_CORRUPT, /* found, but not what was written */
+	STORE_FAILED,  /* the disk or the memory; logged */
+};
+
+struct store;
+
+/* Texts live as long as the call that hands them over. */
+struct store_study {
+	int64_t id;
+	const char *status, *kind, *name;         /* name: NULL if none */
+	const char *created, *started, *finished; /* RFC 3339 UTC, NULL: not yet */
+	const char *error;                        /* NULL unless failed */
+	int64_t runs, runs_done;
+	double cpu_s; /* of the blocks done [s] */
+};
+typedef void store_study_reader(void *to, const struct store_study *study);
+
+struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
+void store_close(struct store *store);
+
+/* a new study, queued; `study` gives kind, name and runs */
+enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
+                               const char *request, size_t length, int64_t *id);
+enum store_status store_study(struct store *store, int64_t id, store_study_reader *reader, void *to);
+/* newest first, those older than `before` (INT64_MAX: all) and of one status (NULL: any) */
+enum store_status store_list(struct store *store, const char *status, int64_t before, int limit,
+                             store_study_reader *reader, void *to);
+enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
+                                 size_t *length);                /* on the heap, for the caller to free */
+enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */
+enum store_status store_delete(struct store *store, int64_t id);
+
+/* The oldest queued study becomes running; STORE_NONE when there is none. */
+enum store_status store_claim(struct store *store, int64_t *id);
+
+struct store_block {
+	int number;
+	int64_t runs; /* pounding runs in it */
+	double cpu_s; /* [s] */
+	int n;
+	const double *values; /* (n) */
+};
+typedef void store_block_reader(void *to, const struct store_block *block);
+
+/* keeps a finished block; STORE_NONE: the study is not running any more */
+enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block);
+/* the stored blocks of this engine version, damaged ones left out */
+enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *reader, void *to);
+
+/* A running study ends, once: with a result, or with the reason why it failed (the other is NULL). */
+enum store_status store_finish(struct store *store, int64_t id, const char *result, size_t length,
+                               const char *error);
+
+#endif

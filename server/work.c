@@ -1,0 +1,363 @@
+/* Workers and the studies they run.
+ *
+ *   worker 0  | claim | open | block 0 | block 2 | block 3      | reduce 0 | finish |
+ *   worker 1  | wait         | block 1 | block 4 | block 5 | ...| reduce 1 | claim the next study ...
+ *
+ * 1. A worker takes the next step of the oldest study that has one to give: a block, or when all blocks are done a
+ *    reduction.  A finished block is stored before it counts.
+ * 2. When no running study has a step to give, one worker claims the oldest queued study, the others wait for it.
+ * 3. Who ends the last step of a study turns its result into bytes and stores them.
+ *
+ * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
+ * store takes no more blocks and no result. */
+#include "server/work.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "schema/problems.h"
+#include "schema/result_json.h"
+#include "schema/study_json.h"
+#include "server/log.h"
+
+enum { WORKER_NICENESS = 10 }; /* requests are answered first */
+
+struct job {
+	struct job *next; /* a younger one */
+	int64_t id;
+	bool opened;
+	struct work_run of;
+	int block, reduction; /* next to hand out */
+	int n_reductions, reductions_left;
+	int n_inside;      /* workers in one of its steps */
+	bool ended;        /* gives no more steps */
+	const char *error; /* why it failed, NULL if it did not */
+	double cpu_s;      /* [s] */
+	double started;    /* [s] monotonic */
+};
+
+struct worker {
+	struct work *work;
+	int number;
+	pthread_t thread;
+};
+
+struct work {
+	struct store *store;
+	pthread_mutex_t lock; /* of all below */
+	pthread_cond_t changed;
+	struct job *jobs; /* oldest first */
+	bool queued;      /* the store may hold a queued study */
+	bool claiming;    /* a worker is about to bring the next study */
+	bool stopping;
+	int n_workers;
+	struct worker workers[]; /* (n_workers) */
+};
+
+static double seconds(clockid_t clock)
+{
+	struct timespec now;
+	clock_gettime(clock, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void restore(void *to, const struct store_block *block)
+{
+	struct work_run *opened = to;
+	if (block->number >= opened->n_blocks ||
+	    (size_t)block->n != pound_run_block_size(opened->run, block->number))
+		return;
+	pound_run_block_restore(opened->run, block->number, block->values);
+	opened->stored[block->number] = true;
+	opened->n_left--;
+	opened->cpu_s += block->cpu_s;
+}
+
+/* Makes the run of a stored study, with the blocks that are stored.
+ *
+ * Given    id          of the study
+ *          n_workers   that will run its blocks
+ * Returns  opened      closed by work_close, even after a failure
+ *          value       NULL, or why it failed
+ * Memory   allocates
+ * Test     service_resume: a_killed_study_goes_on_to_the_same_bytes
+ */
+const char *work_open(struct store *store, int64_t id, int n_workers, struct work_run *opened)
+{
+	char *request = NULL;
+	size_t length = 0;
+	*opened = (struct work_run){0};
+	if (store_document(store, id, "request", &request, &length) != STORE_OK)
+		return "the stored study could not be read";
+	struct problems problems;
+	opened->study = study_from_json(request, length, &problems);
+	free(request);
+	if (!opened->study)
+		return problems.status == PROBLEMS_NOMEM ? "out of memory" : "this version does not accept the study";
+	opened->run = pound_run_create(opened->study, n_workers);
+	if (!opened->run)
+		return "out of memory";
+	opened->n_blocks = opened->n_left = pound_run_blocks(opened->run);
+	opened->stored = calloc((size_t)opened->n_blocks, sizeof *opened->stored);
+	if (!opened->stored)
+		return "out of memory";
+	if (store_blocks(store, id, restore, opened) == STORE_FAILED)
+		return "the stored blocks could not be read";
+	return NULL;
+}
+
+/* Frees what work_open made. */
+void work_close(struct work_run *opened)
+{
+	if (opened->run)
+		pound_run_free(opened->run);
+	if (opened->study)
+		study_free(opened->study);
+	free(opened->stored);
+}
+
+/* No more steps of this study; those that run stop soon. */
+static void end(struct job *job, const char *error)
+{
+	if (!job->error && !job->ended)
+		job->error = error;
+	job->ended = true;
+	if (job->opened)
+		pound_run_stop(job->of.run);
+}
+
+static void finish(struct work *work, struct job *job)
+{
+	size_t length = 0;
+	char *result = NULL;
+	if (!job->error) {
+		struct timing timing = {.wall_s = seconds(CLOCK_MONOTONIC) - job->started,
+		                        .cpu_s = job->cpu_s,
+		                        .threads = work->n_workers};
+		result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length);
+		job->error = result ? NULL : "out of memory";
+	}
+	if (store_finish(work->store, job->id, result, length, job->error) == STORE_OK)
+		log_line("study %016llx %s", (unsigned long long)job->id, job->error ? job->error : "succeeded");
+	free(result);
+}
+
+/* What is to do when a worker has left a study, or it was ended: under the lock, which finishing lets go. */
+static void settle(struct work *work, struct job *job)
+{
+	bool done = !job->of.n_left && !job->reductions_left;
+	if (job->n_inside || !(job->ended || done))
+		return;
+	if (!job->ended || job->error) {
+		job->ended = true;
+		job->n_inside = 1;
+		pthread_mutex_unlock(&work->lock);
+		finish(work, job);
+		pthread_mutex_lock(&work->lock);
+	}
+	struct job **link = &work->jobs;
+	while (*link != job)
+		link = &(*link)->next;
+	*link = job->next;
+	work_close(&job->of);
+	free(job);
+}
+
+static const char *keep(struct work *work, struct job *job, int block, double cpu_s)
+{
+	struct store_block done = {.number = block,
+	                           .runs = pound_run_block_runs(job->of.run, block),
+	                           .cpu_s = cpu_s,
+	                           .n = (int)pound_run_block_size(job->of.run, block),
+	                           .values = pound_run_block_values(job->of.run, block)};
+	enum store_status status = store_keep(work->store, job->id, &done);
+	return status == STORE_OK ? NULL : status == STORE_NONE ? "cancelled" : "a block could not be stored";
+}
+
+struct step {
+	struct job *job;
+	int block, reduction; /* one of them, the other is -1 */
+};
+
+static bool take(struct work *work, struct step *step)
+{
+	for (struct job *job = work->jobs; job; job = job->next) {
+		if (!job->opened || job->ended)
+			continue;
+		while (job->block < job->of.n_blocks && job->of.stored[job->block])
+			job->block++;
+		if (job->block < job->of.n_blocks)
+			*step = (struct step){job, job->block++, -1};
+		else if (!job->of.n_left && job->reduction < job->n_reductions)
+			*step = (struct step){job, -1, job->reduction++};
+		else
+			continue;
+		job->n_inside++;
+		return true;
+	}
+	return false;
+}
+
+/* Runs a step; the lock is free meanwhile. */
+static void perform(struct work *work, const struct step *step, int worker)
+{
+	struct job *job = step->job;
+	const char *error = NULL;
+	double cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID);
+	pthread_mutex_unlock(&work->lock);
+	enum pound_status status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
+	                                            : pound_run_reduce(job->of.run, step->reduction, worker);
+	cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_s;
+	if (status != POUND_OK)
+		error = pound_status_text(status);
+	else if (step->block >= 0)
+		error = keep(work, job, step->block, cpu_s);
+	pthread_mutex_lock(&work->lock);
+	job->n_inside--;
+	job->cpu_s += cpu_s;
+	if (error)
+		end(job, error);
+	else if (step->block >= 0)
+		job->of.n_left--;
+	else
+		job->reductions_left--;
+	settle(work, job);
+	pthread_cond_broadcast(&work->changed);
+}
+
+/* Brings the oldest queued study; the lock is free meanwhile. */
+static void claim(struct work *work)
+{
+	struct job *job = calloc(1, sizeof *job);
+	work->claiming = true;
+	// before the question, so that a study queued during it is not missed
+	work->queued = false;
+	pthread_mutex_unlock(&work->lock);
+	enum store_status status = job ? store_claim(work->store, &job->id) : STORE_FAILED;
+	pthread_mutex_lock(&work->lock);
+	if (status == STORE_OK) {
+		work->queued = true;
+		job->n_inside = 1;
+		job->started = seconds(CLOCK_MONOTONIC);
+		struct job **last = &work->jobs;
+		while (*last)
+			last = &(*last)->next;
+		*last = job;
+		pthread_mutex_unlock(&work->lock);
+		struct work_run opened;
+		const char *error = work_open(work->store, job->id, work->n_workers, &opened);
+		pthread_mutex_lock(&work->lock);
+		job->of = opened;
+		job->opened = !error;
+		job->cpu_s = opened.cpu_s;
+		job->n_inside = 0;
+		if (error)
+			end(job, error);
+		else
+			job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
+		settle(work, job);
+	} else
+		free(job);
+	work->claiming = false;
+	pthread_cond_broadcast(&work->changed);
+}
+
+static void *worker(void *of)
+{
+	const struct worker *worker = of;
+	struct work *work = worker->work;
+	struct step step;
+	setpriority(PRIO_PROCESS, (id_t)gettid(), WORKER_NICENESS);
+	pthread_mutex_lock(&work->lock);
+	while (!work->stopping) {
+		if (take(work, &step))
+			perform(work, &step, worker->number);
+		else if (work->queued && !work->claiming)
+			claim(work);
+		else
+			pthread_cond_wait(&work->changed, &work->lock);
+	}
+	pthread_mutex_unlock(&work->lock);
+	return NULL;
+}
+
+/* Starts the workers, on what the store has queued.
+ *
+ * Given    n_workers   >= 1
+ * Returns  value       for work_stop; NULL: no memory, or no threads
+ */
+struct work *work_start(struct store *store, int n_workers)
+{
+	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
+	if (!work)
+		return NULL;
+	work->store = store;
+	work->n_workers = n_workers;
+	work->queued = true;
+	pthread_mutex_init(&work->lock, NULL);
+	pthread_cond_init(&work->changed, NULL);
+	for (int w = 0; w < n_workers; w++) {
+		work->workers[w] = (struct worker){.work = work, .number = w};
+		if (pthread_create(&work->workers[w].thread, NULL, worker, &work->workers[w]) != 0) {
+			log_line("cannot start worker %d", w);
+			work->n_workers = w;
+			work_stop(work);
+			return NULL;
+		}
+	}
+	return work;
+}
+
+/* Tells the workers that the store has a queued study. */
+void work_wake(struct work *work)
+{
+	pthread_mutex_lock(&work->lock);
+	work->queued = true;
+	pthread_cond_broadcast(&work->changed);
+	pthread_mutex_unlock(&work->lock);
+}
+
+/* Stops the run of a study that was cancelled or deleted in the store.
+ *
+ * Given    id   of the study, running or not
+ * Test     service_cancel: a_study_can_be_cancelled_at_any_moment
+ */
+void work_drop(struct work *work, int64_t id)
+{
+	pthread_mutex_lock(&work->lock);
+	for (struct job *job = work->jobs; job; job = job->next)
+		if (job->id == id) {
+			end(job, NULL);
+			settle(work, job);
+			break;
+		}
+	pthread_mutex_unlock(&work->lock);
+}
+
+/* Stops the workers; studies that were running are taken up again at the next start. */
+void work_stop(struct work *work)
+{
+	pthread_mutex_lock(&work->lock);
+	work->stopping = true;
+	for (struct job *job = work->jobs; job; job = job->next)
+		end(job, NULL);
+	pthread_cond_broadcast(&work->changed);
+	pthread_mutex_unlock(&work->lock);
+	for (int w = 0; w < work->n_workers; w++)
+		pthread_join(work->workers[w].thread, NULL);
+	while (work->jobs) {
+		struct job *job = work->jobs;
+		work->jobs = job->next;
+		work_close(&job->of);
+		free(job);
+	}
+	pthread_cond_destroy(&work->changed);
+	pthread_mutex_destroy(&work->lock);
+	free(work);
+}

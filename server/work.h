@@ -1,0 +1,31 @@
+/* work.h - the threads that run studies, and a study's run with the blocks that are stored. */
+#ifndef WORK_H
+#define WORK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "engine/pound.h"
+#include "server/store.h"
+
+/* A study as it stands in the store: its document read, its run made, its stored blocks restored. */
+struct work_run {
+	struct pound_study *study;
+	struct pound_run *run;
+	int n_blocks, n_left; /* all, and those not stored */
+	bool *stored;         /* (n_blocks) */
+	double cpu_s;         /* spent on the stored ones [s] */
+};
+
+/* NULL, or a sentence why it cannot be opened; to be closed in either case */
+const char *work_open(struct store *store, int64_t id, int n_workers, struct work_run *opened);
+void work_close(struct work_run *opened);
+
+struct work;
+
+struct work *work_start(struct store *store, int n_workers); /* NULL: no memory or no threads */
+void work_wake(struct work *work);                           /* a study was queued */
+void work_drop(struct work *work, int64_t id);               /* a study was cancelled or deleted */
+void work_stop(struct work *work); /* ends within a block's time; what is unfinished stays in the store */
+
+#endif
