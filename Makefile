@@ -9,10 +9,12 @@ WARN     := -Wall -Wextra -Werror -Wmissing-prototypes -Wshadow -Wvla -Wno-psabi
 CPPFLAGS += -I. -D_GNU_SOURCE
 CFLAGS   += -std=c17 $(WARN) -ffp-contract=off -fno-math-errno -fstack-protector-strong -MMD -MP $(MODE.$(MODE))
 
-# march.c is compiled once per lane count; width 1 is portable and the reference the tests compare with
-LANES.1 :=
-LANES.4 := -mavx2 -mfma
-LANES.8 := -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
+# march.c is compiled once per lane count; engine/dispatch.c chooses at run time, all give the same bits
+WIDTHS         := portable w1 w4 w8
+LANES.portable := -DPOUND_LANES=1
+LANES.w1       := -DPOUND_LANES=1 -mfma
+LANES.w4       := -DPOUND_LANES=4 -mavx2 -mfma
+LANES.w8       := -DPOUND_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 
 PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libcjson-dev librandom123-dev \
             nettle-dev libcurl4-openssl-dev libcmocka-dev
@@ -24,7 +26,7 @@ LIBS.client := -lcurl -lcjson -lpthread
 LIBS.tests  := -lcmocka -lcurl
 
 objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
-ENGINE := $(call objs,engine,engine/march.c) $(foreach w,1 4 8,$(B)/engine/march_w$(w).o)
+ENGINE := $(call objs,engine,engine/march.c) $(WIDTHS:%=$(B)/engine/march_%.o)
 SCHEMA := $(call objs,schema)
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
@@ -47,9 +49,9 @@ $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
-$(B)/engine/march_w%.o: engine/march.c
+$(B)/engine/march_%.o: engine/march.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_LANES=$* -c -o $@ $<
+	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_MARCH=pound_march_$* -c -o $@ $<
 
 # the database's schema is built into the server, as a C string
 $(B)/schema/store.sql.inc: schema/store.sql

@@ -99,13 +99,14 @@ static void record(const struct pound_excitation *e, struct pound_stream noise, 
 
 static const struct {
 	const char *name;
+	bool tuned; /* has a frequency of its own */
 	int (*samples)(const struct pound_excitation *e);
 	void (*fill)(const struct pound_excitation *e, struct pound_stream noise, double *a);
 } excitations[] = {
-    {"kanai_tajimi", cycles_samples, kanai_tajimi},
-    {"white_noise", duration_samples, white_noise},
-    {"harmonic", duration_samples, harmonic},
-    {"record", record_samples, record},
+    {"kanai_tajimi", true, cycles_samples, kanai_tajimi},
+    {"white_noise", false, duration_samples, white_noise},
+    {"harmonic", true, duration_samples, harmonic},
+    {"record", false, record_samples, record},
 };
 
 enum { EXCITATIONS = sizeof excitations / sizeof excitations[0] };
@@ -145,4 +146,10 @@ void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream
 {
 	assert(pound_excitation_name(e->type));
 	excitations[e->type].fill(e, noise, a);
+}
+
+/* Frequency around which an excitation shakes [Hz], 0 for one that has none of its own. */
+double pound_excitation_frequency(const struct pound_excitation *e)
+{
+	return excitations[e->type].tuned ? e->frequency_hz : 0;
 }

@@ -16,10 +16,6 @@
 
 #include "engine/lanes.h"
 
-#define CONCAT_(a, b) a##b
-#define CONCAT(a, b)  CONCAT_(a, b)
-#define MARCH         CONCAT(pound_march_w, POUND_LANES)
-
 enum {
 	POOL         = 4 * W,   /* simulations in flight */
 	ORDER_FREE   = 14,      /* of the series while apart */
@@ -819,7 +815,7 @@ static void meet_step(struct work *work)
 
 static_assert(sizeof(struct work) <= POUND_MARCH_SCRATCH, "the work space is too small");
 
-void MARCH(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch)
+void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch)
 {
 	struct work *work = scratch;
 	memset(work, 0, sizeof *work);

@@ -44,14 +44,14 @@ struct pound_march_result {
 
 enum { POUND_MARCH_SCRATCH = 1 << 17 }; /* bytes of work space, 64-byte aligned */
 
-void pound_march(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
-
-/* The same at a given lane count; false: this machine cannot. */
 bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results, int n,
 					   void *scratch);
 
-void pound_march_w1(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
-void pound_march_w4(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
+/* march.c, compiled once for each */
 void pound_march_w8(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
+void pound_march_w4(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
+void pound_march_w1(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
+void pound_march_portable(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+						  void *scratch);
 
 #endif

@@ -1,0 +1,25 @@
+/* campaign.c - the scenes of a study: its cells (product of the sweeps), the rows of its design, a row's samples. */
+#include "engine/design.h"
+#include "engine/plan.h"
+
+/* Value of a sweep in a cell; the last sweep runs fastest. */
+double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep)
+{
+	const struct pound_study *study = campaign->study;
+	for (int s = study->n_sweeps - 1; s > sweep; s--)
+		cell /= study->sweeps[s].n_values;
+	return study->sweeps[sweep].values[cell % study->sweeps[sweep].n_values];
+}
+
+/* The scene of one sample: the study's, with the cell's sweep values and the sample's inputs put in. */
+struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample)
+{
+	const struct pound_study *study = campaign->study;
+	struct pound_scene scene        = study->scene;
+	for (int s = 0; s < study->n_sweeps; s++)
+		pound_scene_assign(&scene, study->sweeps[s].field, pound_campaign_sweep(campaign, cell, s));
+	for (int j = 0; j < study->n_inputs; j++)
+		pound_scene_assign(&scene, study->inputs[j].field,
+						   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
+	return scene;
+}

@@ -1,0 +1,76 @@
+/* outputs.c - the outputs of a study: each the ratio of the means of two measures over a scene's signals.
+ *
+ * Adding an output: its two measures and its row in outputs[]. */
+#include "engine/outputs.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/pieces.h"
+
+static bool left_is_linear(const struct pound_scene *scene)
+{
+	return pound_pieces_linear(pound_scene_law(scene, 0)->type);
+}
+
+static bool left_yields(const struct pound_scene *scene) { return !left_is_linear(scene); }
+
+static bool bodies_meet(const struct pound_scene *scene) { return scene->contact.present; }
+
+static double displacement(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->displacement_max_1;
+}
+
+static double displacement_free(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->displacement_max_free_1;
+}
+
+static double demand(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->demand_1;
+}
+
+static double demand_free(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->demand_free_1;
+}
+
+/* Impulse over m1 w1: the displacement amplitude it gives to the left oscillator [m]. */
+static double impulse(const struct pound_response *r, const struct pound_scene *scene)
+{
+	const struct pound_oscillator *o = &scene->oscillators[0];
+	return r->impulse_max / (o->mass * (2 * 3.14159265358979323846 * o->frequency_hz));
+}
+
+typedef double measure(const struct pound_response *, const struct pound_scene *);
+
+static const struct output {
+	const char *name;
+	bool (*applies)(const struct pound_scene *);
+	measure *numerator, *denominator;
+} outputs[] = {
+	{"force_amplification", left_is_linear, displacement, displacement_free}, // the paper, Eq. (5)
+	{"demand_amplification", left_yields, demand, demand_free},               // Eq. (7)
+	{"impulse", bodies_meet, impulse, displacement_free},                     // Eq. (9)
+};
+
+const char *pound_output_name(int row)
+{
+	return row >= 0 && row < (int)(sizeof outputs / sizeof outputs[0]) ? outputs[row].name : NULL;
+}
+
+bool pound_output_applies(int row, const struct pound_scene *scene) { return outputs[row].applies(scene); }
+
+/* The two measures of one signal whose means an output divides. */
+void pound_outputs_measure(int row, const struct pound_scene *scene, const struct pound_response *response,
+						   double *numerator, double *denominator)
+{
+	*numerator   = outputs[row].numerator(response, scene);
+	*denominator = outputs[row].denominator(response, scene);
+}

@@ -1,0 +1,44 @@
+/* plan.h - what a block of a study needs, each thing once.
+ *
+ * An item is one signal of one row of the design.  Its samples in every cell are asked for together, so whatever they
+ * have in common (ground motions, responses without pounding, whole runs) is found and run once. */
+#ifndef PLAN_H
+#define PLAN_H
+
+#include <stdatomic.h>
+
+#include "engine/march.h"
+#include "engine/pound.h"
+
+/* the scenes of a study by cell, row of the design and sample of the row */
+struct pound_campaign {
+	const struct pound_study *study;
+	const double *design; /* inputs of A and B  (rows x 2 x n_inputs) */
+	int n_cells, n_rows, n_samples, n_signals;
+};
+
+struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample);
+double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep);
+
+struct pound_plan_size {
+	int asks;        /* runs asked for at most */
+	int motions;     /* ground motions at most */
+	int tasks;       /* marches at most */
+	int64_t samples; /* of all ground motions at most */
+};
+
+/* Upper bounds for the items of one row. */
+struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, int row);
+
+struct pound_plan; /* work space of one worker */
+
+size_t pound_plan_bytes(struct pound_plan_size size);
+struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size);
+
+/* Runs items [first, first + n) and hands every response to `take`, in the order of item, cell, sample. */
+typedef void pound_plan_take(void *into, const struct pound_scene *scene, const struct pound_response *response,
+							 enum pound_status status);
+enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first, int n,
+								 const atomic_bool *stop, struct pound_work *work, pound_plan_take *take, void *into);
+
+#endif

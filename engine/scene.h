@@ -1,0 +1,15 @@
+/* scene.h - a scene divided by masses, as the march takes it. */
+#ifndef SCENE_H
+#define SCENE_H
+
+#include "engine/march.h"
+#include "engine/pound.h"
+
+struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i);
+void pound_scene_contact(const struct pound_scene *scene, struct pound_march_task *task);
+bool pound_scene_alike(const struct pound_scene *scene);
+
+/* contact.c: damping of a contact model over its critical damping, from the restitution coefficient in [0, 1] */
+double pound_contact_damping_ratio(int model, double restitution);
+
+#endif
