@@ -1,0 +1,71 @@
+/* answer.c - from an HTTP status to an exit status and a sentence. */
+#include "client/answer.h"
+
+#include "client/document.h"
+#include "schema/reading.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HTTP_BAD_REQUEST = 400, HTTP_INVALID = 422 };
+
+struct wire *answer_open(const struct options *options)
+{
+	struct wire *wire = wire_open(options->url);
+	if (!wire) {
+		command_complain("out of memory");
+		exit(OUTCOME_FAILED);
+	}
+	return wire;
+}
+
+/* Says what a reply other than a success means for the user. */
+static enum outcome refusal(const char *subject, const struct wire_reply *reply)
+{
+	struct reading *problem = strstr(reply->type, "json") ? reading_open(reply->body, reply->n_body) : NULL;
+	if (problem)
+		document_complain(subject, problem);
+	else
+		command_complain("%s: the server answered with HTTP status %ld", subject, reply->status);
+	if (reply->retry_after_s > 0)
+		command_complain("try again in %ld s", reply->retry_after_s);
+	reading_close(problem);
+	return reply->status == HTTP_BAD_REQUEST || reply->status == HTTP_INVALID ? OUTCOME_USAGE
+	                                                                          : OUTCOME_FAILED;
+}
+
+enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char *subject,
+                          const struct wire_reply *reply)
+{
+	if (sent != OUTCOME_OK) {
+		command_complain("no answer from %s: %s", wire_url(wire), wire_failure(wire));
+		return sent;
+	}
+	return reply->status >= 200 && reply->status < 300 ? OUTCOME_OK : refusal(subject, reply);
+}
+
+enum outcome answer_take(struct wire *wire, const struct wire_request *request, const char *subject,
+                         struct wire_reply *reply)
+{
+	return answer_judge(wire, wire_send(wire, request, reply), subject, reply);
+}
+
+char *answer_path(struct wire *wire, const char *id, const char *rest)
+{
+	char *escaped = wire_escape(wire, id), *path;
+	if (asprintf(&path, "/v1/studies/%s%s", escaped, rest) < 0)
+		abort();
+	free(escaped);
+	return path;
+}
+
+enum outcome answer_about(struct wire *wire, const char *method, const char *id, const char *rest,
+                          const char *accept, struct wire_reply *reply)
+{
+	char *path = answer_path(wire, id, rest);
+	const struct wire_request request = {.method = method, .path = path, .accept = accept};
+	enum outcome outcome = answer_take(wire, &request, id, reply);
+	free(path);
+	return outcome;
+}

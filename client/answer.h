@@ -1,0 +1,26 @@
+/* answer.h - requests whose failures are told to the user in one way. */
+#ifndef ANSWER_H
+#define ANSWER_H
+
+#include "client/wire.h"
+
+/* Sends a request about `subject` (a file, an id) and judges the answer; `reply` is to be freed in any case. */
+enum outcome answer_take(struct wire *wire, const struct wire_request *request, const char *subject,
+                         struct wire_reply *reply);
+
+/* The same for /v1/studies/{id}{rest}. */
+enum outcome answer_about(struct wire *wire, const char *method, const char *id, const char *rest,
+                          const char *accept, struct wire_reply *reply);
+
+/* What came of wire_send; what is not a success is said on stderr:
+ * OUTCOME_UNREACHED, OUTCOME_USAGE (the study is invalid, the URL is none) or OUTCOME_FAILED. */
+enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char *subject,
+                          const struct wire_reply *reply);
+
+/* "/v1/studies/{id}{rest}" on the heap. */
+char *answer_path(struct wire *wire, const char *id, const char *rest);
+
+/* A connection to the server; ends the program when there is no memory. */
+struct wire *answer_open(const struct options *options);
+
+#endif

@@ -1,0 +1,44 @@
+/* command.h - what a subcommand is given and what it tells the shell.
+ *
+ * A subcommand is one row of the table in pound.c and one function with this shape. */
+#ifndef COMMAND_H
+#define COMMAND_H
+
+#include <stdbool.h>
+
+/* exit status of the program */
+enum outcome {
+	OUTCOME_OK,
+	OUTCOME_FAILED,
+	OUTCOME_USAGE,        /* wrong usage or an invalid study */
+	OUTCOME_STUDY_FAILED, /* the study failed or was cancelled */
+	OUTCOME_UNREACHED,    /* no answer from the server */
+};
+
+struct options {
+	const char *argument; /* what stands after the subcommand: a file, an id or a name; NULL: none */
+	const char *url;      /* of the server */
+	const char *format;   /* one of the names the subcommand offers */
+	const char *status;   /* list: only studies in this state; NULL: all */
+	const char *cursor;   /* list: where the previous page ended; NULL: the newest */
+	int limit;            /* list: studies on a page; 0: as the server likes */
+	int threads;          /* run */
+	bool wait;            /* submit */
+	bool names;           /* example */
+};
+
+enum outcome run_study(const struct options *options);
+enum outcome submit_study(const struct options *options);
+enum outcome query_status(const struct options *options);
+enum outcome query_wait(const struct options *options);
+enum outcome query_results(const struct options *options);
+enum outcome query_samples(const struct options *options);
+enum outcome query_list(const struct options *options);
+enum outcome query_cancel(const struct options *options);
+enum outcome query_delete(const struct options *options);
+enum outcome example_print(const struct options *options);
+
+/* One line on stderr that starts with the program's name. */
+void command_complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+#endif

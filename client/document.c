@@ -1,0 +1,43 @@
+/* document.c - reading a study document, and listing what is wrong with it. */
+#include "client/document.h"
+
+#include "client/table.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+char *document_read(const char *path, size_t *length)
+{
+	FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
+	char *text = NULL, part[65536];
+	size_t n;
+	FILE *all = file ? open_memstream(&text, length) : NULL;
+	while (all && (n = fread(part, 1, sizeof part, file)) > 0)
+		fwrite(part, 1, n, all);
+	bool good = all && !ferror(file);
+	int error = errno;
+	if (all && fclose(all) != 0)
+		good = false;
+	if (file && file != stdin)
+		fclose(file);
+	if (!good) {
+		command_complain("cannot read %s: %s", path, strerror(error));
+		free(text);
+		return NULL;
+	}
+	return text;
+}
+
+void document_complain(const char *subject, const struct reading *problem)
+{
+	const char *detail = reading_text(problem, "/detail"), *title = reading_text(problem, "/title");
+	command_complain("%s: %s", subject, detail ? detail : title ? title : "the server gave no reason");
+	for (int i = 0; i < reading_count(problem, "/errors"); i++) {
+		const char *pointer = reading_text(problem, "/errors/%d/pointer", i);
+		const char *what = reading_text(problem, "/errors/%d/detail", i);
+		command_complain("  %s: %s", pointer && *pointer ? pointer : "(document)", what ? what : "");
+	}
+}

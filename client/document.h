@@ -1,0 +1,16 @@
+/* document.h - a study document as a file or standard input, and what is said about a bad one. */
+#ifndef DOCUMENT_H
+#define DOCUMENT_H
+
+#include "client/command.h"
+#include "schema/reading.h"
+
+#include <stddef.h>
+
+/* The whole file, or standard input for "-"; on the heap.  NULL: said on stderr why. */
+char *document_read(const char *path, size_t *length);
+
+/* Says what a problem body (RFC 9457) says, every error on its own line, `subject` in front. */
+void document_complain(const char *subject, const struct reading *problem);
+
+#endif

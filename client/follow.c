@@ -1,0 +1,100 @@
+/* follow.c - asks for the status more and more rarely, and survives a server that is restarted meanwhile. */
+#include "client/follow.h"
+
+#include "client/answer.h"
+#include "client/bar.h"
+#include "schema/reading.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+	HTTP_OK = 200,
+	HTTP_UNAVAILABLE = 503,
+	PAUSE_MS_MIN = 50,
+	PAUSE_MS_MAX = 1000,
+	PATIENCE_MS = 20000, /* with a server that has answered before and is away now */
+};
+
+static void pause_ms(int ms)
+{
+	nanosleep(&(struct timespec){.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L}, NULL);
+}
+
+/* Whether a study has ended, and how. */
+static bool ended(const struct reading *status, enum outcome *outcome)
+{
+	static const struct {
+		const char *state;
+		enum outcome outcome;
+	} ENDS[] = {
+	    {"succeeded", OUTCOME_OK},
+	    {"failed", OUTCOME_STUDY_FAILED},
+	    {"cancelled", OUTCOME_STUDY_FAILED},
+	};
+	const char *state = reading_text(status, "/status");
+	for (size_t i = 0; state && i < sizeof ENDS / sizeof ENDS[0]; i++)
+		if (strcmp(state, ENDS[i].state) == 0) {
+			*outcome = ENDS[i].outcome;
+			return true;
+		}
+	return false;
+}
+
+/* Says why a study has no result. */
+void follow_complain(const char *id, const struct reading *status)
+{
+	const char *state = reading_text(status, "/status"), *error = reading_text(status, "/error");
+	command_complain("%s: the study is %s%s%s", id, state ? state : "?", error ? ": " : "",
+	                 error ? error : "");
+}
+
+/* Takes one answer about a study: true when there is nothing more to wait for. */
+static bool look(const struct wire *wire, enum outcome sent, const char *id, const struct wire_reply *reply,
+                 enum outcome *outcome)
+{
+	struct reading *status = sent == OUTCOME_OK ? reading_open(reply->body, reply->n_body) : NULL;
+	bool good = status && reply->status == HTTP_OK, over = true;
+	if (good && !(over = ended(status, outcome)))
+		bar_draw((int64_t)reading_number(status, "/runs_done"),
+		         (int64_t)reading_number(status, "/runs_total"), reading_number(status, "/eta_s"));
+	else
+		bar_clear();
+	if (!good)
+		*outcome = answer_judge(wire, sent, id, reply);
+	else if (*outcome != OUTCOME_OK)
+		follow_complain(id, status);
+	reading_close(status);
+	return over;
+}
+
+/* Watches a study to its end.
+ *
+ * Memory   last holds the last answer whatever the value; the caller frees it
+ */
+enum outcome follow_study(struct wire *wire, const char *id, struct wire_reply *last)
+{
+	char *path = answer_path(wire, id, "");
+	const struct wire_request request = {.method = "GET", .path = path};
+	enum outcome outcome = OUTCOME_OK;
+	// a server that has never answered gets no patience
+	int wait_ms = PAUSE_MS_MIN, away_ms = PATIENCE_MS;
+	*last = (struct wire_reply){0};
+	for (bool over = false; !over;) {
+		wire_reply_free(last);
+		enum outcome sent = wire_send(wire, &request, last);
+		bool away = sent == OUTCOME_UNREACHED || last->status == HTTP_UNAVAILABLE;
+		if (away && away_ms < PATIENCE_MS)
+			away_ms += wait_ms;
+		else {
+			away_ms = 0;
+			over = look(wire, sent, id, last, &outcome);
+		}
+		if (!over)
+			pause_ms(wait_ms);
+		wait_ms = wait_ms * 3 / 2 < PAUSE_MS_MAX ? wait_ms * 3 / 2 : PAUSE_MS_MAX;
+	}
+	free(path);
+	return outcome;
+}

@@ -1,0 +1,247 @@
+/* pound.c - the command line: the table of subcommands, their options, and the usage printed from both. */
+#include "engine/pound.h"
+#include "client/command.h"
+#include "client/table.h"
+
+#include <argp.h>
+#include <errno.h>
+#include <sched.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char URL_DEFAULT[] = "http://127.0.0.1:8437";
+
+enum { THREADS_MAX = 1024, LIMIT_MAX = 100, FORMATS_MAX = 4 };
+
+struct command {
+	const char *name;
+	const char *arguments; /* as usage shows them, "" for none, in brackets when it may be left out */
+	const char *takes;     /* keys of the options below */
+	bool terminal_table;   /* without --format, a table when stdout is a terminal */
+	const char *formats[FORMATS_MAX]; /* names that --format takes, the first is the default */
+	enum outcome (*run)(const struct options *);
+	const char *help; /* one line */
+	const char *more; /* for COMMAND --help */
+};
+
+// clang-format off
+static const struct command COMMANDS[] = {
+	{"run", "STUDY.json", "tf", false, {"json", "table", "csv"}, run_study,
+	 "compute a study here, without a server",
+	 "Prints the result on standard output: the same bytes as the server gives, `timing' aside.  "
+	 "Ctrl-C stops the study."},
+	{"submit", "STUDY.json", "wu", false, {0}, submit_study,
+	 "hand a study to the server and print its id",
+	 "With --wait, follows the study until it has ended."},
+	{"status", "ID", "uf", true, {"json", "table"}, query_status,
+	 "how far a study is", ""},
+	{"wait", "ID", "uf", true, {"json", "table"}, query_wait,
+	 "follow a study until it has ended, then print its status", ""},
+	{"results", "ID", "uf", false, {"json", "table", "csv"}, query_results,
+	 "the result of a study that has succeeded", ""},
+	{"samples", "ID", "uf", false, {"csv", "npy"}, query_samples,
+	 "every input row of a study and its outputs", ""},
+	{"list", "", "slcuf", true, {"json", "table", "csv"}, query_list,
+	 "the studies on the server, newest first", ""},
+	{"cancel", "ID", "uf", true, {"json", "table"}, query_cancel,
+	 "stop a study that is queued or running", ""},
+	{"delete", "ID", "u", false, {0}, query_delete,
+	 "remove a study and its result from the server", ""},
+	{"example", "[NAME]", "n", false, {0}, example_print,
+	 "print a complete study document to start from",
+	 "Without NAME, the paper's study.  --names lists the examples."},
+};
+
+static const struct argp_option OPTIONS[] = {
+	{"threads", 't', "N",      0, "compute with N threads (default: the cores there are)", 0},
+	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
+	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
+	{"limit",   'l', "N",      0, "at most N studies", 0},
+	{"cursor",  'c', "CURSOR", 0, "go on where an earlier list ended", 0},
+	{"names",   'n', NULL,     0, "print the names of the examples", 0},
+	{"url",     'u', "URL",    0, "the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
+	{"format",  'f', "FORMAT", 0, "how the data is printed", 0},
+};
+// clang-format on
+
+enum {
+	N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0],
+	N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0],
+};
+
+struct parsing {
+	const struct command *command;
+	struct options options;
+};
+
+/* Says one line on stderr, harmless to a terminal whatever the texts in it hold. */
+void command_complain(const char *format, ...)
+{
+	char *line;
+	va_list arguments;
+	va_start(arguments, format);
+	int n = vasprintf(&line, format, arguments);
+	va_end(arguments);
+	if (n < 0)
+		abort();
+	table_tame(line);
+	fprintf(stderr, "pound: %s\n", line);
+	free(line);
+}
+
+static int whole_number(struct argp_state *state, const char *text, int max)
+{
+	char *end;
+	errno = 0;
+	long value = strtol(text, &end, 10);
+	if (*end || end == text || errno || value < 1 || value > max)
+		argp_error(state, "expected a whole number from 1 to %d, got '%s'", max, text);
+	return (int)value;
+}
+
+static void take_argument(struct argp_state *state, struct parsing *parsing, const char *argument)
+{
+	if (!*parsing->command->arguments || parsing->options.argument)
+		argp_error(state, "'%s' is one argument too many", argument);
+	parsing->options.argument = argument;
+}
+
+static error_t take_option(int key, char *value, struct argp_state *state)
+{
+	struct parsing *parsing = state->input;
+	struct options *options = &parsing->options;
+	switch (key) {
+	case 't':
+		options->threads = whole_number(state, value, THREADS_MAX);
+		return 0;
+	case 'l':
+		options->limit = whole_number(state, value, LIMIT_MAX);
+		return 0;
+	case 'w':
+		options->wait = true;
+		return 0;
+	case 'n':
+		options->names = true;
+		return 0;
+	case 's':
+		options->status = value;
+		return 0;
+	case 'c':
+		options->cursor = value;
+		return 0;
+	case 'u':
+		options->url = value;
+		return 0;
+	case 'f':
+		for (int i = 0; i < FORMATS_MAX && parsing->command->formats[i]; i++)
+			if (strcmp(value, parsing->command->formats[i]) == 0) {
+				options->format = value;
+				return 0;
+			}
+		argp_error(state, "no format '%s' here; see pound %s --help", value, parsing->command->name);
+		return 0;
+	case ARGP_KEY_ARG:
+		take_argument(state, parsing, value);
+		return 0;
+	case ARGP_KEY_END:
+		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
+			argp_error(state, "%s is missing", parsing->command->arguments);
+		return 0;
+	}
+	return ARGP_ERR_UNKNOWN;
+}
+
+static int cores(void)
+{
+	cpu_set_t set;
+	int n = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+	return n < THREADS_MAX ? n : THREADS_MAX;
+}
+
+/* Names the formats of a subcommand in the help of its --format, written to `text` of n characters. */
+static void formats_name(const struct command *command, struct argp_option *taken, size_t n, char *text)
+{
+	while (taken->key && taken->key != 'f')
+		taken++;
+	int length = snprintf(text, n, "%s", taken->doc ? taken->doc : "");
+	for (int i = 0; i < FORMATS_MAX && command->formats[i]; i++)
+		length += snprintf(text + length, n - (size_t)length, "%s%s", i ? ", " : ": ", command->formats[i]);
+	if (command->terminal_table)
+		snprintf(text + length, n - (size_t)length, " (on a terminal: table)");
+	taken->doc = taken->key ? text : NULL;
+}
+
+/* Reads a subcommand's options and runs it. */
+static enum outcome command_run(const struct command *command, int argc, char **argv)
+{
+	struct argp_option taken[N_OPTIONS + 1] = {0};
+	char name[32], text[400], formats[80];
+	for (int i = 0, n = 0; i < N_OPTIONS; i++)
+		if (strchr(command->takes, OPTIONS[i].key))
+			taken[n++] = OPTIONS[i];
+	formats_name(command, taken, sizeof formats, formats);
+	snprintf(name, sizeof name, "pound %s", command->name);
+	snprintf(text, sizeof text, "%c%s.%s%s", command->help[0] - 'a' + 'A', command->help + 1,
+	         *command->more ? "  " : "", command->more);
+	argv[0] = name;
+	const char *url = getenv("POUND_URL");
+	struct parsing parsing = {
+	    .command = command,
+	    .options = {.url = url && *url ? url : URL_DEFAULT,
+	                .format =
+	                    command->terminal_table && isatty(STDOUT_FILENO) ? "table" : command->formats[0],
+	                .threads = cores()},
+	};
+	struct argp argp = {.options = taken, .parser = take_option, .args_doc = command->arguments, .doc = text};
+	argp_parse(&argp, argc, argv, 0, NULL, &parsing);
+	return command->run(&parsing.options);
+}
+
+static void usage(FILE *out)
+{
+	fputs("Usage: pound COMMAND [OPTION...] [ARGUMENT]\n"
+	      "Earthquake-induced pounding between two oscillators, and what it is sensitive to.\n\n",
+	      out);
+	for (int i = 0; i < N_COMMANDS; i++) {
+		char call[32];
+		snprintf(call, sizeof call, "%s %s", COMMANDS[i].name, COMMANDS[i].arguments);
+		fprintf(out, "  %-18s  %s\n", call, COMMANDS[i].help);
+	}
+	fputs("\nSTUDY.json may be -, standard input.  `pound COMMAND --help' says more; `pound --version'.\n"
+	      "Exit status: 0 done, 1 failed, 2 wrong usage or an invalid study, 3 the study failed or was\n"
+	      "cancelled, 4 the server was not reached.\n",
+	      out);
+}
+
+int main(int argc, char **argv)
+{
+	argp_program_version = "pound " POUND_VERSION;
+	argp_err_exit_status = OUTCOME_USAGE;
+	if (argc < 2) {
+		usage(stderr);
+		return OUTCOME_USAGE;
+	}
+	if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+		usage(stdout);
+		return OUTCOME_OK;
+	}
+	if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+		puts(argp_program_version);
+		return OUTCOME_OK;
+	}
+	for (int i = 0; i < N_COMMANDS; i++) {
+		if (strcmp(argv[1], COMMANDS[i].name) != 0)
+			continue;
+		enum outcome outcome = command_run(&COMMANDS[i], argc - 1, argv + 1);
+		if (fflush(stdout) != 0 || ferror(stdout)) {
+			command_complain("cannot write the output: %s", strerror(errno));
+			return OUTCOME_FAILED;
+		}
+		return outcome;
+	}
+	command_complain("no command is called '%s'; see pound --help", argv[1]);
+	return OUTCOME_USAGE;
+}

@@ -1,0 +1,179 @@
+/* query.c - what there is on the server: statuses, results, samples; and their end.
+ *
+ * JSON and CSV that the server makes are passed on as they are. */
+#include "client/answer.h"
+#include "client/follow.h"
+#include "client/show.h"
+#include "client/table.h"
+#include "schema/reading.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HTTP_CONFLICT = 409 };
+
+// one column of the list of studies: its head, and the member of the status object
+static const struct {
+	const char *member;
+	bool is_number;
+} COLUMNS[] = {
+    {"id", false},        {"status", false},  {"progress", true}, {"runs_done", true},
+    {"runs_total", true}, {"created", false}, {"kind", false},    {"name", false},
+};
+
+enum { N_COLUMNS = sizeof COLUMNS / sizeof COLUMNS[0] };
+
+/* Prints the status objects of an answer: one, or the list under /studies. */
+static enum outcome print_studies(const struct wire_reply *reply, const char *format)
+{
+	if (strcmp(format, "json") == 0) {
+		fwrite(reply->body, 1, reply->n_body, stdout);
+		return OUTCOME_OK;
+	}
+	struct reading *answer = reading_open(reply->body, reply->n_body);
+	bool list = reading_has(answer, "/studies");
+	const char *names[N_COLUMNS + 1] = {0};
+	for (int c = 0; c < N_COLUMNS; c++)
+		names[c] = COLUMNS[c].member;
+	struct table *table = table_open(names);
+	for (int i = 0; i < (list ? reading_count(answer, "/studies") : 1); i++) {
+		char study[32] = "";
+		if (list)
+			snprintf(study, sizeof study, "/studies/%d", i);
+		for (int c = 0; c < N_COLUMNS; c++)
+			if (COLUMNS[c].is_number)
+				table_number(table, reading_number(answer, "%s/%s", study, COLUMNS[c].member));
+			else
+				table_text(table, reading_text(answer, "%s/%s", study, COLUMNS[c].member));
+	}
+	if (strcmp(format, "csv") == 0)
+		table_print_csv(table);
+	else
+		table_print(table, 0);
+	table_close(table);
+	if (reading_text(answer, "/next"))
+		command_complain("more: --cursor %s", reading_text(answer, "/next"));
+	reading_close(answer);
+	return OUTCOME_OK;
+}
+
+/* One exchange about the study named on the command line, its answer printed as a status. */
+static enum outcome status_after(const struct options *options, const char *method, const char *rest)
+{
+	struct wire *wire = answer_open(options);
+	struct wire_reply reply;
+	enum outcome outcome = answer_about(wire, method, options->argument, rest, NULL, &reply);
+	if (outcome == OUTCOME_OK)
+		outcome = print_studies(&reply, options->format);
+	wire_reply_free(&reply);
+	wire_close(wire);
+	return outcome;
+}
+
+/* `pound status ID` */
+enum outcome query_status(const struct options *options)
+{
+	return status_after(options, "GET", "");
+}
+
+/* `pound cancel ID`: prints the status the study then has. */
+enum outcome query_cancel(const struct options *options)
+{
+	return status_after(options, "POST", "/cancel");
+}
+
+/* `pound delete ID`: silent. */
+enum outcome query_delete(const struct options *options)
+{
+	struct wire *wire = answer_open(options);
+	struct wire_reply reply;
+	enum outcome outcome = answer_about(wire, "DELETE", options->argument, "", NULL, &reply);
+	wire_reply_free(&reply);
+	wire_close(wire);
+	return outcome;
+}
+
+/* `pound wait ID`: prints the last status, however the study ended. */
+enum outcome query_wait(const struct options *options)
+{
+	struct wire *wire = answer_open(options);
+	struct wire_reply last;
+	enum outcome outcome = follow_study(wire, options->argument, &last);
+	if (outcome == OUTCOME_OK || outcome == OUTCOME_STUDY_FAILED)
+		print_studies(&last, options->format);
+	wire_reply_free(&last);
+	wire_close(wire);
+	return outcome;
+}
+
+/* `pound list`: one page. */
+enum outcome query_list(const struct options *options)
+{
+	struct wire *wire = answer_open(options);
+	struct wire_reply reply;
+	char *path, *state = wire_escape(wire, options->status ? options->status : "");
+	char *cursor = wire_escape(wire, options->cursor ? options->cursor : "");
+	char limit[32] = "";
+	if (options->limit)
+		snprintf(limit, sizeof limit, "&limit=%d", options->limit);
+	if (asprintf(&path, "/v1/studies?%s%s%s%s%s", options->status ? "&status=" : "", state,
+	             options->cursor ? "&cursor=" : "", cursor, limit) < 0)
+		abort();
+	enum outcome outcome =
+	    answer_take(wire, &(struct wire_request){.method = "GET", .path = path}, "list", &reply);
+	if (outcome == OUTCOME_OK)
+		outcome = print_studies(&reply, options->format);
+	wire_reply_free(&reply);
+	free(path);
+	free(cursor);
+	free(state);
+	wire_close(wire);
+	return outcome;
+}
+
+// media types to ask for; a table is made from JSON
+static const struct {
+	const char *format, *type;
+} TYPES[] = {
+    {"json", "application/json"},
+    {"table", "application/json"},
+    {"csv", "text/csv"},
+    {"npy", "application/octet-stream"},
+};
+
+/* What a study has brought forth, printed as it comes, or as a table. */
+static enum outcome product(const struct options *options, const char *rest)
+{
+	struct wire *wire = answer_open(options);
+	struct wire_reply reply;
+	const char *type = NULL;
+	for (size_t i = 0; i < sizeof TYPES / sizeof TYPES[0]; i++)
+		if (strcmp(options->format, TYPES[i].format) == 0)
+			type = TYPES[i].type;
+	enum outcome outcome = answer_about(wire, "GET", options->argument, rest, type, &reply);
+	if (outcome == OUTCOME_OK && strcmp(options->format, "table") == 0)
+		outcome = show_result(reply.body, reply.n_body);
+	else if (outcome == OUTCOME_OK)
+		fwrite(reply.body, 1, reply.n_body, stdout);
+	else if (reply.status == HTTP_CONFLICT)
+		outcome = OUTCOME_STUDY_FAILED;
+	wire_reply_free(&reply);
+	wire_close(wire);
+	return outcome;
+}
+
+/* `pound results ID`
+ *
+ * Returns  value   OUTCOME_STUDY_FAILED when there will never be a result, OUTCOME_FAILED when there is none yet
+ */
+enum outcome query_results(const struct options *options)
+{
+	return product(options, "/results");
+}
+
+/* `pound samples ID` */
+enum outcome query_samples(const struct options *options)
+{
+	return product(options, "/samples");
+}

@@ -1,0 +1,216 @@
+/* run.c - a study computed in this process.
+ *
+ * 1. Threads take blocks, then reductions, each from a counter, so that which thread computes what is chance.
+ * 2. This thread watches: it draws the bar and looks for Ctrl-C.
+ * 3. The result is a function of the study alone; the engine sums by index, not by arrival. */
+#include "client/bar.h"
+#include "client/command.h"
+#include "client/document.h"
+#include "client/show.h"
+#include "schema/problems.h"
+#include "schema/result_json.h"
+#include "schema/study_json.h"
+
+#include <pthread.h>
+#include <semaphore.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { REDRAW_MS = 100 };
+
+static volatile sig_atomic_t interrupted;
+
+struct crew {
+	struct pound_run *run;
+	enum pound_status (*job)(struct pound_run *run, int index, int worker);
+	int n_jobs;
+	atomic_int next;        /* job that nobody has taken */
+	atomic_int status;      /* first one that is not POUND_OK */
+	atomic_llong runs_done; /* pounding runs in the finished blocks */
+	sem_t finished;         /* posted by each thread at its end */
+};
+
+struct member {
+	pthread_t thread;
+	struct crew *crew;
+	int worker;
+};
+
+static void note_interrupt(int number)
+{
+	(void)number;
+	interrupted = 1;
+}
+
+static double seconds(clockid_t clock)
+{
+	struct timespec time;
+	clock_gettime(clock, &time);
+	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void *member_work(void *of)
+{
+	struct member *member = of;
+	struct crew *crew = member->crew;
+	for (int i; (i = atomic_fetch_add(&crew->next, 1)) < crew->n_jobs;) {
+		enum pound_status status = crew->job(crew->run, i, member->worker);
+		if (status != POUND_OK) {
+			int none = POUND_OK;
+			atomic_compare_exchange_strong(&crew->status, &none, (int)status);
+			break;
+		}
+		if (crew->job == pound_run_block)
+			atomic_fetch_add(&crew->runs_done, pound_run_block_runs(crew->run, i));
+	}
+	sem_post(&crew->finished);
+	return NULL;
+}
+
+/* Watches n threads until all have ended. */
+static void watch(struct crew *crew, int n, int64_t runs_total, double start)
+{
+	while (n > 0) {
+		struct timespec until;
+		clock_gettime(CLOCK_REALTIME, &until);
+		until.tv_nsec += REDRAW_MS * 1000000L;
+		until.tv_sec += until.tv_nsec / 1000000000L;
+		until.tv_nsec %= 1000000000L;
+		if (sem_timedwait(&crew->finished, &until) == 0)
+			n--;
+		if (interrupted || atomic_load(&crew->status) != POUND_OK)
+			pound_run_stop(crew->run);
+		int64_t done = atomic_load(&crew->runs_done);
+		double spent = seconds(CLOCK_MONOTONIC) - start;
+		bar_draw(done, runs_total, done ? spent * (double)(runs_total - done) / (double)done : -1.0);
+	}
+}
+
+/* Runs all blocks, or all reductions, in n threads. */
+static void crew_run(struct crew *crew, struct member *members, int n, int64_t runs_total, double start)
+{
+	int started = 0;
+	atomic_store(&crew->next, 0);
+	for (; started < n; started++) {
+		members[started] = (struct member){.crew = crew, .worker = started};
+		if (pthread_create(&members[started].thread, NULL, member_work, &members[started]) != 0)
+			break;
+	}
+	if (started == 0)
+		atomic_store(&crew->status, POUND_NOMEM);
+	watch(crew, started, runs_total, start);
+	for (int i = 0; i < started; i++)
+		pthread_join(members[i].thread, NULL);
+}
+
+/* All of one run: blocks, then reductions. */
+static enum pound_status compute(struct pound_run *run, int n_threads, int64_t runs_total, double start)
+{
+	struct crew crew = {.run = run};
+	struct member *members = calloc((size_t)n_threads, sizeof *members);
+	if (!members)
+		return POUND_NOMEM;
+	sem_init(&crew.finished, 0, 0);
+	crew.job = pound_run_block;
+	crew.n_jobs = pound_run_blocks(run);
+	crew_run(&crew, members, n_threads, runs_total, start);
+	if (crew.status == POUND_OK) {
+		crew.job = pound_run_reduce;
+		crew.n_jobs = pound_run_reductions(run);
+		crew_run(&crew, members, n_threads, runs_total, start);
+	}
+	bar_clear();
+	sem_destroy(&crew.finished);
+	free(members);
+	return (enum pound_status)crew.status;
+}
+
+static enum outcome print_result(const char *json, size_t n, const char *format)
+{
+	if (strcmp(format, "table") == 0)
+		return show_result(json, n);
+	size_t n_csv;
+	char *csv = strcmp(format, "csv") == 0 ? result_to_csv(json, n, &n_csv) : NULL;
+	if (csv)
+		fwrite(csv, 1, n_csv, stdout);
+	else
+		fwrite(json, 1, n, stdout);
+	free(csv);
+	return OUTCOME_OK;
+}
+
+/* Says what is wrong with a document in the words of the server. */
+static void complain(const char *path, const struct problems *problems)
+{
+	struct problem_head head = {.status = 422, .detail = "the study has faults"};
+	char place[64];
+	if (problems->status == PROBLEMS_MALFORMED) {
+		snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
+		head.detail = place;
+	}
+	size_t n;
+	char *json = problem_to_json(&head, problems, &n);
+	struct reading *reading = json ? reading_open(json, n) : NULL;
+	if (reading)
+		document_complain(path, reading);
+	else
+		command_complain("out of memory");
+	reading_close(reading);
+	free(json);
+}
+
+static enum outcome run_and_print(const struct pound_study *study, const struct options *options)
+{
+	double wall = seconds(CLOCK_MONOTONIC);
+	struct pound_run *run = pound_run_create(study, options->threads);
+	enum pound_status status = run ? compute(run, options->threads, study_runs(study), wall) : POUND_NOMEM;
+	const struct timing timing = {.wall_s = seconds(CLOCK_MONOTONIC) - wall,
+	                              .cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID),
+	                              .threads = options->threads};
+	enum outcome outcome = OUTCOME_OK;
+	size_t n;
+	char *json = status == POUND_OK ? result_to_json(study, pound_run_result(run), &timing, &n) : NULL;
+	if (json)
+		outcome = print_result(json, n, options->format);
+	else if (interrupted || status == POUND_OK || status == POUND_NOMEM) {
+		command_complain("%s", pound_status_text(interrupted ? POUND_STOPPED : POUND_NOMEM));
+		outcome = OUTCOME_FAILED;
+	} else {
+		command_complain("the study failed: %s", pound_status_text(status));
+		outcome = OUTCOME_STUDY_FAILED;
+	}
+	free(json);
+	pound_run_free(run);
+	return outcome;
+}
+
+/* `pound run STUDY.json`: computes the study and prints its result.
+ *
+ * Returns  value   OUTCOME_USAGE: the study is invalid; OUTCOME_STUDY_FAILED; OUTCOME_FAILED: stopped, no memory
+ * Test     client_run: threads_and_server_give_the_same_bytes
+ */
+enum outcome run_study(const struct options *options)
+{
+	size_t n;
+	char *document = document_read(options->argument, &n);
+	if (!document)
+		return OUTCOME_FAILED;
+	struct problems problems;
+	struct pound_study *study = study_from_json(document, n, &problems);
+	free(document);
+	if (!study) {
+		complain(options->argument, &problems);
+		return problems.status == PROBLEMS_NOMEM ? OUTCOME_FAILED : OUTCOME_USAGE;
+	}
+	// a second Ctrl-C ends the program at once
+	const struct sigaction act = {.sa_handler = note_interrupt, .sa_flags = (int)SA_RESETHAND};
+	sigaction(SIGINT, &act, NULL);
+	sigaction(SIGTERM, &act, NULL);
+	enum outcome outcome = run_and_print(study, options);
+	study_free(study);
+	return outcome;
+}

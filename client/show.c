@@ -1,0 +1,189 @@
+/* show.c - one function per kind of study, all within 100 columns.
+ *
+ * A sensitivity result has one block for each cell and output:
+ *
+ *   /oscillators/0/frequency_hz = 2
+ *   force_amplification: mean 1.071, variance 0.02893, noise share 0.113
+ *     input    S1 [95 % interval]       ST [95 % interval]       ST from 0 to 1
+ *     f_e       0.101 [ 0.021,  0.180]   0.412 [ 0.351,  0.472]  |########            |
+ */
+#include "client/show.h"
+
+#include "client/table.h"
+#include "schema/reading.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { CHART = 20 }; /* columns of the chart of total indexes */
+
+/* " 0.412 [ 0.351,  0.472]" of the three numbers, "-" where there is none. */
+static void interval(char *text, size_t size, const struct reading *result, const char *input,
+                     const char *index)
+{
+	static const char *const ends[] = {"", "_low", "_high"};
+	char part[3][16];
+	for (int i = 0; i < 3; i++) {
+		double value = reading_number(result, "%s/%s%s", input, index, ends[i]);
+		snprintf(part[i], sizeof part[i], isfinite(value) ? "%6.3f" : "     -", value);
+	}
+	snprintf(text, size, "%s [%s, %s]", part[0], part[1], part[2]);
+}
+
+static void chart(char text[CHART + 3], double share)
+{
+	long full = isfinite(share) ? lround(fmin(fmax(share, 0.0), 1.0) * CHART) : 0;
+	text[0] = '|';
+	memset(text + 1, ' ', CHART);
+	memset(text + 1, '#', (size_t)full);
+	strcpy(text + 1 + CHART, "|");
+}
+
+static void print_tame(const char *text)
+{
+	char tame[200];
+	snprintf(tame, sizeof tame, "%s", text ? text : "");
+	table_tame(tame);
+	fputs(tame, stdout);
+}
+
+/* "name 0.1234" after a comma; nothing where there is no value. */
+static void print_measure(const struct reading *result, const char *output, const char *member,
+                          const char *name, const char *before)
+{
+	double value = reading_number(result, "%s/%s", output, member);
+	if (isfinite(value))
+		printf("%s%s %.4g", before, name, value);
+}
+
+/* A member's name as it stands in a JSON Pointer: ~ is ~0, / is ~1. */
+static void pointer_token(char *token, size_t size, const char *name)
+{
+	size_t n = 0;
+	for (; *name && n + 2 < size; name++) {
+		if (*name == '/' || *name == '~')
+			token[n++] = '~';
+		token[n++] = *name == '/' ? '1' : *name == '~' ? '0' : *name;
+	}
+	token[n] = '\0';
+}
+
+static void print_sweep(const struct reading *result, int cell)
+{
+	const char *path;
+	for (int i = 0; (path = reading_member(result, i, "/cells/%d/sweep", cell)); i++) {
+		fputs(i ? ", " : "\n", stdout);
+		print_tame(path);
+		char token[400];
+		pointer_token(token, sizeof token, path);
+		const char *text = reading_text(result, "/cells/%d/sweep/%s", cell, token);
+		fputs(" = ", stdout);
+		if (text)
+			print_tame(text);
+		else
+			printf("%.10g", reading_number(result, "/cells/%d/sweep/%s", cell, token));
+	}
+	if (reading_count(result, "/cells/%d/sweep", cell))
+		putchar('\n');
+}
+
+static void print_indices(const struct reading *result, const char *output)
+{
+	static const char *const columns[] = {"input", " S1 [95 % interval]", " ST [95 % interval]",
+	                                      "ST from 0 to 1", NULL};
+	struct table *table = table_open(columns);
+	char input[96], text[64];
+	for (int j = 0; j < reading_count(result, "%s/inputs", output); j++) {
+		snprintf(input, sizeof input, "%s/inputs/%d", output, j);
+		const char *name = reading_text(result, "%s/name", input);
+		table_text(table, name ? name : reading_text(result, "%s/path", input));
+		interval(text, sizeof text, result, input, "S1");
+		table_text(table, text);
+		interval(text, sizeof text, result, input, "ST");
+		table_text(table, text);
+		chart(text, reading_number(result, "%s/ST", input));
+		table_text(table, text);
+	}
+	table_print(table, 2);
+	table_close(table);
+}
+
+static void sensitivity(const struct reading *result)
+{
+	char output[64];
+	for (int cell = 0; cell < reading_count(result, "/cells"); cell++) {
+		print_sweep(result, cell);
+		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", cell); o++) {
+			snprintf(output, sizeof output, "/cells/%d/outputs/%d", cell, o);
+			putchar('\n');
+			print_tame(reading_text(result, "%s/name", output));
+			print_measure(result, output, "mean", "mean", ": ");
+			print_measure(result, output, "variance", "variance", ", ");
+			print_measure(result, output, "noise_share", "noise share", ", ");
+			putchar('\n');
+			print_indices(result, output);
+		}
+	}
+}
+
+static void response(const struct reading *result)
+{
+	static const char *const columns[] = {"signal",      "oscillator", "u_max_m",   "u_free_m",
+	                                      "force_n",     "yield_m",    "demand",    "demand_free",
+	                                      "impulse_n_s", "contacts",   "contact_s", NULL};
+	static const char *const own[] = {
+	    "displacement_max_m", "displacement_max_free_m", "force_max_n", "yield_displacement_m", "demand",
+	    "demand_free"};
+	static const char *const both[] = {"impulse_max_n_s", "contact_count", "contact_time_s"};
+	struct table *table = table_open(columns);
+	for (int s = 0; s < reading_count(result, "/signals"); s++)
+		for (int o = 0; o < reading_count(result, "/signals/%d/oscillators", s); o++) {
+			table_number(table, reading_number(result, "/signals/%d/index", s));
+			table_text(table, o ? "right" : "left");
+			for (size_t m = 0; m < sizeof own / sizeof own[0]; m++)
+				table_number(table, reading_number(result, "/signals/%d/oscillators/%d/%s", s, o, own[m]));
+			for (size_t m = 0; m < sizeof both / sizeof both[0]; m++)
+				table_number(table, o ? NAN : reading_number(result, "/signals/%d/%s", s, both[m]));
+		}
+	putchar('\n');
+	table_print(table, 2);
+	table_close(table);
+	const char *name;
+	putchar('\n');
+	for (int i = 0; (name = reading_member(result, i, "/outputs")); i++) {
+		double value = reading_number(result, "/outputs/%s", name);
+		printf(isfinite(value) ? "%s %.6g\n" : "%s -\n", name, value);
+	}
+}
+
+// clang-format off
+static const struct {
+	const char *kind;
+	void (*print)(const struct reading *);
+} KINDS[] = {
+	{"sensitivity", sensitivity},
+	{"response",    response},
+};
+// clang-format on
+
+enum outcome show_result(const char *json, size_t length)
+{
+	struct reading *result = reading_open(json, length);
+	const char *kind = result ? reading_text(result, "/kind") : NULL;
+	enum outcome outcome = OUTCOME_FAILED;
+	for (size_t i = 0; kind && i < sizeof KINDS / sizeof KINDS[0]; i++)
+		if (strcmp(kind, KINDS[i].kind) == 0) {
+			const char *name = reading_text(result, "/name");
+			print_tame(name ? name : kind);
+			printf(": %s study, seed %.0f", kind, reading_number(result, "/seed"));
+			print_measure(result, "/timing", "cpu_s", "CPU seconds", ", ");
+			putchar('\n');
+			KINDS[i].print(result);
+			outcome = OUTCOME_OK;
+		}
+	if (outcome != OUTCOME_OK)
+		command_complain("no table for a result of kind '%s'", kind ? kind : "?");
+	reading_close(result);
+	return outcome;
+}

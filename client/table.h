@@ -1,0 +1,26 @@
+/* table.h - rows of text in columns, printed aligned for people or as CSV. */
+#ifndef TABLE_H
+#define TABLE_H
+
+#include <stddef.h>
+
+struct table;
+
+/* `names` are the column heads, ending with NULL; they are copied.  No function fails: no memory ends the program. */
+struct table *table_open(const char *const names[]);
+void table_text(struct table *table,
+                const char *text);                    /* next cell, rows fill from the left; NULL: no value */
+void table_number(struct table *table, double value); /* NAN: no value */
+
+/* Aligned: `indent` blanks before each row, numbers to the right, columns without any value left out. */
+void table_print(const struct table *table, int indent);
+void table_print_csv(const struct table *table);
+void table_close(struct table *table);
+
+/* Columns a text takes on a terminal: its characters, not its bytes. */
+int table_width(const char *text);
+
+/* Puts '?' where a text would steer the terminal. */
+void table_tame(char *text);
+
+#endif

@@ -1,0 +1,155 @@
+/* wire.c - HTTP through libcurl; no other file of the client includes it. */
+#include "client/wire.h"
+
+#include "engine/pound.h"
+
+#include <curl/curl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	CONNECT_S = 10, /* to reach the server */
+	SILENCE_S = 60, /* without a byte before the server counts as lost */
+};
+
+struct wire {
+	CURL *curl;
+	const char *url;
+	size_t n_url; /* of url without the slashes it ends in */
+	char *direct; /* hosts that no proxy is asked for */
+	char failure[CURL_ERROR_SIZE];
+};
+
+/* Opens nothing yet: the first request connects.  A proxy of the environment is used, though never for this machine.
+ *
+ * Memory   allocates; wire_close frees
+ */
+struct wire *wire_open(const char *url)
+{
+	struct wire *wire = calloc(1, sizeof *wire);
+	const char *direct = getenv("no_proxy");
+	if (!wire || curl_global_init(CURL_GLOBAL_DEFAULT) != 0 || !(wire->curl = curl_easy_init()) ||
+	    asprintf(&wire->direct, "localhost,127.0.0.1,::1,%s", direct ? direct : "") < 0) {
+		wire_close(wire);
+		return NULL;
+	}
+	wire->url = url;
+	wire->n_url = strlen(url);
+	while (wire->n_url && url[wire->n_url - 1] == '/')
+		wire->n_url--;
+	return wire;
+}
+
+void wire_close(struct wire *wire)
+{
+	if (!wire)
+		return;
+	if (wire->curl)
+		curl_easy_cleanup(wire->curl);
+	curl_global_cleanup();
+	free(wire->direct);
+	free(wire);
+}
+
+static size_t take_body(char *bytes, size_t size, size_t n, void *into)
+{
+	return fwrite(bytes, size, n, into) * size;
+}
+
+static char *header(CURL *curl, const char *name)
+{
+	struct curl_header *found;
+	if (curl_easy_header(curl, name, 0, CURLH_HEADER, -1, &found) != CURLHE_OK)
+		return strdup("");
+	return strndup(found->value, strcspn(found->value, ";"));
+}
+
+static void options_set(struct wire *wire, const struct wire_request *request, const char *url, FILE *body,
+                        struct curl_slist *headers)
+{
+	CURL *curl = wire->curl;
+	curl_easy_reset(curl);
+	curl_easy_setopt(curl, CURLOPT_URL, url);
+	curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
+	curl_easy_setopt(curl, CURLOPT_NOPROXY, wire->direct);
+	curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, wire->failure);
+	curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
+	curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
+	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
+	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, (long)SILENCE_S);
+	curl_easy_setopt(curl, CURLOPT_USERAGENT, "pound/" POUND_VERSION);
+	curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take_body);
+	curl_easy_setopt(curl, CURLOPT_WRITEDATA, body);
+	curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers);
+	if (strcmp(request->method, "POST") == 0) {
+		curl_easy_setopt(curl, CURLOPT_POST, 1L);
+		curl_easy_setopt(curl, CURLOPT_POSTFIELDS, request->body ? request->body : "");
+		curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)request->n_body);
+	} else
+		curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method);
+}
+
+/* Sends one request and takes the whole answer.
+ *
+ * Returns  value   OUTCOME_OK, OUTCOME_UNREACHED, or OUTCOME_USAGE for a URL that is none
+ * Memory   reply is allocated whatever the value; wire_reply_free frees it
+ */
+enum outcome wire_send(struct wire *wire, const struct wire_request *request, struct wire_reply *reply)
+{
+	char *url, *accept;
+	*reply = (struct wire_reply){0};
+	wire->failure[0] = '\0';
+	FILE *body = open_memstream(&reply->body, &reply->n_body);
+	if (!body || asprintf(&url, "%.*s%s", (int)wire->n_url, wire->url, request->path) < 0 ||
+	    asprintf(&accept, "Accept: %s", request->accept ? request->accept : "*/*") < 0)
+		abort();
+	struct curl_slist *headers = curl_slist_append(NULL, accept);
+	headers = curl_slist_append(headers, request->body ? "Content-Type: application/json" : "Content-Type:");
+	// no pause for "100 Continue" before a long body
+	headers = curl_slist_append(headers, "Expect:");
+	options_set(wire, request, url, body, headers);
+	CURLcode code = curl_easy_perform(wire->curl);
+	fclose(body);
+	curl_easy_getinfo(wire->curl, CURLINFO_RESPONSE_CODE, &reply->status);
+	reply->type = header(wire->curl, "Content-Type");
+	reply->location = header(wire->curl, "Location");
+	char *retry = header(wire->curl, "Retry-After");
+	reply->retry_after_s = atol(retry);
+	free(retry);
+	curl_slist_free_all(headers);
+	free(accept);
+	free(url);
+	if (code != CURLE_OK && !wire->failure[0])
+		snprintf(wire->failure, sizeof wire->failure, "%s", curl_easy_strerror(code));
+	return code == CURLE_OK                                                    ? OUTCOME_OK
+	       : code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL ? OUTCOME_USAGE
+	                                                                           : OUTCOME_UNREACHED;
+}
+
+const char *wire_url(const struct wire *wire)
+{
+	return wire->url;
+}
+
+const char *wire_failure(const struct wire *wire)
+{
+	return wire->failure;
+}
+
+void wire_reply_free(struct wire_reply *reply)
+{
+	free(reply->body);
+	free(reply->type);
+	free(reply->location);
+	*reply = (struct wire_reply){0};
+}
+
+char *wire_escape(struct wire *wire, const char *text)
+{
+	char *escaped = curl_easy_escape(wire->curl, text, 0), *copy = escaped ? strdup(escaped) : NULL;
+	curl_free(escaped);
+	if (!copy)
+		abort();
+	return copy;
+}

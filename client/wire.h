@@ -1,0 +1,43 @@
+/* wire.h - one HTTP exchange with the server: request in; status, headers and body out.
+ *
+ * The only header that knows libcurl is behind it.  One `struct wire` is used by one thread. */
+#ifndef WIRE_H
+#define WIRE_H
+
+#include "client/command.h"
+
+#include <stddef.h>
+
+struct wire; /* a connection that is kept between requests */
+
+struct wire_request {
+	const char *method;
+	const char *path;   /* from the root, with its query */
+	const char *accept; /* media type wanted; NULL: any */
+	const char *body;   /* JSON of n_body bytes; NULL: none */
+	size_t n_body;
+};
+
+struct wire_reply {
+	long status; /* HTTP status */
+	char *body;  /* (n_body), and a NUL behind it that is not counted */
+	size_t n_body;
+	char *type;         /* media type of the body without its parameters; "": none */
+	char *location;     /* "": none */
+	long retry_after_s; /* 0: not told */
+};
+
+/* NULL: out of memory.  `url` is kept, not copied. */
+struct wire *wire_open(const char *url);
+void wire_close(struct wire *wire);
+
+/* OUTCOME_OK when the server answered, whatever it said; otherwise wire_failure tells why. */
+enum outcome wire_send(struct wire *wire, const struct wire_request *request, struct wire_reply *reply);
+const char *wire_url(const struct wire *wire);
+const char *wire_failure(const struct wire *wire);
+void wire_reply_free(struct wire_reply *reply);
+
+/* `text` made fit to stand in a path or a query; the caller frees it. */
+char *wire_escape(struct wire *wire, const char *text);
+
+#endif

@@ -1,0 +1,44 @@
+/* program.h - the built programs as a user meets them: started with arguments and a standard input, and judged by
+ * what they print and how they end.  POUND_BUILD is the folder of the programs. */
+#ifndef PROGRAM_H
+#define PROGRAM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/types.h>
+
+enum { ARGUMENTS_MAX = 16 };
+
+struct program_outcome {
+	int status; /* exit status; 128 + signal when a signal ended it */
+	char *out;  /* (n_out) and a NUL */
+	size_t n_out;
+	char *err; /* (n_err) and a NUL */
+	size_t n_err;
+};
+
+/* Runs a program to its end.  `arguments` starts with its name: one of POUND_BUILD, or one of PATH when it has no
+ * such file; `input` is its standard input, NULL: empty. */
+struct program_outcome program_run(const char *const arguments[], const char *input);
+void program_free(struct program_outcome *outcome);
+
+/* Starts a program and leaves it running; its stdout and stderr go to the files named, its stdin is empty. */
+pid_t program_start(const char *const arguments[], const char *out, const char *err);
+
+/* Waits for its end: exit status, or 128 + signal. */
+int program_end(pid_t pid);
+
+/* A poundd of its own, on a free port with a database in a folder of its own. */
+struct program_server {
+	pid_t pid;
+	char url[80];
+	char folder[64];
+};
+
+bool program_serve(struct program_server *server);
+int program_stop(struct program_server *server); /* SIGTERM; its exit status */
+
+/* Whole file with a NUL behind it; the caller frees it.  NULL: no such file. */
+char *program_file(const char *path, size_t *n);
+
+#endif
