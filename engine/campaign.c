@@ -15,11 +15,11 @@ double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int
 struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample)
 {
 	const struct pound_study *study = campaign->study;
-	struct pound_scene scene        = study->scene;
+	struct pound_scene scene = study->scene;
 	for (int s = 0; s < study->n_sweeps; s++)
 		pound_scene_assign(&scene, study->sweeps[s].field, pound_campaign_sweep(campaign, cell, s));
 	for (int j = 0; j < study->n_inputs; j++)
 		pound_scene_assign(&scene, study->inputs[j].field,
-						   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
+		                   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
 	return scene;
 }

@@ -33,7 +33,7 @@ static const struct model {
 	const char *name;
 	double (*damping_ratio)(double restitution);
 } models[] = {
-	{"kelvin_voigt", kelvin_voigt},
+    {"kelvin_voigt", kelvin_voigt},
 };
 
 const char *pound_contact_name(int row)

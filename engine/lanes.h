@@ -36,8 +36,14 @@ LANE_INLINE vd vsplat(double x)
 	return r;
 }
 
-LANE_INLINE vi vless(vd a, vd b) { return LANE_COMPARE(a, <, b); }
-LANE_INLINE vi vequal(vd a, vd b) { return LANE_COMPARE(a, ==, b); }
+LANE_INLINE vi vless(vd a, vd b)
+{
+	return LANE_COMPARE(a, <, b);
+}
+LANE_INLINE vi vequal(vd a, vd b)
+{
+	return LANE_COMPARE(a, ==, b);
+}
 
 LANE_INLINE vd vselect(vi mask, vd a, vd b)
 {
@@ -48,8 +54,14 @@ LANE_INLINE vd vselect(vi mask, vd a, vd b)
 #endif
 }
 
-LANE_INLINE vd vmax(vd a, vd b) { return vselect(vless(a, b), b, a); }
-LANE_INLINE vd vmin(vd a, vd b) { return vselect(vless(b, a), b, a); }
+LANE_INLINE vd vmax(vd a, vd b)
+{
+	return vselect(vless(a, b), b, a);
+}
+LANE_INLINE vd vmin(vd a, vd b)
+{
+	return vselect(vless(b, a), b, a);
+}
 
 LANE_INLINE vd vabs(vd a)
 {

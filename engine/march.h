@@ -39,19 +39,23 @@ struct pound_march_result {
 	double impulse_max;                         /* largest integral of F/m1 over one contact [m/s] */
 	double contact_time;                        /* [s] */
 	int64_t contacts;
-	double first_contact, first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
+	double first_contact,
+	    first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
 };
 
 enum { POUND_MARCH_SCRATCH = 1 << 17 }; /* bytes of work space, 64-byte aligned */
 
-bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results, int n,
-					   void *scratch);
+bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
+                       int n, void *scratch);
 
 /* march.c, compiled once for each */
-void pound_march_w8(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
-void pound_march_w4(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
-void pound_march_w1(const struct pound_march_task *tasks, struct pound_march_result *results, int n, void *scratch);
+void pound_march_w8(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                    void *scratch);
+void pound_march_w4(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                    void *scratch);
+void pound_march_w1(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                    void *scratch);
 void pound_march_portable(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
-						  void *scratch);
+                          void *scratch);
 
 #endif

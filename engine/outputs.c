@@ -13,9 +13,15 @@ static bool left_is_linear(const struct pound_scene *scene)
 	return pound_pieces_linear(pound_scene_law(scene, 0)->type);
 }
 
-static bool left_yields(const struct pound_scene *scene) { return !left_is_linear(scene); }
+static bool left_yields(const struct pound_scene *scene)
+{
+	return !left_is_linear(scene);
+}
 
-static bool bodies_meet(const struct pound_scene *scene) { return scene->contact.present; }
+static bool bodies_meet(const struct pound_scene *scene)
+{
+	return scene->contact.present;
+}
 
 static double displacement(const struct pound_response *r, const struct pound_scene *scene)
 {
@@ -55,9 +61,9 @@ static const struct output {
 	bool (*applies)(const struct pound_scene *);
 	measure *numerator, *denominator;
 } outputs[] = {
-	{"force_amplification", left_is_linear, displacement, displacement_free}, // the paper, Eq. (5)
-	{"demand_amplification", left_yields, demand, demand_free},               // Eq. (7)
-	{"impulse", bodies_meet, impulse, displacement_free},                     // Eq. (9)
+    {"force_amplification", left_is_linear, displacement, displacement_free}, // the paper, Eq. (5)
+    {"demand_amplification", left_yields, demand, demand_free},               // Eq. (7)
+    {"impulse", bodies_meet, impulse, displacement_free},                     // Eq. (9)
 };
 
 const char *pound_output_name(int row)
@@ -65,12 +71,15 @@ const char *pound_output_name(int row)
 	return row >= 0 && row < (int)(sizeof outputs / sizeof outputs[0]) ? outputs[row].name : NULL;
 }
 
-bool pound_output_applies(int row, const struct pound_scene *scene) { return outputs[row].applies(scene); }
+bool pound_output_applies(int row, const struct pound_scene *scene)
+{
+	return outputs[row].applies(scene);
+}
 
 /* The two measures of one signal whose means an output divides. */
 void pound_outputs_measure(int row, const struct pound_scene *scene, const struct pound_response *response,
-						   double *numerator, double *denominator)
+                           double *numerator, double *denominator)
 {
-	*numerator   = outputs[row].numerator(response, scene);
+	*numerator = outputs[row].numerator(response, scene);
 	*denominator = outputs[row].denominator(response, scene);
 }

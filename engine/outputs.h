@@ -5,6 +5,6 @@
 #include "engine/pound.h"
 
 void pound_outputs_measure(int row, const struct pound_scene *scene, const struct pound_response *response,
-						   double *numerator, double *denominator);
+                           double *numerator, double *denominator);
 
 #endif

@@ -16,9 +16,9 @@ enum { CENTRE, RIGHT, LEFT, RIGHT_SECANT, LEFT_SECANT };
 static struct pound_piece hardened(const struct pound_skeleton *s, double side)
 {
 	return (struct pound_piece){.stiffness = s->hardening * s->stiffness,
-								.offset    = side * (1 - s->hardening) * s->stiffness * s->yield,
-								.low       = -DBL_MAX,
-								.high      = DBL_MAX};
+	                            .offset = side * (1 - s->hardening) * s->stiffness * s->yield,
+	                            .low = -DBL_MAX,
+	                            .high = DBL_MAX};
 }
 
 static void linear(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge, double u)
@@ -28,12 +28,13 @@ static void linear(const struct pound_skeleton *s, struct pound_branch *at, enum
 }
 
 /* Kinematic hardening: an elastic range of width 2 yield whose centre, memory[0], plastic flow drags along. */
-static void elastoplastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge, double u)
+static void elastoplastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+                          double u)
 {
 	if (at->branch == CENTRE && edge != POUND_EDGE_TURN) {
-		double side         = edge == POUND_EDGE_HIGH ? 1 : -1;
-		at->branch          = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
-		at->piece           = hardened(s, side);
+		double side = edge == POUND_EDGE_HIGH ? 1 : -1;
+		at->branch = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
+		at->piece = hardened(s, side);
 		at->piece.direction = side;
 		return;
 	}
@@ -42,54 +43,56 @@ static void elastoplastic(const struct pound_skeleton *s, struct pound_branch *a
 	double centre = at->memory[0];
 	// the edge the branch starts from is u itself, so that it starts on it to the last bit
 	double high = at->branch == RIGHT ? u : centre + s->yield;
-	double low  = at->branch == LEFT ? u : centre - s->yield;
-	at->branch  = CENTRE;
-	at->piece   = (struct pound_piece){.stiffness = s->stiffness,
-									   .offset    = -(1 - s->hardening) * s->stiffness * centre,
-									   .low       = low,
-									   .high      = high};
+	double low = at->branch == LEFT ? u : centre - s->yield;
+	at->branch = CENTRE;
+	at->piece = (struct pound_piece){.stiffness = s->stiffness,
+	                                 .offset = -(1 - s->hardening) * s->stiffness * centre,
+	                                 .low = low,
+	                                 .high = high};
 }
 
 /* Loads and unloads on the skeleton curve. */
-static void nonlinear_elastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge, double u)
+static void nonlinear_elastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+                              double u)
 {
 	(void)u;
 	if (at->branch != CENTRE || edge == POUND_EDGE_TURN) {
 		at->branch = CENTRE;
-		at->piece  = (struct pound_piece){.stiffness = s->stiffness, .low = -s->yield, .high = s->yield};
+		at->piece = (struct pound_piece){.stiffness = s->stiffness, .low = -s->yield, .high = s->yield};
 	} else if (edge == POUND_EDGE_HIGH) {
-		at->branch    = RIGHT;
-		at->piece     = hardened(s, 1);
+		at->branch = RIGHT;
+		at->piece = hardened(s, 1);
 		at->piece.low = s->yield;
 	} else {
-		at->branch     = LEFT;
-		at->piece      = hardened(s, -1);
+		at->branch = LEFT;
+		at->piece = hardened(s, -1);
 		at->piece.high = -s->yield;
 	}
 }
 
 /* Straight between the origin and the farthest point of each side: memory[0] right, memory[1] left (both > 0). */
-static void origin_oriented(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge, double u)
+static void origin_oriented(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+                            double u)
 {
 	if (at->branch == RIGHT || at->branch == LEFT) { // turned on the skeleton: this is the farthest point now
-		int side         = at->branch == LEFT;
+		int side = at->branch == LEFT;
 		at->memory[side] = fabs(u);
-		at->branch       = side ? LEFT_SECANT : RIGHT_SECANT;
+		at->branch = side ? LEFT_SECANT : RIGHT_SECANT;
 	} else if (at->branch == RIGHT_SECANT && edge == POUND_EDGE_LOW) {
 		at->branch = LEFT_SECANT;
 	} else if (at->branch == LEFT_SECANT && edge == POUND_EDGE_HIGH) {
 		at->branch = RIGHT_SECANT;
 	} else { // past the farthest point, or past the yield point of a law never yielded
-		double side         = edge == POUND_EDGE_HIGH ? 1 : -1;
-		at->branch          = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
-		at->piece           = hardened(s, side);
+		double side = edge == POUND_EDGE_HIGH ? 1 : -1;
+		at->branch = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
+		at->piece = hardened(s, side);
 		at->piece.direction = side;
 		return;
 	}
 	double far = at->memory[at->branch == LEFT_SECANT];
-	at->piece  = (struct pound_piece){.stiffness = pound_pieces_envelope(s, far) / far,
-									  .low       = at->branch == LEFT_SECANT ? -far : 0,
-									  .high      = at->branch == LEFT_SECANT ? 0 : far};
+	at->piece = (struct pound_piece){.stiffness = pound_pieces_envelope(s, far) / far,
+	                                 .low = at->branch == LEFT_SECANT ? -far : 0,
+	                                 .high = at->branch == LEFT_SECANT ? 0 : far};
 }
 
 static const struct law {
@@ -97,10 +100,10 @@ static const struct law {
 	bool linear;
 	void (*leave)(const struct pound_skeleton *, struct pound_branch *, enum pound_edge, double u);
 } laws[] = {
-	{"linear", true, linear},
-	{"elastoplastic", false, elastoplastic},
-	{"nonlinear_elastic", false, nonlinear_elastic},
-	{"origin_oriented", false, origin_oriented},
+    {"linear", true, linear},
+    {"elastoplastic", false, elastoplastic},
+    {"nonlinear_elastic", false, nonlinear_elastic},
+    {"origin_oriented", false, origin_oriented},
 };
 
 const char *pound_law_name(int row)
@@ -109,7 +112,10 @@ const char *pound_law_name(int row)
 }
 
 /* Whether a law has one piece for ever, so that no yield displacement is needed. */
-bool pound_pieces_linear(int law) { return laws[law].linear; }
+bool pound_pieces_linear(int law)
+{
+	return laws[law].linear;
+}
 
 /* Puts an oscillator at rest on the first piece of its law.
  *
@@ -126,7 +132,8 @@ void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_bran
 		return;
 	}
 	at->memory[0] = at->memory[1] = 0;
-	at->piece = (struct pound_piece){.stiffness = skeleton->stiffness, .low = -skeleton->yield, .high = skeleton->yield};
+	at->piece = (struct pound_piece){
+	    .stiffness = skeleton->stiffness, .low = -skeleton->yield, .high = skeleton->yield};
 	if (laws[skeleton->law].leave == origin_oriented)
 		at->memory[0] = at->memory[1] = skeleton->yield;
 }
@@ -138,7 +145,8 @@ void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_bran
  *          u         displacement there [m]
  * Returns  at        the next piece, continuous in force with the last
  */
-void pound_pieces_leave(const struct pound_skeleton *skeleton, struct pound_branch *at, enum pound_edge edge, double u)
+void pound_pieces_leave(const struct pound_skeleton *skeleton, struct pound_branch *at, enum pound_edge edge,
+                        double u)
 {
 	laws[skeleton->law].leave(skeleton, at, edge, u);
 }

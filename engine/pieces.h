@@ -33,7 +33,7 @@ struct pound_branch {
 bool pound_pieces_linear(int law);
 void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_branch *at);
 void pound_pieces_leave(const struct pound_skeleton *skeleton, struct pound_branch *at, enum pound_edge edge,
-						double u);
+                        double u);
 double pound_pieces_envelope(const struct pound_skeleton *skeleton, double u);
 
 #endif

@@ -50,12 +50,12 @@ struct ask {
 struct pound_plan {
 	struct pound_plan_size size;
 	struct register_ motion_keys, march_keys;
-	struct motion *motions;              /* (motions) */
-	double *ground;                      /* (samples) */
-	struct ask *asks;                    /* (asks) */
-	struct pound_march_task *tasks;      /* (tasks) */
-	struct pound_march_result *results;  /* (tasks) */
-	void *scratch;                       /* of the march */
+	struct motion *motions;             /* (motions) */
+	double *ground;                     /* (samples) */
+	struct ask *asks;                   /* (asks) */
+	struct pound_march_task *tasks;     /* (tasks) */
+	struct pound_march_result *results; /* (tasks) */
+	void *scratch;                      /* of the march */
 };
 
 /* ---- work space ---- */
@@ -75,16 +75,16 @@ static size_t plan_carve(char *memory, struct pound_plan *plan, struct pound_pla
 		void *into;
 		size_t bytes;
 	} parts[] = {
-		{&plan->motion_keys.keys, sizeof(double) * KEY * (size_t)size.motions},
-		{&plan->march_keys.keys, sizeof(double) * KEY * (size_t)size.tasks},
-		{&plan->motion_keys.slots, sizeof(int) * (size_t)slots_of(size.motions)},
-		{&plan->march_keys.slots, sizeof(int) * (size_t)slots_of(size.tasks)},
-		{&plan->motions, sizeof *plan->motions * (size_t)size.motions},
-		{&plan->ground, sizeof(double) * (size_t)size.samples},
-		{&plan->asks, sizeof *plan->asks * (size_t)size.asks},
-		{&plan->tasks, sizeof *plan->tasks * (size_t)size.tasks},
-		{&plan->results, sizeof *plan->results * (size_t)size.tasks},
-		{&plan->scratch, POUND_MARCH_SCRATCH},
+	    {&plan->motion_keys.keys, sizeof(double) * KEY * (size_t)size.motions},
+	    {&plan->march_keys.keys, sizeof(double) * KEY * (size_t)size.tasks},
+	    {&plan->motion_keys.slots, sizeof(int) * (size_t)slots_of(size.motions)},
+	    {&plan->march_keys.slots, sizeof(int) * (size_t)slots_of(size.tasks)},
+	    {&plan->motions, sizeof *plan->motions * (size_t)size.motions},
+	    {&plan->ground, sizeof(double) * (size_t)size.samples},
+	    {&plan->asks, sizeof *plan->asks * (size_t)size.asks},
+	    {&plan->tasks, sizeof *plan->tasks * (size_t)size.tasks},
+	    {&plan->results, sizeof *plan->results * (size_t)size.tasks},
+	    {&plan->scratch, POUND_MARCH_SCRATCH},
 	};
 	size_t at = (sizeof *plan + 63) / 64 * 64;
 	for (size_t j = 0; j < sizeof parts / sizeof parts[0]; j++) {
@@ -107,9 +107,9 @@ struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size)
 	struct pound_plan *plan = memory;
 	memset(plan, 0, sizeof *plan);
 	plan_carve(memory, plan, size);
-	plan->size                = size;
+	plan->size = size;
 	plan->motion_keys.n_slots = slots_of(size.motions);
-	plan->march_keys.n_slots  = slots_of(size.tasks);
+	plan->march_keys.n_slots = slots_of(size.tasks);
 	return plan;
 }
 
@@ -120,7 +120,7 @@ struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, in
 	for (int cell = 0; cell < campaign->n_cells; cell++)
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
 			struct pound_scene scene = pound_campaign_scene(campaign, cell, row, sample);
-			int marches              = 1;
+			int marches = 1;
 			for (int i = 0; i < POUND_OSCILLATORS; i++)
 				marches += 2 + pound_scene_law(&scene, i)->corrections;
 			size.asks++;
@@ -160,10 +160,11 @@ static int register_key(struct register_ *r, const double key[static KEY])
 /* The ground motion of a sample: its excitation, and the noise of its row and signal. */
 static int motion_ask(struct pound_plan *plan, const struct pound_excitation *e, struct pound_stream noise)
 {
-	const double key[KEY] = {e->type, e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles, e->duration,
-							 e->rise, e->fall, e->time_step, e->peak, noise.row, noise.sample, noise.signal};
+	const double key[KEY] = {e->type,     e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,
+	                         e->duration, e->rise,         e->fall,          e->time_step,       e->peak,
+	                         noise.row,   noise.sample,    noise.signal};
 	int known = plan->motion_keys.n;
-	int j     = register_key(&plan->motion_keys, key);
+	int j = register_key(&plan->motion_keys, key);
 	if (j == known)
 		plan->motions[j] = (struct motion){.excitation = *e, .noise = noise};
 	return j;
@@ -173,19 +174,21 @@ static int motion_ask(struct pound_plan *plan, const struct pound_excitation *e,
 static int march_ask(struct pound_plan *plan, int motion, struct pound_march_task *task)
 {
 	const struct motion *m = &plan->motions[motion];
-	double key[KEY]        = {motion, task->contact, task->gap, task->contact_stiffness, task->contact_damping,
-							  task->mass_ratio, task->tension};
+	double key[KEY] = {
+	    motion,           task->contact, task->gap, task->contact_stiffness, task->contact_damping,
+	    task->mass_ratio, task->tension};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *b = &task->bodies[i];
-		double *k                        = &key[7 + 6 * i];
-		k[0] = b->skeleton.law, k[1] = b->skeleton.stiffness, k[2] = b->skeleton.hardening, k[3] = b->skeleton.yield;
+		double *k = &key[7 + 6 * i];
+		k[0] = b->skeleton.law, k[1] = b->skeleton.stiffness, k[2] = b->skeleton.hardening,
+		k[3] = b->skeleton.yield;
 		k[4] = b->damping, k[5] = b->drive;
 	}
 	int known = plan->march_keys.n;
-	int j     = register_key(&plan->march_keys, key);
+	int j = register_key(&plan->march_keys, key);
 	if (j == known) {
-		plan->tasks[j]           = *task;
-		plan->tasks[j].ground    = m->ground;
+		plan->tasks[j] = *task;
+		plan->tasks[j].ground = m->ground;
 		plan->tasks[j].n_samples = m->n_samples;
 		plan->tasks[j].time_step = m->excitation.time_step;
 	}
@@ -200,8 +203,8 @@ static void motions_fill(struct pound_plan *plan)
 	double *ground = plan->ground;
 	for (int j = 0; j < plan->motion_keys.n; j++) {
 		struct motion *m = &plan->motions[j];
-		m->n_samples     = pound_excitation_samples(&m->excitation);
-		m->ground        = ground;
+		m->n_samples = pound_excitation_samples(&m->excitation);
+		m->ground = ground;
 		ground += m->n_samples;
 		assert(ground - plan->ground <= plan->size.samples);
 		pound_excitation_fill(&m->excitation, m->noise, m->ground);
@@ -225,9 +228,9 @@ static void marches_run(struct pound_plan *plan, int *done)
 
 static int body_march(struct pound_plan *plan, const struct ask *ask, int i, int law, double yield)
 {
-	struct pound_march_task task     = {.bodies = {pound_scene_body(&ask->scene, i)}};
-	task.bodies[0].skeleton.law      = law;
-	task.bodies[0].skeleton.yield    = yield;
+	struct pound_march_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
+	task.bodies[0].skeleton.law = law;
+	task.bodies[0].skeleton.yield = yield;
 	if (pound_pieces_linear(law))
 		task.bodies[0].skeleton.hardening = 0;
 	return march_ask(plan, ask->motion, &task);
@@ -241,19 +244,20 @@ static int body_march(struct pound_plan *plan, const struct ask *ask, int i, int
  */
 static double reduction(const struct pound_scene *scene, int i, double demand)
 {
-	double f_e  = pound_excitation_frequency(&scene->excitation);
+	double f_e = pound_excitation_frequency(&scene->excitation);
 	double rise = f_e > 0 ? 6 * f_e / scene->oscillators[i].frequency_hz : 1;
 	return 1 + (demand - 1) * fmin(rise, 1);
 }
 
 /* Asks for a body's march of a stage: stage 0 is linear, stage k >= 1 has the yield displacement found by then; false:
  * none is needed. */
-static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i, int stage)
+static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i,
+                       int stage)
 {
 	const struct pound_law *law = pound_scene_law(&ask->scene, i);
-	bool linear                 = pound_pieces_linear(law->type);
-	bool given                  = law->yield_displacement > 0;
-	int last_stage              = linear ? 0 : given ? 1 : 1 + law->corrections;
+	bool linear = pound_pieces_linear(law->type);
+	bool given = law->yield_displacement > 0;
+	int last_stage = linear ? 0 : given ? 1 : 1 + law->corrections;
 	if (stage > last_stage || (stage == 0 && !linear && given))
 		return false;
 	if (stage == 0)
@@ -263,7 +267,7 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 			body->yield = ldexp(law->yield_displacement, -plan->motions[ask->motion].exponent);
 		else
 			body->yield = plan->results[body->march].displacement_max[0] /
-						  (stage == 1 ? reduction(&ask->scene, i, law->target_demand) : law->target_demand);
+			              (stage == 1 ? reduction(&ask->scene, i, law->target_demand) : law->target_demand);
 		if (stage == last_stage && !body->wanted)
 			return false;
 		// a body that never moves has no yield displacement, and any will do
@@ -277,10 +281,10 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 static void ask_free(const struct pound_campaign *campaign, struct ask *ask)
 {
 	const struct pound_scene *scene = &ask->scene;
-	bool response                   = campaign->study->kind == POUND_KIND_RESPONSE;
-	bool may_miss                   = !scene->contact.present || scene->contact.gap > 0;
+	bool response = campaign->study->kind == POUND_KIND_RESPONSE;
+	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		bool moves          = !scene->oscillators[i].rigid_wall;
+		bool moves = !scene->oscillators[i].rigid_wall;
 		ask->bodies[i] = (struct body_ask){.march = -1, .wanted = moves && (i == 0 || response || may_miss)};
 	}
 }
@@ -308,7 +312,7 @@ static double free_max(const struct pound_plan *plan, const struct body_ask *bod
 static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_work *work)
 {
 	struct pound_march_task task = {0};
-	ask->march                   = -1;
+	ask->march = -1;
 	if (!ask->scene.contact.present)
 		return;
 	if (pound_scene_alike(&ask->scene)) {
@@ -316,9 +320,9 @@ static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_
 		return;
 	}
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		task.bodies[i]                = pound_scene_body(&ask->scene, i);
-		double yield                  = ask->bodies[i].yield;
-		bool linear                   = pound_pieces_linear(task.bodies[i].skeleton.law);
+		task.bodies[i] = pound_scene_body(&ask->scene, i);
+		double yield = ask->bodies[i].yield;
+		bool linear = pound_pieces_linear(task.bodies[i].skeleton.law);
 		task.bodies[i].skeleton.yield = linear ? 0 : yield > 0 ? yield : 1;
 		if (linear)
 			task.bodies[i].skeleton.hardening = 0;
@@ -338,7 +342,8 @@ static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_
  *
  * Returns  response  NAN where the scene has no such value
  */
-static enum pound_status ask_response(const struct pound_plan *plan, const struct ask *ask, struct pound_response *out)
+static enum pound_status ask_response(const struct pound_plan *plan, const struct ask *ask,
+                                      struct pound_response *out)
 {
 	int e = plan->motions[ask->motion].exponent;
 	struct pound_march_result none = {0};
@@ -346,35 +351,45 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 	enum pound_status status = with->status;
 	double max[2], max_free[2], force[2], yield[2], demand[2], demand_free[2], u[2], v[2];
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct body_ask *body           = &ask->bodies[i];
+		const struct body_ask *body = &ask->bodies[i];
 		const struct pound_march_result *free = body->finished ? &plan->results[body->march] : NULL;
-		struct pound_skeleton skeleton        = pound_scene_body(&ask->scene, i).skeleton;
-		bool yields                           = !pound_pieces_linear(skeleton.law) && !ask->scene.oscillators[i].rigid_wall;
+		struct pound_skeleton skeleton = pound_scene_body(&ask->scene, i).skeleton;
+		bool yields = !pound_pieces_linear(skeleton.law) && !ask->scene.oscillators[i].rigid_wall;
 		if (free && free->status)
 			status = free->status;
 		skeleton.yield = body->yield;
 		// without a run with pounding the body moves as it does alone; the wall does not
-		bool alone  = ask->march < 0;
+		bool alone = ask->march < 0;
 		double most = !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
-		max[i]         = ldexp(most, e);
-		max_free[i]    = free ? ldexp(free->displacement_max[0], e) : NAN;
-		force[i]       = ldexp(ask->scene.oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);
-		yield[i]       = yields ? ldexp(body->yield, e) : NAN;
-		demand[i]      = yields && body->yield > 0 ? most / body->yield : NAN;
+		max[i] = ldexp(most, e);
+		max_free[i] = free ? ldexp(free->displacement_max[0], e) : NAN;
+		force[i] = ldexp(ask->scene.oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);
+		yield[i] = yields ? ldexp(body->yield, e) : NAN;
+		demand[i] = yields && body->yield > 0 ? most / body->yield : NAN;
 		demand_free[i] = yields && body->yield > 0 && free ? free->displacement_max[0] / body->yield : NAN;
-		u[i]           = ldexp(!alone ? with->u[i] : free ? free->u[0] : 0, e);
-		v[i]           = ldexp(!alone ? with->v[i] : free ? free->v[0] : 0, e);
+		u[i] = ldexp(!alone ? with->u[i] : free ? free->u[0] : 0, e);
+		v[i] = ldexp(!alone ? with->v[i] : free ? free->v[0] : 0, e);
 	}
 	*out = (struct pound_response){
-		.displacement_max_1 = max[0], .displacement_max_2 = max[1],
-		.displacement_max_free_1 = max_free[0], .displacement_max_free_2 = max_free[1],
-		.force_max_1 = force[0], .force_max_2 = force[1],
-		.yield_displacement_1 = yield[0], .yield_displacement_2 = yield[1],
-		.demand_1 = demand[0], .demand_2 = demand[1],
-		.demand_free_1 = demand_free[0], .demand_free_2 = demand_free[1],
-		.impulse_max = ldexp(ask->scene.oscillators[0].mass * with->impulse_max, e),
-		.contact_count = (double)with->contacts, .contact_time = with->contact_time,
-		.end_u1 = u[0], .end_v1 = v[0], .end_u2 = u[1], .end_v2 = v[1],
+	    .displacement_max_1 = max[0],
+	    .displacement_max_2 = max[1],
+	    .displacement_max_free_1 = max_free[0],
+	    .displacement_max_free_2 = max_free[1],
+	    .force_max_1 = force[0],
+	    .force_max_2 = force[1],
+	    .yield_displacement_1 = yield[0],
+	    .yield_displacement_2 = yield[1],
+	    .demand_1 = demand[0],
+	    .demand_2 = demand[1],
+	    .demand_free_1 = demand_free[0],
+	    .demand_free_2 = demand_free[1],
+	    .impulse_max = ldexp(ask->scene.oscillators[0].mass * with->impulse_max, e),
+	    .contact_count = (double)with->contacts,
+	    .contact_time = with->contact_time,
+	    .end_u1 = u[0],
+	    .end_v1 = v[0],
+	    .end_u2 = u[1],
+	    .end_v2 = v[1],
 	};
 	return status;
 }
@@ -390,11 +405,12 @@ static void asks_write(struct pound_plan *plan, const struct pound_campaign *cam
 				int row = item / campaign->n_signals, signal = item % campaign->n_signals;
 				ask->scene = pound_campaign_scene(campaign, cell, row, sample);
 				// samples of a row share their noise, or have their own
-				struct pound_stream noise = {.seed   = campaign->study->design.seed,
-											 .what   = POUND_STREAM_NOISE,
-											 .row    = (uint32_t)row,
-											 .sample = campaign->study->design.common_signals ? 0 : (uint32_t)sample,
-											 .signal = (uint32_t)signal};
+				struct pound_stream noise = {
+				    .seed = campaign->study->design.seed,
+				    .what = POUND_STREAM_NOISE,
+				    .row = (uint32_t)row,
+				    .sample = campaign->study->design.common_signals ? 0 : (uint32_t)sample,
+				    .signal = (uint32_t)signal};
 				ask->motion = motion_ask(plan, &ask->scene.excitation, noise);
 				ask_free(campaign, ask);
 			}
@@ -408,8 +424,9 @@ static void asks_write(struct pound_plan *plan, const struct pound_campaign *cam
  *          work      what was asked and run is added
  * Status   POUND_STOPPED  stop was set; nothing was handed to take
  */
-enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first, int n,
-								 const atomic_bool *stop, struct pound_work *work, pound_plan_take *take, void *into)
+enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,
+                                 int n, const atomic_bool *stop, struct pound_work *work,
+                                 pound_plan_take *take, void *into)
 {
 	int n_asks = n * campaign->n_cells * campaign->n_samples;
 	assert(n_asks <= plan->size.asks);
@@ -425,7 +442,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
 	for (int stage = 0; stage < stages && !*stop; stage++) {
 		struct pound_stage_work *counted = stage == 0 ? &work->free_runs : &work->yield_runs;
-		int before                       = done;
+		int before = done;
 		for (int a = 0; a < n_asks; a++)
 			for (int i = 0; i < POUND_OSCILLATORS; i++)
 				if (body_asked(&plan->asks[a], i))
@@ -447,7 +464,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 		return POUND_STOPPED;
 	for (int a = 0; a < n_asks; a++) {
 		struct pound_response response;
-		const struct ask *ask    = &plan->asks[a];
+		const struct ask *ask = &plan->asks[a];
 		enum pound_status status = ask_response(plan, ask, &response);
 		take(into, &ask->scene, &response, status);
 	}

@@ -36,9 +36,10 @@ size_t pound_plan_bytes(struct pound_plan_size size);
 struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size);
 
 /* Runs items [first, first + n) and hands every response to `take`, in the order of item, cell, sample. */
-typedef void pound_plan_take(void *into, const struct pound_scene *scene, const struct pound_response *response,
-							 enum pound_status status);
-enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first, int n,
-								 const atomic_bool *stop, struct pound_work *work, pound_plan_take *take, void *into);
+typedef void pound_plan_take(void *into, const struct pound_scene *scene,
+                             const struct pound_response *response, enum pound_status status);
+enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,
+                                 int n, const atomic_bool *stop, struct pound_work *work,
+                                 pound_plan_take *take, void *into);
 
 #endif

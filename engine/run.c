@@ -15,18 +15,18 @@
 #include "engine/plan.h"
 
 enum {
-	BLOCK_RUNS    = 768,     /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
+	BLOCK_RUNS = 768,        /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
 	BLOCK_SAMPLES = 1 << 21, /* of its ground motions at most, unless one item has more: 16 MiB */
-	MEASURES      = sizeof(struct pound_response) / sizeof(double),
-	COUNTS        = sizeof(struct pound_work) / sizeof(int64_t),
+	MEASURES = sizeof(struct pound_response) / sizeof(double),
+	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
 };
 
 struct pound_run {
 	struct pound_campaign campaign;
-	int n_measures;  /* doubles kept of a run */
+	int n_measures; /* doubles kept of a run */
 	int n_blocks;
-	int *first;      /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
-	double *values;  /* of all blocks, each followed by its counts of work */
+	int *first;                /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
+	double *values;            /* of all blocks, each followed by its counts of work */
 	struct pound_plan **plans; /* (n_workers) */
 	double **scratch;          /* of reductions  (n_workers) */
 	struct pound_result result;
@@ -36,9 +36,15 @@ struct pound_run {
 	atomic_bool stop;
 };
 
-static int runs_of_item(const struct pound_campaign *c) { return c->n_cells * c->n_samples; }
+static int runs_of_item(const struct pound_campaign *c)
+{
+	return c->n_cells * c->n_samples;
+}
 
-static int items_of(const struct pound_campaign *c) { return c->n_rows * c->n_signals; }
+static int items_of(const struct pound_campaign *c)
+{
+	return c->n_rows * c->n_signals;
+}
 
 /* Doubles of an item's measures. */
 static size_t item_size(const struct pound_run *run)
@@ -64,7 +70,7 @@ static const double *run_values(const struct pound_run *run, int item, int cell,
 			high = middle;
 	}
 	size_t at = (size_t)(item - run->first[low]) * item_size(run) +
-				(size_t)(cell * run->campaign.n_samples + sample) * (size_t)run->n_measures;
+	            (size_t)(cell * run->campaign.n_samples + sample) * (size_t)run->n_measures;
 	return block_values(run, low) + at;
 }
 
@@ -72,12 +78,12 @@ static const double *run_values(const struct pound_run *run, int item, int cell,
 
 static struct pound_campaign campaign_of(const struct pound_study *study)
 {
-	bool sampled                 = study->kind == POUND_KIND_SENSITIVITY;
-	struct pound_campaign c = {.study     = study,
-							   .n_cells   = 1,
-							   .n_rows    = sampled ? study->design.rows : 1,
-							   .n_samples = sampled ? study->n_inputs + 2 : 1,
-							   .n_signals = study->scene.excitation.signals};
+	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
+	struct pound_campaign c = {.study = study,
+	                           .n_cells = 1,
+	                           .n_rows = sampled ? study->design.rows : 1,
+	                           .n_samples = sampled ? study->n_inputs + 2 : 1,
+	                           .n_signals = study->scene.excitation.signals};
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
 	return c;
@@ -103,9 +109,9 @@ static int blocks_cut(const struct pound_campaign *c, int *first, struct pound_p
 		block.motions += item.motions;
 		block.tasks += item.tasks;
 		block.samples += item.samples;
-		largest->asks    = block.asks > largest->asks ? block.asks : largest->asks;
+		largest->asks = block.asks > largest->asks ? block.asks : largest->asks;
 		largest->motions = block.motions > largest->motions ? block.motions : largest->motions;
-		largest->tasks   = block.tasks > largest->tasks ? block.tasks : largest->tasks;
+		largest->tasks = block.tasks > largest->tasks ? block.tasks : largest->tasks;
 		largest->samples = block.samples > largest->samples ? block.samples : largest->samples;
 	}
 	if (first)
@@ -119,7 +125,7 @@ static size_t reduction_size(const struct pound_campaign *c)
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
 	return 2 * (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals +
-		   pound_sobol_scratch(c->n_rows, c->study->n_inputs, c->n_signals);
+	       pound_sobol_scratch(c->n_rows, c->study->n_inputs, c->n_signals);
 }
 
 /* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
@@ -132,13 +138,13 @@ static void *piece(size_t bytes)
 
 static bool workers_create(struct pound_run *run, int n_workers, struct pound_plan_size largest)
 {
-	run->plans   = piece(sizeof *run->plans * (size_t)(n_workers + 1)); // ends with NULL
+	run->plans = piece(sizeof *run->plans * (size_t)(n_workers + 1)); // ends with NULL
 	run->scratch = piece(sizeof *run->scratch * (size_t)(n_workers + 1));
 	if (!run->plans || !run->scratch)
 		return false;
 	for (int w = 0; w < n_workers; w++) {
-		void *memory    = piece(pound_plan_bytes(largest));
-		run->plans[w]   = memory ? pound_plan_init(memory, largest) : NULL;
+		void *memory = piece(pound_plan_bytes(largest));
+		run->plans[w] = memory ? pound_plan_init(memory, largest) : NULL;
 		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
 		if (!run->plans[w] || !run->scratch[w])
 			return false;
@@ -148,14 +154,14 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_pl
 
 static bool result_create(struct pound_run *run)
 {
-	const struct pound_campaign *c  = &run->campaign;
+	const struct pound_campaign *c = &run->campaign;
 	const struct pound_study *study = c->study;
-	size_t n_cells                  = (size_t)c->n_cells, n_outputs = (size_t)study->n_outputs;
+	size_t n_cells = (size_t)c->n_cells, n_outputs = (size_t)study->n_outputs;
 	run->result.n_cells = c->n_cells;
-	run->result.cells   = piece(sizeof *run->result.cells * n_cells);
-	run->responses      = piece(sizeof *run->responses * n_cells * (size_t)c->n_signals);
-	run->indices        = piece(sizeof *run->indices * n_cells * n_outputs);
-	run->estimates      = piece(sizeof *run->estimates * n_cells * n_outputs * 2 * (size_t)study->n_inputs);
+	run->result.cells = piece(sizeof *run->result.cells * n_cells);
+	run->responses = piece(sizeof *run->responses * n_cells * (size_t)c->n_signals);
+	run->indices = piece(sizeof *run->indices * n_cells * n_outputs);
+	run->estimates = piece(sizeof *run->estimates * n_cells * n_outputs * 2 * (size_t)study->n_inputs);
 	if (!run->result.cells || !run->responses || !run->indices || !run->estimates)
 		return false;
 	for (int cell = 0; cell < c->n_cells; cell++) {
@@ -163,13 +169,14 @@ static bool result_create(struct pound_run *run)
 		for (int s = 0; s < study->n_sweeps; s++)
 			into->sweep[s] = pound_campaign_sweep(c, cell, s);
 		into->n_signals = c->n_signals;
-		into->signals   = &run->responses[cell * c->n_signals];
-		into->indices   = &run->indices[cell * study->n_outputs];
-		into->runs      = (int64_t)items_of(c) * c->n_samples;
+		into->signals = &run->responses[cell * c->n_signals];
+		into->indices = &run->indices[cell * study->n_outputs];
+		into->runs = (int64_t)items_of(c) * c->n_samples;
 		for (int o = 0; o < study->n_outputs; o++) {
-			struct pound_estimate *estimates = &run->estimates[(cell * study->n_outputs + o) * 2 * study->n_inputs];
-			into->indices[o].first           = estimates;
-			into->indices[o].total           = estimates + study->n_inputs;
+			struct pound_estimate *estimates =
+			    &run->estimates[(cell * study->n_outputs + o) * 2 * study->n_inputs];
+			into->indices[o].first = estimates;
+			into->indices[o].total = estimates + study->n_inputs;
 		}
 	}
 	return true;
@@ -182,23 +189,23 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	struct pound_run *run = piece(sizeof *run);
 	if (!run)
 		return NULL;
-	run->campaign   = campaign_of(study);
+	run->campaign = campaign_of(study);
 	run->n_measures = study->kind == POUND_KIND_SENSITIVITY ? 2 * study->n_outputs : (int)MEASURES;
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
-	double *design  = piece(sizeof(double) * n_design);
+	double *design = piece(sizeof(double) * n_design);
 	run->campaign.design = design;
 	if (!design)
 		goto fail;
 	if (study->kind == POUND_KIND_SENSITIVITY)
 		pound_design_fill(study, design);
 	struct pound_plan_size largest = {0};
-	run->n_blocks                  = blocks_cut(&run->campaign, NULL, &largest);
-	run->first                     = piece(sizeof *run->first * (size_t)(run->n_blocks + 1));
+	run->n_blocks = blocks_cut(&run->campaign, NULL, &largest);
+	run->first = piece(sizeof *run->first * (size_t)(run->n_blocks + 1));
 	if (!run->first)
 		goto fail;
 	blocks_cut(&run->campaign, run->first, &largest);
-	run->values =
-		piece(sizeof(double) * ((size_t)items_of(&run->campaign) * item_size(run) + (size_t)run->n_blocks * COUNTS));
+	run->values = piece(sizeof(double) *
+	                    ((size_t)items_of(&run->campaign) * item_size(run) + (size_t)run->n_blocks * COUNTS));
 	if (!run->values || !workers_create(run, n_workers, largest) || !result_create(run))
 		goto fail;
 	return run;
@@ -215,18 +222,31 @@ void pound_run_free(struct pound_run *run)
 		free(run->plans[w]);
 	for (int w = 0; run->scratch && run->scratch[w]; w++)
 		free(run->scratch[w]);
-	void *const pieces[] = {(void *)run->campaign.design, run->first,     run->values,  run->plans,   run->scratch,
-							run->result.cells,            run->responses, run->indices, run->estimates};
+	void *const pieces[] = {(void *)run->campaign.design,
+	                        run->first,
+	                        run->values,
+	                        run->plans,
+	                        run->scratch,
+	                        run->result.cells,
+	                        run->responses,
+	                        run->indices,
+	                        run->estimates};
 	for (size_t j = 0; j < sizeof pieces / sizeof pieces[0]; j++)
 		free(pieces[j]);
 	free(run);
 }
 
-void pound_run_stop(struct pound_run *run) { atomic_store(&run->stop, true); }
+void pound_run_stop(struct pound_run *run)
+{
+	atomic_store(&run->stop, true);
+}
 
 /* ---- blocks ---- */
 
-int pound_run_blocks(const struct pound_run *run) { return run->n_blocks; }
+int pound_run_blocks(const struct pound_run *run)
+{
+	return run->n_blocks;
+}
 
 int64_t pound_run_block_runs(const struct pound_run *run, int block)
 {
@@ -238,7 +258,10 @@ size_t pound_run_block_size(const struct pound_run *run, int block)
 	return (size_t)(run->first[block + 1] - run->first[block]) * item_size(run) + COUNTS;
 }
 
-const double *pound_run_block_values(const struct pound_run *run, int block) { return block_values(run, block); }
+const double *pound_run_block_values(const struct pound_run *run, int block)
+{
+	return block_values(run, block);
+}
 
 void pound_run_block_restore(struct pound_run *run, int block, const double *values)
 {
@@ -252,7 +275,7 @@ struct slice {
 
 /* Keeps of a response what the study's outputs need; NAN for a failed run. */
 static void response_keep(void *into, const struct pound_scene *scene, const struct pound_response *response,
-						  enum pound_status status)
+                          enum pound_status status)
 {
 	struct slice *slice = into;
 	if (slice->study->kind == POUND_KIND_RESPONSE) {
@@ -277,11 +300,11 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
  */
 enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 {
-	struct slice slice     = {.study = run->campaign.study, .at = block_values(run, block)};
+	struct slice slice = {.study = run->campaign.study, .at = block_values(run, block)};
 	struct pound_work work = {0};
 	int first = run->first[block], n = run->first[block + 1] - first;
-	enum pound_status status =
-		pound_plan_run(run->plans[worker], &run->campaign, first, n, &run->stop, &work, response_keep, &slice);
+	enum pound_status status = pound_plan_run(run->plans[worker], &run->campaign, first, n, &run->stop, &work,
+	                                          response_keep, &slice);
 	if (status)
 		return status;
 	const int64_t *counts = (const int64_t *)&work;
@@ -304,16 +327,19 @@ int pound_run_reductions(const struct pound_run *run)
 }
 
 /* The measures of an output in a cell as columns (rows x samples x signals); returns the failed runs. */
-static int64_t columns_fill(const struct pound_run *run, int cell, int output, double *numerator, double *denominator)
+static int64_t columns_fill(const struct pound_run *run, int cell, int output, double *numerator,
+                            double *denominator)
 {
 	const struct pound_campaign *c = &run->campaign;
-	int64_t failed                 = 0;
+	int64_t failed = 0;
 	for (int row = 0; row < c->n_rows; row++)
 		for (int signal = 0; signal < c->n_signals; signal++)
 			for (int sample = 0; sample < c->n_samples; sample++) {
-				const double *values = run_values(run, row * c->n_signals + signal, cell, sample) + 2 * output;
-				size_t at       = ((size_t)row * (size_t)c->n_samples + (size_t)sample) * (size_t)c->n_signals + (size_t)signal;
-				numerator[at]   = values[0];
+				const double *values =
+				    run_values(run, row * c->n_signals + signal, cell, sample) + 2 * output;
+				size_t at = ((size_t)row * (size_t)c->n_samples + (size_t)sample) * (size_t)c->n_signals +
+				            (size_t)signal;
+				numerator[at] = values[0];
 				denominator[at] = values[1];
 				failed += isnan(values[0]) || isnan(values[1]);
 			}
@@ -323,18 +349,18 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 static void indices_reduce(struct pound_run *run, int cell, int output, double *scratch)
 {
 	const struct pound_campaign *c = &run->campaign;
-	size_t n                       = (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
-	struct pound_sample_values values = {.n_rows      = c->n_rows,
-										 .n_inputs    = c->study->n_inputs,
-										 .n_signals   = c->n_signals,
-										 .numerator   = scratch,
-										 .denominator = scratch + n};
+	size_t n = (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
+	struct pound_sample_values values = {.n_rows = c->n_rows,
+	                                     .n_inputs = c->study->n_inputs,
+	                                     .n_signals = c->n_signals,
+	                                     .numerator = scratch,
+	                                     .denominator = scratch + n};
 	struct pound_cell *into = &run->result.cells[cell];
-	int64_t failed          = columns_fill(run, cell, output, scratch, scratch + n);
+	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
 	int dropped =
-		pound_sobol_indices(&values, c->study->design.seed, scratch + 2 * n, &into->indices[output]);
+	    pound_sobol_indices(&values, c->study->design.seed, scratch + 2 * n, &into->indices[output]);
 	if (output == 0) {
-		into->runs_failed  = failed;
+		into->runs_failed = failed;
 		into->rows_dropped = dropped;
 	}
 }
@@ -342,9 +368,9 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 static void responses_reduce(struct pound_run *run, int cell, int output)
 {
 	const struct pound_campaign *c = &run->campaign;
-	struct pound_cell *into        = &run->result.cells[cell];
-	struct pound_scene scene       = pound_campaign_scene(c, cell, 0, 0);
-	int row                        = c->study->outputs[output];
+	struct pound_cell *into = &run->result.cells[cell];
+	struct pound_scene scene = pound_campaign_scene(c, cell, 0, 0);
+	int row = c->study->outputs[output];
 	double above = 0, below = 0;
 	for (int signal = 0; signal < c->n_signals; signal++) {
 		struct pound_response response;
@@ -378,7 +404,7 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 const struct pound_result *pound_run_result(struct pound_run *run)
 {
 	const struct pound_campaign *c = &run->campaign;
-	int64_t *counts                = (int64_t *)&run->result.work;
+	int64_t *counts = (int64_t *)&run->result.work;
 	memset(counts, 0, sizeof run->result.work);
 	for (int b = 0; b < run->n_blocks; b++) {
 		const double *counted = block_values(run, b) + pound_run_block_size(run, b) - COUNTS;
@@ -387,7 +413,7 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 	}
 	for (int cell = 0; cell < c->n_cells && !has_indices(run); cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
-		into->runs_failed       = 0;
+		into->runs_failed = 0;
 		for (int signal = 0; signal < c->n_signals; signal++) {
 			memcpy(&into->signals[signal], run_values(run, signal, cell, 0), sizeof into->signals[signal]);
 			into->runs_failed += isnan(into->signals[signal].displacement_max_1);
@@ -398,7 +424,10 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 
 /* ---- samples ---- */
 
-int pound_run_samples(const struct pound_run *run) { return run->campaign.n_samples; }
+int pound_run_samples(const struct pound_run *run)
+{
+	return run->campaign.n_samples;
+}
 
 void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x)
 {
@@ -406,8 +435,8 @@ void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, d
 		x[j] = pound_design_input(run->campaign.design, run->campaign.study->n_inputs, row, sample, j);
 }
 
-void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output, double *mean,
-							 double *variance)
+void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
+                             double *mean, double *variance)
 {
 	const struct pound_campaign *c = &run->campaign;
 	assert(has_indices(run));
@@ -418,11 +447,11 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 		above += values[0];
 		below += values[1];
 	}
-	*mean      = below > 0 ? above / below : NAN;
+	*mean = below > 0 ? above / below : NAN;
 	double sum = 0;
 	for (int r = 0; r < c->n_signals; r++) {
 		const double *values = run_values(run, row * c->n_signals + r, cell, sample) + 2 * output;
-		double deviation     = (values[0] - *mean * values[1]) * c->n_signals / below;
+		double deviation = (values[0] - *mean * values[1]) * c->n_signals / below;
 		sum += deviation * deviation;
 	}
 	*variance = c->n_signals > 1 && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN;

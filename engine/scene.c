@@ -40,14 +40,14 @@ double pound_scene_field(const struct pound_scene *scene, struct pound_field fie
 struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i)
 {
 	const struct pound_oscillator *o = &scene->oscillators[i];
-	const struct pound_law *law      = pound_scene_law(scene, i);
+	const struct pound_law *law = pound_scene_law(scene, i);
 	if (o->rigid_wall)
 		return (struct pound_march_body){.drive = 0};
 	double w = 2 * PI * o->frequency_hz;
 	return (struct pound_march_body){
-		.skeleton = {.law = law->type, .stiffness = w * w, .hardening = law->hardening_ratio},
-		.damping  = 2 * o->damping_ratio * w,
-		.drive    = 1,
+	    .skeleton = {.law = law->type, .stiffness = w * w, .hardening = law->hardening_ratio},
+	    .damping = 2 * o->damping_ratio * w,
+	    .drive = 1,
 	};
 }
 
@@ -61,18 +61,19 @@ struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i)
  */
 void pound_scene_contact(const struct pound_scene *scene, struct pound_march_task *task)
 {
-	const struct pound_contact *contact  = &scene->contact;
-	const struct pound_oscillator *left  = &scene->oscillators[0];
+	const struct pound_contact *contact = &scene->contact;
+	const struct pound_oscillator *left = &scene->oscillators[0];
 	const struct pound_oscillator *right = &scene->oscillators[1];
-	double k1        = task->bodies[0].skeleton.stiffness; // per own mass
-	double k2        = right->rigid_wall ? 0 : task->bodies[1].skeleton.stiffness;
-	task->contact    = true;
-	task->gap        = contact->gap;
-	task->tension    = contact->tension;
+	double k1 = task->bodies[0].skeleton.stiffness; // per own mass
+	double k2 = right->rigid_wall ? 0 : task->bodies[1].skeleton.stiffness;
+	task->contact = true;
+	task->gap = contact->gap;
+	task->tension = contact->tension;
 	task->mass_ratio = right->rigid_wall ? 0 : left->mass / right->mass;
 	// k2 m2/m1 = k2/mass_ratio
-	task->contact_stiffness = contact->stiffness_ratio * (right->rigid_wall ? k1 : fmax(k1, k2 / task->mass_ratio));
-	double zeta             = pound_contact_damping_ratio(contact->model, contact->restitution);
+	task->contact_stiffness =
+	    contact->stiffness_ratio * (right->rigid_wall ? k1 : fmax(k1, k2 / task->mass_ratio));
+	double zeta = pound_contact_damping_ratio(contact->model, contact->restitution);
 	// C/m1 = 2 zeta sqrt(K/m1 m/m1), m/m1 = 1/(1 + m1/m2)
 	task->contact_damping = 2 * zeta * sqrt(task->contact_stiffness / (1 + task->mass_ratio));
 }
@@ -82,6 +83,6 @@ bool pound_scene_alike(const struct pound_scene *scene)
 {
 	const struct pound_oscillator *o = scene->oscillators;
 	return !o[1].rigid_wall && pound_pieces_linear(pound_scene_law(scene, 0)->type) &&
-		   pound_pieces_linear(pound_scene_law(scene, 1)->type) && o[0].frequency_hz == o[1].frequency_hz &&
-		   o[0].damping_ratio == o[1].damping_ratio;
+	       pound_pieces_linear(pound_scene_law(scene, 1)->type) && o[0].frequency_hz == o[1].frequency_hz &&
+	       o[0].damping_ratio == o[1].damping_ratio;
 }

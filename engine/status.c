@@ -4,8 +4,8 @@
 const char *pound_status_text(enum pound_status status)
 {
 	switch (status) {
-#define X(name, value, text)                                                                                           \
-	case name:                                                                                                         \
+#define X(name, value, text) \
+	case name:               \
 		return text;
 		POUND_STATUS(X)
 #undef X
