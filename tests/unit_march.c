@@ -1,0 +1,246 @@
+/* unit_march.c - the march against closed forms: one impact, impacts on a wall, and the same bits at every lane count. */
+#include "tests/check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/march.h"
+#include "engine/scene.h"
+
+static const double PI = 3.14159265358979323846;
+
+enum { STILL = 4001 };
+static double still[STILL]; // ground at rest
+
+static struct pound_march_result march(const struct pound_march_task *task)
+{
+	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	struct pound_march_result result;
+	assert_true(pound_march_lanes(0, task, &result, 1, scratch));
+	return result;
+}
+
+/* Two free masses, m1 = 1 kg and m2 = 2 kg, that meet at 1.5 m/s after 10 cm. */
+static struct pound_march_task impact(double restitution, bool tension)
+{
+	double stiffness = 7.9e3, ratio = 0.5; // contact, N/m; m1/m2
+	double zeta = pound_contact_damping_ratio(0, restitution);
+	return (struct pound_march_task){.ground = still,
+	                                 .n_samples = 1000,
+	                                 .time_step = 0.01,
+	                                 .bodies = {{.v = 1}, {.v = -0.5}},
+	                                 .contact = true,
+	                                 .gap = 0.1,
+	                                 .contact_stiffness = stiffness,
+	                                 .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
+	                                 .mass_ratio = ratio,
+	                                 .tension = tension};
+}
+
+static double rebound(const struct pound_march_result *r)
+{
+	return (r->v[1] - r->v[0]) / 1.5;
+}
+
+static void an_isolated_impact_leaves_with_the_restitution(void **state)
+{
+	(void)state;
+	for (int e = 1; e <= 100; e++) {
+		const struct pound_march_task task = impact(e / 100.0, true);
+		const struct pound_march_result r = march(&task);
+		check_near(rebound(&r), e / 100.0, 1e-12);
+		assert_int_equal(r.contacts, 1);
+		// the left mass takes the whole change of relative momentum: impulse = (1 + e) m v, m/m1 = 1/(1 + ratio)
+		check_near(r.impulse_max, (1 + e / 100.0) * 1.5 / 1.5, 1e-12);
+		double zeta = pound_contact_damping_ratio(0, e / 100.0);
+		check_near(r.contact_time, PI / sqrt(7.9e3 * 1.5 * (1 - zeta * zeta)), 1e-12);
+		check_near(r.first_contact, 0.1 / 1.5, 1e-15);
+		check_near(r.first_speed, 1.5, 1e-15);
+	}
+}
+
+static void a_plastic_impact_ends_with_one_velocity(void **state)
+{
+	(void)state;
+	struct pound_march_task task = impact(0, true);
+	task.n_samples = 101; // the overlap dies away as t exp(-w t), to 1e-47 of its height in this second
+	const struct pound_march_result r = march(&task);
+	check_near(rebound(&r), 0, 1e-15);
+	assert_int_equal(r.contacts, 1);
+}
+
+static void without_tension_the_rebound_is_that_of_release_at_zero_force(void **state)
+{
+	(void)state;
+	// known_answers 5.1: e^(1 - 2 asin(zeta)/pi)
+	for (int e = 1; e <= 100; e++) {
+		const struct pound_march_task task = impact(e / 100.0, false);
+		const struct pound_march_result r = march(&task);
+		double zeta = pound_contact_damping_ratio(0, e / 100.0);
+		check_near(rebound(&r), pow(e / 100.0, 1 - 2 * asin(zeta) / PI), 1e-12);
+		assert_int_equal(r.contacts, 1);
+	}
+	const struct pound_march_task plastic = impact(0, false);
+	const struct pound_march_result r = march(&plastic);
+	check_near(rebound(&r), 0.135335283236612691894, 1e-12); // exp(-2)
+}
+
+/* Oscillator of 1 Hz on a wall, released at rest from -amplitude. */
+static struct pound_march_task wall(double gap, double damping_ratio, double restitution,
+                                    double stiffness_ratio)
+{
+	double k = 4 * PI * PI, stiffness = stiffness_ratio * k;
+	return (struct pound_march_task){
+	    .ground = still,
+	    .n_samples = STILL,
+	    .time_step = 0.005,
+	    .bodies = {{.skeleton = {.stiffness = k}, .damping = 4 * PI * damping_ratio, .drive = 1, .u = -1}},
+	    .contact = true,
+	    .gap = gap,
+	    .contact_stiffness = stiffness,
+	    .contact_damping = 2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
+	    .tension = true};
+}
+
+static void a_wall_is_met_every_half_period(void **state)
+{
+	(void)state;
+	// undamped and elastic: half a period free, then half a period of the contact's own oscillation, for ever
+	const struct pound_march_task task = wall(0, 0, 1, 1000);
+	const struct pound_march_result r = march(&task);
+	double touch = 0.5 / sqrt(1001), period = 0.5 + touch;
+	// the motion starts a quarter period before the first contact
+	int contacts = (int)floor((20 - 0.25) / period) + 1;
+	assert_int_equal(r.contacts, contacts);
+	check_near(r.first_contact, 0.25, 1e-14);
+	check_near(r.first_speed, 2 * PI, 1e-13);
+	check_near(r.contact_time, contacts * touch, 1e-11);
+	// each contact turns the speed round: the impulse of the contact spring is 2 v K/(K + k)
+	check_near(r.impulse_max, 4 * PI * 1000 / 1001, 1e-11);
+	check_near(r.displacement_max[0], 1, 1e-12);
+}
+
+static void wall_impacts_lose_speed_by_restitution_and_damping(void **state)
+{
+	(void)state;
+	// a damped contact oscillation and a damped free one in turn: the end state follows in closed form
+	const double xi = 0.02, e = 0.8, ratio = 500;
+	struct pound_march_task task = wall(0, xi, e, ratio);
+	const struct pound_march_result r = march(&task);
+	double w = 2 * PI, wd = w * sqrt(1 - xi * xi);
+	double c = task.bodies[0].damping + task.contact_damping, k = w * w * (1 + ratio);
+	double wc = sqrt(k - c * c / 4);
+	// from u = -1, v = 0 to the first crossing of 0 (speed v), then alternately touching and free
+	double t = (PI / 2 + asin(xi)) / wd, v = w * exp(-xi * w * t);
+	check_near(r.first_contact, t, 1e-13);
+	check_near(r.first_speed, v, 1e-12);
+	int contacts = 0;
+	for (;;) {
+		contacts++;
+		if (t + PI / wc > 20)
+			break;
+		t += PI / wc, v *= exp(-c / 2 * PI / wc);
+		if (t + PI / wd > 20)
+			break;
+		t += PI / wd, v *= exp(-xi * w * PI / wd);
+	}
+	assert_int_equal(r.contacts, contacts);
+	// last free flight, away from the wall
+	check_near(r.u[0], -v / wd * exp(-xi * w * (20 - t)) * sin(wd * (20 - t)), 1e-12);
+}
+
+static void bodies_at_rest_without_ground_motion_stay_at_rest(void **state)
+{
+	(void)state;
+	struct pound_march_task task = wall(0, 0.05, 0.5, 100);
+	task.bodies[0].u = 0;
+	const struct pound_march_result r = march(&task);
+	assert_int_equal(r.contacts, 0);
+	assert_true(r.displacement_max[0] == 0 && r.impulse_max == 0);
+}
+
+/* ---- the same bits at every lane count ---- */
+
+enum { TASKS = 61, SAMPLES = 700 };
+
+static double random_number(uint64_t *seed)
+{
+	*seed = *seed * 6364136223846793005u + 1442695040888963407u;
+	return (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t seed)
+{
+	for (int t = 0; t < TASKS; t++) {
+		double *a = ground + t * SAMPLES, slow = 0;
+		for (int s = 0; s < SAMPLES; s++)
+			a[s] = slow = 0.9 * slow + random_number(&seed) - 0.5;
+		double ratio = exp(4 * random_number(&seed) - 2);
+		double stiffness = 0;
+		tasks[t] = (struct pound_march_task){.ground = a,
+		                                     .n_samples = SAMPLES - t, // so that lanes end at different times
+		                                     .time_step = 0.01,
+		                                     .contact = t % 7 != 0,
+		                                     .gap = t % 3 ? 0 : 1e-3,
+		                                     .mass_ratio = ratio,
+		                                     .tension = t % 2};
+		for (int i = 0; i < 2; i++) {
+			double w = 2 * PI * (0.5 + 5 * random_number(&seed));
+			tasks[t].bodies[i] = (struct pound_march_body){
+			    .skeleton = {.law = t % 4, .stiffness = w * w, .hardening = 0.05, .yield = 0.3 / (w * w)},
+			    .damping = 0.1 * w,
+			    .drive = 1};
+			stiffness = fmax(stiffness, w * w * (i ? 1 / ratio : 1));
+		}
+		tasks[t].contact_stiffness = 100 * stiffness;
+		double zeta = pound_contact_damping_ratio(0, t % 5 / 4.0);
+		tasks[t].contact_damping = 2 * zeta * sqrt(100 * stiffness / (1 + ratio));
+	}
+}
+
+static void every_lane_count_gives_the_same_bits(void **state)
+{
+	(void)state;
+	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS];
+	struct pound_march_result one[TASKS], many[TASKS];
+	memset(one, 0, sizeof one);
+	memset(many, 0, sizeof many);
+	tasks_fill(tasks, ground, 1);
+	pound_march_portable(tasks, one, TASKS, scratch);
+	int64_t contacts = 0;
+	for (int t = 0; t < TASKS; t++)
+		contacts += one[t].contacts;
+	assert_true(contacts > 5 * TASKS); // or the comparison would not say much
+	for (int lanes = 1; lanes <= 8; lanes++)
+		if (pound_march_lanes(lanes, tasks, many, TASKS, scratch))
+			assert_memory_equal(one, many, sizeof one);
+}
+
+static void a_run_does_not_depend_on_its_neighbours(void **state)
+{
+	(void)state;
+	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS];
+	struct pound_march_result together[TASKS], alone;
+	memset(together, 0, sizeof together);
+	memset(&alone, 0, sizeof alone);
+	tasks_fill(tasks, ground, 2);
+	pound_march_lanes(0, tasks, together, TASKS, scratch);
+	for (int t = 0; t < TASKS; t++) {
+		pound_march_lanes(0, &tasks[t], &alone, 1, scratch);
+		assert_memory_equal(&together[t], &alone, sizeof alone);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
+           cmocka_unit_test(a_plastic_impact_ends_with_one_velocity),
+           cmocka_unit_test(without_tension_the_rebound_is_that_of_release_at_zero_force),
+           cmocka_unit_test(a_wall_is_met_every_half_period),
+           cmocka_unit_test(wall_impacts_lose_speed_by_restitution_and_damping),
+           cmocka_unit_test(bodies_at_rest_without_ground_motion_stay_at_rest),
+           cmocka_unit_test(every_lane_count_gives_the_same_bits),
+           cmocka_unit_test(a_run_does_not_depend_on_its_neighbours))
