@@ -76,11 +76,14 @@ check: all $(TESTS)
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
 
+# rules of the house: who includes what, what the engine may call, layout, sizes
+lint: $(B)/libpound.a
+	@tests/lint $(B)
 fmt:
 	clang-format -i $$(git ls-files '*.c' '*.h')
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check asan tsan fmt clean
+.PHONY: all deps run test check asan tsan lint fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)
