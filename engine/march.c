@@ -22,7 +22,7 @@ enum {
 	ORDER_TOUCH = 22,       /* while touching */
 	MAPS = 4,               /* free-flight maps a body keeps */
 	ROOT_ROUNDS = 64,       /* of a root search; quadratic, so 4 to 6 are usual */
-	DEFLATE_MAX = 4,        /* leading zeros of a guard: at rest, touching, equal ground */
+	DEFLATE_MAX = 5,        /* leading zeros of a guard: at rest, touching, equal ground */
 	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
 };
 
