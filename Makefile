@@ -1,5 +1,7 @@
 # make run, make test: all a fresh Debian 12 needs.  MODE=asan|tsan|debug, CC=clang, T=substring of test names.
 MODE ?= release
+# make's own rules would try to build march_*.d, which it includes, out of march.c
+MAKEFLAGS += --no-builtin-rules
 B    := build/$(MODE)
 
 MODE.release := -O2 -g
