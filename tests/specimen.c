@@ -1,0 +1,173 @@
+/* specimen.c - response studies built in C. */
+#include "tests/specimen.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+// clang-format off
+const struct specimen_reference specimen_references[SPECIMEN_REFERENCES] = {
+	/* name               f1    f2    m2      eps   K/k  gap   tension contacts
+	 *   first start       first speed     max u1          max u2            max impulse     end u1            end u2 */
+	{"A",                 1.0,  2.5,  2,      0.6,  100, 0,    true,   7,
+	    .746232167723,     .224212769587,  .03687529426,   .0065691881009,   .236645435429,  -5.88023995069e-4, 4.65933703491e-4},
+	{"A, no tension",     1.0,  2.5,  2,      0.6,  100, 0,    false,  7,
+	    .746232167723,     .224212769587,  .03687529426,   .00670937915699,  .241450432488,   8.01784036823e-6, 6.7329622993e-4},
+	{"D",                 1.0,  2.5,  2,      0.6,  1e4, 0,    true,   7,
+	    .746232167723,     .224212769587,  .03687529426,   .00652957010282,  .238906816782,  -6.40223388774e-4, 5.59148420806e-4},
+	{"B",                 1.0,  2.5,  2,      0.6,  100, 0.01, true,   1,
+	    .794216441975,     .189878824093,  .03687529426,   .00666765871103,  .197800326659,   1.82618659129e-3, 3.22430943441e-4},
+	{"B, no tension",     1.0,  2.5,  2,      0.6,  100, 0.01, false,  1,
+	    .794216441975,     .189878824093,  .03687529426,   .00678716528806,  .201882572513,   1.52126389156e-3, 3.25390714071e-4},
+	{"C",                 0.5,  5.0,  6,      0.0,  100, 0,    false,  3,
+	    1.2530044906,      .256412769723,  .0885240981558, .00122570090273,  .249620269104,  -1.42082803705e-3, -1.06129560819e-5},
+	{"E",                 0.5,  5.0,  1 / 6., 1.0,  100, 0,    true,  10,
+	    1.2530044906,      .256412769723,  .0885240981558, .0178151583003,   .112418272066,  -.036985211958,    -6.00619131115e-4},
+};
+// clang-format on
+
+static int row_of(const char *(*name)(int), const char *wanted)
+{
+	int row = 0;
+	while (strcmp(name(row), wanted) != 0)
+		row++;
+	return row;
+}
+
+/* A response study with one record of two zeros. */
+void specimen_init(struct specimen *specimen)
+{
+	*specimen = (struct specimen){
+	    .study = {
+	        .kind = POUND_KIND_RESPONSE,
+	        .scene =
+	            {
+	                .law = {.type = row_of(pound_law_name, "linear"),
+	                        .hardening_ratio = 0.05,
+	                        .target_demand = 2,
+	                        .corrections = 1},
+	                .oscillators = {{.mass = 1, .frequency_hz = 1, .damping_ratio = 0.05},
+	                                {.mass = 1, .frequency_hz = 2.5, .damping_ratio = 0.05}},
+	                .contact = {.present = true,
+	                            .model = row_of(pound_contact_name, "kelvin_voigt"),
+	                            .stiffness_ratio = 100,
+	                            .restitution = 0.6,
+	                            .tension = true},
+	                .excitation = {.type = row_of(pound_excitation_name, "record"), .signals = 1},
+	            },
+	        .n_outputs = 1,
+	        .outputs = {row_of(pound_output_name, "impulse")},
+	        .solver = {.method = row_of(pound_solver_name, "event"), .tolerance = 1e-9},
+	    }};
+	specimen_record(specimen, 0.01, 2);
+}
+
+/* Frees the record. */
+void specimen_free(struct specimen *specimen)
+{
+	free(specimen->record);
+}
+
+/* Makes the scene's law another one. */
+void specimen_law(struct specimen *specimen, const char *name, double yield)
+{
+	specimen->study.scene.law.type = row_of(pound_law_name, name);
+	specimen->study.scene.law.yield_displacement = yield;
+}
+
+/* Makes the excitation a record of zeros; allocates. */
+double *specimen_record(struct specimen *specimen, double time_step, int n)
+{
+	struct pound_excitation *e = &specimen->study.scene.excitation;
+	free(specimen->record);
+	specimen->record = calloc((size_t)n, sizeof *specimen->record);
+	assert(specimen->record);
+	e->time_step = time_step;
+	e->n_record = n;
+	e->record = specimen->record;
+	return specimen->record;
+}
+
+/* Makes the record a half sine, then rest.
+ *
+ * Straight lines between samples of sin(w t) are the convolution of those samples with a triangle, which multiplies
+ * the sine by sinc^2(w step / 2); dividing by that leaves only what repeats every step.
+ */
+void specimen_half_sine(struct specimen *specimen, double peak, double pulse, double duration,
+                        double time_step)
+{
+	int n_pulse = (int)lround(pulse / time_step);
+	double *a = specimen_record(specimen, time_step, (int)lround(duration / time_step) + 1);
+	double half = 0.5 * pi / n_pulse;
+	double triangle = sin(half) / half * (sin(half) / half);
+	for (int t = 1; t < n_pulse; t++)
+		a[t] = peak * sin(pi * t / n_pulse) / triangle;
+}
+
+/* Next number of a stream (Steele, Lea and Flood 2014, SplitMix64), scaled. */
+double specimen_uniform(uint64_t *stream, double low, double high)
+{
+	uint64_t z = *stream += 0x9e3779b97f4a7c15;
+	z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+	z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+	return low + (high - low) * (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+/* Makes the record twelve sines of random frequency (0.3 to 8 Hz), phase and share. */
+void specimen_noise(struct specimen *specimen, uint64_t seed, double peak, double time_step, int n)
+{
+	enum { SINES = 12 };
+	double *a = specimen_record(specimen, time_step, n);
+	for (int s = 0; s < SINES; s++) {
+		double w = 2 * pi * specimen_uniform(&seed, 0.3, 8);
+		double phase = specimen_uniform(&seed, 0, 2 * pi);
+		double share = specimen_uniform(&seed, 0, 4 * peak / SINES);
+		for (int t = 0; t < n; t++)
+			a[t] += share * sin(w * t * time_step + phase);
+	}
+}
+
+/* Makes the scene and the record those of a reference. */
+void specimen_reference(struct specimen *specimen, const struct specimen_reference *reference,
+                        double time_step)
+{
+	struct pound_scene *scene = &specimen->study.scene;
+	scene->oscillators[0].frequency_hz = reference->f1;
+	scene->oscillators[1].frequency_hz = reference->f2;
+	scene->oscillators[1].mass = reference->m2;
+	scene->contact.restitution = reference->restitution;
+	scene->contact.stiffness_ratio = reference->stiffness_ratio;
+	scene->contact.gap = reference->gap;
+	scene->contact.tension = reference->tension;
+	specimen_half_sine(specimen, 1, 0.5, 3, time_step);
+}
+
+/* The engine's response of the specimen; it must succeed. */
+struct pound_response specimen_engine(const struct specimen *specimen)
+{
+	struct pound_run *run = pound_run_create(&specimen->study, 1);
+	assert(run);
+	enum pound_status status = POUND_OK;
+	for (int block = 0; block < pound_run_blocks(run) && !status; block++)
+		status = pound_run_block(run, block, 0);
+	for (int reduction = 0; reduction < pound_run_reductions(run) && !status; reduction++)
+		status = pound_run_reduce(run, reduction, 0);
+	assert(status == POUND_OK);
+	const struct pound_result *result = pound_run_result(run);
+	assert(result->n_cells == 1 && result->cells[0].n_signals == 1 && result->cells[0].runs_failed == 0);
+	struct pound_response response = result->cells[0].signals[0];
+	pound_run_free(run);
+	return response;
+}
+
+/* The oracle's response of the specimen, events located. */
+struct pound_response specimen_oracle(const struct specimen *specimen, double radians)
+{
+	const struct pound_excitation *e = &specimen->study.scene.excitation;
+	const struct oracle_motion motion = {e->time_step, e->n_record, e->record};
+	const struct oracle_method method = {.radians = radians, .located = true};
+	return oracle_response(&specimen->study.scene, &motion, &method, NULL, NULL);
+}
