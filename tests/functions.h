@@ -1,0 +1,36 @@
+/* functions.h - functions of four independent uniform variables whose mean, variance and sensitivity indexes are known,
+ * and the sample values that running them over a Latin hypercube gives. */
+#ifndef FUNCTIONS_H
+#define FUNCTIONS_H
+
+#include "engine/indices.h"
+
+enum { FUNCTION_INPUTS = 4 };
+
+struct function {
+	const char *name;
+	double (*y)(const double *u);
+	double mean, variance;
+	double index[2 * FUNCTION_INPUTS]; /* first-order, then total */
+	/* root mean square errors at n = 1000, Latin hypercube: of the centred Saltelli first-order index, and of
+	 * Jansen's total with the variance of A and B; 0: not known */
+	double error[2 * FUNCTION_INPUTS];
+};
+
+extern const struct function functions[];
+const struct function *function_named(const char *name); /* the row of that name */
+
+/* How a simulator adds noise to a function: signals of each run, and the variance of the noise of each, over the
+ * function's; shared by the runs of a row or fresh in every run. */
+struct function_noise {
+	int n_signals;
+	double share;
+	bool common;
+};
+
+/* Sample values of a function over the rows of a Latin hypercube; one block of memory, function_values_free. */
+struct pound_sample_values function_values(const struct function *f, int n_rows, uint64_t seed,
+                                           struct function_noise noise);
+void function_values_free(struct pound_sample_values *values);
+
+#endif
