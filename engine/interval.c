@@ -16,7 +16,7 @@
 #include <string.h>
 
 // a segment of rows and its tiles stay in the cache while they are drawn from
-enum { SEGMENT = 1024, SEGMENTS_MAX = (1 << 20) / SEGMENT, DRAWS_PER_WORD_MAX = 8 };
+enum { SEGMENT = 1024, SEGMENTS_MAX = (1 << 20) / SEGMENT, GROUP = 8, DRAWS_PER_WORD_MAX = 8 };
 
 /* Draws of whole numbers below n, in order; several from each 64-bit word. */
 struct draws {
@@ -121,31 +121,43 @@ static void segment_shares(int n_rows, uint64_t seed, int resample, int *share)
 	}
 }
 
-/* Means of the moments over one resample of the rows.
- *
- * Which segment of SEGMENT rows each draw falls into comes first, then the rows within each segment: the same
- * law as drawing from all rows, and the tiles in use stay in the cache however many rows there are.
- */
-static void resample_means(const struct pound_moments *moments, uint64_t seed, int resample, double *mean)
+/* Adds a resample's rows of one segment to its sums. */
+static void segment_add(const struct pound_moments *moments, int segment, uint64_t seed, int resample,
+                        int share, double *sum)
 {
-	const int n_rows = moments->n_rows, tiles = pound_interval_tiles(moments->n_moments);
+	const int first = segment * SEGMENT, rows = moments->n_rows - first;
 	uint32_t draw[SEGMENT + 4 * DRAWS_PER_WORD_MAX];
-	double sum[POUND_MOMENTS_MAX] = {0};
-	int share[SEGMENTS_MAX] = {n_rows};
-	if (n_rows > SEGMENT)
-		segment_shares(n_rows, seed, resample, share);
-	for (int first = 0, segment = 0; first < n_rows; first += SEGMENT, segment++) {
-		int rows = n_rows - first < SEGMENT ? n_rows - first : SEGMENT;
-		struct draws draws = draws_below(rows, seed, resample, 1 + segment);
-		for (int left = share[segment]; left > 0; left -= SEGMENT) {
-			int n = left < SEGMENT ? left : SEGMENT;
-			draws_fill(&draws, n, draw);
-			for (int t = 0; t < tiles; t++)
-				tile_add(pound_interval_moment(moments, first, t), draw, n, sum + POUND_TILE * t);
-		}
+	struct draws draws = draws_below(rows < SEGMENT ? rows : SEGMENT, seed, resample, 1 + segment);
+	for (int left = share; left > 0; left -= SEGMENT) {
+		int n = left < SEGMENT ? left : SEGMENT;
+		draws_fill(&draws, n, draw);
+		for (int t = 0; t < pound_interval_tiles(moments->n_moments); t++)
+			tile_add(pound_interval_moment(moments, first, t), draw, n, sum + POUND_TILE * t);
 	}
-	for (int k = 0; k < moments->n_moments; k++)
-		mean[k] = sum[k] / n_rows;
+}
+
+/* Means of the moments over GROUP resamples of the rows, from resample `first`.
+ *
+ * Which segment each draw falls into comes first, then the rows within the segments: the same law as drawing
+ * from all rows, and a segment is read from memory once for the whole group, however many rows there are.
+ */
+static void resample_means(const struct pound_moments *moments, uint64_t seed, int first,
+                           double mean[GROUP][POUND_MOMENTS_MAX])
+{
+	const int segments = (moments->n_rows + SEGMENT - 1) / SEGMENT;
+	int share[GROUP][SEGMENTS_MAX];
+	memset(mean, 0, sizeof *mean * GROUP);
+	for (int g = 0; g < GROUP; g++)
+		if (segments > 1)
+			segment_shares(moments->n_rows, seed, first + g, share[g]);
+		else
+			share[g][0] = moments->n_rows;
+	for (int s = 0; s < segments; s++)
+		for (int g = 0; g < GROUP; g++)
+			segment_add(moments, s, seed, first + g, share[g][s], mean[g]);
+	for (int g = 0; g < GROUP; g++)
+		for (int k = 0; k < moments->n_moments; k++)
+			mean[g][k] /= moments->n_rows;
 }
 
 /* Quantile of n values, linear between the order statistics around (n - 1) p; reorders them. */
@@ -179,13 +191,15 @@ void pound_interval_bootstrap(const struct pound_moments *moments, const struct 
                               uint64_t seed, double *scratch, struct pound_estimate *estimates)
 {
 	enum { VALUES_MAX = 2 * POUND_INPUTS_MAX };
-	double mean[POUND_MOMENTS_MAX], value[VALUES_MAX];
+	double mean[GROUP][POUND_MOMENTS_MAX], value[VALUES_MAX];
 	int defined[VALUES_MAX] = {0};
 	assert(statistic->n_values <= VALUES_MAX && moments->n_moments <= POUND_MOMENTS_MAX);
+	static_assert(POUND_RESAMPLES % GROUP == 0, "groups are whole");
 	assert(moments->n_rows <= SEGMENTS_MAX * SEGMENT);
 	for (int r = 0; r < POUND_RESAMPLES; r++) {
-		resample_means(moments, seed, r, mean);
-		statistic->values(statistic->subject, mean, value);
+		if (r % GROUP == 0)
+			resample_means(moments, seed, r, mean);
+		statistic->values(statistic->subject, mean[r % GROUP], value);
 		for (int v = 0; v < statistic->n_values; v++)
 			if (!isnan(value[v]))
 				scratch[v * POUND_RESAMPLES + defined[v]++] = value[v];
