@@ -5,7 +5,6 @@
  * 3. Indexes from the means of the moments, intervals by resampling rows. */
 #include "engine/indices.h"
 
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -136,17 +135,18 @@ static bool outputs_summary(const struct outputs *o, int n_signals, double varia
 	return varies;
 }
 
-static size_t round_up(size_t n)
+/* The doubles up to the next cache line. */
+static double *aligned(double *scratch)
 {
-	return (n + POUND_TILE - 1) / POUND_TILE * POUND_TILE;
+	return (double *)(((uintptr_t)scratch + 63) / 64 * 64);
 }
 
 size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals)
 {
 	(void)n_signals;
 	int tiles = pound_interval_tiles(pound_estimator_row(0)->n_moments(n_inputs));
-	return round_up((size_t)n_rows * (n_inputs + 2)) + (size_t)tiles * n_rows * POUND_TILE +
-	       (size_t)2 * n_inputs * POUND_RESAMPLES;
+	return (size_t)n_rows * (n_inputs + 2) + (size_t)tiles * n_rows * POUND_TILE +
+	       (size_t)2 * n_inputs * POUND_RESAMPLES + POUND_TILE;
 }
 
 /* First-order and total sensitivity indexes of one output, with 95 % intervals.
@@ -155,7 +155,7 @@ size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals)
  *          seed      -                                       of the resamples
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   mean, variance (of A and B, divided by their number), noise share, first, total (n_inputs)
- * Memory   scratch   (pound_sobol_scratch) on a cache line
+ * Memory   scratch   (pound_sobol_scratch)
  *
  * A constant output (its deviation within the rounding of the ratio of means) has undefined indexes: NAN.
  *
@@ -166,7 +166,6 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
                         struct pound_indices *indices)
 {
 	const int d = values->n_inputs;
-	assert(((uintptr_t)scratch & 63) == 0);
 	struct outputs outputs = outputs_of(values, scratch);
 	outputs_centre(&outputs);
 	double rounding = (values->n_signals + 2) * DBL_EPSILON * outputs.largest;
@@ -176,7 +175,7 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
 	if (outputs_summary(&outputs, values->n_signals, subject.variance_floor, indices)) {
 		struct pound_moments moments = {outputs.n_rows, subject.estimator->n_moments(d),
-		                                scratch + round_up((size_t)values->n_rows * (d + 2))};
+		                                aligned(scratch + (size_t)values->n_rows * (d + 2))};
 		struct pound_statistic statistic = {2 * d, subject_values, &subject};
 		double mean[POUND_MOMENTS_MAX], value[2 * POUND_INPUTS_MAX];
 		int tiles = pound_interval_tiles(moments.n_moments);

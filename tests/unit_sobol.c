@@ -18,7 +18,7 @@ static struct indexes *indexes_of(const struct pound_sample_values *values, uint
 {
 	struct indexes *result = calloc(1, sizeof *result);
 	size_t n = pound_sobol_scratch(values->n_rows, values->n_inputs, values->n_signals);
-	double *scratch = aligned_alloc(64, (sizeof *scratch * n + 63) / 64 * 64);
+	double *scratch = malloc(sizeof *scratch * n);
 	result->of.first = result->first;
 	result->of.total = result->total;
 	result->dropped = pound_sobol_indices(values, seed, scratch, &result->of);
