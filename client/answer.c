@@ -10,6 +10,7 @@
 
 enum { HTTP_BAD_REQUEST = 400, HTTP_INVALID = 422 };
 
+/* Opens a connection to the server the user named. */
 struct wire *answer_open(const struct options *options)
 {
 	struct wire *wire = wire_open(options->url);
@@ -35,6 +36,7 @@ static enum outcome refusal(const char *subject, const struct wire_reply *reply)
 	                                                                          : OUTCOME_FAILED;
 }
 
+/* Turns what came of a request into an exit status, and says what went wrong. */
 enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char *subject,
                           const struct wire_reply *reply)
 {
@@ -45,12 +47,14 @@ enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char
 	return reply->status >= 200 && reply->status < 300 ? OUTCOME_OK : refusal(subject, reply);
 }
 
+/* Sends a request and judges the answer; the reply is to be freed whatever came. */
 enum outcome answer_take(struct wire *wire, const struct wire_request *request, const char *subject,
                          struct wire_reply *reply)
 {
 	return answer_judge(wire, wire_send(wire, request, reply), subject, reply);
 }
 
+/* An id of the user's stays one segment of the path, whatever is in it. */
 char *answer_path(struct wire *wire, const char *id, const char *rest)
 {
 	char *escaped = wire_escape(wire, id), *path;
@@ -60,6 +64,7 @@ char *answer_path(struct wire *wire, const char *id, const char *rest)
 	return path;
 }
 
+/* Sends a request about one study and judges the answer. */
 enum outcome answer_about(struct wire *wire, const char *method, const char *id, const char *rest,
                           const char *accept, struct wire_reply *reply)
 {

@@ -45,6 +45,11 @@ static void left(char *out, size_t size, double seconds)
 		snprintf(out, size, "  %ld:%02ld left", s / 60, s % 60);
 }
 
+/* Draws the bar, or only the percentage where there is no room for one.
+ *
+ * Given    done, total   pounding runs
+ *          left_s   s    time left, < 0: unknown
+ */
 void bar_draw(int64_t done, int64_t total, double left_s)
 {
 	if (!on_terminal())
@@ -72,6 +77,7 @@ void bar_draw(int64_t done, int64_t total, double left_s)
 	fprintf(stderr, "\r\033[K[%s]%s", row, tail);
 }
 
+/* Leaves the line empty for what comes next. */
 void bar_clear(void)
 {
 	if (on_terminal())

@@ -9,6 +9,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The path, or words for "-". */
+const char *document_name(const char *path)
+{
+	return strcmp(path, "-") == 0 ? "standard input" : path;
+}
+
+/* Reads a study document, whatever is in it.
+ *
+ * Memory   allocates; NULL when it cannot be read, said on stderr
+ */
 char *document_read(const char *path, size_t *length)
 {
 	FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
@@ -24,13 +34,14 @@ char *document_read(const char *path, size_t *length)
 	if (file && file != stdin)
 		fclose(file);
 	if (!good) {
-		command_complain("cannot read %s: %s", path, strerror(error));
+		command_complain("cannot read %s: %s", document_name(path), strerror(error));
 		free(text);
 		return NULL;
 	}
 	return text;
 }
 
+/* Lists what is wrong with a document, in the order of the reply. */
 void document_complain(const char *subject, const struct reading *problem)
 {
 	const char *detail = reading_text(problem, "/detail"), *title = reading_text(problem, "/title");

@@ -7,6 +7,9 @@
 
 #include <stddef.h>
 
+/* What a document is called in messages. */
+const char *document_name(const char *path);
+
 /* The whole file, or standard input for "-"; on the heap.  NULL: said on stderr why. */
 char *document_read(const char *path, size_t *length);
 

@@ -43,7 +43,7 @@ static bool ended(const struct reading *status, enum outcome *outcome)
 }
 
 /* Says why a study has no result. */
-void follow_complain(const char *id, const struct reading *status)
+static void complain(const char *id, const struct reading *status)
 {
 	const char *state = reading_text(status, "/status"), *error = reading_text(status, "/error");
 	command_complain("%s: the study is %s%s%s", id, state ? state : "?", error ? ": " : "",
@@ -54,17 +54,23 @@ void follow_complain(const char *id, const struct reading *status)
 static bool look(const struct wire *wire, enum outcome sent, const char *id, const struct wire_reply *reply,
                  enum outcome *outcome)
 {
-	struct reading *status = sent == OUTCOME_OK ? reading_open(reply->body, reply->n_body) : NULL;
-	bool good = status && reply->status == HTTP_OK, over = true;
-	if (good && !(over = ended(status, outcome)))
+	struct reading *status = NULL;
+	bool over = true;
+	*outcome = sent;
+	if (sent != OUTCOME_OK || reply->status != HTTP_OK) {
+		bar_clear();
+		*outcome = answer_judge(wire, sent, id, reply);
+	} else if (!(status = reading_open(reply->body, reply->n_body)) || !reading_text(status, "/status")) {
+		bar_clear();
+		command_complain("%s: the answer is not a status", id);
+		*outcome = OUTCOME_FAILED;
+	} else if ((over = ended(status, outcome))) {
+		bar_clear();
+		if (*outcome != OUTCOME_OK)
+			complain(id, status);
+	} else
 		bar_draw((int64_t)reading_number(status, "/runs_done"),
 		         (int64_t)reading_number(status, "/runs_total"), reading_number(status, "/eta_s"));
-	else
-		bar_clear();
-	if (!good)
-		*outcome = answer_judge(wire, sent, id, reply);
-	else if (*outcome != OUTCOME_OK)
-		follow_complain(id, status);
 	reading_close(status);
 	return over;
 }

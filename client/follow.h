@@ -3,13 +3,9 @@
 #define FOLLOW_H
 
 #include "client/wire.h"
-#include "schema/reading.h"
 
 /* Draws the bar until the study has ended.  `last` is the last status object, freed by the caller in any case.
  * OUTCOME_STUDY_FAILED: said on stderr why. */
 enum outcome follow_study(struct wire *wire, const char *id, struct wire_reply *last);
-
-/* Says on stderr what became of a study, from its status object. */
-void follow_complain(const char *id, const struct reading *status);
 
 #endif

@@ -203,7 +203,7 @@ enum outcome run_study(const struct options *options)
 	struct pound_study *study = study_from_json(document, n, &problems);
 	free(document);
 	if (!study) {
-		complain(options->argument, &problems);
+		complain(document_name(options->argument), &problems);
 		return problems.status == PROBLEMS_NOMEM ? OUTCOME_FAILED : OUTCOME_USAGE;
 	}
 	// a second Ctrl-C ends the program at once

@@ -167,6 +167,7 @@ static const struct {
 };
 // clang-format on
 
+/* Prints a result by its kind. */
 enum outcome show_result(const char *json, size_t length)
 {
 	struct reading *result = reading_open(json, length);

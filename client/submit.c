@@ -31,7 +31,7 @@ enum outcome submit_study(const struct options *options)
 	struct wire_reply reply;
 	enum outcome outcome = answer_take(
 	    wire, &(struct wire_request){.method = "POST", .path = "/v1/studies", .body = document, .n_body = n},
-	    options->argument, &reply);
+	    document_name(options->argument), &reply);
 	struct reading *status = outcome == OUTCOME_OK ? reading_open(reply.body, reply.n_body) : NULL;
 	const char *id = status ? reading_text(status, "/id") : NULL;
 	if (id) {

@@ -32,6 +32,7 @@ static void *sure(void *memory)
 	return memory;
 }
 
+/* Opens an empty table. */
 struct table *table_open(const char *const names[])
 {
 	struct table *table = sure(calloc(1, sizeof *table));
@@ -53,12 +54,14 @@ static struct cell *next_cell(struct table *table)
 	return cell;
 }
 
+/* Puts a text, copied, into the next cell. */
 void table_text(struct table *table, const char *text)
 {
 	struct cell *cell = next_cell(table);
 	cell->text = text ? sure(strdup(text)) : NULL;
 }
 
+/* Puts a number into the next cell: four digits for people, all of them in CSV. */
 void table_number(struct table *table, double value)
 {
 	char text[32];
@@ -71,6 +74,7 @@ void table_number(struct table *table, double value)
 	cell->text = sure(strdup(text));
 }
 
+/* Counts the bytes that start a UTF-8 character; wide and combining characters count as one. */
 int table_width(const char *text)
 {
 	int n = 0;
@@ -79,6 +83,7 @@ int table_width(const char *text)
 	return n;
 }
 
+/* Keeps text from other people off the controls of a terminal. */
 void table_tame(char *text)
 {
 	for (unsigned char *c = (unsigned char *)text; *c; c++) {
@@ -109,6 +114,7 @@ static void put(const char *text, int width, bool right, bool last)
 		pad(blanks);
 }
 
+/* Prints the table aligned; a column in which no row has a value is left out. */
 void table_print(const struct table *table, int indent)
 {
 	int width[COLUMNS_MAX] = {0}, last = 0; /* width 0: no value in the column */
@@ -138,6 +144,7 @@ void table_print(const struct table *table, int indent)
 	}
 }
 
+/* Prints the table as CSV, numbers to the last digit. */
 void table_print_csv(const struct table *table)
 {
 	struct writer writer;
@@ -159,6 +166,7 @@ void table_print_csv(const struct table *table)
 	free(text);
 }
 
+/* Frees the table and its cells. */
 void table_close(struct table *table)
 {
 	for (int i = 0; i < table->n_columns; i++)

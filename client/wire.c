@@ -41,6 +41,7 @@ struct wire *wire_open(const char *url)
 	return wire;
 }
 
+/* Closes the connection and frees everything. */
 void wire_close(struct wire *wire)
 {
 	if (!wire)
@@ -127,16 +128,19 @@ enum outcome wire_send(struct wire *wire, const struct wire_request *request, st
 	                                                                           : OUTCOME_UNREACHED;
 }
 
+/* The address of the server as the user gave it. */
 const char *wire_url(const struct wire *wire)
 {
 	return wire->url;
 }
 
+/* Why the last wire_send got no answer, a sentence of libcurl. */
 const char *wire_failure(const struct wire *wire)
 {
 	return wire->failure;
 }
 
+/* Frees what a reply holds and leaves it empty. */
 void wire_reply_free(struct wire_reply *reply)
 {
 	free(reply->body);
@@ -145,6 +149,7 @@ void wire_reply_free(struct wire_reply *reply)
 	*reply = (struct wire_reply){0};
 }
 
+/* Percent-encodes everything but letters, digits and -._~ */
 char *wire_escape(struct wire *wire, const char *text)
 {
 	char *escaped = curl_easy_escape(wire->curl, text, 0), *copy = escaped ? strdup(escaped) : NULL;

@@ -10,7 +10,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static void fail(const char *what)
+#include "tests/check.h"
+
+static void give_up(const char *what)
 {
 	perror(what);
 	abort();
@@ -49,7 +51,7 @@ static void exchange(int in, const char *input, int out, FILE *out_file, int err
 			ends[0].fd = -1;
 		}
 		if (poll(ends, 3, -1) < 0)
-			fail("poll");
+			give_up("poll");
 		if (ends[0].fd >= 0 && ends[0].revents) {
 			ssize_t k = write(in, input + written, n - written);
 			// a program that does not want the rest has closed its end
@@ -77,11 +79,11 @@ struct program_outcome program_run(const char *const arguments[], const char *in
 	struct program_outcome outcome = {0};
 	int in[2], out[2], err[2], status;
 	if (pipe2(in, O_CLOEXEC) || pipe2(out, O_CLOEXEC) || pipe2(err, O_CLOEXEC))
-		fail("pipe2");
+		give_up("pipe2");
 	signal(SIGPIPE, SIG_IGN);
 	pid_t pid = fork();
 	if (pid < 0)
-		fail("fork");
+		give_up("fork");
 	if (pid == 0) {
 		signal(SIGPIPE, SIG_DFL);
 		dup2(in[0], STDIN_FILENO);
@@ -98,9 +100,18 @@ struct program_outcome program_run(const char *const arguments[], const char *in
 	fclose(out_file);
 	fclose(err_file);
 	if (waitpid(pid, &status, 0) != pid)
-		fail("waitpid");
+		give_up("waitpid");
 	outcome.status = exit_status(status);
 	return outcome;
+}
+
+void program_expect(const struct program_outcome *outcome, int status)
+{
+	if (outcome->status == status)
+		return;
+	print_error("status %d instead of %d; stdout:\n%sstderr:\n%s", outcome->status, status, outcome->out,
+	            outcome->err);
+	fail();
 }
 
 void program_free(struct program_outcome *outcome)
@@ -114,7 +125,7 @@ pid_t program_start(const char *const arguments[], const char *out, const char *
 {
 	pid_t pid = fork();
 	if (pid < 0)
-		fail("fork");
+		give_up("fork");
 	if (pid == 0) {
 		int in_file = open("/dev/null", O_RDONLY | O_CLOEXEC);
 		int out_file = open(out, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -131,7 +142,7 @@ int program_end(pid_t pid)
 {
 	int status;
 	if (waitpid(pid, &status, 0) != pid)
-		fail("waitpid");
+		give_up("waitpid");
 	return exit_status(status);
 }
 
@@ -142,11 +153,11 @@ bool program_serve(struct program_server *server)
 	int out[2];
 	snprintf(server->folder, sizeof server->folder, "/tmp/pound-test-XXXXXX");
 	if (!mkdtemp(server->folder) || pipe2(out, O_CLOEXEC))
-		fail("mkdtemp");
+		give_up("mkdtemp");
 	snprintf(database, sizeof database, "%s/poundd.db", server->folder);
 	server->pid = fork();
 	if (server->pid < 0)
-		fail("fork");
+		give_up("fork");
 	if (server->pid == 0) {
 		char log[96];
 		snprintf(log, sizeof log, "%s/log", server->folder);
@@ -168,7 +179,7 @@ int program_stop(struct program_server *server)
 	int status = program_end(server->pid);
 	snprintf(removal, sizeof removal, "rm -rf %s", server->folder);
 	if (system(removal) != 0)
-		fail(removal);
+		give_up(removal);
 	return status;
 }
 

@@ -20,6 +20,9 @@ struct program_outcome {
 /* Runs a program to its end.  `arguments` starts with its name: one of POUND_BUILD, or one of PATH when it has no
  * such file; `input` is its standard input, NULL: empty. */
 struct program_outcome program_run(const char *const arguments[], const char *input);
+
+/* Fails the test, showing what the program printed, unless it ended with this status. */
+void program_expect(const struct program_outcome *outcome, int status);
 void program_free(struct program_outcome *outcome);
 
 /* Starts a program and leaves it running; its stdout and stderr go to the files named, its stdin is empty. */

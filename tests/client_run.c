@@ -1,0 +1,260 @@
+/* `pound run`: the same bytes whatever computes them, the same complaints as the server, and a clean stop. */
+#include <ctype.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+#include "tests/program.h"
+
+#define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
+
+static struct program_server server;
+
+static int serve(void **state)
+{
+	(void)state;
+	if (!program_serve(&server))
+		return -1;
+	setenv("POUND_URL", server.url, 1);
+	return 0;
+}
+
+static int stop(void **state)
+{
+	(void)state;
+	return program_stop(&server);
+}
+
+/* Takes out of a result the one line that may differ between two runs. */
+static void cut_timing(struct program_outcome *result)
+{
+	static const char line[] = "  \"timing\":";
+	char *timing = strstr(result->out, line);
+	assert_non_null(timing);
+	char *next = strchr(timing, '\n');
+	memmove(timing, next, strlen(next) + 1);
+	assert_null(strstr(timing, line));
+}
+
+static struct program_outcome run_threads(const char *document, const char *threads)
+{
+	struct program_outcome outcome =
+	    program_run((const char *const[]){"pound", "run", "--threads", threads, "-", NULL}, document);
+	program_expect(&outcome, 0);
+	assert_string_equal(outcome.err, "");
+	cut_timing(&outcome);
+	return outcome;
+}
+
+static struct program_outcome run_on_server(const char *document)
+{
+	struct program_outcome id =
+	    program_run((const char *const[]){"pound", "submit", "--wait", "-", NULL}, document);
+	program_expect(&id, 0);
+	assert_string_equal(id.err, "");
+	id.out[strcspn(id.out, "\n")] = '\0';
+	struct program_outcome result = POUND("results", id.out);
+	program_expect(&result, 0);
+	cut_timing(&result);
+	program_free(&id);
+	return result;
+}
+
+/* The examples that are quick; the others are only validated. */
+static bool is_long(const char *name)
+{
+	return strncmp(name, "paper", 5) == 0;
+}
+
+static void every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server(void **state)
+{
+	static const char *const threads[] = {"2", "4"};
+	struct program_outcome names = POUND("example", "--names");
+	int n_run = 0;
+	(void)state;
+	for (char *name = strtok(names.out, "\n"); name; name = strtok(NULL, "\n")) {
+		if (is_long(name))
+			continue;
+		struct program_outcome document = POUND("example", name);
+		struct program_outcome one = run_threads(document.out, "1");
+		for (int i = 0; i < 2; i++) {
+			struct program_outcome other = run_threads(document.out, threads[i]);
+			assert_string_equal(other.out, one.out);
+			program_free(&other);
+		}
+		struct program_outcome served = run_on_server(document.out);
+		assert_string_equal(served.out, one.out);
+		program_free(&served);
+		program_free(&one);
+		program_free(&document);
+		n_run++;
+	}
+	assert_true(n_run >= 2);
+	program_free(&names);
+}
+
+// documents with faults, and words that the list of them must hold
+static const struct {
+	const char *text;
+	const char *words[4];
+} BAD[] = {
+    {"{\"kind\": \"response\",\n  \"scene\" {}}", {"line 2, column 11"}},
+    {"", {"line 1, column 1"}},
+    {"[]", {"object"}},
+    {"{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": -1}, {\"frequency_hz\": 2}],"
+     " \"contact\": {\"restitution\": 1.4, \"gap\": 0}}}",
+     {"/scene/oscillators/0/frequency_hz: ", "/scene/contact/restitution: must be in [0, 1], got 1.4",
+      "gap_m"}},
+    {"{\"kind\": \"sensitivty\"}", {"sensitivity", "/scene"}},
+};
+
+static void a_bad_study_gets_the_same_list_from_run_and_from_the_server(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+		struct program_outcome run =
+		    program_run((const char *const[]){"pound", "run", "-", NULL}, BAD[i].text);
+		struct program_outcome submit =
+		    program_run((const char *const[]){"pound", "submit", "-", NULL}, BAD[i].text);
+		program_expect(&run, 2);
+		program_expect(&submit, 2);
+		assert_string_equal(run.out, "");
+		assert_string_equal(submit.out, "");
+		assert_string_equal(run.err, submit.err);
+		for (int w = 0; w < 4 && BAD[i].words[w]; w++)
+			if (!strstr(run.err, BAD[i].words[w])) {
+				print_error("'%s' is not in\n%s", BAD[i].words[w], run.err);
+				fail();
+			}
+		program_free(&run);
+		program_free(&submit);
+	}
+}
+
+static void a_table_fits_in_100_columns(void **state)
+{
+	static const char *const kinds[] = {"response", "sensitivity"};
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		struct program_outcome document = POUND("example", kinds[i]);
+		struct program_outcome table =
+		    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
+		program_expect(&table, 0);
+		assert_non_null(strstr(table.out, i ? "ST [95 % interval]" : "impulse_n_s"));
+		for (char *line = strtok(table.out, "\n"); line; line = strtok(NULL, "\n"))
+			assert_true(strlen(line) <= 100);
+		program_free(&table);
+		program_free(&document);
+	}
+}
+
+static void csv_has_as_many_cells_in_every_row(void **state)
+{
+	(void)state;
+	struct program_outcome document = POUND("example", "sensitivity");
+	struct program_outcome csv =
+	    program_run((const char *const[]){"pound", "run", "--format", "csv", "-", NULL}, document.out);
+	program_expect(&csv, 0);
+	int commas = -1, rows = 0;
+	for (char *line = strtok(csv.out, "\r\n"); line; line = strtok(NULL, "\r\n"), rows++) {
+		int n = 0;
+		for (char *c = line; *c; c++)
+			n += *c == ',';
+		assert_true(commas < 0 || n == commas);
+		commas = n;
+	}
+	assert_true(rows > 1 && commas > 5);
+	program_free(&csv);
+	program_free(&document);
+}
+
+/* Waits until a process has a handler for a signal of its own. */
+static bool catches(pid_t pid, int number)
+{
+	char path[48], line[256];
+	snprintf(path, sizeof path, "/proc/%d/status", (int)pid);
+	for (int tries = 0; tries < 10000; tries++) {
+		unsigned long long caught = 0;
+		FILE *file = fopen(path, "r");
+		while (file && fgets(line, sizeof line, file))
+			sscanf(line, "SigCgt: %llx", &caught);
+		if (file)
+			fclose(file);
+		if (caught >> (number - 1) & 1)
+			return true;
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+	}
+	return false;
+}
+
+static void ctrl_c_stops_a_run_without_a_result(void **state)
+{
+	static const int signals[] = {SIGINT, SIGTERM};
+	char study[96], out[96], err[96];
+	(void)state;
+	snprintf(study, sizeof study, "%s/study.json", server.folder);
+	snprintf(out, sizeof out, "%s/out", server.folder);
+	snprintf(err, sizeof err, "%s/err", server.folder);
+	struct program_outcome document = POUND("example", "paper");
+	FILE *file = fopen(study, "w");
+	fputs(document.out, file);
+	fclose(file);
+	program_free(&document);
+	for (int i = 0; i < 2; i++) {
+		size_t n;
+		pid_t pid = program_start((const char *const[]){"pound", "run", study, NULL}, out, err);
+		assert_true(catches(pid, signals[i]));
+		kill(pid, signals[i]);
+		assert_int_equal(program_end(pid), 1);
+		free(program_file(out, &n));
+		assert_int_equal(n, 0);
+		char *said = program_file(err, &n);
+		assert_string_equal(said, "pound: stopped by the caller\n");
+		free(said);
+	}
+}
+
+static void a_paper_study_is_valid_and_its_cost_is_told(void **state)
+{
+	struct program_outcome names = POUND("example", "--names");
+	int n = 0;
+	(void)state;
+	for (char *name = strtok(names.out, "\n"); name; name = strtok(NULL, "\n")) {
+		if (!is_long(name))
+			continue;
+		char url[160];
+		struct program_outcome document = POUND("example", name);
+		snprintf(url, sizeof url, "%s/v1/studies?validate_only=true", server.url);
+		struct program_outcome estimate = program_run(
+		    (const char *const[]){"curl", "-sS", "--fail-with-body", "--noproxy", "*", "-H",
+		                          "Content-Type: application/json", "--data-binary", "@-", url, NULL},
+		    document.out);
+		program_expect(&estimate, 0);
+		assert_non_null(strstr(estimate.out, "\"estimated_cpu_s\": "));
+		program_free(&estimate);
+		program_free(&document);
+		n++;
+	}
+	assert_true(n >= 2);
+	program_free(&names);
+}
+
+int main(int argc, char **argv)
+{
+	const struct CMUnitTest tests[] = {
+	    cmocka_unit_test(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server),
+	    cmocka_unit_test(a_bad_study_gets_the_same_list_from_run_and_from_the_server),
+	    cmocka_unit_test(a_table_fits_in_100_columns),
+	    cmocka_unit_test(csv_has_as_many_cells_in_every_row),
+	    cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
+	    cmocka_unit_test(a_paper_study_is_valid_and_its_cost_is_told),
+	};
+	(void)argc;
+	if (serve(NULL) != 0)
+		return 1;
+	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
+	return stop(NULL) == 0 && failed == 0 ? 0 : 1;
+}
