@@ -35,18 +35,17 @@ static inline double pound_elementary_log(double x)
 	// 2^52 + biased exponent, put together from bits
 	const double e = pound_elementary_double((scaled >> 52) | 0x4330000000000000) - (0x1p52 + 1023);
 	const double s = f / (2 + f), z = s * s;
-	double l = 0x1.2b5f68a50d903p-3;
-	l = l * z + 0x1.39fdcceb4bb45p-3;
-	l = l * z + 0x1.7462b91b8df65p-3;
-	l = l * z + 0x1.c71c62d5e53e0p-3;
-	l = l * z + 0x1.2492492dfd86cp-2;
-	l = l * z + 0x1.9999999995273p-2;
-	l = l * z + 0x1.5555555555558p-1;
+	// sums in pairs: a vector unit need not wait for each term
+	const double z2 = z * z;
+	const double l01 = 0x1.5555555555558p-1 + z * 0x1.9999999995273p-2;
+	const double l23 = 0x1.2492492dfd86cp-2 + z * 0x1.c71c62d5e53e0p-3;
+	const double l45 = 0x1.7462b91b8df65p-3 + z * 0x1.39fdcceb4bb45p-3;
+	const double l = l01 + z2 * (l23 + z2 * (l45 + z2 * 0x1.2b5f68a50d903p-3));
 	// ln 2 in two parts; e times the first is exact
 	return e * 0x1.62e42fefa3800p-1 + (f - (s * (f - z * l) - e * 0x1.ef35793c76730p-45));
 }
 
-/* Sine and cosine of 2 pi x, |x| < 2^49: error 2 units of the last place of the larger of the result and 2^-53.
+/* Sine and cosine of 2 pi x to 2 units of the last place, |x| < 2^49.
  *
  *   4 x = q + r, q whole, |r| <= 1/2     sin(pi/2 r) = r (pi/2 + z S(z)),   cos(pi/2 r) = 1 + z C(z),   z = r^2
  *   an odd quarter q swaps the two, the quarters 2, 3 turn the sine and 1, 2 the cosine. */
@@ -55,19 +54,15 @@ static inline void pound_elementary_sincos(double x, double *sine, double *cosin
 	const double shifted = 4 * x + 0x1.8p52;
 	const uint64_t q = pound_elementary_bits(shifted);
 	const double r = 4 * x - (shifted - 0x1.8p52), z = r * r;
-	double s = 0x1.e4a9d9166f052p-25;
-	s = s * z - 0x1.e3027dea82bd7p-19;
-	s = s * z + 0x1.50783208843ebp-13;
-	s = s * z - 0x1.32d2cce500387p-8;
-	s = s * z + 0x1.466bc6775a476p-4;
-	s = s * z - 0x1.4abbce625be52p-1;
-	double c = -0x1.b2f3eb054afcdp-28;
-	c = c * z + 0x1.f9ce245cada0bp-22;
-	c = c * z - 0x1.a6d1eef479be1p-16;
-	c = c * z + 0x1.e1f5068688d5bp-11;
-	c = c * z - 0x1.55d3c7e3cb241p-6;
-	c = c * z + 0x1.03c1f081b5ac0p-2;
-	c = c * z - 0x1.3bd3cc9be45dep+0;
+	const double z2 = z * z;
+	const double s01 = -0x1.4abbce625be52p-1 + z * 0x1.466bc6775a476p-4;
+	const double s23 = -0x1.32d2cce500387p-8 + z * 0x1.50783208843ebp-13;
+	const double s45 = -0x1.e3027dea82bd7p-19 + z * 0x1.e4a9d9166f052p-25;
+	const double s = s01 + z2 * (s23 + z2 * s45);
+	const double c01 = -0x1.3bd3cc9be45dep+0 + z * 0x1.03c1f081b5ac0p-2;
+	const double c23 = -0x1.55d3c7e3cb241p-6 + z * 0x1.e1f5068688d5bp-11;
+	const double c45 = -0x1.a6d1eef479be1p-16 + z * 0x1.f9ce245cada0bp-22;
+	const double c = c01 + z2 * (c23 + z2 * (c45 - z2 * 0x1.b2f3eb054afcdp-28));
 	const uint64_t a = pound_elementary_bits(r * (0x1.921fb54442d18p+0 + z * s));
 	const uint64_t b = pound_elementary_bits(1 + z * c);
 	const uint64_t swap = (a ^ b) & (0 - (q & 1));

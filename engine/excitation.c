@@ -39,10 +39,11 @@ static int record_samples(const struct pound_excitation *e)
 static void shape(double rise, double fall, int n, double *a)
 {
 	const double up = rise * (n - 1), down = fall * (n - 1);
+	const double upward = 1 / up, downward = 1 / down;
 	for (int i = 0; i < up; i++)
-		a[i] *= i / up;
+		a[i] *= i * upward;
 	for (int i = 0; i < down; i++)
-		a[n - 1 - i] *= i / down;
+		a[n - 1 - i] *= i * downward;
 }
 
 /* a times what makes its largest |a| the peak; the division comes first, so nothing in between is too large or small */
@@ -73,7 +74,7 @@ static void white_noise(const struct pound_excitation *e, struct pound_stream no
 	for (int i = 0; i < n; i++) {
 		const int l = i / NOISE_WORDS % NOISE_CHUNK, w = i % NOISE_WORDS;
 		if (l == 0 && w == 0)
-			pound_noise_normals(noise, (uint32_t)(i / NOISE_WORDS), z);
+			pound_noise_normals(pound_noise_width(), noise, (uint32_t)(i / NOISE_WORDS), z);
 		a[i] = z[w][l];
 	}
 	shape(e->rise, e->fall, n, a);

@@ -16,7 +16,7 @@
 
 #include "engine/noise.h"
 
-enum { N = FILTER_STATES, TERMS = 20, NODES = 8 };
+enum { N = FILTER_STATES, NODES = 8 };
 
 static const double HIGH_PASS_DAMPING = 0.6;
 
@@ -43,20 +43,24 @@ static struct chain chain_of(double theta, double damping_ratio, double high_pas
 
 /* exp(A s) x, by its power series:  A (x0, x1, x2, x3) = (-c3 x0 - c2 x1 - c1 x2 - c0 x3, x0, x1, x2)
  *
- * Valid    s times the largest pole <= 1: the terms left out are below 1/20! of the sum */
+ * Valid    s times the largest pole <= 1: the series ends where a term changes no component */
 static void propagate(const double c[N], double s, double x[N])
 {
-	double term[N] = {x[0], x[1], x[2], x[3]};
-	for (int n = 1; n <= TERMS; n++) {
-		const double top = -(c[3] * term[0] + c[2] * term[1] + c[1] * term[2] + c[0] * term[3]);
-		const double by = s / n;
-		term[3] = term[2] * by;
-		term[2] = term[1] * by;
-		term[1] = term[0] * by;
-		term[0] = top * by;
-		for (int i = 0; i < N; i++)
-			x[i] += term[i];
+	double t0 = x[0], t1 = x[1], t2 = x[2], t3 = x[3];
+	double x0 = t0, x1 = t1, x2 = t2, x3 = t3;
+	// the first N - 1 terms are zero in components the chain has not reached
+	for (int n = 1; n < N || x0 + t0 != x0 || x1 + t1 != x1 || x2 + t2 != x2 || x3 + t3 != x3; n++) {
+		const double by = s / n, top = -((c[3] * t0 + c[2] * t1) + (c[1] * t2 + c[0] * t3));
+		t3 = t2 * by;
+		t2 = t1 * by;
+		t1 = t0 * by;
+		t0 = top * by;
+		x0 += t0;
+		x1 += t1;
+		x2 += t2;
+		x3 += t3;
 	}
+	x[0] = x0, x[1] = x1, x[2] = x2, x[3] = x3;
 }
 
 /* Covariance of what white noise of intensity 1 adds to the state within h.
@@ -192,13 +196,26 @@ void pound_filter_init(struct pound_filter *f, double theta, double damping_rati
 	f->output[1] = k.beta;
 }
 
-/* added[l] = factor z[.][l] */
-static void colour(const double factor[N][N], double z[N][NOISE_CHUNK], int n, double added[NOISE_CHUNK][N])
+typedef double pair __attribute__((vector_size(2 * sizeof(double))));
+
+/* a matrix by columns, each in two halves */
+struct columns {
+	pair top[N], bottom[N];
+};
+
+static struct columns columns_of(const double m[N][N])
 {
-	for (int l = 0; l < n; l++)
-		for (int i = 0; i < N; i++)
-			added[l][i] = (factor[i][0] * z[0][l] + factor[i][1] * z[1][l]) +
-			              (factor[i][2] * z[2][l] + factor[i][3] * z[3][l]);
+	struct columns c;
+	for (int j = 0; j < N; j++) {
+		c.top[j] = (pair){m[0][j], m[1][j]};
+		c.bottom[j] = (pair){m[2][j], m[3][j]};
+	}
+	return c;
+}
+
+static inline pair combined(const pair column[N], double x0, double x1, double x2, double x3)
+{
+	return (column[0] * x0 + column[1] * x1) + (column[2] * x2 + column[3] * x3);
 }
 
 /* Samples of the stationary output of a filter.
@@ -210,21 +227,22 @@ static void colour(const double factor[N][N], double z[N][NOISE_CHUNK], int n, d
  * Test     unit_filter: the_variance_is_the_analytic_one, the_spectrum_is_the_analytic_one */
 void pound_filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
 {
-	double x[N] = {0}, z[NOISE_WORDS][NOISE_CHUNK], added[NOISE_CHUNK][N];
-	const double(*t)[N] = f->transition;
+	const int width = pound_noise_width();
+	const struct columns transition = columns_of(f->transition), step = columns_of(f->step);
+	struct columns added = columns_of(f->start);
+	double z[NOISE_WORDS][NOISE_CHUNK];
+	pair top = {0}, bottom = {0};
 	for (int first = 0; first < n; first += NOISE_CHUNK) {
-		pound_noise_normals(noise, (uint32_t)first, z);
-		colour(f->step, z, NOISE_CHUNK, added);
-		if (first == 0)
-			colour(f->start, z, 1, added);
 		const int end = n - first < NOISE_CHUNK ? n - first : NOISE_CHUNK;
+		pound_noise_normals(width, noise, (uint32_t)first, z);
 		for (int l = 0; l < end; l++) {
-			double y[N];
-			for (int i = 0; i < N; i++)
-				y[i] = (added[l][i] + t[i][0] * x[0]) + (t[i][1] * x[1] + (t[i][2] * x[2] + t[i][3] * x[3]));
-			for (int i = 0; i < N; i++)
-				x[i] = y[i];
-			a[first + l] = f->output[0] * x[0] + f->output[1] * x[1];
+			const double x0 = top[0], x1 = top[1], x2 = bottom[0], x3 = bottom[1];
+			top = combined(added.top, z[0][l], z[1][l], z[2][l], z[3][l]) +
+			      combined(transition.top, x0, x1, x2, x3);
+			bottom = combined(added.bottom, z[0][l], z[1][l], z[2][l], z[3][l]) +
+			         combined(transition.bottom, x0, x1, x2, x3);
+			a[first + l] = f->output[0] * top[0] + f->output[1] * top[1];
+			added = step;
 		}
 	}
 }

@@ -9,7 +9,10 @@ enum {
 	NOISE_CHUNK = 32, /* draws computed at a time */
 };
 
-/* z[w][l]: normal w of draw first + l  (NOISE_WORDS x NOISE_CHUNK) */
-void pound_noise_normals(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+int pound_noise_width(void); /* the widest vectors of this processor: 8, 4 or 2 doubles */
+
+/* z[w][l]: normal w of draw first + l, the same bits for any width  (NOISE_WORDS x NOISE_CHUNK) */
+void pound_noise_normals(int width, struct pound_stream stream, uint32_t first,
+                         double z[NOISE_WORDS][NOISE_CHUNK]);
 
 #endif
