@@ -29,7 +29,7 @@ LIBS.tests  := -lcmocka -lcurl
 
 objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
 ENGINE := $(call objs,engine,engine/march.c) $(WIDTHS:%=$(B)/engine/march_%.o)
-SCHEMA := $(call objs,schema)
+SCHEMA := $(call objs,schema) $(B)/schema/examples.o
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
 # tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
@@ -61,6 +61,16 @@ $(B)/schema/store.sql.inc: schema/store.sql
 	sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $< > $@
 $(B)/server/store.o: $(B)/schema/store.sql.inc
 $(B)/server/store.o: CPPFLAGS += -I$(B)
+
+# the study documents of schema/examples are built into the programs: name, title, text
+$(B)/schema/examples.c: $(wildcard schema/examples/*.json)
+	@mkdir -p $(@D)
+	@{ echo '#include "schema/examples.h"'; echo 'const struct example examples[] = {'; \
+	  for f in $^; do name=$${f##*/}; echo "{\"$${name%.json}\","; \
+	    sed -n 's/^  "name": \(".*"\),$$/\1,/p' $$f; sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $$f; echo '},'; done; \
+	  echo '{0}};'; } >$@
+$(B)/schema/examples.o: $(B)/schema/examples.c
+	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
 
 # install what is missing, and only that
 deps:

@@ -11,13 +11,18 @@
 #include "engine/pound.h"
 #include "schema/problems.h"
 
+struct writer;
+
 /* What one study may ask for. */
 enum {
 	STUDY_SAMPLES_MAX = 10000000, /* samples of one ground motion */
 	STUDY_RUNS_MAX = 10000000,    /* pounding runs of one study */
 	STUDY_CELLS_MAX = 10000,      /* combinations of sweep values */
-	STUDY_HASH_SIZE = 65,         /* characters of a study hash and its zero */
+	STUDY_AT_ONCE_MAX =
+	    50000000,         /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
+	STUDY_HASH_SIZE = 65, /* characters of a study hash and its zero */
 };
+#define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
 
 /* The study on the heap, one owner, for study_free; NULL with every problem in `problems` (status says which kind). */
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems);
@@ -31,6 +36,10 @@ double study_samples(const struct pound_study *study); /* samples of its longest
 
 /* The scene of one cell: the study's with that combination of sweep values. */
 void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene);
+
+/* A varied value as a document has it: a number, the name of a choice, true or false. */
+void study_value(struct writer *writer, const char *name, const char *path, double value);
+const char *study_choice(const char *path, double value); /* its name, or "true", "false"; NULL: a number */
 
 /* SHA-256 in hex over the study's meaning: all defaults filled in; names, order and spelling do not count. */
 bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE]); /* false: out of memory */

@@ -1,0 +1,75 @@
+/* fields.h - every member of a study document: one row each, for reading, checking, defaults, varying and telling.
+ *
+ * A row is found by its pattern: the JSON Pointer with * for an index.  Constant; any thread. */
+#ifndef FIELDS_H
+#define FIELDS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "engine/pound.h"
+
+enum field_type {
+	FIELD_REAL,   /* double */
+	FIELD_COUNT,  /* int */
+	FIELD_CHOICE, /* int: row of the table that `choice` names */
+	FIELD_BOOL,   /* bool; with `choice`: written as the name of row 0 or 1 */
+	FIELD_SEED,   /* uint64_t: a number below 2^53 or its decimal digits as text */
+	FIELD_TEXT,   /* const char *; min and max are its length in characters */
+	FIELD_OBJECT, /* its members are rows of their own */
+	FIELD_LIST,   /* its element is a row of its own; min and max are their number */
+};
+
+enum field_ends { FIELD_CLOSED, FIELD_OPEN_MIN, FIELD_OPEN_MAX, FIELD_OPEN };
+
+struct field {
+	const char *pattern;
+	enum field_type type;
+	size_t offset;   /* in struct pound_study (of the first element), pound_input or pound_sweep [bytes] */
+	double absent;   /* value of an absent member; NAN: it must be there */
+	double min, max; /* valid range; an infinite end is never reached */
+	enum field_ends ends; /* which ends are outside */
+	const char *unit;     /* "": none */
+	const char *text;     /* one line for people */
+	const char *(*choice)(int row);
+	const char *kinds; /* names of the kinds that use it, between spaces; NULL: all */
+	const char *types; /* names of the excitations that use it, likewise */
+	const char *fixed; /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
+};
+
+extern const struct field fields[];
+extern const int fields_count;
+
+const struct field *fields_find(const char *pattern); /* NULL: none */
+const char *fields_name(const struct field *field);   /* last part of the pattern */
+bool fields_child(const struct field *field,
+                  const char *pattern); /* a member of the object at that pattern */
+
+/* Whether a study of this kind and excitation uses a field; a NULL name is any. */
+bool fields_used(const struct field *field, const char *kind, const char *excitation);
+
+/* "a number in [0, 1]", "a whole number of at least 2", "one of "lhs", "random"": what a field takes. */
+void fields_expected(const struct field *field, char *text, size_t size);
+void fields_range(const struct field *field, char *text, size_t size); /* "in [0, 1]", "at least 2" */
+bool fields_in_range(const struct field *field, double value);
+
+/* The number of the choice of that name, -1 if there is none. */
+int fields_choice(const char *(*choice)(int row), const char *name);
+
+/* The field that a JSON Pointer into "scene" names, and the oscillator in it (-1: none); NULL: no such field. */
+const struct field *fields_scene(const char *path, int *oscillator);
+
+/* How unlike two names are: letters to change, 1 when one is the start of the other; above 2 or a third: strangers. */
+int fields_distance(const char *a, const char *b);
+bool fields_near(int distance, const char *name);
+
+/* The field of the scene nearest to a mistyped path, as a path; false: none is near. */
+bool fields_nearest_path(const char *path, char *nearest, size_t size);
+
+/* What an output needs from the scene, in words. */
+const char *fields_output_needs(int output);
+
+extern const char
+    *const fields_outputs_absent[]; /* names of the outputs of a study that asks for none; up to NULL */
+
+#endif

@@ -1,0 +1,89 @@
+/* problems.c - what is wrong with a request, all of it at once, and the body that says so (RFC 9457). */
+#include "schema/problems.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/writer.h"
+
+void problems_init(struct problems *problems)
+{
+	problems->status = PROBLEMS_NONE;
+	problems->line = problems->column = 0;
+	problems->n = problems->n_more = 0;
+}
+
+/* Cuts a text that did not fit before the character that broke, and says so. */
+static void mend(char *text, size_t size, int wanted)
+{
+	if (wanted < (int)size)
+		return;
+	size_t end = size - 4;
+	while (end > 0 && ((unsigned char)text[end] & 0xC0) == 0x80)
+		end--;
+	memcpy(text + end, "...", 4);
+}
+
+/* Adds one problem of an invalid study; past PROBLEMS_MAX only counts it.
+ *
+ * Given    pointer   -         -       JSON Pointer, cut when too long for its place
+ *          format    -         -       of the sentence, printf
+ *
+ * Test     unit_problems: a_full_list_counts_what_it_cannot_hold
+ */
+void problems_add(struct problems *problems, const char *pointer, const char *format, ...)
+{
+	problems->status = PROBLEMS_INVALID;
+	if (problems->n == PROBLEMS_MAX) {
+		problems->n_more++;
+		return;
+	}
+	struct problem *problem = &problems->list[problems->n++];
+	mend(problem->pointer, sizeof problem->pointer,
+	     snprintf(problem->pointer, sizeof problem->pointer, "%s", pointer));
+	va_list arguments;
+	va_start(arguments, format);
+	mend(problem->detail, sizeof problem->detail,
+	     vsnprintf(problem->detail, sizeof problem->detail, format, arguments));
+	va_end(arguments);
+}
+
+/* The body of an error answer.
+ *
+ * Given    head      -         -       status, title and sentence
+ *          problems  -         -       invalid: its list becomes `errors`; malformed: `line` and `column`; NULL: neither
+ * Returns  value     (length)  -       JSON; NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Source   RFC 9457 section 3
+ * Test     unit_problems: a_body_lists_every_problem
+ */
+char *problem_to_json(const struct problem_head *head, const struct problems *problems, size_t *length)
+{
+	struct writer w;
+	writer_init(&w);
+	writer_object(&w, NULL, WRITER_LINES);
+	writer_text(&w, "type", head->type ? head->type : "about:blank");
+	writer_text(&w, "title", head->title);
+	writer_whole(&w, "status", head->status);
+	writer_text(&w, "detail", head->detail);
+	if (problems && problems->status == PROBLEMS_MALFORMED) {
+		writer_whole(&w, "line", problems->line);
+		writer_whole(&w, "column", problems->column);
+	}
+	if (problems && problems->n > 0) {
+		writer_array(&w, "errors", WRITER_LINES);
+		for (int i = 0; i < problems->n; i++) {
+			writer_object(&w, NULL, WRITER_LINE);
+			writer_text(&w, "pointer", problems->list[i].pointer);
+			writer_text(&w, "detail", problems->list[i].detail);
+			writer_end(&w);
+		}
+		writer_end(&w);
+		if (problems->n_more)
+			writer_whole(&w, "errors_not_listed", problems->n_more);
+	}
+	writer_end(&w);
+	return writer_take(&w, length);
+}

@@ -1,0 +1,133 @@
+/* result_csv.c - a result -> CSV, from its JSON: whatever members a result has become columns.
+ *
+ * Sensitivity: one row per cell, output and input.  Response: one row per cell and signal. */
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/document.h"
+#include "schema/result_json.h"
+#include "schema/writer.h"
+
+static const cJSON *member(const cJSON *object, const char *name)
+{
+	return cJSON_GetObjectItemCaseSensitive(object, name);
+}
+
+static void put_value(struct writer *w, const cJSON *value)
+{
+	char digits[WRITER_NUMBER_SIZE];
+	if (cJSON_IsString(value))
+		writer_cell(w, value->valuestring);
+	else if (cJSON_IsNumber(value))
+		writer_raw(w, digits, (size_t)writer_digits(value->valuedouble, digits));
+	else if (cJSON_IsBool(value))
+		writer_cell(w, cJSON_IsTrue(value) ? "true" : "false");
+}
+
+static void put_comma(struct writer *w, bool *first)
+{
+	if (!*first)
+		writer_raw(w, ",", 1);
+	*first = false;
+}
+
+/* The scalar members of an object, each a cell: its name in the header row, its value in the others. */
+static void put_scalars(struct writer *w, const cJSON *object, const char *prefix, bool header, bool *first)
+{
+	const cJSON *value;
+	cJSON_ArrayForEach(value, object)
+	{
+		if (cJSON_IsArray(value) || cJSON_IsObject(value) || strcmp(value->string, "note") == 0)
+			continue;
+		put_comma(w, first);
+		if (!header) {
+			put_value(w, value);
+			continue;
+		}
+		char name[256];
+		snprintf(name, sizeof name, "%s%s", prefix, value->string);
+		writer_cell(w, name);
+	}
+}
+
+static void put_sensitivity_row(struct writer *w, const cJSON *cell, const cJSON *output, const cJSON *input,
+                                bool header)
+{
+	bool first = true;
+	put_scalars(w, member(cell, "sweep"), "", header, &first);
+	put_scalars(w, output, "output.", header, &first);
+	put_scalars(w, input, "", header, &first);
+	writer_raw(w, "\r\n", 2);
+}
+
+static void put_sensitivity(struct writer *w, const cJSON *cells)
+{
+	bool header = true;
+	const cJSON *cell, *output, *input;
+	cJSON_ArrayForEach(cell, cells) cJSON_ArrayForEach(output, member(cell, "outputs"))
+	    cJSON_ArrayForEach(input, member(output, "inputs"))
+	{
+		if (header)
+			put_sensitivity_row(w, cell, output, input, true);
+		header = false;
+		put_sensitivity_row(w, cell, output, input, false);
+	}
+}
+
+static void put_signal_row(struct writer *w, const cJSON *cell, const cJSON *signal, bool header)
+{
+	bool first = true;
+	int index = 1;
+	const cJSON *oscillator;
+	put_scalars(w, member(cell, "sweep"), "", header, &first);
+	put_scalars(w, signal, "", header, &first);
+	cJSON_ArrayForEach(oscillator, member(signal, "oscillators"))
+	{
+		char prefix[32];
+		snprintf(prefix, sizeof prefix, "oscillator_%d.", index++);
+		put_scalars(w, oscillator, prefix, header, &first);
+	}
+	put_scalars(w, member(signal, "end"), "end.", header, &first);
+	writer_raw(w, "\r\n", 2);
+}
+
+static void put_signals(struct writer *w, const cJSON *cell, bool *header)
+{
+	const cJSON *signal;
+	cJSON_ArrayForEach(signal, member(cell, "signals"))
+	{
+		if (*header)
+			put_signal_row(w, cell, signal, true);
+		*header = false;
+		put_signal_row(w, cell, signal, false);
+	}
+}
+
+/* A result as CSV (RFC 4180).
+ *
+ * Given    json      (json_length)  -  the bytes of result_to_json
+ * Returns  value     (length)       -  CSV; NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Test     unit_result_csv: a_row_for_every_cell_output_and_input
+ */
+char *result_to_csv(const char *json, size_t json_length, size_t *length)
+{
+	struct gate_fault fault;
+	struct writer w;
+	bool header = true;
+	*length = 0;
+	cJSON *result = document_parse(json, json_length, &fault);
+	if (!result)
+		return NULL;
+	const cJSON *cells = member(result, "cells"), *cell;
+	writer_init(&w);
+	if (cJSON_IsArray(member(result, "signals")))
+		put_signals(&w, result, &header);
+	else if (member(cells->child, "signals"))
+		cJSON_ArrayForEach(cell, cells) put_signals(&w, cell, &header);
+	else
+		put_sensitivity(&w, cells);
+	cJSON_Delete(result);
+	return writer_take(&w, length);
+}

@@ -1,0 +1,288 @@
+/* result_json.c - a study's result -> JSON, member by member as the contract names them. */
+#include "schema/result_json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/fields.h"
+#include "schema/study_json.h"
+#include "schema/writer.h"
+
+/* ---- response ---- */
+
+static const struct {
+	const char *member, *name;
+	int oscillator;
+	size_t offset; /* in struct pound_response */
+} measures[] = {
+#define X(member, name, oscillator) {#member, name, oscillator, offsetof(struct pound_response, member)},
+    POUND_MEASURES(X)
+#undef X
+};
+
+enum { MEASURES = sizeof measures / sizeof measures[0] };
+
+static bool at_end(int measure)
+{
+	return strncmp(measures[measure].member, "end_", 4) == 0;
+}
+
+/* The measures of one oscillator, of the pair (-1), or of the end. */
+static void write_measures(struct writer *w, const struct pound_response *response, int oscillator, bool end)
+{
+	for (int k = 0; k < MEASURES; k++)
+		if (measures[k].oscillator == oscillator && at_end(k) == end)
+			writer_number(w, measures[k].name,
+			              *(const double *)(const void *)((const char *)response + measures[k].offset));
+}
+
+static void write_signal(struct writer *w, const struct pound_response *response, int index)
+{
+	writer_object(w, NULL, WRITER_LINES);
+	writer_whole(w, "index", index);
+	writer_array(w, "oscillators", WRITER_LINES);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		writer_object(w, NULL, WRITER_LINE);
+		write_measures(w, response, i, false);
+		writer_end(w);
+	}
+	writer_end(w);
+	write_measures(w, response, -1, false);
+	writer_object(w, "end", WRITER_LINE);
+	write_measures(w, response, -1, true);
+	writer_end(w);
+	writer_end(w);
+}
+
+static void write_response(struct writer *w, const struct pound_study *study, const struct pound_cell *cell,
+                           const struct pound_scene *scene)
+{
+	writer_array(w, "signals", WRITER_LINES);
+	for (int i = 0; i < cell->n_signals; i++)
+		write_signal(w, &cell->signals[i], i);
+	writer_end(w);
+	writer_object(w, "outputs", WRITER_LINES);
+	for (int o = 0; o < study->n_outputs; o++)
+		if (pound_output_applies(study->outputs[o], scene))
+			writer_number(w, pound_output_name(study->outputs[o]), cell->outputs[o]);
+	writer_end(w);
+}
+
+/* ---- sensitivity ---- */
+
+static void write_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate)
+{
+	char member[16];
+	writer_number(w, name, estimate->value);
+	snprintf(member, sizeof member, "%s_low", name);
+	writer_number(w, member, estimate->low);
+	snprintf(member, sizeof member, "%s_high", name);
+	writer_number(w, member, estimate->high);
+}
+
+/* Why an output has no indexes, NULL when it has. */
+static const char *indices_note(const struct pound_indices *indices, int n_inputs)
+{
+	bool undefined = false;
+	for (int j = 0; j < n_inputs; j++)
+		undefined |= isnan(indices->first[j].value) || isnan(indices->total[j].value);
+	if (!undefined)
+		return NULL;
+	if (isnan(indices->mean))
+		return "no row of the design gave a value, so there are no indexes";
+	if (indices->variance == 0.0)
+		return "the output is the same for every row, so it has no indexes";
+	return "too few rows of the design gave a value for some indexes";
+}
+
+static void write_indices(struct writer *w, const struct pound_study *study,
+                          const struct pound_indices *indices, int output)
+{
+	const char *note = indices_note(indices, study->n_inputs);
+	writer_object(w, NULL, WRITER_LINES);
+	writer_text(w, "name", pound_output_name(output));
+	writer_number(w, "mean", indices->mean);
+	writer_number(w, "variance", indices->variance);
+	writer_number(w, "noise_share", indices->noise_share);
+	if (note)
+		writer_text(w, "note", note);
+	writer_array(w, "inputs", WRITER_LINES);
+	for (int j = 0; j < study->n_inputs; j++) {
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name", study->inputs[j].name);
+		writer_text(w, "path", study->inputs[j].path);
+		write_estimate(w, "S1", &indices->first[j]);
+		write_estimate(w, "ST", &indices->total[j]);
+		writer_end(w);
+	}
+	writer_end(w);
+	writer_end(w);
+}
+
+static void write_sensitivity(struct writer *w, const struct pound_study *study,
+                              const struct pound_cell *cell, const struct pound_scene *scene)
+{
+	writer_array(w, "outputs", WRITER_LINES);
+	for (int o = 0; o < study->n_outputs; o++)
+		if (pound_output_applies(study->outputs[o], scene))
+			write_indices(w, study, &cell->indices[o], study->outputs[o]);
+	writer_end(w);
+}
+
+/* ---- cells ---- */
+
+/* Outputs that were asked and that this cell cannot have. */
+static void write_not_applicable(struct writer *w, const struct pound_study *study,
+                                 const struct pound_scene *scene)
+{
+	int n = 0;
+	for (int o = 0; o < study->n_outputs; o++)
+		n += !pound_output_applies(study->outputs[o], scene);
+	if (!n)
+		return;
+	writer_array(w, "not_applicable", WRITER_LINES);
+	for (int o = 0; o < study->n_outputs; o++) {
+		char note[128];
+		if (pound_output_applies(study->outputs[o], scene))
+			continue;
+		snprintf(note, sizeof note, "needs %s", fields_output_needs(study->outputs[o]));
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name", pound_output_name(study->outputs[o]));
+		writer_text(w, "note", note);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+static void write_cell(struct writer *w, const struct pound_study *study, const struct pound_result *result,
+                       int c)
+{
+	const struct pound_cell *cell = &result->cells[c];
+	struct pound_scene scene;
+	study_cell(study, c, &scene);
+	writer_whole(w, "runs", cell->runs);
+	writer_whole(w, "runs_failed", cell->runs_failed);
+	if (study->kind == POUND_KIND_SENSITIVITY) {
+		writer_whole(w, "rows_dropped", cell->rows_dropped);
+		write_sensitivity(w, study, cell, &scene);
+	} else {
+		write_response(w, study, cell, &scene);
+	}
+	write_not_applicable(w, study, &scene);
+}
+
+static void write_cells(struct writer *w, const struct pound_study *study, const struct pound_result *result)
+{
+	writer_array(w, "cells", WRITER_LINES);
+	for (int c = 0; c < result->n_cells; c++) {
+		writer_object(w, NULL, WRITER_LINES);
+		writer_object(w, "sweep", WRITER_LINE);
+		for (int s = 0; s < study->n_sweeps; s++)
+			study_value(w, study->sweeps[s].path, study->sweeps[s].path, result->cells[c].sweep[s]);
+		writer_end(w);
+		write_cell(w, study, result, c);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+/* ---- work ---- */
+
+static void leave_out(struct writer *w, int64_t n, const char *what, const char *why)
+{
+	char sentence[200];
+	if (n <= 0)
+		return;
+	snprintf(sentence, sizeof sentence, "%lld %s: %s", (long long)n, what, why);
+	writer_text(w, NULL, sentence);
+}
+
+/* What the scene did not need, in sentences, from the counts alone. */
+static void write_left_out(struct writer *w, const struct pound_study *study, const struct pound_work *work)
+{
+	const struct pound_scene *scene = &study->scene;
+	static const char repeated[] = "equal to one that was made";
+	int64_t asked = work->pounding_runs.asked;
+	bool met = scene->contact.present;
+	writer_array(w, "left_out", WRITER_LINES);
+	leave_out(w, work->signals.asked - work->signals.run, "ground motions", repeated);
+	leave_out(w, work->free_runs.asked - work->free_runs.run, "linear responses without pounding", repeated);
+	if (work->yield_runs.asked == 0) {
+		writer_text(w, NULL, "all nonlinear responses without pounding: no law needs one");
+		if (!scene->oscillators[1].rigid_wall)
+			leave_out(w, 2 * asked - work->free_runs.asked,
+			          "linear responses of the right oscillator without pounding", "no output needs them");
+	}
+	leave_out(w, work->yield_runs.asked - work->yield_runs.run, "nonlinear responses without pounding",
+	          repeated);
+	leave_out(w, work->never_touching, "responses with pounding", "the bodies alone never close the gap");
+	leave_out(w, work->moving_alike, "responses with pounding",
+	          "equal linear oscillators move alike and never touch with force");
+	if (met)
+		leave_out(w, asked - work->pounding_runs.run - work->never_touching - work->moving_alike,
+		          "responses with pounding", repeated);
+	else
+		writer_text(w, NULL, "all responses with pounding: the scene has no contact");
+	writer_end(w);
+}
+
+static void write_work(struct writer *w, const struct pound_study *study, const struct pound_work *work)
+{
+	writer_object(w, "work", WRITER_LINES);
+#define X(member, text)                           \
+	writer_object(w, #member, WRITER_LINE);       \
+	writer_text(w, "what", text);                 \
+	writer_whole(w, "asked", work->member.asked); \
+	writer_whole(w, "run", work->member.run);     \
+	writer_end(w);
+	POUND_STAGES(X)
+#undef X
+	writer_whole(w, "never_touching", work->never_touching);
+	writer_whole(w, "moving_alike", work->moving_alike);
+	writer_whole(w, "contacts", work->contacts);
+	write_left_out(w, study, work);
+	writer_end(w);
+}
+
+/* ---- the document ---- */
+
+/* The bytes of a result.
+ *
+ * Given    study     -         -       read by study_from_json
+ *          result    -         -       of that study
+ *          timing    -         s       what it took
+ * Returns  value     (length)  -       JSON; NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Test     unit_result_json
+ */
+char *result_to_json(const struct pound_study *study, const struct pound_result *result,
+                     const struct timing *timing, size_t *length)
+{
+	struct writer w;
+	char hash[STUDY_HASH_SIZE];
+	*length = 0;
+	if (!study_hash(study, hash))
+		return NULL;
+	writer_init(&w);
+	writer_object(&w, NULL, WRITER_LINES);
+	writer_text(&w, "kind", study_kind_name(study->kind));
+	if (study->name)
+		writer_text(&w, "name", study->name);
+	writer_text(&w, "engine_version", POUND_VERSION);
+	writer_text(&w, "study_hash", hash);
+	writer_seed(&w, "seed", study->design.seed);
+	if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps == 0)
+		write_cell(&w, study, result, 0);
+	else
+		write_cells(&w, study, result);
+	write_work(&w, study, &result->work);
+	writer_object(&w, "timing", WRITER_LINE);
+	writer_number(&w, "wall_s", timing->wall_s);
+	writer_number(&w, "cpu_s", timing->cpu_s);
+	writer_whole(&w, "threads", timing->threads);
+	writer_end(&w);
+	writer_end(&w);
+	return writer_take(&w, length);
+}

@@ -1,0 +1,366 @@
+/* study_check.c - what the members of a study mean together: paths, reaches of varied fields, outputs, size.
+ *
+ * A check is left out when a member it stands on is wrong itself: one mistake, one problem. */
+#include "schema/study_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/fields.h"
+#include "schema/study_json.h"
+
+enum { POINTER_SIZE = 64 };
+
+/* Whether something below a pointer was found wrong. */
+static bool faulty(const struct problems *problems, const char *pointer)
+{
+	size_t length = strlen(pointer);
+	for (int i = 0; i < problems->n; i++) {
+		const char *at = problems->list[i].pointer;
+		if (strncmp(at, pointer, length) == 0 && (at[length] == '/' || at[length] == 0))
+			return true;
+	}
+	return problems->n_more > 0;
+}
+
+/* ---- paths ---- */
+
+struct pound_field study_check_field(const char *path)
+{
+	static const enum pound_field_type types[] = {
+	    [FIELD_REAL] = POUND_FIELD_REAL,
+	    [FIELD_COUNT] = POUND_FIELD_COUNT,
+	    [FIELD_CHOICE] = POUND_FIELD_CHOICE,
+	    [FIELD_BOOL] = POUND_FIELD_BOOL,
+	};
+	int oscillator;
+	const struct field *field = fields_scene(path, &oscillator);
+	size_t shift = oscillator == 1 ? sizeof(struct pound_oscillator) : 0;
+	return (struct pound_field){types[field->type],
+	                            field->offset - offsetof(struct pound_study, scene) + shift};
+}
+
+/* Why varying a field of the law at hand would change nothing, NULL when it may. */
+static const char *law_idle(const struct pound_scene *scene, const struct field *field, int oscillator)
+{
+	const struct pound_oscillator *o = scene->oscillators;
+	const struct pound_law *law = oscillator < 0 ? &scene->law : &o[oscillator].law;
+	if (oscillator >= 0 && !o[oscillator].has_law)
+		return "names the law of an oscillator that has none of its own";
+	if (oscillator < 0 && o[0].has_law && (o[1].has_law || o[1].rigid_wall))
+		return "has no effect: no oscillator follows the scene's law";
+	if (strcmp(fields_name(field), "target_demand") == 0 && law->yield_displacement > 0)
+		return "has no effect: yield_displacement_m is given";
+	return NULL;
+}
+
+/* Why a field may not vary in this scene, NULL when it may. */
+static const char *idle(const struct pound_scene *scene, const struct field *field, int oscillator)
+{
+	if (oscillator == 1 && scene->oscillators[1].rigid_wall)
+		return "names a field of a rigid wall, which has none";
+	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
+		return "has no effect: there is no contact in this scene";
+	if (strstr(field->pattern, "/law/"))
+		return law_idle(scene, field, oscillator);
+	return NULL;
+}
+
+static void check_path(const struct pound_study *study, const char *path, bool input, const char *pointer,
+                       struct problems *problems)
+{
+	char nearest[128];
+	int oscillator;
+	const struct pound_scene *scene = &study->scene;
+	const struct field *field = fields_scene(path, &oscillator);
+	const char *excitation = pound_excitation_name(scene->excitation.type);
+	if (!field && fields_nearest_path(path, nearest, sizeof nearest))
+		problems_add(problems, pointer, "names nothing in \"scene\", did you mean \"%s\"?", nearest);
+	else if (!field)
+		problems_add(problems, pointer,
+		             "must be a JSON Pointer into \"scene\", such as \"/contact/restitution\"");
+	else if (field->fixed)
+		problems_add(problems, pointer, "names a field that may not vary: %s", field->fixed);
+	else if (field->type >= FIELD_SEED)
+		problems_add(problems, pointer, "names several fields, not one");
+	else if (input && field->type != FIELD_REAL)
+		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");
+	else if (faulty(problems, "/scene"))
+		return;
+	else if (!fields_used(field, NULL, excitation))
+		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
+	else if (idle(scene, field, oscillator))
+		problems_add(problems, pointer, "%s", idle(scene, field, oscillator));
+}
+
+/* Inputs and sweeps in one row, as they are both named by paths. */
+struct varied {
+	const char *list; /* "inputs" or "sweep" */
+	int index;
+	const char *path; /* NULL: not read */
+	const char *name; /* of an input */
+};
+
+static int varied_all(const struct pound_study *study, struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX])
+{
+	int n = 0;
+	for (int j = 0; j < study->n_inputs; j++)
+		all[n++] = (struct varied){"inputs", j, study->inputs[j].path, study->inputs[j].name};
+	for (int s = 0; s < study->n_sweeps; s++)
+		all[n++] = (struct varied){"sweep", s, study->sweeps[s].path, NULL};
+	return n;
+}
+
+static void check_paths(const struct pound_study *study, struct problems *problems)
+{
+	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
+	int n = varied_all(study, all);
+	for (int i = 0; i < n; i++) {
+		char pointer[POINTER_SIZE];
+		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
+		if (all[i].path)
+			check_path(study, all[i].path, all[i].name != NULL, pointer, problems);
+		for (int k = 0; k < i; k++) {
+			if (all[i].path && all[k].path && strcmp(all[i].path, all[k].path) == 0) {
+				problems_add(problems, pointer, "names the same field as /%s/%d", all[k].list, all[k].index);
+				break;
+			}
+			if (all[i].name && all[k].name && strcmp(all[i].name, all[k].name) == 0) {
+				snprintf(pointer, sizeof pointer, "/inputs/%d/name", all[i].index);
+				problems_add(problems, pointer, "is the name of /inputs/%d too", all[k].index);
+				break;
+			}
+		}
+	}
+}
+
+/* ---- where varied values go ---- */
+
+static bool has_parameter(const struct pound_distribution *distribution, const char *name)
+{
+	for (int k = 0; pound_distribution_parameter(distribution->type, k); k++)
+		if (strcmp(pound_distribution_parameter(distribution->type, k), name) == 0)
+			return true;
+	return false;
+}
+
+/* Whether every value of a distribution is in a field's range.  An end that the distribution names is reached, any other
+ * (0 of a lognormal) is not. */
+static bool supports(const struct field *field, const struct pound_distribution *distribution)
+{
+	double low, high;
+	pound_distribution_support(distribution, &low, &high);
+	bool from = fields_in_range(field, low) || (low == field->min && !has_parameter(distribution, "min"));
+	bool to = fields_in_range(field, high) || (high == field->max && !has_parameter(distribution, "max"));
+	return from && to;
+}
+
+static void check_supports(const struct pound_study *study, struct problems *problems)
+{
+	for (int j = 0; j < study->n_inputs; j++) {
+		char pointer[POINTER_SIZE], range[80];
+		double low, high;
+		int oscillator;
+		const struct pound_input *input = &study->inputs[j];
+		snprintf(pointer, sizeof pointer, "/inputs/%d", j);
+		if (faulty(problems, pointer))
+			continue;
+		const struct field *field = fields_scene(input->path, &oscillator);
+		if (supports(field, &input->distribution))
+			continue;
+		snprintf(pointer, sizeof pointer, "/inputs/%d/distribution", j);
+		pound_distribution_support(&input->distribution, &low, &high);
+		fields_range(field, range, sizeof range);
+		problems_add(problems, pointer, "gives values from %.15g to %.15g, but %s must be %s", low, high,
+		             input->path, range);
+	}
+}
+
+/* The interval that a field of the scene covers over all samples and cells. */
+static void reach(const struct pound_study *study, const char *path, double *low, double *high)
+{
+	struct pound_field field = study_check_field(path);
+	*low = *high = pound_scene_field(&study->scene, field);
+	for (int j = 0; j < study->n_inputs; j++)
+		if (study->inputs[j].field.offset == field.offset)
+			pound_distribution_support(&study->inputs[j].distribution, low, high);
+	for (int s = 0; s < study->n_sweeps; s++) {
+		const struct pound_sweep *sweep = &study->sweeps[s];
+		if (sweep->field.offset != field.offset)
+			continue;
+		*low = *high = sweep->values[0];
+		for (int i = 1; i < sweep->n_values; i++) {
+			*low = fmin(*low, sweep->values[i]);
+			*high = fmax(*high, sweep->values[i]);
+		}
+	}
+}
+
+static bool excitation_uses(const struct pound_study *study, const char *pattern)
+{
+	return fields_used(fields_find(pattern), NULL, pound_excitation_name(study->scene.excitation.type));
+}
+
+/* Time steps of the shortest and the longest ground motion. */
+static void steps(const struct pound_study *study, double *least, double *most)
+{
+	double low, high, step_low, step_high, frequency_low, frequency_high;
+	if (study->scene.excitation.n_record) {
+		*least = *most = study->scene.excitation.n_record - 1;
+		return;
+	}
+	reach(study, "/excitation/time_step_s", &step_low, &step_high);
+	if (excitation_uses(study, "/scene/excitation/cycles")) {
+		reach(study, "/excitation/cycles", &low, &high);
+		reach(study, "/excitation/frequency_hz", &frequency_low, &frequency_high);
+		low /= frequency_high;
+		high /= frequency_low;
+	} else {
+		reach(study, "/excitation/duration_s", &low, &high);
+	}
+	*least = low / step_high;
+	*most = high / step_low;
+}
+
+static void check_excitation(const struct pound_study *study, struct problems *problems)
+{
+	double low, rise, fall, least, most;
+	if (excitation_uses(study, "/scene/excitation/rise")) {
+		reach(study, "/excitation/rise", &low, &rise);
+		reach(study, "/excitation/fall", &low, &fall);
+		if (rise + fall > 1.0)
+			problems_add(problems, "/scene/excitation/fall", "rise + fall must be at most 1, got %.15g",
+			             rise + fall);
+	}
+	steps(study, &least, &most);
+	if (!(least >= 1.0))
+		problems_add(problems, "/scene/excitation/time_step_s",
+		             "the ground motion must last one time step at least, got %.3g", least);
+	if (!(most < STUDY_SAMPLES_MAX))
+		problems_add(problems, "/scene/excitation/time_step_s",
+		             "a ground motion may have at most %d samples, this asks for %.3g", STUDY_SAMPLES_MAX,
+		             most + 1);
+}
+
+/* ---- outputs ---- */
+
+bool study_check_applies(const struct pound_study *study, int output)
+{
+	for (int cell = 0; cell < study_cells(study); cell++) {
+		struct pound_scene scene;
+		study_cell(study, cell, &scene);
+		if (pound_output_applies(output, &scene))
+			return true;
+	}
+	return false;
+}
+
+static void check_outputs(const struct pound_study *study, struct problems *problems)
+{
+	for (int o = 0; o < study->n_outputs; o++) {
+		char pointer[POINTER_SIZE];
+		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
+		if (!study_check_applies(study, study->outputs[o]))
+			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
+			             fields_output_needs(study->outputs[o]));
+	}
+}
+
+/* ---- size ---- */
+
+static double cells(const struct pound_study *study)
+{
+	double product = 1.0;
+	for (int s = 0; s < study->n_sweeps; s++)
+		product *= study->sweeps[s].n_values;
+	return product;
+}
+
+/* Runs of one cell for one signal. */
+static double design_runs(const struct pound_study *study)
+{
+	bool response = study->kind == POUND_KIND_RESPONSE;
+	return response ? 1.0 : (double)study->design.rows * (study->n_inputs + 2);
+}
+
+static void check_size(const struct pound_study *study, struct problems *problems)
+{
+	bool response = study->kind == POUND_KIND_RESPONSE;
+	const char *pointer = response ? "/scene/excitation/signals" : "/design/rows";
+	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
+	double at_once = cells(study) * (response ? 1 : study->n_inputs + 2) * study_samples(study);
+	if (runs > STUDY_RUNS_MAX)
+		problems_add(problems, pointer, "asks for %.15g pounding runs, a study may have at most %d", runs,
+		             STUDY_RUNS_MAX);
+	else if (runs * study_samples(study) > STUDY_WORK_MAX)
+		problems_add(problems, pointer, "asks for %.3g samples of ground motion in all runs, at most %.0e",
+		             runs * study_samples(study), STUDY_WORK_MAX);
+	if (at_once > STUDY_AT_ONCE_MAX)
+		problems_add(problems, "/sweep",
+		             "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
+		             "a motion), at most %d",
+		             at_once, STUDY_AT_ONCE_MAX);
+}
+
+/* Checks what members mean together.
+ *
+ * Given    study     -         -       read, with problems or without
+ * Returns  problems  -         -       more of them
+ *
+ * Test     unit_study_check
+ */
+void study_check(const struct pound_study *study, struct problems *problems)
+{
+	check_paths(study, problems);
+	if (faulty(problems, "/kind"))
+		return;
+	check_supports(study, problems);
+	if (faulty(problems, "/sweep"))
+		return;
+	if (cells(study) > STUDY_CELLS_MAX) {
+		problems_add(problems, "/sweep", "asks for %.15g cells, a study may have at most %d", cells(study),
+		             STUDY_CELLS_MAX);
+		return;
+	}
+	if (faulty(problems, "/scene") || faulty(problems, "/inputs"))
+		return;
+	if (!faulty(problems, "/outputs"))
+		check_outputs(study, problems);
+	check_excitation(study, problems);
+	if (!faulty(problems, "/scene") && !faulty(problems, "/design"))
+		check_size(study, problems);
+}
+
+/* ---- what a study asks for ---- */
+
+int study_cells(const struct pound_study *study)
+{
+	return (int)cells(study);
+}
+
+int64_t study_runs(const struct pound_study *study)
+{
+	return (int64_t)(cells(study) * design_runs(study) * study->scene.excitation.signals);
+}
+
+double study_samples(const struct pound_study *study)
+{
+	double least, most;
+	steps(study, &least, &most);
+	return floor(most + 0.5) + 1;
+}
+
+/* The scene of a cell; the last sweep runs fastest.
+ *
+ * Test     unit_study_check: cells_are_the_product_of_the_sweeps_the_last_one_fastest
+ */
+void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene)
+{
+	*scene = study->scene;
+	for (int s = study->n_sweeps - 1; s >= 0; s--) {
+		const struct pound_sweep *sweep = &study->sweeps[s];
+		pound_scene_assign(scene, sweep->field, sweep->values[cell % sweep->n_values]);
+		cell /= sweep->n_values;
+	}
+}

@@ -1,0 +1,16 @@
+/* study_check.h - what the members of a study mean together.  For study_json.c. */
+#ifndef STUDY_CHECK_H
+#define STUDY_CHECK_H
+
+#include "engine/pound.h"
+#include "schema/problems.h"
+
+/* Adds what is wrong between members that are each right on their own. */
+void study_check(const struct pound_study *study, struct problems *problems);
+
+bool study_check_applies(const struct pound_study *study, int output); /* in one cell at least */
+
+/* The varied field that a path names, for pound_scene_assign; the path names one. */
+struct pound_field study_check_field(const char *path);
+
+#endif
