@@ -1,7 +1,7 @@
 /* indices.h - from the outputs of a design's runs to sensitivity indexes and their intervals.
  *
- *   sample values -> one number for each sample of a row (sobol.c) -> moments of a row (estimator.c)
- *                 -> means of moments over rows, all rows or resampled ones (interval.c) -> indexes (estimator.c)
+ *   sample values -> one number for each sample of a row (rows.c) -> moments of a row (estimator.c)
+ *                 -> their means over all rows or resampled ones (interval.c) -> indexes (estimator.c)
  *
  * A row of the design with all its samples and signals is the unit throughout: it is kept or dropped, and
  * resampled, as a whole.  Nothing here allocates; sums are taken in the order of rows. */
@@ -17,8 +17,30 @@ struct pound_sample_values {
 	const double *numerator, *denominator; /* (n_rows x (n_inputs + 2) x n_signals) each */
 };
 
+/* The rows without a failed run.  y: outputs, centred by the mean of A and B; noise: their covariances over draws of
+ * the signals, for the pairs of samples that estimators multiply, with c the sample with column j from B. */
+struct pound_rows {
+	int n_rows, n_inputs, n_signals;
+	double mean, variance_floor; /* a variance up to the floor is rounding */
+	int64_t *row;                /* which row of the design  (n_rows) */
+	double *y;                   /* (n_rows x (n_inputs + 2)) */
+	double *noise;               /* (n_rows x pound_rows_noises); NAN: one signal */
+};
+
+enum {
+	POUND_NOISE_AA,
+	POUND_NOISE_BB,
+	POUND_NOISE_AB,
+	POUND_NOISE_MIXED, /* from here the covariances cc, ac, bc of every j */
+	POUND_NOISE_STEP = 3,
+};
+
+int pound_rows_noises(int n_inputs);
+size_t pound_rows_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
+void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch);
+
 /* An estimator: what it adds up over the rows, and the indexes as a function of the means of that.
- * y: the outputs of a row's samples, centred  (n_inputs + 2);  m: moments;  value: first then total  (2 x n_inputs) */
+ * y: the outputs of a row's samples  (n_inputs + 2);  m: moments;  value: first then total  (2 x n_inputs) */
 struct pound_estimator {
 	const char *name;
 	int (*n_moments)(int n_inputs);
@@ -28,31 +50,23 @@ struct pound_estimator {
 
 const struct pound_estimator *pound_estimator_row(int row); /* NULL past the last */
 
-/* Moments of the rows in tiles of eight columns: a resample reads whole cache lines. */
-enum { POUND_TILE = 8 };
-
-struct pound_moments {
-	int n_rows, n_moments;
-	double *tiles; /* (pound_interval_tiles(n_moments) x n_rows x POUND_TILE), zero beyond n_moments */
-};
-
-/* Numbers that are a function of the means of moments. */
+/* Numbers that are a function of the means over the rows of some moments of each row. */
 struct pound_statistic {
-	int n_values;
+	int n_moments, n_values;
+	void (*moments)(const void *subject, int row, double *m);
 	void (*values)(const void *subject, const double *mean, double *value);
 	const void *subject;
 };
 
-enum { POUND_RESAMPLES = 2000, POUND_MOMENTS_MAX = 5 * POUND_INPUTS_MAX + 16 };
+enum {
+	POUND_RESAMPLES = 2000,
+	POUND_MOMENTS_MAX = 5 * POUND_INPUTS_MAX + 16,
+	POUND_VALUES_MAX = POUND_MOMENTS_MAX
+};
 
-int pound_interval_tiles(int n_moments);
-double *pound_interval_moment(const struct pound_moments *moments, int row, int tile); /* (POUND_TILE) */
-void pound_interval_means(const struct pound_moments *moments, double *mean);
-void pound_interval_bootstrap(const struct pound_moments *moments, const struct pound_statistic *statistic,
-                              uint64_t seed, double *scratch, struct pound_estimate *estimates);
-
-/* Ratio of means over the signals, and the variance of that ratio. */
-double pound_sobol_ratio(const double *numerator, const double *denominator, int n_signals, double *variance);
+size_t pound_interval_scratch(int n_rows, int n_moments, int n_values); /* doubles */
+void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
+                              double *scratch, struct pound_estimate *estimates);
 
 size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, double *scratch,

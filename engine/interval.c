@@ -16,7 +16,7 @@
 #include <string.h>
 
 // a segment of rows and its tiles stay in the cache while they are drawn from
-enum { SEGMENT = 1024, SEGMENTS_MAX = (1 << 20) / SEGMENT, GROUP = 8, DRAWS_PER_WORD_MAX = 8 };
+enum { SEGMENT = 1024, SEGMENTS_MAX = (1 << 20) / SEGMENT, GROUP = 8, DRAWS_PER_WORD_MAX = 8, TILE = 8 };
 
 /* Draws of whole numbers below n, in order; several from each 64-bit word. */
 struct draws {
@@ -83,26 +83,40 @@ static void tile_add(const double *tile, const uint32_t *draw, int n, double *su
 	if (i < n)
 		for (int k = 0; k < 4; k++)
 			even[k] += row[4 * (size_t)draw[i] + k];
-	for (int k = 0; k < POUND_TILE; k++)
+	for (int k = 0; k < TILE; k++)
 		sum[k] += even[k / 2][k % 2] + odd[k / 2][k % 2];
 }
 
-int pound_interval_tiles(int n_moments)
+/* Moments of all rows in tiles of eight columns, so that a resample reads whole cache lines. */
+struct moments {
+	int n_rows, n_moments, tiles;
+	double *tile; /* (tiles x n_rows x TILE), zero beyond n_moments */
+};
+
+static double *moment_tile(const struct moments *moments, int row, int tile)
 {
-	return (n_moments + POUND_TILE - 1) / POUND_TILE;
+	return moments->tile + ((size_t)tile * moments->n_rows + row) * TILE;
 }
 
-double *pound_interval_moment(const struct pound_moments *moments, int row, int tile)
+static struct moments moments_of(const struct pound_statistic *statistic, int n_rows, double *scratch)
 {
-	return moments->tiles + ((size_t)tile * moments->n_rows + row) * POUND_TILE;
+	struct moments moments = {n_rows, statistic->n_moments, (statistic->n_moments + TILE - 1) / TILE,
+	                          scratch};
+	for (int i = 0; i < n_rows; i++) {
+		double m[POUND_MOMENTS_MAX] = {0};
+		statistic->moments(statistic->subject, i, m);
+		for (int t = 0; t < moments.tiles; t++)
+			memcpy(moment_tile(&moments, i, t), m + TILE * t, sizeof *m * TILE);
+	}
+	return moments;
 }
 
-void pound_interval_means(const struct pound_moments *moments, double *mean)
+static void moments_means(const struct moments *moments, double *mean)
 {
 	for (int k = 0; k < moments->n_moments; k++) {
 		double sum = 0.0;
 		for (int i = 0; i < moments->n_rows; i++)
-			sum += pound_interval_moment(moments, i, k / POUND_TILE)[k % POUND_TILE];
+			sum += moment_tile(moments, i, k / TILE)[k % TILE];
 		mean[k] = sum / moments->n_rows;
 	}
 }
@@ -122,8 +136,8 @@ static void segment_shares(int n_rows, uint64_t seed, int resample, int *share)
 }
 
 /* Adds a resample's rows of one segment to its sums. */
-static void segment_add(const struct pound_moments *moments, int segment, uint64_t seed, int resample,
-                        int share, double *sum)
+static void segment_add(const struct moments *moments, int segment, uint64_t seed, int resample, int share,
+                        double *sum)
 {
 	const int first = segment * SEGMENT, rows = moments->n_rows - first;
 	uint32_t draw[SEGMENT + 4 * DRAWS_PER_WORD_MAX];
@@ -131,8 +145,8 @@ static void segment_add(const struct pound_moments *moments, int segment, uint64
 	for (int left = share; left > 0; left -= SEGMENT) {
 		int n = left < SEGMENT ? left : SEGMENT;
 		draws_fill(&draws, n, draw);
-		for (int t = 0; t < pound_interval_tiles(moments->n_moments); t++)
-			tile_add(pound_interval_moment(moments, first, t), draw, n, sum + POUND_TILE * t);
+		for (int t = 0; t < moments->tiles; t++)
+			tile_add(moment_tile(moments, first, t), draw, n, sum + TILE * t);
 	}
 }
 
@@ -141,7 +155,7 @@ static void segment_add(const struct pound_moments *moments, int segment, uint64
  * Which segment each draw falls into comes first, then the rows within the segments: the same law as drawing
  * from all rows, and a segment is read from memory once for the whole group, however many rows there are.
  */
-static void resample_means(const struct pound_moments *moments, uint64_t seed, int first,
+static void resample_means(const struct moments *moments, uint64_t seed, int first,
                            double mean[GROUP][POUND_MOMENTS_MAX])
 {
 	const int segments = (moments->n_rows + SEGMENT - 1) / SEGMENT;
@@ -173,13 +187,19 @@ static double quantile(double *value, int n, double p)
 	return at + ((n - 1) * p - below) * (next - at);
 }
 
-/* 95 % percentile bootstrap intervals of the values of a statistic.
+size_t pound_interval_scratch(int n_rows, int n_moments, int n_values)
+{
+	size_t tiles = (n_moments + TILE - 1) / TILE;
+	return tiles * n_rows * TILE + (size_t)n_values * POUND_RESAMPLES + TILE;
+}
+
+/* A statistic's values, with 95 % percentile bootstrap intervals.
  *
- * Given    moments    (n_rows x n_moments)           -    of the rows
- *          statistic  -                              -    n_values numbers from means of moments
- *          seed       -                              -    same seed, same resamples
- * Returns  estimates  (n_values)                     -    low and high; NAN where no resample defines the value
- * Memory   scratch    (n_values x POUND_RESAMPLES)
+ * Given    statistic  -               moments of a row, and n_values numbers from their means
+ *          n_rows     -               [1, 2^20]
+ *          seed       -               same seed, same resamples
+ * Returns  estimates  (n_values)      low and high are NAN where no resample defines the value
+ * Memory   scratch    (pound_interval_scratch)
  *
  * Resamples for which a value is not defined (all rows alike) are left out of its quantiles.
  *
@@ -187,26 +207,33 @@ static double quantile(double *value, int n, double p)
  * Source   percentile interval, Efron, Tibshirani 1993, section 13.3
  * Test     unit_interval: intervals_of_a_mean_are_those_of_the_normal_law
  */
-void pound_interval_bootstrap(const struct pound_moments *moments, const struct pound_statistic *statistic,
-                              uint64_t seed, double *scratch, struct pound_estimate *estimates)
+void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
+                              double *scratch, struct pound_estimate *estimates)
 {
-	enum { VALUES_MAX = 2 * POUND_INPUTS_MAX };
-	double mean[GROUP][POUND_MOMENTS_MAX], value[VALUES_MAX];
-	int defined[VALUES_MAX] = {0};
-	assert(statistic->n_values <= VALUES_MAX && moments->n_moments <= POUND_MOMENTS_MAX);
 	static_assert(POUND_RESAMPLES % GROUP == 0, "groups are whole");
-	assert(moments->n_rows <= SEGMENTS_MAX * SEGMENT);
+	static_assert(POUND_MOMENTS_MAX % TILE == 0, "tiles are whole");
+	assert(statistic->n_moments <= POUND_MOMENTS_MAX && statistic->n_values <= POUND_VALUES_MAX);
+	assert(n_rows <= SEGMENTS_MAX * SEGMENT);
+	double *on_cache_line = (double *)(((uintptr_t)scratch + 63) / 64 * 64);
+	const struct moments moments = moments_of(statistic, n_rows, on_cache_line);
+	double *resampled = moments.tile + (size_t)moments.tiles * n_rows * TILE;
+	double mean[GROUP][POUND_MOMENTS_MAX], value[POUND_VALUES_MAX];
+	int defined[POUND_VALUES_MAX] = {0};
+	moments_means(&moments, mean[0]);
+	statistic->values(statistic->subject, mean[0], value);
+	for (int v = 0; v < statistic->n_values; v++)
+		estimates[v] = (struct pound_estimate){value[v], NAN, NAN};
 	for (int r = 0; r < POUND_RESAMPLES; r++) {
 		if (r % GROUP == 0)
-			resample_means(moments, seed, r, mean);
+			resample_means(&moments, seed, r, mean);
 		statistic->values(statistic->subject, mean[r % GROUP], value);
 		for (int v = 0; v < statistic->n_values; v++)
 			if (!isnan(value[v]))
-				scratch[v * POUND_RESAMPLES + defined[v]++] = value[v];
+				resampled[v * POUND_RESAMPLES + defined[v]++] = value[v];
 	}
-	for (int v = 0; v < statistic->n_values; v++) {
-		double *values = scratch + v * POUND_RESAMPLES;
-		estimates[v].low = defined[v] ? quantile(values, defined[v], 0.025) : NAN;
-		estimates[v].high = defined[v] ? quantile(values, defined[v], 0.975) : NAN;
-	}
+	for (int v = 0; v < statistic->n_values; v++)
+		if (defined[v]) {
+			estimates[v].low = quantile(resampled + v * POUND_RESAMPLES, defined[v], 0.025);
+			estimates[v].high = quantile(resampled + v * POUND_RESAMPLES, defined[v], 0.975);
+		}
 }

@@ -4,47 +4,43 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
-#include <string.h>
 
-/* Moments of n rows from a function of row and column, on a cache line; freed by the caller through tiles. */
-static struct pound_moments moments_of(int n_rows, int n_moments, double (*value)(int row, int k))
-{
-	int tiles = pound_interval_tiles(n_moments);
-	struct pound_moments m = {n_rows, n_moments,
-	                          aligned_alloc(64, sizeof(double) * POUND_TILE * tiles * (size_t)n_rows)};
-	for (int i = 0; i < n_rows; i++)
-		for (int k = 0; k < tiles * POUND_TILE; k++)
-			pound_interval_moment(&m, i, k / POUND_TILE)[k % POUND_TILE] = k < n_moments ? value(i, k) : 0.0;
-	return m;
-}
-
-/* What a statistic saw: the sums over all resamples of its means and of their products. */
+/* What a statistic is of and what it saw: the sums over all resamples of its means and of their products. */
 struct seen {
 	int n_moments, resamples;
+	double (*moment)(int row, int k);
 	double sum[64], product[64][64];
 };
 
+static void moments_of_seen(const void *subject, int row, double *m)
+{
+	const struct seen *seen = subject;
+	for (int k = 0; k < seen->n_moments; k++)
+		m[k] = seen->moment(row, k);
+}
+
+/* The first value, of all rows, is -1; the others are the resamples' numbers. */
 static void watch(const void *subject, const double *mean, double *value)
 {
 	struct seen *seen = (struct seen *)subject;
+	*value = seen->resamples++;
+	if (*value < 0.0)
+		return;
 	for (int k = 0; k < seen->n_moments; k++) {
 		seen->sum[k] += mean[k];
 		for (int l = 0; l < seen->n_moments; l++)
 			seen->product[k][l] += mean[k] * mean[l];
 	}
-	*value = seen->resamples++;
 }
 
-static struct seen watched(const struct pound_moments *moments, uint64_t seed)
+static struct pound_estimate *estimates_of(struct pound_statistic statistic, int n_rows, uint64_t seed)
 {
-	struct seen seen = {.n_moments = moments->n_moments};
-	struct pound_statistic statistic = {1, watch, &seen};
-	struct pound_estimate estimate;
-	double *scratch = malloc(sizeof *scratch * POUND_RESAMPLES);
-	pound_interval_bootstrap(moments, &statistic, seed, scratch, &estimate);
+	struct pound_estimate *estimates = malloc(sizeof *estimates * statistic.n_values);
+	double *scratch =
+	    malloc(sizeof *scratch * pound_interval_scratch(n_rows, statistic.n_moments, statistic.n_values));
+	pound_interval_bootstrap(&statistic, n_rows, seed, scratch, estimates);
 	free(scratch);
-	assert_int_equal(seen.resamples, POUND_RESAMPLES);
-	return seen;
+	return estimates;
 }
 
 static double one_hot(int row, int k)
@@ -61,11 +57,14 @@ static double by_128(int row, int k)
 }
 
 /* Counts of resampled rows in groups of given shares against the multinomial law's mean and covariance. */
-static void check_multinomial(struct pound_moments moments, const double *share, uint64_t seed)
+static void check_multinomial(int n_rows, int groups, double (*moment)(int, int), const double *share,
+                              uint64_t seed)
 {
-	struct seen seen = watched(&moments, seed);
-	const double n = moments.n_rows, b = POUND_RESAMPLES;
-	for (int k = 0; k < moments.n_moments; k++) {
+	struct seen seen = {.n_moments = groups, .resamples = -1, .moment = moment};
+	free(estimates_of((struct pound_statistic){groups, 1, moments_of_seen, watch, &seen}, n_rows, seed));
+	assert_int_equal(seen.resamples, POUND_RESAMPLES);
+	const double n = n_rows, b = POUND_RESAMPLES;
+	for (int k = 0; k < groups; k++) {
 		double variance = share[k] * (1.0 - share[k]) / n;
 		check_near(seen.sum[k] / b, share[k], 5.0 * sqrt(variance / b));
 		for (int l = 0; l <= k; l++) {
@@ -78,7 +77,6 @@ static void check_multinomial(struct pound_moments moments, const double *share,
 			check_near(got, want, 5.0 * sqrt(spread));
 		}
 	}
-	free(moments.tiles);
 }
 
 static void rows_are_drawn_as_often_as_a_multinomial_says(void **state)
@@ -89,13 +87,13 @@ static void rows_are_drawn_as_often_as_a_multinomial_says(void **state)
 	for (int s = 0; s < 5; s++) {
 		for (int k = 0; k < sizes[s]; k++)
 			share[k] = 1.0 / sizes[s];
-		check_multinomial(moments_of(sizes[s], sizes[s], one_hot), share, s);
+		check_multinomial(sizes[s], sizes[s], one_hot, share, s);
 	}
 	static const int larger[] = {48 * 20, 48 * 22, 48 * 64, 48 * 111};
 	for (int s = 0; s < 4; s++) {
 		for (int k = 0; k < 48; k++)
 			share[k] = 1.0 / 48.0;
-		check_multinomial(moments_of(larger[s], 48, modulo), share, s);
+		check_multinomial(larger[s], 48, modulo, share, s);
 	}
 }
 
@@ -108,7 +106,7 @@ static void rows_beyond_the_first_segment_are_drawn_as_often_as_the_others(void 
 		int groups = (sizes[s] + 127) / 128;
 		for (int k = 0; k < groups; k++)
 			share[k] = fmin(128.0, sizes[s] - 128.0 * k) / sizes[s];
-		check_multinomial(moments_of(sizes[s], groups, by_128), share, s);
+		check_multinomial(sizes[s], groups, by_128, share, s);
 	}
 }
 
@@ -116,15 +114,19 @@ static void the_interval_ends_at_the_quantiles_of_the_resamples(void **state)
 {
 	(void)state;
 	// the values are 0, 1, ... 1999 in the order of the resamples
-	struct pound_moments moments = moments_of(10, 1, one_hot);
-	struct seen seen = {.n_moments = 1};
-	struct pound_statistic statistic = {1, watch, &seen};
-	struct pound_estimate estimate;
-	double scratch[POUND_RESAMPLES];
-	pound_interval_bootstrap(&moments, &statistic, 1, scratch, &estimate);
-	check_near(estimate.low, 0.025 * 1999.0, 1e-12);
-	check_near(estimate.high, 0.975 * 1999.0, 1e-12);
-	free(moments.tiles);
+	struct seen seen = {.n_moments = 1, .resamples = -1, .moment = one_hot};
+	struct pound_estimate *e =
+	    estimates_of((struct pound_statistic){1, 1, moments_of_seen, watch, &seen}, 10, 1);
+	check_near(e->value, -1.0, 0.0);
+	check_near(e->low, 0.025 * 1999.0, 1e-12);
+	check_near(e->high, 0.975 * 1999.0, 1e-12);
+	free(e);
+}
+
+static void first_row(const void *subject, int row, double *m)
+{
+	(void)subject;
+	*m = row == 0;
 }
 
 /* 7 for a resample that holds row 0, undefined for the others. */
@@ -138,25 +140,24 @@ static void seven_or_nothing(const void *subject, const double *mean, double *va
 static void undefined_resamples_are_left_out(void **state)
 {
 	(void)state;
-	struct pound_moments moments = moments_of(10, 1, one_hot);
-	struct pound_statistic statistic = {2, seven_or_nothing, NULL};
-	struct pound_estimate estimates[2];
-	double scratch[2 * POUND_RESAMPLES];
-	pound_interval_bootstrap(&moments, &statistic, 1, scratch, estimates);
-	check_near(estimates[0].low, 7.0, 0.0);
-	check_near(estimates[0].high, 7.0, 0.0);
-	assert_true(isnan(estimates[1].low) && isnan(estimates[1].high));
-	free(moments.tiles);
+	struct pound_estimate *e =
+	    estimates_of((struct pound_statistic){1, 2, first_row, seven_or_nothing, NULL}, 10, 1);
+	check_near(e[0].low, 7.0, 0.0);
+	check_near(e[0].high, 7.0, 0.0);
+	assert_true(isnan(e[1].low) && isnan(e[1].high));
+	free(e);
 }
 
 enum { ROWS = 3000 };
 
-static double normal_row(int row, int k)
+static void normal_row(const void *subject, int row, double *m)
 {
-	return k == 0 ? gsl_cdf_ugaussian_Pinv((row + 0.5) / ROWS) : 1e3 - 2.0 * normal_row(row, 0);
+	(void)subject;
+	m[0] = gsl_cdf_ugaussian_Pinv((row + 0.5) / ROWS);
+	m[1] = 1e3 - 2.0 * m[0];
 }
 
-static void first_mean(const void *subject, const double *mean, double *value)
+static void both_means(const void *subject, const double *mean, double *value)
 {
 	(void)subject;
 	value[0] = mean[0];
@@ -166,23 +167,20 @@ static void first_mean(const void *subject, const double *mean, double *value)
 static void intervals_of_a_mean_are_those_of_the_normal_law(void **state)
 {
 	(void)state;
-	struct pound_moments moments = moments_of(ROWS, 2, normal_row);
-	struct pound_statistic statistic = {2, first_mean, NULL};
-	struct pound_estimate e[2], again[2], other[2];
-	double scratch[2 * POUND_RESAMPLES];
-	pound_interval_bootstrap(&moments, &statistic, 5, scratch, e);
+	const struct pound_statistic statistic = {2, 2, normal_row, both_means, NULL};
+	struct pound_estimate *e = estimates_of(statistic, ROWS, 5);
+	check_near(e[0].value, 0.0, 1e-13);
 	// a 2.5 % quantile of 2000 normal values has deviation sqrt(.025 .975 / 2000) / .0584 = .060
 	check_near(e[0].low * sqrt(ROWS), -1.95996, 5.0 * 0.060);
 	check_near(e[0].high * sqrt(ROWS), 1.95996, 5.0 * 0.060);
 	check_near(e[1].low, 1e3 - 2.0 * e[0].high, 1e-10);
 	check_near(e[1].high, 1e3 - 2.0 * e[0].low, 1e-10);
 
-	pound_interval_bootstrap(&moments, &statistic, 5, scratch, again);
-	for (int v = 0; v < 2; v++)
-		assert_true(again[v].low == e[v].low && again[v].high == e[v].high);
-	pound_interval_bootstrap(&moments, &statistic, 6, scratch, other);
+	struct pound_estimate *again = estimates_of(statistic, ROWS, 5),
+	                      *other = estimates_of(statistic, ROWS, 6);
+	assert_memory_equal(again, e, sizeof *e * 2);
 	assert_true(other[0].low != e[0].low && other[0].high != e[0].high);
-	free(moments.tiles);
+	free(e), free(again), free(other);
 }
 
 CHECK_MAIN(cmocka_unit_test(rows_are_drawn_as_often_as_a_multinomial_says),
