@@ -149,7 +149,7 @@ static void a_bad_study_gets_the_same_list_from_run_and_from_the_server(void **s
 
 static void a_table_fits_in_100_columns(void **state)
 {
-	static const char *const kinds[] = {"response", "sensitivity"};
+	static const char *const kinds[] = {"response", "sensitivity_small"};
 	(void)state;
 	for (int i = 0; i < 2; i++) {
 		struct program_outcome document = POUND("example", kinds[i]);
@@ -167,7 +167,7 @@ static void a_table_fits_in_100_columns(void **state)
 static void csv_has_as_many_cells_in_every_row(void **state)
 {
 	(void)state;
-	struct program_outcome document = POUND("example", "sensitivity");
+	struct program_outcome document = POUND("example", "sensitivity_small");
 	struct program_outcome csv =
 	    program_run((const char *const[]){"pound", "run", "--format", "csv", "-", NULL}, document.out);
 	program_expect(&csv, 0);
@@ -253,7 +253,7 @@ static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
 	static const int widths[] = {120, 60, 20};
 	char study[96];
 	(void)state;
-	example_file("sensitivity", study);
+	example_file("sensitivity_small", study);
 	for (int i = 0; i < 3; i++) {
 		char *bar = drawn((const char *const[]){"pound", "run", study, NULL}, widths[i]);
 		size_t n = strlen(bar);
