@@ -30,7 +30,7 @@ typedef int64_t vi __attribute__((vector_size(8 * POUND_LANES)));
 
 LANE_INLINE vd vsplat(double x)
 {
-	vd r = {0};
+	vd r;
 	for (int l = 0; l < W; l++)
 		LANE(r, l) = x;
 	return r;
@@ -54,19 +54,6 @@ LANE_INLINE vd vselect(vi mask, vd a, vd b)
 #endif
 }
 
-/* Mask of one lane. */
-LANE_INLINE vi vonly(int lane)
-{
-	vi r = {0};
-	for (int l = 0; l < W; l++)
-		LANE(r, l) = -(int64_t)(l == lane);
-	return r;
-}
-
-LANE_INLINE vi vselect_mask(vi mask, vi a, vi b)
-{
-	return (a & mask) | (b & ~mask);
-}
 LANE_INLINE vd vmax(vd a, vd b)
 {
 	return vselect(vless(a, b), b, a);
@@ -87,7 +74,7 @@ LANE_INLINE vd vabs(vd a)
 
 LANE_INLINE vd vfma(vd a, vd b, vd c)
 {
-	vd r = {0};
+	vd r;
 	for (int l = 0; l < W; l++)
 		LANE(r, l) = __builtin_fma(LANE(a, l), LANE(b, l), LANE(c, l));
 	return r;
@@ -95,7 +82,7 @@ LANE_INLINE vd vfma(vd a, vd b, vd c)
 
 LANE_INLINE vd vsqrt(vd a)
 {
-	vd r = {0};
+	vd r;
 	for (int l = 0; l < W; l++)
 		LANE(r, l) = __builtin_sqrt(LANE(a, l));
 	return r;

@@ -513,7 +513,7 @@ struct reply routes_answer(struct request *request)
 		strcat(allow, !strcmp(route->method, "GET") ? ", HEAD" : "");
 	}
 	if (!allow[0])
-		return routes_problem(ROUTES_NOT_FOUND, "there is nothing at this path");
+		return routes_problem(ROUTES_NOT_FOUND, "there is no such path");
 	struct reply reply = routes_problem(ROUTES_NOT_ALLOWED, "this path does not take that method");
 	memcpy(reply.allow, allow, sizeof reply.allow);
 	return reply;

@@ -1,0 +1,77 @@
+/* service.h - a real poundd in a child process, on a free port, with a database in a directory of its own.
+ *
+ *   struct service *service = service_new();
+ *   service_start(service, 2);
+ *   struct answer created = service_post(service, study);
+ *   ...
+ *   service_stop(service);
+ *   service_free(service);
+ *
+ * What goes wrong in here fails the test. */
+#ifndef SERVICE_H
+#define SERVICE_H
+
+#include "tests/check.h"
+
+#include <stdint.h>
+#include <sys/types.h>
+
+struct service {
+	pid_t pid; /* 0: not running */
+	int port;
+	char directory[64], database[96], log[96];
+};
+
+struct service *service_new(void);                          /* a directory, no server yet */
+void service_free(struct service *service);                 /* kills what runs, removes the directory */
+void service_start(struct service *service, int n_workers); /* returns when it listens */
+int service_run(const struct service *service,
+                int n_workers);             /* another one: its exit status, when it ends */
+void service_stop(struct service *service); /* SIGTERM; it must exit with 0 */
+void service_kill(struct service *service); /* SIGKILL */
+
+struct answer {
+	int status;
+	char *body; /* (length) bytes and a zero */
+	size_t length;
+	char location[64], type[64], allow[64], etag[64], retry_after[16];
+};
+
+struct ask {
+	const char *method, *path;
+	const char *headers[3];
+	const char *body;
+	size_t length;
+	bool chunked;
+};
+
+struct answer service_ask(const struct service *service, const struct ask *ask);
+struct answer service_get(const struct service *service, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+struct answer service_post(const struct service *service, const char *study);
+void answer_free(struct answer *answer);
+
+struct reading *answer_read(const struct answer *answer); /* its JSON, for reading_close */
+
+/* Posts a study that must be accepted; the id is 16 characters. */
+void service_submit(const struct service *service, const char *study, char id[17]);
+/* Waits until a study has a status, or is finished, or has runs_done >= runs; returns whether it has that status. */
+bool service_wait(const struct service *service, const char *id, const char *status, double runs);
+
+/* A number out of the server's database. */
+int64_t service_number(const struct service *service, const char *sql);
+/* Changes the database of a server that does not run. */
+void service_change(const struct service *service, const char *sql);
+/* A text out of the server's database, for free. */
+char *service_text(const struct service *service, const char *sql);
+
+/* A sensitivity study with `rows` rows and `signals` signals of 20 s; 3 inputs, so 5 rows signals runs.  For free. */
+char *service_study(int rows, int signals, int seed);
+
+/* A result with its timing taken out; in place. */
+char *service_timeless(char *result);
+
+int service_setup(void **state);    /* a service that runs with two workers */
+int service_teardown(void **state); /* stops it */
+
+#endif

@@ -1,0 +1,143 @@
+/* Many studies, and studies that are not wanted any more. */
+#include <dirent.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "schema/reading.h"
+#include "tests/service.h"
+
+static int ask_status(const struct service *service, const char *method, const char *id, const char *rest)
+{
+	char path[64];
+	snprintf(path, sizeof path, "/v1/studies/%s%s", id, rest);
+	struct answer answer = service_ask(service, &(struct ask){.method = method, .path = path});
+	int status = answer.status;
+	answer_free(&answer);
+	return status;
+}
+
+static void two_hundred_queued_studies_all_finish(void **state)
+{
+	enum { N = 200 };
+	struct service *service = *state;
+	char last[17];
+	for (int i = 0; i < N; i++) {
+		char *study = service_study(2, 1, i);
+		service_submit(service, study, last);
+		free(study);
+	}
+	// the oldest goes first, so that little is left when the youngest is done
+	assert_true(service_wait(service, last, "succeeded", 0));
+	service_stop(service);
+	service_start(service, 2);
+	assert_true(service_wait(service, last, "succeeded", 0));
+	char *study = service_study(2, 1, N);
+	service_submit(service, study, last);
+	assert_true(service_wait(service, last, "succeeded", 0));
+	free(study);
+	service_stop(service);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'"), N + 1);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM document WHERE name = 'result'"), N + 1);
+}
+
+/* Submits a study, waits until a part of its runs is done, and asks for its end. */
+static void ended_by(struct service *service, double part, const char *method, const char *rest, int status,
+                     char id[17])
+{
+	char *study = service_study(60, 5, 1);
+	service_submit(service, study, id);
+	free(study);
+	service_wait(service, id, part > 0 ? "running" : "queued", part * 60 * 5 * 5);
+	assert_int_equal(ask_status(service, method, id, rest), status);
+}
+
+static void a_study_can_be_cancelled_at_any_moment(void **state)
+{
+	struct service *service = *state;
+	char id[17];
+	for (int i = 0; i < 12; i++) {
+		ended_by(service, 0.05 * i, "POST", "/cancel", 200, id);
+		assert_int_equal(ask_status(service, "POST", id, "/cancel"), 200);
+		assert_int_equal(ask_status(service, "GET", id, "/results"), 409);
+		assert_int_equal(ask_status(service, "GET", id, "/samples"), 409);
+		assert_int_equal(ask_status(service, "GET", id, "/request"), 200);
+		struct answer answer = service_get(service, "/v1/studies/%s", id);
+		struct reading *status = answer_read(&answer);
+		assert_string_equal(reading_text(status, "/status"), "cancelled");
+		assert_non_null(reading_text(status, "/finished"));
+		reading_close(status);
+		answer_free(&answer);
+	}
+	char *study = service_study(2, 1, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	assert_int_equal(ask_status(service, "POST", id, "/cancel"), 409);
+	free(study);
+}
+
+static void a_study_can_be_deleted_at_any_moment(void **state)
+{
+	struct service *service = *state;
+	char id[17];
+	for (int i = 0; i < 12; i++) {
+		ended_by(service, 0.05 * i, "DELETE", "", 204, id);
+		assert_int_equal(ask_status(service, "GET", id, ""), 404);
+		assert_int_equal(ask_status(service, "DELETE", id, ""), 404);
+	}
+	char *study = service_study(2, 1, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	assert_int_equal(ask_status(service, "DELETE", id, ""), 204);
+	free(study);
+	service_stop(service);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 0);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM document"), 0);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM block"), 0);
+}
+
+/* Threads of a process that are nice, as workers are, and have had at least `least` seconds of a core. */
+static int nice_threads(pid_t pid, double least)
+{
+	char path[64], line[512];
+	int n = 0;
+	snprintf(path, sizeof path, "/proc/%d/task", (int)pid);
+	DIR *tasks = opendir(path);
+	assert_non_null(tasks);
+	for (struct dirent *task = readdir(tasks); task; task = readdir(tasks)) {
+		snprintf(path, sizeof path, "/proc/%d/task/%.16s/stat", (int)pid, task->d_name);
+		FILE *file = fopen(path, "r");
+		if (!file || !fgets(line, sizeof line, file)) // `.` and `..`
+			continue;
+		fclose(file);
+		long user, nice;
+		const char *fields = strrchr(line, ')');
+		assert_int_equal(sscanf(fields,
+		                        ") %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %*d %*d %*d %*d %ld",
+		                        &user, &nice),
+		                 2);
+		n += nice > 0 && (double)user / (double)sysconf(_SC_CLK_TCK) >= least;
+	}
+	closedir(tasks);
+	return n;
+}
+
+static void all_workers_run_the_blocks_of_one_study(void **state)
+{
+	struct service *service = *state;
+	char id[17];
+	char *study = service_study(150, 5, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	free(study);
+	struct answer answer = service_get(service, "/v1/studies/%s/results", id);
+	struct reading *result = answer_read(&answer);
+	// half each would be fair; a tenth is not what a worker gets that came for the last block
+	assert_int_equal(nice_threads(service->pid, 0.1 * reading_number(result, "/timing/cpu_s")), 2);
+	reading_close(result);
+	answer_free(&answer);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_cancelled_at_any_moment),
+           SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study))

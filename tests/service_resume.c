@@ -1,0 +1,203 @@
+/* What survives: workers, kills and restarts change nothing in a result. */
+#include <string.h>
+
+#include "tests/service.h"
+
+/* the study of these tests: long enough to be killed half way, many blocks */
+enum { ROWS = 150, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
+
+static char *result_of(const struct service *service, const char *id)
+{
+	struct answer answer = service_get(service, "/v1/studies/%s/results", id);
+	assert_int_equal(answer.status, 200);
+	return service_timeless(answer.body);
+}
+
+static char *samples_of(const struct service *service, const char *id)
+{
+	struct answer answer = service_get(service, "/v1/studies/%s/samples", id);
+	assert_int_equal(answer.status, 200);
+	return answer.body;
+}
+
+/* A study run without interruption by so many workers: its result and samples, for free. */
+static void uninterrupted(int n_workers, char **result, char **samples)
+{
+	struct service *service = service_new();
+	char *study = service_study(ROWS, SIGNALS, SEED);
+	char id[17];
+	service_start(service, n_workers);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	*result = result_of(service, id);
+	*samples = samples_of(service, id);
+	service_stop(service);
+	service_free(service);
+	free(study);
+}
+
+static void results_are_the_same_bytes_for_one_two_and_four_workers(void **state)
+{
+	char *result, *samples, *other_result, *other_samples;
+	(void)state;
+	uninterrupted(1, &result, &samples);
+	for (int n_workers = 2; n_workers <= 4; n_workers += 2) {
+		uninterrupted(n_workers, &other_result, &other_samples);
+		assert_string_equal(other_result, result);
+		assert_string_equal(other_samples, samples);
+		free(other_result);
+		free(other_samples);
+	}
+	free(result);
+	free(samples);
+}
+
+static void a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again(void **state)
+{
+	static const char kept[] =
+	    "SELECT group_concat(number || ' ' || hex(sha256)) FROM block WHERE attempt = 1";
+	struct service *service = service_new();
+	char *result, *samples, id[17];
+	char *study = service_study(ROWS, SIGNALS, SEED);
+	(void)state;
+	uninterrupted(2, &result, &samples);
+
+	service_start(service, 2);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 0.3 * RUNS));
+	service_kill(service);
+	char *before = service_text(service, kept);
+	assert_true(service_number(service, "SELECT sum(runs) FROM block") < RUNS);
+
+	service_start(service, 2);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	char *after = service_text(service, kept);
+	char *resumed_result = result_of(service, id);
+	char *resumed_samples = samples_of(service, id);
+	assert_string_equal(after, before);
+	assert_int_equal(service_number(service, "SELECT sum(runs) FROM block"), RUNS);
+	assert_int_equal(service_number(service, "SELECT max(attempt) FROM block"), 2);
+	assert_string_equal(resumed_result, result);
+	assert_string_equal(resumed_samples, samples);
+	service_stop(service);
+	service_free(service);
+	free(before), free(after), free(resumed_result), free(resumed_samples);
+	free(result), free(samples), free(study);
+}
+
+static void a_stopped_server_takes_its_studies_up_again(void **state)
+{
+	struct service *service = service_new();
+	char *study = service_study(ROWS, SIGNALS, SEED);
+	char id[17];
+	(void)state;
+	service_start(service, 2);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 1));
+	service_stop(service);
+	service_start(service, 1);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	service_stop(service);
+	service_free(service);
+	free(study);
+}
+
+static void accepted_studies_survive_sigkill(void **state)
+{
+	enum { N = 8 };
+	struct service *service = service_new();
+	char ids[N][17];
+	(void)state;
+	for (int i = 0; i < N; i++) {
+		char *study = service_study(2, 1, i);
+		service_start(service, 2);
+		service_submit(service, study, ids[i]);
+		service_kill(service);
+		free(study);
+	}
+	service_start(service, 2);
+	for (int i = 0; i < N; i++)
+		assert_true(service_wait(service, ids[i], "succeeded", 0));
+	service_stop(service);
+	service_free(service);
+}
+
+static void a_damaged_block_is_run_again_to_the_same_bytes(void **state)
+{
+	struct service *service = service_new();
+	char *result, *samples, id[17];
+	char *study = service_study(ROWS, SIGNALS, SEED);
+	(void)state;
+	uninterrupted(2, &result, &samples);
+	service_start(service, 2);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 0.3 * RUNS));
+	service_kill(service);
+	service_change(service, "UPDATE block SET content = zeroblob(length(content)) WHERE number = "
+	                        "(SELECT min(number) FROM block)");
+	service_start(service, 2);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	char *resumed = result_of(service, id);
+	assert_string_equal(resumed, result);
+	service_stop(service);
+	service_free(service);
+	free(resumed), free(result), free(samples), free(study);
+}
+
+static void a_damaged_result_is_an_error_not_an_answer(void **state)
+{
+	struct service *service = service_new();
+	char *study = service_study(2, 1, 1);
+	char id[17];
+	(void)state;
+	service_start(service, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	service_stop(service);
+	service_change(service, "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB) WHERE name = 'result'");
+	service_start(service, 1);
+	struct answer answer = service_get(service, "/v1/studies/%s/results", id);
+	assert_int_equal(answer.status, 500);
+	assert_non_null(strstr(answer.body, "result-corrupt"));
+	answer_free(&answer);
+	service_stop(service);
+	service_free(service);
+	free(study);
+}
+
+static void a_second_server_on_one_database_is_refused(void **state)
+{
+	struct service *service = service_new();
+	(void)state;
+	service_start(service, 1);
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(service_run(service, 1), 1);
+	struct answer answer = service_get(service, "/livez");
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	service_stop(service);
+	service_free(service);
+}
+
+static void a_newer_or_foreign_database_is_refused(void **state)
+{
+	static const char *const changes[] = {"PRAGMA user_version = 99", "PRAGMA application_id = 1"};
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		struct service *service = service_new();
+		service_start(service, 1);
+		service_stop(service);
+		service_change(service, changes[i]);
+		assert_int_equal(service_run(service, 1), 1);
+		service_free(service);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(results_are_the_same_bytes_for_one_two_and_four_workers),
+           cmocka_unit_test(a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again),
+           cmocka_unit_test(a_stopped_server_takes_its_studies_up_again),
+           cmocka_unit_test(accepted_studies_survive_sigkill),
+           cmocka_unit_test(a_damaged_block_is_run_again_to_the_same_bytes),
+           cmocka_unit_test(a_damaged_result_is_an_error_not_an_answer),
+           cmocka_unit_test(a_second_server_on_one_database_is_refused),
+           cmocka_unit_test(a_newer_or_foreign_database_is_refused))
