@@ -1,8 +1,8 @@
 /* elementary.h - logarithm, sine and cosine from +, -, *, / alone.
  *
- * The C library's differ from one machine to the next in the last bit; these give the same bits everywhere.  No
- * branches and no 64-bit integer conversions: a loop over an array becomes vector instructions.
- * The polynomials interpolate at Chebyshev points; their own error is below 0.2 units of the last place. */
+ * The C library's differ from one machine to the next in the last bit; these give the same bits everywhere. 
+ * No branches and no 64-bit integer conversions: a loop over an array becomes vector instructions. The
+ * polynomials interpolate at Chebyshev points; their own error is below 0.2 units of the last place. */
 #ifndef ELEMENTARY_H
 #define ELEMENTARY_H
 

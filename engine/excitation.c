@@ -35,7 +35,7 @@ static int record_samples(const struct pound_excitation *e)
 	return e->n_record;
 }
 
-/* a[i] times a trapezoid: from 0 at the first sample up to 1 after `rise` of the time, down to 0 over the last `fall` */
+/* a[i] times a trapezoid: up from 0 over the first `rise` of the time, down to 0 over the last `fall` */
 static void shape(double rise, double fall, int n, double *a)
 {
 	const double up = rise * (n - 1), down = fall * (n - 1);
@@ -46,7 +46,8 @@ static void shape(double rise, double fall, int n, double *a)
 		a[n - 1 - i] *= i * downward;
 }
 
-/* a times what makes its largest |a| the peak; the division comes first, so nothing in between is too large or small */
+/* a times what makes its largest |a| the peak; dividing first, nothing in between is too large or too small
+ * */
 static void scale(double peak, int n, double *a)
 {
 	double largest = 0;
@@ -119,7 +120,7 @@ const char *pound_excitation_name(int row)
 
 /* Number of samples of an excitation.
  *
- * Returns  value   n     the time from the first to the last is the duration rounded to whole steps, at least one
+ * Returns  value   n     from the first to the last is the duration rounded to whole steps, at least one
  *
  * Valid    duration over step below 2^31 - 2
  * Test     unit_excitation: the_last_sample_is_the_one_nearest_to_the_end */
@@ -149,7 +150,9 @@ void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream
 	excitations[e->type].fill(e, noise, a);
 }
 
-/* Frequency around which an excitation shakes [Hz], 0 for one that has none of its own. */
+/* Frequency around which an excitation shakes [Hz], 0 for one that has none of its own.
+ *
+ * Test     unit_excitation: noise_without_colour_and_records_have_no_frequency */
 double pound_excitation_frequency(const struct pound_excitation *e)
 {
 	return excitations[e->type].tuned ? e->frequency_hz : 0;

@@ -4,11 +4,10 @@
  *   2. from sample to sample: the transition matrix, and the covariance of what the noise adds meanwhile
  *   3. the first sample from the stationary covariance
  *
- * Time is counted in sample steps and the state is (p''', p'', p', p), so the matrices keep one shape for any step:
- * small steps cost no digits.
+ * Time is counted in sample steps and the state is (p''', p'', p', p), so the matrices keep one shape for any
+ * step: small steps cost no digits.
  * Kanai 1957, Bull. Earthq. Res. Inst. 35, 309-325; Tajimi 1960, Proc. 2nd WCEE, 781-798;
- * Clough, Penzien 1975, Dynamics of structures, McGraw-Hill, section 28-3; Van Loan 1978, IEEE Trans. Autom. Control 23,
- * 395-404. */
+ * Clough, Penzien 1975, Dynamics of structures, McGraw-Hill. */
 #include "engine/filter.h"
 
 #include <math.h>
@@ -67,11 +66,11 @@ static void propagate(const double c[N], double s, double x[N])
  *
  *   Q = integral of v v^T from 0 to h,   v(s) = exp(A s) (1, 0, 0, 0)^T
  *
- * by Gauss-Legendre: the sum of v v^T with positive weights loses no digits, and for h = 1 and slow poles v is nearly
- * (1, s, s^2/2, s^3/6), so Q is a Hilbert matrix with scaled rows, whose pivots come out to 1e-11 or better.
+ * by Gauss-Legendre: the sum of v v^T with positive weights loses no digits, and for h = 1 and slow poles v
+ * is nearly (1, s, s^2/2, s^3/6), so Q is a Hilbert matrix with scaled rows, whose pivots come out to 1e-12.
  *
  * Valid    h times the largest pole <= 1: the error is below the rounding
- * Test     unit_filter: the_step_covariance_is_the_integral */
+ * Test     unit_filter: a_step_is_that_of_the_continuous_filter */
 static void covariance(const double c[N], double h, double q[N][N])
 {
 	static const double node[NODES / 2] = {0x1.454e34f533998p-6, 0x1.a06d536d82f88p-4, 0x1.e5dad4f9af698p-3,
@@ -131,11 +130,13 @@ static void cholesky(double q[N][N], double l[N][N])
 
 /* Cholesky factor of the stationary covariance, from the moments m_k = variance of the k-th derivative of p.
  *
- *   covariance of p^(i), p^(j) = (-1)^((i - j)/2) m_(i+j)/2 for even i + j, else 0     (white noise of intensity 1)
+ *   covariance of p^(i), p^(j) = (-1)^((i - j)/2) m_(i+j)/2 for even i + j, else 0
  *   D = 2 alpha gamma ((beta - delta)^2 + (alpha + gamma) (alpha delta + beta gamma))
- *   m1 = c3 / D     m2 = c1 / D     m3 = (c1 c2 - c0 c3) / D     m1 m3 - m2^2 = 1 / 2 D     m0 m2 - m1^2 = 1 / 2 c0 D
+ *   m1 = c3 / D     m2 = c1 / D     m3 = (c1 c2 - c0 c3) / D
+ *   m1 m3 - m2^2 = 1 / 2 D     m0 m2 - m1^2 = 1 / 2 c0 D
  *
- * D / 2 is the Hurwitz determinant c1 c2 c3 - c1^2 - c0 c3^2; written in the factors' coefficients nothing cancels.
+ * for white noise of intensity 1.  D / 2 is the Hurwitz determinant c1 c2 c3 - c1^2 - c0 c3^2; written in the
+ * coefficients of the two factors nothing cancels.
  *
  * Source   the four equations E[p^(k) (p'''' + c3 p''' + ... - w)] = 0, k = 0 .. 3
  * Test     unit_filter: the_stationary_covariance_stays */
@@ -160,7 +161,7 @@ static void stationary(const struct chain *k, double l[N][N])
  *
  * Given    theta               -    2 pi filter frequency * sample step, > 0
  *          damping_ratio       -    of the filter, > 0
- *          high_pass_ratio     -    corner of the high pass over the filter frequency, > 0; its damping ratio is 0.6
+ *          high_pass_ratio     -    corner of the high pass over the filter frequency, > 0
  * Returns  f                        for white noise of intensity 1 per sample step: two-sided density 1 / 2 pi
  *
  *   H(s) = (alpha s + beta) / (s^2 + alpha s + beta) * s^2 / (s^2 + gamma s + delta)
@@ -224,7 +225,8 @@ static inline pair combined(const pair column[N], double x0, double x1, double x
  *          noise             sample k takes draw k of this stream
  * Returns  a       (n)       standard deviation: |output start|
  *
- * Test     unit_filter: the_variance_is_the_analytic_one, the_spectrum_is_the_analytic_one */
+ * Test     unit_filter: the_variance_and_autocovariance_are_the_analytic_ones,
+ *          the_spectrum_is_the_analytic_one */
 void pound_filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
 {
 	const int width = pound_noise_width();

@@ -3,8 +3,8 @@
  *   1. the ten rounds of Philox4x32 over the counters of a chunk of draws
  *   2. Box-Muller: of each two words one gives the radius, the other the angle
  *
- * Every loop runs over a chunk of fixed length, so that compilers make vector instructions of it; no result depends
- * on how wide they are.
+ * Every loop runs over a chunk of fixed length, so that compilers make vector instructions of it; no result
+ * depends on how wide they are.
  * Box, Muller 1958, Ann. Math. Stat. 29, 610-611. */
 #include "engine/noise.h"
 
@@ -12,7 +12,8 @@
 
 #include "engine/elementary.h"
 
-/* The words of draws first .. first + NOISE_CHUNK - 1 (modulo 2^32), as pound_random_words gives them one by one.
+/* The words of draws first .. first + NOISE_CHUNK - 1 (modulo 2^32), as pound_random_words gives each of
+ * them.
  *
  * Source   Salmon, Moraes, Dror, Shaw 2011, Parallel random numbers: as easy as 1, 2, 3, SC11, section 3.3
  * Test     unit_noise: chunks_hold_the_words_of_single_draws, through the normals made of them */

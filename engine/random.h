@@ -47,9 +47,9 @@ static inline double pound_random_uniform(struct pound_stream s, uint32_t k)
 	return ((double)(int64_t)(bits >> 12) + 0.5) * 0x1p-52;
 }
 
-/* Draw k as a whole number in [0, n), n >= 1, all equally likely: the high half of word * n, words refused whose
- * low half falls into the 2^32 mod n that are too many.  A block of four refused words is permuted again.
- * Lemire 2019, ACM Trans. Model. Comput. Simul. 29(1), 3. */
+/* Draw k as a whole number in [0, n), n >= 1, all equally likely: the high half of word * n, words refused
+ * whose low half falls into the 2^32 mod n that are too many.  A block of four refused words is permuted
+ * again. Lemire 2019, ACM Trans. Model. Comput. Simul. 29(1), 3. */
 static inline uint32_t pound_random_below(struct pound_stream s, uint32_t k, uint32_t n)
 {
 	const uint32_t surplus = -n % n;

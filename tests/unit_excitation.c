@@ -1,4 +1,5 @@
-/* What an excitation's samples must be whatever the noise; the noise itself is tested in unit_noise and unit_filter. */
+/* What an excitation's samples must be whatever the noise; the noise itself is tested in unit_noise and
+ * unit_filter. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -48,6 +49,16 @@ static void the_table_has_the_four_excitations_of_a_study(void **state)
 		assert_string_equal(pound_excitation_name(i), names[i]);
 	assert_null(pound_excitation_name(TYPES));
 	assert_null(pound_excitation_name(-1));
+}
+
+static void noise_without_colour_and_records_have_no_frequency(void **state)
+{
+	(void)state;
+	static const double frequency[TYPES] = {2, 0, 2, 0};
+	for (int type = 0; type < TYPES; type++) {
+		const struct pound_excitation e = excitation(type);
+		assert_true(pound_excitation_frequency(&e) == frequency[type]);
+	}
 }
 
 static void the_last_sample_is_the_one_nearest_to_the_end(void **state)
@@ -132,7 +143,8 @@ static void kanai_tajimi_noise_is_the_filter_output_scaled(void **state)
 		check_near(a[k], b[k] / most, 0x1p-52);
 }
 
-/* n samples of variance v: the mean of a_k a_k+lag has standard error v/sqrt n, that of a_k^2 sqrt 2 times as much */
+/* n samples of variance v: the mean of a_k a_k+lag has standard error v/sqrt n, that of a_k^2 sqrt 2 times as
+ * much */
 static void white_noise_has_no_memory(void **state)
 {
 	(void)state;
@@ -226,7 +238,8 @@ static void extreme_filters_give_finite_noise(void **state)
 				}
 }
 
-/* The hash was taken from gcc -O2; any other compiler, optimisation, processor and thread must give it too. */
+/* The hash was taken from gcc -O2; any other compiler, optimisation, processor and thread must give it too.
+ * */
 static void the_bits_are_the_same_everywhere(void **state)
 {
 	(void)state;
@@ -249,6 +262,7 @@ static void the_bits_are_the_same_everywhere(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(the_table_has_the_four_excitations_of_a_study),
+           cmocka_unit_test(noise_without_colour_and_records_have_no_frequency),
            cmocka_unit_test(the_last_sample_is_the_one_nearest_to_the_end),
            cmocka_unit_test(noise_has_exactly_the_peak_asked),
            cmocka_unit_test(noise_rises_and_falls_along_a_trapezoid),

@@ -39,7 +39,8 @@ static void coefficients(int i, long double numerator[2], long double c[N])
 	c[0] = b * d, c[1] = a * d + b * g, c[2] = b + a * g + d, c[3] = a + g;
 }
 
-/* exp(A) and the integral of exp(A s) e0 e0^T exp(A s)^T from 0 to 1, as power series; right for poles up to 5 */
+/* exp(A) and the integral of exp(A s) e0 e0^T exp(A s)^T from 0 to 1, as power series; right for poles up to
+ * 5 */
 static void series(const long double c[N], long double transition[N][N], long double covariance[N][N])
 {
 	enum { TERMS = 90 };
@@ -78,8 +79,8 @@ static void factor(long double q[N][N], long double l[N][N])
 		}
 }
 
-/* The covariance of white noise through four integrators is, scaled, a Hilbert matrix of condition 1.6e4: its factor
- * carries that much of the rounding of its entries, relative to the pivot of the row. */
+/* The covariance of white noise through four integrators is, scaled, a Hilbert matrix of condition 1.6e4: its
+ * factor carries that much of the rounding of its entries, relative to the pivot of the row. */
 static void a_step_is_that_of_the_continuous_filter(void **state)
 {
 	(void)state;
@@ -95,13 +96,14 @@ static void a_step_is_that_of_the_continuous_filter(void **state)
 			for (int k = 0; k < N; k++) {
 				const double phi = (double)transition[j][k], l = k > j ? 0 : (double)step[j][k];
 				check_near(f.transition[j][k], phi,
-				           0x1p-46 * fmax(fabs(phi), fabs((double)transition[j][j])));
-				check_near(f.step[j][k], l, 1.6e4 * 0x1p-48 * f.step[j][j]);
+				           0x1p-48 * fmax(fabs(phi), fabs((double)transition[j][j])));
+				check_near(f.step[j][k], l, 1.6e4 * 0x1p-52 * f.step[j][j]);
 			}
 	}
 }
 
-/* P = Phi P Phi^T + Q, in 80 bits from the engine's factors; each entry to the rounding of a sum of its size */
+/* P = Phi P Phi^T + Q, in 80 bits from the engine's factors; each entry to the rounding of a sum of its size
+ * */
 static void the_stationary_covariance_stays(void **state)
 {
 	(void)state;
@@ -164,8 +166,8 @@ static double covariance_at_lag(const struct pound_filter *f, int lag)
 	return f->output[0] * x[0] + f->output[1] * x[1];
 }
 
-/* The samples' covariance at every lag is the continuous process's, whatever the step: the exact discretisation has no
- * step error.  Rounding: one part in 2^52 of the variance for each step and state. */
+/* The samples' covariance at every lag is the continuous process's, whatever the step: the exact
+ * discretisation has no step error.  Rounding: one part in 2^52 of the variance for each step and state. */
 static void samples_have_the_autocovariance_of_the_continuous_process(void **state)
 {
 	(void)state;
@@ -181,8 +183,8 @@ static void samples_have_the_autocovariance_of_the_continuous_process(void **sta
 	}
 }
 
-/* 2.0333333 pi S0 w_e for the Kanai-Tajimi filter alone (a high pass at 0 changes nothing); unit intensity per step is
- * S0 = 1 / 2 pi.  A corner at ratio r takes away a part of order r. */
+/* 2.0333333 pi S0 w_e for the Kanai-Tajimi filter alone (a high pass at 0 changes nothing); unit intensity
+ * per step is S0 = 1 / 2 pi.  A corner at ratio r takes away a part of order r. */
 static void the_kanai_tajimi_variance_is_the_known_one(void **state)
 {
 	(void)state;
@@ -209,10 +211,11 @@ static struct pound_stream stream_of(int row)
 	return (struct pound_stream){.seed = 5, .what = POUND_STREAM_NOISE, .row = (uint32_t)row};
 }
 
-/* Welch's estimate: the mean over independent signals of |sum of window * a * exp(-i omega k)|^2 / sum of window^2, a
- * Hann window.  Its expectation is the sum over lags of R times the window's own correlation; the mean of n such, each
- * exponentially distributed, has relative standard error 1/sqrt n.  So against |H|^2 it may be off by 5 of these and by
- * what window and sampling do to the spectrum, which is computed and must itself be below 3 % here. */
+/* Welch's estimate: the mean over independent signals of |sum of window * a * exp(-i omega k)|^2 / sum of
+ * window^2, a Hann window.  Its expectation is the sum over lags of R times the window's own correlation; the
+ * mean of n such, each exponentially distributed, has relative standard error 1/sqrt n.  So against |H|^2 it
+ * may be off by 5 of these and by what window and sampling do to the spectrum, which is computed and must
+ * itself be below 3 % here. */
 static void the_spectrum_is_the_analytic_one(void **state)
 {
 	(void)state;
@@ -260,8 +263,8 @@ static void the_spectrum_is_the_analytic_one(void **state)
 	}
 }
 
-/* Variance of the estimate (1/n) sum a_k a_k+lag of a normal process: (1/n) sum over j of R_j^2 + R_j+lag R_j-lag
- * (Bartlett); a long signal, and its start and end over many signals. */
+/* Variance of the estimate (1/n) sum a_k a_k+lag of a normal process: (1/n) sum over j of R_j^2 + R_j+lag
+ * R_j-lag (Bartlett); a long signal, and its start and end over many signals. */
 static void the_variance_and_autocovariance_are_the_analytic_ones(void **state)
 {
 	(void)state;

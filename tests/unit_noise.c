@@ -26,8 +26,8 @@ static int draw_numbers(void **state)
 	return 0;
 }
 
-/* The test of random.h ties single draws to the published words of Philox; a wrong bit in a word would move a normal
- * number by 2^-32 or more. */
+/* The test of random.h ties single draws to the published words of Philox; a wrong bit in a word would move a
+ * normal number by 2^-32 or more. */
 static void chunks_hold_the_words_of_single_draws(void **state)
 {
 	(void)state;
@@ -87,7 +87,8 @@ static void the_first_four_moments_are_normal(void **state)
 		check_near(sum[j] / NUMBERS, moment[j], 5 * sqrt(variance[j] / NUMBERS));
 }
 
-/* of products z z' and (z^2 - 1) (z'^2 - 1), whose variances are 1 and 4: of one draw and of neighbours in time */
+/* of products z z' and (z^2 - 1) (z'^2 - 1), whose variances are 1 and 4: of one draw and of neighbours in
+ * time */
 static void numbers_are_uncorrelated_and_so_are_their_squares(void **state)
 {
 	(void)state;
@@ -110,7 +111,8 @@ static int ascending(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Kolmogorov-Smirnov: sqrt(n) D exceeds 2.23 once in 10,000; and beyond 3.5 a Poisson number of 59.6 on average. */
+/* Kolmogorov-Smirnov: sqrt(n) D exceeds 2.23 once in 10,000; and beyond 3.5 a Poisson number of 59.6 on
+ * average. */
 static void the_distribution_is_normal_out_to_its_tails(void **state)
 {
 	(void)state;

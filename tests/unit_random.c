@@ -1,4 +1,5 @@
-/* Philox against the vectors its authors publish; the numbers made from it against exact counts and moments. */
+/* Philox against the vectors its authors publish; the numbers made from it against exact counts and moments.
+ * */
 #include <math.h>
 #include <string.h>
 
@@ -94,8 +95,8 @@ static void whole_numbers_below_a_bound_are_equally_likely(void **state)
 	assert_int_equal(pound_random_below(stream, 0, 1), 0);
 }
 
-/* With n = 3 * 2^30 a quarter of the words must be refused; taken as they come, every third number would come up
- * twice as often as the others. */
+/* With n = 3 * 2^30 a quarter of the words must be refused; taken as they come, every third number would come
+ * up twice as often as the others. */
 static void words_beyond_the_last_multiple_of_the_bound_are_refused(void **state)
 {
 	(void)state;
