@@ -60,13 +60,28 @@ struct pound_statistic {
 
 enum {
 	POUND_RESAMPLES = 2000,
-	POUND_MOMENTS_MAX = 5 * POUND_INPUTS_MAX + 16,
+	POUND_MOMENTS_MAX = 5 * POUND_INPUTS_MAX + 8,
 	POUND_VALUES_MAX = POUND_MOMENTS_MAX
 };
 
 size_t pound_interval_scratch(int n_rows, int n_moments, int n_values); /* doubles */
 void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
                               double *scratch, struct pound_estimate *estimates);
+
+/* Pick-freeze indexes of a model with random signals. */
+struct pound_pick_freeze {
+	struct pound_estimate first_raw[POUND_INPUTS_MAX],
+	    total_raw[POUND_INPUTS_MAX]; /* noise of few signals included */
+	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX]; /* of the mean over all signals */
+	struct pound_estimate with_signal[POUND_INPUTS_MAX]; /* second-order index of the input and the signal */
+	struct pound_estimate signal_total_one;              /* total index of the signal in single runs */
+	struct pound_estimate signal_total; /* share of the randomness left in the means over signals */
+	struct pound_estimate signal_first; /* first-order index of the signal in single runs */
+};
+
+size_t pound_correction_scratch(int n_rows, int n_inputs); /* doubles */
+void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, double *scratch,
+                                struct pound_pick_freeze *result);
 
 size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, double *scratch,

@@ -1,0 +1,124 @@
+/* correction.c - indexes of a model with random signals: as they come out, corrected to infinitely many signals, and
+ * the signals' own share.
+ *
+ * An output is a mean over R signals.  A product of two outputs p, q of a row has the expectation of the product of
+ * their means over all signals plus the covariance that they owe to their R signals; an unbiased estimate of that,
+ * noise_pq, is known within the row.  Every product p q is therefore replaced by p q - noise_pq.  This holds whether
+ * the samples of a row share their signals (noise_pq counts) or not (its mean is 0). */
+#include "engine/indices.h"
+
+#include <math.h>
+
+// means of A and B; half a^2 + b^2 and the mean square of all samples, raw and corrected; noise of A with B
+enum { A, B, PAIR, ALL, PAIR_CORRECTED, ALL_CORRECTED, NOISE_AB, FIRST_INPUT };
+// of every input: c - a, b (c - a), (c - a)^2 / 2, and the corrected two
+enum { CHANGE, PRODUCT, SQUARE, PRODUCT_CORRECTED, SQUARE_CORRECTED, PER_INPUT };
+// values of every input, each n_inputs long, and then those of the signals
+enum { FIRST_RAW, TOTAL_RAW, FIRST, TOTAL, WITH_SIGNAL, BLOCKS };
+enum { SIGNAL_TOTAL_ONE, SIGNAL_TOTAL, SIGNAL_FIRST, SINGLES };
+
+static void moments_fill(const void *subject, int row, double *m)
+{
+	const struct pound_rows *rows = subject;
+	const int d = rows->n_inputs;
+	const double *y = rows->y + (size_t)row * (d + 2),
+	             *noise = rows->noise + (size_t)row * pound_rows_noises(d);
+	const double a = y[0], b = y[1], aa = noise[POUND_NOISE_AA], bb = noise[POUND_NOISE_BB];
+	double all = a * a + b * b, noise_all = aa + bb;
+	m[A] = a;
+	m[B] = b;
+	m[PAIR] = 0.5 * all;
+	m[PAIR_CORRECTED] = 0.5 * (all - noise_all);
+	m[NOISE_AB] = noise[POUND_NOISE_AB];
+	for (int j = 0; j < d; j++) {
+		const double *e = noise + POUND_NOISE_MIXED + POUND_NOISE_STEP * j, cc = e[0], ac = e[1], bc = e[2];
+		double *k = m + FIRST_INPUT + PER_INPUT * j, c = y[2 + j], change = c - a;
+		k[CHANGE] = change;
+		k[PRODUCT] = b * change;
+		k[SQUARE] = 0.5 * change * change;
+		k[PRODUCT_CORRECTED] = b * change - (bc - m[NOISE_AB]);
+		// the variance of the difference c - a, signal by signal: exactly 0 for an input without effect
+		k[SQUARE_CORRECTED] = 0.5 * (change * change - (aa + cc - 2.0 * ac));
+		all += c * c;
+		noise_all += cc;
+	}
+	m[ALL] = all / (d + 2);
+	m[ALL_CORRECTED] = (all - noise_all) / (d + 2);
+}
+
+static double ratio(double numerator, double variance, double variance_floor)
+{
+	return variance > variance_floor ? numerator / variance : NAN;
+}
+
+static void values_fill(const void *subject, const double *m, double *value)
+{
+	const struct pound_rows *rows = subject;
+	const int d = rows->n_inputs, r = rows->n_signals;
+	const double floor = rows->variance_floor, mu = 0.5 * (m[A] + m[B]);
+	double grand = (d + 1) * m[A] + m[B];
+	for (int j = 0; j < d; j++)
+		grand += m[FIRST_INPUT + PER_INPUT * j + CHANGE];
+	grand /= d + 2;
+	double pair = m[PAIR] - mu * mu, all = m[ALL] - grand * grand;
+	double pair_corrected = m[PAIR_CORRECTED] - 2.0 * grand * mu + grand * grand;
+	double all_corrected = m[ALL_CORRECTED] - grand * grand;
+	double noise = m[ALL] - m[ALL_CORRECTED], one_signal = all_corrected + r * noise;
+	for (int j = 0; j < d; j++) {
+		const double *k = m + FIRST_INPUT + PER_INPUT * j;
+		value[FIRST_RAW * d + j] = ratio(k[PRODUCT] - mu * k[CHANGE], pair, floor);
+		value[TOTAL_RAW * d + j] = ratio(k[SQUARE], all, floor);
+		value[FIRST * d + j] = ratio(k[PRODUCT_CORRECTED] - grand * k[CHANGE], pair_corrected, floor);
+		value[TOTAL * d + j] = ratio(k[SQUARE_CORRECTED], all_corrected, floor);
+		value[WITH_SIGNAL * d + j] = ratio(r * (k[PRODUCT] - k[PRODUCT_CORRECTED]), one_signal, floor);
+	}
+	double *single = value + BLOCKS * d;
+	single[SIGNAL_TOTAL_ONE] = ratio(r * noise, one_signal, floor);
+	single[SIGNAL_TOTAL] = ratio(noise, all, floor);
+	single[SIGNAL_FIRST] = ratio(r * m[NOISE_AB], one_signal, floor);
+}
+
+size_t pound_correction_scratch(int n_rows, int n_inputs)
+{
+	return pound_interval_scratch(n_rows, FIRST_INPUT + PER_INPUT * n_inputs, BLOCKS * n_inputs + SINGLES);
+}
+
+/* Pick-freeze indexes raw and corrected for the noise of few signals, and the shares of the signals.
+ *
+ * Given    rows       -      outputs and their noise
+ *          seed       -      of the resamples
+ * Returns  result     -      each with its 95 % interval; corrected ones and shares are NAN for one signal
+ * Memory   scratch    (pound_correction_scratch)
+ *
+ *   raw         S_j = mean((b - mu) (c - a)) / v                  T_j = mean((a - c)^2) / (2 w)
+ *   corrected   S_j = (P_BC - P_AB) / v',  v' = (P_AA + P_BB) / 2     T_j = (P_AA + P_CC - 2 P_AC) / (2 w')
+ *   where       P_pq = mean((p - g) (q - g) - noise_pq),  g the mean and w, w' the variances over all samples
+ *   signals     N = R mean(noise_pp):  T_w(1) = N / (w' + N),  T_w(R) = (N / R) / w,
+ *               S_w(1) = R mean(noise_AB) / (w' + N),  S_jw = R mean(noise_BC - noise_AB) / (w' + N)
+ *
+ * T_w(1) is the total index of the signal as an input of its own in single runs, S_w(1) its first-order index, S_jw the
+ * second-order index of signal and input j; the last two are 0 by construction when samples do not share signals.
+ * T_w(R) is the share of randomness left in the means used here.
+ *
+ * Source   within-row covariances are the U-statistics over pairs of different signals
+ * Test     unit_correction: the_golden_row_set_is_met
+ */
+void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, double *scratch,
+                                struct pound_pick_freeze *result)
+{
+	const int d = rows->n_inputs;
+	const struct pound_statistic statistic = {FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill,
+	                                          values_fill, rows};
+	struct pound_estimate estimates[POUND_VALUES_MAX];
+	pound_interval_bootstrap(&statistic, rows->n_rows, seed, scratch, estimates);
+	for (int j = 0; j < d; j++) {
+		result->first_raw[j] = estimates[FIRST_RAW * d + j];
+		result->total_raw[j] = estimates[TOTAL_RAW * d + j];
+		result->first[j] = estimates[FIRST * d + j];
+		result->total[j] = estimates[TOTAL * d + j];
+		result->with_signal[j] = estimates[WITH_SIGNAL * d + j];
+	}
+	result->signal_total_one = estimates[BLOCKS * d + SIGNAL_TOTAL_ONE];
+	result->signal_total = estimates[BLOCKS * d + SIGNAL_TOTAL];
+	result->signal_first = estimates[BLOCKS * d + SIGNAL_FIRST];
+}
