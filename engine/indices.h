@@ -83,6 +83,13 @@ size_t pound_correction_scratch(int n_rows, int n_inputs); /* doubles */
 void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, double *scratch,
                                 struct pound_pick_freeze *result);
 
+#define POUND_NORMAL_95 1.959963984540054 /* 97.5 % quantile of the normal law */
+
+size_t pound_local_scratch(int n_rows); /* doubles */
+void pound_local_fit(const double *y, int n, int reach, double *fit);
+void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
+                       struct pound_estimate *first);
+
 size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, double *scratch,
                         struct pound_indices *indices); /* rows dropped */

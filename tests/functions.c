@@ -112,18 +112,24 @@ const struct function *function_named(const char *name)
 	return f;
 }
 
+double *function_design(int n_rows, uint64_t seed)
+{
+	struct pound_input inputs[FUNCTION_INPUTS];
+	memset(inputs, 0, sizeof inputs);
+	for (int j = 0; j < FUNCTION_INPUTS; j++)
+		inputs[j].distribution = (struct pound_distribution){0, {0.0, 1.0}};
+	struct pound_study study = {
+	    .n_inputs = FUNCTION_INPUTS, .inputs = inputs, .design = {.rows = n_rows, .seed = seed}};
+	double *x = malloc(sizeof *x * 2 * FUNCTION_INPUTS * (size_t)n_rows);
+	pound_design_fill(&study, x);
+	return x;
+}
+
 struct pound_sample_values function_values(const struct function *f, int n_rows, uint64_t seed,
                                            struct function_noise noise)
 {
 	enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
-	struct pound_input inputs[D];
-	memset(inputs, 0, sizeof inputs);
-	for (int j = 0; j < D; j++)
-		inputs[j].distribution = (struct pound_distribution){0, {0.0, 1.0}};
-	struct pound_study study = {.n_inputs = D, .inputs = inputs, .design = {.rows = n_rows, .seed = seed}};
-	double *x = malloc(sizeof *x * 2 * D * (size_t)n_rows);
-	pound_design_fill(&study, x);
-
+	double *x = function_design(n_rows, seed);
 	size_t n = (size_t)n_rows * SAMPLES * noise.n_signals;
 	double *numerator = malloc(2 * sizeof *numerator * n), *denominator = numerator + n;
 	double deviation = sqrt(noise.share * f->variance);

@@ -28,9 +28,12 @@ struct function_noise {
 	bool common;
 };
 
-/* Sample values of a function over the rows of a Latin hypercube; one block of memory, function_values_free. */
+/* Sample values of a function over the rows of a Latin hypercube; function_values_free. */
 struct pound_sample_values function_values(const struct function *f, int n_rows, uint64_t seed,
                                            struct function_noise noise);
 void function_values_free(struct pound_sample_values *values);
+
+/* The rows of that Latin hypercube  (n_rows x 2 x FUNCTION_INPUTS); free. */
+double *function_design(int n_rows, uint64_t seed);
 
 #endif

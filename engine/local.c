@@ -1,0 +1,171 @@
+/* local.c - first-order indexes by local-linear regression, each row predicted from its neighbours.
+ *
+ * 1. In every sample of the design the rows are sorted by the input's value.
+ * 2. Each row is predicted from the K nearest ranks on either side, itself left out.
+ * 3. The mean product of output and prediction estimates the variance of the conditional mean.
+ *
+ * Every sample block of a Latin hypercube or random design serves, so that (n_inputs + 2) n runs count for each input.
+ * Wrong for quasi-random designs, where neighbours in one input are related in the others. */
+#include "engine/indices.h"
+
+#include <gsl/gsl_sort_double.h>
+#include <math.h>
+
+/* The least-squares line through all but one of the first `n` values against their ranks, at the rank left out. */
+static double line_without(const double *y, int n, int left_out)
+{
+	double x_mean = (0.5 * n * (n - 1) - left_out) / (n - 1), y_mean = 0.0, xx = 0.0, xy = 0.0;
+	for (int k = 0; k < n; k++)
+		if (k != left_out)
+			y_mean += y[k] / (n - 1);
+	for (int k = 0; k < n; k++)
+		if (k != left_out) {
+			xx += (k - x_mean) * (k - x_mean);
+			xy += (k - x_mean) * (y[k] - y_mean);
+		}
+	return y_mean + xy / xx * (left_out - x_mean);
+}
+
+/* Predictions of values in the order of an input, each from its neighbours alone.
+ *
+ * Given    y         (n)     outputs in ascending order of the input
+ *          reach     K       ranks on either side  1 <= K, 2 K + 1 <= n
+ * Returns  fit       (n)     least-squares line through the 2 K other ones of 2 K + 1 ranks, at the rank itself;
+ *                            the window is centred (the line is then the mean) but at the ends
+ *
+ * Test     unit_local: the_golden_predictions_are_met
+ */
+void pound_local_fit(const double *y, int n, int reach, double *fit)
+{
+	const int width = 2 * reach + 1;
+	for (int i = 0; i < n; i++) {
+		int first = i < reach ? 0 : i >= n - reach ? n - width : i - reach;
+		if (i - first != reach) {
+			fit[i] = line_without(y + first, width, i - first);
+			continue;
+		}
+		double sum = 0.0;
+		for (int k = 1; k <= reach; k++)
+			sum += y[i - k] + y[i + k];
+		fit[i] = sum / (2 * reach);
+	}
+}
+
+// ten ranks a side once there are rows enough: the bias stays below 0.003 at n = 1000
+static int reach_of(int n_rows)
+{
+	return n_rows >= 300 ? 10 : n_rows >= 60 ? n_rows / 30 : 1;
+}
+
+/* One input's sums over the sample blocks: of each row, output times prediction and prediction squared. */
+struct sums {
+	double *product, *square; /* (n_rows) each */
+};
+
+static void block_add(const struct pound_rows *rows, int sample, double grand, const size_t *order, double *y,
+                      double *fit, struct sums sums)
+{
+	const int n = rows->n_rows, n_samples = rows->n_inputs + 2;
+	for (int k = 0; k < n; k++)
+		y[k] = rows->y[order[k] * n_samples + sample] - grand;
+	pound_local_fit(y, n, reach_of(n), fit);
+	for (int k = 0; k < n; k++) {
+		sums.product[order[k]] += y[k] * fit[k];
+		sums.square[order[k]] += fit[k] * fit[k];
+	}
+}
+
+/* Index and interval from a row's mean products, with the variance of its outputs about the grand mean.
+ *
+ * The influence of a row on S = mean(y m) / V, the prediction m estimated from the others, is
+ * (2 y m - m^2 - S y^2) / V.
+ */
+static struct pound_estimate influence_interval(struct sums sums, const double *variance, int n,
+                                                int n_samples, double variance_floor)
+{
+	double v = 0.0, product = 0.0, mean = 0.0, squares = 0.0;
+	for (int i = 0; i < n; i++) {
+		v += variance[i] / n;
+		product += sums.product[i] / n_samples / n;
+	}
+	if (!(v > variance_floor))
+		return (struct pound_estimate){NAN, NAN, NAN};
+	const double s = product / v;
+	for (int pass = 0; pass < 2; pass++)
+		for (int i = 0; i < n; i++) {
+			double influence = ((2.0 * sums.product[i] - sums.square[i]) / n_samples - s * variance[i]) / v;
+			if (pass == 0)
+				mean += influence / n;
+			else
+				squares += (influence - mean) * (influence - mean);
+		}
+	double half_width = POUND_NORMAL_95 * sqrt(squares / (n - 1.0) / n);
+	return (struct pound_estimate){s, s - half_width, s + half_width};
+}
+
+size_t pound_local_scratch(int n_rows)
+{
+	return (size_t)7 * n_rows;
+}
+
+/* Mean over the samples of a row of their squared outputs about the grand mean, less their noise. */
+static double variances_fill(const struct pound_rows *rows, bool corrected, double *variance)
+{
+	const int d = rows->n_inputs, n_samples = d + 2;
+	const size_t n_all = (size_t)rows->n_rows * n_samples;
+	double grand = 0.0;
+	for (size_t k = 0; k < n_all; k++)
+		grand += rows->y[k];
+	grand /= n_all;
+	for (int i = 0; i < rows->n_rows; i++) {
+		const double *y = rows->y + (size_t)i * n_samples,
+		             *e = rows->noise + (size_t)i * pound_rows_noises(d);
+		double squares = 0.0, noise = e[POUND_NOISE_AA] + e[POUND_NOISE_BB];
+		for (int p = 0; p < n_samples; p++)
+			squares += (y[p] - grand) * (y[p] - grand);
+		for (int j = 0; j < d; j++)
+			noise += e[POUND_NOISE_MIXED + POUND_NOISE_STEP * j];
+		variance[i] = (corrected ? squares - noise : squares) / n_samples;
+	}
+	return grand;
+}
+
+/* First-order indexes by leave-one-out local-linear regression in every sample block.
+ *
+ * Given    rows       -                            outputs and their noise
+ *          x          (n x 2 x n_inputs)           the design, rows of A and B; only the order within a column counts
+ *          corrected  -                            the variance without the noise of few signals (NAN for one signal)
+ * Returns  first      (n_inputs)                   with 95 % intervals from the influence of the rows
+ * Memory   scratch    (pound_local_scratch)
+ *
+ * Noise needs no correction above: a row and its neighbours have different signals.
+ *
+ * Valid    Latin hypercube and random designs of 30 rows or more; bias below 0.003 at n = 1000, to 0.015 at n = 300
+ * Source   lag averaging attains the efficiency bound: Klein, Rochet 2023, arXiv 2306.05842
+ * Test     unit_local
+ */
+void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
+                       struct pound_estimate *first)
+{
+	const int n = rows->n_rows, d = rows->n_inputs;
+	double *variance = scratch, *y = variance + n, *fit = y + n;
+	struct sums sums = {fit + n, fit + 2 * (size_t)n};
+	size_t *order = (size_t *)(sums.square + n);
+	const bool enough = n >= 2 * reach_of(n) + 2;
+	const double grand = enough ? variances_fill(rows, corrected, variance) : NAN;
+	for (int j = 0; j < d; j++) {
+		for (int i = 0; i < n; i++)
+			sums.product[i] = sums.square[i] = 0.0;
+		for (int matrix = 0; matrix < 2 && enough; matrix++) {
+			for (int i = 0; i < n; i++)
+				y[i] = x[(rows->row[i] * 2 + matrix) * d + j];
+			gsl_sort_index(order, y, 1, n);
+			// column j of B is that of the samples B and 2 + j, column j of A that of all others
+			for (int p = 0; p < d + 2; p++)
+				if ((p == 1 || p == 2 + j) == (matrix == 1))
+					block_add(rows, p, grand, order, y, fit, sums);
+		}
+		first[j] = enough ? influence_interval(sums, variance, n, d + 2, rows->variance_floor)
+		                  : (struct pound_estimate){NAN, NAN, NAN};
+	}
+}
