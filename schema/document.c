@@ -36,7 +36,7 @@ static void shorten_numbers(char *text)
  * Returns  value     -         -       the tree; NULL: not JSON (fault->line > 0) or out of memory (fault->line = 0)
  * Memory   allocates, about 40 bytes per byte of text at worst; for cJSON_Delete
  *
- * Test     unit_document: a_number_of_400_characters_keeps_its_value
+ * Test     unit_reading: a_number_of_400_characters_keeps_its_value
  */
 cJSON *document_parse(const char *text, size_t length, struct gate_fault *fault)
 {

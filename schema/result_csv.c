@@ -124,7 +124,7 @@ char *result_to_csv(const char *json, size_t json_length, size_t *length)
 	writer_init(&w);
 	if (cJSON_IsArray(member(result, "signals")))
 		put_signals(&w, result, &header);
-	else if (member(cells->child, "signals"))
+	else if (cells && member(cells->child, "signals"))
 		cJSON_ArrayForEach(cell, cells) put_signals(&w, cell, &header);
 	else
 		put_sensitivity(&w, cells);

@@ -75,6 +75,8 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 	const struct pound_scene *scene = &study->scene;
 	const struct field *field = fields_scene(path, &oscillator);
 	const char *excitation = pound_excitation_name(scene->excitation.type);
+	if (strncmp(path, "/excitation/acceleration_m_s2/", 30) == 0)
+		field = fields_find("/scene/excitation/acceleration_m_s2/*");
 	if (!field && fields_nearest_path(path, nearest, sizeof nearest))
 		problems_add(problems, pointer, "names nothing in \"scene\", did you mean \"%s\"?", nearest);
 	else if (!field)
@@ -132,6 +134,24 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 				break;
 			}
 		}
+	}
+}
+
+/* The columns of the samples must be told apart: an input is not called as an output or one of the others is. */
+static void check_names(const struct pound_study *study, struct problems *problems)
+{
+	for (int j = 0; j < study->n_inputs; j++) {
+		const char *name = study->inputs[j].name;
+		bool taken = name && (strcmp(name, "row") == 0 || strcmp(name, "sample") == 0);
+		for (int o = 0; name && pound_output_name(o); o++) {
+			size_t length = strlen(pound_output_name(o));
+			taken |= strncmp(name, pound_output_name(o), length) == 0 &&
+			         (!name[length] || strcmp(name + length, ".variance") == 0);
+		}
+		char pointer[POINTER_SIZE];
+		snprintf(pointer, sizeof pointer, "/inputs/%d/name", j);
+		if (taken)
+			problems_add(problems, pointer, "is the name of another column of the samples");
 	}
 }
 
@@ -313,6 +333,7 @@ static void check_size(const struct pound_study *study, struct problems *problem
 void study_check(const struct pound_study *study, struct problems *problems)
 {
 	check_paths(study, problems);
+	check_names(study, problems);
 	if (faulty(problems, "/kind"))
 		return;
 	check_supports(study, problems);

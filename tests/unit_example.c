@@ -1,0 +1,53 @@
+/* unit_example.c - the built-in study documents: complete, valid, and with the engine's consent. */
+#include <string.h>
+
+#include "schema/examples.h"
+#include "schema/reading.h"
+#include "schema/study_json.h"
+#include "tests/check.h"
+#include "tests/documents.h"
+
+static void every_example_is_a_valid_study(void **state)
+{
+	(void)state;
+	int n = 0;
+	for (; example_name(n); n++) {
+		struct pound_study *study = documents_study(example_text(example_name(n)));
+		assert_non_null(study->name);
+		study_free(study);
+	}
+	assert_true(n >= 8);
+	assert_null(example_text("no such example"));
+}
+
+static void the_title_of_an_example_is_its_name_in_the_document(void **state)
+{
+	(void)state;
+	for (int i = 0; example_name(i); i++) {
+		const char *document = example_text(example_name(i));
+		struct reading *reading = reading_open(document, strlen(document));
+		assert_string_equal(example_title(i), reading_text(reading, "/name"));
+		assert_true(strlen(example_title(i)) <= 90);
+		reading_close(reading);
+	}
+}
+
+static void the_paper_s_study_asks_for_what_the_paper_ran(void **state)
+{
+	(void)state;
+	struct pound_study *study = documents_study(example_text("paper_linear"));
+	assert_int_equal(study_runs(study), 30000);
+	assert_int_equal(study->design.rows, 1000);
+	assert_int_equal(study->scene.excitation.signals, 5);
+	assert_false(study->design.common_signals);
+	check_near(study->scene.oscillators[0].frequency_hz, 2, 0);
+	study_free(study);
+	study = documents_study(example_text("paper"));
+	assert_int_equal(study_cells(study), 24);
+	assert_int_equal(study_runs(study), 24 * 30000);
+	study_free(study);
+}
+
+CHECK_MAIN(cmocka_unit_test(every_example_is_a_valid_study),
+           cmocka_unit_test(the_title_of_an_example_is_its_name_in_the_document),
+           cmocka_unit_test(the_paper_s_study_asks_for_what_the_paper_ran))

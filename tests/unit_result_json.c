@@ -1,0 +1,250 @@
+/* unit_result_json.c - results written as the contract names them, from results made by hand. */
+#include <math.h>
+#include <string.h>
+
+#include "schema/reading.h"
+#include "schema/result_json.h"
+#include "schema/study_json.h"
+#include "tests/check.h"
+#include "tests/documents.h"
+
+static const struct timing timing = {1.5, 2.75, 2};
+
+/* Measures that tell their own places: k + 0.5 for the k-th, but no yield displacement of the left oscillator. */
+static struct pound_response numbered(double first)
+{
+	struct pound_response response;
+	double *const measures = (double *)&response;
+	for (size_t k = 0; k < sizeof response / sizeof(double); k++)
+		measures[k] = first + (double)k + 0.5;
+	response.yield_displacement_1 = NAN;
+	return response;
+}
+
+static char *json_of(const char *document, const struct pound_result *result, size_t *length)
+{
+	struct pound_study *study = documents_study(document);
+	char *json = result_to_json(study, result, &timing, length);
+	assert_non_null(json);
+	assert_int_equal(strlen(json), *length);
+	study_free(study);
+	return json;
+}
+
+static struct reading *result_of(const char *document, const struct pound_result *result)
+{
+	size_t length;
+	char *json = json_of(document, result, &length);
+	struct reading *reading = reading_open(json, length);
+	assert_non_null(reading);
+	free(json);
+	return reading;
+}
+
+static void a_response_is_written_whole(void **state)
+{
+	(void)state;
+	static const char wanted[] =
+	    "{\n  \"kind\": \"response\",\n  \"engine_version\": \"" POUND_VERSION "\",\n"
+	    "  \"study_hash\": \"96e2d140f562cc85f018e269b3c41d47c3298d0557221069d9b6687291bc7a86\",\n  "
+	    "\"seed\": 42,\n"
+	    "  \"runs\": 1,\n  \"runs_failed\": 0,\n  \"signals\": [\n    {\n      \"index\": 0,\n      "
+	    "\"oscillators\": [\n"
+	    "        {\"displacement_max_m\": 0.5, \"displacement_max_free_m\": 1.5, \"force_max_n\": 2.5, "
+	    "\"yield_displacement_m\": null, \"demand\": 4.5, \"demand_free\": 5.5},\n"
+	    "        {\"displacement_max_m\": 6.5, \"displacement_max_free_m\": 7.5, \"force_max_n\": 8.5, "
+	    "\"yield_displacement_m\": 9.5, \"demand\": 10.5, \"demand_free\": 11.5}\n      ],\n"
+	    "      \"impulse_max_n_s\": 12.5,\n      \"contact_count\": 13.5,\n      \"contact_time_s\": 14.5,\n"
+	    "      \"end\": {\"u1_m\": 15.5, \"v1_m_s\": 16.5, \"u2_m\": 17.5, \"v2_m_s\": 18.5}\n    }\n  ],\n"
+	    "  \"outputs\": {\n    \"force_amplification\": 1.25,\n    \"impulse\": null\n  },\n"
+	    "  \"work\": {\n    \"signals\": {\"what\": \"ground motions\", \"asked\": 1, \"run\": 1},\n"
+	    "    \"free_runs\": {\"what\": \"linear responses without pounding\", \"asked\": 2, \"run\": 2},\n"
+	    "    \"yield_runs\": {\"what\": \"nonlinear responses without pounding\", \"asked\": 0, \"run\": "
+	    "0},\n"
+	    "    \"pounding_runs\": {\"what\": \"responses with pounding\", \"asked\": 1, \"run\": 1},\n"
+	    "    \"never_touching\": 0,\n    \"moving_alike\": 0,\n    \"contacts\": 14,\n    \"left_out\": [\n"
+	    "      \"all nonlinear responses without pounding: no law needs one\"\n    ]\n  },\n"
+	    "  \"timing\": {\"wall_s\": 1.5, \"cpu_s\": 2.75, \"threads\": 2}\n}\n";
+	struct pound_response response = numbered(0);
+	struct pound_cell cell = {.runs = 1, .n_signals = 1, .signals = &response, .outputs = {1.25, NAN}};
+	struct pound_result result = {
+	    .n_cells = 1,
+	    .cells = &cell,
+	    .work = {.signals = {1, 1}, .free_runs = {2, 2}, .pounding_runs = {1, 1}, .contacts = 14}};
+	size_t length;
+	char *json = json_of(documents_response, &result, &length);
+	assert_string_equal(json, wanted);
+	free(json);
+}
+
+static void timing_is_the_last_line_but_one_and_all_that_differs(void **state)
+{
+	(void)state;
+	struct pound_response response = numbered(0);
+	struct pound_cell cell = {.n_signals = 1, .signals = &response};
+	struct pound_result result = {.n_cells = 1, .cells = &cell};
+	static const struct timing other = {0.1, 1e9, 128};
+	struct pound_study *study = documents_study(documents_response);
+	size_t length, length_other;
+	char *json = result_to_json(study, &result, &timing, &length);
+	char *json_other = result_to_json(study, &result, &other, &length_other);
+	char *line = strstr(json, "\n  \"timing\":"), *line_other = strstr(json_other, "\n  \"timing\":");
+	assert_int_equal(line - json, line_other - json_other);
+	assert_int_equal(memcmp(json, json_other, (size_t)(line - json)), 0);
+	assert_string_equal(strchr(line + 1, '\n'), "\n}\n");
+	assert_string_equal(strchr(line_other + 1, '\n'), "\n}\n");
+	free(json);
+	free(json_other);
+	study_free(study);
+}
+
+static void a_swept_law_stands_by_its_name(void **state)
+{
+	(void)state;
+	char *document = documents_with(
+	    documents_response, "\"scene\"",
+	    "\"sweep\": [{\"path\": \"/law/type\", \"values\": [\"linear\", \"elastoplastic\"]}, "
+	    "{\"path\": \"/contact/tension\", \"values\": [true]}, {\"path\": \"/law/corrections\", "
+	    "\"values\": [3]}, {\"path\": \"/contact/gap_m\", \"values\": [0.1]}], \"scene\"");
+	struct pound_response responses[2] = {numbered(0), numbered(100)};
+	struct pound_cell cells[2];
+	for (int c = 0; c < 2; c++)
+		cells[c] = (struct pound_cell){.sweep = {c, 1, 3, 0.1},
+		                               .runs = 5,
+		                               .n_signals = 1,
+		                               .signals = &responses[c],
+		                               .outputs = {1.25, 2.5, 3.75}};
+	struct pound_result result = {.n_cells = 2, .cells = cells};
+	struct reading *r = result_of(document, &result);
+	assert_int_equal(reading_count(r, "/cells"), 2);
+	assert_string_equal(reading_text(r, "/cells/0/sweep/~1law~1type"), "linear");
+	assert_string_equal(reading_text(r, "/cells/1/sweep/~1law~1type"), "elastoplastic");
+	assert_true(reading_true(r, "/cells/0/sweep/~1contact~1tension"));
+	check_near(reading_number(r, "/cells/1/sweep/~1law~1corrections"), 3, 0);
+	check_near(reading_number(r, "/cells/1/sweep/~1contact~1gap_m"), 0.1, 0);
+	check_near(reading_number(r, "/cells/1/signals/0/impulse_max_n_s"), 112.5, 0);
+	// outputs in the order of the engine: force, demand, impulse; each cell has those that apply to it
+	check_near(reading_number(r, "/cells/0/outputs/force_amplification"), 1.25, 0);
+	check_near(reading_number(r, "/cells/1/outputs/demand_amplification"), 2.5, 0);
+	check_near(reading_number(r, "/cells/1/outputs/impulse"), 3.75, 0);
+	assert_int_equal(reading_count(r, "/cells/0/outputs"), 2);
+	assert_string_equal(reading_text(r, "/cells/0/not_applicable/0/name"), "demand_amplification");
+	assert_string_equal(reading_text(r, "/cells/0/not_applicable/0/note"),
+	                    "needs a nonlinear law of the left oscillator");
+	assert_string_equal(reading_text(r, "/cells/1/not_applicable/0/name"), "force_amplification");
+	assert_false(reading_has(r, "/signals"));
+	reading_close(r);
+	free(document);
+}
+
+/* Indexes that tell their own places. */
+static void indices_fill(struct pound_indices *indices, struct pound_estimate *estimates, int n_inputs,
+                         double first)
+{
+	for (int k = 0; k < 2 * n_inputs; k++)
+		estimates[k] = (struct pound_estimate){first + k, first + k - 0.25, first + k + 0.25};
+	*indices = (struct pound_indices){first - 1, first - 2, first - 3, estimates, estimates + n_inputs};
+}
+
+static void indexes_stand_by_output_and_input(void **state)
+{
+	(void)state;
+	struct pound_estimate estimates[8];
+	struct pound_indices indices[4];
+	for (int o = 0; o < 4; o++)
+		indices_fill(&indices[o], &estimates[0], 2, 10);
+	indices_fill(&indices[3], &estimates[4], 2, 20);
+	struct pound_cell cells[2] = {
+	    {.sweep = {0.2}, .runs = 200, .indices = indices},
+	    {.sweep = {0.9}, .runs = 200, .runs_failed = 3, .rows_dropped = 1, .indices = indices + 2}};
+	struct pound_result result = {.n_cells = 2, .cells = cells};
+	struct reading *r = result_of(documents_sensitivity, &result);
+	assert_string_equal(reading_text(r, "/name"), "a study");
+	check_near(reading_number(r, "/cells/1/sweep/~1contact~1restitution"), 0.9, 0);
+	check_near(reading_number(r, "/cells/0/runs_failed"), 0, 0);
+	check_near(reading_number(r, "/cells/1/runs_failed"), 3, 0);
+	check_near(reading_number(r, "/cells/1/rows_dropped"), 1, 0);
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/name"), "impulse");
+	assert_string_equal(reading_text(r, "/cells/1/outputs/1/inputs/0/name"), "f_e");
+	assert_string_equal(reading_text(r, "/cells/1/outputs/1/inputs/1/path"), "/oscillators/1/mass_kg");
+	check_near(reading_number(r, "/cells/1/outputs/1/mean"), 19, 0);
+	check_near(reading_number(r, "/cells/1/outputs/1/variance"), 18, 0);
+	check_near(reading_number(r, "/cells/1/outputs/1/noise_share"), 17, 0);
+	static const struct {
+		const char *member;
+		double first, second;
+	} members[] = {{"S1", 20, 21}, {"S1_low", 19.75, 20.75}, {"S1_high", 20.25, 21.25},
+	               {"ST", 22, 23}, {"ST_low", 21.75, 22.75}, {"ST_high", 22.25, 23.25}};
+	for (size_t k = 0; k < sizeof members / sizeof members[0]; k++) {
+		check_near(reading_number(r, "/cells/1/outputs/1/inputs/0/%s", members[k].member), members[k].first,
+		           0);
+		check_near(reading_number(r, "/cells/1/outputs/1/inputs/1/%s", members[k].member), members[k].second,
+		           0);
+	}
+	assert_false(reading_has(r, "/cells/1/outputs/1/note"));
+	reading_close(r);
+}
+
+static void undefined_indexes_are_null_and_say_why(void **state)
+{
+	(void)state;
+	struct pound_estimate none[4];
+	for (int k = 0; k < 4; k++)
+		none[k] = (struct pound_estimate){NAN, NAN, NAN};
+	struct pound_indices indices[2] = {{1.0, 0.0, NAN, none, none + 2}, {NAN, NAN, NAN, none, none + 2}};
+	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices}};
+	struct pound_result result = {.n_cells = 2, .cells = cells};
+	struct reading *r = result_of(documents_sensitivity, &result);
+	assert_true(reading_has(r, "/cells/0/outputs/0/inputs/0/S1"));
+	assert_true(isnan(reading_number(r, "/cells/0/outputs/0/inputs/0/S1")));
+	assert_string_equal(reading_text(r, "/cells/0/outputs/0/note"),
+	                    "the output is the same for every row, so it has no indexes");
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/note"),
+	                    "no row of the design gave a value, so there are no indexes");
+	reading_close(r);
+}
+
+static void left_out_work_adds_up(void **state)
+{
+	(void)state;
+	struct pound_response response = numbered(0);
+	struct pound_cell cell = {.n_signals = 1, .signals = &response};
+	struct pound_result result = {.n_cells = 1,
+	                              .cells = &cell,
+	                              .work = {.signals = {100, 40},
+	                                       .free_runs = {150, 60},
+	                                       .yield_runs = {80, 70},
+	                                       .pounding_runs = {100, 50},
+	                                       .never_touching = 20,
+	                                       .moving_alike = 10}};
+	struct reading *r = result_of(documents_response, &result);
+	static const char *const sentences[] = {
+	    "60 ground motions: equal to one that was made",
+	    "90 linear responses without pounding: equal to one that was made",
+	    "10 nonlinear responses without pounding: equal to one that was made",
+	    "20 responses with pounding: the bodies alone never close the gap",
+	    "10 responses with pounding: equal linear oscillators move alike and never touch with force",
+	    "20 responses with pounding: equal to one that was made",
+	};
+	assert_int_equal(reading_count(r, "/work/left_out"), 6);
+	for (int i = 0; i < 6; i++)
+		assert_string_equal(reading_text(r, "/work/left_out/%d", i), sentences[i]);
+	check_near(reading_number(r, "/work/pounding_runs/asked"), 100, 0);
+	check_near(reading_number(r, "/work/pounding_runs/run"), 50, 0);
+	reading_close(r);
+	char *document =
+	    documents_with(documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\"");
+	result.work = (struct pound_work){.signals = {5, 5}, .free_runs = {10, 10}, .pounding_runs = {5, 0}};
+	r = result_of(document, &result);
+	assert_int_equal(reading_count(r, "/work/left_out"), 2);
+	assert_string_equal(reading_text(r, "/work/left_out/1"),
+	                    "all responses with pounding: the scene has no contact");
+	reading_close(r);
+	free(document);
+}
+
+CHECK_MAIN(cmocka_unit_test(a_response_is_written_whole),
+           cmocka_unit_test(timing_is_the_last_line_but_one_and_all_that_differs),
+           cmocka_unit_test(a_swept_law_stands_by_its_name),
+           cmocka_unit_test(indexes_stand_by_output_and_input),
+           cmocka_unit_test(undefined_indexes_are_null_and_say_why), cmocka_unit_test(left_out_work_adds_up))
