@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { HTTP_INVALID = 422 };
+
 /* The path, or words for "-". */
 const char *document_name(const char *path)
 {
@@ -44,11 +46,28 @@ char *document_read(const char *path, size_t *length)
 /* Lists what is wrong with a document, in the order of the reply. */
 void document_complain(const char *subject, const struct reading *problem)
 {
+	int n = reading_count(problem, "/errors");
+	double more = reading_number(problem, "/errors_not_listed");
 	const char *detail = reading_text(problem, "/detail"), *title = reading_text(problem, "/title");
-	command_complain("%s: %s", subject, detail ? detail : title ? title : "the server gave no reason");
-	for (int i = 0; i < reading_count(problem, "/errors"); i++) {
+	const char *first = reading_text(problem, "/errors/0/pointer");
+	char faults[64];
+	if (n > 0 && reading_number(problem, "/status") == HTTP_INVALID) {
+		snprintf(faults, sizeof faults, "%.0f fault%s", n + fmax(more, 0.0), n > 1 ? "s" : "");
+		detail = faults;
+	}
+	if (!detail)
+		detail = title ? title : "the server gave no reason";
+	if (n == 1 && first && !*first) {
+		// about the whole document: one line
+		command_complain("%s: %s: %s", subject, detail, reading_text(problem, "/errors/0/detail"));
+		return;
+	}
+	command_complain("%s: %s", subject, detail);
+	for (int i = 0; i < n; i++) {
 		const char *pointer = reading_text(problem, "/errors/%d/pointer", i);
 		const char *what = reading_text(problem, "/errors/%d/detail", i);
 		command_complain("  %s: %s", pointer && *pointer ? pointer : "(document)", what ? what : "");
 	}
+	if (more > 0.0)
+		command_complain("  and %.0f more", more);
 }

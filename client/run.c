@@ -146,12 +146,10 @@ static enum outcome print_result(const char *json, size_t n, const char *format)
 /* Says what is wrong with a document in the words of the server. */
 static void complain(const char *path, const struct problems *problems)
 {
-	struct problem_head head = {.status = 422, .detail = "the study has faults"};
 	char place[64];
-	if (problems->status == PROBLEMS_MALFORMED) {
-		snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
-		head.detail = place;
-	}
+	snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
+	const struct problem_head head = {.status = problems->status == PROBLEMS_MALFORMED ? 400 : 422,
+	                                  .detail = place};
 	size_t n;
 	char *json = problem_to_json(&head, problems, &n);
 	struct reading *reading = json ? reading_open(json, n) : NULL;

@@ -157,6 +157,47 @@ static void response(const struct reading *result)
 	}
 }
 
+/* What was asked and what was run, and why not all of it. */
+static void print_work(const struct reading *result)
+{
+	static const char *const columns[] = {"work", "asked", "run", NULL};
+	struct table *table = table_open(columns);
+	const char *stage, *what;
+	for (int i = 0; (stage = reading_member(result, i, "/work")); i++) {
+		if (!(what = reading_text(result, "/work/%s/what", stage)))
+			continue;
+		table_text(table, what);
+		table_number(table, reading_number(result, "/work/%s/asked", stage));
+		table_number(table, reading_number(result, "/work/%s/run", stage));
+	}
+	putchar('\n');
+	table_print(table, 2);
+	table_close(table);
+	for (int i = 0; (what = reading_text(result, "/work/left_out/%d", i)); i++) {
+		fputs("  left out: ", stdout);
+		print_tame(what);
+		putchar('\n');
+	}
+}
+
+/* What study it is, and what it took. */
+static void print_head(const struct reading *result, const char *kind)
+{
+	const char *name = reading_text(result, "/name"), *seed = reading_text(result, "/seed");
+	if (name) {
+		print_tame(name);
+		putchar('\n');
+	}
+	// a seed from 2^53 on is a text
+	printf("%s study, seed ", kind);
+	if (seed)
+		print_tame(seed);
+	else
+		printf("%.0f", reading_number(result, "/seed"));
+	printf(", %.3g s with %.0f threads, %.3g s of CPU time\n", reading_number(result, "/timing/wall_s"),
+	       reading_number(result, "/timing/threads"), reading_number(result, "/timing/cpu_s"));
+}
+
 // clang-format off
 static const struct {
 	const char *kind;
@@ -175,12 +216,9 @@ enum outcome show_result(const char *json, size_t length)
 	enum outcome outcome = OUTCOME_FAILED;
 	for (size_t i = 0; kind && i < sizeof KINDS / sizeof KINDS[0]; i++)
 		if (strcmp(kind, KINDS[i].kind) == 0) {
-			const char *name = reading_text(result, "/name");
-			print_tame(name ? name : kind);
-			printf(": %s study, seed %.0f", kind, reading_number(result, "/seed"));
-			print_measure(result, "/timing", "cpu_s", "CPU seconds", ", ");
-			putchar('\n');
+			print_head(result, kind);
 			KINDS[i].print(result);
+			print_work(result);
 			outcome = OUTCOME_OK;
 		}
 	if (outcome != OUTCOME_OK)

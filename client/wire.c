@@ -91,6 +91,14 @@ static void options_set(struct wire *wire, const struct wire_request *request, c
 		curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method);
 }
 
+/* Whether a request failed because the URL is none that can be asked: it failed before any connection. */
+static bool no_url(CURL *curl, CURLcode code)
+{
+	long connections = 0;
+	curl_easy_getinfo(curl, CURLINFO_NUM_CONNECTS, &connections);
+	return connections == 0 && (code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL);
+}
+
 /* Sends one request and takes the whole answer.
  *
  * Returns  value   OUTCOME_OK, OUTCOME_UNREACHED, or OUTCOME_USAGE for a URL that is none
@@ -123,9 +131,7 @@ enum outcome wire_send(struct wire *wire, const struct wire_request *request, st
 	free(url);
 	if (code != CURLE_OK && !wire->failure[0])
 		snprintf(wire->failure, sizeof wire->failure, "%s", curl_easy_strerror(code));
-	return code == CURLE_OK                                                    ? OUTCOME_OK
-	       : code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL ? OUTCOME_USAGE
-	                                                                           : OUTCOME_UNREACHED;
+	return code == CURLE_OK ? OUTCOME_OK : no_url(wire->curl, code) ? OUTCOME_USAGE : OUTCOME_UNREACHED;
 }
 
 /* The address of the server as the user gave it. */

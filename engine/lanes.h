@@ -30,7 +30,7 @@ typedef int64_t vi __attribute__((vector_size(8 * POUND_LANES)));
 
 LANE_INLINE vd vsplat(double x)
 {
-	vd r;
+	vd r = {0};
 	for (int l = 0; l < W; l++)
 		LANE(r, l) = x;
 	return r;
@@ -47,20 +47,40 @@ LANE_INLINE vi vequal(vd a, vd b)
 
 LANE_INLINE vd vselect(vi mask, vd a, vd b)
 {
-#if POUND_LANES == 1
-	return mask ? a : b;
-#else
-	return (vd)(((vi)a & mask) | ((vi)b & ~mask));
-#endif
+	vd r = {0};
+	for (int l = 0; l < W; l++)
+		LANE(r, l) = LANE(mask, l) ? LANE(a, l) : LANE(b, l);
+	return r;
+}
+
+/* Mask of one lane. */
+LANE_INLINE vi vonly(int lane)
+{
+	vi r = {0};
+	for (int l = 0; l < W; l++)
+		LANE(r, l) = -(int64_t)(l == lane);
+	return r;
+}
+
+LANE_INLINE vi vselect_mask(vi mask, vi a, vi b)
+{
+	return (a & mask) | (b & ~mask);
 }
 
 LANE_INLINE vd vmax(vd a, vd b)
 {
-	return vselect(vless(a, b), b, a);
+	vd r = {0};
+	for (int l = 0; l < W; l++)
+		LANE(r, l) = LANE(a, l) < LANE(b, l) ? LANE(b, l) : LANE(a, l);
+	return r;
 }
+
 LANE_INLINE vd vmin(vd a, vd b)
 {
-	return vselect(vless(b, a), b, a);
+	vd r = {0};
+	for (int l = 0; l < W; l++)
+		LANE(r, l) = LANE(b, l) < LANE(a, l) ? LANE(b, l) : LANE(a, l);
+	return r;
 }
 
 LANE_INLINE vd vabs(vd a)
@@ -74,7 +94,7 @@ LANE_INLINE vd vabs(vd a)
 
 LANE_INLINE vd vfma(vd a, vd b, vd c)
 {
-	vd r;
+	vd r = {0};
 	for (int l = 0; l < W; l++)
 		LANE(r, l) = __builtin_fma(LANE(a, l), LANE(b, l), LANE(c, l));
 	return r;
@@ -82,7 +102,7 @@ LANE_INLINE vd vfma(vd a, vd b, vd c)
 
 LANE_INLINE vd vsqrt(vd a)
 {
-	vd r;
+	vd r = {0};
 	for (int l = 0; l < W; l++)
 		LANE(r, l) = __builtin_sqrt(LANE(a, l));
 	return r;

@@ -15,38 +15,28 @@
 #include <string.h>
 
 #include "engine/lanes.h"
+#include "engine/series.h"
 
 enum {
-	POOL = 4 * W,           /* simulations in flight */
-	ORDER_FREE = 14,        /* of the series while apart */
-	ORDER_TOUCH = 22,       /* while touching */
+	POOL = 3 * W,           /* simulations in flight */
 	MAPS = 4,               /* free-flight maps a body keeps */
-	ROOT_ROUNDS = 64,       /* of a root search; quadratic, so 4 to 6 are usual */
-	DEFLATE_MAX = 5,        /* leading zeros of a guard: at rest, touching, equal ground */
 	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
 };
-
-/* Largest rate * time of a series step: the last term kept is below 2^-54 of the first.
- * 0.4^14/14! = 3e-17, 1.4^22/22! = 1.5e-18 (touching has the larger factor before the power). */
-static const double REACH_FREE = 0.4, REACH_TOUCH = 1.4;
-
-/* The cubic through both ends of an interval misses the function by at most h^4/384 max |u''''| (Hermite). */
-static const double CUBIC_ERROR = 1.0 / 384;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
 /* Columns of a simulation: `double` in a simulation at rest in the pool, `vd` in a group of lanes.  A group is loaded
- * and saved by ranges of columns: event steps read from the first to map, flight from state to the end. */
-#define COLUMNS(T)                                                                                 \
-	/* constants of event steps */                                                                 \
-	T step, damping[2], contact_stiffness, contact_damping, mass_ratio, release, reach[2];         \
-	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */ \
-	T p, q, left, slope, touching, parted, fresh, impulse, contact_time;                           \
-	/* changed by both */                                                                          \
-	T u[2], v[2], top[2], ground;                                                                  \
-	/* read by both: the piece of each body's law */                                               \
-	T gap, drive[2], stiffness[2], offset[2], low[2], high[2], direction[2];                       \
-	/* map of each body over one sample, and what bounds its error */                              \
+ * and saved by ranges of columns: event steps from the first to map, flight from state to the end. */
+#define COLUMNS(T)                                                                                      \
+	/* constants of event steps */                                                                      \
+	T step, damping[2], contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly;     \
+	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */      \
+	T p, q, left, slope, events, touching, parted, fresh, impulse, impulse_max, contacts, contact_time; \
+	/* changed by both */                                                                               \
+	T u[2], v[2], top[2], ground;                                                                       \
+	/* read by both: the piece of each body's law */                                                    \
+	T gap, drive[2], stiffness[2], offset[2], low[2], high[2], direction[2];                            \
+	/* map of each body over one sample, and what bounds its error */                                   \
 	T uu[2], uv[2], ua[2], ud[2], vu[2], vv[2], va[2], vd[2], eu[2], ev[2], ea[2], ed[2], third, error_turn;
 
 struct column {
@@ -75,15 +65,20 @@ struct map {
 
 struct simulation {
 	struct column x;
+	const double *next, *last; /* ground motion at the end of this interval and at the end of the signal */
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
 	struct pound_branch at[2];
 	struct map maps[2][MAPS];
 	int map_next[2];
-	int sample; /* index of the sample at or before now */
-	int events; /* in this sample interval */
-	int64_t contacts_begun;
-	bool can_fly; /* samples are short enough for free flight in one map */
+};
+
+/* simulations side by side; a lane without one has member -1 and goes through the motions */
+struct group {
+	struct lanes x;
+	int member[W];
+	const double *next[W], *last[W]; /* as in struct simulation */
+	int n;                           /* lanes in use */
 };
 
 struct queue {
@@ -92,10 +87,9 @@ struct queue {
 };
 
 struct work {
-	alignas(64) struct lanes fly;
-	alignas(64) struct lanes meet;
+	alignas(64) struct group fly;
+	alignas(64) struct group meet;
 	struct simulation pool[POOL];
-	int fly_lane[W], meet_lane[W]; /* which simulation, -1: none */
 	struct queue idle, flyers, meeters;
 	const struct pound_march_task *tasks;
 	struct pound_march_result *results;
@@ -153,7 +147,7 @@ static void piece_load(struct simulation *sim, int i)
 	sim->x.low[i] = piece->low;
 	sim->x.high[i] = piece->high;
 	sim->x.direction[i] = piece->direction;
-	if (!sim->can_fly)
+	if (sim->x.can_fly == 0)
 		return;
 	struct map *map = NULL;
 	for (int m = 0; m < MAPS && !map; m++)
@@ -170,14 +164,13 @@ static void piece_load(struct simulation *sim, int i)
 	x->eu[i] = map->eu, x->ev[i] = map->ev, x->ea[i] = map->ea, x->ed[i] = map->ed;
 }
 
-/* Enters the interval behind sample `sim->sample`. */
+/* Enters the interval that ends at sim->next. */
 static void interval_enter(struct simulation *sim)
 {
-	const double *a = &sim->task->ground[sim->sample];
-	sim->x.ground = a[0];
-	sim->x.slope = (a[1] - a[0]) / sim->x.step;
+	sim->x.ground = sim->next[-1];
+	sim->x.slope = (sim->next[0] - sim->next[-1]) / sim->x.step;
 	sim->x.left = sim->x.step;
-	sim->events = 0;
+	sim->x.events = 0;
 }
 
 /* A simulation at the start of its task. */
@@ -188,22 +181,26 @@ static void simulation_start(struct simulation *sim, const struct pound_march_ta
 	memset(result, 0, sizeof *result);
 	sim->task = task;
 	sim->result = result;
-	sim->can_fly = true;
+	sim->next = task->ground + 1;
+	sim->last = task->ground + task->n_samples - 1;
 	struct column *x = &sim->x;
 	double h = task->time_step;
 	double rate = 0;
+	bool can_fly = true;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *body = &task->bodies[i];
 		double k = body->skeleton.stiffness;
 		double omega = sqrt(k);
 		rate = fmax(rate, fmax(omega, body->damping));
-		sim->can_fly &= h * (body->damping + k * h) <= 0.5 && omega * h <= 1;
-		x->u[i] = body->u, x->v[i] = body->v, x->top[i] = fabs(body->u);
+		can_fly &= h * (body->damping + k * h) <= 0.5 && omega * h <= 1;
+		x->u[i] = body->u, x->v[i] = body->v;
+		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
 		x->damping[i] = body->damping;
 		x->drive[i] = body->drive;
 		for (int m = 0; m < MAPS; m++)
 			sim->maps[i][m].stiffness = -1;
 	}
+	x->can_fly = can_fly;
 	x->step = h;
 	x->gap = task->contact ? task->gap : -NEVER;
 	x->contact_stiffness = task->contact ? task->contact_stiffness : 0;
@@ -224,66 +221,81 @@ static void simulation_start(struct simulation *sim, const struct pound_march_ta
 
 /* ---- groups of lanes ---- */
 
-LANE_INLINE void lanes_load(struct lanes *group, int l, const struct simulation *sim, int from, int to)
-{
-	const double *x = (const double *)&sim->x;
-	vd *g = (vd *)group;
-	for (int j = from; j < to; j++)
-		LANE(g[j], l) = x[j];
-}
-
-LANE_INLINE void lanes_save(const struct lanes *group, int l, struct simulation *sim, int from, int to)
-{
-	double *x = (double *)&sim->x;
-	const vd *g = (const vd *)group;
-	for (int j = from; j < to; j++)
-		x[j] = LANE(g[j], l);
-}
-
 static void push(struct queue *queue, int member)
 {
 	queue->member[queue->n++] = member;
 }
+
 static int pop(struct queue *queue)
 {
 	return queue->member[--queue->n];
 }
 
-/* Writes a simulation's result and frees its place in the pool. */
-static void simulation_end(struct work *work, int member, enum pound_status status)
+/* Puts a simulation into lane l of a group: columns [from, to). */
+LANE_INLINE void lane_load(struct group *group, int l, struct work *work, int member, int from, int to)
 {
-	const struct simulation *sim = &work->pool[member];
+	const double *x = (const double *)&work->pool[member].x;
+	vd *g = (vd *)&group->x;
+	// whole vectors are written: a load after a store of one lane would have to wait for it
+	vi only = vonly(l);
+	for (int j = from; j < to; j++)
+		g[j] = vselect(only, vsplat(x[j]), g[j]);
+	group->member[l] = member;
+	group->next[l] = work->pool[member].next;
+	group->last[l] = work->pool[member].last;
+	group->n++;
+}
+
+/* Takes the simulation out of lane l: columns [from, to) were changed. */
+LANE_INLINE struct simulation *lane_save(struct group *group, int l, struct work *work, int from, int to)
+{
+	struct simulation *sim = &work->pool[group->member[l]];
+	double *x = (double *)&sim->x;
+	const double *g = (const double *)&group->x + l;
+	for (int j = from; j < to; j++)
+		x[j] = g[j * W];
+	sim->next = group->next[l];
+	group->member[l] = -1;
+	group->n--;
+	return sim;
+}
+
+/* Leaves lane l of a group with numbers that an event step can go through without harm. */
+static void lane_rest(struct group *group, int l)
+{
+	static const double still[2];
+	struct lanes *g = &group->x;
+	LANE(g->step, l) = LANE(g->left, l) = LANE(g->reach[0], l) = LANE(g->reach[1], l) = 1;
+	LANE(g->touching, l) = LANE(g->parted, l) = LANE(g->events, l) = 0;
+	group->next[l] = still + 1, group->last[l] = still + 1;
+}
+
+/* Writes a simulation's result and frees its place in the pool. */
+static void simulation_end(struct work *work, struct simulation *sim, enum pound_status status)
+{
 	struct pound_march_result *r = sim->result;
+	const struct column *x = &sim->x;
+	// a contact still open at the end counts with what it has
 	r->status = status;
-	r->contact_time = sim->x.contact_time;
-	if (sim->x.touching != 0) { // a contact still open at the end counts with what it has
-		r->impulse_max = fmax(r->impulse_max, sim->x.impulse);
-		r->contacts++;
-	}
+	r->contacts = (int64_t)(x->contacts + x->touching);
+	r->impulse_max = fmax(x->impulse_max, x->touching != 0 ? x->impulse : 0);
+	r->contact_time = x->contact_time;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		r->displacement_max[i] = sim->x.top[i];
-		r->u[i] = sim->x.u[i];
-		r->v[i] = sim->x.v[i];
+		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;
+		r->u[i] = x->u[i];
+		r->v[i] = x->v[i];
 	}
-	push(&work->idle, member);
+	push(&work->idle, (int)(sim - work->pool));
 }
 
 /* Sends a simulation that is apart to the group of event steps. */
-static void meet_await(struct work *work, int member)
+static void meet_await(struct work *work, struct simulation *sim)
 {
-	struct column *x = &work->pool[member].x;
+	struct column *x = &sim->x;
+	interval_enter(sim);
 	x->p = fmin(x->u[0] - x->u[1] - x->gap, 0); // rounding must not make it overlap
 	x->q = x->v[0] - x->v[1];
-	push(&work->meeters, member);
-}
-
-/* Simulations in the group of event steps and on their way there. */
-static int meeting(const struct work *work)
-{
-	int n = work->meeters.n;
-	for (int l = 0; l < W; l++)
-		n += work->meet_lane[l] >= 0;
-	return n;
+	push(&work->meeters, (int)(sim - work->pool));
 }
 
 /* Takes the next task into an idle place of the pool; false: none left. */
@@ -291,47 +303,27 @@ static bool task_start(struct work *work)
 {
 	if (work->started == work->n || work->idle.n == 0)
 		return false;
-	int member = pop(&work->idle);
-	simulation_start(&work->pool[member], &work->tasks[work->started], &work->results[work->started]);
+	struct simulation *sim = &work->pool[pop(&work->idle)];
+	simulation_start(sim, &work->tasks[work->started], &work->results[work->started]);
 	work->started++;
-	if (work->pool[member].can_fly)
-		push(&work->flyers, member);
+	if (sim->x.can_fly != 0)
+		push(&work->flyers, (int)(sim - work->pool));
 	else
-		meet_await(work, member);
+		meet_await(work, sim);
 	return true;
 }
 
 /* ---- free flight ---- */
 
-/* Fills the empty lanes of free flight; false: all stay empty. */
-static bool fly_fill(struct work *work)
+/* Fills the empty lanes of free flight. */
+static void fly_fill(struct work *work)
 {
-	bool any = false;
-	for (int l = 0; l < W; l++) {
-		while (work->fly_lane[l] < 0 && work->flyers.n == 0 && task_start(work))
+	for (int l = 0; l < W && work->fly.n < W; l++) {
+		while (work->fly.member[l] < 0 && work->flyers.n == 0 && task_start(work))
 			;
-		if (work->fly_lane[l] < 0 && work->flyers.n > 0) {
-			work->fly_lane[l] = pop(&work->flyers);
-			lanes_load(&work->fly, l, &work->pool[work->fly_lane[l]], COLUMN_STATE, COLUMN_END);
-		}
-		any |= work->fly_lane[l] >= 0;
+		if (work->fly.member[l] < 0 && work->flyers.n > 0)
+			lane_load(&work->fly, l, work, pop(&work->flyers), COLUMN_STATE, COLUMN_END);
 	}
-	return any;
-}
-
-/* Takes a simulation out of free flight: at the end of its signal, or to have its next interval done by series. */
-static void fly_leave(struct work *work, int l)
-{
-	int member = work->fly_lane[l];
-	struct simulation *sim = &work->pool[member];
-	lanes_save(&work->fly, l, sim, COLUMN_STATE, COLUMN_READ);
-	work->fly_lane[l] = -1;
-	if (sim->sample == sim->task->n_samples - 1) {
-		simulation_end(work, member, POUND_OK);
-		return;
-	}
-	interval_enter(sim);
-	meet_await(work, member);
 }
 
 struct flight {
@@ -396,60 +388,51 @@ LANE_INLINE vi flight(struct lanes *g, vd ground)
 static void fly(struct work *work)
 {
 	static const double still[1];
-	while (meeting(work) < W && fly_fill(work)) {
-		const double *next[W], *end[W];
+	struct group *g = &work->fly;
+	while (work->meet.n + work->meeters.n < W) {
+		fly_fill(work);
+		if (g->n == 0)
+			return;
 		int64_t moves[W];
 		for (int l = 0; l < W; l++) {
-			const struct simulation *sim = work->fly_lane[l] < 0 ? NULL : &work->pool[work->fly_lane[l]];
-			next[l] = sim ? &sim->task->ground[sim->sample + 1] : still;
-			end[l] = sim ? &sim->task->ground[sim->task->n_samples] : NULL;
-			moves[l] = sim ? -1 : 0;
+			moves[l] = g->member[l] < 0 ? 0 : -1;
+			if (!moves[l])
+				g->next[l] = still, g->last[l] = NULL;
 		}
+		// one sample a round, until a lane cannot be flown or was flown to its end
 		int64_t leaves;
 		vi risk;
 		do {
 			vd ground;
 			for (int l = 0; l < W; l++)
-				LANE(ground, l) = *next[l];
-			risk = flight(&work->fly, ground);
+				LANE(ground, l) = *g->next[l];
+			risk = flight(&g->x, ground);
 			leaves = 0;
 			for (int l = 0; l < W; l++) {
-				next[l] -= moves[l] & ~LANE(risk, l);
-				leaves |= (LANE(risk, l) & moves[l]) | -(int64_t)(next[l] == end[l]);
+				leaves |= (LANE(risk, l) & moves[l]) | -(int64_t)(g->next[l] == g->last[l]);
+				g->next[l] -= moves[l] & ~LANE(risk, l);
 			}
 		} while (!leaves);
 		for (int l = 0; l < W; l++) {
-			if (!moves[l])
+			if (!moves[l] || !(LANE(risk, l) || g->next[l] > g->last[l]))
 				continue;
-			struct simulation *sim = &work->pool[work->fly_lane[l]];
-			sim->sample = (int)(next[l] - sim->task->ground) - 1;
-			if (LANE(risk, l) || next[l] == end[l])
-				fly_leave(work, l);
+			struct simulation *sim = lane_save(g, l, work, COLUMN_STATE, COLUMN_READ);
+			if (sim->next > sim->last)
+				simulation_end(work, sim, POUND_OK);
+			else
+				meet_await(work, sim);
 		}
 	}
 }
 
 /* ---- events, by power series ---- */
 
-enum event { NOTHING, CUT, CLOSES, PARTS, CLEARS, BODY };
+enum event { NOTHING, CUT, CONTACT, CLEARS, BODY };
 
 // the event of an edge of body i is BODY + EDGES i + edge
 enum { EDGES = 3 };
 
-struct series {
-	int order;
-	vd u[2][ORDER_TOUCH + 2],
-	    v[2][ORDER_TOUCH + 2];                 /* powers of time over the step; v is u' times the step */
-	vd p[ORDER_TOUCH + 2], q[ORDER_TOUCH + 2]; /* overlap and its rate, integrated in their own right: the */
-	/* difference u1 - u2 - gap would lose a stiff contact's digits */
-	vd u_bend[2], p_bend; /* bounds of the fourth derivatives */
-};
-
-struct ends {
-	vd u[2], v[2], p, q;
-};
-
-/* Series of both bodies and of the overlap over a step. */
+/* Series of both bodies and of the overlap over a step, their ends and the bounds of their fourth derivatives. */
 static void series_fill(struct series *s, const struct lanes *g, vd dt, vi touching)
 {
 	vd dt2 = dt * dt, zero = vsplat(0);
@@ -459,371 +442,314 @@ static void series_fill(struct series *s, const struct lanes *g, vd dt, vi touch
 		k[i] = -g->stiffness[i] * dt2;
 		f0[i] = -vfma(g->drive[i], g->ground, g->offset[i]) * dt2;
 		f1[i] = -(g->drive[i] * g->slope) * dt2 * dt;
-		s->u[i][0] = g->u[i];
-		s->v[i][0] = g->v[i] * dt;
-		s->u_bend[i] = zero;
 	}
 	vd spring = vselect(touching, g->contact_stiffness * dt2, zero);
 	vd dash = vselect(touching, g->contact_damping * dt, zero);
 	vd both = vsplat(1) + g->mass_ratio;
-	s->p[0] = g->p;
-	s->q[0] = g->q * dt;
-	s->p_bend = zero;
-	s->order = vany(touching) ? ORDER_TOUCH : ORDER_FREE;
-	for (int n = 0; n <= s->order; n++) {
-		vd share = vsplat(1.0 / (n + 1));
-		vd a0 = vfma(c[0], s->v[0][n], k[0] * s->u[0][n]);
-		vd a1 = vfma(c[1], s->v[1][n], k[1] * s->u[1][n]);
+	int order = vany(touching) ? ORDER_TOUCH : ORDER_FREE;
+	vd u[3] = {g->u[0], g->u[1], g->p},
+	   v[3] = {g->v[0] * dt, g->v[1] * dt, g->q * dt}; // left, right, overlap
+	vd u1[3] = {zero, zero, zero}, v1[3] = {zero, zero, zero}, bend[3] = {zero, zero, zero};
+	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
+	for (int n = 0; n <= order; n++) {
+		vd weight = vsplat((double)n * (n - 1) * (n - 2) * (n - 3));
+		for (int j = 0; j < 3; j++) {
+			into[j]->u.c[n] = u[j];
+			into[j]->v.c[n] = v[j];
+			u1[j] = u1[j] + u[j];
+			v1[j] = v1[j] + v[j];
+			bend[j] = vfma(weight, vabs(u[j]), bend[j]);
+		}
+		vd share = vsplat(SHARE[n + 1]);
+		vd a0 = vfma(c[0], v[0], k[0] * u[0]), a1 = vfma(c[1], v[1], k[1] * u[1]);
 		if (n < 2) {
 			a0 += n ? f1[0] : f0[0];
 			a1 += n ? f1[1] : f0[1];
 		}
-		vd force = vfma(spring, s->p[n], dash * s->q[n]);
-		s->u[0][n + 1] = s->v[0][n] * share;
-		s->u[1][n + 1] = s->v[1][n] * share;
-		s->p[n + 1] = s->q[n] * share;
-		s->v[0][n + 1] = (a0 - force) * share;
-		s->v[1][n + 1] = vfma(g->mass_ratio, force, a1) * share;
-		s->q[n + 1] = vfma(-both, force, a0 - a1) * share;
-		if (n == ORDER_FREE && s->order > ORDER_FREE) {
-			// lanes apart end here, so that a lane's bits do not depend on its neighbours
-			for (int i = 0; i < 2; i++) {
-				s->v[i][n + 1] = vselect(touching, s->v[i][n + 1], zero);
-				s->u[i][n + 1] = vselect(touching, s->u[i][n + 1], zero);
+		vd force = vfma(spring, u[2], dash * v[2]);
+		for (int j = 0; j < 3; j++)
+			u[j] = v[j] * share;
+		v[0] = (a0 - force) * share;
+		v[1] = vfma(g->mass_ratio, force, a1) * share;
+		v[2] = vfma(-both, force, a0 - a1) * share;
+		if (n == ORDER_FREE) // lanes apart end here, so that a lane's bits do not depend on its neighbours
+			for (int j = 0; j < 3; j++) {
+				u[j] = vselect(touching, u[j], zero);
+				v[j] = vselect(touching, v[j], zero);
 			}
-			s->p[n + 1] = vselect(touching, s->p[n + 1], zero);
-			s->q[n + 1] = vselect(touching, s->q[n + 1], zero);
-		}
 	}
-	for (int n = 4; n <= s->order; n++) {
-		vd weight = vsplat((double)n * (n - 1) * (n - 2) * (n - 3));
-		s->u_bend[0] = vfma(weight, vabs(s->u[0][n]), s->u_bend[0]);
-		s->u_bend[1] = vfma(weight, vabs(s->u[1][n]), s->u_bend[1]);
-		s->p_bend = vfma(weight, vabs(s->p[n]), s->p_bend);
+	for (int j = 0; j < 3; j++) {
+		into[j]->u.c[order + 1] = into[j]->v.c[order + 1] = zero;
+		into[j]->u1 = u1[j];
+		into[j]->v1 = v1[j];
+		into[j]->bend = bend[j];
 	}
+	s->order = order;
 }
 
-static vd horner(const vd *c, int order, vd t)
+/* Looks for the edges of a body's piece. */
+static void body_search(const struct series *s, struct lanes *g, int i, vi active, struct search *search)
 {
-	vd r = vsplat(0);
-	for (int n = order; n >= 0; n--)
-		r = vfma(r, t, c[n]);
-	return r;
-}
-
-static struct ends series_ends(const struct series *s, vd t)
-{
-	struct ends e;
-	for (int i = 0; i < 2; i++) {
-		e.u[i] = horner(s->u[i], s->order, t);
-		e.v[i] = horner(s->v[i], s->order, t);
-	}
-	e.p = horner(s->p, s->order, t);
-	e.q = horner(s->q, s->order, t);
-	return e;
-}
-
-/* First event found so far in each lane. */
-struct search {
-	vd time;  /* as a share of the step, 1: none yet */
-	vi event; /* enum event */
-};
-
-/* Looks for the first time at which a guard becomes positive, and notes it as the event where it comes first.
- *
- * Given    guard   power series over the step, not positive at 0 but for rounding  (order + 1), destroyed
- *          active  lanes to search
- * Returns  search  time and event of the lanes that have one, up to the time already there
- *
- * A parabola with the guard's value and slope at t and with a bound of its curvature lies above the guard, so no
- * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
- * passes none.  A guard that starts at exactly 0 is divided by the powers of time it starts with: the sign of its
- * first term decides.  Where the search has not converged (a double root) the step is cut at the safe time reached.
- */
-static void guard_search(vd *guard, int order, vi active, int64_t event, struct search *search)
-{
-	vd zero = vsplat(0);
-	for (int m = 0; m < DEFLATE_MAX; m++) {
-		vi leading = vequal(guard[0], zero) & active;
-		if (!vany(leading))
-			break;
-		for (int n = 0; n < order; n++)
-			guard[n] = vselect(leading, guard[n + 1], guard[n]);
-		guard[order] = vselect(leading, zero, guard[order]);
-	}
-	active &= ~vequal(guard[0], zero);
-	vd bend = zero;
-	for (int n = order; n > 2; n--)
-		bend = vfma(vsplat((double)n * (n - 1)), vabs(guard[n]), bend);
-	vd curved = vfma(vsplat(2), vabs(guard[2]), bend); // either way, for the error left by a step
-	bend = vmax(zero, vfma(vsplat(2), guard[2], bend));
-	vd t = zero;
-	vi found = active & vless(zero, guard[0]);
-	vi going = active & ~found;
-	vd g = guard[0], slope = guard[1];
-	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
-		if (round > 0) {
-			g = zero;
-			slope = zero;
-			for (int n = order; n > 0; n--) {
-				g = vfma(g, t, guard[n]);
-				slope = vfma(slope, t, guard[n] * vsplat(n));
-			}
-			g = vfma(g, t, guard[0]);
-		}
-		vd below = vmin(g, zero);
-		vd root = vsqrt(vfma(slope, slope, -2.0 * bend * below));
-		vd step = vselect(vless(zero, slope), -2.0 * below / (slope + root), (root - slope) / bend);
-		step = vselect(vless(zero, slope) | vless(zero, bend), step, vsplat(2));
-		vi near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope) |
-		          vless(step, vsplat(0.5 * DBL_EPSILON));
-		t = vselect(going, t + step, t);
-		going &= ~vless(search->time, t);
-		found |= going & near;
-		going &= ~near;
-	}
-	search->time = vselect(found | going, t, search->time);
-	search->event = (search->event & ~(found | going)) | (found & event) | (going & CUT);
-}
-
-/* What bounds say of one body over a step: the cubic through its ends, and its error. */
-struct hull {
-	vd high, low, top;
-};
-
-LANE_INLINE struct hull hull_of(vd u0, vd v0, vd u1, vd v1, vd bend)
-{
-	vd third = vsplat(1.0 / 3), error = vsplat(CUBIC_ERROR) * bend;
-	vd b1 = vfma(third, v0, u0), b2 = vfma(-third, v1, u1);
-	struct hull h;
-	h.high = vmax(vmax(b1, b2), u1) + error;
-	h.low = vmin(vmin(b1, b2), u1) - error;
-	h.top = vmax(vmax(b1, b2), -vmin(b1, b2)) + error;
-	return h;
-}
-
-/* Looks for the edges of a body's piece, and for the turn of its velocity where that matters. */
-static void body_search(const struct series *s, const struct lanes *g, int i, const struct ends *e, vi active,
-                        struct search *search)
-{
-	vd guard[ORDER_TOUCH + 2];
-	vd zero = vsplat(0);
-	struct hull hull = hull_of(s->u[i][0], s->v[i][0], e->u[i], e->v[i], s->u_bend[i]);
-	int64_t body = BODY + EDGES * i;
+	vd zero = vsplat(0), one = vsplat(1), body = vsplat(BODY + EDGES * i);
+	const struct motion *m = &s->body[i];
+	struct hull hull = hull_of(m);
 	vi past_high = vless(g->high[i], hull.high) & active;
 	vi past_low = vless(hull.low, g->low[i]) & active;
-	vi bound_to_turn = ~vequal(g->direction[i], zero) & active;
-	vi new_top = vless(vmax(g->top[i], vabs(e->u[i])), hull.top) & active;
-	if (vany(past_high)) {
-		memcpy(guard, s->u[i], sizeof guard);
-		guard[0] -= g->high[i];
-		guard_search(guard, s->order, past_high, body + POUND_EDGE_HIGH, search);
-	}
-	if (vany(past_low)) {
-		for (int n = 0; n <= s->order; n++)
-			guard[n] = -s->u[i][n];
-		guard[0] += g->low[i];
-		guard_search(guard, s->order, past_low, body + POUND_EDGE_LOW, search);
-	}
-	if (vany(bound_to_turn | new_top)) {
-		// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
-		vd way = vselect(vequal(s->v[i][0], zero), vselect(vequal(s->v[i][1], zero), s->v[i][2], s->v[i][1]),
-		                 s->v[i][0]);
-		way = vselect(bound_to_turn, g->direction[i], way);
-		vd sign = vselect(vless(way, zero), vsplat(1), vsplat(-1));
-		for (int n = 0; n <= s->order; n++)
-			guard[n] = sign * s->v[i][n];
-		guard_search(guard, s->order, bound_to_turn | new_top, body + POUND_EDGE_TURN, search);
+	vi turns = ~vequal(g->direction[i], zero) & active;
+	if (vany(past_high))
+		search_crossing(m, s->order, g->high[i], one, past_high, body + vsplat(POUND_EDGE_HIGH), CUT, search);
+	if (vany(past_low))
+		search_crossing(m, s->order, g->low[i], -one, past_low, body + vsplat(POUND_EDGE_LOW), CUT, search);
+	if (vany(turns)) {
+		struct motion velocity;
+		motion_velocity(&velocity, m, s->order);
+		search_crossing(&velocity, s->order, zero, -g->direction[i], turns, body + vsplat(POUND_EDGE_TURN),
+		                CUT, search);
 	}
 }
 
-/* Looks for the beginning and the end of a contact. */
-static void contact_search(const struct series *s, const struct lanes *g, vd dt, const struct ends *e,
-                           vi active, struct search *search)
+/* Follows the largest displacement of a body inside the step, before what the search found.
+ *
+ * Where the velocity turns once, the displacement there is kept: an error of the turning time enters squared.  Where
+ * it may turn more often, the step is cut at the first turn.
+ */
+static void body_top(const struct series *s, struct lanes *g, int i, vi active, struct search *search)
 {
-	vd guard[ORDER_TOUCH + 2];
-	vd zero = vsplat(0);
-	vi touching = vless(zero, g->touching) & active;
-	vi parted = vless(zero, g->parted) & active;
-	vi apart = active & ~touching & ~parted;
-	vi pulls = vequal(g->release, zero); // the dashpot may pull: only the overlap decides
-	struct hull hull = hull_of(s->p[0], s->q[0], e->p, e->q, s->p_bend);
-	vi closes = apart & vless(zero, hull.high);
-	if (vany(closes)) {
-		memcpy(guard, s->p, sizeof guard);
-		guard_search(guard, s->order, closes, CLOSES, search);
-	}
-	vi parts = touching & (vless(hull.low, zero) | ~pulls);
-	vi force = touching | parted;
-	if (vany(parts | parted)) {
-		// touching ends when p + C/K p' falls through 0, and after parting begins again when it rises
+	const struct motion *m = &s->body[i];
+	struct hull hull = hull_of(m);
+	vi inside = vless(vmax(g->top[i], vabs(m->u1)), hull.turn) & active;
+	if (!vany(inside))
+		return;
+	struct motion velocity;
+	motion_velocity(&velocity, m, s->order);
+	const vd *v = m->v.c;
+	vd zero = vsplat(0), one = vsplat(1), t;
+	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
+	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
+	vd sign = vselect(vless(way, zero), one, -one);
+	vi once = root_quick(&velocity.u, &velocity.v, s->order, zero, sign, sign * v[0], sign * m->v1, one,
+	                     velocity.bend, inside, &t);
+	vd turn = vabs(power_at(&m->u, s->order, t));
+	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], turn), g->top[i]);
+	inside &= ~once;
+	if (!vany(inside))
+		return;
+	struct power guard;
+	for (int n = 0; n <= s->order; n++)
+		guard.c[n] = sign * v[n];
+	search_safe(&guard, s->order, inside, vsplat(BODY + EDGES * i + POUND_EDGE_TURN), CUT, search);
+}
+
+/* Looks for the beginning and the end of a contact.
+ *
+ * Apart, contact begins when the overlap p rises through 0.  Touching, it ends when p falls through 0, or where the
+ * dashpot must not pull, when the force does: p + C/K p' = 0 with p > 0 still.  The bodies are then parted: the contact
+ * goes on when that force rises again, and they are apart when p has fallen to 0.
+ */
+static void contact_search(const struct series *s, const struct lanes *g, vd dt, vi active,
+                           struct search *search)
+{
+	const struct motion *p = &s->overlap;
+	vd zero = vsplat(0), one = vsplat(1);
+	vi touching = vless(zero, g->touching), parted = vless(zero, g->parted) & active;
+	vi by_force = (touching | parted) & ~vequal(g->release, zero) & active;
+	struct hull hull = hull_of(p);
+	vi risk = vselect_mask(touching, vless(hull.low, zero), vless(zero, hull.high)) & active & ~by_force;
+	vd sign = vselect(touching, -one, one);
+	if (vany(risk))
+		search_crossing(p, s->order, zero, sign, risk, vsplat(CONTACT), CUT, search);
+	struct power guard;
+	if (vany(by_force)) {
 		vd lead = g->release / dt;
-		vd sign = vselect(parted, vsplat(1), vsplat(-1));
 		for (int n = 0; n <= s->order; n++)
-			guard[n] = sign * vfma(lead, s->q[n], s->p[n]);
-		guard[0] = vselect(vless(zero, g->fresh), zero, guard[0]);
-		guard_search(guard, s->order, (parts | parted) & force, PARTS, search);
+			guard.c[n] = sign * vfma(lead, p->v.c[n], p->u.c[n]);
+		guard.c[0] = vselect(vless(zero, g->fresh), zero, guard.c[0]);
+		search_safe(&guard, s->order, by_force, vsplat(CONTACT), CUT, search);
 	}
 	if (vany(parted)) {
 		for (int n = 0; n <= s->order; n++)
-			guard[n] = -s->p[n];
-		guard_search(guard, s->order, parted, CLEARS, search);
+			guard.c[n] = -p->u.c[n];
+		search_safe(&guard, s->order, parted, vsplat(CLEARS), CUT, search);
 	}
 }
 
-/* ---- edges, one lane at a time ---- */
+/* ---- through an event ---- */
 
-/* Contact begins, ends, or clears the overlap left after it. */
-static void contact_turn(struct simulation *sim, int64_t event)
+/* Contact begins, ends, or clears the overlap it left. */
+static void contact_turn(struct lanes *g, vd event)
 {
-	struct column *x = &sim->x;
-	if (event == CLEARS) {
-		x->parted = 0;
-		x->p = 0;
-	} else if (x->touching == 0) {
-		if (x->parted == 0)
-			x->p = 0;
-		if (sim->contacts_begun++ == 0) {
-			sim->result->first_contact = (sim->sample + 1) * x->step - x->left;
-			sim->result->first_speed = x->q;
-		}
-		x->fresh = x->parted;
-		x->parted = 0;
-		x->touching = 1;
-		x->impulse = 0;
-	} else {
-		sim->result->contacts++;
-		sim->result->impulse_max = fmax(sim->result->impulse_max, x->impulse);
-		x->touching = 0;
-		x->parted = x->release > 0 && x->p > 0;
-		x->fresh = x->parted;
-		if (x->parted == 0)
-			x->p = 0;
-	}
+	vd zero = vsplat(0), one = vsplat(1);
+	vi contact = vequal(event, vsplat(CONTACT)), clears = vequal(event, vsplat(CLEARS));
+	vi touching = vless(zero, g->touching), parted = vless(zero, g->parted);
+	vi ends = contact & touching;
+	vi begins = contact & ~touching;
+	vi parts = ends & vless(zero, g->release) & vless(zero, g->p);
+	vi sharp = (begins & ~parted) | (ends & ~parts) | clears; // at no overlap, from here exactly
+	g->impulse_max = vselect(ends, vmax(g->impulse_max, g->impulse), g->impulse_max);
+	g->impulse = vselect(begins, zero, g->impulse);
+	g->contacts = vselect(ends, g->contacts + one, g->contacts);
+	g->p = vselect(sharp, zero, g->p);
+	g->fresh = vselect((begins & parted) | parts, one, zero);
+	g->touching = vselect(begins, one, vselect(ends, zero, g->touching));
+	g->parted = vselect(parts, one, vselect(begins | clears, zero, g->parted));
+}
+
+/* Notes where and how fast the first contact began. */
+static void first_contact(struct work *work, int l)
+{
+	struct lanes *g = &work->meet.x;
+	const struct simulation *sim = &work->pool[work->meet.member[l]];
+	if (LANE(g->contacts, l) > 0 || LANE(g->touching, l) == 0 || sim->result->first_speed != 0)
+		return;
+	sim->result->first_contact =
+	    (double)(work->meet.next[l] - sim->task->ground) * sim->x.step - LANE(g->left, l);
+	sim->result->first_speed = LANE(g->q, l);
 }
 
 /* A body's law goes on to its next piece; from here the edge is exact. */
-static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
+static void body_turn(struct work *work, int l, int i, enum pound_edge edge)
 {
-	struct column *x = &sim->x;
+	struct lanes *g = &work->meet.x;
+	struct simulation *sim = &work->pool[work->meet.member[l]];
 	if (edge == POUND_EDGE_TURN)
-		x->v[i] = 0;
+		LANE(g->v[i], l) = 0;
 	else
-		x->u[i] = edge == POUND_EDGE_HIGH ? x->high[i] : x->low[i];
-	if (edge == POUND_EDGE_TURN && x->direction[i] == 0)
+		LANE(g->u[i], l) = edge == POUND_EDGE_HIGH ? LANE(g->high[i], l) : LANE(g->low[i], l);
+	if (edge == POUND_EDGE_TURN && LANE(g->direction[i], l) == 0)
 		return; // a turn that was only looked for as a largest displacement
-	pound_pieces_leave(&sim->task->bodies[i].skeleton, &sim->at[i], edge, x->u[i]);
+	pound_pieces_leave(&sim->task->bodies[i].skeleton, &sim->at[i], edge, LANE(g->u[i], l));
 	piece_load(sim, i);
+	LANE(g->stiffness[i], l) = sim->x.stiffness[i];
+	LANE(g->offset[i], l) = sim->x.offset[i];
+	LANE(g->low[i], l) = sim->x.low[i];
+	LANE(g->high[i], l) = sim->x.high[i];
+	LANE(g->direction[i], l) = sim->x.direction[i];
 }
 
-/* Whether a simulation at a sample may fly: apart, and not about to touch inside the next interval. */
-static bool flies(const struct simulation *sim)
+/* Lanes at a sample enter the next interval; what comes back is the lanes that leave the group. */
+static vi interval_turn(struct group *group, vi sampled)
 {
-	const struct column *x = &sim->x;
-	return sim->can_fly && x->touching == 0 && x->parted == 0 && x->p + x->step * x->q < 0;
-}
-
-/* What a lane of event steps does after its step: goes through an edge, enters the next interval, or leaves. */
-static void meet_turn(struct work *work, int l, int64_t event, bool sampled)
-{
-	struct lanes *g = &work->meet;
-	int member = work->meet_lane[l];
-	struct simulation *sim = &work->pool[member];
-	bool ends = sampled && sim->sample + 2 == sim->task->n_samples, leaves = ends;
-	if (event == NOTHING && !sampled)
-		return;
-	lanes_save(g, l, sim, COLUMN_MOVED, COLUMN_READ);
-	enum pound_status status = ++sim->events > EVENTS_LIMIT ? POUND_CHATTER : POUND_OK;
-	if (event >= BODY)
-		body_turn(sim, (int)(event - BODY) / EDGES, (enum pound_edge)((event - BODY) % EDGES));
-	else if (event > CUT)
-		contact_turn(sim, event);
-	if (sampled) {
-		sim->sample++;
-		if (!ends)
-			interval_enter(sim);
-		leaves |= flies(sim);
-	}
-	if (leaves || status) {
-		work->meet_lane[l] = -1;
-		LANE(g->touching, l) = 0;
-		LANE(g->parted, l) = 0;
-		LANE(g->left, l) = LANE(g->step, l);
-		if (ends || status)
-			simulation_end(work, member, status);
-		else
-			push(&work->flyers, member);
-	} else
-		lanes_load(g, l, sim, COLUMN_MOVED, COLUMN_MAP);
-}
-
-/* Fills the empty lanes of event steps; false: all stay empty. */
-static bool meet_fill(struct work *work)
-{
-	bool any = false;
+	struct lanes *g = &group->x;
+	vd a0, a1;
+	vi ends;
 	for (int l = 0; l < W; l++) {
-		if (work->meet_lane[l] < 0 && work->meeters.n > 0) {
-			work->meet_lane[l] = pop(&work->meeters);
-			lanes_load(&work->meet, l, &work->pool[work->meet_lane[l]], COLUMN_FIRST, COLUMN_MAP);
-		}
-		any |= work->meet_lane[l] >= 0;
+		const double *next = group->next[l] - LANE(sampled, l);
+		LANE(ends, l) = -(int64_t)(next > group->last[l]);
+		LANE(a0, l) = next[-1];
+		LANE(a1, l) = LANE(ends, l) ? next[-1] : *next;
+		group->next[l] = next;
 	}
-	return any;
+	vd zero = vsplat(0);
+	g->ground = vselect(sampled, a0, g->ground);
+	g->slope = vselect(sampled, (a1 - a0) / g->step, g->slope);
+	g->left = vselect(sampled, g->step, g->left);
+	g->events = vselect(sampled, zero, g->events + vsplat(1));
+	// apart, and not about to touch inside the next interval
+	vi flies = vless(zero, g->can_fly) & vequal(g->touching + g->parted, zero) &
+	           vless(vfma(g->step, g->q, g->p), zero);
+	return (sampled & (ends | flies)) | vless(vsplat(EVENTS_LIMIT), g->events);
+}
+
+static void meet_leave(struct work *work, int l)
+{
+	struct group *group = &work->meet;
+	bool chatter = LANE(group->x.events, l) > EVENTS_LIMIT;
+	struct simulation *sim = lane_save(group, l, work, COLUMN_MOVED, COLUMN_READ);
+	lane_rest(group, l);
+	if (chatter || sim->next > sim->last)
+		simulation_end(work, sim, chatter ? POUND_CHATTER : POUND_OK);
+	else
+		push(&work->flyers, (int)(sim - work->pool));
+}
+
+/* Moves the ends of a step to its events. */
+static void series_cut(struct series *s, vi event, vd time)
+{
+	struct motion *m[3] = {&s->body[0], &s->body[1], &s->overlap};
+	for (int j = 0; j < 3; j++) {
+		m[j]->u1 = vselect(event, power_at(&m[j]->u, s->order, time), m[j]->u1);
+		m[j]->v1 = vselect(event, power_at(&m[j]->v, s->order, time), m[j]->v1);
+	}
+}
+
+/* Adds the integral of the contact force over the step, per mass of the left body, and its time. */
+static void impulse_add(struct lanes *g, const struct series *s, vi touching, vd time, vd dt)
+{
+	struct power area; // of the overlap from 0 to t, over t
+	area.c[s->order + 1] = vsplat(0);
+	for (int n = s->order; n >= 0; n--)
+		area.c[n] = s->overlap.u.c[n] * vsplat(SHARE[n + 1]);
+	vd elapsed = time * dt;
+	vd impulse = vfma(g->contact_stiffness, power_at(&area, s->order, time) * elapsed,
+	                  g->contact_damping * (s->overlap.u1 - s->overlap.u.c[0]));
+	g->impulse = vselect(touching, g->impulse + impulse, g->impulse);
+	g->contact_time = vselect(touching, g->contact_time + elapsed, g->contact_time);
 }
 
 /* One event step: every lane goes on to its next event, its next sample, or as far as its series reaches. */
 static void meet_step(struct work *work)
 {
-	struct lanes *g = &work->meet;
+	struct group *group = &work->meet;
+	struct lanes *g = &group->x;
 	vd one = vsplat(1), zero = vsplat(0);
 	vi active;
 	for (int l = 0; l < W; l++)
-		LANE(active, l) = -(int64_t)(work->meet_lane[l] >= 0);
+		LANE(active, l) = -(int64_t)(group->member[l] >= 0);
 	vi touching = vless(zero, g->touching);
 	vd reach = vselect(touching, g->reach[1], g->reach[0]);
 	vd steps = g->left / reach;
-	vi whole = ~vless(one, steps);
+	vi whole = ~vless(one, steps) & active;
 	vd dt = vselect(whole, g->left, vselect(vless(vsplat(2), steps), reach, 0.5 * g->left));
 
 	struct series s;
 	series_fill(&s, g, dt, touching);
-	struct ends e = series_ends(&s, one);
-	struct search search = {.time = one, .event = vless(one, one)};
-	contact_search(&s, g, dt, &e, active, &search);
+	struct search search = {.time = one, .event = zero};
+	contact_search(&s, g, dt, active, &search);
 	for (int i = 0; i < 2; i++)
-		body_search(&s, g, i, &e, active, &search);
-	if (vany(search.event))
-		e = series_ends(&s, search.time);
-
-	// the integral of the contact force over the step, per mass of the left body
-	if (vany(touching)) {
-		vd overlap = zero;
-		for (int n = s.order; n >= 0; n--)
-			overlap = vfma(overlap, search.time, s.p[n] * vsplat(1.0 / (n + 1)));
-		overlap = overlap * search.time * dt;
-		vd impulse = vfma(g->contact_stiffness, overlap, g->contact_damping * (e.p - s.p[0]));
-		g->impulse = vselect(touching, g->impulse + impulse, g->impulse);
-		g->contact_time = vselect(touching, vfma(search.time, dt, g->contact_time), g->contact_time);
-	}
+		body_search(&s, g, i, active, &search);
+	for (int i = 0; i < 2; i++)
+		body_top(&s, g, i, active, &search);
+	vi event = ~vequal(search.event, zero);
+	if (vany(event))
+		series_cut(&s, event, search.time);
+	if (vany(touching))
+		impulse_add(g, &s, touching, search.time, dt);
 	for (int i = 0; i < 2; i++) {
-		g->u[i] = e.u[i];
-		g->v[i] = e.v[i] / dt;
-		g->top[i] = vmax(g->top[i], vabs(e.u[i]));
+		g->u[i] = s.body[i].u1;
+		g->v[i] = s.body[i].v1 / dt;
+		g->top[i] = vmax(g->top[i], vabs(g->u[i]));
 	}
-	g->p = e.p;
-	g->q = e.q / dt;
-	g->fresh = zero;
+	g->p = s.overlap.u1;
+	g->q = s.overlap.v1 / dt;
 	g->left = vfma(-search.time, dt, g->left);
 	g->ground = vfma(g->slope, search.time * dt, g->ground);
-	for (int l = 0; l < W; l++)
-		if (work->meet_lane[l] >= 0)
-			meet_turn(work, l, LANE(search.event, l), LANE(whole, l) && !LANE(search.event, l));
+	contact_turn(g, search.event);
+	for (int l = 0; l < W && vany(event); l++) {
+		int turn = (int)LANE(search.event, l) - BODY;
+		if (turn >= 0)
+			body_turn(work, l, turn / EDGES, (enum pound_edge)(turn % EDGES));
+		else if (turn == CONTACT - BODY)
+			first_contact(work, l);
+	}
+	vi leaves = interval_turn(group, whole & ~event) & active;
+	for (int l = 0; l < W && vany(leaves); l++)
+		if (LANE(leaves, l))
+			meet_leave(work, l);
 }
 
 /* ---- the march ---- */
 
 static_assert(sizeof(struct work) <= POUND_MARCH_SCRATCH, "the work space is too small");
 
+/* Runs every task to its end.
+ *
+ * Given    tasks    (n)
+ *          scratch  POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ * Returns  results  (n); status POUND_CHATTER where a task ended early
+ *
+ * Source   model.md 1
+ * Test     unit_march, unit_response
+ */
 void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
                  void *scratch)
 {
@@ -835,9 +761,16 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	for (int j = 0; j < POOL; j++)
 		push(&work->idle, j);
 	for (int l = 0; l < W; l++) {
-		work->fly_lane[l] = work->meet_lane[l] = -1;
-		LANE(work->meet.left, l) = LANE(work->meet.reach[0], l) = LANE(work->meet.reach[1], l) = 1;
+		work->fly.member[l] = work->meet.member[l] = -1;
+		lane_rest(&work->meet, l);
 	}
-	for (fly(work); meet_fill(work); fly(work))
+	for (;;) {
+		fly(work);
+		for (int l = 0; l < W && work->meeters.n > 0; l++)
+			if (work->meet.member[l] < 0)
+				lane_load(&work->meet, l, work, pop(&work->meeters), COLUMN_FIRST, COLUMN_MAP);
+		if (work->meet.n == 0)
+			return;
 		meet_step(work);
+	}
 }

@@ -16,6 +16,7 @@ struct pound_march_body {
 	double damping; /* c/m [1/s] */
 	double drive;   /* 1: rides on the ground motion, 0: stays where the ground is (a rigid wall) */
 	double u, v;    /* at the start [m], [m/s] */
+	bool followed;  /* its largest displacement is wanted */
 };
 
 struct pound_march_task {
@@ -33,7 +34,7 @@ struct pound_march_task {
 
 struct pound_march_result {
 	enum pound_status status;
-	double displacement_max[POUND_OSCILLATORS]; /* [m] */
+	double displacement_max[POUND_OSCILLATORS]; /* [m]; NAN where it was not followed */
 	double u[POUND_OSCILLATORS];                /* at the end [m] */
 	double v[POUND_OSCILLATORS];                /* [m/s] */
 	double impulse_max;                         /* largest integral of F/m1 over one contact [m/s] */

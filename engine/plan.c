@@ -229,6 +229,7 @@ static void marches_run(struct pound_plan *plan, int *done)
 static int body_march(struct pound_plan *plan, const struct ask *ask, int i, int law, double yield)
 {
 	struct pound_march_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
+	task.bodies[0].followed = true;
 	task.bodies[0].skeleton.law = law;
 	task.bodies[0].skeleton.yield = yield;
 	if (pound_pieces_linear(law))
@@ -321,6 +322,7 @@ static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_
 	}
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		task.bodies[i] = pound_scene_body(&ask->scene, i);
+		task.bodies[i].followed = ask->bodies[i].wanted;
 		double yield = ask->bodies[i].yield;
 		bool linear = pound_pieces_linear(task.bodies[i].skeleton.law);
 		task.bodies[i].skeleton.yield = linear ? 0 : yield > 0 ? yield : 1;
@@ -360,7 +362,8 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 		skeleton.yield = body->yield;
 		// without a run with pounding the body moves as it does alone; the wall does not
 		bool alone = ask->march < 0;
-		double most = !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
+		bool wall = ask->scene.oscillators[i].rigid_wall;
+		double most = wall ? 0 : !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
 		max[i] = ldexp(most, e);
 		max_free[i] = free ? ldexp(free->displacement_max[0], e) : NAN;
 		force[i] = ldexp(ask->scene.oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);

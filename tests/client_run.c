@@ -1,8 +1,9 @@
 /* `pound run`: the same bytes whatever computes them, the same complaints as the server, and a clean stop. */
-#include <ctype.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/wait.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -61,6 +62,18 @@ static struct program_outcome run_on_server(const char *document)
 	cut_timing(&result);
 	program_free(&id);
 	return result;
+}
+
+/* Puts an example into a file. */
+static void example_file(const char *name, char path[96])
+{
+	struct program_outcome document = POUND("example", name);
+	snprintf(path, 96, "%s/study.json", server.folder);
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(document.out, file);
+	fclose(file);
+	program_free(&document);
 }
 
 /* The examples that are quick; the others are only validated. */
@@ -136,7 +149,7 @@ static void a_bad_study_gets_the_same_list_from_run_and_from_the_server(void **s
 
 static void a_table_fits_in_100_columns(void **state)
 {
-	static const char *const kinds[] = {"response", "sensitivity"};
+	static const char *const kinds[] = {"response", "sensitivity_small"};
 	(void)state;
 	for (int i = 0; i < 2; i++) {
 		struct program_outcome document = POUND("example", kinds[i]);
@@ -154,7 +167,7 @@ static void a_table_fits_in_100_columns(void **state)
 static void csv_has_as_many_cells_in_every_row(void **state)
 {
 	(void)state;
-	struct program_outcome document = POUND("example", "sensitivity");
+	struct program_outcome document = POUND("example", "sensitivity_small");
 	struct program_outcome csv =
 	    program_run((const char *const[]){"pound", "run", "--format", "csv", "-", NULL}, document.out);
 	program_expect(&csv, 0);
@@ -195,14 +208,9 @@ static void ctrl_c_stops_a_run_without_a_result(void **state)
 	static const int signals[] = {SIGINT, SIGTERM};
 	char study[96], out[96], err[96];
 	(void)state;
-	snprintf(study, sizeof study, "%s/study.json", server.folder);
+	example_file("paper", study);
 	snprintf(out, sizeof out, "%s/out", server.folder);
 	snprintf(err, sizeof err, "%s/err", server.folder);
-	struct program_outcome document = POUND("example", "paper");
-	FILE *file = fopen(study, "w");
-	fputs(document.out, file);
-	fclose(file);
-	program_free(&document);
 	for (int i = 0; i < 2; i++) {
 		size_t n;
 		pid_t pid = program_start((const char *const[]){"pound", "run", study, NULL}, out, err);
@@ -214,6 +222,47 @@ static void ctrl_c_stops_a_run_without_a_result(void **state)
 		char *said = program_file(err, &n);
 		assert_string_equal(said, "pound: stopped by the caller\n");
 		free(said);
+	}
+}
+
+/* What a program drew on a terminal of so many columns as its stderr; the caller frees it. */
+static char *drawn(const char *const arguments[], int columns)
+{
+	struct winsize size = {.ws_col = (unsigned short)columns, .ws_row = 25};
+	int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+	assert_true(terminal >= 0 && grantpt(terminal) == 0 && unlockpt(terminal) == 0);
+	assert_int_equal(ioctl(terminal, TIOCSWINSZ, &size), 0);
+	// held open here, so that what was drawn is not lost when the program ends
+	int other = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
+	setenv("TERM", "xterm", 1);
+	assert_int_equal(program_end(program_start(arguments, "/dev/null", ptsname(terminal))), 0);
+	char *text = calloc(1, 65536);
+	size_t n = 0;
+	for (struct pollfd end = {.fd = terminal, .events = POLLIN}; n < 65535 && poll(&end, 1, 0) == 1;) {
+		ssize_t k = read(terminal, text + n, 65535 - n);
+		assert_true(k > 0);
+		n += (size_t)k;
+	}
+	close(other);
+	close(terminal);
+	return text;
+}
+
+static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
+{
+	static const int widths[] = {120, 60, 20};
+	char study[96];
+	(void)state;
+	example_file("sensitivity_small", study);
+	for (int i = 0; i < 3; i++) {
+		char *bar = drawn((const char *const[]){"pound", "run", study, NULL}, widths[i]);
+		size_t n = strlen(bar);
+		assert_non_null(strstr(bar, "100 %"));
+		assert_true(n > 4 && strcmp(bar + n - 4, "\r\033[K") == 0);
+		for (char *line = strtok(bar, "\r"); line; line = strtok(NULL, "\r"))
+			// the escape takes three bytes and no column
+			assert_true(strncmp(line, "\033[K", 3) == 0 && strlen(line) - 3 < (size_t)widths[i]);
+		free(bar);
 	}
 }
 
@@ -250,6 +299,7 @@ int main(int argc, char **argv)
 	    cmocka_unit_test(a_table_fits_in_100_columns),
 	    cmocka_unit_test(csv_has_as_many_cells_in_every_row),
 	    cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
+	    cmocka_unit_test(the_bar_keeps_within_its_terminal_and_clears_its_line),
 	    cmocka_unit_test(a_paper_study_is_valid_and_its_cost_is_told),
 	};
 	(void)argc;

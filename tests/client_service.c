@@ -38,7 +38,7 @@ static void a_study_that_has_succeeded_has_status_results_and_samples(void **sta
 {
 	char id[32];
 	(void)state;
-	submit("sensitivity", true, id);
+	submit("sensitivity_small", true, id);
 	expect_words(POUND("status", id), 0, WORDS("\"status\": \"succeeded\"", "\"progress\": 1"));
 	expect_words(POUND("status", "--format", "table", id), 0, WORDS("runs_total", "succeeded", id));
 	expect_words(POUND("wait", id), 0, WORDS("\"status\": \"succeeded\""));

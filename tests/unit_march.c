@@ -91,16 +91,20 @@ static struct pound_march_task wall(double gap, double damping_ratio, double res
                                     double stiffness_ratio)
 {
 	double k = 4 * PI * PI, stiffness = stiffness_ratio * k;
-	return (struct pound_march_task){
-	    .ground = still,
-	    .n_samples = STILL,
-	    .time_step = 0.005,
-	    .bodies = {{.skeleton = {.stiffness = k}, .damping = 4 * PI * damping_ratio, .drive = 1, .u = -1}},
-	    .contact = true,
-	    .gap = gap,
-	    .contact_stiffness = stiffness,
-	    .contact_damping = 2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
-	    .tension = true};
+	return (struct pound_march_task){.ground = still,
+	                                 .n_samples = STILL,
+	                                 .time_step = 0.005,
+	                                 .bodies = {{.skeleton = {.stiffness = k},
+	                                             .damping = 4 * PI * damping_ratio,
+	                                             .drive = 1,
+	                                             .followed = true,
+	                                             .u = -1}},
+	                                 .contact = true,
+	                                 .gap = gap,
+	                                 .contact_stiffness = stiffness,
+	                                 .contact_damping =
+	                                     2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
+	                                 .tension = true};
 }
 
 static void a_wall_is_met_every_half_period(void **state)
@@ -190,7 +194,8 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 			tasks[t].bodies[i] = (struct pound_march_body){
 			    .skeleton = {.law = t % 4, .stiffness = w * w, .hardening = 0.05, .yield = 0.3 / (w * w)},
 			    .damping = 0.1 * w,
-			    .drive = 1};
+			    .drive = 1,
+			    .followed = true};
 			stiffness = fmax(stiffness, w * w * (i ? 1 / ratio : 1));
 		}
 		tasks[t].contact_stiffness = 100 * stiffness;

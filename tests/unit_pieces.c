@@ -163,8 +163,8 @@ static double period(int law, double mu, double about)
 		    .ground = still,
 		    .n_samples = SAMPLES,
 		    .time_step = middle / (SAMPLES - 1),
-		    .bodies = {
-		        {.skeleton = {.law = law, .stiffness = 4 * PI * PI, .hardening = 0.05, .yield = 1}, .v = 0}}};
+		    .bodies = {{.skeleton = {.law = law, .stiffness = 4 * PI * PI, .hardening = 0.05, .yield = 1},
+		                .followed = true}}};
 		// start in the middle of the elastic range with the energy of the amplitude mu
 		double energy = 2 * PI * sqrt(1 + 2 * (mu - 1) + 0.05 * (mu - 1) * (mu - 1));
 		task.bodies[0].v = mu <= 1 ? 2 * PI * mu : energy;

@@ -1,0 +1,232 @@
+/* series.h - motion between two events as power series in time, and the first root of a guard on it.
+ *
+ * Included by march.c alone, once per lane count. */
+#ifndef SERIES_H
+#define SERIES_H
+
+#include <float.h>
+
+#include "engine/lanes.h"
+
+enum {
+	ORDER_FREE = 14,  /* of the series while apart */
+	ORDER_TOUCH = 22, /* while touching */
+	ORDER_SIZE = ORDER_TOUCH + 2,
+	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
+	QUICK_ROUNDS = 6, /* of Newton's method from the parabola through both ends */
+	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
+};
+
+/* Largest rate * time of a series step: the last term kept is below 2^-54 of the first.
+ * 0.4^14/14! = 3e-17, 1.4^22/22! = 1.5e-18 (touching has the larger factor before the power). */
+static const double REACH_FREE = 0.4, REACH_TOUCH = 1.4;
+
+/* The cubic through both ends of an interval misses the function by at most h^4/384 max |u''''| (Hermite). */
+static const double CUBIC_ERROR = 1.0 / 384;
+
+/* 1/n, so that the recurrences multiply */
+static const double SHARE[ORDER_SIZE + 1] = {
+    0,        1.0 / 1,  1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7,  1.0 / 8,
+    1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17,
+    1.0 / 18, 1.0 / 19, 1.0 / 20, 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24,
+};
+
+/* Coefficients of a series up to an even order, and a zero behind them: terms are taken in pairs. */
+struct power {
+	vd c[ORDER_SIZE];
+};
+
+/* A motion over a step of time 0 .. 1; v is the derivative of u: displacement, and velocity times the step. */
+struct motion {
+	struct power u, v;
+	vd u1, v1; /* at the end of the step */
+	vd bend;   /* bound of the fourth derivative over the step */
+};
+
+/* Both bodies and the overlap over a step.  The overlap is integrated in its own right: the difference u1 - u2 - gap
+ * would lose the digits of a stiff contact. */
+struct series {
+	int order;
+	struct motion body[2], overlap;
+};
+
+/* Value of a series at time t, the even and the odd terms apart: half the latency of Horner's rule. */
+LANE_INLINE vd power_at(const struct power *s, int order, vd t)
+{
+	vd t2 = t * t, even = vsplat(0), odd = vsplat(0);
+	for (int n = order; n >= 0; n -= 2) {
+		odd = vfma(odd, t2, s->c[n + 1]);
+		even = vfma(even, t2, s->c[n]);
+	}
+	return vfma(odd, t, even);
+}
+
+/* What bounds say of a motion over a step: the cubic through its ends, and the bound of its error. */
+struct hull {
+	vd high, low, turn; /* largest, smallest, and largest magnitude of the inner control points */
+};
+
+LANE_INLINE struct hull hull_of(const struct motion *m)
+{
+	vd third = vsplat(1.0 / 3), error = vsplat(CUBIC_ERROR) * m->bend;
+	vd b1 = vfma(third, m->v.c[0], m->u.c[0]), b2 = vfma(-third, m->v1, m->u1);
+	vd high = vmax(b1, b2), low = vmin(b1, b2);
+	struct hull h;
+	h.high = vmax(high, m->u1) + error;
+	h.low = vmin(low, m->u1) - error;
+	h.turn = vmax(high, -low) + error;
+	return h;
+}
+
+/* First event found so far in each lane. */
+struct search {
+	vd time;  /* as a share of the step, 1: none yet */
+	vd event; /* enum event as a double, 0: none yet */
+};
+
+/* First root by Newton's method where the guard is positive at the limit, with a proof that it is the first.
+ *
+ * Given    u, v    guard before sign and level, and its derivative: g = sign (u - level)
+ *          g0, g1  its values at 0, not positive, and at the limit
+ *          bend    bound of the fourth derivative of g over the step
+ *          active  lanes to search
+ * Returns  value   lanes whose root t was found and proved
+ *
+ * Newton starts at the root of the parabola through value and slope at 0 and the value at the limit.  With g(t) = 0,
+ * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
+ * cubic's inner control points are, the second by more than the error: no root lies before t.
+ */
+static vi root_quick(const struct power *u, const struct power *v, int order, vd level, vd sign, vd g0, vd g1,
+                     vd limit, vd bend, vi active, vd *t)
+{
+	vd zero = vsplat(0), d0 = sign * v->c[0];
+	vi sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
+	vd c = (g1 - vfma(d0, limit, g0)) / (limit * limit);
+	vd root = vsqrt(vmax(vfma(d0, d0, -4.0 * c * g0), zero));
+	vi up = vless(zero, d0);
+	*t = vmin(vselect(up, -2.0 * g0, root - d0) / vselect(up, d0 + root, 2.0 * c), limit);
+	vi settled = vless(zero, zero);
+	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
+		vd value = sign * (power_at(u, order, *t) - level), slope = sign * power_at(v, order, *t);
+		vi rises = vless(zero, slope);
+		vd next = vselect(rises, vmin(vmax(*t - value / slope, zero), limit), limit);
+		vd step = next - *t;
+		*t = vselect(settled, *t, next);
+		// Newton squares the relative error: below 2^-27 before a step it is rounding after
+		settled |= vless(vabs(step), vsplat(0x1p-27) * *t) & rises;
+	}
+	vd slope = sign * power_at(v, order, *t);
+	return sure & settled & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
+	       vless(bend * (*t * *t * *t) * vsplat(1.0 / 24), slope);
+}
+
+/* Safe root search: first time at which a guard, negative at 0, becomes positive.
+ *
+ * Given    g       guard, g(0) < 0 in the active lanes
+ *          limit   last time of interest
+ * Returns  value   lanes with a root; t: that time, or where the search had to give up (`unsure`), a safe time
+ *
+ * A parabola with the guard's value and slope at t and with a bound of its curvature lies above the guard, so no
+ * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
+ * passes none.
+ */
+static vi root_safe(const struct power *g, int order, vi active, vd limit, vd *t, vi *unsure)
+{
+	vd zero = vsplat(0), curved = zero;
+	struct power d = *g;
+	for (int n = 0; n <= order; n++)
+		d.c[n] = vsplat(n + 1) * g->c[n + 1];
+	for (int n = order; n > 2; n--)
+		curved = vfma(vsplat((double)n * (n - 1)), vabs(g->c[n]), curved);
+	vd bend = vmax(zero, vfma(vsplat(2), g->c[2], curved));
+	curved = vfma(vsplat(2), vabs(g->c[2]), curved);
+	vi going = active, found = vless(zero, zero);
+	*t = vselect(active, zero, *t);
+	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
+		vd slope = power_at(&d, order, *t);
+		vd below = vmin(power_at(g, order, *t), zero);
+		vd root = vsqrt(vfma(slope, slope, -2.0 * bend * below));
+		vi rises = vless(zero, slope);
+		vd step = vselect(rises, -2.0 * below, root - slope) / vselect(rises, slope + root, bend);
+		step = vselect(rises | vless(zero, bend), step, vsplat(2));
+		vi near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope) |
+		          vless(step, vsplat(0.5 * DBL_EPSILON));
+		*t = vselect(going, *t + step, *t);
+		going &= ~vless(limit, *t);
+		found |= going & near;
+		going &= ~near;
+	}
+	*unsure = going;
+	return found;
+}
+
+/* The safe search on any guard; `cut` is noted where the step is only cut at a safe time.
+ *
+ * A guard that starts at exactly 0 is divided by the powers of time it starts with: the sign of its first term decides.
+ */
+static void search_safe(struct power *guard, int order, vi active, vd event, double cut,
+                        struct search *search)
+{
+	vd zero = vsplat(0);
+	guard->c[order + 1] = zero;
+	for (int m = 0; m < DEFLATE_MAX; m++) {
+		vi leading = vequal(guard->c[0], zero) & active;
+		if (!vany(leading))
+			break;
+		for (int n = 0; n <= order; n++)
+			guard->c[n] = vselect(leading, guard->c[n + 1], guard->c[n]);
+	}
+	vi found = active & vless(zero, guard->c[0]);
+	active &= ~found & ~vequal(guard->c[0], zero);
+	vd t = zero;
+	vi unsure;
+	found |= root_safe(guard, order, active, search->time, &t, &unsure);
+	search->time = vselect(found | unsure, t, search->time);
+	search->event = vselect(found, event, vselect(unsure, vsplat(cut), search->event));
+}
+
+/* Looks for the first time at which a motion crosses a level, and notes it as the event where it comes first.
+ *
+ * Given    motion  sign (u - level) is not positive at 0 but for rounding
+ *          active  lanes to search
+ *          event   what to note;  cut: what to note where the step is only cut at a safe time
+ * Returns  search  time and event of the lanes that have one, up to the time already there
+ */
+static void search_crossing(const struct motion *m, int order, vd level, vd sign, vi active, vd event,
+                            double cut, struct search *search)
+{
+	vd one = vsplat(1), t;
+	vd g0 = sign * (m->u.c[0] - level), g1 = sign * (m->u1 - level);
+	vi shorter = vless(search->time, one) & active;
+	if (vany(shorter))
+		g1 = vselect(shorter, sign * (power_at(&m->u, order, search->time) - level), g1);
+	vi found = root_quick(&m->u, &m->v, order, level, sign, g0, g1, search->time, m->bend, active, &t);
+	search->time = vselect(found, t, search->time);
+	search->event = vselect(found, event, search->event);
+	active &= ~found;
+	if (!vany(active))
+		return;
+	struct power guard;
+	for (int n = 0; n <= order; n++)
+		guard.c[n] = sign * m->u.c[n];
+	guard.c[0] = g0;
+	search_safe(&guard, order, active, event, cut, search);
+}
+
+/* The velocity of a motion as a motion of its own. */
+static void motion_velocity(struct motion *velocity, const struct motion *m, int order)
+{
+	vd bend = vsplat(0), end = vsplat(0);
+	velocity->u = m->v;
+	for (int n = order; n >= 0; n--) {
+		velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
+		end = end + velocity->v.c[n];
+		bend = vfma(vsplat((double)n * (n - 1) * (n - 2) * (n - 3)), vabs(m->v.c[n]), bend);
+	}
+	velocity->v.c[order + 1] = vsplat(0);
+	velocity->u1 = m->v1;
+	velocity->v1 = end;
+	velocity->bend = bend;
+}
+
+#endif
