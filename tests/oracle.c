@@ -17,10 +17,11 @@ typedef long double real;
 
 enum { U1, V1, U2, V2, IMPULSE, STATES };
 
-enum {
-	CUTS_MAX = 16,    // of one step; more are the rounding noise of a velocity that is zero
-	HALVINGS_MAX = 45 // of a step: 3e-14 of it, and still wide enough to tell a grazing start from rounding
-};
+// cuts of one step; more are the rounding noise of a velocity that is zero
+enum { CUTS_MAX = 16 };
+
+// of a touching step: how near an event is located, and still wide enough to tell a grazing start from rounding
+static const real near_event = 1e-12L;
 
 static const real pi = 3.14159265358979323846264338327950288L;
 
@@ -114,10 +115,8 @@ static real bisected(const struct pair *pair, const struct interval *in, real s,
 {
 	int before = label(pair, y);
 	real low = 0, middle[STATES];
-	for (int k = 0; k < HALVINGS_MAX; k++) {
+	while (h - low > near_event * pair->step_touching) {
 		real half = low + (h - low) / 2;
-		if (half <= low || half >= h)
-			break;
 		runge_kutta(pair, in, s, half, y, middle);
 		if (label(pair, middle) == before) {
 			low = half;
@@ -174,7 +173,10 @@ static void settle(struct pair *pair, struct course *at)
 // one nominal step, in as many pieces as its branches need; ends early when the contact opens or closes
 static void step(struct pair *pair, const struct interval *in, real end_of_interval, struct course *at)
 {
-	real goal = fminl(at->s + (pair->touching ? pair->step_touching : pair->step_free), end_of_interval);
+	real h_whole = pair->touching ? pair->step_touching : pair->step_free;
+	// from rest everything starts with powers of time, of which one step sees nothing
+	real h_start = (at->time + at->s) / 32 + h_whole / 1000;
+	real goal = fminl(at->s + fminl(h_whole, h_start), end_of_interval);
 	bool touching = pair->touching;
 	for (int cuts = 0; at->s < goal && pair->touching == touching; cuts++) {
 		real h = goal - at->s, end[STATES];

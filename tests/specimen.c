@@ -130,6 +130,52 @@ void specimen_noise(struct specimen *specimen, uint64_t seed, double peak, doubl
 	}
 }
 
+static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
+
+static void random_oscillator(struct pound_oscillator *o, uint64_t *stream)
+{
+	o->frequency_hz = specimen_uniform(stream, 0.5, 5);
+	o->mass = specimen_uniform(stream, 1, 6);
+	o->damping_ratio = fmax(0, specimen_uniform(stream, -0.02, 0.1));
+}
+
+static void random_law(struct specimen *specimen, uint64_t *stream, int number)
+{
+	struct pound_scene *scene = &specimen->study.scene;
+	// of the size of the displacements: a part of the static one of 1 m/s2 at 1 Hz
+	double given = specimen_uniform(stream, -0.01, 0.01);
+	specimen_law(specimen, laws[number % 4], fmax(0, given));
+	scene->law.hardening_ratio = fmax(0, specimen_uniform(stream, -0.05, 0.3));
+	scene->law.target_demand = specimen_uniform(stream, 1.2, 4);
+	scene->law.corrections = (int)specimen_uniform(stream, 0, 3);
+	if (specimen_uniform(stream, 0, 1) > 0.25)
+		return;
+	struct pound_law common = scene->law;
+	specimen_law(specimen, laws[(int)specimen_uniform(stream, 0, 4)], fmax(0, -given));
+	scene->oscillators[1].law = scene->law;
+	scene->oscillators[1].has_law = true;
+	scene->law = common;
+}
+
+/* Makes a scene out of a number: every fourth has the same law, and so on. */
+void specimen_random(struct specimen *specimen, int number, double time_step, int n)
+{
+	uint64_t stream = 1000 + (uint64_t)number;
+	specimen_init(specimen);
+	struct pound_scene *scene = &specimen->study.scene;
+	random_law(specimen, &stream, number);
+	random_oscillator(&scene->oscillators[0], &stream);
+	random_oscillator(&scene->oscillators[1], &stream);
+	scene->oscillators[1].rigid_wall = specimen_uniform(&stream, 0, 1) < 0.15;
+	scene->contact.stiffness_ratio = pow(10, specimen_uniform(&stream, 1, 4));
+	scene->contact.restitution = fmin(1, fmax(0, specimen_uniform(&stream, -0.1, 1.1)));
+	scene->contact.gap = fmax(0, specimen_uniform(&stream, -0.01, 0.01));
+	scene->contact.tension = number / 4 % 2;
+	specimen_noise(specimen, stream, 1, time_step, n);
+	if (number % 3 == 0)
+		specimen->record[0] = 0;
+}
+
 /* Makes the scene and the record those of a reference. */
 void specimen_reference(struct specimen *specimen, const struct specimen_reference *reference,
                         double time_step)

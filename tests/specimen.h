@@ -34,6 +34,11 @@ void specimen_noise(struct specimen *specimen, uint64_t seed, double peak, doubl
 /* Uniform in [low, high): the next of a stream. */
 double specimen_uniform(uint64_t *stream, double low, double high);
 
+/* A specimen of its own for every number: any law on either side, both contact rules, gap or none, wall, damping 0 to
+ * 0.1, restitution 0 to 1 with both ends, contact 10 to 10^4 times stiffer, yield displacement given or found, noise
+ * that jumps to its first value or rises from 0. */
+void specimen_random(struct specimen *specimen, int number, double time_step, int n);
+
 /* Two oscillators under a half sine of 0.5 s, 3 s in all, computed elsewhere: a 128-bit Taylor solution. */
 struct specimen_reference {
 	const char *name;
