@@ -47,10 +47,11 @@ LANE_INLINE vi vequal(vd a, vd b)
 
 LANE_INLINE vd vselect(vi mask, vd a, vd b)
 {
-	vd r = {0};
-	for (int l = 0; l < W; l++)
-		LANE(r, l) = LANE(mask, l) ? LANE(a, l) : LANE(b, l);
-	return r;
+#if POUND_LANES == 1
+	return mask ? a : b;
+#else
+	return (vd)(((vi)a & mask) | ((vi)b & ~mask));
+#endif
 }
 
 /* Mask of one lane. */
@@ -66,21 +67,13 @@ LANE_INLINE vi vselect_mask(vi mask, vi a, vi b)
 {
 	return (a & mask) | (b & ~mask);
 }
-
 LANE_INLINE vd vmax(vd a, vd b)
 {
-	vd r = {0};
-	for (int l = 0; l < W; l++)
-		LANE(r, l) = LANE(a, l) < LANE(b, l) ? LANE(b, l) : LANE(a, l);
-	return r;
+	return vselect(vless(a, b), b, a);
 }
-
 LANE_INLINE vd vmin(vd a, vd b)
 {
-	vd r = {0};
-	for (int l = 0; l < W; l++)
-		LANE(r, l) = LANE(b, l) < LANE(a, l) ? LANE(b, l) : LANE(a, l);
-	return r;
+	return vselect(vless(b, a), b, a);
 }
 
 LANE_INLINE vd vabs(vd a)
