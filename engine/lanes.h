@@ -47,11 +47,10 @@ LANE_INLINE vi vequal(vd a, vd b)
 
 LANE_INLINE vd vselect(vi mask, vd a, vd b)
 {
-#if POUND_LANES == 1
-	return mask ? a : b;
-#else
-	return (vd)(((vi)a & mask) | ((vi)b & ~mask));
-#endif
+	vd r = {0};
+	for (int l = 0; l < W; l++)
+		LANE(r, l) = LANE(mask, l) ? LANE(a, l) : LANE(b, l);
+	return r;
 }
 
 /* Mask of one lane. */
@@ -67,13 +66,21 @@ LANE_INLINE vi vselect_mask(vi mask, vi a, vi b)
 {
 	return (a & mask) | (b & ~mask);
 }
+
 LANE_INLINE vd vmax(vd a, vd b)
 {
-	return vselect(vless(a, b), b, a);
+	vd r = {0};
+	for (int l = 0; l < W; l++)
+		LANE(r, l) = LANE(a, l) < LANE(b, l) ? LANE(b, l) : LANE(a, l);
+	return r;
 }
+
 LANE_INLINE vd vmin(vd a, vd b)
 {
-	return vselect(vless(b, a), b, a);
+	vd r = {0};
+	for (int l = 0; l < W; l++)
+		LANE(r, l) = LANE(b, l) < LANE(a, l) ? LANE(b, l) : LANE(a, l);
+	return r;
 }
 
 LANE_INLINE vd vabs(vd a)

@@ -20,6 +20,7 @@ enum {
 	HEADERS_MAX = 32 * 1024, /* [bytes] request line and headers */
 	IDLE_MAX = 60,           /* [s] without a byte */
 	BACKLOG = 1024,
+	DROPPED_MAX = 16 * BODY_MAX, /* [bytes] of a body that is too large and read all the same */
 };
 
 struct http {
@@ -79,13 +80,22 @@ static enum MHD_Result send_reply(const struct request *request, const struct re
 	return queued;
 }
 
+/* Whether the headers alone say that the body will not be kept. */
 static bool declared_too_large(const struct request *request)
 {
 	const char *length = http_header(request, "Content-Length");
 	return length && strtoull(length, NULL, 10) > BODY_MAX;
 }
 
-/* Keeps more of the body, unless it is over the limit: then it is read to its end and dropped. */
+/* Whether a body that is too large is refused unread.  A client that is sending all the same would find its connection
+ * reset, and not our answer, so a body that is not very large is read to its end. */
+static bool refused_unread(const struct request *request)
+{
+	return http_header(request, "Expect") ||
+	       strtoull(http_header(request, "Content-Length"), NULL, 10) > DROPPED_MAX;
+}
+
+/* Keeps more of the body, or drops it when it is over the limit. */
 static void collect(struct request *request, const char *bytes, size_t n)
 {
 	request->too_large = request->too_large || request->length + n > BODY_MAX;
@@ -119,9 +129,9 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 			return MHD_NO;
 		*request = (struct request){
 		    .server = of, .connection = connection, .method = method, .path = path, .arrived = monotonic()};
-		if (!declared_too_large(request))
+		request->too_large = declared_too_large(request);
+		if (!request->too_large || !refused_unread(request))
 			return MHD_YES;
-		request->too_large = true;
 	} else if (*n) {
 		collect(request, bytes, *n);
 		*n = 0;

@@ -282,7 +282,8 @@ char *service_study(int rows, int signals, int seed)
 	static const char form[] =
 	    "{\"kind\": \"sensitivity\", \"name\": \"study %d\",\n"
 	    " \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],\n"
-	    "  \"excitation\": {\"type\": \"kanai_tajimi\", \"frequency_hz\": 1, \"signals\": %d}},\n"
+	    "  \"excitation\": {\"type\": \"kanai_tajimi\", \"frequency_hz\": 5, \"cycles\": 10, \"signals\": "
+	    "%d}},\n"
 	    " \"inputs\": [\n"
 	    "  {\"path\": \"/oscillators/1/frequency_hz\", \"distribution\": {\"type\": \"uniform\", \"min\": "
 	    "0.5, \"max\": 5}},\n"

@@ -65,7 +65,8 @@ void service_change(const struct service *service, const char *sql);
 /* A text out of the server's database, for free. */
 char *service_text(const struct service *service, const char *sql);
 
-/* A sensitivity study with `rows` rows and `signals` signals of 20 s; 3 inputs, so 5 rows signals runs.  For free. */
+/* A sensitivity study of `rows` rows and `signals` signals of 2 s each, with 3 inputs: 5 x rows x signals runs, which
+ * the engine cuts into blocks of about 750.  For free. */
 char *service_study(int rows, int signals, int seed);
 
 /* A result with its timing taken out; in place. */

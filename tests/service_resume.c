@@ -4,7 +4,7 @@
 #include "tests/service.h"
 
 /* the study of these tests: long enough to be killed half way, many blocks */
-enum { ROWS = 150, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
+enum { ROWS = 900, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
 
 static char *result_of(const struct service *service, const char *id)
 {
@@ -20,8 +20,12 @@ static char *samples_of(const struct service *service, const char *id)
 	return answer.body;
 }
 
-/* A study run without interruption by so many workers: its result and samples, for free. */
-static void uninterrupted(int n_workers, char **result, char **samples)
+struct bytes {
+	char *result, *samples;
+};
+
+/* What the study comes to with so many workers and nothing in between. */
+static struct bytes uninterrupted(int n_workers)
 {
 	struct service *service = service_new();
 	char *study = service_study(ROWS, SIGNALS, SEED);
@@ -29,27 +33,58 @@ static void uninterrupted(int n_workers, char **result, char **samples)
 	service_start(service, n_workers);
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	*result = result_of(service, id);
-	*samples = samples_of(service, id);
+	struct bytes bytes = {result_of(service, id), samples_of(service, id)};
 	service_stop(service);
 	service_free(service);
 	free(study);
+	return bytes;
+}
+
+/* The bytes that all others must equal: of one worker. */
+static const struct bytes *reference(void)
+{
+	static struct bytes bytes;
+	if (!bytes.result)
+		bytes = uninterrupted(1);
+	return &bytes;
 }
 
 static void results_are_the_same_bytes_for_one_two_and_four_workers(void **state)
 {
-	char *result, *samples, *other_result, *other_samples;
 	(void)state;
-	uninterrupted(1, &result, &samples);
 	for (int n_workers = 2; n_workers <= 4; n_workers += 2) {
-		uninterrupted(n_workers, &other_result, &other_samples);
-		assert_string_equal(other_result, result);
-		assert_string_equal(other_samples, samples);
-		free(other_result);
-		free(other_samples);
+		struct bytes bytes = uninterrupted(n_workers);
+		assert_string_equal(bytes.result, reference()->result);
+		assert_string_equal(bytes.samples, reference()->samples);
+		free(bytes.result);
+		free(bytes.samples);
 	}
+}
+
+/* Starts the study, and kills the server when about a third of it is done. */
+static void kill_half_way(struct service *service, char id[17])
+{
+	char *study = service_study(ROWS, SIGNALS, SEED);
+	service_start(service, 2);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 0.3 * RUNS));
+	service_kill(service);
+	assert_true(service_number(service, "SELECT sum(runs) FROM block") < RUNS);
+	free(study);
+}
+
+/* Starts the server again; the study must come to the reference. */
+static void resume(struct service *service, const char *id)
+{
+	service_start(service, 2);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	char *result = result_of(service, id), *samples = samples_of(service, id);
+	assert_string_equal(result, reference()->result);
+	assert_string_equal(samples, reference()->samples);
+	assert_int_equal(service_number(service, "SELECT sum(runs) FROM block"), RUNS);
 	free(result);
 	free(samples);
+	service_stop(service);
 }
 
 static void a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again(void **state)
@@ -57,32 +92,30 @@ static void a_killed_study_goes_on_to_the_same_bytes_without_running_stored_bloc
 	static const char kept[] =
 	    "SELECT group_concat(number || ' ' || hex(sha256)) FROM block WHERE attempt = 1";
 	struct service *service = service_new();
-	char *result, *samples, id[17];
-	char *study = service_study(ROWS, SIGNALS, SEED);
+	char id[17];
 	(void)state;
-	uninterrupted(2, &result, &samples);
-
-	service_start(service, 2);
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "running", 0.3 * RUNS));
-	service_kill(service);
+	kill_half_way(service, id);
 	char *before = service_text(service, kept);
-	assert_true(service_number(service, "SELECT sum(runs) FROM block") < RUNS);
-
-	service_start(service, 2);
-	assert_true(service_wait(service, id, "succeeded", 0));
+	resume(service, id);
 	char *after = service_text(service, kept);
-	char *resumed_result = result_of(service, id);
-	char *resumed_samples = samples_of(service, id);
 	assert_string_equal(after, before);
-	assert_int_equal(service_number(service, "SELECT sum(runs) FROM block"), RUNS);
 	assert_int_equal(service_number(service, "SELECT max(attempt) FROM block"), 2);
-	assert_string_equal(resumed_result, result);
-	assert_string_equal(resumed_samples, samples);
-	service_stop(service);
 	service_free(service);
-	free(before), free(after), free(resumed_result), free(resumed_samples);
-	free(result), free(samples), free(study);
+	free(before);
+	free(after);
+}
+
+static void a_damaged_block_is_run_again_to_the_same_bytes(void **state)
+{
+	struct service *service = service_new();
+	char id[17];
+	(void)state;
+	kill_half_way(service, id);
+	service_change(service, "UPDATE block SET content = zeroblob(length(content)) WHERE number = "
+	                        "(SELECT min(number) FROM block)");
+	resume(service, id);
+	assert_int_equal(service_number(service, "SELECT attempt FROM block ORDER BY number"), 2);
+	service_free(service);
 }
 
 static void a_stopped_server_takes_its_studies_up_again(void **state)
@@ -122,28 +155,6 @@ static void accepted_studies_survive_sigkill(void **state)
 	service_free(service);
 }
 
-static void a_damaged_block_is_run_again_to_the_same_bytes(void **state)
-{
-	struct service *service = service_new();
-	char *result, *samples, id[17];
-	char *study = service_study(ROWS, SIGNALS, SEED);
-	(void)state;
-	uninterrupted(2, &result, &samples);
-	service_start(service, 2);
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "running", 0.3 * RUNS));
-	service_kill(service);
-	service_change(service, "UPDATE block SET content = zeroblob(length(content)) WHERE number = "
-	                        "(SELECT min(number) FROM block)");
-	service_start(service, 2);
-	assert_true(service_wait(service, id, "succeeded", 0));
-	char *resumed = result_of(service, id);
-	assert_string_equal(resumed, result);
-	service_stop(service);
-	service_free(service);
-	free(resumed), free(result), free(samples), free(study);
-}
-
 static void a_damaged_result_is_an_error_not_an_answer(void **state)
 {
 	struct service *service = service_new();
@@ -154,7 +165,9 @@ static void a_damaged_result_is_an_error_not_an_answer(void **state)
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	service_stop(service);
-	service_change(service, "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB) WHERE name = 'result'");
+	service_change(
+	    service,
+	    "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB) WHERE name = 'result'");
 	service_start(service, 1);
 	struct answer answer = service_get(service, "/v1/studies/%s/results", id);
 	assert_int_equal(answer.status, 500);

@@ -330,9 +330,10 @@ static void results_are_404_with_retry_after_until_they_are_there(void **state)
 {
 	struct service *service = *state;
 	char first[17], second[17];
-	char *study = service_study(100, 5, 1);
+	char *study = service_study(900, 5, 1);
+	char *short_study = service_study(2, 1, 1);
 	service_submit(service, study, first);
-	service_submit(service, study, second);
+	service_submit(service, short_study, second);
 	static const char *const documents[] = {"results", "samples"};
 	for (int i = 0; i < 2; i++) {
 		struct answer answer = service_get(service, "/v1/studies/%s/%s", second, documents[i]);
@@ -346,6 +347,7 @@ static void results_are_404_with_retry_after_until_they_are_there(void **state)
 		answer_free(&answer);
 	}
 	free(study);
+	free(short_study);
 }
 
 static struct answer finished(struct service *service, const char *document, const char *accept, char id[17])
