@@ -9,36 +9,9 @@
 
 #include "tests/check.h"
 #include "tests/program.h"
+#include "tests/service.h"
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
-
-static struct program_server server;
-
-static int serve(void **state)
-{
-	(void)state;
-	if (!program_serve(&server))
-		return -1;
-	setenv("POUND_URL", server.url, 1);
-	return 0;
-}
-
-static int stop(void **state)
-{
-	(void)state;
-	return program_stop(&server);
-}
-
-/* Takes out of a result the one line that may differ between two runs. */
-static void cut_timing(struct program_outcome *result)
-{
-	static const char line[] = "  \"timing\":";
-	char *timing = strstr(result->out, line);
-	assert_non_null(timing);
-	char *next = strchr(timing, '\n');
-	memmove(timing, next, strlen(next) + 1);
-	assert_null(strstr(timing, line));
-}
 
 static struct program_outcome run_threads(const char *document, const char *threads)
 {
@@ -46,7 +19,7 @@ static struct program_outcome run_threads(const char *document, const char *thre
 	    program_run((const char *const[]){"pound", "run", "--threads", threads, "-", NULL}, document);
 	program_expect(&outcome, 0);
 	assert_string_equal(outcome.err, "");
-	cut_timing(&outcome);
+	service_timeless(outcome.out);
 	return outcome;
 }
 
@@ -59,17 +32,17 @@ static struct program_outcome run_on_server(const char *document)
 	id.out[strcspn(id.out, "\n")] = '\0';
 	struct program_outcome result = POUND("results", id.out);
 	program_expect(&result, 0);
-	cut_timing(&result);
+	service_timeless(result.out);
 	program_free(&id);
 	return result;
 }
 
-/* Puts an example into a file. */
-static void example_file(const char *name, char path[96])
+/* Puts an example into a new file; the caller deletes it. */
+static void example_file(const char *name, char path[32])
 {
+	strcpy(path, "/tmp/pound-test-XXXXXX");
 	struct program_outcome document = POUND("example", name);
-	snprintf(path, 96, "%s/study.json", server.folder);
-	FILE *file = fopen(path, "w");
+	FILE *file = fdopen(mkstemp(path), "w");
 	assert_non_null(file);
 	fputs(document.out, file);
 	fclose(file);
@@ -206,11 +179,11 @@ static bool catches(pid_t pid, int number)
 static void ctrl_c_stops_a_run_without_a_result(void **state)
 {
 	static const int signals[] = {SIGINT, SIGTERM};
-	char study[96], out[96], err[96];
+	char study[32], out[48], err[48];
 	(void)state;
 	example_file("paper", study);
-	snprintf(out, sizeof out, "%s/out", server.folder);
-	snprintf(err, sizeof err, "%s/err", server.folder);
+	snprintf(out, sizeof out, "%s.out", study);
+	snprintf(err, sizeof err, "%s.err", study);
 	for (int i = 0; i < 2; i++) {
 		size_t n;
 		pid_t pid = program_start((const char *const[]){"pound", "run", study, NULL}, out, err);
@@ -222,7 +195,10 @@ static void ctrl_c_stops_a_run_without_a_result(void **state)
 		char *said = program_file(err, &n);
 		assert_string_equal(said, "pound: stopped by the caller\n");
 		free(said);
+		unlink(out);
+		unlink(err);
 	}
+	unlink(study);
 }
 
 /* What a program drew on a terminal of so many columns as its stderr; the caller frees it. */
@@ -251,7 +227,7 @@ static char *drawn(const char *const arguments[], int columns)
 static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
 {
 	static const int widths[] = {120, 60, 20};
-	char study[96];
+	char study[32];
 	(void)state;
 	example_file("sensitivity_small", study);
 	for (int i = 0; i < 3; i++) {
@@ -264,26 +240,26 @@ static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
 			assert_true(strncmp(line, "\033[K", 3) == 0 && strlen(line) - 3 < (size_t)widths[i]);
 		free(bar);
 	}
+	unlink(study);
 }
 
 static void a_paper_study_is_valid_and_its_cost_is_told(void **state)
 {
 	struct program_outcome names = POUND("example", "--names");
 	int n = 0;
-	(void)state;
 	for (char *name = strtok(names.out, "\n"); name; name = strtok(NULL, "\n")) {
 		if (!is_long(name))
 			continue;
-		char url[160];
 		struct program_outcome document = POUND("example", name);
-		snprintf(url, sizeof url, "%s/v1/studies?validate_only=true", server.url);
-		struct program_outcome estimate = program_run(
-		    (const char *const[]){"curl", "-sS", "--fail-with-body", "--noproxy", "*", "-H",
-		                          "Content-Type: application/json", "--data-binary", "@-", url, NULL},
-		    document.out);
-		program_expect(&estimate, 0);
-		assert_non_null(strstr(estimate.out, "\"estimated_cpu_s\": "));
-		program_free(&estimate);
+		struct answer estimate =
+		    service_ask(*state, &(struct ask){.method = "POST",
+		                                      .path = "/v1/studies?validate_only=true",
+		                                      .headers = {"Content-Type: application/json"},
+		                                      .body = document.out,
+		                                      .length = document.n_out});
+		assert_int_equal(estimate.status, 200);
+		assert_non_null(strstr(estimate.body, "\"estimated_cpu_s\": "));
+		answer_free(&estimate);
 		program_free(&document);
 		n++;
 	}
@@ -291,20 +267,12 @@ static void a_paper_study_is_valid_and_its_cost_is_told(void **state)
 	program_free(&names);
 }
 
-int main(int argc, char **argv)
-{
-	const struct CMUnitTest tests[] = {
-	    cmocka_unit_test(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server),
-	    cmocka_unit_test(a_bad_study_gets_the_same_list_from_run_and_from_the_server),
-	    cmocka_unit_test(a_table_fits_in_100_columns),
-	    cmocka_unit_test(csv_has_as_many_cells_in_every_row),
-	    cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
-	    cmocka_unit_test(the_bar_keeps_within_its_terminal_and_clears_its_line),
-	    cmocka_unit_test(a_paper_study_is_valid_and_its_cost_is_told),
-	};
-	(void)argc;
-	if (serve(NULL) != 0)
-		return 1;
-	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
-	return stop(NULL) == 0 && failed == 0 ? 0 : 1;
-}
+#define SERVED(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
+
+CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server),
+           SERVED(a_bad_study_gets_the_same_list_from_run_and_from_the_server),
+           cmocka_unit_test(a_table_fits_in_100_columns),
+           cmocka_unit_test(csv_has_as_many_cells_in_every_row),
+           cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
+           cmocka_unit_test(the_bar_keeps_within_its_terminal_and_clears_its_line),
+           SERVED(a_paper_study_is_valid_and_its_cost_is_told))

@@ -3,6 +3,7 @@
 
 #include "tests/check.h"
 #include "tests/program.h"
+#include "tests/service.h"
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
@@ -110,21 +111,9 @@ static void list_goes_page_by_page_from_the_newest(void **state)
 	expect_words(POUND("list", "--status", "asleep"), 2, WORDS("status must be"));
 }
 
-int main(int argc, char **argv)
-{
-	const struct CMUnitTest tests[] = {
-	    cmocka_unit_test(a_study_that_has_succeeded_has_status_results_and_samples),
-	    cmocka_unit_test(a_cancelled_study_ends_wait_and_results_with_3),
-	    cmocka_unit_test(a_deleted_study_is_gone_for_every_command),
-	    cmocka_unit_test(an_id_of_the_user_s_invention_is_no_path),
-	    cmocka_unit_test(list_goes_page_by_page_from_the_newest),
-	};
-	struct program_server server;
-	(void)argc;
-	if (!program_serve(&server))
-		return 1;
-	setenv("POUND_URL", server.url, 1);
-	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
-	// a study that is cancelled or running does not keep the server from ending well
-	return program_stop(&server) == 0 && failed == 0 ? 0 : 1;
-}
+#define SERVED(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
+
+CHECK_MAIN(SERVED(a_study_that_has_succeeded_has_status_results_and_samples),
+           SERVED(a_cancelled_study_ends_wait_and_results_with_3),
+           SERVED(a_deleted_study_is_gone_for_every_command),
+           SERVED(an_id_of_the_user_s_invention_is_no_path), SERVED(list_goes_page_by_page_from_the_newest))

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "tests/check.h"
+#include "tests/service.h"
 
 static void give_up(const char *what)
 {
@@ -146,40 +147,13 @@ int program_end(pid_t pid)
 	return exit_status(status);
 }
 
-/* Starts poundd and reads the line that tells its address; a server that ends without it gives false. */
-bool program_serve(struct program_server *server)
+int program_setup(void **state)
 {
-	char database[96], line[128];
-	int out[2];
-	snprintf(server->folder, sizeof server->folder, "/tmp/pound-test-XXXXXX");
-	if (!mkdtemp(server->folder) || pipe2(out, O_CLOEXEC))
-		give_up("mkdtemp");
-	snprintf(database, sizeof database, "%s/poundd.db", server->folder);
-	server->pid = fork();
-	if (server->pid < 0)
-		give_up("fork");
-	if (server->pid == 0) {
-		char log[96];
-		snprintf(log, sizeof log, "%s/log", server->folder);
-		dup2(out[1], STDOUT_FILENO);
-		dup2(open(log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600), STDERR_FILENO);
-		become((const char *const[]){"poundd", "--port", "0", "--database", database, NULL});
-	}
-	close(out[1]);
-	FILE *told = fdopen(out[0], "r");
-	bool listening = fgets(line, sizeof line, told) && sscanf(line, "listening on %79s", server->url) == 1;
-	fclose(told);
-	return listening;
-}
-
-int program_stop(struct program_server *server)
-{
-	char removal[96];
-	kill(server->pid, SIGTERM);
-	int status = program_end(server->pid);
-	snprintf(removal, sizeof removal, "rm -rf %s", server->folder);
-	if (system(removal) != 0)
-		give_up(removal);
+	char url[64];
+	int status = service_setup(state);
+	const struct service *service = *state;
+	snprintf(url, sizeof url, "http://127.0.0.1:%d", service->port);
+	setenv("POUND_URL", url, 1);
 	return status;
 }
 

@@ -31,15 +31,8 @@ pid_t program_start(const char *const arguments[], const char *out, const char *
 /* Waits for its end: exit status, or 128 + signal. */
 int program_end(pid_t pid);
 
-/* A poundd of its own, on a free port with a database in a folder of its own. */
-struct program_server {
-	pid_t pid;
-	char url[80];
-	char folder[64];
-};
-
-bool program_serve(struct program_server *server);
-int program_stop(struct program_server *server); /* SIGTERM; its exit status */
+/* A poundd of the test's own (service.h), its address in POUND_URL; service_teardown ends it. */
+int program_setup(void **state);
 
 /* Whole file with a NUL behind it; the caller frees it.  NULL: no such file. */
 char *program_file(const char *path, size_t *n);
