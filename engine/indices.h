@@ -90,6 +90,11 @@ void pound_local_fit(const double *y, int n, int reach, double *fit);
 void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
                        struct pound_estimate *first);
 
+int pound_chaos_degree(int n_rows, int n_inputs);
+size_t pound_chaos_scratch(int n_rows, int n_inputs); /* doubles */
+void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
+                         struct pound_estimate *first, struct pound_estimate *total);
+
 size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, double *scratch,
                         struct pound_indices *indices); /* rows dropped */
