@@ -19,7 +19,7 @@ LANES.w4       := -DPOUND_LANES=4 -mavx2 -mfma
 LANES.w8       := -DPOUND_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 
 PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libcjson-dev librandom123-dev \
-            nettle-dev libcurl4-openssl-dev libcmocka-dev
+            nettle-dev libcurl4-openssl-dev libcmocka-dev curl
 
 LIBS.engine := -lgsl -lgslcblas -lm
 LIBS.schema := -lcjson -lnettle

@@ -110,8 +110,9 @@ void program_expect(const struct program_outcome *outcome, int status)
 {
 	if (outcome->status == status)
 		return;
-	print_error("status %d instead of %d; stdout:\n%sstderr:\n%s", outcome->status, status, outcome->out,
-	            outcome->err);
+	// not by print_error, which cuts off long texts
+	fprintf(stderr, "%sstderr:\n%sstatus %d instead of %d\n", outcome->out, outcome->err, outcome->status,
+	        status);
 	fail();
 }
 
