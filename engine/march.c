@@ -65,7 +65,7 @@ struct map {
 
 struct simulation {
 	struct column x;
-	const double *next, *last; /* ground motion at the end of this interval and at the end of the signal */
+	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
 	struct pound_branch at[2];
@@ -77,8 +77,9 @@ struct simulation {
 struct group {
 	struct lanes x;
 	int member[W];
-	const double *next[W], *last[W]; /* as in struct simulation */
-	int n;                           /* lanes in use */
+	vi next, last; /* as in struct simulation */
+	const double *ground[W];
+	int n; /* lanes in use */
 };
 
 struct queue {
@@ -167,8 +168,9 @@ static void piece_load(struct simulation *sim, int i)
 /* Enters the interval that ends at sim->next. */
 static void interval_enter(struct simulation *sim)
 {
-	sim->x.ground = sim->next[-1];
-	sim->x.slope = (sim->next[0] - sim->next[-1]) / sim->x.step;
+	const double *a = &sim->task->ground[sim->next];
+	sim->x.ground = a[-1];
+	sim->x.slope = (a[0] - a[-1]) / sim->x.step;
 	sim->x.left = sim->x.step;
 	sim->x.events = 0;
 }
@@ -181,8 +183,8 @@ static void simulation_start(struct simulation *sim, const struct pound_march_ta
 	memset(result, 0, sizeof *result);
 	sim->task = task;
 	sim->result = result;
-	sim->next = task->ground + 1;
-	sim->last = task->ground + task->n_samples - 1;
+	sim->next = 1;
+	sim->last = task->n_samples - 1;
 	struct column *x = &sim->x;
 	double h = task->time_step;
 	double rate = 0;
@@ -241,8 +243,9 @@ LANE_INLINE void lane_load(struct group *group, int l, struct work *work, int me
 	for (int j = from; j < to; j++)
 		g[j] = vselect(only, vsplat(x[j]), g[j]);
 	group->member[l] = member;
-	group->next[l] = work->pool[member].next;
-	group->last[l] = work->pool[member].last;
+	group->next = (group->next & ~only) | (only & work->pool[member].next);
+	group->last = (group->last & ~only) | (only & work->pool[member].last);
+	group->ground[l] = work->pool[member].task->ground;
 	group->n++;
 }
 
@@ -254,7 +257,7 @@ LANE_INLINE struct simulation *lane_save(struct group *group, int l, struct work
 	const double *g = (const double *)&group->x + l;
 	for (int j = from; j < to; j++)
 		x[j] = g[j * W];
-	sim->next = group->next[l];
+	sim->next = LANE(group->next, l);
 	group->member[l] = -1;
 	group->n--;
 	return sim;
@@ -267,7 +270,17 @@ static void lane_rest(struct group *group, int l)
 	struct lanes *g = &group->x;
 	LANE(g->step, l) = LANE(g->left, l) = LANE(g->reach[0], l) = LANE(g->reach[1], l) = 1;
 	LANE(g->touching, l) = LANE(g->parted, l) = LANE(g->events, l) = 0;
-	group->next[l] = still + 1, group->last[l] = still + 1;
+	LANE(group->next, l) = LANE(group->last, l) = 1;
+	group->ground[l] = still;
+}
+
+/* Lanes of a group that are in use. */
+LANE_INLINE vi members(const struct group *group)
+{
+	vi used = {0};
+	for (int l = 0; l < W; l++)
+		LANE(used, l) = -(int64_t)(group->member[l] >= 0);
+	return used;
 }
 
 /* Writes a simulation's result and frees its place in the pool. */
@@ -384,39 +397,38 @@ LANE_INLINE vi flight(struct lanes *g, vd ground)
 	return risk;
 }
 
+/* Ground acceleration of each lane at its sample `next`. */
+LANE_INLINE vd ground_at(const struct group *g, vi next)
+{
+	int64_t sample[W];
+	vd a = {0};
+	memcpy(sample, &next, sizeof sample);
+	for (int l = 0; l < W; l++)
+		LANE(a, l) = g->ground[l][sample[l]];
+	return a;
+}
+
 /* Flies until the group of the others is worth a step, or nobody flies. */
 static void fly(struct work *work)
 {
-	static const double still[1];
 	struct group *g = &work->fly;
 	while (work->meet.n + work->meeters.n < W) {
 		fly_fill(work);
 		if (g->n == 0)
 			return;
-		int64_t moves[W];
-		for (int l = 0; l < W; l++) {
-			moves[l] = g->member[l] < 0 ? 0 : -1;
-			if (!moves[l])
-				g->next[l] = still, g->last[l] = NULL;
-		}
+		vi flying = members(g), next = g->next, leaves;
 		// one sample a round, until a lane cannot be flown or was flown to its end
-		int64_t leaves;
-		vi risk;
 		do {
-			vd ground;
-			for (int l = 0; l < W; l++)
-				LANE(ground, l) = *g->next[l];
-			risk = flight(&g->x, ground);
-			leaves = 0;
-			for (int l = 0; l < W; l++) {
-				leaves |= (LANE(risk, l) & moves[l]) | -(int64_t)(g->next[l] == g->last[l]);
-				g->next[l] -= moves[l] & ~LANE(risk, l);
-			}
-		} while (!leaves);
+			vi stays = flight(&g->x, ground_at(g, next)) | ~flying;
+			leaves = (stays & flying) | (vequal_index(next, g->last) & flying);
+			next += ~stays & 1;
+		} while (!vany(leaves));
+		g->next = next;
 		for (int l = 0; l < W; l++) {
-			if (!moves[l] || !(LANE(risk, l) || g->next[l] > g->last[l]))
+			if (!LANE(leaves, l))
 				continue;
 			struct simulation *sim = lane_save(g, l, work, COLUMN_STATE, COLUMN_READ);
+			lane_rest(g, l);
 			if (sim->next > sim->last)
 				simulation_end(work, sim, POUND_OK);
 			else
@@ -453,6 +465,7 @@ static void series_fill(struct series *s, const struct lanes *g, vd dt, vi touch
 	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
 	for (int n = 0; n <= order; n++) {
 		vd weight = vsplat((double)n * (n - 1) * (n - 2) * (n - 3));
+#pragma GCC unroll 3 // into registers
 		for (int j = 0; j < 3; j++) {
 			into[j]->u.c[n] = u[j];
 			into[j]->v.c[n] = v[j];
@@ -467,17 +480,20 @@ static void series_fill(struct series *s, const struct lanes *g, vd dt, vi touch
 			a1 += n ? f1[1] : f0[1];
 		}
 		vd force = vfma(spring, u[2], dash * v[2]);
+#pragma GCC unroll 3 // into registers
 		for (int j = 0; j < 3; j++)
 			u[j] = v[j] * share;
 		v[0] = (a0 - force) * share;
 		v[1] = vfma(g->mass_ratio, force, a1) * share;
 		v[2] = vfma(-both, force, a0 - a1) * share;
 		if (n == ORDER_FREE) // lanes apart end here, so that a lane's bits do not depend on its neighbours
+#pragma GCC unroll 3         // into registers
 			for (int j = 0; j < 3; j++) {
 				u[j] = vselect(touching, u[j], zero);
 				v[j] = vselect(touching, v[j], zero);
 			}
 	}
+#pragma GCC unroll 3 // into registers
 	for (int j = 0; j < 3; j++) {
 		into[j]->u.c[order + 1] = into[j]->v.c[order + 1] = zero;
 		into[j]->u1 = u1[j];
@@ -492,9 +508,8 @@ static void body_search(const struct series *s, struct lanes *g, int i, vi activ
 {
 	vd zero = vsplat(0), one = vsplat(1), body = vsplat(BODY + EDGES * i);
 	const struct motion *m = &s->body[i];
-	struct hull hull = hull_of(m);
-	vi past_high = vless(g->high[i], hull.high) & active;
-	vi past_low = vless(hull.low, g->low[i]) & active;
+	vi past_high = may_cross(m, g->high[i], one) & active;
+	vi past_low = may_cross(m, g->low[i], -one) & active;
 	vi turns = ~vequal(g->direction[i], zero) & active;
 	if (vany(past_high))
 		search_crossing(m, s->order, g->high[i], one, past_high, body + vsplat(POUND_EDGE_HIGH), CUT, search);
@@ -503,6 +518,7 @@ static void body_search(const struct series *s, struct lanes *g, int i, vi activ
 	if (vany(turns)) {
 		struct motion velocity;
 		motion_velocity(&velocity, m, s->order);
+		turns &= may_cross(&velocity, zero, -g->direction[i]);
 		search_crossing(&velocity, s->order, zero, -g->direction[i], turns, body + vsplat(POUND_EDGE_TURN),
 		                CUT, search);
 	}
@@ -516,8 +532,7 @@ static void body_search(const struct series *s, struct lanes *g, int i, vi activ
 static void body_top(const struct series *s, struct lanes *g, int i, vi active, struct search *search)
 {
 	const struct motion *m = &s->body[i];
-	struct hull hull = hull_of(m);
-	vi inside = vless(vmax(g->top[i], vabs(m->u1)), hull.turn) & active;
+	vi inside = vless(vmax(g->top[i], vabs(m->u1)), reach_of(m)) & active;
 	if (!vany(inside))
 		return;
 	struct motion velocity;
@@ -553,9 +568,8 @@ static void contact_search(const struct series *s, const struct lanes *g, vd dt,
 	vd zero = vsplat(0), one = vsplat(1);
 	vi touching = vless(zero, g->touching), parted = vless(zero, g->parted) & active;
 	vi by_force = (touching | parted) & ~vequal(g->release, zero) & active;
-	struct hull hull = hull_of(p);
-	vi risk = vselect_mask(touching, vless(hull.low, zero), vless(zero, hull.high)) & active & ~by_force;
 	vd sign = vselect(touching, -one, one);
+	vi risk = may_cross(p, zero, sign) & active & ~by_force;
 	if (vany(risk))
 		search_crossing(p, s->order, zero, sign, risk, vsplat(CONTACT), CUT, search);
 	struct power guard;
@@ -601,8 +615,7 @@ static void first_contact(struct work *work, int l)
 	const struct simulation *sim = &work->pool[work->meet.member[l]];
 	if (LANE(g->contacts, l) > 0 || LANE(g->touching, l) == 0 || sim->result->first_speed != 0)
 		return;
-	sim->result->first_contact =
-	    (double)(work->meet.next[l] - sim->task->ground) * sim->x.step - LANE(g->left, l);
+	sim->result->first_contact = (double)LANE(work->meet.next, l) * sim->x.step - LANE(g->left, l);
 	sim->result->first_speed = LANE(g->q, l);
 }
 
@@ -630,15 +643,9 @@ static void body_turn(struct work *work, int l, int i, enum pound_edge edge)
 static vi interval_turn(struct group *group, vi sampled)
 {
 	struct lanes *g = &group->x;
-	vd a0, a1;
-	vi ends;
-	for (int l = 0; l < W; l++) {
-		const double *next = group->next[l] - LANE(sampled, l);
-		LANE(ends, l) = -(int64_t)(next > group->last[l]);
-		LANE(a0, l) = next[-1];
-		LANE(a1, l) = LANE(ends, l) ? next[-1] : *next;
-		group->next[l] = next;
-	}
+	group->next -= sampled;
+	vi ends = vless_index(group->last, group->next);
+	vd a0 = ground_at(group, group->next - 1), a1 = ground_at(group, group->next + ends);
 	vd zero = vsplat(0);
 	g->ground = vselect(sampled, a0, g->ground);
 	g->slope = vselect(sampled, (a1 - a0) / g->step, g->slope);
@@ -692,9 +699,7 @@ static void meet_step(struct work *work)
 	struct group *group = &work->meet;
 	struct lanes *g = &group->x;
 	vd one = vsplat(1), zero = vsplat(0);
-	vi active;
-	for (int l = 0; l < W; l++)
-		LANE(active, l) = -(int64_t)(group->member[l] >= 0);
+	vi active = members(group);
 	vi touching = vless(zero, g->touching);
 	vd reach = vselect(touching, g->reach[1], g->reach[0]);
 	vd steps = g->left / reach;
@@ -762,6 +767,7 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 		push(&work->idle, j);
 	for (int l = 0; l < W; l++) {
 		work->fly.member[l] = work->meet.member[l] = -1;
+		lane_rest(&work->fly, l);
 		lane_rest(&work->meet, l);
 	}
 	for (;;) {

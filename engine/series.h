@@ -61,21 +61,31 @@ LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 	return vfma(odd, t, even);
 }
 
-/* What bounds say of a motion over a step: the cubic through its ends, and the bound of its error. */
-struct hull {
-	vd high, low, turn; /* largest, smallest, and largest magnitude of the inner control points */
-};
-
-LANE_INLINE struct hull hull_of(const struct motion *m)
+/* Lanes in which a motion may cross a level inside a step that it starts on the right side of.
+ *
+ * Given    sign  +1: it must not rise above the level, -1: it must not fall below
+ *
+ * With g = sign (u - level) the cubic through the ends has the control points g0 <= 0, b1, b2, g1, and misses g by at
+ * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when all points are below -bend/384, and also, from a
+ * start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
+ */
+LANE_INLINE vi may_cross(const struct motion *m, vd level, vd sign)
 {
-	vd third = vsplat(1.0 / 3), error = vsplat(CUBIC_ERROR) * m->bend;
+	vd zero = vsplat(0), third = vsplat(1.0 / 3);
+	vd g0 = sign * (m->u.c[0] - level), g1 = sign * (m->u1 - level);
+	vd b1 = vfma(sign * third, m->v.c[0], g0), b2 = vfma(-sign * third, m->v1, g1);
+	vd top = vmax(vmax(b1, b2), g1);
+	vi inside = ~vless(vfma(vsplat(CUBIC_ERROR), m->bend, top), zero);
+	vi after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), m->bend, 3.0 * b2));
+	return inside & after;
+}
+
+/* Bound of |u| inside a step, apart from its ends. */
+LANE_INLINE vd reach_of(const struct motion *m)
+{
+	vd third = vsplat(1.0 / 3);
 	vd b1 = vfma(third, m->v.c[0], m->u.c[0]), b2 = vfma(-third, m->v1, m->u1);
-	vd high = vmax(b1, b2), low = vmin(b1, b2);
-	struct hull h;
-	h.high = vmax(high, m->u1) + error;
-	h.low = vmin(low, m->u1) - error;
-	h.turn = vmax(high, -low) + error;
-	return h;
+	return vfma(vsplat(CUBIC_ERROR), m->bend, vmax(vabs(b1), vabs(b2)));
 }
 
 /* First event found so far in each lane. */
