@@ -10,17 +10,6 @@
 
 enum { HTTP_BAD_REQUEST = 400, HTTP_INVALID = 422 };
 
-/* Opens a connection to the server the user named. */
-struct wire *answer_open(const struct options *options)
-{
-	struct wire *wire = wire_open(options->url);
-	if (!wire) {
-		command_complain("out of memory");
-		exit(OUTCOME_FAILED);
-	}
-	return wire;
-}
-
 /* Says what a reply other than a success means for the user. */
 static enum outcome refusal(const char *subject, const struct wire_reply *reply)
 {
@@ -57,9 +46,7 @@ enum outcome answer_take(struct wire *wire, const struct wire_request *request, 
 /* An id of the user's stays one segment of the path, whatever is in it. */
 char *answer_path(struct wire *wire, const char *id, const char *rest)
 {
-	char *escaped = wire_escape(wire, id), *path;
-	if (asprintf(&path, "/v1/studies/%s%s", escaped, rest) < 0)
-		abort();
+	char *escaped = wire_escape(wire, id), *path = command_text("/v1/studies/%s%s", escaped, rest);
 	free(escaped);
 	return path;
 }

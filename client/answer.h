@@ -20,7 +20,4 @@ enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char
 /* "/v1/studies/{id}{rest}" on the heap. */
 char *answer_path(struct wire *wire, const char *id, const char *rest);
 
-/* A connection to the server; ends the program when there is no memory. */
-struct wire *answer_open(const struct options *options);
-
 #endif

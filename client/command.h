@@ -41,4 +41,10 @@ enum outcome example_print(const struct options *options);
 /* One line on stderr that starts with the program's name. */
 void command_complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* printf into memory of its own, for the caller to free. */
+char *command_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* The memory that was just allocated; where there is none, the program ends. */
+void *command_sure(void *memory);
+
 #endif

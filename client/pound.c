@@ -77,16 +77,42 @@ struct parsing {
 	struct options options;
 };
 
+/* Ends the program when there is no memory: nothing it has begun is worth keeping. */
+void *command_sure(void *memory)
+{
+	if (!memory) {
+		fputs("pound: out of memory\n", stderr);
+		exit(OUTCOME_FAILED);
+	}
+	return memory;
+}
+
+static char *text_of(const char *format, va_list arguments)
+{
+	char *text;
+	return command_sure(vasprintf(&text, format, arguments) < 0 ? NULL : text);
+}
+
+/* Puts a text together, however long it gets.
+ *
+ * Memory   allocates; the caller frees
+ */
+char *command_text(const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	char *text = text_of(format, arguments);
+	va_end(arguments);
+	return text;
+}
+
 /* Says one line on stderr, harmless to a terminal whatever the texts in it hold. */
 void command_complain(const char *format, ...)
 {
-	char *line;
 	va_list arguments;
 	va_start(arguments, format);
-	int n = vasprintf(&line, format, arguments);
+	char *line = text_of(format, arguments);
 	va_end(arguments);
-	if (n < 0)
-		abort();
 	table_tame(line);
 	fprintf(stderr, "pound: %s\n", line);
 	free(line);

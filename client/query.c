@@ -61,7 +61,7 @@ static enum outcome print_studies(const struct wire_reply *reply, const char *fo
 /* One exchange about the study named on the command line, its answer printed as a status. */
 static enum outcome status_after(const struct options *options, const char *method, const char *rest)
 {
-	struct wire *wire = answer_open(options);
+	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
 	enum outcome outcome = answer_about(wire, method, options->argument, rest, NULL, &reply);
 	if (outcome == OUTCOME_OK)
@@ -86,7 +86,7 @@ enum outcome query_cancel(const struct options *options)
 /* `pound delete ID`: silent. */
 enum outcome query_delete(const struct options *options)
 {
-	struct wire *wire = answer_open(options);
+	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
 	enum outcome outcome = answer_about(wire, "DELETE", options->argument, "", NULL, &reply);
 	wire_reply_free(&reply);
@@ -97,7 +97,7 @@ enum outcome query_delete(const struct options *options)
 /* `pound wait ID`: prints the last status, however the study ended. */
 enum outcome query_wait(const struct options *options)
 {
-	struct wire *wire = answer_open(options);
+	struct wire *wire = wire_open(options->url);
 	struct wire_reply last;
 	enum outcome outcome = follow_study(wire, options->argument, &last);
 	if (outcome == OUTCOME_OK || outcome == OUTCOME_STUDY_FAILED)
@@ -110,16 +110,15 @@ enum outcome query_wait(const struct options *options)
 /* `pound list`: one page. */
 enum outcome query_list(const struct options *options)
 {
-	struct wire *wire = answer_open(options);
+	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
-	char *path, *state = wire_escape(wire, options->status ? options->status : "");
+	char *state = wire_escape(wire, options->status ? options->status : "");
 	char *cursor = wire_escape(wire, options->cursor ? options->cursor : "");
 	char limit[32] = "";
 	if (options->limit)
 		snprintf(limit, sizeof limit, "&limit=%d", options->limit);
-	if (asprintf(&path, "/v1/studies?%s%s%s%s%s", options->status ? "&status=" : "", state,
-	             options->cursor ? "&cursor=" : "", cursor, limit) < 0)
-		abort();
+	char *path = command_text("/v1/studies?%s%s%s%s%s", *state ? "&status=" : "", state,
+	                          *cursor ? "&cursor=" : "", cursor, limit);
 	enum outcome outcome =
 	    answer_take(wire, &(struct wire_request){.method = "GET", .path = path}, "list", &reply);
 	if (outcome == OUTCOME_OK)
@@ -145,7 +144,7 @@ static const struct {
 /* What a study has brought forth, printed as it comes, or as a table. */
 static enum outcome product(const struct options *options, const char *rest)
 {
-	struct wire *wire = answer_open(options);
+	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
 	const char *type = NULL;
 	for (size_t i = 0; i < sizeof TYPES / sizeof TYPES[0]; i++)

@@ -27,7 +27,7 @@ enum outcome submit_study(const struct options *options)
 	char *document = document_read(options->argument, &n);
 	if (!document)
 		return OUTCOME_FAILED;
-	struct wire *wire = answer_open(options);
+	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
 	enum outcome outcome = answer_take(
 	    wire, &(struct wire_request){.method = "POST", .path = "/v1/studies", .body = document, .n_body = n},

@@ -1,6 +1,7 @@
 /* table.c - cells are kept as text; alignment is decided when all of them are known. */
 #include "client/table.h"
 
+#include "client/command.h"
 #include "schema/writer.h"
 
 #include <math.h>
@@ -23,21 +24,12 @@ struct table {
 	struct cell *cells;       /* (n_cells), row-major */
 };
 
-static void *sure(void *memory)
-{
-	if (!memory) {
-		fputs("pound: out of memory\n", stderr);
-		exit(EXIT_FAILURE);
-	}
-	return memory;
-}
-
 /* Opens an empty table. */
 struct table *table_open(const char *const names[])
 {
-	struct table *table = sure(calloc(1, sizeof *table));
+	struct table *table = command_sure(calloc(1, sizeof *table));
 	while (names[table->n_columns]) {
-		table->names[table->n_columns] = sure(strdup(names[table->n_columns]));
+		table->names[table->n_columns] = command_sure(strdup(names[table->n_columns]));
 		table->n_columns++;
 	}
 	return table;
@@ -47,7 +39,7 @@ static struct cell *next_cell(struct table *table)
 {
 	if (table->n_cells == table->room) {
 		table->room = table->room ? 2 * table->room : 64;
-		table->cells = sure(realloc(table->cells, (size_t)table->room * sizeof *table->cells));
+		table->cells = command_sure(realloc(table->cells, (size_t)table->room * sizeof *table->cells));
 	}
 	struct cell *cell = &table->cells[table->n_cells++];
 	*cell = (struct cell){0};
@@ -58,7 +50,7 @@ static struct cell *next_cell(struct table *table)
 void table_text(struct table *table, const char *text)
 {
 	struct cell *cell = next_cell(table);
-	cell->text = text ? sure(strdup(text)) : NULL;
+	cell->text = text ? command_sure(strdup(text)) : NULL;
 }
 
 /* Puts a number into the next cell: four digits for people, all of them in CSV. */
@@ -71,7 +63,7 @@ void table_number(struct table *table, double value)
 	if (!isfinite(value))
 		return;
 	snprintf(text, sizeof text, fabs(value) < 1e9 && value == floor(value) ? "%.0f" : "%.4g", value);
-	cell->text = sure(strdup(text));
+	cell->text = command_sure(strdup(text));
 }
 
 /* Counts the bytes that start a UTF-8 character; wide and combining characters count as one. */
@@ -106,7 +98,7 @@ static void put(const char *text, int width, bool right, bool last)
 	int blanks = width - table_width(text);
 	if (right)
 		pad(blanks);
-	char *tame = sure(strdup(text));
+	char *tame = command_sure(strdup(text));
 	table_tame(tame);
 	fputs(tame, stdout);
 	free(tame);
@@ -161,7 +153,7 @@ void table_print_csv(const struct table *table)
 		writer_raw(&writer, c == table->n_columns - 1 ? "\n" : ",", 1);
 	}
 	size_t n;
-	char *text = sure(writer_take(&writer, &n));
+	char *text = command_sure(writer_take(&writer, &n));
 	fwrite(text, 1, n, stdout);
 	free(text);
 }

@@ -27,13 +27,10 @@ struct wire {
  */
 struct wire *wire_open(const char *url)
 {
-	struct wire *wire = calloc(1, sizeof *wire);
+	struct wire *wire = command_sure(calloc(1, sizeof *wire));
 	const char *direct = getenv("no_proxy");
-	if (!wire || curl_global_init(CURL_GLOBAL_DEFAULT) != 0 || !(wire->curl = curl_easy_init()) ||
-	    asprintf(&wire->direct, "localhost,127.0.0.1,::1,%s", direct ? direct : "") < 0) {
-		wire_close(wire);
-		return NULL;
-	}
+	wire->curl = command_sure(curl_global_init(CURL_GLOBAL_DEFAULT) == 0 ? curl_easy_init() : NULL);
+	wire->direct = command_text("localhost,127.0.0.1,::1,%s", direct ? direct : "");
 	wire->url = url;
 	wire->n_url = strlen(url);
 	while (wire->n_url && url[wire->n_url - 1] == '/')
@@ -44,10 +41,7 @@ struct wire *wire_open(const char *url)
 /* Closes the connection and frees everything. */
 void wire_close(struct wire *wire)
 {
-	if (!wire)
-		return;
-	if (wire->curl)
-		curl_easy_cleanup(wire->curl);
+	curl_easy_cleanup(wire->curl);
 	curl_global_cleanup();
 	free(wire->direct);
 	free(wire);
@@ -62,8 +56,8 @@ static char *header(CURL *curl, const char *name)
 {
 	struct curl_header *found;
 	if (curl_easy_header(curl, name, 0, CURLH_HEADER, -1, &found) != CURLHE_OK)
-		return strdup("");
-	return strndup(found->value, strcspn(found->value, ";"));
+		return command_sure(strdup(""));
+	return command_sure(strndup(found->value, strcspn(found->value, ";")));
 }
 
 static void options_set(struct wire *wire, const struct wire_request *request, const char *url, FILE *body,
@@ -106,13 +100,11 @@ static bool no_url(CURL *curl, CURLcode code)
  */
 enum outcome wire_send(struct wire *wire, const struct wire_request *request, struct wire_reply *reply)
 {
-	char *url, *accept;
 	*reply = (struct wire_reply){0};
 	wire->failure[0] = '\0';
-	FILE *body = open_memstream(&reply->body, &reply->n_body);
-	if (!body || asprintf(&url, "%.*s%s", (int)wire->n_url, wire->url, request->path) < 0 ||
-	    asprintf(&accept, "Accept: %s", request->accept ? request->accept : "*/*") < 0)
-		abort();
+	FILE *body = command_sure(open_memstream(&reply->body, &reply->n_body));
+	char *url = command_text("%.*s%s", (int)wire->n_url, wire->url, request->path);
+	char *accept = command_text("Accept: %s", request->accept ? request->accept : "*/*");
 	struct curl_slist *headers = curl_slist_append(NULL, accept);
 	headers = curl_slist_append(headers, request->body ? "Content-Type: application/json" : "Content-Type:");
 	// no pause for "100 Continue" before a long body
@@ -122,7 +114,6 @@ enum outcome wire_send(struct wire *wire, const struct wire_request *request, st
 	fclose(body);
 	curl_easy_getinfo(wire->curl, CURLINFO_RESPONSE_CODE, &reply->status);
 	reply->type = header(wire->curl, "Content-Type");
-	reply->location = header(wire->curl, "Location");
 	char *retry = header(wire->curl, "Retry-After");
 	reply->retry_after_s = atol(retry);
 	free(retry);
@@ -151,16 +142,14 @@ void wire_reply_free(struct wire_reply *reply)
 {
 	free(reply->body);
 	free(reply->type);
-	free(reply->location);
 	*reply = (struct wire_reply){0};
 }
 
 /* Percent-encodes everything but letters, digits and -._~ */
 char *wire_escape(struct wire *wire, const char *text)
 {
-	char *escaped = curl_easy_escape(wire->curl, text, 0), *copy = escaped ? strdup(escaped) : NULL;
+	char *escaped = command_sure(curl_easy_escape(wire->curl, text, 0)),
+	     *copy = command_sure(strdup(escaped));
 	curl_free(escaped);
-	if (!copy)
-		abort();
 	return copy;
 }

@@ -23,11 +23,10 @@ struct wire_reply {
 	char *body;  /* (n_body), and a NUL behind it that is not counted */
 	size_t n_body;
 	char *type;         /* media type of the body without its parameters; "": none */
-	char *location;     /* "": none */
 	long retry_after_s; /* 0: not told */
 };
 
-/* NULL: out of memory.  `url` is kept, not copied. */
+/* Connects when the first request is sent; `url` is kept, not copied. */
 struct wire *wire_open(const char *url);
 void wire_close(struct wire *wire);
 
