@@ -22,7 +22,7 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
  * or per cell and signal of a response. */
 char *result_to_csv(const char *json, size_t json_length, size_t *length);
 
-/* Every input row and its outputs: cells in order, rows i, samples A_i, B_i, AB_i of each input.  Columns: sweep paths,
+/* Every input row and its outputs: cells in order, rows i, samples A_i, B_i, AB_i of each input.  Of a sensitivity study only.  Columns: sweep paths,
  * `row`, `sample`, input names, and NAME and NAME.variance of each output. */
 char *samples_to_csv(const struct pound_study *study, const struct pound_run *run, size_t *length);
 char *samples_to_npy(const struct pound_study *study, const struct pound_run *run, size_t *length);

@@ -383,11 +383,14 @@ static struct reply samples(struct request *request)
 	struct work_run opened;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
 	reply = (struct reply){.status = 200, .type = wanted->type};
-	if (!error && opened.n_left == 0)
+	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
+	if (sampled && opened.n_left == 0)
 		reply.body = (wanted == &formats[0] ? samples_to_csv : samples_to_npy)(opened.study, opened.run,
 		                                                                       &reply.length);
 	if (error)
 		reply = routes_problem(ROUTES_UNAVAILABLE, error);
+	else if (!sampled)
+		reply = routes_problem(ROUTES_CONFLICT, "only a sensitivity study has samples");
 	else if (opened.n_left > 0)
 		reply = routes_problem(ROUTES_CORRUPT, "stored blocks are damaged or of another version");
 	else if (!reply.body)

@@ -406,6 +406,19 @@ static void samples_come_as_csv_or_npy_with_a_row_per_run(void **state)
 	problem_is(service_get(service, "/v1/studies/%s/samples?format=json", id), 400, "format must be");
 }
 
+static void a_response_study_has_no_samples_and_the_server_lives_on(void **state)
+{
+	struct service *service = *state;
+	char id[17];
+	service_submit(service,
+	               "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	               "{\"frequency_hz\": 3}]}}",
+	               id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	problem_is(service_get(service, "/v1/studies/%s/samples", id), 409,
+	           "only a sensitivity study has samples");
+}
+
 static void an_unchanged_status_is_304_to_its_etag(void **state)
 {
 	struct service *service = *state;
@@ -468,6 +481,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(list_arguments_that_make_no_sense_are_400),
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),
+           SERVED(a_response_study_has_no_samples_and_the_server_lives_on),
            SERVED(an_unchanged_status_is_304_to_its_etag),
            SERVED(a_live_and_ready_server_says_so_and_its_version),
            SERVED(a_path_with_a_newline_is_one_line_of_the_log))
