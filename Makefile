@@ -85,6 +85,9 @@ test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) -s check
 check: all $(TESTS)
 	@tests/run-tests $(B) $(T)
+# the paper's findings, one by one, for n = 1000: minutes
+paper: $(B)/tests/paper
+	@$<
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
 
@@ -106,6 +109,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check asan tsan lint fuzz fmt clean
+.PHONY: all deps run test check paper asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)
