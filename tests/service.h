@@ -16,6 +16,13 @@
 #include <stdint.h>
 #include <sys/types.h>
 
+/* Rows of a study that runs long enough to be asked about, cancelled or killed meanwhile. */
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+enum { SERVICE_ROWS = 200 };
+#else
+enum { SERVICE_ROWS = 900 };
+#endif
+
 struct service {
 	pid_t pid; /* 0: not running */
 	int port;

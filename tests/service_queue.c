@@ -7,7 +7,7 @@
 #include "tests/service.h"
 
 /* a study that takes long enough to be asked about while it runs */
-enum { ROWS = 900, SIGNALS = 5 };
+enum { ROWS = SERVICE_ROWS, SIGNALS = 5 };
 
 static int ask_status(const struct service *service, const char *method, const char *id, const char *rest)
 {

@@ -4,7 +4,7 @@
 #include "tests/service.h"
 
 /* the study of these tests: long enough to be killed half way, many blocks */
-enum { ROWS = 900, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
+enum { ROWS = SERVICE_ROWS, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
 
 static char *result_of(const struct service *service, const char *id)
 {

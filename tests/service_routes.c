@@ -330,7 +330,7 @@ static void results_are_404_with_retry_after_until_they_are_there(void **state)
 {
 	struct service *service = *state;
 	char first[17], second[17];
-	char *study = service_study(900, 5, 1);
+	char *study = service_study(SERVICE_ROWS, 5, 1);
 	char *short_study = service_study(2, 1, 1);
 	service_submit(service, study, first);
 	service_submit(service, short_study, second);
