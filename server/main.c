@@ -90,7 +90,9 @@ int main(int argc, char **argv)
 	sigset_t signals;
 	argp_parse(&argp, argc, argv, 0, NULL, &options);
 	umask(077);
+	// a client that has gone, and a file that may not grow, are errors of a write and no more
 	signal(SIGPIPE, SIG_IGN);
+	signal(SIGXFSZ, SIG_IGN);
 	// blocked before any thread starts, so that only sigwait sees them
 	sigemptyset(&signals);
 	sigaddset(&signals, SIGTERM);

@@ -68,7 +68,7 @@ static struct reply no_study(void)
 
 static struct reply unavailable(void)
 {
-	return routes_problem(ROUTES_UNAVAILABLE, "the database does not answer; nothing was changed");
+	return routes_problem(ROUTES_UNAVAILABLE, "the database does not answer; please try again");
 }
 
 /* 200 and what was written. */
@@ -310,7 +310,7 @@ static struct reply not_ready(struct request *request)
 	if (reply.status != 200)
 		return reply;
 	free(reply.body);
-	if (strcmp(page.status, "queued") != 0 && strcmp(page.status, "running") != 0)
+	if (!strcmp(page.status, "failed") || !strcmp(page.status, "cancelled"))
 		return routes_problem(ROUTES_CONFLICT, "the study failed or was cancelled: it has no results");
 	reply = routes_problem(ROUTES_NOT_READY, "the study is not finished yet");
 	reply.retry_after = (int)fmin(fmax(ceil(page.eta_s), RETRY_AFTER), RETRY_AFTER_MAX);
@@ -423,20 +423,16 @@ static struct reply delete (struct request *request)
 	return (struct reply){.status = 204};
 }
 
-static struct reply health(void)
-{
-	struct writer w;
-	writer_init(&w);
-	writer_object(&w, NULL, WRITER_LINE);
-	writer_text(&w, "status", "ok");
-	writer_end(&w);
-	return written(&w);
-}
-
 static struct reply live(struct request *request)
 {
+	struct writer w;
 	(void)request;
-	return health();
+	writer_init(&w);
+	writer_object(&w, NULL, WRITER_LINE);
+	writer_text(&w, "name", "poundd");
+	writer_text(&w, "version", POUND_VERSION);
+	writer_end(&w);
+	return written(&w);
 }
 
 static struct reply ready(struct request *request)
@@ -444,20 +440,8 @@ static struct reply ready(struct request *request)
 	struct page page;
 	struct reply one = look(request, &page);
 	free(one.body);
-	// no study has the id 0, and to find that out the database must answer
-	return one.status == 404 ? health() : unavailable();
-}
-
-static struct reply version(struct request *request)
-{
-	struct writer w;
-	(void)request;
-	writer_init(&w);
-	writer_object(&w, NULL, WRITER_LINES);
-	writer_text(&w, "name", "poundd");
-	writer_text(&w, "version", POUND_VERSION);
-	writer_end(&w);
-	return written(&w);
+	// no study has the id 0, and to say so the database must answer
+	return one.status == 404 ? live(request) : unavailable();
 }
 
 static const struct route {
@@ -475,7 +459,7 @@ static const struct route {
     {"POST", "/v1/studies/{id}/cancel", false, cancel},
     {"GET", "/livez", false, live},
     {"GET", "/readyz", false, ready},
-    {"GET", "/version", false, version},
+    {"GET", "/version", false, live},
 };
 
 /* Whether a path is of a form, and the id in it. */

@@ -26,7 +26,10 @@
 #include "schema/study_json.h"
 #include "server/log.h"
 
-enum { WORKER_NICENESS = 10 }; /* requests are answered first */
+enum {
+	WORKER_NICENESS = 10, /* requests are answered first */
+	PATIENCE = 1,         /* [s] between two tries to store something */
+};
 
 struct job {
 	struct job *next; /* a younger one */
@@ -132,6 +135,19 @@ static void end(struct job *job, const char *error)
 		pound_run_stop(job->of.run);
 }
 
+/* Waits when the disk does not take what there is to store; false: the server stops, so do not try again. */
+static bool patient(struct work *work)
+{
+	struct timespec until;
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_sec += PATIENCE;
+	pthread_mutex_lock(&work->lock);
+	pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until);
+	bool stopping = work->stopping;
+	pthread_mutex_unlock(&work->lock);
+	return !stopping;
+}
+
 static void finish(struct work *work, struct job *job)
 {
 	size_t length = 0;
@@ -143,7 +159,11 @@ static void finish(struct work *work, struct job *job)
 		result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length);
 		job->error = result ? NULL : "out of memory";
 	}
-	if (store_finish(work->store, job->id, result, length, job->error) == STORE_OK)
+	enum store_status status;
+	do
+		status = store_finish(work->store, job->id, result, length, job->error);
+	while (status == STORE_FAILED && patient(work));
+	if (status == STORE_OK)
 		log_line("study %016llx %s", (unsigned long long)job->id, job->error ? job->error : "succeeded");
 	free(result);
 }
@@ -169,15 +189,19 @@ static void settle(struct work *work, struct job *job)
 	free(job);
 }
 
-static const char *keep(struct work *work, struct job *job, int block, double cpu_s)
+/* false: the study is not running any more in the store, or the server stops. */
+static bool keep(struct work *work, struct job *job, int block, double cpu_s)
 {
 	struct store_block done = {.number = block,
 	                           .runs = pound_run_block_runs(job->of.run, block),
 	                           .cpu_s = cpu_s,
 	                           .n = (int)pound_run_block_size(job->of.run, block),
 	                           .values = pound_run_block_values(job->of.run, block)};
-	enum store_status status = store_keep(work->store, job->id, &done);
-	return status == STORE_OK ? NULL : status == STORE_NONE ? "cancelled" : "a block could not be stored";
+	enum store_status status;
+	do
+		status = store_keep(work->store, job->id, &done);
+	while (status == STORE_FAILED && patient(work));
+	return status == STORE_OK;
 }
 
 struct step {
@@ -208,21 +232,17 @@ static bool take(struct work *work, struct step *step)
 static void perform(struct work *work, const struct step *step, int worker)
 {
 	struct job *job = step->job;
-	const char *error = NULL;
 	double cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID);
 	pthread_mutex_unlock(&work->lock);
 	enum pound_status status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
 	                                            : pound_run_reduce(job->of.run, step->reduction, worker);
 	cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_s;
-	if (status != POUND_OK)
-		error = pound_status_text(status);
-	else if (step->block >= 0)
-		error = keep(work, job, step->block, cpu_s);
+	bool wanted = status != POUND_OK || step->block < 0 || keep(work, job, step->block, cpu_s);
 	pthread_mutex_lock(&work->lock);
 	job->n_inside--;
 	job->cpu_s += cpu_s;
-	if (error)
-		end(job, error);
+	if (status != POUND_OK || !wanted)
+		end(job, wanted ? pound_status_text(status) : NULL);
 	else if (step->block >= 0)
 		job->of.n_left--;
 	else
@@ -240,9 +260,10 @@ static void claim(struct work *work)
 	work->queued = false;
 	pthread_mutex_unlock(&work->lock);
 	enum store_status status = job ? store_claim(work->store, &job->id) : STORE_FAILED;
+	bool again = status == STORE_FAILED && patient(work);
 	pthread_mutex_lock(&work->lock);
+	work->queued = work->queued || again || status == STORE_OK;
 	if (status == STORE_OK) {
-		work->queued = true;
 		job->n_inside = 1;
 		job->started = seconds(CLOCK_MONOTONIC);
 		struct job **last = &work->jobs;

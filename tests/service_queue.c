@@ -1,6 +1,7 @@
 /* Many studies, and studies that are not wanted any more. */
 #include <dirent.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "schema/reading.h"
@@ -140,7 +141,35 @@ static void all_workers_run_the_blocks_of_one_study(void **state)
 	answer_free(&answer);
 }
 
+/* The largest file the server may write; reads go on as they were. */
+static void limit_files(const struct service *service, rlim_t bytes)
+{
+	const struct rlimit limit = {.rlim_cur = bytes, .rlim_max = RLIM_INFINITY};
+	assert_int_equal(prlimit(service->pid, RLIMIT_FSIZE, &limit, NULL), 0);
+}
+
+static void a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_free(void **state)
+{
+	struct service *service = *state;
+	char id[17];
+	char *study = service_study(ROWS, SIGNALS, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 1));
+	limit_files(service, 1);
+	struct answer refused = service_post(service, study);
+	assert_int_equal(refused.status, 503);
+	assert_true(atoi(refused.retry_after) >= 1);
+	assert_int_equal(ask_status(service, "GET", id, ""), 200);
+	assert_int_equal(ask_status(service, "GET", id, "/request"), 200);
+	limit_files(service, RLIM_INFINITY);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 1);
+	answer_free(&refused);
+	free(study);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_cancelled_at_any_moment),
-           SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study))
+           SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study),
+           SERVED(a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_free))

@@ -1,0 +1,166 @@
+/* The store by itself: order, states, and what happens once. */
+#include "server/store.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+
+static char path[64];
+
+static int database(void **state)
+{
+	strcpy(path, "/tmp/poundd-store-XXXXXX");
+	close(mkstemp(path)); // an empty file is a new database
+	*state = store_open(path);
+	return *state ? 0 : -1;
+}
+
+static int removal(void **state)
+{
+	static const char *const ends[] = {"", "-wal", "-shm", "-lock"};
+	store_close(*state);
+	for (int i = 0; i < 4; i++) {
+		char name[96];
+		snprintf(name, sizeof name, "%s%s", path, ends[i]);
+		unlink(name);
+	}
+	return 0;
+}
+
+static int64_t submitted(struct store *store, const char *name)
+{
+	const struct store_study study = {.kind = "response", .name = name, .runs = 5};
+	int64_t id = 0;
+	assert_int_equal(store_submit(store, &study, "hash", "{}", 2, &id), STORE_OK);
+	return id;
+}
+
+static void name_keep(void *to, const struct store_study *study)
+{
+	snprintf(to, 128, "%s %s", study->name, study->status);
+}
+
+static void ids_grow_within_one_millisecond(void **state)
+{
+	int64_t last = 0;
+	for (int i = 0; i < 50; i++) {
+		int64_t id = submitted(*state, "a");
+		assert_true(id > last);
+		last = id;
+	}
+}
+
+static void the_oldest_queued_study_is_claimed_first(void **state)
+{
+	int64_t first = submitted(*state, "first"), second = submitted(*state, "second"), id = 0;
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == first);
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == second);
+	assert_int_equal(store_claim(*state, &id), STORE_NONE);
+}
+
+static void a_study_finishes_once(void **state)
+{
+	char *result;
+	size_t length;
+	int64_t id = submitted(*state, "a");
+	assert_int_equal(store_finish(*state, id, "1", 1, NULL), STORE_NONE); // not running yet
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(store_document(*state, id, "result", &result, &length), STORE_NONE);
+	assert_int_equal(store_finish(*state, id, "1", 1, NULL), STORE_OK);
+	assert_int_equal(store_finish(*state, id, "2", 1, NULL), STORE_NONE);
+	assert_int_equal(store_finish(*state, id, NULL, 0, "too late"), STORE_NONE);
+	assert_int_equal(store_cancel(*state, id), STORE_NONE);
+	assert_int_equal(store_document(*state, id, "result", &result, &length), STORE_OK);
+	assert_string_equal(result, "1");
+	free(result);
+}
+
+static void a_block_is_kept_only_while_its_study_runs(void **state)
+{
+	const double values[] = {1, 2, 3};
+	const struct store_block block = {.number = 0, .runs = 5, .cpu_s = 0.5, .n = 3, .values = values};
+	int64_t id = submitted(*state, "a");
+	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(store_keep(*state, id, &block), STORE_OK);
+	assert_int_equal(store_cancel(*state, id), STORE_OK);
+	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+	assert_int_equal(store_delete(*state, id), STORE_OK);
+	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+}
+
+static void a_failed_study_says_why(void **state)
+{
+	char told[128] = "";
+	int64_t id = submitted(*state, "a");
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(store_finish(*state, id, NULL, 0, "out of memory"), STORE_OK);
+	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+	assert_string_equal(told, "a failed");
+}
+
+static void names_are_bytes_and_never_sql(void **state)
+{
+	static const char *const names[] = {"'; DROP TABLE study; --", "\" OR 1=1", "\xc3\xa4\xe2\x82\xac",
+	                                    "%s%n", ""};
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+		char told[128] = "", want[128];
+		int64_t id = submitted(*state, names[i]);
+		assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+		snprintf(want, sizeof want, "%s queued", names[i]);
+		assert_string_equal(told, want);
+	}
+}
+
+static void a_store_in_use_is_not_opened_again(void **state)
+{
+	(void)state;
+	assert_null(store_open(path));
+}
+
+static void a_running_study_is_queued_again_when_the_store_opens(void **state)
+{
+	char told[128];
+	int64_t id = submitted(*state, "a"), claimed = 0;
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	store_close(*state);
+	*state = store_open(path);
+	assert_non_null(*state);
+	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+	assert_string_equal(told, "a queued");
+	assert_int_equal(store_claim(*state, &claimed), STORE_OK);
+	assert_true(claimed == id);
+}
+
+static void a_file_that_is_no_database_is_refused_and_left_alone(void **state)
+{
+	static const char text[] = "this is a letter, not a database; it is longer than the header of one, "
+	                           "which has a hundred bytes, to the last of them.";
+	char other[96], read[sizeof text] = "";
+	(void)state;
+	snprintf(other, sizeof other, "%s-letter", path);
+	FILE *file = fopen(other, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	fclose(file);
+	assert_null(store_open(other));
+	file = fopen(other, "r");
+	assert_non_null(fgets(read, sizeof read, file));
+	fclose(file);
+	assert_string_equal(read, text);
+	unlink(other);
+	strcat(other, "-lock");
+	unlink(other);
+}
+
+#define STORED(test) cmocka_unit_test_setup_teardown(test, database, removal)
+
+CHECK_MAIN(STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
+           STORED(a_study_finishes_once), STORED(a_block_is_kept_only_while_its_study_runs),
+           STORED(a_failed_study_says_why), STORED(names_are_bytes_and_never_sql),
+           STORED(a_store_in_use_is_not_opened_again),
+           STORED(a_running_study_is_queued_again_when_the_store_opens),
+           STORED(a_file_that_is_no_database_is_refused_and_left_alone))
