@@ -9,36 +9,37 @@
 struct violation {
 	const char *file;
 	const char *text;
-	const char *rule; /* words of the sentence lint must print */
+	const char *rule;     /* words of the sentence that lint must print */
+	const char *offender; /* and of the lines under it */
 };
 
 static const struct violation VIOLATIONS[] = {
-    {"engine/x.c", "#include \"schema/reading.h\"\n", "engine includes nothing"},
-    {"schema/x.h", "#include \"server/store.h\"\n", "schema includes engine"},
-    {"server/x.c", "#include \"client/wire.h\"\n", "server includes nothing"},
-    {"client/x.c", "#include \"server/store.h\"\n", "client includes nothing"},
-    {"engine/x.c", "#include <stdio.h>\n", "no input, output"},
-    {"server/x.c", "#include <cjson/cJSON.h>\n", "only schema"},
-    {"server/x.c", "#include <microhttpd.h>\n", "only http.c"},
-    {"server/http.c", "#include <sqlite3.h>\n", "only store.c"},
-    {"client/x.c", "#include <curl/curl.h>\n", "only wire.c"},
-    {"client/x.c", "#include \"wire.h\"\n", "path from the root"},
-    {"server/http_utils.c", "int http_utils;\n", "named by its noun"},
-    {"engine/x.c", "#if 0\n#endif\n", "dead code"},
-    {"Makefile", "CFLAGS += -ffast-math\n", "floating point"},
-    {"client/x.c", "int  x;\n", "clang-format"},
-    {"engine/run.c", "int other_name(void);\nint other_name(void)\n{\n\treturn 1;\n}\n", "start with pound_"},
-    {"engine/run.c", "int pound_run_count;\n", "data that changes"},
-    {"engine/run.c", "static int n;\nint *pound_run_n(void);\nint *pound_run_n(void)\n{\n\treturn &n;\n}\n",
-     "data that changes"},
-    {"engine/run.c",
-     "int printf(const char *, ...);\nvoid pound_run_say(int);\nvoid pound_run_say(int n)\n{\n"
+    {"engine/a.c", "#include \"schema/reading.h\"\n", "engine includes nothing", "engine/a.c:1:"},
+    {"schema/b.h", "\n#include \"server/store.h\"\n", "schema includes engine", "schema/b.h:2:"},
+    {"server/c.c", "#include \"client/wire.h\"\n", "server includes nothing", "server/c.c:1:"},
+    {"client/d.c", "#include \"server/store.h\"\n", "client includes nothing", "client/d.c:1:"},
+    {"engine/e.h", "#include <stdio.h>\n", "no input, output", "engine/e.h:1:"},
+    {"server/f.c", "#include <cjson/cJSON.h>\n", "only schema", "server/f.c:1:"},
+    {"server/g.c", "#include <microhttpd.h>\n", "only http.c", "server/g.c:1:"},
+    {"server/http.c", "#include <sqlite3.h>\n", "only store.c", "server/http.c:1:"},
+    {"client/h.c", "#include <curl/curl.h>\n", "only wire.c", "client/h.c:1:"},
+    {"client/i.c", "#include \"wire.h\"\n", "path from the root", "client/i.c:1:"},
+    {"server/http_utils.c", "int http_utils;\n", "named by its noun", "server/http_utils.c"},
+    {"engine/j.h", "#if 0\n#endif\n", "dead code", "engine/j.h:1:"},
+    {"Makefile", "CFLAGS += -ffast-math\n", "floating point", "1:CFLAGS"},
+    {"engine/k.c", "int other_name(void);\nint other_name(void)\n{\n\treturn 1;\n}\n", "start with pound_",
+     "other_name"},
+    {"engine/l.c", "int pound_l_count;\n", "data that changes", "pound_l_count"},
+    {"engine/m.c", "static int hidden;\nint *pound_m(void);\nint *pound_m(void)\n{\n\treturn &hidden;\n}\n",
+     "data that changes", "hidden"},
+    {"engine/n.c",
+     "int printf(const char *, ...);\nvoid pound_n(int);\nvoid pound_n(int n)\n{\n"
      "\tprintf(\"%d\", n);\n}\n",
-     "prints nothing"},
-    {"engine/x.c",
-     "void *malloc(unsigned long);\nvoid *pound_x(void);\nvoid *pound_x(void)\n{\n"
+     "prints nothing", "n.o: printf"},
+    {"engine/o.c",
+     "void *malloc(unsigned long);\nvoid *pound_o(void);\nvoid *pound_o(void)\n{\n"
      "\treturn malloc(8);\n}\n",
-     "allocates in run.c"},
+     "allocates in run.c", "o.o: malloc"},
 };
 
 enum { N_VIOLATIONS = sizeof VIOLATIONS / sizeof VIOLATIONS[0] };
@@ -113,40 +114,55 @@ static void a_tree_that_keeps_the_rules_passes(void **state)
 	uproot(folder);
 }
 
+/* Whether lint said a sentence, and under it what breaks the rule. */
+static bool named(const char *said, const struct violation *v)
+{
+	const char *rule = strstr(said, v->rule), *line = rule ? strchr(rule, '\n') : NULL;
+	for (; line && strncmp(line, "\n    ", 5) == 0; line = strchr(line + 1, '\n')) {
+		const char *offender = strstr(line + 1, v->offender);
+		if (offender && offender < line + 1 + strcspn(line + 1, "\n"))
+			return true;
+	}
+	return false;
+}
+
 static void every_rule_names_what_breaks_it(void **state)
 {
+	char folder[32];
 	(void)state;
-	struct program_outcome formatter =
-	    program_run((const char *const[]){"clang-format", "--version", NULL}, NULL);
-	bool formats = formatter.status == 0 && strstr(formatter.out, "version 14.");
-	program_free(&formatter);
-	char folder[32], path[128];
 	plant(folder);
-	for (int i = 0; i < N_VIOLATIONS; i++) {
-		const struct violation *v = &VIOLATIONS[i];
-		if (strcmp(v->rule, "clang-format") == 0 && !formats)
-			continue;
-		snprintf(path, sizeof path, "%s/%s", folder, v->file);
-		char *before = program_file(path, NULL);
-		bool compiled = strncmp(v->file, "engine/", 7) == 0;
-		write_file(folder, v->file, v->text);
-		if (compiled)
-			build(folder);
-		struct program_outcome outcome = lint(folder);
-		if (outcome.status != 1 || !strstr(outcome.out, v->rule)) {
-			print_error("%s with\n%s: status %d, said\n%s%s\n", v->file, v->text, outcome.status, outcome.out,
-			            outcome.err);
+	for (int i = 0; i < N_VIOLATIONS; i++)
+		write_file(folder, VIOLATIONS[i].file, VIOLATIONS[i].text);
+	build(folder);
+	struct program_outcome outcome = lint(folder);
+	program_expect(&outcome, 1);
+	for (int i = 0; i < N_VIOLATIONS; i++)
+		if (!named(outcome.out, &VIOLATIONS[i])) {
+			fprintf(stderr, "%s is not named in\n%s", VIOLATIONS[i].file, outcome.out);
 			fail();
 		}
-		program_free(&outcome);
-		if (before)
-			write_file(folder, v->file, before);
-		else
-			unlink(path);
-		free(before);
-		if (compiled)
-			build(folder);
+	program_free(&outcome);
+	uproot(folder);
+}
+
+static void layout_is_decided_by_clang_format_where_it_is(void **state)
+{
+	char folder[32];
+	(void)state;
+	struct program_outcome version =
+	    program_run((const char *const[]){"clang-format", "--version", NULL}, NULL);
+	if (version.status != 0 || !strstr(version.out, "version 14.")) {
+		program_free(&version);
+		skip();
 	}
+	plant(folder);
+	write_file(folder, "client/b.c", "int  x;\n");
+	struct program_outcome outcome = lint(folder);
+	program_expect(&outcome, 1);
+	assert_non_null(strstr(outcome.out, "clang-format"));
+	assert_non_null(strstr(outcome.out, "client/b.c:1"));
+	program_free(&outcome);
+	program_free(&version);
 	uproot(folder);
 }
 
@@ -173,6 +189,7 @@ int main(int argc, char **argv)
 	const struct CMUnitTest tests[] = {
 	    cmocka_unit_test(a_tree_that_keeps_the_rules_passes),
 	    cmocka_unit_test(every_rule_names_what_breaks_it),
+	    cmocka_unit_test(layout_is_decided_by_clang_format_where_it_is),
 	    cmocka_unit_test(a_file_of_701_lines_is_named),
 	};
 	(void)argc;
