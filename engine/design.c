@@ -54,26 +54,37 @@ const char *pound_design_name(int row)
 	return row >= 0 && row < DESIGNS ? designs[row].name : NULL;
 }
 
+/* The probabilities that a study's two matrices are made of.
+ *
+ * Given    study         -                        inputs and design
+ * Returns  u             (rows x 2 x n_inputs)    in (0, 1); row i of A, then row i of B
+ *
+ * Test     unit_design
+ */
+void pound_design_probabilities(const struct pound_study *study, double *u)
+{
+	const int d = study->n_inputs;
+	for (int matrix = 0; matrix < 2; matrix++)
+		for (int j = 0; j < d; j++) {
+			struct pound_stream stream = {
+			    .seed = study->design.seed, .what = POUND_STREAM_DESIGN, .sample = j, .signal = 2 * matrix};
+			designs[study->design.method].column(stream, study->design.rows, 2 * d, u + matrix * d + j);
+		}
+}
+
 /* The input values of a study's two matrices.
  *
  * Given    study         -                        -            inputs and design
  * Returns  x             (rows x 2 x n_inputs)    the inputs'  row i of A, then row i of B
  *
- * Test     unit_design
+ * Test     unit_design: values_are_quantiles_of_the_inputs_distributions
  */
 void pound_design_fill(const struct pound_study *study, double *x)
 {
-	const int rows = study->design.rows, d = study->n_inputs;
-	for (int matrix = 0; matrix < 2; matrix++)
-		for (int j = 0; j < d; j++) {
-			double *column = x + matrix * d + j;
-			struct pound_stream stream = {
-			    .seed = study->design.seed, .what = POUND_STREAM_DESIGN, .sample = j, .signal = 2 * matrix};
-			designs[study->design.method].column(stream, rows, 2 * d, column);
-			for (int i = 0; i < rows; i++)
-				column[(size_t)i * 2 * d] =
-				    pound_distribution_quantile(&study->inputs[j].distribution, column[(size_t)i * 2 * d]);
-		}
+	const int d = study->n_inputs;
+	pound_design_probabilities(study, x);
+	for (size_t k = 0; k < (size_t)study->design.rows * 2 * d; k++)
+		x[k] = pound_distribution_quantile(&study->inputs[k % d].distribution, x[k]);
 }
 
 double pound_design_input(const double *x, int n_inputs, int row, int sample, int j)

@@ -13,6 +13,7 @@ enum {
 	POUND_SAMPLE_MIXED = 2,
 };
 
+void pound_design_probabilities(const struct pound_study *study, double *u); /* of the same shape */
 void pound_design_fill(const struct pound_study *study, double *x);
 
 /* Input j of a sample of a row. */
