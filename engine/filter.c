@@ -26,9 +26,16 @@ struct chain {
 	double c[N];
 };
 
+static double within(double x, double low, double high)
+{
+	return x < low ? low : x > high ? high : x;
+}
+
 static struct chain chain_of(double theta, double damping_ratio, double high_pass_ratio)
 {
-	const double corner = high_pass_ratio * theta;
+	theta = within(theta, 1e-30, 1e6);
+	damping_ratio = within(damping_ratio, 1e-9, 1e9);
+	const double corner = within(high_pass_ratio, 1e-9, 1e9) * theta;
 	struct chain k = {.alpha = 2 * damping_ratio * theta,
 	                  .beta = theta * theta,
 	                  .gamma = 2 * HIGH_PASS_DAMPING * corner,
@@ -154,7 +161,7 @@ static void stationary(const struct chain *k, double l[N][N])
 	l[2][2] = sqrt(0.5 / (d * m3));
 	l[1][1] = sqrt(m2);
 	l[3][1] = -m1 / l[1][1];
-	l[3][3] = sqrt(0.5 / (k->c[0] * d * m2));
+	l[3][3] = sqrt(0.5 / (k->c[0] * k->c[1]));
 }
 
 /* The recurrence of a Kanai-Tajimi filter with its high pass.
@@ -166,14 +173,15 @@ static void stationary(const struct chain *k, double l[N][N])
  *
  *   H(s) = (alpha s + beta) / (s^2 + alpha s + beta) * s^2 / (s^2 + gamma s + delta)
  *
- * Valid    any finite numbers whose tenth powers are; a step of many periods gives nearly independent samples
+ * Valid    ratios beyond 1e-9 and 1e9 and steps beyond 1e-30 and 1e6 are taken as these, so that no power of them
+ *          overflows; a step of many periods gives nearly independent samples
  * Source   model.md 4: absolute acceleration of the filter's mass, then the high pass
  * Test     unit_filter */
 void pound_filter_init(struct pound_filter *f, double theta, double damping_ratio, double high_pass_ratio)
 {
 	const struct chain k = chain_of(theta, damping_ratio, high_pass_ratio);
 	// a quadratic's roots are no larger than the larger of its natural frequency and its damping coefficient
-	const double bound[4] = {theta, k.alpha, high_pass_ratio * theta, k.gamma};
+	const double bound[4] = {sqrt(k.beta), k.alpha, sqrt(k.delta), k.gamma};
 	double largest = 0;
 	for (int i = 0; i < 4; i++)
 		largest = bound[i] > largest ? bound[i] : largest;
