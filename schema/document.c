@@ -33,7 +33,7 @@ static void shorten_numbers(char *text)
 /* Parses a document.
  *
  * Given    text      (length)  bytes   need not end with a zero
- * Returns  value     -         -       the tree; NULL: not JSON (fault->line > 0) or out of memory (fault->line = 0)
+ * Returns  value     -         -       the tree; NULL: not JSON (fault->line > 0) or no memory (fault->line = 0)
  * Memory   allocates, about 40 bytes per byte of text at worst; for cJSON_Delete
  *
  * Test     unit_reading: a_number_of_400_characters_keeps_its_value

@@ -34,81 +34,135 @@ static const char *signals_name(int common)
 #define NOT_SCENE      .fixed = "only fields of the scene vary"
 
 // clang-format off
-#define LAW_ROWS(pattern, law)                                                                                         \
-	{pattern "/type",                 FIELD_CHOICE, law + IN_LAW(type),               0,    0, 0,        FIELD_CLOSED,   "",    \
-	 .text = "force of the spring over its displacement", .choice = pound_law_name},                                           \
-	{pattern "/hardening_ratio",      FIELD_REAL,   law + IN_LAW(hardening_ratio),    0.05, 0, 1,        FIELD_CLOSED,   "",    \
-	 .text = "second slope over first"},                                                                                       \
-	{pattern "/target_demand",        FIELD_REAL,   law + IN_LAW(target_demand),      2,    1, INFINITY, FIELD_CLOSED,   "",    \
-	 .text = "wanted largest displacement over yield displacement, without pounding"},                                         \
-	{pattern "/yield_displacement_m", FIELD_REAL,   law + IN_LAW(yield_displacement), 0,    0, INFINITY, FIELD_OPEN_MIN, "m",   \
-	 .text = "yield displacement, in place of target_demand"},                                                                 \
-	{pattern "/corrections",          FIELD_COUNT,  law + IN_LAW(corrections),        1,    0, 100,      FIELD_CLOSED,   "",    \
+#define LAW_ROWS(pattern, law)                                                                          \
+	{pattern "/type", FIELD_CHOICE, law + IN_LAW(type), 0, 0, 0, FIELD_CLOSED, "",                        \
+	 .text = "force of the spring over its displacement", .choice = pound_law_name},                      \
+	{pattern "/hardening_ratio", FIELD_REAL, law + IN_LAW(hardening_ratio), 0.05, 0, 1, FIELD_CLOSED, "", \
+	 .text = "second slope over first"},                                                                  \
+	{pattern "/target_demand", FIELD_REAL, law + IN_LAW(target_demand), 2, 1, INFINITY, FIELD_CLOSED, "", \
+	 .text = "wanted largest displacement over yield displacement, without pounding"},                    \
+	{pattern "/yield_displacement_m", FIELD_REAL, law + IN_LAW(yield_displacement), 0, 0, INFINITY,       \
+	 FIELD_OPEN_MIN, "m", .text = "yield displacement, in place of target_demand"},                       \
+	{pattern "/corrections", FIELD_COUNT, law + IN_LAW(corrections), 1, 0, 100, FIELD_CLOSED, "",         \
 	 .text = "times the yield displacement found from target_demand is corrected"}
 
 const struct field fields[] = {
-	{"/kind",  FIELD_CHOICE, AT(kind), NAN, 0, 0,   FIELD_CLOSED, "", .text = "what is asked", .choice = study_kind_name, NOT_SCENE},
-	{"/name",  FIELD_TEXT,   AT(name), 0,   0, 200, FIELD_CLOSED, "", .text = "for people", NOT_SCENE},
-	{"/scene", FIELD_OBJECT, 0,        NAN, 0, 0,   FIELD_CLOSED, "", .text = "two oscillators, what is between them and the ground motion", NOT_SCENE},
+	{"/kind", FIELD_CHOICE, AT(kind), NAN, 0, 0, FIELD_CLOSED, "",
+	 .text = "what is asked", .choice = study_kind_name, NOT_SCENE},
+	{"/name", FIELD_TEXT, AT(name), 0, 0, 200, FIELD_CLOSED, "",
+	 .text = "for people", NOT_SCENE},
+	{"/scene", FIELD_OBJECT, 0, NAN, 0, 0, FIELD_CLOSED, "",
+	 .text = "two oscillators, what is between them and the ground motion", NOT_SCENE},
 
-	{"/scene/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "", .text = "the law of every oscillator without one of its own"},
+	{"/scene/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "the law of every oscillator without one of its own"},
 	LAW_ROWS("/scene/law", LAW),
 
-	{"/scene/oscillators",                 FIELD_LIST,   0,                                      NAN,  2, 2,        FIELD_CLOSED,   "",   .text = "left, right"},
-	{"/scene/oscillators/*",               FIELD_OBJECT, 0,                                      0,    0, 0,        FIELD_CLOSED,   "",   .text = "one oscillator"},
-	{"/scene/oscillators/*/mass_kg",       FIELD_REAL,   AT(scene.oscillators[0].mass),          1,    0, INFINITY, FIELD_OPEN,     "kg", .text = "mass"},
-	{"/scene/oscillators/*/frequency_hz",  FIELD_REAL,   AT(scene.oscillators[0].frequency_hz),  NAN,  0, INFINITY, FIELD_OPEN,     "Hz", .text = "undamped frequency of the initial stiffness"},
-	{"/scene/oscillators/*/damping_ratio", FIELD_REAL,   AT(scene.oscillators[0].damping_ratio), 0.05, 0, 1,        FIELD_OPEN_MAX, "",   .text = "fraction of critical damping"},
-	{"/scene/oscillators/*/rigid_wall",    FIELD_BOOL,   AT(scene.oscillators[0].rigid_wall),    0,    0, 1,        FIELD_CLOSED,   "",   .text = "the right one follows the ground for ever", .fixed = "it decides what the other members mean"},
-	{"/scene/oscillators/*/law",           FIELD_OBJECT, 0,                                      0,    0, 0,        FIELD_CLOSED,   "",   .text = "its own law, in place of the scene's"},
+	{"/scene/oscillators", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
+	 .text = "left, right"},
+	{"/scene/oscillators/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one oscillator"},
+	{"/scene/oscillators/*/mass_kg", FIELD_REAL, AT(scene.oscillators[0].mass), 1, 0, INFINITY,
+	 FIELD_OPEN, "kg", .text = "mass"},
+	{"/scene/oscillators/*/frequency_hz", FIELD_REAL, AT(scene.oscillators[0].frequency_hz), NAN, 0, INFINITY,
+	 FIELD_OPEN, "Hz", .text = "undamped frequency of the initial stiffness"},
+	{"/scene/oscillators/*/damping_ratio", FIELD_REAL, AT(scene.oscillators[0].damping_ratio), 0.05, 0, 1,
+	 FIELD_OPEN_MAX, "", .text = "fraction of critical damping"},
+	{"/scene/oscillators/*/rigid_wall", FIELD_BOOL, AT(scene.oscillators[0].rigid_wall), 0, 0, 1, FIELD_CLOSED, "",
+	 .text = "the right one follows the ground for ever", .fixed = "it decides what the other members mean"},
+	{"/scene/oscillators/*/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "its own law, in place of the scene's"},
 	LAW_ROWS("/scene/oscillators/*/law", OWN),
 
-	{"/scene/contact",                 FIELD_OBJECT, 0,                                 0,    0, 0,        FIELD_CLOSED, "",  .text = "what acts when they touch; null: they never do"},
-	{"/scene/contact/model",           FIELD_CHOICE, AT(scene.contact.model),           0,    0, 0,        FIELD_CLOSED, "",  .text = "contact model", .choice = pound_contact_name},
-	{"/scene/contact/stiffness_ratio", FIELD_REAL,   AT(scene.contact.stiffness_ratio), 100,  0, INFINITY, FIELD_OPEN,   "",  .text = "contact stiffness over the larger oscillator stiffness"},
-	{"/scene/contact/restitution",     FIELD_REAL,   AT(scene.contact.restitution),     0.6,  0, 1,        FIELD_CLOSED, "",  .text = "speed after over speed before an impact"},
-	{"/scene/contact/gap_m",           FIELD_REAL,   AT(scene.contact.gap),             0,    0, INFINITY, FIELD_CLOSED, "m", .text = "clear distance at rest"},
-	{"/scene/contact/tension",         FIELD_BOOL,   AT(scene.contact.tension),         1,    0, 1,        FIELD_CLOSED, "",  .text = "the dashpot may pull just before separation"},
+	{"/scene/contact", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "what acts when they touch; null: they never do"},
+	{"/scene/contact/model", FIELD_CHOICE, AT(scene.contact.model), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "contact model", .choice = pound_contact_name},
+	{"/scene/contact/stiffness_ratio", FIELD_REAL, AT(scene.contact.stiffness_ratio), 100, 0, INFINITY,
+	 FIELD_OPEN, "", .text = "contact stiffness over the larger oscillator stiffness"},
+	{"/scene/contact/restitution", FIELD_REAL, AT(scene.contact.restitution), 0.6, 0, 1, FIELD_CLOSED, "",
+	 .text = "speed after over speed before an impact"},
+	{"/scene/contact/gap_m", FIELD_REAL, AT(scene.contact.gap), 0, 0, INFINITY, FIELD_CLOSED, "m",
+	 .text = "clear distance at rest"},
+	{"/scene/contact/tension", FIELD_BOOL, AT(scene.contact.tension), 1, 0, 1, FIELD_CLOSED, "",
+	 .text = "the dashpot may pull just before separation"},
 
-	{"/scene/excitation",                     FIELD_OBJECT, 0,                                    0,    0,         0,        FIELD_CLOSED,   "",      .text = "ground motion"},
-	{"/scene/excitation/type",                FIELD_CHOICE, AT(scene.excitation.type),            0,    0,         0,        FIELD_CLOSED,   "",      .text = "kind of ground motion", .choice = pound_excitation_name, .fixed = "it decides what the other members mean"},
-	{"/scene/excitation/frequency_hz",        FIELD_REAL,   AT(scene.excitation.frequency_hz),    2.5,  0,         INFINITY, FIELD_OPEN,     "Hz",    .text = "frequency of the filter or the sine", PITCHED},
-	{"/scene/excitation/damping_ratio",       FIELD_REAL,   AT(scene.excitation.damping_ratio),   0.6,  0,         INFINITY, FIELD_OPEN,     "",      .text = "damping ratio of the filter", FILTERED},
-	{"/scene/excitation/high_pass_ratio",     FIELD_REAL,   AT(scene.excitation.high_pass_ratio), 0.1,  0,         INFINITY, FIELD_OPEN,     "",      .text = "high-pass corner over filter frequency", FILTERED},
-	{"/scene/excitation/cycles",              FIELD_REAL,   AT(scene.excitation.cycles),          20,   0,         INFINITY, FIELD_OPEN,     "",      .text = "duration times filter frequency", FILTERED},
-	{"/scene/excitation/duration_s",          FIELD_REAL,   AT(scene.excitation.duration),        NAN,  0,         INFINITY, FIELD_OPEN,     "s",     .text = "duration", LASTING},
-	{"/scene/excitation/rise",                FIELD_REAL,   AT(scene.excitation.rise),            0.15, 0,         1,        FIELD_CLOSED,   "",      .text = "part of the duration in which the envelope rises", RANDOM},
-	{"/scene/excitation/fall",                FIELD_REAL,   AT(scene.excitation.fall),            0.25, 0,         1,        FIELD_CLOSED,   "",      .text = "part of the duration in which the envelope falls", RANDOM},
-	{"/scene/excitation/time_step_s",         FIELD_REAL,   AT(scene.excitation.time_step),       0.01, 0,         INFINITY, FIELD_OPEN,     "s",     .text = "time between two samples"},
-	{"/scene/excitation/peak_m_s2",           FIELD_REAL,   AT(scene.excitation.peak),            1,    0,         INFINITY, FIELD_OPEN,     "m/s2",  .text = "largest absolute ground acceleration", SCALED},
-	{"/scene/excitation/signals",             FIELD_COUNT,  AT(scene.excitation.signals),         5,    1,         100000,   FIELD_CLOSED,   "",      .text = "random ground motions of each scene", RANDOM, .fixed = "every sample has the same number of signals"},
-	{"/scene/excitation/acceleration_m_s2",   FIELD_LIST,   0,                                    NAN,  2,         STUDY_SAMPLES_MAX, FIELD_CLOSED, "", .text = "samples of the record", .types = " record ", .fixed = "a record is what it is"},
-	{"/scene/excitation/acceleration_m_s2/*", FIELD_REAL,   0,                                    NAN,  -INFINITY, INFINITY, FIELD_OPEN,     "m/s2",  .text = "ground acceleration", .types = " record ", .fixed = "a record is what it is"},
+	{"/scene/excitation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "ground motion"},
+	{"/scene/excitation/type", FIELD_CHOICE, AT(scene.excitation.type), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "kind of ground motion", .choice = pound_excitation_name,
+	 .fixed = "it decides what the other members mean"},
+	{"/scene/excitation/frequency_hz", FIELD_REAL, AT(scene.excitation.frequency_hz), 2.5, 0, INFINITY,
+	 FIELD_OPEN, "Hz", .text = "frequency of the filter or the sine", PITCHED},
+	{"/scene/excitation/damping_ratio", FIELD_REAL, AT(scene.excitation.damping_ratio), 0.6, 0, INFINITY,
+	 FIELD_OPEN, "", .text = "damping ratio of the filter", FILTERED},
+	{"/scene/excitation/high_pass_ratio", FIELD_REAL, AT(scene.excitation.high_pass_ratio), 0.1, 0, INFINITY,
+	 FIELD_OPEN, "", .text = "high-pass corner over filter frequency", FILTERED},
+	{"/scene/excitation/cycles", FIELD_REAL, AT(scene.excitation.cycles), 20, 0, INFINITY, FIELD_OPEN, "",
+	 .text = "duration times filter frequency", FILTERED},
+	{"/scene/excitation/duration_s", FIELD_REAL, AT(scene.excitation.duration), NAN, 0, INFINITY, FIELD_OPEN, "s",
+	 .text = "duration", LASTING},
+	{"/scene/excitation/rise", FIELD_REAL, AT(scene.excitation.rise), 0.15, 0, 1, FIELD_CLOSED, "",
+	 .text = "part of the duration in which the envelope rises", RANDOM},
+	{"/scene/excitation/fall", FIELD_REAL, AT(scene.excitation.fall), 0.25, 0, 1, FIELD_CLOSED, "",
+	 .text = "part of the duration in which the envelope falls", RANDOM},
+	{"/scene/excitation/time_step_s", FIELD_REAL, AT(scene.excitation.time_step), 0.01, 0, INFINITY,
+	 FIELD_OPEN, "s", .text = "time between two samples"},
+	{"/scene/excitation/peak_m_s2", FIELD_REAL, AT(scene.excitation.peak), 1, 0, INFINITY, FIELD_OPEN, "m/s2",
+	 .text = "largest absolute ground acceleration", SCALED},
+	{"/scene/excitation/signals", FIELD_COUNT, AT(scene.excitation.signals), 5, 1, 100000, FIELD_CLOSED, "",
+	 .text = "random ground motions of each scene", RANDOM,
+	 .fixed = "every sample has the same number of signals"},
+	{"/scene/excitation/acceleration_m_s2", FIELD_LIST, 0, NAN, 2, STUDY_SAMPLES_MAX, FIELD_CLOSED, "",
+	 .text = "samples of the record", .types = " record ", .fixed = "a record is what it is"},
+	{"/scene/excitation/acceleration_m_s2/*", FIELD_REAL, 0, NAN, -INFINITY, INFINITY, FIELD_OPEN, "m/s2",
+	 .text = "ground acceleration", .types = " record ", .fixed = "a record is what it is"},
 
-	{"/inputs",                     FIELD_LIST,   0,                                                NAN, 1, POUND_INPUTS_MAX, FIELD_CLOSED, "", .text = "what varies", SENSITIVITY, NOT_SCENE},
-	{"/inputs/*",                   FIELD_OBJECT, 0,                                                0,   0, 0,   FIELD_CLOSED, "", .text = "one input", SENSITIVITY, NOT_SCENE},
-	{"/inputs/*/path",              FIELD_TEXT,   offsetof(struct pound_input, path),               NAN, 1, 200, FIELD_CLOSED, "", .text = "JSON Pointer into \"scene\"", SENSITIVITY, NOT_SCENE},
-	{"/inputs/*/name",              FIELD_TEXT,   offsetof(struct pound_input, name),               0,   1, 100, FIELD_CLOSED, "", .text = "for people; the path when absent", SENSITIVITY, NOT_SCENE},
-	{"/inputs/*/distribution",      FIELD_OBJECT, 0,                                                NAN, 0, 0,   FIELD_CLOSED, "", .text = "how it varies", SENSITIVITY, NOT_SCENE},
-	{"/inputs/*/distribution/type", FIELD_CHOICE, offsetof(struct pound_input, distribution.type),  NAN, 0, 0,   FIELD_CLOSED, "", .text = "distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
+	{"/inputs", FIELD_LIST, 0, NAN, 1, POUND_INPUTS_MAX, FIELD_CLOSED, "",
+	 .text = "what varies", SENSITIVITY, NOT_SCENE},
+	{"/inputs/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one input", SENSITIVITY, NOT_SCENE},
+	{"/inputs/*/path", FIELD_TEXT, offsetof(struct pound_input, path), NAN, 1, 200, FIELD_CLOSED, "",
+	 .text = "JSON Pointer into \"scene\"", SENSITIVITY, NOT_SCENE},
+	{"/inputs/*/name", FIELD_TEXT, offsetof(struct pound_input, name), 0, 1, 100, FIELD_CLOSED, "",
+	 .text = "for people; the path when absent", SENSITIVITY, NOT_SCENE},
+	{"/inputs/*/distribution", FIELD_OBJECT, 0, NAN, 0, 0, FIELD_CLOSED, "",
+	 .text = "how it varies", SENSITIVITY, NOT_SCENE},
+	{"/inputs/*/distribution/type", FIELD_CHOICE, offsetof(struct pound_input, distribution.type),
+	 NAN, 0, 0, FIELD_CLOSED, "", .text = "distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
 
-	{"/sweep",          FIELD_LIST,   0,                                  0,   0, POUND_SWEEPS_MAX, FIELD_CLOSED, "", .text = "fields that take each of their values; the cells are the product", NOT_SCENE},
-	{"/sweep/*",        FIELD_OBJECT, 0,                                  0,   0, 0,                FIELD_CLOSED, "", .text = "one swept field", NOT_SCENE},
-	{"/sweep/*/path",   FIELD_TEXT,   offsetof(struct pound_sweep, path), NAN, 1, 200,              FIELD_CLOSED, "", .text = "JSON Pointer into \"scene\"", NOT_SCENE},
-	{"/sweep/*/values", FIELD_LIST,   0,                                  NAN, 1, STUDY_CELLS_MAX,  FIELD_CLOSED, "", .text = "values as the field itself takes them", NOT_SCENE},
+	{"/sweep", FIELD_LIST, 0, 0, 0, POUND_SWEEPS_MAX, FIELD_CLOSED, "",
+	 .text = "fields that take each of their values; the cells are the product", NOT_SCENE},
+	{"/sweep/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one swept field", NOT_SCENE},
+	{"/sweep/*/path", FIELD_TEXT, offsetof(struct pound_sweep, path), NAN, 1, 200, FIELD_CLOSED, "",
+	 .text = "JSON Pointer into \"scene\"", NOT_SCENE},
+	{"/sweep/*/values", FIELD_LIST, 0, NAN, 1, STUDY_CELLS_MAX, FIELD_CLOSED, "",
+	 .text = "values as the field itself takes them", NOT_SCENE},
 
-	{"/design",         FIELD_OBJECT, 0,                         0,    0, 0,        FIELD_CLOSED, "", .text = "which samples are run", NOT_SCENE},
-	{"/design/method",  FIELD_CHOICE, AT(design.method),         0,    0, 0,        FIELD_CLOSED, "", .text = "how the rows are drawn", .choice = pound_design_name, SENSITIVITY, NOT_SCENE},
-	{"/design/rows",    FIELD_COUNT,  AT(design.rows),           1000, 2, STUDY_RUNS_MAX, FIELD_CLOSED, "", .text = "rows of the matrices A and B", SENSITIVITY, NOT_SCENE},
-	{"/design/seed",    FIELD_SEED,   AT(design.seed),           42,   0, 0,        FIELD_CLOSED, "", .text = "same seed, same numbers", NOT_SCENE},
-	{"/design/signals", FIELD_BOOL,   AT(design.common_signals), 1,    0, 1,        FIELD_CLOSED, "", .text = "whether the samples of a row share their noise", .choice = signals_name, SENSITIVITY, NOT_SCENE},
+	{"/design", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "which samples are run", NOT_SCENE},
+	{"/design/method", FIELD_CHOICE, AT(design.method), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "how the rows are drawn", .choice = pound_design_name, SENSITIVITY, NOT_SCENE},
+	{"/design/rows", FIELD_COUNT, AT(design.rows), 1000, 2, STUDY_RUNS_MAX, FIELD_CLOSED, "",
+	 .text = "rows of the matrices A and B", SENSITIVITY, NOT_SCENE},
+	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
+	 .text = "same seed, same numbers", NOT_SCENE},
+	{"/design/signals", FIELD_BOOL, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
+	 .text = "whether the samples of a row share their noise", .choice = signals_name, SENSITIVITY,
+	 NOT_SCENE},
 
-	{"/outputs",   FIELD_LIST,   0,           0, 1, POUND_OUTPUTS_MAX, FIELD_CLOSED, "", .text = "what comes out; the amplifications that apply and the impulse when absent", NOT_SCENE},
-	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0,                 FIELD_CLOSED, "", .text = "one output", .choice = pound_output_name, NOT_SCENE},
+	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_MAX, FIELD_CLOSED, "",
+	 .text = "what comes out; the amplifications that apply and the impulse when absent", NOT_SCENE},
+	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one output", .choice = pound_output_name, NOT_SCENE},
 
-	{"/solver",           FIELD_OBJECT, 0,                    0,    0, 0, FIELD_CLOSED, "", .text = "how a response is computed", NOT_SCENE},
-	{"/solver/method",    FIELD_CHOICE, AT(solver.method),    0,    0, 0, FIELD_CLOSED, "", .text = "solver", .choice = pound_solver_name, NOT_SCENE},
-	{"/solver/tolerance", FIELD_REAL,   AT(solver.tolerance), 1e-9, 0, 1, FIELD_OPEN,   "", .text = "relative error of solvers that are not exact", NOT_SCENE},
+	{"/solver", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "how a response is computed", NOT_SCENE},
+	{"/solver/method", FIELD_CHOICE, AT(solver.method), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "solver", .choice = pound_solver_name, NOT_SCENE},
+	{"/solver/tolerance", FIELD_REAL, AT(solver.tolerance), 1e-9, 0, 1, FIELD_OPEN, "",
+	 .text = "relative error of solvers that are not exact", NOT_SCENE},
 };
 // clang-format on
 
@@ -286,7 +340,8 @@ const struct field *fields_scene(const char *path, int *oscillator)
 
 enum { NAME_MAX_LENGTH = 200 }; // longer names are nothing like ours
 
-/* Distance of two names: insertions, deletions, changes and swaps of neighbours, case aside; 1 when one starts the other.
+/* Distance of two names: insertions, deletions, changes and swaps of neighbours, case aside; 1 when one starts the
+ * other.
  *
  * Test     unit_fields: a_slip_of_the_pen_is_near_and_a_stranger_is_not
  */

@@ -1,4 +1,4 @@
-/* fields.h - every member of a study document: one row each, for reading, checking, defaults, varying and telling.
+/* fields.h - every member of a study document: one row each, to read, check, vary and tell it by.
  *
  * A row is found by its pattern: the JSON Pointer with * for an index.  Constant; any thread. */
 #ifndef FIELDS_H
@@ -56,10 +56,10 @@ bool fields_in_range(const struct field *field, double value);
 /* The number of the choice of that name, -1 if there is none. */
 int fields_choice(const char *(*choice)(int row), const char *name);
 
-/* The field that a JSON Pointer into "scene" names, and the oscillator in it (-1: none); NULL: no such field. */
+/* The field that a JSON Pointer into "scene" names, and the oscillator in it (-1: none); NULL: none. */
 const struct field *fields_scene(const char *path, int *oscillator);
 
-/* How unlike two names are: letters to change, 1 when one is the start of the other; above 2 or a third: strangers. */
+/* How unlike two names are: letters to change, or 1 when one is the start of the other. */
 int fields_distance(const char *a, const char *b);
 bool fields_near(int distance, const char *name);
 

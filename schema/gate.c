@@ -1,7 +1,8 @@
 /* gate.c - a strict check of JSON text: the grammar of RFC 8259 by recursive descent, one function per rule.
  *
- * The parser behind it takes `01`, `2.`, control characters and half surrogates, cuts texts at \u0000 and turns 1e400
- * into infinity; none of these comes through here.  \u0000 is refused although JSON allows it: a C string ends there. */
+ * The parser behind it takes `01`, `2.`, control characters and half surrogates, cuts texts at \u0000 and turns
+ * 1e400 into infinity; none of these comes through here.  \u0000 is refused although JSON allows it: a C string
+ * ends there. */
 #include "schema/gate.h"
 
 #include <math.h>

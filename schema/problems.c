@@ -52,7 +52,7 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
 /* The body of an error answer.
  *
  * Given    head      -         -       status, title and sentence
- *          problems  -         -       invalid: its list becomes `errors`; malformed: `line` and `column`; NULL: neither
+ *          problems  -         -       its list becomes `errors`, a place `line` and `column`; NULL: neither
  * Returns  value     (length)  -       JSON; NULL: out of memory
  * Memory   allocates; the caller frees
  *

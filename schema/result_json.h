@@ -1,8 +1,8 @@
 /* result_json.h - a study's result -> the bytes a client gets.
  *
- * Every function returns bytes on the heap for the caller to free, zero-terminated too, NULL when out of memory.
- * The bytes are a function of study and result alone, but for the line that starts with `  "timing":`, the last member:
- * `grep -v '^  "timing":'` makes two runs of one study compare equal.  Any thread. */
+ * Every function returns bytes on the heap for the caller to free, zero-terminated too; NULL: out of memory.
+ * They are a function of study and result alone, but for the last member, on a line of its own that starts with
+ * `  "timing":`.  `grep -v '^  "timing":'` makes two runs of one study compare equal.  Any thread. */
 #ifndef RESULT_JSON_H
 #define RESULT_JSON_H
 
@@ -18,12 +18,12 @@ struct timing {
 char *result_to_json(const struct pound_study *study, const struct pound_result *result,
                      const struct timing *timing, size_t *length);
 
-/* The same result as CSV, from the bytes of result_to_json: one row per cell, output and input of a sensitivity study,
- * or per cell and signal of a response. */
+/* The same result as CSV, from the bytes of result_to_json: one row per cell, output and input of a sensitivity
+ * study, or per cell and signal of a response. */
 char *result_to_csv(const char *json, size_t json_length, size_t *length);
 
-/* Every input row and its outputs: cells in order, rows i, samples A_i, B_i, AB_i of each input.  Of a sensitivity study only.  Columns: sweep paths,
- * `row`, `sample`, input names, and NAME and NAME.variance of each output. */
+/* Every input row of a sensitivity study (of no other) and its outputs: cells in order, rows i, samples A_i, B_i,
+ * AB_i of each input.  Columns: sweep paths, `row`, `sample`, input names, NAME and NAME.variance of each output. */
 char *samples_to_csv(const struct pound_study *study, const struct pound_run *run, size_t *length);
 char *samples_to_npy(const struct pound_study *study, const struct pound_run *run, size_t *length);
 

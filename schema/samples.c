@@ -213,8 +213,8 @@ static void put_record(struct writer *w, const struct sample *s)
 	}
 }
 
-/* The samples as a NumPy structured array, on a little-endian machine; `sample` is 0 for A, 1 for B, 2 + j for AB of
- * input j, a swept choice is its name in bytes, a value that is not there NaN.
+/* The samples as a NumPy structured array, on a little-endian machine; `sample` is 0 for A, 1 for B, 2 + j for
+ * AB of input j, a swept choice is its name in bytes, a value that is not there NaN.
  *
  * Given    study, run  -         -       a finished sensitivity study
  * Returns  value       (length)  -       the bytes of an .npy file; NULL: out of memory

@@ -137,7 +137,7 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 	}
 }
 
-/* The columns of the samples must be told apart: an input is not called as an output or one of the others is. */
+/* The columns of the samples must be told apart: no input has the name of another column. */
 static void check_names(const struct pound_study *study, struct problems *problems)
 {
 	for (int j = 0; j < study->n_inputs; j++) {
@@ -165,8 +165,8 @@ static bool has_parameter(const struct pound_distribution *distribution, const c
 	return false;
 }
 
-/* Whether every value of a distribution is in a field's range.  An end that the distribution names is reached, any other
- * (0 of a lognormal) is not. */
+/* Whether every value of a distribution is in a field's range.  An end that the distribution names is reached, any
+ * other (0 of a lognormal) is not. */
 static bool supports(const struct field *field, const struct pound_distribution *distribution)
 {
 	double low, high;

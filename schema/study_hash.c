@@ -1,7 +1,7 @@
 /* study_hash.c - what a study means, as one number.
  *
- * The study is written back as a document with every member that its kind and excitation use, in the order of fields.c,
- * numbers in their shortest form, names left out; the hash is the SHA-256 of that text. */
+ * The study is written back as a document with every member that its kind and excitation use, in the order of
+ * fields.c, numbers in their shortest form, names left out; the hash is the SHA-256 of that text. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

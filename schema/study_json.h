@@ -24,7 +24,7 @@ enum {
 };
 #define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
 
-/* The study on the heap, one owner, for study_free; NULL with every problem in `problems` (status says which kind). */
+/* The study on the heap, one owner, for study_free; NULL: every problem is in `problems`, its status says why. */
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems);
 void study_free(struct pound_study *study);
 

@@ -223,8 +223,8 @@ void writer_null(struct writer *writer, const char *name)
 	put(writer, "null");
 }
 
-/* A text cell of CSV (RFC 4180).  A spreadsheet takes a cell that starts with = + - @, a tab or a carriage return for a
- * formula; an apostrophe in front makes it text.
+/* A text cell of CSV (RFC 4180).  A spreadsheet takes a cell that starts with = + - @, a tab or a carriage return
+ * for a formula; an apostrophe in front makes it text.
  *
  * Test     unit_writer: a_cell_is_never_a_formula
  */

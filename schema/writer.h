@@ -8,8 +8,9 @@
  *   writer_end(&w);
  *   char *body = writer_take(&w, &length);
  *
- * `name` is the member's name, NULL for an array's element and the document itself.  A number reads back to the same
- * double; NaN and the infinities are null.  Out of memory shows only in writer_take.  No locale, no globals. */
+ * `name` is the member's name, NULL for an array's element and the document itself.  A number reads back to the
+ * same double; NaN and the infinities are null.  Out of memory shows only in writer_take.  No globals; numbers as in
+ * the C locale, which no program here leaves. */
 #ifndef WRITER_H
 #define WRITER_H
 
