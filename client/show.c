@@ -88,6 +88,15 @@ static void print_sweep(const struct reading *result, int cell)
 		putchar('\n');
 }
 
+static void print_failed(const struct reading *result, int cell)
+{
+	double failed = reading_number(result, "/cells/%d/runs_failed", cell);
+	if (failed > 0.0)
+		printf("\n%.0f of %.0f runs failed; %.0f rows of the design are left out\n", failed,
+		       reading_number(result, "/cells/%d/runs", cell),
+		       reading_number(result, "/cells/%d/rows_dropped", cell));
+}
+
 static void print_indices(const struct reading *result, const char *output)
 {
 	static const char *const columns[] = {"input", " S1 [95 % interval]", " ST [95 % interval]",
@@ -114,6 +123,7 @@ static void sensitivity(const struct reading *result)
 	char output[64];
 	for (int cell = 0; cell < reading_count(result, "/cells"); cell++) {
 		print_sweep(result, cell);
+		print_failed(result, cell);
 		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", cell); o++) {
 			snprintf(output, sizeof output, "/cells/%d/outputs/%d", cell, o);
 			putchar('\n');

@@ -54,6 +54,12 @@ static const struct script SCRIPTS[] = {
      0,
      "?[2J??",
      "\033"},
+    {{JSON("200 OK", "{\"kind\": \"sensitivity\", \"cells\": [{\"runs\": 90, \"runs_failed\": 2, "
+                     "\"rows_dropped\": 1}]}")},
+     {"results", "--format=table", "1"},
+     0,
+     "2 of 90 runs failed; 1 rows",
+     NULL},
     {{JSON("404 Not Found", "{\"detail\": \"\\u001b]0;title\"}")}, {"status", "1"}, 1, "?]0;title", "\033"},
     {{JSON("200 OK", "{\"status\": \"failed\", \"error\": \"too few rows\"}")},
      {"wait", "1"},
