@@ -258,7 +258,7 @@ static bool locked(struct store *store, const char *path)
  *
  * Given    path    of the database file; PATH-lock, PATH-wal and PATH-shm stand beside it
  * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
- * Test     service_store: a_second_server_on_one_database_is_refused
+ * Test     unit_store: a_store_in_use_is_not_opened_again
  */
 struct store *store_open(const char *path)
 {
@@ -397,10 +397,7 @@ static enum store_status studies(struct connection *c, sqlite3_stmt *rows, store
 	return released(c, ended(c, rows, n));
 }
 
-/* Hands over one study.
- *
- * Given    each    called once with `to` and the study; not if there is none
- */
+/* Hands over one study.  The reader is called once, or not if there is none. */
 enum store_status store_study(struct store *store, int64_t id, store_study_reader *each, void *to)
 {
 	struct connection *c = reader(store);
@@ -483,7 +480,7 @@ static void block_place(int64_t id, int block, char place[64])
 /* Keeps a finished block of a running study.
  *
  * Status   STORE_NONE   the study is not running any more: cancelled or deleted
- * Test     service_resume: stored_blocks_are_not_run_again
+ * Test     unit_store: a_block_is_kept_only_while_its_study_runs
  */
 enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block)
 {
@@ -497,10 +494,7 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 	                          block->values, length, sha256, sizeof sha256));
 }
 
-/* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out.
- *
- * Given    each    called with `to` and each block
- */
+/* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out. */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *each, void *to)
 {
 	struct connection *c = reader(store);
@@ -530,6 +524,7 @@ enum store_status store_blocks(struct store *store, int64_t id, store_block_read
  * Given    result   (length) bytes   what the client gets; NULL: it failed
  *          error    why it failed, a sentence; NULL: it did not
  * Status   STORE_NONE   it is not running any more; nothing is stored
+ * Test     unit_store: a_study_finishes_once
  */
 enum store_status store_finish(struct store *store, int64_t id, const char *result, size_t length,
                                const char *error)

@@ -89,7 +89,7 @@ static void restore(void *to, const struct store_block *block)
  * Returns  opened      closed by work_close, even after a failure
  *          value       NULL, or why it failed
  * Memory   allocates
- * Test     service_resume: a_killed_study_goes_on_to_the_same_bytes
+ * Test     service_resume: a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again
  */
 const char *work_open(struct store *store, int64_t id, int n_workers, struct work_run *opened)
 {
@@ -347,7 +347,7 @@ void work_wake(struct work *work)
 /* Stops the run of a study that was cancelled or deleted in the store.
  *
  * Given    id   of the study, running or not
- * Test     service_cancel: a_study_can_be_cancelled_at_any_moment
+ * Test     service_queue: a_study_can_be_cancelled_at_any_moment
  */
 void work_drop(struct work *work, int64_t id)
 {
