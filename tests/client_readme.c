@@ -4,6 +4,7 @@
  * a poundd of the test's own stands for the one that is started there, and the build under test for build/release. */
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "schema/fields.h"
 #include "tests/check.h"
@@ -142,6 +143,25 @@ static void every_distribution_stands_in_the_readme_with_its_parameters(void **s
 	free(readme);
 }
 
+static void every_file_the_readme_names_is_there(void **state)
+{
+	static const char *const folders[] = {"engine/", "schema/", "server/", "client/", "tests/"};
+	char *readme = program_file("README.md", NULL);
+	int n = 0;
+	(void)state;
+	assert_non_null(readme);
+	for (char *name = strtok(readme, "` \n|,;()"); name; name = strtok(NULL, "` \n|,;()"))
+		for (int i = 0; i < 5; i++)
+			// a folder alone, and forms such as unit_<file>.c, name no file
+			if (strncmp(name, folders[i], strlen(folders[i])) == 0 && !strchr(name, '<')) {
+				if (access(name, R_OK) != 0)
+					fail_msg("README.md names %s", name);
+				n++;
+			}
+	assert_true(n > 20);
+	free(readme);
+}
+
 static void the_usage_stands_in_the_readme_as_it_is_printed(void **state)
 {
 	struct program_outcome help = program_run((const char *const[]){"pound", "--help", NULL}, NULL);
@@ -179,7 +199,8 @@ static void every_command_of_the_readme_works(void **state)
 	free(readme);
 }
 
-CHECK_MAIN(cmocka_unit_test(every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it),
+CHECK_MAIN(cmocka_unit_test(every_file_the_readme_names_is_there),
+           cmocka_unit_test(every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it),
            cmocka_unit_test(every_distribution_stands_in_the_readme_with_its_parameters),
            cmocka_unit_test(the_usage_stands_in_the_readme_as_it_is_printed),
            cmocka_unit_test_setup_teardown(every_command_of_the_readme_works, program_setup,
