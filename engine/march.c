@@ -16,61 +16,15 @@
 
 #include "engine/lanes.h"
 #include "engine/series.h"
+#include "engine/simulation.h"
 
 enum {
 	POOL = 3 * W,           /* simulations in flight */
-	MAPS = 4,               /* free-flight maps a body keeps */
 	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
-};
-
-static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
-
-/* Columns of a simulation: `double` in a simulation at rest in the pool, `vd` in a group of lanes.  A group is loaded
- * and saved by ranges of columns: event steps from the first to map, flight from state to the end. */
-#define COLUMNS(T)                                                                                      \
-	/* constants of event steps */                                                                      \
-	T step, damping[2], contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly;     \
-	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */      \
-	T p, q, left, slope, events, touching, parted, fresh, impulse, impulse_max, contacts, contact_time; \
-	/* changed by both */                                                                               \
-	T u[2], v[2], top[2], ground;                                                                       \
-	/* read by both: the piece of each body's law */                                                    \
-	T gap, drive[2], stiffness[2], offset[2], low[2], high[2], direction[2];                            \
-	/* map of each body over one sample, and what bounds its error */                                   \
-	T uu[2], uv[2], ua[2], ud[2], vu[2], vv[2], va[2], vd[2], eu[2], ev[2], ea[2], ed[2], third, error_turn;
-
-struct column {
-	COLUMNS(double)
 };
 
 struct lanes {
 	COLUMNS(vd)
-};
-
-enum {
-	COLUMN_FIRST = 0,
-	COLUMN_MOVED = offsetof(struct column, p) / sizeof(double),
-	COLUMN_STATE = offsetof(struct column, u) / sizeof(double),
-	COLUMN_READ = offsetof(struct column, gap) / sizeof(double),
-	COLUMN_MAP = offsetof(struct column, uu) / sizeof(double),
-	COLUMN_END = sizeof(struct column) / sizeof(double),
-};
-
-/* exact map of one body over one sample: (u, v) -> (u, v), with forcing a at the start growing by d */
-struct map {
-	double stiffness; /* of the piece it belongs to; < 0: none */
-	double uu, uv, ua, ud, vu, vv, va, vd;
-	double eu, ev, ea, ed; /* bound of the cubic's error: eu |u| + ev |v| + ea |a| + ed |d| */
-};
-
-struct simulation {
-	struct column x;
-	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
-	const struct pound_march_task *task;
-	struct pound_march_result *result;
-	struct pound_branch at[2];
-	struct map maps[2][MAPS];
-	int map_next[2];
 };
 
 /* simulations side by side; a lane without one has member -1 and goes through the motions */
@@ -97,129 +51,7 @@ struct work {
 	int n, started;
 };
 
-static_assert(sizeof(struct column) % sizeof(double) == 0, "columns are doubles and nothing else");
-
-/* ---- a simulation at rest in the pool: scalar work, done when it changes groups or reaches an edge ---- */
-
-/* Exact map of u'' + c u' + k u = -(a + d t/h) over one sample h, by its power series, and its error coefficients.
- *
- * Given    k, c, h   [1/s2], [1/s], [s]   h (c + k h) <= 1/2
- * Returns  map       columns for u, v, a, d
- *
- * With A2, A3, A4 the largest |u''|, |u'''|, |u''''| inside and h (c + k h) <= 1/2:
- *   A3 <= 2 (|u0'''| + h k |u0''|),  A2 <= |u0''| + h A3,  A4 <= c A3 + k A2,  error <= A4 h^4/384
- *   |u0''| <= c |v| + k |u| + |a|,  |u0'''| <= c |u0''| + k |v| + |d|/h
- */
-static void map_fill(struct map *map, double k, double c, double h)
-{
-	double *column[4][2] = {
-	    {&map->uu, &map->vu}, {&map->uv, &map->vv}, {&map->ua, &map->va}, {&map->ud, &map->vd}};
-	double ch = c * h, kh = k * h * h;
-	for (int j = 0; j < 4; j++) {
-		double u = j == 0, w = j == 1 ? h : 0; // w: u' h
-		double u_sum = 0, w_sum = 0;
-		for (int n = 0; n < 20; n++) {
-			double force = j == 2 && n == 0 ? h * h : j == 3 && n == 1 ? h * h : 0;
-			double w_next = -(ch * w + kh * u + force) / (n + 1);
-			u_sum += u;
-			w_sum += w;
-			u = w / (n + 1);
-			w = w_next;
-		}
-		*column[j][0] = u_sum;
-		*column[j][1] = w_sum / h;
-	}
-	map->stiffness = k;
-	double a3_acc = 2 * (c + h * k), a4_acc = c * a3_acc + k * (1 + h * a3_acc); // per |u0''|
-	double a4_jerk = (c + k * h) * 2; // per |u0'''| apart from c |u0''|
-	double quartic = h * h * h * h * CUBIC_ERROR;
-	map->eu = quartic * a4_acc * k;
-	map->ev = quartic * (a4_acc * c + a4_jerk * k);
-	map->ea = quartic * a4_acc;
-	map->ed = quartic * a4_jerk / h;
-}
-
-/* Puts a body's current piece, and the map that belongs to it, into the columns. */
-static void piece_load(struct simulation *sim, int i)
-{
-	const struct pound_piece *piece = &sim->at[i].piece;
-	sim->x.stiffness[i] = piece->stiffness;
-	sim->x.offset[i] = piece->offset;
-	sim->x.low[i] = piece->low;
-	sim->x.high[i] = piece->high;
-	sim->x.direction[i] = piece->direction;
-	if (sim->x.can_fly == 0)
-		return;
-	struct map *map = NULL;
-	for (int m = 0; m < MAPS && !map; m++)
-		if (sim->maps[i][m].stiffness == piece->stiffness)
-			map = &sim->maps[i][m];
-	if (!map) {
-		map = &sim->maps[i][sim->map_next[i]];
-		sim->map_next[i] = (sim->map_next[i] + 1) % MAPS;
-		map_fill(map, piece->stiffness, sim->x.damping[i], sim->x.step);
-	}
-	struct column *x = &sim->x;
-	x->uu[i] = map->uu, x->uv[i] = map->uv, x->ua[i] = map->ua, x->ud[i] = map->ud;
-	x->vu[i] = map->vu, x->vv[i] = map->vv, x->va[i] = map->va, x->vd[i] = map->vd;
-	x->eu[i] = map->eu, x->ev[i] = map->ev, x->ea[i] = map->ea, x->ed[i] = map->ed;
-}
-
-/* Enters the interval that ends at sim->next. */
-static void interval_enter(struct simulation *sim)
-{
-	const double *a = &sim->task->ground[sim->next];
-	sim->x.ground = a[-1];
-	sim->x.slope = (a[0] - a[-1]) / sim->x.step;
-	sim->x.left = sim->x.step;
-	sim->x.events = 0;
-}
-
-/* A simulation at the start of its task. */
-static void simulation_start(struct simulation *sim, const struct pound_march_task *task,
-                             struct pound_march_result *result)
-{
-	memset(sim, 0, sizeof *sim);
-	memset(result, 0, sizeof *result);
-	sim->task = task;
-	sim->result = result;
-	sim->next = 1;
-	sim->last = task->n_samples - 1;
-	struct column *x = &sim->x;
-	double h = task->time_step;
-	double rate = 0;
-	bool can_fly = true;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *body = &task->bodies[i];
-		double k = body->skeleton.stiffness;
-		double omega = sqrt(k);
-		rate = fmax(rate, fmax(omega, body->damping));
-		can_fly &= h * (body->damping + k * h) <= 0.5 && omega * h <= 1;
-		x->u[i] = body->u, x->v[i] = body->v;
-		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
-		x->damping[i] = body->damping;
-		x->drive[i] = body->drive;
-		for (int m = 0; m < MAPS; m++)
-			sim->maps[i][m].stiffness = -1;
-	}
-	x->can_fly = can_fly;
-	x->step = h;
-	x->gap = task->contact ? task->gap : -NEVER;
-	x->contact_stiffness = task->contact ? task->contact_stiffness : 0;
-	x->contact_damping = task->contact ? task->contact_damping : 0;
-	x->mass_ratio = task->mass_ratio;
-	x->release = task->contact && !task->tension ? task->contact_damping / task->contact_stiffness : 0;
-	double stiff = (1 + task->mass_ratio) * x->contact_stiffness;
-	x->reach[0] = rate > 0 ? REACH_FREE / rate : DBL_MAX;
-	x->reach[1] = REACH_TOUCH / sqrt(rate * rate + stiff);
-	x->third = h / 3;
-	x->error_turn = 384 * sqrt(3) / (216 * h);
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		pound_pieces_start(&task->bodies[i].skeleton, &sim->at[i]);
-		piece_load(sim, i);
-	}
-	interval_enter(sim);
-}
+static_assert(sizeof(struct lanes) == W * sizeof(struct column), "columns are doubles and nothing else");
 
 /* ---- groups of lanes ---- */
 
@@ -305,7 +137,7 @@ static void simulation_end(struct work *work, struct simulation *sim, enum pound
 static void meet_await(struct work *work, struct simulation *sim)
 {
 	struct column *x = &sim->x;
-	interval_enter(sim);
+	pound_simulation_interval(sim);
 	x->p = fmin(x->u[0] - x->u[1] - x->gap, 0); // rounding must not make it overlap
 	x->q = x->v[0] - x->v[1];
 	push(&work->meeters, (int)(sim - work->pool));
@@ -317,7 +149,7 @@ static bool task_start(struct work *work)
 	if (work->started == work->n || work->idle.n == 0)
 		return false;
 	struct simulation *sim = &work->pool[pop(&work->idle)];
-	simulation_start(sim, &work->tasks[work->started], &work->results[work->started]);
+	pound_simulation_start(sim, &work->tasks[work->started], &work->results[work->started]);
 	work->started++;
 	if (sim->x.can_fly != 0)
 		push(&work->flyers, (int)(sim - work->pool));
@@ -631,7 +463,7 @@ static void body_turn(struct work *work, int l, int i, enum pound_edge edge)
 	if (edge == POUND_EDGE_TURN && LANE(g->direction[i], l) == 0)
 		return; // a turn that was only looked for as a largest displacement
 	pound_pieces_leave(&sim->task->bodies[i].skeleton, &sim->at[i], edge, LANE(g->u[i], l));
-	piece_load(sim, i);
+	pound_simulation_piece(sim, i);
 	LANE(g->stiffness[i], l) = sim->x.stiffness[i];
 	LANE(g->offset[i], l) = sim->x.offset[i];
 	LANE(g->low[i], l) = sim->x.low[i];

@@ -17,10 +17,6 @@ enum {
 	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
 };
 
-/* Largest rate * time of a series step: the last term kept is below 2^-54 of the first.
- * 0.4^14/14! = 3e-17, 1.4^22/22! = 1.5e-18 (touching has the larger factor before the power). */
-static const double REACH_FREE = 0.4, REACH_TOUCH = 1.4;
-
 /* The cubic through both ends of an interval misses the function by at most h^4/384 max |u''''| (Hermite). */
 static const double CUBIC_ERROR = 1.0 / 384;
 

@@ -1,0 +1,62 @@
+/* simulation.h - one simulation of the march as it rests between its turns in the lanes.
+ *
+ * What changes in lanes stands in columns, so that whole ranges of them are carried in and out. */
+#ifndef SIMULATION_H
+#define SIMULATION_H
+
+#include "engine/march.h"
+
+enum {
+	POUND_MAPS = 4, /* free-flight maps a body keeps */
+};
+
+/* Columns of a simulation: T is double at rest, and a vector in a group of lanes.  A group is loaded
+ * and saved by ranges of columns: event steps from the first to map, flight from state to the end. */
+#define COLUMNS(T)                                                                                      \
+	/* constants of event steps */                                                                      \
+	T step, damping[2], contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly;     \
+	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */      \
+	T p, q, left, slope, events, touching, parted, fresh, impulse, impulse_max, contacts, contact_time; \
+	/* changed by both */                                                                               \
+	T u[2], v[2], top[2], ground;                                                                       \
+	/* read by both: the piece of each body's law */                                                    \
+	T gap, drive[2], stiffness[2], offset[2], low[2], high[2], direction[2];                            \
+	/* map of each body over one sample, and what bounds its error */                                   \
+	T uu[2], uv[2], ua[2], ud[2], vu[2], vv[2], va[2], vd[2], eu[2], ev[2], ea[2], ed[2], third, error_turn;
+
+struct column {
+	COLUMNS(double)
+};
+
+enum {
+	COLUMN_FIRST = 0,
+	COLUMN_MOVED = offsetof(struct column, p) / sizeof(double),
+	COLUMN_STATE = offsetof(struct column, u) / sizeof(double),
+	COLUMN_READ = offsetof(struct column, gap) / sizeof(double),
+	COLUMN_MAP = offsetof(struct column, uu) / sizeof(double),
+	COLUMN_END = sizeof(struct column) / sizeof(double),
+};
+
+/* exact map of one body over one sample: (u, v) -> (u, v), with forcing a at the start growing by d */
+struct map {
+	double stiffness; /* of the piece it belongs to; < 0: none */
+	double uu, uv, ua, ud, vu, vv, va, vd;
+	double eu, ev, ea, ed; /* bound of the cubic's error: eu |u| + ev |v| + ea |a| + ed |d| */
+};
+
+struct simulation {
+	struct column x;
+	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
+	const struct pound_march_task *task;
+	struct pound_march_result *result;
+	struct pound_branch at[2];
+	struct map maps[2][POUND_MAPS];
+	int map_next[2];
+};
+
+void pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
+                            struct pound_march_result *result);
+void pound_simulation_piece(struct simulation *sim, int i);
+void pound_simulation_interval(struct simulation *sim);
+
+#endif
