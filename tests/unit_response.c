@@ -371,6 +371,31 @@ static void equal_oscillators_never_press_on_each_other(void **state)
 	specimen_free(&specimen);
 }
 
+/* Nonlinear twins touch by rounding only, and what a small detuning does is in proportion to it. */
+static void nearly_equal_oscillators_nearly_never_press_on_each_other(void **state)
+{
+	(void)state;
+	static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
+	for (int k = 0; k < 8; k++) {
+		struct specimen specimen;
+		specimen_init(&specimen);
+		struct pound_scene *scene = &specimen.study.scene;
+		specimen_noise(&specimen, 7, 1, 0.01, 501);
+		specimen_law(&specimen, laws[k / 2], 0);
+		scene->contact.tension = k % 2;
+		double f = scene->oscillators[0].frequency_hz;
+		double impulse[3];
+		for (int d = 0; d < 3; d++) {
+			scene->oscillators[1].frequency_hz = f * (1 + (double[]){0, 1e-10, 1e-8}[d]);
+			impulse[d] = specimen_engine(&specimen).impulse_max;
+		}
+		specimen_free(&specimen);
+		// a spring of 2.5e4 N/m, 1e-2 m and their rounding for as long as the run lasts
+		check_near(impulse[0], 0, 2.5e4 * 1e-2 * 1e-16 * 5);
+		check_near(impulse[2] / impulse[1], 100, 0.1);
+	}
+}
+
 static void a_gap_that_is_never_reached_leaves_both_free(void **state)
 {
 	(void)state;
@@ -489,6 +514,7 @@ CHECK_MAIN(cmocka_unit_test(the_half_sine_references_come_out),
            cmocka_unit_test(a_yielding_stroke_loses_the_area_of_half_a_loop),
            cmocka_unit_test(an_origin_oriented_oscillator_loses_energy_on_the_first_push_only),
            cmocka_unit_test(equal_oscillators_never_press_on_each_other),
+           cmocka_unit_test(nearly_equal_oscillators_nearly_never_press_on_each_other),
            cmocka_unit_test(a_gap_that_is_never_reached_leaves_both_free),
            cmocka_unit_test(a_gap_is_touched_exactly_when_the_free_responses_close_it),
            cmocka_unit_test(bodies_that_touch_at_rest_press_on_each_other_from_the_first_moment),
