@@ -33,7 +33,7 @@ struct group {
 	int member[W];
 	vi next, last; /* as in struct simulation */
 	const double *ground[W];
-	int n; /* lanes in use */
+	int n, n_edged, n_paired; /* lanes in use, and how many of them have edges, have two bodies */
 };
 
 struct queue {
@@ -79,6 +79,8 @@ LANE_INLINE void lane_load(struct group *group, int l, struct work *work, int me
 	group->last = (group->last & ~only) | (only & work->pool[member].last);
 	group->ground[l] = work->pool[member].task->ground;
 	group->n++;
+	group->n_edged += work->pool[member].edged;
+	group->n_paired += work->pool[member].paired;
 }
 
 /* Takes the simulation out of lane l: columns [from, to) were changed. */
@@ -92,6 +94,8 @@ LANE_INLINE struct simulation *lane_save(struct group *group, int l, struct work
 	sim->next = LANE(group->next, l);
 	group->member[l] = -1;
 	group->n--;
+	group->n_edged -= sim->edged;
+	group->n_paired -= sim->paired;
 	return sim;
 }
 
@@ -138,7 +142,8 @@ static void meet_await(struct work *work, struct simulation *sim)
 {
 	struct column *x = &sim->x;
 	pound_simulation_interval(sim);
-	x->p = fmin(x->u[0] - x->u[1] - x->gap, 0); // rounding must not make it overlap
+	double p = x->u[0] - x->u[1] - x->gap;
+	x->p = p < 0 ? p : 0; // rounding must not make it overlap
 	x->q = x->v[0] - x->v[1];
 	push(&work->meeters, (int)(sim - work->pool));
 }
@@ -172,59 +177,74 @@ static void fly_fill(struct work *work)
 }
 
 struct flight {
-	vd u, v, b1, b2, error, error_turn;
+	vd u, v, b1, b2, error;
 };
 
-/* One body over one whole sample, and the inner control points of the cubic through its ends. */
+/* One body over one whole sample, and the inner control points of the cubic through its ends.
+ *
+ * With the response psi = uv to an initial velocity, uu = psi' + c psi, and the responses ua and ud to constant and
+ * growing forcing have the derivatives -psi and ua/h, so that the velocity needs no columns of its own:
+ *   u' = uu u + psi v + ua a + ud d     v' = (uu - c psi) v - psi (k u + a) + ua d/h
+ */
 LANE_INLINE struct flight flight_step(const struct lanes *g, int i, vd rise)
 {
 	struct flight f;
-	vd u = g->u[i], v = g->v[i];
-	vd a = vfma(g->drive[i], g->ground, g->offset[i]);
-	vd d = g->drive[i] * rise;
-	f.u = vfma(g->uu[i], u, vfma(g->uv[i], v, vfma(g->ua[i], a, g->ud[i] * d)));
-	f.v = vfma(g->vu[i], u, vfma(g->vv[i], v, vfma(g->va[i], a, g->vd[i] * d)));
+	vd u = g->u[i], v = g->v[i], c = g->damping[i], psi = g->uv[i];
+	vd a = vfma(g->drive[i], g->ground, g->offset[i]), d = g->drive[i] * rise, s = d * g->per_step;
+	vd spring = vfma(g->stiffness[i], u, a);
+	f.u = vfma(g->uu[i], u, vfma(psi, v, vfma(g->ua[i], a, g->ud[i] * d)));
+	f.v = vfma(vfma(-c, psi, g->uu[i]), v, vfma(-psi, spring, g->ua[i] * s));
 	f.b1 = vfma(g->third, v, u);
 	f.b2 = vfma(-g->third, f.v, f.u);
-	vd e = vfma(g->eu[i], vabs(u), vfma(g->ev[i], vabs(v), vfma(g->ea[i], vabs(a), g->ed[i] * vabs(d))));
-	f.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(f.u), e);
-	f.error_turn = f.error * g->error_turn;
+	// |u''| and |u'''| at the start, for the bound of the cubic's error
+	vd speed = vabs(v), acc = vfma(c, speed, vfma(g->stiffness[i], vabs(u), vabs(a)));
+	vd jerk = vfma(c, acc, vfma(g->stiffness[i], speed, vabs(s)));
+	vd error = vfma(g->ea[i], acc, g->ej[i] * jerk);
+	f.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(f.u), error);
 	return f;
 }
 
-/* Lanes in which something may happen to a body inside the sample: an edge of its piece, a new largest displacement. */
-LANE_INLINE vi flight_risk(const struct lanes *g, int i, const struct flight *f)
+/* Lanes in which something may happen to a body inside the sample: a new largest displacement, an edge of its piece. */
+LANE_INLINE vi flight_risk(const struct lanes *g, int i, const struct flight *f, bool edged)
 {
 	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2);
 	vd ends = vmax(vmax(vabs(g->u[i]), vabs(f->u)), g->top[i]);
 	vi risk = vless(ends, vmax(high, -low) + f->error);
+	if (!edged)
+		return risk;
 	risk |= vless(g->high[i], vmax(high, f->u) + f->error);
 	risk |= vless(vmin(low, f->u) - f->error, g->low[i]);
-	// the velocity's control points: its own at the ends, 3 (b2 - b1)/h between
-	vd along = vmin(vmin(g->direction[i] * g->v[i], g->direction[i] * f->v),
-	                g->direction[i] * (f->b2 - f->b1) / g->third);
-	risk |= vless(along - f->error_turn, vsplat(0)) & ~vequal(g->direction[i], vsplat(0));
+	// the velocity's control points times h/3: its own at the ends, b2 - b1 between; it misses the velocity by at
+	// most sqrt(3)/216 h^3 of the fourth derivative, which is 384 sqrt(3)/648 of the displacement's error
+	vd way = g->direction[i];
+	vd along = vmin(vmin(way * (g->third * g->v[i]), way * (g->third * f->v)), way * (f->b2 - f->b1));
+	risk |= vless(along, vsplat(1.0265) * f->error) & ~vequal(way, vsplat(0));
 	return risk;
 }
 
 /* One sample for every lane of free flight.
  *
  * Given    ground  acceleration at the next sample [m/s2]
+ *          edged   a lane has a law of more than one piece;  paired: a lane has two bodies
  * Returns  value   lanes in which something may happen inside the sample; these stay where they were
  */
-LANE_INLINE vi flight(struct lanes *g, vd ground)
+LANE_INLINE vi flight(struct lanes *g, vd ground, bool edged, bool paired)
 {
 	vd rise = ground - g->ground;
-	struct flight f = flight_step(g, 0, rise), s = flight_step(g, 1, rise);
-	vi risk = flight_risk(g, 0, &f) | flight_risk(g, 1, &s);
-	vd p = vmax(vmax(f.b1 - s.b1, f.b2 - s.b2), f.u - s.u) - g->gap;
-	risk |= vless(vsplat(0), p + (f.error + s.error) + vsplat(4 * DBL_EPSILON) * g->gap);
+	struct flight f = flight_step(g, 0, rise);
+	vi risk = flight_risk(g, 0, &f, edged);
+	if (paired) {
+		struct flight s = flight_step(g, 1, rise);
+		vd p = vmax(vmax(f.b1 - s.b1, f.b2 - s.b2), f.u - s.u) - g->gap;
+		risk |= flight_risk(g, 1, &s, edged);
+		risk |= vless(vsplat(0), p + (f.error + s.error) + vsplat(4 * DBL_EPSILON) * g->gap);
+		g->u[1] = vselect(risk, g->u[1], s.u);
+		g->v[1] = vselect(risk, g->v[1], s.v);
+		g->top[1] = vmax(g->top[1], vabs(g->u[1]));
+	}
 	g->u[0] = vselect(risk, g->u[0], f.u);
 	g->v[0] = vselect(risk, g->v[0], f.v);
-	g->u[1] = vselect(risk, g->u[1], s.u);
-	g->v[1] = vselect(risk, g->v[1], s.v);
 	g->top[0] = vmax(g->top[0], vabs(g->u[0]));
-	g->top[1] = vmax(g->top[1], vabs(g->u[1]));
 	g->ground = vselect(risk, g->ground, ground);
 	return risk;
 }
@@ -240,6 +260,19 @@ LANE_INLINE vd ground_at(const struct group *g, vi next)
 	return a;
 }
 
+/* Flies one sample a round, until a lane cannot be flown or was flown to its end; these lanes come back. */
+LANE_INLINE vi fly_on(struct group *g, bool edged, bool paired)
+{
+	vi flying = members(g), next = g->next, leaves;
+	do {
+		vi stays = flight(&g->x, ground_at(g, next), edged, paired);
+		leaves = (stays | vequal_index(next, g->last)) & flying;
+		next += ~stays & flying & 1;
+	} while (!vany(leaves));
+	g->next = next;
+	return leaves;
+}
+
 /* Flies until the group of the others is worth a step, or nobody flies. */
 static void fly(struct work *work)
 {
@@ -248,14 +281,8 @@ static void fly(struct work *work)
 		fly_fill(work);
 		if (g->n == 0)
 			return;
-		vi flying = members(g), next = g->next, leaves;
-		// one sample a round, until a lane cannot be flown or was flown to its end
-		do {
-			vi stays = flight(&g->x, ground_at(g, next)) | ~flying;
-			leaves = (stays & flying) | (vequal_index(next, g->last) & flying);
-			next += ~stays & 1;
-		} while (!vany(leaves));
-		g->next = next;
+		vi leaves = g->n_paired ? (g->n_edged ? fly_on(g, true, true) : fly_on(g, false, true))
+		                        : (g->n_edged ? fly_on(g, true, false) : fly_on(g, false, false));
 		for (int l = 0; l < W; l++) {
 			if (!LANE(leaves, l))
 				continue;
@@ -276,63 +303,87 @@ enum event { NOTHING, CUT, CONTACT, CLEARS, BODY };
 // the event of an edge of body i is BODY + EDGES i + edge
 enum { EDGES = 3 };
 
+/* What the recurrences of a step read: each body's damping and stiffness, the contact's, all scaled to the step. */
+struct rates {
+	vd c[2], k[2], spring, dash, mass_ratio, both;
+};
+
+/* coefficients of one order of left, right and overlap, and the sums over the orders so far */
+struct terms {
+	vd u[3], v[3], u1[3], v1[3], bend[3];
+};
+
+/* One order of the series of both bodies and of the overlap: keeps coefficient n, adds it to the ends and to the bounds
+ * of the fourth derivatives, and makes coefficient n + 1.
+ *
+ * Given    force  part of this order of the ground motion and the pieces, orders 0 and 1 only
+ */
+LANE_INLINE void series_order(struct series *s, const struct rates *r, int n, vd force_1, vd force_2,
+                              struct terms *x)
+{
+	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
+	vd share = vsplat(1.0 / (n + 1)), u[3], v[3];
+#pragma GCC unroll 3
+	for (int j = 0; j < 3; j++) {
+		u[j] = x->u[j], v[j] = x->v[j];
+		into[j]->u.c[n] = u[j];
+		into[j]->v.c[n] = v[j];
+		x->u1[j] = x->u1[j] + u[j];
+		x->v1[j] = x->v1[j] + v[j];
+		if (n >= 4)
+			x->bend[j] = vfma(vsplat(fourth(n)), vabs(u[j]), x->bend[j]);
+		x->u[j] = v[j] * share;
+	}
+	vd b0 = vfma(r->c[0] * share, v[0], (r->k[0] * share) * u[0]);
+	vd b1 = vfma(r->c[1] * share, v[1], (r->k[1] * share) * u[1]);
+	if (n < 2) {
+		b0 = vfma(force_1, share, b0);
+		b1 = vfma(force_2, share, b1);
+	}
+	vd push = vfma(r->spring * share, u[2], (r->dash * share) * v[2]);
+	x->v[0] = b0 - push;
+	x->v[1] = vfma(r->mass_ratio, push, b1);
+	x->v[2] = vfma(r->both, -push, b0 - b1);
+}
+
 /* Series of both bodies and of the overlap over a step, their ends and the bounds of their fourth derivatives. */
 static void series_fill(struct series *s, const struct lanes *g, vd dt, vi touching)
 {
 	vd dt2 = dt * dt, zero = vsplat(0);
-	vd c[2], k[2], f0[2], f1[2];
+	struct rates r;
+	vd f0[2], f1[2];
 	for (int i = 0; i < 2; i++) {
-		c[i] = -g->damping[i] * dt;
-		k[i] = -g->stiffness[i] * dt2;
+		r.c[i] = -g->damping[i] * dt;
+		r.k[i] = -g->stiffness[i] * dt2;
 		f0[i] = -vfma(g->drive[i], g->ground, g->offset[i]) * dt2;
 		f1[i] = -(g->drive[i] * g->slope) * dt2 * dt;
 	}
-	vd spring = vselect(touching, g->contact_stiffness * dt2, zero);
-	vd dash = vselect(touching, g->contact_damping * dt, zero);
-	vd both = vsplat(1) + g->mass_ratio;
-	int order = vany(touching) ? ORDER_TOUCH : ORDER_FREE;
-	vd u[3] = {g->u[0], g->u[1], g->p},
-	   v[3] = {g->v[0] * dt, g->v[1] * dt, g->q * dt}; // left, right, overlap
-	vd u1[3] = {zero, zero, zero}, v1[3] = {zero, zero, zero}, bend[3] = {zero, zero, zero};
-	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
-	for (int n = 0; n <= order; n++) {
-		vd weight = vsplat((double)n * (n - 1) * (n - 2) * (n - 3));
-#pragma GCC unroll 3 // into registers
+	r.spring = vselect(touching, g->contact_stiffness * dt2, zero);
+	r.dash = vselect(touching, g->contact_damping * dt, zero);
+	r.mass_ratio = g->mass_ratio;
+	r.both = vsplat(1) + g->mass_ratio;
+	struct terms x = {.u = {g->u[0], g->u[1], g->p}, .v = {g->v[0] * dt, g->v[1] * dt, g->q * dt}};
+	for (int j = 0; j < 3; j++)
+		x.u1[j] = x.v1[j] = x.bend[j] = zero;
+	s->order = vany(touching) ? ORDER_TOUCH : ORDER_FREE;
+	series_order(s, &r, 0, f0[0], f0[1], &x);
+	series_order(s, &r, 1, f1[0], f1[1], &x);
+	ORDERS_UP(n, 2, ORDER_FREE, series_order(s, &r, n, zero, zero, &x);)
+	if (s->order > ORDER_FREE) {
+		// lanes apart end here, so that a lane's bits do not depend on its neighbours
 		for (int j = 0; j < 3; j++) {
-			into[j]->u.c[n] = u[j];
-			into[j]->v.c[n] = v[j];
-			u1[j] = u1[j] + u[j];
-			v1[j] = v1[j] + v[j];
-			bend[j] = vfma(weight, vabs(u[j]), bend[j]);
+			x.u[j] = vselect(touching, x.u[j], zero);
+			x.v[j] = vselect(touching, x.v[j], zero);
 		}
-		vd share = vsplat(SHARE[n + 1]);
-		vd a0 = vfma(c[0], v[0], k[0] * u[0]), a1 = vfma(c[1], v[1], k[1] * u[1]);
-		if (n < 2) {
-			a0 += n ? f1[0] : f0[0];
-			a1 += n ? f1[1] : f0[1];
-		}
-		vd force = vfma(spring, u[2], dash * v[2]);
-#pragma GCC unroll 3 // into registers
-		for (int j = 0; j < 3; j++)
-			u[j] = v[j] * share;
-		v[0] = (a0 - force) * share;
-		v[1] = vfma(g->mass_ratio, force, a1) * share;
-		v[2] = vfma(-both, force, a0 - a1) * share;
-		if (n == ORDER_FREE) // lanes apart end here, so that a lane's bits do not depend on its neighbours
-#pragma GCC unroll 3         // into registers
-			for (int j = 0; j < 3; j++) {
-				u[j] = vselect(touching, u[j], zero);
-				v[j] = vselect(touching, v[j], zero);
-			}
+		ORDERS_UP(n, ORDER_FREE + 1, ORDER_TOUCH, series_order(s, &r, n, zero, zero, &x);)
 	}
-#pragma GCC unroll 3 // into registers
+	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
 	for (int j = 0; j < 3; j++) {
-		into[j]->u.c[order + 1] = into[j]->v.c[order + 1] = zero;
-		into[j]->u1 = u1[j];
-		into[j]->v1 = v1[j];
-		into[j]->bend = bend[j];
+		into[j]->u1 = x.u1[j];
+		into[j]->v1 = x.v1[j];
+		into[j]->bend = x.bend[j];
+		into[j]->u.c[s->order + 1] = into[j]->v.c[s->order + 1] = zero;
 	}
-	s->order = order;
 }
 
 /* Looks for the edges of a body's piece. */
@@ -516,8 +567,9 @@ static void impulse_add(struct lanes *g, const struct series *s, vi touching, vd
 {
 	struct power area; // of the overlap from 0 to t, over t
 	area.c[s->order + 1] = vsplat(0);
-	for (int n = s->order; n >= 0; n--)
-		area.c[n] = s->overlap.u.c[n] * vsplat(SHARE[n + 1]);
+	if (s->order > ORDER_FREE)
+		ORDERS_UP(n, ORDER_FREE + 1, ORDER_TOUCH, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
+	ORDERS_UP(n, 0, ORDER_FREE, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
 	vd elapsed = time * dt;
 	vd impulse = vfma(g->contact_stiffness, power_at(&area, s->order, time) * elapsed,
 	                  g->contact_damping * (s->overlap.u1 - s->overlap.u.c[0]));
@@ -541,10 +593,12 @@ static void meet_step(struct work *work)
 	struct series s;
 	series_fill(&s, g, dt, touching);
 	struct search search = {.time = one, .event = zero};
-	contact_search(&s, g, dt, active, &search);
-	for (int i = 0; i < 2; i++)
+	int bodies = group->n_paired ? 2 : 1;
+	if (group->n_paired)
+		contact_search(&s, g, dt, active, &search);
+	for (int i = 0; i < bodies && group->n_edged; i++)
 		body_search(&s, g, i, active, &search);
-	for (int i = 0; i < 2; i++)
+	for (int i = 0; i < bodies; i++)
 		body_top(&s, g, i, active, &search);
 	vi event = ~vequal(search.event, zero);
 	if (vany(event))

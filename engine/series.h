@@ -20,12 +20,17 @@ enum {
 /* The cubic through both ends of an interval misses the function by at most h^4/384 max |u''''| (Hermite). */
 static const double CUBIC_ERROR = 1.0 / 384;
 
-/* 1/n, so that the recurrences multiply */
-static const double SHARE[ORDER_SIZE + 1] = {
-    0,        1.0 / 1,  1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7,  1.0 / 8,
-    1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17,
-    1.0 / 18, 1.0 / 19, 1.0 / 20, 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24,
-};
+/* Runs BODY for n from one order down to another by twos, or up by ones, as straight code: the orders are constants. */
+#define ORDERS_DOWN(n, from, to, ...)                                \
+	_Pragma("GCC unroll 12") for (int n = (from); n >= (to); n -= 2) \
+	{                                                                \
+		__VA_ARGS__                                                  \
+	}
+#define ORDERS_UP(n, from, to, ...)                               \
+	_Pragma("GCC unroll 24") for (int n = (from); n <= (to); n++) \
+	{                                                             \
+		__VA_ARGS__                                               \
+	}
 
 /* Coefficients of a series up to an even order, and a zero behind them: terms are taken in pairs. */
 struct power {
@@ -50,11 +55,17 @@ struct series {
 LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 {
 	vd t2 = t * t, even = vsplat(0), odd = vsplat(0);
-	for (int n = order; n >= 0; n -= 2) {
-		odd = vfma(odd, t2, s->c[n + 1]);
-		even = vfma(even, t2, s->c[n]);
-	}
+	if (order > ORDER_FREE)
+		ORDERS_DOWN(n, ORDER_TOUCH, ORDER_FREE + 2, odd = vfma(odd, t2, s->c[n + 1]);
+		            even = vfma(even, t2, s->c[n]);)
+	ORDERS_DOWN(n, ORDER_FREE, 0, odd = vfma(odd, t2, s->c[n + 1]); even = vfma(even, t2, s->c[n]);)
 	return vfma(odd, t, even);
+}
+
+/* Factor of coefficient n in the bound of the fourth derivative. */
+LANE_INLINE double fourth(int n)
+{
+	return (double)n * (n - 1) * (n - 2) * (n - 3);
 }
 
 /* Lanes in which a motion may cross a level inside a step that it starts on the right side of.
@@ -224,11 +235,11 @@ static void motion_velocity(struct motion *velocity, const struct motion *m, int
 {
 	vd bend = vsplat(0), end = vsplat(0);
 	velocity->u = m->v;
-	for (int n = order; n >= 0; n--) {
-		velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
-		end = end + velocity->v.c[n];
-		bend = vfma(vsplat((double)n * (n - 1) * (n - 2) * (n - 3)), vabs(m->v.c[n]), bend);
-	}
+	if (order > ORDER_FREE)
+		ORDERS_UP(n, ORDER_FREE + 1, ORDER_TOUCH, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
+		          end = end + velocity->v.c[n]; bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
+	ORDERS_UP(n, 0, ORDER_FREE, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
+	          end = end + velocity->v.c[n]; bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
 	velocity->v.c[order + 1] = vsplat(0);
 	velocity->u1 = m->v1;
 	velocity->v1 = end;

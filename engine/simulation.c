@@ -20,37 +20,30 @@ static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
  * Given    k, c, h   [1/s2], [1/s], [s]   h (c + k h) <= 1/2
  * Returns  map       columns for u, v, a, d
  *
- * With A2, A3, A4 the largest |u''|, |u'''|, |u''''| inside and h (c + k h) <= 1/2:
- *   A3 <= 2 (|u0'''| + h k |u0''|),  A2 <= |u0''| + h A3,  A4 <= c A3 + k A2,  error <= A4 h^4/384
- *   |u0''| <= c |v| + k |u| + |a|,  |u0'''| <= c |u0''| + k |v| + |d|/h
+ * With A2, A3, A4 the largest second, third and fourth derivatives inside and h (c + k h) <= 1/2:
+ *   A3 <= 2 (J0 + h k A0),  A2 <= A0 + h A3,  A4 <= c A3 + k A2,  error <= A4 h^4/384
+ *   A0 = c |v| + k |u| + |a|,  J0 = c A0 + k |v| + |d|/h
  */
 static void map_fill(struct map *map, double k, double c, double h)
 {
-	double *column[4][2] = {
-	    {&map->uu, &map->vu}, {&map->uv, &map->vv}, {&map->ua, &map->va}, {&map->ud, &map->vd}};
+	double *column[4] = {&map->uu, &map->uv, &map->ua, &map->ud};
 	double ch = c * h, kh = k * h * h;
 	for (int j = 0; j < 4; j++) {
 		double u = j == 0, w = j == 1 ? h : 0; // w: u' h
-		double u_sum = 0, w_sum = 0;
+		double sum = 0;
 		for (int n = 0; n < 20; n++) {
 			double force = j == 2 && n == 0 ? h * h : j == 3 && n == 1 ? h * h : 0;
-			double w_next = -(ch * w + kh * u + force) / (n + 1);
-			u_sum += u;
-			w_sum += w;
+			double next = -(ch * w + kh * u + force) / (n + 1);
+			sum += u;
 			u = w / (n + 1);
-			w = w_next;
+			w = next;
 		}
-		*column[j][0] = u_sum;
-		*column[j][1] = w_sum / h;
+		*column[j] = sum;
 	}
+	double quartic = h * h * h * h * CUBIC_ERROR, rate = c + k * h;
 	map->stiffness = k;
-	double a3_acc = 2 * (c + h * k), a4_acc = c * a3_acc + k * (1 + h * a3_acc); // per |u0''|
-	double a4_jerk = (c + k * h) * 2; // per |u0'''| apart from c |u0''|
-	double quartic = h * h * h * h * CUBIC_ERROR;
-	map->eu = quartic * a4_acc * k;
-	map->ev = quartic * (a4_acc * c + a4_jerk * k);
-	map->ea = quartic * a4_acc;
-	map->ed = quartic * a4_jerk / h;
+	map->ej = quartic * 2 * rate;
+	map->ea = quartic * (k + 2 * rate * rate);
 }
 
 /* Puts a body's current piece, and the map that belongs to it, into the columns. */
@@ -75,8 +68,7 @@ void pound_simulation_piece(struct simulation *sim, int i)
 	}
 	struct column *x = &sim->x;
 	x->uu[i] = map->uu, x->uv[i] = map->uv, x->ua[i] = map->ua, x->ud[i] = map->ud;
-	x->vu[i] = map->vu, x->vv[i] = map->vv, x->va[i] = map->va, x->vd[i] = map->vd;
-	x->eu[i] = map->eu, x->ev[i] = map->ev, x->ea[i] = map->ea, x->ed[i] = map->ed;
+	x->ea[i] = map->ea, x->ej[i] = map->ej;
 }
 
 /* Enters the interval that ends at sim->next. */
@@ -117,6 +109,9 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 			sim->maps[i][m].stiffness = -1;
 	}
 	x->can_fly = can_fly;
+	sim->paired = task->contact || task->bodies[1].drive != 0;
+	sim->edged = !pound_pieces_linear(task->bodies[0].skeleton.law) ||
+	             !pound_pieces_linear(task->bodies[1].skeleton.law);
 	x->step = h;
 	x->gap = task->contact ? task->gap : -NEVER;
 	x->contact_stiffness = task->contact ? task->contact_stiffness : 0;
@@ -127,7 +122,7 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 	x->reach[0] = rate > 0 ? REACH_FREE / rate : DBL_MAX;
 	x->reach[1] = REACH_TOUCH / sqrt(rate * rate + stiff);
 	x->third = h / 3;
-	x->error_turn = 384 * sqrt(3) / (216 * h);
+	x->per_step = 1 / h;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		pound_pieces_start(&task->bodies[i].skeleton, &sim->at[i]);
 		pound_simulation_piece(sim, i);

@@ -14,15 +14,15 @@ enum {
  * and saved by ranges of columns: event steps from the first to map, flight from state to the end. */
 #define COLUMNS(T)                                                                                      \
 	/* constants of event steps */                                                                      \
-	T step, damping[2], contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly;     \
+	T contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly;                       \
 	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */      \
 	T p, q, left, slope, events, touching, parted, fresh, impulse, impulse_max, contacts, contact_time; \
 	/* changed by both */                                                                               \
 	T u[2], v[2], top[2], ground;                                                                       \
-	/* read by both: the piece of each body's law */                                                    \
-	T gap, drive[2], stiffness[2], offset[2], low[2], high[2], direction[2];                            \
+	/* read by both: the bodies, and the piece each is on */                                            \
+	T step, gap, drive[2], damping[2], stiffness[2], offset[2], low[2], high[2], direction[2];          \
 	/* map of each body over one sample, and what bounds its error */                                   \
-	T uu[2], uv[2], ua[2], ud[2], vu[2], vv[2], va[2], vd[2], eu[2], ev[2], ea[2], ed[2], third, error_turn;
+	T uu[2], uv[2], ua[2], ud[2], ea[2], ej[2], third, per_step;
 
 struct column {
 	COLUMNS(double)
@@ -37,11 +37,11 @@ enum {
 	COLUMN_END = sizeof(struct column) / sizeof(double),
 };
 
-/* exact map of one body over one sample: (u, v) -> (u, v), with forcing a at the start growing by d */
+/* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d */
 struct map {
-	double stiffness; /* of the piece it belongs to; < 0: none */
-	double uu, uv, ua, ud, vu, vv, va, vd;
-	double eu, ev, ea, ed; /* bound of the cubic's error: eu |u| + ev |v| + ea |a| + ed |d| */
+	double stiffness;      /* of the piece it belongs to; < 0: none */
+	double uu, uv, ua, ud; /* the velocity follows: see flight_step in march.c */
+	double ea, ej;         /* the cubic's error is at most ea |u''| + ej |u'''|, both at the start */
 };
 
 struct simulation {
@@ -52,6 +52,8 @@ struct simulation {
 	struct pound_branch at[2];
 	struct map maps[2][POUND_MAPS];
 	int map_next[2];
+	bool edged;  /* a law has more than one piece */
+	bool paired; /* the right body moves, or there is something to touch */
 };
 
 void pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
