@@ -14,6 +14,7 @@
 #include "engine/outputs.h"
 #include "engine/random.h"
 #include "engine/scene.h"
+#include "engine/solver.h"
 
 enum { KEY = 20 }; /* doubles of a key, both of a motion and of a march */
 
@@ -34,8 +35,9 @@ struct motion {
 
 /* what is known of one body without pounding */
 struct body_ask {
-	int march;     /* the last one asked, -1: none */
-	double yield;  /* [m] scaled; 0: the law has none, or the body never moves */
+	int march;                /* the last one asked, -1: none */
+	double yield;             /* [m] scaled; 0: the law has none, or the body never moves */
+	enum pound_status status; /* of the marches its yield displacement comes from */
 	bool wanted;   /* its response without pounding is needed, beyond finding its yield displacement */
 	bool finished; /* the last march is that response */
 };
@@ -217,12 +219,13 @@ static void motions_fill(struct pound_plan *plan)
 	}
 }
 
-/* Runs the marches asked since the stage before. */
-static void marches_run(struct pound_plan *plan, int *done)
+/* Runs the marches asked since the stage before, all of them unless stop is set. */
+static void marches_run(struct pound_plan *plan, const struct pound_solver *solver, int *done,
+                        const atomic_bool *stop)
 {
-	int n = plan->march_keys.n;
+	int from = *done, n = plan->march_keys.n;
 	assert(n <= plan->size.tasks);
-	pound_march_lanes(0, &plan->tasks[*done], &plan->results[*done], n - *done, plan->scratch);
+	pound_solver_run(solver, &plan->tasks[from], &plan->results[from], n - from, plan->scratch, stop);
 	*done = n;
 }
 
@@ -264,11 +267,14 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 	if (stage == 0)
 		body->march = body_march(plan, ask, i, 0, 0);
 	else {
-		if (given)
+		const struct pound_march_result *before = given ? NULL : &plan->results[body->march];
+		if (given) {
 			body->yield = ldexp(law->yield_displacement, -plan->motions[ask->motion].exponent);
-		else
-			body->yield = plan->results[body->march].displacement_max[0] /
+		} else {
+			body->status = body->status ? body->status : before->status;
+			body->yield = before->displacement_max[0] /
 			              (stage == 1 ? reduction(&ask->scene, i, law->target_demand) : law->target_demand);
+		}
 		if (stage == last_stage && !body->wanted)
 			return false;
 		// a body that never moves has no yield displacement, and any will do
@@ -357,8 +363,8 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 		const struct pound_march_result *free = body->finished ? &plan->results[body->march] : NULL;
 		struct pound_skeleton skeleton = pound_scene_body(&ask->scene, i).skeleton;
 		bool yields = !pound_pieces_linear(skeleton.law) && !ask->scene.oscillators[i].rigid_wall;
-		if (free && free->status)
-			status = free->status;
+		if (body->status || (free && free->status))
+			status = body->status ? body->status : free->status;
 		skeleton.yield = body->yield;
 		// without a run with pounding the body moves as it does alone; the wall does not
 		bool alone = ask->march < 0;
@@ -432,6 +438,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
                                  pound_plan_take *take, void *into)
 {
 	int n_asks = n * campaign->n_cells * campaign->n_samples;
+	const struct pound_solver *solver = &campaign->study->solver;
 	assert(n_asks <= plan->size.asks);
 	register_clear(&plan->motion_keys);
 	register_clear(&plan->march_keys);
@@ -450,7 +457,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 			for (int i = 0; i < POUND_OSCILLATORS; i++)
 				if (body_asked(&plan->asks[a], i))
 					counted->asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage);
-		marches_run(plan, &done);
+		marches_run(plan, solver, &done, stop);
 		counted->run += done - before;
 	}
 	if (*stop)
@@ -458,7 +465,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	int before = done;
 	for (int a = 0; a < n_asks; a++)
 		ask_pounding(plan, &plan->asks[a], work);
-	marches_run(plan, &done);
+	marches_run(plan, solver, &done, stop);
 	work->pounding_runs.asked += n_asks;
 	work->pounding_runs.run += done - before;
 	for (int j = before; j < done; j++)

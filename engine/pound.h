@@ -25,7 +25,8 @@ enum {
 	X(POUND_NOMEM,   -1, "out of memory")                                                 \
 	X(POUND_STOPPED, -2, "stopped by the caller")                                         \
 	X(POUND_CHATTER, -3, "more events in one sample interval than allowed")               \
-	X(POUND_FAILED,  -4, "too few rows of the design could be computed")
+	X(POUND_FAILED,  -4, "too few rows of the design could be computed")                  \
+	X(POUND_UNSTABLE, -5, "the steps of the solver are too long for this scene")
 // clang-format on
 
 enum pound_status {
@@ -124,6 +125,7 @@ struct pound_design {
 struct pound_solver {
 	int method;       /* row of the solvers, pound_solver_name */
 	double tolerance; /* relative; the event solver is exact and does not need it */
+	double step;      /* longest [s]  > 0; a sample interval is cut into as few equal steps as that allows */
 };
 
 struct pound_study {
@@ -148,6 +150,8 @@ const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
 const char *pound_design_name(int row);
 const char *pound_solver_name(int row);
+bool pound_solver_takes_tolerance(int row);
+bool pound_solver_takes_step(int row);
 const char *pound_output_name(int row);
 
 /* What is wrong with the parameters of a distribution, in words, or NULL. */

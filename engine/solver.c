@@ -1,11 +1,54 @@
 /* solver.c - the ways to integrate a scene.  Adding one: its function and its row in solvers[]. */
+#include "engine/solver.h"
+
 #include <stddef.h>
 
-#include "engine/pound.h"
+static const struct solver {
+	const char *name;
+	void (*run)(const struct pound_solver *, const struct pound_march_task *, struct pound_march_result *);
+	bool tolerance, step; /* the settings it takes */
+} solvers[] = {
+    {"event", NULL, .tolerance = true}, // the march: many tasks at once, exact at any tolerance
+    {"newmark", pound_fixed_newmark, .step = true},
+    {"central_difference", pound_fixed_central, .step = true},
+};
 
-static const char *const solvers[] = {"event"};
+static const struct solver *solver_at(int row)
+{
+	return row >= 0 && row < (int)(sizeof solvers / sizeof solvers[0]) ? &solvers[row] : NULL;
+}
 
 const char *pound_solver_name(int row)
 {
-	return row >= 0 && row < (int)(sizeof solvers / sizeof solvers[0]) ? solvers[row] : NULL;
+	const struct solver *solver = solver_at(row);
+	return solver ? solver->name : NULL;
+}
+
+bool pound_solver_takes_tolerance(int row)
+{
+	return solver_at(row)->tolerance;
+}
+
+bool pound_solver_takes_step(int row)
+{
+	return solver_at(row)->step;
+}
+
+/* Runs tasks, with the method and the setting of a solver.
+ *
+ * Given    solver    -       -       row of the solvers, and the setting it takes
+ *          tasks     (n)     -       see march.h
+ *          stop      -       -       looked at between two tasks; when it is set, some are not run
+ * Returns  results   (n)     -       each with a status of its own
+ * Memory   scratch: POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ * Test     unit_fixed
+ */
+void pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
+                      struct pound_march_result *results, int n, void *scratch, const atomic_bool *stop)
+{
+	const struct solver *row = solver_at(solver->method);
+	if (!row->run)
+		pound_march_lanes(0, tasks, results, n, scratch);
+	for (int j = 0; row->run && j < n && !*stop; j++)
+		row->run(solver, &tasks[j], &results[j]);
 }

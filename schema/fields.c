@@ -162,7 +162,11 @@ const struct field fields[] = {
 	{"/solver/method", FIELD_CHOICE, AT(solver.method), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "solver", .choice = pound_solver_name, NOT_SCENE},
 	{"/solver/tolerance", FIELD_REAL, AT(solver.tolerance), 1e-9, 0, 1, FIELD_OPEN, "",
-	 .text = "relative error of solvers that are not exact", NOT_SCENE},
+	 .text = "relative error allowed in a step; event is exact at any", .solvers = pound_solver_takes_tolerance,
+	 NOT_SCENE},
+	{"/solver/step_s", FIELD_REAL, AT(solver.step), 1e-4, 0, INFINITY, FIELD_OPEN, "s",
+	 .text = "longest step; a sample interval is cut into as few equal ones", .solvers = pound_solver_takes_step,
+	 NOT_SCENE},
 };
 // clang-format on
 
@@ -199,9 +203,10 @@ static bool listed(const char *names, const char *name)
 	return false;
 }
 
-bool fields_used(const struct field *field, const char *kind, const char *excitation)
+bool fields_used(const struct field *field, const char *kind, const char *excitation, const char *solver)
 {
-	return listed(field->kinds, kind) && listed(field->types, excitation);
+	return listed(field->kinds, kind) && listed(field->types, excitation) &&
+	       (!solver || !field->solvers || field->solvers(fields_choice(pound_solver_name, solver)));
 }
 
 bool fields_in_range(const struct field *field, double value)

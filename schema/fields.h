@@ -32,9 +32,10 @@ struct field {
 	const char *unit;     /* "": none */
 	const char *text;     /* one line for people */
 	const char *(*choice)(int row);
-	const char *kinds; /* names of the kinds that use it, between spaces; NULL: all */
-	const char *types; /* names of the excitations that use it, likewise */
-	const char *fixed; /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
+	const char *kinds;        /* names of the kinds that use it, between spaces; NULL: all */
+	const char *types;        /* names of the excitations that use it, likewise */
+	bool (*solvers)(int row); /* whether the solver of that row uses it; NULL: all */
+	const char *fixed;        /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
 };
 
 extern const struct field fields[];
@@ -45,8 +46,8 @@ const char *fields_name(const struct field *field);   /* last part of the patter
 bool fields_child(const struct field *field,
                   const char *pattern); /* a member of the object at that pattern */
 
-/* Whether a study of this kind and excitation uses a field; a NULL name is any. */
-bool fields_used(const struct field *field, const char *kind, const char *excitation);
+/* Whether a study of this kind, excitation and solver uses a field; a NULL name is any. */
+bool fields_used(const struct field *field, const char *kind, const char *excitation, const char *solver);
 
 /* "a number in [0, 1]", "a whole number of at least 2", "one of "lhs", "random"": what a field takes. */
 void fields_expected(const struct field *field, char *text, size_t size);

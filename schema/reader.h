@@ -11,11 +11,11 @@
 struct reader {
 	struct problems *problems;
 	struct pound_study *study;
-	const char *kind, *excitation; /* names; NULL: not known */
-	double *number;                /* next free place for a sample or a sweep value */
-	char *text;                    /* next free place for a text */
-	const struct field *swept;     /* by the sweep in hand; NULL: its path names no field that varies */
-	char pointer[512];             /* of the member in hand */
+	const char *kind, *excitation, *solver; /* names; NULL: not known */
+	double *number;                         /* next free place for a sample or a sweep value */
+	char *text;                             /* next free place for a text */
+	const struct field *swept; /* by the sweep in hand; NULL: its path names no field that varies */
+	char pointer[512];         /* of the member in hand */
 };
 
 /* Into a member or an element and out again: enter gives what leave takes. */

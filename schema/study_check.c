@@ -90,7 +90,7 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");
 	else if (faulty(problems, "/scene"))
 		return;
-	else if (!fields_used(field, NULL, excitation))
+	else if (!fields_used(field, NULL, excitation, NULL))
 		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
 	else if (idle(scene, field, oscillator))
 		problems_add(problems, pointer, "%s", idle(scene, field, oscillator));
@@ -219,7 +219,7 @@ static void reach(const struct pound_study *study, const char *path, double *low
 
 static bool excitation_uses(const struct pound_study *study, const char *pattern)
 {
-	return fields_used(fields_find(pattern), NULL, pound_excitation_name(study->scene.excitation.type));
+	return fields_used(fields_find(pattern), NULL, pound_excitation_name(study->scene.excitation.type), NULL);
 }
 
 /* Time steps of the shortest and the longest ground motion. */
@@ -304,6 +304,27 @@ static double design_runs(const struct pound_study *study)
 	return response ? 1.0 : (double)study->design.rows * (study->n_inputs + 2);
 }
 
+/* Steps of the longest sample interval. */
+static double interval_steps(const struct pound_study *study)
+{
+	double low, high;
+	if (!pound_solver_takes_step(study->solver.method))
+		return 1;
+	reach(study, "/excitation/time_step_s", &low, &high);
+	return fmax(1, ceil(high / study->solver.step));
+}
+
+static void check_steps(const struct pound_study *study, double runs, struct problems *problems)
+{
+	double n = interval_steps(study), work = runs * study_steps(study);
+	if (n > STUDY_STEPS_MAX)
+		problems_add(problems, "/solver/step_s", "asks for %.3g steps in one sample interval, at most %d", n,
+		             STUDY_STEPS_MAX);
+	else if (work > STUDY_WORK_MAX)
+		problems_add(problems, "/solver/step_s", "asks for %.3g steps in all runs, at most %.0e", work,
+		             STUDY_WORK_MAX);
+}
+
 static void check_size(const struct pound_study *study, struct problems *problems)
 {
 	bool response = study->kind == POUND_KIND_RESPONSE;
@@ -316,6 +337,8 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	else if (runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_add(problems, pointer, "asks for %.3g samples of ground motion in all runs, at most %.0e",
 		             runs * study_samples(study), STUDY_WORK_MAX);
+	else if (pound_solver_takes_step(study->solver.method))
+		check_steps(study, runs, problems);
 	if (at_once > STUDY_AT_ONCE_MAX)
 		problems_add(problems, "/sweep",
 		             "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
@@ -349,7 +372,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	if (!faulty(problems, "/outputs"))
 		check_outputs(study, problems);
 	check_excitation(study, problems);
-	if (!faulty(problems, "/scene") && !faulty(problems, "/design"))
+	if (!faulty(problems, "/scene") && !faulty(problems, "/design") && !faulty(problems, "/solver"))
 		check_size(study, problems);
 }
 
@@ -370,6 +393,11 @@ double study_samples(const struct pound_study *study)
 	double least, most;
 	steps(study, &least, &most);
 	return floor(most + 0.5) + 1;
+}
+
+double study_steps(const struct pound_study *study)
+{
+	return study_samples(study) * interval_steps(study);
 }
 
 /* The scene of a cell; the last sweep runs fastest.

@@ -15,7 +15,7 @@
 struct canon {
 	struct writer w;
 	const struct pound_study *study;
-	const char *kind, *excitation;
+	const char *kind, *excitation, *solver;
 };
 
 /* A field's value as it lies in memory, written as a document has it. */
@@ -59,7 +59,8 @@ static void write_members(struct canon *c, const char *pattern, const void *base
 {
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		if (fields_child(field, pattern) && fields_used(field, c->kind, c->excitation) && !is_name(field))
+		if (fields_child(field, pattern) && fields_used(field, c->kind, c->excitation, c->solver) &&
+		    !is_name(field))
 			write_scalar(&c->w, field, fields_name(field), (const char *)base + field->offset);
 	}
 }
@@ -178,7 +179,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 {
 	struct canon c = {.study = study,
 	                  .kind = study_kind_name(study->kind),
-	                  .excitation = pound_excitation_name(study->scene.excitation.type)};
+	                  .excitation = pound_excitation_name(study->scene.excitation.type),
+	                  .solver = pound_solver_name(study->solver.method)};
 	writer_init(&c.w);
 	writer_object(&c.w, NULL, WRITER_LINES);
 	write_members(&c, "", study);

@@ -40,7 +40,7 @@ static void unknown(struct reader *r, const char *pattern, const char *name)
 	const struct field *nearest = NULL;
 	int best = 1000;
 	for (int i = 0; i < fields_count; i++) {
-		if (!fields_child(&fields[i], pattern) || !fields_used(&fields[i], r->kind, r->excitation))
+		if (!fields_child(&fields[i], pattern) || !fields_used(&fields[i], r->kind, r->excitation, r->solver))
 			continue;
 		int distance = fields_distance(name, fields_name(&fields[i]));
 		if (distance < best) {
@@ -56,8 +56,10 @@ static void unknown(struct reader *r, const char *pattern, const char *name)
 
 static void unused(struct reader *r, const struct field *field)
 {
-	if (!fields_used(field, r->kind, NULL))
+	if (!fields_used(field, r->kind, NULL, NULL))
 		problems_add(r->problems, r->pointer, "is not used by kind \"%s\"", r->kind);
+	else if (!fields_used(field, NULL, NULL, r->solver))
+		problems_add(r->problems, r->pointer, "is not used by solver \"%s\"", r->solver);
 	else
 		problems_add(r->problems, r->pointer, "is not used by excitation \"%s\"", r->excitation);
 }
@@ -80,7 +82,8 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		bool needed = isnan(field->absent) && fields_child(field, pattern) && (r->kind || !field->kinds) &&
-		              (r->excitation || !field->types) && fields_used(field, r->kind, r->excitation);
+		              (r->excitation || !field->types) &&
+		              fields_used(field, r->kind, r->excitation, r->solver);
 		if (!needed || cJSON_GetObjectItemCaseSensitive(node, fields_name(field)))
 			continue;
 		char expected[256];
@@ -114,7 +117,7 @@ bool reader_object(struct reader *r, const char *pattern, const cJSON *node, cha
 			problems_add(r->problems, r->pointer, "duplicate member");
 		else if (!field)
 			unknown(r, pattern, member->string);
-		else if (!fields_used(field, r->kind, r->excitation))
+		else if (!fields_used(field, r->kind, r->excitation, r->solver))
 			unused(r, field);
 		else
 			reader_value(r, field, member, base);
@@ -274,7 +277,7 @@ static void defaults(struct pound_study *study, const char *excitation)
 		const struct field *field = &fields[i];
 		if (strncmp(field->pattern, "/inputs/", 8) == 0 || strncmp(field->pattern, "/sweep/", 7) == 0)
 			continue;
-		bool absent = !isnan(field->absent) && fields_used(field, NULL, excitation);
+		bool absent = !isnan(field->absent) && fields_used(field, NULL, excitation, NULL);
 		int copies = strncmp(field->pattern, "/scene/oscillators/*/", 21) == 0 ? POUND_OSCILLATORS : 1;
 		for (int k = 0; k < copies; k++)
 			reader_store(field,
@@ -286,19 +289,25 @@ static void defaults(struct pound_study *study, const char *excitation)
 		study->scene.excitation.signals = 1;
 }
 
-/* Kind and excitation decide which members there are, so they are looked up before anything is read. */
+/* The name that a choice has in an object, or its default; NULL: it has a wrong one. */
+static const char *chosen(const cJSON *object, const char *pattern)
+{
+	const struct field *field = fields_find(pattern);
+	const cJSON *name = cJSON_GetObjectItemCaseSensitive(object, fields_name(field));
+	if (cJSON_IsString(name))
+		return field->choice(fields_choice(field->choice, name->valuestring));
+	return name || isnan(field->absent) ? NULL : field->choice((int)field->absent);
+}
+
+/* Kind, excitation and solver decide which members there are, so they are looked up before anything is read. */
 static void foresee(struct reader *r, const cJSON *document)
 {
-	const cJSON *kind = cJSON_GetObjectItemCaseSensitive(document, "kind");
 	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(document, "scene");
 	const cJSON *excitation = cJSON_GetObjectItemCaseSensitive(scene, "excitation");
-	const cJSON *type = cJSON_GetObjectItemCaseSensitive(excitation, "type");
-	r->kind =
-	    cJSON_IsString(kind) ? study_kind_name(fields_choice(study_kind_name, kind->valuestring)) : NULL;
-	if (cJSON_IsString(type))
-		r->excitation = pound_excitation_name(fields_choice(pound_excitation_name, type->valuestring));
-	else if (!type)
-		r->excitation = pound_excitation_name((int)fields_find("/scene/excitation/type")->absent);
+	const cJSON *solver = cJSON_GetObjectItemCaseSensitive(document, "solver");
+	r->kind = chosen(document, "/kind");
+	r->excitation = chosen(excitation, "/scene/excitation/type");
+	r->solver = chosen(solver, "/solver/method");
 }
 
 static void outputs_default(struct pound_study *study)

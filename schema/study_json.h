@@ -19,8 +19,9 @@ enum {
 	STUDY_RUNS_MAX = 10000000,    /* pounding runs of one study */
 	STUDY_CELLS_MAX = 10000,      /* combinations of sweep values */
 	STUDY_AT_ONCE_MAX =
-	    50000000,         /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
-	STUDY_HASH_SIZE = 65, /* characters of a study hash and its zero */
+	    50000000, /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
+	STUDY_STEPS_MAX = 1000000, /* of a solver in one sample interval */
+	STUDY_HASH_SIZE = 65,      /* characters of a study hash and its zero */
 };
 #define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
 
@@ -33,6 +34,7 @@ int study_cells(const struct pound_study *study); /* combinations of sweep value
 int64_t
 study_runs(const struct pound_study *study); /* pounding runs it asks for, before anything is shared */
 double study_samples(const struct pound_study *study); /* samples of its longest ground motion */
+double study_steps(const struct pound_study *study); /* steps of its longest run: samples where each is one */
 
 /* The scene of one cell: the study's with that combination of sweep values. */
 void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene);

@@ -181,7 +181,7 @@ static struct reply estimate(const struct pound_study *study)
 {
 	struct writer w;
 	double runs = (double)study_runs(study);
-	double intervals = study_samples(study);
+	double intervals = study_steps(study);
 	// what is stored of a run: its part of two means for each output, or all its measures
 	size_t bytes = study->kind == POUND_KIND_SENSITIVITY ? 2 * (size_t)study->n_outputs * sizeof(double)
 	                                                     : sizeof(struct pound_response);

@@ -98,6 +98,16 @@ static void only(const char *names, char *text, size_t size)
 	text[n] = '\0';
 }
 
+/* Names of the solvers that use a field, between spaces. */
+static const char *solvers_of(const struct field *field, char *text, size_t size)
+{
+	size_t n = (size_t)snprintf(text, size, " ");
+	for (int row = 0; field->solvers && pound_solver_name(row); row++)
+		if (field->solvers(row))
+			n += (size_t)snprintf(text + n, size - n, "%s ", pound_solver_name(row));
+	return field->solvers ? text : NULL;
+}
+
 static void every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it(void **state)
 {
 	static const char same[] = "/scene/oscillators/*/law/"; // told once, for the scene's law
@@ -107,7 +117,7 @@ static void every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it(
 	assert_non_null(readme);
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		char absent[64], takes[256], meaning[400], line[900];
+		char absent[64], takes[256], meaning[400], line[900], solvers[256];
 		if (strncmp(field->pattern, same, strlen(same)) == 0)
 			continue;
 		default_of(field, absent, sizeof absent);
@@ -115,6 +125,7 @@ static void every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it(
 		snprintf(meaning, sizeof meaning, "%s", field->text);
 		only(field->kinds, meaning, sizeof meaning);
 		only(field->types, meaning, sizeof meaning);
+		only(solvers_of(field, solvers, sizeof solvers), meaning, sizeof meaning);
 		snprintf(line, sizeof line, "| `%s` | %s | %s | %s |\n", field->pattern, absent, takes, meaning);
 		if (strstr(readme, line))
 			continue;

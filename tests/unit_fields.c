@@ -162,23 +162,26 @@ static void a_mistyped_path_finds_its_field(void **state)
 	assert_false(fields_nearest_path("", nearest, sizeof nearest));
 }
 
-static void the_kind_and_the_excitation_decide_what_is_used(void **state)
+static void kind_excitation_and_solver_decide_what_is_used(void **state)
 {
 	(void)state;
-	assert_true(fields_used(fields_find("/inputs"), "sensitivity", NULL));
-	assert_false(fields_used(fields_find("/inputs"), "response", NULL));
-	assert_true(fields_used(fields_find("/inputs"), NULL, NULL));
-	assert_true(fields_used(fields_find("/scene/excitation/rise"), "response", "white_noise"));
-	assert_false(fields_used(fields_find("/scene/excitation/rise"), "response", "record"));
-	assert_false(
-	    fields_used(fields_find("/scene/excitation/rise"), "response", "noise")); // a part of a name is none
+	assert_true(fields_used(fields_find("/inputs"), "sensitivity", NULL, NULL));
+	assert_false(fields_used(fields_find("/inputs"), "response", NULL, NULL));
+	assert_true(fields_used(fields_find("/inputs"), NULL, NULL, NULL));
+	assert_true(fields_used(fields_find("/scene/excitation/rise"), "response", "white_noise", NULL));
+	assert_false(fields_used(fields_find("/scene/excitation/rise"), "response", "record", NULL));
+	assert_false(fields_used(fields_find("/scene/excitation/rise"), "response", "noise",
+	                         NULL)); // a part of a name is none
+	assert_true(fields_used(fields_find("/solver/step_s"), "response", NULL, "newmark"));
+	assert_false(fields_used(fields_find("/solver/step_s"), "response", NULL, "event"));
+	assert_true(fields_used(fields_find("/solver/step_s"), "response", NULL, NULL));
 	// every name in a row is one of the engine's
 	for (int i = 0; i < fields_count; i++) {
 		int n = 0, known = 0;
 		for (const char *s = fields[i].types; s && s[1]; s = strchr(s + 1, ' '))
 			n++;
 		for (int row = 0; fields[i].types && pound_excitation_name(row); row++)
-			known += fields_used(&fields[i], NULL, pound_excitation_name(row));
+			known += fields_used(&fields[i], NULL, pound_excitation_name(row), NULL);
 		assert_int_equal(n, known);
 	}
 }
@@ -189,4 +192,4 @@ CHECK_MAIN(cmocka_unit_test(every_default_is_in_its_range),
            cmocka_unit_test(a_path_names_one_field_of_the_scene),
            cmocka_unit_test(a_slip_of_the_pen_is_near_and_a_stranger_is_not),
            cmocka_unit_test(a_mistyped_path_finds_its_field),
-           cmocka_unit_test(the_kind_and_the_excitation_decide_what_is_used))
+           cmocka_unit_test(kind_excitation_and_solver_decide_what_is_used))

@@ -121,9 +121,11 @@ static const struct {
      "mean "
      "\"impulse\"?"},
     {"/solver/method", "\"method\": \"event\"", "\"method\":  \"event\"", "\"method\": \"euler\"",
-     "/solver/method", "must be \"event\", got \"euler\""},
+     "/solver/method", "must be one of \"event\", \"newmark\", \"central_difference\", got \"euler\""},
     {"/solver/tolerance", "\"tolerance\": 1e-9", "\"tolerance\": 1e-3", "\"tolerance\": 0",
      "/solver/tolerance", "must be in (0, 1), got 0"},
+    {"/solver/step_s", "\"event\", \"tolerance\": 1e-9", "\"newmark\", \"step_s\": 1e-3",
+     "\"newmark\", \"step_s\": 0", "/solver/step_s", "must be greater than 0, got 0"},
 };
 
 static void a_right_value_of_every_member_is_taken(void **state)
@@ -331,6 +333,27 @@ static void members_are_known_once_and_used(void **state)
 	}
 }
 
+static void a_solver_has_its_own_members_only(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *solver, *pointer, *detail;
+	} cases[] = {
+	    {"{\"step_s\": 1e-3}", "/solver/step_s", "is not used by solver \"event\""},
+	    {"{\"tolerance\": 1e-6, \"method\": \"newmark\"}", "/solver/tolerance",
+	     "is not used by solver \"newmark\""},
+	    {"{\"method\": \"central_difference\", \"step_s\": 1e-9}", "/solver/step_s",
+	     "asks for 1e+07 steps in one sample interval, at most 1000000"},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		char member[160];
+		snprintf(member, sizeof member, "\"solver\": %s, \"scene\"", cases[i].solver);
+		char *document = documents_with(documents_response, "\"scene\"", member);
+		documents_problem(document, cases[i].pointer, cases[i].detail);
+		free(document);
+	}
+}
+
 static void what_is_missing_is_named(void **state)
 {
 	(void)state;
@@ -464,7 +487,8 @@ static void a_stranger_s_text_is_shown_short_and_tame(void **state)
 	    documents_response, "\"scene\"",
 	    "\"solver\": {\"method\": \"\\u001b[31mred\\n0123456789012345678901234567890123456789\"}, \"scene\"");
 	documents_problem(document, "/solver/method",
-	                  "must be \"event\", got \"?[31mred?0123456789012345678901234567890...\"");
+	                  "must be one of \"event\", \"newmark\", \"central_difference\", got "
+	                  "\"?[31mred?0123456789012345678901234567890...\"");
 	free(document);
 }
 
@@ -474,7 +498,8 @@ CHECK_MAIN(cmocka_unit_test(a_right_value_of_every_member_is_taken),
            cmocka_unit_test(what_a_document_says_is_in_the_study),
            cmocka_unit_test(absent_members_have_the_defaults_of_the_contract),
            cmocka_unit_test(an_excitation_has_its_own_members_only),
-           cmocka_unit_test(members_are_known_once_and_used), cmocka_unit_test(what_is_missing_is_named),
+           cmocka_unit_test(members_are_known_once_and_used),
+           cmocka_unit_test(a_solver_has_its_own_members_only), cmocka_unit_test(what_is_missing_is_named),
            cmocka_unit_test(a_kind_has_its_own_members_only),
            cmocka_unit_test(only_the_right_oscillator_is_a_wall_and_a_wall_has_nothing),
            cmocka_unit_test(no_contact_is_null), cmocka_unit_test(all_mistakes_are_told_at_once),

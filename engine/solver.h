@@ -1,0 +1,21 @@
+/* solver.h - the ways to integrate tasks, all with the same task and the same result.
+ *
+ * Each solver is told in its own file; march.h has the exact one, which the others are compared with. */
+#ifndef SOLVER_H
+#define SOLVER_H
+
+#include <stdatomic.h>
+
+#include "engine/march.h"
+#include "engine/pound.h"
+
+void pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
+                      struct pound_march_result *results, int n, void *scratch, const atomic_bool *stop);
+
+/* fixed.c */
+void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_march_task *task,
+                         struct pound_march_result *result);
+void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,
+                         struct pound_march_result *result);
+
+#endif
