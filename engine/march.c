@@ -27,13 +27,16 @@ struct lanes {
 	COLUMNS(vd)
 };
 
+#include "engine/energy.h" // reads struct lanes
+
 /* simulations side by side; a lane without one has member -1 and goes through the motions */
 struct group {
 	struct lanes x;
 	int member[W];
 	vi next, last; /* as in struct simulation */
 	const double *ground[W];
-	int n, n_edged, n_paired; /* lanes in use, and how many of them have edges, have two bodies */
+	int n, n_edged, n_paired,
+	    n_accounted; /* lanes in use, and how many of them have edges, have two bodies */
 };
 
 struct queue {
@@ -81,6 +84,7 @@ LANE_INLINE void lane_load(struct group *group, int l, struct work *work, int me
 	group->n++;
 	group->n_edged += work->pool[member].edged;
 	group->n_paired += work->pool[member].paired;
+	group->n_accounted += work->pool[member].accounted;
 }
 
 /* Takes the simulation out of lane l: columns [from, to) were changed. */
@@ -96,6 +100,7 @@ LANE_INLINE struct simulation *lane_save(struct group *group, int l, struct work
 	group->n--;
 	group->n_edged -= sim->edged;
 	group->n_paired -= sim->paired;
+	group->n_accounted -= sim->accounted;
 	return sim;
 }
 
@@ -119,6 +124,21 @@ LANE_INLINE vi members(const struct group *group)
 	return used;
 }
 
+/* What is missing of the energy put in, by the ground and by the motion at the start. */
+static double energy_residual(const struct simulation *sim)
+{
+	const struct column *x = &sim->x;
+	double start = 0, end = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		double mass = i ? x->right_mass : 1, v0 = sim->task->bodies[i].v;
+		start += 0.5 * mass * v0 * v0;
+		end += 0.5 * mass * x->v[i] * x->v[i];
+	}
+	double put_in = start + x->work_in, found = end + x->work_out;
+	double most = fmax(fabs(put_in), fmax(start, end));
+	return most > 0 ? fabs(found - put_in) / most : 0;
+}
+
 /* Writes a simulation's result and frees its place in the pool. */
 static void simulation_end(struct work *work, struct simulation *sim, enum pound_status status)
 {
@@ -129,6 +149,7 @@ static void simulation_end(struct work *work, struct simulation *sim, enum pound
 	r->contacts = (int64_t)(x->contacts + x->touching);
 	r->impulse_max = fmax(x->impulse_max, x->touching != 0 ? x->impulse : 0);
 	r->contact_time = x->contact_time;
+	r->energy_residual = sim->accounted ? energy_residual(sim) : NAN;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;
 		r->u[i] = x->u[i];
@@ -603,6 +624,10 @@ static void meet_step(struct work *work)
 	vi event = ~vequal(search.event, zero);
 	if (vany(event))
 		series_cut(&s, event, search.time);
+	if (group->n_accounted) {
+		const vd mass[2] = {one, g->right_mass};
+		energy_add(g, &s, dt, search.time, touching, mass);
+	}
 	if (vany(touching))
 		impulse_add(g, &s, touching, search.time, dt);
 	for (int i = 0; i < 2; i++) {

@@ -30,6 +30,7 @@ struct pound_march_task {
 	double contact_damping;   /* C/m1 [1/s] */
 	double mass_ratio;        /* m1/m2, 0: the right body is a wall */
 	bool tension;             /* contact ends at zero overlap; false: at zero force */
+	bool accounted;           /* energy_residual is wanted */
 };
 
 struct pound_march_result {
@@ -40,6 +41,9 @@ struct pound_march_result {
 	double impulse_max;                         /* largest integral of F/m1 over one contact [m/s] */
 	double contact_time;                        /* [s] */
 	int64_t contacts;
+	double
+	    energy_residual; /* |kinetic + absorbed - put in| over what was put in, or the largest kinetic energy; NAN: not
+							   accounted */
 	double first_contact,
 	    first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
 };

@@ -45,6 +45,7 @@ struct body_ask {
 struct ask {
 	struct pound_scene scene;
 	int motion;
+	bool response; /* all of the response is wanted */
 	struct body_ask bodies[POUND_OSCILLATORS];
 	int march; /* with pounding; -1: the responses without pounding are the answer */
 };
@@ -233,6 +234,7 @@ static int body_march(struct pound_plan *plan, const struct ask *ask, int i, int
 {
 	struct pound_march_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
 	task.bodies[0].followed = true;
+	task.accounted = ask->response;
 	task.bodies[0].skeleton.law = law;
 	task.bodies[0].skeleton.yield = yield;
 	if (pound_pieces_linear(law))
@@ -288,7 +290,7 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 static void ask_free(const struct pound_campaign *campaign, struct ask *ask)
 {
 	const struct pound_scene *scene = &ask->scene;
-	bool response = campaign->study->kind == POUND_KIND_RESPONSE;
+	bool response = ask->response = campaign->study->kind == POUND_KIND_RESPONSE;
 	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
@@ -336,6 +338,7 @@ static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_
 			task.bodies[i].skeleton.hardening = 0;
 	}
 	pound_scene_contact(&ask->scene, &task);
+	task.accounted = ask->response;
 	task.gap = ldexp(task.gap, -plan->motions[ask->motion].exponent);
 	if (task.gap > 0 && free_max(plan, &ask->bodies[0]) + free_max(plan, &ask->bodies[1]) < task.gap) {
 		work->never_touching++;
@@ -357,6 +360,7 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 	struct pound_march_result none = {0};
 	const struct pound_march_result *with = ask->march < 0 ? &none : &plan->results[ask->march];
 	enum pound_status status = with->status;
+	double residual = with->energy_residual;
 	double max[2], max_free[2], force[2], yield[2], demand[2], demand_free[2], u[2], v[2];
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct body_ask *body = &ask->bodies[i];
@@ -368,6 +372,8 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 		skeleton.yield = body->yield;
 		// without a run with pounding the body moves as it does alone; the wall does not
 		bool alone = ask->march < 0;
+		if (alone && free)
+			residual = fmax(residual, free->energy_residual);
 		bool wall = ask->scene.oscillators[i].rigid_wall;
 		double most = wall ? 0 : !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
 		max[i] = ldexp(most, e);
@@ -399,6 +405,7 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 	    .end_v1 = v[0],
 	    .end_u2 = u[1],
 	    .end_v2 = v[1],
+	    .energy_residual = residual,
 	};
 	return status;
 }

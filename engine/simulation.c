@@ -94,7 +94,7 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 	struct column *x = &sim->x;
 	double h = task->time_step;
 	double rate = 0;
-	bool can_fly = true;
+	bool can_fly = !task->accounted; // the work in a step is that of its series
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *body = &task->bodies[i];
 		double k = body->skeleton.stiffness;
@@ -109,6 +109,8 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 			sim->maps[i][m].stiffness = -1;
 	}
 	x->can_fly = can_fly;
+	sim->accounted = task->accounted;
+	x->right_mass = task->mass_ratio > 0 ? 1 / task->mass_ratio : 0;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
 	sim->edged = !pound_pieces_linear(task->bodies[0].skeleton.law) ||
 	             !pound_pieces_linear(task->bodies[1].skeleton.law);

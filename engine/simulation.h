@@ -14,9 +14,10 @@ enum {
  * and saved by ranges of columns: event steps from the first to map, flight from state to the end. */
 #define COLUMNS(T)                                                                                      \
 	/* constants of event steps */                                                                      \
-	T contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly;                       \
+	T contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly, right_mass;           \
 	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */      \
-	T p, q, left, slope, events, touching, parted, fresh, impulse, impulse_max, contacts, contact_time; \
+	T p, q, left, slope, events, touching, parted, fresh, impulse, impulse_max, contacts, contact_time, \
+	    work_in, work_out;                                                                              \
 	/* changed by both */                                                                               \
 	T u[2], v[2], top[2], ground;                                                                       \
 	/* read by both: the bodies, and the piece each is on */                                            \
@@ -52,8 +53,9 @@ struct simulation {
 	struct pound_branch at[2];
 	struct map maps[2][POUND_MAPS];
 	int map_next[2];
-	bool edged;  /* a law has more than one piece */
-	bool paired; /* the right body moves, or there is something to touch */
+	bool edged;     /* a law has more than one piece */
+	bool accounted; /* the energy balance is kept */
+	bool paired;    /* the right body moves, or there is something to touch */
 };
 
 void pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,

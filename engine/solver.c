@@ -1,6 +1,7 @@
 /* solver.c - the ways to integrate a scene.  Adding one: its function and its row in solvers[]. */
 #include "engine/solver.h"
 
+#include <math.h>
 #include <stddef.h>
 
 static const struct solver {
@@ -49,6 +50,8 @@ void pound_solver_run(const struct pound_solver *solver, const struct pound_marc
 	const struct solver *row = solver_at(solver->method);
 	if (!row->run)
 		pound_march_lanes(0, tasks, results, n, scratch);
-	for (int j = 0; row->run && j < n && !*stop; j++)
+	for (int j = 0; row->run && j < n && !*stop; j++) {
 		row->run(solver, &tasks[j], &results[j]);
+		results[j].energy_residual = NAN; // only the march keeps the balance
+	}
 }

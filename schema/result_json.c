@@ -67,6 +67,12 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 		if (pound_output_applies(study->outputs[o], scene))
 			writer_number(w, pound_output_name(study->outputs[o]), cell->outputs[o]);
 	writer_end(w);
+	double residual = NAN; // a solver that does not keep the balance
+	for (int i = 0; i < cell->n_signals; i++)
+		residual = fmax(residual, cell->signals[i].energy_residual);
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_number(w, "energy_residual", residual);
+	writer_end(w);
 }
 
 /* ---- sensitivity ---- */

@@ -1,0 +1,50 @@
+/* energy.h - the work done in an event step: what the ground puts in and where it goes.
+ *
+ * Included by march.c alone, once per lane count; only simulations that are accounted for pay for it. */
+#ifndef ENERGY_H
+#define ENERGY_H
+
+#include "engine/series.h"
+
+/* Gauss-Legendre nodes and weights on [0, 1], exact to degree 23: a step's powers are products of series whose terms
+ * have died away to rounding there.  Abramowitz and Stegun 1964, Table 25.4. */
+enum { GAUSS = 12 };
+
+static const double GAUSS_NODE[GAUSS / 2] = {0.125233408511468915, 0.367831498998180194,
+                                             0.587317954286617447, 0.769902674194304687,
+                                             0.904117256370474857, 0.981560634246719251};
+static const double GAUSS_WEIGHT[GAUSS / 2] = {0.249147045813402785, 0.233492536538354809,
+                                               0.203167426723065922, 0.160078328543346226,
+                                               0.106939325995318431, 0.047175336386511827};
+
+/* Adds the work of a step, per mass of the left body [m2/s2].
+ *
+ * Given    s, dt   the step's series;  time: the share of it that was gone
+ *          mass    of each body, per mass of the left
+ * Returns  g       work_in: by the ground; work_out: by the dashpots, on the laws' springs, on the contact
+ */
+static void energy_add(struct lanes *g, const struct series *s, vd dt, vd time, vi touching, const vd mass[2])
+{
+	vd zero = vsplat(0), in = zero, out = zero;
+	vd stiff = vselect(touching, g->contact_stiffness, zero),
+	   dash = vselect(touching, g->contact_damping, zero);
+	for (int j = 0; j < GAUSS; j++) {
+		double node = j < GAUSS / 2 ? -GAUSS_NODE[j] : GAUSS_NODE[j - GAUSS / 2];
+		vd weight = vsplat(0.5 * GAUSS_WEIGHT[j % (GAUSS / 2)]);
+		vd t = vsplat(0.5 + 0.5 * node) * time;
+		vd ground = vfma(g->slope, t * dt, g->ground);
+		for (int i = 0; i < 2; i++) {
+			vd u = power_at(&s->body[i].u, s->order, t), v = power_at(&s->body[i].v, s->order, t) / dt;
+			vd spring = vfma(g->stiffness[i], u, g->offset[i]);
+			in = vfma(weight * mass[i] * v, -g->drive[i] * ground, in);
+			out = vfma(weight * mass[i] * v, vfma(g->damping[i], v, spring), out);
+		}
+		vd p = power_at(&s->overlap.u, s->order, t), q = power_at(&s->overlap.v, s->order, t) / dt;
+		out = vfma(weight * q, vfma(stiff, p, dash * q), out);
+	}
+	vd elapsed = time * dt;
+	g->work_in = vfma(elapsed, in, g->work_in);
+	g->work_out = vfma(elapsed, out, g->work_out);
+}
+
+#endif
