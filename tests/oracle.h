@@ -6,7 +6,9 @@
 
 #include "engine/pound.h"
 
-enum { ORACLE_CONTACTS_MAX = 512, ORACLE_MEASURES = sizeof(struct pound_response) / sizeof(double) };
+#define X(member, name, oscillator) +1
+enum { ORACLE_CONTACTS_MAX = 512, ORACLE_MEASURES = 0 POUND_MEASURES(X) };
+#undef X
 
 struct oracle_motion {
 	double time_step;           /* between samples [s]  > 0 */
