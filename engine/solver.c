@@ -12,6 +12,7 @@ static const struct solver {
     {"event", NULL, .tolerance = true}, // the march: many tasks at once, exact at any tolerance
     {"newmark", pound_fixed_newmark, .step = true},
     {"central_difference", pound_fixed_central, .step = true},
+    {"adaptive", pound_adaptive_run, .tolerance = true},
 };
 
 static const struct solver *solver_at(int row)

@@ -18,4 +18,8 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_m
 void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,
                          struct pound_march_result *result);
 
+/* adaptive.c */
+void pound_adaptive_run(const struct pound_solver *solver, const struct pound_march_task *task,
+                        struct pound_march_result *result);
+
 #endif

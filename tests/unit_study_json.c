@@ -121,9 +121,12 @@ static const struct {
      "mean "
      "\"impulse\"?"},
     {"/solver/method", "\"method\": \"event\"", "\"method\":  \"event\"", "\"method\": \"euler\"",
-     "/solver/method", "must be one of \"event\", \"newmark\", \"central_difference\", got \"euler\""},
+     "/solver/method",
+     "must be one of \"event\", \"newmark\", \"central_difference\", \"adaptive\", got \"euler\""},
     {"/solver/tolerance", "\"tolerance\": 1e-9", "\"tolerance\": 1e-3", "\"tolerance\": 0",
      "/solver/tolerance", "must be in (0, 1), got 0"},
+    {"/solver/tolerance", "\"event\", \"tolerance\": 1e-9", "\"adaptive\", \"tolerance\": 1e-6",
+     "\"newmark\", \"tolerance\": 1e-6", "/solver/tolerance", "is not used by solver \"newmark\""},
     {"/solver/step_s", "\"event\", \"tolerance\": 1e-9", "\"newmark\", \"step_s\": 1e-3",
      "\"newmark\", \"step_s\": 0", "/solver/step_s", "must be greater than 0, got 0"},
 };
@@ -487,7 +490,7 @@ static void a_stranger_s_text_is_shown_short_and_tame(void **state)
 	    documents_response, "\"scene\"",
 	    "\"solver\": {\"method\": \"\\u001b[31mred\\n0123456789012345678901234567890123456789\"}, \"scene\"");
 	documents_problem(document, "/solver/method",
-	                  "must be one of \"event\", \"newmark\", \"central_difference\", got "
+	                  "must be one of \"event\", \"newmark\", \"central_difference\", \"adaptive\", got "
 	                  "\"?[31mred?0123456789012345678901234567890...\"");
 	free(document);
 }
