@@ -88,13 +88,17 @@ static void print_sweep(const struct reading *result, int cell)
 		putchar('\n');
 }
 
-static void print_failed(const struct reading *result, int cell)
+/* Runs of a cell without a result; `at` is where it stands in the result. */
+static void print_failed(const struct reading *result, const char *at)
 {
-	double failed = reading_number(result, "/cells/%d/runs_failed", cell);
+	double failed = reading_number(result, "%s/runs_failed", at);
+	double dropped = reading_number(result, "%s/rows_dropped", at);
 	if (failed > 0.0)
-		printf("\n%.0f of %.0f runs failed; %.0f rows of the design are left out\n", failed,
-		       reading_number(result, "/cells/%d/runs", cell),
-		       reading_number(result, "/cells/%d/rows_dropped", cell));
+		printf("\n%.0f of %.0f runs failed", failed, reading_number(result, "%s/runs", at));
+	if (failed > 0.0 && dropped > 0.0)
+		printf("; %.0f rows of the design are left out", dropped);
+	if (failed > 0.0)
+		putchar('\n');
 }
 
 static void print_indices(const struct reading *result, const char *output)
@@ -122,8 +126,9 @@ static void sensitivity(const struct reading *result)
 {
 	char output[64];
 	for (int cell = 0; cell < reading_count(result, "/cells"); cell++) {
+		snprintf(output, sizeof output, "/cells/%d", cell);
 		print_sweep(result, cell);
-		print_failed(result, cell);
+		print_failed(result, output);
 		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", cell); o++) {
 			snprintf(output, sizeof output, "/cells/%d/outputs/%d", cell, o);
 			putchar('\n');
@@ -137,7 +142,8 @@ static void sensitivity(const struct reading *result)
 	}
 }
 
-static void response(const struct reading *result)
+/* The signals and outputs of a cell; `at` is where it stands in the result. */
+static void print_responses(const struct reading *result, const char *at)
 {
 	static const char *const columns[] = {"signal",      "oscillator", "u_max_m",   "u_free_m",
 	                                      "force_n",     "yield_m",    "demand",    "demand_free",
@@ -147,23 +153,42 @@ static void response(const struct reading *result)
 	    "demand_free"};
 	static const char *const both[] = {"impulse_max_n_s", "contact_count", "contact_time_s"};
 	struct table *table = table_open(columns);
-	for (int s = 0; s < reading_count(result, "/signals"); s++)
-		for (int o = 0; o < reading_count(result, "/signals/%d/oscillators", s); o++) {
-			table_number(table, reading_number(result, "/signals/%d/index", s));
+	char signal[64], body[96];
+	print_failed(result, at);
+	for (int s = 0; s < reading_count(result, "%s/signals", at); s++) {
+		snprintf(signal, sizeof signal, "%s/signals/%d", at, s);
+		for (int o = 0; o < reading_count(result, "%s/oscillators", signal); o++) {
+			snprintf(body, sizeof body, "%s/oscillators/%d", signal, o);
+			table_number(table, reading_number(result, "%s/index", signal));
 			table_text(table, o ? "right" : "left");
 			for (size_t m = 0; m < sizeof own / sizeof own[0]; m++)
-				table_number(table, reading_number(result, "/signals/%d/oscillators/%d/%s", s, o, own[m]));
+				table_number(table, reading_number(result, "%s/%s", body, own[m]));
 			for (size_t m = 0; m < sizeof both / sizeof both[0]; m++)
-				table_number(table, o ? NAN : reading_number(result, "/signals/%d/%s", s, both[m]));
+				table_number(table, o ? NAN : reading_number(result, "%s/%s", signal, both[m]));
 		}
+	}
 	putchar('\n');
 	table_print(table, 2);
 	table_close(table);
 	const char *name;
 	putchar('\n');
-	for (int i = 0; (name = reading_member(result, i, "/outputs")); i++) {
-		double value = reading_number(result, "/outputs/%s", name);
+	for (int i = 0; (name = reading_member(result, i, "%s/outputs", at)); i++) {
+		double value = reading_number(result, "%s/outputs/%s", at, name);
 		printf(isfinite(value) ? "%s %.6g\n" : "%s -\n", name, value);
+	}
+}
+
+/* A response without a sweep is its one cell itself. */
+static void response(const struct reading *result)
+{
+	char at[32];
+	int n_cells = reading_count(result, "/cells");
+	if (n_cells == 0)
+		print_responses(result, "");
+	for (int cell = 0; cell < n_cells; cell++) {
+		snprintf(at, sizeof at, "/cells/%d", cell);
+		print_sweep(result, cell);
+		print_responses(result, at);
 	}
 }
 

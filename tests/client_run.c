@@ -120,6 +120,45 @@ static void a_bad_study_gets_the_same_list_from_run_and_from_the_server(void **s
 	}
 }
 
+static int count(const char *text, const char *part)
+{
+	int n = 0;
+	for (; (text = strstr(text, part)); text += strlen(part))
+		n++;
+	return n;
+}
+
+static void a_table_of_responses_has_each_value_of_a_sweep(void **state)
+{
+	(void)state;
+	struct program_outcome document = POUND("example", "gap");
+	struct program_outcome table =
+	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
+	program_expect(&table, 0);
+	assert_int_equal(count(document.out, "[0, 0.001, 0.002, 0.004, 0.008]"), 1);
+	assert_int_equal(count(table.out, "/contact/gap_m = "), 5);
+	assert_int_equal(count(table.out, " left  "), 5);
+	assert_int_equal(count(table.out, "\nimpulse "), 5);
+	assert_non_null(strstr(table.out, "/contact/gap_m = 0.008"));
+	program_free(&table);
+	program_free(&document);
+}
+
+static void a_table_says_how_many_responses_failed(void **state)
+{
+	(void)state;
+	// steps as long as the period of an oscillator of 1 Hz are unstable
+	struct program_outcome table = program_run(
+	    (const char *const[]){"pound", "run", "--format", "table", "-", NULL},
+	    "{\"kind\": \"response\", \"solver\": {\"method\": \"central_difference\", \"step_s\": 1},"
+	    " \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 2}],"
+	    " \"excitation\": {\"type\": \"record\", \"time_step_s\": 1,"
+	    " \"acceleration_m_s2\": [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1]}}}");
+	program_expect(&table, 0);
+	assert_non_null(strstr(table.out, "1 of 1 runs failed\n"));
+	program_free(&table);
+}
+
 static void a_table_fits_in_100_columns(void **state)
 {
 	static const char *const kinds[] = {"response", "sensitivity_small"};
@@ -271,6 +310,8 @@ static void a_paper_study_is_valid_and_its_cost_is_told(void **state)
 
 CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server),
            SERVED(a_bad_study_gets_the_same_list_from_run_and_from_the_server),
+           cmocka_unit_test(a_table_of_responses_has_each_value_of_a_sweep),
+           cmocka_unit_test(a_table_says_how_many_responses_failed),
            cmocka_unit_test(a_table_fits_in_100_columns),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),
            cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
