@@ -256,7 +256,7 @@ static void check_excitation(const struct pound_study *study, struct problems *p
 	steps(study, &least, &most);
 	if (!(least >= 1.0))
 		problems_add(problems, "/scene/excitation/time_step_s",
-		             "the ground motion must last one time step at least, got %.3g", least);
+		             "the ground motion must last one time step at least, not %.3g of one", least);
 	if (!(most < STUDY_SAMPLES_MAX))
 		problems_add(problems, "/scene/excitation/time_step_s",
 		             "a ground motion may have at most %d samples, this asks for %.3g", STUDY_SAMPLES_MAX,

@@ -148,7 +148,7 @@ static void a_ground_motion_is_shaped_and_sampled_sensibly(void **state)
 	    // 20 cycles at 5 Hz last 4 s, at 0.5 Hz 40 s
 	    {"\"time_step_s\": 0.01", "\"time_step_s\": 4", "", ""},
 	    {"\"time_step_s\": 0.01", "\"time_step_s\": 5", "/scene/excitation/time_step_s",
-	     "the ground motion must last one time step at least, got 0.8"},
+	     "the ground motion must last one time step at least, not 0.8 of one"},
 	    {"\"time_step_s\": 0.01", "\"time_step_s\": 4.01e-6", "/sweep",
 	     "asks for 7.98e+07 samples of ground motion at once (cells x samples of a row x samples of a "
 	     "motion), at most "
