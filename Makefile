@@ -85,6 +85,13 @@ test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) -s check
 check: all $(TESTS)
 	@tests/run-tests $(B) $(T)
+# how fast the engine is, a table; ROWS of the paper campaign's design, for trials
+ROWS ?= 1000
+bench: $(B)/tests/bench
+	@$< $(ROWS)
+$(B)/tests/bench: $(patsubst %.c,$(B)/%.o,$(wildcard tests/bench_*.c))
+# what the engine is measured against is to be as fast as a compiler makes it
+$(B)/tests/yardstick.o: CFLAGS += -O3
 # the paper's findings, one by one, for n = 1000: minutes
 paper: $(B)/tests/paper
 	@$<
@@ -109,6 +116,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check paper asan tsan lint fuzz fmt clean
+.PHONY: all deps run test check bench paper asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)
