@@ -6,6 +6,9 @@
  *   force_amplification: mean 1.071, variance 0.02893, noise share 0.113
  *     input    S1 [95 % interval]       ST [95 % interval]       ST from 0 to 1
  *     f_e       0.101 [ 0.021,  0.180]   0.412 [ 0.351,  0.472]  |########            |
+ *     widest interval: +-0.22 of 125 rows, +-0.16 of 250, +-0.11 of 500, +-0.081 of 1000
+ *     twice the rows leave 0.71 of it, 4000 rows half of it
+ *     300 runs checked, apart by 1e-14 (median) to 2e-13: no index moves by over 3e-15
  */
 #include "client/show.h"
 
@@ -122,6 +125,58 @@ static void print_indices(const struct reading *result, const char *output)
 	table_close(table);
 }
 
+/* The widest half of the intervals of one number of rows. */
+static double widest(const struct reading *result, const char *accuracy, int level)
+{
+	static const char *const halves[] = {"S1_half_widths", "ST_half_widths"};
+	double most = NAN;
+	for (int j = 0; j < reading_count(result, "%s/inputs", accuracy); j++)
+		for (int h = 0; h < 2; h++)
+			most = fmax(most, reading_number(result, "%s/inputs/%d/%s/%d", accuracy, j, halves[h], level));
+	return most;
+}
+
+/* How far the indexes of an output may be off. */
+static void print_accuracy(const struct reading *result, const char *output)
+{
+	char accuracy[80];
+	const char *before = "  widest interval: ", *of = " rows";
+	snprintf(accuracy, sizeof accuracy, "%s/accuracy", output);
+	for (int k = 0; k < reading_count(result, "%s/rows", accuracy); k++, before = ", ", of = "") {
+		double half = widest(result, accuracy, k);
+		if (!isfinite(half))
+			return;
+		printf("%s+-%.2g of %.0f%s", before, half, reading_number(result, "%s/rows/%d", accuracy, k), of);
+	}
+	double slope = reading_number(result, "%s/slope", accuracy);
+	double rows = reading_number(result, "%s/rows_to_halve", accuracy);
+	if (isfinite(rows))
+		printf("\n  twice the rows leave %.2g of it, %.0f rows half of it", exp2(slope), rows);
+	printf("\n  %.0f runs checked", reading_number(result, "%s/runs_checked", accuracy));
+	double change = reading_number(result, "%s/errors/integration", accuracy);
+	if (isfinite(change))
+		printf(", apart by %.2g (median) to %.2g: no index moves by over %.2g",
+		       reading_number(result, "%s/difference_median", accuracy),
+		       reading_number(result, "%s/difference_largest", accuracy), change);
+	putchar('\n');
+	const char *note = reading_text(result, "%s/note", accuracy);
+	if (note) {
+		fputs("  ", stdout);
+		print_tame(note);
+		putchar('\n');
+	}
+}
+
+/* What more and fewer rows cost. */
+static void print_cost(const struct reading *result)
+{
+	const char *before = "\n  CPU time: ";
+	for (int k = 0; k < reading_count(result, "/timing/rows"); k++, before = ", ")
+		printf("%s%.2g s for %.0f rows", before, reading_number(result, "/timing/rows/%d/cpu_s", k),
+		       reading_number(result, "/timing/rows/%d/rows", k));
+	putchar('\n');
+}
+
 static void sensitivity(const struct reading *result)
 {
 	char output[64];
@@ -138,8 +193,10 @@ static void sensitivity(const struct reading *result)
 			print_measure(result, output, "noise_share", "noise share", ", ");
 			putchar('\n');
 			print_indices(result, output);
+			print_accuracy(result, output);
 		}
 	}
+	print_cost(result);
 }
 
 /* The signals and outputs of a cell; `at` is where it stands in the result. */

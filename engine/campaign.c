@@ -11,6 +11,13 @@ double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int
 	return study->sweeps[sweep].values[cell % study->sweeps[sweep].n_values];
 }
 
+/* How many items before this one are checked. */
+int pound_campaign_checks(const struct pound_campaign *campaign, int item)
+{
+	int every = campaign->check_every;
+	return every ? (item + every - 1) / every : 0;
+}
+
 /* The scene of one sample: the study's, with the cell's sweep values and the sample's inputs put in. */
 struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample)
 {

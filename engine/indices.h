@@ -59,14 +59,14 @@ struct pound_statistic {
 };
 
 enum {
-	POUND_RESAMPLES = 2000,
+	POUND_RESAMPLES = 2000, /* at most */
 	POUND_MOMENTS_MAX = 5 * POUND_INPUTS_MAX + 8,
 	POUND_VALUES_MAX = POUND_MOMENTS_MAX
 };
 
 size_t pound_interval_scratch(int n_rows, int n_moments, int n_values); /* doubles */
 void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
-                              double *scratch, struct pound_estimate *estimates);
+                              int n_resamples, double *scratch, struct pound_estimate *estimates);
 
 /* Pick-freeze indexes of a model with random signals. */
 struct pound_pick_freeze {
@@ -96,7 +96,7 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
                          struct pound_estimate *first, struct pound_estimate *total);
 
 size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
-int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, double *scratch,
-                        struct pound_indices *indices); /* rows dropped */
+int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
+                        double *scratch, struct pound_indices *indices); /* rows dropped */
 
 #endif

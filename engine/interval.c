@@ -198,6 +198,7 @@ size_t pound_interval_scratch(int n_rows, int n_moments, int n_values)
  * Given    statistic  -               moments of a row, and n_values numbers from their means
  *          n_rows     -               [1, 2^20]
  *          seed       -               same seed, same resamples
+ *          n_resamples                a multiple of 8, at most POUND_RESAMPLES
  * Returns  estimates  (n_values)      low and high are NAN where no resample defines the value
  * Memory   scratch    (pound_interval_scratch)
  *
@@ -208,12 +209,12 @@ size_t pound_interval_scratch(int n_rows, int n_moments, int n_values)
  * Test     unit_interval: intervals_of_a_mean_are_those_of_the_normal_law
  */
 void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
-                              double *scratch, struct pound_estimate *estimates)
+                              int n_resamples, double *scratch, struct pound_estimate *estimates)
 {
-	static_assert(POUND_RESAMPLES % GROUP == 0, "groups are whole");
 	static_assert(POUND_MOMENTS_MAX % TILE == 0, "tiles are whole");
 	assert(statistic->n_moments <= POUND_MOMENTS_MAX && statistic->n_values <= POUND_VALUES_MAX);
 	assert(n_rows <= SEGMENTS_MAX * SEGMENT);
+	assert(n_resamples % GROUP == 0 && n_resamples <= POUND_RESAMPLES);
 	double *on_cache_line = (double *)(((uintptr_t)scratch + 63) / 64 * 64);
 	const struct moments moments = moments_of(statistic, n_rows, on_cache_line);
 	double *resampled = moments.tile + (size_t)moments.tiles * n_rows * TILE;
@@ -223,7 +224,7 @@ void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_row
 	statistic->values(statistic->subject, mean[0], value);
 	for (int v = 0; v < statistic->n_values; v++)
 		estimates[v] = (struct pound_estimate){value[v], NAN, NAN};
-	for (int r = 0; r < POUND_RESAMPLES; r++) {
+	for (int r = 0; r < n_resamples; r++) {
 		if (r % GROUP == 0)
 			resample_means(&moments, seed, r, mean);
 		statistic->values(statistic->subject, mean[r % GROUP], value);

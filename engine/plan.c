@@ -3,7 +3,10 @@
  * 1. every sample of every cell asks for its ground motion, its responses without pounding and its run with pounding;
  * 2. what is asked is written down as a key of numbers, equal keys are one motion or one march;
  * 3. motions are filled, then marches run stage by stage: linear responses, nonlinear ones with the yield
- *    displacement found from the stage before, last the runs with pounding. */
+ *    displacement found from the stage before, last the runs with pounding.
+ *
+ * The check of an item is all this once more on ground motions with a sample between every two: the same signal, as it
+ * is linear between samples, in other steps with other maps, series and root searches. */
 #include "engine/plan.h"
 
 #include <assert.h>
@@ -28,9 +31,11 @@ struct register_ {
 struct motion {
 	struct pound_excitation excitation;
 	struct pound_stream noise;
+	bool halved; /* a sample between every two */
 	int n_samples;
-	int exponent;   /* samples are kept times 2^-exponent, so that the largest is in [1, 2) */
-	double *ground; /* (n_samples) */
+	double time_step; /* [s] */
+	int exponent;     /* samples are kept times 2^-exponent, so that the largest is in [1, 2) */
+	double *ground;   /* (n_samples) */
 };
 
 /* what is known of one body without pounding */
@@ -161,15 +166,16 @@ static int register_key(struct register_ *r, const double key[static KEY])
 }
 
 /* The ground motion of a sample: its excitation, and the noise of its row and signal. */
-static int motion_ask(struct pound_plan *plan, const struct pound_excitation *e, struct pound_stream noise)
+static int motion_ask(struct pound_plan *plan, const struct pound_excitation *e, struct pound_stream noise,
+                      bool halved)
 {
-	const double key[KEY] = {e->type,     e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,
-	                         e->duration, e->rise,         e->fall,          e->time_step,       e->peak,
-	                         noise.row,   noise.sample,    noise.signal};
+	const double key[KEY] = {
+	    e->type, e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,    e->duration,  e->rise,
+	    e->fall, e->time_step,    e->peak,          noise.row,          noise.sample, noise.signal, halved};
 	int known = plan->motion_keys.n;
 	int j = register_key(&plan->motion_keys, key);
 	if (j == known)
-		plan->motions[j] = (struct motion){.excitation = *e, .noise = noise};
+		plan->motions[j] = (struct motion){.excitation = *e, .noise = noise, .halved = halved};
 	return j;
 }
 
@@ -193,12 +199,25 @@ static int march_ask(struct pound_plan *plan, int motion, struct pound_march_tas
 		plan->tasks[j] = *task;
 		plan->tasks[j].ground = m->ground;
 		plan->tasks[j].n_samples = m->n_samples;
-		plan->tasks[j].time_step = m->excitation.time_step;
+		plan->tasks[j].time_step = m->time_step;
 	}
 	return j;
 }
 
 /* ---- stages ---- */
+
+/* Puts the mean of every two samples between them. */
+static void motion_halve(struct motion *m)
+{
+	double *g = m->ground;
+	for (int t = m->n_samples - 1; t > 0; t--) {
+		double middle = 0.5 * (g[t - 1] + g[t]);
+		g[2 * t] = g[t];
+		g[2 * t - 1] = middle;
+	}
+	m->n_samples = 2 * m->n_samples - 1;
+	m->time_step *= 0.5;
+}
 
 /* Fills the ground motions and scales each by a power of two, which changes no digit of any response. */
 static void motions_fill(struct pound_plan *plan)
@@ -207,10 +226,13 @@ static void motions_fill(struct pound_plan *plan)
 	for (int j = 0; j < plan->motion_keys.n; j++) {
 		struct motion *m = &plan->motions[j];
 		m->n_samples = pound_excitation_samples(&m->excitation);
+		m->time_step = m->excitation.time_step;
 		m->ground = ground;
-		ground += m->n_samples;
+		ground += m->halved ? 2 * m->n_samples - 1 : m->n_samples;
 		assert(ground - plan->ground <= plan->size.samples);
 		pound_excitation_fill(&m->excitation, m->noise, m->ground);
+		if (m->halved)
+			motion_halve(m);
 		double peak = 0;
 		for (int t = 0; t < m->n_samples; t++)
 			peak = fmax(peak, fabs(m->ground[t]));
@@ -220,13 +242,18 @@ static void motions_fill(struct pound_plan *plan)
 	}
 }
 
-/* Runs the marches asked since the stage before, all of them unless stop is set. */
-static void marches_run(struct pound_plan *plan, const struct pound_solver *solver, int *done,
+/* Runs the marches asked since the stage before, all of them unless stop is set.  The first ones are those of the
+ * checks, which are exact whatever the solver. */
+static void marches_run(struct pound_plan *plan, const struct pound_solver *solver, int checks_end, int *done,
                         const atomic_bool *stop)
 {
+	static const struct pound_solver exact = {.method = POUND_SOLVER_EVENT};
 	int from = *done, n = plan->march_keys.n;
 	assert(n <= plan->size.tasks);
-	pound_solver_run(solver, &plan->tasks[from], &plan->results[from], n - from, plan->scratch, stop);
+	// one call for both where it can be, as it fills the lanes better
+	int cut = solver->method == POUND_SOLVER_EVENT ? n : checks_end;
+	pound_solver_run(&exact, &plan->tasks[from], &plan->results[from], cut - from, plan->scratch, stop);
+	pound_solver_run(solver, &plan->tasks[cut], &plan->results[cut], n - cut, plan->scratch, stop);
 	*done = n;
 }
 
@@ -412,31 +439,56 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 
 /* ---- the block ---- */
 
-static void asks_write(struct pound_plan *plan, const struct pound_campaign *campaign, int first, int n)
+/* Writes down the samples of one item from ask `a` on; returns the one after them. */
+static int item_write(struct pound_plan *plan, const struct pound_campaign *campaign, int a, int item,
+                      bool halved)
 {
-	struct ask *ask = plan->asks;
-	for (int item = first; item < first + n; item++)
-		for (int cell = 0; cell < campaign->n_cells; cell++)
-			for (int sample = 0; sample < campaign->n_samples; sample++, ask++) {
-				int row = item / campaign->n_signals, signal = item % campaign->n_signals;
-				ask->scene = pound_campaign_scene(campaign, cell, row, sample);
-				// samples of a row share their noise, or have their own
-				struct pound_stream noise = {
-				    .seed = campaign->study->design.seed,
-				    .what = POUND_STREAM_NOISE,
-				    .row = (uint32_t)row,
-				    .sample = campaign->study->design.common_signals ? 0 : (uint32_t)sample,
-				    .signal = (uint32_t)signal};
-				ask->motion = motion_ask(plan, &ask->scene.excitation, noise);
-				ask_free(campaign, ask);
-			}
+	int row = item / campaign->n_signals, signal = item % campaign->n_signals;
+	for (int cell = 0; cell < campaign->n_cells; cell++)
+		for (int sample = 0; sample < campaign->n_samples; sample++) {
+			struct ask *ask = &plan->asks[a++];
+			ask->scene = pound_campaign_scene(campaign, cell, row, sample);
+			// samples of a row share their noise, or have their own
+			struct pound_stream noise = {.seed = campaign->study->design.seed,
+			                             .what = POUND_STREAM_NOISE,
+			                             .row = (uint32_t)row,
+			                             .sample =
+			                                 campaign->study->design.common_signals ? 0 : (uint32_t)sample,
+			                             .signal = (uint32_t)signal};
+			ask->motion = motion_ask(plan, &ask->scene.excitation, noise, halved);
+			ask_free(campaign, ask);
+		}
+	return a;
 }
 
-/* Runs items [first, first + n) of a campaign.
+/* Asks for what asks [first, end) need of a stage without pounding. */
+static void stage_ask(struct pound_plan *plan, int first, int end, int stage,
+                      struct pound_stage_work *counted)
+{
+	int before = plan->march_keys.n;
+	for (int a = first; a < end; a++)
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			if (body_asked(&plan->asks[a], i))
+				counted->asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage);
+	counted->run += plan->march_keys.n - before;
+}
+
+/* Asks for the runs with pounding of asks [first, end). */
+static void pounding_ask(struct pound_plan *plan, int first, int end, struct pound_stage_work *counted,
+                         struct pound_work *work)
+{
+	int before = plan->march_keys.n;
+	for (int a = first; a < end; a++)
+		ask_pounding(plan, &plan->asks[a], work);
+	counted->asked += end - first;
+	counted->run += plan->march_keys.n - before;
+}
+
+/* Runs items [first, first + n) of a campaign, and the checks among them.
  *
  * Given    first, n  items, item = row n_signals + signal
  *          stop      looked at between stages
- * Returns  take      called for every item, cell and sample in this order
+ * Returns  take      called for every item, cell and sample in this order, then for those of the checks
  *          work      what was asked and run is added
  * Status   POUND_STOPPED  stop was set; nothing was handed to take
  */
@@ -444,37 +496,36 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
                                  int n, const atomic_bool *stop, struct pound_work *work,
                                  pound_plan_take *take, void *into)
 {
-	int n_asks = n * campaign->n_cells * campaign->n_samples;
+	int n_items = n * campaign->n_cells * campaign->n_samples, n_asks = 0;
 	const struct pound_solver *solver = &campaign->study->solver;
-	assert(n_asks <= plan->size.asks);
 	register_clear(&plan->motion_keys);
 	register_clear(&plan->march_keys);
-	asks_write(plan, campaign, first, n);
-	motions_fill(plan);
+	for (int item = first; item < first + n; item++)
+		n_asks = item_write(plan, campaign, n_asks, item, false);
 	work->signals.asked += n_asks;
 	work->signals.run += plan->motion_keys.n;
+	for (int k = pound_campaign_checks(campaign, first); k < pound_campaign_checks(campaign, first + n); k++)
+		n_asks = item_write(plan, campaign, n_asks, k * campaign->check_every, true);
+	assert(n_asks <= plan->size.asks);
+	motions_fill(plan);
 
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++)
 		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
 	for (int stage = 0; stage < stages && !*stop; stage++) {
-		struct pound_stage_work *counted = stage == 0 ? &work->free_runs : &work->yield_runs;
-		int before = done;
-		for (int a = 0; a < n_asks; a++)
-			for (int i = 0; i < POUND_OSCILLATORS; i++)
-				if (body_asked(&plan->asks[a], i))
-					counted->asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage);
-		marches_run(plan, solver, &done, stop);
-		counted->run += done - before;
+		// the checks, which take longer, start first, so that no lane waits for them at the end
+		stage_ask(plan, n_items, n_asks, stage, &work->checks);
+		int checks_end = plan->march_keys.n;
+		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs);
+		marches_run(plan, solver, checks_end, &done, stop);
 	}
 	if (*stop)
 		return POUND_STOPPED;
-	int before = done;
-	for (int a = 0; a < n_asks; a++)
-		ask_pounding(plan, &plan->asks[a], work);
-	marches_run(plan, solver, &done, stop);
-	work->pounding_runs.asked += n_asks;
-	work->pounding_runs.run += done - before;
+	struct pound_work of_checks = {0};
+	pounding_ask(plan, n_items, n_asks, &work->checks, &of_checks);
+	int before = plan->march_keys.n;
+	pounding_ask(plan, 0, n_items, &work->pounding_runs, work);
+	marches_run(plan, solver, before, &done, stop);
 	for (int j = before; j < done; j++)
 		work->contacts += plan->results[j].contacts;
 	if (*stop)

@@ -15,7 +15,10 @@ struct pound_campaign {
 	const struct pound_study *study;
 	const double *design; /* inputs of A and B  (rows x 2 x n_inputs) */
 	int n_cells, n_rows, n_samples, n_signals;
+	int check_every; /* items 0, check_every, ... are run again to check the integration; 0: none */
 };
+
+int pound_campaign_checks(const struct pound_campaign *campaign, int item); /* among the items before this */
 
 struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample);
 double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep);
@@ -27,7 +30,7 @@ struct pound_plan_size {
 	int64_t samples; /* of all ground motions at most */
 };
 
-/* Upper bounds for the items of one row. */
+/* Upper bounds for an item of one row, its check left out. */
 struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, int row);
 
 struct pound_plan; /* work space of one worker */
@@ -35,7 +38,8 @@ struct pound_plan; /* work space of one worker */
 size_t pound_plan_bytes(struct pound_plan_size size);
 struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size);
 
-/* Runs items [first, first + n) and hands every response to `take`, in the order of item, cell, sample. */
+/* Runs items [first, first + n) and hands every response to `take`, in the order of item, cell, sample, then those of
+ * the checks in the same order. */
 typedef void pound_plan_take(void *into, const struct pound_scene *scene,
                              const struct pound_response *response, enum pound_status status);
 enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,

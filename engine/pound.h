@@ -207,11 +207,50 @@ struct pound_estimate {
 	double value, low, high; /* low and high: 95 % interval; NAN: undefined */
 };
 
+/* What the indexes of an output may be off by, and for want of what. */
+// clang-format off
+#define POUND_ERRORS(X)                                                                   \
+	X(SAMPLING,    "sampling")    /* too few rows: the widest half of an interval */      \
+	X(EXCITATION,  "excitation")  /* too few signals: what their randomness adds or takes */ \
+	X(INTEGRATION, "integration") /* runs that are not exact */                           \
+	X(FAILED_ROWS, "failed_rows") /* rows left out: their share */
+// clang-format on
+
+enum pound_error {
+#define X(row, name) POUND_ERROR_##row,
+	POUND_ERRORS(X)
+#undef X
+	    POUND_ERROR_NONE /* and how many there are */
+};
+
+const char *pound_error_name(int row);
+/* The one larger than all others together; unknown ones (NAN) count as 0. */
+enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE]);
+
+enum { POUND_LEVELS = 4 }; /* n/8, n/4, n/2, n rows */
+
+struct pound_accuracy {
+	int64_t runs_checked;     /* runs compared with the same on half the sample step */
+	int64_t runs_unchecked;   /* without a value in one of the two */
+	double difference_median; /* of the output of one run, relative; NAN: none */
+	double difference_largest;
+	double variance_share; /* of such differences in the output's variance */
+	struct {
+		double first_change, total_change;                         /* by the differences, at most */
+		double first_half[POUND_LEVELS], total_half[POUND_LEVELS]; /* half widths of intervals; NAN: none */
+	} inputs[POUND_INPUTS_MAX];                                    /* (n_inputs) */
+	int rows[POUND_LEVELS];                                        /* behind the half widths; 0: too few */
+	double slope;                    /* of log half width over log rows; NAN: undefined */
+	double rows_to_halve;            /* the half widths; NAN: undefined, or out of reach */
+	double errors[POUND_ERROR_NONE]; /* of the worst index, at most 1; NAN: unknown */
+};
+
 struct pound_indices {
 	double mean, variance; /* of the output over the rows of A and B */
 	double noise_share;    /* share of that variance due to the excitation's randomness; NAN: one signal */
 	struct pound_estimate *first; /* (n_inputs) */
 	struct pound_estimate *total; /* (n_inputs) */
+	struct pound_accuracy accuracy;
 };
 
 struct pound_cell {
@@ -230,7 +269,8 @@ struct pound_cell {
 	X(signals,    "ground motions")                                                       \
 	X(free_runs,  "linear responses without pounding")                                    \
 	X(yield_runs, "nonlinear responses without pounding")                                 \
-	X(pounding_runs, "responses with pounding")
+	X(pounding_runs, "responses with pounding")                                           \
+	X(checks,     "responses again on half the sample step")
 // clang-format on
 
 struct pound_stage_work {

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/accuracy.h"
 #include "engine/design.h"
 #include "engine/indices.h"
 #include "engine/outputs.h"
@@ -19,14 +20,16 @@ enum {
 	BLOCK_SAMPLES = 1 << 21, /* of its ground motions at most, unless one item has more: 16 MiB */
 	MEASURES = sizeof(struct pound_response) / sizeof(double),
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
+	CHECK_EVERY = 100, /* items between two checked ones */
+	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
 };
 
 struct pound_run {
 	struct pound_campaign campaign;
 	int n_measures; /* doubles kept of a run */
 	int n_blocks;
-	int *first;                /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
-	double *values;            /* of all blocks, each followed by its counts of work */
+	int *first;     /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
+	double *values; /* of all blocks, each followed by those of its checks and its counts of work */
 	struct pound_plan **plans; /* (n_workers) */
 	double **scratch;          /* of reductions  (n_workers) */
 	struct pound_result result;
@@ -52,16 +55,22 @@ static size_t item_size(const struct pound_run *run)
 	return (size_t)runs_of_item(&run->campaign) * (size_t)run->n_measures;
 }
 
+/* How many items before this one are kept, checks counted as items. */
+static size_t kept_before(const struct pound_run *run, int item)
+{
+	return (size_t)item + (size_t)pound_campaign_checks(&run->campaign, item);
+}
+
 /* Where a block's values begin. */
 static double *block_values(const struct pound_run *run, int block)
 {
-	return run->values + (size_t)run->first[block] * item_size(run) + (size_t)block * COUNTS;
+	return run->values + kept_before(run, run->first[block]) * item_size(run) + (size_t)block * COUNTS;
 }
 
-/* The measures of one run. */
-static const double *run_values(const struct pound_run *run, int item, int cell, int sample)
+/* The block that holds an item. */
+static int block_of(const struct pound_run *run, int item)
 {
-	int low = 0, high = run->n_blocks; // the block that holds the item
+	int low = 0, high = run->n_blocks;
 	while (high - low > 1) {
 		int middle = low + (high - low) / 2;
 		if (run->first[middle] <= item)
@@ -69,9 +78,30 @@ static const double *run_values(const struct pound_run *run, int item, int cell,
 		else
 			high = middle;
 	}
-	size_t at = (size_t)(item - run->first[low]) * item_size(run) +
-	            (size_t)(cell * run->campaign.n_samples + sample) * (size_t)run->n_measures;
-	return block_values(run, low) + at;
+	return low;
+}
+
+/* The measures of one run of the place-th item of a block. */
+static const double *place_values(const struct pound_run *run, int block, int place, int cell, int sample)
+{
+	return block_values(run, block) + (size_t)place * item_size(run) +
+	       (size_t)(cell * run->campaign.n_samples + sample) * (size_t)run->n_measures;
+}
+
+/* The measures of one run. */
+static const double *run_values(const struct pound_run *run, int item, int cell, int sample)
+{
+	int block = block_of(run, item);
+	return place_values(run, block, item - run->first[block], cell, sample);
+}
+
+/* The measures of the run that checks it. */
+static const double *check_values(const struct pound_run *run, int item, int cell, int sample)
+{
+	const struct pound_campaign *c = &run->campaign;
+	int block = block_of(run, item), first = run->first[block], n = run->first[block + 1] - first;
+	int place = n + pound_campaign_checks(c, item) - pound_campaign_checks(c, first);
+	return place_values(run, block, place, cell, sample);
 }
 
 /* ---- life ---- */
@@ -86,7 +116,19 @@ static struct pound_campaign campaign_of(const struct pound_study *study)
 	                           .n_signals = study->scene.excitation.signals};
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
+	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples, every = items_of(&c) / checked_min;
+	if (sampled)
+		c.check_every = every > CHECK_EVERY ? CHECK_EVERY : every > 1 ? every : 1;
 	return c;
+}
+
+static void size_add(struct pound_plan_size *block, struct pound_plan_size item, bool checked)
+{
+	int times = checked ? 2 : 1;
+	block->asks += times * item.asks;
+	block->motions += times * item.motions;
+	block->tasks += times * item.tasks;
+	block->samples += (checked ? 3 : 1) * item.samples;
 }
 
 /* Cuts the items into blocks and finds the largest; with first NULL only counts them. */
@@ -105,10 +147,7 @@ static int blocks_cut(const struct pound_campaign *c, int *first, struct pound_p
 			n_blocks++;
 			block = (struct pound_plan_size){0};
 		}
-		block.asks += item.asks;
-		block.motions += item.motions;
-		block.tasks += item.tasks;
-		block.samples += item.samples;
+		size_add(&block, item, pound_campaign_checks(c, i) < pound_campaign_checks(c, i + 1));
 		largest->asks = block.asks > largest->asks ? block.asks : largest->asks;
 		largest->motions = block.motions > largest->motions ? block.motions : largest->motions;
 		largest->tasks = block.tasks > largest->tasks ? block.tasks : largest->tasks;
@@ -119,13 +158,24 @@ static int blocks_cut(const struct pound_campaign *c, int *first, struct pound_p
 	return n_blocks;
 }
 
-/* Doubles a reduction works in: two columns of measures, and what the indexes need. */
+/* Runs of a cell that are checked. */
+static int checks_of(const struct pound_campaign *c)
+{
+	return pound_campaign_checks(c, items_of(c)) * c->n_samples;
+}
+
+static size_t checks_size(const struct pound_campaign *c)
+{
+	return (size_t)checks_of(c) * (sizeof(struct pound_check) / sizeof(double));
+}
+
+/* Doubles a reduction works in: two columns of measures, the checks, and what the indexes need. */
 static size_t reduction_size(const struct pound_campaign *c)
 {
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
-	return 2 * (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals +
-	       pound_sobol_scratch(c->n_rows, c->study->n_inputs, c->n_signals);
+	return 2 * (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals + checks_size(c) +
+	       pound_accuracy_scratch(c->n_rows, c->study->n_inputs, c->n_signals, checks_of(c));
 }
 
 /* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
@@ -204,8 +254,8 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	if (!run->first)
 		goto fail;
 	blocks_cut(&run->campaign, run->first, &largest);
-	run->values = piece(sizeof(double) *
-	                    ((size_t)items_of(&run->campaign) * item_size(run) + (size_t)run->n_blocks * COUNTS));
+	run->values = piece(sizeof(double) * (kept_before(run, items_of(&run->campaign)) * item_size(run) +
+	                                      (size_t)run->n_blocks * COUNTS));
 	if (!run->values || !workers_create(run, n_workers, largest) || !result_create(run))
 		goto fail;
 	return run;
@@ -255,7 +305,8 @@ int64_t pound_run_block_runs(const struct pound_run *run, int block)
 
 size_t pound_run_block_size(const struct pound_run *run, int block)
 {
-	return (size_t)(run->first[block + 1] - run->first[block]) * item_size(run) + COUNTS;
+	size_t n = kept_before(run, run->first[block + 1]) - kept_before(run, run->first[block]);
+	return n * item_size(run) + COUNTS;
 }
 
 const double *pound_run_block_values(const struct pound_run *run, int block)
@@ -346,6 +397,23 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 	return failed;
 }
 
+/* The runs of an output in a cell that were made twice; returns how many. */
+static int checks_fill(const struct pound_run *run, int cell, int output, struct pound_check *checks)
+{
+	const struct pound_campaign *c = &run->campaign;
+	int n = 0;
+	for (int item = 0; item < items_of(c); item += c->check_every)
+		for (int sample = 0; sample < c->n_samples; sample++) {
+			const double *run_once = run_values(run, item, cell, sample) + 2 * output;
+			const double *again = check_values(run, item, cell, sample) + 2 * output;
+			checks[n++] = (struct pound_check){.row = item / c->n_signals,
+			                                   .sample = sample,
+			                                   .numerator = {run_once[0], again[0]},
+			                                   .denominator = {run_once[1], again[1]}};
+		}
+	return n;
+}
+
 static void indices_reduce(struct pound_run *run, int cell, int output, double *scratch)
 {
 	const struct pound_campaign *c = &run->campaign;
@@ -357,8 +425,12 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	                                     .denominator = scratch + n};
 	struct pound_cell *into = &run->result.cells[cell];
 	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
+	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
+	checks.n = checks_fill(run, cell, output, checks.check);
+	double *rest = scratch + 2 * n + checks_size(c);
 	int dropped =
-	    pound_sobol_indices(&values, c->study->design.seed, scratch + 2 * n, &into->indices[output]);
+	    pound_sobol_indices(&values, c->study->design.seed, POUND_RESAMPLES, rest, &into->indices[output]);
+	pound_accuracy_estimate(&values, checks, dropped, c->study->design.seed, rest, &into->indices[output]);
 	if (output == 0) {
 		into->runs_failed = failed;
 		into->rows_dropped = dropped;

@@ -67,7 +67,7 @@ size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals)
 /* First-order and total sensitivity indexes of one output, with 95 % intervals.
  *
  * Given    values    (n_rows x (n_inputs + 2) x n_signals)   of each run; n_rows <= 2^20
- *          seed      -                                       of the resamples
+ *          seed      -                                       of the resamples, n_resamples in number
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   mean, variance (of A and B, divided by their number), noise share, first, total (n_inputs)
  * Memory   scratch   (pound_sobol_scratch)
@@ -77,8 +77,8 @@ size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals)
  * Source   estimator.c, interval.c
  * Test     unit_sobol
  */
-int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, double *scratch,
-                        struct pound_indices *indices)
+int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
+                        double *scratch, struct pound_indices *indices)
 {
 	const int d = values->n_inputs;
 	struct pound_rows rows;
@@ -90,7 +90,7 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 		const struct subject subject = {pound_estimator_row(0), &rows};
 		const struct pound_statistic statistic = {n_moments(d), 2 * d, subject_moments, subject_values,
 		                                          &subject};
-		pound_interval_bootstrap(&statistic, rows.n_rows, seed,
+		pound_interval_bootstrap(&statistic, rows.n_rows, seed, n_resamples,
 		                         scratch + pound_rows_scratch(values->n_rows, d, values->n_signals),
 		                         estimates);
 	}

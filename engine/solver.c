@@ -9,7 +9,8 @@ static const struct solver {
 	void (*run)(const struct pound_solver *, const struct pound_march_task *, struct pound_march_result *);
 	bool tolerance, step; /* the settings it takes */
 } solvers[] = {
-    {"event", NULL, .tolerance = true}, // the march: many tasks at once, exact at any tolerance
+    [POUND_SOLVER_EVENT] = {"event", NULL,
+                            .tolerance = true}, // the march: many tasks at once, exact at any tolerance
     {"newmark", pound_fixed_newmark, .step = true},
     {"central_difference", pound_fixed_central, .step = true},
     {"adaptive", pound_adaptive_run, .tolerance = true},

@@ -9,6 +9,8 @@
 #include "engine/march.h"
 #include "engine/pound.h"
 
+enum { POUND_SOLVER_EVENT }; /* row of the exact one */
+
 void pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
                       struct pound_march_result *results, int n, void *scratch, const atomic_bool *stop);
 

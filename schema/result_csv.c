@@ -51,26 +51,31 @@ static void put_scalars(struct writer *w, const cJSON *object, const char *prefi
 }
 
 static void put_sensitivity_row(struct writer *w, const cJSON *cell, const cJSON *output, const cJSON *input,
-                                bool header)
+                                const cJSON *input_accuracy, bool header)
 {
 	bool first = true;
 	put_scalars(w, member(cell, "sweep"), "", header, &first);
 	put_scalars(w, output, "output.", header, &first);
+	put_scalars(w, member(output, "accuracy"), "output.accuracy.", header, &first);
 	put_scalars(w, input, "", header, &first);
+	put_scalars(w, input_accuracy, "accuracy.", header, &first);
 	writer_raw(w, "\r\n", 2);
 }
 
 static void put_sensitivity(struct writer *w, const cJSON *cells)
 {
 	bool header = true;
+	int place = 0; /* of the input */
 	const cJSON *cell, *output, *input;
 	cJSON_ArrayForEach(cell, cells) cJSON_ArrayForEach(output, member(cell, "outputs"))
 	    cJSON_ArrayForEach(input, member(output, "inputs"))
 	{
+		const cJSON *accuracy = cJSON_GetArrayItem(member(member(output, "accuracy"), "inputs"), place);
+		place = input->next ? place + 1 : 0;
 		if (header)
-			put_sensitivity_row(w, cell, output, input, true);
+			put_sensitivity_row(w, cell, output, input, accuracy, true);
 		header = false;
-		put_sensitivity_row(w, cell, output, input, false);
+		put_sensitivity_row(w, cell, output, input, accuracy, false);
 	}
 }
 

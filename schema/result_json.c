@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schema/fields.h"
+#include "schema/result_accuracy.h"
 #include "schema/study_json.h"
 #include "schema/writer.h"
 
@@ -123,6 +124,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 		writer_end(w);
 	}
 	writer_end(w);
+	result_accuracy_output(w, study, indices);
 	writer_end(w);
 }
 
@@ -284,10 +286,14 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 	else
 		write_cells(&w, study, result);
 	write_work(&w, study, &result->work);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		result_accuracy_study(&w, study, result);
 	writer_object(&w, "timing", WRITER_LINE);
 	writer_number(&w, "wall_s", timing->wall_s);
 	writer_number(&w, "cpu_s", timing->cpu_s);
 	writer_whole(&w, "threads", timing->threads);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		result_accuracy_timing(&w, result, timing->cpu_s);
 	writer_end(&w);
 	writer_end(&w);
 	return writer_take(&w, length);

@@ -21,7 +21,7 @@ static struct indexes *indexes_of(const struct pound_sample_values *values, uint
 	double *scratch = malloc(sizeof *scratch * n);
 	result->of.first = result->first;
 	result->of.total = result->total;
-	result->dropped = pound_sobol_indices(values, seed, scratch, &result->of);
+	result->dropped = pound_sobol_indices(values, seed, POUND_RESAMPLES, scratch, &result->of);
 	free(scratch);
 	return result;
 }

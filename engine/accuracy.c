@@ -1,0 +1,259 @@
+/* accuracy.c - how far the indexes of an output may be off: by the integration, by the number of rows, by the number
+ * of signals, by failed rows.
+ *
+ * 1. Integration: some runs were made again on half the sample step, the same signal in other steps.  The difference
+ *    counts as an independent error of every run.
+ * 2. Rows: intervals of the first n/8, n/4, n/2 and of all n rows of the design.
+ * 3. What each does to the worst index, on one scale, and which is larger than the others together. */
+#include "engine/accuracy.h"
+
+#include <gsl/gsl_statistics_double.h>
+#include <math.h>
+
+enum {
+	RESAMPLES_FEW = 400, /* of n/8, n/4, n/2 rows: half widths to 5 % */
+	ROWS_FEW = 8,        /* fewer have no interval worth showing */
+};
+
+const char *pound_error_name(int row)
+{
+	static const char *const names[] = {
+#define X(member, name) name,
+	    POUND_ERRORS(X)
+#undef X
+	};
+	return row >= 0 && row < POUND_ERROR_NONE ? names[row] : NULL;
+}
+
+/* ---- integration ---- */
+
+/* Mean numerator and denominator of a row's sample over its signals. */
+static void means(const struct pound_sample_values *values, const struct pound_check *check, double *above,
+                  double *below)
+{
+	const int n_signals = values->n_signals;
+	size_t at = ((size_t)check->row * (values->n_inputs + 2) + check->sample) * n_signals;
+	*above = *below = 0;
+	for (int r = 0; r < n_signals; r++) {
+		*above += values->numerator[at + r] / n_signals;
+		*below += values->denominator[at + r] / n_signals;
+	}
+}
+
+/* Relative difference of two numbers; 0 for equal ones, even zeros. */
+static double apart(double p, double q)
+{
+	return p == q ? 0 : fabs(p - q) / fmax(fabs(p), fabs(q));
+}
+
+/* Differences between runs and their checks.
+ *
+ * Given    values, checks
+ * Returns  accuracy   runs_checked, runs_unchecked, difference_median, difference_largest
+ *          value      variance of an output (a mean over R signals) that such differences make; NAN: none checked
+ * Memory   relative   (checks.n)
+ *
+ *   e = ((U' - U) - Y (u' - u)) / mean(u)          value = mean(e^2) / R
+ *
+ * Source   delta method of a ratio of means, as in rows.c; errors of different signals taken as independent
+ * Test     unit_accuracy: differences_of_runs_come_out_relative_and_as_a_variance
+ */
+static double differences(const struct pound_sample_values *values, struct pound_checks checks,
+                          double *relative, struct pound_accuracy *accuracy)
+{
+	double squares = 0;
+	int n = 0;
+	for (int k = 0; k < checks.n; k++) {
+		const struct pound_check *c = &checks.check[k];
+		double above, below;
+		means(values, c, &above, &below);
+		double once = c->numerator[0] / c->denominator[0], again = c->numerator[1] / c->denominator[1];
+		double e =
+		    (c->numerator[1] - c->numerator[0] - above / below * (c->denominator[1] - c->denominator[0])) /
+		    below;
+		if (!isfinite(once) || !isfinite(again) || !isfinite(e))
+			continue;
+		relative[n++] = apart(once, again);
+		squares += e * e;
+	}
+	accuracy->runs_checked = n;
+	accuracy->runs_unchecked = checks.n - n;
+	accuracy->difference_median = n ? gsl_stats_median(relative, 1, n) : NAN;
+	accuracy->difference_largest = n ? gsl_stats_max(relative, 1, n) : NAN;
+	return n ? squares / n / values->n_signals : NAN;
+}
+
+/* Change of the indexes when an independent error with the share q of the variance is taken out of all outputs.
+ *
+ *   S: q S / (1 - q)          T: q |1 - T| / (1 - q)
+ *
+ * Source   the error adds q to the variance, nothing to the covariance of B and C, and itself to half of (A - C)^2
+ * Test     unit_accuracy: indexes_move_no_more_than_stated_when_noise_is_added
+ */
+static double first_shift(double q, double first)
+{
+	return q < 1 ? fmin(1, q * fabs(first) / (1 - q)) : 1;
+}
+
+static double total_shift(double q, double total)
+{
+	return q < 1 ? fmin(1, q * fabs(1 - total) / (1 - q)) : 1;
+}
+
+/* The shift, and twice the deviation that the errors themselves cause in n rows.
+ *
+ *   S: 2 sqrt(2 q / n) (sqrt(1 + T) + |S|)          T: 4 sqrt(q / n) (sqrt T + T / sqrt(d + 2))
+ *
+ * Source   to first order in the errors: b (c - a) changes by e_b (c - a) + b (e_c - e_a), the variance by 2 mean(a e_a),
+ *          half of (c - a)^2 by (c - a) (e_c - e_a); variances of sums of independent terms, deviations of quotients added
+ * Test     unit_accuracy: indexes_move_no_more_than_stated_when_noise_is_added
+ */
+static void changes(struct pound_indices *indices, const struct pound_sample_values *values)
+{
+	struct pound_accuracy *accuracy = &indices->accuracy;
+	const double q = accuracy->variance_share, n = values->n_rows, d = values->n_inputs;
+	for (int j = 0; j < values->n_inputs; j++) {
+		double first = indices->first[j].value, total = indices->total[j].value, t = fmax(total, 0);
+		double first_spread = 2 * sqrt(2 * q / n) * (sqrt(1 + t) + fabs(first));
+		double total_spread = 4 * sqrt(q / n) * (sqrt(t) + t / sqrt(d + 2));
+		bool known = isfinite(q) && isfinite(first) && isfinite(total);
+		accuracy->inputs[j].first_change = known ? fmin(1, first_shift(q, first) + first_spread) : NAN;
+		accuracy->inputs[j].total_change = known ? fmin(1, total_shift(q, total) + total_spread) : NAN;
+	}
+}
+
+/* ---- rows ---- */
+
+static double half(struct pound_estimate estimate)
+{
+	return 0.5 * (estimate.high - estimate.low);
+}
+
+/* Half widths of the intervals from the first n/8, n/4, n/2 and all rows. */
+static void half_widths(const struct pound_sample_values *values, uint64_t seed, double *scratch,
+                        struct pound_indices *indices)
+{
+	struct pound_accuracy *accuracy = &indices->accuracy;
+	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];
+	for (int k = 0; k < POUND_LEVELS; k++) {
+		struct pound_sample_values part = *values;
+		part.n_rows = values->n_rows >> (POUND_LEVELS - 1 - k);
+		bool whole = part.n_rows == values->n_rows;
+		struct pound_indices of_part = {.first = whole ? indices->first : first,
+		                                .total = whole ? indices->total : total};
+		bool enough = whole || part.n_rows >= ROWS_FEW;
+		accuracy->rows[k] = enough ? part.n_rows : 0;
+		if (enough && !whole)
+			pound_sobol_indices(&part, seed, RESAMPLES_FEW, scratch, &of_part);
+		for (int j = 0; j < values->n_inputs; j++) {
+			accuracy->inputs[j].first_half[k] = enough ? half(of_part.first[j]) : NAN;
+			accuracy->inputs[j].total_half[k] = enough ? half(of_part.total[j]) : NAN;
+		}
+	}
+}
+
+/* Root mean square of all half widths of a level. */
+static double typical(const struct pound_accuracy *accuracy, int n_inputs, int level)
+{
+	double squares = 0;
+	for (int j = 0; j < n_inputs; j++)
+		squares +=
+		    pow(accuracy->inputs[j].first_half[level], 2) + pow(accuracy->inputs[j].total_half[level], 2);
+	return sqrt(squares / (2 * n_inputs));
+}
+
+/* How half widths fall with the rows: the straight line through their logarithms, and how many rows halve them.
+ *
+ *   rows_to_halve = n 2^(-1/slope)
+ *
+ * Test     unit_accuracy: half_widths_fall_with_the_root_of_the_rows
+ */
+static void slope(struct pound_accuracy *accuracy, int n_inputs)
+{
+	// a flatter line is scatter: halving would take more than 32 times the rows
+	const double flattest = -0.2;
+	double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+	for (int k = 0; k < POUND_LEVELS; k++) {
+		double p = log(accuracy->rows[k]), q = log(typical(accuracy, n_inputs, k));
+		if (!isfinite(q))
+			continue;
+		n++, x += p, y += q, xx += p * p, xy += p * q;
+	}
+	accuracy->slope = n > 1 ? (n * xy - x * y) / (n * xx - x * x) : NAN;
+	bool falls = accuracy->slope < flattest;
+	accuracy->rows_to_halve = falls ? accuracy->rows[POUND_LEVELS - 1] * exp2(-1 / accuracy->slope) : NAN;
+}
+
+/* ---- all together ---- */
+
+/* The error that is larger than all others together. */
+enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
+{
+	double sum = 0;
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		sum += isnan(errors[k]) ? 0 : errors[k];
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		if (errors[k] > 0.5 * sum)
+			return (enum pound_error)k;
+	return POUND_ERROR_NONE;
+}
+
+/* What each error does to the worst index; NAN where no index knows.
+ *
+ * The share of the excitation's randomness is an error in the indexes of the mean over all signals: that of an
+ * independent error, an upper estimate where samples share their signals. */
+static void errors_fill(const struct pound_indices *indices, const struct pound_sample_values *values,
+                        int rows_dropped, double errors[POUND_ERROR_NONE])
+{
+	const struct pound_accuracy *accuracy = &indices->accuracy;
+	const double w = indices->noise_share;
+	const int last = POUND_LEVELS - 1;
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		errors[k] = NAN;
+	for (int j = 0; j < values->n_inputs; j++) {
+		double *worst = errors;
+		worst[POUND_ERROR_SAMPLING] =
+		    fmax(worst[POUND_ERROR_SAMPLING],
+		         fmax(accuracy->inputs[j].first_half[last], accuracy->inputs[j].total_half[last]));
+		worst[POUND_ERROR_INTEGRATION] =
+		    fmax(worst[POUND_ERROR_INTEGRATION],
+		         fmax(accuracy->inputs[j].first_change, accuracy->inputs[j].total_change));
+		if (isfinite(w))
+			worst[POUND_ERROR_EXCITATION] =
+			    fmax(worst[POUND_ERROR_EXCITATION],
+			         fmax(first_shift(w, indices->first[j].value), total_shift(w, indices->total[j].value)));
+	}
+	errors[POUND_ERROR_FAILED_ROWS] = (double)rows_dropped / values->n_rows;
+}
+
+size_t pound_accuracy_scratch(int n_rows, int n_inputs, int n_signals, int n_checks)
+{
+	return pound_sobol_scratch(n_rows, n_inputs, n_signals) + n_checks;
+}
+
+/* How far the indexes of an output may be off, and for want of what.
+ *
+ * Given    values        the output's runs
+ *          checks        those that were made again
+ *          rows_dropped  of values, for a failed run
+ *          indices       of values, accuracy excepted
+ * Returns  indices       accuracy
+ * Memory   scratch       (pound_accuracy_scratch)
+ *
+ * Valid    Pounding is chaotic: after many contacts rounding alone parts two runs of one scene, and neither is the
+ *          better one.  Large differences of single runs then say that the scene does not determine the run; what it
+ *          does to the indexes stays small as long as such runs are few or alike in the mean.
+ * Test     unit_accuracy
+ */
+void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
+                             int rows_dropped, uint64_t seed, double *scratch, struct pound_indices *indices)
+{
+	struct pound_accuracy *accuracy = &indices->accuracy;
+	double variance = differences(values, checks, scratch, accuracy);
+	// an output that does not vary has no indexes to be off
+	accuracy->variance_share = indices->variance > 0 ? variance / indices->variance : NAN;
+	changes(indices, values);
+	half_widths(values, seed, scratch, indices);
+	slope(accuracy, values->n_inputs);
+	errors_fill(indices, values, rows_dropped, accuracy->errors);
+}

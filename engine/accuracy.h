@@ -1,0 +1,23 @@
+/* accuracy.h - how far the indexes of an output may be off, and for want of what. */
+#ifndef ACCURACY_H
+#define ACCURACY_H
+
+#include "engine/indices.h"
+
+/* One output of a run that was made twice: [0] for the result, [1] on half the sample step. */
+struct pound_check {
+	int row, sample;
+	double numerator[2], denominator[2]; /* NAN: failed */
+};
+
+struct pound_checks {
+	int n;
+	struct pound_check *check; /* (n) */
+};
+
+/* Fills indices->accuracy; the rest of the indices is known.  scratch: (pound_accuracy_scratch) */
+size_t pound_accuracy_scratch(int n_rows, int n_inputs, int n_signals, int n_checks); /* doubles */
+void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
+                             int rows_dropped, uint64_t seed, double *scratch, struct pound_indices *indices);
+
+#endif

@@ -1,0 +1,134 @@
+/* result_accuracy.c - error estimates of a sensitivity result, in numbers and in one sentence. */
+#include "schema/result_accuracy.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "schema/study_json.h"
+
+/* The sizes of the errors, and which is larger than all others together. */
+static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE])
+{
+	enum pound_error dominant = pound_accuracy_dominant(errors);
+	writer_object(w, "errors", WRITER_LINE);
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		writer_number(w, pound_error_name(k), errors[k]);
+	writer_end(w);
+	writer_text(w, "dominant", pound_error_name(dominant));
+	if (dominant == POUND_ERROR_NONE)
+		return;
+	static const char *const sentences[] = {
+	    [POUND_ERROR_SAMPLING] =
+	        "Too few rows are the largest error: an interval reaches %.2g to either side of its index.",
+	    [POUND_ERROR_EXCITATION] =
+	        "The excitation's randomness is the largest error: more signals for each row "
+	        "would move an index by up to %.2g.",
+	    [POUND_ERROR_INTEGRATION] = "Inexact runs are the largest error: they may move an index by %.2g.",
+	    [POUND_ERROR_FAILED_ROWS] =
+	        "Rows without a result are the largest error: a share of %.2g was left out."};
+	char sentence[200];
+	snprintf(sentence, sizeof sentence, sentences[dominant], errors[dominant]);
+	writer_text(w, "note", sentence);
+}
+
+static void write_halves(struct writer *w, const char *name, const struct pound_accuracy *accuracy,
+                         const double half[POUND_LEVELS])
+{
+	writer_array(w, name, WRITER_LINE);
+	for (int k = 0; k < POUND_LEVELS; k++)
+		if (accuracy->rows[k] > 0)
+			writer_number(w, NULL, half[k]);
+	writer_end(w);
+}
+
+/* Writes the error estimates of one output of one cell.
+ *
+ * Test     unit_result_json: every_output_says_how_far_it_may_be_off
+ */
+void result_accuracy_output(struct writer *w, const struct pound_study *study,
+                            const struct pound_indices *indices)
+{
+	const struct pound_accuracy *accuracy = &indices->accuracy;
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_whole(w, "runs_checked", accuracy->runs_checked);
+	writer_whole(w, "runs_unchecked", accuracy->runs_unchecked);
+	writer_number(w, "difference_median", accuracy->difference_median);
+	writer_number(w, "difference_largest", accuracy->difference_largest);
+	writer_number(w, "variance_share", accuracy->variance_share);
+	writer_number(w, "slope", accuracy->slope);
+	writer_number(w, "rows_to_halve",
+	              isfinite(accuracy->rows_to_halve) ? ceil(accuracy->rows_to_halve) : NAN);
+	writer_array(w, "rows", WRITER_LINE);
+	for (int k = 0; k < POUND_LEVELS; k++)
+		if (accuracy->rows[k] > 0)
+			writer_whole(w, NULL, accuracy->rows[k]);
+	writer_end(w);
+	writer_array(w, "inputs", WRITER_LINES);
+	for (int j = 0; j < study->n_inputs; j++) {
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name", study->inputs[j].name);
+		writer_number(w, "S1_integration", accuracy->inputs[j].first_change);
+		writer_number(w, "ST_integration", accuracy->inputs[j].total_change);
+		write_halves(w, "S1_half_widths", accuracy, accuracy->inputs[j].first_half);
+		write_halves(w, "ST_half_widths", accuracy, accuracy->inputs[j].total_half);
+		writer_end(w);
+	}
+	writer_end(w);
+	write_errors(w, accuracy->errors);
+	writer_end(w);
+}
+
+/* Writes the worst of all outputs of all cells.
+ *
+ * Test     unit_result_json: the_study_says_the_worst_of_its_outputs
+ */
+void result_accuracy_study(struct writer *w, const struct pound_study *study,
+                           const struct pound_result *result)
+{
+	double median = NAN, largest = NAN, errors[POUND_ERROR_NONE];
+	int64_t checked = 0;
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		errors[k] = NAN;
+	for (int c = 0; c < result->n_cells; c++) {
+		struct pound_scene scene;
+		int64_t checked_of_cell = 0;
+		study_cell(study, c, &scene);
+		for (int o = 0; o < study->n_outputs; o++) {
+			const struct pound_accuracy *accuracy = &result->cells[c].indices[o].accuracy;
+			if (!pound_output_applies(study->outputs[o], &scene))
+				continue;
+			if (accuracy->runs_checked > checked_of_cell)
+				checked_of_cell = accuracy->runs_checked;
+			median = fmax(median, accuracy->difference_median);
+			largest = fmax(largest, accuracy->difference_largest);
+			for (int k = 0; k < POUND_ERROR_NONE; k++)
+				errors[k] = fmax(errors[k], accuracy->errors[k]);
+		}
+		checked += checked_of_cell;
+	}
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_text(w, "check",
+	            "runs made again on half the sample step; pounding is chaotic, so single runs may part "
+	            "by rounding alone");
+	writer_whole(w, "runs_checked", checked);
+	writer_number(w, "difference_median", median);
+	writer_number(w, "difference_largest", largest);
+	write_errors(w, errors);
+	writer_end(w);
+}
+
+/* Writes the CPU time of n/8, n/4, n/2 and n rows. */
+void result_accuracy_timing(struct writer *w, const struct pound_result *result, double cpu_s)
+{
+	const int *rows = result->cells[0].indices[0].accuracy.rows;
+	writer_array(w, "rows", WRITER_LINE);
+	for (int k = 0; k < POUND_LEVELS; k++) {
+		if (!rows[k])
+			continue;
+		writer_object(w, NULL, WRITER_LINE);
+		writer_whole(w, "rows", rows[k]);
+		writer_number(w, "cpu_s", cpu_s * rows[k] / rows[POUND_LEVELS - 1]);
+		writer_end(w);
+	}
+	writer_end(w);
+}
