@@ -80,7 +80,7 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 
 /* Writes the worst of all outputs of all cells.
  *
- * Test     unit_result_json: the_study_says_the_worst_of_its_outputs
+ * Test     unit_result_json: every_output_says_how_far_it_may_be_off
  */
 void result_accuracy_study(struct writer *w, const struct pound_study *study,
                            const struct pound_result *result)

@@ -34,6 +34,17 @@ static void a_row_for_every_cell_output_and_input(void **state)
 	        "elastoplastic,0.2,impulse,2,3,4,f_e,/a,5,6\r\n");
 }
 
+static void error_estimates_stand_by_their_output_and_input(void **state)
+{
+	(void)state;
+	becomes(
+	    "{\"cells\": [{\"sweep\": {}, \"outputs\": [{\"name\": \"impulse\", \"inputs\": [{\"name\": \"a\"}, "
+	    "{\"name\": \"b\"}], \"accuracy\": {\"slope\": -0.5, \"rows\": [1, 2], \"inputs\": "
+	    "[{\"S1_integration\": 1}, {\"S1_integration\": 2}], \"errors\": {\"sampling\": 3}}}]}]}",
+	    "output.name,output.accuracy.slope,name,accuracy.S1_integration\r\n"
+	    "impulse,-0.5,a,1\r\nimpulse,-0.5,b,2\r\n");
+}
+
 static void a_row_for_every_cell_and_signal(void **state)
 {
 	(void)state;
@@ -63,5 +74,6 @@ static void what_is_no_result_gives_no_table(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(a_row_for_every_cell_output_and_input),
+           cmocka_unit_test(error_estimates_stand_by_their_output_and_input),
            cmocka_unit_test(a_row_for_every_cell_and_signal),
            cmocka_unit_test(what_is_no_result_gives_no_table))

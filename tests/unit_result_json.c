@@ -63,6 +63,7 @@ static void a_response_is_written_whole(void **state)
 	    "    \"yield_runs\": {\"what\": \"nonlinear responses without pounding\", \"asked\": 0, \"run\": "
 	    "0},\n"
 	    "    \"pounding_runs\": {\"what\": \"responses with pounding\", \"asked\": 1, \"run\": 1},\n"
+	    "    \"checks\": {\"what\": \"responses again on half the sample step\", \"asked\": 0, \"run\": 0},\n"
 	    "    \"never_touching\": 0,\n    \"moving_alike\": 0,\n    \"contacts\": 14,\n    \"left_out\": [\n"
 	    "      \"all nonlinear responses without pounding: no law needs one\"\n    ]\n  },\n"
 	    "  \"timing\": {\"wall_s\": 1.5, \"cpu_s\": 2.75, \"threads\": 2}\n}\n";
@@ -144,7 +145,11 @@ static void indices_fill(struct pound_indices *indices, struct pound_estimate *e
 {
 	for (int k = 0; k < 2 * n_inputs; k++)
 		estimates[k] = (struct pound_estimate){first + k, first + k - 0.25, first + k + 0.25};
-	*indices = (struct pound_indices){first - 1, first - 2, first - 3, estimates, estimates + n_inputs};
+	*indices = (struct pound_indices){.mean = first - 1,
+	                                  .variance = first - 2,
+	                                  .noise_share = first - 3,
+	                                  .first = estimates,
+	                                  .total = estimates + n_inputs};
 }
 
 static void indexes_stand_by_output_and_input(void **state)
@@ -186,13 +191,59 @@ static void indexes_stand_by_output_and_input(void **state)
 	reading_close(r);
 }
 
+static void every_output_says_how_far_it_may_be_off(void **state)
+{
+	(void)state;
+	struct pound_estimate estimates[4];
+	struct pound_indices indices[4];
+	for (int o = 0; o < 4; o++) {
+		indices_fill(&indices[o], estimates, 2, 10);
+		indices[o].accuracy = (struct pound_accuracy){.runs_checked = 30 + o,
+		                                              .difference_median = 1e-12 * (o + 1),
+		                                              .difference_largest = 1e-9 * (o + 1),
+		                                              .rows = {0, 0, 50, 100},
+		                                              .slope = -0.5,
+		                                              .rows_to_halve = 399.5,
+		                                              .errors = {0.125 * (o + 1), NAN, 1e-6, 0}};
+		indices[o].accuracy.inputs[1].total_change = 0.375;
+		indices[o].accuracy.inputs[1].first_half[2] = 0.75;
+		indices[o].accuracy.inputs[1].first_half[3] = 0.5;
+	}
+	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
+	struct pound_result result = {.n_cells = 2, .cells = cells};
+	struct reading *r = result_of(documents_sensitivity, &result);
+	static const char accuracy[] = "/cells/1/outputs/0/accuracy";
+	check_near(reading_number(r, "%s/runs_checked", accuracy), 32, 0);
+	check_near(reading_number(r, "%s/rows_to_halve", accuracy), 400, 0);
+	check_near(reading_number(r, "%s/inputs/1/ST_integration", accuracy), 0.375, 0);
+	assert_int_equal(reading_count(r, "%s/rows", accuracy), 2);
+	assert_int_equal(reading_count(r, "%s/inputs/1/S1_half_widths", accuracy), 2);
+	check_near(reading_number(r, "%s/inputs/1/S1_half_widths/0", accuracy), 0.75, 0);
+	check_near(reading_number(r, "%s/errors/sampling", accuracy), 0.375, 0);
+	assert_true(isnan(reading_number(r, "%s/errors/excitation", accuracy)));
+	assert_string_equal(reading_text(r, "%s/dominant", accuracy), "sampling");
+	assert_string_equal(
+	    reading_text(r, "%s/note", accuracy),
+	    "Too few rows are the largest error: an interval reaches 0.38 to either side of its index.");
+	// the worst of all outputs of all cells; runs are those of the cells
+	check_near(reading_number(r, "/accuracy/runs_checked"), 31 + 33, 0);
+	check_near(reading_number(r, "/accuracy/difference_largest"), 4e-9, 0);
+	check_near(reading_number(r, "/accuracy/errors/sampling"), 0.5, 0);
+	// in proportion
+	check_near(reading_number(r, "/timing/rows/0/rows"), 50, 0);
+	check_near(reading_number(r, "/timing/rows/0/cpu_s"), 1.375, 0);
+	check_near(reading_number(r, "/timing/rows/1/cpu_s"), 2.75, 0);
+	reading_close(r);
+}
+
 static void undefined_indexes_are_null_and_say_why(void **state)
 {
 	(void)state;
 	struct pound_estimate none[4];
 	for (int k = 0; k < 4; k++)
 		none[k] = (struct pound_estimate){NAN, NAN, NAN};
-	struct pound_indices indices[2] = {{1.0, 0.0, NAN, none, none + 2}, {NAN, NAN, NAN, none, none + 2}};
+	struct pound_indices indices[2] = {{1.0, 0.0, NAN, none, none + 2, {0}},
+	                                   {NAN, NAN, NAN, none, none + 2, {0}}};
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
 	struct reading *r = result_of(documents_sensitivity, &result);
@@ -248,4 +299,5 @@ CHECK_MAIN(cmocka_unit_test(a_response_is_written_whole),
            cmocka_unit_test(timing_is_the_last_line_but_one_and_all_that_differs),
            cmocka_unit_test(a_swept_law_stands_by_its_name),
            cmocka_unit_test(indexes_stand_by_output_and_input),
+           cmocka_unit_test(every_output_says_how_far_it_may_be_off),
            cmocka_unit_test(undefined_indexes_are_null_and_say_why), cmocka_unit_test(left_out_work_adds_up))
