@@ -44,6 +44,10 @@ static const struct violation VIOLATIONS[] = {
      "void *gsl_qrng_alloc(int);\nvoid *pound_p(void);\nvoid *pound_p(void)\n{\n"
      "\treturn gsl_qrng_alloc(8);\n}\n",
      "has GSL allocate", "p.o: gsl_qrng_alloc"},
+    {"engine/q.c",
+     "double log(double);\ndouble pound_q(double x);\ndouble pound_q(double x)\n{\n"
+     "\treturn log(x);\n}\n",
+     "those of elementary.h", "q.o: log"},
 };
 
 enum { N_VIOLATIONS = sizeof VIOLATIONS / sizeof VIOLATIONS[0] };
