@@ -34,6 +34,8 @@ enum {
 	READERS = 4,
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
 	USER_VERSION = 1,            /* as in store.sql */
+	LOCK_TRIES = 50,             /* half a second together */
+	LOCK_PAUSE_NS = 10000000,    /* [ns] */
 };
 
 // clang-format off
@@ -247,6 +249,11 @@ static bool locked(struct store *store, const char *path)
 	snprintf(name, sizeof name, "%s-lock", path);
 	store->lock_file = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 	bool ours = store->lock_file >= 0 && flock(store->lock_file, LOCK_EX | LOCK_NB) == 0;
+	// a server that was just killed keeps its lock until its memory is given back
+	for (int i = 0; !ours && errno == EWOULDBLOCK && i < LOCK_TRIES; i++) {
+		nanosleep(&(struct timespec){.tv_nsec = LOCK_PAUSE_NS}, NULL);
+		ours = flock(store->lock_file, LOCK_EX | LOCK_NB) == 0;
+	}
 	if (!ours && errno == EWOULDBLOCK)
 		log_line("another server uses the database %s", path);
 	else if (!ours)

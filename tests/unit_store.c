@@ -1,7 +1,10 @@
 /* The store by itself: order, states, and what happens once. */
 #include "server/store.h"
 
+#include <signal.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/check.h"
@@ -19,7 +22,8 @@ static int database(void **state)
 static int removal(void **state)
 {
 	static const char *const ends[] = {"", "-wal", "-shm", "-lock"};
-	store_close(*state);
+	if (*state)
+		store_close(*state);
 	for (int i = 0; i < 4; i++) {
 		char name[96];
 		snprintf(name, sizeof name, "%s%s", path, ends[i]);
@@ -121,6 +125,32 @@ static void a_store_in_use_is_not_opened_again(void **state)
 	assert_null(store_open(path));
 }
 
+/* The lock of a process that was killed lasts until its memory is given back, which takes as long as it is large. */
+static void a_store_whose_server_was_just_killed_is_opened(void **state)
+{
+	enum { LARGE = 256 << 20 };
+	char byte;
+	int told[2];
+	store_close(*state);
+	*state = NULL;
+	assert_int_equal(pipe(told), 0);
+	pid_t server = fork();
+	if (server == 0) {
+		char *memory = malloc(LARGE);
+		bool opened = store_open(path) != NULL;
+		if (memory && opened && write(told[1], memset(memory, 1, LARGE), 1) == 1)
+			pause();
+		_exit(1);
+	}
+	close(told[1]);
+	assert_int_equal(read(told[0], &byte, 1), 1);
+	close(told[0]);
+	kill(server, SIGKILL);
+	*state = store_open(path);
+	assert_non_null(*state);
+	assert_int_equal(waitpid(server, NULL, 0), server);
+}
+
 static void a_running_study_is_queued_again_when_the_store_opens(void **state)
 {
 	char told[128];
@@ -161,6 +191,6 @@ static void a_file_that_is_no_database_is_refused_and_left_alone(void **state)
 CHECK_MAIN(STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
            STORED(a_study_finishes_once), STORED(a_block_is_kept_only_while_its_study_runs),
            STORED(a_failed_study_says_why), STORED(names_are_bytes_and_never_sql),
-           STORED(a_store_in_use_is_not_opened_again),
+           STORED(a_store_in_use_is_not_opened_again), STORED(a_store_whose_server_was_just_killed_is_opened),
            STORED(a_running_study_is_queued_again_when_the_store_opens),
            STORED(a_file_that_is_no_database_is_refused_and_left_alone))
