@@ -133,12 +133,16 @@ static enum outcome print_result(const char *json, size_t n, const char *format)
 {
 	if (strcmp(format, "table") == 0)
 		return show_result(json, n);
-	size_t n_csv;
-	char *csv = strcmp(format, "csv") == 0 ? result_to_csv(json, n, &n_csv) : NULL;
-	if (csv)
-		fwrite(csv, 1, n_csv, stdout);
-	else
+	if (strcmp(format, "json") == 0) {
 		fwrite(json, 1, n, stdout);
+		return OUTCOME_OK;
+	}
+	char *csv = result_to_csv(json, n, &n);
+	if (!csv) {
+		command_complain("out of memory");
+		return OUTCOME_FAILED;
+	}
+	fwrite(csv, 1, n, stdout);
 	free(csv);
 	return OUTCOME_OK;
 }
@@ -189,7 +193,7 @@ static enum outcome run_and_print(const struct pound_study *study, const struct 
 /* `pound run STUDY.json`: computes the study and prints its result.
  *
  * Returns  value   OUTCOME_USAGE: the study is invalid; OUTCOME_STUDY_FAILED; OUTCOME_FAILED: stopped, no memory
- * Test     client_run: threads_and_server_give_the_same_bytes
+ * Test     client_run: every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server
  */
 enum outcome run_study(const struct options *options)
 {
