@@ -25,8 +25,7 @@ enum {
 	X(POUND_NOMEM,   -1, "out of memory")                                                 \
 	X(POUND_STOPPED, -2, "stopped by the caller")                                         \
 	X(POUND_CHATTER, -3, "more events in one sample interval than allowed")               \
-	X(POUND_FAILED,  -4, "too few rows of the design could be computed")                  \
-	X(POUND_UNSTABLE, -5, "the steps of the solver are too long for this scene")          \
+	X(POUND_UNSTABLE, -4, "the steps of the solver are too long for this scene")          \
 	X(POUND_TOLERANCE, -6, "the tolerance of the solver is out of its reach")
 // clang-format on
 
