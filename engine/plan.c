@@ -404,7 +404,7 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 		bool wall = ask->scene.oscillators[i].rigid_wall;
 		double most = wall ? 0 : !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
 		max[i] = ldexp(most, e);
-		max_free[i] = free ? ldexp(free->displacement_max[0], e) : NAN;
+		max_free[i] = wall ? 0 : free ? ldexp(free->displacement_max[0], e) : NAN;
 		force[i] = ldexp(ask->scene.oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);
 		yield[i] = yields ? ldexp(body->yield, e) : NAN;
 		demand[i] = yields && body->yield > 0 ? most / body->yield : NAN;

@@ -281,7 +281,7 @@ struct pound_work {
 	POUND_STAGES(X)
 #undef X
 	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
-	int64_t moving_alike;   /* pounding runs not made: equal linear oscillators never touch with force */
+	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
 	int64_t contacts;       /* contacts in the runs made */
 };
 

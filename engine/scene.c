@@ -78,11 +78,20 @@ void pound_scene_contact(const struct pound_scene *scene, struct pound_march_tas
 	task->contact_damping = 2 * zeta * sqrt(task->contact_stiffness / (1 + task->mass_ratio));
 }
 
-/* Whether two linear oscillators move alike under any ground motion, so that they never touch with force. */
+/* Whether two laws are the same law with the same numbers; a linear law has none. */
+static bool laws_alike(const struct pound_law *a, const struct pound_law *b)
+{
+	if (a->type != b->type)
+		return false;
+	return pound_pieces_linear(a->type) ||
+	       (a->hardening_ratio == b->hardening_ratio && a->target_demand == b->target_demand &&
+	        a->yield_displacement == b->yield_displacement && a->corrections == b->corrections);
+}
+
+/* Whether two oscillators move alike under any ground motion, so that they never touch with force. */
 bool pound_scene_alike(const struct pound_scene *scene)
 {
 	const struct pound_oscillator *o = scene->oscillators;
-	return !o[1].rigid_wall && pound_pieces_linear(pound_scene_law(scene, 0)->type) &&
-	       pound_pieces_linear(pound_scene_law(scene, 1)->type) && o[0].frequency_hz == o[1].frequency_hz &&
-	       o[0].damping_ratio == o[1].damping_ratio;
+	return !o[1].rigid_wall && laws_alike(pound_scene_law(scene, 0), pound_scene_law(scene, 1)) &&
+	       o[0].frequency_hz == o[1].frequency_hz && o[0].damping_ratio == o[1].damping_ratio;
 }

@@ -226,7 +226,7 @@ static void write_left_out(struct writer *w, const struct pound_study *study, co
 	          repeated);
 	leave_out(w, work->never_touching, "responses with pounding", "the bodies alone never close the gap");
 	leave_out(w, work->moving_alike, "responses with pounding",
-	          "equal linear oscillators move alike and never touch with force");
+	          "equal oscillators move alike and never touch with force");
 	if (met)
 		leave_out(w, asked - work->pounding_runs.run - work->never_touching - work->moving_alike,
 		          "responses with pounding", repeated);

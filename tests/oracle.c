@@ -339,7 +339,7 @@ struct pound_response oracle_response(const struct pound_scene *scene, const str
 	    .demand_1 = yields[0] ? (double)at.u_max[0] / yield[0] : NAN,
 	    .demand_free_1 = yields[0] ? (double)free.u_max[0] / yield[0] : NAN,
 	    .displacement_max_2 = (double)at.u_max[1],
-	    .displacement_max_free_2 = wall ? NAN : (double)free.u_max[1],
+	    .displacement_max_free_2 = wall ? 0 : (double)free.u_max[1],
 	    .force_max_2 = (double)at.r_max[1],
 	    .yield_displacement_2 = yields[1] ? yield[1] : NAN,
 	    .demand_2 = yields[1] ? (double)at.u_max[1] / yield[1] : NAN,

@@ -275,7 +275,7 @@ static void left_out_work_adds_up(void **state)
 	    "90 linear responses without pounding: equal to one that was made",
 	    "10 nonlinear responses without pounding: equal to one that was made",
 	    "20 responses with pounding: the bodies alone never close the gap",
-	    "10 responses with pounding: equal linear oscillators move alike and never touch with force",
+	    "10 responses with pounding: equal oscillators move alike and never touch with force",
 	    "20 responses with pounding: equal to one that was made",
 	};
 	assert_int_equal(reading_count(r, "/work/left_out"), 6);
