@@ -6,6 +6,7 @@
  * 2. Rows: intervals of the first n/8, n/4, n/2 and of all n rows of the design.
  * 3. What each does to the worst index, on one scale, and which is larger than the others together. */
 #include "engine/accuracy.h"
+#include "engine/elementary.h"
 
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
@@ -162,6 +163,15 @@ static double typical(const struct pound_accuracy *accuracy, int n_inputs, int l
 	return sqrt(squares / (2 * n_inputs));
 }
 
+/* 2^x for x in [0, 64], by bisection of the logarithm that is the same on every machine; exact to rounding. */
+static double two_to(double x)
+{
+	double low = 1, high = 0x1p64, wanted = x * pound_elementary_log(2);
+	for (double middle = 0x1p32; low < middle && middle < high; middle = low + 0.5 * (high - low))
+		*(pound_elementary_log(middle) < wanted ? &low : &high) = middle;
+	return high;
+}
+
 /* How half widths fall with the rows: the straight line through their logarithms, and how many rows halve them.
  *
  *   rows_to_halve = n 2^(-1/slope)
@@ -174,14 +184,15 @@ static void slope(struct pound_accuracy *accuracy, int n_inputs)
 	const double flattest = -0.2;
 	double n = 0, x = 0, y = 0, xx = 0, xy = 0;
 	for (int k = 0; k < POUND_LEVELS; k++) {
-		double p = log(accuracy->rows[k]), q = log(typical(accuracy, n_inputs, k));
-		if (!isfinite(q))
+		double half = typical(accuracy, n_inputs, k);
+		if (!(half > 0 && isfinite(half)))
 			continue;
+		double p = pound_elementary_log(accuracy->rows[k]), q = pound_elementary_log(half);
 		n++, x += p, y += q, xx += p * p, xy += p * q;
 	}
 	accuracy->slope = n > 1 ? (n * xy - x * y) / (n * xx - x * x) : NAN;
 	bool falls = accuracy->slope < flattest;
-	accuracy->rows_to_halve = falls ? accuracy->rows[POUND_LEVELS - 1] * exp2(-1 / accuracy->slope) : NAN;
+	accuracy->rows_to_halve = falls ? accuracy->rows[POUND_LEVELS - 1] * two_to(-1 / accuracy->slope) : NAN;
 }
 
 /* ---- all together ---- */
