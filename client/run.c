@@ -165,10 +165,17 @@ static void complain(const char *path, const struct problems *problems)
 	free(json);
 }
 
+static double thread_cpu(void)
+{
+	return seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
 static enum outcome run_and_print(const struct pound_study *study, const struct options *options)
 {
 	double wall = seconds(CLOCK_MONOTONIC);
 	struct pound_run *run = pound_run_create(study, options->threads);
+	if (run)
+		pound_run_clock(run, thread_cpu);
 	enum pound_status status = run ? compute(run, options->threads, study_runs(study), wall) : POUND_NOMEM;
 	const struct timing timing = {.wall_s = seconds(CLOCK_MONOTONIC) - wall,
 	                              .cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID),

@@ -249,6 +249,31 @@ static void response(const struct reading *result)
 	}
 }
 
+/* The mean errors of each setting; the largest ones are in the JSON and the CSV. */
+static void convergence(const struct reading *result)
+{
+	static const char *const columns[] = {"method",  "step_s",  "tolerance", "failed", "u_max", "demand",
+	                                      "impulse", "history", "order",     "cpu_s",  NULL};
+	static const char *const members[] = {"step_s",
+	                                      "tolerance",
+	                                      "runs_failed",
+	                                      "displacement_error_mean",
+	                                      "demand_error_mean",
+	                                      "impulse_error_mean",
+	                                      "history_error_mean",
+	                                      "order"};
+	struct table *table = table_open(columns);
+	for (int row = 0; row < reading_count(result, "/rows"); row++) {
+		table_text(table, reading_text(result, "/rows/%d/method", row));
+		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
+			table_number(table, reading_number(result, "/rows/%d/%s", row, members[m]));
+		table_number(table, reading_number(result, "/timing/run_cpu_s/%d", row));
+	}
+	puts("\nrelative errors against the first row, means over the signals; cpu_s of one run");
+	table_print(table, 2);
+	table_close(table);
+}
+
 /* What was asked and what was run, and why not all of it. */
 static void print_work(const struct reading *result)
 {
@@ -297,6 +322,7 @@ static const struct {
 } KINDS[] = {
 	{"sensitivity", sensitivity},
 	{"response",    response},
+	{"convergence", convergence},
 };
 // clang-format on
 

@@ -2,6 +2,12 @@
 #include "engine/design.h"
 #include "engine/plan.h"
 
+/* The solver of a row. */
+struct pound_solver pound_campaign_solver(const struct pound_campaign *campaign, int row)
+{
+	return campaign->trials ? pound_convergence_solver(campaign->study, row) : campaign->study->solver;
+}
+
 /* Value of a sweep in a cell; the last sweep runs fastest. */
 double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep)
 {

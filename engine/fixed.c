@@ -244,7 +244,13 @@ static void course_start(struct course *c, int n_steps)
 static int steps_of(double time_step, double step)
 {
 	double steps = time_step / step;
-	return (int)fmax(1, ceil(steps * (1 - 4 * DBL_EPSILON)));
+	return (int)fmin(fmax(1, ceil(steps * (1 - 4 * DBL_EPSILON))), INT32_MAX);
+}
+
+/* The step that is taken where one is asked for [s]. */
+double pound_fixed_step(double time_step, double step)
+{
+	return time_step / steps_of(time_step, step);
 }
 
 typedef bool advance(struct course *c, double ground);

@@ -64,6 +64,7 @@ struct pound_plan {
 	struct pound_march_task *tasks;     /* (tasks) */
 	struct pound_march_result *results; /* (tasks) */
 	void *scratch;                      /* of the march */
+	int n_before;                       /* marches without pounding, they are the first */
 };
 
 /* ---- work space ---- */
@@ -451,7 +452,7 @@ static int item_write(struct pound_plan *plan, const struct pound_campaign *camp
 			// samples of a row share their noise, or have their own
 			struct pound_stream noise = {.seed = campaign->study->design.seed,
 			                             .what = POUND_STREAM_NOISE,
-			                             .row = (uint32_t)row,
+			                             .row = campaign->trials ? 0 : (uint32_t)row,
 			                             .sample =
 			                                 campaign->study->design.common_signals ? 0 : (uint32_t)sample,
 			                             .signal = (uint32_t)signal};
@@ -497,7 +498,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
                                  pound_plan_take *take, void *into)
 {
 	int n_items = n * campaign->n_cells * campaign->n_samples, n_asks = 0;
-	const struct pound_solver *solver = &campaign->study->solver;
+	const struct pound_solver solver = pound_campaign_solver(campaign, first / campaign->n_signals);
 	register_clear(&plan->motion_keys);
 	register_clear(&plan->march_keys);
 	for (int item = first; item < first + n; item++)
@@ -517,15 +518,15 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 		stage_ask(plan, n_items, n_asks, stage, &work->checks);
 		int checks_end = plan->march_keys.n;
 		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs);
-		marches_run(plan, solver, checks_end, &done, stop);
+		marches_run(plan, &solver, checks_end, &done, stop);
 	}
 	if (*stop)
 		return POUND_STOPPED;
 	struct pound_work of_checks = {0};
 	pounding_ask(plan, n_items, n_asks, &work->checks, &of_checks);
-	int before = plan->march_keys.n;
+	int before = plan->n_before = plan->march_keys.n;
 	pounding_ask(plan, 0, n_items, &work->pounding_runs, work);
-	marches_run(plan, solver, before, &done, stop);
+	marches_run(plan, &solver, before, &done, stop);
 	for (int j = before; j < done; j++)
 		work->contacts += plan->results[j].contacts;
 	if (*stop)
@@ -537,4 +538,26 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 		take(into, &ask->scene, &response, status);
 	}
 	return POUND_OK;
+}
+
+enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct pound_solver *solver,
+                                          int item, int sample, const atomic_bool *stop, double *u)
+{
+	const struct ask *ask = &plan->asks[item];
+	struct pound_march_task task = plan->tasks[ask->march < 0 ? ask->bodies[0].march : ask->march];
+	struct pound_march_result result;
+	assert(sample >= 1 && sample < task.n_samples);
+	task.n_samples = sample + 1;
+	pound_solver_run(solver, &task, &result, 1, plan->scratch, stop);
+	if (*stop)
+		return POUND_STOPPED;
+	*u = ldexp(result.u[0], plan->motions[ask->motion].exponent);
+	return result.status;
+}
+
+int pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver, const atomic_bool *stop)
+{
+	int from = plan->n_before < plan->march_keys.n ? plan->n_before : 0, n = plan->march_keys.n - from;
+	pound_solver_run(solver, &plan->tasks[from], &plan->results[from], n, plan->scratch, stop);
+	return n;
 }

@@ -16,11 +16,13 @@ struct pound_campaign {
 	const double *design; /* inputs of A and B  (rows x 2 x n_inputs) */
 	int n_cells, n_rows, n_samples, n_signals;
 	int check_every; /* items 0, check_every, ... are run again to check the integration; 0: none */
+	bool trials;     /* the rows are one scene under the same signals, each with a solver of its own */
 };
 
 int pound_campaign_checks(const struct pound_campaign *campaign, int item); /* among the items before this */
 
 struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample);
+struct pound_solver pound_campaign_solver(const struct pound_campaign *campaign, int row);
 double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep);
 
 struct pound_plan_size {
@@ -38,12 +40,21 @@ struct pound_plan; /* work space of one worker */
 size_t pound_plan_bytes(struct pound_plan_size size);
 struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size);
 
-/* Runs items [first, first + n) and hands every response to `take`, in the order of item, cell, sample, then those of
- * the checks in the same order. */
+/* Runs items [first, first + n), of one row where rows are trials, and hands every response to `take`, in the order of
+ * item, cell, sample, then those of the checks in the same order. */
 typedef void pound_plan_take(void *into, const struct pound_scene *scene,
                              const struct pound_response *response, enum pound_status status);
 enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,
                                  int n, const atomic_bool *stop, struct pound_work *work,
                                  pound_plan_take *take, void *into);
+
+/* After pound_plan_run, for its items in turn where each has one sample: the displacement of the left body at a sample of
+ * the ground motion, by running its march that far. */
+enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct pound_solver *solver,
+                                          int item, int sample, const atomic_bool *stop, double *u);
+
+/* After pound_plan_run, for taking the time: its marches with pounding once more, all its marches if there is none.
+ * Returns how many. */
+int pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver, const atomic_bool *stop);
 
 #endif

@@ -13,10 +13,12 @@
 #define POUND_VERSION "0.1.0"
 
 enum {
-	POUND_OSCILLATORS = 2, /* left, right */
-	POUND_INPUTS_MAX = 16, /* inputs of one sensitivity study */
-	POUND_OUTPUTS_MAX = 8, /* outputs of one study */
-	POUND_SWEEPS_MAX = 8,  /* swept fields of one study */
+	POUND_OSCILLATORS = 2,   /* left, right */
+	POUND_INPUTS_MAX = 16,   /* inputs of one sensitivity study */
+	POUND_OUTPUTS_MAX = 8,   /* outputs of one study */
+	POUND_SWEEPS_MAX = 8,    /* swept fields of one study */
+	POUND_SOLVERS = 4,       /* rows of the solvers */
+	POUND_SETTINGS_MAX = 16, /* of one solver that are compared */
 };
 
 // clang-format off
@@ -38,7 +40,7 @@ enum pound_status {
 /* The study: one in-memory form.  `type`, `model`, `method` and `outputs[]` are row numbers of the engine's tables;
  * pound_*_name(row) is the name in a study document, NULL past the last row. */
 
-enum pound_kind { POUND_KIND_RESPONSE, POUND_KIND_SENSITIVITY };
+enum pound_kind { POUND_KIND_RESPONSE, POUND_KIND_SENSITIVITY, POUND_KIND_CONVERGENCE };
 
 struct pound_law {
 	int type;                  /* row of the laws, pound_law_name */
@@ -128,6 +130,17 @@ struct pound_solver {
 	double step;      /* longest [s]  > 0; a sample interval is cut into as few equal steps as that allows */
 };
 
+struct pound_settings {
+	int n;
+	double values[POUND_SETTINGS_MAX]; /* steps [s] or tolerances, each smaller than the one before  (n) */
+};
+
+/* the solvers that a convergence study compares with the event solver */
+struct pound_convergence {
+	struct pound_settings settings[POUND_SOLVERS]; /* by row of the solvers; none for a solver without */
+	double history;                                /* displacements are compared for so long [s]  > 0 */
+};
+
 struct pound_study {
 	enum pound_kind kind;
 	const char *name; /* NULL: none */
@@ -140,6 +153,7 @@ struct pound_study {
 	int n_outputs;
 	int outputs[POUND_OUTPUTS_MAX]; /* rows of the outputs, pound_output_name */
 	struct pound_solver solver;
+	struct pound_convergence convergence;
 };
 
 /* The tables' names, NULL past the last row. */
@@ -153,6 +167,10 @@ const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
 const char *pound_output_name(int row);
+
+/* The trials of a convergence study: the event solver, the second opinion, every setting; and the solver of one. */
+int pound_convergence_trials(const struct pound_study *study);
+struct pound_solver pound_convergence_solver(const struct pound_study *study, int trial);
 
 /* What is wrong with the parameters of a distribution, in words, or NULL. */
 const char *pound_distribution_fault(const struct pound_distribution *distribution);
@@ -252,6 +270,22 @@ struct pound_indices {
 	struct pound_accuracy accuracy;
 };
 
+/* over the signals, relative; NAN: the scene has no such value, or no signal gave one */
+struct pound_deviation {
+	double mean, largest;
+};
+
+/* One setting of one solver against the event solver; an error is that of the left body. */
+struct pound_trial {
+	struct pound_solver solver;                           /* step: the one that was taken */
+	int runs_failed;                                      /* signals without a result */
+	struct pound_deviation displacement, demand, impulse; /* of the largest ones */
+	struct pound_deviation
+	    history;  /* largest difference of displacements in the first seconds over the largest */
+	double order; /* slope of log mean history error over log setting, from the trial before; NAN: none */
+	double cpu;   /* of a run [s]; NAN: there is no clock */
+};
+
 struct pound_cell {
 	double sweep[POUND_SWEEPS_MAX];    /* the value of each sweep, (n_sweeps) used */
 	int64_t runs, runs_failed;         /* pounding runs asked, and those among them without a result */
@@ -288,6 +322,9 @@ struct pound_work {
 struct pound_result {
 	int n_cells;
 	struct pound_cell *cells; /* (n_cells) */
+	int n_trials;
+	struct pound_trial
+	    *trials; /* convergence: the event solver, the second opinion, the settings  (n_trials) */
 	struct pound_work work;
 };
 
@@ -310,7 +347,9 @@ void pound_run_block_restore(struct pound_run *run, int block, const double *val
 int pound_run_reductions(const struct pound_run *run);
 enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker);
 const struct pound_result *
-pound_run_result(struct pound_run *run);    /* after the last reduction; owned by run */
+pound_run_result(struct pound_run *run); /* after the last reduction; owned by run */
+/* Seconds of CPU time of the calling thread, for the times of a convergence study; before the first block. */
+void pound_run_clock(struct pound_run *run, double (*cpu)(void));
 void pound_run_stop(struct pound_run *run); /* blocks and reductions return POUND_STOPPED soon */
 
 /* The sample behind row `row` and design block `sample` (0: A, 1: B, 2 + j: A with column j from B), after all

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "engine/accuracy.h"
+#include "engine/convergence.h"
 #include "engine/design.h"
 #include "engine/indices.h"
 #include "engine/outputs.h"
@@ -22,7 +23,11 @@ enum {
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
 	CHECK_EVERY = 100, /* items between two checked ones */
 	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
+	TRIAL_MEASURES = sizeof(struct pound_trial_run) / sizeof(double),
 };
+
+/* CPU time that a run is timed over at least [s]. */
+static const double CLOCK_LEAST = 0.02;
 
 struct pound_run {
 	struct pound_campaign campaign;
@@ -36,6 +41,7 @@ struct pound_run {
 	struct pound_estimate *estimates; /* (n_cells x n_outputs x 2 x n_inputs) */
 	struct pound_indices *indices;    /* (n_cells x n_outputs) */
 	struct pound_response *responses; /* (n_cells x n_signals) */
+	double (*cpu)(void);              /* clock of the calling thread [s]; NULL: none */
 	atomic_bool stop;
 };
 
@@ -108,12 +114,15 @@ static const double *check_values(const struct pound_run *run, int item, int cel
 
 static struct pound_campaign campaign_of(const struct pound_study *study)
 {
-	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
+	bool sampled = study->kind == POUND_KIND_SENSITIVITY, trials = study->kind == POUND_KIND_CONVERGENCE;
 	struct pound_campaign c = {.study = study,
 	                           .n_cells = 1,
-	                           .n_rows = sampled ? study->design.rows : 1,
+	                           .n_rows = sampled  ? study->design.rows
+	                                     : trials ? pound_convergence_trials(study)
+	                                              : 1,
 	                           .n_samples = sampled ? study->n_inputs + 2 : 1,
-	                           .n_signals = study->scene.excitation.signals};
+	                           .n_signals = study->scene.excitation.signals,
+	                           .trials = trials};
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
 	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples, every = items_of(&c) / checked_min;
@@ -141,7 +150,8 @@ static int blocks_cut(const struct pound_campaign *c, int *first, struct pound_p
 		if (i % c->n_signals == 0)
 			item = pound_plan_size(c, i / c->n_signals);
 		bool full = block.asks + item.asks > BLOCK_RUNS || block.samples + item.samples > BLOCK_SAMPLES;
-		if (i == 0 || full) {
+		bool solved = c->trials && i % c->n_signals == 0; // a block has one solver
+		if (i == 0 || full || solved) {
 			if (first)
 				first[n_blocks] = i;
 			n_blocks++;
@@ -172,6 +182,8 @@ static size_t checks_size(const struct pound_campaign *c)
 /* Doubles a reduction works in: two columns of measures, the checks, and what the indexes need. */
 static size_t reduction_size(const struct pound_campaign *c)
 {
+	if (c->trials)
+		return (size_t)items_of(c) * TRIAL_MEASURES;
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
 	return 2 * (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals + checks_size(c) +
@@ -212,7 +224,9 @@ static bool result_create(struct pound_run *run)
 	run->responses = piece(sizeof *run->responses * n_cells * (size_t)c->n_signals);
 	run->indices = piece(sizeof *run->indices * n_cells * n_outputs);
 	run->estimates = piece(sizeof *run->estimates * n_cells * n_outputs * 2 * (size_t)study->n_inputs);
-	if (!run->result.cells || !run->responses || !run->indices || !run->estimates)
+	run->result.n_trials = c->trials ? c->n_rows : 0;
+	run->result.trials = piece(sizeof *run->result.trials * (size_t)run->result.n_trials);
+	if (!run->result.cells || !run->responses || !run->indices || !run->estimates || !run->result.trials)
 		return false;
 	for (int cell = 0; cell < c->n_cells; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
@@ -240,7 +254,9 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	if (!run)
 		return NULL;
 	run->campaign = campaign_of(study);
-	run->n_measures = study->kind == POUND_KIND_SENSITIVITY ? 2 * study->n_outputs : (int)MEASURES;
+	run->n_measures = study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
+	                  : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
+	                                                          : (int)MEASURES;
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
 	double *design = piece(sizeof(double) * n_design);
 	run->campaign.design = design;
@@ -278,6 +294,7 @@ void pound_run_free(struct pound_run *run)
 	                        run->plans,
 	                        run->scratch,
 	                        run->result.cells,
+	                        run->result.trials,
 	                        run->responses,
 	                        run->indices,
 	                        run->estimates};
@@ -289,6 +306,11 @@ void pound_run_free(struct pound_run *run)
 void pound_run_stop(struct pound_run *run)
 {
 	atomic_store(&run->stop, true);
+}
+
+void pound_run_clock(struct pound_run *run, double (*cpu)(void))
+{
+	run->cpu = cpu;
 }
 
 /* ---- blocks ---- */
@@ -329,6 +351,15 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
                           enum pound_status status)
 {
 	struct slice *slice = into;
+	if (slice->study->kind == POUND_KIND_CONVERGENCE) {
+		struct pound_trial_run *trial = (struct pound_trial_run *)slice->at;
+		*trial = (struct pound_trial_run){.displacement = status ? NAN : response->displacement_max_1,
+		                                  .demand = status ? NAN : response->demand_1,
+		                                  .impulse = status ? NAN : response->impulse_max,
+		                                  .cpu = NAN};
+		slice->at += TRIAL_MEASURES;
+		return;
+	}
 	if (slice->study->kind == POUND_KIND_RESPONSE) {
 		memcpy(slice->at, response, sizeof *response);
 		for (size_t j = 0; j < MEASURES && status; j++)
@@ -345,6 +376,38 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
 	}
 }
 
+/* CPU time of a run in the plan's last block, NAN without a clock: as many rounds as can be told from its ticks. */
+static double run_time(const struct pound_run *run, struct pound_plan *plan,
+                       const struct pound_solver *solver)
+{
+	int n = 0;
+	if (!run->cpu)
+		return NAN;
+	double start = run->cpu(), now;
+	do {
+		n += pound_plan_repeat(plan, solver, &run->stop);
+		now = run->cpu();
+	} while (now - start < CLOCK_LEAST && n > 0 && !run->stop);
+	return n > 0 ? (now - start) / n : NAN;
+}
+
+/* Adds to a block of one trial the histories and the time of a run. */
+static enum pound_status trial_block(const struct pound_run *run, struct pound_plan *plan, int first, int n,
+                                     struct pound_trial_run *runs)
+{
+	const struct pound_campaign *c = &run->campaign;
+	const struct pound_solver solver = pound_campaign_solver(c, first / c->n_signals);
+	int samples[POUND_HISTORY], n_times = pound_convergence_times(c->study, samples);
+	for (int item = 0; item < n; item++)
+		for (int k = 0; k < n_times; k++)
+			if (pound_plan_displacement(plan, &solver, item, samples[k], &run->stop, &runs[item].history[k]))
+				runs[item].history[k] = NAN;
+	double cpu = run_time(run, plan, &solver);
+	for (int item = 0; item < n; item++)
+		runs[item].cpu = cpu;
+	return atomic_load(&run->stop) ? POUND_STOPPED : POUND_OK;
+}
+
 /* Computes a block into its slice of the values.
  *
  * Status   POUND_STOPPED  pound_run_stop was called; the block's values are not to be used
@@ -356,6 +419,9 @@ enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 	int first = run->first[block], n = run->first[block + 1] - first;
 	enum pound_status status = pound_plan_run(run->plans[worker], &run->campaign, first, n, &run->stop, &work,
 	                                          response_keep, &slice);
+	if (!status && run->campaign.trials)
+		status = trial_block(run, run->plans[worker], first, n,
+		                     (struct pound_trial_run *)block_values(run, block));
 	if (status)
 		return status;
 	const int64_t *counts = (const int64_t *)&work;
@@ -371,9 +437,11 @@ static bool has_indices(const struct pound_run *run)
 	return run->campaign.study->kind == POUND_KIND_SENSITIVITY;
 }
 
-/* One for each output of each cell; a cell's first also copies its responses. */
+/* One for each output of each cell; one for all trials. */
 int pound_run_reductions(const struct pound_run *run)
 {
+	if (run->campaign.trials)
+		return 1;
 	return run->campaign.n_cells * run->campaign.study->n_outputs;
 }
 
@@ -456,6 +524,19 @@ static void responses_reduce(struct pound_run *run, int cell, int output)
 	into->outputs[output] = below > 0 ? above / below : NAN;
 }
 
+static void trials_reduce(struct pound_run *run, double *scratch)
+{
+	int n = items_of(&run->campaign);
+	for (int item = 0; item < n; item++)
+		memcpy(scratch + (size_t)item * TRIAL_MEASURES, run_values(run, item, 0, 0),
+		       sizeof(double) * TRIAL_MEASURES);
+	pound_convergence_reduce(run->campaign.study, (const struct pound_trial_run *)scratch,
+	                         run->result.trials);
+	run->result.cells[0].runs_failed = 0;
+	for (int j = 0; j < run->result.n_trials; j++)
+		run->result.cells[0].runs_failed += run->result.trials[j].runs_failed;
+}
+
 /* Computes one output of one cell, once all blocks are done.
  *
  * Status   POUND_STOPPED  pound_run_stop was called
@@ -465,7 +546,9 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 	int n_outputs = run->campaign.study->n_outputs;
 	if (atomic_load(&run->stop))
 		return POUND_STOPPED;
-	if (has_indices(run))
+	if (run->campaign.trials)
+		trials_reduce(run, run->scratch[worker]);
+	else if (has_indices(run))
 		indices_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
 	else
 		responses_reduce(run, reduction / n_outputs, reduction % n_outputs);
@@ -483,7 +566,7 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 		for (int j = 0; j < (int)COUNTS; j++)
 			counts[j] += (int64_t)counted[j];
 	}
-	for (int cell = 0; cell < c->n_cells && !has_indices(run); cell++) {
+	for (int cell = 0; cell < c->n_cells && c->study->kind == POUND_KIND_RESPONSE; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
 		into->runs_failed = 0;
 		for (int signal = 0; signal < c->n_signals; signal++) {

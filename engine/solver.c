@@ -1,6 +1,7 @@
 /* solver.c - the ways to integrate a scene.  Adding one: its function and its row in solvers[]. */
 #include "engine/solver.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -15,6 +16,8 @@ static const struct solver {
     {"central_difference", pound_fixed_central, .step = true},
     {"adaptive", pound_adaptive_run, .tolerance = true},
 };
+
+static_assert(sizeof solvers / sizeof solvers[0] == POUND_SOLVERS, "a row for each solver");
 
 static const struct solver *solver_at(int row)
 {

@@ -15,6 +15,7 @@ void pound_solver_run(const struct pound_solver *solver, const struct pound_marc
                       struct pound_march_result *results, int n, void *scratch, const atomic_bool *stop);
 
 /* fixed.c */
+double pound_fixed_step(double time_step, double step);
 void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_march_task *task,
                          struct pound_march_result *result);
 void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,

@@ -11,8 +11,9 @@
 
 const char *study_kind_name(int kind)
 {
-	static const char *const names[] = {
-	    [POUND_KIND_RESPONSE] = "response", [POUND_KIND_SENSITIVITY] = "sensitivity"};
+	static const char *const names[] = {[POUND_KIND_RESPONSE] = "response",
+	                                    [POUND_KIND_SENSITIVITY] = "sensitivity",
+	                                    [POUND_KIND_CONVERGENCE] = "convergence"};
 	return kind >= 0 && kind < (int)(sizeof names / sizeof names[0]) ? names[kind] : NULL;
 }
 
@@ -26,6 +27,8 @@ static const char *signals_name(int common)
 #define OWN            AT(scene.oscillators[0].law)
 #define IN_LAW(member) offsetof(struct pound_law, member)
 #define SENSITIVITY    .kinds = " sensitivity "
+#define CONVERGENCE    .kinds = " convergence "
+#define SOLVED         .kinds = " response sensitivity "
 #define FILTERED       .types = " kanai_tajimi "
 #define RANDOM         .types = " kanai_tajimi white_noise "
 #define LASTING        .types = " white_noise harmonic "
@@ -45,6 +48,15 @@ static const char *signals_name(int common)
 	 FIELD_OPEN_MIN, "m", .text = "yield displacement, in place of target_demand"},                       \
 	{pattern "/corrections", FIELD_COUNT, law + IN_LAW(corrections), 1, 0, 100, FIELD_CLOSED, "",         \
 	 .text = "times the yield displacement found from target_demand is corrected"}
+
+#define SETTING_ROWS(solver, name, row, most, unit, what)                                                \
+	{"/convergence/" solver, FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",                                  \
+	 .text = "settings of " solver, CONVERGENCE, NOT_SCENE},                                              \
+	{"/convergence/" solver "/" name, FIELD_LIST, AT(convergence.settings[row]), 0, 0, POUND_SETTINGS_MAX, \
+	 FIELD_CLOSED, "", .text = what ", each smaller than the one before; some when absent", CONVERGENCE,  \
+	 NOT_SCENE},                                                                                          \
+	{"/convergence/" solver "/" name "/*", FIELD_REAL, AT(convergence.settings[row].values), 0, 0, most,  \
+	 FIELD_OPEN, unit, .text = "one of the " what, CONVERGENCE, NOT_SCENE}
 
 const struct field fields[] = {
 	{"/kind", FIELD_CHOICE, AT(kind), NAN, 0, 0, FIELD_CLOSED, "",
@@ -132,13 +144,13 @@ const struct field fields[] = {
 	 NAN, 0, 0, FIELD_CLOSED, "", .text = "distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
 
 	{"/sweep", FIELD_LIST, 0, 0, 0, POUND_SWEEPS_MAX, FIELD_CLOSED, "",
-	 .text = "fields that take each of their values; the cells are the product", NOT_SCENE},
+	 .text = "fields that take each of their values; the cells are the product", SOLVED, NOT_SCENE},
 	{"/sweep/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one swept field", NOT_SCENE},
+	 .text = "one swept field", SOLVED, NOT_SCENE},
 	{"/sweep/*/path", FIELD_TEXT, offsetof(struct pound_sweep, path), NAN, 1, 200, FIELD_CLOSED, "",
-	 .text = "JSON Pointer into \"scene\"", NOT_SCENE},
+	 .text = "JSON Pointer into \"scene\"", SOLVED, NOT_SCENE},
 	{"/sweep/*/values", FIELD_LIST, 0, NAN, 1, STUDY_CELLS_MAX, FIELD_CLOSED, "",
-	 .text = "values as the field itself takes them", NOT_SCENE},
+	 .text = "values as the field itself takes them", SOLVED, NOT_SCENE},
 
 	{"/design", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "which samples are run", NOT_SCENE},
@@ -153,20 +165,28 @@ const struct field fields[] = {
 	 NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_MAX, FIELD_CLOSED, "",
-	 .text = "what comes out; the amplifications that apply and the impulse when absent", NOT_SCENE},
+	 .text = "what comes out; the amplifications that apply and the impulse when absent", SOLVED, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one output", .choice = pound_output_name, NOT_SCENE},
+	 .text = "one output", .choice = pound_output_name, SOLVED, NOT_SCENE},
 
 	{"/solver", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "how a response is computed", NOT_SCENE},
+	 .text = "how a response is computed", SOLVED, NOT_SCENE},
 	{"/solver/method", FIELD_CHOICE, AT(solver.method), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "solver", .choice = pound_solver_name, NOT_SCENE},
+	 .text = "solver", .choice = pound_solver_name, SOLVED, NOT_SCENE},
 	{"/solver/tolerance", FIELD_REAL, AT(solver.tolerance), 1e-9, 0, 1, FIELD_OPEN, "",
 	 .text = "relative error allowed in a step; event is exact at any", .solvers = pound_solver_takes_tolerance,
-	 NOT_SCENE},
+	 SOLVED, NOT_SCENE},
 	{"/solver/step_s", FIELD_REAL, AT(solver.step), 1e-4, 0, INFINITY, FIELD_OPEN, "s",
 	 .text = "longest step; a sample interval is cut into as few equal ones", .solvers = pound_solver_takes_step,
-	 NOT_SCENE},
+	 SOLVED, NOT_SCENE},
+
+	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "what the event solver is compared with", CONVERGENCE, NOT_SCENE},
+	SETTING_ROWS("newmark", "steps_s", 1, INFINITY, "s", "steps"),
+	SETTING_ROWS("central_difference", "steps_s", 2, INFINITY, "s", "steps"),
+	SETTING_ROWS("adaptive", "tolerances", 3, 1, "", "tolerances"),
+	{"/convergence/history_s", FIELD_REAL, AT(convergence.history), 2, 0, INFINITY, FIELD_OPEN, "s",
+	 .text = "displacements are compared for so long from the start", CONVERGENCE, NOT_SCENE},
 };
 // clang-format on
 

@@ -48,4 +48,8 @@ void reader_inputs(struct reader *reader, const struct field *field, const cJSON
 void reader_sweeps(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_values(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 
+/* Settings of solvers: study_settings.c. */
+void settings_default(struct pound_study *study);
+void reader_settings(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+
 #endif

@@ -1,6 +1,7 @@
 /* result_csv.c - a result -> CSV, from its JSON: whatever members a result has become columns.
  *
- * Sensitivity: one row per cell, output and input.  Response: one row per cell and signal. */
+ * Sensitivity: one row per cell, output and input.  Response: one row per cell and signal.  Convergence: one row per
+ * setting, its time beside it. */
 #include <stdio.h>
 #include <string.h>
 
@@ -108,6 +109,23 @@ static void put_signals(struct writer *w, const cJSON *cell, bool *header)
 	}
 }
 
+static void put_trials(struct writer *w, const cJSON *rows, const cJSON *times)
+{
+	bool first = true;
+	put_scalars(w, rows->child, "", true, &first);
+	writer_raw(w, ",cpu_s\r\n", 8);
+	const cJSON *row, *time = times->child;
+	cJSON_ArrayForEach(row, rows)
+	{
+		first = true;
+		put_scalars(w, row, "", false, &first);
+		put_comma(w, &first);
+		put_value(w, time);
+		writer_raw(w, "\r\n", 2);
+		time = time->next;
+	}
+}
+
 /* A result as CSV (RFC 4180).
  *
  * Given    json      (json_length)  -  the bytes of result_to_json
@@ -127,7 +145,9 @@ char *result_to_csv(const char *json, size_t json_length, size_t *length)
 		return NULL;
 	const cJSON *cells = member(result, "cells"), *cell;
 	writer_init(&w);
-	if (cJSON_IsArray(member(result, "signals")))
+	if (cJSON_IsArray(member(result, "rows")))
+		put_trials(&w, member(result, "rows"), member(member(result, "timing"), "run_cpu_s"));
+	else if (cJSON_IsArray(member(result, "signals")))
 		put_signals(&w, result, &header);
 	else if (cells && member(cells->child, "signals"))
 		cJSON_ArrayForEach(cell, cells) put_signals(&w, cell, &header);

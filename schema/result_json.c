@@ -138,6 +138,59 @@ static void write_sensitivity(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 }
 
+/* ---- convergence ---- */
+
+static void write_error(struct writer *w, const char *name, const struct pound_deviation *error)
+{
+	char member[48];
+	snprintf(member, sizeof member, "%s_error_mean", name);
+	writer_number(w, member, error->mean);
+	snprintf(member, sizeof member, "%s_error_max", name);
+	writer_number(w, member, error->largest);
+}
+
+/* The errors of one setting; the reference has none. */
+static void write_trial(struct writer *w, const struct pound_trial *trial)
+{
+	writer_object(w, NULL, WRITER_LINE);
+	writer_text(w, "method", pound_solver_name(trial->solver.method));
+	writer_number(w, "step_s", trial->solver.step);
+	writer_number(w, "tolerance", trial->solver.tolerance);
+	writer_whole(w, "runs_failed", trial->runs_failed);
+	write_error(w, "displacement", &trial->displacement);
+	write_error(w, "demand", &trial->demand);
+	write_error(w, "impulse", &trial->impulse);
+	write_error(w, "history", &trial->history);
+	writer_number(w, "order", trial->order);
+	writer_end(w);
+}
+
+/* Trial 0 is the reference, trial 1 the second opinion on it. */
+static void write_trials(struct writer *w, const struct pound_result *result)
+{
+	writer_whole(w, "runs", result->cells[0].runs);
+	writer_whole(w, "runs_failed", result->cells[0].runs_failed);
+	writer_array(w, "rows", WRITER_LINES);
+	for (int j = 0; j < result->n_trials; j++)
+		write_trial(w, &result->trials[j]);
+	writer_end(w);
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_text(w, "reference", pound_solver_name(result->trials[0].solver.method));
+	writer_number(w, "second_opinion_displacement", result->trials[1].displacement.largest);
+	writer_number(w, "second_opinion_impulse", result->trials[1].impulse.largest);
+	writer_number(w, "second_opinion_history", result->trials[1].history.largest);
+	writer_end(w);
+}
+
+/* CPU time of a run in each row. */
+static void write_run_times(struct writer *w, const struct pound_result *result)
+{
+	writer_array(w, "run_cpu_s", WRITER_LINE);
+	for (int j = 0; j < result->n_trials; j++)
+		writer_number(w, NULL, result->trials[j].cpu);
+	writer_end(w);
+}
+
 /* ---- cells ---- */
 
 /* Outputs that were asked and that this cell cannot have. */
@@ -281,7 +334,9 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 	writer_text(&w, "engine_version", POUND_VERSION);
 	writer_text(&w, "study_hash", hash);
 	writer_seed(&w, "seed", study->design.seed);
-	if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps == 0)
+	if (study->kind == POUND_KIND_CONVERGENCE)
+		write_trials(&w, result);
+	else if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps == 0)
 		write_cell(&w, study, result, 0);
 	else
 		write_cells(&w, study, result);
@@ -294,6 +349,8 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 	writer_whole(&w, "threads", timing->threads);
 	if (study->kind == POUND_KIND_SENSITIVITY)
 		result_accuracy_timing(&w, result, timing->cpu_s);
+	if (result->n_trials)
+		write_run_times(&w, result);
 	writer_end(&w);
 	writer_end(&w);
 	return writer_take(&w, length);

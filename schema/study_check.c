@@ -297,53 +297,74 @@ static double cells(const struct pound_study *study)
 	return product;
 }
 
+static const char *size_pointer(const struct pound_study *study)
+{
+	return study->kind == POUND_KIND_SENSITIVITY ? "/design/rows" : "/scene/excitation/signals";
+}
+
 /* Runs of one cell for one signal. */
 static double design_runs(const struct pound_study *study)
 {
-	bool response = study->kind == POUND_KIND_RESPONSE;
-	return response ? 1.0 : (double)study->design.rows * (study->n_inputs + 2);
+	if (study->kind == POUND_KIND_CONVERGENCE)
+		return pound_convergence_trials(study);
+	return study->kind == POUND_KIND_RESPONSE ? 1 : (double)study->design.rows * (study->n_inputs + 2);
 }
 
-/* Steps of the longest sample interval. */
-static double interval_steps(const struct pound_study *study)
+/* Steps of the longest sample interval; those of an adaptive solver are not known, its samples count as one each. */
+static double interval_steps(const struct pound_study *study, const struct pound_solver *solver)
 {
 	double low, high;
-	if (!pound_solver_takes_step(study->solver.method))
+	if (!pound_solver_takes_step(solver->method))
 		return 1;
 	reach(study, "/excitation/time_step_s", &low, &high);
-	return fmax(1, ceil(high / study->solver.step));
+	return fmax(1, ceil(high / solver->step));
 }
 
-static void check_steps(const struct pound_study *study, double runs, struct problems *problems)
+static void check_step(const struct pound_study *study, const struct pound_solver *solver,
+                       const char *pointer, struct problems *problems)
 {
-	double n = interval_steps(study), work = runs * study_steps(study);
+	double n = interval_steps(study, solver);
 	if (n > STUDY_STEPS_MAX)
-		problems_add(problems, "/solver/step_s", "asks for %.3g steps in one sample interval, at most %d", n,
+		problems_add(problems, pointer, "asks for %.3g steps in one sample interval, at most %d", n,
 		             STUDY_STEPS_MAX);
-	else if (work > STUDY_WORK_MAX)
-		problems_add(problems, "/solver/step_s", "asks for %.3g steps in all runs, at most %.0e", work,
-		             STUDY_WORK_MAX);
+}
+
+static void check_steps(const struct pound_study *study, struct problems *problems)
+{
+	char pointer[POINTER_SIZE];
+	if (study->kind != POUND_KIND_CONVERGENCE)
+		check_step(study, &study->solver, "/solver/step_s", problems);
+	for (int row = 0; row < POUND_SOLVERS && study->kind == POUND_KIND_CONVERGENCE; row++)
+		for (int k = 0; k < study->convergence.settings[row].n; k++) {
+			const struct pound_solver solver = {.method = row,
+			                                    .step = study->convergence.settings[row].values[k]};
+			snprintf(pointer, sizeof pointer, "/convergence/%s/steps_s/%d", pound_solver_name(row), k);
+			check_step(study, &solver, pointer, problems);
+		}
 }
 
 static void check_size(const struct pound_study *study, struct problems *problems)
 {
-	bool response = study->kind == POUND_KIND_RESPONSE;
-	const char *pointer = response ? "/scene/excitation/signals" : "/design/rows";
+	const char *pointer = size_pointer(study);
+	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
+	int most = study->kind == POUND_KIND_CONVERGENCE ? STUDY_TRIALS_MAX : STUDY_RUNS_MAX;
 	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
-	double at_once = cells(study) * (response ? 1 : study->n_inputs + 2) * study_samples(study);
-	if (runs > STUDY_RUNS_MAX)
+	double at_once = cells(study) * (sampled ? study->n_inputs + 2 : 1) * study_samples(study);
+	if (runs > most)
 		problems_add(problems, pointer, "asks for %.15g pounding runs, a study may have at most %d", runs,
-		             STUDY_RUNS_MAX);
+		             most);
 	else if (runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_add(problems, pointer, "asks for %.3g samples of ground motion in all runs, at most %.0e",
 		             runs * study_samples(study), STUDY_WORK_MAX);
-	else if (pound_solver_takes_step(study->solver.method))
-		check_steps(study, runs, problems);
+	else if (runs * study_steps(study) > STUDY_WORK_MAX)
+		problems_add(problems, pointer, "asks for %.3g steps of the solver in all runs, at most %.0e",
+		             runs * study_steps(study), STUDY_WORK_MAX);
 	if (at_once > STUDY_AT_ONCE_MAX)
 		problems_add(problems, "/sweep",
 		             "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
 		             "a motion), at most %d",
 		             at_once, STUDY_AT_ONCE_MAX);
+	check_steps(study, problems);
 }
 
 /* Checks what members mean together.
@@ -372,7 +393,8 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	if (!faulty(problems, "/outputs"))
 		check_outputs(study, problems);
 	check_excitation(study, problems);
-	if (!faulty(problems, "/scene") && !faulty(problems, "/design") && !faulty(problems, "/solver"))
+	if (!faulty(problems, "/scene") && !faulty(problems, "/design") && !faulty(problems, "/solver") &&
+	    !faulty(problems, "/convergence"))
 		check_size(study, problems);
 }
 
@@ -397,7 +419,14 @@ double study_samples(const struct pound_study *study)
 
 double study_steps(const struct pound_study *study)
 {
-	return study_samples(study) * interval_steps(study);
+	int n = study->kind == POUND_KIND_CONVERGENCE ? pound_convergence_trials(study) : 1;
+	double sum = 0;
+	for (int j = 0; j < n; j++) {
+		const struct pound_solver solver =
+		    study->kind == POUND_KIND_CONVERGENCE ? pound_convergence_solver(study, j) : study->solver;
+		sum += interval_steps(study, &solver);
+	}
+	return study_samples(study) * sum / n;
 }
 
 /* The scene of a cell; the last sweep runs fastest.

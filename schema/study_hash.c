@@ -138,6 +138,18 @@ static void write_sweeps(struct canon *c)
 	writer_end(&c->w);
 }
 
+static void write_convergence(struct canon *c)
+{
+	write_object(c, "convergence", "/convergence", c->study);
+	for (int row = 0; row < POUND_SOLVERS; row++) {
+		const struct pound_settings *settings = &c->study->convergence.settings[row];
+		writer_array(&c->w, pound_solver_name(row), WRITER_LINES);
+		for (int k = 0; k < settings->n; k++)
+			writer_number(&c->w, NULL, settings->values[k]);
+		writer_end(&c->w);
+	}
+}
+
 /* A varied value as a document has it: a number, the name of a choice, true or false.
  *
  * Given    path      -         -       of the field
@@ -193,6 +205,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 		writer_text(&c.w, NULL, pound_output_name(study->outputs[o]));
 	writer_end(&c.w);
 	write_object(&c, "solver", "/solver", study);
+	if (study->kind == POUND_KIND_CONVERGENCE)
+		write_convergence(&c);
 	writer_end(&c.w);
 	size_t length;
 	char *text = writer_take(&c.w, &length);

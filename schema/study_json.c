@@ -245,6 +245,9 @@ static const struct {
     {"/sweep", reader_sweeps},
     {"/sweep/*/values", reader_values},
     {"/outputs", read_outputs},
+    {"/convergence/newmark/steps_s", reader_settings},
+    {"/convergence/central_difference/steps_s", reader_settings},
+    {"/convergence/adaptive/tolerances", reader_settings},
 };
 
 /* Reads whatever stands at a field: by its own function if it has one, else by its type. */
@@ -284,6 +287,7 @@ static void defaults(struct pound_study *study, const char *excitation)
 			             (char *)study + field->offset + (size_t)k * sizeof study->scene.oscillators[0],
 			             absent ? field->absent : 0.0);
 	}
+	settings_default(study);
 	study->scene.contact.present = true;
 	if (study->scene.excitation.signals == 0)
 		study->scene.excitation.signals = 1;

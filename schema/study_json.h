@@ -20,6 +20,7 @@ enum {
 	STUDY_CELLS_MAX = 10000,      /* combinations of sweep values */
 	STUDY_AT_ONCE_MAX =
 	    50000000, /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
+	STUDY_TRIALS_MAX = 100000, /* runs of one convergence study */
 	STUDY_STEPS_MAX = 1000000, /* of a solver in one sample interval */
 	STUDY_HASH_SIZE = 65,      /* characters of a study hash and its zero */
 };
@@ -29,12 +30,13 @@ enum {
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems);
 void study_free(struct pound_study *study);
 
-const char *study_kind_name(int kind);            /* "response", "sensitivity"; NULL past the last */
+const char *study_kind_name(int kind); /* "response", "sensitivity", "convergence"; NULL past the last */
 int study_cells(const struct pound_study *study); /* combinations of sweep values, 1 without a sweep */
 int64_t
 study_runs(const struct pound_study *study); /* pounding runs it asks for, before anything is shared */
 double study_samples(const struct pound_study *study); /* samples of its longest ground motion */
-double study_steps(const struct pound_study *study); /* steps of its longest run: samples where each is one */
+double study_steps(
+    const struct pound_study *study); /* mean steps of a run, at most; its samples where each is one */
 
 /* The scene of one cell: the study's with that combination of sweep values. */
 void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene);

@@ -70,6 +70,11 @@ static double seconds(clockid_t clock)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+static double thread_cpu(void)
+{
+	return seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
 static void restore(void *to, const struct store_block *block)
 {
 	struct work_run *opened = to;
@@ -106,6 +111,7 @@ const char *work_open(struct store *store, int64_t id, int n_workers, struct wor
 	opened->run = pound_run_create(opened->study, n_workers);
 	if (!opened->run)
 		return "out of memory";
+	pound_run_clock(opened->run, thread_cpu);
 	opened->n_blocks = opened->n_left = pound_run_blocks(opened->run);
 	opened->stored = calloc((size_t)opened->n_blocks, sizeof *opened->stored);
 	if (!opened->stored)

@@ -1,0 +1,20 @@
+/* convergence.h - solvers beside the exact one: which are tried, what is kept of a run, and their errors. */
+#ifndef CONVERGENCE_H
+#define CONVERGENCE_H
+
+#include "engine/pound.h"
+
+enum { POUND_HISTORY = 32 }; /* times at which displacements are compared, at most */
+
+/* What is kept of one signal of one trial: doubles and nothing else; NAN: failed, or the scene has none. */
+struct pound_trial_run {
+	double displacement, demand, impulse; /* the largest of the left body */
+	double cpu;                           /* of a run [s] */
+	double history[POUND_HISTORY];        /* displacement of the left body [m] */
+};
+
+int pound_convergence_times(const struct pound_study *study, int samples[static POUND_HISTORY]);
+void pound_convergence_reduce(const struct pound_study *study, const struct pound_trial_run *runs,
+                              struct pound_trial *trials);
+
+#endif
