@@ -188,7 +188,6 @@ static void event_pass(struct course *c, enum guard j)
 	c->events++;
 	c->steps = 0;
 	gsl_odeiv2_driver_reset(c->explicit);
-	gsl_odeiv2_driver_reset(c->implicit);
 }
 
 /* ---- steps ---- */
@@ -251,8 +250,10 @@ static bool course_step(struct course *c)
 {
 	double y[STATES], t = c->t, left = c->task->time_step - c->t;
 	gsl_odeiv2_driver *driver = c->steps < STIFF_STEPS ? c->explicit : c->implicit;
-	if (c->steps == STIFF_STEPS)
+	if (c->steps == STIFF_STEPS) {
+		gsl_odeiv2_driver_reset(driver);
 		driver->h = c->explicit->h;
+	}
 	driver->h = fmin(fmax(driver->h, DBL_EPSILON * c->task->time_step), left);
 	memcpy(y, c->y, sizeof y);
 	if (gsl_odeiv2_evolve_apply(driver->e, driver->c, driver->s, &c->system, &t, c->task->time_step,
@@ -289,7 +290,6 @@ static enum pound_status interval_run(struct course *c, int sample)
 	c->slope = (task->ground[sample] - c->ground) / task->time_step;
 	c->t = 0;
 	c->steps = c->events = 0;
-	gsl_odeiv2_driver_reset(c->implicit);
 	for (int n = 0; c->t < task->time_step; n++) {
 		ways_set(c);
 		enum guard j = crossed(c);

@@ -55,7 +55,7 @@ static const char *signals_name(int common)
 	{"/convergence/" solver "/" name, FIELD_LIST, AT(convergence.settings[row]), 0, 0, POUND_SETTINGS_MAX, \
 	 FIELD_CLOSED, "", .text = what ", each smaller than the one before; some when absent", CONVERGENCE,  \
 	 NOT_SCENE},                                                                                          \
-	{"/convergence/" solver "/" name "/*", FIELD_REAL, AT(convergence.settings[row].values), 0, 0, most,  \
+	{"/convergence/" solver "/" name "/*", FIELD_REAL, AT(convergence.settings[row].values), NAN, 0, most,  \
 	 FIELD_OPEN, unit, .text = "one of the " what, CONVERGENCE, NOT_SCENE}
 
 const struct field fields[] = {

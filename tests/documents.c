@@ -35,6 +35,13 @@ const char documents_sensitivity[] =
 const char documents_response[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
                                   "2}, {\"frequency_hz\": 3.1}]}}";
 
+const char documents_convergence[] = "{\"kind\": \"convergence\", \"scene\": {\"oscillators\": "
+                                     "[{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],\n"
+                                     "  \"excitation\": {\"signals\": 2}},\n"
+                                     " \"convergence\": {\"newmark\": {\"steps_s\": [0.01, 0.001]}, "
+                                     "\"central_difference\": {\"steps_s\": [0.005]},\n"
+                                     "  \"adaptive\": {\"tolerances\": [1e-4]}, \"history_s\": 2}}\n";
+
 char *documents_with(const char *document, const char *from, const char *to)
 {
 	const char *at = strstr(document, from);

@@ -9,6 +9,8 @@ extern const char
     documents_sensitivity[]; /* every member of a sensitivity study but its sweep, all written out */
 extern const char documents_response[]; /* the least response: two frequencies */
 
+extern const char documents_convergence[]; /* a short convergence study, every member of it written out */
+
 /* A copy with the first `from` replaced, which must be there; the caller frees it. */
 char *documents_with(const char *document, const char *from, const char *to);
 

@@ -90,6 +90,9 @@ static void any_other_change_changes_it(void **state)
 	for (int i = 0; i < COUNT(changes); i++)
 		if (same(documents_sensitivity, changes[i].from, changes[i].to))
 			fail_msg("%s for %s does not change the hash", changes[i].to, changes[i].from);
+	assert_false(same(documents_convergence, "[0.01, 0.001]", "[0.01]"));
+	assert_false(same(documents_convergence, "\"history_s\": 2", "\"history_s\": 3"));
+	assert_true(same(documents_convergence, ", \"history_s\": 2", ""));
 	assert_false(same(documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\""));
 	assert_false(same(documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}"));
 }

@@ -10,11 +10,14 @@
 #define COUNT(array) ((int)(sizeof(array) / sizeof(array)[0]))
 
 /* One wrong value and one right one for a member of documents_sensitivity, at least one row for each field. */
-static const struct {
+struct member {
 	const char *pattern, *from, *right, *wrong, *pointer, *detail;
-} members[] = {
+};
+
+static const struct member members[] = {
     {"/kind", "\"kind\": \"sensitivity\"", "\"kind\": \"sensitivity\" ", "\"kind\": \"sensitivty\"", "/kind",
-     "must be one of \"response\", \"sensitivity\", got \"sensitivty\", did you mean \"sensitivity\"?"},
+     "must be one of \"response\", \"sensitivity\", \"convergence\", got \"sensitivty\", did you mean "
+     "\"sensitivity\"?"},
     {"/name", "\"a study\"", "\"\\u00fc \\\"x\\\"\"", "\"a\\u0007b\"", "/name",
      "must not hold control characters"},
     {"/name", "\"a study\"", "\"\"", "7", "/name", "must be a text of 0 to 200 characters, got 7"},
@@ -131,38 +134,97 @@ static const struct {
      "\"newmark\", \"step_s\": 0", "/solver/step_s", "must be greater than 0, got 0"},
 };
 
+/* And of documents_convergence. */
+static const struct member trial_members[] = {
+    {"/convergence/newmark/steps_s/*", "[0.01, 0.001]", "[7]", "[0.01, 0]", "/convergence/newmark/steps_s/1",
+     "must be greater than 0, got 0"},
+    {"/convergence/newmark/steps_s/*", "[0.01, 0.001]", "[]", "[0.01, 0.001, 0.002]",
+     "/convergence/newmark/steps_s/2", "must be smaller than the one before"},
+    {"/convergence/central_difference/steps_s/*", "[0.005]", "[0.005, 1e-8]", "[0.01, 1e-9]",
+     "/convergence/central_difference/steps_s/1",
+     "asks for 1e+07 steps in one sample interval, at most 1000000"},
+    {"/convergence/adaptive/tolerances/*", "[1e-4]", "[0.9, 1e-4]", "[1]",
+     "/convergence/adaptive/tolerances/0", "must be in (0, 1), got 1"},
+    {"/convergence/adaptive/tolerances/*", "[1e-4]", "[1e-3]", "1e-4", "/convergence/adaptive/tolerances",
+     "must be an array of 0 to 16 elements, got 0.0001"},
+    {"/convergence/history_s", "\"history_s\": 2", "\"history_s\": 1e9", "\"history_s\": 0",
+     "/convergence/history_s", "must be greater than 0, got 0"},
+    {"/convergence", "\"convergence\": {", "\"convergence\" : {", "\"sweep\": [], \"convergence\": {",
+     "/sweep", "is not used by kind \"convergence\""},
+    {"/convergence", "\"convergence\": {", "\"convergence\" : {", "\"solver\": {}, \"convergence\": {",
+     "/solver", "is not used by kind \"convergence\""},
+    {"/convergence", "\"signals\": 2", "\"signals\": 1", "\"signals\": 30000", "/scene/excitation/signals",
+     "asks for 180000 pounding runs, a study may have at most 100000"},
+};
+
+static const struct {
+	const char *document;
+	const struct member *members;
+	int n;
+} kinds[] = {
+    {documents_sensitivity, members, COUNT(members)},
+    {documents_convergence, trial_members, COUNT(trial_members)},
+};
+
 static void a_right_value_of_every_member_is_taken(void **state)
 {
 	(void)state;
-	study_free(documents_study(documents_sensitivity));
-	for (int i = 0; i < COUNT(members); i++) {
-		char *document = documents_with(documents_sensitivity, members[i].from, members[i].right);
-		study_free(documents_study(document));
-		free(document);
-	}
+	for (int k = 0; k < COUNT(kinds); k++)
+		for (int i = 0; i < kinds[k].n; i++) {
+			const struct member *member = &kinds[k].members[i];
+			char *document = documents_with(kinds[k].document, member->from, member->right);
+			study_free(documents_study(document));
+			free(document);
+		}
 }
 
 static void a_wrong_value_of_any_member_is_told_with_its_pointer(void **state)
 {
 	(void)state;
-	for (int i = 0; i < COUNT(members); i++) {
-		char *document = documents_with(documents_sensitivity, members[i].from, members[i].wrong);
-		documents_problem(document, members[i].pointer, members[i].detail);
-		free(document);
-	}
+	for (int k = 0; k < COUNT(kinds); k++)
+		for (int i = 0; i < kinds[k].n; i++) {
+			const struct member *member = &kinds[k].members[i];
+			char *document = documents_with(kinds[k].document, member->from, member->wrong);
+			documents_problem(document, member->pointer, member->detail);
+			free(document);
+		}
 }
 
 static void every_field_has_a_right_and_a_wrong_example_here(void **state)
 {
 	(void)state;
-	for (int k = 0; k < fields_count; k++) {
-		const struct field *field = &fields[k];
+	for (int f = 0; f < fields_count; f++) {
+		const struct field *field = &fields[f];
 		bool found = field->type >= FIELD_OBJECT || strstr(field->pattern, "acceleration_m_s2/*");
-		for (int i = 0; i < COUNT(members); i++)
-			found |= strcmp(members[i].pattern, field->pattern) == 0;
+		for (int k = 0; k < COUNT(kinds); k++)
+			for (int i = 0; i < kinds[k].n; i++)
+				found |= strcmp(kinds[k].members[i].pattern, field->pattern) == 0;
 		if (!found)
 			fail_msg("no example of %s", field->pattern);
 	}
+}
+
+static void absent_settings_are_some_and_empty_ones_none(void **state)
+{
+	(void)state;
+	struct pound_study *s = documents_study(documents_convergence);
+	assert_int_equal(pound_convergence_trials(s), 2 + 2 + 1 + 1);
+	assert_int_equal(s->convergence.settings[1].n, 2);
+	check_near(s->convergence.settings[1].values[1], 0.001, 0);
+	assert_int_equal(study_runs(s), 12);
+	study_free(s);
+	char *document = documents_with(documents_response, "response", "convergence");
+	s = documents_study(document);
+	free(document);
+	for (int row = 0; row < POUND_SOLVERS; row++)
+		assert_true(row ? s->convergence.settings[row].n >= 4 : s->convergence.settings[row].n == 0);
+	check_near(s->convergence.history, 2, 0);
+	study_free(s);
+	document = documents_with(documents_convergence, "[0.01, 0.001]", "[]");
+	s = documents_study(document);
+	assert_int_equal(s->convergence.settings[1].n, 0);
+	study_free(s);
+	free(document);
 }
 
 static void what_a_document_says_is_in_the_study(void **state)
@@ -364,7 +426,7 @@ static void what_is_missing_is_named(void **state)
 	documents_refused("{}", &problems);
 	assert_int_equal(problems.n, 2);
 	assert_string_equal(problems.list[0].pointer, "/kind");
-	assert_string_equal(problems.list[0].detail, "is required: one of \"response\", \"sensitivity\"");
+	assert_string_equal(problems.list[0].detail, "is required: one of \"response\", \"sensitivity\", \"convergence\"");
 	assert_string_equal(problems.list[1].pointer, "/scene");
 	documents_problem("{\"kind\": \"response\", \"scene\": {}}", "/scene/oscillators",
 	                  "is required: an array of 2 elements");
@@ -498,6 +560,7 @@ static void a_stranger_s_text_is_shown_short_and_tame(void **state)
 CHECK_MAIN(cmocka_unit_test(a_right_value_of_every_member_is_taken),
            cmocka_unit_test(a_wrong_value_of_any_member_is_told_with_its_pointer),
            cmocka_unit_test(every_field_has_a_right_and_a_wrong_example_here),
+           cmocka_unit_test(absent_settings_are_some_and_empty_ones_none),
            cmocka_unit_test(what_a_document_says_is_in_the_study),
            cmocka_unit_test(absent_members_have_the_defaults_of_the_contract),
            cmocka_unit_test(an_excitation_has_its_own_members_only),
