@@ -362,7 +362,8 @@ static void course_end(struct course *c, enum pound_status status)
  *          POUND_CHATTER    more events in one sample interval than allowed
  * Memory   allocates GSL's work space, once for the task, and frees it
  *
- * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.
+ * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Steps
+ *          follow from the C library's pow, so the last digits may be another machine's own.
  * Source   GSL Reference Manual 2.7, Ordinary Differential Equations; Prince and Dormand 1981, J. Comput. Appl. Math. 7,
  *          67-75 (rk8pd)
  * Test     unit_adaptive

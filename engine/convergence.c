@@ -10,6 +10,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "engine/elementary.h"
 #include "engine/excitation.h"
 #include "engine/solver.h"
 
@@ -125,7 +126,7 @@ static double order_between(const struct pound_trial *coarse, const struct pound
 	double ratio = setting_of(&coarse->solver) / setting_of(&fine->solver);
 	if (!(ratio > 1) || !(coarse->history.mean > 0) || !(fine->history.mean > 0))
 		return NAN;
-	return log(coarse->history.mean / fine->history.mean) / log(ratio);
+	return pound_elementary_log(coarse->history.mean / fine->history.mean) / pound_elementary_log(ratio);
 }
 
 /* Errors of all trials.

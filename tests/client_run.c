@@ -161,14 +161,18 @@ static void a_table_says_how_many_responses_failed(void **state)
 
 static void a_table_fits_in_100_columns(void **state)
 {
-	static const char *const kinds[] = {"response", "sensitivity_small"};
+	static const struct {
+		const char *example, *holds;
+	} tables[] = {{"response", "impulse_n_s"},
+	              {"sensitivity_small", "ST [95 % interval]"},
+	              {"convergence", "central_difference   0.001"}};
 	(void)state;
-	for (int i = 0; i < 2; i++) {
-		struct program_outcome document = POUND("example", kinds[i]);
+	for (int i = 0; i < 3; i++) {
+		struct program_outcome document = POUND("example", tables[i].example);
 		struct program_outcome table =
 		    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
 		program_expect(&table, 0);
-		assert_non_null(strstr(table.out, i ? "ST [95 % interval]" : "impulse_n_s"));
+		assert_non_null(strstr(table.out, tables[i].holds));
 		for (char *line = strtok(table.out, "\n"); line; line = strtok(NULL, "\n"))
 			assert_true(strlen(line) <= 100);
 		program_free(&table);
@@ -179,21 +183,24 @@ static void a_table_fits_in_100_columns(void **state)
 static void csv_has_as_many_cells_in_every_row(void **state)
 {
 	(void)state;
-	struct program_outcome document = POUND("example", "sensitivity_small");
-	struct program_outcome csv =
-	    program_run((const char *const[]){"pound", "run", "--format", "csv", "-", NULL}, document.out);
-	program_expect(&csv, 0);
-	int commas = -1, rows = 0;
-	for (char *line = strtok(csv.out, "\r\n"); line; line = strtok(NULL, "\r\n"), rows++) {
-		int n = 0;
-		for (char *c = line; *c; c++)
-			n += *c == ',';
-		assert_true(commas < 0 || n == commas);
-		commas = n;
+	static const char *const examples[] = {"sensitivity_small", "convergence"};
+	for (int i = 0; i < 2; i++) {
+		struct program_outcome document = POUND("example", examples[i]);
+		struct program_outcome csv =
+		    program_run((const char *const[]){"pound", "run", "--format", "csv", "-", NULL}, document.out);
+		program_expect(&csv, 0);
+		int commas = -1, rows = 0;
+		for (char *line = strtok(csv.out, "\r\n"); line; line = strtok(NULL, "\r\n"), rows++) {
+			int n = 0;
+			for (char *c = line; *c; c++)
+				n += *c == ',';
+			assert_true(commas < 0 || n == commas);
+			commas = n;
+		}
+		assert_true(rows > 1 && commas > 5);
+		program_free(&csv);
+		program_free(&document);
 	}
-	assert_true(rows > 1 && commas > 5);
-	program_free(&csv);
-	program_free(&document);
 }
 
 /* Waits until a process has a handler for a signal of its own. */

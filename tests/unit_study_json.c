@@ -426,7 +426,8 @@ static void what_is_missing_is_named(void **state)
 	documents_refused("{}", &problems);
 	assert_int_equal(problems.n, 2);
 	assert_string_equal(problems.list[0].pointer, "/kind");
-	assert_string_equal(problems.list[0].detail, "is required: one of \"response\", \"sensitivity\", \"convergence\"");
+	assert_string_equal(problems.list[0].detail,
+	                    "is required: one of \"response\", \"sensitivity\", \"convergence\"");
 	assert_string_equal(problems.list[1].pointer, "/scene");
 	documents_problem("{\"kind\": \"response\", \"scene\": {}}", "/scene/oscillators",
 	                  "is required: an array of 2 elements");
