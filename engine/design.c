@@ -29,7 +29,7 @@ static void random_column(struct pound_stream stream, int rows, int stride, doub
  */
 static void latin_column(struct pound_stream stream, int rows, int stride, double *u)
 {
-	assert(rows <= POUND_DESIGN_ROWS_MAX);
+	assert(rows <= POUND_ROWS_MAX);
 	struct pound_stream order = stream;
 	order.signal++;
 	for (int i = 0; i < rows; i++) {

@@ -7,7 +7,6 @@
 #include "engine/pound.h"
 
 enum {
-	POUND_DESIGN_ROWS_MAX = 1 << 20,
 	POUND_SAMPLE_A = 0, /* the samples of a row: A, B, and A with column j from B for every j */
 	POUND_SAMPLE_B = 1,
 	POUND_SAMPLE_MIXED = 2,

@@ -13,12 +13,13 @@
 #define POUND_VERSION "0.1.0"
 
 enum {
-	POUND_OSCILLATORS = 2,   /* left, right */
-	POUND_INPUTS_MAX = 16,   /* inputs of one sensitivity study */
-	POUND_OUTPUTS_MAX = 8,   /* outputs of one study */
-	POUND_SWEEPS_MAX = 8,    /* swept fields of one study */
-	POUND_SOLVERS = 4,       /* rows of the solvers */
-	POUND_SETTINGS_MAX = 16, /* of one solver that are compared */
+	POUND_OSCILLATORS = 2,    /* left, right */
+	POUND_INPUTS_MAX = 16,    /* inputs of one sensitivity study */
+	POUND_OUTPUTS_MAX = 8,    /* outputs of one study */
+	POUND_SWEEPS_MAX = 8,     /* swept fields of one study */
+	POUND_SOLVERS = 4,        /* rows of the solvers */
+	POUND_SETTINGS_MAX = 16,  /* of one solver that are compared */
+	POUND_ROWS_MAX = 1 << 20, /* rows of a design */
 };
 
 // clang-format off

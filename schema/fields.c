@@ -156,7 +156,7 @@ const struct field fields[] = {
 	 .text = "which samples are run", NOT_SCENE},
 	{"/design/method", FIELD_CHOICE, AT(design.method), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "how the rows are drawn", .choice = pound_design_name, SENSITIVITY, NOT_SCENE},
-	{"/design/rows", FIELD_COUNT, AT(design.rows), 1000, 2, STUDY_RUNS_MAX, FIELD_CLOSED, "",
+	{"/design/rows", FIELD_COUNT, AT(design.rows), 1000, 2, POUND_ROWS_MAX, FIELD_CLOSED, "",
 	 .text = "rows of the matrices A and B", SENSITIVITY, NOT_SCENE},
 	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
 	 .text = "same seed, same numbers", NOT_SCENE},

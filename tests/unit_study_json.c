@@ -106,7 +106,7 @@ static const struct member members[] = {
     {"/design/method", "\"method\": \"lhs\"", "\"method\": \"random\"", "\"method\": \"LHS\"",
      "/design/method", "must be one of \"lhs\", \"random\", got \"LHS\", did you mean \"lhs\"?"},
     {"/design/rows", "\"rows\": 10", "\"rows\": 2", "\"rows\": 1", "/design/rows",
-     "must be in [2, 10000000], got 1"},
+     "must be in [2, 1048576], got 1"},
     {"/design/rows", "\"rows\": 10", "\"rows\": 1.6e1", "\"rows\": 10.5", "/design/rows",
      "must be a whole number, got 10.5"},
     {"/design/seed", "\"seed\": 42", "\"seed\": \"18446744073709551615\"",
