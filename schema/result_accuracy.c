@@ -21,8 +21,7 @@ static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE]
 	    [POUND_ERROR_SAMPLING] =
 	        "Too few rows are the largest error: an interval reaches %.2g to either side of its index.",
 	    [POUND_ERROR_EXCITATION] =
-	        ("The excitation's randomness is the largest error: more signals for each row "
-	         "would move an index by up to %.2g."),
+	        "Too few signals for each row are the largest error: they may move an index by up to %.2g.",
 	    [POUND_ERROR_INTEGRATION] = "Inexact runs are the largest error: they may move an index by %.2g.",
 	    [POUND_ERROR_FAILED_ROWS] =
 	        "Rows without a result are the largest error: a share of %.2g was left out."};
@@ -108,7 +107,7 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 	}
 	writer_object(w, "accuracy", WRITER_LINES);
 	writer_text(w, "check",
-	            "runs made again on half the sample step; pounding is chaotic, so single runs may part "
+	            "runs made again on half the sample step; pounding can be chaotic, so single runs may part "
 	            "by rounding alone");
 	writer_whole(w, "runs_checked", checked);
 	writer_number(w, "difference_median", median);
