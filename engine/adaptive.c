@@ -360,7 +360,7 @@ static void course_end(struct course *c, enum pound_status status)
  * Returns  result    -          -     all 0 but the status where it failed
  * Status   POUND_TOLERANCE  the steps became too small or too many
  *          POUND_CHATTER    more events in one sample interval than allowed
- * Memory   allocates GSL's work space, once for the task, and frees it
+ * Memory   allocates GSL's work space, some kB once for the task, and frees it; without memory GSL ends the program
  *
  * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Steps
  *          follow from the C library's pow, so the last digits may be another machine's own.

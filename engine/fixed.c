@@ -20,14 +20,16 @@ static const double UNSTABLE = 10;
 struct course {
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
-	double step;
+	double step, frequency; /* [s], [1/s] */
 	struct pound_branch at[POUND_OSCILLATORS];
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS];
 	double
 	    rate[POUND_OSCILLATORS]; /* newmark: acceleration; central difference: velocity half a step later */
 	double force;                /* of the contact per mass of the left body [m/s2] */
 	bool touching;
-	double time, impulse;                /* of the contact in hand [m/s] */
+	double start;                        /* of the sample interval [s] */
+	int k;                               /* step in it, from 1 */
+	double impulse;                      /* of the contact in hand [m/s] */
 	double speed_max[POUND_OSCILLATORS]; /* [m/s] */
 };
 
@@ -86,10 +88,11 @@ static void course_note(struct course *c, double force, bool touching, double ap
 {
 	struct pound_march_result *r = c->result;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		r->displacement_max[i] = fmax(r->displacement_max[i], fabs(c->u[i]));
+		if (fabs(c->u[i]) > r->displacement_max[i])
+			r->displacement_max[i] = fabs(c->u[i]);
 	if (touching && !c->touching) {
 		if (r->contacts++ == 0)
-			r->first_contact = c->time, r->first_speed = approach;
+			r->first_contact = c->start + c->k * c->step, r->first_speed = approach;
 		c->impulse = 0;
 	}
 	c->impulse += 0.5 * (c->force + force) * c->step;
@@ -170,8 +173,9 @@ static bool central_advance(struct course *c, double ground)
 		double u = c->u[i] + h * c->rate[i];
 		law_follow(&body->skeleton, &c->at[i], c->u[i], u);
 		c->u[i] = u;
-		a[i] = 1 / h + body->damping / 2;
-		b[i] = (1 / h - body->damping / 2) * c->rate[i] - restoring(&c->at[i], u) - body->drive * ground;
+		a[i] = c->frequency + body->damping / 2;
+		b[i] =
+		    (c->frequency - body->damping / 2) * c->rate[i] - restoring(&c->at[i], u) - body->drive * ground;
 	}
 	double p = c->u[0] - c->u[1] - task->gap, q = c->rate[0] - c->rate[1], force = 0;
 	bool touching = task->contact && p > 0;
@@ -183,8 +187,8 @@ static bool central_advance(struct course *c, double ground)
 		touching = touches(task, p, rate);
 		force = touching ? contact_force(task, p, rate) : 0;
 	}
-	if (!touching)
-		pair_solve(a, 0, 0, b, w);
+	for (int i = 0; i < 2 && !touching; i++)
+		w[i] = b[i] / a[i];
 	for (int i = 0; i < 2; i++) {
 		c->v[i] = (c->rate[i] + w[i]) / 2;
 		c->rate[i] = w[i];
@@ -220,6 +224,7 @@ static void course_start(struct course *c, int n_steps)
 {
 	const struct pound_march_task *task = c->task;
 	c->step = task->time_step / n_steps;
+	c->frequency = n_steps / task->time_step;
 	for (int i = 0; i < 2; i++) {
 		pound_pieces_start(&task->bodies[i].skeleton, &c->at[i]);
 		c->u[i] = task->bodies[i].u;
@@ -260,10 +265,11 @@ static void course_run(struct course *c, int n_steps, advance *step)
 	const struct pound_march_task *task = c->task;
 	struct pound_march_result *r = c->result;
 	for (int t = 1; t < task->n_samples && !r->status; t++) {
-		double from = task->ground[t - 1], rise = task->ground[t] - from;
+		double from = task->ground[t - 1], rise = (task->ground[t] - from) / n_steps;
+		c->start = (t - 1) * task->time_step;
 		for (int k = 1; k <= n_steps && !r->status; k++) {
-			c->time = ((t - 1) + (double)k / n_steps) * task->time_step;
-			bool settled = step(c, from + rise * k / n_steps);
+			c->k = k;
+			bool settled = step(c, from + rise * k);
 			// written so that no number is within the limit
 			if (!settled || !(fabs(c->v[0]) <= c->speed_max[0] && fabs(c->v[1]) <= c->speed_max[1]))
 				r->status = POUND_UNSTABLE;

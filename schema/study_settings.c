@@ -13,7 +13,7 @@ void settings_default(struct pound_study *study)
 
 /* Reads a list of settings; an empty one leaves its solver out.
  *
- * Test     unit_study_json: settings_fall
+ * Test     unit_study_json: absent_settings_are_some_and_empty_ones_none
  */
 void reader_settings(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
