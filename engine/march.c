@@ -23,6 +23,10 @@ enum {
 	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
 };
 
+/* A step that a search was unsure of is followed by one this much shorter, and then by longer ones again: what decides
+ * may be far below the rounding of a whole step. */
+static const double SHORTER = 0x1p-8, SHORTEST = 0x1p-400, LONGER = 0x1p4;
+
 struct lanes {
 	COLUMNS(vd)
 };
@@ -109,7 +113,7 @@ static void lane_rest(struct group *group, int l)
 {
 	static const double still[2];
 	struct lanes *g = &group->x;
-	LANE(g->step, l) = LANE(g->left, l) = LANE(g->reach[0], l) = LANE(g->reach[1], l) = 1;
+	LANE(g->step, l) = LANE(g->left, l) = LANE(g->reach[0], l) = LANE(g->reach[1], l) = LANE(g->pace, l) = 1;
 	LANE(g->touching, l) = LANE(g->parted, l) = LANE(g->events, l) = 0;
 	LANE(group->next, l) = LANE(group->last, l) = 1;
 	group->ground[l] = still;
@@ -481,7 +485,11 @@ static void contact_search(const struct series *s, const struct lanes *g, vd dt,
 		vd lead = g->release / dt;
 		for (int n = 0; n <= s->order; n++)
 			guard.c[n] = sign * vfma(lead, p->v.c[n], p->u.c[n]);
-		guard.c[0] = vselect(vless(zero, g->fresh), zero, guard.c[0]);
+		// where the force has just passed 0 it is beyond by the rounding of the overlap and of its acceleration, or
+		// bodies that are alike would turn to and fro at one instant for ever
+		vd pull = vabs(s->body[0].v.c[1]) + vabs(s->body[1].v.c[1]);
+		vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, pull, p->u.c[0]));
+		guard.c[0] = vselect(vless(zero, g->fresh), below, guard.c[0]);
 		search_safe(&guard, s->order, by_force, vsplat(CONTACT), CUT, search);
 	}
 	if (vany(parted)) {
@@ -606,7 +614,7 @@ static void meet_step(struct work *work)
 	vd one = vsplat(1), zero = vsplat(0);
 	vi active = members(group);
 	vi touching = vless(zero, g->touching);
-	vd reach = vselect(touching, g->reach[1], g->reach[0]);
+	vd reach = vselect(touching, g->reach[1], g->reach[0]) * g->pace;
 	vd steps = g->left / reach;
 	vi whole = ~vless(one, steps) & active;
 	vd dt = vselect(whole, g->left, vselect(vless(vsplat(2), steps), reach, 0.5 * g->left));
@@ -622,6 +630,8 @@ static void meet_step(struct work *work)
 	for (int i = 0; i < bodies; i++)
 		body_top(&s, g, i, active, &search);
 	vi event = ~vequal(search.event, zero);
+	g->pace = vselect(vequal(search.event, vsplat(CUT)), vmax(g->pace * SHORTER, vsplat(SHORTEST)),
+	                  vmin(g->pace * LONGER, one));
 	if (vany(event))
 		series_cut(&s, event, search.time);
 	if (group->n_accounted) {

@@ -10,6 +10,7 @@
 #include "engine/plan.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -258,6 +259,25 @@ static void marches_run(struct pound_plan *plan, const struct pound_solver *solv
 	*done = n;
 }
 
+/* Longest length that is nothing beside the motion [m], scaled as the ground motion is.
+ *
+ * 2^-90 of what a ground acceleration of one moves a body in a sample: it is crossed in 2^-45 of a step or more, which
+ * a search for events still resolves; a shorter one would be crossed within a step's rounding.
+ */
+static double negligible(const struct pound_plan *plan, const struct ask *ask)
+{
+	double h = plan->motions[ask->motion].excitation.time_step, least = h * h;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		least = fmin(least, 1 / fmax(pound_scene_body(&ask->scene, i).skeleton.stiffness, DBL_MIN));
+	return 0x1p-90 * least;
+}
+
+/* The yield displacement a march follows; any will do for a body that never moves. */
+static double yield_marched(const struct pound_plan *plan, const struct ask *ask, double yield)
+{
+	return yield > 0 ? fmin(fmax(yield, negligible(plan, ask)), 1 / DBL_EPSILON / DBL_EPSILON) : 1;
+}
+
 static int body_march(struct pound_plan *plan, const struct ask *ask, int i, int law, double yield)
 {
 	struct pound_march_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
@@ -299,7 +319,7 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 	else {
 		const struct pound_march_result *before = given ? NULL : &plan->results[body->march];
 		if (given) {
-			body->yield = ldexp(law->yield_displacement, -plan->motions[ask->motion].exponent);
+			body->yield = fmax(ldexp(law->yield_displacement, -plan->motions[ask->motion].exponent), DBL_MIN);
 		} else {
 			body->status = body->status ? body->status : before->status;
 			body->yield = before->displacement_max[0] /
@@ -307,8 +327,7 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 		}
 		if (stage == last_stage && !body->wanted)
 			return false;
-		// a body that never moves has no yield displacement, and any will do
-		body->march = body_march(plan, ask, i, law->type, body->yield > 0 ? body->yield : 1);
+		body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, body->yield));
 	}
 	body->finished = stage == last_stage;
 	return true;
@@ -361,13 +380,15 @@ static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_
 		task.bodies[i].followed = ask->bodies[i].wanted;
 		double yield = ask->bodies[i].yield;
 		bool linear = pound_pieces_linear(task.bodies[i].skeleton.law);
-		task.bodies[i].skeleton.yield = linear ? 0 : yield > 0 ? yield : 1;
+		task.bodies[i].skeleton.yield = linear ? 0 : yield_marched(plan, ask, yield);
 		if (linear)
 			task.bodies[i].skeleton.hardening = 0;
 	}
 	pound_scene_contact(&ask->scene, &task);
 	task.accounted = ask->response;
 	task.gap = ldexp(task.gap, -plan->motions[ask->motion].exponent);
+	if (task.gap < negligible(plan, ask))
+		task.gap = 0;
 	if (task.gap > 0 && free_max(plan, &ask->bodies[0]) + free_max(plan, &ask->bodies[1]) < task.gap) {
 		work->never_touching++;
 		return;
@@ -407,7 +428,8 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 		max[i] = ldexp(most, e);
 		max_free[i] = wall ? 0 : free ? ldexp(free->displacement_max[0], e) : NAN;
 		force[i] = ldexp(ask->scene.oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);
-		yield[i] = yields ? ldexp(body->yield, e) : NAN;
+		double given = pound_scene_law(&ask->scene, i)->yield_displacement;
+		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);
 		demand[i] = yields && body->yield > 0 ? most / body->yield : NAN;
 		demand_free[i] = yields && body->yield > 0 && free ? free->displacement_max[0] / body->yield : NAN;
 		u[i] = ldexp(!alone ? with->u[i] : free ? free->u[0] : 0, e);

@@ -141,7 +141,8 @@ static vi root_quick(const struct power *u, const struct power *v, int order, vd
  *
  * Given    g       guard, g(0) < 0 in the active lanes
  *          limit   last time of interest
- * Returns  value   lanes with a root; t: that time, or where the search had to give up (`unsure`), a safe time
+ * Returns  value   lanes with a root; t: that time, or where the search had to give up (`unsure`), a safe time:
+ *                  where the guard does not rise and the parabola still says a rounding is too long a step
  *
  * A parabola with the guard's value and slope at t and with a bound of its curvature lies above the guard, so no
  * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
@@ -158,6 +159,7 @@ static vi root_safe(const struct power *g, int order, vi active, vd limit, vd *t
 	vd bend = vmax(zero, vfma(vsplat(2), g->c[2], curved));
 	curved = vfma(vsplat(2), vabs(g->c[2]), curved);
 	vi going = active, found = vless(zero, zero);
+	*unsure = found;
 	*t = vselect(active, zero, *t);
 	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
 		vd slope = power_at(&d, order, *t);
@@ -166,14 +168,15 @@ static vi root_safe(const struct power *g, int order, vi active, vd limit, vd *t
 		vi rises = vless(zero, slope);
 		vd step = vselect(rises, -2.0 * below, root - slope) / vselect(rises, slope + root, bend);
 		step = vselect(rises | vless(zero, bend), step, vsplat(2));
-		vi near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope) |
-		          vless(step, vsplat(0.5 * DBL_EPSILON));
-		*t = vselect(going, *t + step, *t);
-		going &= ~vless(limit, *t);
+		vi near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope);
+		vi stuck = vless(step, vsplat(0.5 * DBL_EPSILON)) & ~near;
+		*t = vselect(going & ~stuck, *t + step, *t);
+		*unsure |= going & stuck;
+		going &= ~vless(limit, *t) & ~stuck;
 		found |= going & near;
 		going &= ~near;
 	}
-	*unsure = going;
+	*unsure |= going;
 	return found;
 }
 

@@ -115,6 +115,7 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 	sim->edged = !pound_pieces_linear(task->bodies[0].skeleton.law) ||
 	             !pound_pieces_linear(task->bodies[1].skeleton.law);
 	x->step = h;
+	x->pace = 1;
 	x->gap = task->contact ? task->gap : -NEVER;
 	x->contact_stiffness = task->contact ? task->contact_stiffness : 0;
 	x->contact_damping = task->contact ? task->contact_damping : 0;

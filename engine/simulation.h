@@ -12,17 +12,17 @@ enum {
 
 /* Columns of a simulation: T is double at rest, and a vector in a group of lanes.  A group is loaded
  * and saved by ranges of columns: event steps from the first to map, flight from state to the end. */
-#define COLUMNS(T)                                                                                      \
-	/* constants of event steps */                                                                      \
-	T contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly, right_mass;           \
-	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */      \
-	T p, q, left, slope, events, touching, parted, fresh, impulse, impulse_max, contacts, contact_time, \
-	    work_in, work_out;                                                                              \
-	/* changed by both */                                                                               \
-	T u[2], v[2], top[2], ground;                                                                       \
-	/* read by both: the bodies, and the piece each is on */                                            \
-	T step, gap, drive[2], damping[2], stiffness[2], offset[2], low[2], high[2], direction[2];          \
-	/* map of each body over one sample, and what bounds its error */                                   \
+#define COLUMNS(T)                                                                                 \
+	/* constants of event steps */                                                                 \
+	T contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly, right_mass;      \
+	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */ \
+	T p, q, left, slope, events, pace, touching, parted, fresh, impulse, impulse_max, contacts,    \
+	    contact_time, work_in, work_out;                                                           \
+	/* changed by both */                                                                          \
+	T u[2], v[2], top[2], ground;                                                                  \
+	/* read by both: the bodies, and the piece each is on */                                       \
+	T step, gap, drive[2], damping[2], stiffness[2], offset[2], low[2], high[2], direction[2];     \
+	/* map of each body over one sample, and what bounds its error */                              \
 	T uu[2], uv[2], ua[2], ud[2], ea[2], ej[2], third, per_step;
 
 struct column {
