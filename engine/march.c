@@ -128,21 +128,6 @@ LANE_INLINE vi members(const struct group *group)
 	return used;
 }
 
-/* What is missing of the energy put in, by the ground and by the motion at the start. */
-static double energy_residual(const struct simulation *sim)
-{
-	const struct column *x = &sim->x;
-	double start = 0, end = 0;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		double mass = i ? x->right_mass : 1, v0 = sim->task->bodies[i].v;
-		start += 0.5 * mass * v0 * v0;
-		end += 0.5 * mass * x->v[i] * x->v[i];
-	}
-	double put_in = start + x->work_in, found = end + x->work_out;
-	double most = fmax(fabs(put_in), fmax(start, end));
-	return most > 0 ? fabs(found - put_in) / most : 0;
-}
-
 /* Writes a simulation's result and frees its place in the pool. */
 static void simulation_end(struct work *work, struct simulation *sim, enum pound_status status)
 {
@@ -153,7 +138,7 @@ static void simulation_end(struct work *work, struct simulation *sim, enum pound
 	r->contacts = (int64_t)(x->contacts + x->touching);
 	r->impulse_max = fmax(x->impulse_max, x->touching != 0 ? x->impulse : 0);
 	r->contact_time = x->contact_time;
-	r->energy_residual = sim->accounted ? energy_residual(sim) : NAN;
+	r->energy_residual = sim->accounted ? pound_simulation_residual(sim) : NAN;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;
 		r->u[i] = x->u[i];

@@ -132,3 +132,18 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 	}
 	pound_simulation_interval(sim);
 }
+
+/* What is missing of the energy put in, by the ground and by the motion at the start. */
+double pound_simulation_residual(const struct simulation *sim)
+{
+	const struct column *x = &sim->x;
+	double start = 0, end = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		double mass = i ? x->right_mass : 1, v0 = sim->task->bodies[i].v;
+		start += 0.5 * mass * v0 * v0;
+		end += 0.5 * mass * x->v[i] * x->v[i];
+	}
+	double put_in = start + x->work_in, found = end + x->work_out;
+	double most = fmax(fabs(put_in), fmax(start, end));
+	return most > 0 ? fabs(found - put_in) / most : 0;
+}

@@ -62,5 +62,6 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
                             struct pound_march_result *result);
 void pound_simulation_piece(struct simulation *sim, int i);
 void pound_simulation_interval(struct simulation *sim);
+double pound_simulation_residual(const struct simulation *sim);
 
 #endif
