@@ -1,5 +1,5 @@
 /* accuracy.c - how far the indexes of an output may be off: by the integration, by the number of rows, by the number
- * of signals, by failed rows.
+ * of signals, by failed rows.  The indexes are the raw ones, which all four concern.
  *
  * 1. Integration: some runs were made again on half the sample step, the same signal in other steps.  The difference
  *    counts as an independent error of every run.
@@ -114,7 +114,8 @@ static void changes(struct pound_indices *indices, const struct pound_sample_val
 	struct pound_accuracy *accuracy = &indices->accuracy;
 	const double q = accuracy->variance_share, n = values->n_rows, d = values->n_inputs;
 	for (int j = 0; j < values->n_inputs; j++) {
-		double first = indices->first[j].value, total = indices->total[j].value, t = fmax(total, 0);
+		double first = indices->index[POUND_S1_RAW][j].value, total = indices->index[POUND_ST_RAW][j].value;
+		double t = fmax(total, 0);
 		double first_spread = 2 * sqrt(2 * q / n) * (sqrt(1 + t) + fabs(first));
 		double total_spread = 4 * sqrt(q / n) * (sqrt(t) + t / sqrt(d + 2));
 		bool known = isfinite(q) && isfinite(first) && isfinite(total);
@@ -140,15 +141,16 @@ static void half_widths(const struct pound_sample_values *values, uint64_t seed,
 		struct pound_sample_values part = *values;
 		part.n_rows = values->n_rows >> (POUND_LEVELS - 1 - k);
 		bool whole = part.n_rows == values->n_rows;
-		struct pound_indices of_part = {.first = whole ? indices->first : first,
-		                                .total = whole ? indices->total : total};
+		struct pound_indices of_part = {
+		    .index = {[POUND_S1_RAW] = whole ? indices->index[POUND_S1_RAW] : first,
+		              [POUND_ST_RAW] = whole ? indices->index[POUND_ST_RAW] : total}};
 		bool enough = whole || part.n_rows >= ROWS_FEW;
 		accuracy->rows[k] = enough ? part.n_rows : 0;
 		if (enough && !whole)
 			pound_sobol_indices(&part, seed, RESAMPLES_FEW, scratch, &of_part);
 		for (int j = 0; j < values->n_inputs; j++) {
-			accuracy->inputs[j].first_half[k] = enough ? half(of_part.first[j]) : NAN;
-			accuracy->inputs[j].total_half[k] = enough ? half(of_part.total[j]) : NAN;
+			accuracy->inputs[j].first_half[k] = enough ? half(of_part.index[POUND_S1_RAW][j]) : NAN;
+			accuracy->inputs[j].total_half[k] = enough ? half(of_part.index[POUND_ST_RAW][j]) : NAN;
 		}
 	}
 }
@@ -230,9 +232,9 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
 		    fmax(worst[POUND_ERROR_INTEGRATION],
 		         fmax(accuracy->inputs[j].first_change, accuracy->inputs[j].total_change));
 		if (isfinite(w))
-			worst[POUND_ERROR_EXCITATION] =
-			    fmax(worst[POUND_ERROR_EXCITATION],
-			         fmax(first_shift(w, indices->first[j].value), total_shift(w, indices->total[j].value)));
+			worst[POUND_ERROR_EXCITATION] = fmax(worst[POUND_ERROR_EXCITATION],
+			                                     fmax(first_shift(w, indices->index[POUND_S1_RAW][j].value),
+			                                          total_shift(w, indices->index[POUND_ST_RAW][j].value)));
 	}
 	errors[POUND_ERROR_FAILED_ROWS] = (double)rows_dropped / values->n_rows;
 }

@@ -101,14 +101,15 @@ static void record(const struct pound_excitation *e, struct pound_stream noise, 
 
 static const struct {
 	const char *name;
-	bool tuned; /* has a frequency of its own */
+	bool tuned;  /* has a frequency of its own */
+	bool random; /* one signal differs from the next */
 	int (*samples)(const struct pound_excitation *e);
 	void (*fill)(const struct pound_excitation *e, struct pound_stream noise, double *a);
 } excitations[] = {
-    {"kanai_tajimi", true, cycles_samples, kanai_tajimi},
-    {"white_noise", false, duration_samples, white_noise},
-    {"harmonic", true, duration_samples, harmonic},
-    {"record", false, record_samples, record},
+    {"kanai_tajimi", true, true, cycles_samples, kanai_tajimi},
+    {"white_noise", false, true, duration_samples, white_noise},
+    {"harmonic", true, false, duration_samples, harmonic},
+    {"record", false, false, record_samples, record},
 };
 
 enum { EXCITATIONS = sizeof excitations / sizeof excitations[0] };
@@ -156,4 +157,12 @@ void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream
 double pound_excitation_frequency(const struct pound_excitation *e)
 {
 	return excitations[e->type].tuned ? e->frequency_hz : 0;
+}
+
+/* Whether the signals of an excitation differ.
+ *
+ * Test     unit_excitation: only_noise_differs_from_signal_to_signal */
+bool pound_excitation_random(const struct pound_excitation *e)
+{
+	return excitations[e->type].random;
 }

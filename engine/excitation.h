@@ -10,5 +10,6 @@ void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream
                            double *a); /* [m/s2] (n) */
 
 double pound_excitation_frequency(const struct pound_excitation *e); /* [Hz], 0: none of its own */
+bool pound_excitation_random(const struct pound_excitation *e);
 
 #endif

@@ -17,6 +17,13 @@ struct pound_sample_values {
 	const double *numerator, *denominator; /* (n_rows x (n_inputs + 2) x n_signals) each */
 };
 
+/* How they came about. */
+struct pound_sampling {
+	const double *u;    /* the design as probabilities in (0, 1), rows of A and B  (n_rows x 2 x n_inputs) */
+	bool random;        /* the excitation */
+	bool fresh_signals; /* each sample of a row has its own */
+};
+
 /* The rows without a failed run.  y: outputs, centred by the mean of A and B; noise: their covariances over draws of
  * the signals, for the pairs of samples that estimators multiply, with c the sample with column j from B. */
 struct pound_rows {
@@ -85,6 +92,8 @@ void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, do
 
 #define POUND_NORMAL_95 1.959963984540054 /* 97.5 % quantile of the normal law */
 
+/* rows for local.c and chaos.c; with fewer, pick-freeze alone has the smaller error */
+enum { POUND_ROWS_MIN = 30 };
 size_t pound_local_scratch(int n_rows); /* doubles */
 void pound_local_fit(const double *y, int n, int reach, double *fit);
 void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
@@ -95,8 +104,15 @@ size_t pound_chaos_scratch(int n_rows, int n_inputs); /* doubles */
 void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
                          struct pound_estimate *first, struct pound_estimate *total);
 
+/* The plain protocol: mean, variance, noise share and the raw indexes. */
 size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
                         double *scratch, struct pound_indices *indices); /* rows dropped */
+bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
+
+/* All indexes, shares and notes. */
+size_t pound_variants_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
+int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
+                           uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */
 
 #endif

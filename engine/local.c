@@ -54,7 +54,7 @@ void pound_local_fit(const double *y, int n, int reach, double *fit)
 // ten ranks a side once there are rows enough: the bias stays below 0.003 at n = 1000
 static int reach_of(int n_rows)
 {
-	return n_rows >= 300 ? 10 : n_rows >= 60 ? n_rows / 30 : 1;
+	return n_rows >= 300 ? 10 : n_rows / 30;
 }
 
 /* One input's sums over the sample blocks: of each row, output times prediction and prediction squared. */
@@ -133,9 +133,11 @@ static double variances_fill(const struct pound_rows *rows, bool corrected, doub
 /* First-order indexes by leave-one-out local-linear regression in every sample block.
  *
  * Given    rows       -                            outputs and their noise
- *          x          (n x 2 x n_inputs)           the design, rows of A and B; only the order within a column counts
+ *          x          (n x 2 x n_inputs)           the design, rows of A and B, or its probabilities; only the
+ *                                                  order within a column counts
  *          corrected  -                            the variance without the noise of few signals (NAN for one signal)
- * Returns  first      (n_inputs)                   with 95 % intervals from the influence of the rows
+ * Returns  first      (n_inputs)                   with 95 % intervals from the influence of the rows; NAN for
+ *                                                  fewer than POUND_ROWS_MIN
  * Memory   scratch    (pound_local_scratch)
  *
  * Noise needs no correction above: a row and its neighbours have different signals.
@@ -151,7 +153,7 @@ void pound_local_first(const struct pound_rows *rows, const double *x, bool corr
 	double *variance = scratch, *y = variance + n, *fit = y + n;
 	struct sums sums = {fit + n, fit + 2 * (size_t)n};
 	size_t *order = (size_t *)(sums.square + n);
-	const bool enough = n >= 2 * reach_of(n) + 2;
+	const bool enough = n >= POUND_ROWS_MIN;
 	const double grand = enough ? variances_fill(rows, corrected, variance) : NAN;
 	for (int j = 0; j < d; j++) {
 		for (int i = 0; i < n; i++)

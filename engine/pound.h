@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define POUND_VERSION "0.1.0"
+#define POUND_VERSION "0.2.0"
 
 enum {
 	POUND_OSCILLATORS = 2,    /* left, right */
@@ -263,11 +263,58 @@ struct pound_accuracy {
 	double errors[POUND_ERROR_NONE]; /* of the worst index, at most 1; NAN: unknown */
 };
 
+/* Columns of indexes, one row each: X(enumerator, name in a result).  The raw ones are the plain protocol's and hold the
+ * noise of few signals; the pick-freeze ones are the same without it; S1 and ST are the sharpest from the same runs.
+ * S2_excitation is the second-order index of the input and one signal. */
+// clang-format off
+#define POUND_INDEXES(X)                                                                  \
+	X(POUND_S1,             "S1")                                                         \
+	X(POUND_ST,             "ST")                                                         \
+	X(POUND_S1_PICK_FREEZE, "S1_pick_freeze")                                             \
+	X(POUND_ST_PICK_FREEZE, "ST_pick_freeze")                                             \
+	X(POUND_S1_RAW,         "S1_raw")                                                     \
+	X(POUND_ST_RAW,         "ST_raw")                                                     \
+	X(POUND_S2_EXCITATION,  "S2_excitation")
+
+/* The excitation's randomness as an input of its own: X(enumerator, name in a result).  Of single runs the first-order
+ * and the total index, and the total index, or share, that is left in the means over the study's signals. */
+#define POUND_SHARES(X)                                                                   \
+	X(POUND_SHARE_FIRST_ONE, "S1_one_signal")                                             \
+	X(POUND_SHARE_TOTAL_ONE, "ST_one_signal")                                             \
+	X(POUND_SHARE_TOTAL,     "ST_mean_of_signals")
+
+/* What there is to say about the indexes of an output: X(enumerator, sentence). */
+#define POUND_NOTES(X)                                                                    \
+	X(POUND_NOTE_NO_ROWS,                                                                 \
+	  "no row of the design gave a value, so there are no indexes")                       \
+	X(POUND_NOTE_ONE_ROW,                                                                 \
+	  "one row of the design gave a value, which is too few for indexes")                 \
+	X(POUND_NOTE_CONSTANT,                                                                \
+	  "the output is the same for every row, so it has no indexes")                       \
+	X(POUND_NOTE_NOT_RANDOM,                                                              \
+	  "the excitation is not random, so there is no noise to correct for")                \
+	X(POUND_NOTE_ONE_SIGNAL,                                                              \
+	  "with one signal its noise cannot be told apart, so it is in every index")          \
+	X(POUND_NOTE_FRESH_SIGNALS,                                                           \
+	  "samples that do not share their signals do not show S2_excitation and S1_one_signal") \
+	X(POUND_NOTE_FEW_ROWS,                                                                \
+	  "with fewer than 30 rows S1 and ST are S1_pick_freeze and ST_pick_freeze")          \
+	X(POUND_NOTE_NOISE,                                                                   \
+	  "the signals' noise is as large as the variance, so corrected indexes are missing")
+// clang-format on
+
+#define X(name, text) name,
+enum pound_index { POUND_INDEXES(X) POUND_N_INDEXES };
+enum pound_share { POUND_SHARES(X) POUND_N_SHARES };
+enum pound_note { POUND_NOTES(X) POUND_N_NOTES };
+#undef X
+
 struct pound_indices {
 	double mean, variance; /* of the output over the rows of A and B */
 	double noise_share;    /* share of that variance due to the excitation's randomness; NAN: one signal */
-	struct pound_estimate *first; /* (n_inputs) */
-	struct pound_estimate *total; /* (n_inputs) */
+	unsigned notes;        /* bits 1 << enum pound_note */
+	struct pound_estimate share[POUND_N_SHARES];
+	struct pound_estimate *index[POUND_N_INDEXES]; /* (n_inputs) each */
 	struct pound_accuracy accuracy;
 };
 

@@ -12,6 +12,7 @@
 #include "engine/accuracy.h"
 #include "engine/convergence.h"
 #include "engine/design.h"
+#include "engine/excitation.h"
 #include "engine/indices.h"
 #include "engine/outputs.h"
 #include "engine/plan.h"
@@ -38,7 +39,8 @@ struct pound_run {
 	struct pound_plan **plans; /* (n_workers) */
 	double **scratch;          /* of reductions  (n_workers) */
 	struct pound_result result;
-	struct pound_estimate *estimates; /* (n_cells x n_outputs x 2 x n_inputs) */
+	double *u;                        /* the design as probabilities  (rows x 2 x n_inputs) */
+	struct pound_estimate *estimates; /* (n_cells x n_outputs x POUND_N_INDEXES x n_inputs) */
 	struct pound_indices *indices;    /* (n_cells x n_outputs) */
 	struct pound_response *responses; /* (n_cells x n_signals) */
 	double (*cpu)(void);              /* clock of the calling thread [s]; NULL: none */
@@ -179,15 +181,19 @@ static size_t checks_size(const struct pound_campaign *c)
 	return (size_t)checks_of(c) * (sizeof(struct pound_check) / sizeof(double));
 }
 
-/* Doubles a reduction works in: two columns of measures, the checks, and what the indexes need. */
+/* Doubles a reduction works in: two columns of measures, the checks, and what the indexes and then their accuracy
+ * need. */
 static size_t reduction_size(const struct pound_campaign *c)
 {
+	const int n_rows = c->n_rows, n_inputs = c->study->n_inputs, n_signals = c->n_signals;
 	if (c->trials)
 		return (size_t)items_of(c) * TRIAL_MEASURES;
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
-	return 2 * (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals + checks_size(c) +
-	       pound_accuracy_scratch(c->n_rows, c->study->n_inputs, c->n_signals, checks_of(c));
+	size_t variants = pound_variants_scratch(n_rows, n_inputs, n_signals);
+	size_t accuracy = pound_accuracy_scratch(n_rows, n_inputs, n_signals, checks_of(c));
+	return 2 * (size_t)n_rows * (size_t)c->n_samples * (size_t)n_signals + checks_size(c) +
+	       (variants > accuracy ? variants : accuracy);
 }
 
 /* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
@@ -223,7 +229,8 @@ static bool result_create(struct pound_run *run)
 	run->result.cells = piece(sizeof *run->result.cells * n_cells);
 	run->responses = piece(sizeof *run->responses * n_cells * (size_t)c->n_signals);
 	run->indices = piece(sizeof *run->indices * n_cells * n_outputs);
-	run->estimates = piece(sizeof *run->estimates * n_cells * n_outputs * 2 * (size_t)study->n_inputs);
+	run->estimates =
+	    piece(sizeof *run->estimates * n_cells * n_outputs * POUND_N_INDEXES * (size_t)study->n_inputs);
 	run->result.n_trials = c->trials ? c->n_rows : 0;
 	run->result.trials = piece(sizeof *run->result.trials * (size_t)run->result.n_trials);
 	if (!run->result.cells || !run->responses || !run->indices || !run->estimates || !run->result.trials)
@@ -237,10 +244,9 @@ static bool result_create(struct pound_run *run)
 		into->indices = &run->indices[cell * study->n_outputs];
 		into->runs = (int64_t)items_of(c) * c->n_samples;
 		for (int o = 0; o < study->n_outputs; o++) {
-			struct pound_estimate *estimates =
-			    &run->estimates[(cell * study->n_outputs + o) * 2 * study->n_inputs];
-			into->indices[o].first = estimates;
-			into->indices[o].total = estimates + study->n_inputs;
+			size_t first = ((size_t)cell * n_outputs + (size_t)o) * POUND_N_INDEXES;
+			for (size_t k = 0; k < POUND_N_INDEXES; k++)
+				into->indices[o].index[k] = &run->estimates[(first + k) * (size_t)study->n_inputs];
 		}
 	}
 	return true;
@@ -260,10 +266,13 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
 	double *design = piece(sizeof(double) * n_design);
 	run->campaign.design = design;
-	if (!design)
+	run->u = piece(sizeof(double) * n_design);
+	if (!design || !run->u)
 		goto fail;
-	if (study->kind == POUND_KIND_SENSITIVITY)
+	if (study->kind == POUND_KIND_SENSITIVITY) {
+		pound_design_probabilities(study, run->u);
 		pound_design_fill(study, design);
+	}
 	struct pound_plan_size largest = {0};
 	run->n_blocks = blocks_cut(&run->campaign, NULL, &largest);
 	run->first = piece(sizeof *run->first * (size_t)(run->n_blocks + 1));
@@ -289,6 +298,7 @@ void pound_run_free(struct pound_run *run)
 	for (int w = 0; run->scratch && run->scratch[w]; w++)
 		free(run->scratch[w]);
 	void *const pieces[] = {(void *)run->campaign.design,
+	                        run->u,
 	                        run->first,
 	                        run->values,
 	                        run->plans,
@@ -491,13 +501,16 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	                                     .n_signals = c->n_signals,
 	                                     .numerator = scratch,
 	                                     .denominator = scratch + n};
+	const struct pound_sampling sampling = {.u = run->u,
+	                                        .random = pound_excitation_random(&c->study->scene.excitation),
+	                                        .fresh_signals = !c->study->design.common_signals};
 	struct pound_cell *into = &run->result.cells[cell];
 	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);
 	double *rest = scratch + 2 * n + checks_size(c);
 	int dropped =
-	    pound_sobol_indices(&values, c->study->design.seed, POUND_RESAMPLES, rest, &into->indices[output]);
+	    pound_variants_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
 	pound_accuracy_estimate(&values, checks, dropped, c->study->design.seed, rest, &into->indices[output]);
 	if (output == 0) {
 		into->runs_failed = failed;

@@ -25,10 +25,16 @@ static void subject_values(const void *given, const double *mean, double *value)
 
 /* Mean, variance and noise share of the outputs; says whether there are indexes to estimate.
  *
+ * Given    rows      -      outputs and their noise
+ * Returns  indices   -      mean, variance, noise share
+ *          value     -      the outputs vary by more than rounding
+ *
  * The variance is that of A and B; the noise share, for less scatter, that of all samples: mean variance of an output
  * over draws of its signals, over the variance of the outputs.
+ *
+ * Test     unit_sobol: the_noise_share_is_that_of_the_signals_mean
  */
-static bool summary(const struct pound_rows *rows, struct pound_indices *indices)
+bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices)
 {
 	const int d = rows->n_inputs, n_noises = pound_rows_noises(d);
 	double mean = 0.0, square = 0.0, sum = 0.0, squares = 0.0, noise = 0.0;
@@ -69,7 +75,7 @@ size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals)
  * Given    values    (n_rows x (n_inputs + 2) x n_signals)   of each run; n_rows <= 2^20
  *          seed      -                                       of the resamples, n_resamples in number
  * Returns  value     rows dropped: one of their runs has no output
- *          indices   mean, variance (of A and B, divided by their number), noise share, first, total (n_inputs)
+ *          indices   mean, variance (of A and B, divided by their number), noise share, raw indexes (n_inputs)
  * Memory   scratch   (pound_sobol_scratch)
  *
  * A constant output (its deviation within the rounding of the ratio of means) has undefined indexes: NAN.
@@ -86,7 +92,7 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 	pound_rows_init(&rows, values, scratch);
 	for (int k = 0; k < 2 * d; k++)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
-	if (summary(&rows, indices)) {
+	if (pound_sobol_summary(&rows, indices)) {
 		const struct subject subject = {pound_estimator_row(0), &rows};
 		const struct pound_statistic statistic = {n_moments(d), 2 * d, subject_moments, subject_values,
 		                                          &subject};
@@ -95,8 +101,8 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 		                         estimates);
 	}
 	for (int j = 0; j < d; j++) {
-		indices->first[j] = estimates[j];
-		indices->total[j] = estimates[d + j];
+		indices->index[POUND_S1_RAW][j] = estimates[j];
+		indices->index[POUND_ST_RAW][j] = estimates[d + j];
 	}
 	return values->n_rows - rows.n_rows;
 }

@@ -19,10 +19,10 @@ static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE]
 		return;
 	static const char *const sentences[] = {
 	    [POUND_ERROR_SAMPLING] =
-	        "Too few rows are the largest error: an interval reaches %.2g to either side of its index.",
+	        "Too few rows are the largest error: an interval reaches %.2g to either side of its raw index.",
 	    [POUND_ERROR_EXCITATION] =
-	        "Too few signals for each row are the largest error: they may move an index by up to %.2g.",
-	    [POUND_ERROR_INTEGRATION] = "Inexact runs are the largest error: they may move an index by %.2g.",
+	        "Too few signals for each row are the largest error: they may move a raw index by up to %.2g.",
+	    [POUND_ERROR_INTEGRATION] = "Inexact runs are the largest error: they may move a raw index by %.2g.",
 	    [POUND_ERROR_FAILED_ROWS] =
 	        "Rows without a result are the largest error: a share of %.2g was left out."};
 	char sentence[200];
@@ -66,10 +66,10 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 	for (int j = 0; j < study->n_inputs; j++) {
 		writer_object(w, NULL, WRITER_LINE);
 		writer_text(w, "name", study->inputs[j].name);
-		writer_number(w, "S1_integration", accuracy->inputs[j].first_change);
-		writer_number(w, "ST_integration", accuracy->inputs[j].total_change);
-		write_halves(w, "S1_half_widths", accuracy, accuracy->inputs[j].first_half);
-		write_halves(w, "ST_half_widths", accuracy, accuracy->inputs[j].total_half);
+		writer_number(w, "S1_raw_integration", accuracy->inputs[j].first_change);
+		writer_number(w, "ST_raw_integration", accuracy->inputs[j].total_change);
+		write_halves(w, "S1_raw_half_widths", accuracy, accuracy->inputs[j].first_half);
+		write_halves(w, "ST_raw_half_widths", accuracy, accuracy->inputs[j].total_half);
 		writer_end(w);
 	}
 	writer_end(w);

@@ -57,6 +57,7 @@ static void put_sensitivity_row(struct writer *w, const cJSON *cell, const cJSON
 	bool first = true;
 	put_scalars(w, member(cell, "sweep"), "", header, &first);
 	put_scalars(w, output, "output.", header, &first);
+	put_scalars(w, member(output, "excitation"), "output.excitation.", header, &first);
 	put_scalars(w, member(output, "accuracy"), "output.accuracy.", header, &first);
 	put_scalars(w, input, "", header, &first);
 	put_scalars(w, input_accuracy, "accuracy.", header, &first);

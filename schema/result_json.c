@@ -78,9 +78,15 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 
 /* ---- sensitivity ---- */
 
+#define X(name, text) text,
+static const char *const index_names[] = {POUND_INDEXES(X)};
+static const char *const share_names[] = {POUND_SHARES(X)};
+static const char *const notes[] = {POUND_NOTES(X)};
+#undef X
+
 static void write_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate)
 {
-	char member[16];
+	char member[32];
 	writer_number(w, name, estimate->value);
 	snprintf(member, sizeof member, "%s_low", name);
 	writer_number(w, member, estimate->low);
@@ -88,41 +94,55 @@ static void write_estimate(struct writer *w, const char *name, const struct poun
 	writer_number(w, member, estimate->high);
 }
 
-/* Why an output has no indexes, NULL when it has. */
-static const char *indices_note(const struct pound_indices *indices, int n_inputs)
+/* All there is to say about an output's indexes, in one text. */
+static void write_notes(struct writer *w, const struct pound_indices *indices)
 {
-	bool undefined = false;
-	for (int j = 0; j < n_inputs; j++)
-		undefined |= isnan(indices->first[j].value) || isnan(indices->total[j].value);
-	if (!undefined)
-		return NULL;
-	if (isnan(indices->mean))
-		return "no row of the design gave a value, so there are no indexes";
-	if (indices->variance == 0.0)
-		return "the output is the same for every row, so it has no indexes";
-	return "too few rows of the design gave a value for some indexes";
+	char text[1024];
+	int n = 0;
+	for (int k = 0; k < POUND_N_NOTES; k++)
+		if (indices->notes >> k & 1)
+			n += snprintf(text + n, sizeof text - (size_t)n, "%s%s", n ? "; " : "", notes[k]);
+	if (n)
+		writer_text(w, "note", text);
+}
+
+static void write_excitation(struct writer *w, const struct pound_indices *indices)
+{
+	writer_object(w, "excitation", WRITER_LINE);
+	for (int k = 0; k < POUND_N_SHARES; k++)
+		write_estimate(w, share_names[k], &indices->share[k]);
+	writer_end(w);
+}
+
+static void write_input(struct writer *w, const struct pound_input *input,
+                        const struct pound_indices *indices, int j)
+{
+	bool negative = false;
+	writer_object(w, NULL, WRITER_LINE);
+	writer_text(w, "name", input->name);
+	writer_text(w, "path", input->path);
+	for (int k = 0; k < POUND_N_INDEXES; k++) {
+		write_estimate(w, index_names[k], &indices->index[k][j]);
+		negative |= indices->index[k][j].value < 0.0;
+	}
+	if (negative)
+		writer_text(w, "note", "a value below 0 is sampling error around a small index");
+	writer_end(w);
 }
 
 static void write_indices(struct writer *w, const struct pound_study *study,
                           const struct pound_indices *indices, int output)
 {
-	const char *note = indices_note(indices, study->n_inputs);
 	writer_object(w, NULL, WRITER_LINES);
 	writer_text(w, "name", pound_output_name(output));
 	writer_number(w, "mean", indices->mean);
 	writer_number(w, "variance", indices->variance);
 	writer_number(w, "noise_share", indices->noise_share);
-	if (note)
-		writer_text(w, "note", note);
+	write_notes(w, indices);
+	write_excitation(w, indices);
 	writer_array(w, "inputs", WRITER_LINES);
-	for (int j = 0; j < study->n_inputs; j++) {
-		writer_object(w, NULL, WRITER_LINE);
-		writer_text(w, "name", study->inputs[j].name);
-		writer_text(w, "path", study->inputs[j].path);
-		write_estimate(w, "S1", &indices->first[j]);
-		write_estimate(w, "ST", &indices->total[j]);
-		writer_end(w);
-	}
+	for (int j = 0; j < study->n_inputs; j++)
+		write_input(w, &study->inputs[j], indices, j);
 	writer_end(w);
 	result_accuracy_output(w, study, indices);
 	writer_end(w);

@@ -23,8 +23,8 @@ static struct estimated *estimated_of(const struct pound_sample_values *values, 
 	struct estimated *e = calloc(1, sizeof *e);
 	size_t n = pound_accuracy_scratch(values->n_rows, values->n_inputs, values->n_signals, checks.n);
 	double *scratch = malloc(sizeof *scratch * n);
-	e->of.first = e->first;
-	e->of.total = e->total;
+	e->of.index[POUND_S1_RAW] = e->first;
+	e->of.index[POUND_ST_RAW] = e->total;
 	// few resamples: what is looked at here are not the ends of the intervals of all rows
 	int dropped = pound_sobol_indices(values, seed, 400, scratch, &e->of);
 	pound_accuracy_estimate(values, checks, dropped, seed, scratch, &e->of);

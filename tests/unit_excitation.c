@@ -61,6 +61,15 @@ static void noise_without_colour_and_records_have_no_frequency(void **state)
 	}
 }
 
+static void only_noise_differs_from_signal_to_signal(void **state)
+{
+	(void)state;
+	for (int type = 0; type < TYPES; type++) {
+		const struct pound_excitation e = excitation(type);
+		assert_int_equal(pound_excitation_random(&e), type == KANAI_TAJIMI || type == WHITE_NOISE);
+	}
+}
+
 static void the_last_sample_is_the_one_nearest_to_the_end(void **state)
 {
 	(void)state;
@@ -263,6 +272,7 @@ static void the_bits_are_the_same_everywhere(void **state)
 
 CHECK_MAIN(cmocka_unit_test(the_table_has_the_four_excitations_of_a_study),
            cmocka_unit_test(noise_without_colour_and_records_have_no_frequency),
+           cmocka_unit_test(only_noise_differs_from_signal_to_signal),
            cmocka_unit_test(the_last_sample_is_the_one_nearest_to_the_end),
            cmocka_unit_test(noise_has_exactly_the_peak_asked),
            cmocka_unit_test(noise_rises_and_falls_along_a_trapezoid),

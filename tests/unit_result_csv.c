@@ -40,9 +40,18 @@ static void error_estimates_stand_by_their_output_and_input(void **state)
 	becomes(
 	    "{\"cells\": [{\"sweep\": {}, \"outputs\": [{\"name\": \"impulse\", \"inputs\": [{\"name\": \"a\"}, "
 	    "{\"name\": \"b\"}], \"accuracy\": {\"slope\": -0.5, \"rows\": [1, 2], \"inputs\": "
-	    "[{\"S1_integration\": 1}, {\"S1_integration\": 2}], \"errors\": {\"sampling\": 3}}}]}]}",
-	    "output.name,output.accuracy.slope,name,accuracy.S1_integration\r\n"
+	    "[{\"S1_raw_integration\": 1}, {\"S1_raw_integration\": 2}], \"errors\": {\"sampling\": 3}}}]}]}",
+	    "output.name,output.accuracy.slope,name,accuracy.S1_raw_integration\r\n"
 	    "impulse,-0.5,a,1\r\nimpulse,-0.5,b,2\r\n");
+}
+
+static void shares_of_the_excitation_stand_by_their_output(void **state)
+{
+	(void)state;
+	becomes("{\"cells\": [{\"sweep\": {}, \"outputs\": [{\"name\": \"impulse\", \"excitation\": "
+	        "{\"ST_one_signal\": 0.5}, \"inputs\": [{\"name\": \"a\", \"S1\": 1, \"S1_raw\": 2, "
+	        "\"note\": \"words\"}]}]}]}",
+	        "output.name,output.excitation.ST_one_signal,name,S1,S1_raw\r\nimpulse,0.5,a,1,2\r\n");
 }
 
 static void a_row_for_every_cell_and_signal(void **state)
@@ -75,5 +84,6 @@ static void what_is_no_result_gives_no_table(void **state)
 
 CHECK_MAIN(cmocka_unit_test(a_row_for_every_cell_output_and_input),
            cmocka_unit_test(error_estimates_stand_by_their_output_and_input),
+           cmocka_unit_test(shares_of_the_excitation_stand_by_their_output),
            cmocka_unit_test(a_row_for_every_cell_and_signal),
            cmocka_unit_test(what_is_no_result_gives_no_table))

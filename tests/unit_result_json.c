@@ -139,27 +139,28 @@ static void a_swept_law_stands_by_its_name(void **state)
 	free(document);
 }
 
+enum { ESTIMATES = 2 * POUND_N_INDEXES }; /* of two inputs */
+
 /* Indexes that tell their own places. */
-static void indices_fill(struct pound_indices *indices, struct pound_estimate *estimates, int n_inputs,
-                         double first)
+static void indices_fill(struct pound_indices *indices, struct pound_estimate *estimates, double first)
 {
-	for (int k = 0; k < 2 * n_inputs; k++)
+	*indices = (struct pound_indices){.mean = first - 1, .variance = first - 2, .noise_share = first - 3};
+	for (int k = 0; k < ESTIMATES; k++)
 		estimates[k] = (struct pound_estimate){first + k, first + k - 0.25, first + k + 0.25};
-	*indices = (struct pound_indices){.mean = first - 1,
-	                                  .variance = first - 2,
-	                                  .noise_share = first - 3,
-	                                  .first = estimates,
-	                                  .total = estimates + n_inputs};
+	for (int k = 0; k < POUND_N_INDEXES; k++)
+		indices->index[k] = estimates + 2 * k;
+	for (int k = 0; k < POUND_N_SHARES; k++)
+		indices->share[k] = (struct pound_estimate){k, k - 0.25, k + 0.25};
 }
 
 static void indexes_stand_by_output_and_input(void **state)
 {
 	(void)state;
-	struct pound_estimate estimates[8];
+	struct pound_estimate estimates[2 * ESTIMATES];
 	struct pound_indices indices[4];
 	for (int o = 0; o < 4; o++)
-		indices_fill(&indices[o], &estimates[0], 2, 10);
-	indices_fill(&indices[3], &estimates[4], 2, 20);
+		indices_fill(&indices[o], estimates, 10);
+	indices_fill(&indices[3], estimates + ESTIMATES, 20);
 	struct pound_cell cells[2] = {
 	    {.sweep = {0.2}, .runs = 200, .indices = indices},
 	    {.sweep = {0.9}, .runs = 200, .runs_failed = 3, .rows_dropped = 1, .indices = indices + 2}};
@@ -176,17 +177,22 @@ static void indexes_stand_by_output_and_input(void **state)
 	check_near(reading_number(r, "/cells/1/outputs/1/mean"), 19, 0);
 	check_near(reading_number(r, "/cells/1/outputs/1/variance"), 18, 0);
 	check_near(reading_number(r, "/cells/1/outputs/1/noise_share"), 17, 0);
-	static const struct {
-		const char *member;
-		double first, second;
-	} members[] = {{"S1", 20, 21}, {"S1_low", 19.75, 20.75}, {"S1_high", 20.25, 21.25},
-	               {"ST", 22, 23}, {"ST_low", 21.75, 22.75}, {"ST_high", 22.25, 23.25}};
-	for (size_t k = 0; k < sizeof members / sizeof members[0]; k++) {
-		check_near(reading_number(r, "/cells/1/outputs/1/inputs/0/%s", members[k].member), members[k].first,
-		           0);
-		check_near(reading_number(r, "/cells/1/outputs/1/inputs/1/%s", members[k].member), members[k].second,
-		           0);
+	static const char *const names[POUND_N_INDEXES] = {"S1",     "ST",     "S1_pick_freeze", "ST_pick_freeze",
+	                                                   "S1_raw", "ST_raw", "S2_excitation"};
+	for (int k = 0; k < ESTIMATES; k++) {
+		char member[80];
+		snprintf(member, sizeof member, "/cells/1/outputs/1/inputs/%d/%s", k % 2, names[k / 2]);
+		check_near(reading_number(r, "%s", member), 20 + k, 0);
+		check_near(reading_number(r, "%s_low", member), 19.75 + k, 0);
+		check_near(reading_number(r, "%s_high", member), 20.25 + k, 0);
 	}
+	static const char *const shares[POUND_N_SHARES] = {"S1_one_signal", "ST_one_signal",
+	                                                   "ST_mean_of_signals"};
+	for (int k = 0; k < POUND_N_SHARES; k++) {
+		check_near(reading_number(r, "/cells/1/outputs/1/excitation/%s", shares[k]), k, 0);
+		check_near(reading_number(r, "/cells/1/outputs/1/excitation/%s_low", shares[k]), k - 0.25, 0);
+	}
+	assert_false(reading_has(r, "/cells/1/outputs/1/inputs/0/note"));
 	assert_false(reading_has(r, "/cells/1/outputs/1/note"));
 	reading_close(r);
 }
@@ -194,10 +200,10 @@ static void indexes_stand_by_output_and_input(void **state)
 static void every_output_says_how_far_it_may_be_off(void **state)
 {
 	(void)state;
-	struct pound_estimate estimates[4];
+	struct pound_estimate estimates[ESTIMATES];
 	struct pound_indices indices[4];
 	for (int o = 0; o < 4; o++) {
-		indices_fill(&indices[o], estimates, 2, 10);
+		indices_fill(&indices[o], estimates, 10);
 		indices[o].accuracy = (struct pound_accuracy){.runs_checked = 30 + o,
 		                                              .difference_median = 1e-12 * (o + 1),
 		                                              .difference_largest = 1e-9 * (o + 1),
@@ -215,16 +221,16 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 	static const char accuracy[] = "/cells/1/outputs/0/accuracy";
 	check_near(reading_number(r, "%s/runs_checked", accuracy), 32, 0);
 	check_near(reading_number(r, "%s/rows_to_halve", accuracy), 400, 0);
-	check_near(reading_number(r, "%s/inputs/1/ST_integration", accuracy), 0.375, 0);
+	check_near(reading_number(r, "%s/inputs/1/ST_raw_integration", accuracy), 0.375, 0);
 	assert_int_equal(reading_count(r, "%s/rows", accuracy), 2);
-	assert_int_equal(reading_count(r, "%s/inputs/1/S1_half_widths", accuracy), 2);
-	check_near(reading_number(r, "%s/inputs/1/S1_half_widths/0", accuracy), 0.75, 0);
+	assert_int_equal(reading_count(r, "%s/inputs/1/S1_raw_half_widths", accuracy), 2);
+	check_near(reading_number(r, "%s/inputs/1/S1_raw_half_widths/0", accuracy), 0.75, 0);
 	check_near(reading_number(r, "%s/errors/sampling", accuracy), 0.375, 0);
 	assert_true(isnan(reading_number(r, "%s/errors/excitation", accuracy)));
 	assert_string_equal(reading_text(r, "%s/dominant", accuracy), "sampling");
 	assert_string_equal(
 	    reading_text(r, "%s/note", accuracy),
-	    "Too few rows are the largest error: an interval reaches 0.38 to either side of its index.");
+	    "Too few rows are the largest error: an interval reaches 0.38 to either side of its raw index.");
 	// the worst of all outputs of all cells; runs are those of the cells
 	check_near(reading_number(r, "/accuracy/runs_checked"), 31 + 33, 0);
 	check_near(reading_number(r, "/accuracy/difference_largest"), 4e-9, 0);
@@ -239,11 +245,12 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 static void undefined_indexes_are_null_and_say_why(void **state)
 {
 	(void)state;
-	struct pound_estimate none[4];
-	for (int k = 0; k < 4; k++)
-		none[k] = (struct pound_estimate){NAN, NAN, NAN};
-	struct pound_indices indices[2] = {{1.0, 0.0, NAN, none, none + 2, {0}},
-	                                   {NAN, NAN, NAN, none, none + 2, {0}}};
+	struct pound_estimate none[2] = {{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+	struct pound_indices indices[2] = {{.notes = 1 << POUND_NOTE_CONSTANT},
+	                                   {.notes = 1 << POUND_NOTE_NO_ROWS | 1 << POUND_NOTE_NOISE}};
+	for (int o = 0; o < 2; o++)
+		for (int k = 0; k < POUND_N_INDEXES; k++)
+			indices[o].index[k] = none;
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
 	struct reading *r = result_of(documents_sensitivity, &result);
@@ -251,8 +258,47 @@ static void undefined_indexes_are_null_and_say_why(void **state)
 	assert_true(isnan(reading_number(r, "/cells/0/outputs/0/inputs/0/S1")));
 	assert_string_equal(reading_text(r, "/cells/0/outputs/0/note"),
 	                    "the output is the same for every row, so it has no indexes");
-	assert_string_equal(reading_text(r, "/cells/0/outputs/1/note"),
-	                    "no row of the design gave a value, so there are no indexes");
+	assert_string_equal(
+	    reading_text(r, "/cells/0/outputs/1/note"),
+	    "no row of the design gave a value, so there are no indexes; the signals' noise is as "
+	    "large as the variance, so corrected indexes are missing");
+	reading_close(r);
+}
+
+static void a_negative_index_is_not_clipped_but_explained(void **state)
+{
+	(void)state;
+	struct pound_estimate estimates[ESTIMATES];
+	struct pound_indices indices[4];
+	for (int o = 0; o < 4; o++)
+		indices_fill(&indices[o], estimates, 0);
+	estimates[2 * POUND_ST_PICK_FREEZE].value = -0.125;
+	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
+	struct pound_result result = {.n_cells = 2, .cells = cells};
+	struct reading *r = result_of(documents_sensitivity, &result);
+	check_near(reading_number(r, "/cells/0/outputs/0/inputs/0/ST_pick_freeze"), -0.125, 0);
+	assert_string_equal(reading_text(r, "/cells/0/outputs/0/inputs/0/note"),
+	                    "a value below 0 is sampling error around a small index");
+	// an index of 0 whose interval reaches below needs no words
+	assert_false(reading_has(r, "/cells/0/outputs/0/inputs/1/note"));
+	reading_close(r);
+}
+
+static void all_there_is_to_say_has_room(void **state)
+{
+	(void)state;
+	struct pound_estimate estimates[ESTIMATES];
+	struct pound_indices indices[4];
+	for (int o = 0; o < 4; o++) {
+		indices_fill(&indices[o], estimates, 10);
+		indices[o].notes = (1u << POUND_N_NOTES) - 1;
+	}
+	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
+	struct pound_result result = {.n_cells = 2, .cells = cells};
+	struct reading *r = result_of(documents_sensitivity, &result);
+	const char *note = reading_text(r, "/cells/0/outputs/0/note");
+	assert_string_equal(strrchr(note, ';'),
+	                    "; the signals' noise is as large as the variance, so corrected indexes are missing");
 	reading_close(r);
 }
 
@@ -300,4 +346,6 @@ CHECK_MAIN(cmocka_unit_test(a_response_is_written_whole),
            cmocka_unit_test(a_swept_law_stands_by_its_name),
            cmocka_unit_test(indexes_stand_by_output_and_input),
            cmocka_unit_test(every_output_says_how_far_it_may_be_off),
-           cmocka_unit_test(undefined_indexes_are_null_and_say_why), cmocka_unit_test(left_out_work_adds_up))
+           cmocka_unit_test(undefined_indexes_are_null_and_say_why),
+           cmocka_unit_test(a_negative_index_is_not_clipped_but_explained),
+           cmocka_unit_test(all_there_is_to_say_has_room), cmocka_unit_test(left_out_work_adds_up))

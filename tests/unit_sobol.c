@@ -19,8 +19,8 @@ static struct indexes *indexes_of(const struct pound_sample_values *values, uint
 	struct indexes *result = calloc(1, sizeof *result);
 	size_t n = pound_sobol_scratch(values->n_rows, values->n_inputs, values->n_signals);
 	double *scratch = malloc(sizeof *scratch * n);
-	result->of.first = result->first;
-	result->of.total = result->total;
+	result->of.index[POUND_S1_RAW] = result->first;
+	result->of.index[POUND_ST_RAW] = result->total;
 	result->dropped = pound_sobol_indices(values, seed, POUND_RESAMPLES, scratch, &result->of);
 	free(scratch);
 	return result;
