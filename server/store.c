@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,6 +33,7 @@ static const char schema_text[] =
 
 enum {
 	READERS = 4,
+	CHANGES = 1021,              /* a prime, so that ids fall everywhere */
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
 	USER_VERSION = 1,            /* as in store.sql */
 	LOCK_TRIES = 50,             /* half a second together */
@@ -51,12 +53,15 @@ enum {
 	X(LIST,     STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2")                                      \
 	X(LIST_OF,  STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2")                      \
 	X(DOCUMENT, "SELECT sha256, content FROM document WHERE study = ?1 AND name = ?2")                    \
+	X(COUNT,    "SELECT count(*) FROM study WHERE status = ?1")                                           \
 	X(BLOCKS,   "SELECT sha256, content, number, runs, cpu_s FROM block WHERE study = ?1 ORDER BY number") \
 	X(BEGIN,    "BEGIN IMMEDIATE")                                                                        \
 	X(COMMIT,   "COMMIT")                                                                                 \
 	X(ROLLBACK, "ROLLBACK")                                                                               \
-	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash) "                        \
-	            "VALUES (?1, 'queued', ?2, ?3, ?4, ?5, ?6)")                                              \
+	X(KEYED,    "SELECT sha256, id FROM study JOIN document ON study = id AND document.name = 'request' " \
+	            "WHERE idempotency_key = ?1")                                                             \
+	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key) "       \
+	            "VALUES (?1, 'queued', ?2, ?3, ?4, ?5, ?6, ?7)")                                          \
 	X(ADD,      "INSERT INTO document (study, name, content, sha256) VALUES (?1, ?2, ?3, ?4)")            \
 	X(CANCEL,   "UPDATE study SET status = 'cancelled', finished = max(?2, created) "                     \
 	            "WHERE id = ?1 AND status IN ('queued', 'running')")                                      \
@@ -93,6 +98,7 @@ struct store {
 	int lock_file;
 	int64_t id_last; /* largest id given out, under the writer's lock */
 	struct connection writer, readers[READERS];
+	atomic_uint changes[CHANGES]; /* of the studies whose ids have that remainder */
 };
 
 static int64_t now_ms(void)
@@ -178,6 +184,26 @@ static enum store_status released(struct connection *c, enum store_status status
 {
 	pthread_mutex_unlock(&c->lock);
 	return status;
+}
+
+/* The same after a change of a study: those who wait for one may look. */
+static enum store_status changed(struct store *store, int64_t id, enum store_status status)
+{
+	pthread_mutex_unlock(&store->writer.lock);
+	if (status == STORE_OK)
+		atomic_fetch_add(&store->changes[id % CHANGES], 1);
+	return status;
+}
+
+/* A number that grows after every change of a study: who remembers it from before a look sees that another is due.
+ *
+ * Given    id      of the study
+ * Returns  value   shared by about one in a thousand other studies
+ * Test     service_wait: who_waits_for_a_change_is_told_of_it
+ */
+unsigned store_changes(struct store *store, int64_t id)
+{
+	return atomic_load(&store->changes[id % CHANGES]);
 }
 
 static int64_t number(sqlite3 *db, const char *sql)
@@ -354,13 +380,32 @@ static enum store_status add(struct connection *c, int64_t id, const char *name,
 	return change(c, ADD, "itbb", id, name, content, length, sha256, sizeof sha256);
 }
 
+/* Whether an earlier study was submitted with that key: NONE, REPEATED or CLASH. */
+static enum store_status keyed(struct connection *c, const char *key, const char *request, size_t length,
+                               int64_t *id)
+{
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	enum store_status status = STORE_NONE;
+	sqlite3_stmt *row = query(c, KEYED, "t", key);
+	digest("request", request, length, sha256);
+	if (sqlite3_step(row) == SQLITE_ROW) {
+		*id = sqlite3_column_int64(row, 1);
+		bool same = sqlite3_column_bytes(row, 0) == sizeof sha256 &&
+		            !memcmp(sqlite3_column_blob(row, 0), sha256, sizeof sha256);
+		status = same ? STORE_REPEATED : STORE_CLASH;
+	}
+	return ended(c, row, 1) == STORE_FAILED ? STORE_FAILED : status;
+}
+
 /* Queues a new study; it is on the disk when this returns.
  *
- * Given    study     its kind, name and runs; the rest is not read
+ * Given    study     its kind, name, runs and key; the rest is not read
  *          hash      of its meaning, hex
  *          request   (length) bytes   as the client sent them
- * Returns  id        of the study
- * Status   STORE_FAILED   nothing is stored
+ * Returns  id        of the study, or of the earlier one with that key
+ * Status   STORE_FAILED     nothing is stored
+ *          STORE_REPEATED   nothing need be: the earlier study was submitted with these bytes
+ *          STORE_CLASH      nothing is: it was submitted with others
  * Test     service_resume: accepted_studies_survive_sigkill
  */
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
@@ -369,9 +414,13 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 	struct connection *c = writer(store);
 	int64_t now = now_ms();
 	enum store_status status = change(c, BEGIN, "");
-	*id = id_next(store, now);
-	if (status != STORE_FAILED)
-		status = change(c, SUBMIT, "iittit", *id, now, study->kind, study->name, study->runs, hash);
+	if (status != STORE_FAILED && study->key)
+		status = keyed(c, study->key, request, length, id);
+	if (status == STORE_OK || status == STORE_NONE) {
+		*id = id_next(store, now);
+		status =
+		    change(c, SUBMIT, "iittitt", *id, now, study->kind, study->name, study->runs, hash, study->key);
+	}
 	if (status == STORE_OK)
 		status = add(c, *id, "request", request, length);
 	return released(c, conclude(c, status));
@@ -449,18 +498,27 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 	return released(c, status);
 }
 
+/* Counts the studies of a status. */
+enum store_status store_count(struct store *store, const char *status, int64_t *n)
+{
+	struct connection *c = reader(store);
+	sqlite3_stmt *row = query(c, COUNT, "t", status);
+	*n = sqlite3_step(row) == SQLITE_ROW ? sqlite3_column_int64(row, 0) : 0;
+	return released(c, ended(c, row, 1));
+}
+
 /* Cancels a study; STORE_NONE when it is neither queued nor running. */
 enum store_status store_cancel(struct store *store, int64_t id)
 {
 	struct connection *c = writer(store);
-	return released(c, change(c, CANCEL, "ii", id, now_ms()));
+	return changed(store, id, change(c, CANCEL, "ii", id, now_ms()));
 }
 
 /* Deletes a study with its documents and blocks. */
 enum store_status store_delete(struct store *store, int64_t id)
 {
 	struct connection *c = writer(store);
-	return released(c, change(c, DELETE, "i", id));
+	return changed(store, id, change(c, DELETE, "i", id));
 }
 
 /* Takes the oldest queued study: when this returns it is running, and the attempt counted.
@@ -475,7 +533,8 @@ enum store_status store_claim(struct store *store, int64_t *id)
 	int n = 0;
 	for (; sqlite3_step(row) == SQLITE_ROW; n++)
 		*id = sqlite3_column_int64(row, 0);
-	return released(c, ended(c, row, n));
+	enum store_status status = ended(c, row, n);
+	return changed(store, status == STORE_OK ? *id : 0, status);
 }
 
 /* A block belongs to a study, a number and the engine version that made it. */
@@ -497,8 +556,9 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 	block_place(id, block->number, place);
 	digest(place, block->values, length, sha256);
 	struct connection *c = writer(store);
-	return released(c, change(c, KEEP, "iiidbb", id, (int64_t)block->number, block->runs, block->cpu_s,
-	                          block->values, length, sha256, sizeof sha256));
+	return changed(store, id,
+	               change(c, KEEP, "iiidbb", id, (int64_t)block->number, block->runs, block->cpu_s,
+	                      block->values, length, sha256, sizeof sha256));
 }
 
 /* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out. */
@@ -543,5 +603,5 @@ enum store_status store_finish(struct store *store, int64_t id, const char *resu
 		status = change(c, FINISH, "itit", id, result ? "succeeded" : "failed", now_ms(), error);
 	if (status == STORE_OK && result)
 		status = add(c, id, "result", result, length);
-	return released(c, conclude(c, status));
+	return changed(store, id, conclude(c, status));
 }

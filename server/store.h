@@ -10,9 +10,11 @@
 
 enum store_status {
 	STORE_OK,
-	STORE_NONE,    /* no such study or document, or the study is not in the state asked for */
-	STORE_CORRUPT, /* found, but not what was written */
-	STORE_FAILED,  /* the disk or the memory; logged */
+	STORE_NONE,     /* no such study or document, or the study is not in the state asked for */
+	STORE_CORRUPT,  /* found, but not what was written */
+	STORE_FAILED,   /* the disk or the memory; logged */
+	STORE_REPEATED, /* an earlier study has that key, and the same bytes */
+	STORE_CLASH,    /* an earlier study has that key, and other bytes */
 };
 
 struct store;
@@ -24,14 +26,15 @@ struct store_study {
 	const char *created, *started, *finished; /* RFC 3339 UTC, NULL: not yet */
 	const char *error;                        /* NULL unless failed */
 	int64_t runs, runs_done;
-	double cpu_s; /* of the blocks done [s] */
+	double cpu_s;    /* of the blocks done [s] */
+	const char *key; /* Idempotency-Key it was submitted with, NULL: none; only store_submit reads it */
 };
 typedef void store_study_reader(void *to, const struct store_study *study);
 
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
 void store_close(struct store *store);
 
-/* a new study, queued; `study` gives kind, name and runs */
+/* a new study, queued; `study` gives kind, name, runs and key */
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
                                const char *request, size_t length, int64_t *id);
 enum store_status store_study(struct store *store, int64_t id, store_study_reader *reader, void *to);
@@ -39,7 +42,10 @@ enum store_status store_study(struct store *store, int64_t id, store_study_reade
 enum store_status store_list(struct store *store, const char *status, int64_t before, int limit,
                              store_study_reader *reader, void *to);
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
-                                 size_t *length);                /* on the heap, for the caller to free */
+                                 size_t *length); /* on the heap, for the caller to free */
+enum store_status store_count(struct store *store, const char *status, int64_t *n); /* studies of a status */
+/* grows with every change of a study; studies may share one */
+unsigned store_changes(struct store *store, int64_t id);
 enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */
 enum store_status store_delete(struct store *store, int64_t id);
 
