@@ -1,6 +1,4 @@
 /* poundd: opens the store, starts the workers, listens, and waits for the signal to stop. */
-#include <argp.h>
-#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,53 +6,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "engine/pound.h"
 #include "server/http.h"
 #include "server/log.h"
+#include "server/options.h"
 #include "server/store.h"
 #include "server/work.h"
-
-enum { WORKERS_MAX = 1024 };
-
-struct options {
-	const char *listen, *database;
-	int port, n_workers;
-};
-
-static int whole(const char *text, int min, int max, const char *option, struct argp_state *state)
-{
-	char *rest;
-	long value = strtol(text, &rest, 10);
-	if (rest == text || *rest || value < min || value > max)
-		argp_error(state, "--%s must be a whole number in [%d, %d], got '%s'", option, min, max, text);
-	return (int)value;
-}
-
-static error_t option(int key, char *value, struct argp_state *state)
-{
-	struct options *options = state->input;
-	if (key == 'p')
-		options->port = whole(value, 0, 65535, "port", state);
-	else if (key == 'l')
-		options->listen = value;
-	else if (key == 'd')
-		options->database = value;
-	else if (key == 'w')
-		options->n_workers = whole(value, 1, WORKERS_MAX, "workers", state);
-	else
-		return ARGP_ERR_UNKNOWN;
-	return 0;
-}
-
-static const struct argp_option option_table[] = {
-    {"port", 'p', "PORT", 0, "Listen on PORT, 0: any that is free (8437)", 0},
-    {"listen", 'l', "ADDRESS", 0, "Listen on ADDRESS (127.0.0.1)", 0},
-    {"database", 'd', "FILE", 0, "Keep studies in FILE (poundd.db)", 0},
-    {"workers", 'w', "N", 0, "Compute with N threads (one for each core)", 0},
-    {0},
-};
-
-const char *argp_program_version = "poundd " POUND_VERSION;
 
 static int serve(struct server *server, const struct options *options, const sigset_t *signals)
 {
@@ -78,17 +34,9 @@ static int serve(struct server *server, const struct options *options, const sig
 
 int main(int argc, char **argv)
 {
-	static const struct argp argp = {
-	    option_table, option, NULL, "Serves pounding studies over HTTP.", 0, 0, 0};
-	long cores = sysconf(_SC_NPROCESSORS_ONLN);
-	struct options options = {.listen = "127.0.0.1",
-	                          .database = "poundd.db",
-	                          .port = 8437,
-	                          .n_workers = cores < 1             ? 1
-	                                       : cores > WORKERS_MAX ? WORKERS_MAX
-	                                                             : (int)cores};
+	struct options options;
 	sigset_t signals;
-	argp_parse(&argp, argc, argv, 0, NULL, &options);
+	options_read(&options, argc, argv);
 	umask(077);
 	// a client that has gone, and a file that may not grow, are errors of a write and no more
 	signal(SIGPIPE, SIG_IGN);
@@ -99,7 +47,7 @@ int main(int argc, char **argv)
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.store = store_open(options.database), .n_workers = options.n_workers};
+	struct server server = {.store = store_open(options.database), .n_workers = options.workers};
 	if (!server.store)
 		return EXIT_FAILURE;
 	int status = serve(&server, &options, &signals);

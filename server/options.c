@@ -1,0 +1,129 @@
+/* A row for every option: argp reads the flags by it, and the environment is read by it before. */
+#include "server/options.h"
+
+#include <argp.h>
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "engine/pound.h"
+
+enum { WORKERS_MAX = 1024, FIRST_KEY = 256 /* above all letters */ };
+
+#define AT(member) offsetof(struct options, member)
+
+// clang-format off
+const struct option_row options_table[] = {
+	{"port",            'p', "PORT",    "port to listen on, 0: any that is free", "8437", AT(port), 0, 65535},
+	{"listen",          'l', "ADDRESS", "address to listen on; one that is not loopback needs --token-file or --insecure",
+	 "127.0.0.1", AT(listen), 0, 0},
+	{"database",        'd', "FILE",    "file that keeps the studies", "poundd.db", AT(database), 0, 0},
+	{"workers",         'w', "N",       "threads that compute; one for each core when absent", NULL, AT(workers), 1, WORKERS_MAX},
+	{"host",            0,   "NAMES",   "names the server is asked by, between commas, besides localhost and addresses",
+	 NULL, AT(host), 0, 0},
+	{"token-file",      0,   "FILE",    "file of bearer tokens, one a line; who has none is answered 401", NULL, AT(token_file), 0, 0},
+	{"insecure",        0,   NULL,      "listen on any address without tokens", "0", AT(insecure), 0, 1},
+	{"connections-max", 0,   "N",       "connections; more are answered 503", "2048", AT(connections_max), 1, 4000},
+	{"queue-max",       0,   "N",       "queued studies; more are answered 503", "10000", AT(queue_max), 1, 1000000},
+	{"queue-token-max", 0,   "N",       "queued studies of one token; more are answered 429", "100", AT(queue_token_max), 1, 1000000},
+	{"header-timeout",  0,   "S",       "seconds for a first request's headers to arrive", "10", AT(header_timeout), 1, 3600},
+	{"body-timeout",    0,   "S",       "seconds for a request's body to arrive", "30", AT(body_timeout), 1, 3600},
+	{"idle-timeout",    0,   "S",       "seconds from an answer to the next request's headers", "60", AT(idle_timeout), 1, 3600},
+	{"wait-max",        0,   "S",       "seconds that Prefer: wait may wait", "30", AT(wait_max), 1, 3600},
+	{"runs-max",        0,   "N",       "pounding runs of one study", "10000000", AT(runs_max), 1, 10000000},
+	{"cpu-max",         0,   "S",       "estimated seconds of one core for one study", "86400", AT(cpu_max), 1, 100000000},
+	{"result-max",      0,   "MIB",     "estimated MiB of one study in the database", "1024", AT(result_max), 1, 1000000},
+};
+// clang-format on
+const int options_count = sizeof options_table / sizeof options_table[0];
+
+void options_variable(const struct option_row *row, char *name, size_t size)
+{
+	snprintf(name, size, "POUNDD_%s", row->name);
+	for (char *c = name; *c; c++)
+		*c = *c == '-' ? '_' : (char)toupper((unsigned char)*c);
+}
+
+/* Takes a value; false: it is not one that the row takes. */
+static bool assign(struct options *options, const struct option_row *row, const char *value)
+{
+	char *at = (char *)options + row->offset, *rest;
+	if (row->max == 0) {
+		*(const char **)(void *)at = value;
+		return *value != '\0';
+	}
+	long number = strtol(value, &rest, 10);
+	*(int *)(void *)at = (int)number;
+	return rest != value && !*rest && number >= row->min && number <= row->max;
+}
+
+static void expected(const struct option_row *row, char *text, size_t size)
+{
+	if (row->max == 0)
+		snprintf(text, size, "must not be empty");
+	else
+		snprintf(text, size, "must be a whole number in [%d, %d]", row->min, row->max);
+}
+
+static error_t flag(int key, char *value, struct argp_state *state)
+{
+	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+		char text[64];
+		if (key != (row->letter ? row->letter : FIRST_KEY + (int)(row - options_table)))
+			continue;
+		expected(row, text, sizeof text);
+		if (!assign(state->input, row, value ? value : "1"))
+			argp_error(state, "--%s %s, got '%s'", row->name, text, value);
+		return 0;
+	}
+	return ARGP_ERR_UNKNOWN;
+}
+
+static void environment(struct options *options)
+{
+	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+		char name[64], text[64];
+		options_variable(row, name, sizeof name);
+		const char *value = getenv(name);
+		expected(row, text, sizeof text);
+		if (value && !assign(options, row, value)) {
+			fprintf(stderr, "poundd: %s %s, got '%s'\n", name, text, value);
+			exit(argp_err_exit_status);
+		}
+	}
+}
+
+const char *argp_program_version = "poundd " POUND_VERSION;
+
+/* Reads flags and environment; help, the version and mistakes end the program.
+ *
+ * Returns  options   texts are those of argv and of the environment
+ * Test     service_options: every_option_is_taken_as_a_flag_and_from_the_environment
+ */
+void options_read(struct options *options, int argc, char **argv)
+{
+	struct argp_option flags[sizeof options_table / sizeof options_table[0] + 1] = {0};
+	char texts[sizeof options_table / sizeof options_table[0]][192];
+	const struct argp argp = {.options = flags,
+	                          .parser = flag,
+	                          .doc = "Serves pounding studies over HTTP.\vEvery option may be given in the "
+	                                 "environment as well: --port as "
+	                                 "POUNDD_PORT, --token-file as POUNDD_TOKEN_FILE.  A flag wins."};
+	long cores = sysconf(_SC_NPROCESSORS_ONLN);
+	*options = (struct options){.workers = cores < 1 ? 1 : cores > WORKERS_MAX ? WORKERS_MAX : (int)cores};
+	for (int i = 0; i < options_count; i++) {
+		const struct option_row *row = &options_table[i];
+		if (row->absent)
+			assign(options, row, row->absent);
+		snprintf(texts[i], sizeof texts[i], row->absent && row->argument ? "%s (%s)" : "%s", row->text,
+		         row->absent);
+		flags[i] = (struct argp_option){.name = row->name,
+		                                .key = row->letter ? row->letter : FIRST_KEY + i,
+		                                .arg = row->argument,
+		                                .doc = texts[i]};
+	}
+	environment(options);
+	argp_parse(&argp, argc, argv, 0, NULL, options);
+}
