@@ -189,7 +189,7 @@ static enum outcome run_and_print(const struct pound_study *study, const struct 
 		command_complain("%s", pound_status_text(interrupted ? POUND_STOPPED : POUND_NOMEM));
 		outcome = OUTCOME_FAILED;
 	} else {
-		command_complain("the study failed: %s", pound_status_text(status));
+		command_complain("the study failed: %s", pound_status_error(status));
 		outcome = OUTCOME_STUDY_FAILED;
 	}
 	free(json);

@@ -290,6 +290,11 @@ static void print_work(const struct reading *result)
 	putchar('\n');
 	table_print(table, 2);
 	table_close(table);
+	for (int i = 0; (what = reading_text(result, "/work/failures/%d/reason", i)); i++) {
+		printf("  failed: %.0f of the runs: ", reading_number(result, "/work/failures/%d/runs", i));
+		print_tame(what);
+		putchar('\n');
+	}
 	for (int i = 0; (what = reading_text(result, "/work/left_out/%d", i)); i++) {
 		fputs("  left out: ", stdout);
 		print_tame(what);

@@ -35,16 +35,17 @@ static double displacement_free(const struct pound_response *r, const struct pou
 	return r->displacement_max_free_1;
 }
 
+// a body that never moves has no demand, which is not for want of a result
 static double demand(const struct pound_response *r, const struct pound_scene *scene)
 {
 	(void)scene;
-	return r->demand_1;
+	return isnan(r->demand_1) ? 0 : r->demand_1;
 }
 
 static double demand_free(const struct pound_response *r, const struct pound_scene *scene)
 {
 	(void)scene;
-	return r->demand_free_1;
+	return isnan(r->demand_free_1) ? 0 : r->demand_free_1;
 }
 
 /* Impulse over m1 w1: the displacement amplitude it gives to the left oscillator [m]. */

@@ -557,6 +557,8 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 		struct pound_response response;
 		const struct ask *ask = &plan->asks[a];
 		enum pound_status status = ask_response(plan, ask, &response);
+		if (status && a < n_items)
+			work->failed[POUND_CHATTER - status]++;
 		take(into, &ask->scene, &response, status);
 	}
 	return POUND_OK;

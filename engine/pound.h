@@ -22,20 +22,31 @@ enum {
 	POUND_ROWS_MAX = 1 << 20, /* rows of a design */
 };
 
+// why a run has no result
 // clang-format off
+#define POUND_FAILURES(X)                                                                 \
+	X(POUND_CHATTER,   -3, "more events in one sample interval than allowed")             \
+	X(POUND_UNSTABLE,  -4, "the steps of the solver are too long for this scene")         \
+	X(POUND_TOLERANCE, -5, "the tolerance of the solver is out of its reach")
+
 #define POUND_STATUS(X)                                                                   \
-	X(POUND_OK,       0, "ok")                                                            \
-	X(POUND_NOMEM,   -1, "out of memory")                                                 \
-	X(POUND_STOPPED, -2, "stopped by the caller")                                         \
-	X(POUND_CHATTER, -3, "more events in one sample interval than allowed")               \
-	X(POUND_UNSTABLE, -4, "the steps of the solver are too long for this scene")          \
-	X(POUND_TOLERANCE, -6, "the tolerance of the solver is out of its reach")
+	X(POUND_OK,         0, "ok")                                                          \
+	X(POUND_NOMEM,     -1, "out of memory")                                               \
+	X(POUND_STOPPED,   -2, "stopped by the caller")                                       \
+	POUND_FAILURES(X)
 // clang-format on
 
 enum pound_status {
 #define X(name, value, text) name = value,
 	POUND_STATUS(X)
 #undef X
+};
+
+enum pound_failure {
+#define X(name, value, text) name##_RUNS = POUND_CHATTER - (value),
+	POUND_FAILURES(X)
+#undef X
+	    POUND_N_FAILURES
 };
 
 /* The study: one in-memory form.  `type`, `model`, `method` and `outputs[]` are row numbers of the engine's tables;
@@ -362,9 +373,10 @@ struct pound_work {
 #define X(member, text) struct pound_stage_work member;
 	POUND_STAGES(X)
 #undef X
-	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
-	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
-	int64_t contacts;       /* contacts in the runs made */
+	int64_t never_touching;           /* pounding runs not made: the free responses never close the gap */
+	int64_t moving_alike;             /* pounding runs not made: equal oscillators never touch with force */
+	int64_t contacts;                 /* contacts in the runs made */
+	int64_t failed[POUND_N_FAILURES]; /* pounding runs asked that have no result */
 };
 
 struct pound_result {
@@ -409,5 +421,6 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
                              double *mean, double *variance);
 
 const char *pound_status_text(enum pound_status status);
+const char *pound_status_error(enum pound_status status); /* why a study has no result */
 
 #endif

@@ -518,6 +518,12 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	}
 }
 
+static bool failed(const struct pound_response *response)
+{
+	return isnan(response->displacement_max_1);
+}
+
+/* Ratio of means over the signals whose run has a result. */
 static void responses_reduce(struct pound_run *run, int cell, int output)
 {
 	const struct pound_campaign *c = &run->campaign;
@@ -528,6 +534,8 @@ static void responses_reduce(struct pound_run *run, int cell, int output)
 	for (int signal = 0; signal < c->n_signals; signal++) {
 		struct pound_response response;
 		memcpy(&response, run_values(run, signal, cell, 0), sizeof response);
+		if (failed(&response))
+			continue;
 		double numerator = NAN, denominator = NAN;
 		if (pound_output_applies(row, &scene))
 			pound_outputs_measure(row, &scene, &response, &numerator, &denominator);
@@ -550,15 +558,46 @@ static void trials_reduce(struct pound_run *run, double *scratch)
 		run->result.cells[0].runs_failed += run->result.trials[j].runs_failed;
 }
 
-/* Computes one output of one cell, once all blocks are done.
+/* The work of all blocks. */
+static struct pound_work work_of(const struct pound_run *run)
+{
+	struct pound_work work = {0};
+	int64_t *counts = (int64_t *)&work;
+	for (int b = 0; b < run->n_blocks; b++) {
+		const double *counted = block_values(run, b) + pound_run_block_size(run, b) - COUNTS;
+		for (int j = 0; j < (int)COUNTS; j++)
+			counts[j] += (int64_t)counted[j];
+	}
+	return work;
+}
+
+/* The status of most runs where none has a result, POUND_OK where one has. */
+static enum pound_status nothing_left(const struct pound_run *run)
+{
+	struct pound_work work = work_of(run);
+	int64_t failed_runs = 0;
+	int most = 0;
+	for (int k = 0; k < POUND_N_FAILURES; k++) {
+		failed_runs += work.failed[k];
+		most = work.failed[k] > work.failed[most] ? k : most;
+	}
+	return failed_runs < work.pounding_runs.asked ? POUND_OK : (enum pound_status)(POUND_CHATTER - most);
+}
+
+/* Computes one output of one cell, once all blocks are done; the first also looks whether there is anything to reduce.
  *
  * Status   POUND_STOPPED  pound_run_stop was called
+ *          that of runs   no run of the study has a result, most of them for this reason
+ * Test     unit_status: a_study_without_a_result_ends_with_the_reason_of_its_runs
  */
 enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker)
 {
 	int n_outputs = run->campaign.study->n_outputs;
 	if (atomic_load(&run->stop))
 		return POUND_STOPPED;
+	enum pound_status status = reduction == 0 ? nothing_left(run) : POUND_OK;
+	if (status)
+		return status;
 	if (run->campaign.trials)
 		trials_reduce(run, run->scratch[worker]);
 	else if (has_indices(run))
@@ -572,19 +611,13 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 const struct pound_result *pound_run_result(struct pound_run *run)
 {
 	const struct pound_campaign *c = &run->campaign;
-	int64_t *counts = (int64_t *)&run->result.work;
-	memset(counts, 0, sizeof run->result.work);
-	for (int b = 0; b < run->n_blocks; b++) {
-		const double *counted = block_values(run, b) + pound_run_block_size(run, b) - COUNTS;
-		for (int j = 0; j < (int)COUNTS; j++)
-			counts[j] += (int64_t)counted[j];
-	}
+	run->result.work = work_of(run);
 	for (int cell = 0; cell < c->n_cells && c->study->kind == POUND_KIND_RESPONSE; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
 		into->runs_failed = 0;
 		for (int signal = 0; signal < c->n_signals; signal++) {
 			memcpy(&into->signals[signal], run_values(run, signal, cell, 0), sizeof into->signals[signal]);
-			into->runs_failed += isnan(into->signals[signal].displacement_max_1);
+			into->runs_failed += failed(&into->signals[signal]);
 		}
 	}
 	return &run->result;

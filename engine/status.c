@@ -12,3 +12,14 @@ const char *pound_status_text(enum pound_status status)
 	}
 	return "unknown status";
 }
+
+/* Why a study ended without a result: a status of runs stands for all of them. */
+const char *pound_status_error(enum pound_status status)
+{
+	static const char *const none[] = {
+#define X(name, value, text) [name##_RUNS] = "no run gave a result: " text,
+	    POUND_FAILURES(X)
+#undef X
+	};
+	return status <= POUND_CHATTER ? none[POUND_CHATTER - status] : pound_status_text(status);
+}

@@ -68,6 +68,10 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 		if (pound_output_applies(study->outputs[o], scene))
 			writer_number(w, pound_output_name(study->outputs[o]), cell->outputs[o]);
 	writer_end(w);
+	if (cell->runs_failed && cell->runs_failed == cell->runs)
+		writer_text(w, "note", "no run gave a result, so there are no outputs; work.failures says why");
+	else if (cell->runs_failed)
+		writer_text(w, "note", "runs without a result are left out of the outputs; work.failures says why");
 	double residual = NAN; // a solver that does not keep the balance
 	for (int i = 0; i < cell->n_signals; i++)
 		residual = fmax(residual, cell->signals[i].energy_residual);
@@ -190,6 +194,8 @@ static void write_trials(struct writer *w, const struct pound_result *result)
 {
 	writer_whole(w, "runs", result->cells[0].runs);
 	writer_whole(w, "runs_failed", result->cells[0].runs_failed);
+	if (result->trials[0].runs_failed * (int64_t)result->n_trials == result->cells[0].runs)
+		writer_text(w, "note", "the reference has no result, so there are no errors; work.failures says why");
 	writer_array(w, "rows", WRITER_LINES);
 	for (int j = 0; j < result->n_trials; j++)
 		write_trial(w, &result->trials[j]);
@@ -308,6 +314,26 @@ static void write_left_out(struct writer *w, const struct pound_study *study, co
 	writer_end(w);
 }
 
+/* Why runs have no result, the reasons that there are. */
+static void write_failures(struct writer *w, const struct pound_work *work)
+{
+	static const char *const reasons[] = {
+#define X(name, value, text) [name##_RUNS] = text,
+	    POUND_FAILURES(X)
+#undef X
+	};
+	writer_array(w, "failures", WRITER_LINES);
+	for (int k = 0; k < POUND_N_FAILURES; k++) {
+		if (!work->failed[k])
+			continue;
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "reason", reasons[k]);
+		writer_whole(w, "runs", work->failed[k]);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
 static void write_work(struct writer *w, const struct pound_study *study, const struct pound_work *work)
 {
 	writer_object(w, "work", WRITER_LINES);
@@ -322,6 +348,7 @@ static void write_work(struct writer *w, const struct pound_study *study, const 
 	writer_whole(w, "never_touching", work->never_touching);
 	writer_whole(w, "moving_alike", work->moving_alike);
 	writer_whole(w, "contacts", work->contacts);
+	write_failures(w, work);
 	write_left_out(w, study, work);
 	writer_end(w);
 }

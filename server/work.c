@@ -248,7 +248,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 	job->n_inside--;
 	job->cpu_s += cpu_s;
 	if (status != POUND_OK || !wanted)
-		end(job, wanted ? pound_status_text(status) : NULL);
+		end(job, wanted ? pound_status_error(status) : NULL);
 	else if (step->block >= 0)
 		job->of.n_left--;
 	else

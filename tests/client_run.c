@@ -144,19 +144,46 @@ static void a_table_of_responses_has_each_value_of_a_sweep(void **state)
 	program_free(&document);
 }
 
-static void a_table_says_how_many_responses_failed(void **state)
+// steps as long as the period of an oscillator of 1 Hz are unstable
+#define UNSTABLE(values)                                                                                 \
+	"{\"kind\": \"response\", \"solver\": {\"method\": \"central_difference\", \"step_s\": 1},"          \
+	" \"sweep\": [{\"path\": \"/oscillators/0/frequency_hz\", \"values\": " values "}],"                 \
+	" \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 0.1}], \"contact\": null," \
+	" \"excitation\": {\"type\": \"record\", \"time_step_s\": 1,"                                        \
+	" \"acceleration_m_s2\": [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1]}}}"
+
+static void a_table_says_how_many_responses_failed_and_why(void **state)
 {
 	(void)state;
-	// steps as long as the period of an oscillator of 1 Hz are unstable
 	struct program_outcome table = program_run(
-	    (const char *const[]){"pound", "run", "--format", "table", "-", NULL},
-	    "{\"kind\": \"response\", \"solver\": {\"method\": \"central_difference\", \"step_s\": 1},"
-	    " \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 2}],"
-	    " \"excitation\": {\"type\": \"record\", \"time_step_s\": 1,"
-	    " \"acceleration_m_s2\": [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1]}}}");
+	    (const char *const[]){"pound", "run", "--format", "table", "-", NULL}, UNSTABLE("[0.1, 1]"));
 	program_expect(&table, 0);
-	assert_non_null(strstr(table.out, "1 of 1 runs failed\n"));
+	assert_non_null(strstr(table.out, "\n1 of 1 runs failed\n"));
+	assert_non_null(
+	    strstr(table.out, "failed: 1 of the runs: the steps of the solver are too long for this scene\n"));
 	program_free(&table);
+}
+
+static void a_study_without_any_result_ends_with_3_and_says_why(void **state)
+{
+	(void)state;
+	struct program_outcome run =
+	    program_run((const char *const[]){"pound", "run", "-", NULL}, UNSTABLE("[1, 2]"));
+	program_expect(&run, 3);
+	assert_string_equal(run.out, "");
+	assert_string_equal(run.err, "pound: the study failed: no run gave a result: "
+	                             "the steps of the solver are too long for this scene\n");
+	program_free(&run);
+	struct program_outcome submit =
+	    program_run((const char *const[]){"pound", "submit", "--wait", "-", NULL}, UNSTABLE("[1, 2]"));
+	program_expect(&submit, 3);
+	submit.out[strcspn(submit.out, "\n")] = '\0';
+	struct program_outcome ended = POUND("status", submit.out);
+	program_expect(&ended, 0);
+	assert_non_null(strstr(ended.out, "\"status\": \"failed\""));
+	assert_non_null(strstr(ended.out, "no run gave a result: the steps of the solver are too long"));
+	program_free(&ended);
+	program_free(&submit);
 }
 
 static void a_table_fits_in_100_columns(void **state)
@@ -318,7 +345,8 @@ static void a_paper_study_is_valid_and_its_cost_is_told(void **state)
 CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server),
            SERVED(a_bad_study_gets_the_same_list_from_run_and_from_the_server),
            cmocka_unit_test(a_table_of_responses_has_each_value_of_a_sweep),
-           cmocka_unit_test(a_table_says_how_many_responses_failed),
+           cmocka_unit_test(a_table_says_how_many_responses_failed_and_why),
+           SERVED(a_study_without_any_result_ends_with_3_and_says_why),
            cmocka_unit_test(a_table_fits_in_100_columns),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),
            cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),

@@ -64,7 +64,8 @@ static void a_response_is_written_whole(void **state)
 	    "0},\n"
 	    "    \"pounding_runs\": {\"what\": \"responses with pounding\", \"asked\": 1, \"run\": 1},\n"
 	    "    \"checks\": {\"what\": \"responses again on half the sample step\", \"asked\": 0, \"run\": 0},\n"
-	    "    \"never_touching\": 0,\n    \"moving_alike\": 0,\n    \"contacts\": 14,\n    \"left_out\": [\n"
+	    "    \"never_touching\": 0,\n    \"moving_alike\": 0,\n    \"contacts\": 14,\n    \"failures\": [],\n"
+	    "    \"left_out\": [\n"
 	    "      \"all nonlinear responses without pounding: no law needs one\"\n    ]\n  },\n"
 	    "  \"timing\": {\"wall_s\": 1.5, \"cpu_s\": 2.75, \"threads\": 2}\n}\n";
 	struct pound_response response = numbered(0);
@@ -302,6 +303,41 @@ static void all_there_is_to_say_has_room(void **state)
 	reading_close(r);
 }
 
+static void failed_runs_are_counted_by_reason(void **state)
+{
+	(void)state;
+	struct pound_response response = numbered(0);
+	struct pound_cell cell = {.runs = 9, .runs_failed = 7, .n_signals = 1, .signals = &response};
+	struct pound_result result = {
+	    .n_cells = 1, .cells = &cell, .work.failed = {[POUND_CHATTER_RUNS] = 4, [POUND_TOLERANCE_RUNS] = 3}};
+	struct reading *r = result_of(documents_response, &result);
+	assert_int_equal(reading_count(r, "/work/failures"), 2);
+	assert_string_equal(reading_text(r, "/work/failures/0/reason"),
+	                    "more events in one sample interval than allowed");
+	check_near(reading_number(r, "/work/failures/0/runs"), 4, 0);
+	assert_string_equal(reading_text(r, "/work/failures/1/reason"),
+	                    "the tolerance of the solver is out of its reach");
+	check_near(reading_number(r, "/work/failures/1/runs"), 3, 0);
+	reading_close(r);
+}
+
+static void errors_against_a_reference_without_a_result_are_null_and_say_why(void **state)
+{
+	(void)state;
+	enum { TRIALS = 6 };
+	struct pound_trial trials[TRIALS] = {{.runs_failed = 2}};
+	struct pound_cell cell = {.runs = 2 * TRIALS, .runs_failed = 2};
+	struct pound_result result = {.n_cells = 1, .cells = &cell, .n_trials = TRIALS, .trials = trials};
+	struct reading *r = result_of(documents_convergence, &result);
+	assert_string_equal(reading_text(r, "/note"),
+	                    "the reference has no result, so there are no errors; work.failures says why");
+	reading_close(r);
+	trials[0].runs_failed = 1;
+	r = result_of(documents_convergence, &result);
+	assert_false(reading_has(r, "/note"));
+	reading_close(r);
+}
+
 static void left_out_work_adds_up(void **state)
 {
 	(void)state;
@@ -348,4 +384,7 @@ CHECK_MAIN(cmocka_unit_test(a_response_is_written_whole),
            cmocka_unit_test(every_output_says_how_far_it_may_be_off),
            cmocka_unit_test(undefined_indexes_are_null_and_say_why),
            cmocka_unit_test(a_negative_index_is_not_clipped_but_explained),
-           cmocka_unit_test(all_there_is_to_say_has_room), cmocka_unit_test(left_out_work_adds_up))
+           cmocka_unit_test(all_there_is_to_say_has_room),
+           cmocka_unit_test(failed_runs_are_counted_by_reason),
+           cmocka_unit_test(errors_against_a_reference_without_a_result_are_null_and_say_why),
+           cmocka_unit_test(left_out_work_adds_up))

@@ -1,0 +1,184 @@
+/* unit_status.c - runs without a result: what is left out, what is said, and when a study as a whole has failed. */
+#include <math.h>
+#include <string.h>
+
+#include "schema/reading.h"
+#include "schema/result_json.h"
+#include "schema/study_json.h"
+#include "tests/check.h"
+#include "tests/documents.h"
+
+/* Steps of 0.01 s are too long for anything above 1 / (pi 0.01) = 31.8 Hz. */
+#define STEPS_TOO_LONG "\"solver\": {\"method\": \"central_difference\", \"step_s\": 0.01}"
+static const char too_long[] = "the steps of the solver are too long for this scene";
+
+// a stiff contact throws bodies that touch out of all bounds; 2 of the 5 motions do not bring them to
+static const char some_signals[] =
+    "{\"kind\": \"response\", " STEPS_TOO_LONG ", \"scene\": {"
+    "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
+    "\"contact\": {\"stiffness_ratio\": 1e4, \"gap_m\": 0.016}, \"excitation\": {\"signals\": 5}}}";
+
+// some samples of the first cell are beyond the limit, all of the second
+static const char some_rows[] = "{\"kind\": \"sensitivity\", " STEPS_TOO_LONG ", \"scene\": {"
+                                "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
+                                "\"contact\": {\"stiffness_ratio\": 0.01}, \"excitation\": {\"signals\": 2}},"
+                                "\"inputs\": [{\"path\": \"/oscillators/0/frequency_hz\", \"name\": \"f_1\","
+                                "\"distribution\": {\"type\": \"uniform\", \"min\": 20, \"max\": 33}},"
+                                "{\"path\": \"/contact/restitution\", \"name\": \"eps\","
+                                "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 1}}],"
+                                "\"sweep\": [{\"path\": \"/oscillators/1/frequency_hz\", \"values\": [3, "
+                                "100]}], \"design\": {\"rows\": 40}}";
+
+// a ball without losses between the ground's push and a wall: a contact every 0.25 s for 1e5 s, between two samples
+static const char chatters[] =
+    "{\"kind\": \"response\", \"solver\": {\"method\": \"event\"}, \"scene\": {"
+    "\"oscillators\": [{\"frequency_hz\": 2, \"damping_ratio\": 0}, {\"rigid_wall\": true}],"
+    "\"contact\": {\"restitution\": 1}, \"excitation\": {\"type\": \"record\", \"time_step_s\": 1e5,"
+    "\"acceleration_m_s2\": [1, 1]}}}";
+
+/* Computes a study in one thread.
+ *
+ * Returns  value   the result read, and in json its bytes; NULL: it failed, and status says why
+ */
+static struct reading *computed(const char *document, char **json, enum pound_status *status)
+{
+	struct pound_study *study = documents_study(document);
+	struct pound_run *run = pound_run_create(study, 1);
+	assert_non_null(run);
+	*status = POUND_OK;
+	for (int block = 0; block < pound_run_blocks(run) && !*status; block++)
+		*status = pound_run_block(run, block, 0);
+	for (int reduction = 0; reduction < pound_run_reductions(run) && !*status; reduction++)
+		*status = pound_run_reduce(run, reduction, 0);
+	struct reading *result = NULL;
+	if (!*status) {
+		static const struct timing timing = {1, 1, 1};
+		size_t length;
+		*json = result_to_json(study, pound_run_result(run), &timing, &length);
+		result = reading_open(*json, length);
+		assert_non_null(result);
+	}
+	pound_run_free(run);
+	study_free(study);
+	return result;
+}
+
+static struct reading *succeeded(const char *document)
+{
+	char *json;
+	enum pound_status status;
+	struct reading *result = computed(document, &json, &status);
+	assert_int_equal(status, POUND_OK);
+	assert_null(strstr(json, ": nan"));
+	assert_null(strstr(json, ": -nan"));
+	assert_null(strstr(json, ": inf"));
+	free(json);
+	return result;
+}
+
+static enum pound_status failed(const char *document)
+{
+	char *json;
+	enum pound_status status;
+	assert_null(computed(document, &json, &status));
+	return status;
+}
+
+static void outputs_of_a_response_are_of_the_signals_that_have_a_result(void **state)
+{
+	(void)state;
+	struct reading *r = succeeded(some_signals);
+	check_near(reading_number(r, "/runs_failed"), 3, 0);
+	assert_int_equal(reading_count(r, "/work/failures"), 1);
+	check_near(reading_number(r, "/work/failures/0/runs"), 3, 0);
+	assert_string_equal(reading_text(r, "/work/failures/0/reason"), too_long);
+	int n = 0;
+	for (int i = 0; i < 5; i++)
+		n += isnan(reading_number(r, "/signals/%d/contact_count", i));
+	assert_int_equal(n, 3);
+	// the others never touch
+	check_near(reading_number(r, "/outputs/force_amplification"), 1, 0);
+	check_near(reading_number(r, "/outputs/impulse"), 0, 0);
+	assert_string_equal(reading_text(r, "/note"),
+	                    "runs without a result are left out of the outputs; work.failures says why");
+	reading_close(r);
+}
+
+static void rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says_so(void **state)
+{
+	(void)state;
+	struct reading *r = succeeded(some_rows);
+	double runs = reading_number(r, "/cells/0/runs"), first = reading_number(r, "/cells/0/runs_failed");
+	// f_1 is beyond the limit in one of ten samples of A and of B
+	check_near(runs, 40 * 4 * 2, 0);
+	assert_true(first > 0 && first < runs / 4);
+	double dropped = reading_number(r, "/cells/0/rows_dropped");
+	// a value of A is in the samples A and B with A's other column, a value of B likewise: two samples, two signals
+	assert_true(dropped >= first / 8 && dropped <= first / 4);
+	assert_true(isfinite(reading_number(r, "/cells/0/outputs/0/mean")));
+	assert_true(isfinite(reading_number(r, "/cells/0/outputs/0/inputs/1/ST")));
+	check_near(reading_number(r, "/cells/0/outputs/0/accuracy/errors/failed_rows"), dropped / 40, 1e-15);
+	check_near(reading_number(r, "/cells/1/runs_failed"), runs, 0);
+	check_near(reading_number(r, "/cells/1/rows_dropped"), 40, 0);
+	assert_true(isnan(reading_number(r, "/cells/1/outputs/0/mean")));
+	assert_true(isnan(reading_number(r, "/cells/1/outputs/0/inputs/1/ST")));
+	assert_string_equal(reading_text(r, "/cells/1/outputs/0/note"),
+	                    "no row of the design gave a value, so there are no indexes");
+	check_near(reading_number(r, "/work/failures/0/runs"), first + runs, 0);
+	assert_string_equal(reading_text(r, "/work/failures/0/reason"), too_long);
+	reading_close(r);
+}
+
+static void a_cell_without_a_run_has_no_outputs_and_the_others_have(void **state)
+{
+	(void)state;
+	char *document = documents_with(
+	    some_signals, "\"scene\"",
+	    "\"sweep\": [{\"path\": \"/oscillators/0/frequency_hz\", \"values\": [2, 50]}], \"scene\"");
+	struct reading *r = succeeded(document);
+	check_near(reading_number(r, "/cells/0/outputs/force_amplification"), 1, 0);
+	assert_true(reading_has(r, "/cells/1/outputs/force_amplification"));
+	assert_true(isnan(reading_number(r, "/cells/1/outputs/force_amplification")));
+	assert_string_equal(reading_text(r, "/cells/1/note"),
+	                    "no run gave a result, so there are no outputs; work.failures says why");
+	check_near(reading_number(r, "/work/failures/0/runs"), 3 + 5, 0);
+	reading_close(r);
+	free(document);
+}
+
+static void a_study_without_a_result_ends_with_the_reason_of_its_runs(void **state)
+{
+	(void)state;
+	char *all_rows = documents_with(some_rows, "[3, 100]", "[99, 100]");
+	char *all_signals = documents_with(some_signals, "0.016", "0.001");
+	char *tolerance = documents_with(chatters, "\"event\"", "\"adaptive\", \"tolerance\": 1e-300");
+	assert_int_equal(failed(all_rows), POUND_UNSTABLE);
+	assert_int_equal(failed(all_signals), POUND_UNSTABLE);
+	assert_int_equal(failed(tolerance), POUND_TOLERANCE);
+	assert_int_equal(failed(chatters), POUND_CHATTER);
+	free(all_rows), free(all_signals), free(tolerance);
+	assert_string_equal(pound_status_error(POUND_UNSTABLE),
+	                    "no run gave a result: the steps of the solver are too long for this scene");
+	assert_string_equal(pound_status_error(POUND_CHATTER),
+	                    "no run gave a result: more events in one sample interval than allowed");
+	assert_string_equal(pound_status_error(POUND_NOMEM), "out of memory");
+}
+
+static void a_body_that_never_moves_has_no_demand_but_has_not_failed(void **state)
+{
+	(void)state;
+	struct reading *r = succeeded(
+	    "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"elastoplastic\"}, \"oscillators\": "
+	    "[{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], \"excitation\": {\"type\": \"record\", "
+	    "\"acceleration_m_s2\": [0, 0]}}}");
+	check_near(reading_number(r, "/runs_failed"), 0, 0);
+	assert_int_equal(reading_count(r, "/work/failures"), 0);
+	assert_true(isnan(reading_number(r, "/outputs/demand_amplification")));
+	reading_close(r);
+}
+
+CHECK_MAIN(cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a_result),
+           cmocka_unit_test(rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says_so),
+           cmocka_unit_test(a_cell_without_a_run_has_no_outputs_and_the_others_have),
+           cmocka_unit_test(a_study_without_a_result_ends_with_the_reason_of_its_runs),
+           cmocka_unit_test(a_body_that_never_moves_has_no_demand_but_has_not_failed))
