@@ -17,6 +17,7 @@ enum outcome {
 
 struct options {
 	const char *argument; /* what stands after the subcommand: a file, an id or a name; NULL: none */
+	const char *second;   /* indices: what stands behind that */
 	const char *url;      /* of the server */
 	const char *format;   /* one of the names the subcommand offers */
 	const char *status;   /* list: only studies in this state; NULL: all */
@@ -28,6 +29,8 @@ struct options {
 };
 
 enum outcome run_study(const struct options *options);
+enum outcome model_design(const struct options *options);
+enum outcome model_indexes(const struct options *options);
 enum outcome submit_study(const struct options *options);
 enum outcome query_status(const struct options *options);
 enum outcome query_wait(const struct options *options);

@@ -71,3 +71,22 @@ void document_complain(const char *subject, const struct reading *problem)
 	if (more > 0.0)
 		command_complain("  and %.0f more", more);
 }
+
+/* Says what is wrong with a document in the words of the server. */
+enum outcome document_reject(const char *path, const struct problems *problems)
+{
+	char place[64];
+	snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
+	const struct problem_head head = {.status = problems->status == PROBLEMS_MALFORMED ? 400 : 422,
+	                                  .detail = place};
+	size_t n;
+	char *json = problem_to_json(&head, problems, &n);
+	struct reading *reading = json ? reading_open(json, n) : NULL;
+	if (reading)
+		document_complain(document_name(path), reading);
+	else
+		command_complain("out of memory");
+	reading_close(reading);
+	free(json);
+	return problems->status == PROBLEMS_NOMEM ? OUTCOME_FAILED : OUTCOME_USAGE;
+}

@@ -3,6 +3,7 @@
 #define DOCUMENT_H
 
 #include "client/command.h"
+#include "schema/problems.h"
 #include "schema/reading.h"
 
 #include <stddef.h>
@@ -15,5 +16,8 @@ char *document_read(const char *path, size_t *length);
 
 /* Says what a problem body (RFC 9457) says, every error on its own line, `subject` in front. */
 void document_complain(const char *subject, const struct reading *problem);
+
+/* The same for a file or standard input that was read here; the outcome that is left. */
+enum outcome document_reject(const char *path, const struct problems *problems);
 
 #endif

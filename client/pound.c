@@ -33,6 +33,14 @@ static const struct command COMMANDS[] = {
 	 "compute a study here, without a server",
 	 "Prints the result on standard output: the same bytes as the server gives, `timing' aside.  "
 	 "Ctrl-C stops the study."},
+	{"design", "STUDY.json", "", false, {0}, model_design,
+	 "print the rows of a study's design, to run elsewhere",
+	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
+	 "column j from B_i for every j.  The study may be without \"scene\": a model of your own."},
+	{"indices", "STUDY.json Y.csv", "f", false, {"json", "table", "csv"}, model_indexes,
+	 "the indexes of outputs computed elsewhere",
+	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
+	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number."},
 	{"submit", "STUDY.json", "wu", false, {0}, submit_study,
 	 "hand a study to the server and print its id",
 	 "With --wait, follows the study until it has ended."},
@@ -130,9 +138,10 @@ static int whole_number(struct argp_state *state, const char *text, int max)
 
 static void take_argument(struct argp_state *state, struct parsing *parsing, const char *argument)
 {
-	if (!*parsing->command->arguments || parsing->options.argument)
+	const char *takes = parsing->command->arguments, *second = strchr(takes, ' ');
+	if (!*takes || (parsing->options.argument && !second) || parsing->options.second)
 		argp_error(state, "'%s' is one argument too many", argument);
-	parsing->options.argument = argument;
+	*(parsing->options.argument ? &parsing->options.second : &parsing->options.argument) = argument;
 }
 
 static error_t take_option(int key, char *value, struct argp_state *state)
@@ -175,6 +184,8 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 	case ARGP_KEY_END:
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
 			argp_error(state, "%s is missing", parsing->command->arguments);
+		if (!options->second && strchr(parsing->command->arguments, ' '))
+			argp_error(state, "%s is missing", strchr(parsing->command->arguments, ' ') + 1);
 		return 0;
 	}
 	return ARGP_ERR_UNKNOWN;
@@ -234,7 +245,7 @@ static void usage(FILE *out)
 	for (int i = 0; i < N_COMMANDS; i++) {
 		char call[32];
 		snprintf(call, sizeof call, "%s %s", COMMANDS[i].name, COMMANDS[i].arguments);
-		fprintf(out, "  %-18s  %s\n", call, COMMANDS[i].help);
+		fprintf(out, "  %-24s  %s\n", call, COMMANDS[i].help);
 	}
 	fputs("\nSTUDY.json may be -, standard input.  `pound COMMAND --help' says more; `pound --version'.\n"
 	      "Exit status: 0 done, 1 failed, 2 wrong usage or an invalid study, 3 the study failed or was\n"

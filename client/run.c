@@ -129,42 +129,6 @@ static enum pound_status compute(struct pound_run *run, int n_threads, int64_t r
 	return (enum pound_status)crew.status;
 }
 
-static enum outcome print_result(const char *json, size_t n, const char *format)
-{
-	if (strcmp(format, "table") == 0)
-		return show_result(json, n);
-	if (strcmp(format, "json") == 0) {
-		fwrite(json, 1, n, stdout);
-		return OUTCOME_OK;
-	}
-	char *csv = result_to_csv(json, n, &n);
-	if (!csv) {
-		command_complain("out of memory");
-		return OUTCOME_FAILED;
-	}
-	fwrite(csv, 1, n, stdout);
-	free(csv);
-	return OUTCOME_OK;
-}
-
-/* Says what is wrong with a document in the words of the server. */
-static void complain(const char *path, const struct problems *problems)
-{
-	char place[64];
-	snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
-	const struct problem_head head = {.status = problems->status == PROBLEMS_MALFORMED ? 400 : 422,
-	                                  .detail = place};
-	size_t n;
-	char *json = problem_to_json(&head, problems, &n);
-	struct reading *reading = json ? reading_open(json, n) : NULL;
-	if (reading)
-		document_complain(path, reading);
-	else
-		command_complain("out of memory");
-	reading_close(reading);
-	free(json);
-}
-
 static double thread_cpu(void)
 {
 	return seconds(CLOCK_THREAD_CPUTIME_ID);
@@ -184,7 +148,7 @@ static enum outcome run_and_print(const struct pound_study *study, const struct 
 	size_t n;
 	char *json = status == POUND_OK ? result_to_json(study, pound_run_result(run), &timing, &n) : NULL;
 	if (json)
-		outcome = print_result(json, n, options->format);
+		outcome = show_as(json, n, options->format);
 	else if (interrupted || status == POUND_OK || status == POUND_NOMEM) {
 		command_complain("%s", pound_status_text(interrupted ? POUND_STOPPED : POUND_NOMEM));
 		outcome = OUTCOME_FAILED;
@@ -211,10 +175,8 @@ enum outcome run_study(const struct options *options)
 	struct problems problems;
 	struct pound_study *study = study_from_json(document, n, &problems);
 	free(document);
-	if (!study) {
-		complain(document_name(options->argument), &problems);
-		return problems.status == PROBLEMS_NOMEM ? OUTCOME_FAILED : OUTCOME_USAGE;
-	}
+	if (!study)
+		return document_reject(options->argument, &problems);
 	// a second Ctrl-C ends the program at once
 	const struct sigaction act = {.sa_handler = note_interrupt, .sa_flags = (int)SA_RESETHAND};
 	sigaction(SIGINT, &act, NULL);

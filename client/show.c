@@ -14,9 +14,11 @@
 
 #include "client/table.h"
 #include "schema/reading.h"
+#include "schema/result_json.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { CHART = 20 }; /* columns of the chart of total indexes */
@@ -152,13 +154,17 @@ static void print_accuracy(const struct reading *result, const char *output)
 	double rows = reading_number(result, "%s/rows_to_halve", accuracy);
 	if (isfinite(rows))
 		printf("\n  twice the rows leave %.2g of it, %.0f rows half of it", exp2(slope), rows);
-	printf("\n  %.0f runs checked", reading_number(result, "%s/runs_checked", accuracy));
+	putchar('\n');
+	double checked = reading_number(result, "%s/runs_checked", accuracy);
 	double change = reading_number(result, "%s/errors/integration", accuracy);
+	if (checked > 0.0)
+		printf("  %.0f runs checked", checked);
 	if (isfinite(change))
 		printf(", apart by %.2g (median) to %.2g: no raw index moves by over %.2g",
 		       reading_number(result, "%s/difference_median", accuracy),
 		       reading_number(result, "%s/difference_largest", accuracy), change);
-	putchar('\n');
+	if (checked > 0.0)
+		putchar('\n');
 	const char *note = reading_text(result, "%s/note", accuracy);
 	if (note) {
 		fputs("  ", stdout);
@@ -171,6 +177,8 @@ static void print_accuracy(const struct reading *result, const char *output)
 static void print_cost(const struct reading *result)
 {
 	const char *before = "\n  CPU time: ";
+	if (!reading_has(result, "/timing"))
+		return;
 	for (int k = 0; k < reading_count(result, "/timing/rows"); k++, before = ", ")
 		printf("%s%.2g s for %.0f rows", before, reading_number(result, "/timing/rows/%d/cpu_s", k),
 		       reading_number(result, "/timing/rows/%d/rows", k));
@@ -280,6 +288,10 @@ static void print_work(const struct reading *result)
 	static const char *const columns[] = {"work", "asked", "run", NULL};
 	struct table *table = table_open(columns);
 	const char *stage, *what;
+	if (!reading_has(result, "/work")) {
+		table_close(table);
+		return;
+	}
 	for (int i = 0; (stage = reading_member(result, i, "/work")); i++) {
 		if (!(what = reading_text(result, "/work/%s/what", stage)))
 			continue;
@@ -316,8 +328,10 @@ static void print_head(const struct reading *result, const char *kind)
 		print_tame(seed);
 	else
 		printf("%.0f", reading_number(result, "/seed"));
-	printf(", %.3g s with %.0f threads, %.3g s of CPU time\n", reading_number(result, "/timing/wall_s"),
-	       reading_number(result, "/timing/threads"), reading_number(result, "/timing/cpu_s"));
+	if (reading_has(result, "/timing"))
+		printf(", %.3g s with %.0f threads, %.3g s of CPU time", reading_number(result, "/timing/wall_s"),
+		       reading_number(result, "/timing/threads"), reading_number(result, "/timing/cpu_s"));
+	putchar('\n');
 }
 
 // clang-format off
@@ -348,4 +362,23 @@ enum outcome show_result(const char *json, size_t length)
 		command_complain("no table for a result of kind '%s'", kind ? kind : "?");
 	reading_close(result);
 	return outcome;
+}
+
+/* Prints a result as json, table or csv. */
+enum outcome show_as(const char *json, size_t n, const char *format)
+{
+	if (strcmp(format, "table") == 0)
+		return show_result(json, n);
+	if (strcmp(format, "json") == 0) {
+		fwrite(json, 1, n, stdout);
+		return OUTCOME_OK;
+	}
+	char *csv = result_to_csv(json, n, &n);
+	if (!csv) {
+		command_complain("out of memory");
+		return OUTCOME_FAILED;
+	}
+	fwrite(csv, 1, n, stdout);
+	free(csv);
+	return OUTCOME_OK;
 }

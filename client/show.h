@@ -9,4 +9,7 @@
 /* Prints the JSON of a result on stdout; complains when it is none. */
 enum outcome show_result(const char *json, size_t length);
 
+/* Prints it as json, table or csv. */
+enum outcome show_as(const char *json, size_t length, const char *format);
+
 #endif

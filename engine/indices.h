@@ -15,12 +15,15 @@
 struct pound_sample_values {
 	int n_rows, n_inputs, n_signals;
 	const double *numerator, *denominator; /* (n_rows x (n_inputs + 2) x n_signals) each */
+	/* outputs computed elsewhere are numerators of one signal, without denominators; their variances  (as these), NAN:
+	 * not known; NULL: computed here */
+	const double *variance;
 };
 
 /* How they came about. */
 struct pound_sampling {
 	const double *u;    /* the design as probabilities in (0, 1), rows of A and B  (n_rows x 2 x n_inputs) */
-	bool random;        /* the excitation */
+	bool random;        /* the excitation; of outputs computed elsewhere: their variances are known */
 	bool fresh_signals; /* each sample of a row has its own */
 };
 

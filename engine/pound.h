@@ -156,6 +156,7 @@ struct pound_convergence {
 struct pound_study {
 	enum pound_kind kind;
 	const char *name; /* NULL: none */
+	bool elsewhere;   /* the design's samples are run by a model of the user's own; there need be no scene */
 	struct pound_scene scene;
 	int n_inputs;
 	struct pound_input *inputs; /* (n_inputs) */
@@ -164,6 +165,7 @@ struct pound_study {
 	struct pound_design design;
 	int n_outputs;
 	int outputs[POUND_OUTPUTS_MAX]; /* rows of the outputs, pound_output_name */
+	char **output_names; /* elsewhere, in their place: any number of names  (n_outputs), not owned */
 	struct pound_solver solver;
 	struct pound_convergence convergence;
 };
@@ -306,6 +308,10 @@ struct pound_accuracy {
 	  "the excitation is not random, so there is no noise to correct for")                \
 	X(POUND_NOTE_ONE_SIGNAL,                                                              \
 	  "with one signal its noise cannot be told apart, so it is in every index")          \
+	X(POUND_NOTE_NO_VARIANCE,                                                             \
+	  "no variance of the output is given, so whatever noise the model has is in every index") \
+	X(POUND_NOTE_SHARED_NOISE,                                                            \
+	  "variances do not tell how the samples of a row share their noise, so it is in every index") \
 	X(POUND_NOTE_FRESH_SIGNALS,                                                           \
 	  "samples that do not share their signals do not show S2_excitation and S1_one_signal") \
 	X(POUND_NOTE_FEW_ROWS,                                                                \
@@ -392,6 +398,8 @@ struct pound_result {
  *
  *   create -> block 0 .. blocks-1 (any order, any thread) -> reduce 0 .. reductions-1 (likewise) -> result
  *
+ * Of a model that is run elsewhere there are no blocks: create -> sample_inputs ... sample_assign ... -> reduce -> result.
+ *
  * A finished block is pound_run_block_size() doubles at pound_run_block_values(); restoring them stands for
  * running the block, so a caller can store blocks and go on after a restart with the same bytes. */
 struct pound_run;
@@ -419,6 +427,11 @@ int pound_run_samples(const struct pound_run *run); /* design blocks: n_inputs +
 void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x);
 void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
                              double *mean, double *variance);
+
+/* Gives an output of a sample that was computed elsewhere, before the reductions: its value, and the variance of that
+ * value over the model's randomness (NAN: not known).  A value that is not finite: a failed run. */
+void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
+                             double variance);
 
 const char *pound_status_text(enum pound_status status);
 const char *pound_status_error(enum pound_status status); /* why a study has no result */

@@ -63,6 +63,17 @@ static void noise_fill(const double *deviation, int n_inputs, int n_signals, dou
 	}
 }
 
+/* The same of outputs whose variances are known and that owe nothing to each other's noise. */
+static void noise_known(const double *variance, int n_inputs, double *noise)
+{
+	for (int k = 0; k < pound_rows_noises(n_inputs); k++)
+		noise[k] = isnan(variance[0]) ? NAN : 0.0;
+	noise[POUND_NOISE_AA] = variance[0];
+	noise[POUND_NOISE_BB] = variance[1];
+	for (int j = 0; j < n_inputs; j++)
+		noise[POUND_NOISE_MIXED + POUND_NOISE_STEP * j] = variance[2 + j];
+}
+
 /* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros. */
 static void centre(struct pound_rows *rows)
 {
@@ -106,13 +117,18 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 		double *y = rows->y + (size_t)rows->n_rows * n_samples, row_largest = 0.0;
 		for (int p = 0; p < n_samples; p++) {
 			size_t at = ((size_t)i * n_samples + p) * n_signals;
-			y[p] = ratio_of_means(values->numerator + at, values->denominator + at, n_signals,
-			                      deviation + (size_t)p * n_signals);
+			y[p] = values->variance ? values->numerator[at]
+			                        : ratio_of_means(values->numerator + at, values->denominator + at,
+			                                         n_signals, deviation + (size_t)p * n_signals);
 			row_largest = isfinite(y[p]) ? fmax(row_largest, fabs(y[p])) : INFINITY;
 		}
 		if (!isfinite(row_largest))
 			continue;
-		noise_fill(deviation, d, n_signals, rows->noise + (size_t)rows->n_rows * n_noises);
+		double *noise = rows->noise + (size_t)rows->n_rows * n_noises;
+		if (values->variance)
+			noise_known(values->variance + (size_t)i * n_samples, d, noise);
+		else
+			noise_fill(deviation, d, n_signals, noise);
 		largest = fmax(largest, row_largest);
 		rows->row[rows->n_rows++] = i;
 	}

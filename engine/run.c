@@ -123,12 +123,12 @@ static struct pound_campaign campaign_of(const struct pound_study *study)
 	                                     : trials ? pound_convergence_trials(study)
 	                                              : 1,
 	                           .n_samples = sampled ? study->n_inputs + 2 : 1,
-	                           .n_signals = study->scene.excitation.signals,
+	                           .n_signals = study->elsewhere ? 1 : study->scene.excitation.signals,
 	                           .trials = trials};
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
 	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples, every = items_of(&c) / checked_min;
-	if (sampled)
+	if (sampled && !study->elsewhere)
 		c.check_every = every > CHECK_EVERY ? CHECK_EVERY : every > 1 ? every : 1;
 	return c;
 }
@@ -142,13 +142,13 @@ static void size_add(struct pound_plan_size *block, struct pound_plan_size item,
 	block->samples += (checked ? 3 : 1) * item.samples;
 }
 
-/* Cuts the items into blocks and finds the largest; with first NULL only counts them. */
+/* Cuts the items into blocks and finds the largest; with first NULL only counts them.  What is run elsewhere is one. */
 static int blocks_cut(const struct pound_campaign *c, int *first, struct pound_plan_size *largest)
 {
 	struct pound_plan_size block = {0};
-	int n_blocks = 0, n_items = items_of(c);
+	int n_blocks = c->study->elsewhere, n_items = items_of(c);
 	struct pound_plan_size item = {0};
-	for (int i = 0; i < n_items; i++) {
+	for (int i = 0; i < n_items && !c->study->elsewhere; i++) {
 		if (i % c->n_signals == 0)
 			item = pound_plan_size(c, i / c->n_signals);
 		bool full = block.asks + item.asks > BLOCK_RUNS || block.samples + item.samples > BLOCK_SAMPLES;
@@ -186,6 +186,8 @@ static size_t checks_size(const struct pound_campaign *c)
 static size_t reduction_size(const struct pound_campaign *c)
 {
 	const int n_rows = c->n_rows, n_inputs = c->study->n_inputs, n_signals = c->n_signals;
+	if (c->study->n_outputs == 0)
+		return 0;
 	if (c->trials)
 		return (size_t)items_of(c) * TRIAL_MEASURES;
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
@@ -327,7 +329,7 @@ void pound_run_clock(struct pound_run *run, double (*cpu)(void))
 
 int pound_run_blocks(const struct pound_run *run)
 {
-	return run->n_blocks;
+	return run->campaign.study->elsewhere ? 0 : run->n_blocks;
 }
 
 int64_t pound_run_block_runs(const struct pound_run *run, int block)
@@ -470,7 +472,7 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 				            (size_t)signal;
 				numerator[at] = values[0];
 				denominator[at] = values[1];
-				failed += isnan(values[0]) || isnan(values[1]);
+				failed += isnan(values[0]) || (isnan(values[1]) && !c->study->elsewhere);
 			}
 	return failed;
 }
@@ -480,7 +482,7 @@ static int checks_fill(const struct pound_run *run, int cell, int output, struct
 {
 	const struct pound_campaign *c = &run->campaign;
 	int n = 0;
-	for (int item = 0; item < items_of(c); item += c->check_every)
+	for (int item = 0; item < items_of(c) && c->check_every; item += c->check_every)
 		for (int sample = 0; sample < c->n_samples; sample++) {
 			const double *run_once = run_values(run, item, cell, sample) + 2 * output;
 			const double *again = check_values(run, item, cell, sample) + 2 * output;
@@ -492,20 +494,32 @@ static int checks_fill(const struct pound_run *run, int cell, int output, struct
 	return n;
 }
 
+static bool any_known(const double *variance, size_t n)
+{
+	for (size_t k = 0; k < n; k++)
+		if (!isnan(variance[k]))
+			return true;
+	return false;
+}
+
 static void indices_reduce(struct pound_run *run, int cell, int output, double *scratch)
 {
 	const struct pound_campaign *c = &run->campaign;
 	size_t n = (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
+	const bool elsewhere = c->study->elsewhere;
 	struct pound_sample_values values = {.n_rows = c->n_rows,
 	                                     .n_inputs = c->study->n_inputs,
 	                                     .n_signals = c->n_signals,
 	                                     .numerator = scratch,
-	                                     .denominator = scratch + n};
-	const struct pound_sampling sampling = {.u = run->u,
-	                                        .random = pound_excitation_random(&c->study->scene.excitation),
-	                                        .fresh_signals = !c->study->design.common_signals};
+	                                     .denominator = elsewhere ? NULL : scratch + n,
+	                                     .variance = elsewhere ? scratch + n : NULL};
 	struct pound_cell *into = &run->result.cells[cell];
 	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
+	const struct pound_sampling sampling = {
+	    .u = run->u,
+	    .random =
+	        elsewhere ? any_known(values.variance, n) : pound_excitation_random(&c->study->scene.excitation),
+	    .fresh_signals = !c->study->design.common_signals};
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);
 	double *rest = scratch + 2 * n + checks_size(c);
@@ -641,6 +655,12 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 {
 	const struct pound_campaign *c = &run->campaign;
 	assert(has_indices(run));
+	if (c->study->elsewhere) {
+		const double *values = run_values(run, row, cell, sample) + 2 * output;
+		*mean = values[0];
+		*variance = values[1];
+		return;
+	}
 	// the runs of a row's signals are one item apart, but a block may end between them
 	double above = 0, below = 0;
 	for (int r = 0; r < c->n_signals; r++) {
@@ -656,4 +676,13 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 		sum += deviation * deviation;
 	}
 	*variance = c->n_signals > 1 && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN;
+}
+
+void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
+                             double variance)
+{
+	assert(run->campaign.study->elsewhere);
+	double *values = (double *)run_values(run, row, 0, sample) + 2 * output;
+	values[0] = isfinite(value) ? value : NAN;
+	values[1] = variance;
 }

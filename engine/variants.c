@@ -181,10 +181,16 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	                    .sampling = sampling,
 	                    .corrected = values->n_signals > 1 && sampling->random,
 	                    .scratch = scratch + pound_rows_scratch(values->n_rows, d, values->n_signals)};
+	// of outputs computed elsewhere the noise is known by its variances, which are all there is if samples do not share it
+	const bool elsewhere = values->variance;
+	if (elsewhere)
+		s.corrected = sampling->random && sampling->fresh_signals;
 	const bool varies = pound_sobol_summary(&rows, indices);
 	if (varies) {
 		pound_correction_estimates(&rows, seed, s.scratch, &s.pick_freeze);
 		columns_fill(&s, indices);
+		if (elsewhere) // the number of replicates is not known
+			undefined(&indices->share[POUND_SHARE_TOTAL_ONE], 1);
 	} else {
 		for (int k = 0; k < POUND_N_INDEXES; k++)
 			undefined(indices->index[k], d);
@@ -194,9 +200,11 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	    [POUND_NOTE_NO_ROWS] = rows.n_rows == 0,
 	    [POUND_NOTE_ONE_ROW] = rows.n_rows == 1,
 	    [POUND_NOTE_CONSTANT] = rows.n_rows > 1 && !varies,
-	    [POUND_NOTE_NOT_RANDOM] = varies && !sampling->random,
-	    [POUND_NOTE_ONE_SIGNAL] = varies && !s.corrected && sampling->random,
-	    [POUND_NOTE_FRESH_SIGNALS] = varies && s.corrected && sampling->fresh_signals,
+	    [POUND_NOTE_NOT_RANDOM] = varies && !elsewhere && !sampling->random,
+	    [POUND_NOTE_ONE_SIGNAL] = varies && !elsewhere && !s.corrected && sampling->random,
+	    [POUND_NOTE_NO_VARIANCE] = varies && elsewhere && !sampling->random,
+	    [POUND_NOTE_SHARED_NOISE] = varies && elsewhere && sampling->random && !sampling->fresh_signals,
+	    [POUND_NOTE_FRESH_SIGNALS] = varies && !elsewhere && s.corrected && sampling->fresh_signals,
 	    [POUND_NOTE_FEW_ROWS] = varies && !rows_enough(&s),
 	    [POUND_NOTE_NOISE] = varies && s.corrected && lost_in_noise(indices, d),
 	});

@@ -34,6 +34,7 @@ static const char *signals_name(int common)
 #define LASTING        .types = " white_noise harmonic "
 #define PITCHED        .types = " kanai_tajimi harmonic "
 #define SCALED         .types = " kanai_tajimi white_noise harmonic "
+#define WITH_SCENE     .sceneless = FIELD_UNUSED
 #define NOT_SCENE      .fixed = "only fields of the scene vary"
 
 // clang-format off
@@ -60,11 +61,11 @@ static const char *signals_name(int common)
 
 const struct field fields[] = {
 	{"/kind", FIELD_CHOICE, AT(kind), NAN, 0, 0, FIELD_CLOSED, "",
-	 .text = "what is asked", .choice = study_kind_name, NOT_SCENE},
+	 .text = "what is asked", .choice = study_kind_name, .sceneless = FIELD_OPTIONAL, NOT_SCENE},
 	{"/name", FIELD_TEXT, AT(name), 0, 0, 200, FIELD_CLOSED, "",
 	 .text = "for people", NOT_SCENE},
 	{"/scene", FIELD_OBJECT, 0, NAN, 0, 0, FIELD_CLOSED, "",
-	 .text = "two oscillators, what is between them and the ground motion", NOT_SCENE},
+	 .text = "two oscillators, what is between them and the ground motion", .sceneless = FIELD_OPTIONAL, NOT_SCENE},
 
 	{"/scene/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "the law of every oscillator without one of its own"},
@@ -135,7 +136,7 @@ const struct field fields[] = {
 	{"/inputs/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one input", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/path", FIELD_TEXT, offsetof(struct pound_input, path), NAN, 1, 200, FIELD_CLOSED, "",
-	 .text = "JSON Pointer into \"scene\"", SENSITIVITY, NOT_SCENE},
+	 .text = "JSON Pointer into \"scene\"", SENSITIVITY, .sceneless = FIELD_OPTIONAL, NOT_SCENE},
 	{"/inputs/*/name", FIELD_TEXT, offsetof(struct pound_input, name), 0, 1, 100, FIELD_CLOSED, "",
 	 .text = "for people; the path when absent", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution", FIELD_OBJECT, 0, NAN, 0, 0, FIELD_CLOSED, "",
@@ -144,13 +145,13 @@ const struct field fields[] = {
 	 NAN, 0, 0, FIELD_CLOSED, "", .text = "distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
 
 	{"/sweep", FIELD_LIST, 0, 0, 0, POUND_SWEEPS_MAX, FIELD_CLOSED, "",
-	 .text = "fields that take each of their values; the cells are the product", SOLVED, NOT_SCENE},
+	 .text = "fields that take each of their values; the cells are the product", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one swept field", SOLVED, NOT_SCENE},
+	 .text = "one swept field", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*/path", FIELD_TEXT, offsetof(struct pound_sweep, path), NAN, 1, 200, FIELD_CLOSED, "",
-	 .text = "JSON Pointer into \"scene\"", SOLVED, NOT_SCENE},
+	 .text = "JSON Pointer into \"scene\"", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*/values", FIELD_LIST, 0, NAN, 1, STUDY_CELLS_MAX, FIELD_CLOSED, "",
-	 .text = "values as the field itself takes them", SOLVED, NOT_SCENE},
+	 .text = "values as the field itself takes them", SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/design", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "which samples are run", NOT_SCENE},
@@ -165,20 +166,20 @@ const struct field fields[] = {
 	 NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_MAX, FIELD_CLOSED, "",
-	 .text = "what comes out; the amplifications that apply and the impulse when absent", SOLVED, NOT_SCENE},
+	 .text = "what comes out; the amplifications that apply and the impulse when absent", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one output", .choice = pound_output_name, SOLVED, NOT_SCENE},
+	 .text = "one output", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/solver", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "how a response is computed", SOLVED, NOT_SCENE},
+	 .text = "how a response is computed", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/method", FIELD_CHOICE, AT(solver.method), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "solver", .choice = pound_solver_name, SOLVED, NOT_SCENE},
+	 .text = "solver", .choice = pound_solver_name, SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/tolerance", FIELD_REAL, AT(solver.tolerance), 1e-9, 0, 1, FIELD_OPEN, "",
 	 .text = "relative error allowed in a step; event is exact at any", .solvers = pound_solver_takes_tolerance,
-	 SOLVED, NOT_SCENE},
+	 SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/step_s", FIELD_REAL, AT(solver.step), 1e-4, 0, INFINITY, FIELD_OPEN, "s",
 	 .text = "longest step; a sample interval is cut into as few equal ones", .solvers = pound_solver_takes_step,
-	 SOLVED, NOT_SCENE},
+	 SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "what the event solver is compared with", CONVERGENCE, NOT_SCENE},

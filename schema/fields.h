@@ -20,6 +20,9 @@ enum field_type {
 	FIELD_LIST,   /* its element is a row of its own; min and max are their number */
 };
 
+/* What a field is in a study without a scene, of a model that is run elsewhere. */
+enum field_sceneless { FIELD_ALIKE, FIELD_UNUSED, FIELD_OPTIONAL };
+
 enum field_ends { FIELD_CLOSED, FIELD_OPEN_MIN, FIELD_OPEN_MAX, FIELD_OPEN };
 
 struct field {
@@ -35,7 +38,8 @@ struct field {
 	const char *kinds;        /* names of the kinds that use it, between spaces; NULL: all */
 	const char *types;        /* names of the excitations that use it, likewise */
 	bool (*solvers)(int row); /* whether the solver of that row uses it; NULL: all */
-	const char *fixed;        /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
+	enum field_sceneless sceneless;
+	const char *fixed; /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
 };
 
 extern const struct field fields[];

@@ -94,7 +94,7 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 		study_cell(study, c, &scene);
 		for (int o = 0; o < study->n_outputs; o++) {
 			const struct pound_accuracy *accuracy = &result->cells[c].indices[o].accuracy;
-			if (!pound_output_applies(study->outputs[o], &scene))
+			if (!study->elsewhere && !pound_output_applies(study->outputs[o], &scene))
 				continue;
 			if (accuracy->runs_checked > checked_of_cell)
 				checked_of_cell = accuracy->runs_checked;

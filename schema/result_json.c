@@ -135,10 +135,10 @@ static void write_input(struct writer *w, const struct pound_input *input,
 }
 
 static void write_indices(struct writer *w, const struct pound_study *study,
-                          const struct pound_indices *indices, int output)
+                          const struct pound_indices *indices, int o)
 {
 	writer_object(w, NULL, WRITER_LINES);
-	writer_text(w, "name", pound_output_name(output));
+	writer_text(w, "name", study->elsewhere ? study->output_names[o] : pound_output_name(study->outputs[o]));
 	writer_number(w, "mean", indices->mean);
 	writer_number(w, "variance", indices->variance);
 	writer_number(w, "noise_share", indices->noise_share);
@@ -157,8 +157,8 @@ static void write_sensitivity(struct writer *w, const struct pound_study *study,
 {
 	writer_array(w, "outputs", WRITER_LINES);
 	for (int o = 0; o < study->n_outputs; o++)
-		if (pound_output_applies(study->outputs[o], scene))
-			write_indices(w, study, &cell->indices[o], study->outputs[o]);
+		if (study->elsewhere || pound_output_applies(study->outputs[o], scene))
+			write_indices(w, study, &cell->indices[o], o);
 	writer_end(w);
 }
 
@@ -256,7 +256,8 @@ static void write_cell(struct writer *w, const struct pound_study *study, const 
 	} else {
 		write_response(w, study, cell, &scene);
 	}
-	write_not_applicable(w, study, &scene);
+	if (!study->elsewhere)
+		write_not_applicable(w, study, &scene);
 }
 
 static void write_cells(struct writer *w, const struct pound_study *study, const struct pound_result *result)
@@ -355,11 +356,25 @@ static void write_work(struct writer *w, const struct pound_study *study, const 
 
 /* ---- the document ---- */
 
+static void write_timing(struct writer *w, const struct pound_study *study, const struct pound_result *result,
+                         const struct timing *timing)
+{
+	writer_object(w, "timing", WRITER_LINE);
+	writer_number(w, "wall_s", timing->wall_s);
+	writer_number(w, "cpu_s", timing->cpu_s);
+	writer_whole(w, "threads", timing->threads);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		result_accuracy_timing(w, result, timing->cpu_s);
+	if (result->n_trials)
+		write_run_times(w, result);
+	writer_end(w);
+}
+
 /* The bytes of a result.
  *
  * Given    study     -         -       read by study_from_json
  *          result    -         -       of that study
- *          timing    -         s       what it took
+ *          timing    -         s       what it took; NULL: left out
  * Returns  value     (length)  -       JSON; NULL: out of memory
  * Memory   allocates; the caller frees
  *
@@ -387,18 +402,12 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 		write_cell(&w, study, result, 0);
 	else
 		write_cells(&w, study, result);
-	write_work(&w, study, &result->work);
+	if (!study->elsewhere)
+		write_work(&w, study, &result->work);
 	if (study->kind == POUND_KIND_SENSITIVITY)
 		result_accuracy_study(&w, study, result);
-	writer_object(&w, "timing", WRITER_LINE);
-	writer_number(&w, "wall_s", timing->wall_s);
-	writer_number(&w, "cpu_s", timing->cpu_s);
-	writer_whole(&w, "threads", timing->threads);
-	if (study->kind == POUND_KIND_SENSITIVITY)
-		result_accuracy_timing(&w, result, timing->cpu_s);
-	if (result->n_trials)
-		write_run_times(&w, result);
-	writer_end(&w);
+	if (timing)
+		write_timing(&w, study, result, timing);
 	writer_end(&w);
 	return writer_take(&w, length);
 }

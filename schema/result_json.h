@@ -15,6 +15,7 @@ struct timing {
 	int threads;
 };
 
+/* timing NULL: without */
 char *result_to_json(const struct pound_study *study, const struct pound_result *result,
                      const struct timing *timing, size_t *length);
 

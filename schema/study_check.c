@@ -121,7 +121,7 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 	for (int i = 0; i < n; i++) {
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
-		if (all[i].path)
+		if (all[i].path && !study->elsewhere)
 			check_path(study, all[i].path, all[i].name != NULL, pointer, problems);
 		for (int k = 0; k < i; k++) {
 			if (all[i].path && all[k].path && strcmp(all[i].path, all[k].path) == 0) {
@@ -143,7 +143,7 @@ static void check_names(const struct pound_study *study, struct problems *proble
 	for (int j = 0; j < study->n_inputs; j++) {
 		const char *name = study->inputs[j].name;
 		bool taken = name && (strcmp(name, "row") == 0 || strcmp(name, "sample") == 0);
-		for (int o = 0; name && pound_output_name(o); o++) {
+		for (int o = 0; name && !study->elsewhere && pound_output_name(o); o++) {
 			size_t length = strlen(pound_output_name(o));
 			taken |= strncmp(name, pound_output_name(o), length) == 0 &&
 			         (!name[length] || strcmp(name + length, ".variance") == 0);
@@ -152,6 +152,8 @@ static void check_names(const struct pound_study *study, struct problems *proble
 		snprintf(pointer, sizeof pointer, "/inputs/%d/name", j);
 		if (taken)
 			problems_add(problems, pointer, "is the name of another column of the samples");
+		else if (study->elsewhere && !name && !study->inputs[j].path)
+			problems_add(problems, pointer, "is required: a text of 1 to 100 characters");
 	}
 }
 
@@ -378,7 +380,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 {
 	check_paths(study, problems);
 	check_names(study, problems);
-	if (faulty(problems, "/kind"))
+	if (faulty(problems, "/kind") || study->elsewhere)
 		return;
 	check_supports(study, problems);
 	if (faulty(problems, "/sweep"))

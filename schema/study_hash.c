@@ -196,15 +196,19 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 	writer_init(&c.w);
 	writer_object(&c.w, NULL, WRITER_LINES);
 	write_members(&c, "", study);
-	write_scene(&c);
+	if (!study->elsewhere)
+		write_scene(&c);
 	write_inputs(&c);
-	write_sweeps(&c);
+	if (!study->elsewhere)
+		write_sweeps(&c);
 	write_object(&c, "design", "/design", study);
-	writer_array(&c.w, "outputs", WRITER_LINES);
-	for (int o = 0; o < study->n_outputs; o++)
-		writer_text(&c.w, NULL, pound_output_name(study->outputs[o]));
-	writer_end(&c.w);
-	write_object(&c, "solver", "/solver", study);
+	if (!study->elsewhere) {
+		writer_array(&c.w, "outputs", WRITER_LINES);
+		for (int o = 0; o < study->n_outputs; o++)
+			writer_text(&c.w, NULL, pound_output_name(study->outputs[o]));
+		writer_end(&c.w);
+		write_object(&c, "solver", "/solver", study);
+	}
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		write_convergence(&c);
 	writer_end(&c.w);

@@ -40,7 +40,9 @@ static void unknown(struct reader *r, const char *pattern, const char *name)
 	const struct field *nearest = NULL;
 	int best = 1000;
 	for (int i = 0; i < fields_count; i++) {
-		if (!fields_child(&fields[i], pattern) || !fields_used(&fields[i], r->kind, r->excitation, r->solver))
+		if (!fields_child(&fields[i], pattern) ||
+		    !fields_used(&fields[i], r->kind, r->excitation, r->solver) ||
+		    (r->study->elsewhere && fields[i].sceneless == FIELD_UNUSED))
 			continue;
 		int distance = fields_distance(name, fields_name(&fields[i]));
 		if (distance < best) {
@@ -83,7 +85,8 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 		const struct field *field = &fields[i];
 		bool needed = isnan(field->absent) && fields_child(field, pattern) && (r->kind || !field->kinds) &&
 		              (r->excitation || !field->types) &&
-		              fields_used(field, r->kind, r->excitation, r->solver);
+		              fields_used(field, r->kind, r->excitation, r->solver) &&
+		              !(r->study->elsewhere && field->sceneless);
 		if (!needed || cJSON_GetObjectItemCaseSensitive(node, fields_name(field)))
 			continue;
 		char expected[256];
@@ -119,6 +122,8 @@ bool reader_object(struct reader *r, const char *pattern, const cJSON *node, cha
 			unknown(r, pattern, member->string);
 		else if (!fields_used(field, r->kind, r->excitation, r->solver))
 			unused(r, field);
+		else if (r->study->elsewhere && field->sceneless == FIELD_UNUSED)
+			problems_add(r->problems, r->pointer, "is not used without a scene");
 		else
 			reader_value(r, field, member, base);
 		reader_leave(r, length);
@@ -335,16 +340,17 @@ static struct pound_study *block_create(size_t length)
 	return &block->study;
 }
 
-/* Reads a study document.
- *
- * Given    text      (length)  bytes   need not end with a zero
- * Returns  value     -         -       the study; NULL: problems->status says why
- *          problems  -         -       all that is wrong, in the order of the document, then between members
- * Memory   allocates one block for study_free, about 5 bytes per byte of text
- *
- * Test     unit_study_json
- */
-struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems)
+/* What is run elsewhere is a sensitivity study, whether it says so or not. */
+static void sceneless(struct reader *r)
+{
+	r->study->elsewhere = true;
+	r->study->design.common_signals = false;
+	r->study->kind = POUND_KIND_SENSITIVITY;
+	if (!r->kind)
+		r->kind = study_kind_name(POUND_KIND_SENSITIVITY);
+}
+
+static struct pound_study *study_read(const char *text, size_t length, bool design, struct problems *problems)
 {
 	struct gate_fault fault;
 	problems_init(problems);
@@ -366,16 +372,46 @@ struct pound_study *study_from_json(const char *text, size_t length, struct prob
 	r.text = (char *)(r.number + length / 2 + 1);
 	foresee(&r, document);
 	defaults(study, r.excitation);
+	if (design && cJSON_IsObject(document) && !cJSON_HasObjectItem(document, "scene"))
+		sceneless(&r);
 	reader_object(&r, "", document, (char *)study);
 	cJSON_Delete(document);
+	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
+		problems_add(problems, "/kind", "must be \"%s\", as no other kind has a design",
+		             study_kind_name(POUND_KIND_SENSITIVITY));
 	study_check(study, problems);
 	if (problems->n) {
 		study_free(study);
 		return NULL;
 	}
-	if (study->n_outputs == 0)
+	if (study->n_outputs == 0 && !study->elsewhere)
 		outputs_default(study);
 	return study;
+}
+
+/* Reads a study document.
+ *
+ * Given    text      (length)  bytes   need not end with a zero
+ * Returns  value     -         -       the study; NULL: problems->status says why
+ *          problems  -         -       all that is wrong, in the order of the document, then between members
+ * Memory   allocates one block for study_free, about 5 bytes per byte of text
+ *
+ * Test     unit_study_json
+ */
+struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems)
+{
+	return study_read(text, length, false, problems);
+}
+
+/* Reads a document for its design alone: a sensitivity study, with a scene or of a model that is run elsewhere.
+ *
+ * Given, Returns, Memory as study_from_json
+ *
+ * Test     unit_elsewhere: a_study_without_a_scene_is_inputs_and_a_design
+ */
+struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems)
+{
+	return study_read(text, length, true, problems);
 }
 
 void study_free(struct pound_study *study)

@@ -28,6 +28,8 @@ enum {
 
 /* The study on the heap, one owner, for study_free; NULL: every problem is in `problems`, its status says why. */
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems);
+/* The same for its design alone: a sensitivity study, which may have no scene (then `elsewhere` is set). */
+struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems);
 void study_free(struct pound_study *study);
 
 const char *study_kind_name(int kind); /* "response", "sensitivity", "convergence"; NULL past the last */

@@ -1,0 +1,89 @@
+/* model.c - a model that is run elsewhere: `pound design` prints where, `pound indices` reads what came out. */
+#include "schema/model.h"
+#include "client/command.h"
+#include "client/document.h"
+#include "client/show.h"
+#include "schema/study_json.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROWS_AT_ONCE = 1000 };
+
+/* The study of a file, for its design alone; NULL: said why, and what that comes to. */
+static struct pound_study *study_read(const char *path, enum outcome *outcome)
+{
+	size_t n;
+	struct problems problems;
+	char *document = document_read(path, &n);
+	*outcome = OUTCOME_FAILED;
+	if (!document)
+		return NULL;
+	struct pound_study *study = study_design_from_json(document, n, &problems);
+	free(document);
+	if (!study)
+		*outcome = document_reject(path, &problems);
+	return study;
+}
+
+static enum outcome no_memory(void)
+{
+	command_complain("%s", pound_status_text(POUND_NOMEM));
+	return OUTCOME_FAILED;
+}
+
+/* `pound design STUDY.json`: the rows of its design as CSV.
+ *
+ * Test     client_model: a_design_has_its_header_and_its_samples
+ */
+enum outcome model_design(const struct options *options)
+{
+	enum outcome outcome;
+	struct pound_study *study = study_read(options->argument, &outcome);
+	if (!study)
+		return outcome;
+	// only the design is wanted of the run
+	study->elsewhere = true;
+	study->n_outputs = 0;
+	struct pound_run *run = pound_run_create(study, 1);
+	outcome = run ? OUTCOME_OK : no_memory();
+	for (int row = 0; run && row < study->design.rows && outcome == OUTCOME_OK; row += ROWS_AT_ONCE) {
+		int left = study->design.rows - row;
+		size_t n;
+		char *lines = model_rows(study, run, row, left < ROWS_AT_ONCE ? left : ROWS_AT_ONCE, &n);
+		if (!lines)
+			outcome = no_memory();
+		else if (fwrite(lines, 1, n, stdout) < n)
+			outcome = OUTCOME_FAILED; // main says why
+		free(lines);
+	}
+	pound_run_free(run);
+	study_free(study);
+	return outcome;
+}
+
+/* `pound indices STUDY.json Y.csv`: the indexes of outputs computed elsewhere.
+ *
+ * Test     client_model: indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv
+ */
+enum outcome model_indexes(const struct options *options)
+{
+	enum outcome outcome = OUTCOME_USAGE;
+	size_t n_csv, n;
+	struct problems problems;
+	if (strcmp(options->argument, "-") == 0 && strcmp(options->second, "-") == 0) {
+		command_complain("the study and the outputs cannot both be standard input");
+		return OUTCOME_USAGE;
+	}
+	struct pound_study *study = study_read(options->argument, &outcome);
+	char *csv = study ? document_read(options->second, &n_csv) : NULL;
+	if (csv) {
+		char *json = model_indices(study, csv, n_csv, &problems, &n);
+		outcome = json ? show_as(json, n, options->format) : document_reject(options->second, &problems);
+		free(json);
+	}
+	free(csv);
+	study_free(study);
+	return outcome;
+}

@@ -1,0 +1,414 @@
+/* model.c - a model that is run elsewhere: the rows of a design as CSV, and the indexes of its outputs from CSV.
+ *
+ * 1. The header says what each column is: an output, an output's variance, or an input.
+ * 2. The lines after it are the samples of the design, in its order; inputs, where they are, must be those of the design.
+ * 3. The run reduces the outputs as if they were its own. */
+#include "schema/model.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/result_json.h"
+#include "schema/writer.h"
+
+/* ---- rows out ---- */
+
+static void put_number(struct writer *w, double value)
+{
+	char digits[WRITER_NUMBER_SIZE];
+	writer_raw(w, digits, (size_t)writer_digits(value, digits));
+}
+
+/* Lines of a design.
+ *
+ * Given    study, run  -         -       the run's design
+ *          first, n    -         -       its rows; a line for each of their samples, a header before row 0
+ * Returns  value       (length)  -       CSV, lines end with a newline alone; NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Test     unit_model: rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers
+ */
+char *model_rows(const struct pound_study *study, const struct pound_run *run, int first, int n,
+                 size_t *length)
+{
+	struct writer w;
+	writer_init(&w);
+	for (int j = 0; j < study->n_inputs && first == 0; j++) {
+		writer_cell(&w, study->inputs[j].name);
+		writer_raw(&w, j + 1 < study->n_inputs ? "," : "\n", 1);
+	}
+	for (int row = first; row < first + n; row++)
+		for (int sample = 0; sample < pound_run_samples(run); sample++) {
+			double x[POUND_INPUTS_MAX];
+			pound_run_sample_inputs(run, row, sample, x);
+			for (int j = 0; j < study->n_inputs; j++) {
+				put_number(&w, x[j]);
+				writer_raw(&w, j + 1 < study->n_inputs ? "," : "\n", 1);
+			}
+		}
+	return writer_take(&w, length);
+}
+
+/* ---- cells in ---- */
+
+enum { CELL_SIZE = 256 };
+
+struct csv {
+	const char *at, *end;
+	int line;             /* of the cell in hand, from 1 */
+	bool ended;           /* the cell in hand is the last of its line */
+	char cell[CELL_SIZE]; /* without quotes and the spaces around it */
+	struct problems *problems;
+};
+
+static void complain(const struct csv *csv, const char *column, const char *what)
+{
+	char place[160];
+	snprintf(place, sizeof place, column ? "line %d, %s" : "line %d", csv->line, column);
+	problems_add(csv->problems, place, "%s", what);
+}
+
+/* Takes spaces off both ends. */
+static void trim(char *text)
+{
+	size_t lead = strspn(text, " \t"), n = strlen(text + lead);
+	memmove(text, text + lead, n + 1);
+	while (n && (text[n - 1] == ' ' || text[n - 1] == '\t'))
+		text[--n] = 0;
+}
+
+/* Reads the next cell of a line: up to a comma, the end of the line or that of the text.
+ *
+ * Source   RFC 4180; a quoted cell may not hold an end of line here
+ */
+static void cell_read(struct csv *csv)
+{
+	size_t n = 0;
+	bool quoted = false;
+	for (; csv->at < csv->end && *csv->at != '\n' && (quoted || *csv->at != ','); csv->at++) {
+		if (*csv->at == '"') {
+			quoted = !quoted;
+			if (!quoted || csv->at[-1] != '"')
+				continue;
+		}
+		if (n < CELL_SIZE - 1)
+			csv->cell[n++] = *csv->at;
+	}
+	csv->ended = csv->at == csv->end || *csv->at == '\n';
+	csv->at += csv->at < csv->end;
+	if (csv->ended && n && csv->cell[n - 1] == '\r')
+		n--;
+	csv->cell[n] = 0;
+	trim(csv->cell);
+}
+
+/* Lines from here on; an empty one at the end is none, but the only cell of a line may be empty. */
+static int lines_left(const struct csv *csv)
+{
+	int n = 0;
+	for (const char *at = csv->at; at < csv->end; n++) {
+		const char *newline = memchr(at, '\n', (size_t)(csv->end - at));
+		at = newline ? newline + 1 : csv->end;
+	}
+	return n;
+}
+
+static bool blank(const char *at, const char *end)
+{
+	for (; at < end; at++)
+		if (*at != '\n' && *at != '\r')
+			return false;
+	return true;
+}
+
+/* The number in the cell in hand, NAN for none: an empty cell, "nan", "NA". */
+static bool cell_number(const struct csv *csv, double *value)
+{
+	char *end;
+	*value = NAN;
+	if (!*csv->cell || strcmp(csv->cell, "NA") == 0)
+		return true;
+	*value = strtod(csv->cell, &end);
+	return !*end;
+}
+
+/* ---- columns ---- */
+
+enum role { ROLE_OUTPUT, ROLE_VARIANCE, ROLE_INPUT, ROLE_OTHER };
+
+struct column {
+	char *name;
+	enum role role;
+	int index; /* of the output or the input */
+};
+
+struct outputs {
+	struct pound_study study; /* the one given, with these outputs */
+	int n_columns;
+	struct column *columns; /* (n_columns) */
+	char **names;           /* of the outputs  (study.n_outputs) */
+};
+
+static const char VARIANCE[] = ".variance";
+
+/* Whether a name in a header is that of an input, as a cell writes it. */
+static bool is_input(const struct pound_input *input, const char *name)
+{
+	bool guarded = *name == '\'' && strchr("=+-@", input->name[0]);
+	return strcmp(input->name, name + guarded) == 0;
+}
+
+static int column_named(const struct outputs *outputs, int n, const char *name, size_t length)
+{
+	for (int c = 0; c < n; c++)
+		if (strncmp(outputs->columns[c].name, name, length) == 0 && !outputs->columns[c].name[length])
+			return c;
+	return -1;
+}
+
+static void column_role(const struct outputs *outputs, struct column *column)
+{
+	size_t n = strlen(column->name), suffix = sizeof VARIANCE - 1;
+	column->role = ROLE_OUTPUT;
+	if (strcmp(column->name, "row") == 0 || strcmp(column->name, "sample") == 0)
+		column->role = ROLE_OTHER;
+	if (n > suffix && strcmp(column->name + n - suffix, VARIANCE) == 0)
+		column->role = ROLE_VARIANCE;
+	for (int j = 0; j < outputs->study.n_inputs; j++)
+		if (is_input(&outputs->study.inputs[j], column->name)) {
+			column->role = ROLE_INPUT;
+			column->index = j;
+		}
+}
+
+/* Which outputs there are, and whose variances the other columns are. */
+static void columns_join(struct outputs *outputs, struct csv *csv)
+{
+	int n_outputs = 0;
+	for (int c = 0; c < outputs->n_columns; c++) {
+		struct column *column = &outputs->columns[c];
+		if (column->role != ROLE_OUTPUT)
+			continue;
+		column->index = n_outputs;
+		outputs->names[n_outputs++] = column->name;
+	}
+	for (int c = 0; c < outputs->n_columns; c++) {
+		struct column *column = &outputs->columns[c];
+		if (column->role != ROLE_VARIANCE)
+			continue;
+		int of = column_named(outputs, outputs->n_columns, column->name,
+		                      strlen(column->name) - (sizeof VARIANCE - 1));
+		if (of < 0 || outputs->columns[of].role != ROLE_OUTPUT)
+			complain(csv, column->name, "is the variance of no column here");
+		else
+			column->index = outputs->columns[of].index;
+	}
+	outputs->study.n_outputs = n_outputs;
+	outputs->study.output_names = outputs->names;
+	if (n_outputs == 0)
+		complain(csv, NULL, "names no output: a column for each, and NAME.variance where it is known");
+}
+
+static void column_read(struct outputs *outputs, struct csv *csv)
+{
+	double number;
+	int c = outputs->n_columns;
+	struct column *column = &outputs->columns[c];
+	char what[CELL_SIZE + 80];
+	cell_read(csv);
+	column->name = strdup(csv->cell);
+	if (!column->name) {
+		csv->problems->status = PROBLEMS_NOMEM;
+		return;
+	}
+	outputs->n_columns++;
+	column_role(outputs, column);
+	int same = column_named(outputs, c, column->name, strlen(column->name));
+	snprintf(what, sizeof what, "must be the name of a column, got \"%.40s\"", csv->cell);
+	if (!*csv->cell || (cell_number(csv, &number) && !isnan(number)))
+		complain(csv, NULL, what);
+	snprintf(what, sizeof what, "is the name of column %d too", same + 1);
+	if (same >= 0)
+		complain(csv, column->name, what);
+}
+
+/* The first line: what each column is. */
+static bool header_read(struct outputs *outputs, struct csv *csv)
+{
+	const char *newline = memchr(csv->at, '\n', (size_t)(csv->end - csv->at));
+	size_t n = (size_t)((newline ? newline : csv->end) - csv->at), n_columns = 1;
+	for (size_t i = 0; i < n; i++)
+		n_columns += csv->at[i] == ',';
+	if (n_columns == 1 && (memchr(csv->at, ';', n) || memchr(csv->at, '\t', n))) {
+		complain(csv, NULL, "has no comma: columns are parted by commas");
+		return false;
+	}
+	outputs->columns = calloc(n_columns, sizeof *outputs->columns);
+	outputs->names = calloc(n_columns, sizeof *outputs->names);
+	if (!outputs->columns || !outputs->names) {
+		csv->problems->status = PROBLEMS_NOMEM;
+		return false;
+	}
+	do
+		column_read(outputs, csv);
+	while (!csv->ended && csv->problems->status != PROBLEMS_NOMEM);
+	columns_join(outputs, csv);
+	return csv->problems->status == PROBLEMS_NONE;
+}
+
+/* ---- lines ---- */
+
+/* What is known of a line: the sample it belongs to and what its cells say. */
+struct line {
+	struct pound_run *run;
+	int row, sample;
+	double x[POUND_INPUTS_MAX];
+	double *value, *variance; /* (n_outputs) each */
+	bool strange;             /* an input that is not the design's was told */
+};
+
+/* An input that was written with a few digits only is still the design's. */
+static bool alike(double given, double wanted)
+{
+	return fabs(given - wanted) <= 1e-4 * fmax(fabs(given), fabs(wanted)) + 1e-6;
+}
+
+static void cell_take(const struct outputs *outputs, struct csv *csv, struct line *line, int c)
+{
+	const struct column *column = &outputs->columns[c];
+	char what[160];
+	double number;
+	if (column->role == ROLE_OTHER)
+		return;
+	if (!cell_number(csv, &number)) {
+		snprintf(what, sizeof what, "must be a number, got \"%.60s\"", csv->cell);
+		complain(csv, column->name, what);
+	} else if (column->role == ROLE_OUTPUT) {
+		line->value[column->index] = number;
+	} else if (column->role == ROLE_VARIANCE) {
+		line->variance[column->index] = isfinite(number) ? number : INFINITY;
+		snprintf(what, sizeof what, "must be at least 0, got %.60s", csv->cell);
+		if (number < 0)
+			complain(csv, column->name, what);
+	} else if (!line->strange && !alike(number, line->x[column->index])) {
+		snprintf(what, sizeof what,
+		         "is %.15g, but the design has %.15g there: is this its order and its seed?", number,
+		         line->x[column->index]);
+		complain(csv, column->name, what);
+		line->strange = true;
+	}
+}
+
+/* Gives a line's outputs to the run: a run without one of its numbers has failed. */
+static void line_assign(const struct outputs *outputs, const struct line *line)
+{
+	bool failed = false;
+	for (int o = 0; o < outputs->study.n_outputs; o++)
+		failed |= !isfinite(line->value[o]) || isinf(line->variance[o]);
+	for (int o = 0; o < outputs->study.n_outputs; o++)
+		pound_run_sample_assign(line->run, line->row, line->sample, o, failed ? NAN : line->value[o],
+		                        line->variance[o]);
+}
+
+static void line_read(const struct outputs *outputs, struct csv *csv, struct line *line)
+{
+	int n = 0;
+	csv->line++;
+	pound_run_sample_inputs(line->run, line->row, line->sample, line->x);
+	for (int o = 0; o < outputs->study.n_outputs; o++)
+		line->value[o] = line->variance[o] = NAN;
+	do {
+		cell_read(csv);
+		if (n < outputs->n_columns)
+			cell_take(outputs, csv, line, n);
+		n++;
+	} while (!csv->ended);
+	char what[80];
+	snprintf(what, sizeof what, "has %d cells, the header has %d", n, outputs->n_columns);
+	if (n != outputs->n_columns)
+		complain(csv, NULL, what);
+	line_assign(outputs, line);
+}
+
+/* All lines after the header into the run. */
+static void lines_read(const struct outputs *outputs, struct csv *csv, struct pound_run *run)
+{
+	double *numbers = calloc(2 * (size_t)outputs->study.n_outputs, sizeof *numbers);
+	struct line line = {.run = run, .value = numbers, .variance = numbers + outputs->study.n_outputs};
+	const int n_samples = pound_run_samples(run), rows = outputs->study.design.rows;
+	int64_t wanted = (int64_t)rows * n_samples, there = lines_left(csv);
+	const char *after = csv->at;
+	for (int64_t k = 0; k < wanted && after < csv->end; k++) {
+		const char *newline = memchr(after, '\n', (size_t)(csv->end - after));
+		after = newline ? newline + 1 : csv->end;
+	}
+	if (!numbers) {
+		csv->problems->status = PROBLEMS_NOMEM;
+	} else if (there < wanted || !blank(after, csv->end)) {
+		problems_add(csv->problems, "",
+		             "has %lld lines after its header, the design has %lld: %d for each of %d rows",
+		             (long long)there, (long long)wanted, n_samples, rows);
+	} else {
+		for (line.row = 0; line.row < rows; line.row++)
+			for (line.sample = 0; line.sample < n_samples; line.sample++)
+				line_read(outputs, csv, &line);
+	}
+	free(numbers);
+}
+
+/* ---- the result ---- */
+
+static void check_study(const struct pound_study *study, struct problems *problems)
+{
+	if (study->n_sweeps)
+		problems_add(problems, "/sweep", "outputs computed elsewhere are those of one cell, without a sweep");
+}
+
+static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t *length)
+{
+	for (int k = 0; k < pound_run_reductions(run); k++)
+		pound_run_reduce(run, k, 0);
+	return result_to_json(&outputs->study, pound_run_result(run), NULL, length);
+}
+
+/* Indexes of outputs computed elsewhere.
+ *
+ * Given    study     -             -   read by study_design_from_json
+ *          csv       (csv_length)  -   header; a line for every sample of the design, in the order of model_rows
+ * Returns  value     (length)      -   JSON; NULL: problems->status says why, pointers are "line 3, NAME"
+ * Memory   allocates; the caller frees
+ *
+ * An output or a variance that is missing or not finite is a failed run: its row is left out for every output.
+ *
+ * Test     unit_model
+ */
+char *model_indices(const struct pound_study *study, const char *csv, size_t csv_length,
+                    struct problems *problems, size_t *length)
+{
+	static const char mark[] = "\xEF\xBB\xBF"; // of UTF-8, as spreadsheets put it
+	struct outputs outputs = {.study = *study};
+	struct csv at = {.at = csv, .end = csv + csv_length, .line = 1, .problems = problems};
+	char *json = NULL;
+	problems_init(problems);
+	if (csv_length >= 3 && memcmp(csv, mark, 3) == 0)
+		at.at += 3;
+	outputs.study.elsewhere = true;
+	check_study(study, problems);
+	if (problems->status == PROBLEMS_NONE && header_read(&outputs, &at)) {
+		struct pound_run *run = pound_run_create(&outputs.study, 1);
+		if (run)
+			lines_read(&outputs, &at, run);
+		if (run && problems->status == PROBLEMS_NONE)
+			json = reduce(&outputs, run, length);
+		pound_run_free(run);
+		if (!json && problems->status == PROBLEMS_NONE)
+			problems->status = PROBLEMS_NOMEM;
+	}
+	for (int c = 0; c < outputs.n_columns; c++)
+		free(outputs.columns[c].name);
+	free(outputs.columns);
+	free(outputs.names);
+	return json;
+}
