@@ -595,7 +595,9 @@ static enum pound_status nothing_left(const struct pound_run *run)
 		failed_runs += work.failed[k];
 		most = work.failed[k] > work.failed[most] ? k : most;
 	}
-	return failed_runs < work.pounding_runs.asked ? POUND_OK : (enum pound_status)(POUND_CHATTER - most);
+	return run->campaign.study->elsewhere || failed_runs < work.pounding_runs.asked
+	           ? POUND_OK
+	           : (enum pound_status)(POUND_CHATTER - most);
 }
 
 /* Computes one output of one cell, once all blocks are done; the first also looks whether there is anything to reduce.

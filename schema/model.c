@@ -5,6 +5,7 @@
  * 3. The run reduces the outputs as if they were its own. */
 #include "schema/model.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -368,8 +369,11 @@ static void check_study(const struct pound_study *study, struct problems *proble
 
 static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t *length)
 {
-	for (int k = 0; k < pound_run_reductions(run); k++)
-		pound_run_reduce(run, k, 0);
+	for (int k = 0; k < pound_run_reductions(run); k++) {
+		enum pound_status status = pound_run_reduce(run, k, 0);
+		assert(status == POUND_OK);
+		(void)status;
+	}
 	return result_to_json(&outputs->study, pound_run_result(run), NULL, length);
 }
 

@@ -106,9 +106,11 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 		checked += checked_of_cell;
 	}
 	writer_object(w, "accuracy", WRITER_LINES);
-	writer_text(w, "check",
-	            "runs made again on half the sample step; pounding can be chaotic, so single runs may part "
-	            "by rounding alone");
+	if (!study->elsewhere)
+		writer_text(
+		    w, "check",
+		    "runs made again on half the sample step; pounding can be chaotic, so single runs may part "
+		    "by rounding alone");
 	writer_whole(w, "runs_checked", checked);
 	writer_number(w, "difference_median", median);
 	writer_number(w, "difference_largest", largest);

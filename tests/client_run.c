@@ -65,6 +65,10 @@ static void every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by
 		if (is_long(name))
 			continue;
 		struct program_outcome document = POUND("example", name);
+		if (!strstr(document.out, "\"scene\"")) { // to be run elsewhere
+			program_free(&document);
+			continue;
+		}
 		struct program_outcome one = run_threads(document.out, "1");
 		for (int i = 0; i < 2; i++) {
 			struct program_outcome other = run_threads(document.out, threads[i]);

@@ -153,7 +153,7 @@ struct pound_sample_values function_values(const struct function *f, int n_rows,
 			}
 		}
 	free(x);
-	return (struct pound_sample_values){n_rows, D, noise.n_signals, numerator, denominator};
+	return (struct pound_sample_values){n_rows, D, noise.n_signals, numerator, denominator, NULL};
 }
 
 void function_values_free(struct pound_sample_values *values)

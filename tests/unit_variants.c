@@ -97,7 +97,7 @@ static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
 	double one[6 * 4];
 	for (int k = 0; k < 6 * 4; k++)
 		one[k] = 1;
-	struct pound_sample_values values = {6, 2, 1, y, one};
+	struct pound_sample_values values = {6, 2, 1, y, one, NULL};
 	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false});
 	check_near(got->estimates[POUND_S1_RAW][0].value, 0.572576783750673, 1e-12);
 	check_near(got->estimates[POUND_S1_RAW][1].value, 0.755503894911683, 1e-12);
@@ -164,7 +164,7 @@ static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left
 			numerator[i * SAMPLES * 2 + k] = (k % 2 ? 1 : -1) + 1e-3 * ((i * 7 + k) % 5);
 			one[i * SAMPLES * 2 + k] = 1;
 		}
-	struct pound_sample_values values = {N, D, 2, numerator, one};
+	struct pound_sample_values values = {N, D, 2, numerator, one, NULL};
 	double *u = function_design(N, 7);
 	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false});
 	assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOISE);
@@ -188,7 +188,7 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 			denominator[i] = 0.1 + 0.7 * (i % 17);
 			numerator[i] = i < kept[k] * SAMPLES * 3 ? 1.1 * denominator[i] : NAN; // 1.1 but for rounding
 		}
-		struct pound_sample_values values = {N, D, 3, numerator, denominator};
+		struct pound_sample_values values = {N, D, 3, numerator, denominator, NULL};
 		struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false});
 		assert_int_equal(got->of.notes, 1 << notes[k]);
 		assert_int_equal(got->dropped, N - kept[k]);
@@ -227,7 +227,7 @@ static struct pound_sample_values means_of(const struct pound_study *study, cons
 		pound_run_sample_output(run, cell, k / (d + 2), k % (d + 2), output, &numerator[k], &variance);
 		denominator[k] = 1;
 	}
-	return (struct pound_sample_values){study->design.rows, d, 1, numerator, denominator};
+	return (struct pound_sample_values){study->design.rows, d, 1, numerator, denominator, NULL};
 }
 
 static void check_column(const struct reading *r, const char *at, enum pound_index index, const char *name,
