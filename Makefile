@@ -95,6 +95,9 @@ $(B)/tests/yardstick.o: CFLAGS += -O3
 # the paper's findings, one by one, for n = 1000: minutes
 paper: $(B)/tests/paper
 	@$<
+# stiff and extreme scenes, a table: what every one of them is checked for by the tests
+extremes: $(B)/tests/unit_extremes
+	@$< | grep '^|'
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
 
@@ -116,6 +119,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check bench paper asan tsan lint fuzz fmt clean
+.PHONY: all deps run test check bench paper extremes asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)
