@@ -1,8 +1,8 @@
 -- The database of poundd.  All of it is made in one transaction; a later version changes it step by step
--- (PRAGMA user_version counts the steps).  Times are milliseconds since 1970, UTC.
+-- (PRAGMA user_version counts the steps, server/store.c has them).  Times are milliseconds since 1970, UTC.
 
 PRAGMA application_id = 0x706f756e; -- "poun"
-PRAGMA user_version = 1;
+PRAGMA user_version = 2;
 
 CREATE TABLE study (
 	id              INTEGER PRIMARY KEY, -- milliseconds << 20 | random bits: a newer study has a larger id
@@ -17,6 +17,7 @@ CREATE TABLE study (
 	attempt         INTEGER NOT NULL DEFAULT 0, -- times it was taken up
 	error           TEXT,                       -- why it failed
 	idempotency_key TEXT    UNIQUE,
+	crashes         INTEGER NOT NULL DEFAULT 0, -- of the server by this study, since a block of it was kept
 	CHECK ((finished IS NULL) = (status IN ('queued', 'running'))),
 	CHECK ((error IS NULL) = (status <> 'failed'))
 ) STRICT;
@@ -27,7 +28,7 @@ CREATE INDEX study_status ON study (status, id);
 CREATE TABLE document (
 	study   INTEGER NOT NULL REFERENCES study ON DELETE CASCADE,
 	name    TEXT    NOT NULL CHECK (name IN ('request', 'result')),
-	sha256  BLOB    NOT NULL,
+	sha256  BLOB    NOT NULL, -- over name, study and content
 	content BLOB    NOT NULL,
 	PRIMARY KEY (study, name)
 ) STRICT;
@@ -41,5 +42,9 @@ CREATE TABLE block (
 	cpu_s   REAL    NOT NULL,
 	sha256  BLOB    NOT NULL, -- over engine version, study, number and content
 	content BLOB    NOT NULL, -- doubles of this machine's byte order
+	wall_s  REAL    NOT NULL DEFAULT 0, -- since the study started, without the time between sessions
 	PRIMARY KEY (study, number)
 ) STRICT;
+
+-- progress, without a look at the blocks themselves
+CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);

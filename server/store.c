@@ -2,29 +2,26 @@
  *
  * 1. One connection makes every change and every checkpoint, behind one mutex; the others are read-only and never
  *    checkpoint.  (SQLite before 3.51.3 can damage a WAL database when one connection checkpoints while another commits.)
- * 2. A lock file keeps a second server away from the database.
+ * 2. A lock file keeps a second server away from the database (server/disk.c).
  * 3. synchronous=FULL: a COMMIT that returned survives a power cut.
  * 4. A prepared statement per question; a client's bytes are only ever bound. */
 #include "server/store.h"
 
 #include <assert.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/random.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <nettle/sha2.h>
 #include <sqlite3.h>
 
 #include "engine/pound.h"
+#include "server/disk.h"
 #include "server/log.h"
 
 static const char schema_text[] =
@@ -35,9 +32,16 @@ enum {
 	READERS = 4,
 	CHANGES = 1021,              /* a prime, so that ids fall everywhere */
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
-	USER_VERSION = 1,            /* as in store.sql */
-	LOCK_TRIES = 50,             /* half a second together */
-	LOCK_PAUSE_NS = 10000000,    /* [ns] */
+	USER_VERSION = 2,            /* as in store.sql */
+	SQLITE_RESET_SAFE = 3051003, /* its first version without the damage of point 1 */
+};
+
+/* What makes a database of version n one of version n + 1. */
+static const char *const steps[USER_VERSION] = {
+    [1] = "ALTER TABLE study ADD COLUMN crashes INTEGER NOT NULL DEFAULT 0;"
+          "ALTER TABLE block ADD COLUMN wall_s REAL NOT NULL DEFAULT 0;"
+          "CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);"
+          "UPDATE document SET sha256 = document_sha256(study, name, content, sha256)",
 };
 
 // clang-format off
@@ -46,6 +50,8 @@ enum {
 	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
 	"error, runs, (SELECT total(runs) FROM block WHERE study = id), "                                     \
 	"(SELECT total(cpu_s) FROM block WHERE study = id) FROM study "
+// times a study was taken up since one of its blocks was kept
+#define IN_VAIN "attempt - (SELECT coalesce(max(attempt), 0) FROM block WHERE study = study.id)"
 
 // those that read, then those that write
 #define STATEMENTS(X)                                                                                     \
@@ -53,12 +59,13 @@ enum {
 	X(LIST,     STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2")                                      \
 	X(LIST_OF,  STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2")                      \
 	X(DOCUMENT, "SELECT sha256, content FROM document WHERE study = ?1 AND name = ?2")                    \
+	X(BLOCKS,   "SELECT sha256, content, number, runs, cpu_s, wall_s FROM block WHERE study = ?1 "        \
+	            "ORDER BY number")                                                                        \
 	X(COUNT,    "SELECT count(*) FROM study WHERE status = ?1")                                           \
-	X(BLOCKS,   "SELECT sha256, content, number, runs, cpu_s FROM block WHERE study = ?1 ORDER BY number") \
 	X(BEGIN,    "BEGIN IMMEDIATE")                                                                        \
 	X(COMMIT,   "COMMIT")                                                                                 \
 	X(ROLLBACK, "ROLLBACK")                                                                               \
-	X(KEYED,    "SELECT sha256, id FROM study JOIN document ON study = id AND document.name = 'request' " \
+	X(KEYED,    "SELECT id, content = ?2 FROM study JOIN document ON study = id AND document.name = 'request' " \
 	            "WHERE idempotency_key = ?1")                                                             \
 	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key) "       \
 	            "VALUES (?1, 'queued', ?2, ?3, ?4, ?5, ?6, ?7)")                                          \
@@ -67,12 +74,17 @@ enum {
 	            "WHERE id = ?1 AND status IN ('queued', 'running')")                                      \
 	X(DELETE,   "DELETE FROM study WHERE id = ?1")                                                        \
 	X(CLAIM,    "UPDATE study SET status = 'running', attempt = attempt + 1, "                            \
-	            "started = coalesce(started, max(?1, created)) WHERE id = "                               \
-	            "(SELECT id FROM study WHERE status = 'queued' ORDER BY id LIMIT 1) RETURNING id")        \
-	X(KEEP,     "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, content, sha256) "    \
-	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6 FROM study WHERE id = ?1 AND status = 'running'") \
+	            "started = coalesce(started, max(?1, created)) WHERE id = (SELECT id FROM study "         \
+	            "WHERE status = 'queued' ORDER BY " IN_VAIN " >= 3, id LIMIT 1) RETURNING id")            \
+	X(KEEP,     "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) " \
+	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, ?7 FROM study WHERE id = ?1 AND status = 'running'") \
 	X(FINISH,   "UPDATE study SET status = ?2, finished = max(?3, started), error = ?4 "                  \
-	            "WHERE id = ?1 AND status = 'running'")
+	            "WHERE id = ?1 AND status = 'running'")                                                   \
+	X(REQUEUE,  "UPDATE study SET status = 'queued', crashes = iif(" IN_VAIN " > 0, crashes + (id = ?1), 0) " \
+	            "WHERE status = 'running'")                                                               \
+	X(POISON,   "UPDATE study SET status = 'failed', finished = max(?1, started), "                       \
+	            "error = 'poison-study: the server crashed three times while it ran this study' "         \
+	            "WHERE status = 'queued' AND crashes >= 3")
 // clang-format on
 
 enum statement {
@@ -95,7 +107,7 @@ struct connection {
 };
 
 struct store {
-	int lock_file;
+	struct disk disk;
 	int64_t id_last; /* largest id given out, under the writer's lock */
 	struct connection writer, readers[READERS];
 	atomic_uint changes[CHANGES]; /* of the studies whose ids have that remainder */
@@ -216,131 +228,60 @@ static int64_t number(sqlite3 *db, const char *sql)
 	return value;
 }
 
-static bool connect(struct connection *c, const char *path, int flags)
+/* Makes a setting of a connection, and reads it back. */
+static bool holds(sqlite3 *db, const char *name, const char *value)
 {
-	static const char settings[] =
-	    "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA "
-	    "trusted_schema = OFF;"
-	    "PRAGMA cell_size_check = ON; PRAGMA busy_timeout = 5000; PRAGMA journal_size_limit = 67108864";
-	static const char settings_hold[] =
-	    "SELECT journal_mode = 'wal' AND synchronous = 2 AND foreign_keys AND NOT trusted_schema AND "
-	    "cell_size_check "
-	    "FROM pragma_journal_mode, pragma_synchronous, pragma_foreign_keys, pragma_trusted_schema, "
-	    "pragma_cell_size_check";
-	pthread_mutex_init(&c->lock, NULL);
-	if (sqlite3_open_v2(path, &c->db, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, NULL) ==
-	    SQLITE_OK) {
-		sqlite3_db_config(c->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
-		sqlite3_db_config(c->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !(flags & SQLITE_OPEN_READWRITE), NULL);
-		sqlite3_exec(c->db, settings, NULL, NULL, NULL);
-		if (number(c->db, settings_hold) == 1)
-			return true;
-	}
-	log_line("cannot open the database %s as it must be: %s", path, sqlite3_errmsg(c->db));
-	return false;
+	char make[64], ask[64];
+	sqlite3_stmt *read = NULL;
+	snprintf(make, sizeof make, "PRAGMA %s = %s", name, value);
+	snprintf(ask, sizeof ask, "PRAGMA %s", name);
+	bool set = sqlite3_exec(db, make, NULL, NULL, NULL) == SQLITE_OK &&
+	           sqlite3_prepare_v2(db, ask, -1, &read, NULL) == SQLITE_OK &&
+	           sqlite3_step(read) == SQLITE_ROW && sqlite3_column_text(read, 0) &&
+	           !strcmp((const char *)sqlite3_column_text(read, 0), value);
+	sqlite3_finalize(read);
+	if (!set)
+		log_line("database: %s does not become %s: %s", name, value, sqlite3_errmsg(db));
+	return set;
 }
 
-static void prepare(struct connection *c, int n)
+static bool connect(struct connection *c, const char *path, int flags)
+{
+	static const struct {
+		const char *name, *value;
+	} settings[] = {
+	    {"busy_timeout", "5000"},
+	    {"journal_mode", "wal"},
+	    {"synchronous", "2"}, // FULL
+	    {"foreign_keys", "1"},
+	    {"trusted_schema", "0"},
+	    {"cell_size_check", "1"},
+	    {"wal_autocheckpoint", "1000"},
+	    {"mmap_size", "0"},
+	    {"secure_delete", "0"},
+	    {"journal_size_limit", "67108864"},
+	};
+	pthread_mutex_init(&c->lock, NULL);
+	bool ok =
+	    sqlite3_open_v2(path, &c->db, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, NULL) == SQLITE_OK;
+	sqlite3_db_config(c->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+	sqlite3_db_config(c->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !(flags & SQLITE_OPEN_READWRITE), NULL);
+	for (size_t i = 0; ok && i < sizeof settings / sizeof settings[0]; i++)
+		ok = holds(c->db, settings[i].name, settings[i].value);
+	if (!ok)
+		log_line("cannot open the database %s as it must be: %s", path, sqlite3_errmsg(c->db));
+	return ok;
+}
+
+static bool prepared(struct connection *c, int n)
 {
 	for (int s = 0; s < n; s++)
 		if (sqlite3_prepare_v3(c->db, statement_text[s], -1, SQLITE_PREPARE_PERSISTENT, &c->statements[s],
 		                       NULL) != SQLITE_OK) {
 			log_line("database: %s: %s", statement_text[s], sqlite3_errmsg(c->db));
-			abort();
+			return false;
 		}
-}
-
-/* Makes a new database, or finds that this one is ours and of our version. */
-static bool founded(sqlite3 *db, const char *path)
-{
-	if (number(db, "SELECT count(*) FROM sqlite_schema") == 0 && number(db, "PRAGMA application_id") == 0) {
-		bool made = sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL) == SQLITE_OK &&
-		            sqlite3_exec(db, schema_text, NULL, NULL, NULL) == SQLITE_OK &&
-		            sqlite3_exec(db, "COMMIT", NULL, NULL, NULL) == SQLITE_OK;
-		if (!made)
-			log_line("cannot make the database %s: %s", path, sqlite3_errmsg(db));
-		return made;
-	}
-	int64_t version = number(db, "PRAGMA user_version");
-	bool ours = number(db, "PRAGMA application_id") == APPLICATION_ID && version == USER_VERSION;
-	if (!ours)
-		log_line("%s is not a database of poundd, or of another version: %lld, not %d", path,
-		         (long long)version, USER_VERSION);
-	return ours;
-}
-
-static bool locked(struct store *store, const char *path)
-{
-	char name[4096];
-	snprintf(name, sizeof name, "%s-lock", path);
-	store->lock_file = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-	bool ours = store->lock_file >= 0 && flock(store->lock_file, LOCK_EX | LOCK_NB) == 0;
-	// a server that was just killed keeps its lock until its memory is given back
-	for (int i = 0; !ours && errno == EWOULDBLOCK && i < LOCK_TRIES; i++) {
-		nanosleep(&(struct timespec){.tv_nsec = LOCK_PAUSE_NS}, NULL);
-		ours = flock(store->lock_file, LOCK_EX | LOCK_NB) == 0;
-	}
-	if (!ours && errno == EWOULDBLOCK)
-		log_line("another server uses the database %s", path);
-	else if (!ours)
-		log_line("cannot lock %s: %s", name, strerror(errno));
-	return ours;
-}
-
-/* Opens a database, making it if there is none; studies that were running are queued again.
- *
- * Given    path    of the database file; PATH-lock, PATH-wal and PATH-shm stand beside it
- * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
- * Test     unit_store: a_store_in_use_is_not_opened_again
- */
-struct store *store_open(const char *path)
-{
-	struct store *store = calloc(1, sizeof *store);
-	if (!store)
-		return NULL;
-	struct connection *w = &store->writer;
-	bool ok = locked(store, path) && connect(w, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) &&
-	          founded(w->db, path) &&
-	          sqlite3_exec(w->db, "UPDATE study SET status = 'queued' WHERE status = 'running'", NULL, NULL,
-	                       NULL) == SQLITE_OK;
-	for (int i = 0; ok && i < READERS; i++)
-		ok = connect(&store->readers[i], path, SQLITE_OPEN_READONLY);
-	if (!ok) {
-		store_close(store);
-		return NULL;
-	}
-	prepare(w, N_STATEMENTS);
-	for (int i = 0; i < READERS; i++)
-		prepare(&store->readers[i], BEGIN);
-	store->id_last = number(w->db, "SELECT coalesce(max(id), 0) FROM study");
-	return store;
-}
-
-static void disconnect(struct connection *c)
-{
-	for (int s = 0; s < N_STATEMENTS; s++)
-		sqlite3_finalize(c->statements[s]);
-	sqlite3_close(c->db);
-}
-
-/* Closes a store; the writing connection goes last and leaves no WAL behind. */
-void store_close(struct store *store)
-{
-	for (int i = 0; i < READERS; i++)
-		disconnect(&store->readers[i]);
-	disconnect(&store->writer);
-	if (store->lock_file >= 0)
-		close(store->lock_file);
-	free(store);
-}
-
-/* The time and 20 random bits, and always above the last one. */
-static int64_t id_next(struct store *store, int64_t now)
-{
-	uint32_t bits = 0;
-	getrandom(&bits, sizeof bits, 0);
-	int64_t id = now << 20 | (bits & 0xfffff);
-	return store->id_last = id > store->id_last ? id : store->id_last + 1;
+	return true;
 }
 
 /* What stored bytes are checked with: SHA-256 over where they belong and themselves. */
@@ -353,6 +294,125 @@ static void digest(const char *place, const void *bytes, size_t n, uint8_t sha25
 	sha256_digest(&hash, SHA256_DIGEST_SIZE, sha256);
 }
 
+/* A document belongs to a study, under a name. */
+static void document_place(int64_t id, const char *name, char place[64])
+{
+	snprintf(place, 64, "%s %lld ", name, (long long)id);
+}
+
+/* The SQL function document_sha256(study, name, content, sha256): what checks a document of version 1, which was made
+ * without the study; a damaged one keeps what shows it. */
+static void document_sha256(sqlite3_context *call, int n, sqlite3_value **values)
+{
+	char place[64];
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	const char *name = (const char *)sqlite3_value_text(values[1]);
+	const void *content = sqlite3_value_blob(values[2]);
+	size_t length = (size_t)sqlite3_value_bytes(values[n - 2]);
+	digest(name, content, length, sha256);
+	if (sqlite3_value_bytes(values[3]) == sizeof sha256 &&
+	    !memcmp(sqlite3_value_blob(values[3]), sha256, sizeof sha256)) {
+		document_place(sqlite3_value_int64(values[0]), name, place);
+		digest(place, content, length, sha256);
+		sqlite3_result_blob(call, sha256, sizeof sha256, SQLITE_TRANSIENT);
+	} else
+		sqlite3_result_value(call, values[3]);
+}
+
+/* Runs SQL as one transaction that ends with the database being of a version. */
+static bool versioned(sqlite3 *db, const char *sql, int version)
+{
+	char end[64];
+	snprintf(end, sizeof end, "; PRAGMA user_version = %d; COMMIT", version);
+	bool made = sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL) == SQLITE_OK &&
+	            sqlite3_exec(db, sql, NULL, NULL, NULL) == SQLITE_OK &&
+	            sqlite3_exec(db, end, NULL, NULL, NULL) == SQLITE_OK;
+	if (!made)
+		log_line("cannot make the database one of version %d: %s", version, sqlite3_errmsg(db));
+	return made;
+}
+
+/* Makes a new database, or finds that this one is ours, and brings it to our version. */
+static bool founded(sqlite3 *db, const char *path)
+{
+	if (number(db, "SELECT count(*) FROM sqlite_schema") == 0 && number(db, "PRAGMA application_id") == 0)
+		return versioned(db, schema_text, USER_VERSION) && disk_sync(path);
+	int64_t version = number(db, "PRAGMA user_version");
+	if (number(db, "PRAGMA application_id") != APPLICATION_ID || version < 1 || version > USER_VERSION) {
+		log_line("%s is not a database of poundd, or of a newer one: version %lld, not %d", path,
+		         (long long)version, USER_VERSION);
+		return false;
+	}
+	sqlite3_create_function(db, "document_sha256", 4, SQLITE_UTF8, NULL, document_sha256, NULL, NULL);
+	while (version < USER_VERSION && versioned(db, steps[version], (int)version + 1))
+		log_line("%s is of version %lld now", path, (long long)++version);
+	return version == USER_VERSION;
+}
+
+static void disconnect(struct connection *c)
+{
+	for (int s = 0; s < N_STATEMENTS; s++)
+		sqlite3_finalize(c->statements[s]);
+	sqlite3_close(c->db);
+}
+
+/* Closes a store, when nothing runs any more; the writing connection goes last and leaves no WAL behind. */
+void store_close(struct store *store)
+{
+	// after a start that was refused there may be no statements
+	if (store->writer.statements[REQUEUE])
+		change(&store->writer, REQUEUE, "i", INT64_C(0));
+	for (int i = 0; i < READERS; i++)
+		disconnect(&store->readers[i]);
+	disconnect(&store->writer);
+	disk_leave(&store->disk);
+	free(store);
+}
+
+/* Opens a database, making it if there is none.  Studies that were running are queued again, but one that made the
+ * server crash three times has failed.
+ *
+ * Given    path    of the database file; PATH-lock, PATH-ballast, PATH-wal and PATH-shm stand beside it
+ * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
+ * Test     unit_store: a_store_in_use_is_not_opened_again
+ */
+struct store *store_open(const char *path)
+{
+	struct store *store = calloc(1, sizeof *store);
+	if (!store)
+		return NULL;
+	struct connection *w = &store->writer;
+	bool ok = disk_take(&store->disk, path);
+	if (ok)
+		disk_relieve(&store->disk);
+	ok = ok && connect(w, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) && founded(w->db, path);
+	for (int i = 0; ok && i < READERS; i++)
+		ok = connect(&store->readers[i], path, SQLITE_OPEN_READONLY) && prepared(&store->readers[i], BEGIN);
+	ok = ok && prepared(w, N_STATEMENTS) &&
+	     change(w, REQUEUE, "i", disk_blamed(&store->disk)) != STORE_FAILED &&
+	     change(w, POISON, "i", now_ms()) != STORE_FAILED &&
+	     (store->id_last = number(w->db, "SELECT coalesce(max(id), 0) FROM study")) >= 0;
+	if (!ok) {
+		store_close(store);
+		return NULL;
+	}
+	if (sqlite3_libversion_number() < SQLITE_RESET_SAFE)
+		log_line("SQLite %s can damage databases that two connections change; poundd uses one",
+		         sqlite3_libversion());
+	disk_blame(&store->disk, 0);
+	disk_roomy(&store->disk);
+	return store;
+}
+
+/* The time and 20 random bits, and always above the last one. */
+static int64_t id_next(struct store *store, int64_t now)
+{
+	uint32_t bits = 0;
+	getrandom(&bits, sizeof bits, 0);
+	int64_t id = now << 20 | (bits & 0xfffff);
+	return store->id_last = id > store->id_last ? id : store->id_last + 1;
+}
+
 /* The bytes of a row that starts with sha256 and content: copied, for they may lie unaligned, and a zero added. */
 static enum store_status checked(sqlite3_stmt *row, const char *place, char **content, size_t *length)
 {
@@ -361,7 +421,8 @@ static enum store_status checked(sqlite3_stmt *row, const char *place, char **co
 	*content = malloc(*length + 1);
 	if (!*content)
 		return STORE_FAILED;
-	memcpy(*content, sqlite3_column_blob(row, 1), *length);
+	if (*length)
+		memcpy(*content, sqlite3_column_blob(row, 1), *length);
 	(*content)[*length] = '\0';
 	digest(place, *content, *length, sha256);
 	if (sqlite3_column_bytes(row, 0) == sizeof sha256 &&
@@ -375,24 +436,24 @@ static enum store_status checked(sqlite3_stmt *row, const char *place, char **co
 static enum store_status add(struct connection *c, int64_t id, const char *name, const char *content,
                              size_t length)
 {
+	char place[64];
 	uint8_t sha256[SHA256_DIGEST_SIZE];
-	digest(name, content, length, sha256);
+	document_place(id, name, place);
+	digest(place, content, length, sha256);
 	return change(c, ADD, "itbb", id, name, content, length, sha256, sizeof sha256);
 }
 
-/* Whether an earlier study was submitted with that key: NONE, REPEATED or CLASH. */
+/* What was submitted with a key before; STORE_NONE: nothing, or there is no key. */
 static enum store_status keyed(struct connection *c, const char *key, const char *request, size_t length,
                                int64_t *id)
 {
-	uint8_t sha256[SHA256_DIGEST_SIZE];
 	enum store_status status = STORE_NONE;
-	sqlite3_stmt *row = query(c, KEYED, "t", key);
-	digest("request", request, length, sha256);
+	if (!key)
+		return status;
+	sqlite3_stmt *row = query(c, KEYED, "tb", key, request, length);
 	if (sqlite3_step(row) == SQLITE_ROW) {
-		*id = sqlite3_column_int64(row, 1);
-		bool same = sqlite3_column_bytes(row, 0) == sizeof sha256 &&
-		            !memcmp(sqlite3_column_blob(row, 0), sha256, sizeof sha256);
-		status = same ? STORE_REPEATED : STORE_CLASH;
+		*id = sqlite3_column_int64(row, 0);
+		status = sqlite3_column_int(row, 1) ? STORE_REPEATED : STORE_CLASH;
 	}
 	return ended(c, row, 1) == STORE_FAILED ? STORE_FAILED : status;
 }
@@ -402,28 +463,33 @@ static enum store_status keyed(struct connection *c, const char *key, const char
  * Given    study     its kind, name, runs and key; the rest is not read
  *          hash      of its meaning, hex
  *          request   (length) bytes   as the client sent them
- * Returns  id        of the study, or of the earlier one with that key
- * Status   STORE_FAILED     nothing is stored
- *          STORE_REPEATED   nothing need be: the earlier study was submitted with these bytes
- *          STORE_CLASH      nothing is: it was submitted with others
+ * Returns  id        of the study, or of the one that has the key
+ * Status   STORE_REPEATED these bytes were submitted with the key before: nothing new is stored
+ *          STORE_CLASH    other bytes were
+ *          STORE_FULL     the disk has no room for new studies
+ *          STORE_FAILED   nothing is stored
  * Test     service_resume: accepted_studies_survive_sigkill
  */
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
                                const char *request, size_t length, int64_t *id)
 {
+	bool roomy = disk_roomy(&store->disk);
 	struct connection *c = writer(store);
-	int64_t now = now_ms();
-	enum store_status status = change(c, BEGIN, "");
-	if (status != STORE_FAILED && study->key)
-		status = keyed(c, study->key, request, length, id);
-	if (status == STORE_OK || status == STORE_NONE) {
+	enum store_status status = keyed(c, study->key, request, length, id);
+	if (status == STORE_NONE && !roomy)
+		status = STORE_FULL;
+	if (status == STORE_NONE) {
+		int64_t now = now_ms();
 		*id = id_next(store, now);
-		status =
-		    change(c, SUBMIT, "iittitt", *id, now, study->kind, study->name, study->runs, hash, study->key);
+		status = change(c, BEGIN, "");
+		if (status != STORE_FAILED)
+			status = change(c, SUBMIT, "iittitt", *id, now, study->kind, study->name, study->runs, hash,
+			                study->key);
+		if (status == STORE_OK)
+			status = add(c, *id, "request", request, length);
+		status = conclude(c, status);
 	}
-	if (status == STORE_OK)
-		status = add(c, *id, "request", request, length);
-	return released(c, conclude(c, status));
+	return released(c, status);
 }
 
 static const char *text(sqlite3_stmt *row, int column)
@@ -486,11 +552,13 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length)
 {
+	char place[64];
+	document_place(id, name, place);
 	struct connection *c = reader(store);
 	sqlite3_stmt *row = query(c, DOCUMENT, "it", id, name);
 	enum store_status status = STORE_NONE;
 	if (sqlite3_step(row) == SQLITE_ROW)
-		status = checked(row, name, content, length);
+		status = checked(row, place, content, length);
 	if (ended(c, row, 1) == STORE_FAILED)
 		status = STORE_FAILED;
 	if (status == STORE_CORRUPT)
@@ -503,25 +571,48 @@ enum store_status store_count(struct store *store, const char *status, int64_t *
 {
 	struct connection *c = reader(store);
 	sqlite3_stmt *row = query(c, COUNT, "t", status);
-	*n = sqlite3_step(row) == SQLITE_ROW ? sqlite3_column_int64(row, 0) : 0;
+	if (sqlite3_step(row) == SQLITE_ROW)
+		*n = sqlite3_column_int64(row, 0);
 	return released(c, ended(c, row, 1));
+}
+
+/* Whether studies can be stored: STORE_FULL when the disk has no room for new ones.
+ *
+ * Test     service_disk: a_full_disk_refuses_studies_answers_questions_and_is_survived
+ */
+enum store_status store_ready(struct store *store)
+{
+	int64_t n;
+	enum store_status status = store_count(store, "queued", &n);
+	return status == STORE_OK && !disk_roomy(&store->disk) ? STORE_FULL : status;
+}
+
+/* A change that frees room: on a full disk it has that of the ballast. */
+static enum store_status relieved(struct store *store, enum statement s, const char *types, int64_t id)
+{
+	struct connection *c = writer(store);
+	enum store_status status = change(c, s, types, id, now_ms());
+	if (status == STORE_FAILED) {
+		disk_relieve(&store->disk);
+		status = change(c, s, types, id, now_ms());
+	}
+	return changed(store, id, status);
 }
 
 /* Cancels a study; STORE_NONE when it is neither queued nor running. */
 enum store_status store_cancel(struct store *store, int64_t id)
 {
-	struct connection *c = writer(store);
-	return changed(store, id, change(c, CANCEL, "ii", id, now_ms()));
+	return relieved(store, CANCEL, "ii", id);
 }
 
 /* Deletes a study with its documents and blocks. */
 enum store_status store_delete(struct store *store, int64_t id)
 {
-	struct connection *c = writer(store);
-	return changed(store, id, change(c, DELETE, "i", id));
+	return relieved(store, DELETE, "i", id);
 }
 
-/* Takes the oldest queued study: when this returns it is running, and the attempt counted.
+/* Takes the oldest queued study, last those that were taken three times in vain: when this returns it is running, and
+ * the attempt counted.
  *
  * Returns  id      of the study
  * Status   STORE_NONE   nothing is queued
@@ -535,6 +626,12 @@ enum store_status store_claim(struct store *store, int64_t *id)
 		*id = sqlite3_column_int64(row, 0);
 	enum store_status status = ended(c, row, n);
 	return changed(store, status == STORE_OK ? *id : 0, status);
+}
+
+/* Remembers, in a signal handler of a server that is about to crash, with which study it did. */
+void store_blame(const struct store *store, int64_t id)
+{
+	disk_blame(&store->disk, id);
 }
 
 /* A block belongs to a study, a number and the engine version that made it. */
@@ -556,9 +653,10 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 	block_place(id, block->number, place);
 	digest(place, block->values, length, sha256);
 	struct connection *c = writer(store);
-	return changed(store, id,
-	               change(c, KEEP, "iiidbb", id, (int64_t)block->number, block->runs, block->cpu_s,
-	                      block->values, length, sha256, sizeof sha256));
+	enum store_status status =
+	    change(c, KEEP, "iiiddbb", id, (int64_t)block->number, block->runs, block->cpu_s, block->wall_s,
+	           block->values, length, sha256, sizeof sha256);
+	return changed(store, id, status);
 }
 
 /* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out. */
@@ -572,7 +670,8 @@ enum store_status store_blocks(struct store *store, int64_t id, store_block_read
 		size_t length;
 		struct store_block block = {.number = sqlite3_column_int(rows, 2),
 		                            .runs = sqlite3_column_int64(rows, 3),
-		                            .cpu_s = sqlite3_column_double(rows, 4)};
+		                            .cpu_s = sqlite3_column_double(rows, 4),
+		                            .wall_s = sqlite3_column_double(rows, 5)};
 		block_place(id, block.number, place);
 		if (checked(rows, place, &content, &length) != STORE_OK) {
 			log_line("study %016llx: block %d cannot be used", (unsigned long long)id, block.number);

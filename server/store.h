@@ -15,6 +15,7 @@ enum store_status {
 	STORE_FAILED,   /* the disk or the memory; logged */
 	STORE_REPEATED, /* an earlier study has that key, and the same bytes */
 	STORE_CLASH,    /* an earlier study has that key, and other bytes */
+	STORE_FULL,     /* the disk has no room for new studies */
 };
 
 struct store;
@@ -33,6 +34,7 @@ typedef void store_study_reader(void *to, const struct store_study *study);
 
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
 void store_close(struct store *store);
+enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
 
 /* a new study, queued; `study` gives kind, name, runs and key */
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
@@ -51,11 +53,13 @@ enum store_status store_delete(struct store *store, int64_t id);
 
 /* The oldest queued study becomes running; STORE_NONE when there is none. */
 enum store_status store_claim(struct store *store, int64_t *id);
+void store_blame(const struct store *store, int64_t id); /* the server crashes with it; signal-safe */
 
 struct store_block {
 	int number;
-	int64_t runs; /* pounding runs in it */
-	double cpu_s; /* [s] */
+	int64_t runs;  /* pounding runs in it */
+	double cpu_s;  /* [s] */
+	double wall_s; /* since its study started, without the time between sessions [s] */
 	int n;
 	const double *values; /* (n) */
 };

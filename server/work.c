@@ -12,6 +12,7 @@
  * store takes no more blocks and no result. */
 #include "server/work.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -28,7 +29,8 @@
 
 enum {
 	WORKER_NICENESS = 10, /* requests are answered first */
-	PATIENCE = 1,         /* [s] between two tries to store something */
+	PATIENCE = 1,         /* [s] between two tries to get memory or to store something */
+	MEMORY_TRIES = 30,    /* before a study fails for want of memory */
 };
 
 struct job {
@@ -42,7 +44,7 @@ struct job {
 	bool ended;        /* gives no more steps */
 	const char *error; /* why it failed, NULL if it did not */
 	double cpu_s;      /* [s] */
-	double started;    /* [s] monotonic */
+	double started;    /* [s] monotonic, as if all its sessions were this one */
 };
 
 struct worker {
@@ -85,6 +87,7 @@ static void restore(void *to, const struct store_block *block)
 	opened->stored[block->number] = true;
 	opened->n_left--;
 	opened->cpu_s += block->cpu_s;
+	opened->wall_s = block->wall_s > opened->wall_s ? block->wall_s : opened->wall_s;
 }
 
 /* Makes the run of a stored study, with the blocks that are stored.
@@ -101,14 +104,17 @@ const char *work_open(struct store *store, int64_t id, int n_workers, struct wor
 	char *request = NULL;
 	size_t length = 0;
 	*opened = (struct work_run){0};
-	if (store_document(store, id, "request", &request, &length) != STORE_OK)
+	enum store_status found = store_document(store, id, "request", &request, &length);
+	opened->passing = found == STORE_FAILED;
+	if (found != STORE_OK)
 		return "the stored study could not be read";
 	struct problems problems;
 	opened->study = study_from_json(request, length, &problems);
 	free(request);
-	if (!opened->study)
-		return problems.status == PROBLEMS_NOMEM ? "out of memory" : "this version does not accept the study";
-	opened->run = pound_run_create(opened->study, n_workers);
+	if (!opened->study && problems.status != PROBLEMS_NOMEM)
+		return "this version does not accept the study";
+	opened->passing = true;
+	opened->run = opened->study ? pound_run_create(opened->study, n_workers) : NULL;
 	if (!opened->run)
 		return "out of memory";
 	pound_run_clock(opened->run, thread_cpu);
@@ -141,14 +147,17 @@ static void end(struct job *job, const char *error)
 		pound_run_stop(job->of.run);
 }
 
-/* Waits when the disk does not take what there is to store; false: the server stops, so do not try again. */
+/* Waits when there is no memory, or the disk does not take what there is to store; false: the server stops, so do not
+ * try again. */
 static bool patient(struct work *work)
 {
 	struct timespec until;
 	clock_gettime(CLOCK_MONOTONIC, &until);
 	until.tv_sec += PATIENCE;
 	pthread_mutex_lock(&work->lock);
-	pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until);
+	while (!work->stopping &&
+	       pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until) != ETIMEDOUT)
+		;
 	bool stopping = work->stopping;
 	pthread_mutex_unlock(&work->lock);
 	return !stopping;
@@ -162,7 +171,10 @@ static void finish(struct work *work, struct job *job)
 		struct timing timing = {.wall_s = seconds(CLOCK_MONOTONIC) - job->started,
 		                        .cpu_s = job->cpu_s,
 		                        .threads = work->n_workers};
-		result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length);
+		int tries = MEMORY_TRIES;
+		do
+			result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length);
+		while (!result && --tries && patient(work));
 		job->error = result ? NULL : "out of memory";
 	}
 	enum store_status status;
@@ -201,6 +213,7 @@ static bool keep(struct work *work, struct job *job, int block, double cpu_s)
 	struct store_block done = {.number = block,
 	                           .runs = pound_run_block_runs(job->of.run, block),
 	                           .cpu_s = cpu_s,
+	                           .wall_s = seconds(CLOCK_MONOTONIC) - job->started,
 	                           .n = (int)pound_run_block_size(job->of.run, block),
 	                           .values = pound_run_block_values(job->of.run, block)};
 	enum store_status status;
@@ -208,6 +221,36 @@ static bool keep(struct work *work, struct job *job, int block, double cpu_s)
 		status = store_keep(work->store, job->id, &done);
 	while (status == STORE_FAILED && patient(work));
 	return status == STORE_OK;
+}
+
+/* What a crash is due to: the study this thread is at, and where that is noted. */
+static _Thread_local volatile int64_t study_here;
+static const struct store *crash_store;
+
+static struct crash {
+	int signal;
+	struct sigaction before;
+} crashes[] = {
+    {.signal = SIGSEGV}, {.signal = SIGBUS}, {.signal = SIGFPE}, {.signal = SIGILL}, {.signal = SIGABRT}};
+
+enum { N_CRASHES = sizeof crashes / sizeof crashes[0] };
+
+/* Notes the study; what happens next is what would have happened. */
+static void crash(int signal)
+{
+	store_blame(crash_store, study_here);
+	for (int i = 0; i < N_CRASHES; i++)
+		if (crashes[i].signal == signal)
+			sigaction(signal, &crashes[i].before, NULL);
+	raise(signal);
+}
+
+static void watch_crashes(const struct store *store)
+{
+	struct sigaction action = {.sa_handler = crash};
+	crash_store = store;
+	for (int i = 0; i < N_CRASHES; i++)
+		sigaction(crashes[i].signal, &action, &crashes[i].before);
 }
 
 struct step {
@@ -238,10 +281,15 @@ static bool take(struct work *work, struct step *step)
 static void perform(struct work *work, const struct step *step, int worker)
 {
 	struct job *job = step->job;
+	study_here = job->id;
 	double cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID);
 	pthread_mutex_unlock(&work->lock);
-	enum pound_status status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
-	                                            : pound_run_reduce(job->of.run, step->reduction, worker);
+	enum pound_status status;
+	int tries = MEMORY_TRIES;
+	do
+		status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
+		                          : pound_run_reduce(job->of.run, step->reduction, worker);
+	while (status == POUND_NOMEM && --tries && patient(work));
 	cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_s;
 	bool wanted = status != POUND_OK || step->block < 0 || keep(work, job, step->block, cpu_s);
 	pthread_mutex_lock(&work->lock);
@@ -254,7 +302,30 @@ static void perform(struct work *work, const struct step *step, int worker)
 	else
 		job->reductions_left--;
 	settle(work, job);
+	study_here = 0;
 	pthread_cond_broadcast(&work->changed);
+}
+
+/* Makes the run of a claimed study, waiting for memory or the disk; the lock is free meanwhile. */
+static void open_run(struct work *work, struct job *job)
+{
+	struct work_run opened;
+	const char *error;
+	int tries = MEMORY_TRIES;
+	pthread_mutex_unlock(&work->lock);
+	study_here = job->id;
+	while ((error = work_open(work->store, job->id, work->n_workers, &opened)) && opened.passing && --tries &&
+	       patient(work))
+		work_close(&opened);
+	pthread_mutex_lock(&work->lock);
+	job->of = opened;
+	job->opened = !error;
+	job->cpu_s = opened.cpu_s;
+	job->started = seconds(CLOCK_MONOTONIC) - opened.wall_s;
+	if (error)
+		end(job, error);
+	else
+		job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
 }
 
 /* Brings the oldest queued study; the lock is free meanwhile. */
@@ -271,24 +342,14 @@ static void claim(struct work *work)
 	work->queued = work->queued || again || status == STORE_OK;
 	if (status == STORE_OK) {
 		job->n_inside = 1;
-		job->started = seconds(CLOCK_MONOTONIC);
 		struct job **last = &work->jobs;
 		while (*last)
 			last = &(*last)->next;
 		*last = job;
-		pthread_mutex_unlock(&work->lock);
-		struct work_run opened;
-		const char *error = work_open(work->store, job->id, work->n_workers, &opened);
-		pthread_mutex_lock(&work->lock);
-		job->of = opened;
-		job->opened = !error;
-		job->cpu_s = opened.cpu_s;
+		open_run(work, job);
 		job->n_inside = 0;
-		if (error)
-			end(job, error);
-		else
-			job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
 		settle(work, job);
+		study_here = 0;
 	} else
 		free(job);
 	work->claiming = false;
@@ -324,6 +385,7 @@ struct work *work_start(struct store *store, int n_workers)
 	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
 	if (!work)
 		return NULL;
+	watch_crashes(store);
 	work->store = store;
 	work->n_workers = n_workers;
 	work->queued = true;

@@ -14,10 +14,11 @@ struct work_run {
 	struct pound_run *run;
 	int n_blocks, n_left; /* all, and those not stored */
 	bool *stored;         /* (n_blocks) */
-	double cpu_s;         /* spent on the stored ones [s] */
+	bool passing;         /* it could not be opened for want of memory or by a fault of the disk */
+	double cpu_s, wall_s; /* spent on the stored ones [s] */
 };
 
-/* NULL, or a sentence why it cannot be opened; to be closed in either case */
+/* NULL, or a sentence why it cannot be opened, and whether that may pass; to be closed in either case */
 const char *work_open(struct store *store, int64_t id, int n_workers, struct work_run *opened);
 void work_close(struct work_run *opened);
 

@@ -30,8 +30,8 @@ struct service *service_new(void)
 
 void service_free(struct service *service)
 {
-	static const char *const files[] = {"studies.db", "studies.db-wal", "studies.db-shm", "studies.db-lock",
-	                                    "log"};
+	static const char *const files[] = {"studies.db",      "studies.db-wal",     "studies.db-shm",
+	                                    "studies.db-lock", "studies.db-ballast", "log"};
 	char path[128];
 	if (service->pid)
 		service_kill(service);

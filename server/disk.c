@@ -1,0 +1,126 @@
+/* The file system under a database.
+ *
+ * Three levels of what is free: above `reserve` new studies are taken, below it those that are stored still run, and
+ * when nothing is left the ballast makes room for what frees more. */
+#include "server/disk.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/statvfs.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "server/log.h"
+
+enum {
+	RESERVE_MAX = 256 << 20, /* [bytes] */
+	BALLAST_MAX = 16 << 20,  /* [bytes] */
+	RESERVE_PART = 16,       /* of the whole disk, where that is less */
+	BALLAST_PART = 32,
+	LOCK_TRIES = 50,          /* half a second together */
+	LOCK_PAUSE_NS = 10000000, /* [ns] */
+};
+
+/* Locks a database for this process.
+ *
+ * Given    path   of the database, which need not exist
+ * Returns  disk   for disk_leave, whatever the value
+ *          value  false: another server has it, or the lock cannot be made; logged
+ * Test     unit_store: a_store_in_use_is_not_opened_again
+ */
+bool disk_take(struct disk *disk, const char *path)
+{
+	char name[PATH_MAX];
+	snprintf(name, sizeof name, "%s-lock", path);
+	snprintf(disk->ballast, sizeof disk->ballast, "%s-ballast", path);
+	disk->lock = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+	bool ours = disk->lock >= 0 && flock(disk->lock, LOCK_EX | LOCK_NB) == 0;
+	// a server that was just killed keeps its lock until its memory is given back
+	for (int i = 0; !ours && errno == EWOULDBLOCK && i < LOCK_TRIES; i++) {
+		nanosleep(&(struct timespec){.tv_nsec = LOCK_PAUSE_NS}, NULL);
+		ours = flock(disk->lock, LOCK_EX | LOCK_NB) == 0;
+	}
+	if (!ours && errno == EWOULDBLOCK)
+		log_line("another server uses the database %s", path);
+	else if (!ours)
+		log_line("cannot lock %s: %s", name, strerror(errno));
+	return ours;
+}
+
+/* Unlocks it. */
+void disk_leave(struct disk *disk)
+{
+	if (disk->lock >= 0)
+		close(disk->lock);
+}
+
+/* Puts the entries of a file's folder on the disk, so that a new file is there after a power cut. */
+bool disk_sync(const char *path)
+{
+	char folder[PATH_MAX];
+	snprintf(folder, sizeof folder, "%s", path);
+	int file = open(dirname(folder), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	bool synced = file >= 0 && fsync(file) == 0;
+	if (!synced)
+		log_line("cannot sync the folder of %s: %s", path, strerror(errno));
+	if (file >= 0)
+		close(file);
+	return synced;
+}
+
+/* Notes the study with which the server crashes; it is not for a power cut, so it need not be synced. */
+void disk_blame(const struct disk *disk, int64_t id)
+{
+	ssize_t n = pwrite(disk->lock, &id, sizeof id, 0);
+	(void)n;
+}
+
+/* The study that was noted last, 0: none. */
+int64_t disk_blamed(const struct disk *disk)
+{
+	int64_t id;
+	return pread(disk->lock, &id, sizeof id, 0) == sizeof id ? id : 0;
+}
+
+static int64_t at_most(int64_t bytes, int64_t most)
+{
+	return bytes < most ? bytes : most;
+}
+
+/* Puts the ballast there, if it is not. */
+static bool ballasted(const struct disk *disk, int64_t size)
+{
+	int file = open(disk->ballast, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+	if (file < 0)
+		return errno == EEXIST;
+	bool whole = posix_fallocate(file, 0, size) == 0;
+	close(file);
+	if (!whole)
+		disk_relieve(disk);
+	return whole;
+}
+
+/* Whether new studies may be taken: more than 256 MiB are free, or a 16th of a small disk, and the ballast is there.
+ *
+ * Test     service_disk: a_full_disk_refuses_studies_answers_questions_and_is_survived
+ */
+bool disk_roomy(const struct disk *disk)
+{
+	struct statvfs of;
+	if (fstatvfs(disk->lock, &of) != 0)
+		return false;
+	int64_t size = (int64_t)of.f_blocks * (int64_t)of.f_frsize;
+	return (int64_t)of.f_bavail * (int64_t)of.f_frsize >= at_most(size / RESERVE_PART, RESERVE_MAX) &&
+	       ballasted(disk, at_most(size / BALLAST_PART, BALLAST_MAX));
+}
+
+/* Gives the ballast up. */
+void disk_relieve(const struct disk *disk)
+{
+	unlink(disk->ballast);
+}

@@ -1,0 +1,45 @@
+-- The database of poundd.  All of it is made in one transaction; a later version changes it step by step
+-- (PRAGMA user_version counts the steps).  Times are milliseconds since 1970, UTC.
+
+PRAGMA application_id = 0x706f756e; -- "poun"
+PRAGMA user_version = 1;
+
+CREATE TABLE study (
+	id              INTEGER PRIMARY KEY, -- milliseconds << 20 | random bits: a newer study has a larger id
+	status          TEXT    NOT NULL CHECK (status IN ('queued', 'running', 'succeeded', 'failed', 'cancelled')),
+	kind            TEXT    NOT NULL,
+	name            TEXT,
+	hash            TEXT    NOT NULL,           -- of the study's meaning, hex
+	runs            INTEGER NOT NULL,           -- pounding runs asked for
+	created         INTEGER NOT NULL,
+	started         INTEGER,                    -- when it was first taken up
+	finished        INTEGER,
+	attempt         INTEGER NOT NULL DEFAULT 0, -- times it was taken up
+	error           TEXT,                       -- why it failed
+	idempotency_key TEXT    UNIQUE,
+	CHECK ((finished IS NULL) = (status IN ('queued', 'running'))),
+	CHECK ((error IS NULL) = (status <> 'failed'))
+) STRICT;
+
+CREATE INDEX study_status ON study (status, id);
+
+-- what the client sent, and what the client gets
+CREATE TABLE document (
+	study   INTEGER NOT NULL REFERENCES study ON DELETE CASCADE,
+	name    TEXT    NOT NULL CHECK (name IN ('request', 'result')),
+	sha256  BLOB    NOT NULL,
+	content BLOB    NOT NULL,
+	PRIMARY KEY (study, name)
+) STRICT;
+
+-- finished blocks of a study: what a restart need not run again, and what its samples are made of
+CREATE TABLE block (
+	study   INTEGER NOT NULL REFERENCES study ON DELETE CASCADE,
+	number  INTEGER NOT NULL,
+	attempt INTEGER NOT NULL, -- that ran it
+	runs    INTEGER NOT NULL, -- pounding runs in it
+	cpu_s   REAL    NOT NULL,
+	sha256  BLOB    NOT NULL, -- over engine version, study, number and content
+	content BLOB    NOT NULL, -- doubles of this machine's byte order
+	PRIMARY KEY (study, number)
+) STRICT;
