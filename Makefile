@@ -59,8 +59,8 @@ $(B)/engine/march_%.o: engine/march.c
 $(B)/schema/store.sql.inc: schema/store.sql
 	@mkdir -p $(@D)
 	sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $< > $@
-$(B)/server/store.o: $(B)/schema/store.sql.inc
-$(B)/server/store.o: CPPFLAGS += -I$(B)
+$(B)/server/database.o: $(B)/schema/store.sql.inc
+$(B)/server/database.o: CPPFLAGS += -I$(B)
 
 # the study documents of schema/examples are built into the programs: name, title, text
 $(B)/schema/examples.c: $(wildcard schema/examples/*.json)

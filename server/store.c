@@ -4,7 +4,9 @@
  *    checkpoint.  (SQLite before 3.51.3 can damage a WAL database when one connection checkpoints while another commits.)
  * 2. A lock file keeps a second server away from the database (server/disk.c).
  * 3. synchronous=FULL: a COMMIT that returned survives a power cut.
- * 4. A prepared statement per question; a client's bytes are only ever bound. */
+ * 4. A prepared statement per question; a client's bytes are only ever bound.
+ *
+ * server/database.c opens the connections. */
 #include "server/store.h"
 
 #include <assert.h>
@@ -17,31 +19,14 @@
 #include <sys/random.h>
 #include <time.h>
 
-#include <nettle/sha2.h>
-#include <sqlite3.h>
-
 #include "engine/pound.h"
+#include "server/database.h"
 #include "server/disk.h"
 #include "server/log.h"
 
-static const char schema_text[] =
-#include "schema/store.sql.inc"
-    ;
-
 enum {
 	READERS = 4,
-	CHANGES = 1021,              /* a prime, so that ids fall everywhere */
-	APPLICATION_ID = 0x706f756e, /* as in store.sql */
-	USER_VERSION = 2,            /* as in store.sql */
-	SQLITE_RESET_SAFE = 3051003, /* its first version without the damage of point 1 */
-};
-
-/* What makes a database of version n one of version n + 1. */
-static const char *const steps[USER_VERSION] = {
-    [1] = "ALTER TABLE study ADD COLUMN crashes INTEGER NOT NULL DEFAULT 0;"
-          "ALTER TABLE block ADD COLUMN wall_s REAL NOT NULL DEFAULT 0;"
-          "CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);"
-          "UPDATE document SET sha256 = document_sha256(study, name, content, sha256)",
+	CHANGES = 1021, /* a prime, so that ids fall everywhere */
 };
 
 // clang-format off
@@ -52,6 +37,8 @@ static const char *const steps[USER_VERSION] = {
 	"(SELECT total(cpu_s) FROM block WHERE study = id) FROM study "
 // times a study was taken up since one of its blocks was kept
 #define IN_VAIN "attempt - (SELECT coalesce(max(attempt), 0) FROM block WHERE study = study.id)"
+
+#define QUEUED "SELECT id FROM study WHERE status = 'queued' "
 
 // those that read, then those that write
 #define STATEMENTS(X)                                                                                     \
@@ -74,8 +61,9 @@ static const char *const steps[USER_VERSION] = {
 	            "WHERE id = ?1 AND status IN ('queued', 'running')")                                      \
 	X(DELETE,   "DELETE FROM study WHERE id = ?1")                                                        \
 	X(CLAIM,    "UPDATE study SET status = 'running', attempt = attempt + 1, "                            \
-	            "started = coalesce(started, max(?1, created)) WHERE id = (SELECT id FROM study "         \
-	            "WHERE status = 'queued' ORDER BY " IN_VAIN " >= 3, id LIMIT 1) RETURNING id")            \
+	            "started = coalesce(started, max(?1, created)) WHERE id = "                               \
+	            "coalesce((" QUEUED "AND (attempt < 3 OR " IN_VAIN " < 3) ORDER BY id LIMIT 1), "         \
+	            "(" QUEUED "ORDER BY id LIMIT 1)) RETURNING id")                                          \
 	X(KEEP,     "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) " \
 	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, ?7 FROM study WHERE id = ?1 AND status = 'running'") \
 	X(FINISH,   "UPDATE study SET status = ?2, finished = max(?3, started), error = ?4 "                  \
@@ -94,23 +82,19 @@ enum statement {
 	    N_STATEMENTS
 };
 
-static const char *const statement_text[N_STATEMENTS] = {
+static const char *const statement_text[] = {
 #define X(name, sql) sql,
     STATEMENTS(X)
 #undef X
 };
 
-struct connection {
-	pthread_mutex_t lock;
-	sqlite3 *db;
-	sqlite3_stmt *statements[N_STATEMENTS]; /* a reader has those before BEGIN */
-};
+_Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement has its place");
 
 struct store {
 	struct disk disk;
-	int64_t id_last; /* largest id given out, under the writer's lock */
-	struct connection writer, readers[READERS];
-	atomic_uint changes[CHANGES]; /* of the studies whose ids have that remainder */
+	int64_t id_last;                          /* largest id given out, under the writer's lock */
+	struct database writer, readers[READERS]; /* readers have the statements before BEGIN */
+	atomic_uint changes[CHANGES];             /* of the studies whose ids have that remainder */
 };
 
 static int64_t now_ms(void)
@@ -136,7 +120,7 @@ static void bind(sqlite3_stmt *statement, const char *types, va_list values)
 		}
 }
 
-static sqlite3_stmt *query(struct connection *c, enum statement s, const char *types, ...)
+static sqlite3_stmt *query(struct database *c, enum statement s, const char *types, ...)
 {
 	va_list values;
 	va_start(values, types);
@@ -146,7 +130,7 @@ static sqlite3_stmt *query(struct connection *c, enum statement s, const char *t
 }
 
 /* After the last step of a statement that came to n rows. */
-static enum store_status ended(struct connection *c, sqlite3_stmt *statement, int n)
+static enum store_status ended(struct database *c, sqlite3_stmt *statement, int n)
 {
 	bool failed = sqlite3_reset(statement) != SQLITE_OK;
 	if (failed)
@@ -156,7 +140,7 @@ static enum store_status ended(struct connection *c, sqlite3_stmt *statement, in
 	return failed ? STORE_FAILED : n == 0 ? STORE_NONE : STORE_OK;
 }
 
-static enum store_status change(struct connection *c, enum statement s, const char *types, ...)
+static enum store_status change(struct database *c, enum statement s, const char *types, ...)
 {
 	va_list values;
 	va_start(values, types);
@@ -167,7 +151,7 @@ static enum store_status change(struct connection *c, enum statement s, const ch
 }
 
 /* Ends a transaction that has come to `status`; a full disk may have rolled it back already. */
-static enum store_status conclude(struct connection *c, enum store_status status)
+static enum store_status conclude(struct database *c, enum store_status status)
 {
 	if (status == STORE_OK && change(c, COMMIT, "") == STORE_FAILED)
 		status = STORE_FAILED;
@@ -177,7 +161,7 @@ static enum store_status conclude(struct connection *c, enum store_status status
 }
 
 /* Any connection that is free, its lock taken. */
-static struct connection *reader(struct store *store)
+static struct database *reader(struct store *store)
 {
 	for (int i = 0; i < READERS; i++)
 		if (pthread_mutex_trylock(&store->readers[i].lock) == 0)
@@ -186,13 +170,13 @@ static struct connection *reader(struct store *store)
 	return &store->readers[0];
 }
 
-static struct connection *writer(struct store *store)
+static struct database *writer(struct store *store)
 {
 	pthread_mutex_lock(&store->writer.lock);
 	return &store->writer;
 }
 
-static enum store_status released(struct connection *c, enum store_status status)
+static enum store_status released(struct database *c, enum store_status status)
 {
 	pthread_mutex_unlock(&c->lock);
 	return status;
@@ -218,144 +202,6 @@ unsigned store_changes(struct store *store, int64_t id)
 	return atomic_load(&store->changes[id % CHANGES]);
 }
 
-static int64_t number(sqlite3 *db, const char *sql)
-{
-	sqlite3_stmt *read = NULL;
-	int64_t value = -1;
-	if (sqlite3_prepare_v2(db, sql, -1, &read, NULL) == SQLITE_OK && sqlite3_step(read) == SQLITE_ROW)
-		value = sqlite3_column_int64(read, 0);
-	sqlite3_finalize(read);
-	return value;
-}
-
-/* Makes a setting of a connection, and reads it back. */
-static bool holds(sqlite3 *db, const char *name, const char *value)
-{
-	char make[64], ask[64];
-	sqlite3_stmt *read = NULL;
-	snprintf(make, sizeof make, "PRAGMA %s = %s", name, value);
-	snprintf(ask, sizeof ask, "PRAGMA %s", name);
-	bool set = sqlite3_exec(db, make, NULL, NULL, NULL) == SQLITE_OK &&
-	           sqlite3_prepare_v2(db, ask, -1, &read, NULL) == SQLITE_OK &&
-	           sqlite3_step(read) == SQLITE_ROW && sqlite3_column_text(read, 0) &&
-	           !strcmp((const char *)sqlite3_column_text(read, 0), value);
-	sqlite3_finalize(read);
-	if (!set)
-		log_line("database: %s does not become %s: %s", name, value, sqlite3_errmsg(db));
-	return set;
-}
-
-static bool connect(struct connection *c, const char *path, int flags)
-{
-	static const struct {
-		const char *name, *value;
-	} settings[] = {
-	    {"busy_timeout", "5000"},
-	    {"journal_mode", "wal"},
-	    {"synchronous", "2"}, // FULL
-	    {"foreign_keys", "1"},
-	    {"trusted_schema", "0"},
-	    {"cell_size_check", "1"},
-	    {"wal_autocheckpoint", "1000"},
-	    {"mmap_size", "0"},
-	    {"secure_delete", "0"},
-	    {"journal_size_limit", "67108864"},
-	};
-	pthread_mutex_init(&c->lock, NULL);
-	bool ok =
-	    sqlite3_open_v2(path, &c->db, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, NULL) == SQLITE_OK;
-	sqlite3_db_config(c->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
-	sqlite3_db_config(c->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !(flags & SQLITE_OPEN_READWRITE), NULL);
-	for (size_t i = 0; ok && i < sizeof settings / sizeof settings[0]; i++)
-		ok = holds(c->db, settings[i].name, settings[i].value);
-	if (!ok)
-		log_line("cannot open the database %s as it must be: %s", path, sqlite3_errmsg(c->db));
-	return ok;
-}
-
-static bool prepared(struct connection *c, int n)
-{
-	for (int s = 0; s < n; s++)
-		if (sqlite3_prepare_v3(c->db, statement_text[s], -1, SQLITE_PREPARE_PERSISTENT, &c->statements[s],
-		                       NULL) != SQLITE_OK) {
-			log_line("database: %s: %s", statement_text[s], sqlite3_errmsg(c->db));
-			return false;
-		}
-	return true;
-}
-
-/* What stored bytes are checked with: SHA-256 over where they belong and themselves. */
-static void digest(const char *place, const void *bytes, size_t n, uint8_t sha256[SHA256_DIGEST_SIZE])
-{
-	struct sha256_ctx hash;
-	sha256_init(&hash);
-	sha256_update(&hash, strlen(place), (const uint8_t *)place);
-	sha256_update(&hash, n, bytes);
-	sha256_digest(&hash, SHA256_DIGEST_SIZE, sha256);
-}
-
-/* A document belongs to a study, under a name. */
-static void document_place(int64_t id, const char *name, char place[64])
-{
-	snprintf(place, 64, "%s %lld ", name, (long long)id);
-}
-
-/* The SQL function document_sha256(study, name, content, sha256): what checks a document of version 1, which was made
- * without the study; a damaged one keeps what shows it. */
-static void document_sha256(sqlite3_context *call, int n, sqlite3_value **values)
-{
-	char place[64];
-	uint8_t sha256[SHA256_DIGEST_SIZE];
-	const char *name = (const char *)sqlite3_value_text(values[1]);
-	const void *content = sqlite3_value_blob(values[2]);
-	size_t length = (size_t)sqlite3_value_bytes(values[n - 2]);
-	digest(name, content, length, sha256);
-	if (sqlite3_value_bytes(values[3]) == sizeof sha256 &&
-	    !memcmp(sqlite3_value_blob(values[3]), sha256, sizeof sha256)) {
-		document_place(sqlite3_value_int64(values[0]), name, place);
-		digest(place, content, length, sha256);
-		sqlite3_result_blob(call, sha256, sizeof sha256, SQLITE_TRANSIENT);
-	} else
-		sqlite3_result_value(call, values[3]);
-}
-
-/* Runs SQL as one transaction that ends with the database being of a version. */
-static bool versioned(sqlite3 *db, const char *sql, int version)
-{
-	char end[64];
-	snprintf(end, sizeof end, "; PRAGMA user_version = %d; COMMIT", version);
-	bool made = sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL) == SQLITE_OK &&
-	            sqlite3_exec(db, sql, NULL, NULL, NULL) == SQLITE_OK &&
-	            sqlite3_exec(db, end, NULL, NULL, NULL) == SQLITE_OK;
-	if (!made)
-		log_line("cannot make the database one of version %d: %s", version, sqlite3_errmsg(db));
-	return made;
-}
-
-/* Makes a new database, or finds that this one is ours, and brings it to our version. */
-static bool founded(sqlite3 *db, const char *path)
-{
-	if (number(db, "SELECT count(*) FROM sqlite_schema") == 0 && number(db, "PRAGMA application_id") == 0)
-		return versioned(db, schema_text, USER_VERSION) && disk_sync(path);
-	int64_t version = number(db, "PRAGMA user_version");
-	if (number(db, "PRAGMA application_id") != APPLICATION_ID || version < 1 || version > USER_VERSION) {
-		log_line("%s is not a database of poundd, or of a newer one: version %lld, not %d", path,
-		         (long long)version, USER_VERSION);
-		return false;
-	}
-	sqlite3_create_function(db, "document_sha256", 4, SQLITE_UTF8, NULL, document_sha256, NULL, NULL);
-	while (version < USER_VERSION && versioned(db, steps[version], (int)version + 1))
-		log_line("%s is of version %lld now", path, (long long)++version);
-	return version == USER_VERSION;
-}
-
-static void disconnect(struct connection *c)
-{
-	for (int s = 0; s < N_STATEMENTS; s++)
-		sqlite3_finalize(c->statements[s]);
-	sqlite3_close(c->db);
-}
-
 /* Closes a store, when nothing runs any more; the writing connection goes last and leaves no WAL behind. */
 void store_close(struct store *store)
 {
@@ -363,8 +209,8 @@ void store_close(struct store *store)
 	if (store->writer.statements[REQUEUE])
 		change(&store->writer, REQUEUE, "i", INT64_C(0));
 	for (int i = 0; i < READERS; i++)
-		disconnect(&store->readers[i]);
-	disconnect(&store->writer);
+		database_close(&store->readers[i]);
+	database_close(&store->writer);
 	disk_leave(&store->disk);
 	free(store);
 }
@@ -381,24 +227,21 @@ struct store *store_open(const char *path)
 	struct store *store = calloc(1, sizeof *store);
 	if (!store)
 		return NULL;
-	struct connection *w = &store->writer;
+	struct database *w = &store->writer;
 	bool ok = disk_take(&store->disk, path);
 	if (ok)
 		disk_relieve(&store->disk);
-	ok = ok && connect(w, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) && founded(w->db, path);
+	ok = ok && database_open(w, path, true) && database_prepare(w, statement_text, N_STATEMENTS);
 	for (int i = 0; ok && i < READERS; i++)
-		ok = connect(&store->readers[i], path, SQLITE_OPEN_READONLY) && prepared(&store->readers[i], BEGIN);
-	ok = ok && prepared(w, N_STATEMENTS) &&
-	     change(w, REQUEUE, "i", disk_blamed(&store->disk)) != STORE_FAILED &&
+		ok = database_open(&store->readers[i], path, false) &&
+		     database_prepare(&store->readers[i], statement_text, BEGIN);
+	ok = ok && change(w, REQUEUE, "i", disk_blamed(&store->disk)) != STORE_FAILED &&
 	     change(w, POISON, "i", now_ms()) != STORE_FAILED &&
-	     (store->id_last = number(w->db, "SELECT coalesce(max(id), 0) FROM study")) >= 0;
+	     (store->id_last = database_number(w, "SELECT coalesce(max(id), 0) FROM study")) >= 0;
 	if (!ok) {
 		store_close(store);
 		return NULL;
 	}
-	if (sqlite3_libversion_number() < SQLITE_RESET_SAFE)
-		log_line("SQLite %s can damage databases that two connections change; poundd uses one",
-		         sqlite3_libversion());
 	disk_blame(&store->disk, 0);
 	disk_roomy(&store->disk);
 	return store;
@@ -424,7 +267,7 @@ static enum store_status checked(sqlite3_stmt *row, const char *place, char **co
 	if (*length)
 		memcpy(*content, sqlite3_column_blob(row, 1), *length);
 	(*content)[*length] = '\0';
-	digest(place, *content, *length, sha256);
+	database_digest(place, *content, *length, sha256);
 	if (sqlite3_column_bytes(row, 0) == sizeof sha256 &&
 	    !memcmp(sqlite3_column_blob(row, 0), sha256, sizeof sha256))
 		return STORE_OK;
@@ -433,18 +276,18 @@ static enum store_status checked(sqlite3_stmt *row, const char *place, char **co
 	return STORE_CORRUPT;
 }
 
-static enum store_status add(struct connection *c, int64_t id, const char *name, const char *content,
+static enum store_status add(struct database *c, int64_t id, const char *name, const char *content,
                              size_t length)
 {
 	char place[64];
 	uint8_t sha256[SHA256_DIGEST_SIZE];
-	document_place(id, name, place);
-	digest(place, content, length, sha256);
+	database_document_place(id, name, place);
+	database_digest(place, content, length, sha256);
 	return change(c, ADD, "itbb", id, name, content, length, sha256, sizeof sha256);
 }
 
 /* What was submitted with a key before; STORE_NONE: nothing, or there is no key. */
-static enum store_status keyed(struct connection *c, const char *key, const char *request, size_t length,
+static enum store_status keyed(struct database *c, const char *key, const char *request, size_t length,
                                int64_t *id)
 {
 	enum store_status status = STORE_NONE;
@@ -474,7 +317,7 @@ enum store_status store_submit(struct store *store, const struct store_study *st
                                const char *request, size_t length, int64_t *id)
 {
 	bool roomy = disk_roomy(&store->disk);
-	struct connection *c = writer(store);
+	struct database *c = writer(store);
 	enum store_status status = keyed(c, study->key, request, length, id);
 	if (status == STORE_NONE && !roomy)
 		status = STORE_FULL;
@@ -497,7 +340,7 @@ static const char *text(sqlite3_stmt *row, int column)
 	return (const char *)sqlite3_column_text(row, column);
 }
 
-static enum store_status studies(struct connection *c, sqlite3_stmt *rows, store_study_reader *each, void *to)
+static enum store_status studies(struct database *c, sqlite3_stmt *rows, store_study_reader *each, void *to)
 {
 	int n = 0;
 	for (; sqlite3_step(rows) == SQLITE_ROW; n++) {
@@ -522,7 +365,7 @@ static enum store_status studies(struct connection *c, sqlite3_stmt *rows, store
 /* Hands over one study.  The reader is called once, or not if there is none. */
 enum store_status store_study(struct store *store, int64_t id, store_study_reader *each, void *to)
 {
-	struct connection *c = reader(store);
+	struct database *c = reader(store);
 	return studies(c, query(c, STUDY, "i", id), each, to);
 }
 
@@ -537,7 +380,7 @@ enum store_status store_study(struct store *store, int64_t id, store_study_reade
 enum store_status store_list(struct store *store, const char *status, int64_t before, int limit,
                              store_study_reader *each, void *to)
 {
-	struct connection *c = reader(store);
+	struct database *c = reader(store);
 	int64_t n = limit;
 	return studies(c, status ? query(c, LIST_OF, "iit", before, n, status) : query(c, LIST, "ii", before, n),
 	               each, to);
@@ -553,8 +396,8 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
                                  size_t *length)
 {
 	char place[64];
-	document_place(id, name, place);
-	struct connection *c = reader(store);
+	database_document_place(id, name, place);
+	struct database *c = reader(store);
 	sqlite3_stmt *row = query(c, DOCUMENT, "it", id, name);
 	enum store_status status = STORE_NONE;
 	if (sqlite3_step(row) == SQLITE_ROW)
@@ -569,7 +412,7 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 /* Counts the studies of a status. */
 enum store_status store_count(struct store *store, const char *status, int64_t *n)
 {
-	struct connection *c = reader(store);
+	struct database *c = reader(store);
 	sqlite3_stmt *row = query(c, COUNT, "t", status);
 	if (sqlite3_step(row) == SQLITE_ROW)
 		*n = sqlite3_column_int64(row, 0);
@@ -590,7 +433,7 @@ enum store_status store_ready(struct store *store)
 /* A change that frees room: on a full disk it has that of the ballast. */
 static enum store_status relieved(struct store *store, enum statement s, const char *types, int64_t id)
 {
-	struct connection *c = writer(store);
+	struct database *c = writer(store);
 	enum store_status status = change(c, s, types, id, now_ms());
 	if (status == STORE_FAILED) {
 		disk_relieve(&store->disk);
@@ -619,7 +462,7 @@ enum store_status store_delete(struct store *store, int64_t id)
  */
 enum store_status store_claim(struct store *store, int64_t *id)
 {
-	struct connection *c = writer(store);
+	struct database *c = writer(store);
 	sqlite3_stmt *row = query(c, CLAIM, "i", now_ms());
 	int n = 0;
 	for (; sqlite3_step(row) == SQLITE_ROW; n++)
@@ -651,8 +494,8 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 	uint8_t sha256[SHA256_DIGEST_SIZE];
 	size_t length = (size_t)block->n * sizeof(double);
 	block_place(id, block->number, place);
-	digest(place, block->values, length, sha256);
-	struct connection *c = writer(store);
+	database_digest(place, block->values, length, sha256);
+	struct database *c = writer(store);
 	enum store_status status =
 	    change(c, KEEP, "iiiddbb", id, (int64_t)block->number, block->runs, block->cpu_s, block->wall_s,
 	           block->values, length, sha256, sizeof sha256);
@@ -662,7 +505,7 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 /* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out. */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *each, void *to)
 {
-	struct connection *c = reader(store);
+	struct database *c = reader(store);
 	sqlite3_stmt *rows = query(c, BLOCKS, "i", id);
 	int n = 0;
 	for (; sqlite3_step(rows) == SQLITE_ROW; n++) {
@@ -696,7 +539,7 @@ enum store_status store_finish(struct store *store, int64_t id, const char *resu
                                const char *error)
 {
 	assert(!result != !error);
-	struct connection *c = writer(store);
+	struct database *c = writer(store);
 	enum store_status status = change(c, BEGIN, "");
 	if (status != STORE_FAILED)
 		status = change(c, FINISH, "itit", id, result ? "succeeded" : "failed", now_ms(), error);

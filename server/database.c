@@ -1,0 +1,225 @@
+/* One SQLite connection: its settings, its statements, and the version of what it finds. */
+#include "server/database.h"
+
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "server/disk.h"
+#include "server/log.h"
+
+static const char schema_text[] =
+#include "schema/store.sql.inc"
+    ;
+
+enum {
+	APPLICATION_ID = 0x706f756e, /* as in store.sql */
+	USER_VERSION = 2,            /* as in store.sql */
+	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
+};
+
+/* What makes a database of version n one of version n + 1. */
+static const char *const steps[USER_VERSION] = {
+    [1] = "ALTER TABLE study ADD COLUMN crashes INTEGER NOT NULL DEFAULT 0;"
+          "ALTER TABLE block ADD COLUMN wall_s REAL NOT NULL DEFAULT 0;"
+          "CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);"
+          "UPDATE document SET sha256 = document_sha256(study, name, content, sha256)",
+};
+
+static bool done(const struct database *d, const char *sql)
+{
+	return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK;
+}
+
+/* The number that a question comes to, -1: none. */
+int64_t database_number(const struct database *d, const char *sql)
+{
+	sqlite3_stmt *read = NULL;
+	int64_t value = -1;
+	if (sqlite3_prepare_v2(d->db, sql, -1, &read, NULL) == SQLITE_OK && sqlite3_step(read) == SQLITE_ROW)
+		value = sqlite3_column_int64(read, 0);
+	sqlite3_finalize(read);
+	return value;
+}
+
+/* Makes a setting, and reads it back. */
+static bool set(const struct database *d, const char *name, const char *value)
+{
+	char make[64], ask[64];
+	sqlite3_stmt *read = NULL;
+	snprintf(make, sizeof make, "PRAGMA %s = %s", name, value);
+	snprintf(ask, sizeof ask, "PRAGMA %s", name);
+	bool holds = done(d, make) && sqlite3_prepare_v2(d->db, ask, -1, &read, NULL) == SQLITE_OK &&
+	             sqlite3_step(read) == SQLITE_ROW && sqlite3_column_text(read, 0) &&
+	             !strcmp((const char *)sqlite3_column_text(read, 0), value);
+	sqlite3_finalize(read);
+	if (!holds)
+		log_line("database: %s does not become %s: %s", name, value, sqlite3_errmsg(d->db));
+	return holds;
+}
+
+static bool connected(struct database *d, const char *path, bool writes)
+{
+	static const struct {
+		const char *name, *value;
+	} settings[] = {
+	    {"busy_timeout", "5000"},
+	    {"journal_mode", "wal"},
+	    {"synchronous", "2"}, // FULL
+	    {"foreign_keys", "1"},
+	    {"trusted_schema", "0"},
+	    {"cell_size_check", "1"},
+	    {"wal_autocheckpoint", "1000"},
+	    {"mmap_size", "0"},
+	    {"secure_delete", "0"},
+	    {"journal_size_limit", "67108864"},
+	};
+	int flags = writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+	pthread_mutex_init(&d->lock, NULL);
+	bool ok =
+	    sqlite3_open_v2(path, &d->db, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, NULL) == SQLITE_OK;
+	if (ok) {
+		sqlite3_db_config(d->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+		sqlite3_db_config(d->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !writes, NULL);
+	}
+	for (size_t i = 0; ok && i < sizeof settings / sizeof settings[0]; i++)
+		ok = set(d, settings[i].name, settings[i].value);
+	if (!ok)
+		log_line("cannot open the database %s as it must be: %s", path, sqlite3_errmsg(d->db));
+	return ok;
+}
+
+/* SHA-256 of bytes and of where they belong. */
+void database_digest(const char *place, const void *bytes, size_t n, uint8_t sha256[SHA256_DIGEST_SIZE])
+{
+	struct sha256_ctx hash;
+	sha256_init(&hash);
+	sha256_update(&hash, strlen(place), (const uint8_t *)place);
+	sha256_update(&hash, n, bytes);
+	sha256_digest(&hash, SHA256_DIGEST_SIZE, sha256);
+}
+
+/* A document belongs to a study, under a name. */
+void database_document_place(int64_t study, const char *name, char place[64])
+{
+	snprintf(place, 64, "%s %lld ", name, (long long)study);
+}
+
+/* The SQL function document_sha256(study, name, content, sha256): the digest of a document of version 1, which was made
+ * without the study; a damaged one keeps the digest that shows it. */
+static void document_sha256(sqlite3_context *call, int n, sqlite3_value **values)
+{
+	char place[64];
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	const char *name = (const char *)sqlite3_value_text(values[1]);
+	const void *content = sqlite3_value_blob(values[2]);
+	size_t length = (size_t)sqlite3_value_bytes(values[2]);
+	(void)n;
+	database_digest(name, content, length, sha256);
+	if (sqlite3_value_bytes(values[3]) == sizeof sha256 &&
+	    !memcmp(sqlite3_value_blob(values[3]), sha256, sizeof sha256)) {
+		database_document_place(sqlite3_value_int64(values[0]), name, place);
+		database_digest(place, content, length, sha256);
+		sqlite3_result_blob(call, sha256, sizeof sha256, SQLITE_TRANSIENT);
+	} else
+		sqlite3_result_value(call, values[3]);
+}
+
+/* Writes a copy of the database as it stands now, while others go on; it is on the disk when this returns.
+ *
+ * Given    path    of the copy, which must not exist
+ * Test     service_backup: a_copy_made_while_studies_run_is_a_whole_database
+ */
+bool database_copy(const struct database *d, const char *path)
+{
+	char *sql = sqlite3_mprintf("VACUUM INTO %Q", path);
+	bool copied = sql && done(d, sql);
+	if (!copied)
+		log_line("cannot write %s: %s", path, sqlite3_errmsg(d->db));
+	sqlite3_free(sql);
+	int file = copied ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+	bool synced = file >= 0 && fsync(file) == 0 && disk_sync(path);
+	if (file >= 0)
+		close(file);
+	return synced;
+}
+
+/* One transaction that ends with the database being of a version. */
+static bool versioned(const struct database *d, const char *sql, int version)
+{
+	char end[64];
+	snprintf(end, sizeof end, "PRAGMA user_version = %d; COMMIT", version);
+	bool made = done(d, "BEGIN IMMEDIATE") && done(d, sql) && done(d, end);
+	if (!made)
+		log_line("cannot make the database one of version %d: %s", version, sqlite3_errmsg(d->db));
+	return made;
+}
+
+/* Keeps PATH-vN of a database of version n, and brings it to ours. */
+static bool migrated(const struct database *d, const char *path, int version)
+{
+	char copy[PATH_MAX];
+	snprintf(copy, sizeof copy, "%s-v%d", path, version);
+	// of a migration that did not come to its end
+	unlink(copy);
+	bool ok =
+	    database_copy(d, copy) && sqlite3_create_function(d->db, "document_sha256", 4, SQLITE_UTF8, NULL,
+	                                                      document_sha256, NULL, NULL) == SQLITE_OK;
+	for (; ok && version < USER_VERSION; version++)
+		ok = versioned(d, steps[version], version + 1);
+	if (ok)
+		log_line("%s is of version %d now; as it was it is kept as %s", path, version, copy);
+	return ok;
+}
+
+/* Makes a new database, or finds that this one is ours, and brings it to our version. */
+static bool founded(const struct database *d, const char *path)
+{
+	int64_t application = database_number(d, "PRAGMA application_id");
+	if (application == 0 && database_number(d, "SELECT count(*) FROM sqlite_schema") == 0)
+		return versioned(d, schema_text, USER_VERSION) && disk_sync(path);
+	int64_t version = database_number(d, "PRAGMA user_version");
+	if (application == APPLICATION_ID && version >= 1 && version <= USER_VERSION)
+		return version == USER_VERSION || migrated(d, path, (int)version);
+	log_line("%s is not a database of poundd, or of a newer one: version %lld, not %d", path,
+	         (long long)version, USER_VERSION);
+	return false;
+}
+
+/* Opens a connection.
+ *
+ * Given    path       of the database file
+ *          writes     whether it may change the database, and makes or migrates it first; else it never checkpoints
+ * Returns  database   for database_close, whatever the value
+ *          value      false: not to be opened, not ours, or of a newer version; logged
+ * Test     unit_store: a_database_of_version_1_is_brought_to_this_one
+ */
+bool database_open(struct database *d, const char *path, bool writes)
+{
+	if (writes && sqlite3_libversion_number() < RESET_SAFE)
+		log_line("SQLite %s can damage a database that two connections change: leave the changes to poundd",
+		         sqlite3_libversion());
+	return connected(d, path, writes) && (!writes || founded(d, path));
+}
+
+/* Prepares statements [0, n). */
+bool database_prepare(struct database *d, const char *const statements[], int n)
+{
+	for (int s = 0; s < n; s++)
+		if (sqlite3_prepare_v3(d->db, statements[s], -1, SQLITE_PREPARE_PERSISTENT, &d->statements[s],
+		                       NULL) != SQLITE_OK) {
+			log_line("database: %s: %s", statements[s], sqlite3_errmsg(d->db));
+			return false;
+		}
+	return true;
+}
+
+/* Closes it, opened or not. */
+void database_close(struct database *d)
+{
+	for (int s = 0; s < DATABASE_STATEMENTS_MAX; s++)
+		sqlite3_finalize(d->statements[s]);
+	sqlite3_close(d->db);
+}
