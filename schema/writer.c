@@ -223,6 +223,19 @@ void writer_null(struct writer *writer, const char *name)
 	put(writer, "null");
 }
 
+/* A value that is JSON already, put as it is but for the white space behind it.
+ *
+ * Test     unit_api: every_example_of_the_document_is_what_its_schema_says
+ */
+void writer_json(struct writer *writer, const char *name, const char *document)
+{
+	size_t n = strlen(document);
+	while (n > 0 && strchr(" \n", document[n - 1]))
+		n--;
+	lead(writer, name);
+	writer_raw(writer, document, n);
+}
+
 /* A text cell of CSV (RFC 4180).  A spreadsheet takes a cell that starts with = + - @, a tab or a carriage return
  * for a formula; an apostrophe in front makes it text.
  *

@@ -51,6 +51,7 @@ void writer_null(struct writer *writer, const char *name);
 /* The shortest of 15, 16 or 17 digits that reads back to the same double; "null" when not finite. */
 int writer_digits(double value, char digits[WRITER_NUMBER_SIZE]);
 
+void writer_json(struct writer *writer, const char *name, const char *document); /* JSON as it is */
 void writer_raw(struct writer *writer, const char *bytes, size_t length);
 
 /* A text cell of CSV: quoted where needed, and harmless to a spreadsheet (= + - @ in front). */

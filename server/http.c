@@ -1,68 +1,137 @@
-/* HTTP by libmicrohttpd: a few threads, each with its connections; a route answers in the thread of its connection. */
+/* HTTP by libmicrohttpd: a few threads, each with its connections; a route answers in the thread of its connection.
+ *
+ * 1. The target and the headers are judged before a byte of the body is read.  A refusal of a request with a body is sent
+ *    at once and the connection closed; what the client still sends is read for a while (connection.h), for a closed
+ *    socket with unread bytes is reset, and the reset overtakes our answer.
+ * 2. The body is collected, up to its limit.
+ * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again. */
 #include "server/http.h"
 
 #include <arpa/inet.h>
-#include <assert.h>
 #include <errno.h>
+#include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/random.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include <microhttpd.h>
 
+#include "server/connection.h"
 #include "server/log.h"
-#include "server/routes.h"
+#include "server/token.h"
 
 enum {
 	THREADS = 4,
-	CONNECTIONS_MAX = 4096,
+	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
+	FILES_BESIDE = 512,      /* descriptors that are no connections */
+	OF_ADDRESS_MAX = 64,     /* connections of one address, unless it is loopback */
 	HEADERS_MAX = 32 * 1024, /* [bytes] request line and headers */
-	IDLE_MAX = 60,           /* [s] without a byte */
 	BACKLOG = 1024,
-	DROPPED_MAX = 16 * BODY_MAX, /* [bytes] of a body that is too large and read all the same */
+	SEND_S = 60,             /* [s] for an answer to arrive, besides */
+	SEND_RATE = 16 * 1024,   /* [bytes/s] that a client takes at least */
+	STOP_S = 5,              /* [s] for requests under way when the server stops */
+	STOP_TICK_NS = 10000000, /* [ns] */
 };
 
 struct http {
 	struct MHD_Daemon *daemon;
+	struct server *server;
+	atomic_bool stopping;
+	atomic_int under_way; /* requests */
+	atomic_ullong number; /* of the last request */
 };
 
-static double monotonic(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-/* A header of the request. */
 const char *http_header(const struct request *request, const char *name)
 {
 	return MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, name);
 }
 
-/* An argument of the request's path; "" for ?name without a value. */
+/* An argument of the request's target, or what stands for an absent one. */
 const char *http_argument(const struct request *request, const char *name)
 {
-	const char *value = NULL;
-	size_t length = 0;
-	bool there = MHD_lookup_connection_value_n(request->connection, MHD_GET_ARGUMENT_KIND, name, strlen(name),
-	                                           &value, &length) == MHD_YES;
-	return !there ? NULL : value ? value : "";
+	const char *value = MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
+	return value ? value : api_argument(request->operation, name, "query")->absent;
 }
 
-static enum MHD_Result send_reply(const struct request *request, const struct reply *reply)
+struct search {
+	const char *etag;
+	bool found;
+};
+
+static enum MHD_Result look_for_etag(void *of, enum MHD_ValueKind kind, const char *name, const char *value)
 {
-	char retry_after[16];
+	struct search *search = of;
+	(void)kind;
+	search->found |= value && !strcasecmp(name, "If-None-Match") && head_has_etag(value, search->etag);
+	return MHD_YES;
+}
+
+bool http_known(const struct request *request, const char *etag)
+{
+	struct search search = {.etag = etag};
+	MHD_get_connection_values(request->connection, MHD_HEADER_KIND, look_for_etag, &search);
+	return search.found;
+}
+
+static double wait_until(const struct request *request)
+{
+	const char *prefer = http_header(request, "Prefer");
+	int seconds = prefer ? head_wait(prefer) : 0, most = request->server->options->wait_max;
+	return request->arrived + (seconds < most ? seconds : most);
+}
+
+bool http_waits(const struct request *request)
+{
+	return connection_now() < wait_until(request);
+}
+
+/* The reply that says what is wrong with a request.
+ *
+ * Given    fault      its kind
+ *          detail     a sentence about this request
+ *          problems   more, listed in it; NULL: none
+ * Returns  value      application/problem+json; its body is allocated
+ */
+struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems)
+{
+	struct reply reply = {.status = api_faults[fault].status, .type = "application/problem+json"};
+	reply.body = api_problem(fault, detail, problems, &reply.length);
+	reply.retry_after = fault == API_UNAVAILABLE || fault == API_TOO_MANY;
+	return reply;
+}
+
+static struct connection *connection_of(struct MHD_Connection *connection)
+{
+	return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context;
+}
+
+static enum MHD_Result send_reply(const struct request *request, struct reply *reply)
+{
+	struct server *server = request->server;
+	double seconds = connection_now() - request->arrived;
+	char retry_after[16], number[17];
 	snprintf(retry_after, sizeof retry_after, "%d", reply->retry_after);
+	snprintf(number, sizeof number, "%016llx", (unsigned long long)request->number);
 	const struct {
 		const char *name, *value;
 	} headers[] = {
 	    {"Content-Type", reply->type},
-	    {"Allow", reply->allow[0] ? reply->allow : NULL},
+	    {"Allow", reply->status == 405 ? request->allow : NULL},
 	    {"Location", reply->location[0] ? reply->location : NULL},
 	    {"ETag", reply->etag[0] ? reply->etag : NULL},
 	    {"Retry-After", reply->retry_after ? retry_after : NULL},
+	    {"WWW-Authenticate", reply->status == 401 ? "Bearer" : NULL},
+	    {"Vary", reply->etag[0] ? "Accept, Authorization" : NULL},
+	    {"Cache-Control", reply->etag[0] ? "private, no-cache" : "no-store"},
+	    {"X-Request-Id", number},
 	    {"X-Content-Type-Options", "nosniff"},
+	    {"Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'"},
+	    {"Referrer-Policy", "no-referrer"},
 	};
 	struct MHD_Response *response = MHD_create_response_from_buffer(
 	    reply->length, reply->body, reply->body ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
@@ -73,33 +142,101 @@ static enum MHD_Result send_reply(const struct request *request, const struct re
 	for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++)
 		if (headers[i].value)
 			MHD_add_response_header(response, headers[i].name, headers[i].value);
+	connection_allow(server->connections, connection_of(request->connection),
+	                 SEND_S + (double)reply->length / SEND_RATE);
+	metrics_answered(&server->metrics, request->operation, reply->status, seconds);
+	log_line("%s %s %s %d %zu bytes %.1f ms", number, request->method, request->path, reply->status,
+	         reply->length, 1e3 * seconds);
 	enum MHD_Result queued = MHD_queue_response(request->connection, (unsigned)reply->status, response);
 	MHD_destroy_response(response);
-	log_line("%s %s %d %zu bytes %.1f ms", request->method, request->path, reply->status, reply->length,
-	         1e3 * (monotonic() - request->arrived));
 	return queued;
 }
 
-/* Whether the headers alone say that the body will not be kept. */
-static bool declared_too_large(const struct request *request)
+static enum MHD_Result take_header(void *of, enum MHD_ValueKind kind, const char *name, size_t n_name,
+                                   const char *value, size_t n_value)
 {
-	const char *length = http_header(request, "Content-Length");
-	return length && strtoull(length, NULL, 10) > BODY_MAX;
+	(void)kind;
+	head_header(of, name, n_name, value ? value : "", n_value);
+	return MHD_YES;
 }
 
-/* Whether a body that is too large is refused unread.  A client that is sending all the same would find its connection
- * reset, and not our answer, so a body that is not very large is read to its end. */
-static bool refused_unread(const struct request *request)
+/* Why the arguments of a request are not those of its operation. */
+struct arguments {
+	int operation;
+	const char *seen[8];
+	int n;
+	char detail[256]; /* "": they are */
+};
+
+static enum MHD_Result take_argument(void *of, enum MHD_ValueKind kind, const char *name, const char *value)
 {
-	return http_header(request, "Expect") ||
-	       strtoull(http_header(request, "Content-Length"), NULL, 10) > DROPPED_MAX;
+	struct arguments *arguments = of;
+	const struct api_argument *argument = api_argument(arguments->operation, name, "query");
+	char expected[128];
+	(void)kind;
+	if (!*name) // an ampersand too many
+		return MHD_YES;
+	if (!argument)
+		snprintf(arguments->detail, sizeof arguments->detail, "%.60s is not an argument of %s", name,
+		         api_operations[arguments->operation].path);
+	for (int i = 0; argument && i < arguments->n; i++)
+		if (!strcmp(arguments->seen[i], name))
+			snprintf(arguments->detail, sizeof arguments->detail, "%s is given twice", name);
+	if (argument && arguments->n < 8)
+		arguments->seen[arguments->n++] = name;
+	if (argument && !api_takes(argument, value ? value : "")) {
+		api_expected(argument, expected, sizeof expected);
+		snprintf(arguments->detail, sizeof arguments->detail, "%s must be %s", name, expected);
+	}
+	return arguments->detail[0] ? MHD_NO : MHD_YES;
+}
+
+static bool is_json(const char *type)
+{
+	static const char json[] = "application/json";
+	size_t n = sizeof json - 1;
+	return type && !strncasecmp(type, json, n) && (type[n] == '\0' || type[n] == ';' || type[n] == ' ');
+}
+
+/* Whether the head alone says that there is nothing to do for a request, and the reply that says so. */
+static bool refused(struct request *request, struct reply *reply)
+{
+	struct server *server = request->server;
+	const struct api_operation *operation =
+	    request->operation < 0 ? NULL : &api_operations[request->operation];
+	struct arguments arguments = {.operation = request->operation};
+	enum api_fault fault = request->head.fault;
+	const char *detail = request->head.detail;
+	if (fault != API_NO_FAULT)
+		;
+	else if (server->http->stopping)
+		fault = API_UNAVAILABLE, detail = "the server stops";
+	else if (connections_open(server->connections) > server->options->connections_max)
+		fault = API_UNAVAILABLE, detail = "the server has as many connections as it takes";
+	else if (server->tokens && !request->token && !(operation && operation->open))
+		fault = API_UNAUTHORIZED,
+		detail = "this needs the header Authorization: Bearer, and a token of this server";
+	else if (!request->allow[0])
+		fault = API_NOT_FOUND, detail = "there is no such path";
+	else if (!operation)
+		fault = API_NOT_ALLOWED, detail = "this path does not take that method";
+	else if (operation->takes_study && !is_json(http_header(request, "Content-Type")))
+		fault = API_NOT_JSON, detail = "Content-Type must be application/json";
+	else {
+		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, &arguments);
+		fault = arguments.detail[0] ? API_BAD_REQUEST : API_NO_FAULT;
+		detail = arguments.detail;
+	}
+	if (fault != API_NO_FAULT)
+		*reply = http_problem(fault, detail, NULL);
+	return fault != API_NO_FAULT;
 }
 
 /* Keeps more of the body, or drops it when it is over the limit. */
 static void collect(struct request *request, const char *bytes, size_t n)
 {
-	request->too_large = request->too_large || request->length + n > BODY_MAX;
-	if (request->too_large || request->no_memory)
+	request->head.too_large = request->head.too_large || request->length + n > HEAD_BODY_MAX;
+	if (request->head.too_large || request->no_memory)
 		return;
 	if (request->length + n > request->capacity) {
 		size_t capacity = 2 * request->capacity + n;
@@ -115,46 +252,109 @@ static void collect(struct request *request, const char *bytes, size_t n)
 	request->length += n;
 }
 
+/* Called by libmicrohttpd with the target as it came, before it is decoded: makes the request. */
+static void *begin(void *of, const char *target, struct MHD_Connection *connection)
+{
+	struct server *server = of;
+	struct request *request = calloc(1, sizeof *request);
+	if (!request)
+		return NULL;
+	*request = (struct request){.server = server, .connection = connection, .operation = -1};
+	request->number = atomic_fetch_add(&server->http->number, 1);
+	head_target(&request->head, target);
+	atomic_fetch_add(&server->http->under_way, 1);
+	return request;
+}
+
+/* The headers are here: judges them. */
+static enum MHD_Result head_came(struct request *request, const char *method, const char *path,
+                                 const char *version)
+{
+	struct server *server = request->server;
+	struct connection *connection = connection_of(request->connection);
+	struct reply reply;
+	if (!connection)
+		return MHD_NO;
+	request->method = method;
+	request->path = path;
+	request->arrived = connection_now();
+	request->operation = api_match(method, path, &request->id, request->allow);
+	if (server->tokens)
+		request->token = tokens_name(server->tokens, http_header(request, "Authorization"));
+	MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, take_header, &request->head);
+	head_end(&request->head, strcmp(version, "HTTP/1.0") != 0, server->options->host);
+	connection_allow(server->connections, connection, server->options->body_timeout);
+	if (!request->head.has_body && !request->head.close)
+		return MHD_YES; // a refusal can wait for the next call, and the connection be kept
+	if (!refused(request, &reply))
+		return MHD_YES;
+	connection_linger(server->connections, connection);
+	return send_reply(request, &reply);
+}
+
 /* Called by libmicrohttpd with the headers, then with each part of the body, then without bytes for the answer. */
 static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const char *path,
                               const char *method, const char *version, const char *bytes, size_t *n,
                               void **kept)
 {
 	struct request *request = *kept;
+	struct server *server = of;
 	struct reply reply;
-	(void)version;
-	if (!request) {
-		*kept = request = calloc(1, sizeof *request);
-		if (!request)
-			return MHD_NO;
-		*request = (struct request){
-		    .server = of, .connection = connection, .method = method, .path = path, .arrived = monotonic()};
-		request->too_large = declared_too_large(request);
-		if (!request->too_large || !refused_unread(request))
-			return MHD_YES;
-	} else if (*n) {
+	if (!request)
+		return MHD_NO;
+	if (!request->method)
+		return head_came(request, method, path, version);
+	if (*n) {
 		collect(request, bytes, *n);
 		*n = 0;
 		return MHD_YES;
 	}
-	if (request->too_large)
-		reply = routes_problem(ROUTES_TOO_LARGE, "a study document has at most 1 MiB");
-	else if (request->no_memory)
-		reply = routes_problem(ROUTES_UNAVAILABLE, "out of memory");
-	else
+	connection_allow(server->connections, connection_of(connection), INFINITY);
+	if (request->no_memory)
+		reply = http_problem(API_UNAVAILABLE, "out of memory", NULL);
+	else if (request->head.too_large)
+		reply = http_problem(API_TOO_LARGE, "a study document has at most 1 MiB", NULL);
+	else if (!refused(request, &reply))
 		reply = routes_answer(request);
-	return send_reply(request, &reply);
+	if (reply.status != REPLY_WAIT)
+		return send_reply(request, &reply);
+	MHD_suspend_connection(connection);
+	connection_wait(server->connections, connection_of(connection), connection, request->id, reply.changes,
+	                wait_until(request));
+	return MHD_YES;
+}
+
+static void resume(void *connection)
+{
+	MHD_resume_connection(connection);
 }
 
 static void completed(void *of, struct MHD_Connection *connection, void **kept,
                       enum MHD_RequestTerminationCode why)
 {
+	struct server *server = of;
 	struct request *request = *kept;
-	(void)of, (void)connection, (void)why;
-	if (request)
-		free(request->body);
+	struct connection *open = connection_of(connection);
+	(void)why;
+	if (!request)
+		return;
+	if (open)
+		connection_allow(server->connections, open, server->options->idle_timeout);
+	atomic_fetch_sub(&server->http->under_way, 1);
+	free(request->body);
 	free(request);
 	*kept = NULL;
+}
+
+static void notice(void *of, struct MHD_Connection *connection, void **context,
+                   enum MHD_ConnectionNotificationCode code)
+{
+	struct server *server = of;
+	int fd = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+	if (code == MHD_CONNECTION_NOTIFY_STARTED)
+		*context = connection_opened(server->connections, fd, server->options->header_timeout);
+	else if (*context)
+		connection_closed(server->connections, *context);
 }
 
 static void log_library(void *of, const char *format, va_list values)
@@ -166,38 +366,90 @@ static void log_library(void *of, const char *format, va_list values)
 	log_line("http: %s", text);
 }
 
-/* Starts to answer requests.
- *
- * Given    address   to listen on, IPv4 or IPv6 in digits
- *          port      0: any that is free, http_port tells it
- *          server    must outlive the service
- * Returns  value     for http_stop; NULL when it cannot listen there, logged
- */
-struct http *http_start(const char *address, int port, struct server *server)
+struct address {
+	bool v6, loopback;
+	struct sockaddr_in ip4;
+	struct sockaddr_in6 ip6;
+};
+
+static bool address_of(const char *text, int port, struct address *address)
 {
-	struct sockaddr_in6 v6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)};
-	struct sockaddr_in v4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
-	bool is_v6 = inet_pton(AF_INET6, address, &v6.sin6_addr) == 1;
-	struct http *http = calloc(1, sizeof *http);
-	if (!http || (!is_v6 && inet_pton(AF_INET, address, &v4.sin_addr) != 1)) {
-		log_line("cannot listen on %s: not an IP address", address);
-		free(http);
-		return NULL;
-	}
-	http->daemon = MHD_start_daemon(
-	    MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_USE_ITC | (is_v6 ? MHD_USE_IPv6 : 0), 0, NULL,
-	    NULL, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL, MHD_OPTION_SOCK_ADDR,
-	    is_v6 ? (struct sockaddr *)&v6 : (struct sockaddr *)&v4, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
+	*address = (struct address){
+	    .ip4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)},
+	    .ip6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)},
+	};
+	address->v6 = inet_pton(AF_INET6, text, &address->ip6.sin6_addr) == 1;
+	if (!address->v6 && inet_pton(AF_INET, text, &address->ip4.sin_addr) != 1)
+		return false;
+	address->loopback = address->v6 ? IN6_IS_ADDR_LOOPBACK(&address->ip6.sin6_addr)
+	                                : ntohl(address->ip4.sin_addr.s_addr) >> 24 == 127;
+	return true;
+}
+
+/* As many descriptors as the connections need. */
+static void allow_files(void)
+{
+	struct rlimit files;
+	const rlim_t wanted = CONNECTIONS_MAX + FILES_BESIDE;
+	if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= wanted)
+		return;
+	files.rlim_cur = files.rlim_max < wanted ? files.rlim_max : wanted;
+	if (setrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur < wanted)
+		log_line("only %llu files may be open: ulimit -n", (unsigned long long)files.rlim_cur);
+}
+
+static struct MHD_Daemon *listen_at(struct server *server, const struct address *address)
+{
+	const struct sockaddr *at =
+	    address->v6 ? (const struct sockaddr *)&address->ip6 : (const struct sockaddr *)&address->ip4;
+	unsigned flags = MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME |
+	                 (address->v6 ? MHD_USE_IPv6 : 0);
+	return MHD_start_daemon(
+	    flags, 0, NULL, NULL, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL,
+	    MHD_OPTION_SOCK_ADDR, at, MHD_OPTION_NOTIFY_COMPLETED, completed, server,
+	    MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin, server,
 	    MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
-	    (unsigned)CONNECTIONS_MAX, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MAX,
-	    MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE, (unsigned)BACKLOG,
+	    (unsigned)CONNECTIONS_MAX, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+	    address->loopback ? 0u : (unsigned)OF_ADDRESS_MAX, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+	    (size_t)HEADERS_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE, (unsigned)BACKLOG,
 	    MHD_OPTION_LISTENING_ADDRESS_REUSE, 1u, MHD_OPTION_END);
-	if (!http->daemon) {
-		log_line("cannot listen on %s port %d: %s", address, port, strerror(errno));
-		free(http);
+}
+
+/* Starts to answer requests, at the address and the port of the options.
+ *
+ * Given    server   must outlive the service; its http and connections are set
+ * Returns  value    for http_stop; NULL when it cannot or must not listen there, logged
+ * Test     service_security: an_address_that_is_not_loopback_needs_tokens_or_insecure
+ */
+struct http *http_start(struct server *server)
+{
+	const struct options *options = server->options;
+	struct address address;
+	uint32_t random = 0;
+	if (!address_of(options->listen, options->port, &address)) {
+		log_line("cannot listen on %s: not an IP address", options->listen);
 		return NULL;
 	}
-	return http;
+	if (!address.loopback && !server->tokens && !options->insecure) {
+		log_line("cannot listen on %s: others reach it, so it needs --token-file, or --insecure",
+		         options->listen);
+		return NULL;
+	}
+	struct http *http = server->http = calloc(1, sizeof *http);
+	server->connections = http ? connections_start(server->store, resume) : NULL;
+	if (server->connections) {
+		allow_files();
+		getrandom(&random, sizeof random, 0);
+		http->number = (unsigned long long)random << 32;
+		http->server = server;
+		http->daemon = listen_at(server, &address);
+		if (http->daemon)
+			return http;
+		log_line("cannot listen on %s port %d: %s", options->listen, options->port, strerror(errno));
+		connections_stop(server->connections);
+	}
+	free(http);
+	return NULL;
 }
 
 /* The port listened on. */
@@ -206,9 +458,16 @@ int http_port(const struct http *http)
 	return MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
-/* Stops answering; requests under way are ended. */
+/* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end. */
 void http_stop(struct http *http)
 {
+	struct server *server = http->server;
+	double until = connection_now() + STOP_S;
+	http->stopping = true;
+	connections_release(server->connections);
+	while (http->under_way > 0 && connection_now() < until)
+		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
 	MHD_stop_daemon(http->daemon);
+	connections_stop(server->connections);
 	free(http);
 }

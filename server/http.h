@@ -6,13 +6,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { BODY_MAX = 1 << 20 }; /* [bytes] of a request */
+#include "schema/api.h"
+#include "server/head.h"
+#include "server/metrics.h"
+#include "server/options.h"
 
 /* What every request can reach. */
 struct server {
+	const struct options *options;
 	struct store *store;
 	struct work *work;
-	int n_workers;
+	struct tokens *tokens; /* NULL: there are none */
+	struct metrics metrics;
+	struct http *http;
+	struct connections *connections;
 };
 
 struct MHD_Connection;
@@ -21,32 +28,46 @@ struct MHD_Connection;
 struct request {
 	struct server *server;
 	struct MHD_Connection *connection;
-	const char *method, *path; /* path without arguments, decoded */
-	int64_t id;                /* of the study in the path, 0: none */
-	char *body;                /* (length) bytes */
+	const char *method, *path; /* path without arguments, decoded; NULL: the headers are not all here */
+	struct head head;
+	int operation;     /* row of api_operations, -1: none */
+	long long id;      /* of the study in the path, 0: none */
+	const char *token; /* name of the one it was sent with; NULL: there are none */
+	char allow[64];    /* methods of the path */
+	char *body;        /* (length) bytes */
 	size_t length, capacity;
-	bool too_large, no_memory; /* the body was not kept */
-	double arrived;            /* [s] monotonic */
+	bool no_memory;  /* the body was not kept */
+	double arrived;  /* [s] monotonic */
+	uint64_t number; /* told as X-Request-Id */
 };
 
-const char *http_header(const struct request *request, const char *name);   /* NULL: none */
-const char *http_argument(const struct request *request, const char *name); /* of ?name=value; NULL: none */
+enum { REPLY_WAIT = 0 }; /* status of a reply that is not one yet: ask again when the study changes */
 
 struct reply {
 	int status;
 	const char *type; /* media type of the body */
 	char *body;       /* (length) bytes on the heap, http.c frees them; NULL: none */
 	size_t length;
-	char allow[64]; /* "": no such header, likewise below */
-	char location[64];
+	char location[64]; /* "": no such header, likewise below */
 	char etag[64];
-	int retry_after; /* [s], 0: none */
+	int retry_after;  /* [s], 0: none */
+	unsigned changes; /* of the study, before it was looked at: REPLY_WAIT */
 };
 
-struct http;
+const char *http_header(const struct request *request, const char *name); /* NULL: none */
+const char *http_argument(const struct request *request,
+                          const char *name);                      /* of ?name=value; NULL: what is absent */
+bool http_known(const struct request *request, const char *etag); /* an If-None-Match has it */
+bool http_waits(const struct request *request); /* it prefers to wait, and the time is not over */
 
-struct http *http_start(const char *address, int port, struct server *server); /* NULL: logged */
+/* an application/problem+json reply; `problems` may be NULL */
+struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);
+
+struct http *http_start(struct server *server); /* NULL: logged */
 int http_port(const struct http *http);
-void http_stop(struct http *http);
+void http_stop(struct http *http); /* what is under way is answered, who waits is told 503 */
+
+/* routes.c: answers a request whose head is right and whose body is read */
+struct reply routes_answer(struct request *request);
 
 #endif

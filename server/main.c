@@ -10,19 +10,20 @@
 #include "server/log.h"
 #include "server/options.h"
 #include "server/store.h"
+#include "server/token.h"
 #include "server/work.h"
 
-static int serve(struct server *server, const struct options *options, const sigset_t *signals)
+static int serve(struct server *server, const sigset_t *signals)
 {
-	server->work = work_start(server->store, server->n_workers);
+	server->work = work_start(server->store, server->options->workers);
 	if (!server->work)
 		return EXIT_FAILURE;
-	struct http *http = http_start(options->listen, options->port, server);
+	struct http *http = http_start(server);
 	if (http) {
 		int caught;
-		bool v6 = strchr(options->listen, ':');
-		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", options->listen, v6 ? "]" : "",
-		       http_port(http));
+		const char *listen = server->options->listen;
+		bool v6 = strchr(listen, ':');
+		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", http_port(http));
 		fflush(stdout);
 		sigwait(signals, &caught);
 		log_line("stopping: %s", strsignal(caught));
@@ -47,10 +48,14 @@ int main(int argc, char **argv)
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.store = store_open(options.database), .n_workers = options.workers};
+	struct server server = {.options = &options};
+	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
+		return EXIT_FAILURE;
+	server.store = store_open(options.database);
 	if (!server.store)
 		return EXIT_FAILURE;
-	int status = serve(&server, &options, &signals);
+	int status = serve(&server, &signals);
 	store_close(server.store);
+	tokens_close(server.tokens);
 	return status;
 }

@@ -1,74 +1,52 @@
-/* What poundd answers: a table of method, path and function.
+/* What poundd answers: a function for each row of api_operations.
  *
  * A study goes to the store as the bytes that came, after it was read once to see that it is one; a result comes from
  * the store as the bytes that go. */
-#include "server/routes.h"
-
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "engine/pound.h"
+#include "schema/cost.h"
 #include "schema/problems.h"
 #include "schema/result_json.h"
 #include "schema/study_json.h"
 #include "schema/writer.h"
+#include "server/connection.h"
+#include "server/http.h"
 #include "server/store.h"
 #include "server/work.h"
 
 enum {
-	LIST_LIMIT = 20, /* studies on a page, unless asked otherwise */
-	LIST_LIMIT_MAX = 100,
 	RETRY_AFTER = 1,      /* [s] */
 	RETRY_AFTER_MAX = 60, /* [s] */
+	KEY_MAX = 200,        /* characters of an Idempotency-Key */
+	MIB = 1 << 20,
 };
 
-/* [s] of one core for a sample interval of one run: `make run` takes 3.5 s for 30,000 runs of 1,020 on average */
-static const double INTERVAL_CPU_S = 1.2e-7;
-
-static const struct {
-	int status;
-	const char *type, *title;
-} faults[] = {
-#define X(name, status, type, title) [ROUTES_##name] = {status, type, title},
-    ROUTES_FAULTS(X)
-#undef X
-};
-
-static struct reply fault_reply(enum routes_fault fault, const char *detail, const struct problems *problems)
+static struct reply problem(enum api_fault fault, const char *detail)
 {
-	struct problem_head head = {.status = faults[fault].status,
-	                            .type = faults[fault].type,
-	                            .title = faults[fault].title,
-	                            .detail = detail};
-	struct reply reply = {.status = head.status, .type = "application/problem+json"};
-	reply.body = problem_to_json(&head, problems, &reply.length);
-	reply.retry_after = fault == ROUTES_UNAVAILABLE ? RETRY_AFTER : 0;
-	return reply;
-}
-
-/* The reply that says what is wrong with a request.
- *
- * Given    fault    which of the kinds above
- *          detail   a sentence about this request
- * Returns  value    application/problem+json; its body is allocated
- */
-struct reply routes_problem(enum routes_fault fault, const char *detail)
-{
-	return fault_reply(fault, detail, NULL);
+	return http_problem(fault, detail, NULL);
 }
 
 static struct reply no_study(void)
 {
-	return routes_problem(ROUTES_NOT_FOUND, "there is no such study");
+	return problem(API_NOT_FOUND, "there is no such study");
+}
+
+static struct reply no_memory(void)
+{
+	return problem(API_UNAVAILABLE, "out of memory");
 }
 
 static struct reply unavailable(void)
 {
-	return routes_problem(ROUTES_UNAVAILABLE, "the database does not answer; please try again");
+	return problem(API_UNAVAILABLE, "the database does not answer; please try again");
 }
 
 /* 200 and what was written. */
@@ -76,7 +54,19 @@ static struct reply written(struct writer *writer)
 {
 	struct reply reply = {.status = 200, .type = "application/json"};
 	reply.body = writer_take(writer, &reply.length);
-	return reply.body ? reply : routes_problem(ROUTES_UNAVAILABLE, "out of memory");
+	return reply.body ? reply : no_memory();
+}
+
+/* The reply, or 304 when the client has it. */
+static struct reply unless_known(const struct request *request, struct reply reply)
+{
+	if (reply.status != 200 || !http_known(request, reply.etag))
+		return reply;
+	free(reply.body);
+	reply.status = 304;
+	reply.body = NULL;
+	reply.length = 0;
+	return reply;
 }
 
 /* Studies being written, one after the other. */
@@ -139,7 +129,7 @@ static void status_object(void *to, const struct store_study *study)
 
 static void page_init(struct page *page, const struct request *request, int room)
 {
-	*page = (struct page){.n_workers = request->server->n_workers, .room = room, .eta_s = NAN};
+	*page = (struct page){.n_workers = request->server->options->workers, .room = room, .eta_s = NAN};
 	writer_init(&page->writer);
 }
 
@@ -166,33 +156,43 @@ static struct reply look(const struct request *request, struct page *page)
 static struct reply status(struct request *request)
 {
 	struct page page;
-	struct reply reply = look(request, &page);
-	const char *known = http_header(request, "If-None-Match");
-	if (reply.status != 200 || !known || strcmp(known, reply.etag) != 0)
-		return reply;
-	free(reply.body);
-	reply.status = 304;
-	reply.body = NULL;
-	reply.length = 0;
+	unsigned changes = store_changes(request->server->store, request->id);
+	struct reply reply = unless_known(request, look(request, &page));
+	reply.changes = changes;
+	if (reply.status == 304 && http_waits(request))
+		reply.status = REPLY_WAIT;
 	return reply;
 }
 
-static struct reply estimate(const struct pound_study *study)
+static struct reply estimate(const struct pound_study *study, const struct cost *cost)
 {
 	struct writer w;
-	double runs = (double)study_runs(study);
-	double intervals = study_steps(study);
-	// what is stored of a run: its part of two means for each output, or all its measures
-	size_t bytes = study->kind == POUND_KIND_SENSITIVITY ? 2 * (size_t)study->n_outputs * sizeof(double)
-	                                                     : sizeof(struct pound_response);
 	writer_init(&w);
 	writer_object(&w, NULL, WRITER_LINES);
 	writer_text(&w, "kind", study_kind_name(study->kind));
-	writer_number(&w, "runs_total", runs);
-	writer_number(&w, "estimated_cpu_s", runs * intervals * INTERVAL_CPU_S);
-	writer_number(&w, "estimated_bytes", runs * (double)bytes);
+	writer_whole(&w, "runs_total", cost->runs);
+	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
+	writer_number(&w, "estimated_bytes", ceil(cost->bytes));
 	writer_end(&w);
 	return written(&w);
+}
+
+/* Every limit that a study would go over. */
+static void check_cost(const struct options *options, const struct cost *cost, struct problems *problems)
+{
+	const struct {
+		double asked, most;
+		const char *what, *option;
+	} limits[] = {
+	    {(double)cost->runs, options->runs_max, "pounding runs", "runs-max"},
+	    {cost->cpu_s, options->cpu_max, "estimated seconds of one core", "cpu-max"},
+	    {cost->bytes / MIB, options->result_max, "estimated MiB in the database", "result-max"},
+	};
+	problems_init(problems);
+	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
+		if (limits[i].asked > limits[i].most)
+			problems_add(problems, "", "asks for %.6g %s, this server takes at most %.6g (--%s)",
+			             limits[i].asked, limits[i].what, limits[i].most, limits[i].option);
 }
 
 static struct reply invalid(const struct problems *problems)
@@ -201,88 +201,72 @@ static struct reply invalid(const struct problems *problems)
 	switch (problems->status) {
 	case PROBLEMS_MALFORMED:
 		snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
-		return fault_reply(ROUTES_MALFORMED, place, problems);
+		return http_problem(API_MALFORMED, place, problems);
 	case PROBLEMS_INVALID:
-		return fault_reply(ROUTES_INVALID, "the study has faults, listed in errors", problems);
+		return http_problem(API_INVALID, "the study has faults, listed in errors", problems);
 	case PROBLEMS_NOMEM:
 	case PROBLEMS_NONE:
 		break;
 	}
-	return routes_problem(ROUTES_UNAVAILABLE, "out of memory");
+	return no_memory();
 }
 
 static struct reply queue(struct request *request, const struct pound_study *study)
 {
-	struct store_study row = {
-	    .kind = study_kind_name(study->kind), .name = study->name, .runs = study_runs(study)};
+	struct server *server = request->server;
+	struct store_study row = {.kind = study_kind_name(study->kind),
+	                          .name = study->name,
+	                          .runs = study_runs(study),
+	                          .key = http_header(request, "Idempotency-Key")};
 	char hash[STUDY_HASH_SIZE];
+	int64_t queued = 0, id;
+	if (row.key && (!*row.key || strlen(row.key) > KEY_MAX))
+		return problem(API_BAD_REQUEST, "an Idempotency-Key has 1 to 200 characters");
 	if (!study_hash(study, hash))
-		return routes_problem(ROUTES_UNAVAILABLE, "out of memory");
-	if (store_submit(request->server->store, &row, hash, request->body, request->length, &request->id) !=
-	    STORE_OK)
+		return no_memory();
+	if (store_count(server->store, "queued", &queued) == STORE_FAILED)
+		return unavailable();
+	if (queued >= server->options->queue_max)
+		return problem(API_UNAVAILABLE, "as many studies are queued as this server takes");
+	enum store_status submitted =
+	    store_submit(server->store, &row, hash, request->body, request->length, &id);
+	if (submitted == STORE_CLASH)
+		return problem(API_KEY_REUSED, "this Idempotency-Key came with another body before");
+	if (submitted != STORE_OK && submitted != STORE_REPEATED)
 		return unavailable();
 	struct page page;
+	request->id = id;
 	struct reply reply = look(request, &page);
-	work_wake(request->server->work);
+	work_wake(server->work);
 	reply.status = reply.status == 200 ? 201 : reply.status;
-	snprintf(reply.location, sizeof reply.location, "/v1/studies/%016" PRIx64, (uint64_t)request->id);
+	snprintf(reply.location, sizeof reply.location, "/v1/studies/%016" PRIx64, (uint64_t)id);
 	return reply;
 }
 
 static struct reply submit(struct request *request)
 {
-	const char *only = http_argument(request, "validate_only");
-	if (only && strcmp(only, "true") != 0 && strcmp(only, "false") != 0)
-		return routes_problem(ROUTES_BAD_REQUEST, "validate_only must be true or false");
 	struct problems problems;
 	struct pound_study *study = study_from_json(request->body, request->length, &problems);
 	if (!study)
 		return invalid(&problems);
-	struct reply reply = only && !strcmp(only, "true") ? estimate(study) : queue(request, study);
+	const struct cost cost = cost_of(study);
+	check_cost(request->server->options, &cost, &problems);
+	struct reply reply =
+	    problems.n ? http_problem(API_TOO_COSTLY, "the study is over limits of this server, listed in errors",
+	                              &problems)
+	    : !strcmp(http_argument(request, "validate_only"), "true") ? estimate(study, &cost)
+	                                                               : queue(request, study);
 	study_free(study);
 	return reply;
 }
 
-/* A whole number of the path's arguments in [min, max]; false: it is something else. */
-static bool whole(const struct request *request, const char *name, int min, int max, int *value)
-{
-	const char *text = http_argument(request, name);
-	char *rest;
-	if (!text)
-		return true;
-	long number = strtol(text, &rest, 10);
-	*value = (int)number;
-	return rest != text && !*rest && number >= min && number <= max;
-}
-
-/* 16 hexadecimal digits at `text`: the id they stand for, else -1. */
-static int64_t id_at(const char *text)
-{
-	if (strspn(text, "0123456789abcdef") < 16)
-		return -1;
-	char digits[17] = {0};
-	memcpy(digits, text, 16);
-	int64_t id = (int64_t)strtoull(digits, NULL, 16);
-	return id < 0 ? -1 : id;
-}
-
 static struct reply list(struct request *request)
 {
-	static const char *const states[] = {"queued", "running", "succeeded", "failed", "cancelled"};
-	const char *wanted = http_argument(request, "status");
 	const char *cursor = http_argument(request, "cursor");
-	int64_t before = cursor && strlen(cursor) == 16 ? id_at(cursor) : -1;
-	int limit = LIST_LIMIT;
-	bool known = !wanted;
-	for (size_t i = 0; i < sizeof states / sizeof states[0]; i++)
-		known = known || !strcmp(wanted, states[i]);
-	if (!known)
-		return routes_problem(ROUTES_BAD_REQUEST,
-		                      "status must be queued, running, succeeded, failed or cancelled");
-	if (!whole(request, "limit", 1, LIST_LIMIT_MAX, &limit))
-		return routes_problem(ROUTES_BAD_REQUEST, "limit must be a whole number in [1, 100]");
-	if (cursor && before < 0)
-		return routes_problem(ROUTES_BAD_REQUEST, "cursor must be the 'next' of an earlier page");
+	int limit = atoi(http_argument(request, "limit"));
+	int64_t before = cursor ? (int64_t)strtoull(cursor, NULL, 16) : INT64_MAX;
+	if (cursor && (strlen(cursor) != 16 || strspn(cursor, "0123456789abcdef") != 16 || before < 0))
+		return problem(API_BAD_REQUEST, "cursor must be the next of an earlier page");
 
 	struct page page;
 	char next[17];
@@ -290,7 +274,7 @@ static struct reply list(struct request *request)
 	writer_object(&page.writer, NULL, WRITER_LINES);
 	writer_array(&page.writer, "studies", WRITER_LINES);
 	// one more than fits, to see whether there is a next page
-	if (store_list(request->server->store, wanted, cursor ? before : INT64_MAX, limit + 1, status_object,
+	if (store_list(request->server->store, http_argument(request, "status"), before, limit + 1, status_object,
 	               &page) == STORE_FAILED) {
 		page_drop(&page);
 		return unavailable();
@@ -311,8 +295,8 @@ static struct reply not_ready(struct request *request)
 		return reply;
 	free(reply.body);
 	if (!strcmp(page.status, "failed") || !strcmp(page.status, "cancelled"))
-		return routes_problem(ROUTES_CONFLICT, "the study failed or was cancelled: it has no results");
-	reply = routes_problem(ROUTES_NOT_READY, "the study is not finished yet");
+		return problem(API_CONFLICT, "the study failed or was cancelled: it has no results");
+	reply = problem(API_NOT_READY, "the study is not finished yet");
 	reply.retry_after = (int)fmin(fmax(ceil(page.eta_s), RETRY_AFTER), RETRY_AFTER_MAX);
 	return reply;
 }
@@ -325,76 +309,71 @@ static struct reply document(struct request *request, const char *name)
 	    store_document(request->server->store, request->id, name, &reply.body, &reply.length);
 	return found == STORE_OK        ? reply
 	       : found == STORE_NONE    ? not_ready(request)
-	       : found == STORE_CORRUPT ? routes_problem(ROUTES_CORRUPT, "the stored bytes are damaged")
+	       : found == STORE_CORRUPT ? problem(API_CORRUPT, "the stored bytes are damaged")
 	                                : unavailable();
 }
 
 static struct reply posted(struct request *request)
 {
-	return document(request, "request");
+	struct reply reply = document(request, "request");
+	snprintf(reply.etag, sizeof reply.etag, "%s", "\"request\"");
+	return unless_known(request, reply);
 }
 
-struct format {
-	const char *name, *type;
-};
-
-/* The format asked for by ?format= or Accept, the first one when neither says; NULL: an unknown one. */
-static const struct format *format(const struct request *request, const struct format formats[2])
+/* Whether the second of two formats is asked for, by ?format= or Accept; a result never changes, so that format and
+ * version are its tag. */
+static bool second(const struct request *request, const char *const types[2], const char *const names[2],
+                   struct reply *reply)
 {
-	const char *name = http_argument(request, "format");
-	const char *accept = http_header(request, "Accept");
-	for (int i = 0; name && i < 2; i++)
-		if (!strcmp(name, formats[i].name))
-			return &formats[i];
-	if (name)
-		return NULL;
-	for (int i = 0; accept && i < 2; i++)
-		if (strcasestr(accept, formats[i].type))
-			return &formats[i];
-	return &formats[0];
+	const char *name = http_argument(request, "format"), *accept = http_header(request, "Accept");
+	bool is = name ? !strcmp(name, names[1])
+	               : accept && strcasestr(accept, types[1]) && !strcasestr(accept, types[0]);
+	*reply = (struct reply){.status = 200, .type = types[is]};
+	snprintf(reply->etag, sizeof reply->etag, "\"%s-%s\"", names[is], POUND_VERSION);
+	return is;
 }
 
 static struct reply results(struct request *request)
 {
-	static const struct format formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
-	const struct format *wanted = format(request, formats);
-	if (!wanted)
-		return routes_problem(ROUTES_BAD_REQUEST, "format must be json or csv");
-	struct reply json = document(request, "result");
-	if (json.status != 200 || wanted == &formats[0])
+	static const char *const types[] = {"application/json", "text/csv"}, *const names[] = {"json", "csv"};
+	struct reply reply, json = document(request, "result");
+	if (json.status != 200)
 		return json;
-	struct reply reply = {.status = 200, .type = wanted->type};
-	reply.body = result_to_csv(json.body, json.length, &reply.length);
-	free(json.body);
-	return reply.body ? reply : routes_problem(ROUTES_UNAVAILABLE, "out of memory");
+	bool csv = second(request, types, names, &reply);
+	reply.body = csv ? result_to_csv(json.body, json.length, &reply.length) : json.body;
+	if (csv)
+		free(json.body);
+	else
+		reply.length = json.length;
+	return reply.body ? unless_known(request, reply) : no_memory();
 }
 
 static struct reply samples(struct request *request)
 {
-	static const struct format formats[] = {{"csv", "text/csv"}, {"npy", "application/octet-stream"}};
-	const struct format *wanted = format(request, formats);
-	if (!wanted)
-		return routes_problem(ROUTES_BAD_REQUEST, "format must be csv or npy");
+	static const char *const types[] = {"text/csv", "application/octet-stream"}, *const names[] = {"csv",
+	                                                                                               "npy"};
 	// a result says that all blocks are there
 	struct reply reply = document(request, "result");
 	if (reply.status != 200)
 		return reply;
 	free(reply.body);
+	bool npy = second(request, types, names, &reply);
+	reply = unless_known(request, reply);
+	if (reply.status != 200)
+		return reply;
 	struct work_run opened;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
-	reply = (struct reply){.status = 200, .type = wanted->type};
 	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
 	if (sampled && opened.n_left == 0)
-		reply.body = (wanted == &formats[0] ? samples_to_csv : samples_to_npy)(opened.study, opened.run,
-		                                                                       &reply.length);
+		reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
 	if (error)
-		reply = routes_problem(ROUTES_UNAVAILABLE, error);
+		reply = problem(API_UNAVAILABLE, error);
 	else if (!sampled)
-		reply = routes_problem(ROUTES_CONFLICT, "only a sensitivity study has samples");
+		reply = problem(API_CONFLICT, "only a sensitivity study has samples");
 	else if (opened.n_left > 0)
-		reply = routes_problem(ROUTES_CORRUPT, "stored blocks are damaged or of another version");
+		reply = problem(API_CORRUPT, "stored blocks are damaged or of another version");
 	else if (!reply.body)
-		reply = routes_problem(ROUTES_UNAVAILABLE, "out of memory");
+		reply = no_memory();
 	work_close(&opened);
 	return reply;
 }
@@ -411,10 +390,10 @@ static struct reply cancel(struct request *request)
 	if (reply.status != 200 || !strcmp(page.status, "cancelled"))
 		return reply;
 	free(reply.body);
-	return routes_problem(ROUTES_CONFLICT, "the study is finished");
+	return problem(API_CONFLICT, "the study is finished");
 }
 
-static struct reply delete (struct request *request)
+static struct reply erase(struct request *request)
 {
 	enum store_status deleted = store_delete(request->server->store, request->id);
 	if (deleted != STORE_OK)
@@ -423,7 +402,7 @@ static struct reply delete (struct request *request)
 	return (struct reply){.status = 204};
 }
 
-static struct reply live(struct request *request)
+static struct reply version(struct request *request)
 {
 	struct writer w;
 	(void)request;
@@ -435,76 +414,82 @@ static struct reply live(struct request *request)
 	return written(&w);
 }
 
+static struct reply live(struct request *request)
+{
+	return version(request);
+}
+
 static struct reply ready(struct request *request)
 {
 	struct page page;
 	struct reply one = look(request, &page);
 	free(one.body);
 	// no study has the id 0, and to say so the database must answer
-	return one.status == 404 ? live(request) : unavailable();
+	return one.status == 404 ? version(request) : unavailable();
 }
 
-static const struct route {
-	const char *method, *path; /* {id} stands for 16 hexadecimal digits */
-	bool takes_json;
-	struct reply (*answer)(struct request *request);
-} routes[] = {
-    {"POST", "/v1/studies", true, submit},
-    {"GET", "/v1/studies", false, list},
-    {"GET", "/v1/studies/{id}", false, status},
-    {"DELETE", "/v1/studies/{id}", false, delete},
-    {"GET", "/v1/studies/{id}/request", false, posted},
-    {"GET", "/v1/studies/{id}/results", false, results},
-    {"GET", "/v1/studies/{id}/samples", false, samples},
-    {"POST", "/v1/studies/{id}/cancel", false, cancel},
-    {"GET", "/livez", false, live},
-    {"GET", "/readyz", false, ready},
-    {"GET", "/version", false, live},
-};
-
-/* Whether a path is of a form, and the id in it. */
-static bool matches(const char *path, const char *form, int64_t *id)
+static double resident_bytes(void)
 {
-	size_t head = strcspn(form, "{");
-	if (!form[head])
-		return !strcmp(path, form);
-	if (strncmp(path, form, head) != 0 || (*id = id_at(path + head)) < 0)
-		return false;
-	return !strcmp(path + head + 16, form + head + strlen("{id}"));
+	long pages = 0;
+	FILE *file = fopen("/proc/self/statm", "re");
+	if (file && fscanf(file, "%*d %ld", &pages) != 1)
+		pages = 0;
+	if (file)
+		fclose(file);
+	return (double)pages * (double)sysconf(_SC_PAGESIZE);
 }
 
-static bool is_json(const char *type)
+static struct reply metrics(struct request *request)
 {
-	static const char json[] = "application/json";
-	size_t n = sizeof json - 1;
-	return type && !strncasecmp(type, json, n) && (type[n] == '\0' || type[n] == ';' || type[n] == ' ');
+	static const char *const states[] = {"queued", "running", "succeeded", "failed", "cancelled"};
+	enum { STATES = sizeof states / sizeof states[0], OTHERS = 5 };
+	struct server *server = request->server;
+	struct metrics_value values[STATES + OTHERS] = {0};
+	char labels[STATES][32];
+	struct timespec cpu;
+	for (int i = 0; i < STATES; i++) {
+		int64_t n;
+		if (store_count(server->store, states[i], &n) == STORE_FAILED)
+			return unavailable();
+		snprintf(labels[i], sizeof labels[i], "status=\"%s\"", states[i]);
+		values[i] = (struct metrics_value){"pound_studies", "gauge", labels[i],
+		                                   i ? NULL : "Studies, by status.", (double)n};
+	}
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+	const struct metrics_value others[OTHERS] = {
+	    {"pound_http_connections", "gauge", NULL, "Open connections.", connections_open(server->connections)},
+	    {"pound_http_connections_late_total", "counter", NULL, "Connections closed for being too slow.",
+	     connections_late(server->connections)},
+	    {"process_cpu_seconds_total", "counter", NULL, "Processor time.",
+	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
+	    {"process_resident_memory_bytes", "gauge", NULL, "Resident memory.", resident_bytes()},
+	    {"pound_build_info", "gauge", "version=\"" POUND_VERSION "\"", "Which poundd this is.", 1},
+	};
+	memcpy(values + STATES, others, sizeof others);
+	struct reply reply = {.status = 200, .type = "text/plain; version=0.0.4; charset=utf-8"};
+	reply.body = metrics_text(&server->metrics, values, STATES + OTHERS, &reply.length);
+	return reply.body ? reply : no_memory();
 }
 
-/* Answers a request whose body has been read.
+static struct reply openapi(struct request *request)
+{
+	struct reply reply = {.status = 200, .type = "application/json", .etag = "\"" POUND_VERSION "\""};
+	reply.body = api_document(&reply.length);
+	return reply.body ? unless_known(request, reply) : no_memory();
+}
+
+/* Answers a request.
  *
- * Given    request
+ * Given    request   whose head and arguments are those of its operation, and whose body is read
  * Returns  value     the reply; its body is allocated
  * Test     service_routes: every_route_answers_only_its_methods
  */
 struct reply routes_answer(struct request *request)
 {
-	const char *method = strcmp(request->method, "HEAD") != 0 ? request->method : "GET";
-	char allow[64] = "";
-	for (size_t i = 0; i < sizeof routes / sizeof routes[0]; i++) {
-		const struct route *route = &routes[i];
-		if (!matches(request->path, route->path, &request->id))
-			continue;
-		if (!strcmp(method, route->method)) {
-			if (route->takes_json && !is_json(http_header(request, "Content-Type")))
-				return routes_problem(ROUTES_NOT_JSON, "Content-Type must be application/json");
-			return route->answer(request);
-		}
-		strcat(strcat(allow, allow[0] ? ", " : ""), route->method);
-		strcat(allow, !strcmp(route->method, "GET") ? ", HEAD" : "");
-	}
-	if (!allow[0])
-		return routes_problem(ROUTES_NOT_FOUND, "there is no such path");
-	struct reply reply = routes_problem(ROUTES_NOT_ALLOWED, "this path does not take that method");
-	memcpy(reply.allow, allow, sizeof reply.allow);
-	return reply;
+	static struct reply (*const answers[])(struct request *) = {
+#define X(operation) [API_##operation] = operation,
+	    API_OPERATIONS(X)
+#undef X
+	};
+	return answers[request->operation](request);
 }

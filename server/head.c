@@ -1,0 +1,195 @@
+/* The head of a request: target, headers, framing and host.
+ *
+ * libmicrohttpd takes what RFC 9112 forbids (two lengths, a length and a coding, NUL in a name), and what two servers
+ * read differently lets a request hide in another one's body; so the rules are applied here, to what it read. */
+#include "server/head.h"
+
+#include <arpa/inet.h>
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static void refuse(struct head *head, enum api_fault fault, bool closed, const char *detail)
+{
+	head->close |= closed;
+	if (head->fault != API_NO_FAULT)
+		return;
+	head->fault = fault;
+	head->detail = detail;
+}
+
+/* Starts with the request's target as it came.
+ *
+ * Given    target   path and arguments, not decoded
+ * Test     unit_head: a_target_is_visible_ascii_and_its_escapes_are_whole
+ */
+void head_target(struct head *head, const char *target)
+{
+	*head = (struct head){.fault = API_NO_FAULT};
+	for (const char *c = target; *c; c++) {
+		if (*c <= ' ' || *c > '~')
+			refuse(head, API_BAD_REQUEST, true, "the target has characters that must be percent-encoded");
+		if (*c != '%')
+			continue;
+		if (!isxdigit((unsigned char)c[1]) || !isxdigit((unsigned char)c[2]))
+			refuse(head, API_BAD_REQUEST, false, "a percent sign must be followed by two hexadecimal digits");
+		else if (c[1] == '0' && c[2] == '0')
+			refuse(head, API_BAD_REQUEST, false, "the target must not have %00");
+	}
+}
+
+static bool is_token(const char *name, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (!isalnum((unsigned char)name[i]) && (!name[i] || !strchr("!#$%&'*+-.^_`|~", name[i])))
+			return false;
+	return n > 0;
+}
+
+static bool is_text(const char *value, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (((unsigned char)value[i] < ' ' && value[i] != '\t') || value[i] == 0x7f)
+			return false;
+	return true;
+}
+
+static bool is(const char *name, size_t n, const char *known)
+{
+	return n == strlen(known) && !strncasecmp(name, known, n);
+}
+
+/* Takes the next header.
+ *
+ * Given    name    (n_name) bytes
+ *          value   (n_value) bytes   without white space around
+ * Test     unit_head: what_leaves_a_request_s_end_in_doubt_is_refused
+ */
+void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value)
+{
+	if (!is_token(name, n_name))
+		refuse(head, API_BAD_REQUEST, true, "a header's name has characters that no name may have");
+	else if (!is_text(value, n_value))
+		refuse(head, API_BAD_REQUEST, true, "a header's value has control characters");
+	else if (is(name, n_name, "Host")) {
+		head->hosts++;
+		snprintf(head->host, sizeof head->host, "%.*s", (int)n_value, value);
+	} else if (is(name, n_name, "Content-Length")) {
+		head->lengths++;
+		// what is no number was refused before; what does not fit is the largest
+		unsigned long long length = strtoull(value, NULL, 10);
+		head->has_body |= length > 0;
+		head->too_large |= length > HEAD_BODY_MAX;
+	} else if (is(name, n_name, "Transfer-Encoding")) {
+		head->codings++;
+		head->has_body = true;
+		head->chunked = is(value, n_value, "chunked");
+	} else if (is(name, n_name, "Content-Encoding"))
+		head->encoded |= !is(value, n_value, "identity");
+}
+
+/* Judges the whole head.
+ *
+ * Given    needs_host   HTTP/1.1 and later
+ *          names        hosts, between commas, besides localhost and addresses; NULL: none
+ * Returns  head         its fault, API_NO_FAULT: none
+ * Test     unit_head: what_leaves_a_request_s_end_in_doubt_is_refused
+ */
+void head_end(struct head *head, bool needs_host, const char *names)
+{
+	if (head->lengths > 1)
+		refuse(head, API_BAD_REQUEST, true, "a request has one Content-Length");
+	if (head->lengths && head->codings)
+		refuse(head, API_BAD_REQUEST, true,
+		       "a request has a Content-Length or a Transfer-Encoding, not both");
+	if (head->codings > 1 || (head->codings && !head->chunked))
+		refuse(head, API_BAD_REQUEST, true, "the only Transfer-Encoding is chunked");
+	if (head->hosts > 1 || (needs_host && !head->hosts))
+		refuse(head, API_BAD_REQUEST, true, "a request has one Host");
+	if (head->hosts && !head_has_host(head->host, names))
+		refuse(head, API_MISDIRECTED, false,
+		       "this server is not asked by that Host; poundd --host adds names");
+	if (head->encoded)
+		refuse(head, API_NOT_JSON, false, "the only Content-Encoding is identity");
+	if (head->too_large)
+		refuse(head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+}
+
+/* Whether a Host header names this server: an address in digits, localhost or one of the names, with any port.  A page
+ * of the web that has its own name point here (DNS rebinding) has none of these.
+ *
+ * Test     unit_head: a_host_is_an_address_localhost_or_a_name_that_was_given
+ */
+bool head_has_host(const char *host, const char *names)
+{
+	char name[256];
+	struct in6_addr address;
+	bool v6 = *host == '[';
+	size_t n = v6 ? strcspn(host, "]") : strcspn(host, ":");
+	const char *port = host + n + (v6 && host[n]);
+	if ((v6 && !host[n]) || n == 0 || n >= sizeof name)
+		return false;
+	if (*port && (*port != ':' || strspn(port + 1, "0123456789") != strlen(port + 1)))
+		return false;
+	snprintf(name, sizeof name, "%.*s", (int)n - v6, host + v6);
+	if (inet_pton(v6 ? AF_INET6 : AF_INET, name, &address) == 1)
+		return true;
+	if (v6)
+		return false;
+	if (!strcasecmp(name, "localhost"))
+		return true;
+	for (const char *at = names; at && *at; at += strcspn(at, ",") + (at[strcspn(at, ",")] == ','))
+		if (strcspn(at, ",") == n && !strncasecmp(at, name, n))
+			return true;
+	return false;
+}
+
+/* Whether an If-None-Match has a tag: `*`, or a list of tags, weak ones too (RFC 9110 section 13.1.2).
+ *
+ * Given    etag   "\"...\"", strong
+ * Test     unit_head: a_tag_is_found_in_every_form_of_a_list
+ */
+bool head_has_etag(const char *list, const char *etag)
+{
+	const char *at = list + strspn(list, " \t");
+	if (*at == '*')
+		return at[1 + strspn(at + 1, " \t")] == '\0';
+	while (*at) {
+		at += strspn(at, " \t,");
+		if (!strncmp(at, "W/", 2))
+			at += 2;
+		if (*at != '"')
+			return false;
+		size_t n = strcspn(at + 1, "\"") + 2;
+		if (n > strlen(at))
+			return false;
+		if (n == strlen(etag) && !strncmp(at, etag, n))
+			return true;
+		at += n + strspn(at + n, " \t");
+		if (*at && *at != ',')
+			return false;
+	}
+	return false;
+}
+
+/* The seconds that a Prefer header is ready to wait (RFC 7240): 0 when it has no wait=N, or one that makes no sense.
+ *
+ * Test     unit_head: the_seconds_to_wait_are_found_among_other_preferences
+ */
+int head_wait(const char *prefer)
+{
+	for (const char *at = prefer; *at; at += strcspn(at, ",") + (at[strcspn(at, ",")] == ',')) {
+		at += strspn(at, " \t");
+		if (strncasecmp(at, "wait", 4) != 0)
+			continue;
+		const char *value = at + 4 + strspn(at + 4, " \t");
+		if (*value++ != '=')
+			continue;
+		value += strspn(value, " \t\"");
+		size_t n = strspn(value, "0123456789");
+		return n == 0 || n > 6 ? 0 : atoi(value);
+	}
+	return 0;
+}

@@ -1,0 +1,35 @@
+/* head.h - what the head of a request must be before anything is done for it.
+ *
+ * Bytes in, a verdict out: no library, no allocation.  Plain memory of the caller; one thread at a time. */
+#ifndef HEAD_H
+#define HEAD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "schema/api.h"
+
+enum { HEAD_BODY_MAX = 1 << 20 }; /* [bytes] */
+
+struct head {
+	int hosts, lengths, codings; /* headers of that name */
+	bool chunked;                /* the coding is "chunked" and no other */
+	bool encoded;                /* the body is compressed or the like */
+	bool too_large;              /* the length declared is over HEAD_BODY_MAX */
+	bool has_body;
+	char host[256];
+	enum api_fault fault; /* the first that was found, API_NO_FAULT: none */
+	const char *detail;   /* a sentence about it */
+	bool close;           /* it leaves in doubt where the request ends */
+};
+
+void head_target(struct head *head, const char *target); /* the first, with the raw target */
+void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value);
+/* the last; `names` are hosts, between commas, besides localhost and addresses (NULL: none) */
+void head_end(struct head *head, bool needs_host, const char *names);
+
+bool head_has_host(const char *host, const char *names);
+bool head_has_etag(const char *list, const char *etag); /* an If-None-Match has a tag */
+int head_wait(const char *prefer);                      /* N of a Prefer with wait=N [s], else 0 */
+
+#endif

@@ -1,0 +1,36 @@
+/* metrics.h - what the server has done, counted, and as text for Prometheus.  Any thread. */
+#ifndef METRICS_H
+#define METRICS_H
+
+#include <stdatomic.h>
+#include <stddef.h>
+
+#include "schema/api.h"
+
+enum {
+	METRICS_OPERATIONS = API_N_OPERATIONS + 1 /* the last: none of them */,
+	METRICS_BUCKETS = 7,
+	METRICS_STATUSES = 600
+};
+
+struct metrics {
+	atomic_ulong answers[METRICS_OPERATIONS][METRICS_STATUSES];
+	atomic_ulong
+	    buckets[METRICS_BUCKETS + 1]; /* answers by the time they took; the last: longer than all bounds */
+	atomic_ulong microseconds;        /* of all of them */
+};
+
+/* an answer was given; `operation` is a row of api_operations or -1 */
+void metrics_answered(struct metrics *metrics, int operation, int status, double seconds);
+
+/* a value that is looked up when asked for */
+struct metrics_value {
+	const char *name, *type, *label,
+	    *text; /* label: `status="queued"`, NULL: none; text: NULL for the next of a name */
+	double value;
+};
+
+/* The text format 0.0.4 (heap, NULL: out of memory). */
+char *metrics_text(const struct metrics *metrics, const struct metrics_value *values, int n, size_t *length);
+
+#endif
