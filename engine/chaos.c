@@ -50,6 +50,7 @@ struct fits {
 	double *coefficients; /* of each fold's fit to the other folds  (FOLDS x terms) */
 	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
 	double *estimates;    /* (n_rows x (1 + 2 n_inputs)) */
+	double *groups;       /* their sums  (groups, at most n_rows, x (2 + 2 n_inputs)) */
 };
 
 static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs)
@@ -72,6 +73,7 @@ static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs)
 	    {&f->coefficients, (size_t)FOLDS * f->terms},
 	    {&f->fit, (size_t)n_rows * (n_inputs + 2)},
 	    {&f->estimates, (size_t)n_rows * (FIRST + 2 * n_inputs)},
+	    {&f->groups, (size_t)n_rows * (FIRST + 2 * n_inputs + 1)},
 	};
 	size_t total = 0;
 	for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++) {
@@ -246,6 +248,31 @@ static void row_estimate(const struct fits *f, const struct parts *parts, double
 	estimate[VARIANCE] = parts->all + squares / (d + 2);
 }
 
+static void moments_fill(const void *subject, int row, double *m)
+{
+	const struct fits *f = subject;
+	const int width = FIRST + 2 * f->rows->n_inputs;
+	memcpy(m, f->estimates + (size_t)row * width, sizeof *m * (size_t)width);
+}
+
+static void values_fill(const void *subject, const double *mean, double *value)
+{
+	const struct fits *f = subject;
+	for (int k = 0; k < 2 * f->rows->n_inputs; k++)
+		value[k] = mean[VARIANCE] > f->rows->variance_floor ? mean[FIRST + k] / mean[VARIANCE] : NAN;
+}
+
+/* The ratios with intervals from the groups of rows. */
+static void groups_fill(const struct fits *f, struct pound_estimate *first, struct pound_estimate *total)
+{
+	const int d = f->rows->n_inputs;
+	const struct pound_statistic statistic = {FIRST + 2 * d, 2 * d, moments_fill, values_fill, f};
+	struct pound_estimate estimates[2 * POUND_INPUTS_MAX];
+	pound_jackknife_estimates(&statistic, &f->rows->scatter, f->rows->n_rows, f->groups, estimates);
+	memcpy(first, estimates, sizeof *first * (size_t)d);
+	memcpy(total, estimates + d, sizeof *total * (size_t)d);
+}
+
 /* Ratio of the means of two columns of the rows' estimates, with the interval of its linearisation. */
 static struct pound_estimate ratio_interval(const double *estimates, int n, int width, int column,
                                             double variance_floor)
@@ -278,13 +305,13 @@ size_t pound_chaos_scratch(int n_rows, int n_inputs)
  * Given    rows       -                      outputs and their noise
  *          u          (n x 2 x n_inputs)     the design as probabilities in (0, 1), rows of A and B
  *          corrected  -                      for the noise of few signals (NAN for one signal)
- * Returns  first      (n_inputs)             with 95 % intervals from the scatter of the rows
+ * Returns  first      (n_inputs)             with 95 % intervals from the scatter of the rows, or of their groups
  *          total      (n_inputs)             likewise
  * Memory   scratch    (pound_chaos_scratch)  for all rows of the design
  *
  * An input without effect has a total near 0, not exactly 0 as without the control variate.
  *
- * Valid    Latin hypercube, random and quasi-random designs; intervals not for the last
+ * Valid    Latin hypercube, random and quasi-random designs
  * Source   control variates with estimated coefficients, cross-fitted: Chernozhukov et al. 2018, Econom. J. 21, C1-C68;
  *          Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indexes of the polynomial
  * Test     unit_chaos
@@ -302,7 +329,9 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
 			row_estimate(&fits, &parts, fits.coefficients[(size_t)fold * fits.terms], row, corrected,
 			             fits.estimates + (size_t)row * width);
 	}
-	for (int j = 0; j < d; j++) {
+	if (rows->scatter.grouping.n)
+		groups_fill(&fits, first, total);
+	for (int j = 0; j < d && !rows->scatter.grouping.n; j++) {
 		first[j] = ratio_interval(fits.estimates, n, width, FIRST + j, rows->variance_floor);
 		total[j] = ratio_interval(fits.estimates, n, width, FIRST + d + j, rows->variance_floor);
 	}

@@ -110,7 +110,8 @@ void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, do
 	const struct pound_statistic statistic = {FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill,
 	                                          values_fill, rows};
 	struct pound_estimate estimates[POUND_VALUES_MAX];
-	pound_interval_bootstrap(&statistic, rows->n_rows, seed, POUND_RESAMPLES, scratch, estimates);
+	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, POUND_RESAMPLES, scratch,
+	                         estimates);
 	for (int j = 0; j < d; j++) {
 		result->first_raw[j] = estimates[FIRST_RAW * d + j];
 		result->total_raw[j] = estimates[TOTAL_RAW * d + j];

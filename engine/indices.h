@@ -8,6 +8,7 @@
 #ifndef INDICES_H
 #define INDICES_H
 
+#include "engine/design.h"
 #include "engine/pound.h"
 
 /* One output of one cell: a ratio of means over the signals, of every sample (0: A, 1: B, 2 + j: A with column j
@@ -18,6 +19,7 @@ struct pound_sample_values {
 	/* outputs computed elsewhere are numerators of one signal, without denominators; their variances  (as these), NAN:
 	 * not known; NULL: computed here */
 	const double *variance;
+	struct pound_grouping grouping; /* of the rows */
 };
 
 /* How they came about. */
@@ -25,6 +27,13 @@ struct pound_sampling {
 	const double *u;    /* the design as probabilities in (0, 1), rows of A and B  (n_rows x 2 x n_inputs) */
 	bool random;        /* the excitation; of outputs computed elsewhere: their variances are known */
 	bool fresh_signals; /* each sample of a row has its own */
+	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
+};
+
+/* What the scatter of rows is told from: their groups if they have some, else the rows themselves. */
+struct pound_scatter {
+	struct pound_grouping grouping;
+	const int64_t *row; /* number in the design of each row that counts; NULL: its own */
 };
 
 /* The rows without a failed run.  y: outputs, centred by the mean of A and B; noise: their covariances over draws of
@@ -33,8 +42,9 @@ struct pound_rows {
 	int n_rows, n_inputs, n_signals;
 	double mean, variance_floor; /* a variance up to the floor is rounding */
 	int64_t *row;                /* which row of the design  (n_rows) */
-	double *y;                   /* (n_rows x (n_inputs + 2)) */
-	double *noise;               /* (n_rows x pound_rows_noises); NAN: one signal */
+	struct pound_scatter scatter;
+	double *y;     /* (n_rows x (n_inputs + 2)) */
+	double *noise; /* (n_rows x pound_rows_noises); NAN: one signal */
 };
 
 enum {
@@ -74,9 +84,20 @@ enum {
 	POUND_VALUES_MAX = POUND_MOMENTS_MAX
 };
 
+/* A statistic's values with 95 % intervals: by resampling rows, or by leaving out groups where there are some. */
 size_t pound_interval_scratch(int n_rows, int n_moments, int n_values); /* doubles */
+void pound_interval_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                              int n_rows, uint64_t seed, int n_resamples, double *scratch,
+                              struct pound_estimate *estimates);
 void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
                               int n_resamples, double *scratch, struct pound_estimate *estimates);
+size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments); /* doubles */
+void pound_jackknife_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                               int n_rows, double *scratch, struct pound_estimate *estimates);
+double pound_jackknife_student(int freedom); /* 97.5 % quantile of Student's law */
+/* Half of the 95 % interval of a mean over rows, with groups or without.  sums: (groups) */
+double pound_jackknife_half_width(const double *value, int n_rows, const struct pound_scatter *scatter,
+                                  double *sums);
 
 /* Pick-freeze indexes of a model with random signals. */
 struct pound_pick_freeze {

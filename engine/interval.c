@@ -5,7 +5,7 @@
  * 3. The interval goes from their 2.5 % to their 97.5 % quantile.
  *
  * Efron, Tibshirani 1993, An introduction to the bootstrap, chapter 13; rows of independent or Latin hypercube
- * designs only (rows of a quasi-random design are no sample: intervals would be several times too wide). */
+ * designs only (rows of a quasi-random design are no sample: intervals would be several times too wide; jackknife.c). */
 #include "engine/indices.h"
 
 #include "engine/random.h"
@@ -237,4 +237,23 @@ void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_row
 			estimates[v].low = quantile(resampled + v * POUND_RESAMPLES, defined[v], 0.025);
 			estimates[v].high = quantile(resampled + v * POUND_RESAMPLES, defined[v], 0.975);
 		}
+}
+
+/* A statistic's values, with 95 % intervals by what its rows are.
+ *
+ * Given    scatter    -               groups: by leaving each out (jackknife.c); none: by resampling rows
+ *          the rest                   as pound_interval_bootstrap has it
+ * Returns  estimates  (n_values)
+ * Memory   scratch    (pound_interval_scratch)
+ *
+ * Test     unit_jackknife: rows_in_groups_are_never_resampled
+ */
+void pound_interval_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                              int n_rows, uint64_t seed, int n_resamples, double *scratch,
+                              struct pound_estimate *estimates)
+{
+	if (scatter->grouping.n)
+		pound_jackknife_estimates(statistic, scatter, n_rows, scratch, estimates);
+	else
+		pound_interval_bootstrap(statistic, n_rows, seed, n_resamples, scratch, estimates);
 }

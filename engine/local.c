@@ -80,26 +80,22 @@ static void block_add(const struct pound_rows *rows, int sample, double grand, c
  * The influence of a row on S = mean(y m) / V, the prediction m estimated from the others, is
  * (2 y m - m^2 - S y^2) / V.
  */
-static struct pound_estimate influence_interval(struct sums sums, const double *variance, int n,
-                                                int n_samples, double variance_floor)
+static struct pound_estimate influence_interval(const struct pound_rows *rows, struct sums sums,
+                                                const double *variance, double *group_sums)
 {
-	double v = 0.0, product = 0.0, mean = 0.0, squares = 0.0;
+	const int n = rows->n_rows, n_samples = rows->n_inputs + 2;
+	double v = 0.0, product = 0.0;
 	for (int i = 0; i < n; i++) {
 		v += variance[i] / n;
 		product += sums.product[i] / n_samples / n;
 	}
-	if (!(v > variance_floor))
+	if (!(v > rows->variance_floor))
 		return (struct pound_estimate){NAN, NAN, NAN};
 	const double s = product / v;
-	for (int pass = 0; pass < 2; pass++)
-		for (int i = 0; i < n; i++) {
-			double influence = ((2.0 * sums.product[i] - sums.square[i]) / n_samples - s * variance[i]) / v;
-			if (pass == 0)
-				mean += influence / n;
-			else
-				squares += (influence - mean) * (influence - mean);
-		}
-	double half_width = POUND_NORMAL_95 * sqrt(squares / (n - 1.0) / n);
+	double *influence = sums.square;
+	for (int i = 0; i < n; i++)
+		influence[i] = ((2.0 * sums.product[i] - sums.square[i]) / n_samples - s * variance[i]) / v;
+	double half_width = pound_jackknife_half_width(influence, n, &rows->scatter, group_sums);
 	return (struct pound_estimate){s, s - half_width, s + half_width};
 }
 
@@ -153,6 +149,7 @@ void pound_local_first(const struct pound_rows *rows, const double *x, bool corr
 	double *variance = scratch, *y = variance + n, *fit = y + n;
 	struct sums sums = {fit + n, fit + 2 * (size_t)n};
 	size_t *order = (size_t *)(sums.square + n);
+	double *group_sums = (double *)(order + n);
 	const bool enough = n >= POUND_ROWS_MIN;
 	const double grand = enough ? variances_fill(rows, corrected, variance) : NAN;
 	for (int j = 0; j < d; j++) {
@@ -167,7 +164,7 @@ void pound_local_first(const struct pound_rows *rows, const double *x, bool corr
 				if ((p == 1 || p == 2 + j) == (matrix == 1))
 					block_add(rows, p, grand, order, y, fit, sums);
 		}
-		first[j] = enough ? influence_interval(sums, variance, n, d + 2, rows->variance_floor)
+		first[j] = enough ? influence_interval(rows, sums, variance, group_sums)
 		                  : (struct pound_estimate){NAN, NAN, NAN};
 	}
 }

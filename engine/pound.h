@@ -129,11 +129,19 @@ struct pound_sweep {
 	const double *values; /* (n_values) */
 };
 
+/* A design that grows until every interval of S1 and ST is narrow. */
+struct pound_until {
+	double half_width; /* that each is to have at most; 0: the design does not grow */
+	int max_runs;      /* pounding runs at most */
+};
+
 struct pound_design {
 	int method; /* row of the designs, pound_design_name */
-	int rows;   /* n, rows of the matrices A and B  >= 2 */
+	int rows;   /* n, rows of the matrices A and B  >= 2; of a design that grows, to begin with */
 	uint64_t seed;
 	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
+	int randomisations;  /* of a quasi-random design, independent of each other; 0: as many as is best */
+	struct pound_until until;
 };
 
 struct pound_solver {
@@ -177,10 +185,18 @@ const char *pound_excitation_name(int row);
 const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
 const char *pound_design_name(int row);
+bool pound_design_quasi_random(int row);
 const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
 const char *pound_output_name(int row);
+
+/* Rows of a study's design at its look-th look at the intervals, from 0; one that does not grow has all of them always.
+ * 0: max_runs does not allow the first look. */
+int pound_design_rows(const struct pound_study *study, int look);
+int pound_design_rows_least(const struct pound_study *study);   /* at the first, of any that grows */
+int pound_design_rows_most(const struct pound_study *study);    /* at the last look */
+int64_t pound_design_row_runs(const struct pound_study *study); /* pounding runs of a row, in all cells */
 
 /* The trials of a convergence study: the event solver, the second opinion, every setting; and the solver of one. */
 int pound_convergence_trials(const struct pound_study *study);

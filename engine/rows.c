@@ -110,8 +110,13 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 	const int d = values->n_inputs, n_samples = d + 2, n_signals = values->n_signals;
 	const int n_noises = pound_rows_noises(d);
 	*rows = (struct pound_rows){.n_inputs = d, .n_signals = n_signals, .y = scratch};
+	const struct pound_grouping *grouping = &values->grouping;
+	const int groups = grouping->n ? (values->n_rows + grouping->run - 1) / grouping->run : 0;
+	rows->scatter.grouping = *grouping;
+	rows->scatter.grouping.n = groups < grouping->n ? groups : grouping->n;
 	rows->noise = rows->y + (size_t)values->n_rows * n_samples;
 	rows->row = (int64_t *)(rows->noise + (size_t)values->n_rows * n_noises);
+	rows->scatter.row = rows->row;
 	double *deviation = (double *)(rows->row + values->n_rows), largest = 0.0;
 	for (int i = 0; i < values->n_rows; i++) {
 		double *y = rows->y + (size_t)rows->n_rows * n_samples, row_largest = 0.0;

@@ -119,7 +119,7 @@ static struct pound_campaign campaign_of(const struct pound_study *study)
 	bool sampled = study->kind == POUND_KIND_SENSITIVITY, trials = study->kind == POUND_KIND_CONVERGENCE;
 	struct pound_campaign c = {.study = study,
 	                           .n_cells = 1,
-	                           .n_rows = sampled  ? study->design.rows
+	                           .n_rows = sampled  ? pound_design_rows_most(study)
 	                                     : trials ? pound_convergence_trials(study)
 	                                              : 1,
 	                           .n_samples = sampled ? study->n_inputs + 2 : 1,
@@ -512,14 +512,16 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	                                     .n_signals = c->n_signals,
 	                                     .numerator = scratch,
 	                                     .denominator = elsewhere ? NULL : scratch + n,
-	                                     .variance = elsewhere ? scratch + n : NULL};
+	                                     .variance = elsewhere ? scratch + n : NULL,
+	                                     .grouping = pound_design_grouping(c->study)};
 	struct pound_cell *into = &run->result.cells[cell];
 	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
 	const struct pound_sampling sampling = {
 	    .u = run->u,
 	    .random =
 	        elsewhere ? any_known(values.variance, n) : pound_excitation_random(&c->study->scene.excitation),
-	    .fresh_signals = !c->study->design.common_signals};
+	    .fresh_signals = !c->study->design.common_signals,
+	    .quasi_random = pound_design_quasi_random(c->study->design.method)};
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);
 	double *rest = scratch + 2 * n + checks_size(c);

@@ -96,7 +96,7 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 		const struct subject subject = {pound_estimator_row(0), &rows};
 		const struct pound_statistic statistic = {n_moments(d), 2 * d, subject_moments, subject_values,
 		                                          &subject};
-		pound_interval_bootstrap(&statistic, rows.n_rows, seed, n_resamples,
+		pound_interval_estimates(&statistic, &rows.scatter, rows.n_rows, seed, n_resamples,
 		                         scratch + pound_rows_scratch(values->n_rows, d, values->n_signals),
 		                         estimates);
 	}

@@ -309,7 +309,8 @@ static double design_runs(const struct pound_study *study)
 {
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		return pound_convergence_trials(study);
-	return study->kind == POUND_KIND_RESPONSE ? 1 : (double)study->design.rows * (study->n_inputs + 2);
+	return study->kind == POUND_KIND_RESPONSE ? 1
+	                                          : (double)pound_design_rows_most(study) * (study->n_inputs + 2);
 }
 
 /* Steps of the longest sample interval; those of an adaptive solver are not known, its samples count as one each. */
@@ -345,6 +346,20 @@ static void check_steps(const struct pound_study *study, struct problems *proble
 		}
 }
 
+/* Rows enough for intervals, from the start. */
+static void check_rows(const struct pound_study *study, struct problems *problems)
+{
+	const struct pound_design *design = &study->design;
+	bool nets = pound_design_quasi_random(design->method), grows = design->until.half_width > 0;
+	if (grows && pound_design_rows(study, 0) == 0)
+		problems_add(problems, "/design/until/max_runs", "must be at least %lld: %d rows of %lld runs",
+		             (long long)(pound_design_rows_least(study) * pound_design_row_runs(study)),
+		             pound_design_rows_least(study), (long long)pound_design_row_runs(study));
+	if (nets && !grows && design->rows < 2 * design->randomisations)
+		problems_add(problems, "/design/rows", "must be at least %d, two for each randomisation, got %d",
+		             2 * design->randomisations, design->rows);
+}
+
 static void check_size(const struct pound_study *study, struct problems *problems)
 {
 	const char *pointer = size_pointer(study);
@@ -367,6 +382,8 @@ static void check_size(const struct pound_study *study, struct problems *problem
 		             "a motion), at most %d",
 		             at_once, STUDY_AT_ONCE_MAX);
 	check_steps(study, problems);
+	if (sampled)
+		check_rows(study, problems);
 }
 
 /* Checks what members mean together.

@@ -202,6 +202,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 	if (!study->elsewhere)
 		write_sweeps(&c);
 	write_object(&c, "design", "/design", study);
+	if (study->design.until.half_width > 0)
+		write_object(&c, "until", "/design/until", study);
 	if (!study->elsewhere) {
 		writer_array(&c.w, "outputs", WRITER_LINES);
 		for (int o = 0; o < study->n_outputs; o++)

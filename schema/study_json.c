@@ -17,6 +17,9 @@
 #include "schema/reader.h"
 #include "schema/study_check.h"
 
+// rows of a quasi-random design when the document says nothing: powers of two; one that grows begins with few
+enum { ROWS_QUASI_RANDOM = 1024, ROWS_FIRST = 2 };
+
 /* One allocation holds a study and all it points to. */
 struct block {
 	struct pound_study study;
@@ -157,6 +160,27 @@ static void read_contact(struct reader *r, const struct field *field, const cJSO
 		reader_object(r, field->pattern, node, base);
 }
 
+/* Notes a member that is there for nothing. */
+static void unneeded(struct reader *r, const cJSON *object, const char *name, const char *design)
+{
+	if (!cJSON_GetObjectItemCaseSensitive(object, name))
+		return;
+	size_t length = reader_enter(r, name);
+	problems_add(r->problems, r->pointer, "is not used by design \"%s\"", design);
+	reader_leave(r, length);
+}
+
+static void read_design(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	struct pound_design *design = &r->study->design;
+	if (!reader_object(r, field->pattern, node, base) || !r->kind || strcmp(r->kind, "sensitivity") != 0)
+		return;
+	if (!pound_design_quasi_random(design->method))
+		unneeded(r, node, "randomisations", pound_design_name(design->method));
+	else if (!cJSON_GetObjectItemCaseSensitive(node, "rows"))
+		design->rows = design->until.half_width > 0 ? ROWS_FIRST : ROWS_QUASI_RANDOM;
+}
+
 /* ---- lists ---- */
 
 static void read_oscillator(struct reader *r, const cJSON *node, int i)
@@ -248,6 +272,7 @@ static const struct {
     {"/inputs", reader_inputs},
     {"/inputs/*/distribution", reader_distribution},
     {"/sweep", reader_sweeps},
+    {"/design", read_design},
     {"/sweep/*/values", reader_values},
     {"/outputs", read_outputs},
     {"/convergence/newmark/steps_s", reader_settings},

@@ -112,24 +112,38 @@ const struct function *function_named(const char *name)
 	return f;
 }
 
-double *function_design(int n_rows, uint64_t seed)
+struct pound_study function_study(const struct pound_design *design)
 {
-	struct pound_input inputs[FUNCTION_INPUTS];
-	memset(inputs, 0, sizeof inputs);
+	static struct pound_input inputs[FUNCTION_INPUTS];
 	for (int j = 0; j < FUNCTION_INPUTS; j++)
 		inputs[j].distribution = (struct pound_distribution){0, {0.0, 1.0}};
-	struct pound_study study = {
-	    .n_inputs = FUNCTION_INPUTS, .inputs = inputs, .design = {.rows = n_rows, .seed = seed}};
-	double *x = malloc(sizeof *x * 2 * FUNCTION_INPUTS * (size_t)n_rows);
+	return (struct pound_study){.kind = POUND_KIND_SENSITIVITY,
+	                            .scene.excitation.signals = 1,
+	                            .n_inputs = FUNCTION_INPUTS,
+	                            .inputs = inputs,
+	                            .design = *design};
+}
+
+double *function_design_of(const struct pound_design *design)
+{
+	const struct pound_study study = function_study(design);
+	double *x = malloc(sizeof *x * 2 * FUNCTION_INPUTS * (size_t)pound_design_rows_most(&study));
 	pound_design_fill(&study, x);
 	return x;
 }
 
-struct pound_sample_values function_values(const struct function *f, int n_rows, uint64_t seed,
-                                           struct function_noise noise)
+double *function_design(int n_rows, uint64_t seed)
+{
+	return function_design_of(&(struct pound_design){.rows = n_rows, .seed = seed});
+}
+
+struct pound_sample_values function_values_of(const struct function *f, const struct pound_design *design,
+                                              struct function_noise noise)
 {
 	enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
-	double *x = function_design(n_rows, seed);
+	const struct pound_study study = function_study(design);
+	const int n_rows = pound_design_rows_most(&study);
+	double *x = function_design_of(design);
 	size_t n = (size_t)n_rows * SAMPLES * noise.n_signals;
 	double *numerator = malloc(2 * sizeof *numerator * n), *denominator = numerator + n;
 	double deviation = sqrt(noise.share * f->variance);
@@ -141,7 +155,7 @@ struct pound_sample_values function_values(const struct function *f, int n_rows,
 			double y = f->y(u);
 			for (int r = 0; r < noise.n_signals; r++) {
 				size_t k = ((size_t)i * SAMPLES + p) * noise.n_signals + r;
-				struct pound_stream stream = {.seed = seed,
+				struct pound_stream stream = {.seed = design->seed,
 				                              .what = POUND_STREAM_NOISE,
 				                              .row = i,
 				                              .sample = noise.common ? 0 : p,
@@ -153,7 +167,18 @@ struct pound_sample_values function_values(const struct function *f, int n_rows,
 			}
 		}
 	free(x);
-	return (struct pound_sample_values){n_rows, D, noise.n_signals, numerator, denominator, NULL};
+	return (struct pound_sample_values){.n_rows = n_rows,
+	                                    .n_inputs = D,
+	                                    .n_signals = noise.n_signals,
+	                                    .numerator = numerator,
+	                                    .denominator = denominator,
+	                                    .grouping = pound_design_grouping(&study)};
+}
+
+struct pound_sample_values function_values(const struct function *f, int n_rows, uint64_t seed,
+                                           struct function_noise noise)
+{
+	return function_values_of(f, &(struct pound_design){.rows = n_rows, .seed = seed}, noise);
 }
 
 void function_values_free(struct pound_sample_values *values)

@@ -36,4 +36,11 @@ void function_values_free(struct pound_sample_values *values);
 /* The rows of that Latin hypercube  (n_rows x 2 x FUNCTION_INPUTS); free. */
 double *function_design(int n_rows, uint64_t seed);
 
+/* The same of any design; rows and grouping are those of the whole design, even if it grows. */
+struct pound_sample_values function_values_of(const struct function *f, const struct pound_design *design,
+                                              struct function_noise noise);
+double *function_design_of(const struct pound_design *design);
+/* A study of such inputs, pointing to constant ones. */
+struct pound_study function_study(const struct pound_design *design);
+
 #endif

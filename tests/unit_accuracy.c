@@ -41,7 +41,7 @@ static void differences_of_runs_come_out_relative_and_as_a_variance(void **state
 	double denominator[VALUES];
 	for (int k = 0; k < VALUES; k++)
 		denominator[k] = 1;
-	struct pound_sample_values values = {2, 1, 2, numerator, denominator, NULL};
+	struct pound_sample_values values = {2, 1, 2, numerator, denominator, NULL, {0}};
 	struct pound_check check[] = {
 	    {0, 0, {1, 1}, {1, 1}},     // alike
 	    {0, 1, {5, 5.5}, {1, 1}},   // 1/11 apart, e = 1/2

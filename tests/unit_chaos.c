@@ -89,7 +89,8 @@ static void rows_left_out_do_not_shift_the_inputs_of_the_others(void **state)
 	(void)state;
 	struct pound_sample_values values = function_values(function_named("cusp"), 300, 3, noiseless);
 	double *u = function_design(300, 3), *y = (double *)values.numerator;
-	struct pound_sample_values cut = {250, D, 1, y + 50 * SAMPLES, values.denominator + 50 * SAMPLES, NULL};
+	struct pound_sample_values cut = {250,  D,  1, y + 50 * SAMPLES, values.denominator + 50 * SAMPLES,
+	                                  NULL, {0}};
 	struct indexes want = indexes_of(&cut, u + 50 * 2 * D, false);
 	for (int i = 0; i < 50; i++)
 		y[i * SAMPLES + i % SAMPLES] = NAN;

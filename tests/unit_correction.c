@@ -49,7 +49,7 @@ static void the_golden_row_set_is_met(void **state)
 				numerator[i][p][r] = 2.0 * y[p][i][r];
 				denominator[i][p][r] = 2.0;
 			}
-	struct pound_sample_values values = {5, 2, 3, &numerator[0][0][0], &denominator[0][0][0], NULL};
+	struct pound_sample_values values = {5, 2, 3, &numerator[0][0][0], &denominator[0][0][0], NULL, {0}};
 	struct pound_rows rows = rows_of(&values);
 	rows.variance_floor = -INFINITY; // the golden variance of the mean response is negative
 	struct pound_pick_freeze got = pick_freeze(&rows, 1);

@@ -68,8 +68,8 @@ static void rows_left_out_do_not_shift_the_inputs_of_the_others(void **state)
 	double *x = function_design(N, 5), *y = (double *)values.numerator;
 	struct pound_estimate want[D], got[D];
 	// what is left after the first hundred rows fail is what is left after cutting them off
-	struct pound_sample_values cut = {N - 100, D, 1, y + 100 * SAMPLES, values.denominator + 100 * SAMPLES,
-	                                  NULL};
+	struct pound_sample_values cut = {N - 100, D,  1, y + 100 * SAMPLES, values.denominator + 100 * SAMPLES,
+	                                  NULL,    {0}};
 	first_of(&cut, x + 100 * 2 * D, false, want);
 	for (int i = 0; i < 100; i++)
 		y[i * SAMPLES + i % SAMPLES] = NAN;

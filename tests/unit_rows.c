@@ -10,7 +10,7 @@ enum { D = 1, SAMPLES = D + 2, SIGNALS = 3 };
 static struct pound_rows rows_of(int n_rows, int n_signals, const double *numerator,
                                  const double *denominator)
 {
-	struct pound_sample_values values = {n_rows, D, n_signals, numerator, denominator, NULL};
+	struct pound_sample_values values = {n_rows, D, n_signals, numerator, denominator, NULL, {0}};
 	struct pound_rows rows;
 	pound_rows_init(&rows, &values, malloc(sizeof(double) * pound_rows_scratch(n_rows, D, n_signals)));
 	return rows;

@@ -36,7 +36,7 @@ static struct indexes *function_indexes(const char *name, int n_rows, struct fun
 {
 	struct pound_sample_values values = function_values(function_named(name), n_rows, 7, noise);
 	double *u = function_design(n_rows, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, random, !noise.common});
+	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, random, !noise.common, false});
 	free(u);
 	function_values_free(&values);
 	return got;
@@ -54,7 +54,7 @@ static void every_column_comes_from_its_function(void **state)
 	struct pound_sample_values values =
 	    function_values(function_named("cusp"), N, 7, (struct function_noise){5, 1.0, true});
 	double *u = function_design(N, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false});
+	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
 	struct pound_rows rows;
 	struct pound_pick_freeze pick_freeze;
 	struct pound_estimate local[D], first[D], total[D];
@@ -97,8 +97,8 @@ static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
 	double one[6 * 4];
 	for (int k = 0; k < 6 * 4; k++)
 		one[k] = 1;
-	struct pound_sample_values values = {6, 2, 1, y, one, NULL};
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false});
+	struct pound_sample_values values = {6, 2, 1, y, one, NULL, {0}};
+	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
 	check_near(got->estimates[POUND_S1_RAW][0].value, 0.572576783750673, 1e-12);
 	check_near(got->estimates[POUND_S1_RAW][1].value, 0.755503894911683, 1e-12);
 	check_near(got->estimates[POUND_ST_RAW][0].value, 0.880662387875659, 1e-12);
@@ -164,9 +164,9 @@ static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left
 			numerator[i * SAMPLES * 2 + k] = (k % 2 ? 1 : -1) + 1e-3 * ((i * 7 + k) % 5);
 			one[i * SAMPLES * 2 + k] = 1;
 		}
-	struct pound_sample_values values = {N, D, 2, numerator, one, NULL};
+	struct pound_sample_values values = {N, D, 2, numerator, one, NULL, {0}};
 	double *u = function_design(N, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false});
+	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
 	assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOISE);
 	for (int j = 0; j < D; j++) {
 		assert_true(isfinite(got->estimates[POUND_ST_RAW][j].value));
@@ -188,8 +188,8 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 			denominator[i] = 0.1 + 0.7 * (i % 17);
 			numerator[i] = i < kept[k] * SAMPLES * 3 ? 1.1 * denominator[i] : NAN; // 1.1 but for rounding
 		}
-		struct pound_sample_values values = {N, D, 3, numerator, denominator, NULL};
-		struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false});
+		struct pound_sample_values values = {N, D, 3, numerator, denominator, NULL, {0}};
+		struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
 		assert_int_equal(got->of.notes, 1 << notes[k]);
 		assert_int_equal(got->dropped, N - kept[k]);
 		for (int c = 0; c < POUND_N_INDEXES; c++)
@@ -227,7 +227,7 @@ static struct pound_sample_values means_of(const struct pound_study *study, cons
 		pound_run_sample_output(run, cell, k / (d + 2), k % (d + 2), output, &numerator[k], &variance);
 		denominator[k] = 1;
 	}
-	return (struct pound_sample_values){study->design.rows, d, 1, numerator, denominator, NULL};
+	return (struct pound_sample_values){study->design.rows, d, 1, numerator, denominator, NULL, {0}};
 }
 
 static void check_column(const struct reading *r, const char *at, enum pound_index index, const char *name,
@@ -273,7 +273,7 @@ static void a_study_s_result_holds_what_its_samples_give(void **state)
 			pound_run_sample_inputs(run, i / 2, i % 2, x);
 			u[2 * i] = (x[0] - 1) / 4, u[2 * i + 1] = (x[1] - 0.1) / 0.9;
 		}
-		struct indexes *want = indexes_of(&values, (struct pound_sampling){u, random, false});
+		struct indexes *want = indexes_of(&values, (struct pound_sampling){u, random, false, false});
 		for (int c = 0; c < POUND_N_INDEXES; c++)
 			for (int j = 0; j < 2; j++)
 				assert_true(c == POUND_S2_EXCITATION || isfinite(want->estimates[c][j].value));
