@@ -11,7 +11,7 @@ WARN     := -Wall -Wextra -Werror -Wmissing-prototypes -Wshadow -Wvla -Wno-psabi
 CPPFLAGS += -I. -D_GNU_SOURCE
 CFLAGS   += -std=c17 $(WARN) -ffp-contract=off -fno-math-errno -fstack-protector-strong -MMD -MP $(MODE.$(MODE))
 
-# march.c is compiled once per lane count; engine/dispatch.c chooses at run time, all give the same bits
+# march.c and spectrum.c are compiled once per lane count, chosen among at run time; all give the same bits
 WIDTHS         := portable w1 w4 w8
 LANES.portable := -DPOUND_LANES=1
 LANES.w1       := -DPOUND_LANES=1 -mfma
@@ -28,7 +28,8 @@ LIBS.client := -lcurl -lcjson -lpthread
 LIBS.tests  := -lcmocka -lcurl
 
 objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
-ENGINE := $(call objs,engine,engine/march.c) $(WIDTHS:%=$(B)/engine/march_%.o)
+ENGINE := $(call objs,engine,engine/march.c engine/spectrum.c) $(WIDTHS:%=$(B)/engine/march_%.o) \
+          $(WIDTHS:%=$(B)/engine/spectrum_%.o)
 SCHEMA := $(call objs,schema) $(B)/schema/examples.o
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
@@ -54,6 +55,9 @@ $(B)/%.o: %.c
 $(B)/engine/march_%.o: engine/march.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_MARCH=pound_march_$* -c -o $@ $<
+$(B)/engine/spectrum_%.o: engine/spectrum.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<
 
 # the database's schema is built into the server, as a C string
 $(B)/schema/store.sql.inc: schema/store.sql

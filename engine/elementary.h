@@ -1,4 +1,4 @@
-/* elementary.h - logarithm, sine and cosine from +, -, *, / alone.
+/* elementary.h - logarithm, exponential, sine and cosine from +, -, *, / alone.
  *
  * The C library's differ from one machine to the next in the last bit; these give the same bits everywhere. 
  * No branches and no 64-bit integer conversions: a loop over an array becomes vector instructions. The
@@ -68,6 +68,23 @@ static inline void pound_elementary_sincos(double x, double *sine, double *cosin
 	const uint64_t swap = (a ^ b) & (0 - (q & 1));
 	*sine = pound_elementary_double((a ^ swap) ^ (q & 2) << 62);
 	*cosine = pound_elementary_double((b ^ swap) ^ ((q + 1) & 2) << 62);
+}
+
+/* e^x to 2 units of the last place, |x| < 708.
+ *
+ *   x = k ln 2 + r, |r| <= ln 2/2     e^x = 2^k (1 + r + r^2/2! + ... + r^13/13!) */
+static inline double pound_elementary_exp(double x)
+{
+	static const double share[] = {1.0 / 13, 1.0 / 12, 1.0 / 11, 1.0 / 10, 1.0 / 9, 1.0 / 8,
+	                               1.0 / 7,  1.0 / 6,  1.0 / 5,  1.0 / 4,  1.0 / 3, 1.0 / 2};
+	const double shifted = x * 0x1.71547652b82fep+0 + 0x1.8p52, k = shifted - 0x1.8p52;
+	const double r = (x - k * 0x1.62e42fefa3800p-1) - k * 0x1.ef35793c76730p-45; // ln 2 in two parts
+	double sum = 1;
+	for (int n = 0; n < 12; n++)
+		sum = 1 + r * share[n] * sum;
+	// the whole number stands in the last bits of `shifted`
+	const uint64_t power = (pound_elementary_bits(shifted) + 1023) << 52;
+	return pound_elementary_double(power) * (1 + r * sum);
 }
 
 #endif

@@ -52,7 +52,12 @@ enum pound_failure {
 /* The study: one in-memory form.  `type`, `model`, `method` and `outputs[]` are row numbers of the engine's tables;
  * pound_*_name(row) is the name in a study document, NULL past the last row. */
 
-enum pound_kind { POUND_KIND_RESPONSE, POUND_KIND_SENSITIVITY, POUND_KIND_CONVERGENCE };
+enum pound_kind {
+	POUND_KIND_RESPONSE,
+	POUND_KIND_SENSITIVITY,
+	POUND_KIND_CONVERGENCE,
+	POUND_KIND_FLOOR_SPECTRUM
+};
 
 struct pound_law {
 	int type;                  /* row of the laws, pound_law_name */
@@ -161,6 +166,16 @@ struct pound_convergence {
 	double history;                                /* displacements are compared for so long [s]  > 0 */
 };
 
+/* the oscillators on the left floor */
+struct pound_spectrum {
+	int n;                        /* frequencies; 0: no spectrum is asked */
+	const double *frequencies_hz; /* (n); NULL: n from min_hz to max_hz, each the same multiple of the one before */
+	double min_hz, max_hz;
+	double damping_ratio; /* [0, 1) */
+	int pulses;           /* of the idealised train; 0: as many as there are contacts */
+	bool histories;       /* the floor's history is wanted too */
+};
+
 struct pound_study {
 	enum pound_kind kind;
 	const char *name; /* NULL: none */
@@ -176,7 +191,10 @@ struct pound_study {
 	char **output_names; /* elsewhere, in their place: any number of names  (n_outputs), not owned */
 	struct pound_solver solver;
 	struct pound_convergence convergence;
+	struct pound_spectrum spectrum;
 };
+
+double pound_spectrum_frequency(const struct pound_spectrum *spectrum, int k); /* [Hz] */
 
 /* The tables' names, NULL past the last row. */
 const char *pound_law_name(int row);

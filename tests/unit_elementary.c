@@ -1,4 +1,4 @@
-/* Logarithm, sine and cosine against the C library in 80-bit arithmetic, whose own error is 2^-10 of ours. */
+/* Logarithm, exponential, sine and cosine against the C library in 80-bit arithmetic, whose own error is 2^-10 of ours. */
 #include <float.h>
 #include <math.h>
 
@@ -56,6 +56,22 @@ static void sines_and_cosines_are_right_to_two_units_of_the_last_place(void **st
 	check_near(worst, 0, 2);
 }
 
+static void exponentials_are_right_to_two_units_of_the_last_place(void **state)
+{
+	(void)state;
+	double worst = 0;
+	for (int scale = -60; scale <= 8; scale += 4)
+		for (int i = -5000; i < 5000; i++) {
+			const double x = ldexp((i + 0.37) / 5000, scale);
+			worst = fmax(worst, ulps(pound_elementary_exp(x), expl(x)));
+		}
+	for (double x = -708; x < 708; x += 0.1237)
+		worst = fmax(worst, ulps(pound_elementary_exp(x), expl(x)));
+	assert_true(worst > 0);
+	check_near(worst, 0, 2);
+	assert_true(pound_elementary_exp(0) == 1);
+}
+
 static void quarter_turns_are_exact(void **state)
 {
 	(void)state;
@@ -84,4 +100,5 @@ static void the_bits_are_the_same_everywhere(void **state)
 
 CHECK_MAIN(cmocka_unit_test(logarithms_are_right_to_two_units_of_the_last_place),
            cmocka_unit_test(sines_and_cosines_are_right_to_two_units_of_the_last_place),
+           cmocka_unit_test(exponentials_are_right_to_two_units_of_the_last_place),
            cmocka_unit_test(quarter_turns_are_exact), cmocka_unit_test(the_bits_are_the_same_everywhere))

@@ -1,0 +1,201 @@
+/* floor.c - the spectra and the history of one floor under one task.
+ *
+ * 1. The trace hands out its pieces stretch by stretch;
+ * 2. every oscillator rides over a stretch before the next one is made, so that memory does not grow with time. */
+#include "engine/floor.h"
+
+#include <assert.h>
+#include <stdalign.h>
+#include <string.h>
+
+#include "engine/elementary.h"
+
+struct pound_floor {
+	int n;         /* frequencies; arrays are in whole groups */
+	double *omega; /* [rad/s] */
+	double *z[POUND_DRIVES], *v[POUND_DRIVES], *top[POUND_DRIVES];
+	double damping;
+	struct pound_trace trace;
+	alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
+	struct pound_trace_stretch stretch;
+};
+
+static bool always(void)
+{
+	return true;
+}
+
+static bool has_fma(void)
+{
+	return __builtin_cpu_supports("fma");
+}
+
+static bool has_avx2(void)
+{
+	return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+}
+
+static bool has_avx512(void)
+{
+	return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+	       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma");
+}
+
+// widest first
+static const struct width {
+	int lanes;
+	bool (*supported)(void);
+	void (*ride)(const struct pound_bank *, const struct pound_ride *, void *scratch);
+} widths[] = {
+    {8, has_avx512, pound_spectrum_w8},
+    {4, has_avx2, pound_spectrum_w4},
+    {1, has_fma, pound_spectrum_w1},
+    {1, always, pound_spectrum_portable},
+};
+
+/* Takes a bank over a stretch at a lane count; 0: the widest there is; false: this machine has no such lanes. */
+bool pound_spectrum_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *ride,
+                          void *scratch)
+{
+	for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++)
+		if ((lanes == 0 || widths[w].lanes == lanes) && widths[w].supported()) {
+			widths[w].ride(bank, ride, scratch);
+			return true;
+		}
+	return false;
+}
+
+/* Frequency k of a spectrum, both ends of a range exact [Hz].
+ *
+ * Test     unit_floor: a_range_of_frequencies_is_a_geometric_one
+ */
+double pound_spectrum_frequency(const struct pound_spectrum *s, int k)
+{
+	if (s->frequencies_hz)
+		return s->frequencies_hz[k];
+	if (k == 0 || k == s->n - 1)
+		return k == 0 ? s->min_hz : s->max_hz;
+	double ratio = pound_elementary_log(s->max_hz / s->min_hz);
+	return s->min_hz * pound_elementary_exp(ratio * k / (s->n - 1));
+}
+
+/* ---- work space ---- */
+
+static int whole_groups(int n)
+{
+	return (n + POUND_SPECTRUM_GROUP - 1) / POUND_SPECTRUM_GROUP * POUND_SPECTRUM_GROUP;
+}
+
+size_t pound_floor_bytes(int n_frequencies)
+{
+	return sizeof(struct pound_floor) +
+	       (1 + 3 * POUND_DRIVES) * sizeof(double) * (size_t)whole_groups(n_frequencies);
+}
+
+struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *spectrum)
+{
+	static const double PI = 3.14159265358979323846;
+	struct pound_floor *floor = memory;
+	int whole = whole_groups(spectrum->n);
+	double *numbers = (double *)(floor + 1);
+	floor->n = spectrum->n;
+	floor->damping = spectrum->damping_ratio;
+	floor->omega = numbers;
+	for (int d = 0; d < POUND_DRIVES; d++) {
+		floor->z[d] = numbers += whole;
+		floor->v[d] = numbers += whole;
+		floor->top[d] = numbers += whole;
+	}
+	// what fills the last group is its last frequency once more
+	for (int k = 0; k < whole; k++)
+		floor->omega[k] = 2 * PI * pound_spectrum_frequency(spectrum, k < spectrum->n ? k : spectrum->n - 1);
+	return floor;
+}
+
+/* ---- spectra ---- */
+
+/* Pseudo-acceleration spectra of the floor of a task.
+ *
+ * Given    ask      the task; an undefined lane count is a fault of the caller
+ * Returns  answer   largest w^2 |z| of oscillators at rest at first, while the ground motion lasts
+ * Status   POUND_CHATTER  the motion could not be followed; the answer is not to be used
+ *
+ * Source   model.md 7 of the project's design pages
+ * Test     unit_floor
+ */
+enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                                      struct pound_floor_answer *answer)
+{
+	int whole = whole_groups(floor->n);
+	struct pound_bank bank = {.n_groups = whole / POUND_SPECTRUM_GROUP,
+	                          .n_drives = ask->n_drives,
+	                          .damping = floor->damping,
+	                          .radians = ask->radians,
+	                          .omega = floor->omega};
+	const struct pound_ride ride = {.stretch = &floor->stretch,
+	                                .time_step = ask->task->time_step,
+	                                .damping = ask->task->bodies[0].damping};
+	for (int d = 0; d < ask->n_drives; d++) {
+		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
+		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
+	}
+	pound_trace_start(&floor->trace, ask->task);
+	for (;;) {
+		pound_trace_next(&floor->trace, &floor->stretch);
+		if (floor->stretch.n == 0)
+			break;
+		bool ridden = pound_spectrum_lanes(ask->lanes, &bank, &ride, floor->scratch);
+		assert(ridden);
+		(void)ridden;
+	}
+	for (int d = 0; d < ask->n_drives; d++)
+		for (int k = 0; k < floor->n; k++)
+			answer->psa[d][k] = floor->omega[k] * floor->omega[k] * floor->top[d][k];
+	answer->impulse_max = floor->trace.impulse_max;
+	answer->contacts = floor->trace.contacts;
+	return floor->trace.status;
+}
+
+/* ---- history ---- */
+
+static double polynomial_end(const struct pound_polynomial *a, int order)
+{
+	double sum = 0;
+	for (int n = order; n >= 0; n--)
+		sum += a->c[n];
+	return sum;
+}
+
+/* The history of a task's floor.
+ *
+ * Returns  take    called in the order of time; at an event twice, for what was before and what is after
+ * Status   POUND_CHATTER  the motion could not be followed to its end
+ * Test     unit_floor: a_history_has_every_sample_and_both_sides_of_every_event
+ */
+enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_march_task *task,
+                                      pound_floor_take *take, void *into)
+{
+	struct pound_floor_instant last = {0};
+	pound_trace_start(&floor->trace, task);
+	for (;;) {
+		pound_trace_next(&floor->trace, &floor->stretch);
+		if (floor->stretch.n == 0)
+			break;
+		for (int i = 0; i < floor->stretch.n; i++) {
+			const struct pound_trace_piece *p = &floor->stretch.piece[i];
+			struct pound_floor_instant now = {p->start, p->u, p->v, p->floor.c[0], p->push.c[0]};
+			last.time = now.time, last.u = now.u, last.v = now.v;
+			if (p->turned)
+				take(into, &last);
+			if (p->sampled || p->turned)
+				take(into, &now);
+			last.acceleration = polynomial_end(&p->floor, p->order);
+			last.push = polynomial_end(&p->push, p->order);
+		}
+	}
+	last.time = (task->n_samples - 1) * task->time_step;
+	last.u = floor->trace.u[0], last.v = floor->trace.v[0];
+	if (!floor->trace.status)
+		take(into, &last);
+	return floor->trace.status;
+}

@@ -1,0 +1,398 @@
+/* trace.c - one task followed by power series from event to event, every piece handed out.
+ *
+ * 1. Over a step the bodies and the overlap are power series; the step is short enough for them to end in rounding.
+ * 2. It is cut at the first root of a guard, found by parabolas that pass no root: contact opens or closes, an edge of
+ *    a law is reached, a velocity turns.
+ * 3. The floor's absolute acceleration -(c v + r + F)/m1 and its part -F/m1 are combinations of the same series.
+ *
+ * The march does the same in lanes and keeps nothing; what both must agree in is under test. */
+#include "engine/trace.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+	N = POUND_TRACE_ORDER,
+	ROOT_ROUNDS = 64,
+	DEFLATE_MAX = 6,        /* leading zeros of a guard: at rest, touching, equal ground */
+	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
+	EDGES = 3,
+};
+
+static const double REACH = 1; /* largest rate * step of a series */
+static const double SHORTER = 0x1p-8, SHORTEST = 0x1p-400, LONGER = 0x1p4; /* as in march.c */
+
+enum event { NOTHING, CUT, CONTACT, CLEARS, BODY }; // an edge of body i is BODY + EDGES i + edge
+
+/* Both bodies and the overlap over a step of time 0 .. 1: displacement, and velocity times the step. */
+struct series {
+	int order;
+	double step;
+	double u[POUND_OSCILLATORS][N + 2], w[POUND_OSCILLATORS][N + 2], p[N + 2], q[N + 2];
+};
+
+/* First event found so far. */
+struct search {
+	double time;
+	int event;
+};
+
+static double power_at(const double *c, int order, double t)
+{
+	double even = 0, odd = 0, t2 = t * t;
+	for (int n = order; n >= 0; n--)
+		if (n % 2)
+			odd = odd * t2 + c[n];
+		else
+			even = even * t2 + c[n];
+	return odd * t + even;
+}
+
+/* Terms after which x^n/n! is below rounding, x <= 1. */
+static int order_of(double x)
+{
+	double term = 1;
+	int n = 0;
+	while (n < N && term > 0x1p-54)
+		term *= x / ++n;
+	return n < 4 ? 4 : n;
+}
+
+/* ---- series ---- */
+
+static void series_fill(struct series *s, const struct pound_trace *t, double dt, int order)
+{
+	const struct pound_march_task *task = t->task;
+	double c[2], k[2], f0[2], f1[2], dt2 = dt * dt;
+	for (int i = 0; i < 2; i++) {
+		const struct pound_march_body *b = &task->bodies[i];
+		const struct pound_piece *piece = &t->at[i].piece;
+		c[i] = b->damping * dt;
+		k[i] = piece->stiffness * dt2;
+		f0[i] = (b->drive * t->ground + piece->offset) * dt2;
+		f1[i] = b->drive * t->slope * dt2 * dt;
+		s->u[i][0] = t->u[i];
+		s->w[i][0] = t->v[i] * dt;
+	}
+	double spring = t->touching ? task->contact_stiffness * dt2 : 0;
+	double dash = t->touching ? task->contact_damping * dt : 0;
+	s->order = order;
+	s->step = dt;
+	s->p[0] = t->p;
+	s->q[0] = t->q * dt;
+	for (int n = 0; n <= order; n++) {
+		double share = 1.0 / (n + 1), b[2];
+		double push = spring * s->p[n] + dash * s->q[n];
+		for (int i = 0; i < 2; i++) {
+			b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n == 0 ? f0[i] : n == 1 ? f1[i] : 0);
+			s->u[i][n + 1] = s->w[i][n] * share;
+		}
+		s->w[0][n + 1] = (b[0] - push) * share;
+		s->w[1][n + 1] = (b[1] + task->mass_ratio * push) * share;
+		s->p[n + 1] = s->q[n] * share;
+		s->q[n + 1] = (b[0] - b[1] - (1 + task->mass_ratio) * push) * share;
+	}
+}
+
+/* ---- first roots ---- */
+
+/* First time in (0, limit] at which a guard, not positive at 0, becomes positive.
+ *
+ * Given    g       (order + 1)  its coefficients
+ * Returns  value   NOTHING; CONTACT for found; CUT where the search had to give up
+ *          t       that time, or a safe one
+ *
+ * A parabola with the guard's value and slope at t and a bound of its curvature lies above the guard, so no root lies
+ * before the parabola's.
+ */
+static int root_first(const double *g, int order, double limit, double *t)
+{
+	for (int m = 0; m < DEFLATE_MAX && g[0] == 0 && order > 0; m++, g++, order--)
+		;
+	if (g[0] >= 0) {
+		*t = 0;
+		return g[0] > 0 ? CONTACT : NOTHING;
+	}
+	double top = g[0], curved = 0, d[N + 1];
+	for (int n = 1; n <= order; n++) {
+		top += g[n] > 0 ? g[n] : 0;
+		d[n - 1] = n * g[n];
+	}
+	if (top < 0)
+		return NOTHING;
+	for (int n = order; n > 2; n--)
+		curved += (double)n * (n - 1) * fabs(g[n]);
+	double second = order > 1 ? 2 * g[2] : 0, bend = fmax(0, second + curved);
+	curved += fabs(second);
+	*t = 0;
+	for (int round = 0; round < ROOT_ROUNDS; round++) {
+		double slope = order > 0 ? power_at(d, order - 1, *t) : 0, below = fmin(power_at(g, order, *t), 0);
+		double root = sqrt(slope * slope - 2 * bend * below);
+		double step = slope > 0 ? -2 * below / (slope + root) : bend > 0 ? (root - slope) / bend : 2;
+		bool near = step * step * curved < 0.5 * DBL_EPSILON * slope;
+		if (!near && step < 0.5 * DBL_EPSILON)
+			return CUT;
+		*t += step;
+		if (*t > limit)
+			return NOTHING;
+		if (near)
+			return CONTACT;
+	}
+	return CUT;
+}
+
+/* Notes the first root of a guard as the event where it comes first. */
+static void search_guard(struct search *search, const double *g, int order, int event)
+{
+	double t;
+	int found = root_first(g, order, search->time, &t);
+	if (found == NOTHING)
+		return;
+	search->time = t;
+	search->event = found == CUT ? CUT : event;
+}
+
+/* Looks for where the series of a motion rises above a level (sign +1) or falls below it (-1). */
+static void search_level(struct search *search, const double *c, int order, double level, double sign,
+                         int event)
+{
+	double g[N + 1];
+	g[0] = sign * (c[0] - level);
+	for (int n = 1; n <= order; n++)
+		g[n] = sign * c[n];
+	search_guard(search, g, order, event);
+}
+
+static void search_body(struct search *search, const struct series *s, const struct pound_piece *piece, int i)
+{
+	int edge = BODY + EDGES * i;
+	if (piece->high < DBL_MAX)
+		search_level(search, s->u[i], s->order, piece->high, 1, edge + POUND_EDGE_HIGH);
+	if (piece->low > -DBL_MAX)
+		search_level(search, s->u[i], s->order, piece->low, -1, edge + POUND_EDGE_LOW);
+	if (piece->direction != 0)
+		search_level(search, s->w[i], s->order, 0, -piece->direction, edge + POUND_EDGE_TURN);
+}
+
+/* Apart, contact begins when the overlap rises through 0.  Touching, it ends when that falls through 0 or, where the
+ * dashpot must not pull, when the force does; parted, when that force rises again or the overlap is gone. */
+static void search_contact(struct search *search, const struct series *s, const struct pound_trace *t)
+{
+	double release = t->task->tension ? 0 : t->task->contact_damping / t->task->contact_stiffness;
+	double sign = t->touching ? -1 : 1;
+	if (release == 0 || !(t->touching || t->parted)) {
+		search_level(search, s->p, s->order, 0, sign, CONTACT);
+		return;
+	}
+	double g[N + 1], lead = release / s->step;
+	for (int n = 0; n <= s->order; n++)
+		g[n] = sign * (s->p[n] + lead * s->q[n]);
+	if (t->fresh) {
+		// the force has just passed 0: it is beyond by the rounding of the overlap and of its acceleration
+		double pull = fabs(s->w[0][1]) + fabs(s->w[1][1]);
+		g[0] = fmin(g[0], -DBL_EPSILON * (s->p[0] + lead * pull));
+	}
+	search_guard(search, g, s->order, CONTACT);
+	if (t->parted)
+		search_level(search, s->p, s->order, 0, -1, CLEARS);
+}
+
+/* ---- pieces ---- */
+
+/* Shortens a series to a share of its step, and bounds it with two derivatives. */
+static void polynomial_finish(struct pound_polynomial *a, int order, double share)
+{
+	double power = 1;
+	memset(a->bound, 0, sizeof a->bound);
+	for (int n = 0; n <= order; n++, power *= share) {
+		a->c[n] *= power;
+		double size = fabs(a->c[n]);
+		a->bound[0] += size;
+		a->bound[1] += n * size;
+		a->bound[2] += (double)n * (n - 1) * size;
+	}
+}
+
+/* Number of a stiffness in a stretch; -1: there are too many. */
+static int map_of(struct pound_trace_stretch *stretch, double stiffness)
+{
+	for (int m = 0; m < stretch->n_maps; m++)
+		if (stretch->stiffness[m] == stiffness)
+			return m;
+	if (stretch->n_maps == POUND_TRACE_MAPS)
+		return -1;
+	stretch->stiffness[stretch->n_maps] = stiffness;
+	return stretch->n_maps++;
+}
+
+/* The floor over the first `share` of a step. */
+static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch, const struct series *s,
+                      double share)
+{
+	const struct pound_march_task *task = t->task;
+	const struct pound_piece *law = &t->at[0].piece;
+	struct pound_trace_piece *piece = &stretch->piece[stretch->n++];
+	double c = task->bodies[0].damping / s->step, dash = task->contact_damping / s->step;
+	bool whole = t->sampled && !t->touching && s->step == task->time_step && share == 1;
+	piece->start = (t->next) * task->time_step - t->left;
+	piece->step = share * s->step;
+	piece->u = t->u[0];
+	piece->v = t->v[0];
+	piece->order = s->order;
+	piece->sampled = t->sampled;
+	piece->turned = t->turned;
+	piece->map = whole ? map_of(stretch, law->stiffness) : -1;
+	piece->state[0] = law->stiffness * t->u[0] + law->offset;
+	piece->state[1] = t->v[0];
+	piece->state[2] = t->ground;
+	piece->state[3] = t->slope * s->step;
+	for (int n = 0; n <= s->order; n++) {
+		piece->push.c[n] = t->touching ? -(task->contact_stiffness * s->p[n] + dash * s->q[n]) : 0;
+		piece->floor.c[n] = piece->push.c[n] - (c * s->w[0][n] + law->stiffness * s->u[0][n]);
+	}
+	piece->floor.c[0] -= law->offset;
+	polynomial_finish(&piece->floor, s->order, share);
+	polynomial_finish(&piece->push, s->order, share);
+	if (!t->touching)
+		return;
+	double area = 0;
+	for (int n = s->order; n >= 0; n--)
+		area += piece->push.c[n] / (n + 1);
+	t->impulse -= area * piece->step;
+	t->contact_time += piece->step;
+}
+
+/* ---- through a step ---- */
+
+static void contact_turn(struct pound_trace *t, int event)
+{
+	bool was_parted = t->parted;
+	t->fresh = false;
+	if (event == CLEARS) {
+		t->parted = false;
+		t->p = 0;
+	} else if (event == CONTACT && t->touching) {
+		t->impulse_max = fmax(t->impulse_max, t->impulse);
+		t->contacts++;
+		t->touching = false;
+		t->parted = t->fresh = !t->task->tension && t->task->contact_damping > 0 && t->p > 0;
+		t->p = t->parted ? t->p : 0;
+	} else if (event == CONTACT) {
+		t->touching = true;
+		t->parted = false;
+		t->fresh = was_parted;
+		t->p = was_parted ? t->p : 0;
+		t->impulse = 0;
+	}
+}
+
+static void body_turn(struct pound_trace *t, int i, enum pound_edge edge)
+{
+	const struct pound_piece *piece = &t->at[i].piece;
+	if (edge == POUND_EDGE_TURN)
+		t->v[i] = 0;
+	else
+		t->u[i] = edge == POUND_EDGE_HIGH ? piece->high : piece->low;
+	pound_pieces_leave(&t->task->bodies[i].skeleton, &t->at[i], edge, t->u[i]);
+}
+
+/* Enters the interval that ends at sample `next`. */
+static void interval_enter(struct pound_trace *t)
+{
+	const double *a = &t->task->ground[t->next];
+	t->ground = a[-1];
+	t->slope = (a[0] - a[-1]) / t->task->time_step;
+	t->left = t->task->time_step;
+	t->events = 0;
+	t->sampled = true;
+	if (!t->touching && !t->parted) {
+		t->p = fmin(t->u[0] - t->u[1] - t->task->gap, 0); // rounding must not make it overlap
+		t->q = t->v[0] - t->v[1];
+	}
+}
+
+/* Moves the state to a time of the step. */
+static void state_move(struct pound_trace *t, const struct series *s, double time)
+{
+	double dt = s->step;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		t->u[i] = power_at(s->u[i], s->order, time);
+		t->v[i] = power_at(s->w[i], s->order, time) / dt;
+	}
+	t->p = power_at(s->p, s->order, time);
+	t->q = power_at(s->q, s->order, time) / dt;
+	t->left -= time * dt;
+	t->ground += t->slope * (time * dt);
+}
+
+/* One step: to the next event, the next sample, or as far as a series reaches. */
+static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
+{
+	double rate = t->touching ? t->rate_touch : t->rate;
+	double reach = rate > 0 ? REACH / rate * t->pace : DBL_MAX;
+	double steps = t->left / reach;
+	bool whole = steps <= 1;
+	double dt = whole ? t->left : steps > 2 ? reach : 0.5 * t->left;
+	struct series s;
+	bool flight = whole && t->sampled && !t->touching;
+	series_fill(&s, t, dt, flight ? t->order_sample : order_of(rate * dt));
+	struct search search = {.time = 1, .event = NOTHING};
+	if (t->task->contact)
+		search_contact(&search, &s, t);
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		search_body(&search, &s, &t->at[i].piece, i);
+	t->pace = search.event == CUT ? fmax(t->pace * SHORTER, SHORTEST) : fmin(t->pace * LONGER, 1);
+	if (search.time > 0)
+		piece_add(t, stretch, &s, search.time);
+	state_move(t, &s, search.time);
+	t->sampled = t->sampled && search.time == 0;
+	t->turned = search.event > CUT || (t->turned && search.time == 0);
+	contact_turn(t, search.event);
+	if (search.event >= BODY)
+		body_turn(t, (search.event - BODY) / EDGES, (enum pound_edge)((search.event - BODY) % EDGES));
+	bool ends = (whole && search.event == NOTHING) || t->left <= 0;
+	if (!ends && ++t->events > EVENTS_LIMIT)
+		t->status = POUND_CHATTER;
+	if (ends && ++t->next < t->task->n_samples)
+		interval_enter(t);
+}
+
+/* Puts a trace at the start of its task.
+ *
+ * Given    task   its bodies, contact and ground motion, which must outlive the trace
+ */
+void pound_trace_start(struct pound_trace *trace, const struct pound_march_task *task)
+{
+	*trace = (struct pound_trace){.task = task, .next = 1, .pace = 1};
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_march_body *b = &task->bodies[i];
+		trace->u[i] = b->u;
+		trace->v[i] = b->v;
+		trace->rate = fmax(trace->rate, fmax(sqrt(b->skeleton.stiffness), b->damping));
+		pound_pieces_start(&b->skeleton, &trace->at[i]);
+	}
+	double stiff = task->contact ? (1 + task->mass_ratio) * task->contact_stiffness : 0;
+	trace->rate_touch = sqrt(trace->rate * trace->rate + stiff);
+	trace->order_sample = order_of(fmin(trace->rate * task->time_step, REACH));
+	interval_enter(trace);
+}
+
+/* The next pieces of a trace.
+ *
+ * Returns  stretch   n = 0: the motion is over, or could not be followed further (trace->status)
+ *          trace     contact results so far; one still open counts from the end with what it has
+ * Source   model.md 1, 2 of the project's design pages
+ * Test     unit_trace
+ */
+void pound_trace_next(struct pound_trace *trace, struct pound_trace_stretch *stretch)
+{
+	stretch->n = stretch->n_maps = 0;
+	bool going = trace->next < trace->task->n_samples;
+	while (trace->next < trace->task->n_samples && stretch->n < POUND_TRACE_PIECES && !trace->status)
+		step(trace, stretch);
+	if (going && trace->next == trace->task->n_samples && trace->touching) {
+		trace->contacts++;
+		trace->impulse_max = fmax(trace->impulse_max, trace->impulse);
+	}
+}

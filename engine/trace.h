@@ -1,0 +1,60 @@
+/* trace.h - the motion of the left floor under one task, as exact pieces one after the other.
+ *
+ * A piece ends at a sample of the ground motion, at an event, or where its power series no longer reaches; in it the
+ * floor's acceleration is a polynomial to rounding.  Only what needs whole histories pays for them: the march keeps
+ * none. */
+#ifndef TRACE_H
+#define TRACE_H
+
+#include "engine/march.h"
+
+enum {
+	POUND_TRACE_ORDER = 18,   /* of a piece's power series, at most */
+	POUND_TRACE_PIECES = 512, /* handed out at once */
+	POUND_TRACE_MAPS = 4,     /* stiffnesses told apart among them */
+};
+
+/* Coefficients of powers of time over the piece's step, and bounds of |a|, |a'|, |a''| in that time  [m/s2] */
+struct pound_polynomial {
+	double bound[3];
+	double c[POUND_TRACE_ORDER + 1]; /* (order + 1) */
+};
+
+struct pound_trace_piece {
+	double start, step; /* [s] */
+	double u, v;        /* of the left body at the start [m], [m/s] */
+	double state[4]; /* in free flight: spring force [m/s2], v, ground acceleration, and what it grows by */
+	int map;         /* a whole sample of free flight: number of its stiffness; -1: any other piece */
+	int order;
+	bool sampled, turned;                /* begins at a sample, at an event */
+	struct pound_polynomial floor, push; /* absolute acceleration; the part of it the contact gives */
+};
+
+struct pound_trace_stretch {
+	int n, n_maps;
+	double stiffness[POUND_TRACE_MAPS]; /* per mass [1/s2]  (n_maps) */
+	struct pound_trace_piece piece[POUND_TRACE_PIECES];
+};
+
+struct pound_trace {
+	const struct pound_march_task *task;
+	enum pound_status status;
+	struct pound_branch at[POUND_OSCILLATORS];
+	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS], p, q; /* p, q: overlap and its rate */
+	bool touching, parted;                                   /* parted: overlapping without force */
+	bool fresh;                                              /* the contact's force is exactly 0 now */
+	bool sampled, turned;    /* the state is that of a sample, that after an event */
+	double rate, rate_touch; /* fastest of the motion [rad/s] */
+	int order_sample;        /* of a series over a sample interval */
+	double ground, slope, left;
+	double pace; /* share of the usual step: shorter where a search was unsure */
+	int next, events;
+	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
+	int64_t contacts;
+};
+
+void pound_trace_start(struct pound_trace *trace, const struct pound_march_task *task);
+/* The next pieces; none after the last.  trace->status tells whether the motion was followed to its end. */
+void pound_trace_next(struct pound_trace *trace, struct pound_trace_stretch *stretch);
+
+#endif

@@ -1,0 +1,169 @@
+/* unit_trace.c - the trace against the march, which shares no code with it but the laws, and against known answers. */
+#include <math.h>
+
+#include "tests/check.h"
+#include "tests/riding.h"
+
+struct ended {
+	struct pound_trace trace;
+	int pieces, flights, turns;
+	double time, gap; /* total of the steps; largest break between two pieces */
+};
+
+static struct pound_trace_stretch stretch;
+
+/* A trace followed to its end; what it hands out is looked at for being without holes. */
+static struct ended trace_to_end(const struct pound_march_task *task)
+{
+	struct ended e = {0};
+	pound_trace_start(&e.trace, task);
+	for (;;) {
+		pound_trace_next(&e.trace, &stretch);
+		if (stretch.n == 0)
+			return e;
+		for (int i = 0; i < stretch.n; i++) {
+			const struct pound_trace_piece *p = &stretch.piece[i];
+			e.gap = fmax(e.gap, fabs(p->start - e.time));
+			e.time = p->start + p->step;
+			e.pieces++;
+			e.flights += p->map >= 0;
+			e.turns += p->turned;
+			assert_true(p->map < stretch.n_maps && stretch.n_maps <= POUND_TRACE_MAPS);
+			assert_true(p->step > 0);
+		}
+	}
+}
+
+static struct pound_march_result march(const struct pound_march_task *task)
+{
+	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	struct pound_march_result result;
+	assert_true(pound_march_lanes(0, task, &result, 1, scratch));
+	return result;
+}
+
+static void known_impacts_come_out_to_their_digits(void **state)
+{
+	(void)state;
+	for (int k = 0; k < SPECIMEN_REFERENCES; k++) {
+		const struct specimen_reference *reference = &specimen_references[k];
+		struct specimen specimen;
+		specimen_init(&specimen);
+		specimen_reference(&specimen, reference, 0.0025);
+		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct ended e = trace_to_end(&task);
+		assert_int_equal(e.trace.status, POUND_OK);
+		assert_int_equal(e.trace.contacts, (int)reference->contacts);
+		// the record is the half sine to (pi 0.005)^4/100 = 6e-10 of it
+		check_near(e.trace.impulse_max, reference->impulse_max, 1e-8 * reference->impulse_max);
+		check_near(e.trace.u[0], reference->end_u1, 1e-8);
+		check_near(e.trace.u[1], reference->end_u2, 1e-8);
+		specimen_free(&specimen);
+	}
+}
+
+static void any_scene_moves_as_in_the_march(void **state)
+{
+	(void)state;
+	int touched = 0, turned = 0;
+	for (int number = 0; number < 64; number++) {
+		struct specimen specimen;
+		specimen_random(&specimen, number, 0.01, 401);
+		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_march_result r = march(&task);
+		const struct ended e = trace_to_end(&task);
+		assert_int_equal(e.trace.status, r.status);
+		assert_int_equal(e.trace.contacts, r.contacts);
+		// 4 s of impacts: roundings of 1e-16 grow by orders of magnitude, not to this
+		double size = fmax(fabs(r.displacement_max[0]), 1e-3);
+		check_near(e.trace.impulse_max, r.impulse_max, 1e-9 * fmax(r.impulse_max, 1e-2));
+		check_near(e.trace.contact_time, r.contact_time, 1e-9);
+		for (int i = 0; i < POUND_OSCILLATORS; i++) {
+			check_near(e.trace.u[i], r.u[i], 1e-9 * size);
+			check_near(e.trace.v[i], r.v[i], 1e-8 * size);
+		}
+		touched += r.contacts > 0;
+		turned += e.turns > 2 * r.contacts;
+		specimen_free(&specimen);
+	}
+	assert_true(touched > 30 && turned > 20);
+}
+
+static void pieces_follow_each_other_without_holes(void **state)
+{
+	(void)state;
+	int flights = 0;
+	for (int number = 0; number < 16; number++) {
+		struct specimen specimen;
+		specimen_random(&specimen, number, 0.01, 401);
+		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct ended e = trace_to_end(&task);
+		check_near(e.time, 4, 1e-12);
+		check_near(e.gap, 0, 1e-12);
+		assert_true(e.pieces >= 400);
+		flights += e.flights;
+		specimen_free(&specimen);
+	}
+	assert_true(flights > 16 * 100);
+}
+
+/* The floor's acceleration is the ground's and its own, u'' + a_g: integrated twice it gives the motion. */
+static void the_acceleration_is_that_of_the_motion(void **state)
+{
+	(void)state;
+	for (int number = 0; number < 8; number++) {
+		struct specimen specimen;
+		specimen_random(&specimen, number, 0.01, 201);
+		const struct pound_march_task task = riding_task(&specimen, true);
+		struct pound_trace trace;
+		double v = 0, ground = 0, largest = 0; // integral of the floor's and of the ground's acceleration
+		pound_trace_start(&trace, &task);
+		for (pound_trace_next(&trace, &stretch); stretch.n; pound_trace_next(&trace, &stretch))
+			for (int i = 0; i < stretch.n; i++) {
+				const struct pound_trace_piece *p = &stretch.piece[i];
+				for (int n = 0; n <= p->order; n++)
+					v += p->step * p->floor.c[n] / (n + 1);
+				largest = fmax(largest, p->floor.bound[0]);
+			}
+		for (int t = 1; t < task.n_samples; t++)
+			ground += 0.5 * task.time_step * (task.ground[t - 1] + task.ground[t]);
+		check_near(v - ground, trace.v[0], 1e-12 * largest);
+		specimen_free(&specimen);
+	}
+}
+
+static void a_floor_without_contact_is_all_flight(void **state)
+{
+	(void)state;
+	struct specimen specimen;
+	specimen_init(&specimen);
+	specimen_noise(&specimen, 3, 1, 0.01, 401);
+	const struct pound_march_task task = riding_task(&specimen, false);
+	const struct ended e = trace_to_end(&task);
+	assert_int_equal(e.flights, 400);
+	assert_int_equal(e.pieces, 400);
+	check_near(e.trace.u[0], march(&task).u[0], 1e-15);
+	specimen_free(&specimen);
+}
+
+/* A floor so stiff that a series does not reach over a sample goes on in shorter pieces. */
+static void a_floor_too_fast_for_the_samples_is_followed(void **state)
+{
+	(void)state;
+	struct specimen specimen;
+	specimen_init(&specimen);
+	specimen.study.scene.oscillators[0].frequency_hz = 900;
+	specimen_half_sine(&specimen, 1, 0.5, 1, 0.01);
+	const struct pound_march_task task = riding_task(&specimen, false);
+	const struct ended e = trace_to_end(&task);
+	assert_true(e.flights == 0 && e.pieces >= 5600);
+	check_near(e.trace.v[0], march(&task).v[0], 1e-15);
+	specimen_free(&specimen);
+}
+
+CHECK_MAIN(cmocka_unit_test(known_impacts_come_out_to_their_digits),
+           cmocka_unit_test(any_scene_moves_as_in_the_march),
+           cmocka_unit_test(pieces_follow_each_other_without_holes),
+           cmocka_unit_test(the_acceleration_is_that_of_the_motion),
+           cmocka_unit_test(a_floor_without_contact_is_all_flight),
+           cmocka_unit_test(a_floor_too_fast_for_the_samples_is_followed))
