@@ -168,8 +168,9 @@ struct pound_convergence {
 
 /* the oscillators on the left floor */
 struct pound_spectrum {
-	int n;                        /* frequencies; 0: no spectrum is asked */
-	const double *frequencies_hz; /* (n); NULL: n from min_hz to max_hz, each the same multiple of the one before */
+	int n; /* frequencies; 0: no spectrum is asked */
+	const double
+	    *frequencies_hz; /* (n); NULL: n from min_hz to max_hz, each the same multiple of the one before */
 	double min_hz, max_hz;
 	double damping_ratio; /* [0, 1) */
 	int pulses;           /* of the idealised train; 0: as many as there are contacts */
