@@ -15,7 +15,7 @@
 #include "engine/excitation.h"
 #include "engine/indices.h"
 #include "engine/outputs.h"
-#include "engine/plan.h"
+#include "engine/run.h"
 
 enum {
 	BLOCK_RUNS = 768,        /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
@@ -29,23 +29,6 @@ enum {
 
 /* CPU time that a run is timed over at least [s]. */
 static const double CLOCK_LEAST = 0.02;
-
-struct pound_run {
-	struct pound_campaign campaign;
-	int n_measures; /* doubles kept of a run */
-	int n_blocks;
-	int *first;     /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
-	double *values; /* of all blocks, each followed by those of its checks and its counts of work */
-	struct pound_plan **plans; /* (n_workers) */
-	double **scratch;          /* of reductions  (n_workers) */
-	struct pound_result result;
-	double *u;                        /* the design as probabilities  (rows x 2 x n_inputs) */
-	struct pound_estimate *estimates; /* (n_cells x n_outputs x POUND_N_INDEXES x n_inputs) */
-	struct pound_indices *indices;    /* (n_cells x n_outputs) */
-	struct pound_response *responses; /* (n_cells x n_signals) */
-	double (*cpu)(void);              /* clock of the calling thread [s]; NULL: none */
-	atomic_bool stop;
-};
 
 static int runs_of_item(const struct pound_campaign *c)
 {
@@ -97,7 +80,7 @@ static const double *place_values(const struct pound_run *run, int block, int pl
 }
 
 /* The measures of one run. */
-static const double *run_values(const struct pound_run *run, int item, int cell, int sample)
+const double *pound_run_values(const struct pound_run *run, int item, int cell, int sample)
 {
 	int block = block_of(run, item);
 	return place_values(run, block, item - run->first[block], cell, sample);
@@ -467,7 +450,7 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 		for (int signal = 0; signal < c->n_signals; signal++)
 			for (int sample = 0; sample < c->n_samples; sample++) {
 				const double *values =
-				    run_values(run, row * c->n_signals + signal, cell, sample) + 2 * output;
+				    pound_run_values(run, row * c->n_signals + signal, cell, sample) + 2 * output;
 				size_t at = ((size_t)row * (size_t)c->n_samples + (size_t)sample) * (size_t)c->n_signals +
 				            (size_t)signal;
 				numerator[at] = values[0];
@@ -484,7 +467,7 @@ static int checks_fill(const struct pound_run *run, int cell, int output, struct
 	int n = 0;
 	for (int item = 0; item < items_of(c) && c->check_every; item += c->check_every)
 		for (int sample = 0; sample < c->n_samples; sample++) {
-			const double *run_once = run_values(run, item, cell, sample) + 2 * output;
+			const double *run_once = pound_run_values(run, item, cell, sample) + 2 * output;
 			const double *again = check_values(run, item, cell, sample) + 2 * output;
 			checks[n++] = (struct pound_check){.row = item / c->n_signals,
 			                                   .sample = sample,
@@ -549,7 +532,7 @@ static void responses_reduce(struct pound_run *run, int cell, int output)
 	double above = 0, below = 0;
 	for (int signal = 0; signal < c->n_signals; signal++) {
 		struct pound_response response;
-		memcpy(&response, run_values(run, signal, cell, 0), sizeof response);
+		memcpy(&response, pound_run_values(run, signal, cell, 0), sizeof response);
 		if (failed(&response))
 			continue;
 		double numerator = NAN, denominator = NAN;
@@ -565,7 +548,7 @@ static void trials_reduce(struct pound_run *run, double *scratch)
 {
 	int n = items_of(&run->campaign);
 	for (int item = 0; item < n; item++)
-		memcpy(scratch + (size_t)item * TRIAL_MEASURES, run_values(run, item, 0, 0),
+		memcpy(scratch + (size_t)item * TRIAL_MEASURES, pound_run_values(run, item, 0, 0),
 		       sizeof(double) * TRIAL_MEASURES);
 	pound_convergence_reduce(run->campaign.study, (const struct pound_trial_run *)scratch,
 	                         run->result.trials);
@@ -634,59 +617,10 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 		struct pound_cell *into = &run->result.cells[cell];
 		into->runs_failed = 0;
 		for (int signal = 0; signal < c->n_signals; signal++) {
-			memcpy(&into->signals[signal], run_values(run, signal, cell, 0), sizeof into->signals[signal]);
+			memcpy(&into->signals[signal], pound_run_values(run, signal, cell, 0),
+			       sizeof into->signals[signal]);
 			into->runs_failed += failed(&into->signals[signal]);
 		}
 	}
 	return &run->result;
-}
-
-/* ---- samples ---- */
-
-int pound_run_samples(const struct pound_run *run)
-{
-	return run->campaign.n_samples;
-}
-
-void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x)
-{
-	for (int j = 0; j < run->campaign.study->n_inputs; j++)
-		x[j] = pound_design_input(run->campaign.design, run->campaign.study->n_inputs, row, sample, j);
-}
-
-void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
-                             double *mean, double *variance)
-{
-	const struct pound_campaign *c = &run->campaign;
-	assert(has_indices(run));
-	if (c->study->elsewhere) {
-		const double *values = run_values(run, row, cell, sample) + 2 * output;
-		*mean = values[0];
-		*variance = values[1];
-		return;
-	}
-	// the runs of a row's signals are one item apart, but a block may end between them
-	double above = 0, below = 0;
-	for (int r = 0; r < c->n_signals; r++) {
-		const double *values = run_values(run, row * c->n_signals + r, cell, sample) + 2 * output;
-		above += values[0];
-		below += values[1];
-	}
-	*mean = below > 0 ? above / below : NAN;
-	double sum = 0;
-	for (int r = 0; r < c->n_signals; r++) {
-		const double *values = run_values(run, row * c->n_signals + r, cell, sample) + 2 * output;
-		double deviation = (values[0] - *mean * values[1]) * c->n_signals / below;
-		sum += deviation * deviation;
-	}
-	*variance = c->n_signals > 1 && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN;
-}
-
-void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
-                             double variance)
-{
-	assert(run->campaign.study->elsewhere);
-	double *values = (double *)run_values(run, row, 0, sample) + 2 * output;
-	values[0] = isfinite(value) ? value : NAN;
-	values[1] = variance;
 }
