@@ -1,9 +1,13 @@
 /* poundd: opens the store, starts the workers, listens, and waits for the signal to stop. */
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "server/http.h"
@@ -13,6 +17,43 @@
 #include "server/token.h"
 #include "server/work.h"
 
+enum { STOP_MAX = 25 /* [s] from the signal to the end, come what may: what is accepted is on the disk */ };
+
+/* Tells systemd what we are at, when it has started us; sd_notify(3) has the words. */
+static void tell(const char *state)
+{
+	const char *path = getenv("NOTIFY_SOCKET");
+	struct sockaddr_un to = {.sun_family = AF_UNIX};
+	if (!path || strlen(path) >= sizeof to.sun_path)
+		return;
+	socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + strlen(path));
+	memcpy(to.sun_path, path, strlen(path));
+	// a socket without a file
+	if (path[0] == '@')
+		to.sun_path[0] = '\0';
+	int end = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+	if (end < 0 || sendto(end, state, strlen(state), MSG_NOSIGNAL, (struct sockaddr *)&to, size) < 0)
+		log_line("cannot tell systemd %s: %s", state, strerror(errno));
+	if (end >= 0)
+		close(end);
+}
+
+/* Waits for the signal to stop; meanwhile systemd, when it watches, hears that the store answers. */
+static int await(struct store *store, const sigset_t *signals)
+{
+	const char *period = getenv("WATCHDOG_USEC");
+	long long half = period ? atoll(period) / 2 : 0;
+	struct timespec pause = {.tv_sec = half / 1000000, .tv_nsec = half % 1000000 * 1000};
+	for (;;) {
+		int64_t n;
+		int caught = half > 0 ? sigtimedwait(signals, NULL, &pause) : sigwaitinfo(signals, NULL);
+		if (caught > 0)
+			return caught;
+		if (errno == EAGAIN && store_count(store, "queued", &n) == STORE_OK)
+			tell("WATCHDOG=1");
+	}
+}
+
 static int serve(struct server *server, const sigset_t *signals)
 {
 	server->work = work_start(server->store, server->options->workers);
@@ -20,13 +61,16 @@ static int serve(struct server *server, const sigset_t *signals)
 		return EXIT_FAILURE;
 	struct http *http = http_start(server);
 	if (http) {
-		int caught;
 		const char *listen = server->options->listen;
 		bool v6 = strchr(listen, ':');
 		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", http_port(http));
 		fflush(stdout);
-		sigwait(signals, &caught);
-		log_line("stopping: %s", strsignal(caught));
+		tell("READY=1");
+		log_line("stopping: %s", strsignal(await(server->store, signals)));
+		tell("STOPPING=1");
+		// the next signal ends the program at once, and so does the clock
+		alarm(STOP_MAX);
+		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
 		http_stop(http);
 	}
 	work_stop(server->work);
@@ -39,10 +83,12 @@ int main(int argc, char **argv)
 	sigset_t signals;
 	options_read(&options, argc, argv);
 	umask(077);
+	if (options.backup)
+		return store_copy(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
 	// a client that has gone, and a file that may not grow, are errors of a write and no more
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
-	// blocked before any thread starts, so that only sigwait sees them
+	// blocked before any thread starts, so that only this one sees them
 	sigemptyset(&signals);
 	sigaddset(&signals, SIGTERM);
 	sigaddset(&signals, SIGINT);

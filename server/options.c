@@ -20,6 +20,8 @@ const struct option_row options_table[] = {
 	{"listen",          'l', "ADDRESS", "address to listen on; one that is not loopback needs --token-file or --insecure",
 	 "127.0.0.1", AT(listen), 0, 0},
 	{"database",        'd', "FILE",    "file that keeps the studies", "poundd.db", AT(database), 0, 0},
+	{"backup",          0,   "FILE",    "copy the database to FILE, which must not exist, and end; a server may use it meanwhile",
+	 NULL, AT(backup), 0, 0},
 	{"workers",         'w', "N",       "threads that compute; one for each core when absent", NULL, AT(workers), 1, WORKERS_MAX},
 	{"host",            0,   "NAMES",   "names the server is asked by, between commas, besides localhost and addresses",
 	 NULL, AT(host), 0, 0},

@@ -247,6 +247,20 @@ struct store *store_open(const char *path)
 	return store;
 }
 
+/* Copies a database; a server may use it meanwhile.
+ *
+ * Given    path    of the database
+ *          to      of the copy, which must not exist
+ * Test     service_backup: a_copy_made_while_studies_run_is_a_whole_database
+ */
+bool store_copy(const char *path, const char *to)
+{
+	struct database reading = {0};
+	bool copied = database_open(&reading, path, false) && database_copy(&reading, to);
+	database_close(&reading);
+	return copied;
+}
+
 /* The time and 20 random bits, and always above the last one. */
 static int64_t id_next(struct store *store, int64_t now)
 {

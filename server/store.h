@@ -34,6 +34,7 @@ typedef void store_study_reader(void *to, const struct store_study *study);
 
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
 void store_close(struct store *store);
+bool store_copy(const char *path, const char *to);  /* of a database that may be in use; false: logged */
 enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
 
 /* a new study, queued; `study` gives kind, name, runs and key */
