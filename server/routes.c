@@ -49,6 +49,11 @@ static struct reply unavailable(void)
 	return problem(API_UNAVAILABLE, "the database does not answer; please try again");
 }
 
+static struct reply full(void)
+{
+	return problem(API_UNAVAILABLE, "the disk has no room for new studies");
+}
+
 /* 200 and what was written. */
 static struct reply written(struct writer *writer)
 {
@@ -232,6 +237,8 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 	    store_submit(server->store, &row, hash, request->body, request->length, &id);
 	if (submitted == STORE_CLASH)
 		return problem(API_KEY_REUSED, "this Idempotency-Key came with another body before");
+	if (submitted == STORE_FULL)
+		return full();
 	if (submitted != STORE_OK && submitted != STORE_REPEATED)
 		return unavailable();
 	struct page page;
@@ -421,11 +428,8 @@ static struct reply live(struct request *request)
 
 static struct reply ready(struct request *request)
 {
-	struct page page;
-	struct reply one = look(request, &page);
-	free(one.body);
-	// no study has the id 0, and to say so the database must answer
-	return one.status == 404 ? version(request) : unavailable();
+	enum store_status ready = store_ready(request->server->store);
+	return ready == STORE_OK ? version(request) : ready == STORE_FULL ? full() : unavailable();
 }
 
 static double resident_bytes(void)
