@@ -303,17 +303,28 @@ static double reduction(const struct pound_scene *scene, int i, double demand)
 	return 1 + (demand - 1) * fmin(rise, 1);
 }
 
-/* Asks for a body's march of a stage: stage 0 is linear, stage k >= 1 has the yield displacement found by then; false:
- * none is needed. */
+/* Asks for a body's march of a stage: stage 0 is linear, stage k >= 1 has the yield displacement found by then.
+ *
+ * Returns  value   false: none is needed
+ *          work    what was left out is counted
+ */
 static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i,
-                       int stage)
+                       int stage, struct pound_work *work)
 {
 	const struct pound_law *law = pound_scene_law(&ask->scene, i);
 	bool linear = pound_pieces_linear(law->type);
 	bool given = law->yield_displacement > 0;
 	int last_stage = linear ? 0 : given ? 1 : 1 + law->corrections;
-	if (stage > last_stage || (stage == 0 && !linear && given))
+	if (stage > last_stage)
 		return false;
+	if (stage == 0 && !linear && given) {
+		work->yield_given++;
+		return false;
+	}
+	if (stage == 0 && linear && !body->wanted) {
+		work->linear_unasked++;
+		return false;
+	}
 	if (stage == 0)
 		body->march = body_march(plan, ask, i, 0, 0);
 	else {
@@ -325,8 +336,10 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 			body->yield = before->displacement_max[0] /
 			              (stage == 1 ? reduction(&ask->scene, i, law->target_demand) : law->target_demand);
 		}
-		if (stage == last_stage && !body->wanted)
+		if (stage == last_stage && !body->wanted) {
+			work->nonlinear_unasked++;
 			return false;
+		}
 		body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, body->yield));
 	}
 	body->finished = stage == last_stage;
@@ -351,12 +364,6 @@ static int stages_of(const struct ask *ask)
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		stages = (int)fmax(stages, 2 + pound_scene_law(&ask->scene, i)->corrections);
 	return stages;
-}
-
-static bool body_asked(const struct ask *ask, int i)
-{
-	bool linear = pound_pieces_linear(pound_scene_law(&ask->scene, i)->type);
-	return !ask->scene.oscillators[i].rigid_wall && (ask->bodies[i].wanted || !linear);
 }
 
 static double free_max(const struct pound_plan *plan, const struct body_ask *body)
@@ -486,13 +493,13 @@ static int item_write(struct pound_plan *plan, const struct pound_campaign *camp
 
 /* Asks for what asks [first, end) need of a stage without pounding. */
 static void stage_ask(struct pound_plan *plan, int first, int end, int stage,
-                      struct pound_stage_work *counted)
+                      struct pound_stage_work *counted, struct pound_work *work)
 {
 	int before = plan->march_keys.n;
 	for (int a = first; a < end; a++)
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			if (body_asked(&plan->asks[a], i))
-				counted->asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage);
+			if (!plan->asks[a].scene.oscillators[i].rigid_wall)
+				counted->asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage, work);
 	counted->run += plan->march_keys.n - before;
 }
 
@@ -532,19 +539,19 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	assert(n_asks <= plan->size.asks);
 	motions_fill(plan);
 
+	struct pound_work of_checks = {0}; // what they leave out is not told
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++)
 		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
 	for (int stage = 0; stage < stages && !*stop; stage++) {
 		// the checks, which take longer, start first, so that no lane waits for them at the end
-		stage_ask(plan, n_items, n_asks, stage, &work->checks);
+		stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
 		int checks_end = plan->march_keys.n;
-		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs);
+		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
 		marches_run(plan, &solver, checks_end, &done, stop);
 	}
 	if (*stop)
 		return POUND_STOPPED;
-	struct pound_work of_checks = {0};
 	pounding_ask(plan, n_items, n_asks, &work->checks, &of_checks);
 	int before = plan->n_before = plan->march_keys.n;
 	pounding_ask(plan, 0, n_items, &work->pounding_runs, work);

@@ -286,30 +286,28 @@ static void leave_out(struct writer *w, int64_t n, const char *what, const char 
 	writer_text(w, NULL, sentence);
 }
 
-/* What the scene did not need, in sentences, from the counts alone. */
+/* What was not needed, in sentences, from the counts alone. */
 static void write_left_out(struct writer *w, const struct pound_study *study, const struct pound_work *work)
 {
-	const struct pound_scene *scene = &study->scene;
-	static const char repeated[] = "equal to one that was made";
-	int64_t asked = work->pounding_runs.asked;
-	bool met = scene->contact.present;
+	static const char repeated[] = "equal to one that was made", unasked[] = "no output needs them";
+	static const char linear[] = "linear responses without pounding",
+	                  nonlinear[] = "nonlinear responses without pounding",
+	                  with[] = "responses with pounding";
+	int64_t made = work->pounding_runs.run + work->never_touching + work->moving_alike;
 	writer_array(w, "left_out", WRITER_LINES);
 	leave_out(w, work->signals.asked - work->signals.run, "ground motions", repeated);
-	leave_out(w, work->free_runs.asked - work->free_runs.run, "linear responses without pounding", repeated);
-	if (work->yield_runs.asked == 0) {
+	leave_out(w, work->free_runs.asked - work->free_runs.run, linear, repeated);
+	leave_out(w, work->yield_given, linear, "the yield displacement is given");
+	leave_out(w, work->linear_unasked, "linear responses of the right oscillator without pounding", unasked);
+	if (work->yield_runs.asked + work->nonlinear_unasked == 0)
 		writer_text(w, NULL, "all nonlinear responses without pounding: no law needs one");
-		if (!scene->oscillators[1].rigid_wall)
-			leave_out(w, 2 * asked - work->free_runs.asked,
-			          "linear responses of the right oscillator without pounding", "no output needs them");
-	}
-	leave_out(w, work->yield_runs.asked - work->yield_runs.run, "nonlinear responses without pounding",
-	          repeated);
-	leave_out(w, work->never_touching, "responses with pounding", "the bodies alone never close the gap");
-	leave_out(w, work->moving_alike, "responses with pounding",
-	          "equal oscillators move alike and never touch with force");
-	if (met)
-		leave_out(w, asked - work->pounding_runs.run - work->never_touching - work->moving_alike,
-		          "responses with pounding", repeated);
+	leave_out(w, work->yield_runs.asked - work->yield_runs.run, nonlinear, repeated);
+	leave_out(w, work->nonlinear_unasked, "last nonlinear responses of the right oscillator without pounding",
+	          unasked);
+	leave_out(w, work->never_touching, with, "the bodies alone never close the gap");
+	leave_out(w, work->moving_alike, with, "equal oscillators move alike and never touch with force");
+	if (study->scene.contact.present)
+		leave_out(w, work->pounding_runs.asked - made, with, repeated);
 	else
 		writer_text(w, NULL, "all responses with pounding: the scene has no contact");
 	writer_end(w);

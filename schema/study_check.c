@@ -41,32 +41,6 @@ struct pound_field study_check_field(const char *path)
 	                            field->offset - offsetof(struct pound_study, scene) + shift};
 }
 
-/* Why varying a field of the law at hand would change nothing, NULL when it may. */
-static const char *law_idle(const struct pound_scene *scene, const struct field *field, int oscillator)
-{
-	const struct pound_oscillator *o = scene->oscillators;
-	const struct pound_law *law = oscillator < 0 ? &scene->law : &o[oscillator].law;
-	if (oscillator >= 0 && !o[oscillator].has_law)
-		return "names the law of an oscillator that has none of its own";
-	if (oscillator < 0 && o[0].has_law && (o[1].has_law || o[1].rigid_wall))
-		return "has no effect: no oscillator follows the scene's law";
-	if (strcmp(fields_name(field), "target_demand") == 0 && law->yield_displacement > 0)
-		return "has no effect: yield_displacement_m is given";
-	return NULL;
-}
-
-/* Why a field may not vary in this scene, NULL when it may. */
-static const char *idle(const struct pound_scene *scene, const struct field *field, int oscillator)
-{
-	if (oscillator == 1 && scene->oscillators[1].rigid_wall)
-		return "names a field of a rigid wall, which has none";
-	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
-		return "has no effect: there is no contact in this scene";
-	if (strstr(field->pattern, "/law/"))
-		return law_idle(scene, field, oscillator);
-	return NULL;
-}
-
 static void check_path(const struct pound_study *study, const char *path, bool input, const char *pointer,
                        struct problems *problems)
 {
@@ -92,8 +66,8 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 		return;
 	else if (!fields_used(field, NULL, excitation, NULL))
 		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
-	else if (idle(scene, field, oscillator))
-		problems_add(problems, pointer, "%s", idle(scene, field, oscillator));
+	else if (study_idle(study, field, oscillator))
+		problems_add(problems, pointer, "%s", study_idle(study, field, oscillator));
 }
 
 /* Inputs and sweeps in one row, as they are both named by paths. */

@@ -1,8 +1,9 @@
-/* study_check.h - what the members of a study mean together.  For study_json.c. */
+/* study_check.h - what the members of a study mean together. */
 #ifndef STUDY_CHECK_H
 #define STUDY_CHECK_H
 
 #include "engine/pound.h"
+#include "schema/fields.h"
 #include "schema/problems.h"
 
 /* Adds what is wrong between members that are each right on their own. */
@@ -12,5 +13,8 @@ bool study_check_applies(const struct pound_study *study, int output); /* in one
 
 /* The varied field that a path names, for pound_scene_assign; the path names one. */
 struct pound_field study_check_field(const char *path);
+
+/* Why varying a field of the scene would change nothing, NULL when it may vary. */
+const char *study_idle(const struct pound_study *study, const struct field *field, int oscillator);
 
 #endif

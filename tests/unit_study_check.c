@@ -40,7 +40,7 @@ static void an_input_names_a_real_number_that_matters(void **state)
 	    {F_E, "\"/contact/gap_m\"", "", ""},
 	    {FIRST, "\"/law/target_demand\"" BETWEEN(1, 5), "", ""},
 	    {F_E, "\"/law/yield_displacement_m\"", "", ""},
-	    {F_E, "\"/oscillators/1/law/yield_displacement_m\"", "", ""},
+	    {FIRST, "\"/law/hardening_ratio\"" BETWEEN(0, 1), "", ""},
 	    {F_E, "\"excitation/frequency_hz\"", "/inputs/0/path",
 	     "names nothing in \"scene\", did you mean \"/excitation/frequency_hz\"?"},
 	    {F_E, "\"/scene/excitation/frequency_hz\"", "/inputs/0/path",
@@ -69,8 +69,8 @@ static void an_input_names_a_real_number_that_matters(void **state)
 	     "names a field that excitation \"kanai_tajimi\" does not use"},
 	    {FIRST, "\"/oscillators/0/law/target_demand\"" BETWEEN(1, 5), "/inputs/0/path",
 	     "names the law of an oscillator that has none of its own"},
-	    {FIRST, "\"/oscillators/1/law/target_demand\"" BETWEEN(1, 5), "/inputs/0/path",
-	     "has no effect: yield_displacement_m is given"},
+	    {F_E, "\"/oscillators/1/law/yield_displacement_m\"", "/inputs/0/path",
+	     "has no effect: the law is linear"},
 	    {F_E, M_2, "/inputs/1/path", "names the same field as /inputs/0"},
 	    {FIRST, "\"/contact/restitution\"" BETWEEN(0.5, 1), "/sweep/0/path",
 	     "names the same field as /inputs/0"},
@@ -218,6 +218,43 @@ static void the_law_of_nobody_and_the_fields_of_a_wall_do_not_vary(void **state)
 	free(document);
 }
 
+/* documents_sensitivity has an elastoplastic left oscillator that follows the scene's law and a linear right one. */
+static void what_a_law_does_not_use_does_not_vary(void **state)
+{
+	(void)state;
+	static const char linear[] = "has no effect: the law is linear",
+	                  given[] = "has no effect: yield_displacement_m is given";
+	static const struct change changes[] = {
+	    {EPS, "\"/law/hardening_ratio\", \"values\": [0, 0.1]", "", ""},
+	    {EPS, "\"/oscillators/1/law/hardening_ratio\", \"values\": [0, 0.1]", "/sweep/0/path", linear},
+	    {EPS, "\"/oscillators/1/law/corrections\", \"values\": [0, 1]", "/sweep/0/path", linear},
+	    {EPS, "\"/oscillators/1/law/type\", \"values\": [\"elastoplastic\"]", "", ""},
+	    // the type that stands in the scene is never taken
+	    {EPS "}",
+	     "\"/law/type\", \"values\": [\"linear\"]}, {\"path\": \"/law/hardening_ratio\", \"values\": [0]}",
+	     "/sweep/1/path", linear},
+	    {EPS "}",
+	     "\"/oscillators/1/law/hardening_ratio\", \"values\": [0]}, "
+	     "{\"path\": \"/oscillators/1/law/type\", \"values\": [\"linear\", \"elastoplastic\"]}",
+	     "", ""},
+	    {"\"law\": {\"type\": \"linear\", \"hardening_ratio\": 0.1, \"yield_displacement_m\": 0.25, "
+	     "\"corrections\": 2}}],",
+	     "\"law\": {\"type\": \"origin_oriented\", \"yield_displacement_m\": 0.25}}],", "", ""},
+	    {EPS "}",
+	     "\"/law/corrections\", \"values\": [0]}, {\"path\": \"/law/yield_displacement_m\", \"values\": [1]}",
+	     "/sweep/0/path", given},
+	    {FIRST "},\n  {\"path\": \"/oscillators/1/mass_kg\"",
+	     "\"/law/target_demand\"" BETWEEN(1, 5) "},\n  {\"path\": \"/law/yield_displacement_m\"",
+	     "/inputs/0/path", given},
+	};
+	try_all(changes, COUNT(changes));
+	char *own = documents_with(documents_sensitivity, "{\"type\": \"linear\", \"hardening_ratio\": 0.1,",
+	                           "{\"type\": \"origin_oriented\", \"hardening_ratio\": 0.1,");
+	char *both = documents_with(own, EPS, "\"/oscillators/1/law/corrections\", \"values\": [0, 1]");
+	documents_problem(both, "/sweep/0/path", given);
+	free(both), free(own);
+}
+
 static void what_is_too_large_is_told_with_its_limit(void **state)
 {
 	(void)state;
@@ -294,6 +331,7 @@ CHECK_MAIN(cmocka_unit_test(an_input_names_a_real_number_that_matters),
            cmocka_unit_test(an_output_applies_in_one_cell_at_least),
            cmocka_unit_test(without_a_contact_nothing_of_it_varies),
            cmocka_unit_test(the_law_of_nobody_and_the_fields_of_a_wall_do_not_vary),
+           cmocka_unit_test(what_a_law_does_not_use_does_not_vary),
            cmocka_unit_test(what_is_too_large_is_told_with_its_limit),
            cmocka_unit_test(cells_are_the_product_of_the_sweeps_the_last_one_fastest),
            cmocka_unit_test(too_many_cells_are_refused_before_they_are_counted_out))
