@@ -102,6 +102,11 @@ paper: $(B)/tests/paper
 # stiff and extreme scenes, a table: what every one of them is checked for by the tests
 extremes: $(B)/tests/unit_extremes
 	@$< | grep '^|'
+# how good the indexes are: errors, coverage and bias over SEEDS designs of functions with exact indexes; minutes
+SEEDS ?= 200
+statistics: $(B)/tests/statistics
+	@$< $(SEEDS)
+$(B)/tests/statistics: $(patsubst %.c,$(B)/%.o,$(wildcard tests/statistics_*.c))
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
 
@@ -123,6 +128,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check bench paper extremes asan tsan lint fuzz fmt clean
+.PHONY: all deps run test check bench paper extremes statistics asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)
