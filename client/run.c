@@ -90,11 +90,10 @@ static void watch(struct crew *crew, int n, int64_t runs_total, double start)
 	}
 }
 
-/* Runs all blocks, or all reductions, in n threads. */
+/* Runs the blocks that are left, or all reductions, in n threads. */
 static void crew_run(struct crew *crew, struct member *members, int n, int64_t runs_total, double start)
 {
 	int started = 0;
-	atomic_store(&crew->next, 0);
 	for (; started < n; started++) {
 		members[started] = (struct member){.crew = crew, .worker = started};
 		if (pthread_create(&members[started].thread, NULL, member_work, &members[started]) != 0)
@@ -107,7 +106,7 @@ static void crew_run(struct crew *crew, struct member *members, int n, int64_t r
 		pthread_join(members[i].thread, NULL);
 }
 
-/* All of one run: blocks, then reductions. */
+/* All of one run: blocks, then reductions, for as long as the design grows. */
 static enum pound_status compute(struct pound_run *run, int n_threads, int64_t runs_total, double start)
 {
 	struct crew crew = {.run = run};
@@ -115,14 +114,20 @@ static enum pound_status compute(struct pound_run *run, int n_threads, int64_t r
 	if (!members)
 		return POUND_NOMEM;
 	sem_init(&crew.finished, 0, 0);
-	crew.job = pound_run_block;
-	crew.n_jobs = pound_run_blocks(run);
-	crew_run(&crew, members, n_threads, runs_total, start);
-	if (crew.status == POUND_OK) {
+	int blocks_done = 0;
+	do {
+		crew.job = pound_run_block;
+		crew.n_jobs = pound_run_blocks(run);
+		atomic_store(&crew.next, blocks_done);
+		crew_run(&crew, members, n_threads, runs_total, start);
+		blocks_done = crew.n_jobs;
+		if (crew.status != POUND_OK)
+			break;
 		crew.job = pound_run_reduce;
 		crew.n_jobs = pound_run_reductions(run);
+		atomic_store(&crew.next, 0);
 		crew_run(&crew, members, n_threads, runs_total, start);
-	}
+	} while (crew.status == POUND_OK && pound_run_grow(run));
 	bar_clear();
 	sem_destroy(&crew.finished);
 	free(members);

@@ -423,7 +423,18 @@ struct pound_work {
 	int64_t failed[POUND_N_FAILURES]; /* pounding runs asked that have no result */
 };
 
+/* One look at the intervals of a design that grows: the widest one of an S1 or ST. */
+struct pound_look {
+	int rows;
+	double half_width; /* infinite: an index has no interval */
+	int cell, output, input;
+	enum pound_index index;
+};
+
 struct pound_result {
+	int rows;                 /* of the design, in this result */
+	int n_looks;              /* 0: the design does not grow */
+	struct pound_look *looks; /* (n_looks) */
 	int n_cells;
 	struct pound_cell *cells; /* (n_cells) */
 	int n_trials;
@@ -434,7 +445,8 @@ struct pound_result {
 
 /* One study being computed; owns all its memory.  The study must outlive it.
  *
- *   create -> block 0 .. blocks-1 (any order, any thread) -> reduce 0 .. reductions-1 (likewise) -> result
+ *   create -> block 0 .. blocks-1 (any order, any thread) -> reduce 0 .. reductions-1 (likewise) -> grow -> result
+ *             block blocks .. <- more blocks ---------------------------------------------------------'
  *
  * Of a model that is run elsewhere there are no blocks: create -> sample_inputs ... sample_assign ... -> reduce -> result.
  *
@@ -444,7 +456,8 @@ struct pound_run;
 
 struct pound_run *pound_run_create(const struct pound_study *study, int n_workers); /* NULL: out of memory */
 void pound_run_free(struct pound_run *run);
-int pound_run_blocks(const struct pound_run *run);
+int pound_run_blocks(const struct pound_run *run);      /* to run before the next reductions */
+int pound_run_blocks_most(const struct pound_run *run); /* of a design that grows: if it grows to the end */
 int64_t pound_run_block_runs(const struct pound_run *run, int block); /* pounding runs asked, for progress */
 enum pound_status pound_run_block(struct pound_run *run, int block, int worker);
 size_t pound_run_block_size(const struct pound_run *run, int block); /* doubles */
@@ -454,6 +467,14 @@ int pound_run_reductions(const struct pound_run *run);
 enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker);
 const struct pound_result *
 pound_run_result(struct pound_run *run); /* after the last reduction; owned by run */
+/* After the last reduction: whether the design grows, as an interval is not narrow enough.  Then there are more blocks, and
+ * all reductions are to be made again; else the result is there. */
+bool pound_run_grow(struct pound_run *run);
+/* Intermediate results: how many rows at the start of the design have all their blocks done  (pound_run_blocks_most); and
+ * the reductions, and so the result, of so many rows. */
+int pound_run_rows_done(const struct pound_run *run, const bool *done);
+void pound_run_rows_take(struct pound_run *run, int rows);
+int pound_run_rows(const struct pound_run *run); /* that the reductions are of */
 /* Seconds of CPU time of the calling thread, for the times of a convergence study; before the first block. */
 void pound_run_clock(struct pound_run *run, double (*cpu)(void));
 void pound_run_stop(struct pound_run *run); /* blocks and reductions return POUND_STOPPED soon */

@@ -1,6 +1,6 @@
 /* run.c - a study being computed: its memory, its blocks, its reductions.
  *
- * 1. create lays out everything: the design, the blocks (ranges of items, see plan.h), a plan for each worker;
+ * 1. create lays out everything: the design, the blocks (ranges of items, see layout.h), a plan for each worker;
  * 2. a block writes the measures of its runs into its own slice of `values`;
  * 3. a reduction turns the measures of one cell and output into its place of the result. */
 #include <assert.h>
@@ -18,8 +18,6 @@
 #include "engine/run.h"
 
 enum {
-	BLOCK_RUNS = 768,        /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
-	BLOCK_SAMPLES = 1 << 21, /* of its ground motions at most, unless one item has more: 16 MiB */
 	MEASURES = sizeof(struct pound_response) / sizeof(double),
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
 	CHECK_EVERY = 100, /* items between two checked ones */
@@ -29,71 +27,6 @@ enum {
 
 /* CPU time that a run is timed over at least [s]. */
 static const double CLOCK_LEAST = 0.02;
-
-static int runs_of_item(const struct pound_campaign *c)
-{
-	return c->n_cells * c->n_samples;
-}
-
-static int items_of(const struct pound_campaign *c)
-{
-	return c->n_rows * c->n_signals;
-}
-
-/* Doubles of an item's measures. */
-static size_t item_size(const struct pound_run *run)
-{
-	return (size_t)runs_of_item(&run->campaign) * (size_t)run->n_measures;
-}
-
-/* How many items before this one are kept, checks counted as items. */
-static size_t kept_before(const struct pound_run *run, int item)
-{
-	return (size_t)item + (size_t)pound_campaign_checks(&run->campaign, item);
-}
-
-/* Where a block's values begin. */
-static double *block_values(const struct pound_run *run, int block)
-{
-	return run->values + kept_before(run, run->first[block]) * item_size(run) + (size_t)block * COUNTS;
-}
-
-/* The block that holds an item. */
-static int block_of(const struct pound_run *run, int item)
-{
-	int low = 0, high = run->n_blocks;
-	while (high - low > 1) {
-		int middle = low + (high - low) / 2;
-		if (run->first[middle] <= item)
-			low = middle;
-		else
-			high = middle;
-	}
-	return low;
-}
-
-/* The measures of one run of the place-th item of a block. */
-static const double *place_values(const struct pound_run *run, int block, int place, int cell, int sample)
-{
-	return block_values(run, block) + (size_t)place * item_size(run) +
-	       (size_t)(cell * run->campaign.n_samples + sample) * (size_t)run->n_measures;
-}
-
-/* The measures of one run. */
-const double *pound_run_values(const struct pound_run *run, int item, int cell, int sample)
-{
-	int block = block_of(run, item);
-	return place_values(run, block, item - run->first[block], cell, sample);
-}
-
-/* The measures of the run that checks it. */
-static const double *check_values(const struct pound_run *run, int item, int cell, int sample)
-{
-	const struct pound_campaign *c = &run->campaign;
-	int block = block_of(run, item), first = run->first[block], n = run->first[block + 1] - first;
-	int place = n + pound_campaign_checks(c, item) - pound_campaign_checks(c, first);
-	return place_values(run, block, place, cell, sample);
-}
 
 /* ---- life ---- */
 
@@ -110,53 +43,17 @@ static struct pound_campaign campaign_of(const struct pound_study *study)
 	                           .trials = trials};
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
-	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples, every = items_of(&c) / checked_min;
+	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples,
+	    every = pound_layout_items(&c) / checked_min;
 	if (sampled && !study->elsewhere)
 		c.check_every = every > CHECK_EVERY ? CHECK_EVERY : every > 1 ? every : 1;
 	return c;
 }
 
-static void size_add(struct pound_plan_size *block, struct pound_plan_size item, bool checked)
-{
-	int times = checked ? 2 : 1;
-	block->asks += times * item.asks;
-	block->motions += times * item.motions;
-	block->tasks += times * item.tasks;
-	block->samples += (checked ? 3 : 1) * item.samples;
-}
-
-/* Cuts the items into blocks and finds the largest; with first NULL only counts them.  What is run elsewhere is one. */
-static int blocks_cut(const struct pound_campaign *c, int *first, struct pound_plan_size *largest)
-{
-	struct pound_plan_size block = {0};
-	int n_blocks = c->study->elsewhere, n_items = items_of(c);
-	struct pound_plan_size item = {0};
-	for (int i = 0; i < n_items && !c->study->elsewhere; i++) {
-		if (i % c->n_signals == 0)
-			item = pound_plan_size(c, i / c->n_signals);
-		bool full = block.asks + item.asks > BLOCK_RUNS || block.samples + item.samples > BLOCK_SAMPLES;
-		bool solved = c->trials && i % c->n_signals == 0; // a block has one solver
-		if (i == 0 || full || solved) {
-			if (first)
-				first[n_blocks] = i;
-			n_blocks++;
-			block = (struct pound_plan_size){0};
-		}
-		size_add(&block, item, pound_campaign_checks(c, i) < pound_campaign_checks(c, i + 1));
-		largest->asks = block.asks > largest->asks ? block.asks : largest->asks;
-		largest->motions = block.motions > largest->motions ? block.motions : largest->motions;
-		largest->tasks = block.tasks > largest->tasks ? block.tasks : largest->tasks;
-		largest->samples = block.samples > largest->samples ? block.samples : largest->samples;
-	}
-	if (first)
-		first[n_blocks] = n_items;
-	return n_blocks;
-}
-
 /* Runs of a cell that are checked. */
 static int checks_of(const struct pound_campaign *c)
 {
-	return pound_campaign_checks(c, items_of(c)) * c->n_samples;
+	return pound_campaign_checks(c, pound_layout_items(c)) * c->n_samples;
 }
 
 static size_t checks_size(const struct pound_campaign *c)
@@ -172,7 +69,7 @@ static size_t reduction_size(const struct pound_campaign *c)
 	if (c->study->n_outputs == 0)
 		return 0;
 	if (c->trials)
-		return (size_t)items_of(c) * TRIAL_MEASURES;
+		return (size_t)pound_layout_items(c) * TRIAL_MEASURES;
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
 	size_t variants = pound_variants_scratch(n_rows, n_inputs, n_signals);
@@ -218,7 +115,9 @@ static bool result_create(struct pound_run *run)
 	    piece(sizeof *run->estimates * n_cells * n_outputs * POUND_N_INDEXES * (size_t)study->n_inputs);
 	run->result.n_trials = c->trials ? c->n_rows : 0;
 	run->result.trials = piece(sizeof *run->result.trials * (size_t)run->result.n_trials);
-	if (!run->result.cells || !run->responses || !run->indices || !run->estimates || !run->result.trials)
+	run->result.looks = piece(sizeof *run->result.looks * (size_t)pound_run_looks_most(study));
+	if (!run->result.cells || !run->responses || !run->indices || !run->estimates || !run->result.trials ||
+	    !run->result.looks)
 		return false;
 	for (int cell = 0; cell < c->n_cells; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
@@ -227,7 +126,6 @@ static bool result_create(struct pound_run *run)
 		into->n_signals = c->n_signals;
 		into->signals = &run->responses[cell * c->n_signals];
 		into->indices = &run->indices[cell * study->n_outputs];
-		into->runs = (int64_t)items_of(c) * c->n_samples;
 		for (int o = 0; o < study->n_outputs; o++) {
 			size_t first = ((size_t)cell * n_outputs + (size_t)o) * POUND_N_INDEXES;
 			for (size_t k = 0; k < POUND_N_INDEXES; k++)
@@ -245,9 +143,13 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	if (!run)
 		return NULL;
 	run->campaign = campaign_of(study);
-	run->n_measures = study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
-	                  : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
-	                                                          : (int)MEASURES;
+	run->rows = study->kind == POUND_KIND_SENSITIVITY ? pound_design_rows(study, 0) : run->campaign.n_rows;
+	run->layout =
+	    (struct pound_layout){.campaign = &run->campaign,
+	                          .n_measures = study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
+	                                        : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
+	                                                                                : (int)MEASURES,
+	                          .n_counts = COUNTS};
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
 	double *design = piece(sizeof(double) * n_design);
 	run->campaign.design = design;
@@ -259,14 +161,13 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 		pound_design_fill(study, design);
 	}
 	struct pound_plan_size largest = {0};
-	run->n_blocks = blocks_cut(&run->campaign, NULL, &largest);
-	run->first = piece(sizeof *run->first * (size_t)(run->n_blocks + 1));
-	if (!run->first)
+	run->layout.n_blocks = pound_layout_cut(&run->campaign, NULL, &largest);
+	run->layout.first = piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
+	if (!run->layout.first)
 		goto fail;
-	blocks_cut(&run->campaign, run->first, &largest);
-	run->values = piece(sizeof(double) * (kept_before(run, items_of(&run->campaign)) * item_size(run) +
-	                                      (size_t)run->n_blocks * COUNTS));
-	if (!run->values || !workers_create(run, n_workers, largest) || !result_create(run))
+	pound_layout_cut(&run->campaign, run->layout.first, &largest);
+	run->layout.values = piece(sizeof(double) * pound_layout_doubles(&run->layout));
+	if (!run->layout.values || !workers_create(run, n_workers, largest) || !result_create(run))
 		goto fail;
 	return run;
 fail:
@@ -284,12 +185,13 @@ void pound_run_free(struct pound_run *run)
 		free(run->scratch[w]);
 	void *const pieces[] = {(void *)run->campaign.design,
 	                        run->u,
-	                        run->first,
-	                        run->values,
+	                        run->layout.first,
+	                        run->layout.values,
 	                        run->plans,
 	                        run->scratch,
 	                        run->result.cells,
 	                        run->result.trials,
+	                        run->result.looks,
 	                        run->responses,
 	                        run->indices,
 	                        run->estimates};
@@ -310,30 +212,41 @@ void pound_run_clock(struct pound_run *run, double (*cpu)(void))
 
 /* ---- blocks ---- */
 
+/* Blocks of the rows in hand. */
+static int blocks_in_hand(const struct pound_run *run)
+{
+	return run->rows ? pound_layout_block_of(&run->layout, run->rows * run->campaign.n_signals - 1) + 1 : 0;
+}
+
 int pound_run_blocks(const struct pound_run *run)
 {
-	return run->campaign.study->elsewhere ? 0 : run->n_blocks;
+	return run->campaign.study->elsewhere ? 0 : blocks_in_hand(run);
+}
+
+int pound_run_blocks_most(const struct pound_run *run)
+{
+	return run->layout.n_blocks;
 }
 
 int64_t pound_run_block_runs(const struct pound_run *run, int block)
 {
-	return (int64_t)(run->first[block + 1] - run->first[block]) * runs_of_item(&run->campaign);
+	return pound_layout_block_runs(&run->layout, block);
 }
 
 size_t pound_run_block_size(const struct pound_run *run, int block)
 {
-	size_t n = kept_before(run, run->first[block + 1]) - kept_before(run, run->first[block]);
-	return n * item_size(run) + COUNTS;
+	return pound_layout_block_doubles(&run->layout, block);
 }
 
 const double *pound_run_block_values(const struct pound_run *run, int block)
 {
-	return block_values(run, block);
+	return pound_layout_block(&run->layout, block);
 }
 
 void pound_run_block_restore(struct pound_run *run, int block, const double *values)
 {
-	memcpy(block_values(run, block), values, sizeof(double) * pound_run_block_size(run, block));
+	memcpy(pound_layout_block(&run->layout, block), values,
+	       sizeof(double) * pound_run_block_size(run, block));
 }
 
 struct slice {
@@ -409,14 +322,14 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_p
  */
 enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 {
-	struct slice slice = {.study = run->campaign.study, .at = block_values(run, block)};
+	struct slice slice = {.study = run->campaign.study, .at = pound_layout_block(&run->layout, block)};
 	struct pound_work work = {0};
-	int first = run->first[block], n = run->first[block + 1] - first;
+	int first = run->layout.first[block], n = run->layout.first[block + 1] - first;
 	enum pound_status status = pound_plan_run(run->plans[worker], &run->campaign, first, n, &run->stop, &work,
 	                                          response_keep, &slice);
 	if (!status && run->campaign.trials)
 		status = trial_block(run, run->plans[worker], first, n,
-		                     (struct pound_trial_run *)block_values(run, block));
+		                     (struct pound_trial_run *)pound_layout_block(&run->layout, block));
 	if (status)
 		return status;
 	const int64_t *counts = (const int64_t *)&work;
@@ -446,11 +359,11 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 {
 	const struct pound_campaign *c = &run->campaign;
 	int64_t failed = 0;
-	for (int row = 0; row < c->n_rows; row++)
+	for (int row = 0; row < run->rows; row++)
 		for (int signal = 0; signal < c->n_signals; signal++)
 			for (int sample = 0; sample < c->n_samples; sample++) {
 				const double *values =
-				    pound_run_values(run, row * c->n_signals + signal, cell, sample) + 2 * output;
+				    pound_layout_run(&run->layout, row * c->n_signals + signal, cell, sample) + 2 * output;
 				size_t at = ((size_t)row * (size_t)c->n_samples + (size_t)sample) * (size_t)c->n_signals +
 				            (size_t)signal;
 				numerator[at] = values[0];
@@ -465,10 +378,10 @@ static int checks_fill(const struct pound_run *run, int cell, int output, struct
 {
 	const struct pound_campaign *c = &run->campaign;
 	int n = 0;
-	for (int item = 0; item < items_of(c) && c->check_every; item += c->check_every)
+	for (int item = 0; item < run->rows * c->n_signals && c->check_every; item += c->check_every)
 		for (int sample = 0; sample < c->n_samples; sample++) {
-			const double *run_once = pound_run_values(run, item, cell, sample) + 2 * output;
-			const double *again = check_values(run, item, cell, sample) + 2 * output;
+			const double *run_once = pound_layout_run(&run->layout, item, cell, sample) + 2 * output;
+			const double *again = pound_layout_check(&run->layout, item, cell, sample) + 2 * output;
 			checks[n++] = (struct pound_check){.row = item / c->n_signals,
 			                                   .sample = sample,
 			                                   .numerator = {run_once[0], again[0]},
@@ -488,9 +401,9 @@ static bool any_known(const double *variance, size_t n)
 static void indices_reduce(struct pound_run *run, int cell, int output, double *scratch)
 {
 	const struct pound_campaign *c = &run->campaign;
-	size_t n = (size_t)c->n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
+	size_t n = (size_t)run->rows * (size_t)c->n_samples * (size_t)c->n_signals;
 	const bool elsewhere = c->study->elsewhere;
-	struct pound_sample_values values = {.n_rows = c->n_rows,
+	struct pound_sample_values values = {.n_rows = run->rows,
 	                                     .n_inputs = c->study->n_inputs,
 	                                     .n_signals = c->n_signals,
 	                                     .numerator = scratch,
@@ -532,7 +445,7 @@ static void responses_reduce(struct pound_run *run, int cell, int output)
 	double above = 0, below = 0;
 	for (int signal = 0; signal < c->n_signals; signal++) {
 		struct pound_response response;
-		memcpy(&response, pound_run_values(run, signal, cell, 0), sizeof response);
+		memcpy(&response, pound_layout_run(&run->layout, signal, cell, 0), sizeof response);
 		if (failed(&response))
 			continue;
 		double numerator = NAN, denominator = NAN;
@@ -546,9 +459,9 @@ static void responses_reduce(struct pound_run *run, int cell, int output)
 
 static void trials_reduce(struct pound_run *run, double *scratch)
 {
-	int n = items_of(&run->campaign);
+	int n = pound_layout_items(&run->campaign);
 	for (int item = 0; item < n; item++)
-		memcpy(scratch + (size_t)item * TRIAL_MEASURES, pound_run_values(run, item, 0, 0),
+		memcpy(scratch + (size_t)item * TRIAL_MEASURES, pound_layout_run(&run->layout, item, 0, 0),
 		       sizeof(double) * TRIAL_MEASURES);
 	pound_convergence_reduce(run->campaign.study, (const struct pound_trial_run *)scratch,
 	                         run->result.trials);
@@ -557,13 +470,13 @@ static void trials_reduce(struct pound_run *run, double *scratch)
 		run->result.cells[0].runs_failed += run->result.trials[j].runs_failed;
 }
 
-/* The work of all blocks. */
+/* The work of the blocks in hand. */
 static struct pound_work work_of(const struct pound_run *run)
 {
 	struct pound_work work = {0};
 	int64_t *counts = (int64_t *)&work;
-	for (int b = 0; b < run->n_blocks; b++) {
-		const double *counted = block_values(run, b) + pound_run_block_size(run, b) - COUNTS;
+	for (int b = 0; b < blocks_in_hand(run); b++) {
+		const double *counted = pound_layout_counts(&run->layout, b);
 		for (int j = 0; j < (int)COUNTS; j++)
 			counts[j] += (int64_t)counted[j];
 	}
@@ -613,11 +526,14 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 {
 	const struct pound_campaign *c = &run->campaign;
 	run->result.work = work_of(run);
+	run->result.rows = run->rows;
+	for (int cell = 0; cell < c->n_cells; cell++)
+		run->result.cells[cell].runs = (int64_t)run->rows * c->n_signals * c->n_samples;
 	for (int cell = 0; cell < c->n_cells && c->study->kind == POUND_KIND_RESPONSE; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
 		into->runs_failed = 0;
 		for (int signal = 0; signal < c->n_signals; signal++) {
-			memcpy(&into->signals[signal], pound_run_values(run, signal, cell, 0),
+			memcpy(&into->signals[signal], pound_layout_run(&run->layout, signal, cell, 0),
 			       sizeof into->signals[signal]);
 			into->runs_failed += failed(&into->signals[signal]);
 		}

@@ -4,14 +4,12 @@
 
 #include <stdatomic.h>
 
-#include "engine/plan.h"
+#include "engine/layout.h"
 
 struct pound_run {
 	struct pound_campaign campaign;
-	int n_measures; /* doubles kept of a run */
-	int n_blocks;
-	int *first;     /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
-	double *values; /* of all blocks, each followed by those of its checks and its counts of work */
+	struct pound_layout layout;
+	int rows;                  /* in hand: of the look, or taken for an intermediate result */
 	struct pound_plan **plans; /* (n_workers) */
 	double **scratch;          /* of reductions  (n_workers) */
 	struct pound_result result;
@@ -23,7 +21,6 @@ struct pound_run {
 	atomic_bool stop;
 };
 
-/* The measures of one run  (n_measures). */
-const double *pound_run_values(const struct pound_run *run, int item, int cell, int sample);
+int pound_run_looks_most(const struct pound_study *study); /* 0: the design does not grow */
 
 #endif

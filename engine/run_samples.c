@@ -22,7 +22,7 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 	const struct pound_campaign *c = &run->campaign;
 	assert(c->study->kind == POUND_KIND_SENSITIVITY);
 	if (c->study->elsewhere) {
-		const double *values = pound_run_values(run, row, cell, sample) + 2 * output;
+		const double *values = pound_layout_run(&run->layout, row, cell, sample) + 2 * output;
 		*mean = values[0];
 		*variance = values[1];
 		return;
@@ -30,14 +30,16 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 	// the runs of a row's signals are one item apart, but a block may end between them
 	double above = 0, below = 0;
 	for (int r = 0; r < c->n_signals; r++) {
-		const double *values = pound_run_values(run, row * c->n_signals + r, cell, sample) + 2 * output;
+		const double *values =
+		    pound_layout_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
 		above += values[0];
 		below += values[1];
 	}
 	*mean = below > 0 ? above / below : NAN;
 	double sum = 0;
 	for (int r = 0; r < c->n_signals; r++) {
-		const double *values = pound_run_values(run, row * c->n_signals + r, cell, sample) + 2 * output;
+		const double *values =
+		    pound_layout_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
 		double deviation = (values[0] - *mean * values[1]) * c->n_signals / below;
 		sum += deviation * deviation;
 	}
@@ -48,7 +50,7 @@ void pound_run_sample_assign(struct pound_run *run, int row, int sample, int out
                              double variance)
 {
 	assert(run->campaign.study->elsewhere);
-	double *values = (double *)pound_run_values(run, row, 0, sample) + 2 * output;
+	double *values = pound_layout_run(&run->layout, row, 0, sample) + 2 * output;
 	values[0] = isfinite(value) ? value : NAN;
 	values[1] = variance;
 }
