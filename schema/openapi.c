@@ -353,6 +353,16 @@ static void arguments(struct writer *w, const struct api_operation *operation)
 	writer_end(w);
 }
 
+/* Whether an example is a whole study, and not a design alone. */
+static bool is_study(const char *text)
+{
+	struct problems problems;
+	struct pound_study *study = study_from_json(text, strlen(text), &problems);
+	if (study)
+		study_free(study);
+	return study != NULL;
+}
+
 static void body(struct writer *w)
 {
 	object(w, "requestBody");
@@ -364,6 +374,8 @@ static void body(struct writer *w)
 	writer_end(w);
 	object(w, "examples");
 	for (int i = 0; examples[i].name; i++) {
+		if (!is_study(examples[i].text))
+			continue;
 		object(w, examples[i].name);
 		writer_text(w, "summary", examples[i].title);
 		writer_json(w, "value", examples[i].text);

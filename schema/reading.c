@@ -108,6 +108,21 @@ bool reading_has(const struct reading *reading, const char *pointer, ...)
 	return node != NULL;
 }
 
+char reading_type(const struct reading *reading, const char *pointer, ...)
+{
+	va_list arguments;
+	va_start(arguments, pointer);
+	const cJSON *node = find(reading, pointer, arguments);
+	va_end(arguments);
+	return !node                  ? 0
+	       : cJSON_IsObject(node) ? 'o'
+	       : cJSON_IsArray(node)  ? 'a'
+	       : cJSON_IsString(node) ? 's'
+	       : cJSON_IsNumber(node) ? 'n'
+	       : cJSON_IsBool(node)   ? 'b'
+	                              : '0';
+}
+
 int reading_count(const struct reading *reading, const char *pointer, ...)
 {
 	va_list arguments;

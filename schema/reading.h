@@ -27,6 +27,8 @@ bool reading_true(const struct reading *reading, const char *pointer,
                   ...) READING_FORMAT; /* it is there and is true */
 bool reading_has(const struct reading *reading, const char *pointer,
                  ...) READING_FORMAT; /* it is there, maybe null */
+/* 'o'bject, 'a'rray, 's'tring, 'n'umber, 'b'oolean, '0' null; 0: not there */
+char reading_type(const struct reading *reading, const char *pointer, ...) READING_FORMAT;
 int reading_count(const struct reading *reading, const char *pointer,
                   ...) READING_FORMAT; /* elements, members; 0 */
 /* the name of member `index` of an object, NULL past the last */

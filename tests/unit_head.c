@@ -1,0 +1,171 @@
+/* The head of a request: what is refused before anything is done for it. */
+#include "server/head.h"
+
+#include <string.h>
+
+#include "tests/check.h"
+
+/* "Name: value" lines, one after the other, as a whole head. */
+static struct head judged(const char *target, const char *const *lines, bool needs_host)
+{
+	struct head head;
+	head_target(&head, target);
+	for (; *lines; lines++) {
+		const char *colon = strchr(*lines, ':');
+		const char *value = colon + 1 + strspn(colon + 1, " ");
+		head_header(&head, *lines, (size_t)(colon - *lines), value, strlen(value));
+	}
+	head_end(&head, needs_host, "pound.example,other.example");
+	return head;
+}
+
+static void a_target_is_visible_ascii_and_its_escapes_are_whole(void **state)
+{
+	static const struct {
+		const char *target;
+		bool refused;
+	} cases[] = {
+	    {"/livez", false},     {"/a%20b?c=%2F", false}, {"*", false},
+	    {"/%00", true},        {"/livez%00x", true},    {"/%", true},
+	    {"/%4", true},         {"/%4g", true},          {"/a b", true},
+	    {"/\x7f", true},       {"/\xc3\xa4", true},     {"/?a=%00", true},
+	    {"http://h/p", false}, {"/%2500", false},       {"/\x01", true},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct head head = judged(cases[i].target, (const char *const[]){"Host: localhost", NULL}, true);
+		if ((head.fault == API_BAD_REQUEST) != cases[i].refused)
+			fail_msg("%s", cases[i].target);
+	}
+}
+
+static void what_leaves_a_request_s_end_in_doubt_is_refused(void **state)
+{
+	static const struct {
+		const char *lines[4];
+		enum api_fault fault;
+		bool close;
+	} cases[] = {
+	    {{"Host: localhost", "Content-Length: 5"}, API_NO_FAULT, false},
+	    {{"Host: localhost", "Transfer-Encoding: chunked"}, API_NO_FAULT, false},
+	    {{"Host: localhost", "transfer-encoding: CHUNKED"}, API_NO_FAULT, false},
+	    {{"Host: localhost", "Content-Length: 5", "content-length: 5"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "Content-Length: 5", "Content-Length: 6"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "Content-Length: 5", "Transfer-Encoding: chunked"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "Transfer-Encoding: gzip"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "Transfer-Encoding: gzip, chunked"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "Transfer-Encoding: xchunked"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "Transfer-Encoding: chunked", "Transfer-Encoding: chunked"},
+	     API_BAD_REQUEST,
+	     true},
+	    {{"Host: localhost", "Transfer-Encoding : chunked"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", ": nameless"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "X\x01Y: a"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "X: a\x01z"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "X: tab\tis a blank, \xc3\xa4 is text"}, API_NO_FAULT, false},
+	    {{"Host: localhost", "Host: localhost"}, API_BAD_REQUEST, true},
+	    {{"X: no host"}, API_BAD_REQUEST, true},
+	    {{"Host: evil.example"}, API_MISDIRECTED, false},
+	    {{"Host: localhost", "Content-Length: 1048576"}, API_NO_FAULT, false},
+	    {{"Host: localhost", "Content-Length: 1048577"}, API_TOO_LARGE, false},
+	    {{"Host: localhost", "Content-Length: 99999999999999999999999"}, API_TOO_LARGE, false},
+	    {{"Host: localhost", "Content-Encoding: gzip"}, API_NOT_JSON, false},
+	    {{"Host: localhost", "Content-Encoding: Identity"}, API_NO_FAULT, false},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct head head = judged("/", cases[i].lines, true);
+		if (head.fault != cases[i].fault || head.close != cases[i].close)
+			fail_msg("case %zu: fault %d, close %d", i, head.fault, head.close);
+	}
+	assert_int_equal(judged("/", (const char *const[]){"X: no host", NULL}, false).fault, API_NO_FAULT);
+}
+
+static void a_host_is_an_address_localhost_or_a_name_that_was_given(void **state)
+{
+	static const char *const ours[] = {"localhost",       "LOCALHOST:1",  "127.0.0.1",      "127.0.0.1:8437",
+	                                   "[::1]",           "[::1]:8437",   "192.168.1.7:80", "pound.example",
+	                                   "POUND.example:1", "other.example"};
+	static const char *const others[] = {"",
+	                                     "evil.example",
+	                                     "localhost.evil.example",
+	                                     "localhost:80x",
+	                                     "localhost:80:80",
+	                                     "::1",
+	                                     "[::1",
+	                                     "[::1]x",
+	                                     "[localhost]",
+	                                     "[pound.example]",
+	                                     "pound.exampl",
+	                                     "pound.example,other.example",
+	                                     "127.0.0.1.evil.example",
+	                                     "127.1",
+	                                     "2130706433",
+	                                     "user@localhost",
+	                                     "localhost/",
+	                                     ","};
+	(void)state;
+	for (size_t i = 0; i < sizeof ours / sizeof ours[0]; i++)
+		if (!head_has_host(ours[i], "pound.example,other.example"))
+			fail_msg("%s", ours[i]);
+	for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+		if (head_has_host(others[i], "pound.example,other.example"))
+			fail_msg("%s", others[i]);
+	assert_false(head_has_host("pound.example", NULL));
+	assert_false(head_has_host("", ",,"));
+}
+
+static void a_tag_is_found_in_every_form_of_a_list(void **state)
+{
+	static const char *const known[] = {"*",
+	                                    " * ",
+	                                    "\"a,b\"",
+	                                    "W/\"a,b\"",
+	                                    "\"x\", \"a,b\"",
+	                                    "\"x\",\"a,b\",\"y\"",
+	                                    ",, \"a,b\" ,",
+	                                    "\"\", W/\"x\", W/\"a,b\""};
+	static const char *const unknown[] = {
+	    "",          "\"a\"", "a,b",     "\"a,b",    "**",  "\"x\" \"a,b\"",  "w/\"a,b\"",
+	    "\"a,b\"\"", "W/a,b", "\"A,B\"", "*, \"x\"", "\"x", "\"x\"; \"a,b\"", "W/W/\"a,b\""};
+	(void)state;
+	for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+		if (!head_has_etag(known[i], "\"a,b\""))
+			fail_msg("%s", known[i]);
+	for (size_t i = 0; i < sizeof unknown / sizeof unknown[0]; i++)
+		if (strcmp(unknown[i], "\"a,b\"\"") != 0 && head_has_etag(unknown[i], "\"a,b\""))
+			fail_msg("%s", unknown[i]);
+}
+
+static void the_seconds_to_wait_are_found_among_other_preferences(void **state)
+{
+	static const struct {
+		const char *prefer;
+		int seconds;
+	} cases[] = {
+	    {"wait=10", 10},
+	    {"WAIT = 10", 10},
+	    {"respond-async, wait=10", 10},
+	    {"wait=\"7\"", 7},
+	    {"wait", 0},
+	    {"wait=", 0},
+	    {"wait=-1", 0},
+	    {"wait=x", 0},
+	    {"await=3", 0},
+	    {"", 0},
+	    {"wait=99999999999", 0},
+	    {"wait=5; foo=bar", 5},
+	    {"return=minimal,wait=2", 2},
+	    {"waiting=3", 0},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+		if (head_wait(cases[i].prefer) != cases[i].seconds)
+			fail_msg("%s: %d", cases[i].prefer, head_wait(cases[i].prefer));
+}
+
+CHECK_MAIN(cmocka_unit_test(a_target_is_visible_ascii_and_its_escapes_are_whole),
+           cmocka_unit_test(what_leaves_a_request_s_end_in_doubt_is_refused),
+           cmocka_unit_test(a_host_is_an_address_localhost_or_a_name_that_was_given),
+           cmocka_unit_test(a_tag_is_found_in_every_form_of_a_list),
+           cmocka_unit_test(the_seconds_to_wait_are_found_among_other_preferences))
