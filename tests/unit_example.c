@@ -53,6 +53,30 @@ static void the_paper_s_study_asks_for_what_the_paper_ran(void **state)
 	study_free(study);
 }
 
+static void every_extreme_of_the_example_has_a_result_that_balances(void **state)
+{
+	(void)state;
+	struct pound_study *study = documents_study(example_text("extremes"));
+	struct pound_run *run = pound_run_create(study, 1);
+	assert_non_null(run);
+	for (int block = 0; block < pound_run_blocks(run); block++)
+		assert_int_equal(pound_run_block(run, block, 0), POUND_OK);
+	for (int reduction = 0; reduction < pound_run_reductions(run); reduction++)
+		assert_int_equal(pound_run_reduce(run, reduction, 0), POUND_OK);
+	const struct pound_result *result = pound_run_result(run);
+	for (int c = 0; c < result->n_cells; c++) {
+		const struct pound_cell *cell = &result->cells[c];
+		assert_int_equal(cell->runs_failed, 0);
+		check_near(cell->signals[0].energy_residual, 0, 1e-10);
+		assert_true(cell->signals[0].contact_count > 0);
+		for (int o = 0; o < study->n_outputs; o++)
+			assert_true(!pound_output_applies(study->outputs[o], &study->scene) || cell->outputs[o] > 0);
+	}
+	pound_run_free(run);
+	study_free(study);
+}
+
 CHECK_MAIN(cmocka_unit_test(every_example_is_a_valid_study),
            cmocka_unit_test(the_title_of_an_example_is_its_name_in_the_document),
+           cmocka_unit_test(every_extreme_of_the_example_has_a_result_that_balances),
            cmocka_unit_test(the_paper_s_study_asks_for_what_the_paper_ran))
