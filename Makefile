@@ -36,7 +36,7 @@ CLIENT := $(call objs,client)
 # tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
 TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c))
 FIXTURE := $(call objs,tests,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c tests/fuzz_*.c tests/bench*.c \
-             tests/paper*.c tests/statistics*.c))
+             tests/paper*.c tests/statistics*.c tests/preload.c))
 
 all: $(B)/poundd $(B)/pound
 
@@ -48,6 +48,12 @@ $(B)/pound: $(CLIENT) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.client) $(LIBS.schema) $(LIBS.engine)
 $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.tests) $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
+
+# between a poundd of the tests and the C library: tests/faults.h
+$(TESTS): | $(B)/tests/preload.so
+$(B)/tests/preload.so: tests/preload.c tests/faults.h
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(filter-out -MMD -MP,$(CFLAGS)) -fPIC -shared -o $@ $<
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)

@@ -13,6 +13,11 @@ void check_near_at(double got, double want, double allowed, const char *what, co
 	_fail(file, line);
 }
 
+int check_count(int brief, int soak)
+{
+	return getenv("POUND_SOAK") ? soak : brief;
+}
+
 int check_run(const char *program, const struct CMUnitTest *tests, int n)
 {
 	const char *wanted = getenv("T");

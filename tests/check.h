@@ -19,6 +19,9 @@
 /* |got - want| <= allowed, all finite; prints both, the difference and the allowance when not. */
 void check_near_at(double got, double want, double allowed, const char *what, const char *file, int line);
 
+/* How often to try: `brief` in make test, `soak` in make soak (POUND_SOAK is set). */
+int check_count(int brief, int soak);
+
 /* Runs a table of tests under the name of the program, only those that T names when it is set. */
 int check_run(const char *program, const struct CMUnitTest *tests, int n);
 

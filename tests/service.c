@@ -2,6 +2,7 @@
 #include "tests/service.h"
 
 #include <curl/curl.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -30,15 +31,16 @@ struct service *service_new(void)
 
 void service_free(struct service *service)
 {
-	static const char *const files[] = {"studies.db",      "studies.db-wal",     "studies.db-shm",
-	                                    "studies.db-lock", "studies.db-ballast", "log"};
-	char path[128];
+	char path[512];
 	if (service->pid)
 		service_kill(service);
-	for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-		snprintf(path, sizeof path, "%s/%s", service->directory, files[i]);
+	DIR *files = opendir(service->directory);
+	assert_non_null(files);
+	for (struct dirent *file = readdir(files); file; file = readdir(files)) {
+		snprintf(path, sizeof path, "%s/%s", service->directory, file->d_name);
 		unlink(path);
 	}
+	closedir(files);
 	rmdir(service->directory);
 	free(service);
 }
