@@ -54,6 +54,7 @@ const struct api_argument api_arguments[] = {
 	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
 	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, "wait=N: with If-None-Match, waits up to N seconds for a change"},
 	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
+	{"results", "partial",         "query",  " true false ", 0, 0, "false", "true: of the rows that are complete so far, if there is no result yet"},
 	{"results", "format",          "query",  " json csv ", 0, 0, NULL, "wins over Accept"},
 	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
 	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, "wins over Accept"},

@@ -7,6 +7,7 @@
 
 #include "schema/fields.h"
 #include "schema/result_accuracy.h"
+#include "schema/result_design.h"
 #include "schema/study_json.h"
 #include "schema/writer.h"
 
@@ -394,6 +395,8 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 	writer_text(&w, "engine_version", POUND_VERSION);
 	writer_text(&w, "study_hash", hash);
 	writer_seed(&w, "seed", study->design.seed);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		result_design(&w, study, result);
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		write_trials(&w, result);
 	else if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps == 0)

@@ -28,7 +28,7 @@ static void samples_each(const struct pound_study *study, const struct pound_run
 	struct sample s = {.study = study, .run = run};
 	for (s.cell = 0; s.cell < study_cells(study); s.cell++) {
 		study_cell(study, s.cell, &s.scene);
-		for (s.row = 0; s.row < study->design.rows; s.row++)
+		for (s.row = 0; s.row < pound_run_rows(run); s.row++)
 			for (s.sample = 0; s.sample < pound_run_samples(run); s.sample++) {
 				pound_run_sample_inputs(run, s.row, s.sample, s.x);
 				put(w, &s);
@@ -228,7 +228,7 @@ char *samples_to_npy(const struct pound_study *study, const struct pound_run *ru
 	struct writer w;
 	*length = 0;
 	writer_init(&w);
-	int64_t n = (int64_t)study_cells(study) * study->design.rows * pound_run_samples(run);
+	int64_t n = (int64_t)study_cells(study) * pound_run_rows(run) * pound_run_samples(run);
 	if (!put_npy_header(&w, study, n))
 		return NULL;
 	samples_each(study, run, &w, put_record);

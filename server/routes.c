@@ -340,13 +340,42 @@ static bool second(const struct request *request, const char *const types[2], co
 	return is;
 }
 
+/* The result of the rows that are stored whole; `unready`, which says that there is none yet, while there is no row. */
+static struct reply so_far(struct request *request, struct reply unready, int *rows)
+{
+	struct work_run opened;
+	struct reply reply = {.status = 200};
+	const char *error = work_open(request->server->store, request->id, 1, &opened);
+	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
+	*rows = sampled ? pound_run_rows_done(opened.run, opened.stored) : 0;
+	if (*rows > 0) {
+		enum pound_status status = POUND_OK;
+		pound_run_rows_take(opened.run, *rows);
+		for (int k = 0; k < pound_run_reductions(opened.run) && !status; k++)
+			status = pound_run_reduce(opened.run, k, 0);
+		if (!status)
+			reply.body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &reply.length);
+		free(unready.body);
+		unready = status == POUND_NOMEM || (!status && !reply.body) ? no_memory()
+		          : status ? problem(API_CONFLICT, "none of the runs so far has a result")
+		                   : reply;
+	}
+	work_close(&opened);
+	return unready;
+}
+
 static struct reply results(struct request *request)
 {
 	static const char *const types[] = {"application/json", "text/csv"}, *const names[] = {"json", "csv"};
 	struct reply reply, json = document(request, "result");
+	int rows = 0;
+	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true"))
+		json = so_far(request, json, &rows);
 	if (json.status != 200)
 		return json;
 	bool csv = second(request, types, names, &reply);
+	if (rows > 0)
+		snprintf(reply.etag, sizeof reply.etag, "\"%s-%s-%d\"", names[csv], POUND_VERSION, rows);
 	reply.body = csv ? result_to_csv(json.body, json.length, &reply.length) : json.body;
 	if (csv)
 		free(json.body);
@@ -371,6 +400,8 @@ static struct reply samples(struct request *request)
 	struct work_run opened;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
 	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
+	if (sampled)
+		work_finished(&opened);
 	if (sampled && opened.n_left == 0)
 		reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
 	if (error)

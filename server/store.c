@@ -66,7 +66,8 @@ enum {
 	            "(" QUEUED "ORDER BY id LIMIT 1)) RETURNING id")                                          \
 	X(KEEP,     "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) " \
 	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, ?7 FROM study WHERE id = ?1 AND status = 'running'") \
-	X(FINISH,   "UPDATE study SET status = ?2, finished = max(?3, started), error = ?4 "                  \
+	X(FINISH,   "UPDATE study SET status = ?2, finished = max(?3, started), error = ?4, "                 \
+	            "runs = iif(?4 IS NULL, coalesce((SELECT sum(runs) FROM block WHERE study = ?1), runs), runs) "           \
 	            "WHERE id = ?1 AND status = 'running'")                                                   \
 	X(REQUEUE,  "UPDATE study SET status = 'queued', crashes = iif(" IN_VAIN " > 0, crashes + (id = ?1), 0) " \
 	            "WHERE status = 'running'")                                                               \

@@ -6,7 +6,8 @@
  * 1. A worker takes the next step of the oldest study that has one to give: a block, or when all blocks are done a
  *    reduction.  A finished block is stored before it counts.
  * 2. When no running study has a step to give, one worker claims the oldest queued study, the others wait for it.
- * 3. Who ends the last step of a study turns its result into bytes and stores them.
+ * 3. Who ends the last reduction asks whether the design grows; if so there are more blocks, and reductions again.
+ * 4. Who ends the last step of a study turns its result into bytes and stores them.
  *
  * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
  * store takes no more blocks and no result. */
@@ -80,12 +81,12 @@ static double thread_cpu(void)
 static void restore(void *to, const struct store_block *block)
 {
 	struct work_run *opened = to;
-	if (block->number >= opened->n_blocks ||
+	if (block->number >= pound_run_blocks_most(opened->run) ||
 	    (size_t)block->n != pound_run_block_size(opened->run, block->number))
 		return;
 	pound_run_block_restore(opened->run, block->number, block->values);
 	opened->stored[block->number] = true;
-	opened->n_left--;
+	opened->n_left -= block->number < opened->n_blocks;
 	opened->cpu_s += block->cpu_s;
 	opened->wall_s = block->wall_s > opened->wall_s ? block->wall_s : opened->wall_s;
 }
@@ -119,12 +120,42 @@ const char *work_open(struct store *store, int64_t id, int n_workers, struct wor
 		return "out of memory";
 	pound_run_clock(opened->run, thread_cpu);
 	opened->n_blocks = opened->n_left = pound_run_blocks(opened->run);
-	opened->stored = calloc((size_t)opened->n_blocks, sizeof *opened->stored);
+	opened->stored = calloc((size_t)pound_run_blocks_most(opened->run), sizeof *opened->stored);
 	if (!opened->stored)
 		return "out of memory";
 	if (store_blocks(store, id, restore, opened) == STORE_FAILED)
 		return "the stored blocks could not be read";
 	return NULL;
+}
+
+/* Counts the blocks that a design has grown by. */
+static void count(struct work_run *opened)
+{
+	int block = opened->n_blocks;
+	opened->n_blocks = pound_run_blocks(opened->run);
+	for (; block < opened->n_blocks; block++)
+		opened->n_left += !opened->stored[block];
+}
+
+/* Whether the design grows; then there are more blocks, some of which may be stored. */
+static bool grow(struct work_run *opened)
+{
+	bool grows = pound_run_grow(opened->run);
+	if (grows)
+		count(opened);
+	return grows;
+}
+
+/* Takes as many rows as the design of a finished study has: up to its last stored block. */
+void work_finished(struct work_run *opened)
+{
+	int last = pound_run_blocks_most(opened->run) - 1;
+	while (last >= 0 && !opened->stored[last])
+		last--;
+	for (int look = 1; opened->n_blocks <= last; look++) {
+		pound_run_rows_take(opened->run, pound_design_rows(opened->study, look));
+		count(opened);
+	}
 }
 
 /* Frees what work_open made. */
@@ -299,8 +330,10 @@ static void perform(struct work *work, const struct step *step, int worker)
 		end(job, wanted ? pound_status_error(status) : NULL);
 	else if (step->block >= 0)
 		job->of.n_left--;
-	else
-		job->reductions_left--;
+	else if (--job->reductions_left == 0 && grow(&job->of)) {
+		job->reduction = 0;
+		job->reductions_left = job->n_reductions;
+	}
 	settle(work, job);
 	study_here = 0;
 	pthread_cond_broadcast(&work->changed);
