@@ -1,0 +1,292 @@
+/* Requests as no library would send them: framing, targets, headers, methods, slow and many clients. */
+#include <string.h>
+#include <unistd.h>
+
+#include "schema/reading.h"
+#include "tests/raw.h"
+
+#define HOST   "Host: localhost\r\n"
+#define POST   "POST /v1/studies HTTP/1.1\r\n" HOST "Content-Type: application/json\r\n"
+#define GET    "GET /livez HTTP/1.1\r\n" HOST
+
+// a request that hides behind another one: it must never be answered
+#define HIDDEN "GET /version HTTP/1.1\r\n" HOST "\r\n"
+
+/* `may`: further statuses that are as good; 0 is a connection that is closed, or waits, without an answer. */
+static const struct {
+	const char *bytes;
+	int status, may;
+	bool closes;
+	int answers; /* at most */
+} CASES[] = {
+    // framing
+    {POST "Content-Length: 2\r\nContent-Length: 2\r\n\r\n{}" HIDDEN, 400, 400, true, 1},
+    {POST "Content-Length: 2\r\nContent-Length: 60\r\n\r\n{}" HIDDEN, 400, 400, true, 1},
+    {POST "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked\r\nContent-Length: 5\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: gzip\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: xchunked\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked, gzip\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: identity\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked\r\nTransfer-Encoding: gzip\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding : chunked\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked\r\n\r\nzz\r\n" HIDDEN, 400, 0, true, 1},
+    {POST "Transfer-Encoding: chunked\r\n\r\n-1\r\n" HIDDEN, 400, 0, true, 1},
+    {POST "Transfer-Encoding: chunked\r\n\r\nfffffffffffffffff\r\n" HIDDEN, 400, 413, true, 1},
+    // the parser below writes the head of this answer twice
+    {POST "Content-Length: -1\r\n\r\n" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: +2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 0x2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 2, 2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 2x\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: \r\n\r\n" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 99999999999999999999999\r\n\r\n" HIDDEN, 413, 413, true, 2},
+    {POST "Content-Length: 9223372036854775808\r\n\r\n" HIDDEN, 413, 413, true, 1},
+    {POST "Content-Length: 9000000000\r\n\r\n" HIDDEN, 413, 413, true, 1},
+    {POST "Content-Length: 1048577\r\nExpect: 100-continue\r\n\r\n", 413, 413, true, 1},
+    {POST "Content-Length: 2\r\nContent-Encoding: gzip\r\n\r\n{}" HIDDEN, 415, 415, true, 1},
+    // headers
+    {GET "Host: localhost\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {"GET /livez HTTP/1.1\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {"GET /livez HTTP/1.1\r\nHost: evil.example\r\n\r\n", 421, 421, false, 1},
+    {"GET /livez HTTP/1.1\r\nHost: localhost.evil.example:8437\r\n\r\n", 421, 421, false, 1},
+    {"GET /livez HTTP/1.1\r\nHost:\r\n\r\n", 421, 421, false, 1},
+    {"GET /livez HTTP/1.1\r\nHost: 10.1.2.3:80\r\n\r\n", 200, 200, false, 1},
+    {"GET /livez HTTP/1.0\r\n\r\n", 200, 200, true, 1},
+    // dropped by the parser below, so that we never see it
+    {GET ": nameless\r\n\r\n", 200, 400, false, 1},
+    {GET "X Y: blank in a name\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "X\x01: control\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "X: \x01\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "X: \x7f\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "no colon\r\n\r\n", 400, 400, true, 1},
+    {GET "Expect: 200-ok\r\n\r\n", 200, 417, false, 1},
+    // targets
+    {"GET /livez%00 HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez%00x HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /v1/studies?status=queued%00x HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez% HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez%2 HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez%gg HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /li vez HTTP/1.1\r\n" HOST "\r\n", 400, 400, true, 1},
+    {"GET /liv\x01z HTTP/1.1\r\n" HOST "\r\n", 400, 400, true, 1},
+    {"GET /liv\xc3\xa4z HTTP/1.1\r\n" HOST "\r\n", 400, 400, true, 1},
+    {"GET http://localhost/livez HTTP/1.1\r\n" HOST "\r\n", 404, 400, false, 1},
+    {"GET livez HTTP/1.1\r\n" HOST "\r\n", 404, 400, false, 1},
+    {"OPTIONS * HTTP/1.1\r\n" HOST "\r\n", 404, 405, false, 1},
+    {"GET  /livez HTTP/1.1\r\n" HOST "\r\n", 200, 400, false, 1},
+    // methods and versions
+    {"get /livez HTTP/1.1\r\n" HOST "\r\n", 405, 405, false, 1},
+    {"BREW /livez HTTP/1.1\r\n" HOST "\r\n", 405, 405, false, 1},
+    {"PUT /livez HTTP/1.1\r\n" HOST "Content-Length: 2\r\n\r\n{}", 405, 405, true, 1},
+    {"TRACE /livez HTTP/1.1\r\n" HOST "\r\n", 405, 405, false, 1},
+    {"CONNECT localhost:80 HTTP/1.1\r\n" HOST "\r\n", 404, 405, false, 1},
+    {"GET /livez HTTP/2.0\r\n" HOST "\r\n", 505, 400, true, 1},
+    {"GET /livez HTTP/0.9\r\n" HOST "\r\n", 400, 505, true, 1},
+    {"GET /livez\r\n", 400, 505, true, 1},
+    {"GET /livez HTTX/1.1\r\n" HOST "\r\n", 400, 505, true, 1},
+    {"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 505, 400, true, 1},
+    {"\x16\x03\x01\x02\x01\x01\xfc\x03\x03\r\n\r\n", 400, 0, true, 1},
+    {"\r\n\r\n" GET "\r\n", 200, 400, false, 1},
+    // two in one packet are both answered, in order
+    {GET "\r\n" HIDDEN, 200, 200, false, 2},
+    {POST "Content-Length: 2\r\n\r\n{}" HIDDEN, 422, 422, false, 2},
+};
+
+static void a_request_of_doubtful_shape_has_one_answer_and_hides_no_other(void **state)
+{
+	struct service *service = *state;
+	int n = (int)(sizeof CASES / sizeof CASES[0]), closed = 0;
+	for (int i = 0; i < n; i++) {
+		static struct raw_answer answer;
+		raw_ask(service, CASES[i].bytes, strlen(CASES[i].bytes), CASES[i].closes ? 5 : 0.1, &answer);
+		bool status = answer.status == CASES[i].status || answer.status == CASES[i].may;
+		bool hidden = CASES[i].answers == 1 && strstr(answer.text, "\"version\"") && answer.status != 200;
+		if (!status || answer.n > CASES[i].answers || hidden || answer.reset ||
+		    (CASES[i].closes && !answer.closed))
+			fail_msg("%.120s...: status %d, %d answers%s%s\n%s", CASES[i].bytes, answer.status, answer.n,
+			         answer.closed ? ", closed" : "", answer.reset ? ", reset" : "", answer.text);
+		closed += answer.closed;
+	}
+	printf("%d requests, %d connections closed by the server, 0 hidden ones answered\n", n, closed);
+}
+
+/* Escapes, double escapes and other spellings of ../ before and between names of files. */
+static void no_path_leads_to_a_file(void **state)
+{
+	static const char *const ups[] = {"../",           "..%2f",           "%2e%2e/", "%2e%2e%2f",
+	                                  "..%5c",         "%252e%252e%252f", "....//",  "..;/",
+	                                  "%c0%ae%c0%ae/", "./../",           "..%252f", "/..//../",
+	                                  "..%00/",        "%2e./",           "..\\",    "%uff0e%uff0e/"};
+	static const char *const files[] = {"etc/passwd",        "etc/shadow", "proc/self/environ",
+	                                    "proc/self/cmdline", "studies.db", "studies.db-wal",
+	                                    "root/.ssh/id_rsa"};
+	static const char *const starts[] = {"/", "/v1/studies/"};
+	struct service *service = *state;
+	int n = 0;
+	for (size_t u = 0; u < sizeof ups / sizeof ups[0]; u++)
+		for (size_t f = 0; f < sizeof files / sizeof files[0]; f++)
+			for (size_t s = 0; s < 2; s++, n++) {
+				char bytes[512];
+				static struct raw_answer answer;
+				snprintf(bytes, sizeof bytes, "GET %s%s%s%s HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
+				         starts[s], ups[u], ups[u], files[f]);
+				raw_ask(service, bytes, strlen(bytes), 5, &answer);
+				if (answer.status != 404 && answer.status != 400)
+					fail_msg("%s: %d %s", bytes, answer.status, answer.text);
+			}
+	printf("%d paths, all 404 or 400\n", n);
+	assert_true(n >= 200);
+}
+
+static void a_body_that_is_too_large_is_refused_before_it_is_read_and_without_a_reset(void **state)
+{
+	static const char head[] = POST "Content-Length: 67108864\r\n\r\n";
+	enum { SIZE = 64 << 20, TRIES = 5 };
+	struct service *service = *state;
+	char *bytes = calloc(1, SIZE + sizeof head);
+	assert_non_null(bytes);
+	memcpy(bytes, head, strlen(head));
+	for (int i = 0; i < TRIES; i++) {
+		static struct raw_answer answer;
+		// a client that reads nothing until it has sent all
+		raw_ask(service, bytes, strlen(head) + SIZE, 5, &answer);
+		if (answer.status != 413 || answer.reset || answer.n != 1)
+			fail_msg("%d%s: %s", answer.status, answer.reset ? " reset" : "", answer.text);
+		// and one that has only said what it will send
+		raw_ask(service, bytes, strlen(head), 2, &answer);
+		assert_int_equal(answer.status, 413);
+	}
+	free(bytes);
+}
+
+static void what_is_answered_cannot_be_framed_guessed_or_kept(void **state)
+{
+	static const char *const headers[] = {
+	    "X-Content-Type-Options: nosniff",
+	    "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'", "Referrer-Policy: no-referrer",
+	    "Cache-Control: no-store", "X-Request-Id: "};
+	static const char *const requests[] = {GET "\r\n", "GET /nowhere HTTP/1.1\r\n" HOST "\r\n",
+	                                       "PUT /livez HTTP/1.1\r\n" HOST "\r\n",
+	                                       POST "Content-Length: 2\r\n\r\n{}"};
+	struct service *service = *state;
+	for (size_t r = 0; r < sizeof requests / sizeof requests[0]; r++) {
+		static struct raw_answer answer;
+		raw_ask(service, requests[r], strlen(requests[r]), 0.1, &answer);
+		for (size_t h = 0; h < sizeof headers / sizeof headers[0]; h++)
+			if (!strstr(answer.text, headers[h]))
+				fail_msg("%s is not in\n%s", headers[h], answer.text);
+		assert_null(strstr(answer.text, "Access-Control-"));
+		assert_null(strstr(answer.text, "Server:"));
+	}
+}
+
+static void an_answer_and_its_line_of_the_log_have_one_number(void **state)
+{
+	struct service *service = *state;
+	static struct raw_answer answer;
+	char line[1024], id[17] = "";
+	raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.1, &answer);
+	const char *header = strstr(answer.text, "X-Request-Id: ");
+	assert_non_null(header);
+	snprintf(id, sizeof id, "%s", header + strlen("X-Request-Id: "));
+	service_stop(service);
+	FILE *log = fopen(service->log, "r");
+	assert_non_null(log);
+	bool found = false;
+	while (fgets(line, sizeof line, log))
+		found |= strstr(line, id) && strstr(line, " GET /livez 200 ");
+	fclose(log);
+	assert_true(found);
+}
+
+/* A server with other settings than usual. */
+static struct service *started(const char *const settings[][2])
+{
+	struct service *service = service_new();
+	for (int i = 0; settings[i][0]; i++)
+		setenv(settings[i][0], settings[i][1], 1);
+	service_start(service, 1);
+	for (int i = 0; settings[i][0]; i++)
+		unsetenv(settings[i][0]);
+	return service;
+}
+
+static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
+{
+	static const char *const settings[][2] = {
+	    {"POUNDD_HEADER_TIMEOUT", "1"}, {"POUNDD_BODY_TIMEOUT", "1"}, {"POUNDD_IDLE_TIMEOUT", "1"}, {NULL}};
+	static const struct {
+		const char *first, *then;
+	} clients[] = {
+	    {"", "G"},                                 // nothing, then a letter at a time
+	    {"GET /livez HTTP/1.1\r\n", "X-Y: a\r\n"}, // a header at a time
+	    {POST "Content-Length: 100000\r\n\r\n", " "},
+	    {POST "Transfer-Encoding: chunked\r\n\r\n", "1\r\n \r\n"},
+	    {GET "\r\n", ""}, // an answer, then silence
+	};
+	enum { KINDS = sizeof clients / sizeof clients[0], EACH = 40, N = KINDS * EACH };
+	(void)state;
+	struct service *service = started(settings);
+	int sockets[N], answered = 0, closed = 0;
+	static struct raw_answer answer;
+	for (int i = 0; i < N; i++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], clients[i % KINDS].first, strlen(clients[i % KINDS].first));
+	}
+	// the deadlines are absolute: a byte now and then does not move them
+	for (int round = 0; round < 20; round++) {
+		for (int i = 0; i < N; i++)
+			raw_send(sockets[i], clients[i % KINDS].then, strlen(clients[i % KINDS].then));
+		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.1, &answer);
+		answered += answer.status == 200;
+	}
+	for (int i = 0; i < N; i++) {
+		raw_receive(sockets[i], 5, &answer);
+		closed += answer.closed;
+		close(sockets[i]);
+	}
+	printf("%d slow clients, %d closed; %d of 20 others answered\n", N, closed, answered);
+	assert_int_equal(closed, N);
+	assert_int_equal(answered, 20);
+	service_stop(service);
+	service_free(service);
+}
+
+static void more_connections_than_the_limit_are_told_503(void **state)
+{
+	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "3"}, {NULL}};
+	enum { N = 6 };
+	(void)state;
+	struct service *service = started(settings);
+	int sockets[N], served = 0, refused = 0;
+	for (int i = 0; i < N; i++) {
+		static struct raw_answer answer;
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], POST "Content-Length: 2\r\n\r\n{}", strlen(POST "Content-Length: 2\r\n\r\n{}"));
+		raw_receive(sockets[i], 0.2, &answer);
+		served += answer.status == 422;
+		refused += answer.status == 503 && strstr(answer.text, "Retry-After: ") && answer.closed;
+	}
+	assert_int_equal(served, 3);
+	assert_int_equal(refused, 3);
+	for (int i = 0; i < N; i++)
+		close(sockets[i]);
+	// and when they have gone, others are served
+	static struct raw_answer answer;
+	for (int i = 0; i < 100 && answer.status != 200; i++)
+		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.05, &answer);
+	assert_int_equal(answer.status, 200);
+	service_stop(service);
+	service_free(service);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other),
+           SERVED(no_path_leads_to_a_file),
+           SERVED(a_body_that_is_too_large_is_refused_before_it_is_read_and_without_a_reset),
+           SERVED(what_is_answered_cannot_be_framed_guessed_or_kept),
+           SERVED(an_answer_and_its_line_of_the_log_have_one_number),
+           cmocka_unit_test(who_is_slow_is_closed_and_others_are_served_meanwhile),
+           cmocka_unit_test(more_connections_than_the_limit_are_told_503))
