@@ -1,0 +1,247 @@
+/* Tags of answers, and clients that wait for a study to change. */
+#include <pthread.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "schema/reading.h"
+#include "tests/raw.h"
+
+static struct answer conditional(const struct service *service, const char *path, const char *tags,
+                                 const char *prefer)
+{
+	char header[256], preference[64];
+	snprintf(header, sizeof header, "If-None-Match: %s", tags);
+	snprintf(preference, sizeof preference, "Prefer: %s", prefer ? prefer : "");
+	return service_ask(
+	    service,
+	    &(struct ask){.method = "GET", .path = path, .headers = {header, prefer ? preference : NULL}});
+}
+
+static double now(void)
+{
+	struct timespec time;
+	clock_gettime(CLOCK_MONOTONIC, &time);
+	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void finished_study(const struct service *service, char id[17])
+{
+	char *study = service_study(4, 2, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	free(study);
+}
+
+static void every_form_of_a_known_tag_is_304_on_every_document(void **state)
+{
+	static const char *const documents[] = {
+	    "", "/request", "/results", "/results?format=csv", "/samples", "/samples?format=npy"};
+	static const struct {
+		const char *form;
+		int status;
+	} forms[] = {{"%s", 304},        {"W/%s", 304},  {"\"x\", %s", 304}, {"*", 304},
+	             {"%s, \"x\"", 304}, {"\"x\"", 200}, {"W/\"x\"", 200},   {"x%s", 200}};
+	struct service *service = *state;
+	char id[17], path[64], tags[160];
+	finished_study(service, id);
+	for (size_t d = 0; d < sizeof documents / sizeof documents[0]; d++) {
+		snprintf(path, sizeof path, "/v1/studies/%s%s", id, documents[d]);
+		struct answer first = service_get(service, "%s", path);
+		assert_int_equal(first.status, 200);
+		assert_int_equal(first.etag[0], '"');
+		for (size_t f = 0; f < sizeof forms / sizeof forms[0]; f++) {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+			snprintf(tags, sizeof tags, forms[f].form, first.etag);
+#pragma GCC diagnostic pop
+			struct answer answer = conditional(service, path, tags, NULL);
+			if (answer.status != forms[f].status || (answer.status == 304 && answer.length > 0))
+				fail_msg("%s with %s: %d", path, tags, answer.status);
+			assert_string_equal(answer.etag, first.etag);
+			answer_free(&answer);
+		}
+		answer_free(&first);
+	}
+	struct answer api = service_get(service, "/v1/openapi.json");
+	struct answer same = conditional(service, "/v1/openapi.json", api.etag, NULL);
+	assert_int_equal(same.status, 304);
+	answer_free(&same);
+	answer_free(&api);
+}
+
+static void formats_of_one_result_have_tags_of_their_own(void **state)
+{
+	struct service *service = *state;
+	char id[17];
+	finished_study(service, id);
+	struct answer json = service_get(service, "/v1/studies/%s/results", id);
+	struct answer csv = service_get(service, "/v1/studies/%s/results?format=csv", id);
+	assert_string_not_equal(json.etag, csv.etag);
+	answer_free(&json);
+	answer_free(&csv);
+}
+
+static void who_waits_for_nothing_is_told_304_when_the_time_is_over(void **state)
+{
+	struct service *service = *state;
+	char id[17], path[64];
+	finished_study(service, id);
+	snprintf(path, sizeof path, "/v1/studies/%s", id);
+	struct answer first = service_get(service, "%s", path);
+	double start = now();
+	struct answer answer = conditional(service, path, first.etag, "wait=1");
+	assert_int_equal(answer.status, 304);
+	assert_true(now() - start > 0.99);
+	answer_free(&answer);
+	// an unknown tag, or none to compare with, is answered at once: only the status shows that it did not wait
+	answer = conditional(service, path, "\"x\"", "wait=30");
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	answer =
+	    service_ask(service, &(struct ask){.method = "GET", .path = path, .headers = {"Prefer: wait=30"}});
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	answer_free(&first);
+}
+
+/* A study that is queued behind a long one, so that it changes when the test wants. */
+static void queued_study(const struct service *service, char first[17], char second[17], char tag[64])
+{
+	char *study = service_study(SERVICE_ROWS, 5, 1), *other = service_study(2, 1, 2);
+	service_submit(service, study, first);
+	service_submit(service, other, second);
+	assert_true(service_wait(service, first, "running", 1));
+	struct answer answer = service_get(service, "/v1/studies/%s", second);
+	snprintf(tag, 64, "%s", answer.etag);
+	answer_free(&answer);
+	free(study);
+	free(other);
+}
+
+enum { WAITERS = 50 };
+
+struct waiter {
+	const struct service *service;
+	char path[64], tag[64];
+	struct answer answer;
+	double told;
+	pthread_t thread;
+};
+
+static void *wait_in_thread(void *of)
+{
+	struct waiter *waiter = of;
+	waiter->answer = conditional(waiter->service, waiter->path, waiter->tag, "wait=30");
+	waiter->told = now();
+	return NULL;
+}
+
+static void waiters_start(struct waiter waiters[WAITERS], const struct service *service, const char *id,
+                          const char *tag)
+{
+	for (int i = 0; i < WAITERS; i++) {
+		waiters[i] = (struct waiter){.service = service};
+		snprintf(waiters[i].path, sizeof waiters[i].path, "/v1/studies/%s", id);
+		snprintf(waiters[i].tag, sizeof waiters[i].tag, "%s", tag);
+		assert_int_equal(pthread_create(&waiters[i].thread, NULL, wait_in_thread, &waiters[i]), 0);
+	}
+	// the metric says when all of them are there: they and the one who asks
+	double open = 0;
+	while (open < WAITERS + 1) {
+		struct answer answer = service_get(service, "/metrics");
+		open = atof(strstr(answer.body, "\npound_http_connections ") + strlen("\npound_http_connections "));
+		answer_free(&answer);
+	}
+}
+
+static void who_waits_for_a_change_is_told_of_it(void **state)
+{
+	struct service *service = *state;
+	static struct waiter waiters[WAITERS];
+	char first[17], second[17], tag[64], path[64];
+	queued_study(service, first, second, tag);
+	waiters_start(waiters, service, second, tag);
+	snprintf(path, sizeof path, "/v1/studies/%s/cancel", second);
+	struct answer answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	double changed = now(), latest = 0;
+	for (int i = 0; i < WAITERS; i++) {
+		pthread_join(waiters[i].thread, NULL);
+		assert_int_equal(waiters[i].answer.status, 200);
+		assert_non_null(strstr(waiters[i].answer.body, "\"cancelled\""));
+		latest = waiters[i].told - changed > latest ? waiters[i].told - changed : latest;
+		answer_free(&waiters[i].answer);
+	}
+	printf("%d told of a change, the last after %.0f ms\n", WAITERS, 1e3 * latest);
+}
+
+static void a_study_can_be_followed_to_its_end_by_waiting_alone(void **state)
+{
+	struct service *service = *state;
+	char id[17], path[64], tag[64] = "\"none\"";
+	char *study = service_study(SERVICE_ROWS, 5, 1);
+	int told = 0;
+	double done = -1;
+	service_submit(service, study, id);
+	free(study);
+	snprintf(path, sizeof path, "/v1/studies/%s", id);
+	for (bool over = false; !over; told++) {
+		struct answer answer = conditional(service, path, tag, "wait=30");
+		assert_int_equal(answer.status, 200);
+		assert_string_not_equal(answer.etag, tag);
+		struct reading *status = answer_read(&answer);
+		assert_true(reading_number(status, "/runs_done") >= done);
+		done = reading_number(status, "/runs_done");
+		over = reading_text(status, "/finished") != NULL;
+		snprintf(tag, sizeof tag, "%s", answer.etag);
+		reading_close(status);
+		answer_free(&answer);
+	}
+	assert_true(told >= 3);
+}
+
+static void a_server_that_stops_tells_who_waits(void **state)
+{
+	struct service *service = *state;
+	static struct waiter waiters[WAITERS];
+	char first[17], second[17], tag[64];
+	queued_study(service, first, second, tag);
+	waiters_start(waiters, service, second, tag);
+	service_stop(service);
+	for (int i = 0; i < WAITERS; i++) {
+		pthread_join(waiters[i].thread, NULL);
+		assert_int_equal(waiters[i].answer.status, 503);
+		assert_true(atoi(waiters[i].answer.retry_after) >= 1);
+		answer_free(&waiters[i].answer);
+	}
+}
+
+static void a_client_that_waits_and_goes_away_is_no_harm(void **state)
+{
+	struct service *service = *state;
+	char first[17], second[17], tag[64], bytes[256];
+	queued_study(service, first, second, tag);
+	snprintf(bytes, sizeof bytes,
+	         "GET /v1/studies/%s HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: %s\r\nPrefer: wait=1\r\n\r\n",
+	         second, tag);
+	for (int i = 0; i < 100; i++) {
+		int s = raw_open(service);
+		raw_send(s, bytes, strlen(bytes));
+		close(s);
+	}
+	struct answer answer = service_get(service, "/livez");
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	service_stop(service);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
+           SERVED(formats_of_one_result_have_tags_of_their_own),
+           SERVED(who_waits_for_nothing_is_told_304_when_the_time_is_over),
+           SERVED(who_waits_for_a_change_is_told_of_it),
+           SERVED(a_study_can_be_followed_to_its_end_by_waiting_alone),
+           SERVED(a_server_that_stops_tells_who_waits), SERVED(a_client_that_waits_and_goes_away_is_no_harm))
