@@ -29,6 +29,17 @@ struct service *service_new(void)
 	return service;
 }
 
+struct service *service_with(const char *const settings[][2], int n_workers)
+{
+	struct service *service = service_new();
+	for (int i = 0; settings[i][0]; i++)
+		setenv(settings[i][0], settings[i][1], 1);
+	service_start(service, n_workers);
+	for (int i = 0; settings[i][0]; i++)
+		unsetenv(settings[i][0]);
+	return service;
+}
+
 void service_free(struct service *service)
 {
 	char path[512];

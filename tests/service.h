@@ -29,7 +29,9 @@ struct service {
 	char directory[64], database[96], log[96];
 };
 
-struct service *service_new(void);                          /* a directory, no server yet */
+struct service *service_new(void); /* a directory, no server yet */
+/* one that runs with settings of its environment, such as {{"POUNDD_QUEUE_MAX", "3"}, {NULL}} */
+struct service *service_with(const char *const settings[][2], int n_workers);
 void service_free(struct service *service);                 /* kills what runs, removes the directory */
 void service_start(struct service *service, int n_workers); /* returns when it listens */
 int service_run(const struct service *service,

@@ -200,18 +200,6 @@ static void an_answer_and_its_line_of_the_log_have_one_number(void **state)
 	assert_true(found);
 }
 
-/* A server with other settings than usual. */
-static struct service *started(const char *const settings[][2])
-{
-	struct service *service = service_new();
-	for (int i = 0; settings[i][0]; i++)
-		setenv(settings[i][0], settings[i][1], 1);
-	service_start(service, 1);
-	for (int i = 0; settings[i][0]; i++)
-		unsetenv(settings[i][0]);
-	return service;
-}
-
 static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
 {
 	static const char *const settings[][2] = {
@@ -227,7 +215,7 @@ static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
 	};
 	enum { KINDS = sizeof clients / sizeof clients[0], EACH = 40, N = KINDS * EACH };
 	(void)state;
-	struct service *service = started(settings);
+	struct service *service = service_with(settings, 1);
 	int sockets[N], answered = 0, closed = 0;
 	static struct raw_answer answer;
 	for (int i = 0; i < N; i++) {
@@ -258,7 +246,7 @@ static void more_connections_than_the_limit_are_told_503(void **state)
 	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "3"}, {NULL}};
 	enum { N = 6 };
 	(void)state;
-	struct service *service = started(settings);
+	struct service *service = service_with(settings, 1);
 	int sockets[N], served = 0, refused = 0;
 	for (int i = 0; i < N; i++) {
 		static struct raw_answer answer;

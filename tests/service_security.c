@@ -1,0 +1,156 @@
+/* Who may use the server: tokens, addresses, hosts. */
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "schema/api.h"
+#include "tests/service.h"
+
+static const char TOKEN[] = "correct-horse-battery-staple-0123456789";
+
+static void token_file(const struct service *service, char path[128])
+{
+	snprintf(path, 128, "%s/log", service->directory); // a name that is cleared away
+	strcat(path, ".tokens");
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fprintf(file, "# ours\n%s\n", TOKEN);
+	fclose(file);
+	assert_int_equal(chmod(path, 0600), 0);
+}
+
+static int status_of(const struct service *service, const char *method, const char *path,
+                     const char *authorization, const char *more)
+{
+	struct answer answer =
+	    service_ask(service, &(struct ask){.method = method, .path = path, .headers = {authorization, more}});
+	int status = answer.status;
+	answer_free(&answer);
+	return status;
+}
+
+static void without_a_right_token_everything_but_the_probes_is_401(void **state)
+{
+	static const char *const wrong[] = {"Authorization:",
+	                                    "Authorization: Bearer",
+	                                    "Authorization: Bearer ",
+	                                    "Authorization: Bearer correct-horse-battery-staple-012345678",
+	                                    "Authorization: Bearer correct-horse-battery-staple-01234567890",
+	                                    "Authorization: Bearer Correct-horse-battery-staple-0123456789",
+	                                    "Authorization: Bearer wrong-horse-battery-staple-0123456789",
+	                                    "Authorization: Basic correct-horse-battery-staple-0123456789",
+	                                    "Authorization: correct-horse-battery-staple-0123456789",
+	                                    "X-Token: correct-horse-battery-staple-0123456789",
+	                                    "Cookie: token=correct-horse-battery-staple-0123456789"};
+	char path[128], right[128], line[1024];
+	int refused = 0;
+	(void)state;
+	struct service *service = service_new();
+	token_file(service, path);
+	setenv("POUNDD_TOKEN_FILE", path, 1);
+	service_start(service, 1);
+	unsetenv("POUNDD_TOKEN_FILE");
+	snprintf(right, sizeof right, "Authorization: Bearer %s", TOKEN);
+	for (int o = 0; o < API_N_OPERATIONS; o++) {
+		const struct api_operation *operation = &api_operations[o];
+		char target[96];
+		const char *rest = strstr(operation->path, "{id}");
+		snprintf(target, sizeof target, "%.*s%s%s", (int)strcspn(operation->path, "{"), operation->path,
+		         rest ? "0123456789abcdef" : "", rest ? rest + 4 : "");
+		for (size_t w = 0; w < sizeof wrong / sizeof wrong[0]; w++, refused++) {
+			int status = status_of(service, operation->method, target, wrong[w], NULL);
+			if (operation->open ? status != 200 : status != 401)
+				fail_msg("%s %s with %s: %d", operation->method, target, wrong[w], status);
+			refused -= operation->open;
+		}
+		int status = status_of(service, operation->method, target, right, NULL);
+		if (status == 401)
+			fail_msg("%s %s with the right token", operation->method, target);
+	}
+	// an unknown path tells a stranger nothing
+	assert_int_equal(status_of(service, "GET", "/nowhere", wrong[0], NULL), 401);
+	assert_int_equal(status_of(service, "GET", "/nowhere", right, NULL), 404);
+	// of two headers the first counts: never one that a proxy did not see
+	assert_int_equal(status_of(service, "GET", "/version", wrong[6], right), 401);
+	service_stop(service);
+	FILE *log = fopen(service->log, "r");
+	while (fgets(line, sizeof line, log))
+		assert_null(strstr(line, "battery"));
+	fclose(log);
+	printf("%d requests with wrong tokens: all 401\n", refused);
+	unlink(path);
+	service_free(service);
+}
+
+static void an_address_that_is_not_loopback_needs_tokens_or_insecure(void **state)
+{
+	char path[128];
+	(void)state;
+	struct service *service = service_new();
+	setenv("POUNDD_LISTEN", "0.0.0.0", 1);
+	assert_int_not_equal(service_run(service, 1), 0);
+	setenv("POUNDD_LISTEN", "::", 1);
+	assert_int_not_equal(service_run(service, 1), 0);
+	setenv("POUNDD_LISTEN", "localhost", 1); // not in digits
+	assert_int_not_equal(service_run(service, 1), 0);
+	setenv("POUNDD_LISTEN", "127.0.0.1", 1);
+	setenv("POUNDD_TOKEN_FILE", "/nonexistent", 1);
+	assert_int_not_equal(service_run(service, 1), 0);
+	token_file(service, path);
+	chmod(path, 0644);
+	setenv("POUNDD_TOKEN_FILE", path, 1);
+	assert_int_not_equal(service_run(service, 1), 0);
+	unsetenv("POUNDD_TOKEN_FILE");
+	unsetenv("POUNDD_LISTEN");
+	service_start(service, 1);
+	service_stop(service);
+	unlink(path);
+	service_free(service);
+}
+
+static void a_page_of_the_web_cannot_use_the_server(void **state)
+{
+	struct service *service = *state;
+	char *study = service_study(2, 1, 1);
+	static const char *const types[] = {"Content-Type: text/plain",
+	                                    "Content-Type: application/x-www-form-urlencoded",
+	                                    "Content-Type: multipart/form-data; boundary=x"};
+	// rebinding: the page's own name leads here
+	assert_int_equal(status_of(service, "GET", "/v1/studies", "Host: evil.example", NULL), 421);
+	assert_int_equal(status_of(service, "GET", "/v1/studies", "Host: evil.example:8437", NULL), 421);
+	// a form, or a script without a preflight, cannot send JSON
+	for (int i = 0; i < 3; i++) {
+		struct answer answer =
+		    service_ask(service, &(struct ask){.method = "POST",
+		                                       .path = "/v1/studies",
+		                                       .headers = {types[i], "Origin: http://evil.example"},
+		                                       .body = study,
+		                                       .length = strlen(study)});
+		assert_int_equal(answer.status, 415);
+		answer_free(&answer);
+	}
+	// and the preflight finds no leave
+	assert_int_equal(status_of(service, "OPTIONS", "/v1/studies", "Origin: http://evil.example",
+	                           "Access-Control-Request-Method: POST"),
+	                 405);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 0);
+	free(study);
+}
+
+static void a_name_that_was_given_is_a_host(void **state)
+{
+	static const char *const settings[][2] = {{"POUNDD_HOST", "pound.example,other.example"}, {NULL}};
+	(void)state;
+	struct service *service = service_with(settings, 1);
+	assert_int_equal(status_of(service, "GET", "/livez", "Host: other.example", NULL), 200);
+	assert_int_equal(status_of(service, "GET", "/livez", "Host: evil.example", NULL), 421);
+	service_stop(service);
+	service_free(service);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(cmocka_unit_test(without_a_right_token_everything_but_the_probes_is_401),
+           cmocka_unit_test(an_address_that_is_not_loopback_needs_tokens_or_insecure),
+           SERVED(a_page_of_the_web_cannot_use_the_server), cmocka_unit_test(a_name_that_was_given_is_a_host))

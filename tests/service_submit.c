@@ -1,0 +1,290 @@
+/* Handing over studies: twice by one key, more than there is room for, more than a server takes, and hostile texts. */
+#include <pthread.h>
+#include <string.h>
+
+#include "schema/reading.h"
+#include "tests/service.h"
+
+static struct answer post(const struct service *service, const char *study, const char *key)
+{
+	char header[300];
+	snprintf(header, sizeof header, "Idempotency-Key: %s", key ? key : "");
+	return service_ask(service,
+	                   &(struct ask){.method = "POST",
+	                                 .path = "/v1/studies",
+	                                 .headers = {"Content-Type: application/json", key ? header : NULL},
+	                                 .body = study,
+	                                 .length = strlen(study)});
+}
+
+static void problem_is(struct answer *answer, int status, const char *type)
+{
+	struct reading *problem = answer_read(answer);
+	if (answer->status != status || strcmp(reading_text(problem, "/type"), type) != 0)
+		fail_msg("%d instead of %d: %s", answer->status, status, answer->body);
+	reading_close(problem);
+	answer_free(answer);
+}
+
+enum { THREADS = 20, KEYS = 10, EACH = 100 / THREADS };
+
+struct poster {
+	const struct service *service;
+	const char *study;
+	char locations[KEYS][EACH][64];
+	pthread_t thread;
+};
+
+static void *post_in_thread(void *of)
+{
+	struct poster *poster = of;
+	for (int k = 0; k < KEYS; k++)
+		for (int i = 0; i < EACH; i++) {
+			char key[32];
+			snprintf(key, sizeof key, "key-%d", k);
+			struct answer answer = post(poster->service, poster->study, key);
+			if (answer.status == 201)
+				strcpy(poster->locations[k][i], answer.location);
+			answer_free(&answer);
+		}
+	return NULL;
+}
+
+static void a_hundred_posts_at_once_with_one_key_are_one_study(void **state)
+{
+	struct service *service = *state;
+	static struct poster posters[THREADS];
+	char *study = service_study(2, 1, 1);
+	for (int t = 0; t < THREADS; t++) {
+		posters[t] = (struct poster){.service = service, .study = study};
+		assert_int_equal(pthread_create(&posters[t].thread, NULL, post_in_thread, &posters[t]), 0);
+	}
+	for (int t = 0; t < THREADS; t++)
+		pthread_join(posters[t].thread, NULL);
+	for (int t = 0; t < THREADS; t++)
+		for (int k = 0; k < KEYS; k++)
+			for (int i = 0; i < EACH; i++) {
+				assert_true(posters[t].locations[k][i][0]);
+				assert_string_equal(posters[t].locations[k][i], posters[0].locations[k][0]);
+			}
+	int64_t n = service_number(service, "SELECT count(*) FROM study");
+	printf("%d posts with %d keys: %d studies\n", THREADS * KEYS * EACH, KEYS, (int)n);
+	assert_int_equal(n, KEYS);
+	free(study);
+}
+
+static void a_key_is_known_after_a_crash_and_to_one_body_only(void **state)
+{
+	struct service *service = *state;
+	char *study = service_study(2, 1, 1), *other = service_study(2, 1, 2);
+	struct answer first = post(service, study, "\"a key, \xc3\xa4\"");
+	assert_int_equal(first.status, 201);
+	service_kill(service);
+	service_start(service, 2);
+	struct answer again = post(service, study, "\"a key, \xc3\xa4\"");
+	assert_int_equal(again.status, 201);
+	assert_string_equal(again.location, first.location);
+	struct answer clash = post(service, other, "\"a key, \xc3\xa4\"");
+	problem_is(&clash, 422, "idempotency-key-reused");
+	struct answer free_of_key = post(service, study, NULL);
+	assert_string_not_equal(free_of_key.location, first.location);
+	// a study that is gone takes its key along
+	struct answer gone = service_ask(service, &(struct ask){.method = "DELETE", .path = first.location});
+	assert_int_equal(gone.status, 204);
+	struct answer fresh = post(service, other, "\"a key, \xc3\xa4\"");
+	assert_int_equal(fresh.status, 201);
+	char lengthy[202] = {0};
+	memset(lengthy, 'k', 201);
+	struct answer long_key = post(service, study, lengthy);
+	problem_is(&long_key, 400, "bad-request");
+	answer_free(&fresh);
+	answer_free(&gone);
+	answer_free(&free_of_key);
+	answer_free(&again);
+	answer_free(&first);
+	free(other);
+	free(study);
+}
+
+static void a_full_queue_is_503_until_there_is_room(void **state)
+{
+	static const char *const settings[][2] = {{"POUNDD_QUEUE_MAX", "3"}, {NULL}};
+	(void)state;
+	struct service *service = service_with(settings, 1);
+	char *study = service_study(SERVICE_ROWS, 5, 1), id[17], path[64];
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 0));
+	for (int i = 0; i < 3; i++)
+		service_submit(service, study, id);
+	struct answer refused = service_post(service, study);
+	assert_true(atoi(refused.retry_after) >= 1);
+	problem_is(&refused, 503, "unavailable");
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 4);
+	snprintf(path, sizeof path, "/v1/studies/%s/cancel", id);
+	struct answer cancelled = service_ask(service, &(struct ask){.method = "POST", .path = path});
+	assert_int_equal(cancelled.status, 200);
+	service_submit(service, study, id);
+	answer_free(&cancelled);
+	free(study);
+	service_free(service);
+}
+
+static void a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked(void **state)
+{
+	static const struct {
+		const char *variable, *most, *words[3];
+	} limits[] = {
+	    {"POUNDD_RUNS_MAX", "39", {"40 pounding runs", "at most 39", "--runs-max"}},
+	    {"POUNDD_CPU_MAX", "1", {"seconds of one core", "at most 1", "--cpu-max"}},
+	    {"POUNDD_RESULT_MAX", "1", {"MiB", "at most 1", "--result-max"}},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
+		const char *const settings[][2] = {{limits[i].variable, limits[i].most}, {NULL}};
+		struct service *service = service_with(settings, 1);
+		char *small = service_study(2, 1, 1),
+		     *large = i == 0 ? service_study(4, 2, 1) : service_study(20000, 9, 1);
+		static const char *const paths[] = {"/v1/studies", "/v1/studies?validate_only=true"};
+		for (int p = 0; p < 2; p++) {
+			struct answer answer =
+			    service_ask(service, &(struct ask){.method = "POST",
+			                                       .path = paths[p],
+			                                       .headers = {"Content-Type: application/json"},
+			                                       .body = large,
+			                                       .length = strlen(large)});
+			for (int w = 0; w < 3; w++)
+				if (!strstr(answer.body, limits[i].words[w]))
+					fail_msg("'%s' is not in %s", limits[i].words[w], answer.body);
+			problem_is(&answer, 422, "study-too-large");
+		}
+		struct answer taken = service_post(service, small);
+		assert_int_equal(taken.status, 201);
+		assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 1);
+		answer_free(&taken);
+		free(large);
+		free(small);
+		service_free(service);
+	}
+}
+
+static void a_study_beyond_all_measure_is_refused_without_making_it(void **state)
+{
+	struct service *service = *state;
+	// 10^12 runs: rows x samples x signals
+	static const char study[] =
+	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+	    "3}], "
+	    "\"excitation\": {\"signals\": 100000}}, \"inputs\": [{\"path\": \"/contact/restitution\", "
+	    "\"distribution\": "
+	    "{\"type\": \"uniform\", \"min\": 0, \"max\": 1}}], \"design\": {\"rows\": 1000000}}";
+	struct answer answer = service_post(service, study);
+	assert_int_equal(answer.status, 422);
+	assert_non_null(strstr(answer.body, "300000000000 pounding runs"));
+	answer_free(&answer);
+}
+
+static const char *const HOSTILE[] = {"' OR '1'='1",
+                                      "' OR 1=1--",
+                                      "'; DROP TABLE study;--",
+                                      "\\\"; DELETE FROM study; --",
+                                      "1' UNION SELECT sql FROM sqlite_schema--",
+                                      "') OR ('1'='1",
+                                      "%27%20OR%201=1",
+                                      "\\u0027 OR 1=1",
+                                      "admin'/*",
+                                      "0x27",
+                                      "1;ATTACH DATABASE '/tmp/x' AS x",
+                                      "{{7*7}}",
+                                      "${jndi:x}",
+                                      "<script>alert(1)</script>",
+                                      "=cmd|'/c calc'!A1",
+                                      "@SUM(1)",
+                                      "../../etc/passwd",
+                                      "%s%s%s%n",
+                                      "\xe2\x80\xae"
+                                      "abc",
+                                      "\xf0\x9f\x8f\xa2",
+                                      "e\xcc\x81",
+                                      "\\ud83c\\udfe2",
+                                      "NULL",
+                                      "nan",
+
+                                      "a\\\"b",
+                                      "load_extension('x')",
+                                      "randomblob(1e9)",
+                                      "1) AND (SELECT 1",
+                                      "-1",
+                                      "9223372036854775808",
+                                      "`id`",
+                                      "$(id)",
+                                      "|id",
+                                      "&&id",
+                                      "\\\\x00",
+                                      "%00",
+                                      "\xef\xbf\xbf",
+
+                                      "--",
+                                      "/*",
+                                      "*/",
+                                      ";"};
+
+/* A text as part of a target: all but letters and digits escaped. */
+static void escape(const char *text, char *escaped)
+{
+	for (; *text; text++)
+		escaped += sprintf(escaped, "%%%02x", (unsigned)(unsigned char)*text);
+}
+
+static void hostile_texts_are_names_like_any_other_and_never_questions(void **state)
+{
+	static const char *const targets[] = {"/v1/studies?status=%s",  "/v1/studies?cursor=%s",
+	                                      "/v1/studies?limit=%s",   "/v1/studies/%s",
+	                                      "/v1/studies/%s/results", "/v1/studies?%s=1"};
+	struct service *service = *state;
+	int asked = 0, n = (int)(sizeof HOSTILE / sizeof HOSTILE[0]);
+	for (int h = 0; h < n; h++) {
+		char escaped[400], path[500], study[1024], name[300], id[17];
+		escape(HOSTILE[h], escaped);
+		for (size_t t = 0; t < sizeof targets / sizeof targets[0]; t++, asked++) {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+			snprintf(path, sizeof path, targets[t], escaped);
+#pragma GCC diagnostic pop
+			struct answer answer = service_get(service, "%s", path);
+			if (answer.status != 400 && answer.status != 404)
+				fail_msg("%s: %d %s", path, answer.status, answer.body);
+			answer_free(&answer);
+		}
+		snprintf(
+		    study, sizeof study,
+		    "{\"kind\": \"response\", \"name\": \"%s\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+		    "{\"frequency_hz\": 3}], \"excitation\": {\"cycles\": 1, \"signals\": 1}}}",
+		    HOSTILE[h]);
+		struct answer created = post(service, study, HOSTILE[h]);
+		asked++;
+		if (created.status != 201)
+			fail_msg("%s: %d %s", study, created.status, created.body);
+		strcpy(id, created.location + strlen("/v1/studies/"));
+		struct reading *sent = reading_open(study, strlen(study)), *status = answer_read(&created);
+		snprintf(name, sizeof name, "%s", reading_text(sent, "/name"));
+		assert_string_equal(reading_text(status, "/name"), name);
+		reading_close(status);
+		reading_close(sent);
+		answer_free(&created);
+		struct answer kept = service_get(service, "/v1/studies/%s/request", id);
+		assert_string_equal(kept.body, study);
+		answer_free(&kept);
+	}
+	printf("%d hostile texts in %d requests: %d studies\n", n, asked,
+	       (int)service_number(service, "SELECT count(*) FROM study"));
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), n);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(a_hundred_posts_at_once_with_one_key_are_one_study),
+           SERVED(a_key_is_known_after_a_crash_and_to_one_body_only),
+           cmocka_unit_test(a_full_queue_is_503_until_there_is_room),
+           cmocka_unit_test(a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked),
+           SERVED(a_study_beyond_all_measure_is_refused_without_making_it),
+           SERVED(hostile_texts_are_names_like_any_other_and_never_questions))
