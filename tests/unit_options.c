@@ -1,0 +1,95 @@
+/* Every option of poundd, as a flag and from the environment, and as the README has it. */
+#include "server/options.h"
+
+#include <string.h>
+
+#include "tests/check.h"
+#include "tests/program.h"
+
+/* What poundd says to a value, by flag or environment. */
+static void refused(const struct option_row *row, const char *value, bool flag)
+{
+	char name[64], word[128];
+	options_variable(row, name, sizeof name);
+	snprintf(word, sizeof word, "--%s=%s", row->name, value);
+	if (!flag)
+		setenv(name, value, 1);
+	struct program_outcome outcome =
+	    program_run((const char *const[]){"poundd", flag ? word : NULL, NULL}, NULL);
+	unsetenv(name);
+	assert_int_not_equal(outcome.status, 0);
+	snprintf(word, sizeof word, "%s%s must", flag ? "--" : "", flag ? row->name : name);
+	if (!strstr(outcome.err, word) || (*value && !strstr(outcome.err, value)))
+		fail_msg("%s=%s: %s", name, value, outcome.err);
+	program_free(&outcome);
+}
+
+static void every_option_is_taken_as_a_flag_and_from_the_environment(void **state)
+{
+	char program[] = "poundd", word[128], name[64];
+	(void)state;
+	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+		struct options by_flag, by_variable, both;
+		const char *value = row->max == 0 ? "text" : row->max > 1 ? "2" : "1";
+		options_variable(row, name, sizeof name);
+		snprintf(word, sizeof word, row->argument ? "--%s=%s" : "--%s", row->name, value);
+		options_read(&by_flag, 2, (char *[]){program, word, NULL});
+		setenv(name, value, 1);
+		options_read(&by_variable, 1, (char *[]){program, NULL});
+		setenv(name, row->max == 0 ? "other" : "1", 1);
+		options_read(&both, 2, (char *[]){program, word, NULL});
+		unsetenv(name);
+		const struct options *all[] = {&by_flag, &by_variable, &both};
+		for (int i = 0; i < 3; i++) {
+			const char *at = (const char *)all[i] + row->offset;
+			if (row->max == 0)
+				assert_string_equal(*(const char *const *)(const void *)at, value);
+			else
+				assert_int_equal(*(const int *)(const void *)at, atoi(value));
+		}
+	}
+}
+
+static void what_an_option_does_not_take_is_refused_by_name(void **state)
+{
+	(void)state;
+	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+		char most[16];
+		snprintf(most, sizeof most, "%lld", (long long)row->max + 1);
+		for (int flag = 0; flag < 2; flag++) {
+			if (flag && !row->argument)
+				continue;
+			refused(row, row->max == 0 ? "" : "x", flag);
+			if (row->max > 0) {
+				refused(row, most, flag);
+				refused(row, "-1", flag);
+				refused(row, "1x", flag);
+			}
+		}
+	}
+}
+
+static void every_option_stands_in_the_readme(void **state)
+{
+	char *readme = program_file("README.md", NULL);
+	int missing = 0;
+	(void)state;
+	assert_non_null(readme);
+	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+		char name[64], line[400];
+		options_variable(row, name, sizeof name);
+		snprintf(line, sizeof line, "| `--%s%s%s` | `%s` | %s | %s |\n", row->name, row->argument ? " " : "",
+		         row->argument ? row->argument : "", name, row->absent && row->argument ? row->absent : "-",
+		         row->text);
+		if (!strstr(readme, line)) {
+			print_error("README.md has no line\n%s", line);
+			missing++;
+		}
+	}
+	free(readme);
+	assert_int_equal(missing, 0);
+}
+
+CHECK_MAIN(cmocka_unit_test(every_option_is_taken_as_a_flag_and_from_the_environment),
+           cmocka_unit_test(what_an_option_does_not_take_is_refused_by_name),
+           cmocka_unit_test(every_option_stands_in_the_readme))
