@@ -33,7 +33,8 @@ static void means(const struct pound_sample_values *values, const struct pound_c
                   double *below)
 {
 	const int n_signals = values->n_signals;
-	size_t at = ((size_t)check->row * (values->n_inputs + 2) + check->sample) * n_signals;
+	size_t at = ((size_t)check->row * pound_order_samples(values->order, values->n_inputs) + check->sample) *
+	            n_signals;
 	*above = *below = 0;
 	for (int r = 0; r < n_signals; r++) {
 		*above += values->numerator[at + r] / n_signals;
@@ -239,9 +240,9 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
 	errors[POUND_ERROR_FAILED_ROWS] = (double)rows_dropped / values->n_rows;
 }
 
-size_t pound_accuracy_scratch(int n_rows, int n_inputs, int n_signals, int n_checks)
+size_t pound_accuracy_scratch(const struct pound_sample_values *shape, int n_checks)
 {
-	return pound_sobol_scratch(n_rows, n_inputs, n_signals) + n_checks;
+	return pound_sobol_scratch(shape) + n_checks;
 }
 
 /* How far the indexes of an output may be off, and for want of what.

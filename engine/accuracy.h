@@ -16,7 +16,7 @@ struct pound_checks {
 };
 
 /* Fills indices->accuracy; the rest of the indices is known.  scratch: (pound_accuracy_scratch) */
-size_t pound_accuracy_scratch(int n_rows, int n_inputs, int n_signals, int n_checks); /* doubles */
+size_t pound_accuracy_scratch(const struct pound_sample_values *shape, int n_checks); /* doubles */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
                              int rows_dropped, uint64_t seed, double *scratch, struct pound_indices *indices);
 

@@ -1,10 +1,9 @@
-/* chaos.c - first-order and total indexes with a polynomial of the inputs as control variate.
+/* chaos.c - closed indexes with a polynomial of the inputs as control variate.
  *
  * 1. The rows fall into five folds; for each, a polynomial g of the inputs is fitted to the outputs of all samples of
  *    the rows outside it (least squares, orthonormal Legendre terms, "polynomial chaos").
- * 2. The index of g is known exactly from its coefficients.  A row's estimate is that of g plus what pick-freeze says
- *    of the output less what it says of g, g being of the fit that has not seen the row.
- * 3. The index is the ratio of the means of these; the interval is from the scatter of the rows. */
+ * 2. The closed parts of g's variance are known exactly from its coefficients.  A row's estimate is that of g plus what
+ *    its samples say of the output and do not say of g, g being of the fit that has not seen the row (closed.c). */
 #include "engine/indices.h"
 #include "engine/legendre.h"
 
@@ -19,13 +18,10 @@ enum {
 	CHUNK = POUND_LEGENDRE_CHUNK,
 };
 
-// columns of a row's estimates: the variance, the first-order parts, the total parts
-enum { VARIANCE, FIRST };
-
-/* Degree of the polynomial for a number of samples: 6 for 4 inputs and 1000 rows. */
-int pound_chaos_degree(int n_rows, int n_inputs)
+/* Degree of the polynomial for a number of samples: 6 for 4 inputs and 1000 rows of 6 samples. */
+int pound_chaos_degree(int n_rows, int n_inputs, int n_samples)
 {
-	double samples = (double)n_rows * (n_inputs + 2) * (FOLDS - 1) / FOLDS;
+	double samples = (double)n_rows * n_samples * (FOLDS - 1) / FOLDS;
 	int degree = 0;
 	while (degree < POUND_LEGENDRE_DEGREE_MAX) {
 		int terms = pound_legendre_terms(n_inputs, degree + 1);
@@ -41,6 +37,7 @@ struct fits {
 	const struct pound_rows *rows;
 	const double *u; /* (n x 2 x n_inputs) */
 	int degree, terms, squares;
+	unsigned mask[POUND_SAMPLES_MAX]; /* of a sample: which columns are from B */
 	struct pound_legendre chunk;
 	double *value;        /* of the points of a chunk  (CHUNK) */
 	double *sums;         /* of the terms of twice the degree, of each fold  (FOLDS x squares) */
@@ -49,13 +46,15 @@ struct fits {
 	double *gram;         /* (terms x terms) */
 	double *coefficients; /* of each fold's fit to the other folds  (FOLDS x terms) */
 	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
-	double *estimates;    /* (n_rows x (1 + 2 n_inputs)) */
-	double *groups;       /* their sums  (groups, at most n_rows, x (2 + 2 n_inputs)) */
+	struct pound_closed closed;
+	double *estimates; /* (n_rows x closed.n_columns) */
+	double *rest;      /* for closed.c */
 };
 
-static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs)
+static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, int order)
 {
-	f->degree = pound_chaos_degree(n_rows, n_inputs);
+	pound_closed_init(&f->closed, n_inputs, order);
+	f->degree = pound_chaos_degree(n_rows, n_inputs, f->closed.n_samples);
 	f->terms = pound_legendre_terms(n_inputs, f->degree);
 	f->squares = pound_legendre_terms(n_inputs, 2 * f->degree);
 	pound_legendre_init(&f->chunk, n_inputs, 2 * f->degree);
@@ -71,9 +70,9 @@ static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs)
 	    {&f->others, f->squares},
 	    {&f->gram, (size_t)f->terms * f->terms},
 	    {&f->coefficients, (size_t)FOLDS * f->terms},
-	    {&f->fit, (size_t)n_rows * (n_inputs + 2)},
-	    {&f->estimates, (size_t)n_rows * (FIRST + 2 * n_inputs)},
-	    {&f->groups, (size_t)n_rows * (FIRST + 2 * n_inputs + 1)},
+	    {&f->fit, (size_t)n_rows * f->closed.n_samples},
+	    {&f->estimates, (size_t)n_rows * f->closed.n_columns},
+	    {&f->rest, pound_closed_scratch(&f->closed, n_rows)},
 	};
 	size_t total = 0;
 	for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++) {
@@ -87,21 +86,22 @@ static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs)
 /* Enters the next samples of a fold's rows, in order, from sample number `first`; says how many. */
 static int chunk_enter(struct fits *f, int fold, int first)
 {
-	const int d = f->rows->n_inputs, n_samples = d + 2;
+	const int d = f->rows->n_inputs, n_samples = f->rows->n_samples;
 	const int n = (f->rows->n_rows - fold + FOLDS - 1) / FOLDS * n_samples - first;
 	f->chunk.n = n < CHUNK ? n : CHUNK;
 	for (int i = 0; i < f->chunk.n; i++) {
 		int row = fold + (first + i) / n_samples * FOLDS, sample = (first + i) % n_samples;
 		const double *a = f->u + (size_t)f->rows->row[row] * 2 * d;
+		const unsigned from_b = f->mask[sample];
 		for (int j = 0; j < d; j++)
-			pound_legendre_point(&f->chunk, i, j, a[sample == 1 || sample == 2 + j ? d + j : j]);
+			pound_legendre_point(&f->chunk, i, j, a[from_b >> j & 1 ? d + j : j]);
 	}
 	return f->chunk.n;
 }
 
 static double *sample_of(const struct fits *f, double *values, int fold, int number)
 {
-	const int n_samples = f->rows->n_inputs + 2;
+	const int n_samples = f->rows->n_samples;
 	return values + (size_t)(fold + number / n_samples * FOLDS) * n_samples + number % n_samples;
 }
 
@@ -187,126 +187,52 @@ static void fits_fill(struct fits *f)
 	}
 }
 
-/* Variance of a fitted polynomial, of its part in each input alone, and of all parts that contain the input. */
-struct parts {
-	double all, first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];
-};
-
-static struct parts parts_of(const struct fits *f, int fold)
+/* Closed parts of a fitted polynomial's variance: the squares of the coefficients of all terms in no other inputs. */
+static void parts_fill(const struct fits *f, int fold, double *part)
 {
-	const int d = f->rows->n_inputs;
+	const struct pound_closed *closed = &f->closed;
 	const double *coefficients = f->coefficients + (size_t)fold * f->terms;
-	struct parts parts = {0};
 	int degrees[POUND_INPUTS_MAX] = {0};
-	for (int k = 1; pound_legendre_next(d, f->degree, degrees); k++) {
-		double square = coefficients[k] * coefficients[k];
-		int inputs = 0, last = 0;
-		for (int j = 0; j < d; j++)
-			if (degrees[j] > 0) {
-				parts.total[j] += square;
-				inputs++;
-				last = j;
-			}
-		parts.all += square;
-		if (inputs == 1)
-			parts.first[last] += square;
+	for (int k = 0; k < closed->n_columns; k++)
+		part[k] = 0.0;
+	for (int term = 1; pound_legendre_next(closed->n_inputs, f->degree, degrees); term++) {
+		unsigned inputs = 0;
+		for (int j = 0; j < closed->n_inputs; j++)
+			inputs |= (unsigned)(degrees[j] > 0) << j;
+		for (int k = 0; k < closed->n_columns; k++)
+			part[k] += inputs & ~closed->set[k] ? 0.0 : coefficients[term] * coefficients[term];
 	}
-	return parts;
 }
 
-/* A row's estimates of the variance and of each input's first-order and total part of it.
- *
- *   variance    G + mean over samples of y^2 - g^2                     y, g less the fit's mean, G the variance of g
- *   first       G_j + y_B y_C - g_B g_C
- *   total       G'_j + ((y_A - y_C)^2 - (g_A - g_C)^2) / 2
- *
- * with the products of outputs less their noise if that is to be corrected for.
- */
-static void row_estimate(const struct fits *f, const struct parts *parts, double mean, int row,
-                         bool corrected, double *estimate)
+static void estimates_fill(const struct fits *f, bool corrected)
 {
-	const int d = f->rows->n_inputs;
-	const double *y = f->rows->y + (size_t)row * (d + 2), *g = f->fit + (size_t)row * (d + 2);
-	const double *noise = f->rows->noise + (size_t)row * pound_rows_noises(d);
-	const double aa = noise[POUND_NOISE_AA], bb = noise[POUND_NOISE_BB];
-	double squares = corrected ? -aa - bb : 0.0;
-	for (int p = 0; p < d + 2; p++)
-		squares += (y[p] - g[p]) * (y[p] + g[p] - 2.0 * mean);
-	for (int j = 0; j < d; j++) {
-		const double *e = noise + POUND_NOISE_MIXED + POUND_NOISE_STEP * j, cc = e[0], ac = e[1], bc = e[2];
-		const double y_change = y[0] - y[2 + j], g_change = g[0] - g[2 + j];
-		double first = (y[1] - mean) * (y[2 + j] - mean) - (g[1] - mean) * (g[2 + j] - mean);
-		double total = y_change * y_change - g_change * g_change;
-		if (corrected) {
-			squares -= cc;
-			first -= bc;
-			total -= aa + cc - 2.0 * ac;
+	const int n_samples = f->rows->n_samples;
+	double part[POUND_CLOSED_COLUMNS_MAX], noise[POUND_SAMPLES_MAX * POUND_SAMPLES_MAX];
+	for (int fold = 0; fold < FOLDS; fold++) {
+		parts_fill(f, fold, part);
+		for (int row = fold; row < f->rows->n_rows; row += FOLDS) {
+			const size_t first = (size_t)row * n_samples;
+			if (corrected)
+				pound_rows_noise(f->rows, row, noise);
+			pound_closed_row(&f->closed, f->rows->y + first, f->fit + first,
+			                 f->coefficients[(size_t)fold * f->terms], part, corrected ? noise : NULL,
+			                 f->estimates + (size_t)row * f->closed.n_columns);
 		}
-		estimate[FIRST + j] = parts->first[j] + first;
-		estimate[FIRST + d + j] = parts->total[j] + 0.5 * total;
 	}
-	estimate[VARIANCE] = parts->all + squares / (d + 2);
 }
 
-static void moments_fill(const void *subject, int row, double *m)
-{
-	const struct fits *f = subject;
-	const int width = FIRST + 2 * f->rows->n_inputs;
-	memcpy(m, f->estimates + (size_t)row * width, sizeof *m * (size_t)width);
-}
-
-static void values_fill(const void *subject, const double *mean, double *value)
-{
-	const struct fits *f = subject;
-	for (int k = 0; k < 2 * f->rows->n_inputs; k++)
-		value[k] = mean[VARIANCE] > f->rows->variance_floor ? mean[FIRST + k] / mean[VARIANCE] : NAN;
-}
-
-/* The ratios with intervals from the groups of rows. */
-static void groups_fill(const struct fits *f, struct pound_estimate *first, struct pound_estimate *total)
-{
-	const int d = f->rows->n_inputs;
-	const struct pound_statistic statistic = {FIRST + 2 * d, 2 * d, moments_fill, values_fill, f};
-	struct pound_estimate estimates[2 * POUND_INPUTS_MAX];
-	pound_jackknife_estimates(&statistic, &f->rows->scatter, f->rows->n_rows, f->groups, estimates);
-	memcpy(first, estimates, sizeof *first * (size_t)d);
-	memcpy(total, estimates + d, sizeof *total * (size_t)d);
-}
-
-/* Ratio of the means of two columns of the rows' estimates, with the interval of its linearisation. */
-static struct pound_estimate ratio_interval(const double *estimates, int n, int width, int column,
-                                            double variance_floor)
-{
-	double above = 0.0, below = 0.0, squares = 0.0;
-	for (int i = 0; i < n; i++) {
-		above += estimates[(size_t)i * width + column] / n;
-		below += estimates[(size_t)i * width + VARIANCE] / n;
-	}
-	if (!(below > variance_floor))
-		return (struct pound_estimate){NAN, NAN, NAN};
-	const double ratio = above / below;
-	for (int i = 0; i < n; i++) {
-		const double *row = estimates + (size_t)i * width;
-		double influence = (row[column] - ratio * row[VARIANCE]) / below;
-		squares += influence * influence;
-	}
-	double half_width = POUND_NORMAL_95 * sqrt(squares / (n - 1.0) / n);
-	return (struct pound_estimate){ratio, ratio - half_width, ratio + half_width};
-}
-
-size_t pound_chaos_scratch(int n_rows, int n_inputs)
+size_t pound_chaos_scratch(const struct pound_sample_values *shape)
 {
 	struct fits fits;
-	return carve(&fits, NULL, n_rows, n_inputs);
+	return carve(&fits, NULL, shape->n_rows, shape->n_inputs, shape->order);
 }
 
-/* First-order and total indexes with a cross-fitted polynomial as control variate.
+/* All indexes with a cross-fitted polynomial as control variate.
  *
  * Given    rows       -                      outputs and their noise
  *          u          (n x 2 x n_inputs)     the design as probabilities in (0, 1), rows of A and B
  *          corrected  -                      for the noise of few signals (NAN for one signal)
- * Returns  first      (n_inputs)             with 95 % intervals from the scatter of the rows, or of their groups
- *          total      (n_inputs)             likewise
+ * Returns  results    -                      with 95 % intervals from the scatter of the rows, or of their groups
  * Memory   scratch    (pound_chaos_scratch)  for all rows of the design
  *
  * An input without effect has a total near 0, not exactly 0 as without the control variate.
@@ -317,22 +243,13 @@ size_t pound_chaos_scratch(int n_rows, int n_inputs)
  * Test     unit_chaos
  */
 void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
-                         struct pound_estimate *first, struct pound_estimate *total)
+                         struct pound_closed_results *results)
 {
-	const int n = rows->n_rows, d = rows->n_inputs, width = FIRST + 2 * d;
 	struct fits fits = {.rows = rows, .u = u};
-	carve(&fits, scratch, n, d);
+	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
+	for (int sample = 0; sample < rows->n_samples; sample++)
+		fits.mask[sample] = pound_order_mask(rows->n_inputs, sample);
 	fits_fill(&fits);
-	for (int fold = 0; fold < FOLDS; fold++) {
-		const struct parts parts = parts_of(&fits, fold);
-		for (int row = fold; row < n; row += FOLDS)
-			row_estimate(&fits, &parts, fits.coefficients[(size_t)fold * fits.terms], row, corrected,
-			             fits.estimates + (size_t)row * width);
-	}
-	if (rows->scatter.grouping.n)
-		groups_fill(&fits, first, total);
-	for (int j = 0; j < d && !rows->scatter.grouping.n; j++) {
-		first[j] = ratio_interval(fits.estimates, n, width, FIRST + j, rows->variance_floor);
-		total[j] = ratio_interval(fits.estimates, n, width, FIRST + d + j, rows->variance_floor);
-	}
+	estimates_fill(&fits, corrected);
+	pound_closed_indices(&fits.closed, fits.estimates, rows, fits.rest, results);
 }

@@ -20,19 +20,21 @@ enum { SIGNAL_TOTAL_ONE, SIGNAL_TOTAL, SIGNAL_FIRST, SINGLES };
 static void moments_fill(const void *subject, int row, double *m)
 {
 	const struct pound_rows *rows = subject;
-	const int d = rows->n_inputs;
-	const double *y = rows->y + (size_t)row * (d + 2),
-	             *noise = rows->noise + (size_t)row * pound_rows_noises(d);
-	const double a = y[0], b = y[1], aa = noise[POUND_NOISE_AA], bb = noise[POUND_NOISE_BB];
+	const int d = rows->n_inputs, n_samples = rows->n_samples;
+	double noise[POUND_SAMPLES_MAX * POUND_SAMPLES_MAX];
+	pound_rows_noise(rows, row, noise);
+	const double *y = rows->y + (size_t)row * n_samples, *noise_a = noise, *noise_b = noise + n_samples;
+	const double a = y[0], b = y[1], aa = noise_a[0], bb = noise_b[1];
 	double all = a * a + b * b, noise_all = aa + bb;
 	m[A] = a;
 	m[B] = b;
 	m[PAIR] = 0.5 * all;
 	m[PAIR_CORRECTED] = 0.5 * (all - noise_all);
-	m[NOISE_AB] = noise[POUND_NOISE_AB];
+	m[NOISE_AB] = noise_a[1];
 	for (int j = 0; j < d; j++) {
-		const double *e = noise + POUND_NOISE_MIXED + POUND_NOISE_STEP * j, cc = e[0], ac = e[1], bc = e[2];
-		double *k = m + FIRST_INPUT + PER_INPUT * j, c = y[2 + j], change = c - a;
+		const int p = POUND_SAMPLE_MIXED + j;
+		const double cc = noise[p * n_samples + p], ac = noise_a[p], bc = noise_b[p];
+		double *k = m + FIRST_INPUT + PER_INPUT * j, c = y[p], change = c - a;
 		k[CHANGE] = change;
 		k[PRODUCT] = b * change;
 		k[SQUARE] = 0.5 * change * change;
@@ -78,9 +80,11 @@ static void values_fill(const void *subject, const double *m, double *value)
 	single[SIGNAL_FIRST] = ratio(r * m[NOISE_AB], one_signal, floor);
 }
 
-size_t pound_correction_scratch(int n_rows, int n_inputs)
+size_t pound_correction_scratch(const struct pound_sample_values *shape)
 {
-	return pound_interval_scratch(n_rows, FIRST_INPUT + PER_INPUT * n_inputs, BLOCKS * n_inputs + SINGLES);
+	const int n_inputs = shape->n_inputs;
+	return pound_interval_scratch(shape->n_rows, FIRST_INPUT + PER_INPUT * n_inputs,
+	                              BLOCKS * n_inputs + SINGLES);
 }
 
 /* Pick-freeze indexes raw and corrected for the noise of few signals, and the shares of the signals.

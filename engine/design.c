@@ -116,6 +116,12 @@ const char *pound_design_name(int row)
 	return row >= 0 && row < DESIGNS ? designs[row].name : NULL;
 }
 
+/* Samples of a row: of the study's order. */
+int pound_design_samples(const struct pound_study *study)
+{
+	return pound_order_samples(study->design.order, study->n_inputs);
+}
+
 /* Whether rows that are near in one input are arranged in the others, not there by chance. */
 bool pound_design_quasi_random(int row)
 {
@@ -125,7 +131,7 @@ bool pound_design_quasi_random(int row)
 /* Pounding runs of one row of the design. */
 int64_t pound_design_row_runs(const struct pound_study *study)
 {
-	int64_t runs = (int64_t)(study->n_inputs + 2) * study->scene.excitation.signals;
+	int64_t runs = (int64_t)pound_design_samples(study) * study->scene.excitation.signals;
 	for (int s = 0; s < study->n_sweeps; s++)
 		runs *= study->sweeps[s].n_values;
 	return runs;
@@ -253,6 +259,6 @@ void pound_design_fill(const struct pound_study *study, double *x)
 
 double pound_design_input(const double *x, int n_inputs, int row, int sample, int j)
 {
-	bool from_b = sample == POUND_SAMPLE_B || sample == POUND_SAMPLE_MIXED + j;
+	const unsigned from_b = pound_order_mask(n_inputs, sample) >> j & 1;
 	return x[((size_t)row * 2 + from_b) * n_inputs + j];
 }

@@ -5,13 +5,7 @@
 #ifndef DESIGN_H
 #define DESIGN_H
 
-#include "engine/pound.h"
-
-enum {
-	POUND_SAMPLE_A = 0, /* the samples of a row: A, B, and A with column j from B for every j */
-	POUND_SAMPLE_B = 1,
-	POUND_SAMPLE_MIXED = 2,
-};
+#include "engine/order.h"
 
 void pound_design_probabilities(const struct pound_study *study, double *u); /* of the same shape */
 void pound_design_fill(const struct pound_study *study, double *x);

@@ -9,17 +9,17 @@
 #define INDICES_H
 
 #include "engine/design.h"
-#include "engine/pound.h"
 
-/* One output of one cell: a ratio of means over the signals, of every sample (0: A, 1: B, 2 + j: A with column j
- * from B).  NAN in any number of a row: a failed run. */
+/* One output of one cell: a ratio of means over the signals, of every sample of every row.  NAN in any number of a
+ * row: a failed run.  In what follows n_samples is pound_order_samples(order, n_inputs). */
 struct pound_sample_values {
 	int n_rows, n_inputs, n_signals;
-	const double *numerator, *denominator; /* (n_rows x (n_inputs + 2) x n_signals) each */
+	const double *numerator, *denominator; /* (n_rows x n_samples x n_signals) each */
 	/* outputs computed elsewhere are numerators of one signal, without denominators; their variances  (as these), NAN:
 	 * not known; NULL: computed here */
 	const double *variance;
 	struct pound_grouping grouping; /* of the rows */
+	int order;                      /* row of the orders: which samples a row has */
 };
 
 /* How they came about. */
@@ -36,28 +36,23 @@ struct pound_scatter {
 	const int64_t *row; /* number in the design of each row that counts; NULL: its own */
 };
 
-/* The rows without a failed run.  y: outputs, centred by the mean of A and B; noise: their covariances over draws of
- * the signals, for the pairs of samples that estimators multiply, with c the sample with column j from B. */
+/* The rows without a failed run.  y: outputs, centred by the mean of A and B; deviation: what each signal adds to an
+ * output, times the root that makes their products add up to the covariance of outputs over draws of the signals. */
 struct pound_rows {
-	int n_rows, n_inputs, n_signals;
+	int n_rows, n_inputs, n_samples, n_signals, order;
 	double mean, variance_floor; /* a variance up to the floor is rounding */
-	int64_t *row;                /* which row of the design  (n_rows) */
+	double ratio_bias; /* of the outputs, mean over all samples: they are ratios of means of few signals */
+	int64_t *row;      /* which row of the design  (n_rows) */
 	struct pound_scatter scatter;
-	double *y;     /* (n_rows x (n_inputs + 2)) */
-	double *noise; /* (n_rows x pound_rows_noises); NAN: one signal */
+	double *y;         /* (n_rows x n_samples) */
+	double *deviation; /* (n_rows x n_samples x n_signals); NAN: one signal of unknown variance */
+	bool independent;  /* samples of a row do not share their noise; one signal stands for all */
 };
 
-enum {
-	POUND_NOISE_AA,
-	POUND_NOISE_BB,
-	POUND_NOISE_AB,
-	POUND_NOISE_MIXED, /* from here the covariances cc, ac, bc of every j */
-	POUND_NOISE_STEP = 3,
-};
-
-int pound_rows_noises(int n_inputs);
-size_t pound_rows_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
+size_t pound_rows_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch);
+/* Covariances of a row's outputs over draws of the noise  (n_samples x n_samples) */
+void pound_rows_noise(const struct pound_rows *rows, int row, double *noise);
 
 /* An estimator: what it adds up over the rows, and the indexes as a function of the means of that.
  * y: the outputs of a row's samples  (n_inputs + 2);  m: moments;  value: first then total  (2 x n_inputs) */
@@ -110,7 +105,7 @@ struct pound_pick_freeze {
 	struct pound_estimate signal_first; /* first-order index of the signal in single runs */
 };
 
-size_t pound_correction_scratch(int n_rows, int n_inputs); /* doubles */
+size_t pound_correction_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, double *scratch,
                                 struct pound_pick_freeze *result);
 
@@ -118,24 +113,59 @@ void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, do
 
 /* rows for local.c and chaos.c; with fewer, pick-freeze alone has the smaller error */
 enum { POUND_ROWS_MIN = 30 };
-size_t pound_local_scratch(int n_rows); /* doubles */
+size_t pound_local_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_local_fit(const double *y, int n, int reach, double *fit);
 void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
                        struct pound_estimate *first);
 
-int pound_chaos_degree(int n_rows, int n_inputs);
-size_t pound_chaos_scratch(int n_rows, int n_inputs); /* doubles */
+/* Closed parts of the variance: those that sets of inputs explain. */
+enum {
+	POUND_CLOSED_COLUMNS_MAX = 2 + 2 * POUND_INPUTS_MAX + POUND_PAIRS_MAX,
+	POUND_CLOSED_PAIRS_MAX = POUND_SAMPLES_MAX * (POUND_SAMPLES_MAX - 1) / 2,
+};
+
+struct pound_closed_pair {
+	int p, q;        /* samples of a row */
+	int column;      /* of the set of inputs that they share */
+	bool difference; /* estimated from the square of the difference, not from the product */
+	double weight;   /* one over the pairs of the column */
+};
+
+struct pound_closed {
+	int n_inputs, n_samples;
+	int n_columns;
+	unsigned set[POUND_CLOSED_COLUMNS_MAX]; /* bit j: input j; ascending, none first and all last */
+	bool known[POUND_CLOSED_COLUMNS_MAX];   /* the design has a pair for it */
+	int n_pairs;
+	struct pound_closed_pair pair[POUND_CLOSED_PAIRS_MAX];
+};
+
+struct pound_closed_results {
+	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX], shapley[POUND_INPUTS_MAX];
+	struct pound_set_indices sets;
+};
+
+void pound_closed_init(struct pound_closed *closed, int n_inputs, int order);
+void pound_closed_row(const struct pound_closed *closed, const double *y, const double *g, double mean,
+                      const double *part, const double *noise, double *estimate);
+size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows); /* doubles */
+void pound_closed_indices(const struct pound_closed *closed, const double *estimates,
+                          const struct pound_rows *rows, double *scratch,
+                          struct pound_closed_results *results);
+
+int pound_chaos_degree(int n_rows, int n_inputs, int n_samples);
+size_t pound_chaos_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
-                         struct pound_estimate *first, struct pound_estimate *total);
+                         struct pound_closed_results *results);
 
 /* The plain protocol: mean, variance, noise share and the raw indexes. */
-size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
+size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
                         double *scratch, struct pound_indices *indices); /* rows dropped */
 bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
 
 /* All indexes, shares and notes. */
-size_t pound_variants_scratch(int n_rows, int n_inputs, int n_signals); /* doubles */
+size_t pound_variants_scratch(const struct pound_sample_values *shape); /* doubles */
 int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */
 

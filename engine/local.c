@@ -4,7 +4,7 @@
  * 2. Each row is predicted from the K nearest ranks on either side, itself left out.
  * 3. The mean product of output and prediction estimates the variance of the conditional mean.
  *
- * Every sample block of a Latin hypercube or random design serves, so that (n_inputs + 2) n runs count for each input.
+ * Every sample block of a Latin hypercube or random design serves, so that all runs count for each input.
  * Wrong for quasi-random designs, where neighbours in one input are related in the others. */
 #include "engine/indices.h"
 
@@ -65,7 +65,7 @@ struct sums {
 static void block_add(const struct pound_rows *rows, int sample, double grand, const size_t *order, double *y,
                       double *fit, struct sums sums)
 {
-	const int n = rows->n_rows, n_samples = rows->n_inputs + 2;
+	const int n = rows->n_rows, n_samples = rows->n_samples;
 	for (int k = 0; k < n; k++)
 		y[k] = rows->y[order[k] * n_samples + sample] - grand;
 	pound_local_fit(y, n, reach_of(n), fit);
@@ -83,7 +83,7 @@ static void block_add(const struct pound_rows *rows, int sample, double grand, c
 static struct pound_estimate influence_interval(const struct pound_rows *rows, struct sums sums,
                                                 const double *variance, double *group_sums)
 {
-	const int n = rows->n_rows, n_samples = rows->n_inputs + 2;
+	const int n = rows->n_rows, n_samples = rows->n_samples;
 	double v = 0.0, product = 0.0;
 	for (int i = 0; i < n; i++) {
 		v += variance[i] / n;
@@ -99,15 +99,15 @@ static struct pound_estimate influence_interval(const struct pound_rows *rows, s
 	return (struct pound_estimate){s, s - half_width, s + half_width};
 }
 
-size_t pound_local_scratch(int n_rows)
+size_t pound_local_scratch(const struct pound_sample_values *shape)
 {
-	return (size_t)7 * n_rows;
+	return (size_t)7 * shape->n_rows;
 }
 
 /* Mean over the samples of a row of their squared outputs about the grand mean, less their noise. */
 static double variances_fill(const struct pound_rows *rows, bool corrected, double *variance)
 {
-	const int d = rows->n_inputs, n_samples = d + 2;
+	const int n_samples = rows->n_samples, n_noises = n_samples * rows->n_signals;
 	const size_t n_all = (size_t)rows->n_rows * n_samples;
 	double grand = 0.0;
 	for (size_t k = 0; k < n_all; k++)
@@ -115,12 +115,12 @@ static double variances_fill(const struct pound_rows *rows, bool corrected, doub
 	grand /= n_all;
 	for (int i = 0; i < rows->n_rows; i++) {
 		const double *y = rows->y + (size_t)i * n_samples,
-		             *e = rows->noise + (size_t)i * pound_rows_noises(d);
-		double squares = 0.0, noise = e[POUND_NOISE_AA] + e[POUND_NOISE_BB];
+		             *deviation = rows->deviation + (size_t)i * n_noises;
+		double squares = 0.0, noise = 0.0;
 		for (int p = 0; p < n_samples; p++)
 			squares += (y[p] - grand) * (y[p] - grand);
-		for (int j = 0; j < d; j++)
-			noise += e[POUND_NOISE_MIXED + POUND_NOISE_STEP * j];
+		for (int k = 0; k < n_noises; k++)
+			noise += deviation[k] * deviation[k];
 		variance[i] = (corrected ? squares - noise : squares) / n_samples;
 	}
 	return grand;
@@ -159,9 +159,8 @@ void pound_local_first(const struct pound_rows *rows, const double *x, bool corr
 			for (int i = 0; i < n; i++)
 				y[i] = x[(rows->row[i] * 2 + matrix) * d + j];
 			gsl_sort_index(order, y, 1, n);
-			// column j of B is that of the samples B and 2 + j, column j of A that of all others
-			for (int p = 0; p < d + 2; p++)
-				if ((p == 1 || p == 2 + j) == (matrix == 1))
+			for (int p = 0; p < rows->n_samples; p++)
+				if ((pound_order_mask(d, p) >> j & 1) == (unsigned)matrix)
 					block_add(rows, p, grand, order, y, fit, sums);
 		}
 		first[j] = enough ? influence_interval(rows, sums, variance, group_sums)

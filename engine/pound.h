@@ -13,13 +13,15 @@
 #define POUND_VERSION "0.2.0"
 
 enum {
-	POUND_OSCILLATORS = 2,    /* left, right */
-	POUND_INPUTS_MAX = 16,    /* inputs of one sensitivity study */
-	POUND_OUTPUTS_MAX = 8,    /* outputs of one study */
-	POUND_SWEEPS_MAX = 8,     /* swept fields of one study */
-	POUND_SOLVERS = 4,        /* rows of the solvers */
-	POUND_SETTINGS_MAX = 16,  /* of one solver that are compared */
-	POUND_ROWS_MAX = 1 << 20, /* rows of a design */
+	POUND_OSCILLATORS = 2,                        /* left, right */
+	POUND_INPUTS_MAX = 16,                        /* inputs of one sensitivity study */
+	POUND_OUTPUTS_MAX = 8,                        /* outputs of one study */
+	POUND_SWEEPS_MAX = 8,                         /* swept fields of one study */
+	POUND_SOLVERS = 4,                            /* rows of the solvers */
+	POUND_SETTINGS_MAX = 16,                      /* of one solver that are compared */
+	POUND_ROWS_MAX = 1 << 20,                     /* rows of a design */
+	POUND_FACTORIAL_INPUTS_MAX = 5,               /* inputs whose every mixture of A and B is run */
+	POUND_SAMPLES_MAX = 2 * POUND_INPUTS_MAX + 2, /* of a row of the design */
 };
 
 // why a run has no result
@@ -147,6 +149,7 @@ struct pound_design {
 	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
 	int randomisations;  /* of a quasi-random design, independent of each other; 0: as many as is best */
 	struct pound_until until;
+	int order; /* row of the orders, pound_order_name: which samples a row has */
 };
 
 struct pound_solver {
@@ -205,6 +208,7 @@ const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
 const char *pound_design_name(int row);
 bool pound_design_quasi_random(int row);
+const char *pound_order_name(int row);
 const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
@@ -220,6 +224,10 @@ int64_t pound_design_row_runs(const struct pound_study *study); /* pounding runs
 /* The trials of a convergence study: the event solver, the second opinion, every setting; and the solver of one. */
 int pound_convergence_trials(const struct pound_study *study);
 struct pound_solver pound_convergence_solver(const struct pound_study *study, int trial);
+
+/* Samples of a row of the study's design: A, B, A with column j from B for every j, ... (engine/order.h). */
+int pound_design_samples(const struct pound_study *study);
+unsigned pound_order_mask(int n_inputs, int sample); /* bit j: column j of the sample is from B */
 
 /* What is wrong with the parameters of a distribution, in words, or NULL. */
 const char *pound_distribution_fault(const struct pound_distribution *distribution);
@@ -273,6 +281,25 @@ struct pound_estimate {
 	double value, low, high; /* low and high: 95 % interval; NAN: undefined */
 };
 
+/* An index of a set of inputs, bit j for input j. */
+struct pound_set_index {
+	unsigned inputs;
+	struct pound_estimate estimate;
+};
+
+enum {
+	POUND_PAIRS_MAX = POUND_INPUTS_MAX * (POUND_INPUTS_MAX - 1) / 2,
+	POUND_CLOSED_MAX = (1 << POUND_FACTORIAL_INPUTS_MAX) - 2, /* sets but none and all */
+};
+
+/* Those that the design of the study tells, sets in ascending order. */
+struct pound_set_indices {
+	int n_second, n_closed;
+	struct pound_set_index second[POUND_PAIRS_MAX]; /* second-order indexes  (n_second) */
+	struct pound_set_index
+	    closed[POUND_CLOSED_MAX]; /* share of the variance that a set explains  (n_closed) */
+};
+
 /* What the indexes of an output may be off by, and for want of what. */
 // clang-format off
 #define POUND_ERRORS(X)                                                                   \
@@ -313,7 +340,7 @@ struct pound_accuracy {
 
 /* Columns of indexes, one row each: X(enumerator, name in a result).  The raw ones are the plain protocol's and hold the
  * noise of few signals; the pick-freeze ones are the same without it; S1 and ST are the sharpest from the same runs.
- * S2_excitation is the second-order index of the input and one signal. */
+ * S2_excitation is the second-order index of the input and one signal; Shapley effects add up to 1. */
 // clang-format off
 #define POUND_INDEXES(X)                                                                  \
 	X(POUND_S1,             "S1")                                                         \
@@ -322,7 +349,8 @@ struct pound_accuracy {
 	X(POUND_ST_PICK_FREEZE, "ST_pick_freeze")                                             \
 	X(POUND_S1_RAW,         "S1_raw")                                                     \
 	X(POUND_ST_RAW,         "ST_raw")                                                     \
-	X(POUND_S2_EXCITATION,  "S2_excitation")
+	X(POUND_S2_EXCITATION,  "S2_excitation")                                              \
+	X(POUND_SHAPLEY,        "shapley")
 
 /* The excitation's randomness as an input of its own: X(enumerator, name in a result).  Of single runs the first-order
  * and the total index, and the total index, or share, that is left in the means over the study's signals. */
@@ -364,9 +392,11 @@ enum pound_note { POUND_NOTES(X) POUND_N_NOTES };
 struct pound_indices {
 	double mean, variance; /* of the output over the rows of A and B */
 	double noise_share;    /* share of that variance due to the excitation's randomness; NAN: one signal */
+	double ratio_bias;     /* of the outputs as ratios of means of few signals, on average; NAN: one signal */
 	unsigned notes;        /* bits 1 << enum pound_note */
 	struct pound_estimate share[POUND_N_SHARES];
 	struct pound_estimate *index[POUND_N_INDEXES]; /* (n_inputs) each */
+	struct pound_set_indices sets;
 	struct pound_accuracy accuracy;
 };
 
@@ -479,10 +509,10 @@ int pound_run_rows(const struct pound_run *run); /* that the reductions are of *
 void pound_run_clock(struct pound_run *run, double (*cpu)(void));
 void pound_run_stop(struct pound_run *run); /* blocks and reductions return POUND_STOPPED soon */
 
-/* The sample behind row `row` and design block `sample` (0: A, 1: B, 2 + j: A with column j from B), after all
+/* The sample behind row `row` and design block `sample` (0: A, 1: B, 2 + j: A with column j from B, ...), after all
  * blocks: the input values, and of each output in a cell the ratio of means and the variance of that mean
  * over its signals divided by their number (NAN: failed run, or a variance of one signal). */
-int pound_run_samples(const struct pound_run *run); /* design blocks: n_inputs + 2 */
+int pound_run_samples(const struct pound_run *run); /* of a row */
 void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x);
 void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
                              double *mean, double *variance);

@@ -10,96 +10,122 @@
  * Given    numerator, denominator   (n_signals)
  * Returns  value       Y            mean numerator / mean denominator
  *          deviation   (n_signals)  z_r - Y of the pseudo-values z_r = Y + (U_r - Y u_r) / mean(u); their mean is 0
+ *          bias        -            of the ratio, by the jackknife: (R - 1) (mean of the ratios without one signal - Y)
  *
- * Source   delta method; model.md 5: a ratio of means, with the same signals above and below
+ * Source   delta method; model.md 5: a ratio of means, with the same signals above and below; Quenouille 1956,
+ *          Biometrika 43, 353-360, for the jackknife
  * Test     unit_rows: the_variance_of_a_ratio_of_means_is_that_of_its_linearisation
  */
 static double ratio_of_means(const double *numerator, const double *denominator, int n_signals,
-                             double *deviation)
+                             double *deviation, double *bias)
 {
-	double above = 0.0, below = 0.0;
+	double above = 0.0, below = 0.0, without = 0.0;
 	for (int r = 0; r < n_signals; r++) {
 		above += numerator[r];
 		below += denominator[r];
 	}
 	double y = above / below, scale = n_signals / below;
-	for (int r = 0; r < n_signals; r++)
-		deviation[r] = (numerator[r] - y * denominator[r]) * scale;
+	for (int r = 0; r < n_signals; r++) {
+		double residual = numerator[r] - y * denominator[r];
+		deviation[r] = residual * scale;
+		// (above - U_r) / (below - u_r) - Y
+		without -= residual / (below - denominator[r]);
+	}
+	*bias = n_signals > 1 ? (n_signals - 1.0) / n_signals * without : NAN;
 	return isfinite(below) ? y : NAN;
 }
 
-/* Covariance, over draws of the signals, of two outputs that are means over n_signals shared (or fresh) signals. */
-static double covariance(const double *p, const double *q, int n_signals)
+/* Brings deviations to the scale on which products of them add up to covariances of means over n_signals. */
+static void deviations_scale(double *deviation, int n_signals)
 {
-	double products = 0.0;
+	const double scale = sqrt(1.0 / ((n_signals - 1.0) * n_signals));
 	for (int r = 0; r < n_signals; r++)
-		products += p[r] * q[r];
-	return products / (n_signals - 1.0) / n_signals;
+		deviation[r] = n_signals > 1 ? deviation[r] * scale : NAN;
 }
 
-int pound_rows_noises(int n_inputs)
+/* Covariances of a row's outputs over draws of their noise, all NAN where that is not known.
+ *
+ * Returns  noise    (n_samples x n_samples)
+ *
+ * Test     unit_rows: the_variance_of_a_ratio_of_means_is_that_of_its_linearisation
+ */
+void pound_rows_noise(const struct pound_rows *rows, int row, double *noise)
 {
-	return POUND_NOISE_MIXED + POUND_NOISE_STEP * n_inputs;
-}
-
-/* Covariances of a row's outputs, for the pairs of samples that estimators multiply; NAN for one signal. */
-static void noise_fill(const double *deviation, int n_inputs, int n_signals, double *noise)
-{
-	const double *a = deviation, *b = deviation + n_signals;
-	if (n_signals < 2) {
-		for (int k = 0; k < pound_rows_noises(n_inputs); k++)
-			noise[k] = NAN;
-		return;
-	}
-	noise[POUND_NOISE_AA] = covariance(a, a, n_signals);
-	noise[POUND_NOISE_BB] = covariance(b, b, n_signals);
-	noise[POUND_NOISE_AB] = covariance(a, b, n_signals);
-	for (int j = 0; j < n_inputs; j++) {
-		const double *c = deviation + (size_t)(2 + j) * n_signals;
-		double *k = noise + POUND_NOISE_MIXED + POUND_NOISE_STEP * j;
-		k[0] = covariance(c, c, n_signals);
-		k[1] = covariance(a, c, n_signals);
-		k[2] = covariance(b, c, n_signals);
-	}
-}
-
-/* The same of outputs whose variances are known and that owe nothing to each other's noise. */
-static void noise_known(const double *variance, int n_inputs, double *noise)
-{
-	for (int k = 0; k < pound_rows_noises(n_inputs); k++)
-		noise[k] = isnan(variance[0]) ? NAN : 0.0;
-	noise[POUND_NOISE_AA] = variance[0];
-	noise[POUND_NOISE_BB] = variance[1];
-	for (int j = 0; j < n_inputs; j++)
-		noise[POUND_NOISE_MIXED + POUND_NOISE_STEP * j] = variance[2 + j];
+	const int n_samples = rows->n_samples, n_signals = rows->n_signals;
+	const double *deviation = rows->deviation + (size_t)row * n_samples * n_signals;
+	for (int p = 0; p < n_samples; p++)
+		for (int q = p; q < n_samples; q++) {
+			double products = 0.0;
+			for (int r = 0; r < n_signals; r++)
+				products += deviation[p * n_signals + r] * deviation[q * n_signals + r];
+			noise[p * n_samples + q] = noise[q * n_samples + p] =
+			    rows->independent && p != q ? 0.0 : products;
+		}
 }
 
 /* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros. */
 static void centre(struct pound_rows *rows)
 {
-	const int n_samples = rows->n_inputs + 2;
 	const double start = rows->y[0];
 	double sum = 0.0;
 	for (int i = 0; i < rows->n_rows; i++) {
-		const double *y = rows->y + (size_t)i * n_samples;
+		const double *y = rows->y + (size_t)i * rows->n_samples;
 		sum += (y[0] - start) + (y[1] - start);
 	}
 	rows->mean = start + sum / (2.0 * rows->n_rows);
-	for (size_t k = 0; k < (size_t)rows->n_rows * n_samples; k++)
+	for (size_t k = 0; k < (size_t)rows->n_rows * rows->n_samples; k++)
 		rows->y[k] -= rows->mean;
 }
 
-size_t pound_rows_scratch(int n_rows, int n_inputs, int n_signals)
+size_t pound_rows_scratch(const struct pound_sample_values *shape)
 {
-	return (size_t)n_rows * (n_inputs + 2 + pound_rows_noises(n_inputs) + 1) +
-	       (size_t)(n_inputs + 2) * n_signals;
+	const size_t samples = (size_t)shape->n_rows * pound_order_samples(shape->order, shape->n_inputs);
+	return samples * (1 + shape->n_signals) + shape->n_rows;
+}
+
+/* One row's outputs, with their deviations, at the end of the rows; says whether it has them all. */
+static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *values, int row,
+                     double *largest, double *bias)
+{
+	const int n_samples = rows->n_samples, n_signals = rows->n_signals;
+	double *y = rows->y + (size_t)rows->n_rows * n_samples, row_largest = 0.0;
+	double *deviation = rows->deviation + (size_t)rows->n_rows * n_samples * n_signals, biases = 0.0;
+	for (int p = 0; p < n_samples; p++, deviation += n_signals) {
+		size_t sample = (size_t)row * n_samples + p;
+		double one = NAN;
+		if (values->variance) {
+			y[p] = values->numerator[sample];
+			*deviation = sqrt(values->variance[sample]);
+		} else {
+			y[p] = ratio_of_means(values->numerator + sample * n_signals,
+			                      values->denominator + sample * n_signals, n_signals, deviation, &one);
+			deviations_scale(deviation, n_signals);
+		}
+		row_largest = isfinite(y[p]) ? fmax(row_largest, fabs(y[p])) : INFINITY;
+		biases += one;
+	}
+	if (!isfinite(row_largest))
+		return false;
+	*largest = fmax(*largest, row_largest);
+	*bias += biases / n_samples;
+	return true;
+}
+
+/* The groups that the rows fall into, no more of them than there are. */
+static struct pound_scatter scatter_of(const struct pound_rows *rows,
+                                       const struct pound_sample_values *values)
+{
+	struct pound_scatter scatter = {values->grouping, rows->row};
+	const int groups = scatter.grouping.n ? (values->n_rows - 1) / scatter.grouping.run + 1 : 0;
+	scatter.grouping.n = groups < scatter.grouping.n ? groups : scatter.grouping.n;
+	return scatter;
 }
 
 /* The rows that have an output at every sample.
  *
- * Given    values      (n_rows x (n_inputs + 2) x n_signals)   numerators and denominators
- * Returns  rows        -                                       outputs, centred, and their noise
- * Memory   scratch     (pound_rows_scratch)                    held by rows
+ * Given    values      (n_rows x n_samples x n_signals)   numerators and denominators; a known variance: one signal
+ * Returns  rows        -                                  outputs, centred, and their noise
+ * Memory   scratch     (pound_rows_scratch)               held by rows
  *
  * A row with a failed run, or a denominator without a mean, is left out whole.
  *
@@ -107,38 +133,23 @@ size_t pound_rows_scratch(int n_rows, int n_inputs, int n_signals)
  */
 void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch)
 {
-	const int d = values->n_inputs, n_samples = d + 2, n_signals = values->n_signals;
-	const int n_noises = pound_rows_noises(d);
-	*rows = (struct pound_rows){.n_inputs = d, .n_signals = n_signals, .y = scratch};
-	const struct pound_grouping *grouping = &values->grouping;
-	const int groups = grouping->n ? (values->n_rows + grouping->run - 1) / grouping->run : 0;
-	rows->scatter.grouping = *grouping;
-	rows->scatter.grouping.n = groups < grouping->n ? groups : grouping->n;
-	rows->noise = rows->y + (size_t)values->n_rows * n_samples;
-	rows->row = (int64_t *)(rows->noise + (size_t)values->n_rows * n_noises);
-	rows->scatter.row = rows->row;
-	double *deviation = (double *)(rows->row + values->n_rows), largest = 0.0;
-	for (int i = 0; i < values->n_rows; i++) {
-		double *y = rows->y + (size_t)rows->n_rows * n_samples, row_largest = 0.0;
-		for (int p = 0; p < n_samples; p++) {
-			size_t at = ((size_t)i * n_samples + p) * n_signals;
-			y[p] = values->variance ? values->numerator[at]
-			                        : ratio_of_means(values->numerator + at, values->denominator + at,
-			                                         n_signals, deviation + (size_t)p * n_signals);
-			row_largest = isfinite(y[p]) ? fmax(row_largest, fabs(y[p])) : INFINITY;
-		}
-		if (!isfinite(row_largest))
-			continue;
-		double *noise = rows->noise + (size_t)rows->n_rows * n_noises;
-		if (values->variance)
-			noise_known(values->variance + (size_t)i * n_samples, d, noise);
-		else
-			noise_fill(deviation, d, n_signals, noise);
-		largest = fmax(largest, row_largest);
-		rows->row[rows->n_rows++] = i;
-	}
+	const int n_samples = pound_order_samples(values->order, values->n_inputs);
+	*rows = (struct pound_rows){.n_inputs = values->n_inputs,
+	                            .n_samples = n_samples,
+	                            .n_signals = values->n_signals,
+	                            .order = values->order,
+	                            .independent = values->variance,
+	                            .y = scratch};
+	rows->deviation = rows->y + (size_t)values->n_rows * n_samples;
+	rows->row = (int64_t *)(rows->deviation + (size_t)values->n_rows * n_samples * values->n_signals);
+	rows->scatter = scatter_of(rows, values);
+	double largest = 0.0, bias = 0.0;
+	for (int i = 0; i < values->n_rows; i++)
+		if (row_fill(rows, values, i, &largest, &bias))
+			rows->row[rows->n_rows++] = i;
 	centre(rows);
+	rows->ratio_bias = bias / rows->n_rows;
 	// a sum of n_signals numbers and a quotient round to no more than this
-	double rounding = (n_signals + 2) * DBL_EPSILON * largest;
+	double rounding = (values->n_signals + 2) * DBL_EPSILON * largest;
 	rows->variance_floor = rounding * rounding;
 }

@@ -38,7 +38,7 @@ static struct pound_campaign campaign_of(const struct pound_study *study)
 	                           .n_rows = sampled  ? pound_design_rows_most(study)
 	                                     : trials ? pound_convergence_trials(study)
 	                                              : 1,
-	                           .n_samples = sampled ? study->n_inputs + 2 : 1,
+	                           .n_samples = sampled ? pound_design_samples(study) : 1,
 	                           .n_signals = study->elsewhere ? 1 : study->scene.excitation.signals,
 	                           .trials = trials};
 	for (int s = 0; s < study->n_sweeps; s++)
@@ -65,17 +65,15 @@ static size_t checks_size(const struct pound_campaign *c)
  * need. */
 static size_t reduction_size(const struct pound_campaign *c)
 {
-	const int n_rows = c->n_rows, n_inputs = c->study->n_inputs, n_signals = c->n_signals;
 	if (c->study->n_outputs == 0)
 		return 0;
 	if (c->trials)
 		return (size_t)pound_layout_items(c) * TRIAL_MEASURES;
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
-	size_t variants = pound_variants_scratch(n_rows, n_inputs, n_signals);
-	size_t accuracy = pound_accuracy_scratch(n_rows, n_inputs, n_signals, checks_of(c));
-	return 2 * (size_t)n_rows * (size_t)c->n_samples * (size_t)n_signals + checks_size(c) +
-	       (variants > accuracy ? variants : accuracy);
+	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
+	size_t variants = pound_variants_scratch(&shape), accuracy = pound_accuracy_scratch(&shape, checks_of(c));
+	return 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) + (variants > accuracy ? variants : accuracy);
 }
 
 /* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
@@ -401,15 +399,9 @@ static bool any_known(const double *variance, size_t n)
 static void indices_reduce(struct pound_run *run, int cell, int output, double *scratch)
 {
 	const struct pound_campaign *c = &run->campaign;
-	size_t n = (size_t)run->rows * (size_t)c->n_samples * (size_t)c->n_signals;
+	const struct pound_sample_values values = pound_campaign_values(c, run->rows, scratch);
+	const size_t n = pound_campaign_values_size(c, run->rows);
 	const bool elsewhere = c->study->elsewhere;
-	struct pound_sample_values values = {.n_rows = run->rows,
-	                                     .n_inputs = c->study->n_inputs,
-	                                     .n_signals = c->n_signals,
-	                                     .numerator = scratch,
-	                                     .denominator = elsewhere ? NULL : scratch + n,
-	                                     .variance = elsewhere ? scratch + n : NULL,
-	                                     .grouping = pound_design_grouping(c->study)};
 	struct pound_cell *into = &run->result.cells[cell];
 	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
 	const struct pound_sampling sampling = {

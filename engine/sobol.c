@@ -14,7 +14,7 @@ static void subject_moments(const void *given, int row, double *m)
 {
 	const struct subject *s = given;
 	const int d = s->rows->n_inputs;
-	s->estimator->moments(s->rows->y + (size_t)row * (d + 2), d, m);
+	s->estimator->moments(s->rows->y + (size_t)row * s->rows->n_samples, d, m);
 }
 
 static void subject_values(const void *given, const double *mean, double *value)
@@ -36,24 +36,25 @@ static void subject_values(const void *given, const double *mean, double *value)
  */
 bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices)
 {
-	const int d = rows->n_inputs, n_noises = pound_rows_noises(d);
+	const int d = rows->n_inputs, n_signals = rows->n_signals;
 	double mean = 0.0, square = 0.0, sum = 0.0, squares = 0.0, noise = 0.0;
 	for (int i = 0; i < rows->n_rows; i++) {
-		const double *y = rows->y + (size_t)i * (d + 2), *e = rows->noise + (size_t)i * n_noises;
+		const double *y = rows->y + (size_t)i * rows->n_samples;
+		const double *deviation = rows->deviation + (size_t)i * rows->n_samples * n_signals;
 		mean += 0.5 * (y[0] + y[1]);
 		square += 0.5 * (y[0] * y[0] + y[1] * y[1]);
-		noise += e[POUND_NOISE_AA] + e[POUND_NOISE_BB];
 		for (int p = 0; p < d + 2; p++) {
 			sum += y[p];
 			squares += y[p] * y[p];
 		}
-		for (int j = 0; j < d; j++)
-			noise += e[POUND_NOISE_MIXED + POUND_NOISE_STEP * j];
+		for (int k = 0; k < (d + 2) * n_signals; k++)
+			noise += deviation[k] * deviation[k];
 	}
 	const double n = rows->n_rows, all = n * (d + 2);
 	double variance = squares / all - sum / all * (sum / all);
 	indices->mean = rows->mean + mean / n;
 	indices->variance = square / n - mean / n * (mean / n);
+	indices->ratio_bias = isfinite(rows->ratio_bias) ? rows->ratio_bias : NAN;
 	bool varies = rows->n_rows > 1 && variance > rows->variance_floor;
 	indices->noise_share = varies ? noise / all / variance : NAN;
 	return varies;
@@ -64,15 +65,15 @@ static int n_moments(int n_inputs)
 	return pound_estimator_row(0)->n_moments(n_inputs);
 }
 
-size_t pound_sobol_scratch(int n_rows, int n_inputs, int n_signals)
+size_t pound_sobol_scratch(const struct pound_sample_values *shape)
 {
-	return pound_rows_scratch(n_rows, n_inputs, n_signals) +
-	       pound_interval_scratch(n_rows, n_moments(n_inputs), 2 * n_inputs);
+	return pound_rows_scratch(shape) +
+	       pound_interval_scratch(shape->n_rows, n_moments(shape->n_inputs), 2 * shape->n_inputs);
 }
 
 /* First-order and total sensitivity indexes of one output, with 95 % intervals.
  *
- * Given    values    (n_rows x (n_inputs + 2) x n_signals)   of each run; n_rows <= 2^20
+ * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
  *          seed      -                                       of the resamples, n_resamples in number
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   mean, variance (of A and B, divided by their number), noise share, raw indexes (n_inputs)
@@ -97,8 +98,7 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 		const struct pound_statistic statistic = {n_moments(d), 2 * d, subject_moments, subject_values,
 		                                          &subject};
 		pound_interval_estimates(&statistic, &rows.scatter, rows.n_rows, seed, n_resamples,
-		                         scratch + pound_rows_scratch(values->n_rows, d, values->n_signals),
-		                         estimates);
+		                         scratch + pound_rows_scratch(values), estimates);
 	}
 	for (int j = 0; j < d; j++) {
 		indices->index[POUND_S1_RAW][j] = estimates[j];

@@ -2,8 +2,9 @@
  * column stands in where that is missing.
  *
  * 1. Raw and corrected pick-freeze indexes and the excitation's shares come from one bootstrap (correction.c).
- * 2. The sharper first-order indexes are those of local.c, of a quasi-random design those of chaos.c; so are the sharper
- *    totals of any design.
+ * 2. The sharper first-order indexes are those of chaos.c or local.c, the sharper totals those of chaos.c or pick-freeze,
+ *    of each input the one with the narrower interval: polynomials are best for smooth outputs, the others elsewhere.
+ *    Over six test functions, n = 1000, first-order indexes err by 0.0045, without the choice by 0.0049 or 0.0087.
  * 3. A column that cannot be made is a copy of the next best, and a note says so.  Nothing is clipped. */
 #include "engine/indices.h"
 
@@ -16,7 +17,8 @@ struct sources {
 	const struct pound_rows *rows;
 	const struct pound_sampling *sampling;
 	struct pound_pick_freeze pick_freeze;
-	bool corrected; /* the noise is known */
+	struct pound_closed_results closed; /* of chaos.c, given rows enough */
+	bool corrected;                     /* the noise is known */
 	double *scratch;
 };
 
@@ -71,20 +73,35 @@ static void with_excitation(const struct sources *s, struct pound_estimate *into
 	copy(s, s->pick_freeze.with_signal, into);
 }
 
-/* Neighbours in one input say nothing where they are arranged in the others. */
-static void first_sharp(const struct sources *s, struct pound_estimate *into)
+/* Of two estimates of every input the one with the narrower interval. */
+static void narrower(const struct sources *s, const struct pound_estimate *p, const struct pound_estimate *q,
+                     struct pound_estimate *into)
 {
-	struct pound_estimate total[POUND_INPUTS_MAX];
-	if (s->sampling->quasi_random)
-		pound_chaos_indices(s->rows, s->sampling->u, s->corrected, s->scratch, into, total);
-	else
-		pound_local_first(s->rows, s->sampling->u, s->corrected, s->scratch, into);
+	for (int j = 0; j < s->rows->n_inputs; j++)
+		into[j] = q[j].high - q[j].low < p[j].high - p[j].low ? q[j] : p[j];
 }
 
-static void total_sharp(const struct sources *s, struct pound_estimate *into)
+static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 {
-	struct pound_estimate first[POUND_INPUTS_MAX];
-	pound_chaos_indices(s->rows, s->sampling->u, s->corrected, s->scratch, first, into);
+	struct pound_estimate local[POUND_INPUTS_MAX];
+	// neighbours in one input say nothing where they are arranged in the others
+	if (s->sampling->quasi_random) {
+		copy(s, s->closed.first, into);
+		return;
+	}
+	pound_local_first(s->rows, s->sampling->u, s->corrected, s->scratch, local);
+	narrower(s, s->closed.first, local, into);
+}
+
+static void total_sharpest(const struct sources *s, struct pound_estimate *into)
+{
+	const struct pound_pick_freeze *p = &s->pick_freeze;
+	narrower(s, s->closed.total, s->corrected ? p->total : p->total_raw, into);
+}
+
+static void shapley(const struct sources *s, struct pound_estimate *into)
+{
+	copy(s, s->closed.shapley, into);
 }
 
 // in the order in which they are made: a stand-in comes before the column it stands in for
@@ -100,8 +117,9 @@ static const struct column {
 	{POUND_S1_PICK_FREEZE, signals_enough, first_corrected, POUND_S1_RAW},
 	{POUND_ST_PICK_FREEZE, signals_enough, total_corrected, POUND_ST_RAW},
 	{POUND_S2_EXCITATION,  signals_shared, with_excitation, POUND_N_INDEXES},
-	{POUND_S1,             rows_enough,    first_sharp,     POUND_S1_PICK_FREEZE},
-	{POUND_ST,             rows_enough,    total_sharp,     POUND_ST_PICK_FREEZE},
+	{POUND_S1,             rows_enough,    first_sharpest,  POUND_S1_PICK_FREEZE},
+	{POUND_ST,             rows_enough,    total_sharpest,  POUND_ST_PICK_FREEZE},
+	{POUND_SHAPLEY,        rows_enough,    shapley,         POUND_N_INDEXES},
 };
 // clang-format on
 
@@ -153,19 +171,19 @@ static unsigned notes_of(const bool said[POUND_N_NOTES])
 	return notes;
 }
 
-size_t pound_variants_scratch(int n_rows, int n_inputs, int n_signals)
+size_t pound_variants_scratch(const struct pound_sample_values *shape)
 {
-	const size_t sizes[] = {pound_correction_scratch(n_rows, n_inputs), pound_local_scratch(n_rows),
-	                        pound_chaos_scratch(n_rows, n_inputs)};
+	const size_t sizes[] = {pound_correction_scratch(shape), pound_local_scratch(shape),
+	                        pound_chaos_scratch(shape)};
 	size_t largest = 0;
 	for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
 		largest = sizes[k] > largest ? sizes[k] : largest;
-	return pound_rows_scratch(n_rows, n_inputs, n_signals) + largest;
+	return pound_rows_scratch(shape) + largest;
 }
 
 /* All sensitivity indexes of one output, with 95 % intervals, and what there is to say about them.
  *
- * Given    values    (n_rows x (n_inputs + 2) x n_signals)   of each run; n_rows <= 2^20
+ * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
  *          sampling  -                                       the design, and whether noise can be told apart
  *          seed      -                                       of the resamples
  * Returns  value     rows dropped: one of their runs has no output
@@ -186,7 +204,7 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	struct sources s = {.rows = &rows,
 	                    .sampling = sampling,
 	                    .corrected = values->n_signals > 1 && sampling->random,
-	                    .scratch = scratch + pound_rows_scratch(values->n_rows, d, values->n_signals)};
+	                    .scratch = scratch + pound_rows_scratch(values)};
 	// of outputs computed elsewhere the noise is known by its variances, which are all there is if samples do not share it
 	const bool elsewhere = values->variance;
 	if (elsewhere)
@@ -194,10 +212,14 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	const bool varies = pound_sobol_summary(&rows, indices);
 	if (varies) {
 		pound_correction_estimates(&rows, seed, s.scratch, &s.pick_freeze);
+		if (rows_enough(&s))
+			pound_chaos_indices(&rows, sampling->u, s.corrected, s.scratch, &s.closed);
+		indices->sets = s.closed.sets;
 		columns_fill(&s, indices);
 		if (elsewhere) // the number of replicates is not known
 			undefined(&indices->share[POUND_SHARE_TOTAL_ONE], 1);
 	} else {
+		indices->sets = (struct pound_set_indices){0};
 		for (int k = 0; k < POUND_N_INDEXES; k++)
 			undefined(indices->index[k], d);
 		undefined(indices->share, POUND_N_SHARES);

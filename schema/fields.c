@@ -173,6 +173,9 @@ const struct field fields[] = {
 	{"/design/signals", FIELD_BOOL, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
 	 .text = "whether the samples of a row share their noise", .choice = signals_name, SENSITIVITY,
 	 NOT_SCENE},
+	{"/design/order", FIELD_CHOICE, AT(design.order), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "how many mixtures of A and B a row has: n_inputs + 2, 2 n_inputs + 2 or all",
+	 .choice = pound_order_name, SENSITIVITY, NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_MAX, FIELD_CLOSED, "",
 	 .text = "what comes out; the amplifications that apply and the impulse when absent", SOLVED, WITH_SCENE, NOT_SCENE},

@@ -135,6 +135,26 @@ static void write_input(struct writer *w, const struct pound_input *input,
 	writer_end(w);
 }
 
+/* Indexes of sets of inputs; nothing where the design tells none. */
+static void write_sets(struct writer *w, const struct pound_study *study, const char *name, const char *index,
+                       const struct pound_set_index *sets, int n)
+{
+	if (n == 0)
+		return;
+	writer_array(w, name, WRITER_LINES);
+	for (int k = 0; k < n; k++) {
+		writer_object(w, NULL, WRITER_LINE);
+		writer_array(w, "inputs", WRITER_LINE);
+		for (int j = 0; j < study->n_inputs; j++)
+			if (sets[k].inputs >> j & 1)
+				writer_text(w, NULL, study->inputs[j].name);
+		writer_end(w);
+		write_estimate(w, index, &sets[k].estimate);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
 static void write_indices(struct writer *w, const struct pound_study *study,
                           const struct pound_indices *indices, int o)
 {
@@ -143,12 +163,15 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	writer_number(w, "mean", indices->mean);
 	writer_number(w, "variance", indices->variance);
 	writer_number(w, "noise_share", indices->noise_share);
+	writer_number(w, "ratio_bias", indices->ratio_bias);
 	write_notes(w, indices);
 	write_excitation(w, indices);
 	writer_array(w, "inputs", WRITER_LINES);
 	for (int j = 0; j < study->n_inputs; j++)
 		write_input(w, &study->inputs[j], indices, j);
 	writer_end(w);
+	write_sets(w, study, "second_order", "S2", indices->sets.second, indices->sets.n_second);
+	write_sets(w, study, "closed", "S_closed", indices->sets.closed, indices->sets.n_closed);
 	result_accuracy_output(w, study, indices);
 	writer_end(w);
 }

@@ -1,6 +1,6 @@
 /* samples.c - every input row of a sensitivity study and its outputs, as CSV and as a NumPy file.
  *
- * Cells in order, rows i, samples A_i, B_i, AB_i of each input: the order that `pound indices` reads. */
+ * Cells in order, rows i, samples A_i, B_i, AB_i of each input, and what other mixtures the order of the design has: the order that `pound indices` reads. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -80,6 +80,21 @@ static void put_header(struct writer *w, const struct pound_study *study)
 	writer_raw(w, "\r\n", 2);
 }
 
+/* "A", "B", and mixtures by the matrix of most columns, the other, and the names of the columns from that one: "AB_f_2". */
+static void put_sample_name(struct writer *w, const struct pound_study *study, int sample)
+{
+	char name[2 + POUND_INPUTS_MAX * 128];
+	const unsigned from_b = pound_order_mask(study->n_inputs, sample), all = (1u << study->n_inputs) - 1;
+	const bool mostly_b =
+	    sample == 1 || (sample >= 2 + study->n_inputs && 2 * __builtin_popcount(from_b) > study->n_inputs);
+	const unsigned named = mostly_b ? all ^ from_b : from_b;
+	int n = snprintf(name, sizeof name, "%s", mostly_b ? named ? "BA" : "B" : named ? "AB" : "A");
+	for (int j = 0; j < study->n_inputs; j++)
+		if (named >> j & 1)
+			n += snprintf(name + n, sizeof name - (size_t)n, "_%s", study->inputs[j].name);
+	writer_cell(w, name);
+}
+
 static void put_line(struct writer *w, const struct sample *s)
 {
 	char number[16];
@@ -94,10 +109,7 @@ static void put_line(struct writer *w, const struct sample *s)
 		writer_raw(w, ",", 1);
 	}
 	writer_raw(w, number, (size_t)snprintf(number, sizeof number, "%d,", s->row));
-	if (s->sample < 2)
-		writer_raw(w, s->sample ? "B" : "A", 1);
-	else
-		put_text(w, "AB_", s->study->inputs[s->sample - 2].name, "");
+	put_sample_name(w, s->study, s->sample);
 	for (int j = 0; j < s->study->n_inputs; j++) {
 		writer_raw(w, ",", 1);
 		put_number(w, s->x[j]);

@@ -263,6 +263,18 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 	}
 }
 
+/* ---- design ---- */
+
+static void check_order(const struct pound_study *study, struct problems *problems)
+{
+	const char *order = pound_order_name(study->design.order);
+	if (study->kind == POUND_KIND_SENSITIVITY && strcmp(order, "factorial") == 0 &&
+	    study->n_inputs > POUND_FACTORIAL_INPUTS_MAX)
+		problems_add(problems, "/design/order",
+		             "\"factorial\" runs all 2^n mixtures of n inputs and takes at most %d of them, not %d",
+		             POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
+}
+
 /* ---- size ---- */
 
 static double cells(const struct pound_study *study)
@@ -283,8 +295,9 @@ static double design_runs(const struct pound_study *study)
 {
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		return pound_convergence_trials(study);
-	return study->kind == POUND_KIND_RESPONSE ? 1
-	                                          : (double)pound_design_rows_most(study) * (study->n_inputs + 2);
+	return study->kind == POUND_KIND_RESPONSE
+	           ? 1
+	           : (double)pound_design_rows_most(study) * pound_design_samples(study);
 }
 
 /* Steps of the longest sample interval; those of an adaptive solver are not known, its samples count as one each. */
@@ -340,7 +353,7 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
 	int most = study->kind == POUND_KIND_CONVERGENCE ? STUDY_TRIALS_MAX : STUDY_RUNS_MAX;
 	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
-	double at_once = cells(study) * (sampled ? study->n_inputs + 2 : 1) * study_samples(study);
+	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
 	if (runs > most)
 		problems_add(problems, pointer, "asks for %.15g pounding runs, a study may have at most %d", runs,
 		             most);
@@ -385,6 +398,8 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		return;
 	if (!faulty(problems, "/outputs"))
 		check_outputs(study, problems);
+	if (!faulty(problems, "/design"))
+		check_order(study, problems);
 	check_excitation(study, problems);
 	if (!faulty(problems, "/scene") && !faulty(problems, "/design") && !faulty(problems, "/solver") &&
 	    !faulty(problems, "/convergence"))

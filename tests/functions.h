@@ -5,7 +5,7 @@
 
 #include "engine/indices.h"
 
-enum { FUNCTION_INPUTS = 4 };
+enum { FUNCTION_INPUTS = 4, FUNCTION_PAIRS = 6 };
 
 struct function {
 	const char *name;
@@ -15,6 +15,8 @@ struct function {
 	/* root mean square errors at n = 1000, Latin hypercube: of the centred Saltelli first-order index, and of
 	 * Jansen's total with the variance of A and B; 0: not known */
 	double error[2 * FUNCTION_INPUTS];
+	double pair[FUNCTION_PAIRS]; /* second-order: 01, 02, 03, 12, 13, 23 */
+	double shapley[FUNCTION_INPUTS];
 };
 
 extern const struct function functions[];

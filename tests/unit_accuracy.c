@@ -21,7 +21,7 @@ static struct estimated *estimated_of(const struct pound_sample_values *values, 
                                       uint64_t seed)
 {
 	struct estimated *e = calloc(1, sizeof *e);
-	size_t n = pound_accuracy_scratch(values->n_rows, values->n_inputs, values->n_signals, checks.n);
+	size_t n = pound_accuracy_scratch(values, checks.n);
 	double *scratch = malloc(sizeof *scratch * n);
 	e->of.index[POUND_S1_RAW] = e->first;
 	e->of.index[POUND_ST_RAW] = e->total;
@@ -41,7 +41,8 @@ static void differences_of_runs_come_out_relative_and_as_a_variance(void **state
 	double denominator[VALUES];
 	for (int k = 0; k < VALUES; k++)
 		denominator[k] = 1;
-	struct pound_sample_values values = {2, 1, 2, numerator, denominator, NULL, {0}};
+	struct pound_sample_values values = {
+	    .n_rows = 2, .n_inputs = 1, .n_signals = 2, .numerator = numerator, .denominator = denominator};
 	struct pound_check check[] = {
 	    {0, 0, {1, 1}, {1, 1}},     // alike
 	    {0, 1, {5, 5.5}, {1, 1}},   // 1/11 apart, e = 1/2

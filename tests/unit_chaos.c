@@ -7,19 +7,15 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
 
-struct indexes {
-	struct pound_estimate first[D], total[D];
-};
-
-static struct indexes indexes_of(const struct pound_sample_values *values, const double *u, bool corrected)
+static struct pound_closed_results indexes_of(const struct pound_sample_values *values, const double *u,
+                                              bool corrected)
 {
-	struct indexes result;
+	struct pound_closed_results result;
 	struct pound_rows rows;
-	const int n = values->n_rows;
-	size_t rows_size = pound_rows_scratch(n, D, values->n_signals);
-	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_scratch(n, D)));
+	size_t rows_size = pound_rows_scratch(values);
+	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_chaos_indices(&rows, u, corrected, scratch + rows_size, result.first, result.total);
+	pound_chaos_indices(&rows, u, corrected, scratch + rows_size, &result);
 	free(scratch);
 	return result;
 }
@@ -44,7 +40,7 @@ static void a_polynomial_within_the_degree_is_met_exactly(void **state)
 	const struct function f = {.name = "cubic", .y = cubic, .variance = 8.8};
 	struct pound_sample_values values = function_values(&f, 200, 1, noiseless);
 	double *u = function_design(200, 1);
-	struct indexes got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indexes_of(&values, u, false);
 	for (int j = 0; j < D; j++) {
 		// rounding of normal equations of 126 terms, whose condition is some tens
 		check_near(got.first[j].value, first[j], 1e-11);
@@ -58,12 +54,12 @@ static void a_polynomial_within_the_degree_is_met_exactly(void **state)
 static void the_degree_grows_with_the_rows_and_falls_with_the_inputs(void **state)
 {
 	(void)state;
-	assert_int_equal(pound_chaos_degree(1000, 4), 6);
-	assert_int_equal(pound_chaos_degree(250, 4), 6);
-	assert_int_equal(pound_chaos_degree(100, 4), 4);
-	assert_int_equal(pound_chaos_degree(2, 4), 0);
-	assert_int_equal(pound_chaos_degree(1000, 16), 2);
-	assert_int_equal(pound_chaos_degree(1000, 1), 6);
+	assert_int_equal(pound_chaos_degree(1000, 4, 6), 6);
+	assert_int_equal(pound_chaos_degree(250, 4, 6), 6);
+	assert_int_equal(pound_chaos_degree(100, 4, 6), 4);
+	assert_int_equal(pound_chaos_degree(2, 4, 6), 0);
+	assert_int_equal(pound_chaos_degree(1000, 16, 18), 2);
+	assert_int_equal(pound_chaos_degree(1000, 1, 3), 6);
 }
 
 static void shift_and_scale_change_no_index(void **state)
@@ -71,10 +67,10 @@ static void shift_and_scale_change_no_index(void **state)
 	(void)state;
 	struct pound_sample_values values = function_values(function_named("cusp"), 300, 2, noiseless);
 	double *u = function_design(300, 2);
-	struct indexes want = indexes_of(&values, u, false);
+	struct pound_closed_results want = indexes_of(&values, u, false);
 	for (int k = 0; k < 300 * SAMPLES; k++)
 		((double *)values.numerator)[k] = 1e6 + 3.0 * values.numerator[k];
-	struct indexes got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indexes_of(&values, u, false);
 	for (int j = 0; j < D; j++) {
 		check_near(got.first[j].value, want.first[j].value, 1e-9);
 		check_near(got.total[j].value, want.total[j].value, 1e-9);
@@ -89,12 +85,15 @@ static void rows_left_out_do_not_shift_the_inputs_of_the_others(void **state)
 	(void)state;
 	struct pound_sample_values values = function_values(function_named("cusp"), 300, 3, noiseless);
 	double *u = function_design(300, 3), *y = (double *)values.numerator;
-	struct pound_sample_values cut = {250,  D,  1, y + 50 * SAMPLES, values.denominator + 50 * SAMPLES,
-	                                  NULL, {0}};
-	struct indexes want = indexes_of(&cut, u + 50 * 2 * D, false);
+	struct pound_sample_values cut = {.n_rows = 250,
+	                                  .n_inputs = D,
+	                                  .n_signals = 1,
+	                                  .numerator = y + 50 * SAMPLES,
+	                                  .denominator = values.denominator + 50 * SAMPLES};
+	struct pound_closed_results want = indexes_of(&cut, u + 50 * 2 * D, false);
 	for (int i = 0; i < 50; i++)
 		y[i * SAMPLES + i % SAMPLES] = NAN;
-	struct indexes got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indexes_of(&values, u, false);
 	for (int j = 0; j < D; j++)
 		check_near(got.total[j].value, want.total[j].value, 0.0);
 	free(u);
@@ -108,7 +107,7 @@ static void nothing_is_defined_where_nothing_varies(void **state)
 	double *u = function_design(60, 4);
 	for (int k = 0; k < 60 * SAMPLES; k++)
 		((double *)values.numerator)[k] = 4.2;
-	struct indexes got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indexes_of(&values, u, false);
 	for (int j = 0; j < D; j++)
 		assert_true(isnan(got.first[j].value) && isnan(got.total[j].value) && isnan(got.total[j].low));
 	free(u);
@@ -130,7 +129,7 @@ static struct performance performance_of(const struct function *f, struct functi
 	for (int seed = 0; seed < SEEDS; seed++) {
 		struct pound_sample_values values = function_values(f, N, seed, noise);
 		double *u = function_design(N, seed);
-		struct indexes got = indexes_of(&values, u, noise.n_signals > 1);
+		struct pound_closed_results got = indexes_of(&values, u, noise.n_signals > 1);
 		for (int k = 0; k < 2 * D; k++) {
 			const struct pound_estimate *x = k < D ? &got.first[k] : &got.total[k - D];
 			double error = x->value - f->index[k];

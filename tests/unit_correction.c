@@ -10,7 +10,8 @@ enum { D = FUNCTION_INPUTS };
 static struct pound_pick_freeze pick_freeze(const struct pound_rows *rows, uint64_t seed)
 {
 	struct pound_pick_freeze result;
-	double *scratch = malloc(sizeof *scratch * pound_correction_scratch(rows->n_rows, rows->n_inputs));
+	const struct pound_sample_values shape = {.n_rows = rows->n_rows, .n_inputs = rows->n_inputs};
+	double *scratch = malloc(sizeof *scratch * pound_correction_scratch(&shape));
 	pound_correction_estimates(rows, seed, scratch, &result);
 	free(scratch);
 	return result;
@@ -19,7 +20,7 @@ static struct pound_pick_freeze pick_freeze(const struct pound_rows *rows, uint6
 static struct pound_rows rows_of(const struct pound_sample_values *values)
 {
 	struct pound_rows rows;
-	size_t n = pound_rows_scratch(values->n_rows, values->n_inputs, values->n_signals);
+	size_t n = pound_rows_scratch(values);
 	pound_rows_init(&rows, values, malloc(sizeof(double) * n));
 	return rows;
 }
@@ -49,7 +50,11 @@ static void the_golden_row_set_is_met(void **state)
 				numerator[i][p][r] = 2.0 * y[p][i][r];
 				denominator[i][p][r] = 2.0;
 			}
-	struct pound_sample_values values = {5, 2, 3, &numerator[0][0][0], &denominator[0][0][0], NULL, {0}};
+	struct pound_sample_values values = {.n_rows = 5,
+	                                     .n_inputs = 2,
+	                                     .n_signals = 3,
+	                                     .numerator = &numerator[0][0][0],
+	                                     .denominator = &denominator[0][0][0]};
 	struct pound_rows rows = rows_of(&values);
 	rows.variance_floor = -INFINITY; // the golden variance of the mean response is negative
 	struct pound_pick_freeze got = pick_freeze(&rows, 1);

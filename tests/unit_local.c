@@ -51,11 +51,9 @@ static void first_of(const struct pound_sample_values *values, const double *x, 
                      struct pound_estimate *first)
 {
 	struct pound_rows rows;
-	const int n = values->n_rows, d = values->n_inputs;
-	double *scratch =
-	    malloc(sizeof *scratch * (pound_rows_scratch(n, d, values->n_signals) + pound_local_scratch(n)));
+	double *scratch = malloc(sizeof *scratch * (pound_rows_scratch(values) + pound_local_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_local_first(&rows, x, corrected, scratch + pound_rows_scratch(n, d, values->n_signals), first);
+	pound_local_first(&rows, x, corrected, scratch + pound_rows_scratch(values), first);
 	free(scratch);
 }
 
@@ -68,8 +66,11 @@ static void rows_left_out_do_not_shift_the_inputs_of_the_others(void **state)
 	double *x = function_design(N, 5), *y = (double *)values.numerator;
 	struct pound_estimate want[D], got[D];
 	// what is left after the first hundred rows fail is what is left after cutting them off
-	struct pound_sample_values cut = {N - 100, D,  1, y + 100 * SAMPLES, values.denominator + 100 * SAMPLES,
-	                                  NULL,    {0}};
+	struct pound_sample_values cut = {.n_rows = N - 100,
+	                                  .n_inputs = D,
+	                                  .n_signals = 1,
+	                                  .numerator = y + 100 * SAMPLES,
+	                                  .denominator = values.denominator + 100 * SAMPLES};
 	first_of(&cut, x + 100 * 2 * D, false, want);
 	for (int i = 0; i < 100; i++)
 		y[i * SAMPLES + i % SAMPLES] = NAN;

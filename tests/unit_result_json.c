@@ -179,7 +179,7 @@ static void indexes_stand_by_output_and_input(void **state)
 	check_near(reading_number(r, "/cells/1/outputs/1/variance"), 18, 0);
 	check_near(reading_number(r, "/cells/1/outputs/1/noise_share"), 17, 0);
 	static const char *const names[POUND_N_INDEXES] = {"S1",     "ST",     "S1_pick_freeze", "ST_pick_freeze",
-	                                                   "S1_raw", "ST_raw", "S2_excitation"};
+	                                                   "S1_raw", "ST_raw", "S2_excitation",  "shapley"};
 	for (int k = 0; k < ESTIMATES; k++) {
 		char member[80];
 		snprintf(member, sizeof member, "/cells/1/outputs/1/inputs/%d/%s", k % 2, names[k / 2]);

@@ -10,9 +10,13 @@ enum { D = 1, SAMPLES = D + 2, SIGNALS = 3 };
 static struct pound_rows rows_of(int n_rows, int n_signals, const double *numerator,
                                  const double *denominator)
 {
-	struct pound_sample_values values = {n_rows, D, n_signals, numerator, denominator, NULL, {0}};
+	struct pound_sample_values values = {.n_rows = n_rows,
+	                                     .n_inputs = D,
+	                                     .n_signals = n_signals,
+	                                     .numerator = numerator,
+	                                     .denominator = denominator};
 	struct pound_rows rows;
-	pound_rows_init(&rows, &values, malloc(sizeof(double) * pound_rows_scratch(n_rows, D, n_signals)));
+	pound_rows_init(&rows, &values, malloc(sizeof(double) * pound_rows_scratch(&values)));
 	return rows;
 }
 
@@ -38,22 +42,21 @@ static void the_variance_of_a_ratio_of_means_is_that_of_its_linearisation(void *
 	// deviations from the means: A (-2, -1, 3), B (1, 0, -1), the mixed sample twice those of A
 	const double numerator[] = {1, 2, 6, 8, 7, 6, 0, 2, 10, 1, 2, 6, 8, 7, 6, 0, 2, 10};
 	struct pound_rows rows = rows_of(2, SIGNALS, numerator, ones);
-	const double *e = rows.noise + pound_rows_noises(D);
+	double e[SAMPLES * SAMPLES];
+	pound_rows_noise(&rows, 1, e);
 	// mean squares over 3 - 1, of means of 3
-	check_near(e[POUND_NOISE_AA], 14.0 / 6.0, 1e-15);
-	check_near(e[POUND_NOISE_BB], 2.0 / 6.0, 1e-15);
-	check_near(e[POUND_NOISE_AB], -5.0 / 6.0, 1e-15);
-	check_near(e[POUND_NOISE_MIXED], 56.0 / 6.0, 1e-14);
-	check_near(e[POUND_NOISE_MIXED + 1], 28.0 / 6.0, 1e-14);
-	check_near(e[POUND_NOISE_MIXED + 2], -10.0 / 6.0, 1e-14);
+	const double want[] = {14, -5, 28, -5, 2, -10, 28, -10, 56};
+	for (int k = 0; k < SAMPLES * SAMPLES; k++)
+		check_near(e[k], want[k] / 6.0, 1e-14);
 	free(rows.y);
 
 	// a numerator in proportion to the denominator leaves nothing to chance, a constant one the denominator's
 	const double proportional[] = {2, 4, 12, 3, 3, 3, 2, 4, 12}, below[] = {1, 2, 6, 1, 2, 6, 1, 2, 6};
 	rows = rows_of(1, SIGNALS, proportional, below);
-	check_near(rows.noise[POUND_NOISE_AA], 0.0, 0.0);
-	check_near(rows.noise[POUND_NOISE_BB], 14.0 / 9.0 / 6.0, 1e-15);
-	check_near(rows.noise[POUND_NOISE_AB], 0.0, 0.0);
+	pound_rows_noise(&rows, 0, e);
+	check_near(e[0], 0.0, 0.0);
+	check_near(e[1], 0.0, 0.0);
+	check_near(e[SAMPLES + 1], 14.0 / 9.0 / 6.0, 1e-15);
 	free(rows.y);
 }
 
@@ -62,8 +65,31 @@ static void one_signal_says_nothing_of_the_noise(void **state)
 	(void)state;
 	const double numerator[] = {1, 2, 3};
 	struct pound_rows rows = rows_of(1, 1, numerator, ones);
-	for (int k = 0; k < pound_rows_noises(D); k++)
-		assert_true(isnan(rows.noise[k]));
+	double e[SAMPLES * SAMPLES];
+	pound_rows_noise(&rows, 0, e);
+	for (int k = 0; k < SAMPLES * SAMPLES; k++)
+		assert_true(isnan(e[k]));
+	assert_true(isnan(rows.ratio_bias));
+	free(rows.y);
+}
+
+static void a_known_variance_stands_for_noise_that_samples_do_not_share(void **state)
+{
+	(void)state;
+	const double numerator[] = {1, 2, 3}, variance[] = {0.25, 0, 4};
+	struct pound_sample_values values = {.n_rows = 1,
+	                                     .n_inputs = D,
+	                                     .n_signals = 1,
+	                                     .numerator = numerator,
+	                                     .denominator = ones,
+	                                     .variance = variance};
+	struct pound_rows rows;
+	double e[SAMPLES * SAMPLES];
+	pound_rows_init(&rows, &values, malloc(sizeof(double) * pound_rows_scratch(&values)));
+	pound_rows_noise(&rows, 0, e);
+	for (int p = 0; p < SAMPLES; p++)
+		for (int q = 0; q < SAMPLES; q++)
+			check_near(e[p * SAMPLES + q], p == q ? variance[p] : 0.0, 0.0);
 	free(rows.y);
 }
 
@@ -105,5 +131,6 @@ static void equal_outputs_are_exact_zeros_about_their_mean(void **state)
 CHECK_MAIN(cmocka_unit_test(outputs_are_ratios_of_means_less_the_mean_of_a_and_b),
            cmocka_unit_test(the_variance_of_a_ratio_of_means_is_that_of_its_linearisation),
            cmocka_unit_test(one_signal_says_nothing_of_the_noise),
+           cmocka_unit_test(a_known_variance_stands_for_noise_that_samples_do_not_share),
            cmocka_unit_test(a_row_is_left_out_for_any_number_it_lacks),
            cmocka_unit_test(equal_outputs_are_exact_zeros_about_their_mean))

@@ -17,7 +17,7 @@ struct indexes {
 static struct indexes *indexes_of(const struct pound_sample_values *values, uint64_t seed)
 {
 	struct indexes *result = calloc(1, sizeof *result);
-	size_t n = pound_sobol_scratch(values->n_rows, values->n_inputs, values->n_signals);
+	size_t n = pound_sobol_scratch(values);
 	double *scratch = malloc(sizeof *scratch * n);
 	result->of.index[POUND_S1_RAW] = result->first;
 	result->of.index[POUND_ST_RAW] = result->total;
@@ -42,7 +42,11 @@ static void golden_values_come_out_of_sample_values(void **state)
 				denominator[i][p][r] = r ? 0.5 : 2.5;
 				numerator[i][p][r] = r ? 3.0 * y[i][p] + 7.0 : -7.0;
 			}
-	struct pound_sample_values values = {6, 2, 2, &numerator[0][0][0], &denominator[0][0][0], NULL, {0}};
+	struct pound_sample_values values = {.n_rows = 6,
+	                                     .n_inputs = 2,
+	                                     .n_signals = 2,
+	                                     .numerator = &numerator[0][0][0],
+	                                     .denominator = &denominator[0][0][0]};
 	struct indexes *got = indexes_of(&values, 1);
 	check_near(got->first[0].value, 0.572576783750673, 1e-12);
 	check_near(got->first[1].value, 0.755503894911683, 1e-12);
@@ -142,7 +146,8 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 			denominator[k] = 0.1 + 0.7 * (k % 17);
 			numerator[k] = failed ? NAN : 1.1 * denominator[k]; // 1.1 but for rounding
 		}
-		struct pound_sample_values values = {8, D, 3, numerator, denominator, NULL, {0}};
+		struct pound_sample_values values = {
+		    .n_rows = 8, .n_inputs = D, .n_signals = 3, .numerator = numerator, .denominator = denominator};
 		struct indexes *got = indexes_of(&values, 3);
 		assert_int_equal(got->dropped, failed ? 8 : 0);
 		for (int j = 0; j < D; j++) {

@@ -135,6 +135,9 @@ static const struct member members[] = {
      "must be a whole number below 2^53, or one below 2^64 written as text, got -1"},
     {"/design/signals", "\"signals\": \"common\"", "\"signals\": \"independent\"", "\"signals\": true",
      "/design/signals", "must be one of \"independent\", \"common\", got true"},
+    {"/design/order", "\"signals\": \"common\"", "\"signals\": \"common\", \"order\": \"factorial\"",
+     "\"signals\": \"common\", \"order\": 2", "/design/order",
+     "must be one of \"total\", \"second\", \"factorial\", got 2"},
     {"/outputs/*", "\"impulse\"]", "\"impulse\" ]", "\"impuls\"]", "/outputs/1",
      "must be one of \"force_amplification\", \"demand_amplification\", \"impulse\", got \"impuls\", did you "
      "mean "
