@@ -36,3 +36,28 @@ struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, i
 		                   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
 	return scene;
 }
+
+/* Numerators of an output in a cell; there are as many denominators, or variances of outputs computed elsewhere. */
+size_t pound_campaign_values_size(const struct pound_campaign *c, int n_rows)
+{
+	return (size_t)n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
+}
+
+/* The values of an output in the first rows of a cell, from numerators and then denominators; NULL: their shape alone.
+ *
+ * Test     unit_variants: a_study_s_result_holds_what_its_samples_give
+ */
+struct pound_sample_values pound_campaign_values(const struct pound_campaign *c, int n_rows,
+                                                 const double *columns)
+{
+	const double *second = columns ? columns + pound_campaign_values_size(c, n_rows) : NULL;
+	const bool elsewhere = c->study->elsewhere;
+	return (struct pound_sample_values){.n_rows = n_rows,
+	                                    .n_inputs = c->study->n_inputs,
+	                                    .n_signals = c->n_signals,
+	                                    .numerator = columns,
+	                                    .denominator = elsewhere ? NULL : second,
+	                                    .variance = elsewhere ? second : NULL,
+	                                    .grouping = pound_design_grouping(c->study),
+	                                    .order = c->study->design.order};
+}

@@ -7,6 +7,7 @@
 
 #include <stdatomic.h>
 
+#include "engine/indices.h"
 #include "engine/march.h"
 #include "engine/pound.h"
 
@@ -24,6 +25,10 @@ int pound_campaign_checks(const struct pound_campaign *campaign, int item); /* a
 struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample);
 struct pound_solver pound_campaign_solver(const struct pound_campaign *campaign, int row);
 double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep);
+size_t pound_campaign_values_size(const struct pound_campaign *c,
+                                  int n_rows); /* numerators of an output in a cell */
+struct pound_sample_values pound_campaign_values(const struct pound_campaign *c, int n_rows,
+                                                 const double *columns);
 
 struct pound_plan_size {
 	int asks;        /* runs asked for at most */

@@ -73,7 +73,8 @@ static size_t reduction_size(const struct pound_campaign *c)
 		return 0;
 	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
 	size_t variants = pound_variants_scratch(&shape), accuracy = pound_accuracy_scratch(&shape, checks_of(c));
-	return 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) + (variants > accuracy ? variants : accuracy);
+	return 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
+	       (variants > accuracy ? variants : accuracy);
 }
 
 /* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
