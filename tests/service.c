@@ -182,10 +182,10 @@ struct answer service_ask(const struct service *service, const struct ask *ask)
 		headers = curl_slist_append(headers, "Transfer-Encoding: chunked");
 	curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers);
 	CURLcode code = curl_easy_perform(curl);
-	if (code != CURLE_OK)
+	if (code != CURLE_OK && !ask->may_fail)
 		fail_msg("%s %s: %s", ask->method, ask->path, curl_easy_strerror(code));
 	curl_easy_getinfo(curl, CURLINFO_RESPONSE_CODE, &status);
-	answer.status = (int)status;
+	answer.status = code == CURLE_OK ? (int)status : 0;
 	curl_slist_free_all(headers);
 	curl_easy_cleanup(curl);
 	return answer;

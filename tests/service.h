@@ -52,6 +52,7 @@ struct ask {
 	const char *body;
 	size_t length;
 	bool chunked;
+	bool may_fail; /* no answer is one of status 0 */
 };
 
 struct answer service_ask(const struct service *service, const struct ask *ask);
