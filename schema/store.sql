@@ -2,7 +2,7 @@
 -- (PRAGMA user_version counts the steps, server/store.c has them).  Times are milliseconds since 1970, UTC.
 
 PRAGMA application_id = 0x706f756e; -- "poun"
-PRAGMA user_version = 2;
+PRAGMA user_version = 3;
 
 CREATE TABLE study (
 	id              INTEGER PRIMARY KEY, -- milliseconds << 20 | random bits: a newer study has a larger id
@@ -18,6 +18,7 @@ CREATE TABLE study (
 	error           TEXT,                       -- why it failed
 	idempotency_key TEXT    UNIQUE,
 	crashes         INTEGER NOT NULL DEFAULT 0, -- of the server by this study, since a block of it was kept
+	client          TEXT,                       -- name of the token it was submitted with
 	CHECK ((finished IS NULL) = (status IN ('queued', 'running'))),
 	CHECK ((error IS NULL) = (status <> 'failed'))
 ) STRICT;

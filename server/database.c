@@ -16,7 +16,7 @@ static const char schema_text[] =
 
 enum {
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
-	USER_VERSION = 2,            /* as in store.sql */
+	USER_VERSION = 3,            /* as in store.sql */
 	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
 };
 
@@ -26,6 +26,7 @@ static const char *const steps[USER_VERSION] = {
           "ALTER TABLE block ADD COLUMN wall_s REAL NOT NULL DEFAULT 0;"
           "CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);"
           "UPDATE document SET sha256 = document_sha256(study, name, content, sha256)",
+    [2] = "ALTER TABLE study ADD COLUMN client TEXT",
 };
 
 static bool done(const struct database *d, const char *sql)

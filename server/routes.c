@@ -216,23 +216,44 @@ static struct reply invalid(const struct problems *problems)
 	return no_memory();
 }
 
+/* Whether the queue has room for one more study of a client; the reply when it has not. */
+static bool roomy(const struct request *request, struct reply *reply)
+{
+	struct store *store = request->server->store;
+	const struct options *options = request->server->options;
+	int64_t all, own = 0;
+	if (store_count(store, "queued", NULL, &all) == STORE_FAILED ||
+	    (request->token && store_count(store, "queued", request->token, &own) == STORE_FAILED))
+		*reply = unavailable();
+	else if (all >= options->queue_max)
+		*reply = problem(API_UNAVAILABLE, "as many studies are queued as this server takes");
+	else if (own >= options->queue_token_max)
+		*reply = problem(API_TOO_MANY, "as many studies are queued as this server takes from one token");
+	else
+		return true;
+	return false;
+}
+
 static struct reply queue(struct request *request, const struct pound_study *study)
 {
 	struct server *server = request->server;
+	const char *key = http_header(request, "Idempotency-Key");
+	char hash[STUDY_HASH_SIZE], own_key[KEY_MAX + 32];
+	// two clients may choose the same key
+	snprintf(own_key, sizeof own_key, "%s %s", request->token ? request->token : "", key ? key : "");
 	struct store_study row = {.kind = study_kind_name(study->kind),
 	                          .name = study->name,
 	                          .runs = study_runs(study),
-	                          .key = http_header(request, "Idempotency-Key")};
-	char hash[STUDY_HASH_SIZE];
-	int64_t queued = 0, id;
-	if (row.key && (!*row.key || strlen(row.key) > KEY_MAX))
+	                          .key = key ? own_key : NULL,
+	                          .client = request->token};
+	int64_t id;
+	struct reply reply;
+	if (key && (!*key || strlen(key) > KEY_MAX))
 		return problem(API_BAD_REQUEST, "an Idempotency-Key has 1 to 200 characters");
 	if (!study_hash(study, hash))
 		return no_memory();
-	if (store_count(server->store, "queued", &queued) == STORE_FAILED)
-		return unavailable();
-	if (queued >= server->options->queue_max)
-		return problem(API_UNAVAILABLE, "as many studies are queued as this server takes");
+	if (!roomy(request, &reply))
+		return reply;
 	enum store_status submitted =
 	    store_submit(server->store, &row, hash, request->body, request->length, &id);
 	if (submitted == STORE_CLASH)
@@ -243,7 +264,7 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 		return unavailable();
 	struct page page;
 	request->id = id;
-	struct reply reply = look(request, &page);
+	reply = look(request, &page);
 	work_wake(server->work);
 	reply.status = reply.status == 200 ? 201 : reply.status;
 	snprintf(reply.location, sizeof reply.location, "/v1/studies/%016" PRIx64, (uint64_t)id);
@@ -484,7 +505,7 @@ static struct reply metrics(struct request *request)
 	struct timespec cpu;
 	for (int i = 0; i < STATES; i++) {
 		int64_t n;
-		if (store_count(server->store, states[i], &n) == STORE_FAILED)
+		if (store_count(server->store, states[i], NULL, &n) == STORE_FAILED)
 			return unavailable();
 		snprintf(labels[i], sizeof labels[i], "status=\"%s\"", states[i]);
 		values[i] = (struct metrics_value){"pound_studies", "gauge", labels[i],

@@ -48,14 +48,14 @@ enum {
 	X(DOCUMENT, "SELECT sha256, content FROM document WHERE study = ?1 AND name = ?2")                    \
 	X(BLOCKS,   "SELECT sha256, content, number, runs, cpu_s, wall_s FROM block WHERE study = ?1 "        \
 	            "ORDER BY number")                                                                        \
-	X(COUNT,    "SELECT count(*) FROM study WHERE status = ?1")                                           \
+	X(COUNT,    "SELECT count(*) FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2)")           \
 	X(BEGIN,    "BEGIN IMMEDIATE")                                                                        \
 	X(COMMIT,   "COMMIT")                                                                                 \
 	X(ROLLBACK, "ROLLBACK")                                                                               \
 	X(KEYED,    "SELECT id, content = ?2 FROM study JOIN document ON study = id AND document.name = 'request' " \
 	            "WHERE idempotency_key = ?1")                                                             \
-	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key) "       \
-	            "VALUES (?1, 'queued', ?2, ?3, ?4, ?5, ?6, ?7)")                                          \
+	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key, client) " \
+	            "VALUES (?1, 'queued', ?2, ?3, ?4, ?5, ?6, ?7, ?8)")                                          \
 	X(ADD,      "INSERT INTO document (study, name, content, sha256) VALUES (?1, ?2, ?3, ?4)")            \
 	X(CANCEL,   "UPDATE study SET status = 'cancelled', finished = max(?2, created) "                     \
 	            "WHERE id = ?1 AND status IN ('queued', 'running')")                                      \
@@ -341,8 +341,8 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 		*id = id_next(store, now);
 		status = change(c, BEGIN, "");
 		if (status != STORE_FAILED)
-			status = change(c, SUBMIT, "iittitt", *id, now, study->kind, study->name, study->runs, hash,
-			                study->key);
+			status = change(c, SUBMIT, "iittittt", *id, now, study->kind, study->name, study->runs, hash,
+			                study->key, study->client);
 		if (status == STORE_OK)
 			status = add(c, *id, "request", request, length);
 		status = conclude(c, status);
@@ -425,10 +425,10 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 }
 
 /* Counts the studies of a status. */
-enum store_status store_count(struct store *store, const char *status, int64_t *n)
+enum store_status store_count(struct store *store, const char *status, const char *client, int64_t *n)
 {
 	struct database *c = reader(store);
-	sqlite3_stmt *row = query(c, COUNT, "t", status);
+	sqlite3_stmt *row = query(c, COUNT, "tt", status, client);
 	if (sqlite3_step(row) == SQLITE_ROW)
 		*n = sqlite3_column_int64(row, 0);
 	return released(c, ended(c, row, 1));
@@ -441,7 +441,7 @@ enum store_status store_count(struct store *store, const char *status, int64_t *
 enum store_status store_ready(struct store *store)
 {
 	int64_t n;
-	enum store_status status = store_count(store, "queued", &n);
+	enum store_status status = store_count(store, "queued", NULL, &n);
 	return status == STORE_OK && !disk_roomy(&store->disk) ? STORE_FULL : status;
 }
 

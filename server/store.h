@@ -27,8 +27,10 @@ struct store_study {
 	const char *created, *started, *finished; /* RFC 3339 UTC, NULL: not yet */
 	const char *error;                        /* NULL unless failed */
 	int64_t runs, runs_done;
-	double cpu_s;    /* of the blocks done [s] */
-	const char *key; /* Idempotency-Key it was submitted with, NULL: none; only store_submit reads it */
+	double cpu_s; /* of the blocks done [s] */
+	// only store_submit reads these
+	const char *key;    /* Idempotency-Key it was submitted with, NULL: none */
+	const char *client; /* name of the token it was submitted with, NULL: there are none */
 };
 typedef void store_study_reader(void *to, const struct store_study *study);
 
@@ -46,7 +48,8 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
                              store_study_reader *reader, void *to);
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length); /* on the heap, for the caller to free */
-enum store_status store_count(struct store *store, const char *status, int64_t *n); /* studies of a status */
+/* studies of a status, of one client (NULL: any) */
+enum store_status store_count(struct store *store, const char *status, const char *client, int64_t *n);
 /* grows with every change of a study; studies may share one */
 unsigned store_changes(struct store *store, int64_t id);
 enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */

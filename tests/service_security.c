@@ -149,8 +149,58 @@ static void a_name_that_was_given_is_a_host(void **state)
 	service_free(service);
 }
 
+static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
+{
+	static const char other[] = "another-token-of-another-client-0123456789";
+	char path[128], tokens[2][128];
+	const char *study = NULL;
+	char *large = service_study(SERVICE_ROWS, 5, 1), *small = service_study(2, 1, 1), locations[2][64];
+	(void)state;
+	struct service *service = service_new();
+	token_file(service, path);
+	FILE *file = fopen(path, "a");
+	fprintf(file, "%s\n", other);
+	fclose(file);
+	setenv("POUNDD_TOKEN_FILE", path, 1);
+	setenv("POUNDD_QUEUE_TOKEN_MAX", "2", 1);
+	service_start(service, 1);
+	unsetenv("POUNDD_TOKEN_FILE");
+	unsetenv("POUNDD_QUEUE_TOKEN_MAX");
+	snprintf(tokens[0], sizeof tokens[0], "Authorization: Bearer %s", TOKEN);
+	snprintf(tokens[1], sizeof tokens[1], "Authorization: Bearer %s", other);
+	// the first is claimed, two are queued, the third is too many; the other client has its own two
+	static const struct {
+		int token, status;
+	} posts[] = {{0, 201}, {0, 201}, {0, 201}, {0, 429}, {1, 201}, {1, 201}, {1, 429}};
+	for (size_t i = 0; i < sizeof posts / sizeof posts[0]; i++) {
+		study = i == 0 ? large : small;
+		struct answer answer = service_ask(
+		    service, &(struct ask){.method = "POST",
+		                           .path = "/v1/studies",
+		                           .headers = {"Content-Type: application/json", tokens[posts[i].token],
+		                                       i == 1 || i == 4 ? "Idempotency-Key: one" : NULL},
+		                           .body = study,
+		                           .length = strlen(study)});
+		if (answer.status != posts[i].status)
+			fail_msg("post %zu: %d %s", i, answer.status, answer.body);
+		assert_true(answer.status == 201 || atoi(answer.retry_after) >= 1);
+		if (i == 1 || i == 4)
+			strcpy(locations[i == 4], answer.location);
+		// until it is claimed
+		while (i == 0 && service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'") > 0)
+			usleep(1000);
+		answer_free(&answer);
+	}
+	assert_string_not_equal(locations[0], locations[1]);
+	unlink(path);
+	service_free(service);
+	free(small);
+	free(large);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(cmocka_unit_test(without_a_right_token_everything_but_the_probes_is_401),
            cmocka_unit_test(an_address_that_is_not_loopback_needs_tokens_or_insecure),
+           cmocka_unit_test(a_token_has_a_share_of_the_queue_and_keys_of_its_own),
            SERVED(a_page_of_the_web_cannot_use_the_server), cmocka_unit_test(a_name_that_was_given_is_a_host))
