@@ -29,7 +29,7 @@ enum {
 // where a polynomial is the function itself, error and interval are both of rounding's size
 static const double ROUNDING = 1e-12;
 
-static const int sizes[SIZES] = {250, 1000, 4000};
+static const int sizes[SIZES] = {250, 1000, 4000}; /* rows, of nets the nearest power of two */
 
 // what is compared: columns of a result, then the packages
 enum { BEST, PLAIN, PACKAGES, ESTIMATORS = PACKAGES + 2 };
@@ -157,6 +157,14 @@ static void work_all(struct campaign *campaign)
 
 /* ---- tables ---- */
 
+static int rows_of(int design, int size)
+{
+	int rows = 1;
+	while (4 * rows < 3 * size)
+		rows *= 2;
+	return strcmp(pound_design_name(design), "sobol") ? size : rows;
+}
+
 static double mean_of(const double *value, int n)
 {
 	double sum = 0.0;
@@ -192,7 +200,7 @@ static void row_of_errors(const struct campaign *c, int design, int size)
 		ratio += ratio_of(cell);
 		worst = fmax(worst, ratio_of(cell));
 	}
-	printf("| %s | %d |", pound_design_name(design), sizes[size]);
+	printf("| %s | %d |", pound_design_name(design), rows_of(design, sizes[size]));
 	for (int total = 0; total < 2; total++)
 		for (int e = 0; e < ESTIMATORS; e++)
 			printf(" %.1f |", 1e3 * error[total][e] / n);
@@ -231,7 +239,7 @@ static void head_of_sizes(const char *first)
 	printf("\n| %s |", first);
 	for (int design = 0; pound_design_name(design); design++)
 		for (int size = 0; size < SIZES; size++)
-			printf(" %s %d |", pound_design_name(design), sizes[size]);
+			printf(" %s %d |", pound_design_name(design), rows_of(design, sizes[size]));
 	printf("\n| --- |");
 	for (int design = 0; pound_design_name(design); design++)
 		for (int size = 0; size < SIZES; size++)
@@ -291,8 +299,8 @@ static void cells_fill(struct campaign *c, const struct function *f, const char 
 	for (; f->name; f++)
 		for (int design = 0; pound_design_name(design) && strstr(f->name, names); design++)
 			for (int size = SIZES - 1; size >= 0; size--)
-				c->cells[c->n_cells++] =
-				    (struct cell){.function = f, .design = design, .size = size, .rows = sizes[size]};
+				c->cells[c->n_cells++] = (struct cell){
+				    .function = f, .design = design, .size = size, .rows = rows_of(design, sizes[size])};
 }
 
 int main(int argc, char **argv)
