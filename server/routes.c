@@ -138,10 +138,10 @@ static void page_init(struct page *page, const struct request *request, int room
 	writer_init(&page->writer);
 }
 
+/* What was written so far is not wanted; it may be half an object. */
 static void page_drop(struct page *page)
 {
-	size_t length;
-	free(writer_take(&page->writer, &length));
+	free(page->writer.text);
 }
 
 /* The status object of the request's study, and what is known of it besides. */
