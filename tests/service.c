@@ -75,7 +75,15 @@ static pid_t spawn(const struct service *service, int n_workers, int out)
 	return pid;
 }
 
-void service_start(struct service *service, int n_workers)
+static int exit_status(pid_t pid)
+{
+	int status;
+	while (waitpid(pid, &status, 0) < 0)
+		assert_int_equal(errno, EINTR);
+	return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+int service_try(struct service *service, int n_workers)
 {
 	int out[2];
 	assert_int_equal(service->pid, 0);
@@ -85,18 +93,20 @@ void service_start(struct service *service, int n_workers)
 	FILE *lines = fdopen(out[0], "r");
 	assert_non_null(lines);
 	service->port = 0;
-	int matched = fscanf(lines, "listening on http://127.0.0.1:%d", &service->port);
+	int matched = fscanf(lines, "listening on http://127.0.0.1:%d", &service->port), status = 0;
 	fclose(lines);
-	if (matched != 1)
-		fail_msg("poundd does not listen; see %s", service->log);
+	if (matched != 1) {
+		status = exit_status(service->pid);
+		service->pid = 0;
+		assert_int_not_equal(status, 0);
+	}
+	return status;
 }
 
-static int exit_status(pid_t pid)
+void service_start(struct service *service, int n_workers)
 {
-	int status;
-	while (waitpid(pid, &status, 0) < 0)
-		assert_int_equal(errno, EINTR);
-	return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+	if (service_try(service, n_workers) != 0)
+		fail_msg("poundd does not listen; see %s", service->log);
 }
 
 int service_run(const struct service *service, int n_workers)

@@ -34,6 +34,7 @@ struct service *service_new(void); /* a directory, no server yet */
 struct service *service_with(const char *const settings[][2], int n_workers);
 void service_free(struct service *service);                 /* kills what runs, removes the directory */
 void service_start(struct service *service, int n_workers); /* returns when it listens */
+int service_try(struct service *service, int n_workers);    /* 0: it listens; else how it ended */
 int service_run(const struct service *service,
                 int n_workers);             /* another one: its exit status, when it ends */
 void service_stop(struct service *service); /* SIGTERM; it must exit with 0 */

@@ -1,0 +1,337 @@
+/* A disk that fails now and then, memory that is not there, and a process that dies in the middle of a migration.
+ *
+ * Each failure is put at the n-th call of its kind, n = 1, 2, 3, ... (tests/preload.c), so that every place is met. */
+#include <limits.h>
+#include <nettle/sha2.h>
+#include <sqlite3.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "schema/reading.h"
+#include "tests/faults.h"
+#include "tests/program.h"
+#include "tests/service.h"
+
+enum { IDS_MAX = 2000 };
+
+/* Studies a client was told are stored. */
+struct accepted {
+	char ids[IDS_MAX][17];
+	int n, refused;
+};
+
+/* Posts a small study, which is accepted or refused with 500 or 503. */
+static void post(const struct service *service, int seed, struct accepted *accepted)
+{
+	char *study = service_study(2, 1, seed);
+	struct answer answer = service_post(service, study);
+	if (answer.status == 201)
+		strcpy(accepted->ids[accepted->n++], answer.location + strlen("/v1/studies/"));
+	else {
+		assert_true(answer.status == 503 || answer.status == 500);
+		assert_true(answer.status == 500 || atoi(answer.retry_after) >= 1);
+		accepted->refused++;
+	}
+	free(study);
+	answer_free(&answer);
+}
+
+/* All that was accepted finishes, without a restart, and a new study too. */
+static void recover(const struct service *service, struct accepted *accepted)
+{
+	int n = accepted->n;
+	post(service, 0, accepted);
+	assert_int_equal(accepted->n, n + 1);
+	for (int i = 0; i < accepted->n; i++)
+		assert_true(service_wait(service, accepted->ids[i], "succeeded", 0));
+}
+
+static void a_disk_that_fails_by_chance_loses_nothing_and_the_server_recovers_by_itself(void **state)
+{
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	struct accepted *accepted = calloc(1, sizeof *accepted);
+	int n = check_count(100, 1000);
+	(void)state;
+	service_start(service, 2);
+	faults->write_fails = 10;
+	faults->sync_fails = 50;
+	for (int i = 0; i < n; i++)
+		post(service, i, accepted);
+	long failed = faults->disk_failed;
+	faults->write_fails = faults->sync_fails = 0;
+	print_message("1 %% of writes and 5 %% of syncs fail: %ld of %ld calls; studies accepted %d, refused %d",
+	              failed, (long)faults->disk_calls, accepted->n, accepted->refused);
+	recover(service, accepted);
+	print_message(", lost 0\n");
+	assert_true(failed > n / 20 && accepted->refused > 0 && accepted->n > n / 2);
+	service_stop(service);
+	faults_free(faults);
+	service_free(service);
+	free(accepted);
+}
+
+static void every_call_on_the_disk_may_fail(void **state)
+{
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	struct accepted *accepted = calloc(1, sizeof *accepted);
+	int n = check_count(60, 500), refused_starts = 0;
+	(void)state;
+	// the first start makes the database, the second finds it
+	for (int at = 1; at <= n; at++) {
+		faults->disk_fails_in = at;
+		int status = service_try(service, 1);
+		faults->disk_fails_in = 0;
+		assert_true(status == 0 || status == 1);
+		refused_starts += status == 1;
+		if (status == 0)
+			service_stop(service);
+	}
+	service_start(service, 1);
+	long before = faults->disk_failed;
+	for (int at = 1; at <= n; at++) {
+		faults->disk_fails_in = at;
+		while (faults->disk_fails_in > 0)
+			post(service, at, accepted);
+	}
+	print_message(
+	    "the n-th call on the disk fails, n = 1 ... %d: starts refused %d; in service %ld failures, "
+	    "studies accepted %d, refused %d",
+	    n, refused_starts, faults->disk_failed - before, accepted->n, accepted->refused);
+	recover(service, accepted);
+	print_message(", lost 0\n");
+	service_stop(service);
+	faults_free(faults);
+	service_free(service);
+	free(accepted);
+}
+
+/* What a client asks while memory fails. */
+struct question {
+	const char *name, *method, *rest;
+};
+
+/* Asks with the n-th allocation failing for n = 1, 2, ... until none does; how many failed. */
+static int starve(const struct service *service, struct faults *faults, const struct question *question,
+                  const char *id, int step)
+{
+	int unanswered = 0, refused = 0, failed = 0;
+	char path[128], *study = service_study(2, 1, 1);
+	snprintf(path, sizeof path, question->rest, id);
+	for (int at = 1, spared = 0; spared < 3; at += step) {
+		long before = faults->memory_failed;
+		faults->memory_fails_in = at;
+		bool posts = !strcmp(question->method, "POST");
+		struct answer answer =
+		    service_ask(service, &(struct ask){.method = question->method,
+		                                       .path = path,
+		                                       .headers = {"Content-Type: application/json"},
+		                                       .body = posts ? study : NULL,
+		                                       .length = posts ? strlen(study) : 0,
+		                                       .may_fail = true});
+		faults->memory_fails_in = 0;
+		unanswered += answer.status == 0;
+		refused += answer.status >= 500;
+		failed += faults->memory_failed > before;
+		spared = faults->memory_failed > before ? 0 : spared + 1;
+		if (answer.status != 0 && answer.status != 500 && answer.status != 503)
+			assert_true(answer.status == 200 || answer.status == 201);
+		answer_free(&answer);
+	}
+	print_message(
+	    "the n-th allocation fails: %-10s %4d failures, %3d answered 500 or 503, %3d not answered\n",
+	    question->name, failed, refused, unanswered);
+	free(study);
+	return failed;
+}
+
+static void every_allocation_of_a_request_may_fail(void **state)
+{
+	static const struct question questions[] = {
+	    {"submit", "POST", "/v1/studies"},
+	    {"status", "GET", "/v1/studies/%s"},
+	    {"list", "GET", "/v1/studies"},
+	    {"request", "GET", "/v1/studies/%s/request"},
+	    {"results", "GET", "/v1/studies/%s/results"},
+	    {"table", "GET", "/v1/studies/%s/results?format=csv"},
+	    {"samples", "GET", "/v1/studies/%s/samples"},
+	    {"metrics", "GET", "/metrics"},
+	};
+	enum { QUESTIONS = sizeof questions / sizeof questions[0] };
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	char *study = service_study(20, 1, 1), id[17];
+	int step = check_count(3, 1);
+	(void)state;
+	service_start(service, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct answer before = service_get(service, "/v1/studies/%s/results", id);
+	int failed = starve(service, faults, &questions[0], id, step);
+	// what was accepted meanwhile finishes
+	struct accepted *accepted = calloc(1, sizeof *accepted);
+	recover(service, accepted);
+	while (service_number(service, "SELECT count(*) FROM study WHERE finished IS NULL"))
+		usleep(5000);
+	// SQLite's caches may grow in any round; a leak grows in each
+	long left = LONG_MAX;
+	for (int round = 0; round < 3; round++) {
+		long live = faults->memory_live;
+		for (int q = 1; q < QUESTIONS; q++)
+			failed += starve(service, faults, &questions[q], id, step * (1 + 2 * round));
+		long grown = faults->memory_live - live;
+		left = grown < left ? grown : left;
+	}
+	struct answer after = service_get(service, "/v1/studies/%s/results", id);
+	assert_string_equal(after.body, before.body);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'failed'"), 0);
+	char *check = service_text(service, "PRAGMA integrity_check");
+	assert_string_equal(check, "ok");
+	print_message("%d allocations failed; not given back in a round %ld\n", failed, left);
+	assert_true(failed > 200 / step);
+	assert_true(left < 5);
+	service_stop(service);
+	answer_free(&before);
+	answer_free(&after);
+	faults_free(faults);
+	service_free(service);
+	free(accepted);
+	free(check);
+	free(study);
+}
+
+static void every_allocation_of_the_start_may_fail(void **state)
+{
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	int starts = 0, refused = 0, step = check_count(29, 1);
+	(void)state;
+	service_start(service, 1);
+	service_stop(service);
+	for (int at = 1, spared = 0; spared < 3; at += step, starts++) {
+		long before = faults->memory_failed;
+		faults->memory_fails_in = at;
+		int status = service_try(service, 1);
+		faults->memory_fails_in = 0;
+		// 127: the loader had no memory for the program
+		assert_true(status == 0 || status == 1 || status == 127);
+		refused += status != 0;
+		spared = faults->memory_failed > before ? 0 : spared + 1;
+		if (status == 0)
+			service_stop(service);
+	}
+	print_message("the n-th allocation fails at %d starts: %d refused, the others serve\n", starts, refused);
+	faults_free(faults);
+	service_free(service);
+}
+
+static void put_document(sqlite3 *db, int64_t id, const char *name, const char *content)
+{
+	struct sha256_ctx hash;
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	sqlite3_stmt *add;
+	sha256_init(&hash);
+	sha256_update(&hash, strlen(name), (const uint8_t *)name);
+	sha256_update(&hash, strlen(content), (const uint8_t *)content);
+	sha256_digest(&hash, sizeof sha256, sha256);
+	assert_int_equal(sqlite3_prepare_v2(db, "INSERT INTO document VALUES (?1, ?2, ?3, ?4)", -1, &add, NULL),
+	                 SQLITE_OK);
+	sqlite3_bind_int64(add, 1, id);
+	sqlite3_bind_text(add, 2, name, -1, SQLITE_STATIC);
+	sqlite3_bind_blob(add, 3, sha256, sizeof sha256, SQLITE_STATIC);
+	sqlite3_bind_blob(add, 4, content, (int)strlen(content), SQLITE_STATIC);
+	assert_int_equal(sqlite3_step(add), SQLITE_DONE);
+	sqlite3_finalize(add);
+}
+
+enum { OLD_STUDIES = 12 };
+
+/* A database as version 1 left it: finished studies, one that runs and one that waits. */
+static void make_version_1(const struct service *service)
+{
+	static const char row[] =
+	    "INSERT INTO study (id, status, kind, hash, runs, created, started, finished, attempt) VALUES "
+	    "(%d, '%s', 'sensitivity', 'hash', 10, 1, 1, %s, 1)";
+	sqlite3 *db;
+	char *schema = program_file("tests/store_1.sql", NULL), path[128];
+	assert_non_null(schema);
+	unlink(service->database);
+	snprintf(path, sizeof path, "%s-wal", service->database);
+	unlink(path);
+	assert_int_equal(sqlite3_open(service->database, &db), SQLITE_OK);
+	assert_int_equal(sqlite3_exec(db, "PRAGMA journal_mode = WAL", NULL, NULL, NULL), SQLITE_OK);
+	assert_int_equal(sqlite3_exec(db, schema, NULL, NULL, NULL), SQLITE_OK);
+	for (int i = 1; i <= OLD_STUDIES; i++) {
+		char sql[512], *study = service_study(2, 1, i);
+		bool over = i < OLD_STUDIES - 1;
+		snprintf(sql, sizeof sql, row, i,
+		         over              ? "succeeded"
+		         : i < OLD_STUDIES ? "running"
+		                           : "queued",
+		         over ? "2" : "NULL");
+		assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+		put_document(db, i, "request", study);
+		if (over)
+			put_document(db, i, "result", "{\"a\": 1}\n");
+		free(study);
+	}
+	sqlite3_close(db);
+	free(schema);
+}
+
+static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_new(void **state)
+{
+	static const char all[] =
+	    "SELECT group_concat(hex(content)) FROM (SELECT content FROM document ORDER BY study, name)";
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	int kills = 0, old = 0;
+	(void)state;
+	make_version_1(service);
+	char *content = service_text(service, all);
+	for (int at = 1;; at++) {
+		make_version_1(service);
+		faults->disk_kills_in = at;
+		int status = service_try(service, 1);
+		faults->disk_kills_in = 0;
+		if (status == 0)
+			break;
+		assert_int_equal(status, 128 + 9);
+		kills++;
+		char *now = service_text(service, all);
+		int64_t version = service_number(service, "PRAGMA user_version");
+		bool has_column =
+		    service_number(service, "SELECT count(*) FROM pragma_table_info('block') WHERE name = 'wall_s'");
+		assert_string_equal(now, content);
+		assert_true(version == 1 || version == 2);
+		assert_int_equal(has_column, version == 2);
+		old += version == 1;
+		free(now);
+	}
+	print_message(
+	    "migration: killed at %d places, the database was of the old version after %d, of the new after %d\n",
+	    kills, old, kills - old);
+	assert_true(old > 0 && old < kills);
+	for (int i = 1; i <= OLD_STUDIES; i++) {
+		char id[17];
+		snprintf(id, sizeof id, "%016x", i);
+		assert_true(service_wait(service, id, "succeeded", 0));
+		struct answer answer = service_get(service, "/v1/studies/%s/results", id);
+		assert_int_equal(answer.status, 200);
+		answer_free(&answer);
+	}
+	service_stop(service);
+	faults_free(faults);
+	service_free(service);
+	free(content);
+}
+
+CHECK_MAIN(cmocka_unit_test(a_disk_that_fails_by_chance_loses_nothing_and_the_server_recovers_by_itself),
+           cmocka_unit_test(every_call_on_the_disk_may_fail),
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+           cmocka_unit_test(every_allocation_of_a_request_may_fail),
+           cmocka_unit_test(every_allocation_of_the_start_may_fail),
+#endif
+           cmocka_unit_test(a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_new))
