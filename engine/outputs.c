@@ -55,21 +55,58 @@ static double impulse(const struct pound_response *r, const struct pound_scene *
 	return r->impulse_max / (o->mass * (2 * 3.14159265358979323846 * o->frequency_hz));
 }
 
+/* An ordinate is filled in by ordinate.c, as it is not part of a response; it is a mean, not a ratio. */
+static double absent(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)r, (void)scene;
+	return 0;
+}
+
+static double one(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)r, (void)scene;
+	return 1;
+}
+
+static bool always(const struct pound_scene *scene)
+{
+	(void)scene;
+	return true;
+}
+
 typedef double measure(const struct pound_response *, const struct pound_scene *);
 
 static const struct output {
 	const char *name;
 	bool (*applies)(const struct pound_scene *);
 	measure *numerator, *denominator;
+	bool ordinates; /* one output for each frequency of the spectrum */
 } outputs[] = {
-    {"force_amplification", left_is_linear, displacement, displacement_free}, // the paper, Eq. (5)
-    {"demand_amplification", left_yields, demand, demand_free},               // Eq. (7)
-    {"impulse", bodies_meet, impulse, displacement_free},                     // Eq. (9)
+    {"force_amplification", left_is_linear, displacement, displacement_free, false}, // the paper, Eq. (5)
+    {"demand_amplification", left_yields, demand, demand_free, false},               // Eq. (7)
+    {"impulse", bodies_meet, impulse, displacement_free, false},                     // Eq. (9)
+    {"floor_spectrum", always, absent, one, true},
 };
 
 const char *pound_output_name(int row)
 {
 	return row >= 0 && row < (int)(sizeof outputs / sizeof outputs[0]) ? outputs[row].name : NULL;
+}
+
+bool pound_output_has_ordinates(int row)
+{
+	return outputs[row].ordinates;
+}
+
+/* The frequency of an output: how many of the study's before it have ordinates. */
+int pound_study_ordinate(const struct pound_study *study, int output)
+{
+	int k = 0;
+	if (study->elsewhere || !outputs[study->outputs[output]].ordinates)
+		return -1;
+	for (int o = 0; o < output; o++)
+		k += outputs[study->outputs[o]].ordinates;
+	return k;
 }
 
 bool pound_output_applies(int row, const struct pound_scene *scene)

@@ -66,6 +66,7 @@ struct pound_plan {
 	struct pound_march_result *results; /* (tasks) */
 	void *scratch;                      /* of the march */
 	int n_before;                       /* marches without pounding, they are the first */
+	int n_asks, n_items;                /* of the last run; n_items without those of checks */
 };
 
 /* ---- work space ---- */
@@ -537,6 +538,8 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	for (int k = pound_campaign_checks(campaign, first); k < pound_campaign_checks(campaign, first + n); k++)
 		n_asks = item_write(plan, campaign, n_asks, k * campaign->check_every, true);
 	assert(n_asks <= plan->size.asks);
+	plan->n_asks = n_asks;
+	plan->n_items = n_items;
 	motions_fill(plan);
 
 	struct pound_work of_checks = {0}; // what they leave out is not told
@@ -591,4 +594,21 @@ int pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver
 	int from = plan->n_before < plan->march_keys.n ? plan->n_before : 0, n = plan->march_keys.n - from;
 	pound_solver_run(solver, &plan->tasks[from], &plan->results[from], n, plan->scratch, stop);
 	return n;
+}
+
+int pound_plan_asks(const struct pound_plan *plan, int *n_items)
+{
+	*n_items = plan->n_items;
+	return plan->n_asks;
+}
+
+struct pound_plan_floor pound_plan_floor(const struct pound_plan *plan, int ask)
+{
+	const struct ask *a = &plan->asks[ask];
+	int march = a->march < 0 ? a->bodies[0].march : a->march;
+	return (struct pound_plan_floor){.scene = &a->scene,
+	                                 .pounding = a->march < 0 ? NULL : &plan->tasks[a->march],
+	                                 .free = &plan->tasks[a->bodies[0].march],
+	                                 .march = march,
+	                                 .exponent = plan->motions[a->motion].exponent};
 }

@@ -58,6 +58,19 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct pound_solver *solver,
                                           int item, int sample, const atomic_bool *stop, double *u);
 
+/* After pound_plan_run: its asks, of which the first n_items are those of the items and the others those of checks. */
+int pound_plan_asks(const struct pound_plan *plan, int *n_items);
+
+/* The floor of an ask; its motions are times 2^-exponent. */
+struct pound_plan_floor {
+	const struct pound_scene *scene;
+	const struct pound_march_task *pounding, *free; /* pounding NULL: the response without it is the answer */
+	int march;                                      /* number of the task that is the answer */
+	int exponent;
+};
+
+struct pound_plan_floor pound_plan_floor(const struct pound_plan *plan, int ask);
+
 /* After pound_plan_run, for taking the time: its marches with pounding once more, all its marches if there is none.
  * Returns how many. */
 int pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver, const atomic_bool *stop);

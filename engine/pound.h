@@ -15,7 +15,8 @@
 enum {
 	POUND_OSCILLATORS = 2,                        /* left, right */
 	POUND_INPUTS_MAX = 16,                        /* inputs of one sensitivity study */
-	POUND_OUTPUTS_MAX = 8,                        /* outputs of one study */
+	POUND_ORDINATES_MAX = 64,                     /* frequencies of a sensitivity study's floor spectrum */
+	POUND_OUTPUTS_MAX = 8 + POUND_ORDINATES_MAX,  /* outputs of one study, each ordinate one of its own */
 	POUND_SWEEPS_MAX = 8,                         /* swept fields of one study */
 	POUND_SOLVERS = 4,                            /* rows of the solvers */
 	POUND_SETTINGS_MAX = 16,                      /* of one solver that are compared */
@@ -191,8 +192,9 @@ struct pound_study {
 	struct pound_sweep *sweeps; /* (n_sweeps); the cells are their product, the last sweep fastest */
 	struct pound_design design;
 	int n_outputs;
-	int outputs[POUND_OUTPUTS_MAX]; /* rows of the outputs, pound_output_name */
-	char **output_names; /* elsewhere, in their place: any number of names  (n_outputs), not owned */
+	int outputs
+	    [POUND_OUTPUTS_MAX]; /* rows of the outputs, pound_output_name; floor_spectrum once a frequency */
+	char **output_names;     /* elsewhere, in their place: any number of names  (n_outputs), not owned */
 	struct pound_solver solver;
 	struct pound_convergence convergence;
 	struct pound_spectrum spectrum;
@@ -213,6 +215,8 @@ const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
 const char *pound_output_name(int row);
+bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */
+int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */
 
 /* Rows of a study's design at its look-th look at the intervals, from 0; one that does not grow has all of them always.
  * 0: max_runs does not allow the first look. */
@@ -397,6 +401,7 @@ struct pound_indices {
 	struct pound_estimate share[POUND_N_SHARES];
 	struct pound_estimate *index[POUND_N_INDEXES]; /* (n_inputs) each */
 	struct pound_set_indices sets;
+	struct pound_estimate impulse_correlation; /* of an ordinate with the largest impulse; NAN: no ordinate */
 	struct pound_accuracy accuracy;
 };
 
@@ -433,6 +438,7 @@ struct pound_cell {
 	X(free_runs,  "linear responses without pounding")                                    \
 	X(yield_runs, "nonlinear responses without pounding")                                 \
 	X(pounding_runs, "responses with pounding")                                           \
+	X(floors,     "floor histories, for spectra")                                         \
 	X(checks,     "responses again on half the sample step")
 // clang-format on
 
@@ -461,6 +467,38 @@ struct pound_look {
 	enum pound_index index;
 };
 
+/* Spectra of the left floor, one row each: X(row, name in a result).  The first ones are integrated. */
+// clang-format off
+#define POUND_SPECTRA(X)                                                                  \
+	X(POUNDING,    "pounding")    /* of its absolute acceleration */                      \
+	X(IMPACT_ONLY, "impact_only") /* of the contact force over its mass */                \
+	X(FREE,        "free")        /* without pounding */                                  \
+	X(DIRAC_LINE,  "dirac_line")  /* of one pulse of the largest impulse: Eq. (23) */     \
+	X(DIRAC_TRAIN, "dirac_train") /* of one such pulse every half period */               \
+	X(DIRAC_PEAKS, "dirac_peaks") /* its peaks: Eq. (21) */
+// clang-format on
+
+enum pound_spectrum_row {
+#define X(row, name) POUND_SPECTRUM_##row,
+	POUND_SPECTRA(X)
+#undef X
+	    POUND_N_SPECTRA,
+	POUND_N_INTEGRATED = POUND_SPECTRUM_FREE + 1
+};
+
+/* Pseudo-accelerations over the signals [m/s2], NAN: no signal has one  (n frequencies each) */
+struct pound_floor_spectrum {
+	double *mean, *p16, *p84;
+	double *error; /* largest relative difference from the same on half the sample step, of integrated rows */
+};
+
+struct pound_floor_result {
+	struct pound_floor_spectrum spectra[POUND_N_SPECTRA];
+	int signals, signals_failed, signals_checked;
+	double impulse_mean; /* mean of the largest impulses [N s] */
+	double pulses_mean;  /* mean number of pulses of the idealised train */
+};
+
 struct pound_result {
 	int rows;                 /* of the design, in this result */
 	int n_looks;              /* 0: the design does not grow */
@@ -470,6 +508,7 @@ struct pound_result {
 	int n_trials;
 	struct pound_trial
 	    *trials; /* convergence: the event solver, the second opinion, the settings  (n_trials) */
+	struct pound_floor_result floor; /* floor_spectrum */
 	struct pound_work work;
 };
 

@@ -14,6 +14,7 @@
 #include "engine/design.h"
 #include "engine/excitation.h"
 #include "engine/indices.h"
+#include "engine/ordinate.h"
 #include "engine/outputs.h"
 #include "engine/run.h"
 
@@ -45,7 +46,7 @@ static struct pound_campaign campaign_of(const struct pound_study *study)
 		c.n_cells *= study->sweeps[s].n_values;
 	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples,
 	    every = pound_layout_items(&c) / checked_min;
-	if (sampled && !study->elsewhere)
+	if ((sampled && !study->elsewhere) || study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		c.check_every = every > CHECK_EVERY ? CHECK_EVERY : every > 1 ? every : 1;
 	return c;
 }
@@ -65,6 +66,8 @@ static size_t checks_size(const struct pound_campaign *c)
  * need. */
 static size_t reduction_size(const struct pound_campaign *c)
 {
+	if (c->study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		return pound_ordinate_scratch(c->study, c->n_rows);
 	if (c->study->n_outputs == 0)
 		return 0;
 	if (c->trials)
@@ -73,8 +76,10 @@ static size_t reduction_size(const struct pound_campaign *c)
 		return 0;
 	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
 	size_t variants = pound_variants_scratch(&shape), accuracy = pound_accuracy_scratch(&shape, checks_of(c));
+	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
+	size_t most = variants > accuracy ? variants : accuracy;
 	return 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
-	       (variants > accuracy ? variants : accuracy);
+	       (most > ordinates ? most : ordinates);
 }
 
 /* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
@@ -89,13 +94,17 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_pl
 {
 	run->plans = piece(sizeof *run->plans * (size_t)(n_workers + 1)); // ends with NULL
 	run->scratch = piece(sizeof *run->scratch * (size_t)(n_workers + 1));
-	if (!run->plans || !run->scratch)
+	run->floors = piece(sizeof *run->floors * (size_t)(n_workers + 1));
+	if (!run->plans || !run->scratch || !run->floors)
 		return false;
+	size_t spectra = pound_ordinate_bytes(run->campaign.study, largest.tasks);
 	for (int w = 0; w < n_workers; w++) {
 		void *memory = piece(pound_plan_bytes(largest));
 		run->plans[w] = memory ? pound_plan_init(memory, largest) : NULL;
 		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
-		if (!run->plans[w] || !run->scratch[w])
+		memory = spectra ? piece(spectra) : NULL;
+		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;
+		if (!run->plans[w] || !run->scratch[w] || (spectra && !memory))
 			return false;
 	}
 	return true;
@@ -114,10 +123,12 @@ static bool result_create(struct pound_run *run)
 	    piece(sizeof *run->estimates * n_cells * n_outputs * POUND_N_INDEXES * (size_t)study->n_inputs);
 	run->result.n_trials = c->trials ? c->n_rows : 0;
 	run->result.trials = piece(sizeof *run->result.trials * (size_t)run->result.n_trials);
+	run->spectra = piece(sizeof *run->spectra * POUND_N_SPECTRA * 4 * (size_t)study->spectrum.n);
 	run->result.looks = piece(sizeof *run->result.looks * (size_t)pound_run_looks_most(study));
-	if (!run->result.cells || !run->responses || !run->indices || !run->estimates || !run->result.trials ||
-	    !run->result.looks)
+	if (!run->result.cells || !run->spectra || !run->responses || !run->indices || !run->estimates ||
+	    !run->result.trials || !run->result.looks)
 		return false;
+	pound_ordinate_layout(study, run->spectra, &run->result.floor);
 	for (int cell = 0; cell < c->n_cells; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
 		for (int s = 0; s < study->n_sweeps; s++)
@@ -147,8 +158,10 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	    (struct pound_layout){.campaign = &run->campaign,
 	                          .n_measures = study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
 	                                        : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
-	                                                                                : (int)MEASURES,
+	                                        : study->kind == POUND_KIND_RESPONSE    ? (int)MEASURES
+	                                                                                : 0,
 	                          .n_counts = COUNTS};
+	run->layout.n_measures += pound_ordinate_measures(study);
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
 	double *design = piece(sizeof(double) * n_design);
 	run->campaign.design = design;
@@ -182,12 +195,16 @@ void pound_run_free(struct pound_run *run)
 		free(run->plans[w]);
 	for (int w = 0; run->scratch && run->scratch[w]; w++)
 		free(run->scratch[w]);
+	for (int w = 0; run->floors && run->floors[w]; w++)
+		free(run->floors[w]);
 	void *const pieces[] = {(void *)run->campaign.design,
 	                        run->u,
 	                        run->layout.first,
 	                        run->layout.values,
 	                        run->plans,
 	                        run->scratch,
+	                        run->floors,
+	                        run->spectra,
 	                        run->result.cells,
 	                        run->result.trials,
 	                        run->result.looks,
@@ -281,6 +298,9 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
 		if (status)
 			slice->at[0] = slice->at[1] = NAN;
 	}
+	int n = pound_ordinate_measures(slice->study);
+	for (int j = 0; j < n; j++) // spectra come later
+		*slice->at++ = status ? NAN : response->impulse_max / scene->oscillators[0].mass;
 }
 
 /* CPU time of a run in the plan's last block, NAN without a clock: as many rounds as can be told from its ticks. */
@@ -329,6 +349,9 @@ enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 	if (!status && run->campaign.trials)
 		status = trial_block(run, run->plans[worker], first, n,
 		                     (struct pound_trial_run *)pound_layout_block(&run->layout, block));
+	if (!status && run->floors[worker])
+		status = pound_ordinate_block(run->floors[worker], run->campaign.study, run->plans[worker],
+		                              pound_layout_block(&run->layout, block), &run->stop, &work);
 	if (status)
 		return status;
 	const int64_t *counts = (const int64_t *)&work;
@@ -344,10 +367,10 @@ static bool has_indices(const struct pound_run *run)
 	return run->campaign.study->kind == POUND_KIND_SENSITIVITY;
 }
 
-/* One for each output of each cell; one for all trials. */
+/* One for each output of each cell; one for all trials, one for all spectra. */
 int pound_run_reductions(const struct pound_run *run)
 {
-	if (run->campaign.trials)
+	if (run->campaign.trials || run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		return 1;
 	return run->campaign.n_cells * run->campaign.study->n_outputs;
 }
@@ -417,6 +440,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	int dropped =
 	    pound_variants_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
 	pound_accuracy_estimate(&values, checks, dropped, c->study->design.seed, rest, &into->indices[output]);
+	into->indices[output].impulse_correlation = pound_ordinate_correlation(run, cell, output, rest);
 	if (output == 0) {
 		into->runs_failed = failed;
 		into->rows_dropped = dropped;
@@ -507,6 +531,8 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 		return status;
 	if (run->campaign.trials)
 		trials_reduce(run, run->scratch[worker]);
+	else if (run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		pound_ordinate_reduce(run, run->scratch[worker], &run->result.floor);
 	else if (has_indices(run))
 		indices_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
 	else
