@@ -5,6 +5,8 @@
 
 enum {
 	BLOCK_RUNS = 768,        /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
+	BLOCK_FLOORS = 96,       /* of them whose floors are followed, which takes longer */
+	BLOCK_SPECTRA = 8,       /* of them with whole spectra, which take longer still */
 	BLOCK_SAMPLES = 1 << 21, /* of its ground motions at most, unless one item has more: 16 MiB */
 };
 
@@ -12,6 +14,13 @@ enum {
 int pound_layout_items(const struct pound_campaign *campaign)
 {
 	return campaign->n_rows * campaign->n_signals;
+}
+
+static int block_runs(const struct pound_study *study)
+{
+	if (study->spectrum.n == 0)
+		return BLOCK_RUNS;
+	return study->kind == POUND_KIND_FLOOR_SPECTRUM ? BLOCK_SPECTRA : BLOCK_FLOORS;
 }
 
 static void size_add(struct pound_plan_size *block, struct pound_plan_size item, bool checked)
@@ -44,7 +53,7 @@ int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct p
 	for (int i = 0; i < n_items && !c->study->elsewhere; i++) {
 		if (i % c->n_signals == 0)
 			item = pound_plan_size(c, i / c->n_signals);
-		bool full = block.asks + item.asks > BLOCK_RUNS || block.samples + item.samples > BLOCK_SAMPLES;
+		bool full = block.asks + item.asks > block_runs(c->study) || block.samples + item.samples > BLOCK_SAMPLES;
 		bool solved = c->trials && i % c->n_signals == 0;
 		bool looked = i == look_end * c->n_signals;
 		if (looked)

@@ -16,6 +16,7 @@ enum {
 	POUND_OSCILLATORS = 2,                        /* left, right */
 	POUND_INPUTS_MAX = 16,                        /* inputs of one sensitivity study */
 	POUND_ORDINATES_MAX = 64,                     /* frequencies of a sensitivity study's floor spectrum */
+	POUND_OUTPUTS_ASKED_MAX = 8,                  /* names in the outputs of one study */
 	POUND_OUTPUTS_MAX = 8 + POUND_ORDINATES_MAX,  /* outputs of one study, each ordinate one of its own */
 	POUND_SWEEPS_MAX = 8,                         /* swept fields of one study */
 	POUND_SOLVERS = 4,                            /* rows of the solvers */

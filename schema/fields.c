@@ -13,7 +13,8 @@ const char *study_kind_name(int kind)
 {
 	static const char *const names[] = {[POUND_KIND_RESPONSE] = "response",
 	                                    [POUND_KIND_SENSITIVITY] = "sensitivity",
-	                                    [POUND_KIND_CONVERGENCE] = "convergence"};
+	                                    [POUND_KIND_CONVERGENCE] = "convergence",
+	                                    [POUND_KIND_FLOOR_SPECTRUM] = "floor_spectrum"};
 	return kind >= 0 && kind < (int)(sizeof names / sizeof names[0]) ? names[kind] : NULL;
 }
 
@@ -28,6 +29,8 @@ static const char *signals_name(int common)
 #define IN_LAW(member) offsetof(struct pound_law, member)
 #define SENSITIVITY    .kinds = " sensitivity "
 #define CONVERGENCE    .kinds = " convergence "
+#define SPECTRAL       .kinds = " floor_spectrum sensitivity "
+#define FLOORED        .kinds = " floor_spectrum "
 #define SOLVED         .kinds = " response sensitivity "
 #define FILTERED       .types = " kanai_tajimi "
 #define RANDOM         .types = " kanai_tajimi white_noise "
@@ -177,7 +180,7 @@ const struct field fields[] = {
 	 .text = "how many mixtures of A and B a row has: n_inputs + 2, 2 n_inputs + 2 or all",
 	 .choice = pound_order_name, SENSITIVITY, NOT_SCENE},
 
-	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_MAX, FIELD_CLOSED, "",
+	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
 	 .text = "what comes out; the amplifications that apply and the impulse when absent", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one output", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
@@ -192,6 +195,26 @@ const struct field fields[] = {
 	{"/solver/step_s", FIELD_REAL, AT(solver.step), 1e-4, 0, INFINITY, FIELD_OPEN, "s",
 	 .text = "longest step; a sample interval is cut into as few equal ones", .solvers = pound_solver_takes_step,
 	 SOLVED, WITH_SCENE, NOT_SCENE},
+
+	{"/spectrum", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "oscillators on the left floor; in a sensitivity study those of output floor_spectrum", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	{"/spectrum/frequencies_hz", FIELD_LIST, 0, 0, 1, STUDY_FREQUENCIES_MAX, FIELD_CLOSED, "",
+	 .text = "their frequencies, or an object: count of them from min to max, each the same multiple of the one before",
+	 SPECTRAL, WITH_SCENE, NOT_SCENE},
+	{"/spectrum/frequencies_hz/*", FIELD_REAL, AT(spectrum.min_hz), 0, 0, INFINITY, FIELD_OPEN, "Hz",
+	 .text = "one frequency", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	{"/spectrum/frequencies_hz/min", FIELD_REAL, AT(spectrum.min_hz), 0.1, 0, INFINITY, FIELD_OPEN, "Hz",
+	 .text = "lowest frequency", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	{"/spectrum/frequencies_hz/max", FIELD_REAL, AT(spectrum.max_hz), 100, 0, INFINITY, FIELD_OPEN, "Hz",
+	 .text = "highest frequency", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	{"/spectrum/frequencies_hz/count", FIELD_COUNT, AT(spectrum.n), 200, 2, STUDY_FREQUENCIES_MAX, FIELD_CLOSED, "",
+	 .text = "number of frequencies", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	{"/spectrum/damping_ratio", FIELD_REAL, AT(spectrum.damping_ratio), 0.05, 0, 1, FIELD_OPEN_MAX, "",
+	 .text = "fraction of critical damping", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	{"/spectrum/pulses", FIELD_COUNT, AT(spectrum.pulses), 0, 1, 1000000, FIELD_CLOSED, "",
+	 .text = "pulses of the idealised train; as many as there are contacts when absent", FLOORED, WITH_SCENE, NOT_SCENE},
+	{"/histories", FIELD_BOOL, AT(spectrum.histories), 0, 0, 1, FIELD_CLOSED, "",
+	 .text = "the motion of the left floor in time is wanted too, as samples", FLOORED, WITH_SCENE, NOT_SCENE},
 
 	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "what the event solver is compared with", CONVERGENCE, NOT_SCENE},
@@ -452,6 +475,7 @@ const char *fields_output_needs(int output)
 	    {"force_amplification", "a linear law of the left oscillator"},
 	    {"demand_amplification", "a nonlinear law of the left oscillator"},
 	    {"impulse", "a contact"},
+	    {"floor_spectrum", "a sensitivity study"},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
 		if (strcmp(rows[i].name, pound_output_name(output)) == 0)

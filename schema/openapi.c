@@ -154,7 +154,7 @@ static void members_of(struct writer *w, const char *pattern)
 	writer_bool(w, "additionalProperties", false);
 	object(w, "properties");
 	for (int i = 0; i < fields_count; i++)
-		if (fields_child(&fields[i], pattern))
+		if (fields_child(&fields[i], pattern) && *fields_name(&fields[i]) != '*')
 			value(w, fields_name(&fields[i]), &fields[i]);
 	if (distribution)
 		parameters(w);
@@ -188,6 +188,26 @@ static void elements(struct writer *w, const struct field *field)
 		value(w, "items", element);
 	else
 		writer_json(w, "items", "{}");
+}
+
+/* A list; one that may be a range has the members of a range too. */
+static void list(struct writer *w, const struct field *field)
+{
+	bool range = false;
+	for (int i = 0; i < fields_count; i++)
+		range |= fields_child(&fields[i], field->pattern) && *fields_name(&fields[i]) != '*';
+	if (!range) {
+		elements(w, field);
+		return;
+	}
+	writer_array(w, "oneOf", WRITER_LINES);
+	object(w, NULL);
+	elements(w, field);
+	writer_end(w);
+	object(w, NULL);
+	members_of(w, field->pattern);
+	writer_end(w);
+	writer_end(w);
 }
 
 static void absent(struct writer *w, const struct field *field)
@@ -230,7 +250,7 @@ static void value(struct writer *w, const char *name, const struct field *field)
 		writer_number(w, "minLength", field->min);
 		writer_number(w, "maxLength", field->max);
 	} else if (field->type == FIELD_LIST)
-		elements(w, field);
+		list(w, field);
 	else
 		members_of(w, field->pattern);
 	if (!strcmp(field->pattern, "/scene/contact"))

@@ -48,6 +48,10 @@ void reader_inputs(struct reader *reader, const struct field *field, const cJSON
 void reader_sweeps(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_values(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 
+/* Floor spectra: study_spectrum.c. */
+void reader_frequencies(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_ordinates(struct reader *reader, const cJSON *document);
+
 /* Settings of solvers: study_settings.c. */
 void settings_default(struct pound_study *study);
 void reader_settings(struct reader *reader, const struct field *field, const cJSON *node, char *base);

@@ -1,7 +1,7 @@
 /* result_csv.c - a result -> CSV, from its JSON: whatever members a result has become columns.
  *
  * Sensitivity: one row per cell, output and input.  Response: one row per cell and signal.  Convergence: one row per
- * setting, its time beside it. */
+ * setting, its time beside it.  Floor spectra: one row per frequency. */
 #include <stdio.h>
 #include <string.h>
 
@@ -127,6 +127,48 @@ static void put_trials(struct writer *w, const cJSON *rows, const cJSON *times)
 	}
 }
 
+/* Columns of numbers, one for each array of each spectrum, side by side. */
+struct column {
+	char name[64];
+	const cJSON *next;
+};
+
+enum { COLUMNS_MAX = 32 };
+
+static int columns_add(struct column *columns, int n, const cJSON *spectra)
+{
+	const cJSON *spectrum, *values;
+	cJSON_ArrayForEach(spectrum, spectra) cJSON_ArrayForEach(values, spectrum)
+	{
+		if (!cJSON_IsArray(values) || n == COLUMNS_MAX)
+			continue;
+		snprintf(columns[n].name, sizeof columns[n].name, "%s.%s",
+		         cJSON_GetStringValue(member(spectrum, "name")), values->string);
+		columns[n++].next = values->child;
+	}
+	return n;
+}
+
+static void put_spectra(struct writer *w, const cJSON *result)
+{
+	struct column columns[COLUMNS_MAX] = {{"frequency_hz", member(result, "frequencies_hz")->child}};
+	int n = columns_add(columns, 1, member(result, "spectra"));
+	n = columns_add(columns, n, member(member(result, "accuracy"), "spectra"));
+	for (int j = 0; j < n; j++) {
+		writer_raw(w, ",", j > 0);
+		writer_cell(w, columns[j].name);
+	}
+	writer_raw(w, "\r\n", 2);
+	while (columns[0].next) {
+		for (int j = 0; j < n; j++) {
+			writer_raw(w, ",", j > 0);
+			put_value(w, columns[j].next);
+			columns[j].next = columns[j].next->next;
+		}
+		writer_raw(w, "\r\n", 2);
+	}
+}
+
 /* A result as CSV (RFC 4180).
  *
  * Given    json      (json_length)  -  the bytes of result_to_json
@@ -148,6 +190,8 @@ char *result_to_csv(const char *json, size_t json_length, size_t *length)
 	writer_init(&w);
 	if (cJSON_IsArray(member(result, "rows")))
 		put_trials(&w, member(result, "rows"), member(member(result, "timing"), "run_cpu_s"));
+	else if (cJSON_IsArray(member(result, "spectra")))
+		put_spectra(&w, result);
 	else if (cJSON_IsArray(member(result, "signals")))
 		put_signals(&w, result, &header);
 	else if (cells && member(cells->child, "signals"))

@@ -8,6 +8,7 @@
 #include "schema/fields.h"
 #include "schema/result_accuracy.h"
 #include "schema/result_design.h"
+#include "schema/result_floor.h"
 #include "schema/study_json.h"
 #include "schema/writer.h"
 
@@ -160,6 +161,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 {
 	writer_object(w, NULL, WRITER_LINES);
 	writer_text(w, "name", study->elsewhere ? study->output_names[o] : pound_output_name(study->outputs[o]));
+	result_floor_ordinate(w, study, indices, o);
 	writer_number(w, "mean", indices->mean);
 	writer_number(w, "variance", indices->variance);
 	writer_number(w, "noise_share", indices->noise_share);
@@ -422,6 +424,8 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 		result_design(&w, study, result);
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		write_trials(&w, result);
+	else if (study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		result_floor_spectra(&w, study, result);
 	else if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps == 0)
 		write_cell(&w, study, result, 0);
 	else

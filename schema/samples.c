@@ -9,6 +9,7 @@
 #include "schema/fields.h"
 #include "schema/result_json.h"
 #include "schema/study_json.h"
+#include "schema/study_spectrum.h"
 #include "schema/writer.h"
 
 /* One line of the table. */
@@ -62,6 +63,7 @@ static void put_text(struct writer *w, const char *prefix, const char *text, con
 
 static void put_header(struct writer *w, const struct pound_study *study)
 {
+	char name[STUDY_OUTPUT_SIZE];
 	for (int s = 0; s < study->n_sweeps; s++) {
 		put_text(w, "", study->sweeps[s].path, "");
 		writer_raw(w, ",", 1);
@@ -73,9 +75,9 @@ static void put_header(struct writer *w, const struct pound_study *study)
 	}
 	for (int o = 0; o < study->n_outputs; o++) {
 		writer_raw(w, ",", 1);
-		put_text(w, "", pound_output_name(study->outputs[o]), "");
+		put_text(w, "", study_output_name(study, o, name), "");
 		writer_raw(w, ",", 1);
-		put_text(w, "", pound_output_name(study->outputs[o]), ".variance");
+		put_text(w, "", study_output_name(study, o, name), ".variance");
 	}
 	writer_raw(w, "\r\n", 2);
 }
@@ -163,7 +165,7 @@ static void put_column(struct writer *w, const char *name, const char *suffix, c
 
 static void put_dictionary(struct writer *w, const struct pound_study *study, int64_t n)
 {
-	char shape[40];
+	char shape[40], name[STUDY_OUTPUT_SIZE];
 	static const char head[] = "{'descr': [", middle[] = "], 'fortran_order': False, 'shape': ";
 	writer_raw(w, head, sizeof head - 1);
 	for (int s = 0; s < study->n_sweeps; s++)
@@ -173,8 +175,8 @@ static void put_dictionary(struct writer *w, const struct pound_study *study, in
 	for (int j = 0; j < study->n_inputs; j++)
 		put_column(w, study->inputs[j].name, "", "<f8");
 	for (int o = 0; o < study->n_outputs; o++) {
-		put_column(w, pound_output_name(study->outputs[o]), "", "<f8");
-		put_column(w, pound_output_name(study->outputs[o]), ".variance", "<f8");
+		put_column(w, study_output_name(study, o, name), "", "<f8");
+		put_column(w, study_output_name(study, o, name), ".variance", "<f8");
 	}
 	writer_raw(w, middle, sizeof middle - 1);
 	writer_raw(w, shape, (size_t)snprintf(shape, sizeof shape, "(%lld,), }", (long long)n));

@@ -9,6 +9,7 @@
 
 #include "schema/fields.h"
 #include "schema/study_json.h"
+#include "schema/study_spectrum.h"
 
 enum { POINTER_SIZE = 64 };
 
@@ -119,8 +120,9 @@ static void check_names(const struct pound_study *study, struct problems *proble
 		bool taken = name && (strcmp(name, "row") == 0 || strcmp(name, "sample") == 0);
 		for (int o = 0; name && !study->elsewhere && pound_output_name(o); o++) {
 			size_t length = strlen(pound_output_name(o));
-			taken |= strncmp(name, pound_output_name(o), length) == 0 &&
-			         (!name[length] || strcmp(name + length, ".variance") == 0);
+			taken |=
+			    strncmp(name, pound_output_name(o), length) == 0 &&
+			    (!name[length] || strcmp(name + length, ".variance") == 0 || pound_output_has_ordinates(o));
 		}
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/inputs/%d/name", j);
@@ -295,7 +297,7 @@ static double design_runs(const struct pound_study *study)
 {
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		return pound_convergence_trials(study);
-	return study->kind == POUND_KIND_RESPONSE
+	return study->kind != POUND_KIND_SENSITIVITY
 	           ? 1
 	           : (double)pound_design_rows_most(study) * pound_design_samples(study);
 }
@@ -401,6 +403,8 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	if (!faulty(problems, "/design"))
 		check_order(study, problems);
 	check_excitation(study, problems);
+	if (!faulty(problems, "/outputs") && !faulty(problems, "/spectrum"))
+		study_spectrum_check(study, problems);
 	if (!faulty(problems, "/scene") && !faulty(problems, "/design") && !faulty(problems, "/solver") &&
 	    !faulty(problems, "/convergence"))
 		check_size(study, problems);

@@ -150,6 +150,15 @@ static void write_convergence(struct canon *c)
 	}
 }
 
+static void write_spectrum(struct canon *c)
+{
+	write_object(c, "spectrum", "/spectrum", c->study);
+	writer_array(&c->w, "frequencies_hz", WRITER_LINES);
+	for (int k = 0; k < c->study->spectrum.n; k++)
+		writer_number(&c->w, NULL, pound_spectrum_frequency(&c->study->spectrum, k));
+	writer_end(&c->w);
+}
+
 /* A varied value as a document has it: a number, the name of a choice, true or false.
  *
  * Given    path      -         -       of the field
@@ -211,6 +220,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 		writer_end(&c.w);
 		write_object(&c, "solver", "/solver", study);
 	}
+	if (study->spectrum.n)
+		write_spectrum(&c);
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		write_convergence(&c);
 	writer_end(&c.w);

@@ -16,6 +16,7 @@
 #include "schema/fields.h"
 #include "schema/reader.h"
 #include "schema/study_check.h"
+#include "schema/study_spectrum.h"
 
 // rows of a quasi-random design when the document says nothing: powers of two; one that grows begins with few
 enum { ROWS_QUASI_RANDOM = 1024, ROWS_FIRST = 2 };
@@ -275,6 +276,7 @@ static const struct {
     {"/design", read_design},
     {"/sweep/*/values", reader_values},
     {"/outputs", read_outputs},
+    {"/spectrum/frequencies_hz", reader_frequencies},
     {"/convergence/newmark/steps_s", reader_settings},
     {"/convergence/central_difference/steps_s", reader_settings},
     {"/convergence/adaptive/tolerances", reader_settings},
@@ -400,6 +402,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 	if (design && cJSON_IsObject(document) && !cJSON_HasObjectItem(document, "scene"))
 		sceneless(&r);
 	reader_object(&r, "", document, (char *)study);
+	reader_ordinates(&r, document);
 	cJSON_Delete(document);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
 		problems_add(problems, "/kind", "must be \"%s\", as no other kind has a design",
@@ -409,8 +412,10 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 		study_free(study);
 		return NULL;
 	}
-	if (study->n_outputs == 0 && !study->elsewhere)
+	bool solved = study->kind == POUND_KIND_SENSITIVITY || study->kind == POUND_KIND_RESPONSE;
+	if (study->n_outputs == 0 && solved && !study->elsewhere)
 		outputs_default(study);
+	study_spectrum_lay(study);
 	return study;
 }
 

@@ -20,9 +20,11 @@ enum {
 	STUDY_CELLS_MAX = 10000,      /* combinations of sweep values */
 	STUDY_AT_ONCE_MAX =
 	    50000000, /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
-	STUDY_TRIALS_MAX = 100000, /* runs of one convergence study */
-	STUDY_STEPS_MAX = 1000000, /* of a solver in one sample interval */
-	STUDY_HASH_SIZE = 65,      /* characters of a study hash and its zero */
+	STUDY_TRIALS_MAX = 100000,     /* runs of one convergence study */
+	STUDY_FREQUENCIES_MAX = 10000, /* of one spectrum */
+	STUDY_ORDINATES_MAX = 5000000, /* frequencies of the spectra of all signals */
+	STUDY_STEPS_MAX = 1000000,     /* of a solver in one sample interval */
+	STUDY_HASH_SIZE = 65,          /* characters of a study hash and its zero */
 };
 #define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
 
@@ -32,7 +34,7 @@ struct pound_study *study_from_json(const char *text, size_t length, struct prob
 struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems);
 void study_free(struct pound_study *study);
 
-const char *study_kind_name(int kind); /* "response", "sensitivity", "convergence"; NULL past the last */
+const char *study_kind_name(int kind);            /* "response", "sensitivity", ...; NULL past the last */
 int study_cells(const struct pound_study *study); /* combinations of sweep values, 1 without a sweep */
 int64_t
 study_runs(const struct pound_study *study); /* pounding runs it asks for, before anything is shared */
