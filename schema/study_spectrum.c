@@ -58,7 +58,7 @@ void reader_frequencies(struct reader *r, const struct field *field, const cJSON
 static bool asks_for_ordinates(const struct pound_study *study)
 {
 	for (int o = 0; o < study->n_outputs; o++)
-		if (pound_output_has_ordinates(study->outputs[o]))
+		if (study->outputs[o] >= 0 && pound_output_has_ordinates(study->outputs[o]))
 			return true;
 	return false;
 }

@@ -42,6 +42,14 @@ const char documents_convergence[] = "{\"kind\": \"convergence\", \"scene\": {\"
                                      "\"central_difference\": {\"steps_s\": [0.005]},\n"
                                      "  \"adaptive\": {\"tolerances\": [1e-4]}, \"history_s\": 2}}\n";
 
+const char documents_floor[] =
+    "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+    "3.1}],\n"
+    "  \"excitation\": {\"cycles\": 5, \"signals\": 3}},\n"
+    " \"spectrum\": {\"frequencies_hz\": {\"min\": 0.5, \"max\": 50, \"count\": 9}, \"damping_ratio\": 0.02, "
+    "\"pulses\": 15},\n"
+    " \"histories\": false, \"design\": {\"seed\": 7}}\n";
+
 char *documents_with(const char *document, const char *from, const char *to)
 {
 	const char *at = strstr(document, from);

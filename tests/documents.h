@@ -11,6 +11,8 @@ extern const char documents_response[]; /* the least response: two frequencies *
 
 extern const char documents_convergence[]; /* a short convergence study, every member of it written out */
 
+extern const char documents_floor[]; /* a floor spectrum study, every member of it written out */
+
 /* A copy with the first `from` replaced, which must be there; the caller frees it. */
 char *documents_with(const char *document, const char *from, const char *to);
 

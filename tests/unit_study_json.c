@@ -16,7 +16,8 @@ struct member {
 
 static const struct member members[] = {
     {"/kind", "\"kind\": \"sensitivity\"", "\"kind\": \"sensitivity\" ", "\"kind\": \"sensitivty\"", "/kind",
-     "must be one of \"response\", \"sensitivity\", \"convergence\", got \"sensitivty\", did you mean "
+     "must be one of \"response\", \"sensitivity\", \"convergence\", \"floor_spectrum\", got \"sensitivty\", "
+     "did you mean "
      "\"sensitivity\"?"},
     {"/name", "\"a study\"", "\"\\u00fc \\\"x\\\"\"", "\"a\\u0007b\"", "/name",
      "must not hold control characters"},
@@ -139,7 +140,8 @@ static const struct member members[] = {
      "\"signals\": \"common\", \"order\": 2", "/design/order",
      "must be one of \"total\", \"second\", \"factorial\", got 2"},
     {"/outputs/*", "\"impulse\"]", "\"impulse\" ]", "\"impuls\"]", "/outputs/1",
-     "must be one of \"force_amplification\", \"demand_amplification\", \"impulse\", got \"impuls\", did you "
+     "must be one of \"force_amplification\", \"demand_amplification\", \"impulse\", \"floor_spectrum\", got "
+     "\"impuls\", did you "
      "mean "
      "\"impulse\"?"},
     {"/solver/method", "\"method\": \"event\"", "\"method\":  \"event\"", "\"method\": \"euler\"",
@@ -176,6 +178,35 @@ static const struct member trial_members[] = {
      "asks for 180000 pounding runs, a study may have at most 100000"},
 };
 
+/* And of documents_floor. */
+static const struct member floor_members[] = {
+    {"/spectrum/frequencies_hz/*", "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[5, 2.5]", "[5, 0]",
+     "/spectrum/frequencies_hz/1", "must be greater than 0, got 0"},
+    {"/spectrum/frequencies_hz/*", "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[1e-3]", "[2, 5, 2]",
+     "/spectrum/frequencies_hz/2", "is the same as frequency 0"},
+    {"/spectrum/frequencies_hz/*", "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "{}", "7",
+     "/spectrum/frequencies_hz",
+     "must be an array of frequencies, or an object of min, max and count, got 7"},
+    {"/spectrum/frequencies_hz/*", "\"min\": 0.5", "\"min\": 5", "\"*\": 5", "/spectrum/frequencies_hz",
+     "has an unknown member, \"*\""},
+    {"/spectrum/frequencies_hz/min", "\"min\": 0.5", "\"min\": 49", "\"min\": 50", "/spectrum/frequencies_hz",
+     "min must be less than max, got 50 and 50"},
+    {"/spectrum/frequencies_hz/max", "\"max\": 50", "\"max\": 1e4", "\"max\": 10001",
+     "/spectrum/frequencies_hz", "must be at most 100 over the sample step, 10000 Hz, got 10001"},
+    {"/spectrum/frequencies_hz/count", "\"count\": 9", "\"count\": 2", "\"count\": 1",
+     "/spectrum/frequencies_hz/count", "must be in [2, 10000], got 1"},
+    {"/spectrum/damping_ratio", "\"damping_ratio\": 0.02", "\"damping_ratio\": 0", "\"damping_ratio\": 1",
+     "/spectrum/damping_ratio", "must be in [0, 1), got 1"},
+    {"/spectrum/pulses", "\"pulses\": 15", "\"pulses\": 0", "\"pulses\": -1", "/spectrum/pulses",
+     "must be in [0, 1000000], got -1"},
+    {"/histories", "\"histories\": false", "\"histories\": true", "\"histories\": 1", "/histories",
+     "must be true or false, got 1"},
+    {"/spectrum", "\"seed\": 7}", "\"seed\": 8}", "\"seed\": 7}, \"outputs\": [\"impulse\"]", "/outputs",
+     "is not used by kind \"floor_spectrum\""},
+    {"/spectrum", "\"signals\": 3", "\"signals\": 1", "\"signals\": 1000000", "/scene/excitation/signals",
+     "must be in [1, 100000], got 1000000"},
+};
+
 static const struct {
 	const char *document;
 	const struct member *members;
@@ -183,6 +214,7 @@ static const struct {
 } kinds[] = {
     {documents_sensitivity, members, COUNT(members)},
     {documents_convergence, trial_members, COUNT(trial_members)},
+    {documents_floor, floor_members, COUNT(floor_members)},
 };
 
 static void a_right_value_of_every_member_is_taken(void **state)
@@ -445,8 +477,9 @@ static void what_is_missing_is_named(void **state)
 	documents_refused("{}", &problems);
 	assert_int_equal(problems.n, 2);
 	assert_string_equal(problems.list[0].pointer, "/kind");
-	assert_string_equal(problems.list[0].detail,
-	                    "is required: one of \"response\", \"sensitivity\", \"convergence\"");
+	assert_string_equal(
+	    problems.list[0].detail,
+	    "is required: one of \"response\", \"sensitivity\", \"convergence\", \"floor_spectrum\"");
 	assert_string_equal(problems.list[1].pointer, "/scene");
 	documents_problem("{\"kind\": \"response\", \"scene\": {}}", "/scene/oscillators",
 	                  "is required: an array of 2 elements");
