@@ -53,7 +53,8 @@ int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct p
 	for (int i = 0; i < n_items && !c->study->elsewhere; i++) {
 		if (i % c->n_signals == 0)
 			item = pound_plan_size(c, i / c->n_signals);
-		bool full = block.asks + item.asks > block_runs(c->study) || block.samples + item.samples > BLOCK_SAMPLES;
+		bool full =
+		    block.asks + item.asks > block_runs(c->study) || block.samples + item.samples > BLOCK_SAMPLES;
 		bool solved = c->trials && i % c->n_signals == 0;
 		bool looked = i == look_end * c->n_signals;
 		if (looked)

@@ -63,7 +63,7 @@ static void a_response_is_written_whole(void **state)
 	    "    \"yield_runs\": {\"what\": \"nonlinear responses without pounding\", \"asked\": 0, \"run\": "
 	    "0},\n"
 	    "    \"pounding_runs\": {\"what\": \"responses with pounding\", \"asked\": 1, \"run\": 1},\n"
-    "    \"floors\": {\"what\": \"floor histories, for spectra\", \"asked\": 0, \"run\": 0},\n"
+	    "    \"floors\": {\"what\": \"floor histories, for spectra\", \"asked\": 0, \"run\": 0},\n"
 	    "    \"checks\": {\"what\": \"responses again on half the sample step\", \"asked\": 0, \"run\": 0},\n"
 	    "    \"never_touching\": 0,\n    \"moving_alike\": 0,\n    \"contacts\": 14,\n    \"failures\": [],\n"
 	    "    \"left_out\": [\n"
