@@ -83,10 +83,11 @@ static void narrower(const struct sources *s, const struct pound_estimate *p, co
 
 static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 {
+	const struct pound_pick_freeze *p = &s->pick_freeze;
 	struct pound_estimate local[POUND_INPUTS_MAX];
 	// neighbours in one input say nothing where they are arranged in the others
 	if (s->sampling->quasi_random) {
-		copy(s, s->closed.first, into);
+		narrower(s, s->closed.first, s->corrected ? p->first : p->first_raw, into);
 		return;
 	}
 	pound_local_first(s->rows, s->sampling->u, s->corrected, s->scratch, local);
