@@ -131,7 +131,8 @@ bool pound_design_quasi_random(int row)
 /* Pounding runs of one row of the design. */
 int64_t pound_design_row_runs(const struct pound_study *study)
 {
-	int64_t runs = (int64_t)pound_design_samples(study) * study->scene.excitation.signals;
+	int64_t runs =
+	    (int64_t)pound_design_samples(study) * (study->elsewhere ? 1 : study->scene.excitation.signals);
 	for (int s = 0; s < study->n_sweeps; s++)
 		runs *= study->sweeps[s].n_values;
 	return runs;

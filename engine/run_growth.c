@@ -54,7 +54,7 @@ static struct pound_look widest_of(const struct pound_campaign *campaign, const 
 		for (int output = 0; output < study->n_outputs; output++) {
 			const struct pound_indices *indices = &cells[cell].indices[output];
 			bool constant = indices->notes >> POUND_NOTE_CONSTANT & 1;
-			if (!constant && pound_output_applies(study->outputs[output], &scene))
+			if (!constant && (study->elsewhere || pound_output_applies(study->outputs[output], &scene)))
 				widen(&widest, cell, output, indices, study->n_inputs);
 		}
 	}
