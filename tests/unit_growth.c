@@ -126,7 +126,7 @@ static void a_grown_design_keeps_its_rows(void **state)
 static void a_design_stops_at_the_first_look_that_finds_every_interval_narrow(void **state)
 {
 	(void)state;
-	static const double half_widths[] = {0.02, 0.02, 0.01};
+	static const double half_widths[] = {0.008, 0.008, 0.01};
 	for (int m = 0; m < 3; m++) {
 		const struct pound_study study = study_of(methods[m], 2, 3, half_widths[m], 60000);
 		struct pound_run *run = run_of(&study, "cusp");
