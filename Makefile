@@ -119,12 +119,14 @@ asan tsan:
 # rules of the house: who includes what, what the engine may call, layout, sizes
 lint: $(B)/libpound.a
 	@tests/lint $(B)
-# FUZZ seconds for each target of tests/fuzz_*.c, starting from the examples; what breaks is left in build/fuzz
+# FUZZ seconds for each target of tests/fuzz_*.c, starting from its corpus and the examples; what breaks is left in
+# build/fuzz, what is new in build/fuzz/*.corpus (`-merge=1 tests/corpus/NAME` keeps the part that adds something)
 FUZZ  ?= 60
 fuzz: $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
 	@for target in $^; do mkdir -p $$target.corpus && \
-	  $$target -max_total_time=$(FUZZ) -max_len=8192 -artifact_prefix=$$target- $$target.corpus schema/examples || exit 1; done
-build/fuzz/%: tests/%.c $(wildcard schema/*.c) $(B)/schema/examples.c $(B)/libpound.a
+	  $$target -max_total_time=$(FUZZ) -max_len=8192 -artifact_prefix=$$target- $$target.corpus \
+	    tests/corpus/$${target##*/fuzz_} schema/examples || exit 1; done
+build/fuzz/%: tests/%.c $(wildcard schema/*.c) server/head.c $(B)/schema/examples.c $(B)/libpound.a
 	@mkdir -p $(@D)
 	clang -std=c17 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all $(CPPFLAGS) -o $@ $^ \
 	  $(LIBS.schema) $(LIBS.engine)
