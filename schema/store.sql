@@ -1,5 +1,5 @@
 -- The database of poundd.  All of it is made in one transaction; a later version changes it step by step
--- (PRAGMA user_version counts the steps, server/store.c has them).  Times are milliseconds since 1970, UTC.
+-- (PRAGMA user_version counts the steps, server/database.c has them).  Times are milliseconds since 1970, UTC.
 
 PRAGMA application_id = 0x706f756e; -- "poun"
 PRAGMA user_version = 3;
@@ -23,7 +23,7 @@ CREATE TABLE study (
 	CHECK ((error IS NULL) = (status <> 'failed'))
 ) STRICT;
 
-CREATE INDEX study_status ON study (status, id);
+CREATE INDEX study_status ON study (status, id, client);
 
 -- what the client sent, and what the client gets
 CREATE TABLE document (

@@ -26,7 +26,9 @@ static const char *const steps[USER_VERSION] = {
           "ALTER TABLE block ADD COLUMN wall_s REAL NOT NULL DEFAULT 0;"
           "CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);"
           "UPDATE document SET sha256 = document_sha256(study, name, content, sha256)",
-    [2] = "ALTER TABLE study ADD COLUMN client TEXT",
+    [2] = "ALTER TABLE study ADD COLUMN client TEXT;"
+          "DROP INDEX study_status;"
+          "CREATE INDEX study_status ON study (status, id, client)",
 };
 
 static bool done(const struct database *d, const char *sql)
