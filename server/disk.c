@@ -52,11 +52,14 @@ bool disk_take(struct disk *disk, const char *path)
 	return ours;
 }
 
-/* Unlocks it. */
+/* Unlocks it; the ballast goes, if this process has the lock. */
 void disk_leave(struct disk *disk)
 {
-	if (disk->lock >= 0)
-		close(disk->lock);
+	if (disk->lock < 0)
+		return;
+	if (flock(disk->lock, LOCK_EX | LOCK_NB) == 0)
+		disk_relieve(disk);
+	close(disk->lock);
 }
 
 /* Puts the entries of a file's folder on the disk, so that a new file is there after a power cut. */
@@ -115,8 +118,8 @@ bool disk_roomy(const struct disk *disk)
 	if (fstatvfs(disk->lock, &of) != 0)
 		return false;
 	int64_t size = (int64_t)of.f_blocks * (int64_t)of.f_frsize;
-	return (int64_t)of.f_bavail * (int64_t)of.f_frsize >= at_most(size / RESERVE_PART, RESERVE_MAX) &&
-	       ballasted(disk, at_most(size / BALLAST_PART, BALLAST_MAX));
+	return ballasted(disk, at_most(size / BALLAST_PART, BALLAST_MAX)) &&
+	       (int64_t)of.f_bavail * (int64_t)of.f_frsize >= at_most(size / RESERVE_PART, RESERVE_MAX);
 }
 
 /* Gives the ballast up. */
