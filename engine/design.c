@@ -5,6 +5,7 @@
  * grow.  A design that grows until its intervals are narrow does so in independent Latin hypercubes of some rows, or in
  * several scrambled nets side by side, each twice as long as before. */
 #include "engine/design.h"
+#include "engine/indices.h"
 
 #include "engine/net.h"
 #include "engine/random.h"
@@ -116,10 +117,17 @@ const char *pound_design_name(int row)
 	return row >= 0 && row < DESIGNS ? designs[row].name : NULL;
 }
 
-/* Samples of a row: of the study's order. */
+/* The order of a study's design: the one it asks for, or more if its estimator needs more. */
+int pound_design_order(const struct pound_study *study)
+{
+	const int needed = pound_estimator_row(study->design.estimator)->order;
+	return study->design.order > needed ? study->design.order : needed;
+}
+
+/* Samples of a row. */
 int pound_design_samples(const struct pound_study *study)
 {
-	return pound_order_samples(study->design.order, study->n_inputs);
+	return pound_order_samples(pound_design_order(study), study->n_inputs);
 }
 
 /* Whether rows that are near in one input are arranged in the others, not there by chance. */

@@ -28,6 +28,7 @@ struct pound_sampling {
 	bool random;        /* the excitation; of outputs computed elsewhere: their variances are known */
 	bool fresh_signals; /* each sample of a row has its own */
 	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
+	int estimator; /* row of the estimators whose indexes are wanted besides; 0: none but the plain protocol's */
 };
 
 /* What the scatter of rows is told from: their groups if they have some, else the rows themselves. */
@@ -54,12 +55,20 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 /* Covariances of a row's outputs over draws of the noise  (n_samples x n_samples) */
 void pound_rows_noise(const struct pound_rows *rows, int row, double *noise);
 
+/* One row as estimators see it. */
+struct pound_outputs {
+	int n_inputs, n_samples;
+	const double *y;     /* (n_samples) */
+	const double *noise; /* covariances to take off products  (n_samples x n_samples); NULL: none */
+};
+
 /* An estimator: what it adds up over the rows, and the indexes as a function of the means of that.
- * y: the outputs of a row's samples  (n_inputs + 2);  m: moments;  value: first then total  (2 x n_inputs) */
+ * m: moments;  value: first then total  (2 x n_inputs) */
 struct pound_estimator {
 	const char *name;
+	int order; /* of the design, at least */
 	int (*n_moments)(int n_inputs);
-	void (*moments)(const double *y, int n_inputs, double *m);
+	void (*moments)(const struct pound_outputs *row, double *m);
 	void (*indices)(const double *m, int n_inputs, double variance_floor, double *value);
 };
 
@@ -75,7 +84,7 @@ struct pound_statistic {
 
 enum {
 	POUND_RESAMPLES = 2000, /* at most */
-	POUND_MOMENTS_MAX = 5 * POUND_INPUTS_MAX + 8,
+	POUND_MOMENTS_MAX = 9 * POUND_INPUTS_MAX + 8,
 	POUND_VALUES_MAX = POUND_MOMENTS_MAX
 };
 
@@ -162,10 +171,16 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
 size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
                         double *scratch, struct pound_indices *indices); /* rows dropped */
+/* first then total  (2 x n_inputs);  scratch: (pound_sobol_estimates_scratch) */
+size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
+                                     const struct pound_estimator *estimator); /* doubles */
+void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
+                           bool corrected, uint64_t seed, int n_resamples, double *scratch,
+                           struct pound_estimate *estimates);
 bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
 
 /* All indexes, shares and notes. */
-size_t pound_variants_scratch(const struct pound_sample_values *shape); /* doubles */
+size_t pound_variants_scratch(const struct pound_sample_values *shape, int estimator); /* doubles */
 int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */
 

@@ -151,7 +151,8 @@ struct pound_design {
 	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
 	int randomisations;  /* of a quasi-random design, independent of each other; 0: as many as is best */
 	struct pound_until until;
-	int order; /* row of the orders, pound_order_name: which samples a row has */
+	int order;     /* row of the orders, pound_order_name: which samples a row has at least */
+	int estimator; /* row of the estimators, pound_estimator_name; 0: only those of every study */
 };
 
 struct pound_solver {
@@ -212,6 +213,7 @@ const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; 
 const char *pound_design_name(int row);
 bool pound_design_quasi_random(int row);
 const char *pound_order_name(int row);
+const char *pound_estimator_name(int row);
 const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
@@ -232,6 +234,7 @@ struct pound_solver pound_convergence_solver(const struct pound_study *study, in
 
 /* Samples of a row of the study's design: A, B, A with column j from B for every j, ... (engine/order.h). */
 int pound_design_samples(const struct pound_study *study);
+int pound_design_order(const struct pound_study *study);
 unsigned pound_order_mask(int n_inputs, int sample); /* bit j: column j of the sample is from B */
 
 /* What is wrong with the parameters of a distribution, in words, or NULL. */
@@ -357,6 +360,14 @@ struct pound_accuracy {
 	X(POUND_S2_EXCITATION,  "S2_excitation")                                              \
 	X(POUND_SHAPLEY,        "shapley")
 
+/* Columns of the estimator that a study names, as its formula gives them and without the noise of few signals:
+ * X(enumerator, name in a result, with %s for the estimator's). */
+#define POUND_NAMED(X)                                                                    \
+	X(POUND_NAMED_S1,           "S1_%s")                                                  \
+	X(POUND_NAMED_ST,           "ST_%s")                                                  \
+	X(POUND_NAMED_S1_CORRECTED, "S1_%s_corrected")                                        \
+	X(POUND_NAMED_ST_CORRECTED, "ST_%s_corrected")
+
 /* The excitation's randomness as an input of its own: X(enumerator, name in a result).  Of single runs the first-order
  * and the total index, and the total index, or share, that is left in the means over the study's signals. */
 #define POUND_SHARES(X)                                                                   \
@@ -392,6 +403,7 @@ struct pound_accuracy {
 enum pound_index { POUND_INDEXES(X) POUND_N_INDEXES };
 enum pound_share { POUND_SHARES(X) POUND_N_SHARES };
 enum pound_note { POUND_NOTES(X) POUND_N_NOTES };
+enum pound_named { POUND_NAMED(X) POUND_N_NAMED };
 #undef X
 
 struct pound_indices {
@@ -401,6 +413,8 @@ struct pound_indices {
 	unsigned notes;        /* bits 1 << enum pound_note */
 	struct pound_estimate share[POUND_N_SHARES];
 	struct pound_estimate *index[POUND_N_INDEXES]; /* (n_inputs) each */
+	struct pound_estimate
+	    *named[POUND_N_NAMED]; /* of the study's estimator, if it has one  (n_inputs) each */
 	struct pound_set_indices sets;
 	struct pound_estimate impulse_correlation; /* of an ordinate with the largest impulse; NAN: no ordinate */
 	struct pound_accuracy accuracy;

@@ -21,8 +21,9 @@
 enum {
 	MEASURES = sizeof(struct pound_response) / sizeof(double),
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
-	CHECK_EVERY = 100, /* items between two checked ones */
-	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
+	CHECK_EVERY = 100,                         /* items between two checked ones */
+	CHECKED_MIN = 8,                           /* runs of a cell to check at least, if it has them */
+	COLUMNS = POUND_N_INDEXES + POUND_N_NAMED, /* of indexes */
 	TRIAL_MEASURES = sizeof(struct pound_trial_run) / sizeof(double),
 };
 
@@ -75,7 +76,8 @@ static size_t reduction_size(const struct pound_campaign *c)
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
 	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
-	size_t variants = pound_variants_scratch(&shape), accuracy = pound_accuracy_scratch(&shape, checks_of(c));
+	size_t variants = pound_variants_scratch(&shape, c->study->design.estimator);
+	size_t accuracy = pound_accuracy_scratch(&shape, checks_of(c));
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
 	return 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
@@ -119,8 +121,7 @@ static bool result_create(struct pound_run *run)
 	run->result.cells = piece(sizeof *run->result.cells * n_cells);
 	run->responses = piece(sizeof *run->responses * n_cells * (size_t)c->n_signals);
 	run->indices = piece(sizeof *run->indices * n_cells * n_outputs);
-	run->estimates =
-	    piece(sizeof *run->estimates * n_cells * n_outputs * POUND_N_INDEXES * (size_t)study->n_inputs);
+	run->estimates = piece(sizeof *run->estimates * n_cells * n_outputs * COLUMNS * (size_t)study->n_inputs);
 	run->result.n_trials = c->trials ? c->n_rows : 0;
 	run->result.trials = piece(sizeof *run->result.trials * (size_t)run->result.n_trials);
 	run->spectra = piece(sizeof *run->spectra * POUND_N_SPECTRA * 4 * (size_t)study->spectrum.n);
@@ -137,9 +138,12 @@ static bool result_create(struct pound_run *run)
 		into->signals = &run->responses[cell * c->n_signals];
 		into->indices = &run->indices[cell * study->n_outputs];
 		for (int o = 0; o < study->n_outputs; o++) {
-			size_t first = ((size_t)cell * n_outputs + (size_t)o) * POUND_N_INDEXES;
-			for (size_t k = 0; k < POUND_N_INDEXES; k++)
-				into->indices[o].index[k] = &run->estimates[(first + k) * (size_t)study->n_inputs];
+			size_t first = ((size_t)cell * n_outputs + (size_t)o) * COLUMNS;
+			for (size_t k = 0; k < COLUMNS; k++) {
+				struct pound_estimate *column = &run->estimates[(first + k) * (size_t)study->n_inputs];
+				*(k < POUND_N_INDEXES ? &into->indices[o].index[k]
+				                      : &into->indices[o].named[k - POUND_N_INDEXES]) = column;
+			}
 		}
 	}
 	return true;
@@ -433,7 +437,8 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    .random =
 	        elsewhere ? any_known(values.variance, n) : pound_excitation_random(&c->study->scene.excitation),
 	    .fresh_signals = !c->study->design.common_signals,
-	    .quasi_random = pound_design_quasi_random(c->study->design.method)};
+	    .quasi_random = pound_design_quasi_random(c->study->design.method),
+	    .estimator = c->study->design.estimator};
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);
 	double *rest = scratch + 2 * n + checks_size(c);

@@ -8,13 +8,21 @@
 struct subject {
 	const struct pound_estimator *estimator;
 	const struct pound_rows *rows;
+	bool corrected;
 };
 
 static void subject_moments(const void *given, int row, double *m)
 {
 	const struct subject *s = given;
-	const int d = s->rows->n_inputs;
-	s->estimator->moments(s->rows->y + (size_t)row * s->rows->n_samples, d, m);
+	const int n_samples = s->rows->n_samples;
+	double noise[POUND_SAMPLES_MAX * POUND_SAMPLES_MAX];
+	if (s->corrected)
+		pound_rows_noise(s->rows, row, noise);
+	const struct pound_outputs outputs = {.n_inputs = s->rows->n_inputs,
+	                                      .n_samples = n_samples,
+	                                      .y = s->rows->y + (size_t)row * n_samples,
+	                                      .noise = s->corrected ? noise : NULL};
+	s->estimator->moments(&outputs, m);
 }
 
 static void subject_values(const void *given, const double *mean, double *value)
@@ -60,15 +68,35 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 	return varies;
 }
 
-static int n_moments(int n_inputs)
+size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
+                                     const struct pound_estimator *estimator)
 {
-	return pound_estimator_row(0)->n_moments(n_inputs);
+	return pound_interval_scratch(shape->n_rows, estimator->n_moments(shape->n_inputs), 2 * shape->n_inputs);
+}
+
+/* First-order and total indexes by an estimator, with 95 % intervals.
+ *
+ * Given    rows       -      outputs and their noise; of the estimator's order at least
+ *          corrected  -      for the noise of few signals
+ *          seed       -      of the resamples, n_resamples in number
+ * Returns  estimates  (2 x n_inputs)                   first, then total
+ * Memory   scratch    (pound_sobol_estimates_scratch)
+ *
+ * Test     unit_sobol: golden_values_come_out_of_sample_values
+ */
+void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
+                           bool corrected, uint64_t seed, int n_resamples, double *scratch,
+                           struct pound_estimate *estimates)
+{
+	const struct subject subject = {estimator, rows, corrected};
+	const struct pound_statistic statistic = {estimator->n_moments(rows->n_inputs), 2 * rows->n_inputs,
+	                                          subject_moments, subject_values, &subject};
+	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
 }
 
 size_t pound_sobol_scratch(const struct pound_sample_values *shape)
 {
-	return pound_rows_scratch(shape) +
-	       pound_interval_scratch(shape->n_rows, n_moments(shape->n_inputs), 2 * shape->n_inputs);
+	return pound_rows_scratch(shape) + pound_sobol_estimates_scratch(shape, pound_estimator_row(0));
 }
 
 /* First-order and total sensitivity indexes of one output, with 95 % intervals.
@@ -93,13 +121,9 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 	pound_rows_init(&rows, values, scratch);
 	for (int k = 0; k < 2 * d; k++)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
-	if (pound_sobol_summary(&rows, indices)) {
-		const struct subject subject = {pound_estimator_row(0), &rows};
-		const struct pound_statistic statistic = {n_moments(d), 2 * d, subject_moments, subject_values,
-		                                          &subject};
-		pound_interval_estimates(&statistic, &rows.scatter, rows.n_rows, seed, n_resamples,
-		                         scratch + pound_rows_scratch(values), estimates);
-	}
+	if (pound_sobol_summary(&rows, indices))
+		pound_sobol_estimates(&rows, pound_estimator_row(0), false, seed, n_resamples,
+		                      scratch + pound_rows_scratch(values), estimates);
 	for (int j = 0; j < d; j++) {
 		indices->index[POUND_S1_RAW][j] = estimates[j];
 		indices->index[POUND_ST_RAW][j] = estimates[d + j];

@@ -132,7 +132,24 @@ static void undefined(struct pound_estimate *estimates, int n)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
 }
 
-static void columns_fill(const struct sources *s, struct pound_indices *indices)
+/* The columns of the estimator that the study names, if it does. */
+static void named_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
+{
+	const struct pound_estimator *estimator = pound_estimator_row(s->sampling->estimator);
+	struct pound_estimate estimates[2 * POUND_INPUTS_MAX];
+	for (int corrected = 0; corrected < 2 && s->sampling->estimator; corrected++) {
+		struct pound_estimate *const *into = indices->named + (corrected ? POUND_NAMED_S1_CORRECTED : 0);
+		for (int k = 0; k < 2 * POUND_INPUTS_MAX; k++)
+			undefined(&estimates[k], 1);
+		if (s->corrected || !corrected)
+			pound_sobol_estimates(s->rows, estimator, corrected, seed, POUND_RESAMPLES, s->scratch,
+			                      estimates);
+		copy(s, estimates, into[POUND_NAMED_S1]);
+		copy(s, estimates + s->rows->n_inputs, into[POUND_NAMED_ST]);
+	}
+}
+
+static void columns_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
 {
 	const int d = s->rows->n_inputs;
 	for (int k = 0; k < POUND_N_INDEXES; k++) {
@@ -145,6 +162,7 @@ static void columns_fill(const struct sources *s, struct pound_indices *indices)
 		else
 			copy(s, indices->index[column->instead], into);
 	}
+	named_fill(s, seed, indices);
 	indices->share[POUND_SHARE_FIRST_ONE] = s->pick_freeze.signal_first;
 	indices->share[POUND_SHARE_TOTAL_ONE] = s->pick_freeze.signal_total_one;
 	indices->share[POUND_SHARE_TOTAL] = s->pick_freeze.signal_total;
@@ -172,9 +190,10 @@ static unsigned notes_of(const bool said[POUND_N_NOTES])
 	return notes;
 }
 
-size_t pound_variants_scratch(const struct pound_sample_values *shape)
+size_t pound_variants_scratch(const struct pound_sample_values *shape, int estimator)
 {
-	const size_t sizes[] = {pound_correction_scratch(shape), pound_local_scratch(shape),
+	const size_t sizes[] = {pound_sobol_estimates_scratch(shape, pound_estimator_row(estimator)),
+	                        pound_correction_scratch(shape), pound_local_scratch(shape),
 	                        pound_chaos_scratch(shape)};
 	size_t largest = 0;
 	for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
@@ -216,13 +235,15 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 		if (rows_enough(&s))
 			pound_chaos_indices(&rows, sampling->u, s.corrected, s.scratch, &s.closed);
 		indices->sets = s.closed.sets;
-		columns_fill(&s, indices);
+		columns_fill(&s, seed, indices);
 		if (elsewhere) // the number of replicates is not known
 			undefined(&indices->share[POUND_SHARE_TOTAL_ONE], 1);
 	} else {
 		indices->sets = (struct pound_set_indices){0};
 		for (int k = 0; k < POUND_N_INDEXES; k++)
 			undefined(indices->index[k], d);
+		for (int k = 0; k < POUND_N_NAMED && sampling->estimator; k++)
+			undefined(indices->named[k], d);
 		undefined(indices->share, POUND_N_SHARES);
 	}
 	indices->notes = notes_of((const bool[POUND_N_NOTES]){

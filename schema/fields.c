@@ -179,6 +179,9 @@ const struct field fields[] = {
 	{"/design/order", FIELD_CHOICE, AT(design.order), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "how many mixtures of A and B a row has: n_inputs + 2, 2 n_inputs + 2 or all",
 	 .choice = pound_order_name, SENSITIVITY, NOT_SCENE},
+	{"/design/estimator", FIELD_CHOICE, AT(design.estimator), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "whose indexes are wanted besides; azzini_rosati makes the order second at least",
+	 .choice = pound_estimator_name, SENSITIVITY, NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
 	 .text = "what comes out; the amplifications that apply and the impulse when absent", SOLVED, WITH_SCENE, NOT_SCENE},

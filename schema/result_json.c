@@ -88,11 +88,12 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 static const char *const index_names[] = {POUND_INDEXES(X)};
 static const char *const share_names[] = {POUND_SHARES(X)};
 static const char *const notes[] = {POUND_NOTES(X)};
+static const char *const named_forms[] = {POUND_NAMED(X)};
 #undef X
 
 static void write_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate)
 {
-	char member[32];
+	char member[64];
 	writer_number(w, name, estimate->value);
 	snprintf(member, sizeof member, "%s_low", name);
 	writer_number(w, member, estimate->low);
@@ -120,9 +121,23 @@ static void write_excitation(struct writer *w, const struct pound_indices *indic
 	writer_end(w);
 }
 
-static void write_input(struct writer *w, const struct pound_input *input,
+/* The columns of an estimator that the study names; says whether one is negative. */
+static bool write_named(struct writer *w, const char *estimator, const struct pound_indices *indices, int j)
+{
+	bool negative = false;
+	for (int k = 0; k < POUND_N_NAMED; k++) {
+		char name[64];
+		snprintf(name, sizeof name, named_forms[k], estimator);
+		write_estimate(w, name, &indices->named[k][j]);
+		negative |= indices->named[k][j].value < 0.0;
+	}
+	return negative;
+}
+
+static void write_input(struct writer *w, const struct pound_study *study,
                         const struct pound_indices *indices, int j)
 {
+	const struct pound_input *input = &study->inputs[j];
 	bool negative = false;
 	writer_object(w, NULL, WRITER_LINE);
 	writer_text(w, "name", input->name);
@@ -131,6 +146,8 @@ static void write_input(struct writer *w, const struct pound_input *input,
 		write_estimate(w, index_names[k], &indices->index[k][j]);
 		negative |= indices->index[k][j].value < 0.0;
 	}
+	if (study->design.estimator)
+		negative |= write_named(w, pound_estimator_name(study->design.estimator), indices, j);
 	if (negative)
 		writer_text(w, "note", "a value below 0 is sampling error around a small index");
 	writer_end(w);
@@ -170,7 +187,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	write_excitation(w, indices);
 	writer_array(w, "inputs", WRITER_LINES);
 	for (int j = 0; j < study->n_inputs; j++)
-		write_input(w, &study->inputs[j], indices, j);
+		write_input(w, study, indices, j);
 	writer_end(w);
 	write_sets(w, study, "second_order", "S2", indices->sets.second, indices->sets.n_second);
 	write_sets(w, study, "closed", "S_closed", indices->sets.closed, indices->sets.n_closed);

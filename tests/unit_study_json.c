@@ -136,6 +136,11 @@ static const struct member members[] = {
      "must be a whole number below 2^53, or one below 2^64 written as text, got -1"},
     {"/design/signals", "\"signals\": \"common\"", "\"signals\": \"independent\"", "\"signals\": true",
      "/design/signals", "must be one of \"independent\", \"common\", got true"},
+    {"/design/estimator", "\"signals\": \"common\"", "\"signals\": \"common\", \"estimator\": \"janon\"",
+     "\"signals\": \"common\", \"estimator\": \"jannon\"", "/design/estimator",
+     "must be one of \"saltelli_2010\", \"jansen\", \"janon\", \"martinez\", \"sobol_2007\", "
+     "\"saltelli_2002\", "
+     "\"azzini_rosati\", got \"jannon\", did you mean \"janon\"?"},
     {"/design/order", "\"signals\": \"common\"", "\"signals\": \"common\", \"order\": \"factorial\"",
      "\"signals\": \"common\", \"order\": 2", "/design/order",
      "must be one of \"total\", \"second\", \"factorial\", got 2"},

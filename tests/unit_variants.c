@@ -16,16 +16,19 @@ enum { D = FUNCTION_INPUTS, SAMPLES = D + 2, SEED = 3 };
 struct indexes {
 	struct pound_indices of;
 	struct pound_estimate estimates[POUND_N_INDEXES][POUND_INPUTS_MAX];
+	struct pound_estimate named[POUND_N_NAMED][POUND_INPUTS_MAX];
 	int dropped;
 };
 
 static struct indexes *indexes_of(const struct pound_sample_values *values, struct pound_sampling sampling)
 {
 	struct indexes *result = calloc(1, sizeof *result);
-	size_t n = pound_variants_scratch(values);
+	size_t n = pound_variants_scratch(values, sampling.estimator);
 	double *scratch = malloc(sizeof *scratch * n);
 	for (int k = 0; k < POUND_N_INDEXES; k++)
 		result->of.index[k] = result->estimates[k];
+	for (int k = 0; k < POUND_N_NAMED; k++)
+		result->of.named[k] = result->named[k];
 	result->dropped = pound_variants_indices(values, &sampling, SEED, scratch, &result->of);
 	free(scratch);
 	return result;
@@ -36,7 +39,8 @@ static struct indexes *function_indexes(const char *name, int n_rows, struct fun
 {
 	struct pound_sample_values values = function_values(function_named(name), n_rows, 7, noise);
 	double *u = function_design(n_rows, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, random, !noise.common, false});
+	struct indexes *got = indexes_of(
+	    &values, (struct pound_sampling){.u = u, .random = random, .fresh_signals = !noise.common});
 	free(u);
 	function_values_free(&values);
 	return got;
@@ -59,13 +63,13 @@ static void every_column_comes_from_its_function(void **state)
 	struct pound_sample_values values =
 	    function_values(function_named("cusp"), N, 7, (struct function_noise){5, 1.0, true});
 	double *u = function_design(N, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
+	struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 	struct pound_rows rows;
 	struct pound_pick_freeze pick_freeze;
 	struct pound_estimate local[D], first[D], total[D];
 	struct pound_closed_results closed;
 	double *held = malloc(sizeof *held * pound_rows_scratch(&values));
-	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values));
+	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
 	pound_rows_init(&rows, &values, held);
 	pound_correction_estimates(&rows, SEED, scratch, &pick_freeze);
 	pound_local_first(&rows, u, true, scratch, local);
@@ -111,7 +115,7 @@ static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
 		one[k] = 1;
 	struct pound_sample_values values = {
 	    .n_rows = 6, .n_inputs = 2, .n_signals = 1, .numerator = y, .denominator = one};
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
+	struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 	check_near(got->estimates[POUND_S1_RAW][0].value, 0.572576783750673, 1e-12);
 	check_near(got->estimates[POUND_S1_RAW][1].value, 0.755503894911683, 1e-12);
 	check_near(got->estimates[POUND_ST_RAW][0].value, 0.880662387875659, 1e-12);
@@ -183,7 +187,7 @@ static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left
 	struct pound_sample_values values = {
 	    .n_rows = N, .n_inputs = D, .n_signals = 2, .numerator = numerator, .denominator = one};
 	double *u = function_design(N, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
+	struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 	assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOISE);
 	for (int j = 0; j < D; j++) {
 		assert_true(isfinite(got->estimates[POUND_ST_RAW][j].value));
@@ -207,7 +211,7 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 		}
 		struct pound_sample_values values = {
 		    .n_rows = N, .n_inputs = D, .n_signals = 3, .numerator = numerator, .denominator = denominator};
-		struct indexes *got = indexes_of(&values, (struct pound_sampling){u, true, false, false});
+		struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 		assert_int_equal(got->of.notes, 1 << notes[k]);
 		assert_int_equal(got->dropped, N - kept[k]);
 		for (int c = 0; c < POUND_N_INDEXES; c++)
@@ -295,7 +299,7 @@ static void a_study_s_result_holds_what_its_samples_give(void **state)
 			pound_run_sample_inputs(run, i / 2, i % 2, x);
 			u[2 * i] = (x[0] - 1) / 4, u[2 * i + 1] = (x[1] - 0.1) / 0.9;
 		}
-		struct indexes *want = indexes_of(&values, (struct pound_sampling){u, random, false, false});
+		struct indexes *want = indexes_of(&values, (struct pound_sampling){.u = u, .random = random});
 		for (int c = 0; c < POUND_N_INDEXES; c++)
 			for (int j = 0; j < 2; j++)
 				assert_true(c == POUND_S2_EXCITATION || isfinite(want->estimates[c][j].value));
