@@ -1,0 +1,170 @@
+/* How the server ends: SIGTERM at rest, at work and under load, and a second one.
+ *
+ * How long it takes is printed, and in make soak judged. */
+#include <curl/curl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "schema/reading.h"
+#include "tests/service.h"
+
+enum { ROWS = SERVICE_ROWS, SIGNALS = 5, CLIENTS = 8, IDS_MAX = 4096 };
+
+static double now_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* SIGTERM, and the seconds until it has ended with 0. */
+static double stop_s(struct service *service)
+{
+	double start = now_s();
+	service_stop(service);
+	return now_s() - start;
+}
+
+static void judge(const char *what, double s, double s_max)
+{
+	print_message("SIGTERM %s: ended with 0 after %.2f s\n", what, s);
+	if (check_count(0, 1))
+		assert_true(s <= s_max);
+}
+
+static void an_idle_server_and_one_at_work_end_when_they_are_told(void **state)
+{
+	struct service *service = *state;
+	char *study = service_study(ROWS, SIGNALS, 1), id[17];
+	judge("at rest", stop_s(service), 2);
+	service_start(service, 2);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 1));
+	judge("at work", stop_s(service), 30);
+	// all of it is in the one file
+	char wal[128];
+	snprintf(wal, sizeof wal, "%s-wal", service->database);
+	assert_int_not_equal(access(wal, F_OK), 0);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'"), 1);
+	free(study);
+}
+
+static void a_second_signal_ends_it_at_once_and_nothing_is_lost(void **state)
+{
+	struct service *service = *state;
+	char *study = service_study(ROWS, SIGNALS, 1), id[17];
+	int status;
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 1));
+	kill(service->pid, SIGTERM);
+	kill(service->pid, SIGTERM);
+	assert_int_equal(waitpid(service->pid, &status, 0), service->pid);
+	service->pid = 0;
+	// it may have been quick enough to end by itself
+	assert_true((WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) ||
+	            (WIFEXITED(status) && WEXITSTATUS(status) == 0));
+	service_start(service, 2);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	free(study);
+}
+
+static struct {
+	const struct service *service;
+	pthread_mutex_t lock;
+	char ids[IDS_MAX][17];
+	int n;
+	atomic_int answered, unanswered, seed;
+} load = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+/* Submits and looks until the server has gone. */
+static void *client(void *unused)
+{
+	for (bool there = true; there;) {
+		char *study = service_study(2, 1, load.seed++);
+		struct answer answer =
+		    service_ask(load.service, &(struct ask){.method = "POST",
+		                                            .path = "/v1/studies",
+		                                            .headers = {"Content-Type: application/json"},
+		                                            .body = study,
+		                                            .length = strlen(study),
+		                                            .may_fail = true});
+		there = answer.status != 0;
+		load.answered += there;
+		load.unanswered += !there;
+		// an answer is whole, whatever it says
+		if (there) {
+			struct reading *body = answer_read(&answer);
+			assert_true(answer.status == 201 || answer.status == 503);
+			reading_close(body);
+		}
+		if (answer.status == 201) {
+			pthread_mutex_lock(&load.lock);
+			if (load.n < IDS_MAX)
+				strcpy(load.ids[load.n++], answer.location + strlen("/v1/studies/"));
+			pthread_mutex_unlock(&load.lock);
+		}
+		answer_free(&answer);
+		free(study);
+	}
+	return unused;
+}
+
+static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **state)
+{
+	struct service *service = *state;
+	int n = check_count(5, 50);
+	double longest = 0;
+	curl_global_init(CURL_GLOBAL_DEFAULT);
+	for (int k = 0; k < n; k++) {
+		pthread_t clients[CLIENTS];
+		int before = load.n;
+		load.service = service;
+		for (int i = 0; i < CLIENTS; i++)
+			assert_int_equal(pthread_create(&clients[i], NULL, client, NULL), 0);
+		while (load.n < before + CLIENTS)
+			usleep(1000);
+		double s = stop_s(service);
+		longest = s > longest ? s : longest;
+		for (int i = 0; i < CLIENTS; i++)
+			pthread_join(clients[i], NULL);
+		service_start(service, 2);
+	}
+	for (int i = 0; i < load.n; i++)
+		assert_true(service_wait(service, load.ids[i], "succeeded", 0));
+	print_message(
+	    "%d stops under %d clients: studies accepted %d, lost 0; then the port was closed for %d requests; ",
+	    n, CLIENTS, load.n, load.unanswered);
+	judge("under load, the longest", longest, 30);
+	assert_true(load.n >= n * CLIENTS);
+}
+
+static void twenty_more_servers_on_one_database_are_refused(void **state)
+{
+	enum { OTHERS = 20 };
+	struct service *service = *state;
+	pid_t others[OTHERS];
+	for (int i = 0; i < OTHERS; i++)
+		if ((others[i] = fork()) == 0)
+			_exit(service_run(service, 1));
+	for (int i = 0; i < OTHERS; i++) {
+		int status;
+		assert_int_equal(waitpid(others[i], &status, 0), others[i]);
+		assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+	}
+	char *study = service_study(2, 1, 1), id[17];
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	free(study);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(an_idle_server_and_one_at_work_end_when_they_are_told),
+           SERVED(a_second_signal_ends_it_at_once_and_nothing_is_lost),
+           SERVED(a_server_that_ends_under_load_keeps_all_that_it_accepted),
+           SERVED(twenty_more_servers_on_one_database_are_refused))
