@@ -1,6 +1,9 @@
 /* What survives: workers, kills and restarts change nothing in a result. */
 #include <string.h>
+#include <time.h>
 
+#include "schema/reading.h"
+#include "tests/program.h"
 #include "tests/service.h"
 
 /* the study of these tests: long enough to be killed half way, many blocks */
@@ -105,6 +108,28 @@ static void a_killed_study_goes_on_to_the_same_bytes_without_running_stored_bloc
 	free(after);
 }
 
+/* The time between two sessions does not count, that of all sessions does. */
+static void the_time_a_study_takes_is_that_of_all_its_sessions(void **state)
+{
+	struct service *service = service_new();
+	char id[17];
+	(void)state;
+	kill_half_way(service, id);
+	service_change(service, "UPDATE block SET wall_s = wall_s + 1000, cpu_s = cpu_s + 1000 WHERE number = "
+	                        "(SELECT min(number) FROM block)");
+	service_start(service, 2);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct answer answer = service_get(service, "/v1/studies/%s/results", id);
+	struct reading *result = answer_read(&answer);
+	double wall_s = reading_number(result, "/timing/wall_s"), cpu_s = reading_number(result, "/timing/cpu_s");
+	assert_true(wall_s > 1000 && wall_s < 1120);
+	assert_true(cpu_s > 1000 && cpu_s < 1240);
+	reading_close(result);
+	answer_free(&answer);
+	service_stop(service);
+	service_free(service);
+}
+
 static void a_damaged_block_is_run_again_to_the_same_bytes(void **state)
 {
 	struct service *service = service_new();
@@ -178,21 +203,29 @@ static void a_damaged_result_is_an_error_not_an_answer(void **state)
 	free(study);
 }
 
-static void a_second_server_on_one_database_is_refused(void **state)
+static void a_server_with_ten_thousand_queued_studies_is_soon_ready(void **state)
 {
 	struct service *service = service_new();
+	struct timespec start, end;
 	(void)state;
 	service_start(service, 1);
-	for (int i = 0; i < 3; i++)
-		assert_int_equal(service_run(service, 1), 1);
-	struct answer answer = service_get(service, "/livez");
-	assert_int_equal(answer.status, 200);
-	answer_free(&answer);
+	service_stop(service);
+	service_change(
+	    service, "INSERT INTO study (id, status, kind, hash, runs, created, attempt) WITH RECURSIVE n(i) AS "
+	             "(VALUES (1) UNION ALL SELECT i + 1 FROM n WHERE i < 10000) "
+	             "SELECT i, iif(i % 100, 'queued', 'running'), 'sensitivity', 'hash', 10, 1, i % 5 FROM n");
+	clock_gettime(CLOCK_MONOTONIC, &start);
+	service_start(service, 1);
+	clock_gettime(CLOCK_MONOTONIC, &end);
+	print_message("start with 10,000 studies in the queue: %.2f s\n",
+	              (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec));
+	// without their documents they fail, but not all of them are looked at when it listens
+	assert_true(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'") > 0);
 	service_stop(service);
 	service_free(service);
 }
 
-static void a_newer_or_foreign_database_is_refused(void **state)
+static void a_newer_or_foreign_database_is_refused_and_left_as_it_is(void **state)
 {
 	static const char *const changes[] = {"PRAGMA user_version = 99", "PRAGMA application_id = 1"};
 	(void)state;
@@ -201,7 +234,14 @@ static void a_newer_or_foreign_database_is_refused(void **state)
 		service_start(service, 1);
 		service_stop(service);
 		service_change(service, changes[i]);
+		size_t n, n_after;
+		char *before = program_file(service->database, &n);
 		assert_int_equal(service_run(service, 1), 1);
+		char *after = program_file(service->database, &n_after);
+		assert_int_equal(n_after, n);
+		assert_memory_equal(after, before, n);
+		free(before);
+		free(after);
 		service_free(service);
 	}
 }
@@ -210,7 +250,8 @@ CHECK_MAIN(cmocka_unit_test(results_are_the_same_bytes_for_one_two_and_four_work
            cmocka_unit_test(a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again),
            cmocka_unit_test(a_stopped_server_takes_its_studies_up_again),
            cmocka_unit_test(accepted_studies_survive_sigkill),
+           cmocka_unit_test(the_time_a_study_takes_is_that_of_all_its_sessions),
            cmocka_unit_test(a_damaged_block_is_run_again_to_the_same_bytes),
            cmocka_unit_test(a_damaged_result_is_an_error_not_an_answer),
-           cmocka_unit_test(a_second_server_on_one_database_is_refused),
-           cmocka_unit_test(a_newer_or_foreign_database_is_refused))
+           cmocka_unit_test(a_server_with_ten_thousand_queued_studies_is_soon_ready),
+           cmocka_unit_test(a_newer_or_foreign_database_is_refused_and_left_as_it_is))

@@ -45,6 +45,28 @@ static void name_keep(void *to, const struct store_study *study)
 	snprintf(to, 128, "%s %s", study->name, study->status);
 }
 
+/* The server takes a study, keeps a block of it or none, crashes, and starts again. */
+static void crashed(void **state, int64_t id, const struct store_block *block)
+{
+	int status;
+	store_close(*state);
+	pid_t server = fork();
+	if (server == 0) {
+		int64_t claimed;
+		struct store *store = store_open(path);
+		if (!store || store_claim(store, &claimed) != STORE_OK || claimed != id)
+			_exit(1);
+		if (block && store_keep(store, id, block) != STORE_OK)
+			_exit(1);
+		store_blame(store, id);
+		_exit(0);
+	}
+	assert_int_equal(waitpid(server, &status, 0), server);
+	assert_int_equal(status, 0);
+	*state = store_open(path);
+	assert_non_null(*state);
+}
+
 static void ids_grow_within_one_millisecond(void **state)
 {
 	int64_t last = 0;
@@ -186,9 +208,63 @@ static void a_file_that_is_no_database_is_refused_and_left_alone(void **state)
 	unlink(other);
 }
 
+static void a_key_stands_for_one_study(void **state)
+{
+	struct store_study study = {.kind = "response", .runs = 5, .key = "a key"};
+	int64_t first = 0, again = 0, other = 0;
+	assert_int_equal(store_submit(*state, &study, "hash", "{}", 2, &first), STORE_OK);
+	assert_int_equal(store_submit(*state, &study, "hash", "{}", 2, &again), STORE_REPEATED);
+	assert_true(again == first);
+	assert_int_equal(store_submit(*state, &study, "hash", "{ }", 3, &other), STORE_CLASH);
+	study.key = "b key";
+	assert_int_equal(store_submit(*state, &study, "hash", "{}", 2, &other), STORE_OK);
+	assert_true(other != first);
+	// when the study has gone, so has its key
+	assert_int_equal(store_delete(*state, first), STORE_OK);
+	study.key = "a key";
+	assert_int_equal(store_submit(*state, &study, "hash", "{ }", 3, &again), STORE_OK);
+}
+
+static void a_study_taken_three_times_in_vain_lets_the_others_go_first(void **state)
+{
+	int64_t first = submitted(*state, "first"), second = 0, id = 0;
+	for (int i = 0; i < 3; i++) {
+		assert_int_equal(store_claim(*state, &id), STORE_OK);
+		assert_true(id == first);
+		store_close(*state);
+		*state = store_open(path);
+		assert_non_null(*state);
+	}
+	second = submitted(*state, "second");
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == second);
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == first);
+}
+
+static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(void **state)
+{
+	const double value = 1;
+	const struct store_block block = {.number = 0, .runs = 5, .n = 1, .values = &value};
+	char told[128];
+	int64_t id = submitted(*state, "a");
+	// two crashes, one after a block, two: never three without a block between
+	for (int i = 0; i < 5; i++) {
+		crashed(state, id, i == 2 ? &block : NULL);
+		assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+		assert_string_equal(told, "a queued");
+	}
+	crashed(state, id, NULL);
+	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+	assert_string_equal(told, "a failed");
+}
+
 #define STORED(test) cmocka_unit_test_setup_teardown(test, database, removal)
 
-CHECK_MAIN(STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
+CHECK_MAIN(STORED(a_key_stands_for_one_study),
+           STORED(a_study_taken_three_times_in_vain_lets_the_others_go_first),
+           STORED(only_crashes_that_follow_each_other_without_a_block_make_a_poison),
+           STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
            STORED(a_study_finishes_once), STORED(a_block_is_kept_only_while_its_study_runs),
            STORED(a_failed_study_says_why), STORED(names_are_bytes_and_never_sql),
            STORED(a_store_in_use_is_not_opened_again), STORED(a_store_whose_server_was_just_killed_is_opened),
