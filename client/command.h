@@ -22,6 +22,7 @@ struct options {
 	const char *format;   /* one of the names the subcommand offers */
 	const char *status;   /* list: only studies in this state; NULL: all */
 	const char *cursor;   /* list: where the previous page ended; NULL: the newest */
+	const char *samples;  /* run: file for every sample, or for the floor's history; NULL: none */
 	int limit;            /* list: studies on a page; 0: as the server likes */
 	int threads;          /* run */
 	bool wait;            /* submit */

@@ -29,7 +29,7 @@ struct command {
 
 // clang-format off
 static const struct command COMMANDS[] = {
-	{"run", "STUDY.json", "tf", false, {"json", "table", "csv"}, run_study,
+	{"run", "STUDY.json", "tfo", false, {"json", "table", "csv"}, run_study,
 	 "compute a study here, without a server",
 	 "Prints the result on standard output: the same bytes as the server gives, `timing' aside.  "
 	 "Ctrl-C stops the study."},
@@ -65,6 +65,7 @@ static const struct command COMMANDS[] = {
 
 static const struct argp_option OPTIONS[] = {
 	{"threads", 't', "N",      0, "compute with N threads (default: the cores there are)", 0},
+	{"samples", 'o', "FILE",   0, "also write every sample, or the floor's history, to FILE (NumPy if it ends in .npy, else CSV)", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
 	{"limit",   'l', "N",      0, "at most N studies", 0},
@@ -160,6 +161,9 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 		return 0;
 	case 'n':
 		options->names = true;
+		return 0;
+	case 'o':
+		options->samples = value;
 		return 0;
 	case 's':
 		options->status = value;

@@ -11,6 +11,7 @@
 #include "schema/result_json.h"
 #include "schema/study_json.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
@@ -139,6 +140,28 @@ static double thread_cpu(void)
 	return seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
+static bool has_samples(const struct pound_study *study)
+{
+	return study->spectrum.histories || study->kind == POUND_KIND_SENSITIVITY;
+}
+
+/* Writes every sample of a sensitivity study, or the histories of a study of spectra, to a file. */
+static enum outcome write_samples(const struct pound_study *study, struct pound_run *run, const char *path)
+{
+	const char *end = strrchr(path, '.');
+	bool npy = end && strcmp(end, ".npy") == 0;
+	size_t n;
+	char *bytes = study->spectrum.histories ? (npy ? histories_to_npy : histories_to_csv)(study, run, &n)
+	                                        : (npy ? samples_to_npy : samples_to_csv)(study, run, &n);
+	FILE *file = bytes ? fopen(path, "wb") : NULL;
+	bool written = file && fwrite(bytes, 1, n, file) == n;
+	written = file && fclose(file) == 0 && written;
+	if (!written)
+		command_complain("cannot write '%s': %s", path, bytes ? strerror(errno) : "out of memory");
+	free(bytes);
+	return written ? OUTCOME_OK : OUTCOME_FAILED;
+}
+
 static enum outcome run_and_print(const struct pound_study *study, const struct options *options)
 {
 	double wall = seconds(CLOCK_MONOTONIC);
@@ -161,6 +184,8 @@ static enum outcome run_and_print(const struct pound_study *study, const struct 
 		command_complain("the study failed: %s", pound_status_error(status));
 		outcome = OUTCOME_STUDY_FAILED;
 	}
+	if (json && outcome == OUTCOME_OK && options->samples)
+		outcome = write_samples(study, run, options->samples);
 	free(json);
 	pound_run_free(run);
 	return outcome;
@@ -182,6 +207,11 @@ enum outcome run_study(const struct options *options)
 	free(document);
 	if (!study)
 		return document_reject(options->argument, &problems);
+	if (options->samples && !has_samples(study)) {
+		command_complain("only sensitivity studies have samples, and floor spectra with \"histories\": true");
+		study_free(study);
+		return OUTCOME_USAGE;
+	}
 	// a second Ctrl-C ends the program at once
 	const struct sigaction act = {.sa_handler = note_interrupt, .sa_flags = (int)SA_RESETHAND};
 	sigaction(SIGINT, &act, NULL);

@@ -21,6 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { PEAKS = 12 }; /* of a spectrum, the first ones; all are in the JSON */
 enum { CHART = 20 }; /* columns of the chart of total indexes */
 
 /* " 0.412 [ 0.351,  0.472]" of the three numbers, "-" where there is none. */
@@ -185,6 +186,16 @@ static void print_cost(const struct reading *result)
 	putchar('\n');
 }
 
+/* How an ordinate of a floor spectrum goes with the largest impulse. */
+static void print_correlation(const struct reading *result, const char *output)
+{
+	double correlation = reading_number(result, "%s/impulse_correlation", output);
+	if (isfinite(correlation))
+		printf("  correlation with the largest impulse %.3f [%.3f, %.3f]\n", correlation,
+		       reading_number(result, "%s/impulse_correlation_low", output),
+		       reading_number(result, "%s/impulse_correlation_high", output));
+}
+
 static void sensitivity(const struct reading *result)
 {
 	char output[64];
@@ -196,10 +207,14 @@ static void sensitivity(const struct reading *result)
 			snprintf(output, sizeof output, "/cells/%d/outputs/%d", cell, o);
 			putchar('\n');
 			print_tame(reading_text(result, "%s/name", output));
+			print_measure(result, output, "frequency_hz", "at", " ");
+			if (isfinite(reading_number(result, "%s/frequency_hz", output)))
+				fputs(" Hz", stdout);
 			print_measure(result, output, "mean", "mean", ": ");
 			print_measure(result, output, "variance", "variance", ", ");
 			print_measure(result, output, "noise_share", "noise share", ", ");
 			putchar('\n');
+			print_correlation(result, output);
 			print_indices(result, output);
 			print_accuracy(result, output);
 		}
@@ -282,6 +297,42 @@ static void convergence(const struct reading *result)
 	table_close(table);
 }
 
+/* The mean spectra, and the peaks of the first beside what Eq. (21) has there. */
+static void floor_spectrum(const struct reading *result)
+{
+	static const char *const columns[] = {"f_hz", "pounding",   "p16",         "p84",         "impact_only",
+	                                      "free", "dirac_line", "dirac_train", "dirac_peaks", NULL};
+	static const char *const peaks[] = {"peak_hz", "over f_1", "pounding", "Eq. (21)", "ratio", NULL};
+	static const char *const members[] = {"frequency_hz", "frequency_ratio", "mean_m_s2", "dirac_peaks_m_s2",
+	                                      "ratio"};
+	print_failed(result, "");
+	puts("\npseudo-acceleration [m/s2], means over the signals, of the first 16 and 84 % too");
+	struct table *table = table_open(columns);
+	for (int k = 0; k < reading_count(result, "/frequencies_hz"); k++) {
+		table_number(table, reading_number(result, "/frequencies_hz/%d", k));
+		for (int row = 0; row < reading_count(result, "/spectra"); row++) {
+			table_number(table, reading_number(result, "/spectra/%d/mean_m_s2/%d", row, k));
+			if (row > 0)
+				continue;
+			table_number(table, reading_number(result, "/spectra/%d/p16_m_s2/%d", row, k));
+			table_number(table, reading_number(result, "/spectra/%d/p84_m_s2/%d", row, k));
+		}
+	}
+	table_print(table, 2);
+	table_close(table);
+	table = table_open(peaks);
+	for (int j = 0; j < reading_count(result, "/peaks") && j < PEAKS; j++)
+		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
+			table_number(table, reading_number(result, "/peaks/%d/%s", j, members[m]));
+	puts("\npeaks of the spectrum with pounding, beside those of pulses every half period");
+	table_print(table, 2);
+	table_close(table);
+	puts("\nlargest relative error over the frequencies, from the same on half the sample step");
+	for (int row = 0; row < reading_count(result, "/accuracy/spectra"); row++)
+		printf("  %s %.2g\n", reading_text(result, "/accuracy/spectra/%d/name", row),
+		       reading_number(result, "/accuracy/spectra/%d/relative_error_max", row));
+}
+
 /* What was asked and what was run, and why not all of it. */
 static void print_work(const struct reading *result)
 {
@@ -342,6 +393,7 @@ static const struct {
 	{"sensitivity", sensitivity},
 	{"response",    response},
 	{"convergence", convergence},
+	{"floor_spectrum", floor_spectrum},
 };
 // clang-format on
 

@@ -345,3 +345,55 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	                         &correlation);
 	return correlation;
 }
+
+/* ---- histories ---- */
+
+/* Where the instants of a signal go, in the units of the study. */
+struct telling {
+	pound_run_take *take;
+	void *into;
+	int signal, exponent;
+	double mass;
+};
+
+static void instant_tell(void *of, const struct pound_floor_instant *instant)
+{
+	const struct telling *to = of;
+	const struct pound_instant told = {.time = instant->time,
+	                                   .u = ldexp(instant->u, to->exponent),
+	                                   .v = ldexp(instant->v, to->exponent),
+	                                   .acceleration =
+	                                       ldexp(instant->acceleration, to->exponent) + 0.0, // no -0
+	                                   .force = 0 - to->mass * ldexp(instant->push, to->exponent)};
+	to->take(to->into, to->signal, &told);
+}
+
+static void response_leave(void *into, const struct pound_scene *scene, const struct pound_response *response,
+                           enum pound_status status)
+{
+	enum pound_status *first = into;
+	(void)scene, (void)response;
+	*first = *first ? *first : status;
+}
+
+/* Hands out the history of a signal.
+ *
+ * Given    run     of a study of spectra
+ * Returns  take    called in the order of time
+ * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ * Test     unit_ordinate: a_history_is_that_of_the_signal
+ */
+enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into)
+{
+	struct pound_work work = {0};
+	enum pound_status status = POUND_OK, left = POUND_OK;
+	assert(has_spectra(run->campaign.study));
+	status =
+	    pound_plan_run(run->plans[0], &run->campaign, signal, 1, &run->stop, &work, response_leave, &left);
+	if (status || left)
+		return status ? status : left;
+	const struct pound_plan_floor floor = pound_plan_floor(run->plans[0], 0);
+	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
+	return pound_floor_history(run->floors[0]->floor, floor.pounding ? floor.pounding : floor.free,
+	                           instant_tell, &to);
+}

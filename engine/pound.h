@@ -576,6 +576,18 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
                              double variance);
 
+/* The left floor at one time, with pounding. */
+struct pound_instant {
+	double time, u, v;   /* [s]; relative to the ground [m], [m/s] */
+	double acceleration; /* absolute [m/s2] */
+	double force;        /* of the contact, > 0 pushes the left body away [N] */
+};
+
+/* The history of one signal of a study of spectra: at its samples, and on both sides of every event.  Runs it once more, in
+ * the work space of worker 0. */
+typedef void pound_run_take(void *into, int signal, const struct pound_instant *instant);
+enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into);
+
 const char *pound_status_text(enum pound_status status);
 const char *pound_status_error(enum pound_status status); /* why a study has no result */
 

@@ -28,4 +28,9 @@ char *result_to_csv(const char *json, size_t json_length, size_t *length);
 char *samples_to_csv(const struct pound_study *study, const struct pound_run *run, size_t *length);
 char *samples_to_npy(const struct pound_study *study, const struct pound_run *run, size_t *length);
 
+/* The left floor's motion in every signal of a study of spectra (of no other), at the samples and on both sides of every
+ * event.  Columns: signal, time_s, u_m, v_m_s, acceleration_m_s2, contact_force_n. */
+char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length);
+char *histories_to_npy(const struct pound_study *study, struct pound_run *run, size_t *length);
+
 #endif

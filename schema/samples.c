@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "schema/fields.h"
+#include "schema/npy.h"
 #include "schema/result_json.h"
 #include "schema/study_json.h"
 #include "schema/study_spectrum.h"
@@ -148,62 +149,22 @@ char *samples_to_csv(const struct pound_study *study, const struct pound_run *ru
 
 enum { CHOICE_SIZE = 32 }; // bytes of a swept choice's name
 
-/* A column in the words of numpy.dtype; quotes and backslashes of the name escaped as Python wants them. */
-static void put_column(struct writer *w, const char *name, const char *suffix, const char *type)
+static bool put_npy_head(struct writer *w, const struct pound_study *study, int64_t n)
 {
-	writer_raw(w, "('", 2);
-	for (const char *s = name; *s; s++) {
-		if (*s == '\'' || *s == '\\')
-			writer_raw(w, "\\", 1);
-		writer_raw(w, s, 1);
-	}
-	writer_raw(w, suffix, strlen(suffix));
-	writer_raw(w, "', '", 4);
-	writer_raw(w, type, strlen(type));
-	writer_raw(w, "'), ", 4);
-}
-
-static void put_dictionary(struct writer *w, const struct pound_study *study, int64_t n)
-{
-	char shape[40], name[STUDY_OUTPUT_SIZE];
-	static const char head[] = "{'descr': [", middle[] = "], 'fortran_order': False, 'shape': ";
-	writer_raw(w, head, sizeof head - 1);
+	struct writer record;
+	char name[STUDY_OUTPUT_SIZE];
+	writer_init(&record);
 	for (int s = 0; s < study->n_sweeps; s++)
-		put_column(w, study->sweeps[s].path, "", study_choice(study->sweeps[s].path, 0) ? "S32" : "<f8");
-	put_column(w, "row", "", "<i4");
-	put_column(w, "sample", "", "<i4");
+		npy_field(&record, study->sweeps[s].path, "", study_choice(study->sweeps[s].path, 0) ? "S32" : "<f8");
+	npy_field(&record, "row", "", "<i4");
+	npy_field(&record, "sample", "", "<i4");
 	for (int j = 0; j < study->n_inputs; j++)
-		put_column(w, study->inputs[j].name, "", "<f8");
+		npy_field(&record, study->inputs[j].name, "", "<f8");
 	for (int o = 0; o < study->n_outputs; o++) {
-		put_column(w, study_output_name(study, o, name), "", "<f8");
-		put_column(w, study_output_name(study, o, name), ".variance", "<f8");
+		npy_field(&record, study_output_name(study, o, name), "", "<f8");
+		npy_field(&record, study_output_name(study, o, name), ".variance", "<f8");
 	}
-	writer_raw(w, middle, sizeof middle - 1);
-	writer_raw(w, shape, (size_t)snprintf(shape, sizeof shape, "(%lld,), }", (long long)n));
-}
-
-/* Magic, version 3 (UTF-8), length, dictionary; padded so that the data start at a multiple of 64. */
-static bool put_npy_header(struct writer *w, const struct pound_study *study, int64_t n)
-{
-	struct writer dictionary;
-	size_t length;
-	writer_init(&dictionary);
-	put_dictionary(&dictionary, study, n);
-	char *text = writer_take(&dictionary, &length);
-	if (!text)
-		return false;
-	enum { LEAD = 12 };
-	size_t whole = (LEAD + length + 1 + 63) / 64 * 64;
-	uint32_t size = (uint32_t)(whole - LEAD);
-	unsigned char lead[LEAD] = {0x93, 'N', 'U', 'M', 'P', 'Y', 3, 0};
-	for (int i = 0; i < 4; i++)
-		lead[8 + i] = (unsigned char)(size >> (8 * i));
-	writer_raw(w, (const char *)lead, LEAD);
-	writer_raw(w, text, length);
-	for (size_t i = LEAD + length; i < whole; i++)
-		writer_raw(w, i + 1 < whole ? " " : "\n", 1);
-	free(text);
-	return true;
+	return npy_head(w, &record, n);
 }
 
 static void put_record(struct writer *w, const struct sample *s)
@@ -243,7 +204,7 @@ char *samples_to_npy(const struct pound_study *study, const struct pound_run *ru
 	*length = 0;
 	writer_init(&w);
 	int64_t n = (int64_t)study_cells(study) * pound_run_rows(run) * pound_run_samples(run);
-	if (!put_npy_header(&w, study, n))
+	if (!put_npy_head(&w, study, n))
 		return NULL;
 	samples_each(study, run, &w, put_record);
 	return writer_take(&w, length);

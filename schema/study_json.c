@@ -412,8 +412,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 		study_free(study);
 		return NULL;
 	}
-	bool solved = study->kind == POUND_KIND_SENSITIVITY || study->kind == POUND_KIND_RESPONSE;
-	if (study->n_outputs == 0 && solved && !study->elsewhere)
+	if (study->n_outputs == 0 && study->kind != POUND_KIND_FLOOR_SPECTRUM && !study->elsewhere)
 		outputs_default(study);
 	study_spectrum_lay(study);
 	return study;

@@ -116,6 +116,10 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 	if (asked && spectrum->n > POUND_ORDINATES_MAX)
 		problems_add(problems, "/spectrum/frequencies_hz",
 		             "must be at most %d in a sensitivity study, got %d", POUND_ORDINATES_MAX, spectrum->n);
+	if (whole && spectrum->histories &&
+	    study_samples(study) * study->scene.excitation.signals > STUDY_HISTORIES_MAX)
+		problems_add(problems, "/histories", "asks for %.15g samples of all signals, at most %d",
+		             study_samples(study) * study->scene.excitation.signals, STUDY_HISTORIES_MAX);
 	double ordinates = (double)spectrum->n * study->scene.excitation.signals;
 	if (whole && ordinates > STUDY_ORDINATES_MAX)
 		problems_add(problems, "/spectrum/frequencies_hz",

@@ -421,15 +421,19 @@ static struct reply samples(struct request *request)
 	struct work_run opened;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
 	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
+	bool told = !error && opened.study->spectrum.histories;
 	if (sampled)
 		work_finished(&opened);
-	if (sampled && opened.n_left == 0)
+	if (told)
+		reply.body = (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, &reply.length);
+	else if (sampled && opened.n_left == 0)
 		reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
 	if (error)
 		reply = problem(API_UNAVAILABLE, error);
-	else if (!sampled)
-		reply = problem(API_CONFLICT, "only a sensitivity study has samples");
-	else if (opened.n_left > 0)
+	else if (!sampled && !told)
+		reply =
+		    problem(API_CONFLICT, "only a sensitivity study has samples, and floor spectra with histories");
+	else if (sampled && opened.n_left > 0)
 		reply = problem(API_CORRUPT, "stored blocks are damaged or of another version");
 	else if (!reply.body)
 		reply = no_memory();
