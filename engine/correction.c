@@ -90,7 +90,7 @@ size_t pound_correction_scratch(const struct pound_sample_values *shape)
 /* Pick-freeze indexes raw and corrected for the noise of few signals, and the shares of the signals.
  *
  * Given    rows       -      outputs and their noise
- *          seed       -      of the resamples
+ *          seed       -      of the resamples, n_resamples in number
  * Returns  result     -      each with its 95 % interval; corrected ones and shares are NAN for one signal
  * Memory   scratch    (pound_correction_scratch)
  *
@@ -107,15 +107,14 @@ size_t pound_correction_scratch(const struct pound_sample_values *shape)
  * Source   within-row covariances are the U-statistics over pairs of different signals
  * Test     unit_correction: the_golden_row_set_is_met
  */
-void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, double *scratch,
-                                struct pound_pick_freeze *result)
+void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
+                                double *scratch, struct pound_pick_freeze *result)
 {
 	const int d = rows->n_inputs;
 	const struct pound_statistic statistic = {FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill,
 	                                          values_fill, rows};
 	struct pound_estimate estimates[POUND_VALUES_MAX];
-	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, POUND_RESAMPLES, scratch,
-	                         estimates);
+	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
 	for (int j = 0; j < d; j++) {
 		result->first_raw[j] = estimates[FIRST_RAW * d + j];
 		result->total_raw[j] = estimates[TOTAL_RAW * d + j];

@@ -27,6 +27,7 @@ struct pound_sampling {
 	const double *u;    /* the design as probabilities in (0, 1), rows of A and B  (n_rows x 2 x n_inputs) */
 	bool random;        /* the excitation; of outputs computed elsewhere: their variances are known */
 	bool fresh_signals; /* each sample of a row has its own */
+	int n_resamples;    /* behind an interval, at most POUND_RESAMPLES; 0: as many */
 	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
 	int estimator; /* row of the estimators whose indexes are wanted besides; 0: none but the plain protocol's */
 };
@@ -115,8 +116,8 @@ struct pound_pick_freeze {
 };
 
 size_t pound_correction_scratch(const struct pound_sample_values *shape); /* doubles */
-void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, double *scratch,
-                                struct pound_pick_freeze *result);
+void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
+                                double *scratch, struct pound_pick_freeze *result);
 
 #define POUND_NORMAL_95 1.959963984540054 /* 97.5 % quantile of the normal law */
 

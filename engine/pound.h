@@ -150,6 +150,7 @@ struct pound_design {
 	uint64_t seed;
 	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
 	int randomisations;  /* of a quasi-random design, independent of each other; 0: as many as is best */
+	int resamples;       /* behind an interval, of a design without groups of rows; 0: 2000 */
 	struct pound_until until;
 	int order;     /* row of the orders, pound_order_name: which samples a row has at least */
 	int estimator; /* row of the estimators, pound_estimator_name; 0: only those of every study */

@@ -437,6 +437,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    .random =
 	        elsewhere ? any_known(values.variance, n) : pound_excitation_random(&c->study->scene.excitation),
 	    .fresh_signals = !c->study->design.common_signals,
+	    .n_resamples = c->study->design.resamples,
 	    .quasi_random = pound_design_quasi_random(c->study->design.method),
 	    .estimator = c->study->design.estimator};
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};

@@ -231,7 +231,9 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 		s.corrected = sampling->random && sampling->fresh_signals;
 	const bool varies = pound_sobol_summary(&rows, indices);
 	if (varies) {
-		pound_correction_estimates(&rows, seed, s.scratch, &s.pick_freeze);
+		pound_correction_estimates(&rows, seed,
+		                           sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES, s.scratch,
+		                           &s.pick_freeze);
 		if (rows_enough(&s))
 			pound_chaos_indices(&rows, sampling->u, s.corrected, s.scratch, &s.closed);
 		indices->sets = s.closed.sets;

@@ -71,7 +71,7 @@ static void every_column_comes_from_its_function(void **state)
 	double *held = malloc(sizeof *held * pound_rows_scratch(&values));
 	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
 	pound_rows_init(&rows, &values, held);
-	pound_correction_estimates(&rows, SEED, scratch, &pick_freeze);
+	pound_correction_estimates(&rows, SEED, POUND_RESAMPLES, scratch, &pick_freeze);
 	pound_local_first(&rows, u, true, scratch, local);
 	pound_chaos_indices(&rows, u, true, scratch, &closed);
 	for (int j = 0; j < D; j++) {
