@@ -35,7 +35,7 @@ SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
 # tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
 TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c))
-FIXTURE := $(call objs,tests,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c tests/fuzz_*.c tests/bench*.c \
+FIXTURE := $(call objs,tests,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c tests/fuzz_*.c tests/soak_*.c tests/bench*.c \
              tests/paper*.c tests/statistics*.c tests/preload.c))
 
 all: $(B)/poundd $(B)/pound
@@ -115,6 +115,10 @@ SEEDS ?= 200
 statistics: $(B)/tests/statistics
 	@$< $(SEEDS)
 $(B)/tests/statistics: $(patsubst %.c,$(B)/%.o,$(wildcard tests/statistics_*.c))
+# what takes minutes of a quiet machine, SOAK seconds for each test: every line it prints is a measurement
+SOAK ?= 60
+soak: all $(patsubst %.c,$(B)/%,$(wildcard tests/soak_*.c))
+	@for program in $(filter $(B)/tests/soak_%,$^); do POUND_BUILD=$(B) SOAK=$(SOAK) $$program || exit 1; done
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
 

@@ -16,6 +16,7 @@ struct server {
 	const struct options *options;
 	struct store *store;
 	struct work *work;
+	struct cache *cache;   /* of status objects */
 	struct tokens *tokens; /* NULL: there are none */
 	struct metrics metrics;
 	struct http *http;

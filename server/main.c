@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "server/cache.h"
 #include "server/http.h"
 #include "server/log.h"
 #include "server/options.h"
@@ -97,11 +98,13 @@ int main(int argc, char **argv)
 	struct server server = {.options = &options};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
-	server.store = store_open(options.database);
+	server.cache = cache_open();
+	server.store = server.cache ? store_open(options.database) : NULL;
 	if (!server.store)
 		return EXIT_FAILURE;
 	int status = serve(&server, &signals);
 	store_close(server.store);
+	cache_close(server.cache);
 	tokens_close(server.tokens);
 	return status;
 }

@@ -17,6 +17,7 @@
 #include "schema/result_json.h"
 #include "schema/study_json.h"
 #include "schema/writer.h"
+#include "server/cache.h"
 #include "server/connection.h"
 #include "server/http.h"
 #include "server/store.h"
@@ -158,11 +159,37 @@ static struct reply look(const struct request *request, struct page *page)
 	return reply;
 }
 
-static struct reply status(struct request *request)
+/* The status object, from the cache when nothing has changed since it was put there. */
+static struct reply look_again(const struct request *request, unsigned changes)
 {
 	struct page page;
+	struct cached told;
+	struct reply reply = {.status = 200, .type = "application/json"};
+	if (cache_find(request->server->cache, request->id, changes, &told)) {
+		reply.body = malloc(told.length);
+		reply.length = told.length;
+		memcpy(reply.etag, told.etag, sizeof reply.etag);
+		if (!reply.body)
+			return no_memory();
+		memcpy(reply.body, told.body, told.length);
+		return reply;
+	}
+	reply = look(request, &page);
+	if (reply.status != 200 || reply.length > CACHE_BODY_MAX)
+		return reply;
+	told.id = request->id;
+	told.changes = changes;
+	told.length = reply.length;
+	memcpy(told.etag, reply.etag, sizeof told.etag);
+	memcpy(told.body, reply.body, reply.length);
+	cache_keep(request->server->cache, &told);
+	return reply;
+}
+
+static struct reply status(struct request *request)
+{
 	unsigned changes = store_changes(request->server->store, request->id);
-	struct reply reply = unless_known(request, look(request, &page));
+	struct reply reply = unless_known(request, look_again(request, changes));
 	reply.changes = changes;
 	if (reply.status == 304 && http_waits(request))
 		reply.status = REPLY_WAIT;
