@@ -1,6 +1,6 @@
 /* chaos.c - closed indexes with a polynomial of the inputs as control variate.
  *
- * 1. The rows fall into five folds; for each, a polynomial g of the inputs is fitted to the outputs of all samples of
+ * 1. The rows, or their groups, fall into five folds; for each, a polynomial g of the inputs is fitted to the outputs of all samples of
  *    the rows outside it (least squares, orthonormal Legendre terms, "polynomial chaos").
  * 2. The closed parts of g's variance are known exactly from its coefficients.  A row's estimate is that of g plus what
  *    its samples say of the output and do not say of g, g being of the fit that has not seen the row (closed.c). */
@@ -47,8 +47,10 @@ struct fits {
 	double *coefficients; /* of each fold's fit to the other folds  (FOLDS x terms) */
 	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
 	struct pound_closed closed;
-	double *estimates; /* (n_rows x closed.n_columns) */
-	double *rest;      /* for closed.c */
+	double *estimates;    /* (n_rows x closed.n_columns) */
+	double *rest;         /* for closed.c */
+	double *sorted;       /* the rows by fold, as whole numbers  (n_rows) */
+	int first[FOLDS + 1]; /* of each fold among them */
 };
 
 static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, int order)
@@ -73,6 +75,7 @@ static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, i
 	    {&f->fit, (size_t)n_rows * f->closed.n_samples},
 	    {&f->estimates, (size_t)n_rows * f->closed.n_columns},
 	    {&f->rest, pound_closed_scratch(&f->closed, n_rows)},
+	    {&f->sorted, n_rows},
 	};
 	size_t total = 0;
 	for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++) {
@@ -83,14 +86,40 @@ static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, i
 	return total;
 }
 
+/* Deals the rows out to the folds; a group stays together, so that no fit has seen rows that depend on those it is used
+ * for. */
+static void folds_fill(struct fits *f)
+{
+	const struct pound_scatter *scatter = &f->rows->scatter;
+	int n = 0;
+	for (int fold = 0; fold < FOLDS; fold++) {
+		f->first[fold] = n;
+		for (int i = 0; i < f->rows->n_rows; i++)
+			if ((scatter->grouping.n ? pound_jackknife_group(scatter, i) : i) % FOLDS == fold)
+				f->sorted[n++] = i;
+	}
+	f->first[FOLDS] = n;
+}
+
+static int rows_in(const struct fits *f, int fold)
+{
+	return f->first[fold + 1] - f->first[fold];
+}
+
+/* Row k of a fold. */
+static int row_in(const struct fits *f, int fold, int k)
+{
+	return (int)f->sorted[f->first[fold] + k];
+}
+
 /* Enters the next samples of a fold's rows, in order, from sample number `first`; says how many. */
 static int chunk_enter(struct fits *f, int fold, int first)
 {
 	const int d = f->rows->n_inputs, n_samples = f->rows->n_samples;
-	const int n = (f->rows->n_rows - fold + FOLDS - 1) / FOLDS * n_samples - first;
+	const int n = rows_in(f, fold) * n_samples - first;
 	f->chunk.n = n < CHUNK ? n : CHUNK;
 	for (int i = 0; i < f->chunk.n; i++) {
-		int row = fold + (first + i) / n_samples * FOLDS, sample = (first + i) % n_samples;
+		int row = row_in(f, fold, (first + i) / n_samples), sample = (first + i) % n_samples;
 		const double *a = f->u + (size_t)f->rows->row[row] * 2 * d;
 		const unsigned from_b = f->mask[sample];
 		for (int j = 0; j < d; j++)
@@ -102,7 +131,7 @@ static int chunk_enter(struct fits *f, int fold, int first)
 static double *sample_of(const struct fits *f, double *values, int fold, int number)
 {
 	const int n_samples = f->rows->n_samples;
-	return values + (size_t)(fold + number / n_samples * FOLDS) * n_samples + number % n_samples;
+	return values + (size_t)row_in(f, fold, number / n_samples) * n_samples + number % n_samples;
 }
 
 static void sums_fill(struct fits *f)
@@ -210,7 +239,8 @@ static void estimates_fill(const struct fits *f, bool corrected)
 	double part[POUND_CLOSED_COLUMNS_MAX], noise[POUND_SAMPLES_MAX * POUND_SAMPLES_MAX];
 	for (int fold = 0; fold < FOLDS; fold++) {
 		parts_fill(f, fold, part);
-		for (int row = fold; row < f->rows->n_rows; row += FOLDS) {
+		for (int k = 0; k < rows_in(f, fold); k++) {
+			const int row = row_in(f, fold, k);
 			const size_t first = (size_t)row * n_samples;
 			if (corrected)
 				pound_rows_noise(f->rows, row, noise);
@@ -249,6 +279,7 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
 	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
 	for (int sample = 0; sample < rows->n_samples; sample++)
 		fits.mask[sample] = pound_order_mask(rows->n_inputs, sample);
+	folds_fill(&fits);
 	fits_fill(&fits);
 	estimates_fill(&fits, corrected);
 	pound_closed_indices(&fits.closed, fits.estimates, rows, fits.rest, results);

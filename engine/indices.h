@@ -99,6 +99,7 @@ void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_row
 size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments); /* doubles */
 void pound_jackknife_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
                                int n_rows, double *scratch, struct pound_estimate *estimates);
+int pound_jackknife_group(const struct pound_scatter *scatter, int row);
 double pound_jackknife_student(int freedom); /* 97.5 % quantile of Student's law */
 /* Half of the 95 % interval of a mean over rows, with groups or without.  sums: (groups) */
 double pound_jackknife_half_width(const double *value, int n_rows, const struct pound_scatter *scatter,

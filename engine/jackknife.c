@@ -56,7 +56,8 @@ double pound_jackknife_student(int freedom)
 
 /* ---- pseudo-values ---- */
 
-static int group_of(const struct pound_scatter *scatter, int row)
+/* The group of a row that counts. */
+int pound_jackknife_group(const struct pound_scatter *scatter, int row)
 {
 	int64_t number = scatter->row ? scatter->row[row] : row;
 	return (int)(number / scatter->grouping.run % scatter->grouping.n);
@@ -69,7 +70,8 @@ static void sums_fill(const struct pound_statistic *statistic, const struct poun
 	const int n_moments = statistic->n_moments, width = n_moments + 1;
 	memset(sums, 0, sizeof *sums * (size_t)scatter->grouping.n * (size_t)width);
 	for (int i = 0; i < n_rows; i++) {
-		double m[POUND_MOMENTS_MAX] = {0}, *sum = sums + (size_t)group_of(scatter, i) * (size_t)width;
+		double m[POUND_MOMENTS_MAX] = {0},
+		       *sum = sums + (size_t)pound_jackknife_group(scatter, i) * (size_t)width;
 		statistic->moments(statistic->subject, i, m);
 		for (int k = 0; k < n_moments; k++)
 			sum[k] += m[k];
@@ -169,7 +171,7 @@ double pound_jackknife_half_width(const double *value, int n_rows, const struct 
 	for (int g = 0; g < n; g++)
 		sums[g] = NAN; // no row yet
 	for (int i = 0; i < n_rows; i++) {
-		double *sum = &sums[group_of(scatter, i)];
+		double *sum = &sums[pound_jackknife_group(scatter, i)];
 		*sum = (isnan(*sum) ? 0 : *sum) + (value[i] - mean);
 	}
 	int groups = 0;
