@@ -6,9 +6,9 @@
  *   force_amplification: mean 1.071, variance 0.02893, noise share 0.113
  *     input    S1 [95 % interval]       ST [95 % interval]       ST from 0 to 1
  *     f_e       0.101 [ 0.021,  0.180]   0.412 [ 0.351,  0.472]  |########            |
- *     widest raw interval: +-0.22 of 125 rows, +-0.16 of 250, +-0.11 of 500, +-0.081 of 1000
+ *     widest interval: +-0.22 of 125 rows, +-0.16 of 250, +-0.11 of 500, +-0.081 of 1000
  *     twice the rows leave 0.71 of it, 4000 rows half of it
- *     300 runs checked, apart by 1e-14 (median) to 2e-13: no raw index moves by over 3e-15
+ *     300 runs checked, apart by 1e-14 (median) to 2e-13: no index moves by over 3e-15
  */
 #include "client/show.h"
 
@@ -131,7 +131,7 @@ static void print_indices(const struct reading *result, const char *output)
 /* The widest half of the intervals of one number of rows. */
 static double widest(const struct reading *result, const char *accuracy, int level)
 {
-	static const char *const halves[] = {"S1_raw_half_widths", "ST_raw_half_widths"};
+	static const char *const halves[] = {"S1_half_widths", "ST_half_widths"};
 	double most = NAN;
 	for (int j = 0; j < reading_count(result, "%s/inputs", accuracy); j++)
 		for (int h = 0; h < 2; h++)
@@ -143,7 +143,7 @@ static double widest(const struct reading *result, const char *accuracy, int lev
 static void print_accuracy(const struct reading *result, const char *output)
 {
 	char accuracy[80];
-	const char *before = "  widest raw interval: ", *of = " rows";
+	const char *before = "  widest interval: ", *of = " rows";
 	snprintf(accuracy, sizeof accuracy, "%s/accuracy", output);
 	for (int k = 0; k < reading_count(result, "%s/rows", accuracy); k++, before = ", ", of = "") {
 		double half = widest(result, accuracy, k);
@@ -161,7 +161,7 @@ static void print_accuracy(const struct reading *result, const char *output)
 	if (checked > 0.0)
 		printf("  %.0f runs checked", checked);
 	if (isfinite(change))
-		printf(", apart by %.2g (median) to %.2g: no raw index moves by over %.2g",
+		printf(", apart by %.2g (median) to %.2g: no index moves by over %.2g",
 		       reading_number(result, "%s/difference_median", accuracy),
 		       reading_number(result, "%s/difference_largest", accuracy), change);
 	if (checked > 0.0)

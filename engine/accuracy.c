@@ -1,20 +1,15 @@
-/* accuracy.c - how far the indexes of an output may be off: by the integration, by the number of rows, by the number
- * of signals, by failed rows.  The indexes are the raw ones, which all four concern.
+/* accuracy.c - how far S1 and ST of an output may be off: by the integration, by the number of rows, by the number of
+ * signals, by failed rows.
  *
  * 1. Integration: some runs were made again on half the sample step, the same signal in other steps.  The difference
  *    counts as an independent error of every run.
- * 2. Rows: intervals of the first n/8, n/4, n/2 and of all n rows of the design.
+ * 2. Rows: intervals of the first n/8, n/4, n/2 and of all n rows of the design (variants.c).
  * 3. What each does to the worst index, on one scale, and which is larger than the others together. */
 #include "engine/accuracy.h"
 #include "engine/elementary.h"
 
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
-
-enum {
-	RESAMPLES_FEW = 400, /* of n/8, n/4, n/2 rows: half widths to 5 % */
-	ROWS_FEW = 8,        /* fewer have no interval worth showing */
-};
 
 const char *pound_error_name(int row)
 {
@@ -102,26 +97,40 @@ static double total_shift(double q, double total)
 	return q < 1 ? fmin(1, q * fabs(1 - total) / (1 - q)) : 1;
 }
 
-/* The shift, and twice the deviation that the errors themselves cause in n rows.
+/* Twice the deviation of an index that independent errors with the share q of the variance cause in n rows.
  *
  *   S: 2 sqrt(2 q / n) (sqrt(1 + T) + |S|)          T: 4 sqrt(q / n) (sqrt T + T / sqrt(d + 2))
  *
+ * T is taken at the end of its interval: the polynomial behind ST moves with the errors even where T is 0.
+ *
  * Source   to first order in the errors: b (c - a) changes by e_b (c - a) + b (e_c - e_a), the variance by 2 mean(a e_a),
  *          half of (c - a)^2 by (c - a) (e_c - e_a); variances of sums of independent terms, deviations of quotients added
+ * Valid    Pick-freeze estimates; those of S1 and ST are moved less.
  * Test     unit_accuracy: indexes_move_no_more_than_stated_when_noise_is_added
  */
+static double first_spread(double q, double n, double first, double total_high)
+{
+	return 2 * sqrt(2 * q / n) * (sqrt(1 + fmax(total_high, 0)) + fabs(first));
+}
+
+static double total_spread(double q, double n, int d, double total_high)
+{
+	return 4 * sqrt(q / n) * (sqrt(fmax(total_high, 0)) + fmax(total_high, 0) / sqrt(d + 2.0));
+}
+
+/* What the errors of integration may change of S1 and ST: the shift, and the spread. */
 static void changes(struct pound_indices *indices, const struct pound_sample_values *values)
 {
 	struct pound_accuracy *accuracy = &indices->accuracy;
-	const double q = accuracy->variance_share, n = values->n_rows, d = values->n_inputs;
+	const double q = accuracy->variance_share, n = values->n_rows;
 	for (int j = 0; j < values->n_inputs; j++) {
-		double first = indices->index[POUND_S1_RAW][j].value, total = indices->index[POUND_ST_RAW][j].value;
-		double t = fmax(total, 0);
-		double first_spread = 2 * sqrt(2 * q / n) * (sqrt(1 + t) + fabs(first));
-		double total_spread = 4 * sqrt(q / n) * (sqrt(t) + t / sqrt(d + 2));
-		bool known = isfinite(q) && isfinite(first) && isfinite(total);
-		accuracy->inputs[j].first_change = known ? fmin(1, first_shift(q, first) + first_spread) : NAN;
-		accuracy->inputs[j].total_change = known ? fmin(1, total_shift(q, total) + total_spread) : NAN;
+		double first = indices->index[POUND_S1][j].value, total = indices->index[POUND_ST][j].value;
+		double high = indices->index[POUND_ST][j].high;
+		double first_change = first_shift(q, first) + first_spread(q, n, first, high);
+		double total_change = total_shift(q, total) + total_spread(q, n, values->n_inputs, high);
+		bool known = isfinite(q) && isfinite(first) && isfinite(high);
+		accuracy->inputs[j].first_change = known ? fmin(1, first_change) : NAN;
+		accuracy->inputs[j].total_change = known ? fmin(1, total_change) : NAN;
 	}
 }
 
@@ -132,27 +141,21 @@ static double half(struct pound_estimate estimate)
 	return 0.5 * (estimate.high - estimate.low);
 }
 
-/* Half widths of the intervals from the first n/8, n/4, n/2 and all rows. */
-static void half_widths(const struct pound_sample_values *values, uint64_t seed, double *scratch,
-                        struct pound_indices *indices)
+/* The half widths of all rows, which are those of the indexes, and the numbers of rows that have any. */
+static void half_widths(const struct pound_indices *indices, int n_rows, int n_inputs,
+                        struct pound_accuracy *accuracy)
 {
-	struct pound_accuracy *accuracy = &indices->accuracy;
-	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];
+	const int last = POUND_LEVELS - 1;
+	for (int j = 0; j < n_inputs; j++) {
+		accuracy->inputs[j].first_half[last] = half(indices->index[POUND_S1][j]);
+		accuracy->inputs[j].total_half[last] = half(indices->index[POUND_ST][j]);
+	}
 	for (int k = 0; k < POUND_LEVELS; k++) {
-		struct pound_sample_values part = *values;
-		part.n_rows = values->n_rows >> (POUND_LEVELS - 1 - k);
-		bool whole = part.n_rows == values->n_rows;
-		struct pound_indices of_part = {
-		    .index = {[POUND_S1_RAW] = whole ? indices->index[POUND_S1_RAW] : first,
-		              [POUND_ST_RAW] = whole ? indices->index[POUND_ST_RAW] : total}};
-		bool enough = whole || part.n_rows >= ROWS_FEW;
-		accuracy->rows[k] = enough ? part.n_rows : 0;
-		if (enough && !whole)
-			pound_sobol_indices(&part, seed, RESAMPLES_FEW, scratch, &of_part);
-		for (int j = 0; j < values->n_inputs; j++) {
-			accuracy->inputs[j].first_half[k] = enough ? half(of_part.index[POUND_S1_RAW][j]) : NAN;
-			accuracy->inputs[j].total_half[k] = enough ? half(of_part.index[POUND_ST_RAW][j]) : NAN;
-		}
+		bool some = k == last;
+		for (int j = 0; j < n_inputs; j++)
+			some |=
+			    isfinite(accuracy->inputs[j].first_half[k]) || isfinite(accuracy->inputs[j].total_half[k]);
+		accuracy->rows[k] = some ? n_rows >> (last - k) : 0;
 	}
 }
 
@@ -212,37 +215,37 @@ enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
 	return POUND_ERROR_NONE;
 }
 
-/* What each error does to the worst index; NAN where no index knows.
- *
- * The share of the excitation's randomness is an error in the indexes of the mean over all signals: that of an
- * independent error, an upper estimate where samples share their signals. */
+/* What the noise of few signals adds to the intervals, at most; it is not in the values, from which it was taken away.
+ * An upper estimate where samples share their signals.  NAN: it cannot be told apart. */
+static double excitation(const struct pound_indices *indices, int n_rows, int n_inputs)
+{
+	const double w = indices->noise_share, q = w < 1 ? w / (1 - w) : INFINITY;
+	double worst = indices->notes >> POUND_NOTE_NOT_RANDOM & 1 ? 0 : NAN;
+	for (int j = 0; j < n_inputs && isfinite(w); j++) {
+		double first = indices->index[POUND_S1][j].value, high = indices->index[POUND_ST][j].high;
+		worst = fmax(worst, fmin(1, first_spread(q, n_rows, first, high)));
+		worst = fmax(worst, fmin(1, total_spread(q, n_rows, n_inputs, high)));
+	}
+	return worst;
+}
+
+/* What each error does to the worst index; NAN where no index knows. */
 static void errors_fill(const struct pound_indices *indices, const struct pound_sample_values *values,
                         int rows_dropped, double errors[POUND_ERROR_NONE])
 {
 	const struct pound_accuracy *accuracy = &indices->accuracy;
-	const double w = indices->noise_share;
 	const int last = POUND_LEVELS - 1;
-	for (int k = 0; k < POUND_ERROR_NONE; k++)
-		errors[k] = NAN;
+	double sampling = NAN, integration = NAN;
 	for (int j = 0; j < values->n_inputs; j++) {
-		double *worst = errors;
-		worst[POUND_ERROR_SAMPLING] =
-		    fmax(worst[POUND_ERROR_SAMPLING],
-		         fmax(accuracy->inputs[j].first_half[last], accuracy->inputs[j].total_half[last]));
-		worst[POUND_ERROR_INTEGRATION] =
-		    fmax(worst[POUND_ERROR_INTEGRATION],
-		         fmax(accuracy->inputs[j].first_change, accuracy->inputs[j].total_change));
-		if (isfinite(w))
-			worst[POUND_ERROR_EXCITATION] = fmax(worst[POUND_ERROR_EXCITATION],
-			                                     fmax(first_shift(w, indices->index[POUND_S1_RAW][j].value),
-			                                          total_shift(w, indices->index[POUND_ST_RAW][j].value)));
+		sampling =
+		    fmax(sampling, fmax(accuracy->inputs[j].first_half[last], accuracy->inputs[j].total_half[last]));
+		integration =
+		    fmax(integration, fmax(accuracy->inputs[j].first_change, accuracy->inputs[j].total_change));
 	}
+	errors[POUND_ERROR_SAMPLING] = sampling;
+	errors[POUND_ERROR_EXCITATION] = excitation(indices, values->n_rows, values->n_inputs);
+	errors[POUND_ERROR_INTEGRATION] = integration;
 	errors[POUND_ERROR_FAILED_ROWS] = (double)rows_dropped / values->n_rows;
-}
-
-size_t pound_accuracy_scratch(const struct pound_sample_values *shape, int n_checks)
-{
-	return pound_sobol_scratch(shape) + n_checks;
 }
 
 /* How far the indexes of an output may be off, and for want of what.
@@ -250,9 +253,9 @@ size_t pound_accuracy_scratch(const struct pound_sample_values *shape, int n_che
  * Given    values        the output's runs
  *          checks        those that were made again
  *          rows_dropped  of values, for a failed run
- *          indices       of values, accuracy excepted
+ *          indices       of values, by pound_variants_indices
  * Returns  indices       accuracy
- * Memory   scratch       (pound_accuracy_scratch)
+ * Memory   scratch       (checks.n)
  *
  * Valid    Pounding is chaotic: after many contacts rounding alone parts two runs of one scene, and neither is the
  *          better one.  Large differences of single runs then say that the scene does not determine the run; what it
@@ -260,14 +263,14 @@ size_t pound_accuracy_scratch(const struct pound_sample_values *shape, int n_che
  * Test     unit_accuracy
  */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
-                             int rows_dropped, uint64_t seed, double *scratch, struct pound_indices *indices)
+                             int rows_dropped, double *scratch, struct pound_indices *indices)
 {
 	struct pound_accuracy *accuracy = &indices->accuracy;
 	double variance = differences(values, checks, scratch, accuracy);
 	// an output that does not vary has no indexes to be off
 	accuracy->variance_share = indices->variance > 0 ? variance / indices->variance : NAN;
 	changes(indices, values);
-	half_widths(values, seed, scratch, indices);
+	half_widths(indices, values->n_rows, values->n_inputs, accuracy);
 	slope(accuracy, values->n_inputs);
 	errors_fill(indices, values, rows_dropped, accuracy->errors);
 }

@@ -15,9 +15,8 @@ struct pound_checks {
 	struct pound_check *check; /* (n) */
 };
 
-/* Fills indices->accuracy; the rest of the indices is known.  scratch: (pound_accuracy_scratch) */
-size_t pound_accuracy_scratch(const struct pound_sample_values *shape, int n_checks); /* doubles */
+/* Fills indices->accuracy; the rest of the indices is known, by pound_variants_indices.  scratch: (checks.n) */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
-                             int rows_dropped, uint64_t seed, double *scratch, struct pound_indices *indices);
+                             int rows_dropped, double *scratch, struct pound_indices *indices);
 
 #endif

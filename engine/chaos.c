@@ -284,3 +284,21 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
 	estimates_fill(&fits, corrected);
 	pound_closed_indices(&fits.closed, fits.estimates, rows, fits.rest, results);
 }
+
+/* What the first rows' estimates alone give, with the polynomials of all rows.
+ *
+ * Given    n          rows of them
+ *          scratch    as pound_chaos_indices left it
+ * Returns  results    -
+ *
+ * Test     unit_accuracy: half_widths_of_all_rows_are_those_of_the_indexes
+ */
+void pound_chaos_first_rows(const struct pound_rows *rows, int n, double *scratch,
+                            struct pound_closed_results *results)
+{
+	struct fits fits = {.rows = rows};
+	struct pound_rows part = *rows;
+	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
+	part.n_rows = n;
+	pound_closed_indices(&fits.closed, fits.estimates, &part, fits.rest, results);
+}

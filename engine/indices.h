@@ -128,6 +128,9 @@ size_t pound_local_scratch(const struct pound_sample_values *shape); /* doubles 
 void pound_local_fit(const double *y, int n, int reach, double *fit);
 void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
                        struct pound_estimate *first);
+/* Half widths of the intervals from the first n of those rows alone, with the neighbours of all; the scratch as it was left.
+ * half: (n_inputs) */
+void pound_local_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half);
 
 /* Closed parts of the variance: those that sets of inputs explain. */
 enum {
@@ -168,6 +171,9 @@ int pound_chaos_degree(int n_rows, int n_inputs, int n_samples);
 size_t pound_chaos_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
                          struct pound_closed_results *results);
+/* From the first n of those rows alone, with the polynomials of all; the scratch as it was left. */
+void pound_chaos_first_rows(const struct pound_rows *rows, int n, double *scratch,
+                            struct pound_closed_results *results);
 
 /* The plain protocol: mean, variance, noise share and the raw indexes. */
 size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */
@@ -181,7 +187,7 @@ void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_est
                            struct pound_estimate *estimates);
 bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
 
-/* All indexes, shares and notes. */
+/* All indexes, shares and notes, and the half widths of the accuracy. */
 size_t pound_variants_scratch(const struct pound_sample_values *shape, int estimator); /* doubles */
 int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */

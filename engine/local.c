@@ -77,11 +77,13 @@ static void block_add(const struct pound_rows *rows, int sample, double grand, c
 
 /* Index and interval from a row's mean products, with the variance of its outputs about the grand mean.
  *
+ * Returns  influence  (n_rows)  NAN where the index is undefined
+ *
  * The influence of a row on S = mean(y m) / V, the prediction m estimated from the others, is
  * (2 y m - m^2 - S y^2) / V.
  */
 static struct pound_estimate influence_interval(const struct pound_rows *rows, struct sums sums,
-                                                const double *variance, double *group_sums)
+                                                const double *variance, double *group_sums, double *influence)
 {
 	const int n = rows->n_rows, n_samples = rows->n_samples;
 	double v = 0.0, product = 0.0;
@@ -89,19 +91,37 @@ static struct pound_estimate influence_interval(const struct pound_rows *rows, s
 		v += variance[i] / n;
 		product += sums.product[i] / n_samples / n;
 	}
-	if (!(v > rows->variance_floor))
-		return (struct pound_estimate){NAN, NAN, NAN};
-	const double s = product / v;
-	double *influence = sums.square;
+	const double s = v > rows->variance_floor ? product / v : NAN;
 	for (int i = 0; i < n; i++)
 		influence[i] = ((2.0 * sums.product[i] - sums.square[i]) / n_samples - s * variance[i]) / v;
 	double half_width = pound_jackknife_half_width(influence, n, &rows->scatter, group_sums);
 	return (struct pound_estimate){s, s - half_width, s + half_width};
 }
 
+/* Where everything lies in the scratch. */
+struct space {
+	double *variance, *y, *fit; /* (n_rows) each */
+	struct sums sums;
+	size_t *order;      /* (n_rows) */
+	double *group_sums; /* (groups, at most n_rows) */
+	double *influence;  /* of each row on each input's index  (n_inputs x n_rows) */
+};
+
+static struct space carve(double *scratch, int n_rows)
+{
+	const size_t n = (size_t)n_rows;
+	return (struct space){.variance = scratch,
+	                      .y = scratch + n,
+	                      .fit = scratch + 2 * n,
+	                      .sums = {scratch + 3 * n, scratch + 4 * n},
+	                      .order = (size_t *)(scratch + 5 * n),
+	                      .group_sums = scratch + 6 * n,
+	                      .influence = scratch + 7 * n};
+}
+
 size_t pound_local_scratch(const struct pound_sample_values *shape)
 {
-	return (size_t)7 * shape->n_rows;
+	return (size_t)(7 + shape->n_inputs) * shape->n_rows;
 }
 
 /* Mean over the samples of a row of their squared outputs about the grand mean, less their noise. */
@@ -146,24 +166,44 @@ void pound_local_first(const struct pound_rows *rows, const double *x, bool corr
                        struct pound_estimate *first)
 {
 	const int n = rows->n_rows, d = rows->n_inputs;
-	double *variance = scratch, *y = variance + n, *fit = y + n;
-	struct sums sums = {fit + n, fit + 2 * (size_t)n};
-	size_t *order = (size_t *)(sums.square + n);
-	double *group_sums = (double *)(order + n);
+	const struct space at = carve(scratch, n);
 	const bool enough = n >= POUND_ROWS_MIN;
-	const double grand = enough ? variances_fill(rows, corrected, variance) : NAN;
+	const double grand = enough ? variances_fill(rows, corrected, at.variance) : NAN;
 	for (int j = 0; j < d; j++) {
 		for (int i = 0; i < n; i++)
-			sums.product[i] = sums.square[i] = 0.0;
+			at.sums.product[i] = at.sums.square[i] = 0.0;
 		for (int matrix = 0; matrix < 2 && enough; matrix++) {
 			for (int i = 0; i < n; i++)
-				y[i] = x[(rows->row[i] * 2 + matrix) * d + j];
-			gsl_sort_index(order, y, 1, n);
+				at.y[i] = x[(rows->row[i] * 2 + matrix) * d + j];
+			gsl_sort_index(at.order, at.y, 1, n);
 			for (int p = 0; p < rows->n_samples; p++)
 				if ((pound_order_mask(d, p) >> j & 1) == (unsigned)matrix)
-					block_add(rows, p, grand, order, y, fit, sums);
+					block_add(rows, p, grand, at.order, at.y, at.fit, at.sums);
 		}
-		first[j] = enough ? influence_interval(rows, sums, variance, group_sums)
+		first[j] = enough ? influence_interval(rows, at.sums, at.variance, at.group_sums,
+		                                       at.influence + (size_t)j * n)
 		                  : (struct pound_estimate){NAN, NAN, NAN};
 	}
+}
+
+/* Half widths of the intervals that the first rows' influences give.
+ *
+ * Given    n          at most those of rows
+ *          scratch    as pound_local_first left it
+ * Returns  half       (n_inputs)
+ *
+ * Test     unit_accuracy: half_widths_of_all_rows_are_those_of_the_indexes
+ */
+void pound_local_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half)
+{
+	const struct space at = carve(scratch, rows->n_rows);
+	double of_all = 0.0, of_first = 0.0; // variances; an influence is a share of that of all rows
+	for (int i = 0; i < rows->n_rows; i++) {
+		of_all += at.variance[i] / rows->n_rows;
+		of_first += i < n ? at.variance[i] / n : 0.0;
+	}
+	for (int j = 0; j < rows->n_inputs; j++)
+		half[j] = of_all / of_first *
+		          pound_jackknife_half_width(at.influence + (size_t)j * rows->n_rows, n, &rows->scatter,
+		                                     at.group_sums);
 }

@@ -77,7 +77,7 @@ static size_t reduction_size(const struct pound_campaign *c)
 		return 0;
 	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
 	size_t variants = pound_variants_scratch(&shape, c->study->design.estimator);
-	size_t accuracy = pound_accuracy_scratch(&shape, checks_of(c));
+	size_t accuracy = (size_t)checks_of(c);
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
 	return 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
@@ -445,7 +445,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	double *rest = scratch + 2 * n + checks_size(c);
 	int dropped =
 	    pound_variants_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
-	pound_accuracy_estimate(&values, checks, dropped, c->study->design.seed, rest, &into->indices[output]);
+	pound_accuracy_estimate(&values, checks, dropped, rest, &into->indices[output]);
 	into->indices[output].impulse_correlation = pound_ordinate_correlation(run, cell, output, rest);
 	if (output == 0) {
 		into->runs_failed = failed;

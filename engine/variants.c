@@ -12,6 +12,16 @@
 #include <math.h>
 #include <string.h>
 
+/* Half widths that the first rows of the design give alone. */
+struct level {
+	int kept; /* rows of them that count */
+	struct {
+		double first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];
+	} closed, pick_freeze; /* with the polynomials of all rows, and by few resamples */
+};
+
+enum { RESAMPLES_FEW = 400 }; /* half widths to 5 % */
+
 /* What the columns are made from. */
 struct sources {
 	const struct pound_rows *rows;
@@ -20,6 +30,8 @@ struct sources {
 	struct pound_closed_results closed; /* of chaos.c, given rows enough */
 	bool corrected;                     /* the noise is known */
 	double *scratch;
+	struct level level[POUND_LEVELS];
+	struct pound_accuracy *accuracy;
 };
 
 static bool always(const struct sources *s)
@@ -73,6 +85,43 @@ static void with_excitation(const struct sources *s, struct pound_estimate *into
 	copy(s, s->pick_freeze.with_signal, into);
 }
 
+static double half(struct pound_estimate estimate)
+{
+	return 0.5 * (estimate.high - estimate.low);
+}
+
+/* The half widths that the first n/8, n/4 and n/2 rows give by chaos.c, as it has left its scratch, and by pick-freeze;
+ * those of all rows are the indexes' own. */
+static void levels_fill(struct sources *s, uint64_t seed)
+{
+	const int d = s->rows->n_inputs;
+	for (int k = 0; k < POUND_LEVELS - 1; k++) {
+		struct level *level = &s->level[k];
+		struct pound_closed_results closed;
+		if (level->kept < POUND_ROWS_MIN)
+			continue;
+		pound_chaos_first_rows(s->rows, level->kept, s->scratch, &closed);
+		for (int j = 0; j < d; j++) {
+			level->closed.first[j] = half(closed.first[j]);
+			level->closed.total[j] = half(closed.total[j]);
+		}
+	}
+	for (int k = 0; k < POUND_LEVELS - 1; k++) {
+		struct level *level = &s->level[k];
+		struct pound_estimate estimates[2 * POUND_INPUTS_MAX];
+		struct pound_rows part = *s->rows;
+		part.n_rows = level->kept;
+		if (level->kept < POUND_ROWS_MIN)
+			continue;
+		pound_sobol_estimates(&part, pound_estimator_row(0), s->corrected, seed, RESAMPLES_FEW, s->scratch,
+		                      estimates);
+		for (int j = 0; j < d; j++) {
+			level->pick_freeze.first[j] = half(estimates[j]);
+			level->pick_freeze.total[j] = half(estimates[d + j]);
+		}
+	}
+}
+
 /* Of two estimates of every input the one with the narrower interval.  Widths from a few groups of rows scatter by a
  * quarter: the narrower of two would be too narrow, so the second has to be narrower by more than that. */
 static void narrower(const struct sources *s, const struct pound_estimate *p, const struct pound_estimate *q,
@@ -83,23 +132,46 @@ static void narrower(const struct sources *s, const struct pound_estimate *p, co
 		into[j] = factor * (q[j].high - q[j].low) < p[j].high - p[j].low ? q[j] : p[j];
 }
 
+static bool same(struct pound_estimate p, struct pound_estimate q)
+{
+	return p.value == q.value && p.high == q.high;
+}
+
 static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
+	const int d = s->rows->n_inputs;
 	struct pound_estimate local[POUND_INPUTS_MAX];
 	// neighbours in one input say nothing where they are arranged in the others
-	if (s->sampling->quasi_random) {
-		narrower(s, s->closed.first, s->corrected ? p->first : p->first_raw, into);
-		return;
+	const bool neighbours = !s->sampling->quasi_random;
+	if (neighbours)
+		pound_local_first(s->rows, s->sampling->u, s->corrected, s->scratch, local);
+	narrower(s, s->closed.first, neighbours ? local : s->corrected ? p->first : p->first_raw, into);
+	for (int k = 0; k < POUND_LEVELS - 1; k++) {
+		const struct level *level = &s->level[k];
+		double other[POUND_INPUTS_MAX];
+		if (level->kept < POUND_ROWS_MIN)
+			continue;
+		if (neighbours)
+			pound_local_first_rows(s->rows, level->kept, s->scratch, other);
+		else
+			memcpy(other, level->pick_freeze.first, sizeof other);
+		for (int j = 0; j < d; j++)
+			s->accuracy->inputs[j].first_half[k] =
+			    same(into[j], s->closed.first[j]) ? level->closed.first[j] : other[j];
 	}
-	pound_local_first(s->rows, s->sampling->u, s->corrected, s->scratch, local);
-	narrower(s, s->closed.first, local, into);
 }
 
 static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
 	narrower(s, s->closed.total, s->corrected ? p->total : p->total_raw, into);
+	for (int k = 0; k < POUND_LEVELS - 1; k++) {
+		const struct level *level = &s->level[k];
+		for (int j = 0; j < s->rows->n_inputs && level->kept >= POUND_ROWS_MIN; j++)
+			s->accuracy->inputs[j].total_half[k] =
+			    same(into[j], s->closed.total[j]) ? level->closed.total[j] : level->pick_freeze.total[j];
+	}
 }
 
 static void shapley(const struct sources *s, struct pound_estimate *into)
@@ -172,6 +244,18 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 		undefined(&indices->share[POUND_SHARE_FIRST_ONE], 1);
 }
 
+/* How many of the rows that count are among the first n/8, n/4, n/2 and n of the design, and no half width yet. */
+static void levels_init(struct sources *s, int n_rows)
+{
+	for (int k = 0; k < POUND_LEVELS; k++) {
+		int *kept = &s->level[k].kept;
+		while (*kept < s->rows->n_rows && s->rows->row[*kept] < n_rows >> (POUND_LEVELS - 1 - k))
+			++*kept;
+		for (int j = 0; j < s->rows->n_inputs; j++)
+			s->accuracy->inputs[j].first_half[k] = s->accuracy->inputs[j].total_half[k] = NAN;
+	}
+}
+
 /* Whether taking the noise away has left an index without a variance to be a share of. */
 static bool lost_in_noise(const struct pound_indices *indices, int n_inputs)
 {
@@ -195,6 +279,7 @@ static unsigned notes_of(const bool said[POUND_N_NOTES])
 size_t pound_variants_scratch(const struct pound_sample_values *shape, int estimator)
 {
 	const size_t sizes[] = {pound_sobol_estimates_scratch(shape, pound_estimator_row(estimator)),
+	                        pound_sobol_estimates_scratch(shape, pound_estimator_row(0)),
 	                        pound_correction_scratch(shape), pound_local_scratch(shape),
 	                        pound_chaos_scratch(shape)};
 	size_t largest = 0;
@@ -209,7 +294,8 @@ size_t pound_variants_scratch(const struct pound_sample_values *shape, int estim
  *          sampling  -                                       the design, and whether noise can be told apart
  *          seed      -                                       of the resamples
  * Returns  value     rows dropped: one of their runs has no output
- *          indices   all but the accuracy; indexes (n_inputs) each, NAN with a note where undefined
+ *          indices   all, and of the accuracy the half widths from the first rows; indexes (n_inputs) each, NAN with a note
+ *                    where undefined
  * Memory   scratch   (pound_variants_scratch)
  *
  * Valid    Any design.  With fewer than 30 rows S1 and ST are those of pick-freeze: over six test
@@ -226,18 +312,22 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	struct sources s = {.rows = &rows,
 	                    .sampling = sampling,
 	                    .corrected = values->n_signals > 1 && sampling->random,
-	                    .scratch = scratch + pound_rows_scratch(values)};
+	                    .scratch = scratch + pound_rows_scratch(values),
+	                    .accuracy = &indices->accuracy};
 	// of outputs computed elsewhere the noise is known by its variances, which are all there is if samples do not share it
 	const bool elsewhere = values->variance;
 	if (elsewhere)
 		s.corrected = sampling->random && sampling->fresh_signals;
 	const bool varies = pound_sobol_summary(&rows, indices);
+	levels_init(&s, values->n_rows);
 	if (varies) {
 		pound_correction_estimates(&rows, seed,
 		                           sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES, s.scratch,
 		                           &s.pick_freeze);
-		if (rows_enough(&s))
+		if (rows_enough(&s)) {
 			pound_chaos_indices(&rows, sampling->u, s.corrected, s.scratch, &s.closed);
+			levels_fill(&s, seed);
+		}
 		indices->sets = s.closed.sets;
 		columns_fill(&s, seed, indices);
 		if (elsewhere) // the number of replicates is not known

@@ -6,8 +6,11 @@
 
 #include "schema/study_json.h"
 
-/* The sizes of the errors, and which is larger than all others together. */
-static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE])
+/* The sizes of the errors, and which is larger than all others together.
+ *
+ * Given    index   the one that the sampling and the integration may be wrong about most, in words
+ */
+static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE], const char *index)
 {
 	enum pound_error dominant = pound_accuracy_dominant(errors);
 	writer_object(w, "errors", WRITER_LINE);
@@ -17,17 +20,41 @@ static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE]
 	writer_text(w, "dominant", pound_error_name(dominant));
 	if (dominant == POUND_ERROR_NONE)
 		return;
-	static const char *const sentences[] = {
+	static const struct {
+		const char *sentence;
+		bool of_index;
+	} notes[] = {
 	    [POUND_ERROR_SAMPLING] =
-	        "Too few rows are the largest error: an interval reaches %.2g to either side of its raw index.",
+	        {"Too few rows are the largest error: an interval reaches %.2g to either side of ", true},
 	    [POUND_ERROR_EXCITATION] =
-	        "Too few signals for each row are the largest error: they may move a raw index by up to %.2g.",
-	    [POUND_ERROR_INTEGRATION] = "Inexact runs are the largest error: they may move a raw index by %.2g.",
-	    [POUND_ERROR_FAILED_ROWS] =
-	        "Rows without a result are the largest error: a share of %.2g was left out."};
-	char sentence[200];
-	snprintf(sentence, sizeof sentence, sentences[dominant], errors[dominant]);
-	writer_text(w, "note", sentence);
+	        {"Too few signals for each row are the largest error: their noise widens an "
+	         "interval by up to %.2g to either side",
+	         false},
+	    [POUND_ERROR_INTEGRATION] = {"Inexact runs are the largest error: up to %.2g in ", true},
+	    [POUND_ERROR_FAILED_ROWS] = {
+	        "Rows without a result are the largest error: a share of %.2g was left out", false}};
+	char note[400];
+	int n = snprintf(note, sizeof note, notes[dominant].sentence, errors[dominant]);
+	snprintf(note + n, sizeof note - (size_t)n, "%s.", notes[dominant].of_index ? index : "");
+	writer_text(w, "note", note);
+}
+
+/* The index of an output that is the least certain: by its interval, or by the integration where that dominates. */
+static void least_certain(const struct pound_study *study, const struct pound_accuracy *accuracy, char *text,
+                          size_t size)
+{
+	const bool runs = pound_accuracy_dominant(accuracy->errors) == POUND_ERROR_INTEGRATION;
+	double worst = -1;
+	for (int j = 0; j < study->n_inputs; j++) {
+		double of[] = {
+		    runs ? accuracy->inputs[j].first_change : accuracy->inputs[j].first_half[POUND_LEVELS - 1],
+		    runs ? accuracy->inputs[j].total_change : accuracy->inputs[j].total_half[POUND_LEVELS - 1]};
+		for (int k = 0; k < 2; k++)
+			if (of[k] > worst) {
+				worst = of[k];
+				snprintf(text, size, "%s of %s", k ? "ST" : "S1", study->inputs[j].name);
+			}
+	}
 }
 
 static void write_halves(struct writer *w, const char *name, const struct pound_accuracy *accuracy,
@@ -66,14 +93,16 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 	for (int j = 0; j < study->n_inputs; j++) {
 		writer_object(w, NULL, WRITER_LINE);
 		writer_text(w, "name", study->inputs[j].name);
-		writer_number(w, "S1_raw_integration", accuracy->inputs[j].first_change);
-		writer_number(w, "ST_raw_integration", accuracy->inputs[j].total_change);
-		write_halves(w, "S1_raw_half_widths", accuracy, accuracy->inputs[j].first_half);
-		write_halves(w, "ST_raw_half_widths", accuracy, accuracy->inputs[j].total_half);
+		writer_number(w, "S1_integration", accuracy->inputs[j].first_change);
+		writer_number(w, "ST_integration", accuracy->inputs[j].total_change);
+		write_halves(w, "S1_half_widths", accuracy, accuracy->inputs[j].first_half);
+		write_halves(w, "ST_half_widths", accuracy, accuracy->inputs[j].total_half);
 		writer_end(w);
 	}
 	writer_end(w);
-	write_errors(w, accuracy->errors);
+	char index[160] = "an index";
+	least_certain(study, accuracy, index, sizeof index);
+	write_errors(w, accuracy->errors, index);
 	writer_end(w);
 }
 
@@ -114,7 +143,7 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 	writer_whole(w, "runs_checked", checked);
 	writer_number(w, "difference_median", median);
 	writer_number(w, "difference_largest", largest);
-	write_errors(w, errors);
+	write_errors(w, errors, "an index");
 	writer_end(w);
 }
 

@@ -14,21 +14,23 @@ enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
 
 struct estimated {
 	struct pound_indices of;
-	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];
+	struct pound_estimate index[POUND_N_INDEXES][POUND_INPUTS_MAX];
 };
 
+/* All indexes and their accuracy, of outputs over function_design(n_rows, seed). */
 static struct estimated *estimated_of(const struct pound_sample_values *values, struct pound_checks checks,
                                       uint64_t seed)
 {
 	struct estimated *e = calloc(1, sizeof *e);
-	size_t n = pound_accuracy_scratch(values, checks.n);
-	double *scratch = malloc(sizeof *scratch * n);
-	e->of.index[POUND_S1_RAW] = e->first;
-	e->of.index[POUND_ST_RAW] = e->total;
-	// few resamples: what is looked at here are not the ends of the intervals of all rows
-	int dropped = pound_sobol_indices(values, seed, 400, scratch, &e->of);
-	pound_accuracy_estimate(values, checks, dropped, seed, scratch, &e->of);
-	free(scratch);
+	size_t n = pound_variants_scratch(values, 0);
+	double *scratch = malloc(sizeof *scratch * (n + (size_t)checks.n));
+	double *u = function_design(values->n_rows, seed);
+	const struct pound_sampling sampling = {.u = u, .random = true};
+	for (int k = 0; k < POUND_N_INDEXES; k++)
+		e->of.index[k] = e->index[k];
+	int dropped = pound_variants_indices(values, &sampling, seed, scratch, &e->of);
+	pound_accuracy_estimate(values, checks, dropped, scratch, &e->of);
+	free(scratch), free(u);
 	return e;
 }
 
@@ -71,7 +73,7 @@ static void runs_that_agree_move_no_index(void **state)
 		check.numerator[k] = values.numerator[7 * SAMPLES + 2];
 		check.denominator[k] = values.denominator[7 * SAMPLES + 2];
 	}
-	struct estimated *e = estimated_of(&values, (struct pound_checks){1, &check}, 1);
+	struct estimated *e = estimated_of(&values, (struct pound_checks){1, &check}, 3);
 	for (int j = 0; j < D; j++) {
 		check_near(e->of.accuracy.inputs[j].first_change, 0, 0);
 		check_near(e->of.accuracy.inputs[j].total_change, 0, 0);
@@ -113,10 +115,10 @@ static int moved_further(const struct function *f, int n_rows, double share, uin
 	struct estimated *with = estimated_of(&values, (struct pound_checks){n_checks, check}, seed);
 	struct estimated *without = estimated_of(&clean, (struct pound_checks){0, NULL}, seed);
 	for (int j = 0; j < D; j++) {
-		further +=
-		    fabs(with->first[j].value - without->first[j].value) > with->of.accuracy.inputs[j].first_change;
-		further +=
-		    fabs(with->total[j].value - without->total[j].value) > with->of.accuracy.inputs[j].total_change;
+		further += fabs(with->index[POUND_S1][j].value - without->index[POUND_S1][j].value) >
+		           with->of.accuracy.inputs[j].first_change;
+		further += fabs(with->index[POUND_ST][j].value - without->index[POUND_ST][j].value) >
+		           with->of.accuracy.inputs[j].total_change;
 	}
 	free(with), free(without), free(noisy), free(check);
 	function_values_free(&clean);
@@ -126,7 +128,7 @@ static int moved_further(const struct function *f, int n_rows, double share, uin
 static void indexes_move_no_more_than_stated_when_noise_is_added(void **state)
 {
 	(void)state;
-	enum { SEEDS = 40, N = 250 };
+	enum { SEEDS = 40, N = 100 };
 	static const double shares[] = {1e-8, 1e-3, 0.05};
 	for (int k = 0; k < 3; k++) {
 		int further = 0;
@@ -141,15 +143,14 @@ static void half_widths_fall_with_the_root_of_the_rows(void **state)
 {
 	(void)state;
 	struct pound_sample_values values =
-	    function_values(function_named("ishigami"), 4096, 5, (struct function_noise){.n_signals = 1});
-	struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 1);
+	    function_values(function_named("ishigami"), 2048, 5, (struct function_noise){.n_signals = 1});
+	struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 5);
 	const struct pound_accuracy *accuracy = &e->of.accuracy;
-	assert_int_equal(accuracy->rows[0], 512);
-	assert_int_equal(accuracy->rows[3], 4096);
-	check_near(accuracy->inputs[0].first_half[3], 0.5 * (e->first[0].high - e->first[0].low), 0);
-	// half widths of 400 resamples scatter by 5 %, of heavy tails by more: the slope by 0.05
+	assert_int_equal(accuracy->rows[0], 256);
+	assert_int_equal(accuracy->rows[3], 2048);
+	// half widths of 256 rows scatter by 5 % (more where outputs have heavy tails): the slope by some 0.05
 	check_near(accuracy->slope, -0.5, 0.1);
-	check_near(accuracy->rows_to_halve / 4096, exp2(-1 / accuracy->slope), 1e-12);
+	check_near(accuracy->rows_to_halve / 2048, exp2(-1 / accuracy->slope), 1e-12);
 	// nothing was checked, and there is one signal only
 	assert_true(isnan(accuracy->errors[POUND_ERROR_INTEGRATION]));
 	assert_true(isnan(accuracy->errors[POUND_ERROR_EXCITATION]));
@@ -158,12 +159,71 @@ static void half_widths_fall_with_the_root_of_the_rows(void **state)
 	function_values_free(&values);
 }
 
+static double half(struct pound_estimate estimate)
+{
+	return 0.5 * (estimate.high - estimate.low);
+}
+
+/* Of rows and of groups of rows, in a design with neighbours and in a quasi-random one. */
+static void half_widths_of_all_rows_are_those_of_the_indexes(void **state)
+{
+	(void)state;
+	enum { N = 256 };
+	for (int k = 0; k < 2; k++) {
+		struct pound_sample_values values =
+		    function_values(function_named("ishigami"), N, 5, (struct function_noise){.n_signals = 1});
+		values.grouping = (struct pound_grouping){k ? 16 : 0, 1};
+		double *u = function_design(N, 5),
+		       *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
+		struct pound_rows rows;
+		struct pound_closed_results all, first_rows;
+		struct pound_estimate first[D];
+		double from_all[D], from_half[D];
+		pound_rows_init(&rows, &values, scratch);
+		double *rest = scratch + pound_rows_scratch(&values);
+		pound_chaos_indices(&rows, u, false, rest, &all);
+		pound_chaos_first_rows(&rows, N, rest, &first_rows);
+		for (int j = 0; j < D; j++) {
+			check_near(half(first_rows.first[j]), half(all.first[j]), 1e-15);
+			check_near(half(first_rows.total[j]), half(all.total[j]), 1e-15);
+		}
+		pound_local_first(&rows, u, false, rest, first);
+		pound_local_first_rows(&rows, N, rest, from_all);
+		pound_local_first_rows(&rows, N / 2, rest, from_half);
+		for (int j = 0; j < D; j++) {
+			check_near(from_all[j], half(first[j]), 1e-15);
+			// half the rows have intervals wider by sqrt(2), from 16 groups give or take a third
+			assert_true(from_half[j] > from_all[j] && from_half[j] < 2 * from_all[j]);
+		}
+		free(u), free(scratch);
+		function_values_free(&values);
+	}
+}
+
+/* Noise that is taken away from the indexes is still in their intervals: with almost nothing else it is the largest
+ * error, and where the excitation is not random it is none. */
+static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
+{
+	(void)state;
+	static const double shares[] = {1e-4, 4};
+	for (int k = 0; k < 2; k++) {
+		struct pound_sample_values values = function_values(
+		    function_named("ishigami"), 200, 7, (struct function_noise){.n_signals = 4, .share = shares[k]});
+		struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 7);
+		const double *errors = e->of.accuracy.errors;
+		assert_int_equal(pound_accuracy_dominant(errors), k ? POUND_ERROR_EXCITATION : POUND_ERROR_SAMPLING);
+		assert_true(errors[POUND_ERROR_EXCITATION] > 0);
+		free(e);
+		function_values_free(&values);
+	}
+}
+
 static void few_rows_and_constant_outputs_have_no_slope(void **state)
 {
 	(void)state;
 	struct pound_sample_values values =
 	    function_values(function_named("ishigami"), 12, 5, (struct function_noise){.n_signals = 1});
-	struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 1);
+	struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 5);
 	static const int rows[POUND_LEVELS] = {0, 0, 0, 12};
 	assert_memory_equal(e->of.accuracy.rows, rows, sizeof rows);
 	assert_true(isnan(e->of.accuracy.slope) && isnan(e->of.accuracy.rows_to_halve));
@@ -171,7 +231,7 @@ static void few_rows_and_constant_outputs_have_no_slope(void **state)
 	double *constant = calloc(12 * SAMPLES, sizeof *constant);
 	struct pound_sample_values flat = values;
 	flat.numerator = constant;
-	e = estimated_of(&flat, (struct pound_checks){0, NULL}, 1);
+	e = estimated_of(&flat, (struct pound_checks){0, NULL}, 5);
 	assert_true(isnan(e->of.accuracy.slope) && isnan(e->of.accuracy.variance_share));
 	assert_true(isnan(e->of.accuracy.errors[POUND_ERROR_SAMPLING]));
 	free(e), free(constant);
@@ -275,6 +335,8 @@ CHECK_MAIN(cmocka_unit_test(differences_of_runs_come_out_relative_and_as_a_varia
            cmocka_unit_test(runs_that_agree_move_no_index),
            cmocka_unit_test(indexes_move_no_more_than_stated_when_noise_is_added),
            cmocka_unit_test(half_widths_fall_with_the_root_of_the_rows),
+           cmocka_unit_test(half_widths_of_all_rows_are_those_of_the_indexes),
+           cmocka_unit_test(noise_of_few_signals_is_an_error_in_the_intervals),
            cmocka_unit_test(few_rows_and_constant_outputs_have_no_slope),
            cmocka_unit_test(the_dominant_error_is_larger_than_the_others_together),
            cmocka_unit_test(checked_runs_agree_and_are_counted_apart),

@@ -40,8 +40,8 @@ static void error_estimates_stand_by_their_output_and_input(void **state)
 	becomes(
 	    "{\"cells\": [{\"sweep\": {}, \"outputs\": [{\"name\": \"impulse\", \"inputs\": [{\"name\": \"a\"}, "
 	    "{\"name\": \"b\"}], \"accuracy\": {\"slope\": -0.5, \"rows\": [1, 2], \"inputs\": "
-	    "[{\"S1_raw_integration\": 1}, {\"S1_raw_integration\": 2}], \"errors\": {\"sampling\": 3}}}]}]}",
-	    "output.name,output.accuracy.slope,name,accuracy.S1_raw_integration\r\n"
+	    "[{\"S1_integration\": 1}, {\"S1_integration\": 2}], \"errors\": {\"sampling\": 3}}}]}]}",
+	    "output.name,output.accuracy.slope,name,accuracy.S1_integration\r\n"
 	    "impulse,-0.5,a,1\r\nimpulse,-0.5,b,2\r\n");
 }
 

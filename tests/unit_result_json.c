@@ -223,16 +223,16 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 	static const char accuracy[] = "/cells/1/outputs/0/accuracy";
 	check_near(reading_number(r, "%s/runs_checked", accuracy), 32, 0);
 	check_near(reading_number(r, "%s/rows_to_halve", accuracy), 400, 0);
-	check_near(reading_number(r, "%s/inputs/1/ST_raw_integration", accuracy), 0.375, 0);
+	check_near(reading_number(r, "%s/inputs/1/ST_integration", accuracy), 0.375, 0);
 	assert_int_equal(reading_count(r, "%s/rows", accuracy), 2);
-	assert_int_equal(reading_count(r, "%s/inputs/1/S1_raw_half_widths", accuracy), 2);
-	check_near(reading_number(r, "%s/inputs/1/S1_raw_half_widths/0", accuracy), 0.75, 0);
+	assert_int_equal(reading_count(r, "%s/inputs/1/S1_half_widths", accuracy), 2);
+	check_near(reading_number(r, "%s/inputs/1/S1_half_widths/0", accuracy), 0.75, 0);
 	check_near(reading_number(r, "%s/errors/sampling", accuracy), 0.375, 0);
 	assert_true(isnan(reading_number(r, "%s/errors/excitation", accuracy)));
 	assert_string_equal(reading_text(r, "%s/dominant", accuracy), "sampling");
-	assert_string_equal(
-	    reading_text(r, "%s/note", accuracy),
-	    "Too few rows are the largest error: an interval reaches 0.38 to either side of its raw index.");
+	assert_string_equal(reading_text(r, "%s/note", accuracy),
+	                    "Too few rows are the largest error: an interval reaches 0.38 to either side of S1 "
+	                    "of /oscillators/1/mass_kg.");
 	// the worst of all outputs of all cells; runs are those of the cells
 	check_near(reading_number(r, "/accuracy/runs_checked"), 31 + 33, 0);
 	check_near(reading_number(r, "/accuracy/difference_largest"), 4e-9, 0);
