@@ -439,7 +439,9 @@ struct http *http_start(struct server *server)
 	server->connections = http ? connections_start(server->store, resume) : NULL;
 	if (server->connections) {
 		allow_files();
-		getrandom(&random, sizeof random, 0);
+		// without it the numbers of two starts are alike, and no more
+		if (getrandom(&random, sizeof random, 0) < 0)
+			random = 0;
 		http->number = (unsigned long long)random << 32;
 		http->server = server;
 		http->daemon = listen_at(server, &address);

@@ -266,7 +266,9 @@ bool store_copy(const char *path, const char *to)
 static int64_t id_next(struct store *store, int64_t now)
 {
 	uint32_t bits = 0;
-	getrandom(&bits, sizeof bits, 0);
+	// without them the id is only easier to guess
+	if (getrandom(&bits, sizeof bits, 0) < 0)
+		bits = 0;
 	int64_t id = now << 20 | (bits & 0xfffff);
 	return store->id_last = id > store->id_last ? id : store->id_last + 1;
 }

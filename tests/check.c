@@ -13,6 +13,17 @@ void check_near_at(double got, double want, double allowed, const char *what, co
 	_fail(file, line);
 }
 
+void check_report(const char *format, ...)
+{
+	va_list values;
+	va_start(values, format);
+	printf("# ");
+	vprintf(format, values);
+	va_end(values);
+	printf("\n");
+	fflush(stdout);
+}
+
 int check_count(int brief, int soak)
 {
 	return getenv("POUND_SOAK") ? soak : brief;

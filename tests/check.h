@@ -19,6 +19,9 @@
 /* |got - want| <= allowed, all finite; prints both, the difference and the allowance when not. */
 void check_near_at(double got, double want, double allowed, const char *what, const char *file, int line);
 
+/* A line of what a test found, which tests/run-tests shows: counts, times. */
+void check_report(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 /* How often to try: `brief` in make test, `soak` in make soak (POUND_SOAK is set). */
 int check_count(int brief, int soak);
 

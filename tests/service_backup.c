@@ -71,9 +71,9 @@ static void a_copy_made_while_studies_run_is_a_whole_database(void **state)
 		program_expect(&outcome, 1); // it is there
 		program_free(&outcome);
 	}
-	print_message("copies while %d studies were submitted and run: %d, whole %d, with %d results, all of the "
-	              "same bytes\n",
-	              n_ids, COPIES, COPIES, results);
+	check_report("copies while %d studies were submitted and run: %d, whole %d, with %d results, all of the "
+	             "same bytes",
+	             n_ids, COPIES, COPIES, results);
 	assert_true(results > COPIES);
 	// a server on the last copy runs what was not finished in it
 	service_stop(service);

@@ -120,9 +120,9 @@ static void a_flipped_bit_is_refused_or_reported_and_never_served(void **state)
 		snprintf(removal, sizeof removal, "%s-wal", copy);
 		unlink(removal);
 	}
-	print_message(
+	check_report(
 	    "flipped bits: %d; databases refused %d, documents the same %d, reported as damaged %d, missing %d, "
-	    "wrong %d; studies with blocks left out %d\n",
+	    "wrong %d; studies with blocks left out %d",
 	    count.copies, count.refused, count.same, count.damaged, count.missing, count.wrong, count.unread);
 	assert_int_equal(count.wrong, 0);
 	assert_true(count.refused > 0 && count.damaged > 0);

@@ -127,7 +127,7 @@ static void a_full_disk_refuses_studies_answers_questions_and_is_survived(void *
 {
 	struct service *service = *state;
 	if (!service) {
-		print_message("needs root, for a disk of its own\n");
+		check_report("needs root, for a disk of its own");
 		skip();
 	}
 	char *small = service_study(20, 1, 1), *large = service_study(ROWS, SIGNALS, SEED);
@@ -164,9 +164,9 @@ static void a_full_disk_refuses_studies_answers_questions_and_is_survived(void *
 	assert_string_equal(service_timeless(answer.body), want);
 	char *check = service_text(service, "PRAGMA integrity_check");
 	assert_string_equal(check, "ok");
-	print_message(
+	check_report(
 	    "full disk: studies refused 3 of 3, questions answered %d of %d, a kill and a removal meanwhile; the "
-	    "study that ran goes on when there is room, to the same bytes\n",
+	    "study that ran goes on when there is room, to the same bytes",
 	    reads, reads);
 	answer_free(&answer);
 	free(check);

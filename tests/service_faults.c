@@ -61,10 +61,11 @@ static void a_disk_that_fails_by_chance_loses_nothing_and_the_server_recovers_by
 		post(service, i, accepted);
 	long failed = faults->disk_failed;
 	faults->write_fails = faults->sync_fails = 0;
-	print_message("1 %% of writes and 5 %% of syncs fail: %ld of %ld calls; studies accepted %d, refused %d",
-	              failed, (long)faults->disk_calls, accepted->n, accepted->refused);
+	long calls = faults->disk_calls;
 	recover(service, accepted);
-	print_message(", lost 0\n");
+	check_report(
+	    "1 %% of writes and 5 %% of syncs fail: %ld of %ld calls; studies accepted %d, lost 0, refused %d",
+	    failed, calls, accepted->n, accepted->refused);
 	assert_true(failed > n / 20 && accepted->refused > 0 && accepted->n > n / 2);
 	service_stop(service);
 	faults_free(faults);
@@ -96,12 +97,11 @@ static void every_call_on_the_disk_may_fail(void **state)
 		while (faults->disk_fails_in > 0)
 			post(service, at, accepted);
 	}
-	print_message(
-	    "the n-th call on the disk fails, n = 1 ... %d: starts refused %d; in service %ld failures, "
-	    "studies accepted %d, refused %d",
-	    n, refused_starts, faults->disk_failed - before, accepted->n, accepted->refused);
+	long failed = faults->disk_failed - before;
 	recover(service, accepted);
-	print_message(", lost 0\n");
+	check_report("the n-th call on the disk fails, n = 1 ... %d: starts refused %d; in service %ld failures, "
+	             "studies accepted %d, lost 0, refused %d",
+	             n, refused_starts, failed, accepted->n, accepted->refused);
 	service_stop(service);
 	faults_free(faults);
 	service_free(service);
@@ -140,9 +140,8 @@ static int starve(const struct service *service, struct faults *faults, const st
 			assert_true(answer.status == 200 || answer.status == 201);
 		answer_free(&answer);
 	}
-	print_message(
-	    "the n-th allocation fails: %-10s %4d failures, %3d answered 500 or 503, %3d not answered\n",
-	    question->name, failed, refused, unanswered);
+	check_report("the n-th allocation fails: %-10s %4d failures, %3d answered 500 or 503, %3d not answered",
+	             question->name, failed, refused, unanswered);
 	free(study);
 	return failed;
 }
@@ -189,7 +188,7 @@ static void every_allocation_of_a_request_may_fail(void **state)
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'failed'"), 0);
 	char *check = service_text(service, "PRAGMA integrity_check");
 	assert_string_equal(check, "ok");
-	print_message("%d allocations failed; not given back in a round %ld\n", failed, left);
+	check_report("%d allocations failed; not given back in a round %ld", failed, left);
 	assert_true(failed > 200 / step);
 	assert_true(left < 5);
 	service_stop(service);
@@ -222,7 +221,7 @@ static void every_allocation_of_the_start_may_fail(void **state)
 		if (status == 0)
 			service_stop(service);
 	}
-	print_message("the n-th allocation fails at %d starts: %d refused, the others serve\n", starts, refused);
+	check_report("the n-th allocation fails at %d starts: %d refused, the others serve", starts, refused);
 	faults_free(faults);
 	service_free(service);
 }
@@ -314,8 +313,8 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 		old += version == 1;
 		free(now);
 	}
-	print_message(
-	    "migration: killed at %d places, the database was of the old version after %d, of the new after %d\n",
+	check_report(
+	    "migration: killed at %d places, the database was of the old version after %d, of the new after %d",
 	    kills, old, kills - old);
 	assert_true(old > 0 && old < kills);
 	for (int i = 1; i <= OLD_STUDIES; i++) {

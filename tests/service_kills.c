@@ -176,9 +176,9 @@ static void kills_lose_no_study_double_none_and_change_no_byte(void **state)
 	}
 	service_stop(service);
 	resumed = service_number(service, "SELECT count(*) FROM study WHERE attempt > 1");
-	print_message(
+	check_report(
 	    "kills: %d; studies accepted %d, lost 0; %lld went on after a kill, %d results seen before the last; "
-	    "results that differ %d\n",
+	    "results that differ %d",
 	    n, n_submissions, (long long)resumed, seen, differ);
 	assert_int_equal(differ, 0);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), n_submissions);

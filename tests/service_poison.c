@@ -96,8 +96,8 @@ static void a_study_that_crashes_the_server_three_times_fails_and_the_others_fin
 	int crashes = crashes_of(service, signals, 3);
 	char *error = service_text(service, "SELECT error FROM study WHERE status = 'failed'");
 	int64_t succeeded = service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'");
-	print_message("a poisonous study among %d: crashes %d, succeeded %lld, failed: %s\n", STUDIES, crashes,
-	              (long long)succeeded, error);
+	check_report("a poisonous study among %d: crashes %d, succeeded %lld, failed: %s", STUDIES, crashes,
+	             (long long)succeeded, error);
 	assert_int_equal(crashes, 3);
 	assert_int_equal(succeeded, STUDIES - 1);
 	assert_int_equal(strncmp(error, "poison-study: ", 14), 0);

@@ -295,9 +295,9 @@ static struct damage cut_of(bool normal, int n)
 	struct record record = recorded(normal);
 	random_state = 1;
 	struct damage damage = cut(&record, n);
-	print_message(
+	check_report(
 	    "power cuts, synchronous=%s: %d in a record of %d syncs (%d of the database); databases damaged %d, "
-	    "studies or results lost in %d; %d opened by the server\n",
+	    "studies or results lost in %d; %d opened by the server",
 	    normal ? "NORMAL" : "FULL", damage.cuts, damage.syncs, damage.checkpoints, damage.corrupt,
 	    damage.lost, damage.opened);
 	assert_int_equal(damage.cuts, n);

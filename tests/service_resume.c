@@ -217,8 +217,8 @@ static void a_server_with_ten_thousand_queued_studies_is_soon_ready(void **state
 	clock_gettime(CLOCK_MONOTONIC, &start);
 	service_start(service, 1);
 	clock_gettime(CLOCK_MONOTONIC, &end);
-	print_message("start with 10,000 studies in the queue: %.2f s\n",
-	              (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec));
+	check_report("start with 10,000 studies in the queue: %.2f s",
+	             (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec));
 	// without their documents they fail, but not all of them are looked at when it listens
 	assert_true(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'") > 0);
 	service_stop(service);

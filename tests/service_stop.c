@@ -32,7 +32,7 @@ static double stop_s(struct service *service)
 
 static void judge(const char *what, double s, double s_max)
 {
-	print_message("SIGTERM %s: ended with 0 after %.2f s\n", what, s);
+	check_report("SIGTERM %s: ended with 0 after %.2f s", what, s);
 	if (check_count(0, 1))
 		assert_true(s <= s_max);
 }
@@ -136,10 +136,10 @@ static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **stat
 	}
 	for (int i = 0; i < load.n; i++)
 		assert_true(service_wait(service, load.ids[i], "succeeded", 0));
-	print_message(
-	    "%d stops under %d clients: studies accepted %d, lost 0; then the port was closed for %d requests; ",
-	    n, CLIENTS, load.n, load.unanswered);
-	judge("under load, the longest", longest, 30);
+	check_report(
+	    "%d stops under %d clients: studies accepted %d, lost 0; then the port was closed for %d requests", n,
+	    CLIENTS, load.n, load.unanswered);
+	judge("under load, the longest of them", longest, 30);
 	assert_true(load.n >= n * CLIENTS);
 }
 
