@@ -19,28 +19,28 @@ static const double GAUSS_WEIGHT[GAUSS / 2] = {0.249147045813402785, 0.233492536
 
 /* Adds the work of a step, per mass of the left body [m2/s2].
  *
- * Given    s, dt   the step's series;  time: the share of it that was gone
- *          mass    of each body, per mass of the left
+ * Given    s       the step's series;  time: the share of it that was gone
  * Returns  g       work_in: by the ground; work_out: by the dashpots, on the laws' springs, on the contact
  */
-static void energy_add(struct lanes *g, const struct series *s, vd dt, vd time, vi touching, const vd mass[2])
+static void energy_add(struct lanes *g, const struct series *s, vd time, bool paired, bool touching)
 {
-	vd zero = vsplat(0), in = zero, out = zero;
-	vd stiff = vselect(touching, g->contact_stiffness, zero),
-	   dash = vselect(touching, g->contact_damping, zero);
+	vd in = vsplat(0), out = in, dt = g->dt;
+	const vd mass[2] = {vsplat(1), g->right_mass};
 	for (int j = 0; j < GAUSS; j++) {
 		double node = j < GAUSS / 2 ? -GAUSS_NODE[j] : GAUSS_NODE[j - GAUSS / 2];
 		vd weight = vsplat(0.5 * GAUSS_WEIGHT[j % (GAUSS / 2)]);
 		vd t = vsplat(0.5 + 0.5 * node) * time;
 		vd ground = vfma(g->slope, t * dt, g->ground);
-		for (int i = 0; i < 2; i++) {
+		for (int i = 0; i < (paired ? 2 : 1); i++) {
 			vd u = power_at(&s->body[i].u, s->order, t), v = power_at(&s->body[i].v, s->order, t) / dt;
-			vd spring = vfma(g->stiffness[i], u, g->offset[i]);
-			in = vfma(weight * mass[i] * v, -g->drive[i] * ground, in);
-			out = vfma(weight * mass[i] * v, vfma(g->damping[i], v, spring), out);
+			vd spring = vfma(g->body[i].stiffness, u, g->body[i].offset);
+			in = vfma(weight * mass[i] * v, -g->body[i].drive * ground, in);
+			out = vfma(weight * mass[i] * v, vfma(g->body[i].damping, v, spring), out);
 		}
+		if (!touching)
+			continue;
 		vd p = power_at(&s->overlap.u, s->order, t), q = power_at(&s->overlap.v, s->order, t) / dt;
-		out = vfma(weight * q, vfma(stiff, p, dash * q), out);
+		out = vfma(weight * q, vfma(g->contact_stiffness, p, g->contact_damping * q), out);
 	}
 	vd elapsed = time * dt;
 	g->work_in = vfma(elapsed, in, g->work_in);

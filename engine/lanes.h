@@ -1,9 +1,9 @@
 /* lanes.h - W doubles side by side: GCC vectors for W = 4 and 8, plain doubles for W = 1.
  *
  * Every operation acts on each lane alone and rounds once, so the bits of a lane do not depend on W.
- * A mask has all bits of a lane set or none.  Arithmetic and comparisons are the vector types' own; the few operations
- * they do not have stand below for each width as the one instruction it has for them: left to be recognised from a
- * loop over the lanes they came out as dozens. */
+ * Arithmetic is the vector types' own; comparisons give a mask, which has & | ~ and the functions below.  The few
+ * operations that the types do not have stand here for each width as the one instruction it has for them: left to be
+ * recognised from a loop over the lanes they came out as dozens. */
 #ifndef LANES_H
 #define LANES_H
 
@@ -14,51 +14,61 @@
 #define POUND_LANES 1
 #endif
 
-enum { W = POUND_LANES };
+enum {
+	W = POUND_LANES,
+	ROW = 8, /* doubles of a row of memory that is carried in and out of lanes at once: a cache line */
+};
 
 #define LANE_INLINE static inline __attribute__((always_inline))
 
 #if POUND_LANES == 1
 
 typedef double vd;
-typedef int64_t vi;
-#define LANE_COMPARE(a, op, b) (-(vi)((a)op(b)))
-#define LANE(x, l)             (*(&(x) + (l)))
-#define LANE_SPLAT(x)          (x)
-#define LANE_SELECT(m, a, b)   ((m) ? (a) : (b))
-#define LANE_MAX(a, b)         ((a) < (b) ? (b) : (a))
-#define LANE_MIN(a, b)         ((b) < (a) ? (b) : (a))
-#define LANE_ABS(a)            fabs(a)
-#define LANE_FMA(a, b, c)      __builtin_fma(a, b, c)
-#define LANE_SQRT(a)           __builtin_sqrt(a)
-#define LANE_ANY(m)            ((m) != 0)
+typedef uint64_t vm;
+#define LANE_SPLAT(x)        (x)
+#define LANE_LESS(a, b)      (-(vm)((a) < (b)))
+#define LANE_EQUAL(a, b)     (-(vm)((a) == (b)))
+#define LANE_SELECT(m, a, b) ((m) ? (a) : (b))
+#define LANE_MAX(a, b)       ((a) < (b) ? (b) : (a))
+#define LANE_MIN(a, b)       ((b) < (a) ? (b) : (a))
+#define LANE_ABS(a)          fabs(a)
+#define LANE_FMA(a, b, c)    __builtin_fma(a, b, c)
+#define LANE_SQRT(a)         __builtin_sqrt(a)
+#define LANE_BITS(m)         ((unsigned)(m)&1)
+#define LANE_MASK(bits)      (-(vm)((bits)&1))
 
 #else
 
 #include <immintrin.h>
 
 typedef double vd __attribute__((vector_size(8 * POUND_LANES)));
-typedef int64_t vi __attribute__((vector_size(8 * POUND_LANES)));
-#define LANE_COMPARE(a, op, b) ((vi)((a)op(b)))
-#define LANE(x, l)             ((x)[l])
-#define LANE_ABS(a)            ((vd)((vi)(a)&INT64_MAX))
+#define LANE_ABS(a) ((vd)((lane_bits)(a)&INT64_MAX))
+typedef int64_t lane_bits __attribute__((vector_size(8 * POUND_LANES)));
 
 #if POUND_LANES == 4
+typedef lane_bits vm;
 #define LANE_SPLAT(x)        _mm256_set1_pd(x)
+#define LANE_LESS(a, b)      ((vm)((a) < (b)))
+#define LANE_EQUAL(a, b)     ((vm)((a) == (b)))
 #define LANE_SELECT(m, a, b) _mm256_blendv_pd(b, a, (vd)(m))
 #define LANE_MAX(a, b)       _mm256_max_pd(b, a)
 #define LANE_MIN(a, b)       _mm256_min_pd(b, a)
 #define LANE_FMA(a, b, c)    _mm256_fmadd_pd(a, b, c)
 #define LANE_SQRT(a)         _mm256_sqrt_pd(a)
-#define LANE_ANY(m)          (_mm256_movemask_pd((vd)(m)) != 0)
+#define LANE_BITS(m)         ((unsigned)_mm256_movemask_pd((vd)(m)))
+#define LANE_MASK(bits)      (((vm)_mm256_set1_epi64x(bits) & (vm){1, 2, 4, 8}) == (vm){1, 2, 4, 8})
 #else
+typedef __mmask8 vm;
 #define LANE_SPLAT(x)        _mm512_set1_pd(x)
-#define LANE_SELECT(m, a, b) _mm512_mask_blend_pd(_mm512_movepi64_mask((__m512i)(m)), b, a)
+#define LANE_LESS(a, b)      _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ)
+#define LANE_EQUAL(a, b)     _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ)
+#define LANE_SELECT(m, a, b) _mm512_mask_blend_pd(m, b, a)
 #define LANE_MAX(a, b)       _mm512_max_pd(b, a)
 #define LANE_MIN(a, b)       _mm512_min_pd(b, a)
 #define LANE_FMA(a, b, c)    _mm512_fmadd_pd(a, b, c)
 #define LANE_SQRT(a)         _mm512_sqrt_pd(a)
-#define LANE_ANY(m)          (_mm512_movepi64_mask((__m512i)(m)) != 0)
+#define LANE_BITS(m)         ((unsigned)(m))
+#define LANE_MASK(bits)      ((vm)(bits))
 #endif
 
 #endif
@@ -68,30 +78,30 @@ LANE_INLINE vd vsplat(double x)
 	return LANE_SPLAT(x);
 }
 
-LANE_INLINE vi vless(vd a, vd b)
+LANE_INLINE vm vless(vd a, vd b)
 {
-	return LANE_COMPARE(a, <, b);
+	return LANE_LESS(a, b);
 }
-LANE_INLINE vi vequal(vd a, vd b)
+LANE_INLINE vm vequal(vd a, vd b)
 {
-	return LANE_COMPARE(a, ==, b);
-}
-LANE_INLINE vi vless_index(vi a, vi b)
-{
-	return LANE_COMPARE(a, <, b);
-}
-LANE_INLINE vi vequal_index(vi a, vi b)
-{
-	return LANE_COMPARE(a, ==, b);
+	return LANE_EQUAL(a, b);
 }
 
-LANE_INLINE vd vselect(vi mask, vd a, vd b)
+LANE_INLINE vd vselect(vm mask, vd a, vd b)
 {
 	return LANE_SELECT(mask, a, b);
 }
-LANE_INLINE int vany(vi mask)
+LANE_INLINE unsigned vbits(vm mask)
 {
-	return LANE_ANY(mask);
+	return LANE_BITS(mask);
+} /* bit l: lane l */
+LANE_INLINE vm vmask(unsigned bits)
+{
+	return LANE_MASK(bits);
+}
+LANE_INLINE int vany(vm mask)
+{
+	return vbits(mask) != 0;
 }
 
 LANE_INLINE vd vmax(vd a, vd b)
@@ -115,12 +125,103 @@ LANE_INLINE vd vfma(vd a, vd b, vd c)
 	return LANE_FMA(a, b, c);
 } /* a b + c, rounded once: the one fused operation */
 
-/* Mask of one lane. */
-LANE_INLINE vi vonly(int lane)
+/* ---- rows of memory in and out of lanes: lane l of column j is row[l][at + j] ---- */
+
+#if POUND_LANES == 8
+
+/* Lane l of vector j becomes lane j of vector l. */
+LANE_INLINE void lanes_transpose(vd x[8])
 {
-	vi r = {0};
-	LANE(r, lane) = -1;
-	return r;
+	vd pair[8], four[8];
+	for (int j = 0; j < 8; j += 2) {
+		pair[j] = _mm512_unpacklo_pd(x[j], x[j + 1]);
+		pair[j + 1] = _mm512_unpackhi_pd(x[j], x[j + 1]);
+	}
+	for (int j = 0; j < 8; j += 4)
+		for (int k = 0; k < 2; k++) {
+			four[j + k] = _mm512_shuffle_f64x2(pair[j + k], pair[j + k + 2], 0x88);
+			four[j + k + 2] = _mm512_shuffle_f64x2(pair[j + k], pair[j + k + 2], 0xdd);
+		}
+	for (int k = 0; k < 4; k++) {
+		x[k] = _mm512_shuffle_f64x2(four[k], four[k + 4], 0x88);
+		x[k + 4] = _mm512_shuffle_f64x2(four[k], four[k + 4], 0xdd);
+	}
+}
+
+LANE_INLINE void rows_load(vd to[ROW], const double *const row[W], int at)
+{
+	for (int l = 0; l < W; l++)
+		to[l] = _mm512_loadu_pd(row[l] + at);
+	lanes_transpose(to);
+}
+
+LANE_INLINE void rows_store(const vd from[ROW], double *const row[W], int at)
+{
+	vd x[8];
+	for (int j = 0; j < 8; j++)
+		x[j] = from[j];
+	lanes_transpose(x);
+	for (int l = 0; l < W; l++)
+		_mm512_storeu_pd(row[l] + at, x[l]);
+}
+
+#elif POUND_LANES == 4
+
+LANE_INLINE void lanes_transpose(vd x[4])
+{
+	vd a = _mm256_unpacklo_pd(x[0], x[1]), b = _mm256_unpackhi_pd(x[0], x[1]);
+	vd c = _mm256_unpacklo_pd(x[2], x[3]), d = _mm256_unpackhi_pd(x[2], x[3]);
+	x[0] = _mm256_permute2f128_pd(a, c, 0x20);
+	x[1] = _mm256_permute2f128_pd(b, d, 0x20);
+	x[2] = _mm256_permute2f128_pd(a, c, 0x31);
+	x[3] = _mm256_permute2f128_pd(b, d, 0x31);
+}
+
+LANE_INLINE void rows_load(vd to[ROW], const double *const row[W], int at)
+{
+	for (int half = 0; half < ROW; half += W) {
+		for (int l = 0; l < W; l++)
+			to[half + l] = _mm256_loadu_pd(row[l] + at + half);
+		lanes_transpose(to + half);
+	}
+}
+
+LANE_INLINE void rows_store(const vd from[ROW], double *const row[W], int at)
+{
+	for (int half = 0; half < ROW; half += W) {
+		vd x[4] = {from[half], from[half + 1], from[half + 2], from[half + 3]};
+		lanes_transpose(x);
+		for (int l = 0; l < W; l++)
+			_mm256_storeu_pd(row[l] + at + half, x[l]);
+	}
+}
+
+#else
+
+LANE_INLINE void rows_load(vd to[ROW], const double *const row[W], int at)
+{
+	for (int j = 0; j < ROW; j++)
+		to[j] = row[0][at + j];
+}
+
+LANE_INLINE void rows_store(const vd from[ROW], double *const row[W], int at)
+{
+	for (int j = 0; j < ROW; j++)
+		row[0][at + j] = from[j];
+}
+
+#endif
+
+/* The lanes of a vector in memory. */
+LANE_INLINE void lanes_store(double to[W], vd x)
+{
+	__builtin_memcpy(to, &x, sizeof x);
+}
+LANE_INLINE vd lanes_load(const double from[W])
+{
+	vd x;
+	__builtin_memcpy(&x, from, sizeof x);
+	return x;
 }
 
 #endif

@@ -9,9 +9,8 @@
 #include "engine/lanes.h"
 
 enum {
-	ORDER_FREE = 14,  /* of the series while apart */
-	ORDER_TOUCH = 22, /* while touching */
-	ORDER_SIZE = ORDER_TOUCH + 2,
+	ORDER_APART = 12, /* of the series while apart: even */
+	ORDER_TOUCH = 16, /* while touching */
 	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
 	QUICK_ROUNDS = 6, /* of Newton's method from the parabola through both ends */
 	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
@@ -20,21 +19,21 @@ enum {
 /* The cubic through both ends of an interval misses the function by at most h^4/384 max |u''''| (Hermite). */
 static const double CUBIC_ERROR = 1.0 / 384;
 
-/* Runs BODY for n from one order down to another by twos, or up by ones, as straight code: the orders are constants. */
-#define ORDERS_DOWN(n, from, to, ...)                                \
-	_Pragma("GCC unroll 12") for (int n = (from); n >= (to); n -= 2) \
-	{                                                                \
-		__VA_ARGS__                                                  \
-	}
+/* Runs BODY for n from one order up to another, or down by twos, as straight code: the orders are constants. */
 #define ORDERS_UP(n, from, to, ...)                               \
-	_Pragma("GCC unroll 24") for (int n = (from); n <= (to); n++) \
+	_Pragma("GCC unroll 20") for (int n = (from); n <= (to); n++) \
 	{                                                             \
 		__VA_ARGS__                                               \
 	}
+#define ORDERS_DOWN(n, from, to, ...)                                \
+	_Pragma("GCC unroll 10") for (int n = (from); n >= (to); n -= 2) \
+	{                                                                \
+		__VA_ARGS__                                                  \
+	}
 
-/* Coefficients of a series up to an even order, and a zero behind them: terms are taken in pairs. */
+/* Coefficients of a series, and a zero behind them: terms are taken in pairs. */
 struct power {
-	vd c[ORDER_SIZE];
+	vd c[ORDER_TOUCH + 2];
 };
 
 /* A motion over a step of time 0 .. 1; v is the derivative of u: displacement, and velocity times the step. */
@@ -54,12 +53,16 @@ struct series {
 /* Value of a series at time t, the even and the odd terms apart: half the latency of Horner's rule. */
 LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 {
-	vd t2 = t * t, even = vsplat(0), odd = vsplat(0);
-	if (order > ORDER_FREE)
-		ORDERS_DOWN(n, ORDER_TOUCH, ORDER_FREE + 2, odd = vfma(odd, t2, s->c[n + 1]);
-		            even = vfma(even, t2, s->c[n]);)
-	ORDERS_DOWN(n, ORDER_FREE, 0, odd = vfma(odd, t2, s->c[n + 1]); even = vfma(even, t2, s->c[n]);)
-	return vfma(odd, t, even);
+	vd t2 = t * t, even, odd;
+	if (order == ORDER_TOUCH) {
+		even = s->c[ORDER_TOUCH], odd = s->c[ORDER_TOUCH - 1];
+		ORDERS_DOWN(n, ORDER_TOUCH - 2, ORDER_APART, even = vfma(even, t2, s->c[n]);
+		            odd = vfma(odd, t2, s->c[n - 1]);)
+	} else {
+		even = s->c[ORDER_APART], odd = s->c[ORDER_APART - 1];
+	}
+	ORDERS_DOWN(n, ORDER_APART - 2, 2, even = vfma(even, t2, s->c[n]); odd = vfma(odd, t2, s->c[n - 1]);)
+	return vfma(odd, t, vfma(even, t2, s->c[0]));
 }
 
 /* Factor of coefficient n in the bound of the fourth derivative. */
@@ -76,14 +79,14 @@ LANE_INLINE double fourth(int n)
  * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when all points are below -bend/384, and also, from a
  * start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
  */
-LANE_INLINE vi may_cross(const struct motion *m, vd level, vd sign)
+LANE_INLINE vm may_cross(const struct motion *m, vd level, vd sign)
 {
 	vd zero = vsplat(0), third = vsplat(1.0 / 3);
 	vd g0 = sign * (m->u.c[0] - level), g1 = sign * (m->u1 - level);
 	vd b1 = vfma(sign * third, m->v.c[0], g0), b2 = vfma(-sign * third, m->v1, g1);
 	vd top = vmax(vmax(b1, b2), g1);
-	vi inside = ~vless(vfma(vsplat(CUBIC_ERROR), m->bend, top), zero);
-	vi after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), m->bend, 3.0 * b2));
+	vm inside = ~vless(vfma(vsplat(CUBIC_ERROR), m->bend, top), zero);
+	vm after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), m->bend, 3.0 * b2));
 	return inside & after;
 }
 
@@ -113,19 +116,19 @@ struct search {
  * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
  * cubic's inner control points are, the second by more than the error: no root lies before t.
  */
-static vi root_quick(const struct power *u, const struct power *v, int order, vd level, vd sign, vd g0, vd g1,
-                     vd limit, vd bend, vi active, vd *t)
+static vm root_quick(const struct power *u, const struct power *v, int order, vd level, vd sign, vd g0, vd g1,
+                     vd limit, vd bend, vm active, vd *t)
 {
 	vd zero = vsplat(0), d0 = sign * v->c[0];
-	vi sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
+	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
 	vd c = (g1 - vfma(d0, limit, g0)) / (limit * limit);
 	vd root = vsqrt(vmax(vfma(d0, d0, -4.0 * c * g0), zero));
-	vi up = vless(zero, d0);
+	vm up = vless(zero, d0);
 	*t = vmin(vselect(up, -2.0 * g0, root - d0) / vselect(up, d0 + root, 2.0 * c), limit);
-	vi settled = vless(zero, zero);
+	vm settled = vless(zero, zero);
 	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
 		vd value = sign * (power_at(u, order, *t) - level), slope = sign * power_at(v, order, *t);
-		vi rises = vless(zero, slope);
+		vm rises = vless(zero, slope);
 		vd next = vselect(rises, vmin(vmax(*t - value / slope, zero), limit), limit);
 		vd step = next - *t;
 		*t = vselect(settled, *t, next);
@@ -148,7 +151,7 @@ static vi root_quick(const struct power *u, const struct power *v, int order, vd
  * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
  * passes none.
  */
-static vi root_safe(const struct power *g, int order, vi active, vd limit, vd *t, vi *unsure)
+static vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t, vm *unsure)
 {
 	vd zero = vsplat(0), curved = zero;
 	struct power d = *g;
@@ -158,18 +161,18 @@ static vi root_safe(const struct power *g, int order, vi active, vd limit, vd *t
 		curved = vfma(vsplat((double)n * (n - 1)), vabs(g->c[n]), curved);
 	vd bend = vmax(zero, vfma(vsplat(2), g->c[2], curved));
 	curved = vfma(vsplat(2), vabs(g->c[2]), curved);
-	vi going = active, found = vless(zero, zero);
+	vm going = active, found = vless(zero, zero);
 	*unsure = found;
 	*t = vselect(active, zero, *t);
 	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
 		vd slope = power_at(&d, order, *t);
 		vd below = vmin(power_at(g, order, *t), zero);
 		vd root = vsqrt(vfma(slope, slope, -2.0 * bend * below));
-		vi rises = vless(zero, slope);
+		vm rises = vless(zero, slope);
 		vd step = vselect(rises, -2.0 * below, root - slope) / vselect(rises, slope + root, bend);
 		step = vselect(rises | vless(zero, bend), step, vsplat(2));
-		vi near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope);
-		vi stuck = vless(step, vsplat(0.5 * DBL_EPSILON)) & ~near;
+		vm near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope);
+		vm stuck = vless(step, vsplat(0.5 * DBL_EPSILON)) & ~near;
 		*t = vselect(going & ~stuck, *t + step, *t);
 		*unsure |= going & stuck;
 		going &= ~vless(limit, *t) & ~stuck;
@@ -184,22 +187,22 @@ static vi root_safe(const struct power *g, int order, vi active, vd limit, vd *t
  *
  * A guard that starts at exactly 0 is divided by the powers of time it starts with: the sign of its first term decides.
  */
-static void search_safe(struct power *guard, int order, vi active, vd event, double cut,
+static void search_safe(struct power *guard, int order, vm active, vd event, double cut,
                         struct search *search)
 {
 	vd zero = vsplat(0);
 	guard->c[order + 1] = zero;
 	for (int m = 0; m < DEFLATE_MAX; m++) {
-		vi leading = vequal(guard->c[0], zero) & active;
+		vm leading = vequal(guard->c[0], zero) & active;
 		if (!vany(leading))
 			break;
 		for (int n = 0; n <= order; n++)
 			guard->c[n] = vselect(leading, guard->c[n + 1], guard->c[n]);
 	}
-	vi found = active & vless(zero, guard->c[0]);
+	vm found = active & vless(zero, guard->c[0]);
 	active &= ~found & ~vequal(guard->c[0], zero);
 	vd t = zero;
-	vi unsure;
+	vm unsure;
 	found |= root_safe(guard, order, active, search->time, &t, &unsure);
 	search->time = vselect(found | unsure, t, search->time);
 	search->event = vselect(found, event, vselect(unsure, vsplat(cut), search->event));
@@ -212,15 +215,15 @@ static void search_safe(struct power *guard, int order, vi active, vd event, dou
  *          event   what to note;  cut: what to note where the step is only cut at a safe time
  * Returns  search  time and event of the lanes that have one, up to the time already there
  */
-static void search_crossing(const struct motion *m, int order, vd level, vd sign, vi active, vd event,
+static void search_crossing(const struct motion *m, int order, vd level, vd sign, vm active, vd event,
                             double cut, struct search *search)
 {
 	vd one = vsplat(1), t;
 	vd g0 = sign * (m->u.c[0] - level), g1 = sign * (m->u1 - level);
-	vi shorter = vless(search->time, one) & active;
+	vm shorter = vless(search->time, one) & active;
 	if (vany(shorter))
 		g1 = vselect(shorter, sign * (power_at(&m->u, order, search->time) - level), g1);
-	vi found = root_quick(&m->u, &m->v, order, level, sign, g0, g1, search->time, m->bend, active, &t);
+	vm found = root_quick(&m->u, &m->v, order, level, sign, g0, g1, search->time, m->bend, active, &t);
 	search->time = vselect(found, t, search->time);
 	search->event = vselect(found, event, search->event);
 	active &= ~found;
@@ -238,10 +241,10 @@ static void motion_velocity(struct motion *velocity, const struct motion *m, int
 {
 	vd bend = vsplat(0), end = vsplat(0);
 	velocity->u = m->v;
-	if (order > ORDER_FREE)
-		ORDERS_UP(n, ORDER_FREE + 1, ORDER_TOUCH, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
+	if (order == ORDER_TOUCH)
+		ORDERS_UP(n, ORDER_APART + 1, ORDER_TOUCH, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
 		          end = end + velocity->v.c[n]; bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
-	ORDERS_UP(n, 0, ORDER_FREE, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
+	ORDERS_UP(n, 0, ORDER_APART, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
 	          end = end + velocity->v.c[n]; bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
 	velocity->v.c[order + 1] = vsplat(0);
 	velocity->u1 = m->v1;

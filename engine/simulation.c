@@ -1,19 +1,43 @@
-/* simulation.c - what is done to one simulation at a time: its start, its next sample interval, its next piece. */
+/* simulation.c - what is done to one simulation at a time: its start, what follows a step, its next piece, its end. */
 #include "engine/simulation.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* Largest rate * time of a series step: the last term kept (series.h) is below 2^-54 of the first.
- * 0.4^14/14! = 3e-17, 1.4^22/22! = 1.5e-18 (touching has the larger factor before the power). */
-static const double REACH_FREE = 0.4, REACH_TOUCH = 1.4;
+/* Largest rate * time of a series step: the first term left out is near 2^-52 of the first kept or below: apart, at
+ * order 12, 0.35^13/13! = 1.9e-16; touching, at order 16, 17 * 0.8^17/17! = 1.1e-15, of which zero restitution has the
+ * factor before the power. */
+static const double REACH_FREE = 0.35, REACH_TOUCH = 0.8;
+
+/* A step that a search was unsure of is followed by one this much shorter, and then by longer ones again: what decides
+ * may be far below the rounding of a whole step. */
+static const double SHORTER = 0x1p-8, SHORTEST = 0x1p-400, LONGER = 0x1p4;
 
 /* The cubic through both ends of an interval misses the function by at most h^4/384 of the largest fourth derivative
  * (Hermite). */
 static const double CUBIC_ERROR = 1.0 / 384;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
+
+enum {
+	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
+	MAP_ORDERS = 20,
+};
+
+static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
+
+static double least(double a, double b)
+{
+	return a < b ? a : b;
+}
+static double most(double a, double b)
+{
+	return a < b ? b : a;
+}
+
+/* ---- maps ---- */
 
 /* Exact map of u'' + c u' + k u = -(a + d t/h) over one sample h, by its power series, and its error coefficients.
  *
@@ -24,14 +48,14 @@ static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
  *   A3 <= 2 (J0 + h k A0),  A2 <= A0 + h A3,  A4 <= c A3 + k A2,  error <= A4 h^4/384
  *   A0 = c |v| + k |u| + |a|,  J0 = c A0 + k |v| + |d|/h
  */
-static void map_fill(struct map *map, double k, double c, double h)
+static void map_fill(struct pound_map *map, double k, double c, double h)
 {
 	double *column[4] = {&map->uu, &map->uv, &map->ua, &map->ud};
 	double ch = c * h, kh = k * h * h;
 	for (int j = 0; j < 4; j++) {
 		double u = j == 0, w = j == 1 ? h : 0; // w: u' h
 		double sum = 0;
-		for (int n = 0; n < 20; n++) {
+		for (int n = 0; n < MAP_ORDERS; n++) {
 			double force = j == 2 && n == 0 ? h * h : j == 3 && n == 1 ? h * h : 0;
 			double next = -(ch * w + kh * u + force) / (n + 1);
 			sum += u;
@@ -40,50 +64,266 @@ static void map_fill(struct map *map, double k, double c, double h)
 		}
 		*column[j] = sum;
 	}
+	map->vv = map->uu - c * map->uv;
 	double quartic = h * h * h * h * CUBIC_ERROR, rate = c + k * h;
 	map->stiffness = k;
 	map->ej = quartic * 2 * rate;
 	map->ea = quartic * (k + 2 * rate * rate);
 }
 
-/* Puts a body's current piece, and the map that belongs to it, into the columns. */
-void pound_simulation_piece(struct simulation *sim, int i)
+/* Exact map of the base body and the overlap over one cell h of pressed contact, by its power series.
+ *
+ * Given    sim    its bodies on their pieces, contact
+ * Returns  map    rows of POUND_PRESS_INPUTS coefficients
+ *
+ *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
+ *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
+ *
+ * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/384
+ * of the largest fourth derivative, which by linearity is at most the sum of the inputs' magnitudes times that of
+ * their own columns; the lowest rate of overlap lies at most 1/8 of its largest second derivative below its ends.
+ */
+static void press_fill(struct pound_press_map *map, const struct simulation *sim)
+{
+	enum { N = POUND_PRESS_INPUTS };
+	const struct pound_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	const double h = x->cell, h2 = h * h, push = b ? -x->mass_ratio : 1;
+	const double cb = x->body[b].damping * h, kb = x->body[b].stiffness * h2;
+	const double co = x->body[o].damping * h, ko = x->body[o].stiffness * h2;
+	const double dc = (x->body[1].damping - x->body[0].damping) * h;
+	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
+	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
+	double u[N] = {1}, w[N] = {0, h}, p[N] = {0, 0, 1}, z[N] = {0, 0, 0, h}; // w, z: rates times h
+	memset(map->row, 0, sizeof map->row);
+	double(*row)[N] = map->row;
+	for (int n = 0; n < MAP_ORDERS; n++) {
+		double share = 1.0 / (n + 1), bend = CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
+		double drop = 0.125 * x->release / h * n * (n - 1.0);
+		double force_b[N] = {[4] = n == 0 ? h2 : 0, [6] = n == 1 ? h2 : 0};
+		double force_p[N] = {[5] = n == 0 ? h2 : 0, [7] = n == 1 ? h2 : 0};
+		for (int j = 0; j < N; j++) {
+			row[PRESS_U][j] += u[j];
+			row[PRESS_V][j] += w[j];
+			row[PRESS_P][j] += p[j];
+			row[PRESS_Q][j] += z[j];
+			row[PRESS_IMPULSE][j] += p[j] * share;
+			row[PRESS_ERROR_U][j] += bend * fabs(u[j]);
+			row[PRESS_ERROR_P][j] += bend * fabs(p[j]);
+			row[PRESS_DROP][j] += drop * fabs(z[j]);
+			double force = K * p[j] + C * z[j];
+			double w1 = -(cb * w[j] + kb * u[j]) - force_b[j] - push * force;
+			double z1 = dc * w[j] + dk * u[j] - (co * z[j] + ko * p[j]) + force_p[j] - x->both * force;
+			u[j] = w[j] * share;
+			p[j] = z[j] * share;
+			w[j] = w1 * share;
+			z[j] = z1 * share;
+		}
+	}
+	for (int j = 0; j < N; j++) {
+		double begins = j == 2;
+		row[PRESS_IMPULSE][j] = x->contact_stiffness * h * row[PRESS_IMPULSE][j] +
+		                        x->contact_damping * (row[PRESS_P][j] - begins);
+		row[PRESS_V][j] /= h;
+		row[PRESS_Q][j] /= h;
+	}
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		map->stiffness[i] = x->body[i].stiffness;
+}
+
+/* Puts a body's current piece, and the map that belongs to it, into the rows. */
+static void piece_enter(struct simulation *sim, int i)
 {
 	const struct pound_piece *piece = &sim->at[i].piece;
-	sim->x.stiffness[i] = piece->stiffness;
-	sim->x.offset[i] = piece->offset;
-	sim->x.low[i] = piece->low;
-	sim->x.high[i] = piece->high;
-	sim->x.direction[i] = piece->direction;
-	if (sim->x.can_fly == 0)
+	struct pound_rows *x = &sim->x;
+	x->body[i].stiffness = piece->stiffness;
+	x->body[i].offset = piece->offset;
+	x->body[i].low = piece->low;
+	x->body[i].high = piece->high;
+	x->body[i].direction = piece->direction;
+	if (!sim->can_fly)
 		return;
-	struct map *map = NULL;
+	struct pound_map *map = NULL;
 	for (int m = 0; m < POUND_MAPS && !map; m++)
 		if (sim->maps[i][m].stiffness == piece->stiffness)
 			map = &sim->maps[i][m];
 	if (!map) {
 		map = &sim->maps[i][sim->map_next[i]];
 		sim->map_next[i] = (sim->map_next[i] + 1) % POUND_MAPS;
-		map_fill(map, piece->stiffness, sim->x.damping[i], sim->x.step);
+		map_fill(map, piece->stiffness, x->body[i].damping, x->step);
 	}
-	struct column *x = &sim->x;
-	x->uu[i] = map->uu, x->uv[i] = map->uv, x->ua[i] = map->ua, x->ud[i] = map->ud;
-	x->ea[i] = map->ea, x->ej[i] = map->ej;
+	x->map[i].uu = map->uu, x->map[i].uv = map->uv, x->map[i].ua = map->ua, x->map[i].ud = map->ud;
+	x->map[i].vv = map->vv, x->map[i].ea = map->ea, x->map[i].ej = map->ej;
 }
+
+/* Gets everything ready for whole cells of pressed contact. */
+static void press_enter(struct simulation *sim)
+{
+	struct pound_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	sim->pressed = NULL;
+	for (int m = 0; m < POUND_PRESS_MAPS && !sim->pressed; m++)
+		if (sim->press[m].stiffness[0] == x->body[0].stiffness &&
+		    sim->press[m].stiffness[1] == x->body[1].stiffness)
+			sim->pressed = &sim->press[m];
+	if (!sim->pressed) {
+		struct pound_press_map *map = &sim->press[sim->press_next];
+		sim->press_next = (sim->press_next + 1) % POUND_PRESS_MAPS;
+		press_fill(map, sim);
+		sim->pressed = map;
+	}
+	x->base_force = x->body[b].offset;
+	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
+	x->rise = x->slope * x->cell;
+}
+
+/* ---- what follows ---- */
 
 /* Enters the interval that ends at sim->next. */
 void pound_simulation_interval(struct simulation *sim)
 {
 	const double *a = &sim->task->ground[sim->next];
 	sim->x.ground = a[-1];
-	sim->x.slope = (a[0] - a[-1]) / sim->x.step;
-	sim->x.left = sim->x.step;
-	sim->x.events = 0;
+	sim->x.slope = (a[0] - a[-1]) * sim->x.map[0].per_step;
+	sim->left = sim->x.step;
+	sim->part = 0;
+	sim->x.cells = sim->cells_whole;
+	sim->events = 0;
 }
 
-/* A simulation at the start of its task. */
-void pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
-                            struct pound_march_result *result)
+/* The next step by power series. */
+static enum pound_stage step_enter(struct simulation *sim)
+{
+	if (sim->events > EVENTS_LIMIT)
+		return STAGE_CHATTER;
+	struct pound_rows *x = &sim->x;
+	if (sim->touching) {
+		if (sim->part == 0) {
+			sim->part = x->cell;
+			x->cells--;
+		}
+		x->dt = sim->part * sim->pace;
+		return STAGE_TOUCH;
+	}
+	double reach = sim->reach * sim->pace;
+	x->dt = sim->left <= reach ? sim->left : sim->left > 2 * reach ? reach : 0.5 * sim->left;
+	return sim->paired ? STAGE_APART : STAGE_ALONE;
+}
+
+/* A simulation that flew to a sample behind which it cannot fly on. */
+enum pound_stage pound_simulation_meet(struct simulation *sim)
+{
+	struct pound_rows *x = &sim->x;
+	pound_simulation_interval(sim);
+	double p = x->u[0] - x->u[1] - x->gap;
+	x->p = p < 0 ? p : 0; // rounding must not make it overlap
+	x->q = x->v[0] - x->v[1];
+	return step_enter(sim);
+}
+
+/* A simulation in front of a cell in which the contact may end, or a body reach an edge. */
+enum pound_stage pound_simulation_unpress(struct simulation *sim)
+{
+	return step_enter(sim);
+}
+
+/* What a simulation does next. */
+enum pound_stage pound_simulation_next(struct simulation *sim)
+{
+	const struct pound_rows *x = &sim->x;
+	if (sim->touching ? sim->part + x->cells == 0 : sim->left == 0) {
+		if (sim->next == sim->last)
+			return STAGE_END;
+		sim->next++;
+		pound_simulation_interval(sim);
+		// apart, and not about to touch inside the next interval
+		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->step * x->q < 0)
+			return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
+	}
+	if (sim->touching && sim->part == 0 && sim->can_press) {
+		press_enter(sim);
+		return STAGE_PRESS;
+	}
+	return step_enter(sim);
+}
+
+/* Contact begins, ends, or clears the overlap it left. */
+static void contact_turn(struct simulation *sim, bool clears)
+{
+	struct pound_rows *x = &sim->x;
+	if (clears) {
+		sim->parted = false;
+		x->p = 0; // from here exactly
+	} else if (!sim->touching) {
+		if (!sim->parted)
+			x->p = 0;
+		sim->fresh = sim->parted;
+		sim->parted = false;
+		sim->touching = true;
+		x->impulse = 0;
+		x->cells = (double)(int64_t)(sim->left / x->cell);
+		sim->part = most(sim->left - x->cells * x->cell, 0);
+		if (sim->result->first_speed == 0 && sim->contacts == 0) {
+			sim->result->first_contact = (double)sim->next * x->step - sim->left;
+			sim->result->first_speed = x->q;
+		}
+	} else {
+		sim->impulse_max = most(sim->impulse_max, x->impulse);
+		sim->contacts++;
+		sim->parted = sim->fresh = x->release > 0 && x->p > 0;
+		if (!sim->parted)
+			x->p = 0;
+		sim->touching = false;
+		sim->left = sim->part + x->cells * x->cell;
+	}
+}
+
+/* A body's law goes on to its next piece; from here the edge is exact. */
+static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
+{
+	struct pound_rows *x = &sim->x;
+	if (edge == POUND_EDGE_TURN)
+		x->v[i] = 0;
+	else
+		x->u[i] = edge == POUND_EDGE_HIGH ? x->body[i].high : x->body[i].low;
+	if (edge == POUND_EDGE_TURN && x->body[i].direction == 0)
+		return; // a turn that was only looked for as a largest displacement
+	pound_pieces_leave(&sim->task->bodies[i].skeleton, &sim->at[i], edge, x->u[i]);
+	piece_enter(sim, i);
+}
+
+/* What a simulation does after a step by power series.
+ *
+ * Given    event  that ended it;  share: of the step that was gone
+ */
+enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double share)
+{
+	double elapsed = share * sim->x.dt;
+	if (sim->touching)
+		sim->part = most(sim->part - elapsed, 0);
+	else
+		sim->left = most(sim->left - elapsed, 0);
+	sim->x.ground += sim->x.slope * elapsed;
+	sim->fresh = false;
+	if (event == EVENT_NONE) {
+		sim->pace = least(sim->pace * LONGER, 1);
+		return pound_simulation_next(sim);
+	}
+	sim->events++;
+	sim->pace = event == EVENT_CUT ? most(sim->pace * SHORTER, SHORTEST) : least(sim->pace * LONGER, 1);
+	if (event == EVENT_CONTACT || event == EVENT_CLEARS)
+		contact_turn(sim, event == EVENT_CLEARS);
+	else if (event >= EVENT_BODY)
+		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
+		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
+	return pound_simulation_next(sim);
+}
+
+/* ---- start and end ---- */
+
+/* A simulation at the start of its task; what it does first. */
+enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
+                                        struct pound_march_result *result)
 {
 	memset(sim, 0, sizeof *sim);
 	memset(result, 0, sizeof *result);
@@ -91,7 +331,8 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 	sim->result = result;
 	sim->next = 1;
 	sim->last = task->n_samples - 1;
-	struct column *x = &sim->x;
+	sim->pace = 1;
+	struct pound_rows *x = &sim->x;
 	double h = task->time_step;
 	double rate = 0;
 	bool can_fly = !task->accounted; // the work in a step is that of its series
@@ -99,44 +340,63 @@ void pound_simulation_start(struct simulation *sim, const struct pound_march_tas
 		const struct pound_march_body *body = &task->bodies[i];
 		double k = body->skeleton.stiffness;
 		double omega = sqrt(k);
-		rate = fmax(rate, fmax(omega, body->damping));
+		rate = most(rate, most(omega, body->damping));
 		can_fly &= h * (body->damping + k * h) <= 0.5 && omega * h <= 1;
 		x->u[i] = body->u, x->v[i] = body->v;
 		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
-		x->damping[i] = body->damping;
-		x->drive[i] = body->drive;
+		x->body[i].damping = body->damping;
+		x->body[i].drive = body->drive;
+		x->map[i].per_step = 1 / h;
 		for (int m = 0; m < POUND_MAPS; m++)
 			sim->maps[i][m].stiffness = -1;
 	}
-	x->can_fly = can_fly;
-	sim->accounted = task->accounted;
-	x->right_mass = task->mass_ratio > 0 ? 1 / task->mass_ratio : 0;
+	for (int m = 0; m < POUND_PRESS_MAPS; m++)
+		sim->press[m].stiffness[0] = -1;
+	sim->can_fly = can_fly;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
-	sim->edged = !pound_pieces_linear(task->bodies[0].skeleton.law) ||
-	             !pound_pieces_linear(task->bodies[1].skeleton.law);
+	if (!pound_pieces_linear(task->bodies[0].skeleton.law) ||
+	    !pound_pieces_linear(task->bodies[1].skeleton.law))
+		sim->traits |= TRAIT_EDGED;
+	if (task->bodies[1].followed)
+		sim->traits |= TRAIT_RIGHT;
+	if (task->accounted)
+		sim->traits |= TRAIT_ACCOUNTED;
 	x->step = h;
-	x->pace = 1;
+	x->right_mass = task->mass_ratio > 0 ? 1 / task->mass_ratio : 0;
 	x->gap = task->contact ? task->gap : -NEVER;
 	x->contact_stiffness = task->contact ? task->contact_stiffness : 0;
 	x->contact_damping = task->contact ? task->contact_damping : 0;
 	x->mass_ratio = task->mass_ratio;
+	x->both = 1 + task->mass_ratio;
 	x->release = task->contact && !task->tension ? task->contact_damping / task->contact_stiffness : 0;
-	double stiff = (1 + task->mass_ratio) * x->contact_stiffness;
-	x->reach[0] = rate > 0 ? REACH_FREE / rate : DBL_MAX;
-	x->reach[1] = REACH_TOUCH / sqrt(rate * rate + stiff);
-	x->third = h / 3;
-	x->per_step = 1 / h;
+	if (x->release > 0)
+		sim->traits |= TRAIT_FORCED;
+	x->body[0].step_gap = h;
+	x->body[1].step_gap = x->gap;
+	sim->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
+	sim->can_press = !task->accounted && task->contact;
+	double reach = REACH_TOUCH / sqrt(rate * rate + x->both * x->contact_stiffness);
+	sim->cells_whole = 1;
+	while (h > reach * sim->cells_whole)
+		sim->cells_whole *= 2;
+	x->cell = h / sim->cells_whole;
+	sim->base = task->mass_ratio < 1;
+	x->side = sim->base ? -1 : 1;
+	x->base_drive = task->bodies[sim->base].drive;
+	x->gap_drive = task->bodies[1].drive - task->bodies[0].drive;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		pound_pieces_start(&task->bodies[i].skeleton, &sim->at[i]);
-		pound_simulation_piece(sim, i);
+		piece_enter(sim, i);
 	}
-	pound_simulation_interval(sim);
+	if (can_fly)
+		return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
+	return pound_simulation_meet(sim);
 }
 
 /* What is missing of the energy put in, by the ground and by the motion at the start. */
-double pound_simulation_residual(const struct simulation *sim)
+static double residual(const struct simulation *sim)
 {
-	const struct column *x = &sim->x;
+	const struct pound_rows *x = &sim->x;
 	double start = 0, end = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		double mass = i ? x->right_mass : 1, v0 = sim->task->bodies[i].v;
@@ -144,6 +404,24 @@ double pound_simulation_residual(const struct simulation *sim)
 		end += 0.5 * mass * x->v[i] * x->v[i];
 	}
 	double put_in = start + x->work_in, found = end + x->work_out;
-	double most = fmax(fabs(put_in), fmax(start, end));
-	return most > 0 ? fabs(found - put_in) / most : 0;
+	double largest = most(fabs(put_in), most(start, end));
+	return largest > 0 ? fabs(found - put_in) / largest : 0;
+}
+
+/* Writes a simulation's result. */
+void pound_simulation_end(struct simulation *sim, enum pound_status status)
+{
+	struct pound_march_result *r = sim->result;
+	const struct pound_rows *x = &sim->x;
+	// a contact still open at the end counts with what it has
+	r->status = status;
+	r->contacts = (int64_t)sim->contacts + sim->touching;
+	r->impulse_max = most(sim->impulse_max, sim->touching ? x->impulse : 0);
+	r->contact_time = x->contact_time;
+	r->energy_residual = sim->task->accounted ? residual(sim) : NAN;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;
+		r->u[i] = x->u[i];
+		r->v[i] = x->v[i];
+	}
 }

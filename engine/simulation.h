@@ -1,67 +1,139 @@
 /* simulation.h - one simulation of the march as it rests between its turns in the lanes.
  *
- * What changes in lanes stands in columns, so that whole ranges of them are carried in and out. */
+ * Its numbers stand in rows of a cache line each, columns of which become vectors: a batch of simulations is carried
+ * into lanes and out by whole rows.  What follows a step in lanes is decided here, one simulation at a time. */
 #ifndef SIMULATION_H
 #define SIMULATION_H
+
+#include <assert.h>
+#include <stdalign.h>
 
 #include "engine/march.h"
 
 enum {
-	POUND_MAPS = 4, /* free-flight maps a body keeps */
+	POUND_MAPS = 4,        /* free-flight maps a body keeps */
+	POUND_PRESS_MAPS = 3,  /* maps of pressed contact a simulation keeps */
+	POUND_PRESS_INPUTS = 8 /* base u, v, overlap p, q, forcing of either, and its growth over the cell */
 };
 
-/* Columns of a simulation: T is double at rest, and a vector in a group of lanes.  A group is loaded
- * and saved by ranges of columns: event steps from the first to map, flight from state to the end. */
-#define COLUMNS(T)                                                                                 \
-	/* constants of event steps */                                                                 \
-	T contact_stiffness, contact_damping, mass_ratio, release, reach[2], can_fly, right_mass;      \
-	/* changed by event steps; touching, parted, fresh (contact force exactly 0 now) are 0 or 1 */ \
-	T p, q, left, slope, events, pace, touching, parted, fresh, impulse, impulse_max, contacts,    \
-	    contact_time, work_in, work_out;                                                           \
-	/* changed by both */                                                                          \
-	T u[2], v[2], top[2], ground;                                                                  \
-	/* read by both: the bodies, and the piece each is on */                                       \
-	T step, gap, drive[2], damping[2], stiffness[2], offset[2], low[2], high[2], direction[2];     \
-	/* map of each body over one sample, and what bounds its error */                              \
-	T uu[2], uv[2], ua[2], ud[2], ea[2], ej[2], third, per_step;
+/* Rows of a simulation: T is double at rest, and a vector in lanes; every row has eight. */
+#define POUND_ROWS(T)                                                                                               \
+	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */       \
+	T u[2], v[2], top[2], p, q;                                                                                     \
+	/* STEP: the next step, the ground at its start and its growth, this contact's impulse, all contacts' time */   \
+	T dt, ground, slope, impulse, contact_time, work_in, work_out, spare;                                           \
+	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */ \
+	struct {                                                                                                        \
+		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                        \
+	} body[2];                                                                                                      \
+	/* PAIR */                                                                                                      \
+	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, right_mass, step;                         \
+	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                       \
+	struct {                                                                                                        \
+		T uu, uv, ua, ud, vv, ea, ej, per_step;                                                                     \
+	} map[2];                                                                                                       \
+	/* PRESS: a cell of pressed contact: forcing, which body is the base, what is left of the interval */           \
+	T base_force, gap_force, base_drive, gap_drive, side, cells, rise, cell;
 
-struct column {
-	COLUMNS(double)
+struct pound_rows {
+	POUND_ROWS(double)
 };
 
+/* where the rows begin, in doubles */
 enum {
-	COLUMN_FIRST = 0,
-	COLUMN_MOVED = offsetof(struct column, p) / sizeof(double),
-	COLUMN_STATE = offsetof(struct column, u) / sizeof(double),
-	COLUMN_READ = offsetof(struct column, gap) / sizeof(double),
-	COLUMN_MAP = offsetof(struct column, uu) / sizeof(double),
-	COLUMN_END = sizeof(struct column) / sizeof(double),
+	ROW_STATE = 0,
+	ROW_STEP = 8,
+	ROW_LEFT = 16,
+	ROW_RIGHT = 24,
+	ROW_PAIR = 32,
+	ROW_MAP_LEFT = 40,
+	ROW_MAP_RIGHT = 48,
+	ROW_PRESS = 56,
+	ROWS_END = 64,
 };
 
 /* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d */
-struct map {
-	double stiffness;      /* of the piece it belongs to; < 0: none */
-	double uu, uv, ua, ud; /* the velocity follows: see flight_step in march.c */
-	double ea, ej;         /* the cubic's error is at most ea |u''| + ej |u'''|, both at the start */
+struct pound_map {
+	double stiffness;          /* of the piece it belongs to; < 0: none */
+	double uu, uv, ua, ud, vv; /* the velocity follows: see flight.h */
+	double ea, ej;             /* the cubic's error is at most ea |u''| + ej |u'''|, both at the start */
+};
+
+/* rows of a map of pressed contact over one cell, each a linear form of the inputs; the bounds of their magnitudes */
+enum {
+	PRESS_U,
+	PRESS_V,
+	PRESS_P,
+	PRESS_Q,
+	PRESS_IMPULSE,
+	PRESS_ERROR_U, /* of the cubic of the base's displacement */
+	PRESS_ERROR_P, /* of the overlap's */
+	PRESS_DROP,    /* of release * rate of overlap below the lesser of its ends */
+	PRESS_ROWS,
+};
+
+struct pound_press_map {
+	alignas(64) double row[PRESS_ROWS][POUND_PRESS_INPUTS];
+	double stiffness[2]; /* of the pieces it belongs to; < 0: none */
+};
+
+/* what a simulation does next */
+enum pound_stage {
+	STAGE_FLY_ALONE, /* whole samples of the left body */
+	STAGE_FLY_APART, /* whole samples of both */
+	STAGE_PRESS,     /* whole cells of pressed contact */
+	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
+	STAGE_APART,     /* of both */
+	STAGE_TOUCH,     /* of both in contact */
+	STAGES,
+	STAGE_END = STAGES,
+	STAGE_CHATTER,
+};
+
+/* what ends a step; the event of an edge of body i is EVENT_BODY + EVENT_EDGES i + edge */
+enum { EVENT_NONE, EVENT_CUT, EVENT_CONTACT, EVENT_CLEARS, EVENT_BODY, EVENT_EDGES = 3 };
+
+/* what a step must look after for a simulation; otherwise it is left out */
+enum {
+	TRAIT_EDGED = 1,     /* a law has more than one piece */
+	TRAIT_RIGHT = 2,     /* the right body's largest displacement is wanted */
+	TRAIT_FORCED = 4,    /* contact ends when its force does */
+	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
 };
 
 struct simulation {
-	struct column x;
-	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
+	alignas(64) struct pound_rows x;
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
+	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
+	double left;        /* of the interval, while apart [s] */
+	double part;        /* of a cell that was begun, while touching; x.cells whole cells follow it [s] */
+	double pace;        /* <= 1: steps are shorter where a search was unsure */
+	double impulse_max, contacts;
+	double reach;       /* longest step while apart [s] */
+	double cells_whole; /* of an interval */
+	int events;         /* in this interval */
+	int base;           /* the heavier body, whose motion and the overlap describe pressed contact */
+	bool touching;      /* the contact's force acts */
+	bool parted;        /* force gone before the overlap: bodies still overlap */
+	bool fresh;         /* the force has just passed zero */
+	unsigned traits;    /* see enum below */
+	bool paired;        /* the right body moves, or there is something to touch */
+	bool can_fly, can_press;
 	struct pound_branch at[2];
-	struct map maps[2][POUND_MAPS];
-	int map_next[2];
-	bool edged;     /* a law has more than one piece */
-	bool accounted; /* the energy balance is kept */
-	bool paired;    /* the right body moves, or there is something to touch */
+	const struct pound_press_map *pressed; /* of this cell */
+	struct pound_map maps[2][POUND_MAPS];
+	int map_next[2], press_next;
+	struct pound_press_map press[POUND_PRESS_MAPS];
 };
 
-void pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
-                            struct pound_march_result *result);
-void pound_simulation_piece(struct simulation *sim, int i);
+enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
+                                        struct pound_march_result *result);
+enum pound_stage pound_simulation_meet(struct simulation *sim);
+enum pound_stage pound_simulation_next(struct simulation *sim);
+enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double share);
+enum pound_stage pound_simulation_unpress(struct simulation *sim);
 void pound_simulation_interval(struct simulation *sim);
-double pound_simulation_residual(const struct simulation *sim);
+void pound_simulation_end(struct simulation *sim, enum pound_status status);
 
 #endif

@@ -1,0 +1,265 @@
+/* event.h - one step up to an event, by power series in time.
+ *
+ * Included by march.c alone, once per lane count.  A step ends at the first root of a guard (contact opens or closes, an
+ * edge of a piece is reached, the velocity turns), found to rounding, or where it was meant to. */
+#ifndef EVENT_H
+#define EVENT_H
+
+#include "engine/flight.h"
+#include "engine/series.h"
+// behind the others: it reads struct lanes
+#include "engine/energy.h"
+
+/* lanes of a step by power series, and what they are */
+struct event_lanes {
+	vm active;          /* lanes in use */
+	vm parted, fresh;   /* as in struct simulation */
+	vd release;         /* > 0: contact ends when its force does; 0: no lane's does when `forced` is false */
+	bool touching;      /* all lanes are in contact, or none */
+	bool paired, edged; /* as flight() has them */
+	bool right;         /* a lane's largest displacement of the right body is wanted */
+	bool forced;        /* a lane's contact ends when its force does */
+};
+
+/* What the recurrences of a step read: each body's damping and stiffness, the contact's, all scaled to the step. */
+struct rates {
+	vd c[2], k[2], spring, dash;
+};
+
+/* coefficients of one order of left, right and overlap, and the sums over the orders so far */
+struct terms {
+	vd u[3], v[3], u1[3], v1[3], bend[3];
+};
+
+/* Keeps coefficient n of a motion, adds it to the ends and to the bound of the fourth derivative. */
+LANE_INLINE void motion_order(struct motion *into, struct terms *x, int j, int n)
+{
+	into->u.c[n] = x->u[j];
+	into->v.c[n] = x->v[j];
+	x->u1[j] = n ? x->u1[j] + x->u[j] : x->u[j];
+	x->v1[j] = n ? x->v1[j] + x->v[j] : x->v[j];
+	if (n == 4)
+		x->bend[j] = vsplat(fourth(n)) * vabs(x->u[j]);
+	else if (n > 4)
+		x->bend[j] = vfma(vsplat(fourth(n)), vabs(x->u[j]), x->bend[j]);
+}
+
+/* One order of the series of the bodies and of the overlap: keeps coefficient n and makes coefficient n + 1.
+ *
+ * Given    force  part of this order of the ground motion and the pieces, orders 0 and 1 only
+ */
+LANE_INLINE void series_order(struct series *s, const struct rates *r, const struct lanes *g, int n,
+                              const vd force[2], struct terms *x, bool paired, bool touching)
+{
+	vd share = vsplat(1.0 / (n + 1)), b[2];
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		motion_order(&s->body[i], x, i, n);
+		b[i] = vfma(r->c[i], x->v[i], r->k[i] * x->u[i]);
+		if (n < 2)
+			b[i] = b[i] + force[i];
+		x->u[i] = x->v[i] * share;
+	}
+	if (!paired) {
+		x->v[0] = b[0] * share;
+		return;
+	}
+	motion_order(&s->overlap, x, 2, n);
+	vd apart = b[0] - b[1];
+	if (touching) {
+		vd push = vfma(r->spring, x->u[2], r->dash * x->v[2]);
+		b[0] = b[0] - push;
+		b[1] = vfma(g->mass_ratio, push, b[1]);
+		apart = vfma(g->both, -push, apart);
+	}
+	x->u[2] = x->v[2] * share;
+	x->v[2] = apart * share;
+	x->v[0] = b[0] * share;
+	x->v[1] = b[1] * share;
+}
+
+/* Series of the bodies and of the overlap over a step, their ends and the bounds of their fourth derivatives. */
+LANE_INLINE void series_fill(struct series *s, const struct lanes *g, bool paired, bool touching)
+{
+	vd dt = g->dt, dt2 = dt * dt;
+	struct rates r;
+	vd force[2][2];
+	struct terms x;
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		r.c[i] = -g->body[i].damping * dt;
+		r.k[i] = -g->body[i].stiffness * dt2;
+		force[0][i] = -vfma(g->body[i].drive, g->ground, g->body[i].offset) * dt2;
+		force[1][i] = -(g->body[i].drive * g->slope) * dt2 * dt;
+		x.u[i] = g->u[i], x.v[i] = g->v[i] * dt;
+	}
+	if (paired)
+		x.u[2] = g->p, x.v[2] = g->q * dt;
+	if (touching) {
+		r.spring = g->contact_stiffness * dt2;
+		r.dash = g->contact_damping * dt;
+	}
+	s->order = touching ? ORDER_TOUCH : ORDER_APART;
+	ORDERS_UP(n, 0, s->order, series_order(s, &r, g, n, force[n < 2 ? n : 1], &x, paired, touching);)
+	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
+	for (int j = 0; j < (paired ? 3 : 1); j++) {
+		into[j]->u1 = x.u1[j];
+		into[j]->v1 = x.v1[j];
+		into[j]->bend = x.bend[j];
+		into[j]->u.c[s->order + 1] = into[j]->v.c[s->order + 1] = vsplat(0);
+	}
+}
+
+/* Looks for the edges of a body's piece. */
+static void body_search(const struct series *s, const struct lanes *g, int i, vm active, struct search *search)
+{
+	vd zero = vsplat(0), one = vsplat(1), body = vsplat(EVENT_BODY + EVENT_EDGES * i);
+	const struct motion *m = &s->body[i];
+	vm past_high = may_cross(m, g->body[i].high, one) & active;
+	vm past_low = may_cross(m, g->body[i].low, -one) & active;
+	vm turns = ~vequal(g->body[i].direction, zero) & active;
+	if (vany(past_high))
+		search_crossing(m, s->order, g->body[i].high, one, past_high, body + vsplat(POUND_EDGE_HIGH), EVENT_CUT, search);
+	if (vany(past_low))
+		search_crossing(m, s->order, g->body[i].low, -one, past_low, body + vsplat(POUND_EDGE_LOW), EVENT_CUT, search);
+	if (vany(turns)) {
+		struct motion velocity;
+		motion_velocity(&velocity, m, s->order);
+		turns &= may_cross(&velocity, zero, -g->body[i].direction);
+		if (vany(turns))
+			search_crossing(&velocity, s->order, zero, -g->body[i].direction, turns, body + vsplat(POUND_EDGE_TURN),
+			                EVENT_CUT, search);
+	}
+}
+
+/* Follows the largest displacement of a body inside the step, before what the search found.
+ *
+ * Where the velocity turns once, the displacement there is kept: an error of the turning time enters squared.  Where
+ * it may turn more often, the step is cut at the first turn.
+ */
+static void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
+{
+	const struct motion *m = &s->body[i];
+	struct motion velocity;
+	motion_velocity(&velocity, m, s->order);
+	const vd *v = m->v.c;
+	vd zero = vsplat(0), one = vsplat(1), t;
+	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
+	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
+	vd sign = vselect(vless(way, zero), one, -one);
+	vm once = root_quick(&velocity.u, &velocity.v, s->order, zero, sign, sign * v[0], sign * m->v1, one, velocity.bend,
+	                     inside, &t);
+	vd turn = vabs(power_at(&m->u, s->order, t));
+	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], turn), g->top[i]);
+	inside &= ~once;
+	if (!vany(inside))
+		return;
+	struct power guard;
+	for (int n = 0; n <= s->order; n++)
+		guard.c[n] = sign * v[n];
+	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN), EVENT_CUT, search);
+}
+
+/* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
+ *
+ * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then parted: the contact goes
+ * on when that force rises again, and they are apart when p has fallen to 0.
+ */
+static void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e, vm by_force,
+                         struct search *search)
+{
+	const struct motion *p = &s->overlap;
+	vd sign = e->touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;
+	struct power guard;
+	for (int n = 0; n <= s->order; n++)
+		guard.c[n] = sign * vfma(lead, p->v.c[n], p->u.c[n]);
+	// where the force has just passed 0 it is beyond by the rounding of the overlap and of its acceleration, or
+	// bodies that are alike would turn to and fro at one instant for ever
+	vd pull = vabs(s->body[0].v.c[1]) + vabs(s->body[1].v.c[1]);
+	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, pull, p->u.c[0]));
+	guard.c[0] = vselect(e->fresh, below, guard.c[0]);
+	search_safe(&guard, s->order, by_force, vsplat(EVENT_CONTACT), EVENT_CUT, search);
+	if (e->touching)
+		return;
+	for (int n = 0; n <= s->order; n++)
+		guard.c[n] = -p->u.c[n];
+	search_safe(&guard, s->order, by_force, vsplat(EVENT_CLEARS), EVENT_CUT, search);
+}
+
+/* Looks for the beginning or the end of a contact: the overlap p rises or falls through 0. */
+LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
+                                struct search *search)
+{
+	vd zero = vsplat(0), sign = e->touching ? vsplat(-1) : vsplat(1);
+	vm by_force = vmask(0);
+	if (e->forced)
+		by_force = (e->touching ? ~vequal(g->release, zero) : e->parted) & e->active;
+	vm risk = may_cross(&s->overlap, zero, sign) & e->active & ~by_force;
+	if (vany(risk))
+		search_crossing(&s->overlap, s->order, zero, sign, risk, vsplat(EVENT_CONTACT), EVENT_CUT, search);
+	if (vany(by_force))
+		force_search(s, g, e, by_force, search);
+}
+
+/* Moves the ends of a step to its events. */
+LANE_INLINE void series_cut(struct series *s, vm event, vd time, bool paired)
+{
+	struct motion *m[3] = {&s->body[0], &s->body[1], &s->overlap};
+	for (int j = 0; j < (paired ? 3 : 1); j++) {
+		m[j]->u1 = vselect(event, power_at(&m[j]->u, s->order, time), m[j]->u1);
+		m[j]->v1 = vselect(event, power_at(&m[j]->v, s->order, time), m[j]->v1);
+	}
+}
+
+/* Adds the integral of the contact force over the step, per mass of the left body, and its time. */
+LANE_INLINE void impulse_add(struct lanes *g, const struct series *s, vd time)
+{
+	struct power area; // of the overlap from 0 to t, over t
+	ORDERS_UP(n, 0, ORDER_TOUCH, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
+	vd elapsed = time * g->dt;
+	vd impulse = vfma(g->contact_stiffness, power_at(&area, ORDER_TOUCH, time) * elapsed,
+	                  g->contact_damping * (s->overlap.u1 - s->overlap.u.c[0]));
+	g->impulse = g->impulse + impulse;
+	g->contact_time = g->contact_time + elapsed;
+}
+
+/* One step: every lane goes on to its next event, or as far as it meant to.
+ *
+ * Given    accounted  a lane's energy balance is kept
+ * Returns  value      the events, and the share of the step that was gone
+ */
+LANE_INLINE struct search event_step(struct lanes *g, const struct event_lanes *e, bool accounted)
+{
+	vd one = vsplat(1), zero = vsplat(0);
+	struct series s;
+	series_fill(&s, g, e->paired, e->touching);
+	struct search search = {.time = one, .event = zero};
+	int bodies = e->paired ? 2 : 1;
+	if (e->paired)
+		contact_search(&s, g, e, &search);
+	for (int i = 0; i < bodies && e->edged; i++)
+		body_search(&s, g, i, e->active, &search);
+	for (int i = 0; i < (e->paired && e->right ? 2 : 1); i++) {
+		vm inside = vless(vmax(g->top[i], vabs(s.body[i].u1)), reach_of(&s.body[i])) & e->active;
+		if (vany(inside))
+			body_top(&s, g, i, inside, &search);
+	}
+	vm event = ~vequal(search.event, zero);
+	if (vany(event))
+		series_cut(&s, event, search.time, e->paired);
+	if (accounted)
+		energy_add(g, &s, search.time, e->paired, e->touching);
+	if (e->touching)
+		impulse_add(g, &s, search.time);
+	vd per_dt = one / g->dt;
+	for (int i = 0; i < bodies; i++) {
+		g->u[i] = s.body[i].u1;
+		g->v[i] = s.body[i].v1 * per_dt;
+		g->top[i] = vmax(g->top[i], vabs(g->u[i]));
+	}
+	if (e->paired) {
+		g->p = s.overlap.u1;
+		g->q = s.overlap.v1 * per_dt;
+	}
+	return search;
+}
+
+#endif

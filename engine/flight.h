@@ -1,0 +1,211 @@
+/* flight.h - whole samples apart and whole cells of contact, by precomputed exact maps.
+ *
+ * Included by march.c alone, once per lane count.  A map takes a simulation over its sample or cell at once; the cubic
+ * through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
+ * edge of a law, no new largest displacement.  A lane in which it cannot prove that stays in front of it. */
+#ifndef FLIGHT_H
+#define FLIGHT_H
+
+#include <float.h>
+
+#include "engine/lanes.h"
+#include "engine/simulation.h"
+
+struct lanes {
+	POUND_ROWS(vd)
+};
+
+/* a body's motion over a sample or cell: its end, the inner control points of the cubic, and the bound of its error */
+struct flight {
+	vd u, v, b1, b2, error;
+};
+
+/* One body over one whole sample.
+ *
+ * With the response psi = uv to an initial velocity, uu = psi' + c psi, and the responses ua and ud to constant and
+ * growing forcing have the derivatives -psi and ua/h, so that the velocity needs few columns of its own:
+ *   u' = uu u + psi v + ua a + ud d     v' = vv v - psi (k u + a) + ua d/h     vv = uu - c psi
+ */
+LANE_INLINE struct flight flight_step(const struct lanes *g, int i, vd ground, vd rise, vd third)
+{
+	struct flight f;
+	vd u = g->u[i], v = g->v[i], c = g->body[i].damping, psi = g->map[i].uv;
+	vd a = vfma(g->body[i].drive, ground, g->body[i].offset), d = g->body[i].drive * rise;
+	vd s = d * g->map[i].per_step, spring = vfma(g->body[i].stiffness, u, a);
+	f.u = vfma(g->map[i].uu, u, vfma(psi, v, vfma(g->map[i].ua, a, g->map[i].ud * d)));
+	f.v = vfma(g->map[i].vv, v, vfma(-psi, spring, g->map[i].ua * s));
+	f.b1 = vfma(third, v, u);
+	f.b2 = vfma(-third, f.v, f.u);
+	// |u''| and |u'''| at the start, for the bound of the cubic's error
+	vd speed = vabs(v), acc = vfma(c, speed, vfma(g->body[i].stiffness, vabs(u), vabs(a)));
+	vd jerk = vfma(c, acc, vfma(g->body[i].stiffness, speed, vabs(s)));
+	vd error = vfma(g->map[i].ea, acc, g->map[i].ej * jerk);
+	f.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(f.u), error);
+	return f;
+}
+
+/* what a body must not do inside a sample or cell */
+struct limits {
+	vd top, low, high, direction;
+};
+
+/* Lanes in which something may happen to a body: a new largest displacement, an edge of its piece. */
+LANE_INLINE vm flight_risk(vd u, vd v, const struct flight *f, vd third, const struct limits *x, bool edged)
+{
+	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2);
+	vd ends = vmax(vmax(vabs(u), vabs(f->u)), x->top);
+	vm risk = vless(ends, vmax(high, -low) + f->error);
+	if (!edged)
+		return risk;
+	risk |= vless(x->high, vmax(high, f->u) + f->error);
+	risk |= vless(vmin(low, f->u) - f->error, x->low);
+	// the velocity's control points times h/3: its own at the ends, b2 - b1 between; it misses the velocity by at
+	// most sqrt(3)/216 h^3 of the fourth derivative, which is 384 sqrt(3)/648 of the displacement's error
+	vd way = x->direction;
+	vd along = vmin(vmin(way * (third * v), way * (third * f->v)), way * (f->b2 - f->b1));
+	return risk | (vless(along, vsplat(1.0265) * f->error) & ~vequal(way, vsplat(0)));
+}
+
+LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
+{
+	if (!edged)
+		return (struct limits){.top = g->top[i]};
+	return (struct limits){g->top[i], g->body[i].low, g->body[i].high, g->body[i].direction};
+}
+
+/* One sample.
+ *
+ * Given    ground, next  acceleration at both ends [m/s2];  flying: lanes to take over it
+ *          edged         a lane has a law of more than one piece;  paired: the lanes have two bodies
+ *          right         a lane's largest displacement of the right body is wanted
+ * Returns  value         lanes in which something may happen inside the sample; these stay where they were
+ */
+LANE_INLINE vm flight(struct lanes *g, vd ground, vd next, vm flying, bool edged, bool paired,
+                      bool right)
+{
+	vd rise = next - ground, third = g->body[0].step_gap * vsplat(1.0 / 3), gap = g->body[1].step_gap;
+	struct flight f[2];
+	struct limits limits = limits_of(g, 0, edged);
+	f[0] = flight_step(g, 0, ground, rise, third);
+	vm risk = flight_risk(g->u[0], g->v[0], &f[0], third, &limits, edged);
+	if (paired) {
+		f[1] = flight_step(g, 1, ground, rise, third);
+		limits = limits_of(g, 1, edged);
+		if (edged || right)
+			risk |= flight_risk(g->u[1], g->v[1], &f[1], third, &limits, edged);
+		vd p = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u) - gap;
+		risk |= vless(vsplat(0), p + (f[0].error + f[1].error) + vsplat(4 * DBL_EPSILON) * gap);
+	}
+	flying &= ~risk;
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		g->u[i] = vselect(flying, f[i].u, g->u[i]);
+		g->v[i] = vselect(flying, f[i].v, g->v[i]);
+		if (i == 0 || right)
+			g->top[i] = vmax(g->top[i], vabs(g->u[i]));
+	}
+	return risk;
+}
+
+/* ---- pressed contact ---- */
+
+/* the base body and the overlap in lanes, and a map of either */
+struct press {
+	vd x[POUND_PRESS_INPUTS];
+	vd map[PRESS_ROWS][POUND_PRESS_INPUTS];
+	struct limits base, other;
+};
+
+/* A row of the map applied to its inputs. */
+LANE_INLINE vd press_row(const vd row[POUND_PRESS_INPUTS], const vd x[POUND_PRESS_INPUTS])
+{
+	vd slow = vfma(row[6], x[6], row[7] * x[7]), force = vfma(row[4], x[4], row[5] * x[5]);
+	return vfma(row[0], x[0], vfma(row[1], x[1], slow)) + vfma(row[2], x[2], vfma(row[3], x[3], force));
+}
+
+/* One cell of pressed contact.
+ *
+ * Given    pressed  lanes to take over it;  edged: a lane has a law of more than one piece
+ *          forced   a lane's contact ends when its force does
+ * Returns  value    lanes in which something may happen inside the cell; these stay where they were
+ */
+LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, bool forced)
+{
+	vd *x = s->x, zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), bound[POUND_PRESS_INPUTS];
+	x[4] = vfma(g->base_drive, g->ground, g->base_force);
+	x[5] = vfma(g->gap_drive, g->ground, g->gap_force);
+	x[6] = g->base_drive * g->rise;
+	x[7] = g->gap_drive * g->rise;
+	for (int j = 0; j < POUND_PRESS_INPUTS; j++)
+		bound[j] = vabs(x[j]);
+	struct flight b = {.u = press_row(s->map[PRESS_U], x), .v = press_row(s->map[PRESS_V], x)};
+	struct flight p = {.u = press_row(s->map[PRESS_P], x), .v = press_row(s->map[PRESS_Q], x)};
+	b.b1 = vfma(third, x[1], x[0]);
+	b.b2 = vfma(-third, b.v, b.u);
+	p.b1 = vfma(third, x[3], x[2]);
+	p.b2 = vfma(-third, p.v, p.u);
+	b.error = vfma(vsplat(16 * DBL_EPSILON), bound[0] + vabs(b.u), press_row(s->map[PRESS_ERROR_U], bound));
+	p.error = press_row(s->map[PRESS_ERROR_P], bound);
+	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
+	vm risk = ~vless(zero, least);
+	if (forced) {
+		vd lowest = vmin(x[3], p.v) * g->release - press_row(s->map[PRESS_DROP], bound);
+		risk |= ~vless(zero, least + lowest);
+	}
+	// the other body stands off the base by gap and overlap
+	struct flight o = {.u = b.u - g->side * (g->gap + p.u),
+	                   .v = b.v - g->side * p.v,
+	                   .b1 = b.b1 - g->side * (g->gap + p.b1),
+	                   .b2 = b.b2 - g->side * (g->gap + p.b2),
+	                   .error = b.error + p.error};
+	vd u = x[0] - g->side * (g->gap + x[2]), v = x[1] - g->side * x[3];
+	o.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(o.u) + g->gap, o.error);
+	risk |= flight_risk(x[0], x[1], &b, third, &s->base, edged);
+	risk |= flight_risk(u, v, &o, third, &s->other, edged);
+	pressed &= ~risk;
+	vd impulse = press_row(s->map[PRESS_IMPULSE], x);
+	g->impulse = vselect(pressed, g->impulse + impulse, g->impulse);
+	g->contact_time = vselect(pressed, g->contact_time + g->cell, g->contact_time);
+	g->ground = vselect(pressed, g->ground + g->rise, g->ground);
+	g->cells = vselect(pressed, g->cells - vsplat(1), g->cells);
+	s->base.top = vselect(pressed, vmax(s->base.top, vabs(b.u)), s->base.top);
+	s->other.top = vselect(pressed, vmax(s->other.top, vabs(o.u)), s->other.top);
+	x[0] = vselect(pressed, b.u, x[0]);
+	x[1] = vselect(pressed, b.v, x[1]);
+	x[2] = vselect(pressed, p.u, x[2]);
+	x[3] = vselect(pressed, p.v, x[3]);
+	return risk;
+}
+
+LANE_INLINE struct limits limits_select(vm mask, struct limits a, struct limits b)
+{
+	return (struct limits){vselect(mask, a.top, b.top), vselect(mask, a.low, b.low),
+	                       vselect(mask, a.high, b.high), vselect(mask, a.direction, b.direction)};
+}
+
+/* The base of each lane's bodies, and back. */
+LANE_INLINE void press_enter(struct press *s, const struct lanes *g, bool edged)
+{
+	vm left = vless(vsplat(0), g->side);
+	s->x[0] = vselect(left, g->u[0], g->u[1]);
+	s->x[1] = vselect(left, g->v[0], g->v[1]);
+	s->x[2] = g->p;
+	s->x[3] = g->q;
+	s->base = limits_select(left, limits_of(g, 0, edged), limits_of(g, 1, edged));
+	s->other = limits_select(left, limits_of(g, 1, edged), limits_of(g, 0, edged));
+}
+
+LANE_INLINE void press_leave(const struct press *s, struct lanes *g)
+{
+	vm left = vless(vsplat(0), g->side);
+	vd u = s->x[0] - g->side * (g->gap + s->x[2]), v = s->x[1] - g->side * s->x[3];
+	g->u[0] = vselect(left, s->x[0], u);
+	g->v[0] = vselect(left, s->x[1], v);
+	g->u[1] = vselect(left, u, s->x[0]);
+	g->v[1] = vselect(left, v, s->x[1]);
+	g->top[0] = vselect(left, s->base.top, s->other.top);
+	g->top[1] = vselect(left, s->other.top, s->base.top);
+	g->p = s->x[2];
+	g->q = s->x[3];
+}
+
+#endif
