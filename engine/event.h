@@ -109,7 +109,8 @@ LANE_INLINE void series_fill(struct series *s, const struct lanes *g, bool paire
 }
 
 /* Looks for the edges of a body's piece. */
-static void body_search(const struct series *s, const struct lanes *g, int i, vm active, struct search *search)
+static void body_search(const struct series *s, const struct lanes *g, int i, vm active,
+                        struct search *search)
 {
 	vd zero = vsplat(0), one = vsplat(1), body = vsplat(EVENT_BODY + EVENT_EDGES * i);
 	const struct motion *m = &s->body[i];
@@ -117,16 +118,18 @@ static void body_search(const struct series *s, const struct lanes *g, int i, vm
 	vm past_low = may_cross(m, g->body[i].low, -one) & active;
 	vm turns = ~vequal(g->body[i].direction, zero) & active;
 	if (vany(past_high))
-		search_crossing(m, s->order, g->body[i].high, one, past_high, body + vsplat(POUND_EDGE_HIGH), EVENT_CUT, search);
+		search_crossing(m, s->order, g->body[i].high, one, past_high, body + vsplat(POUND_EDGE_HIGH),
+		                EVENT_CUT, search);
 	if (vany(past_low))
-		search_crossing(m, s->order, g->body[i].low, -one, past_low, body + vsplat(POUND_EDGE_LOW), EVENT_CUT, search);
+		search_crossing(m, s->order, g->body[i].low, -one, past_low, body + vsplat(POUND_EDGE_LOW), EVENT_CUT,
+		                search);
 	if (vany(turns)) {
 		struct motion velocity;
 		motion_velocity(&velocity, m, s->order);
 		turns &= may_cross(&velocity, zero, -g->body[i].direction);
 		if (vany(turns))
-			search_crossing(&velocity, s->order, zero, -g->body[i].direction, turns, body + vsplat(POUND_EDGE_TURN),
-			                EVENT_CUT, search);
+			search_crossing(&velocity, s->order, zero, -g->body[i].direction, turns,
+			                body + vsplat(POUND_EDGE_TURN), EVENT_CUT, search);
 	}
 }
 
@@ -145,8 +148,8 @@ static void body_top(const struct series *s, struct lanes *g, int i, vm inside, 
 	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
 	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
 	vd sign = vselect(vless(way, zero), one, -one);
-	vm once = root_quick(&velocity.u, &velocity.v, s->order, zero, sign, sign * v[0], sign * m->v1, one, velocity.bend,
-	                     inside, &t);
+	vm once = root_quick(&velocity.u, &velocity.v, s->order, zero, sign, sign * v[0], sign * m->v1, one,
+	                     velocity.bend, inside, &t);
 	vd turn = vabs(power_at(&m->u, s->order, t));
 	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], turn), g->top[i]);
 	inside &= ~once;
@@ -155,7 +158,8 @@ static void body_top(const struct series *s, struct lanes *g, int i, vm inside, 
 	struct power guard;
 	for (int n = 0; n <= s->order; n++)
 		guard.c[n] = sign * v[n];
-	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN), EVENT_CUT, search);
+	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN), EVENT_CUT,
+	            search);
 }
 
 /* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
@@ -163,8 +167,8 @@ static void body_top(const struct series *s, struct lanes *g, int i, vm inside, 
  * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then parted: the contact goes
  * on when that force rises again, and they are apart when p has fallen to 0.
  */
-static void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e, vm by_force,
-                         struct search *search)
+static void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
+                         vm by_force, struct search *search)
 {
 	const struct motion *p = &s->overlap;
 	vd sign = e->touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;

@@ -80,8 +80,7 @@ LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
  *          right         a lane's largest displacement of the right body is wanted
  * Returns  value         lanes in which something may happen inside the sample; these stay where they were
  */
-LANE_INLINE vm flight(struct lanes *g, vd ground, vd next, vm flying, bool edged, bool paired,
-                      bool right)
+LANE_INLINE vm flight(struct lanes *g, vd ground, vd next, vm flying, bool edged, bool paired, bool right)
 {
 	vd rise = next - ground, third = g->body[0].step_gap * vsplat(1.0 / 3), gap = g->body[1].step_gap;
 	struct flight f[2];

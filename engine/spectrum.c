@@ -133,7 +133,7 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
  *
  * Given    y0, y1   derivatives in the part's time;  bound: of the drive and its derivatives, times step^2
  */
-LANE_INLINE vi part_risk(const struct part *p, struct state *s, vd y0, vd z1, vd y1, const double bound[3])
+LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd y0, vd z1, vd y1, const double bound[3])
 {
 	vd third = vsplat(1.0 / 3);
 	vd b1 = vfma(third, y0, s->z), b2 = vfma(-third, y1, z1);
@@ -157,7 +157,7 @@ LANE_INLINE vd polished(const struct series *s, const vd *bend, vd t)
 }
 
 /* The extrema inside a part, from both roots of the velocity of the cubic through its ends. */
-static void peak_add(const struct series *s, vi risk, vd *top)
+static void peak_add(const struct series *s, vm risk, vd *top)
 {
 	vd zero = vsplat(0), one = vsplat(1), bend[TERMS + 1];
 	for (int n = 0; n < s->terms; n++)
@@ -217,7 +217,7 @@ LANE_INLINE void part_ride(const struct part *p, struct state *s, const struct p
 	struct series series;
 	int order = a->bound[0] > 0 ? piece->order : -1;
 	series_fill(&series, p, s->z, s->v * p->step, drive, order);
-	vi risk = part_risk(p, s, series.y[0], series.z1, series.y1, bound);
+	vm risk = part_risk(p, s, series.y[0], series.z1, series.y1, bound);
 	if (vany(risk))
 		peak_add(&series, risk, &s->top);
 	s->z = series.z1;
@@ -285,7 +285,7 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 				v = vfma(f->gv[k], vsplat(piece->state[k]), v);
 			}
 		}
-		vi risk = part_risk(p, s, s->v * p->step, z, v * p->step, bound);
+		vm risk = part_risk(p, s, s->v * p->step, z, v * p->step, bound);
 		if (vany(risk)) {
 			double coefficients[POUND_TRACE_ORDER + 1];
 			struct series series;
