@@ -1,18 +1,132 @@
-/* What a study will take: its runs by the time of one. */
+/* What a study will take, before any of it is run.
+ *
+ * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, and
+ * of the spectra of its floor.  The unit costs were measured (README, Speed); they hold within a factor of about three.
+ * What a design shares between its samples is in them as it is for the examples. */
 #include "schema/cost.h"
 
+#include <math.h>
+#include <string.h>
+
+#include "schema/fields.h"
 #include "schema/study_json.h"
 
-/* [s] of one core for a sample interval of one run: `make run` takes 3.5 s for 30,000 runs of 1,020 on average */
-static const double INTERVAL_CPU_S = 1.2e-7;
+enum { QUANTILES = 64 /* of a distribution, for a mean */ };
 
+/* [s] of one core: for a study, for a sample of a ground motion by each solver, and for a step within it */
+static const double STUDY_S = 0.002;
+static const struct {
+	const char *solver;
+	double sample, step;
+} units[] = {
+    {"event", 1.0e-7, 0},
+    {"newmark", 1.0e-7, 6e-8},
+    {"central_difference", 1.0e-7, 4e-8},
+    {"adaptive", 8e-6, 0},
+};
+static const double ORDINATE_S = 8e-8; /* [s] for a sample at one frequency of a spectrum */
+
+/* how much more a kind computes of a run than the outputs of a sensitivity study: other measures, histories */
+static const double kinds[] = {[POUND_KIND_RESPONSE] = 3,
+                               [POUND_KIND_SENSITIVITY] = 1,
+                               [POUND_KIND_CONVERGENCE] = 6,
+                               [POUND_KIND_FLOOR_SPECTRUM] = 3};
+
+/* [bytes] in a result: of an index or of a signal, with its name and all that stands beside it */
+static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, DOCUMENT_BYTES = 3000;
+
+/* The mean of a power of a field of the scene, over its distribution or its sweep. */
+static double mean(const struct pound_study *study, size_t offset, double power)
+{
+	double sum = 0;
+	for (int j = 0; j < study->n_inputs; j++) {
+		if (study->inputs[j].field.offset != offset)
+			continue;
+		for (int k = 0; k < QUANTILES; k++)
+			sum += pow(pound_distribution_quantile(&study->inputs[j].distribution, (k + 0.5) / QUANTILES),
+			           power);
+		return sum / QUANTILES;
+	}
+	for (int s = 0; s < study->n_sweeps; s++) {
+		const struct pound_sweep *sweep = &study->sweeps[s];
+		if (sweep->field.offset != offset)
+			continue;
+		for (int k = 0; k < sweep->n_values; k++)
+			sum += pow(sweep->values[k], power);
+		return sum / sweep->n_values;
+	}
+	const struct pound_field field = {POUND_FIELD_REAL, offset};
+	return pow(pound_scene_field(&study->scene, field), power);
+}
+
+#define MEAN(study, member, power) mean((study), offsetof(struct pound_scene, member), (power))
+
+/* Samples of a ground motion, in the mean. */
+static double samples_mean(const struct pound_study *study)
+{
+	const struct pound_excitation *excitation = &study->scene.excitation;
+	if (excitation->n_record)
+		return excitation->n_record;
+	bool cycles = fields_used(fields_find("/scene/excitation/cycles"), NULL,
+	                          pound_excitation_name(excitation->type), NULL);
+	double duration = cycles ? MEAN(study, excitation.cycles, 1) * MEAN(study, excitation.frequency_hz, -1)
+	                         : MEAN(study, excitation.duration, 1);
+	return duration * MEAN(study, excitation.time_step, -1) + 1;
+}
+
+/* What the contact's own frequency, over those of the oscillators, adds to the steps of a march that follows it:
+ * it goes with the root of the stiffness and of the masses' ratio. */
+static double stiffness(const struct pound_study *study)
+{
+	bool wall = study->scene.oscillators[1].rigid_wall;
+	double light = wall ? 1 : MEAN(study, oscillators[0].mass, 0.5) * MEAN(study, oscillators[1].mass, -0.5);
+	double heavy = wall ? 1 : MEAN(study, oscillators[0].mass, -0.5) * MEAN(study, oscillators[1].mass, 0.5);
+	return study->scene.contact.present
+	           ? 0.008 * MEAN(study, contact.stiffness_ratio, 0.5) * fmax(light, heavy)
+	           : 0;
+}
+
+/* [s] of one run by a solver. */
+static double run_s(const struct pound_study *study, const struct pound_solver *solver)
+{
+	const char *name = pound_solver_name(solver->method);
+	bool fixed = pound_solver_takes_step(solver->method);
+	double steps = fixed ? fmax(1, MEAN(study, excitation.time_step, 1) / solver->step) : 0;
+	int row = sizeof units / sizeof units[0] - 1;
+	while (row > 0 && strcmp(units[row].solver, name) != 0)
+		row--;
+	return samples_mean(study) *
+	       (units[row].sample * (fixed ? 1 : 1 + stiffness(study)) + units[row].step * steps);
+}
+
+/* What a study will take.
+ *
+ * Given    study   valid
+ * Returns  value   runs exactly; time and bytes as told above
+ * Test     unit_cost: what_is_asked_twice_costs_twice; soak_cost: an_estimate_is_near_what_a_study_takes
+ */
 struct cost cost_of(const struct pound_study *study)
 {
-	double runs = (double)study_runs(study);
-	// what is stored of a run: its part of two means for each output, or all its measures
-	size_t bytes = study->kind == POUND_KIND_SENSITIVITY ? 2 * (size_t)study->n_outputs * sizeof(double)
-	                                                     : sizeof(struct pound_response);
-	return (struct cost){.runs = study_runs(study),
-	                     .cpu_s = runs * study_steps(study) * INTERVAL_CPU_S,
-	                     .bytes = runs * (double)bytes};
+	struct cost cost = {.runs = study_runs(study), .cpu_s = STUDY_S, .bytes = DOCUMENT_BYTES};
+	double cells = study_cells(study), runs = (double)cost.runs;
+	double numbers; // doubles that are stored of a run
+	if (study->kind == POUND_KIND_CONVERGENCE) {
+		int n = pound_convergence_trials(study);
+		for (int j = 0; j < n; j++) {
+			const struct pound_solver solver = pound_convergence_solver(study, j);
+			cost.cpu_s += kinds[study->kind] * runs / n * run_s(study, &solver);
+		}
+	} else
+		cost.cpu_s += kinds[study->kind] * runs * run_s(study, &study->solver);
+	if (study->spectrum.n)
+		cost.cpu_s += runs * study->spectrum.n * samples_mean(study) * ORDINATE_S;
+	if (study->kind == POUND_KIND_SENSITIVITY) {
+		numbers = 2 * study->n_outputs;
+		cost.bytes += cells * study->n_outputs * (study->n_inputs + 1) * INDEX_BYTES;
+	} else {
+		numbers = sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
+		cost.bytes += runs * SIGNAL_BYTES + cells * 20 * study->spectrum.n * NUMBER_BYTES;
+	}
+	cost.bytes += runs * numbers * sizeof(double);
+	return cost;
 }

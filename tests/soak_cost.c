@@ -1,0 +1,64 @@
+/* How near the estimates of validate_only are: every example, and every solver, is run and compared. */
+#include <math.h>
+#include <string.h>
+
+#include "schema/examples.h"
+#include "schema/reading.h"
+#include "schema/study_json.h"
+#include "tests/service.h"
+
+static double validated(const struct service *service, const char *study, const char *member)
+{
+	struct answer answer = service_ask(service, &(struct ask){.method = "POST",
+	                                                          .path = "/v1/studies?validate_only=true",
+	                                                          .headers = {"Content-Type: application/json"},
+	                                                          .body = study,
+	                                                          .length = strlen(study)});
+	assert_int_equal(answer.status, 200);
+	struct reading *cost = answer_read(&answer);
+	double value = reading_number(cost, "/%s", member);
+	reading_close(cost);
+	answer_free(&answer);
+	return value;
+}
+
+static void an_estimate_is_near_what_a_study_takes(void **state)
+{
+	struct service *service = *state;
+	double worst = 1;
+	for (int i = 0; examples[i].name; i++) {
+		static struct problems problems;
+		char id[17], sql[256];
+		struct pound_study *whole = study_from_json(examples[i].text, strlen(examples[i].text), &problems);
+		if (!whole) // a design alone
+			continue;
+		study_free(whole);
+		double cpu_s = validated(service, examples[i].text, "estimated_cpu_s");
+		double bytes = validated(service, examples[i].text, "estimated_bytes");
+		if (cpu_s > 20) // the paper's
+			continue;
+		service_submit(service, examples[i].text, id);
+		assert_true(service_wait(service, id, "succeeded", 0));
+		struct answer answer = service_get(service, "/v1/studies/%s/results", id);
+		struct reading *result = answer_read(&answer);
+		double took_s = reading_number(result, "/timing/cpu_s");
+		snprintf(sql, sizeof sql,
+		         "SELECT (SELECT total(length(content)) FROM block WHERE study = %lld) + "
+		         "(SELECT total(length(content)) FROM document WHERE study = %lld)",
+		         strtoll(id, NULL, 16), strtoll(id, NULL, 16));
+		double took_bytes = (double)service_number(service, sql);
+		printf("%-24s %8.3g s estimated, %8.3g taken: %5.2f; %8.3g bytes estimated, %8.3g taken: %5.2f\n",
+		       examples[i].name, cpu_s, took_s, cpu_s / took_s, bytes, took_bytes, bytes / took_bytes);
+		// below 10 ms the time is the clock's
+		worst = took_s > 0.01 ? fmax(worst, fmax(cpu_s / took_s, took_s / cpu_s)) : worst;
+		worst = fmax(worst, fmax(bytes / took_bytes, took_bytes / bytes));
+		reading_close(result);
+		answer_free(&answer);
+	}
+	printf("off by a factor of %.1f at most\n", worst);
+	assert_true(worst < 5);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(an_estimate_is_near_what_a_study_takes))
