@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "schema/api.h"
+#include "tests/program.h"
 #include "tests/service.h"
 
 static const char TOKEN[] = "correct-horse-battery-staple-0123456789";
@@ -79,6 +80,32 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 		assert_null(strstr(line, "battery"));
 	fclose(log);
 	printf("%d requests with wrong tokens: all 401\n", refused);
+	unlink(path);
+	service_free(service);
+}
+
+static void the_command_line_sends_the_token_of_its_environment(void **state)
+{
+	char path[128], url[64];
+	(void)state;
+	struct service *service = service_new();
+	token_file(service, path);
+	setenv("POUNDD_TOKEN_FILE", path, 1);
+	service_start(service, 1);
+	unsetenv("POUNDD_TOKEN_FILE");
+	snprintf(url, sizeof url, "http://127.0.0.1:%d", service->port);
+	setenv("POUND_URL", url, 1);
+	struct program_outcome without = program_run((const char *const[]){"pound", "list", NULL}, NULL);
+	setenv("POUND_TOKEN", TOKEN, 1);
+	struct program_outcome with = program_run((const char *const[]){"pound", "list", NULL}, NULL);
+	unsetenv("POUND_TOKEN");
+	unsetenv("POUND_URL");
+	assert_int_equal(without.status, 1);
+	assert_non_null(strstr(without.err, "token"));
+	program_expect(&with, 0);
+	program_free(&without);
+	program_free(&with);
+	service_stop(service);
 	unlink(path);
 	service_free(service);
 }
@@ -201,6 +228,7 @@ static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(cmocka_unit_test(without_a_right_token_everything_but_the_probes_is_401),
+           cmocka_unit_test(the_command_line_sends_the_token_of_its_environment),
            cmocka_unit_test(an_address_that_is_not_loopback_needs_tokens_or_insecure),
            cmocka_unit_test(a_token_has_a_share_of_the_queue_and_keys_of_its_own),
            SERVED(a_page_of_the_web_cannot_use_the_server), cmocka_unit_test(a_name_that_was_given_is_a_host))
