@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "schema/reading.h"
+#include "server/token.h"
 #include "tests/raw.h"
 
 static double now(void)
@@ -434,9 +435,67 @@ static void a_million_requests_and_a_thousand_studies_leave_nothing_behind(void 
 	assert_true(about.st_size <= 64 << 20);
 }
 
+/* ---- what the time of an answer tells ---- */
+
+enum { TIMINGS = 100000 };
+
+/* Mean and variance of the mean of what is not among the slowest tenth, which other programs make. */
+static void trimmed(double *seconds, double *mean, double *variance)
+{
+	int n = TIMINGS * 9 / 10;
+	double sum = 0, squares = 0;
+	qsort(seconds, TIMINGS, sizeof(double), ascending);
+	for (int i = 0; i < n; i++)
+		sum += seconds[i];
+	*mean = sum / n;
+	for (int i = 0; i < n; i++)
+		squares += (seconds[i] - *mean) * (seconds[i] - *mean);
+	*variance = squares / n / (n - 1);
+}
+
+static void the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is(void **state)
+{
+	static const char right[] = "0123456789abcdef0123456789abcdef";
+	static double seconds[2][TIMINGS];
+	char path[] = "/tmp/pound-token-XXXXXX", wrong[2][64];
+	int file = mkstemp(path);
+	(void)state;
+	assert_true(write(file, right, strlen(right)) > 0);
+	close(file);
+	struct tokens *tokens = tokens_open(path);
+	assert_non_null(tokens);
+	unlink(path);
+	for (int w = 0; w < 2; w++) {
+		snprintf(wrong[w], sizeof wrong[w], "Bearer %s", right);
+		wrong[w][7 + (w ? 31 : 0)] = 'x'; // at the first character, and at the last
+	}
+	unsigned random = 1;
+	for (int n[2] = {0}; n[0] < TIMINGS || n[1] < TIMINGS;) {
+		// by chance, so that neither has a rhythm that the processor could learn
+		int w = rand_r(&random) >> 4 & 1;
+		char sent[64]; // the same place for both
+		memcpy(sent, wrong[w], sizeof sent);
+		double start = now();
+		const char *name = tokens_name(tokens, sent);
+		double took = now() - start;
+		assert_null(name);
+		if (n[w] < TIMINGS)
+			seconds[w][n[w]++] = took;
+	}
+	double mean[2], variance[2];
+	for (int w = 0; w < 2; w++)
+		trimmed(seconds[w], &mean[w], &variance[w]);
+	double t = (mean[1] - mean[0]) / sqrt(variance[0] + variance[1]);
+	printf("wrong at the first character %.1f ns, at the last %.1f ns: t = %.2f\n", 1e9 * mean[0],
+	       1e9 * mean[1], t);
+	assert_true(fabs(t) < 2.58); // p > 0.01
+	tokens_close(tokens);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
-CHECK_MAIN(SERVED(a_thousand_pollers_are_served_while_all_workers_are_busy),
+CHECK_MAIN(cmocka_unit_test(the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is),
+           SERVED(a_thousand_pollers_are_served_while_all_workers_are_busy),
            cmocka_unit_test(a_hundred_studies_a_second_are_accepted_from_sixteen_clients),
            SERVED(slow_headers_bodies_and_readers_do_not_keep_others_out),
            SERVED(a_million_requests_and_a_thousand_studies_leave_nothing_behind))
