@@ -1,8 +1,10 @@
 /* Handing over studies: twice by one key, more than there is room for, more than a server takes, and hostile texts. */
+#include <dirent.h>
 #include <pthread.h>
 #include <string.h>
 
 #include "schema/reading.h"
+#include "tests/program.h"
 #include "tests/service.h"
 
 static struct answer post(const struct service *service, const char *study, const char *key)
@@ -280,6 +282,47 @@ static void hostile_texts_are_names_like_any_other_and_never_questions(void **st
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), n);
 }
 
+/* Every file of JSONTestSuite (its folder in JSONTESTSUITE_DIR) as a study: none is one, but only what is not JSON is
+ * malformed. */
+static void the_public_suite_is_posted_and_judged_as_it_says(void **state)
+{
+	struct service *service = *state;
+	const char *folder = getenv("JSONTESTSUITE_DIR");
+	DIR *files = folder ? opendir(folder) : NULL;
+	int n[128] = {0}, malformed[128] = {0};
+	if (!files)
+		skip();
+	for (struct dirent *entry = readdir(files); entry; entry = readdir(files)) {
+		char path[512];
+		size_t length;
+		int kind = entry->d_name[0] & 0x7f;
+		if (!strchr("nyi", kind) || entry->d_name[1] != '_')
+			continue;
+		snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+		char *bytes = program_file(path, &length);
+		struct answer answer =
+		    service_ask(service, &(struct ask){.method = "POST",
+		                                       .path = "/v1/studies",
+		                                       .headers = {"Content-Type: application/json"},
+		                                       .body = bytes,
+		                                       .length = length});
+		if (answer.status != 400 && answer.status != 422)
+			fail_msg("%s: %d", entry->d_name, answer.status);
+		if (kind == 'n' && answer.status != 400)
+			fail_msg("%s is not malformed: %s", entry->d_name, answer.body);
+		assert_string_equal(answer.type, "application/problem+json");
+		n[kind]++;
+		malformed[kind] += answer.status == 400;
+		answer_free(&answer);
+		free(bytes);
+	}
+	closedir(files);
+	printf("posted: n_ %d of %d malformed, y_ %d of %d (escaped U+0000), i_ %d of %d\n", malformed['n'],
+	       n['n'], malformed['y'], n['y'], malformed['i'], n['i']);
+	assert_true(n['n'] > 100 && n['y'] > 50 && malformed['y'] <= 2);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 0);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(a_hundred_posts_at_once_with_one_key_are_one_study),
@@ -287,4 +330,5 @@ CHECK_MAIN(SERVED(a_hundred_posts_at_once_with_one_key_are_one_study),
            cmocka_unit_test(a_full_queue_is_503_until_there_is_room),
            cmocka_unit_test(a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked),
            SERVED(a_study_beyond_all_measure_is_refused_without_making_it),
-           SERVED(hostile_texts_are_names_like_any_other_and_never_questions))
+           SERVED(hostile_texts_are_names_like_any_other_and_never_questions),
+           SERVED(the_public_suite_is_posted_and_judged_as_it_says))
