@@ -3,7 +3,8 @@
  * 1. The rows, or their groups, fall into five folds; for each, a polynomial g of the inputs is fitted to the outputs of all samples of
  *    the rows outside it (least squares, orthonormal Legendre terms, "polynomial chaos").
  * 2. The closed parts of g's variance are known exactly from its coefficients.  A row's estimate is that of g plus what
- *    its samples say of the output and do not say of g, g being of the fit that has not seen the row (closed.c). */
+ *    its samples say of the output and do not say of g, g being of the fit that has not seen the row (closed.c).
+ * 3. So is the mean output given an input that of g and that of the output less g (conditional.c). */
 #include "engine/indices.h"
 #include "engine/legendre.h"
 
@@ -13,9 +14,9 @@
 
 enum {
 	FOLDS = 5,
-	TERMS_MAX = 300,      // a fit's work grows with the cube of its terms
-	SAMPLES_PER_TERM = 5, // fewer and the polynomial follows the noise of the fit
-	CHUNK = POUND_LEGENDRE_CHUNK,
+	TERMS_MAX = 300,              // a fit's work grows with the cube of its terms
+	SAMPLES_PER_TERM = 5,         // fewer and the polynomial follows the noise of the fit
+	CHUNK = POUND_LEGENDRE_CHUNK, // holds a curve too
 };
 
 /* Degree of the polynomial for a number of samples: 6 for 4 inputs and 1000 rows of 6 samples. */
@@ -48,7 +49,7 @@ struct fits {
 	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
 	struct pound_closed closed;
 	double *estimates;    /* (n_rows x closed.n_columns) */
-	double *rest;         /* for closed.c */
+	double *rest;         /* for closed.c and conditional.c */
 	double *sorted;       /* the rows by fold, as whole numbers  (n_rows) */
 	int first[FOLDS + 1]; /* of each fold among them */
 };
@@ -60,6 +61,7 @@ static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, i
 	f->terms = pound_legendre_terms(n_inputs, f->degree);
 	f->squares = pound_legendre_terms(n_inputs, 2 * f->degree);
 	pound_legendre_init(&f->chunk, n_inputs, 2 * f->degree);
+	const size_t rest = pound_closed_scratch(&f->closed, n_rows), smooth = pound_conditional_scratch(n_rows);
 	const struct {
 		double **at;
 		size_t n;
@@ -74,7 +76,7 @@ static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, i
 	    {&f->coefficients, (size_t)FOLDS * f->terms},
 	    {&f->fit, (size_t)n_rows * f->closed.n_samples},
 	    {&f->estimates, (size_t)n_rows * f->closed.n_columns},
-	    {&f->rest, pound_closed_scratch(&f->closed, n_rows)},
+	    {&f->rest, rest > smooth ? rest : smooth},
 	    {&f->sorted, n_rows},
 	};
 	size_t total = 0;
@@ -251,18 +253,53 @@ static void estimates_fill(const struct fits *f, bool corrected)
 	}
 }
 
+/* The mean of the fits given one input, less that of the outputs, at the places of a curve. */
+static void trend_fill(struct fits *f, int input, double *trend)
+{
+	const int d = f->closed.n_inputs;
+	int degrees[POUND_INPUTS_MAX] = {0};
+	double *coefficients = f->others; // as long at least
+	for (int term = 0; term < f->terms; term++, pound_legendre_next(d, f->degree, degrees)) {
+		int elsewhere = 0;
+		for (int j = 0; j < d; j++)
+			elsewhere += j == input ? 0 : degrees[j];
+		coefficients[term] = 0.0;
+		for (int fold = 0; fold < FOLDS && elsewhere == 0; fold++)
+			coefficients[term] += f->coefficients[(size_t)fold * f->terms + term] / FOLDS;
+	}
+	f->chunk.n = POUND_CURVE;
+	for (int k = 0; k < POUND_CURVE; k++)
+		for (int j = 0; j < d; j++)
+			pound_legendre_point(&f->chunk, k, j, pound_conditional_place(k));
+	pound_legendre_expand(&f->chunk, f->degree, coefficients, f->value);
+	memcpy(trend, f->value, sizeof *trend * POUND_CURVE);
+}
+
+/* The fits become what they leave of the outputs. */
+static void curves_fill(struct fits *f, struct pound_curve *curves)
+{
+	struct pound_conditional given = {.rows = f->rows, .u = f->u, .y = f->fit};
+	for (size_t k = 0; k < (size_t)f->rows->n_rows * (size_t)f->rows->n_samples; k++)
+		f->fit[k] = f->rows->y[k] - f->fit[k];
+	for (int j = 0; j < f->rows->n_inputs; j++) {
+		trend_fill(f, j, given.trend);
+		pound_conditional_mean(&given, j, f->rest, &curves[j]);
+	}
+}
+
 size_t pound_chaos_scratch(const struct pound_sample_values *shape)
 {
 	struct fits fits;
 	return carve(&fits, NULL, shape->n_rows, shape->n_inputs, shape->order);
 }
 
-/* All indexes with a cross-fitted polynomial as control variate.
+/* All indexes and conditional means with a cross-fitted polynomial as control variate.
  *
  * Given    rows       -                      outputs and their noise
  *          u          (n x 2 x n_inputs)     the design as probabilities in (0, 1), rows of A and B
  *          corrected  -                      for the noise of few signals (NAN for one signal)
  * Returns  results    -                      with 95 % intervals from the scatter of the rows, or of their groups
+ *          curves     (n_inputs)             mean outputs given each input; NULL: not wanted
  * Memory   scratch    (pound_chaos_scratch)  for all rows of the design
  *
  * An input without effect has a total near 0, not exactly 0 as without the control variate.
@@ -273,7 +310,7 @@ size_t pound_chaos_scratch(const struct pound_sample_values *shape)
  * Test     unit_chaos
  */
 void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
-                         struct pound_closed_results *results)
+                         struct pound_closed_results *results, struct pound_curve *curves)
 {
 	struct fits fits = {.rows = rows, .u = u};
 	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
@@ -283,6 +320,8 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
 	fits_fill(&fits);
 	estimates_fill(&fits, corrected);
 	pound_closed_indices(&fits.closed, fits.estimates, rows, fits.rest, results);
+	if (curves)
+		curves_fill(&fits, curves);
 }
 
 /* What the first rows' estimates alone give, with the polynomials of all rows.

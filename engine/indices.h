@@ -170,10 +170,22 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 int pound_chaos_degree(int n_rows, int n_inputs, int n_samples);
 size_t pound_chaos_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
-                         struct pound_closed_results *results);
+                         struct pound_closed_results *results, struct pound_curve *curves);
 /* From the first n of those rows alone, with the polynomials of all; the scratch as it was left. */
 void pound_chaos_first_rows(const struct pound_rows *rows, int n, double *scratch,
                             struct pound_closed_results *results);
+
+/* What the mean output given an input is found from. */
+struct pound_conditional {
+	const struct pound_rows *rows;
+	const double *u;           /* the design as probabilities  (n x 2 x n_inputs) */
+	const double *y;           /* of the outputs less their mean, what a trend leaves  (n_rows x n_samples) */
+	double trend[POUND_CURVE]; /* its own mean given the input, at the places of the curve */
+};
+
+size_t pound_conditional_scratch(int n_rows); /* doubles */
+void pound_conditional_mean(const struct pound_conditional *given, int input, double *scratch,
+                            struct pound_curve *curve);
 
 /* The plain protocol: mean, variance, noise share and the raw indexes. */
 size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */

@@ -301,6 +301,15 @@ enum {
 	POUND_CLOSED_MAX = (1 << POUND_FACTORIAL_INPUTS_MAX) - 2, /* sets but none and all */
 };
 
+/* The mean output given an input, where its probability is (k + 1/2) / POUND_CURVE; NAN: too few rows. */
+enum { POUND_CURVE = 50 };
+
+struct pound_curve {
+	struct pound_estimate mean[POUND_CURVE];
+};
+
+double pound_conditional_place(int k); /* that probability */
+
 /* Those that the design of the study tells, sets in ascending order. */
 struct pound_set_indices {
 	int n_second, n_closed;
@@ -417,6 +426,7 @@ struct pound_indices {
 	struct pound_estimate
 	    *named[POUND_N_NAMED]; /* of the study's estimator, if it has one  (n_inputs) each */
 	struct pound_set_indices sets;
+	struct pound_curve *curves;                /* (n_inputs); NULL: not wanted */
 	struct pound_estimate impulse_correlation; /* of an ordinate with the largest impulse; NAN: no ordinate */
 	struct pound_accuracy accuracy;
 };

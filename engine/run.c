@@ -21,9 +21,9 @@
 enum {
 	MEASURES = sizeof(struct pound_response) / sizeof(double),
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
-	CHECK_EVERY = 100,                         /* items between two checked ones */
-	CHECKED_MIN = 8,                           /* runs of a cell to check at least, if it has them */
-	COLUMNS = POUND_N_INDEXES + POUND_N_NAMED, /* of indexes */
+	CHECK_EVERY = 100, /* items between two checked ones */
+	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
+	COLUMNS = POUND_N_INDEXES + POUND_N_NAMED + POUND_CURVE, /* of estimates for each input */
 	TRIAL_MEASURES = sizeof(struct pound_trial_run) / sizeof(double),
 };
 
@@ -139,11 +139,12 @@ static bool result_create(struct pound_run *run)
 		into->indices = &run->indices[cell * study->n_outputs];
 		for (int o = 0; o < study->n_outputs; o++) {
 			size_t first = ((size_t)cell * n_outputs + (size_t)o) * COLUMNS;
-			for (size_t k = 0; k < COLUMNS; k++) {
-				struct pound_estimate *column = &run->estimates[(first + k) * (size_t)study->n_inputs];
-				*(k < POUND_N_INDEXES ? &into->indices[o].index[k]
-				                      : &into->indices[o].named[k - POUND_N_INDEXES]) = column;
-			}
+			struct pound_estimate *column = &run->estimates[first * (size_t)study->n_inputs];
+			for (int k = 0; k < POUND_N_INDEXES; k++, column += study->n_inputs)
+				into->indices[o].index[k] = column;
+			for (int k = 0; k < POUND_N_NAMED; k++, column += study->n_inputs)
+				into->indices[o].named[k] = column;
+			into->indices[o].curves = (struct pound_curve *)column;
 		}
 	}
 	return true;

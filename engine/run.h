@@ -15,7 +15,7 @@ struct pound_run {
 	struct pound_ordinates **floors; /* (n_workers); NULL each: no spectra are asked */
 	struct pound_result result;
 	double *u;                        /* the design as probabilities  (rows x 2 x n_inputs) */
-	struct pound_estimate *estimates; /* (n_cells x n_outputs x POUND_N_INDEXES x n_inputs) */
+	struct pound_estimate *estimates; /* columns  (n_cells x n_outputs x columns x n_inputs) */
 	struct pound_indices *indices;    /* (n_cells x n_outputs) */
 	struct pound_response *responses; /* (n_cells x n_signals) */
 	double *spectra;                  /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */

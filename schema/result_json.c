@@ -173,6 +173,41 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 	writer_end(w);
 }
 
+/* One member of every point of a curve. */
+static void write_points(struct writer *w, const char *name, const struct pound_curve *curve, size_t member)
+{
+	writer_array(w, name, WRITER_LINE);
+	for (int k = 0; k < POUND_CURVE; k++)
+		writer_number(w, NULL, *(const double *)(const void *)((const char *)&curve->mean[k] + member));
+	writer_end(w);
+}
+
+/* The mean output given each input; nothing where there is none. */
+static void write_curves(struct writer *w, const struct pound_study *study,
+                         const struct pound_indices *indices)
+{
+	if (!indices->curves || isnan(indices->curves[0].mean[0].value))
+		return;
+	writer_array(w, "conditional_means", WRITER_LINES);
+	for (int j = 0; j < study->n_inputs; j++) {
+		const struct pound_curve *curve = &indices->curves[j];
+		writer_object(w, NULL, WRITER_LINES);
+		writer_text(w, "name", study->inputs[j].name);
+		writer_text(w, "path", study->inputs[j].path);
+		writer_array(w, "x", WRITER_LINE);
+		for (int k = 0; k < POUND_CURVE; k++)
+			writer_number(
+			    w, NULL,
+			    pound_distribution_quantile(&study->inputs[j].distribution, pound_conditional_place(k)));
+		writer_end(w);
+		write_points(w, "mean", curve, offsetof(struct pound_estimate, value));
+		write_points(w, "low", curve, offsetof(struct pound_estimate, low));
+		write_points(w, "high", curve, offsetof(struct pound_estimate, high));
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
 static void write_indices(struct writer *w, const struct pound_study *study,
                           const struct pound_indices *indices, int o)
 {
@@ -191,6 +226,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 	write_sets(w, study, "second_order", "S2", indices->sets.second, indices->sets.n_second);
 	write_sets(w, study, "closed", "S_closed", indices->sets.closed, indices->sets.n_closed);
+	write_curves(w, study, indices);
 	result_accuracy_output(w, study, indices);
 	writer_end(w);
 }

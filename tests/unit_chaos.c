@@ -15,7 +15,7 @@ static struct pound_closed_results indexes_of(const struct pound_sample_values *
 	size_t rows_size = pound_rows_scratch(values);
 	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_chaos_indices(&rows, u, corrected, scratch + rows_size, &result);
+	pound_chaos_indices(&rows, u, corrected, scratch + rows_size, &result, NULL);
 	free(scratch);
 	return result;
 }

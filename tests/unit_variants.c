@@ -17,6 +17,7 @@ struct indexes {
 	struct pound_indices of;
 	struct pound_estimate estimates[POUND_N_INDEXES][POUND_INPUTS_MAX];
 	struct pound_estimate named[POUND_N_NAMED][POUND_INPUTS_MAX];
+	struct pound_curve curves[POUND_INPUTS_MAX];
 	int dropped;
 };
 
@@ -27,6 +28,7 @@ static struct indexes *indexes_of(const struct pound_sample_values *values, stru
 	double *scratch = malloc(sizeof *scratch * n);
 	for (int k = 0; k < POUND_N_INDEXES; k++)
 		result->of.index[k] = result->estimates[k];
+	result->of.curves = result->curves;
 	for (int k = 0; k < POUND_N_NAMED; k++)
 		result->of.named[k] = result->named[k];
 	result->dropped = pound_variants_indices(values, &sampling, SEED, scratch, &result->of);
@@ -68,12 +70,13 @@ static void every_column_comes_from_its_function(void **state)
 	struct pound_pick_freeze pick_freeze;
 	struct pound_estimate local[D], first[D], total[D];
 	struct pound_closed_results closed;
+	struct pound_curve curves[D];
 	double *held = malloc(sizeof *held * pound_rows_scratch(&values));
 	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
 	pound_rows_init(&rows, &values, held);
 	pound_correction_estimates(&rows, SEED, POUND_RESAMPLES, scratch, &pick_freeze);
 	pound_local_first(&rows, u, true, scratch, local);
-	pound_chaos_indices(&rows, u, true, scratch, &closed);
+	pound_chaos_indices(&rows, u, true, scratch, &closed, curves);
 	for (int j = 0; j < D; j++) {
 		first[j] = width(local[j]) < width(closed.first[j]) ? local[j] : closed.first[j];
 		total[j] =
@@ -96,6 +99,7 @@ static void every_column_comes_from_its_function(void **state)
 	assert_memory_equal(&got->of.share[POUND_SHARE_TOTAL_ONE], &pick_freeze.signal_total_one,
 	                    sizeof local[0]);
 	assert_memory_equal(&got->of.share[POUND_SHARE_FIRST_ONE], &pick_freeze.signal_first, sizeof local[0]);
+	assert_memory_equal(got->curves, curves, sizeof curves);
 	check_near(got->of.noise_share, pick_freeze.signal_total.value, 1e-14);
 	assert_int_equal(got->of.notes, 0);
 	free(got), free(u), free(held), free(scratch);
