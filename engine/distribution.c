@@ -1,4 +1,5 @@
-/* distribution.c - the distributions an input may follow, by name, each through its quantile function.
+/* distribution.c - the distributions an input may follow, by name, each through its quantile function; of a discrete one
+ * it is a staircase.
  *
  * A quantile takes u in [0, 1]; u = 0 and u = 1 give the ends of the support, exactly where they are parameters. */
 #include "engine/pound.h"
@@ -183,6 +184,40 @@ static double beta(const double *p, double u)
 	return within(x, p[2], p[3]);
 }
 
+static const char *discrete_fault(const struct pound_distribution *d)
+{
+	double last = -INFINITY;
+	for (int k = 0; k < d->n_values; k++) {
+		if (!(fabs(d->values[k]) <= 1e100))
+			return "every value must be a number between -1e100 and 1e100";
+		if (!(d->values[k] > last))
+			return "every value must be greater than the one before";
+		if (d->weights && !(d->weights[k] > 0.0 && d->weights[k] <= 1e100))
+			return "every weight must be greater than 0, and at most 1e100";
+		last = d->values[k];
+	}
+	return d->n_values > 0 ? NULL : "there must be a value";
+}
+
+/* Quantile of a variable that takes some values with probabilities as their weights.
+ *
+ * Returns  value     x         -       the smallest value x_k with w_1 + ... + w_k >= u (w_1 + ... + w_n)
+ *
+ * Test     unit_distribution: a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_weights
+ */
+static double discrete(const struct pound_distribution *d, double u)
+{
+	double total = 0.0, below = 0.0;
+	for (int k = 0; k < d->n_values; k++)
+		total += d->weights ? d->weights[k] : 1.0;
+	for (int k = 0; k < d->n_values - 1; k++) {
+		below += d->weights ? d->weights[k] : 1.0;
+		if (u * total <= below)
+			return d->values[k];
+	}
+	return d->values[d->n_values - 1];
+}
+
 // clang-format off
 static const struct distribution distributions[] = {
 	{"uniform",            {"min", "max"},                                 min_max_fault,            uniform},
@@ -193,6 +228,7 @@ static const struct distribution distributions[] = {
 	{"lognormal",          {"log_mean", "log_standard_deviation"},         lognormal_fault,          lognormal},
 	{"triangular",         {"min", "mode", "max"},                         triangular_fault,         triangular},
 	{"beta",               {"alpha", "beta", "min", "max"},                beta_fault,               beta},
+	{"discrete",           {NULL},                                         NULL,                     NULL}, // of lists
 };
 // clang-format on
 
@@ -209,9 +245,17 @@ const char *pound_distribution_parameter(int row, int k)
 	return distributions[row].parameters[k];
 }
 
+/* Whether a distribution is given by a list of values, not by numbers. */
+bool pound_distribution_lists_values(int row)
+{
+	return !distributions[row].quantile;
+}
+
 const char *pound_distribution_fault(const struct pound_distribution *distribution)
 {
 	const struct distribution *row = &distributions[distribution->type];
+	if (!row->quantile)
+		return discrete_fault(distribution);
 	for (int k = 0; row->parameters[k]; k++)
 		if (!(fabs(distribution->p[k]) <= 1e100)) // products of two stay finite
 			return "every parameter must be a number between -1e100 and 1e100";
@@ -229,7 +273,8 @@ const char *pound_distribution_fault(const struct pound_distribution *distributi
 double pound_distribution_quantile(const struct pound_distribution *distribution, double u)
 {
 	assert(u >= 0.0 && u <= 1.0);
-	return distributions[distribution->type].quantile(distribution->p, u);
+	const struct distribution *row = &distributions[distribution->type];
+	return row->quantile ? row->quantile(distribution->p, u) : discrete(distribution, u);
 }
 
 void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high)

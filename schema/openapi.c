@@ -143,6 +143,14 @@ static void parameters(struct writer *w)
 			writer_text(w, "type", "number");
 			writer_end(w);
 		}
+	for (int list = 0; list < 2; list++) {
+		writer_object(w, list ? "weights" : "values", WRITER_LINE);
+		writer_text(w, "type", "array");
+		writer_object(w, "items", WRITER_LINE);
+		writer_text(w, "type", "number");
+		writer_end(w);
+		writer_end(w);
+	}
 }
 
 static void members_of(struct writer *w, const char *pattern)

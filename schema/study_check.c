@@ -137,6 +137,8 @@ static void check_names(const struct pound_study *study, struct problems *proble
 
 static bool has_parameter(const struct pound_distribution *distribution, const char *name)
 {
+	if (pound_distribution_lists_values(distribution->type))
+		return true;
 	for (int k = 0; pound_distribution_parameter(distribution->type, k); k++)
 		if (strcmp(pound_distribution_parameter(distribution->type, k), name) == 0)
 			return true;

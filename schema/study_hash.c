@@ -106,6 +106,17 @@ static void write_scene(struct canon *c)
 	writer_end(&c->w);
 }
 
+/* A list, if there is one. */
+static void write_numbers(struct canon *c, const char *name, const double *number, int n)
+{
+	if (!n)
+		return;
+	writer_array(&c->w, name, WRITER_LINES);
+	for (int k = 0; k < n; k++)
+		writer_number(&c->w, NULL, number[k]);
+	writer_end(&c->w);
+}
+
 static void write_inputs(struct canon *c)
 {
 	writer_array(&c->w, "inputs", WRITER_LINES);
@@ -117,6 +128,9 @@ static void write_inputs(struct canon *c)
 		for (int k = 0; pound_distribution_parameter(input->distribution.type, k); k++)
 			writer_number(&c->w, pound_distribution_parameter(input->distribution.type, k),
 			              input->distribution.p[k]);
+		write_numbers(c, "values", input->distribution.values, input->distribution.n_values);
+		write_numbers(c, "weights", input->distribution.weights,
+		              input->distribution.weights ? input->distribution.n_values : 0);
 		writer_end(&c->w);
 	}
 	writer_end(&c->w);

@@ -1,8 +1,74 @@
 /* study_varied.c - what varies in a study: inputs with their distributions, sweeps with their values. */
+#include <math.h>
 #include <string.h>
 
 #include "schema/reader.h"
 #include "schema/study_check.h"
+#include "schema/study_json.h"
+
+// the parameters of a discrete distribution: what stands for rows of fields.c
+static const struct field list = {.pattern = "/inputs/*/distribution/values",
+                                  .type = FIELD_LIST,
+                                  .min = 1,
+                                  .max = STUDY_VALUES_MAX,
+                                  .ends = FIELD_CLOSED,
+                                  .unit = "",
+                                  .text = "its values, ascending, or their weights"};
+static const struct field listed = {.pattern = "/inputs/*/distribution/values/*",
+                                    .type = FIELD_REAL,
+                                    .min = -INFINITY,
+                                    .max = INFINITY,
+                                    .ends = FIELD_OPEN,
+                                    .unit = "",
+                                    .text = "one of them"};
+
+/* Reads a list of numbers; NULL: it is none. */
+static const double *read_list(struct reader *r, const cJSON *node, int *n)
+{
+	*n = reader_elements(r, &list, node);
+	const cJSON *number = *n ? node->child : NULL;
+	double *numbers = r->number;
+	for (int i = 0; i < *n; i++, number = number->next) {
+		size_t length = reader_enter_element(r, i);
+		reader_number(r, &listed, number, r->number++);
+		reader_leave(r, length);
+	}
+	return *n ? numbers : NULL;
+}
+
+static void read_lists(struct reader *r, struct pound_distribution *distribution, const cJSON *node,
+                       const cJSON *type)
+{
+	int n_weights = 0, before = r->problems->n;
+	const cJSON *member;
+	cJSON_ArrayForEach(member, node)
+	{
+		if (member == type)
+			continue;
+		size_t length = reader_enter(r, member->string);
+		if (reader_seen(node, member))
+			problems_add(r->problems, r->pointer, "duplicate member");
+		else if (strcmp(member->string, "values") == 0)
+			distribution->values = read_list(r, member, &distribution->n_values);
+		else if (strcmp(member->string, "weights") == 0)
+			distribution->weights = read_list(r, member, &n_weights);
+		else
+			problems_add(r->problems, r->pointer, "is not used by distribution \"%s\"",
+			             pound_distribution_name(distribution->type));
+		reader_leave(r, length);
+	}
+	if (!cJSON_GetObjectItemCaseSensitive(node, "values")) {
+		size_t length = reader_enter(r, "values");
+		problems_add(r->problems, r->pointer, "is required: an array of numbers, ascending");
+		reader_leave(r, length);
+	}
+	if (r->problems->n == before && distribution->weights && n_weights != distribution->n_values)
+		problems_add(r->problems, r->pointer, "there must be as many weights as values, %d, not %d",
+		             distribution->n_values, n_weights);
+	const char *fault = r->problems->n == before ? pound_distribution_fault(distribution) : NULL;
+	if (fault)
+		problems_add(r->problems, r->pointer, "%s", fault);
+}
 
 static void read_parameter(struct reader *r, struct pound_distribution *distribution, const cJSON *member)
 {
@@ -66,7 +132,8 @@ void reader_distribution(struct reader *r, const struct field *field, const cJSO
 		reader_value(r, fields_find("/inputs/*/distribution/type"), type, base);
 		reader_leave(r, length);
 		if (r->problems->n == before)
-			read_parameters(r, distribution, node, type);
+			(pound_distribution_lists_values(distribution->type) ? read_lists : read_parameters)(
+			    r, distribution, node, type);
 	}
 }
 

@@ -147,7 +147,8 @@ static void every_distribution_stands_in_the_readme_with_its_parameters(void **s
 		int n = snprintf(line, sizeof line, "| `%s` | ", name);
 		for (int k = 0; (parameter = pound_distribution_parameter(row, k)); k++)
 			n += snprintf(line + n, sizeof line - (size_t)n, "%s`%s`", k ? ", " : "", parameter);
-		snprintf(line + n, sizeof line - (size_t)n, " |\n");
+		snprintf(line + n, sizeof line - (size_t)n,
+		         pound_distribution_lists_values(row) ? "`values`, `weights` |\n" : " |\n");
 		if (!strstr(readme, line))
 			fail_msg("README.md has no line\n%s", line);
 	}

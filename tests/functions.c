@@ -131,7 +131,7 @@ struct pound_study function_study(const struct pound_design *design)
 {
 	static struct pound_input inputs[FUNCTION_INPUTS];
 	for (int j = 0; j < FUNCTION_INPUTS; j++)
-		inputs[j].distribution = (struct pound_distribution){0, {0.0, 1.0}};
+		inputs[j].distribution = (struct pound_distribution){.type = 0, .p = {0.0, 1.0}};
 	return (struct pound_study){.kind = POUND_KIND_SENSITIVITY,
 	                            .scene.excitation.signals = 1,
 	                            .n_inputs = FUNCTION_INPUTS,

@@ -21,7 +21,7 @@ static double *unit_design(const char *method, int rows, uint64_t seed)
 	struct pound_input inputs[D];
 	memset(inputs, 0, sizeof inputs);
 	for (int j = 0; j < D; j++)
-		inputs[j].distribution = (struct pound_distribution){0, {0.0, 1.0}};
+		inputs[j].distribution = (struct pound_distribution){.type = 0, .p = {0.0, 1.0}};
 	struct pound_study study = {
 	    .n_inputs = D, .inputs = inputs, .design = {.method = row_named(method), .rows = rows, .seed = seed}};
 	double *x = malloc(sizeof *x * 2 * D * (size_t)rows);

@@ -208,7 +208,52 @@ static void the_support_is_given_by_the_parameters(void **state)
 			assert_true(x >= low && x <= high && mirrored >= low && mirrored <= high);
 		}
 	}
-	assert_null(pound_distribution_name((int)(sizeof cases / sizeof cases[0])));
+	// discrete has its own
+	assert_null(pound_distribution_name((int)(sizeof cases / sizeof cases[0]) + 1));
+}
+
+static void a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_weights(void **state)
+{
+	(void)state;
+	static const double values[] = {-1, 2, 5}, weights[] = {2, 1, 5}; // edges at 1/4 and 3/8
+	const struct pound_distribution weighted = {
+	    .type = row_named("discrete"), .n_values = 3, .values = values, .weights = weights};
+	static const double u[] = {0, 0.1, 0.25, 0.2500001, 0.375, 0.3750001, 0.9, 1},
+	                    x[] = {-1, -1, -1, 2, 2, 5, 5, 5};
+	for (int k = 0; k < 8; k++)
+		check_near(pound_distribution_quantile(&weighted, u[k]), x[k], 0);
+	// alike: n values take n equal parts, exactly as many of the rows of a Latin hypercube
+	double many[16];
+	for (int k = 0; k < 16; k++)
+		many[k] = k;
+	const struct pound_distribution alike = {.type = row_named("discrete"), .n_values = 16, .values = many};
+	for (int i = 0; i < 160; i++)
+		check_near(pound_distribution_quantile(&alike, (i + 0.5) / 160), i / 10, 0);
+	double low, high;
+	pound_distribution_support(&weighted, &low, &high);
+	check_near(low, -1, 0);
+	check_near(high, 5, 0);
+}
+
+static void lists_that_make_no_distribution_are_told_in_words(void **state)
+{
+	(void)state;
+	static const struct {
+		double values[2], weights[2];
+		const char *fault;
+	} cases[] = {
+	    {{1, 1}, {1, 1}, "every value must be greater than the one before"},
+	    {{1, NAN}, {1, 1}, "every value must be a number between -1e100 and 1e100"},
+	    {{1, 2}, {1, 0}, "every weight must be greater than 0, and at most 1e100"},
+	    {{1, 2}, {INFINITY, 1}, "every weight must be greater than 0, and at most 1e100"},
+	};
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		const struct pound_distribution d = {.type = row_named("discrete"),
+		                                     .n_values = 2,
+		                                     .values = cases[k].values,
+		                                     .weights = cases[k].weights};
+		assert_string_equal(pound_distribution_fault(&d), cases[k].fault);
+	}
 }
 
 static void parameters_that_make_no_distribution_are_told_in_words(void **state)
@@ -245,7 +290,9 @@ static void parameters_that_make_no_distribution_are_told_in_words(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(every_quantile_inverts_its_distribution_function),
+CHECK_MAIN(cmocka_unit_test(a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_weights),
+           cmocka_unit_test(lists_that_make_no_distribution_are_told_in_words),
+           cmocka_unit_test(every_quantile_inverts_its_distribution_function),
            cmocka_unit_test(quantiles_rise_with_the_probability),
            cmocka_unit_test(mass_ratio_quantiles_and_moments_are_those_of_the_closed_form),
            cmocka_unit_test(beta_quantiles_with_closed_forms_are_met),
