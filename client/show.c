@@ -275,26 +275,36 @@ static void response(const struct reading *result)
 /* The mean errors of each setting; the largest ones are in the JSON and the CSV. */
 static void convergence(const struct reading *result)
 {
-	static const char *const columns[] = {"method",  "step_s",  "tolerance", "failed", "u_max", "demand",
-	                                      "impulse", "history", "order",     "cpu_s",  NULL};
-	static const char *const members[] = {"step_s",
-	                                      "tolerance",
-	                                      "runs_failed",
-	                                      "displacement_error_mean",
-	                                      "demand_error_mean",
-	                                      "impulse_error_mean",
-	                                      "history_error_mean",
-	                                      "order"};
+	static const char *const columns[] = {"method",  "step_s",  "tolerance", "failed", "u_max",   "demand",
+	                                      "impulse", "history", "order",     "cpu_s",  "x event", NULL};
+	static const char *const members[] = {"displacement_error_mean", "demand_error_mean",
+	                                      "impulse_error_mean", "history_error_mean", "order"};
 	struct table *table = table_open(columns);
+	double event = reading_number(result, "/timing/run_cpu_s/0");
 	for (int row = 0; row < reading_count(result, "/rows"); row++) {
+		double failed = reading_number(result, "/rows/%d/runs_failed", row);
+		double cpu = reading_number(result, "/timing/run_cpu_s/%d", row);
 		table_text(table, reading_text(result, "/rows/%d/method", row));
+		table_number(table, reading_number(result, "/rows/%d/step_s", row));
+		table_number(table, reading_number(result, "/rows/%d/tolerance", row));
+		table_number(table, failed > 0 ? failed : NAN);
 		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
 			table_number(table, reading_number(result, "/rows/%d/%s", row, members[m]));
-		table_number(table, reading_number(result, "/timing/run_cpu_s/%d", row));
+		table_number(table, cpu);
+		table_number(table, cpu / event);
 	}
 	puts("\nrelative errors against the first row, means over the signals; cpu_s of one run");
 	table_print(table, 2);
 	table_close(table);
+	const char *method, *before = "\norder over all settings: ";
+	for (int i = 0; (method = reading_member(result, i, "/orders")); i++) {
+		double order = reading_number(result, "/orders/%s", method);
+		if (!isfinite(order))
+			continue;
+		printf("%s%s %.2f", before, method, order);
+		before = ", ";
+	}
+	putchar('\n');
 }
 
 /* The mean spectra, and the peaks of the first beside what Eq. (21) has there. */

@@ -162,3 +162,23 @@ void pound_convergence_reduce(const struct pound_study *study, const struct poun
 			trial->order = order_between(&trials[j - 1], trial);
 	}
 }
+
+/* Slope of log mean history error over log setting, by least squares over the settings of a solver.
+ *
+ * Given    trials    (n_trials)   reduced
+ * Returns  value     -            NAN: fewer than two settings have an error
+ *
+ * Test     unit_convergence: without_contact_both_fixed_steps_are_of_second_order
+ */
+double pound_convergence_order(const struct pound_trial *trials, int n_trials, int method)
+{
+	double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+	for (int j = FIRST; j < n_trials; j++) {
+		if (trials[j].solver.method != method || !(trials[j].history.mean > 0))
+			continue;
+		double p = pound_elementary_log(setting_of(&trials[j].solver));
+		double q = pound_elementary_log(trials[j].history.mean);
+		n++, x += p, y += q, xx += p * p, xy += p * q;
+	}
+	return n > 1 ? (n * xy - x * y) / (n * xx - x * x) : NAN;
+}

@@ -279,6 +279,11 @@ static void write_trials(struct writer *w, const struct pound_result *result)
 	for (int j = 0; j < result->n_trials; j++)
 		write_trial(w, &result->trials[j]);
 	writer_end(w);
+	writer_object(w, "orders", WRITER_LINE);
+	for (int row = 1; row < POUND_SOLVERS; row++)
+		writer_number(w, pound_solver_name(row),
+		              pound_convergence_order(result->trials, result->n_trials, row));
+	writer_end(w);
 	writer_object(w, "accuracy", WRITER_LINES);
 	writer_text(w, "reference", pound_solver_name(result->trials[0].solver.method));
 	writer_number(w, "second_opinion_displacement", result->trials[1].displacement.largest);

@@ -80,6 +80,9 @@ static void without_contact_both_fixed_steps_are_of_second_order(void **state)
 			// of smooth forces on two frequencies up to 2.5 Hz: (w h)^2 = 0.6 % at the first step
 			check_near(r->trials[j].order, 2, 0.02);
 	assert_true(r->trials[6].history.mean < 1e-4 && r->trials[11].history.mean < 1e-4);
+	check_near(pound_convergence_order(r->trials, r->n_trials, NEWMARK), 2, 0.02);
+	check_near(pound_convergence_order(r->trials, r->n_trials, CENTRAL_DIFFERENCE), 2, 0.02);
+	assert_true(isnan(pound_convergence_order(r->trials, r->n_trials, 0))); // the reference has one setting
 	pound_run_free(run);
 	specimen_free(&specimen);
 }

@@ -332,10 +332,16 @@ static void errors_against_a_reference_without_a_result_are_null_and_say_why(voi
 	struct reading *r = result_of(documents_convergence, &result);
 	assert_string_equal(reading_text(r, "/note"),
 	                    "the reference has no result, so there are no errors; work.failures says why");
+	assert_true(isnan(reading_number(r, "/orders/newmark")));
 	reading_close(r);
 	trials[0].runs_failed = 1;
+	for (int j = 2; j < 4; j++)
+		trials[j] = (struct pound_trial){.solver = {.method = 1, .step = pow(10, -j)},
+		                                 .history.mean = pow(10, -3 * j)};
 	r = result_of(documents_convergence, &result);
 	assert_false(reading_has(r, "/note"));
+	check_near(reading_number(r, "/orders/newmark"), 3, 1e-12);
+	assert_true(isnan(reading_number(r, "/orders/adaptive")));
 	reading_close(r);
 }
 
