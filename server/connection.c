@@ -26,6 +26,7 @@ struct connection {
 	struct connection *next, **link; /* link: what points here */
 	int fd;
 	double deadline;  /* [s] monotonic */
+	bool served;      /* it was not one too many when it came */
 	bool lingers;     /* to be drained when it is closed */
 	bool draining;    /* closed by its owner; fd is our own */
 	void *handle;     /* NULL: does not wait */
@@ -40,7 +41,7 @@ struct connections {
 	pthread_t thread;
 	pthread_mutex_t lock; /* of all below */
 	struct connection *first;
-	int n, n_draining, n_late;
+	int most, n, n_draining, n_late;
 	bool released, stopping;
 };
 
@@ -121,15 +122,17 @@ static void *watch(void *of)
  *
  * Given    store    whose changes are waited for
  *          resume   called with the handle of who waited
+ *          most     connections are served; those beyond are to be told so and closed
  * Returns  value    for connections_stop; NULL: no memory, no thread
  */
-struct connections *connections_start(struct store *store, connection_resumer *resume)
+struct connections *connections_start(struct store *store, connection_resumer *resume, int most)
 {
 	struct connections *all = calloc(1, sizeof *all);
 	if (!all)
 		return NULL;
 	all->store = store;
 	all->resume = resume;
+	all->most = most;
 	pthread_mutex_init(&all->lock, NULL);
 	if (pthread_create(&all->thread, NULL, watch, all) == 0)
 		return all;
@@ -181,9 +184,14 @@ struct connection *connection_opened(struct connections *all, int fd, double sec
 	connection->deadline = connection_now() + seconds;
 	pthread_mutex_lock(&all->lock);
 	put(all, connection);
-	all->n++;
+	connection->served = ++all->n <= all->most;
 	pthread_mutex_unlock(&all->lock);
 	return connection;
+}
+
+bool connection_served(const struct connection *connection)
+{
+	return connection->served;
 }
 
 void connection_closed(struct connections *all, struct connection *connection)

@@ -13,7 +13,8 @@ struct connection;
 
 typedef void connection_resumer(void *handle);
 
-struct connections *connections_start(struct store *store, connection_resumer *resume); /* NULL: no memory */
+/* `most` connections are served; NULL: no memory */
+struct connections *connections_start(struct store *store, connection_resumer *resume, int most);
 void connections_release(struct connections *all); /* nobody waits, now and from now on */
 void connections_stop(struct connections *all);    /* after all of them were closed */
 int connections_open(struct connections *all);     /* how many */
@@ -21,6 +22,8 @@ int connections_late(struct connections *all);     /* how many were closed for b
 
 /* A connection that must have come to something within so many seconds; NULL: no memory. */
 struct connection *connection_opened(struct connections *all, int fd, double seconds);
+bool connection_served(
+    const struct connection *connection); /* false: it came when there were as many as may be */
 void connection_closed(struct connections *all, struct connection *connection); /* just before its fd is */
 
 /* It is closed unless this is called again within so many seconds. */

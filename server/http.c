@@ -211,7 +211,7 @@ static bool refused(struct request *request, struct reply *reply)
 		;
 	else if (server->http->stopping)
 		fault = API_UNAVAILABLE, detail = "the server stops";
-	else if (connections_open(server->connections) > server->options->connections_max)
+	else if (!connection_served(connection_of(request->connection)))
 		fault = API_UNAVAILABLE, detail = "the server has as many connections as it takes";
 	else if (server->tokens && !request->token && !(operation && operation->open))
 		fault = API_UNAUTHORIZED,
@@ -261,7 +261,7 @@ static void *begin(void *of, const char *target, struct MHD_Connection *connecti
 		return NULL;
 	*request = (struct request){.server = server, .connection = connection, .operation = -1};
 	request->number = atomic_fetch_add(&server->http->number, 1);
-	head_target(&request->head, target);
+	head_target(&request->head, target ? target : "");
 	atomic_fetch_add(&server->http->under_way, 1);
 	return request;
 }
@@ -436,7 +436,7 @@ struct http *http_start(struct server *server)
 		return NULL;
 	}
 	struct http *http = server->http = calloc(1, sizeof *http);
-	server->connections = http ? connections_start(server->store, resume) : NULL;
+	server->connections = http ? connections_start(server->store, resume, options->connections_max) : NULL;
 	if (server->connections) {
 		allow_files();
 		// without it the numbers of two starts are alike, and no more

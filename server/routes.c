@@ -371,7 +371,8 @@ static struct reply document(struct request *request, const char *name)
 static struct reply posted(struct request *request)
 {
 	struct reply reply = document(request, "request");
-	snprintf(reply.etag, sizeof reply.etag, "%s", "\"request\"");
+	if (reply.status == 200)
+		strcpy(reply.etag, "\"request\"");
 	return unless_known(request, reply);
 }
 

@@ -84,6 +84,8 @@ static const struct {
     {"GET /livez HTTP/2.0\r\n" HOST "\r\n", 505, 400, true, 1},
     {"GET /livez HTTP/0.9\r\n" HOST "\r\n", 400, 505, true, 1},
     {"GET /livez\r\n", 400, 505, true, 1},
+    {"GET \r\n\r\n", 400, 505, true, 1},
+    {"GET\r\n\r\n", 400, 0, true, 1},
     {"GET /livez HTTX/1.1\r\n" HOST "\r\n", 400, 505, true, 1},
     {"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 505, 400, true, 1},
     {"\x16\x03\x01\x02\x01\x01\xfc\x03\x03\r\n\r\n", 400, 0, true, 1},
