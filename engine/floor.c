@@ -16,6 +16,7 @@ struct pound_floor {
 	double *z[POUND_DRIVES], *v[POUND_DRIVES], *top[POUND_DRIVES];
 	double damping;
 	struct pound_trace trace;
+	struct pound_kernel kernel;
 	alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
 	struct pound_trace_stretch stretch;
 };
@@ -98,6 +99,7 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
 	struct pound_floor *floor = memory;
 	int whole = whole_groups(spectrum->n);
 	double *numbers = (double *)(floor + 1);
+	pound_kernel_fill(&floor->kernel);
 	floor->n = spectrum->n;
 	floor->damping = spectrum->damping_ratio;
 	floor->omega = numbers;
@@ -131,6 +133,7 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 	                          .n_drives = ask->n_drives,
 	                          .damping = floor->damping,
 	                          .radians = ask->radians,
+	                          .kernel = &floor->kernel,
 	                          .omega = floor->omega};
 	const struct pound_ride ride = {.stretch = &floor->stretch,
 	                                .time_step = ask->task->time_step,

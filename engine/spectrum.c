@@ -14,15 +14,17 @@
 #include "engine/lanes.h"
 
 enum {
-	TERMS = 20,     /* of a series, at most: 1^20/20! is far below rounding */
-	PARTS_MAX = 16, /* of a sample that has maps */
+	TERMS = POUND_TRACE_TERMS,
+	PARTS_MAX = POUND_KERNEL_PARTS, /* of a sample that has maps */
+	INTEGRALS = POUND_KERNEL_INTEGRALS,
 	PARTS_LIMIT = 1 << 24,
 	POLISH = 3, /* rounds of Newton from the cubic's extremum, which misses by 1e-3 at most */
 };
 
 /* A part of a piece: its step and the bounds of the drive over it.  All motions below are in its time 0 .. 1. */
 struct part {
-	double step, fastest;  /* [s]; w * step of the fastest of the group */
+	double step;           /* [s] */
+	int terms;             /* of a series without a drive, by the fastest of the group */
 	vd x, damp;            /* w step, 2 xi w step */
 	vd alpha, beta, gamma; /* |z''''| <= 384 (alpha e + beta A + gamma A' + A''/384), see part_init */
 };
@@ -49,6 +51,7 @@ struct series {
 
 struct scratch {
 	alignas(64) struct maps maps;
+	double integral[POUND_TRACE_PIECES][POUND_DRIVES][INTEGRALS]; /* of the pieces that have no map */
 };
 
 static_assert(sizeof(struct scratch) <= POUND_SPECTRUM_SCRATCH, "the work space is too small");
@@ -58,24 +61,45 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
-/* Terms after which x^n/n! is below rounding, x <= 1. */
-static int terms_of(double x)
-{
-	double term = 1;
-	int n = 0;
-	while (n < TERMS && term > 0x1p-54)
-		term *= x / ++n;
-	return n;
-}
+static const double SHARE[TERMS + 1] = {1,        1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7,
+                                        1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14,
+                                        1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20, 1.0 / 21};
+// 1/n!
+static const double FACTOR[TERMS + 2] = {1 / 1.0,
+                                         1 / 1.0,
+                                         1 / 2.0,
+                                         1 / 6.0,
+                                         1 / 24.0,
+                                         1 / 120.0,
+                                         1 / 720.0,
+                                         1 / 5040.0,
+                                         1 / 40320.0,
+                                         1 / 362880.0,
+                                         1 / 3628800.0,
+                                         1 / 39916800.0,
+                                         1 / 479001600.0,
+                                         1 / 6227020800.0,
+                                         1 / 87178291200.0,
+                                         1 / 1307674368000.0,
+                                         1 / 20922789888000.0,
+                                         1 / 355687428096000.0,
+                                         1 / 6402373705728000.0,
+                                         1 / 121645100408832000.0,
+                                         1 / 2432902008176640000.0,
+                                         1 / 51090942171709440000.0};
+static const double MINUS_SHARE[TERMS + 1] = {
+    -1,        -1.0 / 2,  -1.0 / 3,  -1.0 / 4,  -1.0 / 5,  -1.0 / 6,  -1.0 / 7,
+    -1.0 / 8,  -1.0 / 9,  -1.0 / 10, -1.0 / 11, -1.0 / 12, -1.0 / 13, -1.0 / 14,
+    -1.0 / 15, -1.0 / 16, -1.0 / 17, -1.0 / 18, -1.0 / 19, -1.0 / 20, -1.0 / 21};
 
 /* A part of step h, for oscillators of frequency w.
  *
  * With e = x |z0| + |y0| + A, x = w h and A, A', A'' bounds of the drive times h^2:  x |z| <= e and |z'| <= e inside, so
  *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
  */
-static struct part part_init(vd omega, double omega_max, double damping, double step)
+LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, double step)
 {
-	struct part p = {.step = step, .fastest = omega_max * step};
+	struct part p = {.step = step, .terms = pound_trace_terms(omega_max * step)};
 	vd x = p.x = omega * step, x2 = x * x, both;
 	vd damp = p.damp = x * (2 * damping);
 	both = damp * damp + x2;
@@ -88,15 +112,17 @@ static struct part part_init(vd omega, double omega_max, double damping, double 
 /* Power series of oscillators over a part.
  *
  * Given    z, y    at the start, y = z' in the part's time
- *          drive   (order + 1)  coefficients of the acceleration times step^2;  order -1: none
+ *          drive   (order + 1)  coefficients of the acceleration, to be taken times `scale`;  order -1: none
  *
  *   (n + 1) z_n+1 = y_n     (n + 1) y_n+1 = -(2 xi x y_n + x^2 z_n + a_n)
+ *
+ * Only one fused operation of an order has to wait for the order before.
  */
 LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y, const double *drive,
-                             int order)
+                             int order, double scale)
 {
-	vd x2 = p->x * p->x;
-	s->terms = larger(terms_of(p->fastest), order + 2);
+	vd x2 = p->x * p->x, factor = vsplat(scale);
+	s->terms = larger(p->terms, order + 2);
 	s->z1 = s->y1 = vsplat(0);
 	for (int n = 0;; n++) {
 		s->z[n] = z;
@@ -105,12 +131,11 @@ LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y,
 		s->y1 = s->y1 + y;
 		if (n == s->terms)
 			break;
-		vd share = vsplat(1.0 / (n + 1));
-		vd sum = vfma(p->damp, y, x2 * z);
+		vd share = vsplat(SHARE[n]), minus = vsplat(MINUS_SHARE[n]), force = x2 * z;
 		if (n <= order)
-			sum = sum + vsplat(drive[n]);
+			force = vfma(factor, vsplat(drive[n]), force);
 		z = y * share;
-		y = -sum * share;
+		y = vfma(p->damp * minus, y, minus * force);
 	}
 }
 
@@ -161,7 +186,7 @@ static void peak_add(const struct series *s, vm risk, vd *top)
 {
 	vd zero = vsplat(0), one = vsplat(1), bend[TERMS + 1];
 	for (int n = 0; n < s->terms; n++)
-		bend[n] = s->y[n + 1] * (double)(n + 1);
+		bend[n] = s->y[n + 1] * vsplat(n + 1);
 	vd y0 = s->y[0], rise = s->z1 - s->z[0];
 	vd a = 3.0 * rise - 2.0 * y0 - s->y1, b = s->y1 + y0 - 2.0 * rise;
 	vd root = vsqrt(vmax(vfma(a, a, -3.0 * b * y0), zero));
@@ -175,25 +200,29 @@ static void peak_add(const struct series *s, vm risk, vd *top)
 
 /* ---- drives ---- */
 
-/* Coefficients of part j of n equal ones, in its own time and times the square of its step, n a power of two. */
-static void part_drive(const struct pound_polynomial *a, int order, int j, int n, double step, double *out)
+/* Coefficients of part j of n equal ones in its own time, n a power of two: those of the piece where it is one part, else
+ * put into `room`. */
+static const double *part_drive(const struct pound_polynomial *a, int order, int j, int n, double *room)
 {
-	double from = (double)j / n, power = step * step;
+	double share = 1.0 / n, from = j * share, power = 1;
+	if (n == 1)
+		return a->c;
 	for (int k = 0; k <= order; k++)
-		out[k] = a->c[k];
+		room[k] = a->c[k];
 	for (int i = 0; i < order && j > 0; i++)
 		for (int k = order - 1; k >= i; k--)
-			out[k] += from * out[k + 1];
-	for (int k = 0; k <= order; k++, power /= n)
-		out[k] *= power;
+			room[k] += from * room[k + 1];
+	for (int k = 0; k <= order; k++, power *= share)
+		room[k] *= power;
+	return room;
 }
 
 static void part_bound(const struct pound_polynomial *a, int n, double step, double bound[3])
 {
-	double scale = step * step;
+	double scale = step * step, share = 1.0 / n;
 	bound[0] = a->bound[0] * scale;
-	bound[1] = a->bound[1] * scale / n;
-	bound[2] = a->bound[2] * scale / n / n / 384;
+	bound[1] = a->bound[1] * scale * share;
+	bound[2] = a->bound[2] * scale * share * share * (1.0 / 384);
 }
 
 /* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
@@ -207,21 +236,111 @@ static int parts_of(double omega_max, double step, double radians)
 
 /* ---- any piece ---- */
 
-/* Oscillators over one part by their series. */
-LANE_INLINE void part_ride(const struct part *p, struct state *s, const struct pound_polynomial *a,
-                           const struct pound_trace_piece *piece, int j, int n)
+/* Integrals of a polynomial over part j of n of its piece. */
+static void integrals_fill(const struct pound_kernel *kernel, const struct pound_polynomial *a, int order,
+                           int j, int n, double integral[INTEGRALS])
 {
-	double drive[POUND_TRACE_ORDER + 1], bound[3];
-	part_drive(a, piece->order, j, n, p->step, drive);
+	double room[POUND_TRACE_ORDER + 1];
+	const double *c = n > PARTS_MAX ? part_drive(a, order, j, n, room) : a->c;
+	const double(*row)[INTEGRALS] = kernel->part[n > PARTS_MAX ? 1 : n + j];
+	vd sum[INTEGRALS / W];
+	for (int i = 0; i < INTEGRALS / W; i++)
+		sum[i] = vsplat(0);
+	for (int k = order; k >= 0; k--)
+		for (int i = 0; i < INTEGRALS / W; i++)
+			sum[i] = vfma(vsplat(c[k]), *(const vd *)(row[k] + i * W), sum[i]);
+	for (int i = 0; i < INTEGRALS / W; i++)
+		*(vd *)(integral + i * W) = sum[i];
+}
+
+/* What a part does to a state: z' = zz z + zy y + fz, y' = yz z + yy y + fy, and the drives' shares (fz, fy). */
+struct passage {
+	vd zz, zy, yz, yy, fz[POUND_DRIVES], fy[POUND_DRIVES];
+};
+
+/* The passage of a part by the response h to an initial y of 1, h = sum g_m t^m/m!, for n drives by their integrals.
+ *
+ *   g_0 = 0, g_1 = 1, g_m+1 = -(2 xi x g_m + x^2 g_m-1)
+ *   z' = (h' + 2 xi x h) z + h y - sum g_m J_m     y' = -x^2 h z + h' y - sum g_m+1 J_m,  J_m the (m+1)-fold integral
+ */
+LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const double *const integral[],
+                              int n_drives)
+{
+	vd x2 = p->x * p->x, g = vsplat(0), next = vsplat(1), h = g, rate = g;
+	for (int d = 0; d < n_drives; d++)
+		s->fz[d] = s->fy[d] = g;
+	for (int m = 0; m < p->terms; m++) {
+		rate = vfma(next, vsplat(FACTOR[m]), rate);
+		h = vfma(next, vsplat(FACTOR[m + 1]), h);
+		for (int d = 0; d < n_drives; d++) {
+			s->fy[d] = vfma(next, vsplat(integral[d][m]), s->fy[d]);
+			s->fz[d] = vfma(next, vsplat(integral[d][m + 1]), s->fz[d]);
+		}
+		vd before = g;
+		g = next;
+		next = -vfma(p->damp, g, x2 * before);
+	}
+	vd minus = vsplat(-(p->step * p->step));
+	for (int d = 0; d < n_drives; d++) {
+		s->fy[d] = s->fy[d] * minus;
+		s->fz[d] = s->fz[d] * minus;
+	}
+	s->zz = vfma(p->damp, h, rate);
+	s->zy = h;
+	s->yz = -x2 * h;
+	s->yy = rate;
+}
+
+/* Looks for extrema inside a part from state s; the series is only made where there may be one. */
+LANE_INLINE void part_look(const struct part *p, struct state *s, vd z1, vd y1,
+                           const struct pound_polynomial *a, int order, int j, int n)
+{
+	double bound[3];
 	part_bound(a, n, p->step, bound);
+	vd y0 = s->v * p->step;
+	vm risk = part_risk(p, s, y0, z1, y1, bound);
+	if (!vany(risk))
+		return;
+	double room[POUND_TRACE_ORDER + 1];
 	struct series series;
-	int order = a->bound[0] > 0 ? piece->order : -1;
-	series_fill(&series, p, s->z, s->v * p->step, drive, order);
-	vm risk = part_risk(p, s, series.y[0], series.z1, series.y1, bound);
-	if (vany(risk))
-		peak_add(&series, risk, &s->top);
-	s->z = series.z1;
-	s->v = series.y1 / p->step;
+	const double *drive = order < 0 ? room : part_drive(a, order, j, n, room);
+	series_fill(&series, p, s->z, y0, drive, order, p->step * p->step);
+	peak_add(&series, risk, &s->top);
+}
+
+/* Oscillators over one part of a piece, by the integrals of its drives. */
+LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
+                           const struct pound_trace_piece *piece, const double *const integral[], int j,
+                           int n)
+{
+	const struct pound_polynomial *a[POUND_DRIVES] = {&piece->floor, &piece->push};
+	struct passage passage;
+	passage_fill(&passage, p, integral, n_drives);
+	for (int d = 0; d < n_drives; d++) {
+		vd y = s[d].v * p->step;
+		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
+		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
+		part_look(p, &s[d], z1, y1, a[d], a[d]->bound[0] > 0 ? piece->order : -1, j, n);
+		s[d].z = z1;
+		s[d].v = y1 / p->step;
+	}
+}
+
+/* Oscillators over a piece; `whole` are the integrals over all of it. */
+LANE_INLINE void piece_ride(const struct pound_bank *bank, const struct part *p, struct state s[],
+                            int n_drives, const struct pound_trace_piece *piece, double whole[][INTEGRALS],
+                            int n)
+{
+	alignas(64) double own[POUND_DRIVES][INTEGRALS];
+	const double *integral[POUND_DRIVES] = {whole[0], whole[1]};
+	for (int j = 0; j < n; j++) {
+		if (n > 1) {
+			integrals_fill(bank->kernel, &piece->floor, piece->order, j, n, own[0]);
+			integrals_fill(bank->kernel, &piece->push, piece->order, j, n, own[1]);
+			integral[0] = own[0], integral[1] = own[1];
+		}
+		part_ride(p, s, n_drives, piece, integral, j, n);
+	}
 }
 
 /* ---- free flight ---- */
@@ -233,7 +352,7 @@ LANE_INLINE void part_ride(const struct part *p, struct state *s, const struct p
 static int unit_drive(int state, double k, double c, double h, struct pound_polynomial *a)
 {
 	double r = state == 0, v = state == 1, x = fmax(__builtin_sqrt(k), c) * h;
-	int order = larger(terms_of(x), 4);
+	int order = larger(pound_trace_terms(x), 4);
 	order = order > POUND_TRACE_ORDER ? POUND_TRACE_ORDER : order;
 	for (int n = 0; n <= order; n++) {
 		double ground = (state == 2 && n == 0) || (state == 3 && n == 1);
@@ -246,24 +365,25 @@ static int unit_drive(int state, double k, double c, double h, struct pound_poly
 }
 
 /* The maps of all parts of a sample, of every stiffness of a stretch. */
-static void maps_fill(struct maps *maps, const struct part *p, const struct pound_ride *ride, int parts)
+static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct part *p,
+                      const struct pound_ride *ride, int parts)
 {
-	struct series s;
-	vd zero = vsplat(0), one = vsplat(1);
-	double drive[POUND_TRACE_ORDER + 1];
-	series_fill(&s, p, one, zero, NULL, -1);
-	maps->zz = s.z1, maps->vz = s.y1 / p->step;
-	series_fill(&s, p, zero, one * p->step, NULL, -1);
-	maps->zv = s.z1, maps->vv = s.y1 / p->step;
+	alignas(64) double integrals[INTEGRALS] = {0};
+	const double *const integral[] = {integrals};
+	struct passage passage;
+	vd per_step = vsplat(1 / p->step);
+	passage_fill(&passage, p, integral, 0);
+	maps->zz = passage.zz, maps->vz = passage.yz * per_step;
+	maps->zv = passage.zy * p->step, maps->vv = passage.yy;
 	for (int m = 0; m < ride->stretch->n_maps; m++)
 		for (int state = 0; state < 4; state++) {
 			struct pound_polynomial a;
 			int order = unit_drive(state, ride->stretch->stiffness[m], ride->damping, ride->time_step, &a);
 			for (int j = 0; j < parts; j++) {
-				part_drive(&a, order, j, parts, p->step, drive);
-				series_fill(&s, p, zero, zero, drive, order);
-				maps->part[m][j].gz[state] = s.z1;
-				maps->part[m][j].gv[state] = s.y1 / p->step;
+				integrals_fill(bank->kernel, &a, order, j, parts, integrals);
+				passage_fill(&passage, p, integral, 1);
+				maps->part[m][j].gz[state] = passage.fz[0];
+				maps->part[m][j].gv[state] = passage.fy[0] * per_step;
 			}
 		}
 }
@@ -274,26 +394,19 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 {
 	static const struct pound_polynomial none;
 	const struct pound_polynomial *a = drive == POUND_DRIVE_FLOOR ? &piece->floor : &none;
-	double bound[3];
-	part_bound(a, parts, p->step, bound);
 	for (int j = 0; j < parts; j++) {
-		vd z = vfma(maps->zv, s->v, maps->zz * s->z), v = vfma(maps->vv, s->v, maps->vz * s->z);
+		vd z = vsplat(0), v = vsplat(0);
 		if (drive == POUND_DRIVE_FLOOR) {
+			// what does not wait for the sample before comes first
 			const struct flight *f = &maps->part[piece->map][j];
 			for (int k = 0; k < 4; k++) {
 				z = vfma(f->gz[k], vsplat(piece->state[k]), z);
 				v = vfma(f->gv[k], vsplat(piece->state[k]), v);
 			}
 		}
-		vm risk = part_risk(p, s, s->v * p->step, z, v * p->step, bound);
-		if (vany(risk)) {
-			double coefficients[POUND_TRACE_ORDER + 1];
-			struct series series;
-			part_drive(a, piece->order, j, parts, p->step, coefficients);
-			series_fill(&series, p, s->z, s->v * p->step, coefficients,
-			            drive == POUND_DRIVE_FLOOR ? piece->order : -1);
-			peak_add(&series, risk, &s->top);
-		}
+		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
+		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
+		part_look(p, s, z, v * p->step, a, drive == POUND_DRIVE_FLOOR ? piece->order : -1, j, parts);
 		s->z = z;
 		s->v = v;
 	}
@@ -313,7 +426,7 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
 	bool mapped = parts <= PARTS_MAX && ride->stretch->n_maps > 0;
 	struct part sample = part_init(omega, omega_max, bank->damping, ride->time_step / parts);
 	if (mapped)
-		maps_fill(&scratch->maps, &sample, ride, parts);
+		maps_fill(&scratch->maps, bank, &sample, ride, parts);
 	for (int i = 0; i < ride->stretch->n; i++) {
 		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
 		if (piece->map >= 0 && mapped) {
@@ -324,9 +437,10 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
 		}
 		int n = parts_of(omega_max, piece->step, bank->radians);
 		struct part p = part_init(omega, omega_max, bank->damping, piece->step / n);
-		for (int d = 0; d < bank->n_drives; d++)
-			for (int j = 0; j < n; j++)
-				part_ride(&p, &s[d], d == POUND_DRIVE_FLOOR ? &piece->floor : &piece->push, piece, j, n);
+		if (bank->n_drives > 1)
+			piece_ride(bank, &p, s, POUND_DRIVES, piece, scratch->integral[i], n);
+		else
+			piece_ride(bank, &p, s, 1, piece, scratch->integral[i], n);
 	}
 	for (int d = 0; d < bank->n_drives; d++) {
 		*(vd *)(bank->z[d] + at) = s[d].z;
@@ -345,12 +459,20 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
  */
 void POUND_SPECTRUM(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch)
 {
+	struct scratch *room = scratch;
+	for (int i = 0; i < ride->stretch->n; i++) {
+		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
+		if (piece->map >= 0)
+			continue;
+		integrals_fill(bank->kernel, &piece->floor, piece->order, 0, 1, room->integral[i][POUND_DRIVE_FLOOR]);
+		integrals_fill(bank->kernel, &piece->push, piece->order, 0, 1, room->integral[i][POUND_DRIVE_PUSH]);
+	}
 	for (int g = 0; g < bank->n_groups; g++) {
 		const double *omega = bank->omega + g * POUND_SPECTRUM_GROUP;
 		double omega_max = 0;
 		for (int l = 0; l < POUND_SPECTRUM_GROUP; l++)
 			omega_max = omega[l] > omega_max ? omega[l] : omega_max;
 		for (int l = 0; l < POUND_SPECTRUM_GROUP; l += W)
-			vector_ride(bank, ride, g * POUND_SPECTRUM_GROUP + l, omega_max, scratch);
+			vector_ride(bank, ride, g * POUND_SPECTRUM_GROUP + l, omega_max, room);
 	}
 }

@@ -2,11 +2,11 @@
 #ifndef SPECTRUM_H
 #define SPECTRUM_H
 
-#include "engine/trace.h"
+#include "engine/kernel.h"
 
 enum {
 	POUND_SPECTRUM_GROUP = 8, /* frequencies that share the length of their steps, whatever the lane count */
-	POUND_SPECTRUM_SCRATCH = 1 << 16, /* bytes of work space, 64-byte aligned */
+	POUND_SPECTRUM_SCRATCH = 1 << 18, /* bytes of work space, 64-byte aligned */
 };
 
 /* what drives a set of oscillators */
@@ -15,9 +15,10 @@ enum pound_drive { POUND_DRIVE_FLOOR, POUND_DRIVE_PUSH, POUND_DRIVES };
 /* Oscillators z'' + 2 xi w z' + w^2 z = -a, one set for each drive a; arrays in whole groups, 64-byte aligned. */
 struct pound_bank {
 	int n_groups;
-	int n_drives;                              /* 1: the floor alone */
-	double damping;                            /* xi  [0, 1) */
-	double radians;                            /* w * step at most, at most 1 */
+	int n_drives;   /* 1: the floor alone */
+	double damping; /* xi  [0, 1) */
+	double radians; /* w * step at most, at most 1 */
+	const struct pound_kernel *kernel;
 	const double *omega;                       /* [rad/s]  > 0 */
 	double *z[POUND_DRIVES], *v[POUND_DRIVES]; /* now [m], [m/s] */
 	double *top[POUND_DRIVES];                 /* largest |z| so far [m] */

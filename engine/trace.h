@@ -10,6 +10,7 @@
 
 enum {
 	POUND_TRACE_ORDER = 18,   /* of a piece's power series, at most */
+	POUND_TRACE_TERMS = 20,   /* of any motion it drives, 1^20/20! is far below rounding */
 	POUND_TRACE_PIECES = 512, /* handed out at once */
 	POUND_TRACE_MAPS = 4,     /* stiffnesses told apart among them */
 };
@@ -52,6 +53,9 @@ struct pound_trace {
 	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
 	int64_t contacts;
 };
+
+/* Terms after which x^n/n! is below rounding, n <= POUND_TRACE_TERMS. */
+int pound_trace_terms(double x);
 
 void pound_trace_start(struct pound_trace *trace, const struct pound_march_task *task);
 /* The next pieces; none after the last.  trace->status tells whether the motion was followed to its end. */

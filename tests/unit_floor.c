@@ -248,7 +248,7 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	specimen_init(&specimen);
 	specimen_reference(&specimen, &specimen_references[0], 0.0025);
 	const struct pound_march_task task = riding_task(&specimen, true);
-	_Alignas(64) static char memory[1 << 19];
+	_Alignas(64) static char memory[1 << 20];
 	assert_true(pound_floor_bytes(1) <= sizeof memory);
 	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
 	struct rows rows = {0};

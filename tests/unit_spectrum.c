@@ -12,11 +12,14 @@ enum { OSCILLATORS = 16 };
 static struct pound_trace_stretch stretch;
 static _Alignas(64) double omega[OSCILLATORS], state_of[2][3][OSCILLATORS];
 static _Alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
+static struct pound_kernel kernel;
 
 /* A bank at rest; oscillators beyond n are the last one once more. */
 static struct pound_bank bank_of(const double *w, int n, double xi)
 {
+	pound_kernel_fill(&kernel);
 	struct pound_bank bank = {.n_groups = OSCILLATORS / POUND_SPECTRUM_GROUP,
+	                          .kernel = &kernel,
 	                          .n_drives = 1,
 	                          .damping = xi,
 	                          .radians = 1,
@@ -116,6 +119,7 @@ static void a_train_of_velocity_steps_gives_the_exact_values(void **state)
 }
 
 /* A constant acceleration from rest: twice the static displacement undamped, 1 + exp(-xi pi/s) of it damped. */
+// the fastest takes 5e5 steps, each rounds by 2e-16
 static void a_step_of_acceleration_overshoots_as_it_must(void **state)
 {
 	(void)state;
@@ -132,7 +136,7 @@ static void a_step_of_acceleration_overshoots_as_it_must(void **state)
 		}
 		ride(&bank);
 		for (int k = 0; k < OSCILLATORS; k++)
-			check_near(w[k] * w[k] * bank.top[0][k], 3 * (1 + exp(-xi * pi / sqrt(1 - xi * xi))), 2e-11);
+			check_near(w[k] * w[k] * bank.top[0][k], 3 * (1 + exp(-xi * pi / sqrt(1 - xi * xi))), 2e-10);
 	}
 }
 
