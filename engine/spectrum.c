@@ -23,10 +23,11 @@ enum {
 
 /* A part of a piece: its step and the bounds of the drive over it.  All motions below are in its time 0 .. 1. */
 struct part {
-	double step;           /* [s] */
-	int terms;             /* of a series without a drive, by the fastest of the group */
-	vd x, damp;            /* w step, 2 xi w step */
-	vd alpha, beta, gamma; /* |z''''| <= 384 (alpha e + beta A + gamma A' + A''/384), see part_init */
+	double step; /* [s] */
+	int terms;   /* of a series without a drive, by the fastest of the group */
+	vd x, damp;  /* w step, 2 xi w step */
+	vd on_z, on_v, on_a,
+	    on_rate; /* |z''''|/384 <= on_z |z| + on_v |v| + on_a A + on_rate A' + A''/384, see part_init */
 };
 
 /* the maps of one part of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
@@ -61,6 +62,9 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
+/* The cubic through both ends of a part misses the motion by at most this times |z''''| (Hermite). */
+static const double CUBIC_ERROR = 1.0 / 384;
+
 static const double SHARE[TERMS + 1] = {1,        1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7,
                                         1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14,
                                         1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20, 1.0 / 21};
@@ -94,18 +98,18 @@ static const double MINUS_SHARE[TERMS + 1] = {
 
 /* A part of step h, for oscillators of frequency w.
  *
- * With e = x |z0| + |y0| + A, x = w h and A, A', A'' bounds of the drive times h^2:  x |z| <= e and |z'| <= e inside, so
+ * With e = x |z0| + h |v0| + A, x = w h and A, A', A'' bounds of the drive times h^2:  x |z| <= e and |z'| <= e inside, so
  *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
  */
 LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, double step)
 {
 	struct part p = {.step = step, .terms = pound_trace_terms(omega_max * step)};
-	vd x = p.x = omega * step, x2 = x * x, both;
-	vd damp = p.damp = x * (2 * damping);
-	both = damp * damp + x2;
-	p.alpha = (both * x * (2 * damping + 1) + damp * x2) * (1.0 / 384);
-	p.beta = both * (1.0 / 384);
-	p.gamma = damp * (1.0 / 384);
+	vd x = p.x = omega * step, x2 = x * x, damp = p.damp = x * (2 * damping), both = vfma(damp, damp, x2);
+	vd on_e = vfma(both * x, vsplat(2 * damping + 1), damp * x2) * vsplat(CUBIC_ERROR);
+	p.on_z = on_e * x;
+	p.on_v = on_e * step;
+	p.on_a = vfma(both, vsplat(CUBIC_ERROR), on_e);
+	p.on_rate = damp * vsplat(CUBIC_ERROR);
 	return p;
 }
 
@@ -156,15 +160,14 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 
 /* Lanes in which |z| may have a new largest value inside a part; ends are taken here.
  *
- * Given    y0, y1   derivatives in the part's time;  bound: of the drive and its derivatives, times step^2
+ * Given    z1, v1   at the end;  bound: of the drive and its derivatives, times step^2, the last over 384
  */
-LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd y0, vd z1, vd y1, const double bound[3])
+LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, const double bound[3])
 {
-	vd third = vsplat(1.0 / 3);
-	vd b1 = vfma(third, y0, s->z), b2 = vfma(-third, y1, z1);
-	vd e = vfma(p->x, vabs(s->z), vabs(y0) + vsplat(bound[0]));
-	vd error = vfma(p->alpha, e,
-	                vfma(p->beta, vsplat(bound[0]), vfma(p->gamma, vsplat(bound[1]), vsplat(bound[2]))));
+	vd third = vsplat(p->step * (1.0 / 3));
+	vd b1 = vfma(third, s->v, s->z), b2 = vfma(-third, v1, z1);
+	vd error = vfma(p->on_a, vsplat(bound[0]), vfma(p->on_rate, vsplat(bound[1]), vsplat(bound[2])));
+	error = vfma(p->on_z, vabs(s->z), vfma(p->on_v, vabs(s->v), error));
 	s->top = vmax(s->top, vabs(z1));
 	return vless(s->top, vmax(vabs(b1), vabs(b2)) + error);
 }
@@ -222,7 +225,7 @@ static void part_bound(const struct pound_polynomial *a, int n, double step, dou
 	double scale = step * step, share = 1.0 / n;
 	bound[0] = a->bound[0] * scale;
 	bound[1] = a->bound[1] * scale * share;
-	bound[2] = a->bound[2] * scale * share * share * (1.0 / 384);
+	bound[2] = a->bound[2] * scale * share * share * CUBIC_ERROR;
 }
 
 /* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
@@ -243,10 +246,9 @@ static void integrals_fill(const struct pound_kernel *kernel, const struct pound
 	double room[POUND_TRACE_ORDER + 1];
 	const double *c = n > PARTS_MAX ? part_drive(a, order, j, n, room) : a->c;
 	const double(*row)[INTEGRALS] = kernel->part[n > PARTS_MAX ? 1 : n + j];
-	vd sum[INTEGRALS / W];
-	for (int i = 0; i < INTEGRALS / W; i++)
-		sum[i] = vsplat(0);
+	vd sum[INTEGRALS / W] = {0};
 	for (int k = order; k >= 0; k--)
+#pragma GCC unroll 6
 		for (int i = 0; i < INTEGRALS / W; i++)
 			sum[i] = vfma(vsplat(c[k]), *(const vd *)(row[k] + i * W), sum[i]);
 	for (int i = 0; i < INTEGRALS / W; i++)
@@ -266,7 +268,7 @@ struct passage {
 LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const double *const integral[],
                               int n_drives)
 {
-	vd x2 = p->x * p->x, g = vsplat(0), next = vsplat(1), h = g, rate = g;
+	vd damp = -p->damp, x2 = -(p->x * p->x), g = vsplat(0), next = vsplat(1), h = g, rate = g;
 	for (int d = 0; d < n_drives; d++)
 		s->fz[d] = s->fy[d] = g;
 	for (int m = 0; m < p->terms; m++) {
@@ -278,7 +280,7 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 		}
 		vd before = g;
 		g = next;
-		next = -vfma(p->damp, g, x2 * before);
+		next = vfma(damp, g, x2 * before);
 	}
 	vd minus = vsplat(-(p->step * p->step));
 	for (int d = 0; d < n_drives; d++) {
@@ -287,25 +289,26 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 	}
 	s->zz = vfma(p->damp, h, rate);
 	s->zy = h;
-	s->yz = -x2 * h;
+	s->yz = x2 * h;
 	s->yy = rate;
 }
 
-/* Looks for extrema inside a part from state s; the series is only made where there may be one. */
-LANE_INLINE void part_look(const struct part *p, struct state *s, vd z1, vd y1,
+/* Moves a state over a part; the series is only made where there may be an extremum inside. */
+LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1,
                            const struct pound_polynomial *a, int order, int j, int n)
 {
 	double bound[3];
 	part_bound(a, n, p->step, bound);
-	vd y0 = s->v * p->step;
-	vm risk = part_risk(p, s, y0, z1, y1, bound);
-	if (!vany(risk))
-		return;
-	double room[POUND_TRACE_ORDER + 1];
-	struct series series;
-	const double *drive = order < 0 ? room : part_drive(a, order, j, n, room);
-	series_fill(&series, p, s->z, y0, drive, order, p->step * p->step);
-	peak_add(&series, risk, &s->top);
+	vm risk = part_risk(p, s, z1, v1, bound);
+	if (vany(risk)) {
+		double room[POUND_TRACE_ORDER + 1];
+		struct series series;
+		const double *drive = order < 0 ? room : part_drive(a, order, j, n, room);
+		series_fill(&series, p, s->z, s->v * p->step, drive, order, p->step * p->step);
+		peak_add(&series, risk, &s->top);
+	}
+	s->z = z1;
+	s->v = v1;
 }
 
 /* Oscillators over one part of a piece, by the integrals of its drives. */
@@ -315,14 +318,13 @@ LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
 {
 	const struct pound_polynomial *a[POUND_DRIVES] = {&piece->floor, &piece->push};
 	struct passage passage;
+	double per_step = 1 / p->step;
 	passage_fill(&passage, p, integral, n_drives);
 	for (int d = 0; d < n_drives; d++) {
 		vd y = s[d].v * p->step;
 		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
 		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
-		part_look(p, &s[d], z1, y1, a[d], a[d]->bound[0] > 0 ? piece->order : -1, j, n);
-		s[d].z = z1;
-		s[d].v = y1 / p->step;
+		part_pass(p, &s[d], z1, y1 * per_step, a[d], a[d]->bound[0] > 0 ? piece->order : -1, j, n);
 	}
 }
 
@@ -336,7 +338,8 @@ LANE_INLINE void piece_ride(const struct pound_bank *bank, const struct part *p,
 	for (int j = 0; j < n; j++) {
 		if (n > 1) {
 			integrals_fill(bank->kernel, &piece->floor, piece->order, j, n, own[0]);
-			integrals_fill(bank->kernel, &piece->push, piece->order, j, n, own[1]);
+			if (n_drives > 1)
+				integrals_fill(bank->kernel, &piece->push, piece->order, j, n, own[1]);
 			integral[0] = own[0], integral[1] = own[1];
 		}
 		part_ride(p, s, n_drives, piece, integral, j, n);
@@ -399,6 +402,7 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 		if (drive == POUND_DRIVE_FLOOR) {
 			// what does not wait for the sample before comes first
 			const struct flight *f = &maps->part[piece->map][j];
+#pragma GCC unroll 4
 			for (int k = 0; k < 4; k++) {
 				z = vfma(f->gz[k], vsplat(piece->state[k]), z);
 				v = vfma(f->gv[k], vsplat(piece->state[k]), v);
@@ -406,9 +410,7 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 		}
 		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
 		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
-		part_look(p, s, z, v * p->step, a, drive == POUND_DRIVE_FLOOR ? piece->order : -1, j, parts);
-		s->z = z;
-		s->v = v;
+		part_pass(p, s, z, v, a, drive == POUND_DRIVE_FLOOR ? piece->order : -1, j, parts);
 	}
 }
 
@@ -465,7 +467,9 @@ void POUND_SPECTRUM(const struct pound_bank *bank, const struct pound_ride *ride
 		if (piece->map >= 0)
 			continue;
 		integrals_fill(bank->kernel, &piece->floor, piece->order, 0, 1, room->integral[i][POUND_DRIVE_FLOOR]);
-		integrals_fill(bank->kernel, &piece->push, piece->order, 0, 1, room->integral[i][POUND_DRIVE_PUSH]);
+		if (bank->n_drives > 1)
+			integrals_fill(bank->kernel, &piece->push, piece->order, 0, 1,
+			               room->integral[i][POUND_DRIVE_PUSH]);
 	}
 	for (int g = 0; g < bank->n_groups; g++) {
 		const double *omega = bank->omega + g * POUND_SPECTRUM_GROUP;

@@ -99,7 +99,14 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 	s->step = dt;
 	s->p[0] = t->p;
 	s->q[0] = t->q * dt;
-	for (int n = 0; n <= order; n++) {
+	for (int n = 0; n <= order && !task->contact; n++) { // the left body is alone
+		s->u[0][n + 1] = s->w[0][n] * SHARE[n];
+		s->w[0][n + 1] = (-(c[0] * s->w[0][n] + k[0] * s->u[0][n]) - (n == 0   ? f0[0]
+		                                                              : n == 1 ? f1[0]
+		                                                                       : 0)) *
+		                 SHARE[n];
+	}
+	for (int n = 0; n <= order && task->contact; n++) {
 		double share = SHARE[n], b[2];
 		double push = spring * s->p[n] + dash * s->q[n];
 		for (int i = 0; i < 2; i++) {
@@ -346,12 +353,14 @@ static void interval_enter(struct pound_trace *t)
 static void state_move(struct pound_trace *t, const struct series *s, double time)
 {
 	double dt = s->step;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+	for (int i = 0; i < (t->task->contact ? POUND_OSCILLATORS : 1); i++) {
 		t->u[i] = power_at(s->u[i], s->order, time);
 		t->v[i] = power_at(s->w[i], s->order, time) / dt;
 	}
-	t->p = power_at(s->p, s->order, time);
-	t->q = power_at(s->q, s->order, time) / dt;
+	if (t->task->contact) {
+		t->p = power_at(s->p, s->order, time);
+		t->q = power_at(s->q, s->order, time) / dt;
+	}
 	t->left -= time * dt;
 	t->ground += t->slope * (time * dt);
 }
@@ -370,7 +379,7 @@ static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 	struct search search = {.time = 1, .event = NOTHING};
 	if (t->task->contact)
 		search_contact(&search, &s, t);
-	for (int i = 0; i < POUND_OSCILLATORS; i++)
+	for (int i = 0; i < (t->task->contact ? POUND_OSCILLATORS : 1); i++)
 		search_body(&search, &s, &t->at[i].piece, i);
 	t->pace = search.event == CUT ? fmax(t->pace * SHORTER, SHORTEST) : fmin(t->pace * LONGER, 1);
 	if (search.time > 0)
