@@ -13,7 +13,7 @@
 
 enum {
 	DOCUMENTS = 4,   /* different ones; of each so many rows more */
-	ROWS = 40,       /* x 5 samples x 5 signals: one to five blocks */
+	ROWS = 40,       /* x 5 samples x 5 signals: one to three blocks */
 	PER_SESSION = 1, /* studies submitted by session: about what it can run */
 	SESSIONS_MAX = 1000,
 	STEPS = 4,           /* a session ends when it made so many steps at most, ... */

@@ -16,7 +16,7 @@
 
 enum { POISON = 666, STUDIES = 11, POISON_AT = 4 };
 
-static const struct pound_run *poisoned;
+static _Atomic(const struct pound_run *) poisoned;
 static int crash_signal; /* 0: none */
 
 struct pound_run *__real_pound_run_create(const struct pound_study *study, int n_workers);
@@ -53,6 +53,9 @@ static void serve(const char *path)
 {
 	const struct rlimit none = {0, 0};
 	setrlimit(RLIMIT_CORE, &none);
+	// those of the test's framework
+	for (int i = 1; i < SIGRTMIN; i++)
+		signal(i, SIG_DFL);
 	struct store *store = store_open(path);
 	struct work *work = store ? work_start(store, 2) : NULL;
 	int64_t queued = 1, running = 1;

@@ -77,8 +77,7 @@ static struct {
 	const struct service *service;
 	pthread_mutex_t lock;
 	char ids[IDS_MAX][17];
-	int n;
-	atomic_int answered, unanswered, seed;
+	atomic_int n, answered, unanswered, seed;
 } load = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 /* Submits and looks until the server has gone. */
