@@ -124,7 +124,8 @@ static void levels_fill(struct sources *s, uint64_t seed)
 }
 
 /* Of two estimates of every input the one with the narrower interval.  Widths from a few groups of rows scatter by a
- * quarter: the narrower of two would be too narrow, so the second has to be narrower by more than that. */
+ * quarter: the narrower of two would be too narrow, so the second has to be narrower by more than that.  The first is the
+ * one without a polynomial, so that on nets no index is worse than plain where polynomials cannot follow. */
 static void narrower(const struct sources *s, const struct pound_estimate *p, const struct pound_estimate *q,
                      struct pound_estimate *into)
 {
@@ -147,7 +148,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 	const bool neighbours = !s->sampling->quasi_random;
 	if (neighbours)
 		pound_local_first(s->rows, s->sampling->u, s->corrected, s->scratch, local);
-	narrower(s, s->closed.first, neighbours ? local : s->corrected ? p->first : p->first_raw, into);
+	narrower(s, neighbours ? local : s->corrected ? p->first : p->first_raw, s->closed.first, into);
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
 		double other[POUND_INPUTS_MAX];
@@ -166,7 +167,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
-	narrower(s, s->closed.total, s->corrected ? p->total : p->total_raw, into);
+	narrower(s, s->corrected ? p->total : p->total_raw, s->closed.total, into);
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
 		for (int j = 0; j < s->rows->n_inputs && level->kept >= POUND_ROWS_MIN; j++)
