@@ -231,28 +231,28 @@ static double excitation(const struct pound_indices *indices, int n_rows, int n_
 
 /* What each error does to the worst index; NAN where no index knows. */
 static void errors_fill(const struct pound_indices *indices, const struct pound_sample_values *values,
-                        int rows_dropped, double errors[POUND_ERROR_NONE])
+                        double errors[POUND_ERROR_NONE])
 {
 	const struct pound_accuracy *accuracy = &indices->accuracy;
 	const int last = POUND_LEVELS - 1;
-	double sampling = NAN, integration = NAN;
+	double sampling = NAN, integration = NAN, dropped = NAN;
 	for (int j = 0; j < values->n_inputs; j++) {
 		sampling =
 		    fmax(sampling, fmax(accuracy->inputs[j].first_half[last], accuracy->inputs[j].total_half[last]));
 		integration =
 		    fmax(integration, fmax(accuracy->inputs[j].first_change, accuracy->inputs[j].total_change));
+		dropped = fmax(dropped, fmax(accuracy->inputs[j].first_dropped, accuracy->inputs[j].total_dropped));
 	}
 	errors[POUND_ERROR_SAMPLING] = sampling;
 	errors[POUND_ERROR_EXCITATION] = excitation(indices, values->n_rows, values->n_inputs);
 	errors[POUND_ERROR_INTEGRATION] = integration;
-	errors[POUND_ERROR_FAILED_ROWS] = (double)rows_dropped / values->n_rows;
+	errors[POUND_ERROR_FAILED_ROWS] = dropped;
 }
 
 /* How far the indexes of an output may be off, and for want of what.
  *
  * Given    values        the output's runs
  *          checks        those that were made again
- *          rows_dropped  of values, for a failed run
  *          indices       of values, by pound_variants_indices
  * Returns  indices       accuracy
  * Memory   scratch       (checks.n)
@@ -263,7 +263,7 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
  * Test     unit_accuracy
  */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
-                             int rows_dropped, double *scratch, struct pound_indices *indices)
+                             double *scratch, struct pound_indices *indices)
 {
 	struct pound_accuracy *accuracy = &indices->accuracy;
 	double variance = differences(values, checks, scratch, accuracy);
@@ -272,5 +272,5 @@ void pound_accuracy_estimate(const struct pound_sample_values *values, struct po
 	changes(indices, values);
 	half_widths(indices, values->n_rows, values->n_inputs, accuracy);
 	slope(accuracy, values->n_inputs);
-	errors_fill(indices, values, rows_dropped, accuracy->errors);
+	errors_fill(indices, values, accuracy->errors);
 }

@@ -17,6 +17,6 @@ struct pound_checks {
 
 /* Fills indices->accuracy; the rest of the indices is known, by pound_variants_indices.  scratch: (checks.n) */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
-                             int rows_dropped, double *scratch, struct pound_indices *indices);
+                             double *scratch, struct pound_indices *indices);
 
 #endif

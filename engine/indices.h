@@ -199,7 +199,10 @@ void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_est
                            struct pound_estimate *estimates);
 bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
 
-/* All indexes, shares and notes, and the half widths of the accuracy. */
+/* Fills first_dropped and total_dropped. */
+void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy);
+
+/* All indexes, shares and notes, and of the accuracy the half widths and what dropped rows may change. */
 size_t pound_variants_scratch(const struct pound_sample_values *shape, int estimator); /* doubles */
 int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */

@@ -331,7 +331,7 @@ struct pound_set_indices {
 	X(SAMPLING,    "sampling")    /* too few rows: the widest half of an interval */      \
 	X(EXCITATION,  "excitation")  /* too few signals: what their randomness adds or takes */ \
 	X(INTEGRATION, "integration") /* runs that are not exact */                           \
-	X(FAILED_ROWS, "failed_rows") /* rows left out: their share */
+	X(FAILED_ROWS, "failed_rows") /* rows left out, as if like the most extreme other */
 // clang-format on
 
 enum pound_error {
@@ -354,7 +354,9 @@ struct pound_accuracy {
 	double difference_largest;
 	double variance_share; /* of such differences in the output's variance */
 	struct {
-		double first_change, total_change;                         /* by the differences, at most */
+		double first_change, total_change; /* by the differences, at most */
+		double first_dropped,
+		    total_dropped; /* by rows left out, if like the one that moves it most; NAN: unknown */
 		double first_half[POUND_LEVELS], total_half[POUND_LEVELS]; /* half widths of intervals; NAN: none */
 	} inputs[POUND_INPUTS_MAX];                                    /* (n_inputs) */
 	int rows[POUND_LEVELS];                                        /* behind the half widths; 0: too few */

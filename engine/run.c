@@ -446,7 +446,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	double *rest = scratch + 2 * n + checks_size(c);
 	int dropped =
 	    pound_variants_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
-	pound_accuracy_estimate(&values, checks, dropped, rest, &into->indices[output]);
+	pound_accuracy_estimate(&values, checks, rest, &into->indices[output]);
 	into->indices[output].impulse_correlation = pound_ordinate_correlation(run, cell, output, rest);
 	if (output == 0) {
 		into->runs_failed = failed;

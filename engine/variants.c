@@ -356,5 +356,7 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	    [POUND_NOTE_FEW_ROWS] = varies && !rows_enough(&s),
 	    [POUND_NOTE_NOISE] = varies && s.corrected && lost_in_noise(indices, d),
 	});
-	return values->n_rows - rows.n_rows;
+	const int dropped = values->n_rows - rows.n_rows;
+	pound_dropped_changes(&rows, dropped, &indices->accuracy);
+	return dropped;
 }

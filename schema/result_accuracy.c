@@ -31,8 +31,10 @@ static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE]
 	         "interval by up to %.2g to either side",
 	         false},
 	    [POUND_ERROR_INTEGRATION] = {"Inexact runs are the largest error: up to %.2g in ", true},
-	    [POUND_ERROR_FAILED_ROWS] = {
-	        "Rows without a result are the largest error: a share of %.2g was left out", false}};
+	    [POUND_ERROR_FAILED_ROWS] = {"Rows without a result are the largest error: were they all like the "
+	                                 "most extreme of the others, an index "
+	                                 "would be another by up to %.2g",
+	                                 false}};
 	char note[400];
 	int n = snprintf(note, sizeof note, notes[dominant].sentence, errors[dominant]);
 	snprintf(note + n, sizeof note - (size_t)n, "%s.", notes[dominant].of_index ? index : "");
@@ -95,6 +97,8 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 		writer_text(w, "name", study->inputs[j].name);
 		writer_number(w, "S1_integration", accuracy->inputs[j].first_change);
 		writer_number(w, "ST_integration", accuracy->inputs[j].total_change);
+		writer_number(w, "S1_failed_rows", accuracy->inputs[j].first_dropped);
+		writer_number(w, "ST_failed_rows", accuracy->inputs[j].total_dropped);
 		write_halves(w, "S1_half_widths", accuracy, accuracy->inputs[j].first_half);
 		write_halves(w, "ST_half_widths", accuracy, accuracy->inputs[j].total_half);
 		writer_end(w);

@@ -28,8 +28,8 @@ static struct estimated *estimated_of(const struct pound_sample_values *values, 
 	const struct pound_sampling sampling = {.u = u, .random = true};
 	for (int k = 0; k < POUND_N_INDEXES; k++)
 		e->of.index[k] = e->index[k];
-	int dropped = pound_variants_indices(values, &sampling, seed, scratch, &e->of);
-	pound_accuracy_estimate(values, checks, dropped, scratch, &e->of);
+	pound_variants_indices(values, &sampling, seed, scratch, &e->of);
+	pound_accuracy_estimate(values, checks, scratch, &e->of);
 	free(scratch), free(u);
 	return e;
 }

@@ -117,7 +117,11 @@ static void rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says
 	assert_true(dropped >= first / 8 && dropped <= first / 4);
 	assert_true(isfinite(reading_number(r, "/cells/0/outputs/0/mean")));
 	assert_true(isfinite(reading_number(r, "/cells/0/outputs/0/inputs/1/ST")));
-	check_near(reading_number(r, "/cells/0/outputs/0/accuracy/errors/failed_rows"), dropped / 40, 1e-15);
+	// the worst of what seven rows of forty can do
+	double bound = reading_number(r, "/cells/0/outputs/0/accuracy/errors/failed_rows");
+	assert_true(bound > 0 && bound <= 1);
+	check_near(fmax(reading_number(r, "/cells/0/outputs/0/accuracy/inputs/0/S1_failed_rows"), bound), bound,
+	           0);
 	check_near(reading_number(r, "/cells/1/runs_failed"), runs, 0);
 	check_near(reading_number(r, "/cells/1/rows_dropped"), 40, 0);
 	assert_true(isnan(reading_number(r, "/cells/1/outputs/0/mean")));
