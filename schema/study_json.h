@@ -17,7 +17,7 @@ struct writer;
 enum {
 	STUDY_SAMPLES_MAX = 10000000, /* samples of one ground motion */
 	STUDY_RUNS_MAX = 10000000,    /* pounding runs of one study */
-	STUDY_VALUES_MAX = 1000,     /* of a discrete distribution */
+	STUDY_VALUES_MAX = 1000,      /* of a discrete distribution */
 	STUDY_CELLS_MAX = 10000,      /* combinations of sweep values */
 	STUDY_AT_ONCE_MAX =
 	    50000000, /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
