@@ -315,7 +315,7 @@ static void centre(double *x, int n)
  *
  * Given    scratch  (pound_ordinate_scratch)
  * Returns  value    Pearson's, with a 95 % bootstrap interval over the rows; NAN: no ordinate, or one of them constant
- * Test     unit_ordinate: the_correlation_with_the_impulse_is_one_for_a_stiff_oscillator_of_one_impact
+ * Test     unit_ordinate: the_correlation_is_that_of_the_samples
  */
 struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, int cell, int output,
                                                  double *scratch)

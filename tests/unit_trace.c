@@ -161,7 +161,18 @@ static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 	specimen_free(&specimen);
 }
 
-CHECK_MAIN(cmocka_unit_test(known_impacts_come_out_to_their_digits),
+static void terms_end_in_rounding(void **state)
+{
+	(void)state;
+	for (double x = 1e-18; x <= 1; x *= 1.05) {
+		int n = pound_trace_terms(x);
+		assert_true(pow(x, n) / tgamma(n + 1) < 0x1p-53 && n <= POUND_TRACE_TERMS);
+		assert_true(n == 0 || pow(x, n - 1) / tgamma(n) > 0x1p-56);
+	}
+	assert_int_equal(pound_trace_terms(0), 0);
+}
+
+CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impacts_come_out_to_their_digits),
            cmocka_unit_test(any_scene_moves_as_in_the_march),
            cmocka_unit_test(pieces_follow_each_other_without_holes),
            cmocka_unit_test(the_acceleration_is_that_of_the_motion),
