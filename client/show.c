@@ -196,9 +196,24 @@ static void print_correlation(const struct reading *result, const char *output)
 		       reading_number(result, "%s/impulse_correlation_high", output));
 }
 
+/* The rows that a design grew to, or that there are so far. */
+static void print_rows(const struct reading *result)
+{
+	static const char *const members[] = {"/stopping", "/partial"};
+	for (int k = 0; k < 2; k++) {
+		const char *note = reading_text(result, "%s/note", members[k]);
+		if (!note)
+			continue;
+		printf("\n%.0f rows: ", reading_number(result, "%s/rows", members[k]));
+		print_tame(note);
+		putchar('\n');
+	}
+}
+
 static void sensitivity(const struct reading *result)
 {
 	char output[64];
+	print_rows(result);
 	for (int cell = 0; cell < reading_count(result, "/cells"); cell++) {
 		snprintf(output, sizeof output, "/cells/%d", cell);
 		print_sweep(result, cell);

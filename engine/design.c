@@ -210,7 +210,7 @@ static int batch_rows(const struct pound_study *study, int allowed, int look)
  * Batches: from 10, or as many as hold the study's rows, 2 at a time.  Nets: from 16 points, or as many, twice as many at
  * a time.
  *
- * Test     unit_design: a_design_grows_by_whole_batches_and_by_doubling
+ * Test     unit_growth: a_design_grows_by_whole_batches_and_by_doubling
  */
 int pound_design_rows(const struct pound_study *study, int look)
 {

@@ -29,6 +29,78 @@ static double *unit_design(const char *method, int rows, uint64_t seed)
 	return x;
 }
 
+/* The probabilities of a design that grows to 6 max_rows runs; their grouping and rows. */
+static double *grown_design(const char *method, int max_rows, int randomisations,
+                            struct pound_grouping *grouping, int *rows)
+{
+	const struct pound_study study = {.n_inputs = D,
+	                                  .scene.excitation.signals = 1,
+	                                  .design = {.method = row_named(method),
+	                                             .rows = 2,
+	                                             .seed = 5,
+	                                             .randomisations = randomisations,
+	                                             .until = {0.1, 6 * max_rows}}};
+	*grouping = pound_design_grouping(&study);
+	*rows = pound_design_rows_most(&study);
+	double *u = malloc(sizeof *u * 2 * D * (size_t)*rows);
+	pound_design_probabilities(&study, u);
+	return u;
+}
+
+/* Points of a column's group in each of n equal strata: all one. */
+static void check_strata(const double *u, int rows, struct pound_grouping grouping, int group, int n)
+{
+	char *hit = calloc((size_t)n, 1);
+	for (int i = 0; i < rows; i++)
+		if (i / grouping.run % grouping.n == group)
+			hit[(int)(u[(size_t)i * 2 * D] * n)]++;
+	for (int k = 0; k < n; k++)
+		assert_int_equal(hit[k], 1);
+	free(hit);
+}
+
+static void rows_of_a_group_are_a_design_of_their_own(void **state)
+{
+	(void)state;
+	struct pound_grouping grouping;
+	int rows;
+	double *u = grown_design("lhs", 1500, 0, &grouping, &rows);
+	assert_true(rows == 1500 && grouping.n == 15 && grouping.run == 100);
+	for (int group = 0; group < 15; group++)
+		for (int c = 0; c < 2 * D; c++)
+			check_strata(u + c, rows, grouping, group, 100);
+	free(u);
+	// the first batch is the Latin hypercube of its size
+	double *batch = unit_design("lhs", 100, 5);
+	u = grown_design("lhs", 1500, 0, &grouping, &rows);
+	assert_memory_equal(u, batch, sizeof *u * 2 * D * 100);
+	free(u), free(batch);
+	// rows of a random design, and of one Latin hypercube, have no groups
+	for (int m = 0; m < 2; m++) {
+		const struct pound_study study = {.n_inputs = D, .design = {.method = m, .rows = 100}};
+		assert_int_equal(pound_design_grouping(&study).n, 0);
+	}
+}
+
+static void every_net_of_a_sobol_design_is_a_net_of_its_own(void **state)
+{
+	(void)state;
+	static const int randomisations[] = {8, 16};
+	for (int k = 0; k < 2; k++) {
+		struct pound_grouping grouping;
+		int rows, n = randomisations[k];
+		double *u = grown_design("sobol", 4096, n, &grouping, &rows);
+		assert_true(rows == 4096 && grouping.n == n && grouping.run == 1);
+		for (int group = 0; group < n; group++)
+			for (int c = 0; c < 2 * D; c++)
+				check_strata(u + c, rows, grouping, group, rows / n);
+		// and from the start: the first 16 points of each
+		for (int group = 0; group < n; group++)
+			check_strata(u, 16 * n, grouping, group, 16);
+		free(u);
+	}
+}
+
 static void a_latin_hypercube_has_one_point_in_every_stratum_of_every_column(void **state)
 {
 	(void)state;
@@ -115,8 +187,8 @@ static void every_order_of_three_strata_is_as_likely(void **state)
 static void a_column_depends_on_the_seed_and_the_input_only(void **state)
 {
 	(void)state;
-	static const char *const methods[] = {"random", "lhs"};
-	for (int m = 0; m < 2; m++) {
+	static const char *const methods[] = {"random", "lhs", "sobol"};
+	for (int m = 0; m < 3; m++) {
 		double *x = unit_design(methods[m], 50, 1), *again = unit_design(methods[m], 50, 1);
 		double *other = unit_design(methods[m], 50, 2);
 		assert_memory_equal(x, again, sizeof *x * 2 * D * 50);
@@ -126,9 +198,12 @@ static void a_column_depends_on_the_seed_and_the_input_only(void **state)
 		assert_int_equal(same, 0);
 		free(x), free(again), free(other);
 	}
-	double *fewer = unit_design("random", 20, 1), *more = unit_design("random", 50, 1);
-	assert_memory_equal(fewer, more, sizeof *fewer * 2 * D * 20);
-	free(fewer), free(more);
+	static const char *const nested[] = {"random", "sobol"};
+	for (int m = 0; m < 2; m++) {
+		double *fewer = unit_design(nested[m], 20, 1), *more = unit_design(nested[m], 50, 1);
+		assert_memory_equal(fewer, more, sizeof *fewer * 2 * D * 20);
+		free(fewer), free(more);
+	}
 }
 
 static void values_are_quantiles_of_the_inputs_distributions(void **state)
@@ -155,7 +230,9 @@ static void a_mixed_sample_takes_one_column_from_b(void **state)
 			check_near(pound_design_input(x, 3, 1, sample, j), want[sample][j], 0.0);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_latin_hypercube_has_one_point_in_every_stratum_of_every_column),
+CHECK_MAIN(cmocka_unit_test(rows_of_a_group_are_a_design_of_their_own),
+           cmocka_unit_test(every_net_of_a_sobol_design_is_a_net_of_its_own),
+           cmocka_unit_test(a_latin_hypercube_has_one_point_in_every_stratum_of_every_column),
            cmocka_unit_test(random_columns_are_uniform_and_unrelated),
            cmocka_unit_test(every_order_of_three_strata_is_as_likely),
            cmocka_unit_test(a_column_depends_on_the_seed_and_the_input_only),

@@ -390,7 +390,50 @@ static void left_out_work_adds_up(void **state)
 	free(document);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_response_is_written_whole),
+static void a_result_says_why_its_design_grew_no_further(void **state)
+{
+	(void)state;
+	char *document = documents_with(documents_sensitivity, "\"rows\": 10",
+	                                "\"until\": {\"half_width\": 0.05, \"max_runs\": 60000}");
+	struct pound_study *study = documents_study(document);
+	struct pound_run *run = pound_run_create(study, 1);
+	struct pound_result result = *pound_run_result(run);
+	struct pound_look looks[] = {{1000, INFINITY, 0, 0, 0, POUND_S1}, {1200, 0.04, 1, 1, 0, POUND_ST}};
+	// before any look it is of the rows so far
+	struct reading *r = result_of(document, &result);
+	assert_false(reading_has(r, "/stopping"));
+	check_near(reading_number(r, "/partial/rows"), 1000, 0);
+	check_near(reading_number(r, "/partial/rows_most"), 1500, 0);
+	assert_string_equal(reading_text(r, "/design/method"), "lhs");
+	reading_close(r);
+	result.rows = 1200;
+	result.looks = looks;
+	for (result.n_looks = 1; result.n_looks <= 2; result.n_looks++) {
+		bool reached = result.n_looks == 2;
+		r = result_of(document, &result);
+		assert_false(reading_has(r, "/partial"));
+		assert_true(reading_true(r, "/stopping/reached") == reached);
+		check_near(reading_number(r, "/stopping/rows"), reached ? 1200 : 1000, 0);
+		check_near(reading_number(r, "/stopping/runs"), reached ? 48000 : 40000, 0);
+		assert_int_equal(reading_count(r, "/stopping/looks"), result.n_looks);
+		assert_string_equal(reading_text(r, "/stopping/decided_by/index"), reached ? "ST" : "S1");
+		assert_string_equal(reading_text(r, "/stopping/decided_by/input"), "f_e");
+		assert_string_equal(reading_text(r, "/stopping/decided_by/output"),
+		                    reached ? "impulse" : "demand_amplification");
+		check_near(reading_number(r, "/stopping/decided_by/sweep/~1contact~1restitution"),
+		           reached ? 0.9 : 0.2, 0);
+		assert_true(isnan(reading_number(r, "/stopping/looks/0/half_width")));
+		assert_non_null(
+		    strstr(reading_text(r, "/stopping/note"), reached ? "every interval" : "not every interval"));
+		reading_close(r);
+	}
+	pound_run_free(run);
+	study_free(study);
+	free(document);
+}
+
+CHECK_MAIN(cmocka_unit_test(a_result_says_why_its_design_grew_no_further),
+           cmocka_unit_test(a_response_is_written_whole),
            cmocka_unit_test(timing_is_the_last_line_but_one_and_all_that_differs),
            cmocka_unit_test(a_swept_law_stands_by_its_name),
            cmocka_unit_test(indexes_stand_by_output_and_input),
