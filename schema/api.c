@@ -24,7 +24,7 @@ const unsigned api_faults_of_all =
 const struct api_operation api_operations[] = {
 	[API_submit]  = {"POST", "/v1/studies", "submit",
 	                 "hands over a study; answered when it is on disk", " 201=Status 200=Estimate ", .faults = BODY, .takes_study = true},
-	[API_list]    = {"GET", "/v1/studies", "list", "studies, newest first", " 200=Page "},
+	[API_list]    = {"GET", "/v1/studies", "list", "studies, newest first", " 200=Page ", .faults = 0},
 	[API_status]  = {"GET", "/v1/studies/{id}", "status", "how far a study is", " 200=Status 304 ", .faults = F(NOT_FOUND)},
 	[API_erase]   = {"DELETE", "/v1/studies/{id}", "erase",
 	                 "removes a study, which is cancelled first if it has not ended", " 204 ", .faults = F(NOT_FOUND)},
@@ -40,8 +40,8 @@ const struct api_operation api_operations[] = {
 	[API_live]    = {"GET", "/livez", "live", "the process answers", " 200=Version ", .open = true},
 	[API_ready]   = {"GET", "/readyz", "ready", "studies are taken", " 200=Version ", .open = true},
 	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges for Prometheus", " 200 ", .media = " text/plain "},
-	[API_version] = {"GET", "/version", "version", "the version", " 200=Version "},
-	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 "},
+	[API_version] = {"GET", "/version", "version", "the version", " 200=Version ", .faults = 0},
+	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 ", .faults = 0},
 };
 
 const struct api_argument api_arguments[] = {
