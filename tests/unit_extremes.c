@@ -53,7 +53,6 @@ struct extreme {
 	int compared;             /* samples over which the adaptive solver is to agree; 0: it cannot go there */
 	double contacts;          /* at most */
 	enum pound_status status; /* that the run ends with */
-	bool may_fail;            /* ends with POUND_CHATTER or with a result */
 };
 
 // clang-format off
@@ -75,8 +74,9 @@ static const struct extreme extremes[] = {
 	{"mass ratio 1e-3", {{MASS, 1e-3}}, .compared = 61, .contacts = 100},
 	{"mass ratio 1e3", {{MASS, 1e3}}, .compared = 61, .contacts = 60},
 	{"mass ratio 1e6", {{MASS, 1e6}}, .compared = 61, .contacts = 60},
-	// pressed on each other at 2e7 Hz: the march may need more steps in an interval than it allows
-	{"mass ratio 1e-6, K/k 1e8", {{MASS, 1e-6}, {K_RATIO, 1e8}}, .compared = 3, .contacts = 4000, .may_fail = true},
+	// pressed on each other at 2e7 Hz: short, as every radian of that is a step
+	{"mass ratio 1e-6, K/k 1e8, pressed", {{MASS, 1e-6}, {K_RATIO, 1e8}}, STEP, .samples = 6, .step = 1e-4,
+	 .compared = 2, .contacts = 1},
 	{"mass ratio 1e6, K/k 1e8", {{MASS, 1e6}, {K_RATIO, 1e8}}, .compared = 11, .contacts = 2000},
 	{"frequency ratio 1e-3", {{FREQUENCY, 2e-3}}, .compared = 61, .contacts = 60},
 	{"frequency ratio 1e3", {{FREQUENCY, 2e3}}, .compared = 11, .contacts = 300},
@@ -106,8 +106,8 @@ static const struct extreme extremes[] = {
 	// the ground throws a ball at a wall over and over, ever lower, within an interval of one second
 	{"many contacts in one interval", {{WALL, 1}, {K_RATIO, 1e6}, {EPS, 0.9}, {GAP, 1e-3}}, STEP,
 	 .samples = 4, .step = 1, .compared = 4, .contacts = 200},
-	// and without losses, at 4 contacts a second for 1e5 seconds
-	{"contacts without end in one interval", {{WALL, 1}, {EPS, 1}, {DAMPING, 0}}, .ground = STEP, .amplitude = -1,
+	// and without losses, at 20 contacts a second for 1e5 seconds
+	{"contacts without end in one interval", {{WALL, 1}, {EPS, 1}, {DAMPING, 0}, {GAP, 1e-4}}, STEP,
 	 .samples = 2, .step = 1e5, .status = POUND_CHATTER},
 	{"pressed, K/k 1e8", {{WALL, 1}, {K_RATIO, 1e8}}, STEP, .samples = 31, .compared = 11, .contacts = 200},
 	{"pressed, K/k 1e8, eps 0", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 0}}, STEP, .samples = 31, .compared = 11, .contacts = 1},
@@ -300,8 +300,6 @@ static struct run check_extreme(const struct extreme *row, const struct specimen
 	print_row(row->name, &r, apart, own);
 	if (row->compared > 0)
 		check_near(apart, 0, 10 * own + 1e-9);
-	if (r.status == POUND_CHATTER && row->may_fail)
-		return r;
 	assert_int_equal(r.status, row->status);
 	if (r.status)
 		return r;
@@ -360,7 +358,6 @@ static void grazing_contacts_fade_with_the_power_three_halves_of_their_depth(voi
 		row.name = name;
 		specimen.study.scene.contact.gap = most * (1 - depths[k]);
 		double impulse = check_extreme(&row, &specimen).response.impulse_max;
-		print_message("impulse %.10g ratio %.10g\n", impulse, before / impulse);
 		if (k == 1 || k == 2)
 			// the spring turns it by (K/m) (2 v/a)^2, 3e-4 at the deepest; d is known to some roundings over d
 			check_near(before / impulse, 1000, 1.5);
@@ -420,16 +417,6 @@ static const struct {
 
 enum { SIDES = sizeof sides / sizeof sides[0] };
 
-static void corner_make(struct specimen *specimen, uint64_t *stream)
-{
-	const struct extreme row = {.samples = CORNER_SAMPLES};
-	extreme_make(specimen, &row);
-	for (int k = 0; k < SIDES; k++) {
-		double value = sides[k].values[(int)specimen_uniform(stream, 0, sides[k].n)];
-		pound_scene_assign(&specimen->study.scene, sides[k].field, value);
-	}
-}
-
 /* Angular frequency of the bodies on the contact's spring. */
 static double contact_frequency(const struct pound_scene *scene)
 {
@@ -442,11 +429,24 @@ static double contact_frequency(const struct pound_scene *scene)
 	return sqrt(scene->contact.stiffness_ratio * fmax(k[0], k[1]) * yield);
 }
 
-static void corners_of_all_extremes_are_finite_and_balanced_or_end_with_a_status(void **state)
+static void corner_make(struct specimen *specimen, uint64_t *stream)
+{
+	// samples are as short as the contact asks, which takes a step for each radian while it lasts
+	const double radians = 2e4;
+	struct extreme row = {.samples = CORNER_SAMPLES};
+	struct pound_scene *scene = &specimen->study.scene;
+	extreme_make(specimen, &row);
+	for (int k = 0; k < SIDES; k++) {
+		double value = sides[k].values[(int)specimen_uniform(stream, 0, sides[k].n)];
+		pound_scene_assign(scene, sides[k].field, value);
+	}
+	row.step = fmin(0.01, radians / contact_frequency(scene));
+	ground_fill(specimen, &row);
+}
+
+static void corners_of_all_extremes_are_finite_and_balanced(void **state)
 {
 	(void)state;
-	// steps of 1.4 radians of the contact's frequency, 2^17 of them in an interval
-	const double fastest = 1.4 * 0x1p17 / 0.01;
 	uint64_t stream = 1;
 	for (int k = 0; k < CORNERS; k++) {
 		struct specimen specimen;
@@ -454,13 +454,9 @@ static void corners_of_all_extremes_are_finite_and_balanced_or_end_with_a_status
 		corner_make(&specimen, &stream);
 		snprintf(name, sizeof name, "corner %d", k);
 		struct run r = run(&specimen);
-		if (r.status == POUND_CHATTER) {
-			assert_true(contact_frequency(&specimen.study.scene) > fastest);
-		} else {
-			assert_int_equal(r.status, POUND_OK);
-			check_defined(&r.response, &specimen, name);
-			check_near(r.response.energy_residual, 0, balanced);
-		}
+		assert_int_equal(r.status, POUND_OK);
+		check_defined(&r.response, &specimen, name);
+		check_near(r.response.energy_residual, 0, balanced);
 		specimen_free(&specimen);
 	}
 }
@@ -468,4 +464,4 @@ static void corners_of_all_extremes_are_finite_and_balanced_or_end_with_a_status
 CHECK_MAIN(cmocka_unit_test(every_extreme_is_finite_balanced_bounded_and_agreed_on),
            cmocka_unit_test(grazing_contacts_fade_with_the_power_three_halves_of_their_depth),
            cmocka_unit_test(events_at_one_instant_are_all_seen),
-           cmocka_unit_test(corners_of_all_extremes_are_finite_and_balanced_or_end_with_a_status))
+           cmocka_unit_test(corners_of_all_extremes_are_finite_and_balanced))
