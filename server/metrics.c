@@ -3,7 +3,10 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
+#include "engine/pound.h"
 #include "schema/writer.h"
 
 static const double bounds[METRICS_BUCKETS] = {0.001, 0.005, 0.02, 0.1, 0.5, 2.5, 10}; /* [s] */
@@ -70,6 +73,35 @@ static void durations(struct writer *w, const struct metrics *metrics)
 	sample(w, "pound_http_request_duration_seconds_count", NULL, (double)sum);
 }
 
+static void value(struct writer *w, const struct metrics_value *of)
+{
+	if (of->text)
+		head(w, of->name, of->type, of->text);
+	sample(w, of->name, of->label, of->value);
+}
+
+/* What every program tells. */
+static void process(struct writer *w)
+{
+	struct timespec cpu;
+	long pages = 0;
+	FILE *file = fopen("/proc/self/statm", "re");
+	if (file && fscanf(file, "%*d %ld", &pages) != 1)
+		pages = 0;
+	if (file)
+		fclose(file);
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+	const struct metrics_value values[] = {
+	    {"process_cpu_seconds_total", "counter", NULL, "Processor time.",
+	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
+	    {"process_resident_memory_bytes", "gauge", NULL, "Resident memory.",
+	     (double)pages * (double)sysconf(_SC_PAGESIZE)},
+	    {"pound_build_info", "gauge", "version=\"" POUND_VERSION "\"", "Which poundd this is.", 1},
+	};
+	for (size_t i = 0; i < sizeof values / sizeof values[0]; i++)
+		value(w, &values[i]);
+}
+
 /* The text that Prometheus reads.
  *
  * Given    values   (n)   those of one name stand together
@@ -85,10 +117,8 @@ char *metrics_text(const struct metrics *metrics, const struct metrics_value *va
 	writer_init(&w);
 	answers(&w, metrics);
 	durations(&w, metrics);
-	for (int i = 0; i < n; i++) {
-		if (values[i].text)
-			head(&w, values[i].name, values[i].type, values[i].text);
-		sample(&w, values[i].name, values[i].label, values[i].value);
-	}
+	for (int i = 0; i < n; i++)
+		value(&w, &values[i]);
+	process(&w);
 	return writer_take(&w, length);
 }

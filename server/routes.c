@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "engine/pound.h"
 #include "schema/cost.h"
@@ -516,25 +514,17 @@ static struct reply ready(struct request *request)
 	return ready == STORE_OK ? version(request) : ready == STORE_FULL ? full() : unavailable();
 }
 
-static double resident_bytes(void)
-{
-	long pages = 0;
-	FILE *file = fopen("/proc/self/statm", "re");
-	if (file && fscanf(file, "%*d %ld", &pages) != 1)
-		pages = 0;
-	if (file)
-		fclose(file);
-	return (double)pages * (double)sysconf(_SC_PAGESIZE);
-}
-
 static struct reply metrics(struct request *request)
 {
 	static const char *const states[] = {"queued", "running", "succeeded", "failed", "cancelled"};
-	enum { STATES = sizeof states / sizeof states[0], OTHERS = 5 };
+	enum { STATES = sizeof states / sizeof states[0], ALL = STATES + 2 };
 	struct server *server = request->server;
-	struct metrics_value values[STATES + OTHERS] = {0};
+	struct metrics_value values[ALL] = {
+	    [STATES] = {"pound_http_connections", "gauge", NULL, "Open connections.",
+	                connections_open(server->connections)},
+	    [STATES + 1] = {"pound_http_connections_late_total", "counter", NULL,
+	                    "Connections closed for being too slow.", connections_late(server->connections)}};
 	char labels[STATES][32];
-	struct timespec cpu;
 	for (int i = 0; i < STATES; i++) {
 		int64_t n;
 		if (store_count(server->store, states[i], NULL, &n) == STORE_FAILED)
@@ -543,19 +533,8 @@ static struct reply metrics(struct request *request)
 		values[i] = (struct metrics_value){"pound_studies", "gauge", labels[i],
 		                                   i ? NULL : "Studies, by status.", (double)n};
 	}
-	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-	const struct metrics_value others[OTHERS] = {
-	    {"pound_http_connections", "gauge", NULL, "Open connections.", connections_open(server->connections)},
-	    {"pound_http_connections_late_total", "counter", NULL, "Connections closed for being too slow.",
-	     connections_late(server->connections)},
-	    {"process_cpu_seconds_total", "counter", NULL, "Processor time.",
-	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
-	    {"process_resident_memory_bytes", "gauge", NULL, "Resident memory.", resident_bytes()},
-	    {"pound_build_info", "gauge", "version=\"" POUND_VERSION "\"", "Which poundd this is.", 1},
-	};
-	memcpy(values + STATES, others, sizeof others);
 	struct reply reply = {.status = 200, .type = "text/plain; version=0.0.4; charset=utf-8"};
-	reply.body = metrics_text(&server->metrics, values, STATES + OTHERS, &reply.length);
+	reply.body = metrics_text(&server->metrics, values, ALL, &reply.length);
 	return reply.body ? reply : no_memory();
 }
 
