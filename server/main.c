@@ -10,6 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <gsl/gsl_errno.h>
+
 #include "server/cache.h"
 #include "server/http.h"
 #include "server/log.h"
@@ -33,7 +35,8 @@ static void tell(const char *state)
 	if (path[0] == '@')
 		to.sun_path[0] = '\0';
 	int end = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-	if (end < 0 || sendto(end, state, strlen(state), MSG_NOSIGNAL, (struct sockaddr *)&to, size) < 0)
+	if (end < 0 ||
+	    sendto(end, state, strlen(state), MSG_NOSIGNAL | MSG_DONTWAIT, (struct sockaddr *)&to, size) < 0)
 		log_line("cannot tell systemd %s: %s", state, strerror(errno));
 	if (end >= 0)
 		close(end);
@@ -86,6 +89,8 @@ int main(int argc, char **argv)
 	umask(077);
 	if (options.backup)
 		return store_copy(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
+	// no memory for a solver is the end of a try, not of the server
+	gsl_set_error_handler_off();
 	// a client that has gone, and a file that may not grow, are errors of a write and no more
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);

@@ -419,7 +419,7 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 	enum store_status status = STORE_NONE;
 	if (sqlite3_step(row) == SQLITE_ROW)
 		status = checked(row, place, content, length);
-	if (ended(c, row, 1) == STORE_FAILED)
+	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
 		status = STORE_FAILED;
 	if (status == STORE_CORRUPT)
 		log_line("study %016llx: its %s is damaged", (unsigned long long)id, name);

@@ -6,6 +6,8 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -161,9 +163,47 @@ static void twenty_more_servers_on_one_database_are_refused(void **state)
 	free(study);
 }
 
+/* What systemd is told next. */
+static void expect_told(int end, const char *want)
+{
+	char text[64];
+	ssize_t n = recv(end, text, sizeof text - 1, 0);
+	assert_true(n > 0);
+	text[n] = '\0';
+	assert_string_equal(text, want);
+}
+
+static void systemd_is_told_when_it_is_ready_alive_and_stopping(void **state)
+{
+	struct service *service = service_new();
+	struct sockaddr_un at = {.sun_family = AF_UNIX};
+	int end = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+	(void)state;
+	assert_true(end >= 0);
+	snprintf(at.sun_path, sizeof at.sun_path, "%s/notify", service->directory);
+	assert_int_equal(bind(end, (struct sockaddr *)&at, sizeof at), 0);
+	setenv("NOTIFY_SOCKET", at.sun_path, 1);
+	setenv("WATCHDOG_USEC", "100000", 1);
+	service_start(service, 1);
+	unsetenv("NOTIFY_SOCKET");
+	unsetenv("WATCHDOG_USEC");
+	expect_told(end, "READY=1");
+	expect_told(end, "WATCHDOG=1");
+	expect_told(end, "WATCHDOG=1");
+	service_stop(service);
+	// more of the same may lie between
+	char last[64] = "";
+	for (ssize_t n; (n = recv(end, last, sizeof last - 1, MSG_DONTWAIT)) > 0;)
+		last[n] = '\0';
+	assert_string_equal(last, "STOPPING=1");
+	close(end);
+	service_free(service);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
-CHECK_MAIN(SERVED(an_idle_server_and_one_at_work_end_when_they_are_told),
+CHECK_MAIN(cmocka_unit_test(systemd_is_told_when_it_is_ready_alive_and_stopping),
+           SERVED(an_idle_server_and_one_at_work_end_when_they_are_told),
            SERVED(a_second_signal_ends_it_at_once_and_nothing_is_lost),
            SERVED(a_server_that_ends_under_load_keeps_all_that_it_accepted),
            SERVED(twenty_more_servers_on_one_database_are_refused))
