@@ -28,20 +28,16 @@ struct rates {
 
 /* coefficients of one order of left, right and overlap, and the sums over the orders so far */
 struct terms {
-	vd u[3], v[3], u1[3], v1[3], bend[3];
+	vd u[3], v[3], u1[3], v1[3];
 };
 
-/* Keeps coefficient n of a motion, adds it to the ends and to the bound of the fourth derivative. */
+/* Keeps coefficient n of a motion and adds it to the ends. */
 LANE_INLINE void motion_order(struct motion *into, struct terms *x, int j, int n)
 {
 	into->u.c[n] = x->u[j];
 	into->v.c[n] = x->v[j];
 	x->u1[j] = n ? x->u1[j] + x->u[j] : x->u[j];
 	x->v1[j] = n ? x->v1[j] + x->v[j] : x->v[j];
-	if (n == 4)
-		x->bend[j] = vsplat(fourth(n)) * vabs(x->u[j]);
-	else if (n > 4)
-		x->bend[j] = vfma(vsplat(fourth(n)), vabs(x->u[j]), x->bend[j]);
 }
 
 /* One order of the series of the bodies and of the overlap: keeps coefficient n and makes coefficient n + 1.
@@ -77,7 +73,7 @@ LANE_INLINE void series_order(struct series *s, const struct rates *r, const str
 	x->v[1] = b[1] * share;
 }
 
-/* Series of the bodies and of the overlap over a step, their ends and the bounds of their fourth derivatives. */
+/* Series of the bodies and of the overlap over a step, and their ends. */
 LANE_INLINE void series_fill(struct series *s, const struct lanes *g, bool paired, bool touching)
 {
 	vd dt = g->dt, dt2 = dt * dt;
@@ -103,7 +99,6 @@ LANE_INLINE void series_fill(struct series *s, const struct lanes *g, bool paire
 	for (int j = 0; j < (paired ? 3 : 1); j++) {
 		into[j]->u1 = x.u1[j];
 		into[j]->v1 = x.v1[j];
-		into[j]->bend = x.bend[j];
 		into[j]->u.c[s->order + 1] = into[j]->v.c[s->order + 1] = vsplat(0);
 	}
 }
@@ -236,12 +231,16 @@ LANE_INLINE struct search event_step(struct lanes *g, const struct event_lanes *
 	struct series s;
 	series_fill(&s, g, e->paired, e->touching);
 	struct search search = {.time = one, .event = zero};
-	int bodies = e->paired ? 2 : 1;
+	int bodies = e->paired ? 2 : 1, watched = e->paired && (e->edged || e->right) ? 2 : 1;
+	for (int i = 0; i < watched; i++)
+		motion_bound(&s.body[i], s.order);
+	if (e->paired)
+		motion_bound(&s.overlap, s.order);
 	if (e->paired)
 		contact_search(&s, g, e, &search);
 	for (int i = 0; i < bodies && e->edged; i++)
 		body_search(&s, g, i, e->active, &search);
-	for (int i = 0; i < (e->paired && e->right ? 2 : 1); i++) {
+	for (int i = 0; i < watched; i++) {
 		vm inside = vless(vmax(g->top[i], vabs(s.body[i].u1)), reach_of(&s.body[i])) & e->active;
 		if (vany(inside))
 			body_top(&s, g, i, inside, &search);

@@ -23,24 +23,21 @@ struct flight {
 /* One body over one whole sample.
  *
  * With the response psi = uv to an initial velocity, uu = psi' + c psi, and the responses ua and ud to constant and
- * growing forcing have the derivatives -psi and ua/h, so that the velocity needs few columns of its own:
- *   u' = uu u + psi v + ua a + ud d     v' = vv v - psi (k u + a) + ua d/h     vv = uu - c psi
+ * growing forcing have the derivatives -psi and va = ua/h, so that the velocity needs few columns of its own:
+ *   u' = uu u + psi v + ua a + ud d     v' = uu v - psi (c v + k u + a) + va d
  */
 LANE_INLINE struct flight flight_step(const struct lanes *g, int i, vd ground, vd rise, vd third)
 {
 	struct flight f;
-	vd u = g->u[i], v = g->v[i], c = g->body[i].damping, psi = g->map[i].uv;
+	vd u = g->u[i], v = g->v[i], psi = g->map[i].uv;
 	vd a = vfma(g->body[i].drive, ground, g->body[i].offset), d = g->body[i].drive * rise;
-	vd s = d * g->map[i].per_step, spring = vfma(g->body[i].stiffness, u, a);
+	vd pull = vfma(g->body[i].damping, v, vfma(g->body[i].stiffness, u, a));
 	f.u = vfma(g->map[i].uu, u, vfma(psi, v, vfma(g->map[i].ua, a, g->map[i].ud * d)));
-	f.v = vfma(g->map[i].vv, v, vfma(-psi, spring, g->map[i].ua * s));
+	f.v = vfma(g->map[i].uu, v, vfma(-psi, pull, g->map[i].va * d));
 	f.b1 = vfma(third, v, u);
 	f.b2 = vfma(-third, f.v, f.u);
-	// |u''| and |u'''| at the start, for the bound of the cubic's error
-	vd speed = vabs(v), acc = vfma(c, speed, vfma(g->body[i].stiffness, vabs(u), vabs(a)));
-	vd jerk = vfma(c, acc, vfma(g->body[i].stiffness, speed, vabs(s)));
-	vd error = vfma(g->map[i].ea, acc, g->map[i].ej * jerk);
-	f.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(f.u), error);
+	vd force = vabs(a) + vabs(d);
+	f.error = vfma(g->map[i].eu, vabs(u), vfma(g->map[i].ev, vabs(v), g->map[i].ef * force));
 	return f;
 }
 
@@ -127,7 +124,7 @@ LANE_INLINE vd press_row(const vd row[POUND_PRESS_INPUTS], const vd x[POUND_PRES
  *          forced   a lane's contact ends when its force does
  * Returns  value    lanes in which something may happen inside the cell; these stay where they were
  */
-LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, bool forced)
+LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, bool right, bool forced)
 {
 	vd *x = s->x, zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), bound[POUND_PRESS_INPUTS];
 	x[4] = vfma(g->base_drive, g->ground, g->base_force);
@@ -142,8 +139,8 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 	b.b2 = vfma(-third, b.v, b.u);
 	p.b1 = vfma(third, x[3], x[2]);
 	p.b2 = vfma(-third, p.v, p.u);
-	b.error = vfma(vsplat(16 * DBL_EPSILON), bound[0] + vabs(b.u), press_row(s->map[PRESS_ERROR_U], bound));
-	p.error = press_row(s->map[PRESS_ERROR_P], bound);
+	p.error = press_row(s->map[PRESS_ERROR], bound);
+	b.error = vfma(vsplat(16 * DBL_EPSILON), bound[0] + vabs(b.u), p.error);
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
 	if (forced) {
@@ -151,15 +148,24 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 		risk |= ~vless(zero, least + lowest);
 	}
 	// the other body stands off the base by gap and overlap
-	struct flight o = {.u = b.u - g->side * (g->gap + p.u),
-	                   .v = b.v - g->side * p.v,
-	                   .b1 = b.b1 - g->side * (g->gap + p.b1),
-	                   .b2 = b.b2 - g->side * (g->gap + p.b2),
-	                   .error = b.error + p.error};
-	vd u = x[0] - g->side * (g->gap + x[2]), v = x[1] - g->side * x[3];
-	o.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(o.u) + g->gap, o.error);
-	risk |= flight_risk(x[0], x[1], &b, third, &s->base, edged);
-	risk |= flight_risk(u, v, &o, third, &s->other, edged);
+	vd side = g->side, off = side * g->gap, u = x[0] - vfma(side, x[2], off), v = x[1] - side * x[3];
+	struct flight o = {.u = b.u - vfma(side, p.u, off),
+	                   .v = b.v - side * p.v,
+	                   .b1 = b.b1 - vfma(side, p.b1, off),
+	                   .b2 = b.b2 - vfma(side, p.b2, off)};
+	o.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(o.u) + g->gap, b.error + p.error);
+	if (edged || right) {
+		risk |= flight_risk(x[0], x[1], &b, third, &s->base, edged);
+		risk |= flight_risk(u, v, &o, third, &s->other, edged);
+	} else {
+		vm left = vless(zero, side);
+		struct flight l = {.u = vselect(left, b.u, o.u),
+		                   .b1 = vselect(left, b.b1, o.b1),
+		                   .b2 = vselect(left, b.b2, o.b2),
+		                   .error = o.error};
+		struct limits limits = {.top = vselect(left, s->base.top, s->other.top)};
+		risk |= flight_risk(vselect(left, x[0], u), v, &l, third, &limits, false);
+	}
 	pressed &= ~risk;
 	vd impulse = press_row(s->map[PRESS_IMPULSE], x);
 	g->impulse = vselect(pressed, g->impulse + impulse, g->impulse);

@@ -95,11 +95,12 @@ LANE_INLINE void ground_load(struct work *work, const struct batch *b, vd ground
 		const struct simulation *sim = b->sim[l];
 		int64_t there = sim->last - sim->next + 1;
 		at[l] = work->beyond[l];
-		if (there >= ROW)
+		if (there >= ROW) {
 			at[l] = &sim->task->ground[sim->next];
-		else
-			for (int j = 0; j < there; j++)
-				work->beyond[l][j] = sim->task->ground[sim->next + j];
+			__builtin_prefetch(at[l] + ROW);
+		} else
+			memcpy(work->beyond[l], &sim->task->ground[sim->next],
+			       sizeof(double) * (size_t)(there > 0 ? there : 0));
 	}
 	rows_load(ground, at, 0);
 }
@@ -197,7 +198,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 {
 	struct lanes g;
 	struct press s;
-	const bool forced = b->traits & TRAIT_FORCED;
+	const bool forced = b->traits & TRAIT_FORCED, right = b->traits & TRAIT_RIGHT;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
 	lanes_fill(&g, b, ROW_PAIR);
@@ -216,7 +217,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 	unsigned pressed = (1u << b->n) - 1, ended = 0;
 	int few = b->n / 2;
 	do {
-		unsigned risk = vbits(press(&g, &s, vmask(pressed), edged, forced)) & pressed;
+		unsigned risk = vbits(press(&g, &s, vmask(pressed), edged, right, forced)) & pressed;
 		pressed &= ~risk;
 		unsigned sampled = vbits(vequal(g.cells, vsplat(0))) & pressed;
 		for (unsigned bits = sampled; bits; bits &= bits - 1) {

@@ -71,6 +71,14 @@ LANE_INLINE double fourth(int n)
 	return (double)n * (n - 1) * (n - 2) * (n - 3);
 }
 
+/* Bounds the fourth derivative of a motion by the magnitudes of its terms. */
+LANE_INLINE void motion_bound(struct motion *m, int order)
+{
+	vd bend = vsplat(0);
+	ORDERS_UP(n, 4, order, bend = vfma(vsplat(fourth(n)), vabs(m->u.c[n]), bend);)
+	m->bend = bend;
+}
+
 /* Lanes in which a motion may cross a level inside a step that it starts on the right side of.
  *
  * Given    sign  +1: it must not rise above the level, -1: it must not fall below

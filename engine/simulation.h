@@ -30,7 +30,7 @@ enum {
 	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, right_mass, step;                         \
 	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                       \
 	struct {                                                                                                        \
-		T uu, uv, ua, ud, vv, ea, ej, per_step;                                                                     \
+		T uu, uv, ua, ud, va, eu, ev, ef;                                                                           \
 	} map[2];                                                                                                       \
 	/* PRESS: a cell of pressed contact: forcing, which body is the base, what is left of the interval */           \
 	T base_force, gap_force, base_drive, gap_drive, side, cells, rise, cell;
@@ -55,8 +55,8 @@ enum {
 /* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d */
 struct pound_map {
 	double stiffness;          /* of the piece it belongs to; < 0: none */
-	double uu, uv, ua, ud, vv; /* the velocity follows: see flight.h */
-	double ea, ej;             /* the cubic's error is at most ea |u''| + ej |u'''|, both at the start */
+	double uu, uv, ua, ud, va; /* the velocity follows: see flight.h */
+	double eu, ev, ef;         /* the cubic's error is at most eu |u| + ev |v| + ef (|a| + |d|) */
 };
 
 /* rows of a map of pressed contact over one cell, each a linear form of the inputs; the bounds of their magnitudes */
@@ -66,9 +66,8 @@ enum {
 	PRESS_P,
 	PRESS_Q,
 	PRESS_IMPULSE,
-	PRESS_ERROR_U, /* of the cubic of the base's displacement */
-	PRESS_ERROR_P, /* of the overlap's */
-	PRESS_DROP,    /* of release * rate of overlap below the lesser of its ends */
+	PRESS_ERROR, /* of the cubics of the base's displacement and of the overlap */
+	PRESS_DROP,  /* of release * rate of overlap below the lesser of its ends */
 	PRESS_ROWS,
 };
 
@@ -106,9 +105,10 @@ struct simulation {
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
 	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
-	double left;        /* of the interval, while apart [s] */
-	double part;        /* of a cell that was begun, while touching; x.cells whole cells follow it [s] */
-	double pace;        /* <= 1: steps are shorter where a search was unsure */
+	double per_step;
+	double left; /* of the interval, while apart [s] */
+	double part; /* of a cell that was begun, while touching; x.cells whole cells follow it [s] */
+	double pace; /* <= 1: steps are shorter where a search was unsure */
 	double impulse_max, contacts;
 	double reach;       /* longest step while apart [s] */
 	double cells_whole; /* of an interval */
