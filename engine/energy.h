@@ -20,7 +20,8 @@ static const double GAUSS_WEIGHT[GAUSS / 2] = {0.249147045813402785, 0.233492536
 /* Adds the work of a step, per mass of the left body [m2/s2].
  *
  * Given    s       the step's series;  time: the share of it that was gone
- * Returns  g       work_in: by the ground; work_out: by the dashpots, on the laws' springs, on the contact
+ * Returns  g       work_in: by the ground; work_gap + work_low: by the dashpots, on the laws' springs and on the contact,
+ *                  less that by the ground, summed with the rounding of each addition carried on (Kahan 1965)
  */
 static void energy_add(struct lanes *g, const struct series *s, vd time, bool paired, bool touching)
 {
@@ -44,7 +45,9 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 	}
 	vd elapsed = time * dt;
 	g->work_in = vfma(elapsed, in, g->work_in);
-	g->work_out = vfma(elapsed, out, g->work_out);
+	vd gap = vfma(elapsed, out - in, g->work_low), sum = g->work_gap + gap;
+	g->work_low = gap - (sum - g->work_gap);
+	g->work_gap = sum;
 }
 
 #endif

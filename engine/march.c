@@ -31,7 +31,8 @@ struct work {
 	struct queue idle, queues[STAGES];
 	const struct pound_march_task *tasks;
 	struct pound_march_result *results;
-	int n, started;
+	int n, started;        /* tasks, and those gone through in this pass */
+	int passed;            /* 0: laws of one piece are started, 1: the others */
 	double beyond[W][ROW]; /* ground motion up to its end, and zeros behind */
 };
 
@@ -333,13 +334,22 @@ static void (*const steps[STAGES][2])(struct work *, const struct batch *) = {
     [STAGE_APART] = {step_apart, step_apart},         [STAGE_TOUCH] = {step_touch, step_touch},
 };
 
-/* Starts tasks as long as there are any and the pool has room. */
+/* Starts tasks as long as there are any and the pool has room: first those of laws of one piece, which need less when
+ * they are among themselves. */
 static void tasks_start(struct work *work)
 {
-	while (work->started < work->n && work->idle.n > 0) {
-		struct simulation *sim = &work->pool[pop(&work->idle)];
-		int task = work->started++;
-		send(work, sim, pound_simulation_start(sim, &work->tasks[task], &work->results[task]));
+	while (work->passed < 2 && work->idle.n > 0) {
+		for (; work->started < work->n && work->idle.n > 0; work->started++) {
+			const struct pound_march_task *task = &work->tasks[work->started];
+			if (pound_simulation_edged(task) != work->passed)
+				continue;
+			struct simulation *sim = &work->pool[pop(&work->idle)];
+			send(work, sim, pound_simulation_start(sim, task, &work->results[work->started]));
+		}
+		if (work->started < work->n)
+			return;
+		work->passed++;
+		work->started = 0;
 	}
 }
 

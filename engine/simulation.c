@@ -22,8 +22,8 @@ static const double CUBIC_ERROR = 1.0 / 384;
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
 enum {
-	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
-	MAP_ORDERS = 18,        /* of a map's series; 0.8^18/18! = 3e-18 */
+	STEPS_LIMIT = 1 << 19, /* by power series in one sample interval: more is chatter */
+	MAP_ORDERS = 18,       /* of a map's series; 0.8^18/18! = 3e-18 */
 };
 
 static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
@@ -193,13 +193,13 @@ void pound_simulation_interval(struct simulation *sim)
 	sim->left = sim->x.step;
 	sim->part = 0;
 	sim->x.cells = sim->cells_whole;
-	sim->events = 0;
+	sim->steps = 0;
 }
 
 /* The next step by power series. */
 static enum pound_stage step_enter(struct simulation *sim)
 {
-	if (sim->events > EVENTS_LIMIT)
+	if (++sim->steps > STEPS_LIMIT)
 		return STAGE_CHATTER;
 	struct pound_rows *x = &sim->x;
 	if (sim->touching) {
@@ -314,7 +314,6 @@ enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, dou
 		sim->pace = least(sim->pace * LONGER, 1);
 		return pound_simulation_next(sim);
 	}
-	sim->events++;
 	sim->pace = event == EVENT_CUT ? most(sim->pace * SHORTER, SHORTEST) : least(sim->pace * LONGER, 1);
 	if (event == EVENT_CONTACT || event == EVENT_CLEARS)
 		contact_turn(sim, event == EVENT_CLEARS);
@@ -325,6 +324,13 @@ enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, dou
 }
 
 /* ---- start and end ---- */
+
+/* Whether a law of a task has more than one piece. */
+bool pound_simulation_edged(const struct pound_march_task *task)
+{
+	return !pound_pieces_linear(task->bodies[0].skeleton.law) ||
+	       !pound_pieces_linear(task->bodies[1].skeleton.law);
+}
 
 /* A simulation at the start of its task; what it does first. */
 enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
@@ -358,8 +364,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 		sim->press[m].stiffness[0] = -1;
 	sim->can_fly = can_fly;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
-	if (!pound_pieces_linear(task->bodies[0].skeleton.law) ||
-	    !pound_pieces_linear(task->bodies[1].skeleton.law))
+	if (pound_simulation_edged(task))
 		sim->traits |= TRAIT_EDGED;
 	if (task->bodies[1].followed)
 		sim->traits |= TRAIT_RIGHT;
@@ -408,9 +413,8 @@ static double residual(const struct simulation *sim)
 		start += 0.5 * mass * v0 * v0;
 		end += 0.5 * mass * x->v[i] * x->v[i];
 	}
-	double put_in = start + x->work_in, found = end + x->work_out;
-	double largest = most(fabs(put_in), most(start, end));
-	return largest > 0 ? fabs(found - put_in) / largest : 0;
+	double largest = most(fabs(start + x->work_in), most(start, end));
+	return largest > 0 ? fabs(end - start + (x->work_gap + x->work_low)) / largest : 0;
 }
 
 /* Writes a simulation's result. */

@@ -17,22 +17,22 @@ enum {
 };
 
 /* Rows of a simulation: T is double at rest, and a vector in lanes; every row has eight. */
-#define POUND_ROWS(T)                                                                                               \
-	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */       \
-	T u[2], v[2], top[2], p, q;                                                                                     \
-	/* STEP: the next step, the ground at its start and its growth, this contact's impulse, all contacts' time */   \
-	T dt, ground, slope, impulse, contact_time, work_in, work_out, spare;                                           \
-	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */ \
-	struct {                                                                                                        \
-		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                        \
-	} body[2];                                                                                                      \
-	/* PAIR */                                                                                                      \
-	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, right_mass, step;                         \
-	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                       \
-	struct {                                                                                                        \
-		T uu, uv, ua, ud, va, eu, ev, ef;                                                                           \
-	} map[2];                                                                                                       \
-	/* PRESS: a cell of pressed contact: forcing, which body is the base, what is left of the interval */           \
+#define POUND_ROWS(T)                                                                                                   \
+	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */           \
+	T u[2], v[2], top[2], p, q;                                                                                         \
+	/* STEP: the next step, the ground at its start and its growth, this contact's impulse, all contacts' time, work */ \
+	T dt, ground, slope, impulse, contact_time, work_in, work_gap, work_low;                                            \
+	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */     \
+	struct {                                                                                                            \
+		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                            \
+	} body[2];                                                                                                          \
+	/* PAIR */                                                                                                          \
+	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, right_mass, step;                             \
+	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                           \
+	struct {                                                                                                            \
+		T uu, uv, ua, ud, va, eu, ev, ef;                                                                               \
+	} map[2];                                                                                                           \
+	/* PRESS: a cell of pressed contact: forcing, which body is the base, what is left of the interval */               \
 	T base_force, gap_force, base_drive, gap_drive, side, cells, rise, cell;
 
 struct pound_rows {
@@ -112,7 +112,7 @@ struct simulation {
 	double impulse_max, contacts;
 	double reach;       /* longest step while apart [s] */
 	double cells_whole; /* of an interval */
-	int events;         /* in this interval */
+	int steps;          /* in this interval */
 	int base;           /* the heavier body, whose motion and the overlap describe pressed contact */
 	bool touching;      /* the contact's force acts */
 	bool parted;        /* force gone before the overlap: bodies still overlap */
@@ -127,6 +127,7 @@ struct simulation {
 	struct pound_press_map press[POUND_PRESS_MAPS];
 };
 
+bool pound_simulation_edged(const struct pound_march_task *task);
 enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
                                         struct pound_march_result *result);
 enum pound_stage pound_simulation_meet(struct simulation *sim);
