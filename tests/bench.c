@@ -140,5 +140,6 @@ int main(int argc, char **argv)
 	bench_reference();
 	bench_kernel();
 	bench_growth();
+	bench_spectra();
 	return 0;
 }
