@@ -427,6 +427,30 @@ static void media(struct writer *w, const char *type, const char *schema)
 	writer_end(w);
 }
 
+static void header(struct writer *w, const char *name, const char *text)
+{
+	object(w, name);
+	writer_text(w, "description", text);
+	writer_bool(w, "required", true);
+	writer_json(w, "schema", "{\"type\": \"string\"}");
+	writer_end(w);
+}
+
+/* Headers of a success: where what was made is, and the tag of what may be asked for again. */
+static void success_headers(struct writer *w, const struct api_operation *operation, const char *answer,
+                            const char *schema)
+{
+	bool made = !strcmp(answer, "201"), status = schema && !strcmp(schema, "Status");
+	bool tagged = status || strstr(operation->answers, "304");
+	if (!tagged)
+		return;
+	object(w, "headers");
+	if (made)
+		header(w, "Location", "the study");
+	header(w, "ETag", "for If-None-Match");
+	writer_end(w);
+}
+
 /* An answer such as "200=Page" or "304". */
 static void success(struct writer *w, const struct api_operation *operation, char *answer)
 {
@@ -435,6 +459,7 @@ static void success(struct writer *w, const struct api_operation *operation, cha
 		*object_name++ = '\0';
 	object(w, answer);
 	writer_text(w, "description", !strcmp(answer, "304") ? "not changed" : operation->text);
+	success_headers(w, operation, answer, object_name);
 	if (*answer == '2' && strcmp(answer, "204") != 0) {
 		object(w, "content");
 		if (object_name)
@@ -462,6 +487,14 @@ static void failures(struct writer *w, const struct api_operation *operation)
 		snprintf(status, sizeof status, "%d", api_faults[first].status);
 		object(w, status);
 		writer_text(w, "description", text);
+		if (first == API_UNAVAILABLE || first == API_TOO_MANY || first == API_UNAUTHORIZED) {
+			object(w, "headers");
+			if (first == API_UNAUTHORIZED)
+				header(w, "WWW-Authenticate", "Bearer");
+			else
+				header(w, "Retry-After", "seconds");
+			writer_end(w);
+		}
 		object(w, "content");
 		media(w, "application/problem+json", "Problem");
 		writer_end(w);

@@ -28,7 +28,7 @@ static void problem_is(struct answer *answer, int status, const char *type)
 	answer_free(answer);
 }
 
-enum { THREADS = 20, KEYS = 10, EACH = 100 / THREADS };
+enum { THREADS = 20, KEYS = 50, EACH = 100 / THREADS };
 
 struct poster {
 	const struct service *service;
