@@ -42,7 +42,7 @@ struct http {
 	struct MHD_Daemon *daemon;
 	struct server *server;
 	atomic_bool stopping;
-	atomic_int under_way; /* requests */
+	atomic_int under_way; /* requests whose headers are here */
 	atomic_ullong number; /* of the last request */
 };
 
@@ -262,7 +262,6 @@ static void *begin(void *of, const char *target, struct MHD_Connection *connecti
 	*request = (struct request){.server = server, .connection = connection, .operation = -1};
 	request->number = atomic_fetch_add(&server->http->number, 1);
 	head_target(&request->head, target ? target : "");
-	atomic_fetch_add(&server->http->under_way, 1);
 	return request;
 }
 
@@ -275,6 +274,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	struct reply reply;
 	if (!connection)
 		return MHD_NO;
+	atomic_fetch_add(&server->http->under_way, 1);
 	request->method = method;
 	request->path = path;
 	request->arrived = connection_now();
@@ -340,7 +340,8 @@ static void completed(void *of, struct MHD_Connection *connection, void **kept,
 		return;
 	if (open)
 		connection_allow(server->connections, open, server->options->idle_timeout);
-	atomic_fetch_sub(&server->http->under_way, 1);
+	if (request->method)
+		atomic_fetch_sub(&server->http->under_way, 1);
 	free(request->body);
 	free(request);
 	*kept = NULL;
