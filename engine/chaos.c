@@ -162,45 +162,6 @@ static void sums_others(const double *sums, int n, int fold, double *others)
 	}
 }
 
-typedef double pair __attribute__((vector_size(16), may_alias, aligned(8)));
-
-/* x -= factor y */
-static void subtract(double *x, double factor, const double *y, int n)
-{
-	int k = 0;
-	for (; k + 1 < n; k += 2)
-		*(pair *)(x + k) -= factor * *(const pair *)(y + k);
-	if (k < n)
-		x[k] -= factor * y[k];
-}
-
-/* Solves gram x = b by Cholesky's method; the upper triangle of gram is overwritten, b becomes x.
- * A term that the points do not tell apart from those before it gets the coefficient 0. */
-static void solve(double *gram, int n, double *b)
-{
-	double largest = 0.0;
-	for (int i = 0; i < n; i++)
-		largest = fmax(largest, gram[(size_t)i * n + i]);
-	for (int i = 0; i < n; i++) {
-		double *row = gram + (size_t)i * n;
-		double inverse = row[i] > n * DBL_EPSILON * largest ? 1.0 / sqrt(row[i]) : 0.0;
-		for (int k = i; k < n; k++)
-			row[k] *= inverse;
-		b[i] *= inverse;
-		for (int r = i + 1; r < n; r++) {
-			subtract(gram + (size_t)r * n + r, row[r], row + r, n - r);
-			b[r] -= row[r] * b[i];
-		}
-		row[i] = inverse;
-	}
-	for (int i = n - 1; i >= 0; i--) {
-		const double *row = gram + (size_t)i * n;
-		for (int k = i + 1; k < n; k++)
-			b[i] -= row[k] * b[k];
-		b[i] *= row[i];
-	}
-}
-
 static void fits_fill(struct fits *f)
 {
 	sums_fill(f);
@@ -209,7 +170,7 @@ static void fits_fill(struct fits *f)
 		sums_others(f->sums, f->squares, fold, f->others);
 		pound_legendre_gram(f->rows->n_inputs, f->degree, f->others, f->gram);
 		sums_others(f->products, f->terms, fold, coefficients);
-		solve(f->gram, f->terms, coefficients);
+		pound_legendre_solve(f->gram, f->terms, coefficients);
 		for (int first = 0; chunk_enter(f, fold, first) > 0; first += CHUNK) {
 			pound_legendre_expand(&f->chunk, f->degree, coefficients, f->value);
 			for (int i = 0; i < f->chunk.n; i++)

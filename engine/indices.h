@@ -29,6 +29,7 @@ struct pound_sampling {
 	bool fresh_signals; /* each sample of a row has its own */
 	int n_resamples;    /* behind an interval, at most POUND_RESAMPLES; 0: as many */
 	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
+	const struct pound_study *ratios; /* study with ratios whose indexes are wanted; NULL: none */
 	int estimator; /* row of the estimators whose indexes are wanted besides; 0: none but the plain protocol's */
 };
 
@@ -187,6 +188,11 @@ size_t pound_conditional_scratch(int n_rows); /* doubles */
 void pound_conditional_mean(const struct pound_conditional *given, int input, double *scratch,
                             struct pound_curve *curve);
 
+size_t pound_ratio_scratch(const struct pound_sample_values *shape,
+                           const struct pound_study *study); /* doubles */
+void pound_ratio_indices(const struct pound_rows *rows, const double *u, const struct pound_study *study,
+                         double variance, double *scratch, struct pound_ratio_indices *results);
+
 /* The plain protocol: mean, variance, noise share and the raw indexes. */
 size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
@@ -202,8 +208,10 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 /* Fills first_dropped and total_dropped. */
 void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy);
 
-/* All indexes, shares and notes, and of the accuracy the half widths and what dropped rows may change. */
-size_t pound_variants_scratch(const struct pound_sample_values *shape, int estimator); /* doubles */
+/* All indexes, shares and notes, and of the accuracy the half widths and what dropped rows may change.  Sampling as it
+ * will be; NULL: nothing but the columns of every study. */
+size_t pound_variants_scratch(const struct pound_sample_values *shape,
+                              const struct pound_sampling *sampling); /* doubles */
 int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */
 

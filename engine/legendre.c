@@ -4,6 +4,7 @@
 #include "engine/pound.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -231,5 +232,46 @@ void pound_legendre_gram(int n_inputs, int degree, const double *sums, double *g
 		memcpy(q, p, sizeof q);
 		for (int k = row; k < terms; k++, pound_legendre_next(n_inputs, degree, q))
 			gram[(size_t)row * terms + k] = product_sum(&l, 0, 2 * degree, p, q, sums);
+	}
+}
+
+/* x -= factor y */
+static void subtract(double *x, double factor, const double *y, int n)
+{
+	int k = 0;
+	for (; k + 1 < n; k += 2)
+		*(pair *)(x + k) -= factor * *(const pair *)(y + k);
+	if (k < n)
+		x[k] -= factor * y[k];
+}
+
+/* Solves gram x = b by Cholesky's method; the upper triangle of gram is overwritten, b becomes x.
+ *
+ * A term that the points do not tell apart from those before it gets the coefficient 0.
+ *
+ * Test     unit_chaos: a_polynomial_within_the_degree_is_met_exactly
+ */
+void pound_legendre_solve(double *gram, int n, double *b)
+{
+	double largest = 0.0;
+	for (int i = 0; i < n; i++)
+		largest = fmax(largest, gram[(size_t)i * n + i]);
+	for (int i = 0; i < n; i++) {
+		double *row = gram + (size_t)i * n;
+		double inverse = row[i] > n * DBL_EPSILON * largest ? 1.0 / sqrt(row[i]) : 0.0;
+		for (int k = i; k < n; k++)
+			row[k] *= inverse;
+		b[i] *= inverse;
+		for (int r = i + 1; r < n; r++) {
+			subtract(gram + (size_t)r * n + r, row[r], row + r, n - r);
+			b[r] -= row[r] * b[i];
+		}
+		row[i] = inverse;
+	}
+	for (int i = n - 1; i >= 0; i--) {
+		const double *row = gram + (size_t)i * n;
+		for (int k = i + 1; k < n; k++)
+			b[i] -= row[k] * b[k];
+		b[i] *= row[i];
 	}
 }

@@ -19,6 +19,7 @@ enum {
 	POUND_OUTPUTS_ASKED_MAX = 8,                  /* names in the outputs of one study */
 	POUND_OUTPUTS_MAX = 8 + POUND_ORDINATES_MAX,  /* outputs of one study, each ordinate one of its own */
 	POUND_SWEEPS_MAX = 8,                         /* swept fields of one study */
+	POUND_RATIOS_MAX = 3,                         /* ratios of inputs of one study */
 	POUND_SOLVERS = 4,                            /* rows of the solvers */
 	POUND_SETTINGS_MAX = 16,                      /* of one solver that are compared */
 	POUND_ROWS_MAX = 1 << 20,                     /* rows of a design */
@@ -134,6 +135,12 @@ struct pound_input {
 	struct pound_distribution distribution;
 };
 
+/* The quotient of two inputs, as a variable whose indexes are wanted besides. */
+struct pound_ratio {
+	const char *name;  /* for people */
+	const char *of[2]; /* paths of the inputs above and below */
+};
+
 struct pound_sweep {
 	const char *path;
 	struct pound_field field;
@@ -194,6 +201,8 @@ struct pound_study {
 	struct pound_scene scene;
 	int n_inputs;
 	struct pound_input *inputs; /* (n_inputs) */
+	int n_ratios;
+	struct pound_ratio ratios[POUND_RATIOS_MAX]; /* (n_ratios) */
 	int n_sweeps;
 	struct pound_sweep *sweeps; /* (n_sweeps); the cells are their product, the last sweep fastest */
 	struct pound_design design;
@@ -244,6 +253,12 @@ double pound_convergence_order(const struct pound_trial *trials, int n_trials, i
 int pound_design_samples(const struct pound_study *study);
 int pound_design_order(const struct pound_study *study);
 unsigned pound_order_mask(int n_inputs, int sample); /* bit j: column j of the sample is from B */
+
+/* The input of a path, -1: none; how many variables ratios and the inputs in none are, and which inputs those are
+ * (rest may be NULL); whether an input of this distribution may be in a ratio. */
+int pound_ratio_input(const struct pound_study *study, const char *path);
+int pound_ratio_variables(const struct pound_study *study, int *rest);
+bool pound_ratio_takes(const struct pound_distribution *distribution);
 
 /* What is wrong with the parameters of a distribution, in words, or NULL. */
 const char *pound_distribution_fault(const struct pound_distribution *distribution);
@@ -306,6 +321,14 @@ struct pound_set_index {
 enum {
 	POUND_PAIRS_MAX = POUND_INPUTS_MAX * (POUND_INPUTS_MAX - 1) / 2,
 	POUND_CLOSED_MAX = (1 << POUND_FACTORIAL_INPUTS_MAX) - 2, /* sets but none and all */
+};
+
+/* Indexes of the study's ratios and then of the inputs in none, which depend on each other; Shapley effects add up to 1. */
+struct pound_ratio_indices {
+	int n;            /* 0: none were asked, or too few rows */
+	double explained; /* share of the output's variance that these variables explain */
+	struct pound_estimate first[POUND_FACTORIAL_INPUTS_MAX], total[POUND_FACTORIAL_INPUTS_MAX],
+	    shapley[POUND_FACTORIAL_INPUTS_MAX]; /* (n) each */
 };
 
 /* The mean output given an input, where its probability is (k + 1/2) / POUND_CURVE; NAN: too few rows. */
@@ -435,6 +458,7 @@ struct pound_indices {
 	struct pound_estimate
 	    *named[POUND_N_NAMED]; /* of the study's estimator, if it has one  (n_inputs) each */
 	struct pound_set_indices sets;
+	struct pound_ratio_indices ratios;
 	struct pound_curve *curves;                /* (n_inputs); NULL: not wanted */
 	struct pound_estimate impulse_correlation; /* of an ordinate with the largest impulse; NAN: no ordinate */
 	struct pound_accuracy accuracy;

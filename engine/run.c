@@ -76,7 +76,9 @@ static size_t reduction_size(const struct pound_campaign *c)
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
 	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
-	size_t variants = pound_variants_scratch(&shape, c->study->design.estimator);
+	const struct pound_sampling wanted = {.estimator = c->study->design.estimator,
+	                                      .ratios = c->study->n_ratios ? c->study : NULL};
+	size_t variants = pound_variants_scratch(&shape, &wanted);
 	size_t accuracy = (size_t)checks_of(c);
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
@@ -440,7 +442,8 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    .fresh_signals = !c->study->design.common_signals,
 	    .n_resamples = c->study->design.resamples,
 	    .quasi_random = pound_design_quasi_random(c->study->design.method),
-	    .estimator = c->study->design.estimator};
+	    .estimator = c->study->design.estimator,
+	    .ratios = c->study->n_ratios ? c->study : NULL};
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);
 	double *rest = scratch + 2 * n + checks_size(c);

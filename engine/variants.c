@@ -258,6 +258,16 @@ static void levels_init(struct sources *s, int n_rows)
 	}
 }
 
+/* The indexes of ratios, as shares of the variance without the noise of few signals if that is known. */
+static void ratios_fill(const struct sources *s, struct pound_indices *indices)
+{
+	const double noise = s->corrected ? indices->noise_share : 0.0;
+	indices->ratios.n = 0;
+	if (s->sampling->ratios && rows_enough(s))
+		pound_ratio_indices(s->rows, s->sampling->u, s->sampling->ratios, indices->variance * (1.0 - noise),
+		                    s->scratch, &indices->ratios);
+}
+
 /* Whether taking the noise away has left an index without a variance to be a share of. */
 static bool lost_in_noise(const struct pound_indices *indices, int n_inputs)
 {
@@ -278,12 +288,15 @@ static unsigned notes_of(const bool said[POUND_N_NOTES])
 	return notes;
 }
 
-size_t pound_variants_scratch(const struct pound_sample_values *shape, int estimator)
+size_t pound_variants_scratch(const struct pound_sample_values *shape, const struct pound_sampling *sampling)
 {
-	const size_t sizes[] = {pound_sobol_estimates_scratch(shape, pound_estimator_row(estimator)),
-	                        pound_sobol_estimates_scratch(shape, pound_estimator_row(0)),
-	                        pound_correction_scratch(shape), pound_local_scratch(shape),
-	                        pound_chaos_scratch(shape)};
+	const size_t sizes[] = {
+	    pound_sobol_estimates_scratch(shape, pound_estimator_row(sampling ? sampling->estimator : 0)),
+	    sampling && sampling->ratios ? pound_ratio_scratch(shape, sampling->ratios) : 0,
+	    pound_sobol_estimates_scratch(shape, pound_estimator_row(0)),
+	    pound_correction_scratch(shape),
+	    pound_local_scratch(shape),
+	    pound_chaos_scratch(shape)};
 	size_t largest = 0;
 	for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
 		largest = sizes[k] > largest ? sizes[k] : largest;
@@ -333,11 +346,13 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 			levels_fill(&s, seed);
 		}
 		indices->sets = s.closed.sets;
+		ratios_fill(&s, indices);
 		columns_fill(&s, seed, indices);
 		if (elsewhere) // the number of replicates is not known
 			undefined(&indices->share[POUND_SHARE_TOTAL_ONE], 1);
 	} else {
 		indices->sets = (struct pound_set_indices){0};
+		indices->ratios.n = 0;
 		for (int k = 0; k < POUND_N_INDEXES; k++)
 			undefined(indices->index[k], d);
 		for (int k = 0; k < POUND_N_NAMED && sampling->estimator; k++)

@@ -147,6 +147,17 @@ const struct field fields[] = {
 	{"/inputs/*/distribution/type", FIELD_CHOICE, offsetof(struct pound_input, distribution.type),
 	 NAN, 0, 0, FIELD_CLOSED, "", .text = "distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
 
+	{"/ratios", FIELD_LIST, 0, 0, 0, POUND_RATIOS_MAX, FIELD_CLOSED, "",
+	 .text = "quotients of inputs, whose indexes are wanted besides", SENSITIVITY, NOT_SCENE},
+	{"/ratios/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one ratio", SENSITIVITY, NOT_SCENE},
+	{"/ratios/*/name", FIELD_TEXT, offsetof(struct pound_ratio, name), NAN, 1, 100, FIELD_CLOSED, "",
+	 .text = "for people", SENSITIVITY, NOT_SCENE},
+	{"/ratios/*/of", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
+	 .text = "paths of two inputs: above, below", SENSITIVITY, NOT_SCENE},
+	{"/ratios/*/of/*", FIELD_TEXT, offsetof(struct pound_ratio, of), NAN, 1, 200, FIELD_CLOSED, "",
+	 .text = "path of an input", SENSITIVITY, NOT_SCENE},
+
 	{"/sweep", FIELD_LIST, 0, 0, 0, POUND_SWEEPS_MAX, FIELD_CLOSED, "",
 	 .text = "fields that take each of their values; the cells are the product", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",

@@ -45,6 +45,8 @@ void reader_value(struct reader *reader, const struct field *field, const cJSON 
 /* What varies: study_varied.c. */
 void reader_distribution(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_inputs(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_ratios(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_ratio(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_sweeps(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_values(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 

@@ -173,6 +173,32 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 	writer_end(w);
 }
 
+/* The indexes of ratios and of the inputs in none; nothing where none were asked. */
+static void write_ratios(struct writer *w, const struct pound_study *study,
+                         const struct pound_indices *indices)
+{
+	const struct pound_ratio_indices *ratios = &indices->ratios;
+	int rest[POUND_INPUTS_MAX];
+	if (ratios->n == 0)
+		return;
+	pound_ratio_variables(study, rest);
+	writer_object(w, "ratios", WRITER_LINES);
+	writer_number(w, "explained", ratios->explained);
+	writer_array(w, "variables", WRITER_LINES);
+	for (int k = 0; k < ratios->n; k++) {
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name",
+		            k < study->n_ratios ? study->ratios[k].name
+		                                : study->inputs[rest[k - study->n_ratios]].name);
+		write_estimate(w, "shapley", &ratios->shapley[k]);
+		write_estimate(w, "S1", &ratios->first[k]);
+		write_estimate(w, "ST", &ratios->total[k]);
+		writer_end(w);
+	}
+	writer_end(w);
+	writer_end(w);
+}
+
 /* One member of every point of a curve. */
 static void write_points(struct writer *w, const char *name, const struct pound_curve *curve, size_t member)
 {
@@ -226,6 +252,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 	write_sets(w, study, "second_order", "S2", indices->sets.second, indices->sets.n_second);
 	write_sets(w, study, "closed", "S_closed", indices->sets.closed, indices->sets.n_closed);
+	write_ratios(w, study, indices);
 	write_curves(w, study, indices);
 	result_accuracy_output(w, study, indices);
 	writer_end(w);

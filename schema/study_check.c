@@ -279,6 +279,47 @@ static void check_order(const struct pound_study *study, struct problems *proble
 		             POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
 }
 
+/* ---- ratios ---- */
+
+/* An input that is above in one ratio may be nowhere else in them. */
+static bool above_elsewhere(const struct pound_study *study, int ratio, int side)
+{
+	const char *path = study->ratios[ratio].of[side];
+	for (int k = 0; k <= ratio; k++)
+		for (int s = 0; s < 2; s++)
+			if ((k < ratio || s < side) && (s == 0 || side == 0) && strcmp(study->ratios[k].of[s], path) == 0)
+				return true;
+	return false;
+}
+
+static void check_ratio(const struct pound_study *study, int ratio, int side, struct problems *problems)
+{
+	char pointer[POINTER_SIZE];
+	const char *path = study->ratios[ratio].of[side];
+	const int input = pound_ratio_input(study, path);
+	snprintf(pointer, sizeof pointer, "/ratios/%d/of/%d", ratio, side);
+	if (input < 0)
+		problems_add(problems, pointer, "is the path of no input of this study");
+	else if (!pound_ratio_takes(&study->inputs[input].distribution))
+		problems_add(problems, pointer,
+		             "names /inputs/%d, but inputs of a ratio are \"uniform\" or \"log_uniform\" above 0",
+		             input);
+	else if (above_elsewhere(study, ratio, side))
+		problems_add(problems, pointer, "an input that is above in one ratio may be in no other place");
+}
+
+static void check_ratios(const struct pound_study *study, struct problems *problems)
+{
+	for (int k = 0; k < study->n_ratios; k++)
+		for (int side = 0; side < 2; side++)
+			check_ratio(study, k, side, problems);
+	if (study->n_ratios && !faulty(problems, "/ratios") &&
+	    pound_ratio_variables(study, NULL) > POUND_FACTORIAL_INPUTS_MAX)
+		problems_add(problems, "/ratios",
+		             "ratios and the inputs in none may be at most %d variables, these are %d",
+		             POUND_FACTORIAL_INPUTS_MAX, pound_ratio_variables(study, NULL));
+}
+
 /* ---- size ---- */
 
 static double cells(const struct pound_study *study)
@@ -388,7 +429,13 @@ void study_check(const struct pound_study *study, struct problems *problems)
 {
 	check_paths(study, problems);
 	check_names(study, problems);
-	if (faulty(problems, "/kind") || study->elsewhere)
+	if (faulty(problems, "/kind"))
+		return;
+	if (!faulty(problems, "/inputs") && !faulty(problems, "/design"))
+		check_order(study, problems);
+	if (!faulty(problems, "/inputs") && !faulty(problems, "/ratios"))
+		check_ratios(study, problems);
+	if (study->elsewhere)
 		return;
 	check_supports(study, problems);
 	if (faulty(problems, "/sweep"))
@@ -402,8 +449,6 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		return;
 	if (!faulty(problems, "/outputs"))
 		check_outputs(study, problems);
-	if (!faulty(problems, "/design"))
-		check_order(study, problems);
 	check_excitation(study, problems);
 	if (!faulty(problems, "/outputs") && !faulty(problems, "/spectrum"))
 		study_spectrum_check(study, problems);

@@ -51,7 +51,8 @@ static void write_scalar(struct writer *w, const struct field *field, const char
 
 static bool is_name(const struct field *field)
 {
-	return strcmp(field->pattern, "/name") == 0 || strcmp(field->pattern, "/inputs/*/name") == 0;
+	return strcmp(field->pattern, "/name") == 0 || strcmp(field->pattern, "/ratios/*/name") == 0 ||
+	       strcmp(field->pattern, "/inputs/*/name") == 0;
 }
 
 /* The members at a pattern that hold one value each. */
@@ -133,6 +134,15 @@ static void write_inputs(struct canon *c)
 		              input->distribution.weights ? input->distribution.n_values : 0);
 		writer_end(&c->w);
 	}
+	writer_end(&c->w);
+}
+
+static void write_ratios(struct canon *c)
+{
+	writer_array(&c->w, "ratios", WRITER_LINES);
+	for (int k = 0; k < c->study->n_ratios; k++)
+		for (int side = 0; side < 2; side++)
+			writer_text(&c->w, NULL, c->study->ratios[k].of[side]);
 	writer_end(&c->w);
 }
 
@@ -222,6 +232,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 	if (!study->elsewhere)
 		write_scene(&c);
 	write_inputs(&c);
+	if (study->n_ratios)
+		write_ratios(&c);
 	if (!study->elsewhere)
 		write_sweeps(&c);
 	write_object(&c, "design", "/design", study);

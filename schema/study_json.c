@@ -272,6 +272,8 @@ static const struct {
     {"/scene/excitation/acceleration_m_s2", read_record},
     {"/inputs", reader_inputs},
     {"/inputs/*/distribution", reader_distribution},
+    {"/ratios", reader_ratios},
+    {"/ratios/*/of", reader_ratio},
     {"/sweep", reader_sweeps},
     {"/design", read_design},
     {"/sweep/*/values", reader_values},
@@ -310,7 +312,8 @@ static void defaults(struct pound_study *study, const char *excitation)
 {
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		if (strncmp(field->pattern, "/inputs/", 8) == 0 || strncmp(field->pattern, "/sweep/", 7) == 0)
+		if (strncmp(field->pattern, "/inputs/", 8) == 0 || strncmp(field->pattern, "/sweep/", 7) == 0 ||
+		    strncmp(field->pattern, "/ratios/", 8) == 0)
 			continue;
 		bool absent = !isnan(field->absent) && fields_used(field, NULL, excitation, NULL);
 		int copies = strncmp(field->pattern, "/scene/oscillators/*/", 21) == 0 ? POUND_OSCILLATORS : 1;

@@ -1,4 +1,4 @@
-/* study_varied.c - what varies in a study: inputs with their distributions, sweeps with their values. */
+/* study_varied.c - what varies in a study: inputs with their distributions, their ratios, sweeps with their values. */
 #include <math.h>
 #include <string.h>
 
@@ -162,6 +162,35 @@ void reader_inputs(struct reader *r, const struct field *field, const cJSON *nod
 		input->name = input->name ? input->name : input->path;
 		if (varying(input->path))
 			input->field = study_check_field(input->path);
+		reader_leave(r, length);
+	}
+}
+
+/* Reads the ratios; whether their paths name inputs is for study_check.c.
+ *
+ * Test     unit_study_json: what_a_document_says_is_in_the_study
+ */
+void reader_ratios(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	int n = reader_elements(r, field, node);
+	const cJSON *element = n ? node->child : NULL;
+	r->study->n_ratios = n;
+	for (int k = 0; k < n; k++, element = element->next) {
+		size_t length = reader_enter_element(r, k);
+		reader_object(r, "/ratios/*", element, (char *)&r->study->ratios[k]);
+		reader_leave(r, length);
+	}
+}
+
+/* Reads the two paths of the ratio in hand. */
+void reader_ratio(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	int n = reader_elements(r, field, node);
+	const cJSON *element = n ? node->child : NULL;
+	for (int side = 0; side < n; side++, element = element->next) {
+		size_t length = reader_enter_element(r, side);
+		reader_text(r, fields_find("/ratios/*/of/*"), element, &((struct pound_ratio *)base)->of[side]);
 		reader_leave(r, length);
 	}
 }

@@ -121,6 +121,42 @@ static const struct member members[] = {
     {"/sweep/*/path", "\"/contact/restitution\"", "\"/oscillators/0/damping_ratio\"", "\"/contact/modell\"",
      "/sweep/0/path", "names nothing in \"scene\", did you mean \"/contact/model\"?"},
     {"/sweep/*/values", "[0.2, 0.9]", "[0]", "[0.2, 1.4]", "/sweep/0/values/1", "must be in [0, 1], got 1.4"},
+    {"/ratios/*/name", "\"reciprocal_uniform\", \"max\": 6}}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": 7, \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "/ratios/0/name", "must be a text of 1 to 100 characters, got 7"},
+    {"/ratios/*/of", "\"reciprocal_uniform\", \"max\": 6}}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\"]}]",
+     "/ratios/0/of", "must be an array of 2 elements, got 1"},
+    {"/ratios/*/of/*", "\"reciprocal_uniform\", \"max\": 6}}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", 3]}]",
+     "/ratios/0/of/1", "must be a text of 1 to 200 characters, got 3"},
+    {"/ratios/*/of/*", "\"reciprocal_uniform\", \"max\": 6}}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/contact/gap_m\"]}]",
+     "/ratios/0/of/1", "is the path of no input of this study"},
+    {"/ratios/*/of/*", "\"reciprocal_uniform\", \"max\": 6}}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/excitation/frequency_hz\"]}]",
+     "/ratios/0/of/1", "an input that is above in one ratio may be in no other place"},
+    {"/ratios/*/of/*", "\"reciprocal_uniform\", \"max\": 6}}]",
+     "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "\"reciprocal_uniform\", \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
+     "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
+     "/ratios/0/of/1", "names /inputs/1, but inputs of a ratio are \"uniform\" or \"log_uniform\" above 0"},
     {"/design/method", "\"method\": \"lhs\"", "\"method\": \"random\"", "\"method\": \"LHS\"",
      "/design/method", "must be one of \"lhs\", \"random\", \"sobol\", got \"LHS\", did you mean \"lhs\"?"},
     {"/design/rows", "\"rows\": 10", "\"rows\": 2", "\"rows\": 1", "/design/rows",

@@ -24,7 +24,7 @@ struct indexes {
 static struct indexes *indexes_of(const struct pound_sample_values *values, struct pound_sampling sampling)
 {
 	struct indexes *result = calloc(1, sizeof *result);
-	size_t n = pound_variants_scratch(values, sampling.estimator);
+	size_t n = pound_variants_scratch(values, &sampling);
 	double *scratch = malloc(sizeof *scratch * n);
 	for (int k = 0; k < POUND_N_INDEXES; k++)
 		result->of.index[k] = result->estimates[k];
