@@ -310,10 +310,14 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 		make_version_1(service);
 		faults->disk_kills_in = at;
 		int status = service_try(service, 1);
-		faults->disk_kills_in = 0;
-		if (status == 0)
+		// its workers write as well, so it may be killed when it listens
+		bool spared = atomic_exchange(&faults->disk_kills_in, 0) > 0;
+		if (status == 0 && spared)
 			break;
-		assert_int_equal(status, 128 + 9);
+		if (status == 0)
+			service_kill(service);
+		else
+			assert_int_equal(status, 128 + 9);
 		kills++;
 		char *now = service_text(service, all);
 		int64_t version = service_number(service, "PRAGMA user_version");
