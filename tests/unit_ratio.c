@@ -27,11 +27,11 @@ static struct pound_study study_of(struct pound_input inputs[D], int rows, int s
 		while (strcmp(pound_distribution_name(type), types[j]) != 0)
 			type++;
 		inputs[j] = (struct pound_input){.path = paths[j], .name = paths[j]};
-		inputs[j].distribution = (struct pound_distribution){type,
-		                                                     {j == 3   ? 6
-		                                                      : j == 4 ? 0
-		                                                               : 0.5,
-		                                                      j == 4 ? 1 : 5}};
+		inputs[j].distribution = (struct pound_distribution){.type = type,
+		                                                     .p = {j == 3   ? 6
+		                                                           : j == 4 ? 0
+		                                                                    : 0.5,
+		                                                           j == 4 ? 1 : 5}};
 	}
 	return study;
 }
