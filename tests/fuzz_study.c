@@ -16,7 +16,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
 		abort();
 	if (!study)
 		return 0;
-	bool fits = study_runs(study) >= 1 && study_runs(study) <= STUDY_RUNS_MAX && study->n_outputs >= 1 &&
+	bool fits = study_runs(study) >= 1 && study_runs(study) <= STUDY_RUNS_MAX &&
+	            (study->n_outputs >= 1 || study->kind == POUND_KIND_FLOOR_SPECTRUM) &&
 	            study_samples(study) >= 2 && study_samples(study) <= STUDY_SAMPLES_MAX;
 	if (!fits || !study_hash(study, hex))
 		abort();
