@@ -105,7 +105,7 @@ static void cell_read(struct csv *csv)
 	trim(csv->cell);
 }
 
-/* Lines from here on; an empty one at the end is none, but the only cell of a line may be empty. */
+/* Lines from here on, blank ones too: the only cell of a line may be empty. */
 static int lines_left(const struct csv *csv)
 {
 	int n = 0;

@@ -4,8 +4,10 @@
 
 #include "engine/design.h"
 #include "engine/indices.h"
+#include "schema/examples.h"
 #include "schema/model.h"
 #include "schema/reading.h"
+#include "schema/result_json.h"
 #include "schema/study_json.h"
 #include "tests/check.h"
 #include "tests/documents.h"
@@ -309,6 +311,41 @@ static void spelling_and_further_columns_do_not_change_the_result(void **state)
 	study_free(study);
 }
 
+static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
+{
+	(void)state;
+	struct problems problems;
+	size_t n_csv, n;
+	const char *document = example_text("sensitivity_small");
+	struct pound_study *study = study_of(document);
+	struct pound_run *run = pound_run_create(study, 1);
+	for (int k = 0; k < pound_run_blocks(run); k++)
+		assert_int_equal(pound_run_block(run, k, 0), POUND_OK);
+	for (int k = 0; k < pound_run_reductions(run); k++)
+		assert_int_equal(pound_run_reduce(run, k, 0), POUND_OK);
+	const struct pound_cell *cell = &pound_run_result(run)->cells[0];
+	char *csv = samples_to_csv(study, run, &n_csv);
+	char *json = model_indices(study, csv, n_csv, &problems, &n);
+	assert_non_null(json);
+	struct reading *result = reading_open(json, n);
+	for (int o = 0; o < study->n_outputs; o++) {
+		assert_string_equal(reading_text(result, "/cells/0/outputs/%d/name", o),
+		                    pound_output_name(study->outputs[o]));
+		for (int j = 0; j < study->n_inputs; j++) {
+			check_near(index_of(result, o, j, "S1_raw"), cell->indices[o].index[POUND_S1_RAW][j].value,
+			           1e-12);
+			check_near(index_of(result, o, j, "ST_raw"), cell->indices[o].index[POUND_ST_RAW][j].value,
+			           1e-12);
+		}
+		// its samples share their signals, of which the variances tell too little
+		assert_non_null(strstr(reading_text(result, "/cells/0/outputs/%d/note", o), "share their noise"));
+	}
+	reading_close(result);
+	free(json), free(csv);
+	pound_run_free(run);
+	study_free(study);
+}
+
 static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 {
 	(void)state;
@@ -390,6 +427,7 @@ CHECK_MAIN(cmocka_unit_test(a_study_without_a_scene_is_inputs_and_a_design),
            cmocka_unit_test(an_inert_input_has_no_total_once_replicates_tell_the_noise),
            cmocka_unit_test(a_run_without_a_number_takes_its_row_out_of_every_output),
            cmocka_unit_test(spelling_and_further_columns_do_not_change_the_result),
+           cmocka_unit_test(the_samples_of_a_study_give_its_raw_indexes_again),
            cmocka_unit_test(every_fault_of_the_outputs_is_told_with_its_line),
            cmocka_unit_test(lines_in_another_order_are_noticed_by_the_inputs_in_them),
            cmocka_unit_test(outputs_of_a_sweep_are_refused))
