@@ -112,12 +112,12 @@ static void body_search(const struct series *s, const struct lanes *g, int i, vm
 	vm past_high = may_cross(m, g->body[i].high, one) & active;
 	vm past_low = may_cross(m, g->body[i].low, -one) & active;
 	vm turns = ~vequal(g->body[i].direction, zero) & active;
-	if (vany(past_high))
-		search_crossing(m, s->order, g->body[i].high, one, past_high, body + vsplat(POUND_EDGE_HIGH),
-		                EVENT_CUT, search);
-	if (vany(past_low))
-		search_crossing(m, s->order, g->body[i].low, -one, past_low, body + vsplat(POUND_EDGE_LOW), EVENT_CUT,
-		                search);
+	// one search for the lanes that may pass either edge, and another for those that may pass both
+	for (vm past = past_high | past_low; vany(past); past = past_high & past_low, past_high = vmask(0)) {
+		vd level = vselect(past_high, g->body[i].high, g->body[i].low), sign = vselect(past_high, one, -one);
+		vd edge = vselect(past_high, vsplat(POUND_EDGE_HIGH), vsplat(POUND_EDGE_LOW));
+		search_crossing(m, s->order, level, sign, past, body + edge, EVENT_CUT, search);
+	}
 	if (vany(turns)) {
 		struct motion velocity;
 		motion_velocity(&velocity, m, s->order);
