@@ -45,6 +45,7 @@ void bench_campaign(int rows);
 void bench_reference(void);
 void bench_kernel(void);
 void bench_growth(void);
+void bench_indices(void);
 void bench_spectra(void);
 
 #endif

@@ -192,8 +192,31 @@ static void fresh_signals_inflate_raw_totals_and_corrected_ones_are_unbiased(voi
 	check_noise(false, bias, 0.012, 0.034, 0.030);
 }
 
+static void
+an_input_without_effect_has_a_raw_total_of_a_sixth_under_fresh_signals_and_none_corrected(void **state)
+{
+	(void)state;
+	enum { FEW = 20 };
+	double raw = 0.0, corrected = 0.0;
+	for (int seed = 0; seed < FEW; seed++) {
+		struct pound_sample_values values = function_values(function_named("ishigami"), N, (uint64_t)seed,
+		                                                    (struct function_noise){5, 1.0, false});
+		struct pound_rows rows = rows_of(&values);
+		struct pound_pick_freeze got = pick_freeze(&rows, (uint64_t)seed);
+		raw += got.total_raw[3].value / FEW;
+		corrected += got.total[3].value / FEW;
+		free(rows.y);
+		function_values_free(&values);
+	}
+	// T -> (T + nu) / (1 + nu) with nu = 1/5; the deviation of one is 0.0097: four of the mean
+	check_near(raw, 1.0 / 6.0, 0.009);
+	check_near(corrected, 0.0, 0.009);
+}
+
 CHECK_MAIN(cmocka_unit_test(the_golden_row_set_is_met), cmocka_unit_test(a_single_signal_cannot_be_corrected),
            cmocka_unit_test(raw_and_corrected_agree_without_noise),
            cmocka_unit_test(an_input_without_effect_keeps_a_total_of_zero_under_common_signals),
            cmocka_unit_test(common_signals_shrink_raw_indexes_and_corrected_ones_are_unbiased),
-           cmocka_unit_test(fresh_signals_inflate_raw_totals_and_corrected_ones_are_unbiased))
+           cmocka_unit_test(fresh_signals_inflate_raw_totals_and_corrected_ones_are_unbiased),
+           cmocka_unit_test(
+               an_input_without_effect_has_a_raw_total_of_a_sixth_under_fresh_signals_and_none_corrected))

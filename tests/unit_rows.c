@@ -128,9 +128,33 @@ static void equal_outputs_are_exact_zeros_about_their_mean(void **state)
 	free(rows.y);
 }
 
+static void the_jackknife_sees_the_bias_of_a_ratio_of_few_signals(void **state)
+{
+	(void)state;
+	// numerator and denominator independent, uniform on (0, 2): E[U/u] - 1 = 1 / (3 R) + O(R^-2), by the delta method
+	enum { N = 4000, R = 10 };
+	double *numerator = malloc(sizeof *numerator * N * SAMPLES * R),
+	       *denominator = malloc(sizeof *denominator * N * SAMPLES * R), mean = 0.0;
+	uint64_t word = 1;
+	for (int k = 0; k < N * SAMPLES * R; k++)
+		for (int side = 0; side < 2; side++) {
+			word = word * 6364136223846793005u + 1442695040888963407u;
+			*(side ? &denominator[k] : &numerator[k]) = (double)(word >> 32) * 0x1p-31 + 1e-9;
+		}
+	struct pound_rows rows = rows_of(N, R, numerator, denominator);
+	for (int k = 0; k < N * SAMPLES; k++)
+		mean += (rows.y[k] + rows.mean) / (N * SAMPLES);
+	// a ratio scatters by sqrt(2 / 3 R) = 0.26, 12000 of them by 0.0024 in the mean
+	check_near(mean, 1.0 + 1.0 / (3 * R), 0.010);
+	check_near(rows.ratio_bias, mean - 1.0, 0.010);
+	check_near(mean - rows.ratio_bias, 1.0, 0.010);
+	free(rows.y), free(numerator), free(denominator);
+}
+
 CHECK_MAIN(cmocka_unit_test(outputs_are_ratios_of_means_less_the_mean_of_a_and_b),
            cmocka_unit_test(the_variance_of_a_ratio_of_means_is_that_of_its_linearisation),
            cmocka_unit_test(one_signal_says_nothing_of_the_noise),
            cmocka_unit_test(a_known_variance_stands_for_noise_that_samples_do_not_share),
            cmocka_unit_test(a_row_is_left_out_for_any_number_it_lacks),
-           cmocka_unit_test(equal_outputs_are_exact_zeros_about_their_mean))
+           cmocka_unit_test(equal_outputs_are_exact_zeros_about_their_mean),
+           cmocka_unit_test(the_jackknife_sees_the_bias_of_a_ratio_of_few_signals))
