@@ -15,7 +15,7 @@ struct pound_floor *pound_floor_init(void *memory,
 struct pound_floor_ask {
 	const struct pound_march_task *task;
 	int n_drives;   /* 1: the whole acceleration; 2: the contact's part of it too */
-	double radians; /* an oscillator's longest step, at most 1 */
+	double radians; /* an oscillator's longest step, at most 1.5 */
 	int lanes;      /* 0: the widest there are */
 };
 

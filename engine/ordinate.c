@@ -19,7 +19,7 @@
 static const double PI = 3.14159265358979323846;
 
 /* Longest step of an oscillator [rad], for results and for checks. */
-static const double RADIANS = 1, RADIANS_CHECK = 0.5;
+static const double RADIANS = 1.5, RADIANS_CHECK = 0.75;
 
 /* beside the spectra of a signal */
 enum { IMPULSE, PULSES, MEASURES };

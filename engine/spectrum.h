@@ -17,7 +17,7 @@ struct pound_bank {
 	int n_groups;
 	int n_drives;   /* 1: the floor alone */
 	double damping; /* xi  [0, 1) */
-	double radians; /* w * step at most, at most 1 */
+	double radians; /* w * step at most, at most 1.5 */
 	const struct pound_kernel *kernel;
 	const double *omega;                       /* [rad/s]  > 0 */
 	double *z[POUND_DRIVES], *v[POUND_DRIVES]; /* now [m], [m/s] */

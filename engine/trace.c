@@ -61,9 +61,10 @@ static double power_at(const double *c, int order, double t)
 int pound_trace_terms(double x)
 {
 	// (n! 2^-54)^(1/n), the largest x of n terms
-	static const double reach[] = {0,       5.5e-17, 1.05e-8, 6.93e-6, 1.90e-4, 1.46e-3, 5.84e-3,
-	                               0.01609, 0.03496, 0.06478, 0.1071,  0.1633,  0.2336,  0.3183,
-	                               0.4171,  0.5296,  0.6553,  0.7937,  0.9440,  1.105};
+	static const double reach[] = {0,        5.548e-17, 1.053e-08, 6.928e-06, 0.000191, 0.00146,
+	                               0.005844, 0.01609,   0.03496,   0.06477,   0.1072,   0.1633,
+	                               0.2336,   0.3182,    0.417,     0.5295,    0.6552,   0.7934,
+	                               0.9437,   1.105,     1.277,     1.459,     1.651,    1.851};
 	int n = 0;
 	while (n < POUND_TRACE_TERMS && x > reach[n])
 		n++;

@@ -22,7 +22,7 @@ static struct pound_bank bank_of(const double *w, int n, double xi)
 	                          .kernel = &kernel,
 	                          .n_drives = 1,
 	                          .damping = xi,
-	                          .radians = 1,
+	                          .radians = 1.5,
 	                          .omega = omega};
 	memset(state_of, 0, sizeof state_of);
 	for (int k = 0; k < OSCILLATORS; k++)
@@ -167,7 +167,7 @@ static void shorter_steps_change_nothing(void **state)
 		w[k] = exp(0.45 * k);
 	for (int fine = 0; fine < 3; fine++) {
 		struct pound_bank bank = bank_of(w, OSCILLATORS, 0.05);
-		bank.radians = fine ? 0.51 / fine : 1;
+		bank.radians = fine ? 0.51 / fine : 1.5;
 		half_sine(0.3, fine == 2 ? 37 : 10, 1);
 		ride(&bank);
 		for (int k = 0; k < OSCILLATORS; k++)

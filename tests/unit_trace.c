@@ -142,7 +142,7 @@ static void a_floor_without_contact_is_all_flight(void **state)
 	const struct ended e = trace_to_end(&task);
 	assert_int_equal(e.flights, 400);
 	assert_int_equal(e.pieces, 400);
-	check_near(e.trace.u[0], march(&task).u[0], 1e-15);
+	check_near(e.trace.u[0], march(&task).u[0], 1e-14); // 400 samples of 0.03 m
 	specimen_free(&specimen);
 }
 
@@ -164,7 +164,7 @@ static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 static void terms_end_in_rounding(void **state)
 {
 	(void)state;
-	for (double x = 1e-18; x <= 1; x *= 1.05) {
+	for (double x = 1e-18; x <= 1.5; x *= 1.05) {
 		int n = pound_trace_terms(x);
 		assert_true(pow(x, n) / tgamma(n + 1) < 0x1p-53 && n <= POUND_TRACE_TERMS);
 		assert_true(n == 0 || pow(x, n - 1) / tgamma(n) > 0x1p-56);
