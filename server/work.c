@@ -196,9 +196,11 @@ static bool patient(struct work *work)
 
 static void finish(struct work *work, struct job *job)
 {
+	// the job's own may be looked at meanwhile
+	const char *error = job->error;
 	size_t length = 0;
 	char *result = NULL;
-	if (!job->error) {
+	if (!error) {
 		struct timing timing = {.wall_s = seconds(CLOCK_MONOTONIC) - job->started,
 		                        .cpu_s = job->cpu_s,
 		                        .threads = work->n_workers};
@@ -206,14 +208,14 @@ static void finish(struct work *work, struct job *job)
 		do
 			result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length);
 		while (!result && --tries && patient(work));
-		job->error = result ? NULL : "out of memory";
+		error = result ? NULL : "out of memory";
 	}
 	enum store_status status;
 	do
-		status = store_finish(work->store, job->id, result, length, job->error);
+		status = store_finish(work->store, job->id, result, length, error);
 	while (status == STORE_FAILED && patient(work));
 	if (status == STORE_OK)
-		log_line("study %016llx %s", (unsigned long long)job->id, job->error ? job->error : "succeeded");
+		log_line("study %016llx %s", (unsigned long long)job->id, error ? error : "succeeded");
 	free(result);
 }
 
