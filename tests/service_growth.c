@@ -31,7 +31,7 @@ static double status_number(const struct service *service, const char *id, const
 {
 	struct answer answer = answer_of(service, "/v1/studies/%s", id, 200);
 	struct reading *status = answer_read(&answer);
-	double number = reading_number(status, pointer);
+	double number = reading_number(status, "%s", pointer);
 	reading_close(status);
 	answer_free(&answer);
 	return number;
