@@ -180,7 +180,7 @@ const struct field fields[] = {
 	 .text = "more rows are run until every interval is narrow; rows is then where it begins", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/half_width", FIELD_REAL, AT(design.until.half_width), NAN, 0, 1, FIELD_OPEN, "",
 	 .text = "half of the interval of every S1 and ST, at most", SENSITIVITY, WITH_SCENE, NOT_SCENE},
-	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 1000000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
+	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 200000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
 	 .text = "pounding runs at most, narrow or not", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
 	 .text = "same seed, same numbers", NOT_SCENE},
