@@ -7,13 +7,13 @@
 
 enum { SIGNALS = 5, ROW_RUNS = 5 * SIGNALS, SEED = 7 };
 
-/* A study that looks at its intervals after 128, 256, 512 rows, and after 1024 if it is not narrow yet.  For free. */
+/* A study that looks at its intervals after 128, 256, 512 and 1024 rows, and after 2048 if it is not narrow yet.  For free. */
 static char *growing_study(void)
 {
 	char *plain = service_study(SERVICE_ROWS, SIGNALS, SEED), rows[32];
 	snprintf(rows, sizeof rows, "\"rows\": %d, ", SERVICE_ROWS);
 	char *study = documents_with(
-	    plain, rows, "\"method\": \"sobol\", \"until\": {\"half_width\": 0.2, \"max_runs\": 40000}, ");
+	    plain, rows, "\"method\": \"sobol\", \"until\": {\"half_width\": 0.2, \"max_runs\": 80000}, ");
 	free(plain);
 	return study;
 }
@@ -117,13 +117,13 @@ static void the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_to
 	struct service *service = *state;
 	char *study = growing_study(), id[17];
 	service_submit(service, study, id);
-	// 1024 rows are what 40000 runs allow
-	assert_true(status_number(service, id, "/runs_total") == 1024 * ROW_RUNS);
+	// 2048 rows are what 80000 runs allow
+	assert_true(status_number(service, id, "/runs_total") == 2048 * ROW_RUNS);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	struct answer answer = answer_of(service, "/v1/studies/%s/results", id, 200);
 	struct reading *result = answer_read(&answer);
 	double runs = reading_number(result, "/stopping/runs");
-	assert_true(runs < 1024 * ROW_RUNS && reading_true(result, "/stopping/reached"));
+	assert_true(runs < 2048 * ROW_RUNS && reading_true(result, "/stopping/reached"));
 	assert_true(reading_number(result, "/cells/0/runs") == runs);
 	assert_true(status_number(service, id, "/runs_total") == runs);
 	assert_true(status_number(service, id, "/runs_done") == runs);
