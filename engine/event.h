@@ -14,7 +14,6 @@
 struct event_lanes {
 	vm active;          /* lanes in use */
 	vm parted, fresh;   /* as in struct simulation */
-	vd release;         /* > 0: contact ends when its force does; 0: no lane's does when `forced` is false */
 	bool touching;      /* all lanes are in contact, or none */
 	bool paired, edged; /* as flight() has them */
 	bool right;         /* a lane's largest displacement of the right body is wanted */
@@ -241,7 +240,9 @@ LANE_INLINE struct search event_step(struct lanes *g, const struct event_lanes *
 	for (int i = 0; i < bodies && e->edged; i++)
 		body_search(&s, g, i, e->active, &search);
 	for (int i = 0; i < watched; i++) {
-		vm inside = vless(vmax(g->top[i], vabs(s.body[i].u1)), reach_of(&s.body[i])) & e->active;
+		// the end of the step does not count where the motion was cut before it
+		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].u1));
+		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
 		if (vany(inside))
 			body_top(&s, g, i, inside, &search);
 	}

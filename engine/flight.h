@@ -79,13 +79,14 @@ LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
  */
 LANE_INLINE vm flight(struct lanes *g, vd ground, vd next, vm flying, bool edged, bool paired, bool right)
 {
-	vd rise = next - ground, third = g->body[0].step_gap * vsplat(1.0 / 3), gap = g->body[1].step_gap;
+	vd rise = next - ground, third = g->body[0].step_gap * vsplat(1.0 / 3);
 	struct flight f[2];
 	struct limits limits = limits_of(g, 0, edged);
 	f[0] = flight_step(g, 0, ground, rise, third);
 	vm risk = flight_risk(g->u[0], g->v[0], &f[0], third, &limits, edged);
 	if (paired) {
 		f[1] = flight_step(g, 1, ground, rise, third);
+		vd gap = g->body[1].step_gap;
 		limits = limits_of(g, 1, edged);
 		if (edged || right)
 			risk |= flight_risk(g->u[1], g->v[1], &f[1], third, &limits, edged);
@@ -121,6 +122,7 @@ LANE_INLINE vd press_row(const vd row[POUND_PRESS_INPUTS], const vd x[POUND_PRES
 /* One cell of pressed contact.
  *
  * Given    pressed  lanes to take over it;  edged: a lane has a law of more than one piece
+ *          right    a lane's largest displacement of the right body is wanted
  *          forced   a lane's contact ends when its force does
  * Returns  value    lanes in which something may happen inside the cell; these stay where they were
  */
@@ -139,13 +141,14 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 	b.b2 = vfma(-third, b.v, b.u);
 	p.b1 = vfma(third, x[3], x[2]);
 	p.b2 = vfma(-third, p.v, p.u);
-	p.error = press_row(s->map[PRESS_ERROR], bound);
-	b.error = vfma(vsplat(16 * DBL_EPSILON), bound[0] + vabs(b.u), p.error);
+	vd rounding = vsplat(16 * DBL_EPSILON), error = press_row(s->map[PRESS_ERROR], bound);
+	p.error = vfma(rounding, bound[2] + vabs(p.u), error);
+	b.error = vfma(rounding, bound[0] + vabs(b.u), error);
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
 	if (forced) {
 		vd lowest = vmin(x[3], p.v) * g->release - press_row(s->map[PRESS_DROP], bound);
-		risk |= ~vless(zero, least + lowest);
+		risk |= ~vless(zero, vmin(least, x[2]) + lowest);
 	}
 	// the other body stands off the base by gap and overlap
 	vd side = g->side, off = side * g->gap, u = x[0] - vfma(side, x[2], off), v = x[1] - side * x[3];
@@ -153,7 +156,7 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 	                   .v = b.v - side * p.v,
 	                   .b1 = b.b1 - vfma(side, p.b1, off),
 	                   .b2 = b.b2 - vfma(side, p.b2, off)};
-	o.error = vfma(vsplat(16 * DBL_EPSILON), vabs(u) + vabs(o.u) + g->gap, b.error + p.error);
+	o.error = vfma(rounding, vabs(u) + vabs(o.u) + g->gap, b.error + p.error);
 	if (edged || right) {
 		risk |= flight_risk(x[0], x[1], &b, third, &s->base, edged);
 		risk |= flight_risk(u, v, &o, third, &s->other, edged);
@@ -162,7 +165,7 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 		struct flight l = {.u = vselect(left, b.u, o.u),
 		                   .b1 = vselect(left, b.b1, o.b1),
 		                   .b2 = vselect(left, b.b2, o.b2),
-		                   .error = o.error};
+		                   .error = vselect(left, b.error, o.error)};
 		struct limits limits = {.top = vselect(left, s->base.top, s->other.top)};
 		risk |= flight_risk(vselect(left, x[0], u), v, &l, third, &limits, false);
 	}

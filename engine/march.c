@@ -33,7 +33,7 @@ struct work {
 	struct pound_march_result *results;
 	int n, started;        /* tasks, and those gone through in this pass */
 	int passed;            /* 0: laws of one piece are started, 1: the others */
-	double beyond[W][ROW]; /* ground motion up to its end, and zeros behind */
+	double beyond[W][ROW]; /* ground motion up to its end, and whatever was there behind */
 };
 
 /* simulations side by side; lanes from n on hold the one at rest */
@@ -380,6 +380,7 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	pound_simulation_start(&work->rest, &nothing, &result);
 	work->rest.pressed = &loose;
 	work->rest.x.dt = 1;
+	work->rest.x.gap = 0;
 	for (int j = 0; j < POOL; j++)
 		push(&work->idle, j);
 	for (;;) {

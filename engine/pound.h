@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define POUND_VERSION "0.2.0"
+#define POUND_VERSION "0.3.0"
 
 enum {
 	POUND_OSCILLATORS = 2,                        /* left, right */
@@ -32,7 +32,8 @@ enum {
 #define POUND_FAILURES(X)                                                                 \
 	X(POUND_CHATTER,   -3, "more events in one sample interval than allowed")             \
 	X(POUND_UNSTABLE,  -4, "the steps of the solver are too long for this scene")         \
-	X(POUND_TOLERANCE, -5, "the tolerance of the solver is out of its reach")
+	X(POUND_TOLERANCE, -5, "the tolerance of the solver is out of its reach")             \
+	X(POUND_OVERFLOW,  -6, "the motion left the range of the numbers")
 
 #define POUND_STATUS(X)                                                                   \
 	X(POUND_OK,         0, "ok")                                                          \

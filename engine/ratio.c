@@ -97,10 +97,17 @@ struct variables {
 	double place[POUND_RATIOS_MAX][PLACES]; /* values of the input below */
 };
 
-int pound_ratio_input(const struct pound_study *study, const char *path)
+/* Whether a member of a ratio means an input: by its path, or where there is no scene by its name. */
+static bool is_called(const struct pound_input *input, const char *of)
+{
+	const char *own = input->path ? input->path : input->name;
+	return own && strcmp(own, of) == 0;
+}
+
+int pound_ratio_input(const struct pound_study *study, const char *of)
 {
 	for (int j = 0; j < study->n_inputs; j++)
-		if (strcmp(study->inputs[j].path, path) == 0)
+		if (is_called(&study->inputs[j], of))
 			return j;
 	return -1;
 }
@@ -109,7 +116,7 @@ static bool in_ratio(const struct pound_study *study, int input)
 {
 	for (int k = 0; k < study->n_ratios; k++)
 		for (int side = 0; side < 2; side++)
-			if (strcmp(study->inputs[input].path, study->ratios[k].of[side]) == 0)
+			if (is_called(&study->inputs[input], study->ratios[k].of[side]))
 				return true;
 	return false;
 }

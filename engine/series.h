@@ -7,6 +7,7 @@
 #include <float.h>
 
 #include "engine/lanes.h"
+#include "engine/simulation.h"
 
 enum {
 	ORDER_APART = 12, /* of the series while apart: even */
@@ -15,9 +16,6 @@ enum {
 	QUICK_ROUNDS = 6, /* of Newton's method from the parabola through both ends */
 	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
 };
-
-/* The cubic through both ends of an interval misses the function by at most h^4/384 max |u''''| (Hermite). */
-static const double CUBIC_ERROR = 1.0 / 384;
 
 /* Runs BODY for n from one order up to another, or down by twos, as straight code: the orders are constants. */
 #define ORDERS_UP(n, from, to, ...)                               \
@@ -84,8 +82,8 @@ LANE_INLINE void motion_bound(struct motion *m, int order)
  * Given    sign  +1: it must not rise above the level, -1: it must not fall below
  *
  * With g = sign (u - level) the cubic through the ends has the control points g0 <= 0, b1, b2, g1, and misses g by at
- * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when all points are below -bend/384, and also, from a
- * start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
+ * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when the points behind g0 are below -bend/288 (see
+ * POUND_CUBIC_ERROR), and also, from a start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
  */
 LANE_INLINE vm may_cross(const struct motion *m, vd level, vd sign)
 {
@@ -93,7 +91,7 @@ LANE_INLINE vm may_cross(const struct motion *m, vd level, vd sign)
 	vd g0 = sign * (m->u.c[0] - level), g1 = sign * (m->u1 - level);
 	vd b1 = vfma(sign * third, m->v.c[0], g0), b2 = vfma(-sign * third, m->v1, g1);
 	vd top = vmax(vmax(b1, b2), g1);
-	vm inside = ~vless(vfma(vsplat(CUBIC_ERROR), m->bend, top), zero);
+	vm inside = ~vless(vfma(vsplat(POUND_CUBIC_ERROR), m->bend, top), zero);
 	vm after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), m->bend, 3.0 * b2));
 	return inside & after;
 }
@@ -103,7 +101,7 @@ LANE_INLINE vd reach_of(const struct motion *m)
 {
 	vd third = vsplat(1.0 / 3);
 	vd b1 = vfma(third, m->v.c[0], m->u.c[0]), b2 = vfma(-third, m->v1, m->u1);
-	return vfma(vsplat(CUBIC_ERROR), m->bend, vmax(vabs(b1), vabs(b2)));
+	return vfma(vsplat(POUND_CUBIC_ERROR), m->bend, vmax(vabs(b1), vabs(b2)));
 }
 
 /* First event found so far in each lane. */

@@ -15,10 +15,6 @@ static const double REACH_FREE = 0.35, REACH_TOUCH = 0.8;
  * may be far below the rounding of a whole step. */
 static const double SHORTER = 0x1p-8, SHORTEST = 0x1p-400, LONGER = 0x1p4;
 
-/* The cubic through both ends of an interval misses the function by at most h^4/384 of the largest fourth derivative
- * (Hermite). */
-static const double CUBIC_ERROR = 1.0 / 384;
-
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
 enum {
@@ -47,7 +43,7 @@ static double most(double a, double b)
  * All columns come from the power series of psi, the response to an initial velocity of 1: the response to an initial
  * displacement is psi' + c psi, those to constant and growing forcing are its integrals.
  * With A2, A3, A4 the largest second, third and fourth derivatives inside and h (c + k h) <= 1/2:
- *   A3 <= 2 (J0 + h k A0),  A2 <= A0 + h A3,  A4 <= c A3 + k A2,  error <= A4 h^4/384
+ *   A3 <= 2 (J0 + h k A0),  A2 <= A0 + h A3,  A4 <= c A3 + k A2,  error <= A4 h^4/288
  *   A0 = c |v| + k |u| + |a|,  J0 = c A0 + k |v| + |d|/h
  * to which 16 roundings of the displacement at either end are added.
  */
@@ -70,8 +66,8 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 	map->ua = -h * once;
 	map->ud = -h * twice;
 	map->va = -once;
-	double quartic = h * h * h * h * CUBIC_ERROR, rate = c + k * h, rounding = 16 * DBL_EPSILON;
-	double ej = quartic * 2 * rate, ea = quartic * (k + 2 * rate * rate) + ej * c;
+	double quartic = h * h * h * h * POUND_CUBIC_ERROR, rate = c + k * h, rounding = 16 * DBL_EPSILON;
+	double ej = quartic * 2 * rate, ea = quartic * (k + 2 * rate * rate);
 	map->eu = ea * k + 3 * rounding;
 	map->ev = ea * c + ej * k + 2 * rounding * h;
 	map->ef = most(ea, ej / h) + rounding * h * h;
@@ -85,8 +81,8 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
  *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
  *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
  *
- * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/384
- * of the largest fourth derivative, which by linearity is at most the sum of the inputs' magnitudes times that of
+ * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288
+ * of the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times that of
  * their own columns; the lowest rate of overlap lies at most 1/8 of its largest second derivative below its ends.
  */
 static void press_fill(struct pound_press_map *map, const struct simulation *sim)
@@ -104,7 +100,7 @@ static void press_fill(struct pound_press_map *map, const struct simulation *sim
 	memset(map->row, 0, sizeof map->row);
 	double(*row)[N] = map->row;
 	for (int n = 0; n < MAP_ORDERS; n++) {
-		double share = 1.0 / (n + 1), bend = CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
+		double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
 		double drop = 0.125 * x->release / h * n * (n - 1.0);
 		double force_b[N] = {[4] = n == 0 ? h2 : 0, [6] = n == 1 ? h2 : 0};
 		double force_p[N] = {[5] = n == 0 ? h2 : 0, [7] = n == 1 ? h2 : 0};
@@ -268,7 +264,7 @@ static void contact_turn(struct simulation *sim, bool clears)
 		x->impulse = 0;
 		x->cells = (double)(int64_t)(sim->left / x->cell);
 		sim->part = most(sim->left - x->cells * x->cell, 0);
-		if (sim->result->first_speed == 0 && sim->contacts == 0) {
+		if (sim->contacts == 0) {
 			sim->result->first_contact = (double)sim->next * x->step - sim->left;
 			sim->result->first_speed = x->q;
 		}
@@ -352,7 +348,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 		double k = body->skeleton.stiffness;
 		double omega = sqrt(k);
 		rate = most(rate, most(omega, body->damping));
-		can_fly &= h * (body->damping + k * h) <= 0.5 && omega * h <= 1;
+		can_fly &= h * (body->damping + k * h) <= 0.5;
 		x->u[i] = body->u, x->v[i] = body->v;
 		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
 		x->body[i].damping = body->damping;
@@ -423,7 +419,8 @@ void pound_simulation_end(struct simulation *sim, enum pound_status status)
 	struct pound_march_result *r = sim->result;
 	const struct pound_rows *x = &sim->x;
 	// a contact still open at the end counts with what it has
-	r->status = status;
+	bool finite = isfinite(x->u[0]) && isfinite(x->v[0]) && isfinite(x->u[1]) && isfinite(x->v[1]);
+	r->status = finite ? status : POUND_OVERFLOW;
 	r->contacts = (int64_t)sim->contacts + sim->touching;
 	r->impulse_max = most(sim->impulse_max, sim->touching ? x->impulse : 0);
 	r->contact_time = x->contact_time;

@@ -5,7 +5,6 @@
 #ifndef SIMULATION_H
 #define SIMULATION_H
 
-#include <assert.h>
 #include <stdalign.h>
 
 #include "engine/march.h"
@@ -76,6 +75,11 @@ struct pound_press_map {
 	double stiffness[2]; /* of the pieces it belongs to; < 0: none */
 };
 
+/* How far the inner control points of the cubic through both ends of an interval h must stay inside a limit, over h^4 max
+ * |u''''|, for the motion to stay inside it: it misses the cubic by at most e = 1/24 t^2 (1 - t)^2 <= 1/384 (Hermite), and
+ * inner points pulled in by e' lower the cubic by 3 t (1 - t) e' >= e for e' = e(1/2)/(3/4) = 1/288. */
+static const double POUND_CUBIC_ERROR = 1.0 / 288;
+
 /* what a simulation does next */
 enum pound_stage {
 	STAGE_FLY_ALONE, /* whole samples of the left body */
@@ -117,7 +121,7 @@ struct simulation {
 	bool touching;      /* the contact's force acts */
 	bool parted;        /* force gone before the overlap: bodies still overlap */
 	bool fresh;         /* the force has just passed zero */
-	unsigned traits;    /* see enum below */
+	unsigned traits;    /* see enum above */
 	bool paired;        /* the right body moves, or there is something to touch */
 	bool can_fly, can_press;
 	struct pound_branch at[2];
