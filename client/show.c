@@ -290,8 +290,8 @@ static void response(const struct reading *result)
 /* The mean errors of each setting; the largest ones are in the JSON and the CSV. */
 static void convergence(const struct reading *result)
 {
-	static const char *const columns[] = {"method",  "step_s",  "tol", "failed", "u_max",   "demand",
-	                                      "impulse", "history", "order",     "cpu_s",  "x event", NULL};
+	static const char *const columns[] = {"method",  "step_s",  "tol",   "failed", "u_max",   "demand",
+	                                      "impulse", "history", "order", "cpu_s",  "x event", NULL};
 	static const char *const members[] = {"displacement_error_mean", "demand_error_mean",
 	                                      "impulse_error_mean", "history_error_mean", "order"};
 	struct table *table = table_open(columns);
