@@ -1,6 +1,7 @@
-/* dispatch.c - the march at the widest lanes this machine has; all widths give the same bits. */
-#include <stddef.h>
+/* dispatch.c - which lanes this machine has, and the march at the widest of them; all widths give the same bits. */
+#include <stdbool.h>
 
+#include "engine/dispatch.h"
 #include "engine/march.h"
 
 static bool always(void)
@@ -21,19 +22,29 @@ static bool has_avx512(void)
 	       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma");
 }
 
-typedef void march(const struct pound_march_task *, struct pound_march_result *, int n, void *scratch);
-
-// widest first
 static const struct width {
 	int lanes;
 	bool (*supported)(void);
-	march *run;
-} widths[] = {
-    {8, has_avx512, pound_march_w8},
-    {4, has_avx2, pound_march_w4},
-    {1, has_fma, pound_march_w1},
-    {1, always, pound_march_portable},
+} widths[POUND_WIDTHS] = {
+    [POUND_WIDTH_8] = {8, has_avx512},
+    [POUND_WIDTH_4] = {4, has_avx2},
+    [POUND_WIDTH_1] = {1, has_fma},
+    [POUND_WIDTH_PORTABLE] = {1, always},
 };
+
+/* The compilation to run at a lane count; 0: the widest there is.
+ *
+ * Returns  value  one of the enum in dispatch.h; -1: this machine has no such lanes
+ */
+int pound_dispatch_width(int lanes)
+{
+	for (int w = 0; w < POUND_WIDTHS; w++)
+		if ((lanes == 0 || widths[w].lanes == lanes) && widths[w].supported())
+			return w;
+	return -1;
+}
+
+typedef void march(const struct pound_march_task *, struct pound_march_result *, int n, void *scratch);
 
 /* Runs tasks at a lane count; 0: the widest there is.
  *
@@ -43,10 +54,10 @@ static const struct width {
 bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
                        int n, void *scratch)
 {
-	for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++)
-		if ((lanes == 0 || widths[w].lanes == lanes) && widths[w].supported()) {
-			widths[w].run(tasks, results, n, scratch);
-			return true;
-		}
-	return false;
+	static march *const run[POUND_WIDTHS] = {pound_march_w8, pound_march_w4, pound_march_w1,
+	                                         pound_march_portable};
+	int width = pound_dispatch_width(lanes);
+	if (width >= 0)
+		run[width](tasks, results, n, scratch);
+	return width >= 0;
 }

@@ -8,6 +8,7 @@
 #include <stdalign.h>
 #include <string.h>
 
+#include "engine/dispatch.h"
 #include "engine/elementary.h"
 
 struct pound_floor {
@@ -21,49 +22,18 @@ struct pound_floor {
 	struct pound_trace_stretch stretch;
 };
 
-static bool always(void)
-{
-	return true;
-}
-
-static bool has_fma(void)
-{
-	return __builtin_cpu_supports("fma");
-}
-
-static bool has_avx2(void)
-{
-	return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-}
-
-static bool has_avx512(void)
-{
-	return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-	       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma");
-}
-
-// widest first
-static const struct width {
-	int lanes;
-	bool (*supported)(void);
-	void (*ride)(const struct pound_bank *, const struct pound_ride *, void *scratch);
-} widths[] = {
-    {8, has_avx512, pound_spectrum_w8},
-    {4, has_avx2, pound_spectrum_w4},
-    {1, has_fma, pound_spectrum_w1},
-    {1, always, pound_spectrum_portable},
-};
+typedef void width_ride(const struct pound_bank *, const struct pound_ride *, void *scratch);
 
 /* Takes a bank over a stretch at a lane count; 0: the widest there is; false: this machine has no such lanes. */
-bool pound_spectrum_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *ride,
+bool pound_spectrum_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *stretch,
                           void *scratch)
 {
-	for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++)
-		if ((lanes == 0 || widths[w].lanes == lanes) && widths[w].supported()) {
-			widths[w].ride(bank, ride, scratch);
-			return true;
-		}
-	return false;
+	static width_ride *const run[POUND_WIDTHS] = {pound_spectrum_w8, pound_spectrum_w4, pound_spectrum_w1,
+	                                              pound_spectrum_portable};
+	int width = pound_dispatch_width(lanes);
+	if (width >= 0)
+		run[width](bank, stretch, scratch);
+	return width >= 0;
 }
 
 /* Frequency k of a spectrum, both ends of a range exact [Hz].
