@@ -191,7 +191,7 @@ LANE_INLINE struct limits limits_select(vm mask, struct limits a, struct limits 
 }
 
 /* The base of each lane's bodies, and back. */
-LANE_INLINE void press_enter(struct press *s, const struct lanes *g, bool edged)
+LANE_INLINE void press_load(struct press *s, const struct lanes *g, bool edged)
 {
 	vm left = vless(vsplat(0), g->side);
 	s->x[0] = vselect(left, g->u[0], g->u[1]);
@@ -202,7 +202,7 @@ LANE_INLINE void press_enter(struct press *s, const struct lanes *g, bool edged)
 	s->other = limits_select(left, limits_of(g, 1, edged), limits_of(g, 0, edged));
 }
 
-LANE_INLINE void press_leave(const struct press *s, struct lanes *g)
+LANE_INLINE void press_store(const struct press *s, struct lanes *g)
 {
 	vm left = vless(vsplat(0), g->side);
 	vd u = s->x[0] - g->side * (g->gap + s->x[2]), v = s->x[1] - g->side * s->x[3];

@@ -214,7 +214,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 	for (int r = 0; r < PRESS_ROWS; r++)
 		if (r != PRESS_DROP || forced)
 			rows_load(s.map[r], map, r * POUND_PRESS_INPUTS);
-	press_enter(&s, &g, edged);
+	press_load(&s, &g, edged);
 	unsigned pressed = (1u << b->n) - 1, ended = 0;
 	int few = b->n / 2;
 	do {
@@ -228,7 +228,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 		}
 		pressed &= ~ended;
 	} while (__builtin_popcount(pressed) > few);
-	press_leave(&s, &g);
+	press_store(&s, &g);
 	double slope[W];
 	for (int l = 0; l < W; l++)
 		slope[l] = b->sim[l]->x.slope;
@@ -240,7 +240,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 		send(work, b->sim[l],
 		     ended >> l & 1     ? STAGE_END
 		     : pressed >> l & 1 ? STAGE_PRESS
-		                        : pound_simulation_unpress(b->sim[l]));
+		                        : pound_simulation_step(b->sim[l]));
 }
 
 /* ---- one step up to an event ---- */

@@ -7,7 +7,7 @@
 #include <float.h>
 
 #include "engine/lanes.h"
-#include "engine/simulation.h"
+#include "engine/stepping.h"
 
 enum {
 	ORDER_APART = 12, /* of the series while apart: even */

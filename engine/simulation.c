@@ -6,14 +6,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/stepping.h"
+
 /* Largest rate * time of a series step: the first term left out is near 2^-52 of the first kept or below: apart, at
  * order 12, 0.35^13/13! = 1.9e-16; touching, at order 16, 17 * 0.8^17/17! = 1.1e-15, of which zero restitution has the
  * factor before the power. */
 static const double REACH_FREE = 0.35, REACH_TOUCH = 0.8;
-
-/* A step that a search was unsure of is followed by one this much shorter, and then by longer ones again: what decides
- * may be far below the rounding of a whole step. */
-static const double SHORTER = 0x1p-8, SHORTEST = 0x1p-400, LONGER = 0x1p4;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
@@ -158,7 +156,7 @@ static void piece_enter(struct simulation *sim, int i)
 }
 
 /* Gets everything ready for whole cells of pressed contact. */
-static void press_enter(struct simulation *sim)
+static void press_ready(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
@@ -193,7 +191,7 @@ void pound_simulation_interval(struct simulation *sim)
 }
 
 /* The next step by power series. */
-static enum pound_stage step_enter(struct simulation *sim)
+enum pound_stage pound_simulation_step(struct simulation *sim)
 {
 	if (++sim->steps > STEPS_LIMIT)
 		return STAGE_CHATTER;
@@ -219,17 +217,11 @@ enum pound_stage pound_simulation_meet(struct simulation *sim)
 	double p = x->u[0] - x->u[1] - x->gap;
 	x->p = p < 0 ? p : 0; // rounding must not make it overlap
 	x->q = x->v[0] - x->v[1];
-	return step_enter(sim);
-}
-
-/* A simulation in front of a cell in which the contact may end, or a body reach an edge. */
-enum pound_stage pound_simulation_unpress(struct simulation *sim)
-{
-	return step_enter(sim);
+	return pound_simulation_step(sim);
 }
 
 /* What a simulation does next. */
-enum pound_stage pound_simulation_next(struct simulation *sim)
+static enum pound_stage next_stage(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
 	if (sim->touching ? sim->part + x->cells == 0 : sim->left == 0) {
@@ -242,10 +234,10 @@ enum pound_stage pound_simulation_next(struct simulation *sim)
 			return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
 	}
 	if (sim->touching && sim->part == 0 && sim->can_press) {
-		press_enter(sim);
+		press_ready(sim);
 		return STAGE_PRESS;
 	}
-	return step_enter(sim);
+	return pound_simulation_step(sim);
 }
 
 /* Contact begins, ends, or clears the overlap it left. */
@@ -307,16 +299,17 @@ enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, dou
 	sim->x.ground += sim->x.slope * elapsed;
 	sim->fresh = false;
 	if (event == EVENT_NONE) {
-		sim->pace = least(sim->pace * LONGER, 1);
-		return pound_simulation_next(sim);
+		sim->pace = least(sim->pace * POUND_STEP_LONGER, 1);
+		return next_stage(sim);
 	}
-	sim->pace = event == EVENT_CUT ? most(sim->pace * SHORTER, SHORTEST) : least(sim->pace * LONGER, 1);
+	sim->pace = event == EVENT_CUT ? most(sim->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
+	                               : least(sim->pace * POUND_STEP_LONGER, 1);
 	if (event == EVENT_CONTACT || event == EVENT_CLEARS)
 		contact_turn(sim, event == EVENT_CLEARS);
 	else if (event >= EVENT_BODY)
 		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
-	return pound_simulation_next(sim);
+	return next_stage(sim);
 }
 
 /* ---- start and end ---- */

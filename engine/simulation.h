@@ -75,11 +75,6 @@ struct pound_press_map {
 	double stiffness[2]; /* of the pieces it belongs to; < 0: none */
 };
 
-/* How far the inner control points of the cubic through both ends of an interval h must stay inside a limit, over h^4 max
- * |u''''|, for the motion to stay inside it: it misses the cubic by at most e = 1/24 t^2 (1 - t)^2 <= 1/384 (Hermite), and
- * inner points pulled in by e' lower the cubic by 3 t (1 - t) e' >= e for e' = e(1/2)/(3/4) = 1/288. */
-static const double POUND_CUBIC_ERROR = 1.0 / 288;
-
 /* what a simulation does next */
 enum pound_stage {
 	STAGE_FLY_ALONE, /* whole samples of the left body */
@@ -135,9 +130,8 @@ bool pound_simulation_edged(const struct pound_march_task *task);
 enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
                                         struct pound_march_result *result);
 enum pound_stage pound_simulation_meet(struct simulation *sim);
-enum pound_stage pound_simulation_next(struct simulation *sim);
 enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double share);
-enum pound_stage pound_simulation_unpress(struct simulation *sim);
+enum pound_stage pound_simulation_step(struct simulation *sim);
 void pound_simulation_interval(struct simulation *sim);
 void pound_simulation_end(struct simulation *sim, enum pound_status status);
 

@@ -12,6 +12,7 @@
 #include <stdalign.h>
 
 #include "engine/lanes.h"
+#include "engine/stepping.h"
 
 enum {
 	TERMS = POUND_TRACE_TERMS,
@@ -28,7 +29,7 @@ struct part {
 	int terms;   /* of a series without a drive, by the fastest of the group */
 	vd x, damp;  /* w step, 2 xi w step */
 	vd on_z, on_v, on_a,
-	    on_rate; /* |z''''|/384 <= on_z |z| + on_v |v| + on_a A + on_rate A' + A''/384, see part_init */
+	    on_rate; /* |z''''|/288 <= on_z |z| + on_v |v| + on_a A + on_rate A' + A''/288, see part_init */
 };
 
 /* the maps of one part of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
@@ -62,9 +63,6 @@ static int larger(int a, int b)
 {
 	return a > b ? a : b;
 }
-
-/* The cubic through both ends of a part misses the motion by at most this times |z''''| (Hermite). */
-static const double CUBIC_ERROR = 1.0 / 384;
 
 static const double SHARE[TERMS + 1] = {1.0 / 1,  1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
                                         1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12,
@@ -110,11 +108,11 @@ LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, do
 {
 	struct part p = {.step = step, .terms = pound_trace_terms(omega_max * step)};
 	vd x = p.x = omega * step, x2 = x * x, damp = p.damp = x * (2 * damping), both = vfma(damp, damp, x2);
-	vd on_e = vfma(both * x, vsplat(2 * damping + 1), damp * x2) * vsplat(CUBIC_ERROR);
+	vd on_e = vfma(both * x, vsplat(2 * damping + 1), damp * x2) * vsplat(POUND_CUBIC_ERROR);
 	p.on_z = on_e * x;
 	p.on_v = on_e * step;
-	p.on_a = vfma(both, vsplat(CUBIC_ERROR), on_e);
-	p.on_rate = damp * vsplat(CUBIC_ERROR);
+	p.on_a = vfma(both, vsplat(POUND_CUBIC_ERROR), on_e);
+	p.on_rate = damp * vsplat(POUND_CUBIC_ERROR);
 	return p;
 }
 
@@ -165,7 +163,7 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 
 /* Lanes in which |z| may have a new largest value inside a part; ends are taken here.
  *
- * Given    z1, v1   at the end;  bound: of the drive and its derivatives, times step^2, the last over 384
+ * Given    z1, v1   at the end;  bound: of the drive and its derivatives, times step^2, the last over 288
  */
 LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, const double bound[3])
 {
@@ -234,7 +232,7 @@ static void part_bound(const struct pound_polynomial *a, int n, double step, dou
 	double scale = step * step, share = 1.0 / n;
 	bound[0] = a->bound[0] * scale;
 	bound[1] = a->bound[1] * scale * share;
-	bound[2] = a->bound[2] * scale * share * share * CUBIC_ERROR;
+	bound[2] = a->bound[2] * scale * share * share * POUND_CUBIC_ERROR;
 }
 
 /* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */

@@ -7,6 +7,7 @@
  *
  * The march does the same in lanes and keeps nothing; what both must agree in is under test. */
 #include "engine/trace.h"
+#include "engine/stepping.h"
 
 #include <float.h>
 #include <math.h>
@@ -22,7 +23,6 @@ enum {
 
 static const double NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
 static const double REACH = 1;                /* largest rate * step of a series */
-static const double SHORTER = 0x1p-8, SHORTEST = 0x1p-400, LONGER = 0x1p4; /* as in march.c */
 
 enum event { NOTHING, CUT, CONTACT, CLEARS, BODY }; // an edge of body i is BODY + EDGES i + edge
 
@@ -382,7 +382,8 @@ static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 		search_contact(&search, &s, t);
 	for (int i = 0; i < (t->task->contact ? POUND_OSCILLATORS : 1); i++)
 		search_body(&search, &s, &t->at[i].piece, i);
-	t->pace = search.event == CUT ? fmax(t->pace * SHORTER, SHORTEST) : fmin(t->pace * LONGER, 1);
+	t->pace = search.event == CUT ? fmax(t->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
+	                              : fmin(t->pace * POUND_STEP_LONGER, 1);
 	if (search.time > 0)
 		piece_add(t, stretch, &s, search.time);
 	state_move(t, &s, search.time);
