@@ -2,7 +2,7 @@
 -- (PRAGMA user_version counts the steps, server/database.c has them).  Times are milliseconds since 1970, UTC.
 
 PRAGMA application_id = 0x706f756e; -- "poun"
-PRAGMA user_version = 3;
+PRAGMA user_version = 4;
 
 CREATE TABLE study (
 	id              INTEGER PRIMARY KEY, -- milliseconds << 20 | random bits: a newer study has a larger id
@@ -19,6 +19,9 @@ CREATE TABLE study (
 	idempotency_key TEXT    UNIQUE,
 	crashes         INTEGER NOT NULL DEFAULT 0, -- of the server by this study, since a block of it was kept
 	client          TEXT,                       -- name of the token it was submitted with
+	runs_done       INTEGER NOT NULL DEFAULT 0, -- pounding runs in its blocks
+	cpu_s           REAL    NOT NULL DEFAULT 0, -- of its blocks
+	attempt_kept    INTEGER NOT NULL DEFAULT 0, -- that kept a block last
 	CHECK ((finished IS NULL) = (status IN ('queued', 'running'))),
 	CHECK ((error IS NULL) = (status <> 'failed'))
 ) STRICT;
@@ -47,5 +50,5 @@ CREATE TABLE block (
 	PRIMARY KEY (study, number)
 ) STRICT;
 
--- progress, without a look at the blocks themselves
+-- sums over them, without a look at their contents
 CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);

@@ -3,9 +3,13 @@
 
 #include <fcntl.h>
 #include <limits.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include <nettle/sha2.h>
 
 #include "server/disk.h"
 #include "server/log.h"
@@ -16,7 +20,7 @@ static const char schema_text[] =
 
 enum {
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
-	USER_VERSION = 3,            /* as in store.sql */
+	USER_VERSION = 4,            /* as in store.sql */
 	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
 };
 
@@ -25,10 +29,17 @@ static const char *const steps[USER_VERSION] = {
     [1] = "ALTER TABLE study ADD COLUMN crashes INTEGER NOT NULL DEFAULT 0;"
           "ALTER TABLE block ADD COLUMN wall_s REAL NOT NULL DEFAULT 0;"
           "CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);"
-          "UPDATE document SET sha256 = document_sha256(study, name, content, sha256)",
+          "UPDATE document SET sha256 = digest(name || ' ' || study || ' ', content) "
+          "WHERE sha256 = digest(name, content)",
     [2] = "ALTER TABLE study ADD COLUMN client TEXT;"
           "DROP INDEX study_status;"
           "CREATE INDEX study_status ON study (status, id, client)",
+    [3] = "ALTER TABLE study ADD COLUMN runs_done INTEGER NOT NULL DEFAULT 0;"
+          "ALTER TABLE study ADD COLUMN cpu_s REAL NOT NULL DEFAULT 0;"
+          "ALTER TABLE study ADD COLUMN attempt_kept INTEGER NOT NULL DEFAULT 0;"
+          "UPDATE study SET (runs_done, cpu_s, attempt_kept) = "
+          "(SELECT coalesce(sum(runs), 0), total(cpu_s), coalesce(max(attempt), 0) FROM block WHERE study = "
+          "id)",
 };
 
 static bool done(const struct database *d, const char *sql)
@@ -36,31 +47,42 @@ static bool done(const struct database *d, const char *sql)
 	return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK;
 }
 
-/* The number that a question comes to, -1: none. */
-int64_t database_number(const struct database *d, const char *sql)
+/* The first value that a question comes to, as text; "": none. */
+static const char *answer(const struct database *d, const char *sql, char text[32])
 {
 	sqlite3_stmt *read = NULL;
-	int64_t value = -1;
-	if (sqlite3_prepare_v2(d->db, sql, -1, &read, NULL) == SQLITE_OK && sqlite3_step(read) == SQLITE_ROW)
-		value = sqlite3_column_int64(read, 0);
+	bool came =
+	    sqlite3_prepare_v2(d->db, sql, -1, &read, NULL) == SQLITE_OK && sqlite3_step(read) == SQLITE_ROW;
+	const unsigned char *value = came ? sqlite3_column_text(read, 0) : NULL;
+	snprintf(text, 32, "%s", value ? (const char *)value : "");
 	sqlite3_finalize(read);
-	return value;
+	return text;
 }
 
 /* Makes a setting, and reads it back. */
 static bool set(const struct database *d, const char *name, const char *value)
 {
-	char make[64], ask[64];
-	sqlite3_stmt *read = NULL;
+	char make[64], ask[64], text[32];
 	snprintf(make, sizeof make, "PRAGMA %s = %s", name, value);
 	snprintf(ask, sizeof ask, "PRAGMA %s", name);
-	bool holds = done(d, make) && sqlite3_prepare_v2(d->db, ask, -1, &read, NULL) == SQLITE_OK &&
-	             sqlite3_step(read) == SQLITE_ROW && sqlite3_column_text(read, 0) &&
-	             !strcmp((const char *)sqlite3_column_text(read, 0), value);
-	sqlite3_finalize(read);
+	bool holds = done(d, make) && !strcmp(answer(d, ask, text), value);
 	if (!holds)
 		log_line("database: %s does not become %s: %s", name, value, sqlite3_errmsg(d->db));
 	return holds;
+}
+
+/* The SQL function digest(place, bytes): SHA-256 of where bytes belong, and of themselves. */
+static void digest(sqlite3_context *call, int n, sqlite3_value **values)
+{
+	struct sha256_ctx hash;
+	uint8_t sha256[SHA256_DIGEST_SIZE];
+	sha256_init(&hash);
+	for (int i = 0; i < n; i++) {
+		const void *bytes = sqlite3_value_blob(values[i]);
+		sha256_update(&hash, (size_t)sqlite3_value_bytes(values[i]), bytes);
+	}
+	sha256_digest(&hash, sizeof sha256, sha256);
+	sqlite3_result_blob(call, sha256, sizeof sha256, SQLITE_TRANSIENT);
 }
 
 static bool connected(struct database *d, const char *path, bool writes)
@@ -81,8 +103,10 @@ static bool connected(struct database *d, const char *path, bool writes)
 	};
 	int flags = writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
 	pthread_mutex_init(&d->lock, NULL);
-	bool ok =
-	    sqlite3_open_v2(path, &d->db, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, NULL) == SQLITE_OK;
+	flags |= SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+	bool ok = sqlite3_open_v2(path, &d->db, flags, NULL) == SQLITE_OK &&
+	          sqlite3_create_function(d->db, "digest", 2, SQLITE_UTF8 | SQLITE_DETERMINISTIC, NULL, digest,
+	                                  NULL, NULL) == SQLITE_OK;
 	if (ok) {
 		sqlite3_db_config(d->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
 		sqlite3_db_config(d->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !writes, NULL);
@@ -92,42 +116,6 @@ static bool connected(struct database *d, const char *path, bool writes)
 	if (!ok)
 		log_line("cannot open the database %s as it must be: %s", path, sqlite3_errmsg(d->db));
 	return ok;
-}
-
-/* SHA-256 of bytes and of where they belong. */
-void database_digest(const char *place, const void *bytes, size_t n, uint8_t sha256[SHA256_DIGEST_SIZE])
-{
-	struct sha256_ctx hash;
-	sha256_init(&hash);
-	sha256_update(&hash, strlen(place), (const uint8_t *)place);
-	sha256_update(&hash, n, bytes);
-	sha256_digest(&hash, SHA256_DIGEST_SIZE, sha256);
-}
-
-/* A document belongs to a study, under a name. */
-void database_document_place(int64_t study, const char *name, char place[64])
-{
-	snprintf(place, 64, "%s %lld ", name, (long long)study);
-}
-
-/* The SQL function document_sha256(study, name, content, sha256): the digest of a document of version 1, which was made
- * without the study; a damaged one keeps the digest that shows it. */
-static void document_sha256(sqlite3_context *call, int n, sqlite3_value **values)
-{
-	char place[64];
-	uint8_t sha256[SHA256_DIGEST_SIZE];
-	const char *name = (const char *)sqlite3_value_text(values[1]);
-	const void *content = sqlite3_value_blob(values[2]);
-	size_t length = (size_t)sqlite3_value_bytes(values[2]);
-	(void)n;
-	database_digest(name, content, length, sha256);
-	if (sqlite3_value_bytes(values[3]) == sizeof sha256 &&
-	    !memcmp(sqlite3_value_blob(values[3]), sha256, sizeof sha256)) {
-		database_document_place(sqlite3_value_int64(values[0]), name, place);
-		database_digest(place, content, length, sha256);
-		sqlite3_result_blob(call, sha256, sizeof sha256, SQLITE_TRANSIENT);
-	} else
-		sqlite3_result_value(call, values[3]);
 }
 
 /* Writes a copy of the database as it stands now, while others go on; it is on the disk when this returns.
@@ -167,9 +155,7 @@ static bool migrated(const struct database *d, const char *path, int version)
 	snprintf(copy, sizeof copy, "%s-v%d", path, version);
 	// of a migration that did not come to its end
 	unlink(copy);
-	bool ok =
-	    database_copy(d, copy) && sqlite3_create_function(d->db, "document_sha256", 4, SQLITE_UTF8, NULL,
-	                                                      document_sha256, NULL, NULL) == SQLITE_OK;
+	bool ok = database_copy(d, copy);
 	for (; ok && version < USER_VERSION; version++)
 		ok = versioned(d, steps[version], version + 1);
 	if (ok)
@@ -180,35 +166,19 @@ static bool migrated(const struct database *d, const char *path, int version)
 /* Makes a new database, or finds that this one is ours, and brings it to our version. */
 static bool founded(const struct database *d, const char *path)
 {
-	int64_t application = database_number(d, "PRAGMA application_id");
-	if (application == 0 && database_number(d, "SELECT count(*) FROM sqlite_schema") == 0)
+	char text[32];
+	int application = atoi(answer(d, "PRAGMA application_id", text));
+	int version = atoi(answer(d, "PRAGMA user_version", text));
+	if (application == 0 && !strcmp(answer(d, "SELECT count(*) FROM sqlite_schema", text), "0"))
 		return versioned(d, schema_text, USER_VERSION) && disk_sync(path);
-	int64_t version = database_number(d, "PRAGMA user_version");
 	if (application == APPLICATION_ID && version >= 1 && version <= USER_VERSION)
-		return version == USER_VERSION || migrated(d, path, (int)version);
-	log_line("%s is not a database of poundd, or of a newer one: version %lld, not %d", path,
-	         (long long)version, USER_VERSION);
+		return version == USER_VERSION || migrated(d, path, version);
+	log_line("%s is not a database of poundd, or of a newer one: version %d, not %d", path, version,
+	         USER_VERSION);
 	return false;
 }
 
-/* Opens a connection.
- *
- * Given    path       of the database file
- *          writes     whether it may change the database, and makes or migrates it first; else it never checkpoints
- * Returns  database   for database_close, whatever the value
- *          value      false: not to be opened, not ours, or of a newer version; logged
- * Test     unit_store: a_database_of_version_1_is_brought_to_this_one
- */
-bool database_open(struct database *d, const char *path, bool writes)
-{
-	if (writes && sqlite3_libversion_number() < RESET_SAFE)
-		log_line("SQLite %s can damage a database that two connections change: leave the changes to poundd",
-		         sqlite3_libversion());
-	return connected(d, path, writes) && (!writes || founded(d, path));
-}
-
-/* Prepares statements [0, n). */
-bool database_prepare(struct database *d, const char *const statements[], int n)
+static bool prepared(struct database *d, const char *const statements[], int n)
 {
 	for (int s = 0; s < n; s++)
 		if (sqlite3_prepare_v3(d->db, statements[s], -1, SQLITE_PREPARE_PERSISTENT, &d->statements[s],
@@ -217,6 +187,23 @@ bool database_prepare(struct database *d, const char *const statements[], int n)
 			return false;
 		}
 	return true;
+}
+
+/* Opens a connection.
+ *
+ * Given    path         of the database file
+ *          writes       whether it may change the database, and makes or migrates it first; else it never checkpoints
+ *          statements   (n)   to prepare
+ * Returns  database     for database_close, whatever the value
+ *          value        false: not to be opened, not ours, or of a newer version; logged
+ * Test     service_faults: a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_new
+ */
+bool database_open(struct database *d, const char *path, bool writes, const char *const statements[], int n)
+{
+	if (writes && sqlite3_libversion_number() < RESET_SAFE)
+		log_line("SQLite %s can damage a database that two connections change: leave the changes to poundd",
+		         sqlite3_libversion());
+	return connected(d, path, writes) && (!writes || founded(d, path)) && prepared(d, statements, n);
 }
 
 /* Closes it, opened or not. */

@@ -5,10 +5,7 @@
 
 #include <pthread.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <nettle/sha2.h>
 #include <sqlite3.h>
 
 enum { DATABASE_STATEMENTS_MAX = 32 };
@@ -20,14 +17,9 @@ struct database {
 };
 
 /* one that writes makes the database or brings it to this version; false: logged, and still to be closed */
-bool database_open(struct database *database, const char *path, bool writes);
-bool database_prepare(struct database *database, const char *const statements[], int n);
+bool database_open(struct database *database, const char *path, bool writes, const char *const statements[],
+                   int n);
 void database_close(struct database *database);
-int64_t database_number(const struct database *database, const char *sql); /* -1: none */
-bool database_copy(const struct database *database, const char *path);     /* false: logged */
-
-/* what stored bytes are checked with: where they belong, and themselves */
-void database_digest(const char *place, const void *bytes, size_t n, uint8_t sha256[SHA256_DIGEST_SIZE]);
-void database_document_place(int64_t study, const char *name, char place[64]);
+bool database_copy(const struct database *database, const char *path); /* false: logged */
 
 #endif

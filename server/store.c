@@ -13,11 +13,8 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
-#include <time.h>
 
 #include "engine/pound.h"
 #include "server/database.h"
@@ -30,48 +27,54 @@ enum {
 };
 
 // clang-format off
+#define NOW "CAST(round((julianday('now') - 2440587.5) * 86400000) AS INTEGER)"
 #define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
 #define STUDY_ROW                                                                                         \
 	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
-	"error, runs, (SELECT total(runs) FROM block WHERE study = id), "                                     \
-	"(SELECT total(cpu_s) FROM block WHERE study = id) FROM study "
-// times a study was taken up since one of its blocks was kept
-#define IN_VAIN "attempt - (SELECT coalesce(max(attempt), 0) FROM block WHERE study = study.id)"
-
+	"error, runs, runs_done, cpu_s FROM study "
 #define QUEUED "SELECT id FROM study WHERE status = 'queued' "
+// what bytes are checked with: where they belong, and themselves; a block belongs to the version that made it, too
+#define DOCUMENT_DIGEST(study, name, content) "digest(" name " || ' ' || " study " || ' ', " content ")"
+#define BLOCK_DIGEST(study, number, content) \
+	"digest('" POUND_VERSION " ' || " study " || ' ' || " number " || ' ', " content ")"
 
 // those that read, then those that write
 #define STATEMENTS(X)                                                                                     \
 	X(STUDY,    STUDY_ROW "WHERE id = ?1")                                                                \
 	X(LIST,     STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2")                                      \
 	X(LIST_OF,  STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2")                      \
-	X(DOCUMENT, "SELECT sha256, content FROM document WHERE study = ?1 AND name = ?2")                    \
-	X(BLOCKS,   "SELECT sha256, content, number, runs, cpu_s, wall_s FROM block WHERE study = ?1 "        \
-	            "ORDER BY number")                                                                        \
+	X(DOCUMENT, "SELECT content, sha256 = " DOCUMENT_DIGEST("study", "name", "content") " "               \
+	            "FROM document WHERE study = ?1 AND name = ?2")                                           \
+	X(BLOCKS,   "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "               \
+	            "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number")                \
 	X(COUNT,    "SELECT count(*) FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2)")           \
 	X(BEGIN,    "BEGIN IMMEDIATE")                                                                        \
 	X(COMMIT,   "COMMIT")                                                                                 \
 	X(ROLLBACK, "ROLLBACK")                                                                               \
-	X(KEYED,    "SELECT id, content = ?2 FROM study JOIN document ON study = id AND document.name = 'request' " \
-	            "WHERE idempotency_key = ?1")                                                             \
+	X(KEYED,    "SELECT id FROM study WHERE idempotency_key = ?1")                                        \
+	X(SAME,     "SELECT study FROM document WHERE study = ?1 AND name = 'request' AND content = ?2")      \
 	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key, client) " \
-	            "VALUES (?1, 'queued', ?2, ?3, ?4, ?5, ?6, ?7, ?8)")                                          \
-	X(ADD,      "INSERT INTO document (study, name, content, sha256) VALUES (?1, ?2, ?3, ?4)")            \
-	X(CANCEL,   "UPDATE study SET status = 'cancelled', finished = max(?2, created) "                     \
+	            "SELECT max((" NOW " << 20) + (random() & 0xfffff), (SELECT coalesce(max(id), 0) + 1 FROM study)), " \
+	            "'queued', " NOW ", ?1, ?2, ?3, ?4, ?5, ?6 RETURNING id")                                 \
+	X(ADD,      "INSERT INTO document (study, name, content, sha256) "                                    \
+	            "VALUES (?1, ?2, ?3, " DOCUMENT_DIGEST("?1", "?2", "?3") ")")                             \
+	X(CANCEL,   "UPDATE study SET status = 'cancelled', finished = max(" NOW ", created) "                \
 	            "WHERE id = ?1 AND status IN ('queued', 'running')")                                      \
 	X(DELETE,   "DELETE FROM study WHERE id = ?1")                                                        \
 	X(CLAIM,    "UPDATE study SET status = 'running', attempt = attempt + 1, "                            \
-	            "started = coalesce(started, max(?1, created)) WHERE id = "                               \
-	            "coalesce((" QUEUED "AND (attempt < 3 OR " IN_VAIN " < 3) ORDER BY id LIMIT 1), "         \
+	            "started = coalesce(started, max(" NOW ", created)) WHERE id = "                          \
+	            "coalesce((" QUEUED "AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "               \
 	            "(" QUEUED "ORDER BY id LIMIT 1)) RETURNING id")                                          \
 	X(KEEP,     "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) " \
-	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, ?7 FROM study WHERE id = ?1 AND status = 'running'") \
-	X(FINISH,   "UPDATE study SET status = ?2, finished = max(?3, started), error = ?4, "                 \
-	            "runs = iif(?4 IS NULL, coalesce((SELECT sum(runs) FROM block WHERE study = ?1), runs), runs) "           \
-	            "WHERE id = ?1 AND status = 'running'")                                                   \
-	X(REQUEUE,  "UPDATE study SET status = 'queued', crashes = iif(" IN_VAIN " > 0, crashes + (id = ?1), 0) " \
-	            "WHERE status = 'running'")                                                               \
-	X(POISON,   "UPDATE study SET status = 'failed', finished = max(?1, started), "                       \
+	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, " BLOCK_DIGEST("?1", "?2", "?6") " "             \
+	            "FROM study WHERE id = ?1 AND status = 'running'")                                        \
+	X(PROGRESS, "UPDATE study SET (runs_done, cpu_s) = (SELECT sum(runs), sum(cpu_s) FROM block WHERE study = ?1), " \
+	            "attempt_kept = attempt WHERE id = ?1")                                                   \
+	X(FINISH,   "UPDATE study SET status = ?2, finished = max(" NOW ", started), error = ?3, "            \
+	            "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'") \
+	X(REQUEUE,  "UPDATE study SET status = 'queued', "                                                    \
+	            "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'") \
+	X(POISON,   "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "                  \
 	            "error = 'poison-study: the server crashed three times while it ran this study' "         \
 	            "WHERE status = 'queued' AND crashes >= 3")
 // clang-format on
@@ -93,21 +96,17 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 
 struct store {
 	struct disk disk;
-	int64_t id_last;                          /* largest id given out, under the writer's lock */
 	struct database writer, readers[READERS]; /* readers have the statements before BEGIN */
 	atomic_uint changes[CHANGES];             /* of the studies whose ids have that remainder */
 };
 
-static int64_t now_ms(void)
+/* A statement with its values; types: i int64_t, d double, t text (NULL: null), b bytes and their size_t, all of which
+ * must stay until it has ended. */
+static sqlite3_stmt *bound(struct database *c, enum statement s, const char *types, ...)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_REALTIME, &now);
-	return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-}
-
-/* types: i int64_t, d double, t text (NULL: null), b bytes and their size_t; bound until the statement has ended */
-static void bind(sqlite3_stmt *statement, const char *types, va_list values)
-{
+	sqlite3_stmt *statement = c->statements[s];
+	va_list values;
+	va_start(values, types);
 	for (int i = 1; types[i - 1]; i++)
 		if (types[i - 1] == 'i')
 			sqlite3_bind_int64(statement, i, va_arg(values, int64_t));
@@ -119,15 +118,8 @@ static void bind(sqlite3_stmt *statement, const char *types, va_list values)
 			const void *bytes = va_arg(values, const void *);
 			sqlite3_bind_blob64(statement, i, bytes, va_arg(values, size_t), SQLITE_STATIC);
 		}
-}
-
-static sqlite3_stmt *query(struct database *c, enum statement s, const char *types, ...)
-{
-	va_list values;
-	va_start(values, types);
-	bind(c->statements[s], types, values);
 	va_end(values);
-	return c->statements[s];
+	return statement;
 }
 
 /* After the last step of a statement that came to n rows. */
@@ -141,23 +133,23 @@ static enum store_status ended(struct database *c, sqlite3_stmt *statement, int 
 	return failed ? STORE_FAILED : n == 0 ? STORE_NONE : STORE_OK;
 }
 
-static enum store_status change(struct database *c, enum statement s, const char *types, ...)
+/* Runs a change, or a question to which the answer is one number (NULL: not wanted). */
+static enum store_status run(struct database *c, sqlite3_stmt *statement, int64_t *number)
 {
-	va_list values;
-	va_start(values, types);
-	bind(c->statements[s], types, values);
-	va_end(values);
-	sqlite3_step(c->statements[s]);
-	return ended(c, c->statements[s], sqlite3_changes(c->db));
+	int n = 0;
+	for (; sqlite3_step(statement) == SQLITE_ROW; n++)
+		if (number)
+			*number = sqlite3_column_int64(statement, 0);
+	return ended(c, statement, sqlite3_stmt_readonly(statement) ? n : sqlite3_changes(c->db));
 }
 
 /* Ends a transaction that has come to `status`; a full disk may have rolled it back already. */
 static enum store_status conclude(struct database *c, enum store_status status)
 {
-	if (status == STORE_OK && change(c, COMMIT, "") == STORE_FAILED)
+	if (status == STORE_OK && run(c, bound(c, COMMIT, ""), NULL) == STORE_FAILED)
 		status = STORE_FAILED;
 	if (!sqlite3_get_autocommit(c->db))
-		change(c, ROLLBACK, "");
+		run(c, bound(c, ROLLBACK, ""), NULL);
 	return status;
 }
 
@@ -208,7 +200,7 @@ void store_close(struct store *store)
 {
 	// after a start that was refused there may be no statements
 	if (store->writer.statements[REQUEUE])
-		change(&store->writer, REQUEUE, "i", INT64_C(0));
+		run(&store->writer, bound(&store->writer, REQUEUE, "i", INT64_C(0)), NULL);
 	for (int i = 0; i < READERS; i++)
 		database_close(&store->readers[i]);
 	database_close(&store->writer);
@@ -232,13 +224,11 @@ struct store *store_open(const char *path)
 	bool ok = disk_take(&store->disk, path);
 	if (ok)
 		disk_relieve(&store->disk);
-	ok = ok && database_open(w, path, true) && database_prepare(w, statement_text, N_STATEMENTS);
+	ok = ok && database_open(w, path, true, statement_text, N_STATEMENTS);
 	for (int i = 0; ok && i < READERS; i++)
-		ok = database_open(&store->readers[i], path, false) &&
-		     database_prepare(&store->readers[i], statement_text, BEGIN);
-	ok = ok && change(w, REQUEUE, "i", disk_blamed(&store->disk)) != STORE_FAILED &&
-	     change(w, POISON, "i", now_ms()) != STORE_FAILED &&
-	     (store->id_last = database_number(w, "SELECT coalesce(max(id), 0) FROM study")) >= 0;
+		ok = database_open(&store->readers[i], path, false, statement_text, BEGIN);
+	ok = ok && run(w, bound(w, REQUEUE, "i", disk_blamed(&store->disk)), NULL) != STORE_FAILED &&
+	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED;
 	if (!ok) {
 		store_close(store);
 		return NULL;
@@ -257,65 +247,36 @@ struct store *store_open(const char *path)
 bool store_copy(const char *path, const char *to)
 {
 	struct database reading = {0};
-	bool copied = database_open(&reading, path, false) && database_copy(&reading, to);
+	bool copied = database_open(&reading, path, false, NULL, 0) && database_copy(&reading, to);
 	database_close(&reading);
 	return copied;
 }
 
-/* The time and 20 random bits, and always above the last one. */
-static int64_t id_next(struct store *store, int64_t now)
+/* The content of a row that starts with it and with whether it is what was stored: copied, for it may lie unaligned,
+ * and a zero added. */
+static enum store_status checked(sqlite3_stmt *row, char **content, size_t *length)
 {
-	uint32_t bits = 0;
-	// without them the id is only easier to guess
-	if (getrandom(&bits, sizeof bits, 0) < 0)
-		bits = 0;
-	int64_t id = now << 20 | (bits & 0xfffff);
-	return store->id_last = id > store->id_last ? id : store->id_last + 1;
-}
-
-/* The bytes of a row that starts with sha256 and content: copied, for they may lie unaligned, and a zero added. */
-static enum store_status checked(sqlite3_stmt *row, const char *place, char **content, size_t *length)
-{
-	uint8_t sha256[SHA256_DIGEST_SIZE];
-	*length = (size_t)sqlite3_column_bytes(row, 1);
+	if (!sqlite3_column_int(row, 1))
+		return STORE_CORRUPT;
+	*length = (size_t)sqlite3_column_bytes(row, 0);
 	*content = malloc(*length + 1);
 	if (!*content)
 		return STORE_FAILED;
 	if (*length)
-		memcpy(*content, sqlite3_column_blob(row, 1), *length);
+		memcpy(*content, sqlite3_column_blob(row, 0), *length);
 	(*content)[*length] = '\0';
-	database_digest(place, *content, *length, sha256);
-	if (sqlite3_column_bytes(row, 0) == sizeof sha256 &&
-	    !memcmp(sqlite3_column_blob(row, 0), sha256, sizeof sha256))
-		return STORE_OK;
-	free(*content);
-	*content = NULL;
-	return STORE_CORRUPT;
-}
-
-static enum store_status add(struct database *c, int64_t id, const char *name, const char *content,
-                             size_t length)
-{
-	char place[64];
-	uint8_t sha256[SHA256_DIGEST_SIZE];
-	database_document_place(id, name, place);
-	database_digest(place, content, length, sha256);
-	return change(c, ADD, "itbb", id, name, content, length, sha256, sizeof sha256);
+	return STORE_OK;
 }
 
 /* What was submitted with a key before; STORE_NONE: nothing, or there is no key. */
 static enum store_status keyed(struct database *c, const char *key, const char *request, size_t length,
                                int64_t *id)
 {
-	enum store_status status = STORE_NONE;
-	if (!key)
+	enum store_status status = key ? run(c, bound(c, KEYED, "t", key), id) : STORE_NONE;
+	if (status != STORE_OK)
 		return status;
-	sqlite3_stmt *row = query(c, KEYED, "tb", key, request, length);
-	if (sqlite3_step(row) == SQLITE_ROW) {
-		*id = sqlite3_column_int64(row, 0);
-		status = sqlite3_column_int(row, 1) ? STORE_REPEATED : STORE_CLASH;
-	}
-	return ended(c, row, 1) == STORE_FAILED ? STORE_FAILED : status;
+	status = run(c, bound(c, SAME, "ib", *id, request, length), NULL);
+	return status == STORE_OK ? STORE_REPEATED : status == STORE_NONE ? STORE_CLASH : status;
 }
 
 /* Queues a new study; it is on the disk when this returns.
@@ -339,14 +300,14 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 	if (status == STORE_NONE && !roomy)
 		status = STORE_FULL;
 	if (status == STORE_NONE) {
-		int64_t now = now_ms();
-		*id = id_next(store, now);
-		status = change(c, BEGIN, "");
+		status = run(c, bound(c, BEGIN, ""), NULL);
 		if (status != STORE_FAILED)
-			status = change(c, SUBMIT, "iittittt", *id, now, study->kind, study->name, study->runs, hash,
-			                study->key, study->client);
+			status = run(c,
+			             bound(c, SUBMIT, "ttittt", study->kind, study->name, study->runs, hash, study->key,
+			                   study->client),
+			             id);
 		if (status == STORE_OK)
-			status = add(c, *id, "request", request, length);
+			status = run(c, bound(c, ADD, "itb", *id, "request", request, length), NULL);
 		status = conclude(c, status);
 	}
 	return released(c, status);
@@ -383,7 +344,7 @@ static enum store_status studies(struct database *c, sqlite3_stmt *rows, store_s
 enum store_status store_study(struct store *store, int64_t id, store_study_reader *each, void *to)
 {
 	struct database *c = reader(store);
-	return studies(c, query(c, STUDY, "i", id), each, to);
+	return studies(c, bound(c, STUDY, "i", id), each, to);
 }
 
 /* Hands over a page of studies, newest first.
@@ -399,7 +360,7 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
 {
 	struct database *c = reader(store);
 	int64_t n = limit;
-	return studies(c, status ? query(c, LIST_OF, "iit", before, n, status) : query(c, LIST, "ii", before, n),
+	return studies(c, status ? bound(c, LIST_OF, "iit", before, n, status) : bound(c, LIST, "ii", before, n),
 	               each, to);
 }
 
@@ -412,13 +373,11 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length)
 {
-	char place[64];
-	database_document_place(id, name, place);
 	struct database *c = reader(store);
-	sqlite3_stmt *row = query(c, DOCUMENT, "it", id, name);
+	sqlite3_stmt *row = bound(c, DOCUMENT, "it", id, name);
 	enum store_status status = STORE_NONE;
 	if (sqlite3_step(row) == SQLITE_ROW)
-		status = checked(row, place, content, length);
+		status = checked(row, content, length);
 	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
 		status = STORE_FAILED;
 	if (status == STORE_CORRUPT)
@@ -430,10 +389,7 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 enum store_status store_count(struct store *store, const char *status, const char *client, int64_t *n)
 {
 	struct database *c = reader(store);
-	sqlite3_stmt *row = query(c, COUNT, "tt", status, client);
-	if (sqlite3_step(row) == SQLITE_ROW)
-		*n = sqlite3_column_int64(row, 0);
-	return released(c, ended(c, row, 1));
+	return released(c, run(c, bound(c, COUNT, "tt", status, client), n));
 }
 
 /* Whether studies can be stored: STORE_FULL when the disk has no room for new ones.
@@ -448,13 +404,13 @@ enum store_status store_ready(struct store *store)
 }
 
 /* A change that frees room: on a full disk it has that of the ballast. */
-static enum store_status relieved(struct store *store, enum statement s, const char *types, int64_t id)
+static enum store_status relieved(struct store *store, enum statement s, int64_t id)
 {
 	struct database *c = writer(store);
-	enum store_status status = change(c, s, types, id, now_ms());
+	enum store_status status = run(c, bound(c, s, "i", id), NULL);
 	if (status == STORE_FAILED) {
 		disk_relieve(&store->disk);
-		status = change(c, s, types, id, now_ms());
+		status = run(c, bound(c, s, "i", id), NULL);
 	}
 	return changed(store, id, status);
 }
@@ -462,13 +418,13 @@ static enum store_status relieved(struct store *store, enum statement s, const c
 /* Cancels a study; STORE_NONE when it is neither queued nor running. */
 enum store_status store_cancel(struct store *store, int64_t id)
 {
-	return relieved(store, CANCEL, "ii", id);
+	return relieved(store, CANCEL, id);
 }
 
 /* Deletes a study with its documents and blocks. */
 enum store_status store_delete(struct store *store, int64_t id)
 {
-	return relieved(store, DELETE, "i", id);
+	return relieved(store, DELETE, id);
 }
 
 /* Takes the oldest queued study, last those that were taken three times in vain: when this returns it is running, and
@@ -480,11 +436,7 @@ enum store_status store_delete(struct store *store, int64_t id)
 enum store_status store_claim(struct store *store, int64_t *id)
 {
 	struct database *c = writer(store);
-	sqlite3_stmt *row = query(c, CLAIM, "i", now_ms());
-	int n = 0;
-	for (; sqlite3_step(row) == SQLITE_ROW; n++)
-		*id = sqlite3_column_int64(row, 0);
-	enum store_status status = ended(c, row, n);
+	enum store_status status = run(c, bound(c, CLAIM, ""), id);
 	return changed(store, status == STORE_OK ? *id : 0, status);
 }
 
@@ -494,12 +446,6 @@ void store_blame(const struct store *store, int64_t id)
 	disk_blame(&store->disk, id);
 }
 
-/* A block belongs to a study, a number and the engine version that made it. */
-static void block_place(int64_t id, int block, char place[64])
-{
-	snprintf(place, 64, "%s %lld %d ", POUND_VERSION, (long long)id, block);
-}
-
 /* Keeps a finished block of a running study.
  *
  * Status   STORE_NONE   the study is not running any more: cancelled or deleted
@@ -507,33 +453,32 @@ static void block_place(int64_t id, int block, char place[64])
  */
 enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block)
 {
-	char place[64];
-	uint8_t sha256[SHA256_DIGEST_SIZE];
-	size_t length = (size_t)block->n * sizeof(double);
-	block_place(id, block->number, place);
-	database_digest(place, block->values, length, sha256);
 	struct database *c = writer(store);
-	enum store_status status =
-	    change(c, KEEP, "iiiddbb", id, (int64_t)block->number, block->runs, block->cpu_s, block->wall_s,
-	           block->values, length, sha256, sizeof sha256);
-	return changed(store, id, status);
+	enum store_status status = run(c, bound(c, BEGIN, ""), NULL);
+	if (status != STORE_FAILED)
+		status = run(c,
+		             bound(c, KEEP, "iiiddb", id, (int64_t)block->number, block->runs, block->cpu_s,
+		                   block->wall_s, block->values, (size_t)block->n * sizeof(double)),
+		             NULL);
+	if (status == STORE_OK)
+		status = run(c, bound(c, PROGRESS, "i", id), NULL);
+	return changed(store, id, conclude(c, status));
 }
 
 /* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out. */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *each, void *to)
 {
 	struct database *c = reader(store);
-	sqlite3_stmt *rows = query(c, BLOCKS, "i", id);
+	sqlite3_stmt *rows = bound(c, BLOCKS, "i", id);
 	int n = 0;
 	for (; sqlite3_step(rows) == SQLITE_ROW; n++) {
-		char place[64], *content;
+		char *content;
 		size_t length;
 		struct store_block block = {.number = sqlite3_column_int(rows, 2),
 		                            .runs = sqlite3_column_int64(rows, 3),
 		                            .cpu_s = sqlite3_column_double(rows, 4),
 		                            .wall_s = sqlite3_column_double(rows, 5)};
-		block_place(id, block.number, place);
-		if (checked(rows, place, &content, &length) != STORE_OK) {
+		if (checked(rows, &content, &length) != STORE_OK) {
 			log_line("study %016llx: block %d cannot be used", (unsigned long long)id, block.number);
 			continue;
 		}
@@ -557,10 +502,10 @@ enum store_status store_finish(struct store *store, int64_t id, const char *resu
 {
 	assert(!result != !error);
 	struct database *c = writer(store);
-	enum store_status status = change(c, BEGIN, "");
+	enum store_status status = run(c, bound(c, BEGIN, ""), NULL);
 	if (status != STORE_FAILED)
-		status = change(c, FINISH, "itit", id, result ? "succeeded" : "failed", now_ms(), error);
+		status = run(c, bound(c, FINISH, "itt", id, result ? "succeeded" : "failed", error), NULL);
 	if (status == STORE_OK && result)
-		status = add(c, id, "result", result, length);
+		status = run(c, bound(c, ADD, "itb", id, "result", result, length), NULL);
 	return changed(store, id, conclude(c, status));
 }
