@@ -2,9 +2,12 @@
 #ifndef COST_H
 #define COST_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "engine/pound.h"
+#include "schema/problems.h"
 
 struct cost {
 	int64_t runs; /* pounding runs asked for, before anything is shared */
@@ -13,5 +16,8 @@ struct cost {
 };
 
 struct cost cost_of(const struct pound_study *study);
+bool cost_allowed(const struct cost *cost, const struct cost *most, struct problems *problems);
+char *cost_to_json(const struct cost *cost, const struct pound_study *study,
+                   size_t *length); /* NULL: no memory */
 
 #endif

@@ -74,6 +74,8 @@ static enum MHD_Result look_for_etag(void *of, enum MHD_ValueKind kind, const ch
 bool http_known(const struct request *request, const char *etag)
 {
 	struct search search = {.etag = etag};
+	if (strcmp(api_operations[request->operation].method, "GET") != 0)
+		return false;
 	MHD_get_connection_values(request->connection, MHD_HEADER_KIND, look_for_etag, &search);
 	return search.found;
 }
@@ -83,11 +85,6 @@ static double wait_until(const struct request *request)
 	const char *prefer = http_header(request, "Prefer");
 	int seconds = prefer ? head_wait(prefer) : 0, most = request->server->options->wait_max;
 	return request->arrived + (seconds < most ? seconds : most);
-}
-
-bool http_waits(const struct request *request)
-{
-	return connection_now() < wait_until(request);
 }
 
 /* The reply that says what is wrong with a request.
@@ -316,7 +313,13 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 		reply = http_problem(API_TOO_LARGE, "a study document has at most 1 MiB", NULL);
 	else if (!refused(request, &reply))
 		reply = routes_answer(request);
-	if (reply.status != REPLY_WAIT)
+	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag)) {
+		free(reply.body);
+		reply.body = NULL;
+		reply.length = 0;
+		reply.status = 304;
+	}
+	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
 		return send_reply(request, &reply);
 	MHD_suspend_connection(connection);
 	connection_wait(server->connections, connection_of(connection), connection, request->id, reply.changes,

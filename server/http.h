@@ -16,7 +16,6 @@ struct server {
 	const struct options *options;
 	struct store *store;
 	struct work *work;
-	struct cache *cache;   /* of status objects */
 	struct tokens *tokens; /* NULL: there are none */
 	struct metrics metrics;
 	struct http *http;
@@ -42,8 +41,6 @@ struct request {
 	uint64_t number; /* told as X-Request-Id */
 };
 
-enum { REPLY_WAIT = 0 }; /* status of a reply that is not one yet: ask again when the study changes */
-
 struct reply {
 	int status;
 	const char *type; /* media type of the body */
@@ -52,14 +49,15 @@ struct reply {
 	char location[64]; /* "": no such header, likewise below */
 	char etag[64];
 	int retry_after;  /* [s], 0: none */
-	unsigned changes; /* of the study, before it was looked at: REPLY_WAIT */
+	bool waits;       /* who knows it already may wait for another, when the study has changed */
+	unsigned changes; /* of the study, before it was looked at */
 };
 
 const char *http_header(const struct request *request, const char *name); /* NULL: none */
 const char *http_argument(const struct request *request,
-                          const char *name);                      /* of ?name=value; NULL: what is absent */
-bool http_known(const struct request *request, const char *etag); /* an If-None-Match has it */
-bool http_waits(const struct request *request); /* it prefers to wait, and the time is not over */
+                          const char *name); /* of ?name=value; NULL: what is absent */
+bool http_known(const struct request *request,
+                const char *etag); /* a GET with an If-None-Match that has it */
 
 /* an application/problem+json reply; `problems` may be NULL */
 struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);

@@ -12,7 +12,6 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "server/cache.h"
 #include "server/http.h"
 #include "server/log.h"
 #include "server/options.h"
@@ -103,13 +102,11 @@ int main(int argc, char **argv)
 	struct server server = {.options = &options};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
-	server.cache = cache_open();
-	server.store = server.cache ? store_open(options.database) : NULL;
+	server.store = store_open(options.database);
 	if (!server.store)
 		return EXIT_FAILURE;
 	int status = serve(&server, &signals);
 	store_close(server.store);
-	cache_close(server.cache);
 	tokens_close(server.tokens);
 	return status;
 }

@@ -2,12 +2,14 @@
 #include "server/metrics.h"
 
 #include <stdio.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "engine/pound.h"
 #include "schema/writer.h"
+#include "server/connection.h"
+#include "server/http.h"
+#include "server/store.h"
 
 static const double bounds[METRICS_BUCKETS] = {0.001, 0.005, 0.02, 0.1, 0.5, 2.5, 10}; /* [s] */
 
@@ -24,18 +26,16 @@ void metrics_answered(struct metrics *metrics, int operation, int status, double
 static void head(struct writer *w, const char *name, const char *type, const char *text)
 {
 	char line[256];
-	writer_raw(w, line,
-	           (size_t)snprintf(line, sizeof line, "# HELP %s %s\n# TYPE %s %s\n", name, text, name, type));
+	int n = snprintf(line, sizeof line, "# HELP %s %s\n# TYPE %s %s\n", name, text, name, type);
+	writer_raw(w, line, (size_t)n);
 }
 
+/* labels: `{status="queued"}`, "": none */
 static void sample(struct writer *w, const char *name, const char *labels, double value)
 {
 	char line[256], digits[WRITER_NUMBER_SIZE];
 	writer_digits(value, digits);
-	const char *open = labels ? "{" : "", *close = labels ? "}" : "";
-	writer_raw(w, line,
-	           (size_t)snprintf(line, sizeof line, "%s%s%s%s %s\n", name, open, labels ? labels : "", close,
-	                            digits));
+	writer_raw(w, line, (size_t)snprintf(line, sizeof line, "%s%s %s\n", name, labels, digits));
 }
 
 static void answers(struct writer *w, const struct metrics *metrics)
@@ -48,7 +48,7 @@ static void answers(struct writer *w, const struct metrics *metrics)
 			unsigned long n = metrics->answers[o][status];
 			const struct api_operation *operation = o < API_N_OPERATIONS ? &api_operations[o] : &none;
 			char labels[128];
-			snprintf(labels, sizeof labels, "method=\"%s\",path=\"%s\",code=\"%d\"", operation->method,
+			snprintf(labels, sizeof labels, "{method=\"%s\",path=\"%s\",code=\"%d\"}", operation->method,
 			         operation->path, status);
 			if (n > 0)
 				sample(w, name, labels, (double)n);
@@ -61,64 +61,73 @@ static void durations(struct writer *w, const struct metrics *metrics)
 	head(w, "pound_http_request_duration_seconds", "histogram",
 	     "Time from a request's headers to its answer.");
 	for (int b = 0; b <= METRICS_BUCKETS; b++) {
-		char label[48];
+		char label[48] = "{le=\"+Inf\"}";
 		sum += metrics->buckets[b];
 		if (b < METRICS_BUCKETS)
-			snprintf(label, sizeof label, "le=\"%g\"", bounds[b]);
-		else
-			strcpy(label, "le=\"+Inf\"");
+			snprintf(label, sizeof label, "{le=\"%g\"}", bounds[b]);
 		sample(w, "pound_http_request_duration_seconds_bucket", label, (double)sum);
 	}
-	sample(w, "pound_http_request_duration_seconds_sum", NULL, 1e-6 * (double)metrics->microseconds);
-	sample(w, "pound_http_request_duration_seconds_count", NULL, (double)sum);
+	sample(w, "pound_http_request_duration_seconds_sum", "", 1e-6 * (double)metrics->microseconds);
+	sample(w, "pound_http_request_duration_seconds_count", "", (double)sum);
 }
 
-static void value(struct writer *w, const struct metrics_value *of)
+/* Those of a status that cannot be counted are left out. */
+static void studies(struct writer *w, struct store *store)
 {
-	if (of->text)
-		head(w, of->name, of->type, of->text);
-	sample(w, of->name, of->label, of->value);
+	static const char *const states[] = {"queued", "running", "succeeded", "failed", "cancelled"};
+	head(w, "pound_studies", "gauge", "Studies, by status.");
+	for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
+		int64_t n;
+		char label[32];
+		snprintf(label, sizeof label, "{status=\"%s\"}", states[i]);
+		if (store_count(store, states[i], NULL, &n) == STORE_OK)
+			sample(w, "pound_studies", label, (double)n);
+	}
 }
 
-/* What every program tells. */
-static void process(struct writer *w)
+static double resident_bytes(void)
 {
-	struct timespec cpu;
 	long pages = 0;
 	FILE *file = fopen("/proc/self/statm", "re");
 	if (file && fscanf(file, "%*d %ld", &pages) != 1)
 		pages = 0;
 	if (file)
 		fclose(file);
-	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-	const struct metrics_value values[] = {
-	    {"process_cpu_seconds_total", "counter", NULL, "Processor time.",
-	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
-	    {"process_resident_memory_bytes", "gauge", NULL, "Resident memory.",
-	     (double)pages * (double)sysconf(_SC_PAGESIZE)},
-	    {"pound_build_info", "gauge", "version=\"" POUND_VERSION "\"", "Which poundd this is.", 1},
-	};
-	for (size_t i = 0; i < sizeof values / sizeof values[0]; i++)
-		value(w, &values[i]);
+	return (double)pages * (double)sysconf(_SC_PAGESIZE);
 }
 
 /* The text that Prometheus reads.
  *
- * Given    values   (n)   those of one name stand together
  * Returns  value    (length) bytes; NULL: out of memory
  * Memory   allocates; the caller frees
  *
  * Source   Prometheus, Exposition formats, text format 0.0.4
  * Test     service_metrics: the_text_keeps_the_rules_of_prometheus
  */
-char *metrics_text(const struct metrics *metrics, const struct metrics_value *values, int n, size_t *length)
+char *metrics_text(const struct server *server, size_t *length)
 {
+	struct timespec cpu;
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+	const struct {
+		const char *name, *type, *labels, *text;
+		double value;
+	} values[] = {
+	    {"pound_http_connections", "gauge", "", "Open connections.", connections_open(server->connections)},
+	    {"pound_http_connections_late_total", "counter", "", "Connections closed for being too slow.",
+	     connections_late(server->connections)},
+	    {"process_cpu_seconds_total", "counter", "", "Processor time.",
+	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
+	    {"process_resident_memory_bytes", "gauge", "", "Resident memory.", resident_bytes()},
+	    {"pound_build_info", "gauge", "{version=\"" POUND_VERSION "\"}", "Which poundd this is.", 1},
+	};
 	struct writer w;
 	writer_init(&w);
-	answers(&w, metrics);
-	durations(&w, metrics);
-	for (int i = 0; i < n; i++)
-		value(&w, &values[i]);
-	process(&w);
+	answers(&w, &server->metrics);
+	durations(&w, &server->metrics);
+	studies(&w, server->store);
+	for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+		head(&w, values[i].name, values[i].type, values[i].text);
+		sample(&w, values[i].name, values[i].labels, values[i].value);
+	}
 	return writer_take(&w, length);
 }

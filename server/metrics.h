@@ -15,22 +15,15 @@ enum {
 
 struct metrics {
 	atomic_ulong answers[METRICS_OPERATIONS][METRICS_STATUSES];
-	atomic_ulong
-	    buckets[METRICS_BUCKETS + 1]; /* answers by the time they took; the last: longer than all bounds */
-	atomic_ulong microseconds;        /* of all of them */
+	atomic_ulong buckets[METRICS_BUCKETS + 1]; /* by the time they took; the last: longer than all bounds */
+	atomic_ulong microseconds;                 /* of all of them */
 };
 
 /* an answer was given; `operation` is a row of api_operations or -1 */
 void metrics_answered(struct metrics *metrics, int operation, int status, double seconds);
 
-/* a value that is looked up when asked for */
-struct metrics_value {
-	const char *name, *type, *label,
-	    *text; /* label: `status="queued"`, NULL: none; text: NULL for the next of a name */
-	double value;
-};
-
 /* The text format 0.0.4 (heap, NULL: out of memory). */
-char *metrics_text(const struct metrics *metrics, const struct metrics_value *values, int n, size_t *length);
+struct server;
+char *metrics_text(const struct server *server, size_t *length);
 
 #endif

@@ -14,9 +14,8 @@
 #include "schema/problems.h"
 #include "schema/result_json.h"
 #include "schema/study_json.h"
+#include "schema/study_status.h"
 #include "schema/writer.h"
-#include "server/cache.h"
-#include "server/connection.h"
 #include "server/http.h"
 #include "server/store.h"
 #include "server/work.h"
@@ -33,44 +32,40 @@ static struct reply problem(enum api_fault fault, const char *detail)
 	return http_problem(fault, detail, NULL);
 }
 
-static struct reply no_study(void)
-{
-	return problem(API_NOT_FOUND, "there is no such study");
-}
-
 static struct reply no_memory(void)
 {
 	return problem(API_UNAVAILABLE, "out of memory");
 }
 
-static struct reply unavailable(void)
+/* 200 and what was made, if there was memory for it. */
+static struct reply made(const char *type, char *body, size_t length)
 {
-	return problem(API_UNAVAILABLE, "the database does not answer; please try again");
+	if (!body)
+		return no_memory();
+	return (struct reply){.status = 200, .type = type, .body = body, .length = length};
 }
 
-static struct reply full(void)
-{
-	return problem(API_UNAVAILABLE, "the disk has no room for new studies");
-}
-
-/* 200 and what was written. */
 static struct reply written(struct writer *writer)
 {
-	struct reply reply = {.status = 200, .type = "application/json"};
-	reply.body = writer_take(writer, &reply.length);
-	return reply.body ? reply : no_memory();
+	size_t length;
+	char *body = writer_take(writer, &length);
+	return made("application/json", body, length);
 }
 
-/* The reply, or 304 when the client has it. */
-static struct reply unless_known(const struct request *request, struct reply reply)
+/* What the store says no with. */
+static struct reply refusal(enum store_status status)
 {
-	if (reply.status != 200 || !http_known(request, reply.etag))
-		return reply;
-	free(reply.body);
-	reply.status = 304;
-	reply.body = NULL;
-	reply.length = 0;
-	return reply;
+	static const struct {
+		enum api_fault fault;
+		const char *detail;
+	} refusals[] = {
+	    [STORE_NONE] = {API_NOT_FOUND, "there is no such study"},
+	    [STORE_CORRUPT] = {API_CORRUPT, "the stored bytes are damaged"},
+	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
+	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key came with another body before"},
+	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
+	};
+	return problem(refusals[status].fault, refusals[status].detail);
 }
 
 /* Studies being written, one after the other. */
@@ -80,55 +75,22 @@ struct page {
 	int room;  /* studies to write yet */
 	bool more; /* one came when there was no room */
 	// of the one written last
-	int64_t last;    /* its id */
-	char status[16]; /* its status */
-	char etag[64];
+	int64_t id;
+	char status[16], etag[64];
 	double eta_s; /* [s] NAN: unknown */
 };
 
-static void status_object(void *to, const struct store_study *study)
+static void write_status(void *to, const struct study_status *study)
 {
-	static const char *const links[] = {"request", "results", "samples", "cancel"};
 	struct page *page = to;
-	struct writer *w = &page->writer;
-	char id[17], link[64];
-	if (page->room-- <= 0) {
-		page->more = true;
+	page->more = page->room-- <= 0;
+	if (page->more)
 		return;
-	}
-	bool succeeded = !strcmp(study->status, "succeeded");
-	bool running = !strcmp(study->status, "running");
-	int64_t runs_done = succeeded ? study->runs : study->runs_done;
-	int64_t runs_left = study->runs - runs_done;
-	page->last = study->id;
-	page->eta_s = running && runs_done > 0
-	                  ? study->cpu_s / (double)runs_done * (double)runs_left / page->n_workers
-	                  : NAN;
-	snprintf(id, sizeof id, "%016" PRIx64, (uint64_t)study->id);
+	page->id = study->id;
+	page->eta_s = study_status_eta(study, page->n_workers);
 	snprintf(page->status, sizeof page->status, "%s", study->status);
-	snprintf(page->etag, sizeof page->etag, "\"%s-%" PRId64 "\"", study->status, runs_done);
-	writer_object(w, NULL, WRITER_LINES);
-	writer_text(w, "id", id);
-	writer_text(w, "name", study->name);
-	writer_text(w, "kind", study->kind);
-	writer_text(w, "status", study->status);
-	writer_number(w, "progress", (double)runs_done / (double)study->runs);
-	writer_whole(w, "runs_done", runs_done);
-	writer_whole(w, "runs_total", study->runs);
-	writer_number(w, "eta_s", page->eta_s);
-	writer_text(w, "created", study->created);
-	writer_text(w, "started", study->started);
-	writer_text(w, "finished", study->finished);
-	writer_text(w, "error", study->error);
-	writer_object(w, "links", WRITER_LINE);
-	snprintf(link, sizeof link, "/v1/studies/%s", id);
-	writer_text(w, "self", link);
-	for (size_t i = 0; i < sizeof links / sizeof links[0]; i++) {
-		snprintf(link, sizeof link, "/v1/studies/%s/%s", id, links[i]);
-		writer_text(w, links[i], link);
-	}
-	writer_end(w);
-	writer_end(w);
+	snprintf(page->etag, sizeof page->etag, "\"%s-%" PRId64 "\"", study->status, study->runs_done);
+	study_status_write(&page->writer, study, page->eta_s);
 }
 
 static void page_init(struct page *page, const struct request *request, int room)
@@ -137,92 +99,34 @@ static void page_init(struct page *page, const struct request *request, int room
 	writer_init(&page->writer);
 }
 
-/* What was written so far is not wanted; it may be half an object. */
-static void page_drop(struct page *page)
+/* The reply when there was no study to write; what was written so far is not wanted. */
+static struct reply page_drop(struct page *page, enum store_status status)
 {
 	free(page->writer.text);
+	return refusal(status);
 }
 
 /* The status object of the request's study, and what is known of it besides. */
 static struct reply look(const struct request *request, struct page *page)
 {
 	page_init(page, request, 1);
-	enum store_status found = store_study(request->server->store, request->id, status_object, page);
-	if (found != STORE_OK) {
-		page_drop(page);
-		return found == STORE_NONE ? no_study() : unavailable();
-	}
+	enum store_status found = store_study(request->server->store, request->id, write_status, page);
+	if (found != STORE_OK)
+		return page_drop(page, found);
 	struct reply reply = written(&page->writer);
 	memcpy(reply.etag, page->etag, sizeof reply.etag);
 	return reply;
 }
 
-/* The status object, from the cache when nothing has changed since it was put there. */
-static struct reply look_again(const struct request *request, unsigned changes)
-{
-	struct page page;
-	struct cached told;
-	struct reply reply = {.status = 200, .type = "application/json"};
-	if (cache_find(request->server->cache, request->id, changes, &told)) {
-		reply.body = malloc(told.length);
-		reply.length = told.length;
-		memcpy(reply.etag, told.etag, sizeof reply.etag);
-		if (!reply.body)
-			return no_memory();
-		memcpy(reply.body, told.body, told.length);
-		return reply;
-	}
-	reply = look(request, &page);
-	if (reply.status != 200 || reply.length > CACHE_BODY_MAX)
-		return reply;
-	told.id = request->id;
-	told.changes = changes;
-	told.length = reply.length;
-	memcpy(told.etag, reply.etag, sizeof told.etag);
-	memcpy(told.body, reply.body, reply.length);
-	cache_keep(request->server->cache, &told);
-	return reply;
-}
-
 static struct reply status(struct request *request)
 {
+	struct page page;
+	// before the look, so that no change is missed by who waits for one
 	unsigned changes = store_changes(request->server->store, request->id);
-	struct reply reply = unless_known(request, look_again(request, changes));
+	struct reply reply = look(request, &page);
+	reply.waits = true;
 	reply.changes = changes;
-	if (reply.status == 304 && http_waits(request))
-		reply.status = REPLY_WAIT;
 	return reply;
-}
-
-static struct reply estimate(const struct pound_study *study, const struct cost *cost)
-{
-	struct writer w;
-	writer_init(&w);
-	writer_object(&w, NULL, WRITER_LINES);
-	writer_text(&w, "kind", study_kind_name(study->kind));
-	writer_whole(&w, "runs_total", cost->runs);
-	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
-	writer_number(&w, "estimated_bytes", ceil(cost->bytes));
-	writer_end(&w);
-	return written(&w);
-}
-
-/* Every limit that a study would go over. */
-static void check_cost(const struct options *options, const struct cost *cost, struct problems *problems)
-{
-	const struct {
-		double asked, most;
-		const char *what, *option;
-	} limits[] = {
-	    {(double)cost->runs, options->runs_max, "pounding runs", "runs-max"},
-	    {cost->cpu_s, options->cpu_max, "estimated seconds of one core", "cpu-max"},
-	    {cost->bytes / MIB, options->result_max, "estimated MiB in the database", "result-max"},
-	};
-	problems_init(problems);
-	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
-		if (limits[i].asked > limits[i].most)
-			problems_add(problems, "", "asks for %.6g %s, this server takes at most %.6g (--%s)",
-			             limits[i].asked, limits[i].what, limits[i].most, limits[i].option);
 }
 
 static struct reply invalid(const struct problems *problems)
@@ -241,56 +145,40 @@ static struct reply invalid(const struct problems *problems)
 	return no_memory();
 }
 
-/* Whether the queue has room for one more study of a client; the reply when it has not. */
-static bool roomy(const struct request *request, struct reply *reply)
+/* Queues a study for a client, if there is room for one more. */
+static struct reply queue(struct request *request, const struct pound_study *study)
 {
 	struct store *store = request->server->store;
 	const struct options *options = request->server->options;
-	int64_t all, own = 0;
-	if (store_count(store, "queued", NULL, &all) == STORE_FAILED ||
-	    (request->token && store_count(store, "queued", request->token, &own) == STORE_FAILED))
-		*reply = unavailable();
-	else if (all >= options->queue_max)
-		*reply = problem(API_UNAVAILABLE, "as many studies are queued as this server takes");
-	else if (own >= options->queue_token_max)
-		*reply = problem(API_TOO_MANY, "as many studies are queued as this server takes from one token");
-	else
-		return true;
-	return false;
-}
-
-static struct reply queue(struct request *request, const struct pound_study *study)
-{
-	struct server *server = request->server;
-	const char *key = http_header(request, "Idempotency-Key");
+	const char *key = http_header(request, "Idempotency-Key"), *client = request->token;
 	char hash[STUDY_HASH_SIZE], own_key[KEY_MAX + 32];
+	int64_t all, own = 0, id;
 	// two clients may choose the same key
-	snprintf(own_key, sizeof own_key, "%s %s", request->token ? request->token : "", key ? key : "");
-	struct store_study row = {.kind = study_kind_name(study->kind),
-	                          .name = study->name,
-	                          .runs = study_runs(study),
-	                          .key = key ? own_key : NULL,
-	                          .client = request->token};
-	int64_t id;
-	struct reply reply;
+	snprintf(own_key, sizeof own_key, "%s %s", client ? client : "", key ? key : "");
 	if (key && (!*key || strlen(key) > KEY_MAX))
 		return problem(API_BAD_REQUEST, "an Idempotency-Key has 1 to 200 characters");
 	if (!study_hash(study, hash))
 		return no_memory();
-	if (!roomy(request, &reply))
-		return reply;
-	enum store_status submitted =
-	    store_submit(server->store, &row, hash, request->body, request->length, &id);
-	if (submitted == STORE_CLASH)
-		return problem(API_KEY_REUSED, "this Idempotency-Key came with another body before");
-	if (submitted == STORE_FULL)
-		return full();
+	if (store_count(store, "queued", NULL, &all) != STORE_OK ||
+	    (client && store_count(store, "queued", client, &own) != STORE_OK))
+		return refusal(STORE_FAILED);
+	if (all >= options->queue_max)
+		return problem(API_UNAVAILABLE, "as many studies are queued as this server takes");
+	if (own >= options->queue_token_max)
+		return problem(API_TOO_MANY, "as many studies are queued as this server takes from one token");
+	const struct store_study row = {.kind = study_kind_name(study->kind),
+	                                .name = study->name,
+	                                .runs = study_runs(study),
+	                                .hash = hash,
+	                                .key = key ? own_key : NULL,
+	                                .client = client};
+	enum store_status submitted = store_submit(store, &row, request->body, request->length, &id);
 	if (submitted != STORE_OK && submitted != STORE_REPEATED)
-		return unavailable();
+		return refusal(submitted);
 	struct page page;
 	request->id = id;
-	reply = look(request, &page);
-	work_wake(server->work);
+	struct reply reply = look(request, &page);
+	work_wake(request->server->work);
 	reply.status = reply.status == 200 ? 201 : reply.status;
 	snprintf(reply.location, sizeof reply.location, "/v1/studies/%016" PRIx64, (uint64_t)id);
 	return reply;
@@ -302,13 +190,19 @@ static struct reply submit(struct request *request)
 	struct pound_study *study = study_from_json(request->body, request->length, &problems);
 	if (!study)
 		return invalid(&problems);
-	const struct cost cost = cost_of(study);
-	check_cost(request->server->options, &cost, &problems);
-	struct reply reply =
-	    problems.n ? http_problem(API_TOO_COSTLY, "the study is over limits of this server, listed in errors",
-	                              &problems)
-	    : !strcmp(http_argument(request, "validate_only"), "true") ? estimate(study, &cost)
-	                                                               : queue(request, study);
+	const struct options *options = request->server->options;
+	const struct cost cost = cost_of(study),
+	                  most = {options->runs_max, options->cpu_max, (double)options->result_max * MIB};
+	struct reply reply;
+	size_t length;
+	if (!cost_allowed(&cost, &most, &problems))
+		reply = http_problem(API_TOO_COSTLY, "the study is over limits of this server, listed in errors",
+		                     &problems);
+	else if (!strcmp(http_argument(request, "validate_only"), "true")) {
+		char *body = cost_to_json(&cost, study, &length);
+		reply = made("application/json", body, length);
+	} else
+		reply = queue(request, study);
 	study_free(study);
 	return reply;
 }
@@ -327,12 +221,11 @@ static struct reply list(struct request *request)
 	writer_object(&page.writer, NULL, WRITER_LINES);
 	writer_array(&page.writer, "studies", WRITER_LINES);
 	// one more than fits, to see whether there is a next page
-	if (store_list(request->server->store, http_argument(request, "status"), before, limit + 1, status_object,
-	               &page) == STORE_FAILED) {
-		page_drop(&page);
-		return unavailable();
-	}
-	snprintf(next, sizeof next, "%016" PRIx64, (uint64_t)page.last);
+	enum store_status listed = store_list(request->server->store, http_argument(request, "status"), before,
+	                                      limit + 1, write_status, &page);
+	if (listed == STORE_FAILED)
+		return page_drop(&page, listed);
+	snprintf(next, sizeof next, "%016" PRIx64, (uint64_t)page.id);
 	writer_end(&page.writer);
 	writer_text(&page.writer, "next", page.more ? next : NULL);
 	writer_end(&page.writer);
@@ -357,33 +250,36 @@ static struct reply not_ready(struct request *request)
 /* A stored document as it is; its status when that is not 200. */
 static struct reply document(struct request *request, const char *name)
 {
-	struct reply reply = {.status = 200, .type = "application/json"};
-	enum store_status found =
-	    store_document(request->server->store, request->id, name, &reply.body, &reply.length);
-	return found == STORE_OK        ? reply
-	       : found == STORE_NONE    ? not_ready(request)
-	       : found == STORE_CORRUPT ? problem(API_CORRUPT, "the stored bytes are damaged")
-	                                : unavailable();
+	char *content;
+	size_t length;
+	enum store_status found = store_document(request->server->store, request->id, name, &content, &length);
+	return found == STORE_OK     ? made("application/json", content, length)
+	       : found == STORE_NONE ? not_ready(request)
+	                             : refusal(found);
 }
 
 static struct reply posted(struct request *request)
 {
 	struct reply reply = document(request, "request");
-	if (reply.status == 200)
-		strcpy(reply.etag, "\"request\"");
-	return unless_known(request, reply);
+	strcpy(reply.etag, reply.status == 200 ? "\"request\"" : "");
+	return reply;
 }
 
-/* Whether the second of two formats is asked for, by ?format= or Accept; a result never changes, so that format and
- * version are its tag. */
-static bool second(const struct request *request, const char *const types[2], const char *const names[2],
+struct format {
+	const char *name, *type;
+};
+
+/* Whether the second of two formats is asked for, by ?format= or Accept, and the reply that a body of it will be.  A
+ * result never changes, so that format and version are its tag; one of so many rows alone has these, too. */
+static bool second(const struct request *request, const struct format formats[2], int rows,
                    struct reply *reply)
 {
 	const char *name = http_argument(request, "format"), *accept = http_header(request, "Accept");
-	bool is = name ? !strcmp(name, names[1])
-	               : accept && strcasestr(accept, types[1]) && !strcasestr(accept, types[0]);
-	*reply = (struct reply){.status = 200, .type = types[is]};
-	snprintf(reply->etag, sizeof reply->etag, "\"%s-%s\"", names[is], POUND_VERSION);
+	bool is = name ? !strcmp(name, formats[1].name)
+	               : accept && strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
+	*reply = (struct reply){.status = 200, .type = formats[is].type};
+	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%s-%d\"" : "\"%s-%s\"", formats[is].name,
+	         POUND_VERSION, rows);
 	return is;
 }
 
@@ -391,21 +287,22 @@ static bool second(const struct request *request, const char *const types[2], co
 static struct reply so_far(struct request *request, struct reply unready, int *rows)
 {
 	struct work_run opened;
-	struct reply reply = {.status = 200};
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
 	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
 	*rows = sampled ? pound_run_rows_done(opened.run, opened.stored) : 0;
 	if (*rows > 0) {
 		enum pound_status status = POUND_OK;
+		size_t length = 0;
+		char *body = NULL;
 		pound_run_rows_take(opened.run, *rows);
 		for (int k = 0; k < pound_run_reductions(opened.run) && !status; k++)
 			status = pound_run_reduce(opened.run, k, 0);
 		if (!status)
-			reply.body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &reply.length);
+			body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &length);
 		free(unready.body);
-		unready = status == POUND_NOMEM || (!status && !reply.body) ? no_memory()
-		          : status ? problem(API_CONFLICT, "none of the runs so far has a result")
-		                   : reply;
+		unready = !status || status == POUND_NOMEM
+		              ? made("application/json", body, length)
+		              : problem(API_CONFLICT, "none of the runs so far has a result");
 	}
 	work_close(&opened);
 	return unready;
@@ -413,36 +310,32 @@ static struct reply so_far(struct request *request, struct reply unready, int *r
 
 static struct reply results(struct request *request)
 {
-	static const char *const types[] = {"application/json", "text/csv"}, *const names[] = {"json", "csv"};
+	static const struct format formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
 	struct reply reply, json = document(request, "result");
 	int rows = 0;
 	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true"))
 		json = so_far(request, json, &rows);
 	if (json.status != 200)
 		return json;
-	bool csv = second(request, types, names, &reply);
-	if (rows > 0)
-		snprintf(reply.etag, sizeof reply.etag, "\"%s-%s-%d\"", names[csv], POUND_VERSION, rows);
+	bool csv = second(request, formats, rows, &reply);
 	reply.body = csv ? result_to_csv(json.body, json.length, &reply.length) : json.body;
 	if (csv)
 		free(json.body);
 	else
 		reply.length = json.length;
-	return reply.body ? unless_known(request, reply) : no_memory();
+	return reply.body ? reply : no_memory();
 }
 
 static struct reply samples(struct request *request)
 {
-	static const char *const types[] = {"text/csv", "application/octet-stream"}, *const names[] = {"csv",
-	                                                                                               "npy"};
+	static const struct format formats[] = {{"csv", "text/csv"}, {"npy", "application/octet-stream"}};
 	// a result says that all blocks are there
 	struct reply reply = document(request, "result");
 	if (reply.status != 200)
 		return reply;
 	free(reply.body);
-	bool npy = second(request, types, names, &reply);
-	reply = unless_known(request, reply);
-	if (reply.status != 200)
+	bool npy = second(request, formats, 0, &reply);
+	if (http_known(request, reply.etag))
 		return reply;
 	struct work_run opened;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
@@ -471,7 +364,7 @@ static struct reply cancel(struct request *request)
 {
 	enum store_status cancelled = store_cancel(request->server->store, request->id);
 	if (cancelled == STORE_FAILED)
-		return unavailable();
+		return refusal(cancelled);
 	if (cancelled == STORE_OK)
 		work_drop(request->server->work, request->id);
 	struct page page;
@@ -486,21 +379,16 @@ static struct reply erase(struct request *request)
 {
 	enum store_status deleted = store_delete(request->server->store, request->id);
 	if (deleted != STORE_OK)
-		return deleted == STORE_NONE ? no_study() : unavailable();
+		return refusal(deleted);
 	work_drop(request->server->work, request->id);
 	return (struct reply){.status = 204};
 }
 
 static struct reply version(struct request *request)
 {
-	struct writer w;
+	static const char text[] = "{\"name\": \"poundd\", \"version\": \"" POUND_VERSION "\"}\n";
 	(void)request;
-	writer_init(&w);
-	writer_object(&w, NULL, WRITER_LINE);
-	writer_text(&w, "name", "poundd");
-	writer_text(&w, "version", POUND_VERSION);
-	writer_end(&w);
-	return written(&w);
+	return made("application/json", strdup(text), sizeof text - 1);
 }
 
 static struct reply live(struct request *request)
@@ -511,38 +399,24 @@ static struct reply live(struct request *request)
 static struct reply ready(struct request *request)
 {
 	enum store_status ready = store_ready(request->server->store);
-	return ready == STORE_OK ? version(request) : ready == STORE_FULL ? full() : unavailable();
+	return ready == STORE_OK ? version(request) : refusal(ready);
 }
 
 static struct reply metrics(struct request *request)
 {
-	static const char *const states[] = {"queued", "running", "succeeded", "failed", "cancelled"};
-	enum { STATES = sizeof states / sizeof states[0], ALL = STATES + 2 };
-	struct server *server = request->server;
-	struct metrics_value values[ALL] = {
-	    [STATES] = {"pound_http_connections", "gauge", NULL, "Open connections.",
-	                connections_open(server->connections)},
-	    [STATES + 1] = {"pound_http_connections_late_total", "counter", NULL,
-	                    "Connections closed for being too slow.", connections_late(server->connections)}};
-	char labels[STATES][32];
-	for (int i = 0; i < STATES; i++) {
-		int64_t n;
-		if (store_count(server->store, states[i], NULL, &n) == STORE_FAILED)
-			return unavailable();
-		snprintf(labels[i], sizeof labels[i], "status=\"%s\"", states[i]);
-		values[i] = (struct metrics_value){"pound_studies", "gauge", labels[i],
-		                                   i ? NULL : "Studies, by status.", (double)n};
-	}
-	struct reply reply = {.status = 200, .type = "text/plain; version=0.0.4; charset=utf-8"};
-	reply.body = metrics_text(&server->metrics, values, ALL, &reply.length);
-	return reply.body ? reply : no_memory();
+	size_t length;
+	char *body = metrics_text(request->server, &length);
+	return made("text/plain; version=0.0.4; charset=utf-8", body, length);
 }
 
 static struct reply openapi(struct request *request)
 {
-	struct reply reply = {.status = 200, .type = "application/json", .etag = "\"" POUND_VERSION "\""};
-	reply.body = api_document(&reply.length);
-	return reply.body ? unless_known(request, reply) : no_memory();
+	size_t length;
+	char *body = api_document(&length);
+	struct reply reply = made("application/json", body, length);
+	strcpy(reply.etag, reply.status == 200 ? "\"" POUND_VERSION "\"" : "");
+	(void)request;
+	return reply;
 }
 
 /* Answers a request.

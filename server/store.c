@@ -31,7 +31,7 @@ enum {
 #define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
 #define STUDY_ROW                                                                                         \
 	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
-	"error, runs, runs_done, cpu_s FROM study "
+	"error, runs, iif(status = 'succeeded', runs, runs_done), cpu_s FROM study "
 #define QUEUED "SELECT id FROM study WHERE status = 'queued' "
 // what bytes are checked with: where they belong, and themselves; a block belongs to the version that made it, too
 #define DOCUMENT_DIGEST(study, name, content) "digest(" name " || ' ' || " study " || ' ', " content ")"
@@ -281,9 +281,7 @@ static enum store_status keyed(struct database *c, const char *key, const char *
 
 /* Queues a new study; it is on the disk when this returns.
  *
- * Given    study     its kind, name, runs and key; the rest is not read
- *          hash      of its meaning, hex
- *          request   (length) bytes   as the client sent them
+ * Given    request   (length) bytes   as the client sent them
  * Returns  id        of the study, or of the one that has the key
  * Status   STORE_REPEATED these bytes were submitted with the key before: nothing new is stored
  *          STORE_CLASH    other bytes were
@@ -291,8 +289,8 @@ static enum store_status keyed(struct database *c, const char *key, const char *
  *          STORE_FAILED   nothing is stored
  * Test     service_resume: accepted_studies_survive_sigkill
  */
-enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
-                               const char *request, size_t length, int64_t *id)
+enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
+                               size_t length, int64_t *id)
 {
 	bool roomy = disk_roomy(&store->disk);
 	struct database *c = writer(store);
@@ -303,8 +301,8 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 		status = run(c, bound(c, BEGIN, ""), NULL);
 		if (status != STORE_FAILED)
 			status = run(c,
-			             bound(c, SUBMIT, "ttittt", study->kind, study->name, study->runs, hash, study->key,
-			                   study->client),
+			             bound(c, SUBMIT, "ttittt", study->kind, study->name, study->runs, study->hash,
+			                   study->key, study->client),
 			             id);
 		if (status == STORE_OK)
 			status = run(c, bound(c, ADD, "itb", *id, "request", request, length), NULL);
@@ -322,7 +320,7 @@ static enum store_status studies(struct database *c, sqlite3_stmt *rows, store_s
 {
 	int n = 0;
 	for (; sqlite3_step(rows) == SQLITE_ROW; n++) {
-		const struct store_study study = {
+		const struct study_status study = {
 		    .id = sqlite3_column_int64(rows, 0),
 		    .status = text(rows, 1),
 		    .kind = text(rows, 2),

@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "schema/study_status.h"
+
 enum store_status {
 	STORE_OK,
 	STORE_NONE,     /* no such study or document, or the study is not in the state asked for */
@@ -20,28 +22,24 @@ enum store_status {
 
 struct store;
 
-/* Texts live as long as the call that hands them over. */
+/* a new one */
 struct store_study {
-	int64_t id;
-	const char *status, *kind, *name;         /* name: NULL if none */
-	const char *created, *started, *finished; /* RFC 3339 UTC, NULL: not yet */
-	const char *error;                        /* NULL unless failed */
-	int64_t runs, runs_done;
-	double cpu_s; /* of the blocks done [s] */
-	// only store_submit reads these
+	const char *kind, *name; /* name: NULL if none */
+	int64_t runs;
+	const char *hash;   /* of its meaning, hex */
 	const char *key;    /* Idempotency-Key it was submitted with, NULL: none */
 	const char *client; /* name of the token it was submitted with, NULL: there are none */
 };
-typedef void store_study_reader(void *to, const struct store_study *study);
+typedef void store_study_reader(void *to,
+                                const struct study_status *study); /* of texts that end with the call */
 
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
 void store_close(struct store *store);
 bool store_copy(const char *path, const char *to);  /* of a database that may be in use; false: logged */
 enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
 
-/* a new study, queued; `study` gives kind, name, runs and key */
-enum store_status store_submit(struct store *store, const struct store_study *study, const char *hash,
-                               const char *request, size_t length, int64_t *id);
+enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
+                               size_t length, int64_t *id);
 enum store_status store_study(struct store *store, int64_t id, store_study_reader *reader, void *to);
 /* newest first, those older than `before` (INT64_MAX: all) and of one status (NULL: any) */
 enum store_status store_list(struct store *store, const char *status, int64_t before, int limit,

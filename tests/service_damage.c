@@ -31,7 +31,7 @@ static void add_block(void *to, const struct store_block *block)
 		*(double *)to += block->values[i] * (block->number + 1);
 }
 
-static void ignore(void *to, const struct store_study *study)
+static void ignore(void *to, const struct study_status *study)
 {
 	// whatever the row says, it is a row
 	*(int *)to += study->status != NULL;

@@ -41,10 +41,10 @@ enum pound_status __wrap_pound_run_block(struct pound_run *run, int block, int w
 
 static void submit(struct store *store, int seed)
 {
-	const struct store_study study = {.kind = "sensitivity", .runs = 10};
+	const struct store_study study = {.kind = "sensitivity", .runs = 10, .hash = "hash"};
 	char *document = service_study(2, 1, seed);
 	int64_t id;
-	assert_int_equal(store_submit(store, &study, "hash", document, strlen(document), &id), STORE_OK);
+	assert_int_equal(store_submit(store, &study, document, strlen(document), &id), STORE_OK);
 	free(document);
 }
 

@@ -414,7 +414,7 @@ static void a_million_requests_and_a_thousand_studies_leave_nothing_behind(void 
 	int requests = (int)(1e6 * fmin(1, soak_s() / 60)), studies = requests / 1000, aborted = requests / 1000;
 	service_submit(service, study, id);
 	free(study);
-	// warm: a status in every place of the cache, and SQLite's pages
+	// warm: SQLite's pages
 	long_use(service, requests / 4, 700, aborted / 4, id);
 	double resident = resident_mb(service);
 	int files = open_files(service);
