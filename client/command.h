@@ -20,6 +20,7 @@ struct options {
 	const char *second;   /* indices: what stands behind that */
 	const char *url;      /* of the server */
 	const char *format;   /* one of the names the subcommand offers */
+	const char *table;    /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
 	const char *status;   /* list: only studies in this state; NULL: all */
 	const char *cursor;   /* list: where the previous page ended; NULL: the newest */
 	const char *samples;  /* run: file for every sample, or for the floor's history; NULL: none */
@@ -27,6 +28,7 @@ struct options {
 	int threads;          /* run */
 	bool wait;            /* submit */
 	bool names;           /* example */
+	bool partial;         /* results: of the rows so far, while the study runs */
 };
 
 enum outcome run_study(const struct options *options);

@@ -80,7 +80,7 @@ enum outcome model_indexes(const struct options *options)
 	char *csv = study ? document_read(options->second, &n_csv) : NULL;
 	if (csv) {
 		char *json = model_indices(study, csv, n_csv, &problems, &n);
-		outcome = json ? show_as(json, n, options->format) : document_reject(options->second, &problems);
+		outcome = json ? show_result(json, n, options) : document_reject(options->second, &problems);
 		free(json);
 	}
 	free(csv);

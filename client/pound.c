@@ -2,6 +2,7 @@
 #include "engine/pound.h"
 #include "client/command.h"
 #include "client/table.h"
+#include "schema/result_json.h"
 
 #include <argp.h>
 #include <errno.h>
@@ -27,9 +28,12 @@ struct command {
 	const char *more; /* for COMMAND --help */
 };
 
+#define TABLE(name) " " #name
+#define TABLES      RESULT_TABLES(TABLE)
+
 // clang-format off
 static const struct command COMMANDS[] = {
-	{"run", "STUDY.json", "tfo", false, {"json", "table", "csv"}, run_study,
+	{"run", "STUDY.json", "tfTo", false, {"json", "table", "csv"}, run_study,
 	 "compute a study here, without a server",
 	 "Prints the result on standard output: the same bytes as the server gives, `timing' aside.  "
 	 "Ctrl-C stops the study."},
@@ -37,7 +41,7 @@ static const struct command COMMANDS[] = {
 	 "print the rows of a study's design, to run elsewhere",
 	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
 	 "column j from B_i for every j.  The study may be without \"scene\": a model of your own."},
-	{"indices", "STUDY.json Y.csv", "f", false, {"json", "table", "csv"}, model_indexes,
+	{"indices", "STUDY.json Y.csv", "fT", false, {"json", "table", "csv"}, model_indexes,
 	 "the indexes of outputs computed elsewhere",
 	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
 	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number."},
@@ -48,7 +52,7 @@ static const struct command COMMANDS[] = {
 	 "how far a study is", ""},
 	{"wait", "ID", "uf", true, {"json", "table"}, query_wait,
 	 "follow a study until it has ended, then print its status", ""},
-	{"results", "ID", "uf", false, {"json", "table", "csv"}, query_results,
+	{"results", "ID", "ufTp", false, {"json", "table", "csv"}, query_results,
 	 "the result of a study that has succeeded", ""},
 	{"samples", "ID", "uf", false, {"csv", "npy"}, query_samples,
 	 "every input row of a study and its outputs", ""},
@@ -73,6 +77,8 @@ static const struct argp_option OPTIONS[] = {
 	{"names",   'n', NULL,     0, "print the names of the examples", 0},
 	{"url",     'u', "URL",    0, "the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "how the data is printed", 0},
+	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES "; without it, all as a table and inputs as csv", 0},
+	{"partial", 'p', NULL,     0, "of the rows that are complete so far, if the study still runs", 0},
 };
 // clang-format on
 
@@ -145,6 +151,16 @@ static void take_argument(struct argp_state *state, struct parsing *parsing, con
 	*(parsing->options.argument ? &parsing->options.second : &parsing->options.argument) = argument;
 }
 
+static void check_table(struct argp_state *state, const struct options *options)
+{
+	char *padded = command_text(" %s ", options->table ? options->table : "inputs");
+	if (strchr(padded + 1, ' ') != strrchr(padded, ' ') || !strstr(TABLES " ", padded))
+		argp_error(state, "no table '%s' here; there are:%s", options->table, TABLES);
+	if (options->table && strcmp(options->format, "json") == 0)
+		argp_error(state, "--table takes --format table or --format csv with it");
+	free(padded);
+}
+
 static error_t take_option(int key, char *value, struct argp_state *state)
 {
 	struct parsing *parsing = state->input;
@@ -182,10 +198,17 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 			}
 		argp_error(state, "no format '%s' here; see pound %s --help", value, parsing->command->name);
 		return 0;
+	case 'T':
+		options->table = value;
+		return 0;
+	case 'p':
+		options->partial = true;
+		return 0;
 	case ARGP_KEY_ARG:
 		take_argument(state, parsing, value);
 		return 0;
 	case ARGP_KEY_END:
+		check_table(state, options);
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
 			argp_error(state, "%s is missing", parsing->command->arguments);
 		if (!options->second && strchr(parsing->command->arguments, ' '))

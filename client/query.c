@@ -141,38 +141,56 @@ static const struct {
     {"npy", "application/octet-stream"},
 };
 
-/* What a study has brought forth, printed as it comes, or as a table. */
-static enum outcome product(const struct options *options, const char *rest)
+static const char *type_of(const char *format)
 {
-	struct wire *wire = wire_open(options->url);
-	struct wire_reply reply;
-	const char *type = NULL;
-	for (size_t i = 0; i < sizeof TYPES / sizeof TYPES[0]; i++)
-		if (strcmp(options->format, TYPES[i].format) == 0)
-			type = TYPES[i].type;
-	enum outcome outcome = answer_about(wire, "GET", options->argument, rest, type, &reply);
-	if (outcome == OUTCOME_OK && strcmp(options->format, "table") == 0)
-		outcome = show_result(reply.body, reply.n_body);
-	else if (outcome == OUTCOME_OK)
-		fwrite(reply.body, 1, reply.n_body, stdout);
-	else if (reply.status == HTTP_CONFLICT)
-		outcome = OUTCOME_STUDY_FAILED;
-	wire_reply_free(&reply);
-	wire_close(wire);
-	return outcome;
+	size_t i = 0;
+	while (strcmp(format, TYPES[i].format) != 0)
+		i++;
+	return TYPES[i].type;
 }
 
-/* `pound results ID`
+/* Exit status of a product that there will never be. */
+static enum outcome never(enum outcome outcome, const struct wire_reply *reply)
+{
+	return outcome != OUTCOME_OK && reply->status == HTTP_CONFLICT ? OUTCOME_STUDY_FAILED : outcome;
+}
+
+/* `pound results ID`: printed as it comes, or as a table.
  *
  * Returns  value   OUTCOME_STUDY_FAILED when there will never be a result, OUTCOME_FAILED when there is none yet
  */
 enum outcome query_results(const struct options *options)
 {
-	return product(options, "/results");
+	struct wire *wire = wire_open(options->url);
+	struct wire_reply reply;
+	bool csv = strcmp(options->format, "csv") == 0;
+	char *rest =
+	    command_text("/results?partial=%s%s%s", options->partial ? "true" : "false",
+	                 csv && options->table ? "&table=" : "", csv && options->table ? options->table : "");
+	enum outcome outcome =
+	    answer_about(wire, "GET", options->argument, rest, type_of(options->format), &reply);
+	if (outcome == OUTCOME_OK && !csv)
+		outcome = show_result(reply.body, reply.n_body, options);
+	else if (outcome == OUTCOME_OK)
+		fwrite(reply.body, 1, reply.n_body, stdout);
+	outcome = never(outcome, &reply);
+	free(rest);
+	wire_reply_free(&reply);
+	wire_close(wire);
+	return outcome;
 }
 
-/* `pound samples ID` */
+/* `pound samples ID`: printed as they come. */
 enum outcome query_samples(const struct options *options)
 {
-	return product(options, "/samples");
+	struct wire *wire = wire_open(options->url);
+	struct wire_reply reply;
+	enum outcome outcome =
+	    answer_about(wire, "GET", options->argument, "/samples", type_of(options->format), &reply);
+	if (outcome == OUTCOME_OK)
+		fwrite(reply.body, 1, reply.n_body, stdout);
+	outcome = never(outcome, &reply);
+	wire_reply_free(&reply);
+	wire_close(wire);
+	return outcome;
 }

@@ -176,7 +176,7 @@ static enum outcome run_and_print(const struct pound_study *study, const struct 
 	size_t n;
 	char *json = status == POUND_OK ? result_to_json(study, pound_run_result(run), &timing, &n) : NULL;
 	if (json)
-		outcome = show_as(json, n, options->format);
+		outcome = show_result(json, n, options);
 	else if (interrupted || status == POUND_OK || status == POUND_NOMEM) {
 		command_complain("%s", pound_status_text(interrupted ? POUND_STOPPED : POUND_NOMEM));
 		outcome = OUTCOME_FAILED;

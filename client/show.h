@@ -1,4 +1,4 @@
-/* show.h - a result as tables for people. */
+/* show.h - a result as JSON, as tables for people or as CSV. */
 #ifndef SHOW_H
 #define SHOW_H
 
@@ -6,10 +6,8 @@
 
 #include <stddef.h>
 
-/* Prints the JSON of a result on stdout; complains when it is none. */
-enum outcome show_result(const char *json, size_t length);
-
-/* Prints it as json, table or csv. */
-enum outcome show_as(const char *json, size_t length, const char *format);
+/* Prints the JSON of a result on stdout in the format of the options, or the table that they name; complains when it is no
+ * result or has no such table. */
+enum outcome show_result(const char *json, size_t length, const struct options *options);
 
 #endif

@@ -92,16 +92,39 @@ static void pad(int n)
 	printf("%*s", n > 0 ? n : 0, "");
 }
 
+void table_say(const char *text)
+{
+	char *tame = command_sure(strdup(text ? text : ""));
+	table_tame(tame);
+	fputs(tame, stdout);
+	free(tame);
+}
+
+void table_prose(int indent, const char *text)
+{
+	char *words = command_sure(strdup(text)), *rest;
+	int column = TABLE_WIDTH;
+	table_tame(words);
+	for (char *word = strtok_r(words, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+		int width = table_width(word);
+		bool fits = column + 1 + width <= TABLE_WIDTH;
+		if (!fits && word != words)
+			putchar('\n');
+		pad(fits ? 1 : indent);
+		fputs(word, stdout);
+		column = (fits ? column + 1 : indent) + width;
+	}
+	putchar('\n');
+	free(words);
+}
+
 /* Prints one cell in its column; the last column of text is not padded. */
 static void put(const char *text, int width, bool right, bool last)
 {
 	int blanks = width - table_width(text);
 	if (right)
 		pad(blanks);
-	char *tame = command_sure(strdup(text));
-	table_tame(tame);
-	fputs(tame, stdout);
-	free(tame);
+	table_say(text);
 	if (!right && !last)
 		pad(blanks);
 }

@@ -6,6 +6,8 @@
 
 struct table;
 
+enum { TABLE_WIDTH = 100 }; /* columns that what is printed for people keeps within */
+
 /* `names` are the column heads, ending with NULL; they are copied.  No function fails: no memory ends the program. */
 struct table *table_open(const char *const names[]);
 void table_text(struct table *table,
@@ -22,5 +24,10 @@ int table_width(const char *text);
 
 /* Puts '?' where a text would steer the terminal. */
 void table_tame(char *text);
+
+/* Prints a text that came from elsewhere, tamed; NULL: nothing. */
+void table_say(const char *text);
+/* Prints one in lines of at most TABLE_WIDTH columns, all `indent` blanks in. */
+void table_prose(int indent, const char *text);
 
 #endif

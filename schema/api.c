@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schema/fields.h"
+#include "schema/result_json.h"
 
 const struct api_fault_row api_faults[] = {
 #define X(name, status, type, title) [API_##name] = {status, type, title},
@@ -20,6 +21,8 @@ const unsigned api_faults_of_all =
 // clang-format off
 #define BODY   (F(MALFORMED) | F(NOT_JSON) | F(INVALID) | F(TOO_COSTLY) | F(KEY_REUSED) | F(TOO_MANY))
 #define STORED (F(NOT_FOUND) | F(CORRUPT))
+#define TABLE(name) " " #name
+#define TABLES RESULT_TABLES(TABLE) " "
 
 const struct api_operation api_operations[] = {
 	[API_submit]  = {"POST", "/v1/studies", "submit",
@@ -56,6 +59,7 @@ const struct api_argument api_arguments[] = {
 	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
 	{"results", "partial",         "query",  " true false ", 0, 0, "false", "true: of the rows that are complete so far, if there is no result yet"},
 	{"results", "format",          "query",  " json csv ", 0, 0, NULL, "wins over Accept"},
+	{"results", "table",           "query",  TABLES, 0, 0, NULL, "of a sensitivity result, as CSV; inputs when it is CSV and this is absent"},
 	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
 	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, "wins over Accept"},
 	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},

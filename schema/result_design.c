@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "schema/study_json.h"
+#include "schema/study_spectrum.h"
 
 #define X(name, text) text,
 static const char *const index_names[] = {POUND_INDEXES(X)};
@@ -30,6 +31,7 @@ static void write_look(struct writer *w, const char *name, const struct pound_st
                        const struct pound_result *result, const struct pound_look *look)
 {
 	const struct pound_cell *cell = &result->cells[look->cell];
+	char output[STUDY_OUTPUT_SIZE];
 	writer_object(w, name, WRITER_LINE);
 	writer_whole(w, "rows", look->rows);
 	writer_whole(w, "runs", runs_of(study, look->rows));
@@ -37,7 +39,7 @@ static void write_look(struct writer *w, const char *name, const struct pound_st
 	if (look->half_width >= 0) {
 		writer_text(w, "index", index_names[look->index]);
 		writer_text(w, "input", study->inputs[look->input].name);
-		writer_text(w, "output", pound_output_name(study->outputs[look->output]));
+		writer_text(w, "output", study_output_name(study, look->output, output));
 		writer_object(w, "sweep", WRITER_LINE);
 		for (int s = 0; s < study->n_sweeps; s++)
 			study_value(w, study->sweeps[s].path, study->sweeps[s].path, cell->sweep[s]);
@@ -53,7 +55,7 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 	const struct pound_until *until = &study->design.until;
 	const struct pound_look *last = &result->looks[result->n_looks - 1];
 	const bool reached = last->half_width <= until->half_width;
-	char note[400];
+	char note[400], output[STUDY_OUTPUT_SIZE];
 	int n = snprintf(note, sizeof note,
 	                 reached ? "every interval of S1 and ST reaches %.3g or less to either side of its index"
 	                         : "max_runs allows no more rows, and not every interval reaches %.3g or less to "
@@ -62,7 +64,7 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 	if (last->half_width >= 0)
 		snprintf(note + n, sizeof note - (size_t)n, "; the widest is that of %s of %s in %s",
 		         index_names[last->index], study->inputs[last->input].name,
-		         pound_output_name(study->outputs[last->output]));
+		         study_output_name(study, last->output, output));
 	writer_object(w, "stopping", WRITER_LINES);
 	writer_number(w, "half_width", until->half_width);
 	writer_whole(w, "max_runs", until->max_runs);

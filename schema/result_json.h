@@ -19,9 +19,12 @@ struct timing {
 char *result_to_json(const struct pound_study *study, const struct pound_result *result,
                      const struct timing *timing, size_t *length);
 
-/* The same result as CSV, from the bytes of result_to_json: one row per cell, output and input of a sensitivity
- * study, or per cell and signal of a response. */
-char *result_to_csv(const char *json, size_t json_length, size_t *length);
+/* Tables of a sensitivity result: lists of every output of every cell, and the looks of a design that grew. */
+#define RESULT_TABLES(X) X(inputs) X(second_order) X(closed) X(ratios) X(conditional_means) X(stopping)
+
+/* The same result as CSV, from the bytes of result_to_json: the table of that name, empty when it has none; NULL: one row
+ * per cell, output and input of a sensitivity study, per cell and signal of a response, ... */
+char *result_to_csv(const char *json, size_t json_length, const char *table, size_t *length);
 
 /* Every input row of a sensitivity study (of no other) and its outputs: cells in order, rows i, samples A_i, B_i,
  * AB_i of each input.  Columns: sweep paths, `row`, `sample`, input names, NAME and NAME.variance of each output. */

@@ -269,21 +269,35 @@ struct format {
 	const char *name, *type;
 };
 
-/* Whether the second of two formats is asked for, by ?format= or Accept, and the reply that a body of it will be.  A
- * result never changes, so that format and version are its tag; one of so many rows alone has these, too. */
-static bool second(const struct request *request, const struct format formats[2], int rows,
+/* Whether the second of two formats is asked for, by a table that only that has, by ?format= or by Accept, and the reply
+ * that a body of it will be.  A result never changes, so that format and version are its tag; one of so many rows alone
+ * has these, too. */
+static bool second(const struct request *request, const struct format formats[2], const char *table, int rows,
                    struct reply *reply)
 {
 	const char *name = http_argument(request, "format"), *accept = http_header(request, "Accept");
-	bool is = name ? !strcmp(name, formats[1].name)
-	               : accept && strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
+	bool is = table  ? true
+	          : name ? !strcmp(name, formats[1].name)
+	                 : accept && strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
 	*reply = (struct reply){.status = 200, .type = formats[is].type};
-	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%s-%d\"" : "\"%s-%s\"", formats[is].name,
-	         POUND_VERSION, rows);
+	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%s-%d\"" : "\"%s-%s\"",
+	         table ? table : formats[is].name, POUND_VERSION, rows);
 	return is;
 }
 
-/* The result of the rows that are stored whole; `unready`, which says that there is none yet, while there is no row. */
+/* Says why there is nothing so far in place of why there is no result yet. */
+static struct reply nothing_so_far(struct reply unready, bool sampled)
+{
+	struct reply reply =
+	    problem(API_NOT_READY, sampled ? "no row of the design is complete yet"
+	                                   : "only sensitivity studies have results so far; this "
+	                                     "study is not finished yet");
+	reply.retry_after = unready.retry_after;
+	free(unready.body);
+	return reply;
+}
+
+/* The result of the rows that are stored whole; `unready` says that there is none yet. */
 static struct reply so_far(struct request *request, struct reply unready, int *rows)
 {
 	struct work_run opened;
@@ -303,26 +317,44 @@ static struct reply so_far(struct request *request, struct reply unready, int *r
 		unready = !status || status == POUND_NOMEM
 		              ? made("application/json", body, length)
 		              : problem(API_CONFLICT, "none of the runs so far has a result");
+	} else if (!error) {
+		unready = nothing_so_far(unready, sampled);
 	}
 	work_close(&opened);
 	return unready;
 }
 
+/* One table of a result as CSV. */
+static void tabulate(struct reply *reply, const struct reply *json, const char *table)
+{
+	char detail[80];
+	reply->body = result_to_csv(json->body, json->length, table, &reply->length);
+	if (!table || !reply->body || reply->length > 0)
+		return;
+	free(reply->body);
+	snprintf(detail, sizeof detail, "this result has no table \"%s\"", table);
+	*reply = problem(API_CONFLICT, detail);
+}
+
 static struct reply results(struct request *request)
 {
 	static const struct format formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
+	const char *table = http_argument(request, "table"), *format = http_argument(request, "format");
+	if (table && format && strcmp(format, "csv") != 0)
+		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv, or left out");
 	struct reply reply, json = document(request, "result");
 	int rows = 0;
 	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true"))
 		json = so_far(request, json, &rows);
 	if (json.status != 200)
 		return json;
-	bool csv = second(request, formats, rows, &reply);
-	reply.body = csv ? result_to_csv(json.body, json.length, &reply.length) : json.body;
-	if (csv)
+	if (second(request, formats, table, rows, &reply)) {
+		tabulate(&reply, &json, table);
 		free(json.body);
-	else
+	} else {
+		reply.body = json.body;
 		reply.length = json.length;
+	}
 	return reply.body ? reply : no_memory();
 }
 
@@ -334,7 +366,7 @@ static struct reply samples(struct request *request)
 	if (reply.status != 200)
 		return reply;
 	free(reply.body);
-	bool npy = second(request, formats, 0, &reply);
+	bool npy = second(request, formats, NULL, 0, &reply);
 	if (http_known(request, reply.etag))
 		return reply;
 	struct work_run opened;

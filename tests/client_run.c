@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "tests/check.h"
+#include "tests/documents.h"
 #include "tests/program.h"
 #include "tests/service.h"
 
@@ -196,9 +197,10 @@ static void a_table_fits_in_100_columns(void **state)
 		const char *example, *holds;
 	} tables[] = {{"response", "impulse_n_s"},
 	              {"sensitivity_small", "ST [95 % interval]"},
+	              {"until", "widest"},
 	              {"convergence", "central_difference   0.001"}};
 	(void)state;
-	for (int i = 0; i < 3; i++) {
+	for (int i = 0; i < 4; i++) {
 		struct program_outcome document = POUND("example", tables[i].example);
 		struct program_outcome table =
 		    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
@@ -209,6 +211,87 @@ static void a_table_fits_in_100_columns(void **state)
 		program_free(&table);
 		program_free(&document);
 	}
+}
+
+/* Four inputs of which two make a ratio, few rows, and an estimator of its own: a result with every table but that of
+ * a design that grew. */
+static char *with_every_table(void)
+{
+	struct program_outcome document = POUND("example", "paper_linear");
+	char *study = documents_with(document.out, "\"rows\": 1000", "\"rows\": 60, \"estimator\": \"janon\"");
+	char *common = documents_with(study, "\"independent\"", "\"common\"");
+	char *whole =
+	    documents_with(common, "\"design\":",
+	                   "\"ratios\": [{\"name\": \"f_e/f_2\", \"of\": [\"/excitation/frequency_hz\", "
+	                   "\"/oscillators/1/frequency_hz\"]}], \"design\":");
+	program_free(&document);
+	free(study), free(common);
+	return whole;
+}
+
+static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
+{
+	static const char *const words[] = {
+	    "S1 [95 % interval]", "S1_pick_freeze", "ST_raw",   "S1_janon_corrected", "shapley",
+	    "S2_excitation",      "\n  inputs",     "S2",       "S_closed",           "f_e/f_2",
+	    "these explain",      "ratio bias",     "0 lowest", "ST_one_signal",      "note: a value below 0"};
+	char *study = with_every_table();
+	struct program_outcome table =
+	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study);
+	(void)state;
+	program_expect(&table, 0);
+	for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
+		if (!strstr(table.out, words[k]))
+			fail_msg("'%s' is not in\n%s", words[k], table.out);
+	for (char *line = strtok(table.out, "\n"); line; line = strtok(NULL, "\n"))
+		if (strlen(line) > 100)
+			fail_msg("over 100 columns: %s", line);
+	program_free(&table);
+	free(study);
+}
+
+static void one_table_of_a_result_is_shown_by_its_name(void **state)
+{
+	static const struct {
+		const char *table, *shown, *csv; /* a word in it; the start of its CSV behind the swept field */
+	} tables[] = {
+	    {"inputs", "ST from 0 to 1", "output.name,output.mean,"},
+	    {"second_order", " S2\n", "output.name,input_1,input_2,S2,S2_low,S2_high\r\n"},
+	    {"closed", " S_closed\n", "output.name,input_1,input_2,input_3,"},
+	    {"ratios", "these explain ", "output.name,explained,name,shapley,"},
+	    {"conditional_means", "0 lowest ... 9 highest", "output.name,name,path,x,mean,low,high\r\n"}};
+	char *study = with_every_table();
+	(void)state;
+	for (int i = 0; i < 5; i++) {
+		struct program_outcome shown = program_run(
+		    (const char *const[]){"pound", "run", "--format", "table", "--table", tables[i].table, "-", NULL},
+		    study);
+		struct program_outcome csv = program_run(
+		    (const char *const[]){"pound", "run", "--format", "csv", "--table", tables[i].table, "-", NULL},
+		    study);
+		program_expect(&shown, 0);
+		program_expect(&csv, 0);
+		for (int k = 0; k < 5; k++)
+			if (!strstr(shown.out, tables[k].shown) != (k != i))
+				fail_msg("%s shows\n%s", tables[i].table, shown.out);
+		assert_non_null(strstr(csv.out, tables[i].csv));
+		program_free(&shown);
+		program_free(&csv);
+	}
+	static const char *const refused[][8] = {
+	    {"pound", "run", "--format", "table", "--table", "stopping", "-"},
+	    {"pound", "run", "--format", "csv", "--table", "stopping", "-"},
+	    {"pound", "run", "--format", "csv", "--table", "nonsense", "-"},
+	    {"pound", "run", "--format", "csv", "--table", "closed ratios", "-"},
+	    {"pound", "run", "--table", "closed", "-"}};
+	for (int i = 0; i < 5; i++) {
+		struct program_outcome outcome = program_run(refused[i], study);
+		program_expect(&outcome, i < 2 ? 1 : 2);
+		assert_string_equal(outcome.out, "");
+		assert_non_null(strstr(outcome.err, "table"));
+		program_free(&outcome);
+	}
+	free(study);
 }
 
 static void csv_has_as_many_cells_in_every_row(void **state)
@@ -352,6 +435,8 @@ CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_
            cmocka_unit_test(a_table_says_how_many_responses_failed_and_why),
            SERVED(a_study_without_any_result_ends_with_3_and_says_why),
            cmocka_unit_test(a_table_fits_in_100_columns),
+           cmocka_unit_test(a_table_shows_every_estimate_of_a_result_and_its_notes),
+           cmocka_unit_test(one_table_of_a_result_is_shown_by_its_name),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),
            cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
            cmocka_unit_test(the_bar_keeps_within_its_terminal_and_clears_its_line),

@@ -152,6 +152,16 @@ static void a_running_study_answers_with_the_indexes_of_its_whole_rows(void **st
 	answer_free(&answer);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=true&format=csv", id, 200);
 	assert_string_equal(answer.type, "text/csv");
+	assert_memory_equal(answer.body, "partial.rows,partial.rows_most,", 31);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true&table=closed", id, 200);
+	assert_string_equal(answer.type, "text/csv");
+	assert_memory_equal(answer.body, "partial.rows,partial.rows_most,output.name,input_1,", 51);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true&table=stopping", id, 409);
+	assert_non_null(strstr(answer.body, "this result has no table \\\"stopping\\\""));
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?format=json&table=closed", id, 400);
 	answer_free(&answer);
 	answer = answer_of(service, "/v1/studies/%s/results", id, 404);
 	assert_true(atoi(answer.retry_after) > 0);
@@ -177,6 +187,7 @@ static void a_study_without_a_row_has_no_results_yet(void **state)
 	// two workers are busy with the first study
 	struct answer answer = answer_of(service, "/v1/studies/%s/results?partial=true", waiting, 404);
 	assert_true(atoi(answer.retry_after) > 0);
+	assert_non_null(strstr(answer.body, "no row of the design is complete yet"));
 	answer_free(&answer);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=perhaps", waiting, 400);
 	answer_free(&answer);

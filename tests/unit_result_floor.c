@@ -74,7 +74,7 @@ static void a_csv_row_for_every_frequency(void **state)
 	(void)state;
 	size_t length, csv_length;
 	struct pound_study *study = documents_study(documents_floor);
-	char *json = made_up(study, &length), *csv = result_to_csv(json, length, &csv_length), *at = csv;
+	char *json = made_up(study, &length), *csv = result_to_csv(json, length, NULL, &csv_length), *at = csv;
 	assert_memory_equal(
 	    csv, "frequency_hz,pounding.mean_m_s2,pounding.p16_m_s2,pounding.p84_m_s2,impact_only.mean", 80);
 	at = strstr(csv, "\r\n") + 2;
@@ -109,7 +109,7 @@ static void an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse(voi
 	size_t length, csv_length;
 	const struct timing timing = {1, 1, 1};
 	char *json = result_to_json(study, pound_run_result(run), &timing, &length);
-	char *csv = result_to_csv(json, length, &csv_length);
+	char *csv = result_to_csv(json, length, NULL, &csv_length);
 	struct reading *r = reading_open(json, length);
 	assert_int_equal(reading_count(r, "/cells/0/outputs"), 3);
 	assert_string_equal(reading_text(r, "/cells/0/outputs/2/name"), "floor_spectrum");
