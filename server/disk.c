@@ -45,10 +45,9 @@ bool disk_take(struct disk *disk, const char *path)
 		nanosleep(&(struct timespec){.tv_nsec = LOCK_PAUSE_NS}, NULL);
 		ours = flock(disk->lock, LOCK_EX | LOCK_NB) == 0;
 	}
-	if (!ours && errno == EWOULDBLOCK)
-		log_line("another server uses the database %s", path);
-	else if (!ours)
-		log_line("cannot lock %s: %s", name, strerror(errno));
+	if (!ours)
+		log_line("cannot lock %s: %s", name,
+		         errno == EWOULDBLOCK ? "another server uses the database" : strerror(errno));
 	return ours;
 }
 

@@ -26,19 +26,18 @@ static void tell(const char *state)
 {
 	const char *path = getenv("NOTIFY_SOCKET");
 	struct sockaddr_un to = {.sun_family = AF_UNIX};
-	if (!path || strlen(path) >= sizeof to.sun_path)
+	size_t n = path ? strlen(path) : 0;
+	if (n == 0 || n >= sizeof to.sun_path)
 		return;
-	socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + strlen(path));
-	memcpy(to.sun_path, path, strlen(path));
+	memcpy(to.sun_path, path, n);
 	// a socket without a file
 	if (path[0] == '@')
 		to.sun_path[0] = '\0';
+	socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + n);
 	int end = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-	if (end < 0 ||
-	    sendto(end, state, strlen(state), MSG_NOSIGNAL | MSG_DONTWAIT, (struct sockaddr *)&to, size) < 0)
+	if (sendto(end, state, strlen(state), MSG_NOSIGNAL | MSG_DONTWAIT, (struct sockaddr *)&to, size) < 0)
 		log_line("cannot tell systemd %s: %s", state, strerror(errno));
-	if (end >= 0)
-		close(end);
+	close(end);
 }
 
 /* Waits for the signal to stop; meanwhile systemd, when it watches, hears that the store answers. */
@@ -107,6 +106,6 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	int status = serve(&server, &signals);
 	store_close(server.store);
-	tokens_close(server.tokens);
+	free(server.tokens);
 	return status;
 }

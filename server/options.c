@@ -48,53 +48,45 @@ void options_variable(const struct option_row *row, char *name, size_t size)
 		*c = *c == '-' ? '_' : (char)toupper((unsigned char)*c);
 }
 
-/* Takes a value; false: it is not one that the row takes. */
-static bool assign(struct options *options, const struct option_row *row, const char *value)
+static int key_of(const struct option_row *row)
 {
-	char *at = (char *)options + row->offset, *rest;
+	return row->letter ? row->letter : FIRST_KEY + (int)(row - options_table);
+}
+
+/* Takes a value, or ends the program, saying what `name` would take. */
+static void take(struct argp_state *state, const struct option_row *row, const char *name, const char *value)
+{
+	char *at = (char *)state->input + row->offset, *rest;
 	if (row->max == 0) {
 		*(const char **)(void *)at = value;
-		return *value != '\0';
+		if (!*value)
+			argp_error(state, "%s must not be empty", name);
+		return;
 	}
 	long number = strtol(value, &rest, 10);
 	*(int *)(void *)at = (int)number;
-	return rest != value && !*rest && number >= row->min && number <= row->max;
+	if (rest == value || *rest || number < row->min || number > row->max)
+		argp_error(state, "%s must be a whole number in [%d, %d], got '%s'", name, row->min, row->max, value);
 }
 
-static void expected(const struct option_row *row, char *text, size_t size)
+/* Called by argp for each flag, and before them all: then every option has what stands for it when it is absent, or is
+ * in the environment. */
+static error_t parse(int key, char *value, struct argp_state *state)
 {
-	if (row->max == 0)
-		snprintf(text, size, "must not be empty");
-	else
-		snprintf(text, size, "must be a whole number in [%d, %d]", row->min, row->max);
-}
-
-static error_t flag(int key, char *value, struct argp_state *state)
-{
+	error_t status = key == ARGP_KEY_INIT ? 0 : ARGP_ERR_UNKNOWN;
 	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
-		char text[64];
-		if (key != (row->letter ? row->letter : FIRST_KEY + (int)(row - options_table)))
-			continue;
-		expected(row, text, sizeof text);
-		if (!assign(state->input, row, value ? value : "1"))
-			argp_error(state, "--%s %s, got '%s'", row->name, text, value);
-		return 0;
-	}
-	return ARGP_ERR_UNKNOWN;
-}
-
-static void environment(struct options *options)
-{
-	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
-		char name[64], text[64];
+		char name[64];
 		options_variable(row, name, sizeof name);
-		const char *value = getenv(name);
-		expected(row, text, sizeof text);
-		if (value && !assign(options, row, value)) {
-			fprintf(stderr, "poundd: %s %s, got '%s'\n", name, text, value);
-			exit(argp_err_exit_status);
+		const char *there = getenv(name);
+		if (key == ARGP_KEY_INIT && (there || row->absent))
+			take(state, row, name, there ? there : row->absent);
+		else if (key == key_of(row)) {
+			snprintf(name, sizeof name, "--%s", row->name);
+			take(state, row, name, value ? value : "1");
+			status = 0;
 		}
 	}
+	return status;
 }
 
 const char *argp_program_version = "poundd " POUND_VERSION;
@@ -109,7 +101,7 @@ void options_read(struct options *options, int argc, char **argv)
 	struct argp_option flags[sizeof options_table / sizeof options_table[0] + 1] = {0};
 	char texts[sizeof options_table / sizeof options_table[0]][192];
 	const struct argp argp = {.options = flags,
-	                          .parser = flag,
+	                          .parser = parse,
 	                          .doc = "Serves pounding studies over HTTP.\vEvery option may be given in the "
 	                                 "environment as well: --port as "
 	                                 "POUNDD_PORT, --token-file as POUNDD_TOKEN_FILE.  A flag wins."};
@@ -117,15 +109,10 @@ void options_read(struct options *options, int argc, char **argv)
 	*options = (struct options){.workers = cores < 1 ? 1 : cores > WORKERS_MAX ? WORKERS_MAX : (int)cores};
 	for (int i = 0; i < options_count; i++) {
 		const struct option_row *row = &options_table[i];
-		if (row->absent)
-			assign(options, row, row->absent);
 		snprintf(texts[i], sizeof texts[i], row->absent && row->argument ? "%s (%s)" : "%s", row->text,
 		         row->absent);
-		flags[i] = (struct argp_option){.name = row->name,
-		                                .key = row->letter ? row->letter : FIRST_KEY + i,
-		                                .arg = row->argument,
-		                                .doc = texts[i]};
+		flags[i] = (struct argp_option){
+		    .name = row->name, .key = key_of(row), .arg = row->argument, .doc = texts[i]};
 	}
-	environment(options);
 	argp_parse(&argp, argc, argv, 0, NULL, options);
 }

@@ -62,7 +62,7 @@ static const char *take(struct tokens *tokens, FILE *file)
 /* Reads a file of tokens.
  *
  * Given    file    of mode 0600 or less; one token a line, 32 characters or more, # starts a remark
- * Returns  value   for tokens_close; NULL: it cannot be used, logged
+ * Returns  value   for free; NULL: it cannot be used, logged
  * Test     unit_token: a_file_that_others_may_read_is_refused
  */
 struct tokens *tokens_open(const char *file)
@@ -77,11 +77,6 @@ struct tokens *tokens_open(const char *file)
 	log_line("token file %s: %s", file, fault);
 	free(tokens);
 	return NULL;
-}
-
-void tokens_close(struct tokens *tokens)
-{
-	free(tokens);
 }
 
 /* Which token an Authorization header has.

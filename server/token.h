@@ -6,9 +6,8 @@ enum { TOKEN_NAME_SIZE = 17 };
 
 struct tokens;
 
-/* A token a line, # starts a remark; NULL: it cannot be read, others can, or a token is short; logged. */
+/* A token a line, # starts a remark; for free.  NULL: it cannot be read, others can, or a token is short; logged. */
 struct tokens *tokens_open(const char *file);
-void tokens_close(struct tokens *tokens);
 
 /* The one that an Authorization header has (NULL: there is no such header), as a name that does not give it away:
  * the first 16 hexadecimal digits of its SHA-256.  NULL: none of them. */

@@ -54,7 +54,7 @@ static void a_token_is_known_to_its_last_character(void **state)
 	assert_null(tokens_name(tokens, "Bearer 0123456789ABCDEF0123456789ABCDEF"));
 	assert_null(tokens_name(tokens, "Bearer 0123456789abcdef0123456789abcdef0"));
 	assert_null(tokens_name(tokens, "Bearer # people"));
-	tokens_close(tokens);
+	free(tokens);
 }
 
 static void a_file_that_others_may_read_is_refused(void **state)
@@ -65,7 +65,7 @@ static void a_file_that_others_may_read_is_refused(void **state)
 		assert_null(opened(RIGHT, modes[i]));
 	struct tokens *tokens = opened(RIGHT, 0400);
 	assert_non_null(tokens);
-	tokens_close(tokens);
+	free(tokens);
 }
 
 static void a_file_without_a_good_token_is_refused(void **state)
