@@ -207,39 +207,69 @@ LANE_INLINE void series_cut(struct series *s, vm event, vd time, bool paired)
 	}
 }
 
-/* Adds the integral of the contact force over the step, per mass of the left body, and its time. */
-LANE_INLINE void impulse_add(struct lanes *g, const struct series *s, vd time)
+/* Integral of the contact force over the step, per mass of the left body. */
+LANE_INLINE vd impulse_of(const struct lanes *g, const struct series *s, vd time)
 {
 	struct power area; // of the overlap from 0 to t, over t
 	ORDERS_UP(n, 0, ORDER_TOUCH, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
 	vd elapsed = time * g->dt;
-	vd impulse = vfma(g->contact_stiffness, power_at(&area, ORDER_TOUCH, time) * elapsed,
-	                  g->contact_damping * (s->overlap.u1 - s->overlap.u.c[0]));
-	g->impulse = g->impulse + impulse;
-	g->contact_time = g->contact_time + elapsed;
+	return vfma(g->contact_stiffness, power_at(&area, ORDER_TOUCH, time) * elapsed,
+	            g->contact_damping * (s->overlap.u1 - s->overlap.u.c[0]));
+}
+
+/* Which bodies' motion a step must look into: the left one's always. */
+LANE_INLINE int bodies_watched(const struct event_lanes *e)
+{
+	return e->paired && (e->edged || e->right) ? 2 : 1;
+}
+
+LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
+{
+	series_fill(s, g, e->paired, e->touching);
+	for (int i = 0; i < bodies_watched(e); i++)
+		motion_bound(&s->body[i], s->order);
+	if (e->paired)
+		motion_bound(&s->overlap, s->order);
+}
+
+/* Lanes arrive at the end of a step, or of the share `time` of it that was gone. */
+LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct event_lanes *e, vd time,
+                          vm arrived)
+{
+	vd per_dt = vsplat(1) / g->dt, elapsed = time * g->dt;
+	if (e->touching) {
+		g->impulse = vselect(arrived, g->impulse + impulse_of(g, s, time), g->impulse);
+		g->contact_time = vselect(arrived, g->contact_time + elapsed, g->contact_time);
+	}
+	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
+		g->u[i] = vselect(arrived, s->body[i].u1, g->u[i]);
+		g->v[i] = vselect(arrived, s->body[i].v1 * per_dt, g->v[i]);
+		g->top[i] = vmax(g->top[i], vabs(g->u[i]));
+	}
+	if (e->paired) {
+		g->p = vselect(arrived, s->overlap.u1, g->p);
+		g->q = vselect(arrived, s->overlap.v1 * per_dt, g->q);
+	}
+	g->ground = vselect(arrived, vfma(g->slope, elapsed, g->ground), g->ground);
+	g->part = vselect(arrived, vmax(g->part - elapsed, vsplat(0)), g->part);
 }
 
 /* One step: every lane goes on to its next event, or as far as it meant to.
  *
  * Given    accounted  a lane's energy balance is kept
- * Returns  value      the events, and the share of the step that was gone
+ * Returns  value      the events
  */
-LANE_INLINE struct search event_step(struct lanes *g, const struct event_lanes *e, bool accounted)
+LANE_INLINE vd event_step(struct lanes *g, const struct event_lanes *e, bool accounted)
 {
 	vd one = vsplat(1), zero = vsplat(0);
 	struct series s;
-	series_fill(&s, g, e->paired, e->touching);
+	step_begin(&s, g, e);
 	struct search search = {.time = one, .event = zero};
-	int bodies = e->paired ? 2 : 1, watched = e->paired && (e->edged || e->right) ? 2 : 1;
-	for (int i = 0; i < watched; i++)
-		motion_bound(&s.body[i], s.order);
-	if (e->paired)
-		motion_bound(&s.overlap, s.order);
 	if (e->paired)
 		contact_search(&s, g, e, &search);
-	for (int i = 0; i < bodies && e->edged; i++)
+	for (int i = 0; i < (e->paired ? 2 : 1) && e->edged; i++)
 		body_search(&s, g, i, e->active, &search);
-	for (int i = 0; i < watched; i++) {
+	for (int i = 0; i < bodies_watched(e); i++) {
 		// the end of the step does not count where the motion was cut before it
 		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].u1));
 		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
@@ -251,19 +281,71 @@ LANE_INLINE struct search event_step(struct lanes *g, const struct event_lanes *
 		series_cut(&s, event, search.time, e->paired);
 	if (accounted)
 		energy_add(g, &s, search.time, e->paired, e->touching);
-	if (e->touching)
-		impulse_add(g, &s, search.time);
-	vd per_dt = one / g->dt;
-	for (int i = 0; i < bodies; i++) {
-		g->u[i] = s.body[i].u1;
-		g->v[i] = s.body[i].v1 * per_dt;
-		g->top[i] = vmax(g->top[i], vabs(g->u[i]));
+	step_end(g, &s, e, search.time, ~vless(one, zero));
+	vm cut = vequal(search.event, vsplat(EVENT_CUT));
+	g->pace = vselect(cut, vmax(g->pace * vsplat(POUND_STEP_SHORTER), vsplat(POUND_STEP_SHORTEST)),
+	                  vmin(g->pace * vsplat(POUND_STEP_LONGER), one));
+	return search.event;
+}
+
+/* What the beginning or end of a contact, or of the overlap it left, does to a simulation's numbers.
+ *
+ * Given    event  of the step
+ * Returns  e      parted and fresh
+ *          value  lanes in which a contact began or ended
+ */
+LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
+{
+	vd zero = vsplat(0);
+	vm turns = vequal(event, vsplat(EVENT_CONTACT)) & e->active, parted = e->parted;
+	if (e->touching) {
+		parted = e->forced ? turns & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
+		g->part = vselect(turns, vfma(g->cells, g->cell, g->part), g->part);
+		g->cells = vselect(turns, zero, g->cells);
+	} else {
+		vd cells = vfloor(g->part / g->cell);
+		g->part = vselect(turns, vmax(g->part - cells * g->cell, zero), g->part);
+		g->cells = vselect(turns, cells, g->cells);
+		g->impulse = vselect(turns, zero, g->impulse);
 	}
-	if (e->paired) {
-		g->p = s.overlap.u1;
-		g->q = s.overlap.v1 * per_dt;
+	g->p = vselect(turns & ~parted, zero, g->p); // from here exactly
+	e->fresh = parted & turns;
+	if (e->forced && !e->touching) {
+		vm clears = vequal(event, vsplat(EVENT_CLEARS));
+		g->p = vselect(clears, zero, g->p);
+		parted &= ~clears & ~turns;
 	}
-	return search;
+	e->parted = parted;
+	return turns;
+}
+
+/* Takes the step behind an event, as event_step would, in the lanes where nothing can happen in it. */
+LANE_INLINE void event_leap(struct lanes *g, const struct event_lanes *e, vm leaping)
+{
+	vd one = vsplat(1), zero = vsplat(0);
+	leaping &= ~e->parted & ~e->fresh & vequal(g->pace, one) & vless(zero, g->part);
+	if (!e->touching)
+		leaping &= ~vless(g->reach, g->part);
+	else if (e->forced)
+		leaping &= vequal(g->release, zero);
+	if (!vany(leaping))
+		return;
+	g->dt = vselect(leaping, g->part, g->dt);
+	struct series s;
+	step_begin(&s, g, e);
+	vm risk = may_cross(&s.overlap, zero, e->touching ? -one : one);
+	for (int i = 0; i < bodies_watched(e); i++) {
+		const struct motion *m = &s.body[i];
+		vd third = vsplat(1.0 / 3);
+		struct limits limits = limits_of(g, i, e->edged);
+		struct flight f = {.u = m->u1,
+		                   .v = m->v1,
+		                   .b1 = vfma(third, m->v.c[0], m->u.c[0]),
+		                   .b2 = vfma(-third, m->v1, m->u1),
+		                   .error = vsplat(POUND_CUBIC_ERROR) * m->bend};
+		risk |= flight_risk(m->u.c[0], m->v.c[0], &f, third, &limits, e->edged);
+	}
+	step_end(g, &s, e, one, leaping & ~risk);
 }
 
 #endif

@@ -34,6 +34,7 @@ typedef uint64_t vm;
 #define LANE_ABS(a)          fabs(a)
 #define LANE_FMA(a, b, c)    __builtin_fma(a, b, c)
 #define LANE_SQRT(a)         __builtin_sqrt(a)
+#define LANE_FLOOR(a)        __builtin_floor(a)
 #define LANE_BITS(m)         ((unsigned)(m)&1)
 #define LANE_MASK(bits)      (-(vm)((bits)&1))
 
@@ -55,6 +56,7 @@ typedef lane_bits vm;
 #define LANE_MIN(a, b)       _mm256_min_pd(b, a)
 #define LANE_FMA(a, b, c)    _mm256_fmadd_pd(a, b, c)
 #define LANE_SQRT(a)         _mm256_sqrt_pd(a)
+#define LANE_FLOOR(a)        _mm256_floor_pd(a)
 #define LANE_BITS(m)         ((unsigned)_mm256_movemask_pd((vd)(m)))
 #define LANE_MASK(bits)      (((vm)_mm256_set1_epi64x(bits) & (vm){1, 2, 4, 8}) == (vm){1, 2, 4, 8})
 #else
@@ -67,6 +69,7 @@ typedef __mmask8 vm;
 #define LANE_MIN(a, b)       _mm512_min_pd(b, a)
 #define LANE_FMA(a, b, c)    _mm512_fmadd_pd(a, b, c)
 #define LANE_SQRT(a)         _mm512_sqrt_pd(a)
+#define LANE_FLOOR(a)        _mm512_roundscale_pd(a, _MM_FROUND_TO_NEG_INF)
 #define LANE_BITS(m)         ((unsigned)(m))
 #define LANE_MASK(bits)      ((vm)(bits))
 #endif
@@ -119,6 +122,10 @@ LANE_INLINE vd vabs(vd a)
 LANE_INLINE vd vsqrt(vd a)
 {
 	return LANE_SQRT(a);
+}
+LANE_INLINE vd vfloor(vd a)
+{
+	return LANE_FLOOR(a);
 }
 LANE_INLINE vd vfma(vd a, vd b, vd c)
 {

@@ -188,9 +188,10 @@ static bool press_interval(struct lanes *g, const struct batch *b, int l)
 		return false;
 	sim->next++;
 	pound_simulation_interval(sim);
+	sim->x.rise = sim->x.slope * sim->x.cell;
 	double *ground = (double *)&g->ground, *rise = (double *)&g->rise, *cells = (double *)&g->cells;
 	ground[l] = sim->x.ground;
-	rise[l] = sim->x.slope * sim->x.cell;
+	rise[l] = sim->x.rise;
 	cells[l] = sim->x.cells;
 	return true;
 }
@@ -235,7 +236,6 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 	g.slope = lanes_load(slope);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
-	lanes_empty(&g, b, ROW_PRESS);
 	for (int l = 0; l < b->n; l++)
 		send(work, b->sim[l],
 		     ended >> l & 1     ? STAGE_END
@@ -269,23 +269,38 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
 	lanes_fill(&g, b, ROW_LEFT);
+	lanes_fill(&g, b, ROW_PAIR);
 	if (e.paired)
 		lanes_fill(&g, b, ROW_RIGHT);
-	if (e.touching || e.forced || accounted)
-		lanes_fill(&g, b, ROW_PAIR);
+	if (accounted)
+		lanes_fill(&g, b, ROW_WORK);
 	if (e.forced) {
 		e.parted = event_flags(b, false);
 		e.fresh = event_flags(b, true);
 	}
-	struct search search = event_step(&g, &e, accounted);
+	vd events = event_step(&g, &e, accounted);
+	vm turns = vmask(0);
+	if (e.paired)
+		turns = event_follow(&g, &e, events);
+	double event[W], left[W], speed[W];
+	lanes_store(event, events);
+	lanes_store(left, vfma(g.cells, g.cell, g.part));
+	lanes_store(speed, g.q);
+	// the work done is kept of whole steps only
+	if (e.paired && !accounted && vany(turns)) {
+		e.touching = !e.touching;
+		event_leap(&g, &e, turns);
+	}
 	lanes_empty(&g, b, ROW_STATE);
-	if (e.touching || accounted)
-		lanes_empty(&g, b, ROW_STEP);
-	double event[W], share[W];
-	lanes_store(event, search.event);
-	lanes_store(share, search.time);
-	for (int l = 0; l < b->n; l++)
-		send(work, b->sim[l], pound_simulation_stepped(b->sim[l], (int)event[l], share[l]));
+	lanes_empty(&g, b, ROW_STEP);
+	if (accounted)
+		lanes_empty(&g, b, ROW_WORK);
+	for (int l = 0; l < b->n; l++) {
+		struct simulation *sim = b->sim[l];
+		sim->parted = vbits(e.parted) >> l & 1;
+		sim->fresh = vbits(e.fresh) >> l & 1;
+		send(work, sim, pound_simulation_stepped(sim, (int)event[l], left[l], speed[l]));
+	}
 }
 
 /* ---- the march ---- */

@@ -22,10 +22,6 @@ enum {
 
 static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 
-static double least(double a, double b)
-{
-	return a < b ? a : b;
-}
 static double most(double a, double b)
 {
 	return a < b ? b : a;
@@ -149,7 +145,7 @@ static void piece_enter(struct simulation *sim, int i)
 	if (!map) {
 		map = &sim->maps[i][sim->map_next[i]];
 		sim->map_next[i] = (sim->map_next[i] + 1) % POUND_MAPS;
-		map_fill(map, piece->stiffness, x->body[i].damping, x->step);
+		map_fill(map, piece->stiffness, x->body[i].damping, sim->task->time_step);
 	}
 	x->map[i].uu = map->uu, x->map[i].uv = map->uv, x->map[i].ua = map->ua, x->map[i].ud = map->ud;
 	x->map[i].va = map->va, x->map[i].eu = map->eu, x->map[i].ev = map->ev, x->map[i].ef = map->ef;
@@ -181,12 +177,12 @@ static void press_ready(struct simulation *sim)
 /* Enters the interval that ends at sim->next. */
 void pound_simulation_interval(struct simulation *sim)
 {
+	struct pound_rows *x = &sim->x;
 	const double *a = &sim->task->ground[sim->next];
-	sim->x.ground = a[-1];
-	sim->x.slope = (a[0] - a[-1]) * sim->per_step;
-	sim->left = sim->x.step;
-	sim->part = 0;
-	sim->x.cells = sim->cells_whole;
+	x->ground = a[-1];
+	x->slope = (a[0] - a[-1]) * sim->per_step;
+	x->part = sim->touching ? 0 : sim->task->time_step;
+	x->cells = sim->touching ? sim->cells_whole : 0;
 	sim->steps = 0;
 }
 
@@ -197,15 +193,15 @@ enum pound_stage pound_simulation_step(struct simulation *sim)
 		return STAGE_CHATTER;
 	struct pound_rows *x = &sim->x;
 	if (sim->touching) {
-		if (sim->part == 0) {
-			sim->part = x->cell;
+		if (x->part == 0) {
+			x->part = x->cell;
 			x->cells--;
 		}
-		x->dt = sim->part * sim->pace;
+		x->dt = x->part * x->pace;
 		return STAGE_TOUCH;
 	}
-	double reach = sim->reach * sim->pace;
-	x->dt = sim->left <= reach ? sim->left : sim->left > 2 * reach ? reach : 0.5 * sim->left;
+	double reach = x->reach * x->pace;
+	x->dt = x->part <= reach ? x->part : x->part > 2 * reach ? reach : 0.5 * x->part;
 	return sim->paired ? STAGE_APART : STAGE_ALONE;
 }
 
@@ -224,50 +220,35 @@ enum pound_stage pound_simulation_meet(struct simulation *sim)
 static enum pound_stage next_stage(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
-	if (sim->touching ? sim->part + x->cells == 0 : sim->left == 0) {
+	if (x->part + x->cells == 0) {
 		if (sim->next == sim->last)
 			return STAGE_END;
 		sim->next++;
 		pound_simulation_interval(sim);
 		// apart, and not about to touch inside the next interval
-		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->step * x->q < 0)
+		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->part * x->q < 0)
 			return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
 	}
-	if (sim->touching && sim->part == 0 && sim->can_press) {
+	if (sim->touching && x->part == 0 && sim->can_press) {
 		press_ready(sim);
 		return STAGE_PRESS;
 	}
 	return pound_simulation_step(sim);
 }
 
-/* Contact begins, ends, or clears the overlap it left. */
-static void contact_turn(struct simulation *sim, bool clears)
+/* Contact has begun or ended.
+ *
+ * Given    left   of the interval [s];  speed: of approach [m/s]
+ */
+static void contact_turn(struct simulation *sim, double left, double speed)
 {
-	struct pound_rows *x = &sim->x;
-	if (clears) {
-		sim->parted = false;
-		x->p = 0; // from here exactly
-	} else if (!sim->touching) {
-		if (!sim->parted)
-			x->p = 0;
-		sim->fresh = sim->parted;
-		sim->parted = false;
-		sim->touching = true;
-		x->impulse = 0;
-		x->cells = (double)(int64_t)(sim->left / x->cell);
-		sim->part = most(sim->left - x->cells * x->cell, 0);
-		if (sim->contacts == 0) {
-			sim->result->first_contact = (double)sim->next * x->step - sim->left;
-			sim->result->first_speed = x->q;
-		}
-	} else {
-		sim->impulse_max = most(sim->impulse_max, x->impulse);
+	sim->touching = !sim->touching;
+	if (!sim->touching) {
+		sim->impulse_max = most(sim->impulse_max, sim->x.impulse);
 		sim->contacts++;
-		sim->parted = sim->fresh = x->release > 0 && x->p > 0;
-		if (!sim->parted)
-			x->p = 0;
-		sim->touching = false;
-		sim->left = sim->part + x->cells * x->cell;
+	} else if (sim->contacts == 0) {
+		sim->result->first_contact = (double)sim->next * sim->task->time_step - left;
+		sim->result->first_speed = speed;
 	}
 }
 
@@ -287,25 +268,12 @@ static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
 
 /* What a simulation does after a step by power series.
  *
- * Given    event  that ended it;  share: of the step that was gone
+ * Given    event  that ended it;  left, speed: as contact_turn has them
  */
-enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double share)
+enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double left, double speed)
 {
-	double elapsed = share * sim->x.dt;
-	if (sim->touching)
-		sim->part = most(sim->part - elapsed, 0);
-	else
-		sim->left = most(sim->left - elapsed, 0);
-	sim->x.ground += sim->x.slope * elapsed;
-	sim->fresh = false;
-	if (event == EVENT_NONE) {
-		sim->pace = least(sim->pace * POUND_STEP_LONGER, 1);
-		return next_stage(sim);
-	}
-	sim->pace = event == EVENT_CUT ? most(sim->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
-	                               : least(sim->pace * POUND_STEP_LONGER, 1);
-	if (event == EVENT_CONTACT || event == EVENT_CLEARS)
-		contact_turn(sim, event == EVENT_CLEARS);
+	if (event == EVENT_CONTACT)
+		contact_turn(sim, left, speed);
 	else if (event >= EVENT_BODY)
 		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
@@ -331,8 +299,8 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 	sim->result = result;
 	sim->next = 1;
 	sim->last = task->n_samples - 1;
-	sim->pace = 1;
 	struct pound_rows *x = &sim->x;
+	x->pace = 1;
 	double h = task->time_step;
 	double rate = 0;
 	bool can_fly = !task->accounted; // the work in a step is that of its series
@@ -359,7 +327,6 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 		sim->traits |= TRAIT_RIGHT;
 	if (task->accounted)
 		sim->traits |= TRAIT_ACCOUNTED;
-	x->step = h;
 	sim->per_step = 1 / h;
 	x->right_mass = task->mass_ratio > 0 ? 1 / task->mass_ratio : 0;
 	x->gap = task->contact ? task->gap : -NEVER;
@@ -372,7 +339,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 		sim->traits |= TRAIT_FORCED;
 	x->body[0].step_gap = h;
 	x->body[1].step_gap = x->gap;
-	sim->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
+	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
 	sim->can_press = !task->accounted && task->contact;
 	double reach = REACH_TOUCH / sqrt(rate * rate + x->both * x->contact_stiffness);
 	sim->cells_whole = 1;

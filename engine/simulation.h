@@ -16,23 +16,26 @@ enum {
 };
 
 /* Rows of a simulation: T is double at rest, and a vector in lanes; every row has eight. */
-#define POUND_ROWS(T)                                                                                                   \
-	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */           \
-	T u[2], v[2], top[2], p, q;                                                                                         \
-	/* STEP: the next step, the ground at its start and its growth, this contact's impulse, all contacts' time, work */ \
-	T dt, ground, slope, impulse, contact_time, work_in, work_gap, work_low;                                            \
-	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */     \
-	struct {                                                                                                            \
-		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                            \
-	} body[2];                                                                                                          \
-	/* PAIR */                                                                                                          \
-	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, right_mass, step;                             \
-	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                           \
-	struct {                                                                                                            \
-		T uu, uv, ua, ud, va, eu, ev, ef;                                                                               \
-	} map[2];                                                                                                           \
-	/* PRESS: a cell of pressed contact: forcing, which body is the base, what is left of the interval */               \
-	T base_force, gap_force, base_drive, gap_drive, side, cells, rise, cell;
+#define POUND_ROWS(T)                                                                                                          \
+	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */                  \
+	T u[2], v[2], top[2], p, q;                                                                                                \
+	/* STEP: the next step; the ground at its start and its growth; this contact's impulse, all contacts' time; what is left \
+	 * of the interval: a part, and whole cells; <= 1: steps are shorter where a search was unsure */ \
+	T dt, ground, slope, impulse, contact_time, part, cells, pace;                                                             \
+	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */            \
+	struct {                                                                                                                   \
+		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                   \
+	} body[2];                                                                                                                 \
+	/* PAIR: the contact; lengths of a cell of it, and of the longest step apart */                                            \
+	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, cell, reach;                                         \
+	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                                  \
+	struct {                                                                                                                   \
+		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                      \
+	} map[2];                                                                                                                  \
+	/* PRESS: a cell of pressed contact: forcing, which body is the base, the ground's growth */                               \
+	T base_force, gap_force, base_drive, gap_drive, side, rise, press_spare[2];                                                \
+	/* WORK: the energy balance */                                                                                             \
+	T work_in, work_gap, work_low, right_mass, work_spare[4];
 
 struct pound_rows {
 	POUND_ROWS(double)
@@ -48,7 +51,8 @@ enum {
 	ROW_MAP_LEFT = 40,
 	ROW_MAP_RIGHT = 48,
 	ROW_PRESS = 56,
-	ROWS_END = 64,
+	ROW_WORK = 64,
+	ROWS_END = 72,
 };
 
 /* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d */
@@ -105,11 +109,7 @@ struct simulation {
 	struct pound_march_result *result;
 	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
 	double per_step;
-	double left; /* of the interval, while apart [s] */
-	double part; /* of a cell that was begun, while touching; x.cells whole cells follow it [s] */
-	double pace; /* <= 1: steps are shorter where a search was unsure */
 	double impulse_max, contacts;
-	double reach;       /* longest step while apart [s] */
 	double cells_whole; /* of an interval */
 	int steps;          /* in this interval */
 	int base;           /* the heavier body, whose motion and the overlap describe pressed contact */
@@ -130,7 +130,7 @@ bool pound_simulation_edged(const struct pound_march_task *task);
 enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
                                         struct pound_march_result *result);
 enum pound_stage pound_simulation_meet(struct simulation *sim);
-enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double share);
+enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double left, double speed);
 enum pound_stage pound_simulation_step(struct simulation *sim);
 void pound_simulation_interval(struct simulation *sim);
 void pound_simulation_end(struct simulation *sim, enum pound_status status);
