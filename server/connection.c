@@ -7,7 +7,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <time.h>
@@ -22,50 +21,11 @@ enum {
 	TICK_BYTES = 16 << 20, /* read of one of them in a tick */
 };
 
-struct connection {
-	struct connection *next, **link; /* link: what points here */
-	int fd;
-	double deadline;  /* [s] monotonic */
-	bool served;      /* it was not one too many when it came */
-	bool lingers;     /* to be drained when it is closed */
-	bool draining;    /* closed by its owner; fd is our own */
-	void *handle;     /* NULL: does not wait */
-	int64_t id;       /* of the study waited for */
-	unsigned changes; /* of that study, when it was looked at */
-	double until;     /* [s] monotonic */
-};
-
-struct connections {
-	struct store *store;
-	connection_resumer *resume;
-	pthread_t thread;
-	pthread_mutex_t lock; /* of all below */
-	struct connection *first;
-	int most, n, n_draining, n_late;
-	bool released, stopping;
-};
-
 double connection_now(void)
 {
 	struct timespec now;
 	clock_gettime(CLOCK_MONOTONIC, &now);
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void put(struct connections *all, struct connection *connection)
-{
-	connection->next = all->first;
-	connection->link = &all->first;
-	if (all->first)
-		all->first->link = &connection->next;
-	all->first = connection;
-}
-
-static void take(struct connection *connection)
-{
-	*connection->link = connection->next;
-	if (connection->next)
-		connection->next->link = connection->link;
 }
 
 /* Reads what has come; false: nothing more will. */
@@ -84,19 +44,19 @@ static void look(struct connections *all, struct connection *connection, double 
 		if (drain(connection) && now < connection->deadline && !all->stopping)
 			return;
 		close(connection->fd);
-		take(connection);
+		LIST_REMOVE(connection, others);
 		free(connection);
 		all->n_draining--;
 	} else if (connection->handle) {
 		if (now < connection->until && !all->released &&
 		    connection->changes == store_changes(all->store, connection->id))
 			return;
-		all->resume(connection->handle);
-		connection->handle = NULL;
+		// before it goes on, for it may wait again at once
+		all->resume(atomic_exchange(&connection->handle, NULL));
 	} else if (now > connection->deadline) {
-		shutdown(connection->fd, SHUT_RDWR);
-		connection->deadline = INFINITY;
 		all->n_late++;
+		connection->deadline = INFINITY;
+		shutdown(connection->fd, SHUT_RDWR);
 	}
 }
 
@@ -109,8 +69,8 @@ static void *watch(void *of)
 		double now = connection_now();
 		pthread_mutex_lock(&all->lock);
 		stopping = all->stopping;
-		for (struct connection *connection = all->first, *next; connection; connection = next) {
-			next = connection->next;
+		for (struct connection *connection = LIST_FIRST(&all->list), *next; connection; connection = next) {
+			next = LIST_NEXT(connection, others);
 			look(all, connection, now);
 		}
 		pthread_mutex_unlock(&all->lock);
@@ -120,61 +80,29 @@ static void *watch(void *of)
 
 /* Starts to watch over connections.
  *
- * Given    store    whose changes are waited for
- *          resume   called with the handle of who waited
- *          most     connections are served; those beyond are to be told so and closed
- * Returns  value    for connections_stop; NULL: no memory, no thread
+ * Given    all      its store, resume and most
+ * Returns  value    false: no thread
  */
-struct connections *connections_start(struct store *store, connection_resumer *resume, int most)
+bool connections_start(struct connections *all)
 {
-	struct connections *all = calloc(1, sizeof *all);
-	if (!all)
-		return NULL;
-	all->store = store;
-	all->resume = resume;
-	all->most = most;
+	LIST_INIT(&all->list);
 	pthread_mutex_init(&all->lock, NULL);
-	if (pthread_create(&all->thread, NULL, watch, all) == 0)
-		return all;
-	free(all);
-	return NULL;
+	return pthread_create(&all->thread, NULL, watch, all) == 0;
 }
 
-void connections_release(struct connections *all)
-{
-	pthread_mutex_lock(&all->lock);
-	all->released = true;
-	pthread_mutex_unlock(&all->lock);
-}
-
+/* Ends the watch, after all of them were closed. */
 void connections_stop(struct connections *all)
 {
-	pthread_mutex_lock(&all->lock);
 	all->stopping = true;
-	pthread_mutex_unlock(&all->lock);
 	pthread_join(all->thread, NULL);
 	pthread_mutex_destroy(&all->lock);
-	free(all);
 }
 
-static int count(struct connections *all, const int *n)
-{
-	pthread_mutex_lock(&all->lock);
-	int value = *n;
-	pthread_mutex_unlock(&all->lock);
-	return value;
-}
-
-int connections_open(struct connections *all)
-{
-	return count(all, &all->n);
-}
-
-int connections_late(struct connections *all)
-{
-	return count(all, &all->n_late);
-}
-
+/* Watches over a new connection.
+ *
+ * Given    seconds   in which it must have come to something
+ * Returns  value     for connection_closed; NULL: no memory
+ */
 struct connection *connection_opened(struct connections *all, int fd, double seconds)
 {
 	struct connection *connection = calloc(1, sizeof *connection);
@@ -182,22 +110,18 @@ struct connection *connection_opened(struct connections *all, int fd, double sec
 		return NULL;
 	connection->fd = fd;
 	connection->deadline = connection_now() + seconds;
-	pthread_mutex_lock(&all->lock);
-	put(all, connection);
 	connection->served = ++all->n <= all->most;
+	pthread_mutex_lock(&all->lock);
+	LIST_INSERT_HEAD(&all->list, connection, others);
 	pthread_mutex_unlock(&all->lock);
 	return connection;
 }
 
-bool connection_served(const struct connection *connection)
-{
-	return connection->served;
-}
-
+/* Takes it off the list, or drains what its client is still sending, by a descriptor of our own. */
 void connection_closed(struct connections *all, struct connection *connection)
 {
-	pthread_mutex_lock(&all->lock);
 	all->n--;
+	pthread_mutex_lock(&all->lock);
 	int fd = connection->lingers && all->n_draining < LINGERING_MAX ? dup(connection->fd) : -1;
 	if (fd >= 0) {
 		connection->fd = fd;
@@ -205,34 +129,17 @@ void connection_closed(struct connections *all, struct connection *connection)
 		connection->deadline = connection_now() + LINGER_S;
 		all->n_draining++;
 	} else
-		take(connection);
+		LIST_REMOVE(connection, others);
 	pthread_mutex_unlock(&all->lock);
 	if (fd < 0)
 		free(connection);
 }
 
-void connection_allow(struct connections *all, struct connection *connection, double seconds)
+/* Has a suspended request resumed by its handle, when a study changes or its time is over. */
+void connection_wait(struct connection *connection, void *handle, int64_t id, unsigned changes, double until)
 {
-	pthread_mutex_lock(&all->lock);
-	connection->deadline = connection_now() + seconds;
-	pthread_mutex_unlock(&all->lock);
-}
-
-void connection_linger(struct connections *all, struct connection *connection)
-{
-	pthread_mutex_lock(&all->lock);
-	connection->lingers = true;
-	pthread_mutex_unlock(&all->lock);
-}
-
-void connection_wait(struct connections *all, struct connection *connection, void *handle, int64_t id,
-                     unsigned changes, double until)
-{
-	pthread_mutex_lock(&all->lock);
-	connection->handle = handle;
 	connection->id = id;
 	connection->changes = changes;
 	connection->until = until;
-	connection->deadline = INFINITY;
-	pthread_mutex_unlock(&all->lock);
+	connection->handle = handle; // the last, for it says that the others are there
 }

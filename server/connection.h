@@ -4,38 +4,49 @@
 #ifndef CONNECTION_H
 #define CONNECTION_H
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <sys/queue.h>
 
 struct store;
-struct connections;
-struct connection;
 
-typedef void connection_resumer(void *handle);
+/* Written by the thread of its requests, but for what is the watch's. */
+struct connection {
+	LIST_ENTRY(connection) others; /* the watch's, as are fd and draining */
+	int fd;
+	bool draining; /* closed by its owner; fd is our own */
+	bool served;   /* false: it came when there were as many as may be */
+	bool lingers;  /* when it is closed, what its client is still sending is read for a while, so that
+	                            it finds our answer and not a reset connection */
+	_Atomic double deadline; /* [s] monotonic, when it is shut down */
+	_Atomic(void *) handle;  /* of a suspended request, NULL: none, ... */
+	int64_t id;              /* ... the study it waits for, ... */
+	unsigned changes;        /* ... its store_changes when it was looked at, ... */
+	double until;            /* ... and for how long [s] monotonic */
+};
 
-/* `most` connections are served; NULL: no memory */
-struct connections *connections_start(struct store *store, connection_resumer *resume, int most);
-void connections_release(struct connections *all); /* nobody waits, now and from now on */
-void connections_stop(struct connections *all);    /* after all of them were closed */
-int connections_open(struct connections *all);     /* how many */
-int connections_late(struct connections *all);     /* how many were closed for being late, ever */
+struct connections {
+	struct store *store;
+	void (*resume)(void *handle);
+	int most;             /* are served */
+	atomic_int n, n_late; /* open; shut down for being late, ever */
+	atomic_bool released; /* nobody waits any more */
+	atomic_bool stopping;
+	pthread_t thread;
+	pthread_mutex_t
+	    lock; /* of what follows, and of the descriptors in the list, which stay open while it is held */
+	LIST_HEAD(, connection) list;
+	int n_draining;
+};
 
-/* A connection that must have come to something within so many seconds; NULL: no memory. */
-struct connection *connection_opened(struct connections *all, int fd, double seconds);
-bool connection_served(
-    const struct connection *connection); /* false: it came when there were as many as may be */
+bool connections_start(struct connections *all); /* with store, resume and most; false: no thread */
+void connections_stop(struct connections *all);  /* after all of them were closed */
+
+struct connection *connection_opened(struct connections *all, int fd, double seconds); /* NULL: no memory */
 void connection_closed(struct connections *all, struct connection *connection); /* just before its fd is */
-
-/* It is closed unless this is called again within so many seconds. */
-void connection_allow(struct connections *all, struct connection *connection, double seconds);
-
-/* When it is closed, what the client is still sending is read for a while, so that it finds our answer and not a
- * reset connection. */
-void connection_linger(struct connections *all, struct connection *connection);
-
-/* Resumes `handle` when a study changes (store_changes is not `changes`) or at a time [s, monotonic]. */
-void connection_wait(struct connections *all, struct connection *connection, void *handle, int64_t id,
-                     unsigned changes, double until);
+void connection_wait(struct connection *connection, void *handle, int64_t id, unsigned changes, double until);
 
 double connection_now(void); /* [s] monotonic */
 

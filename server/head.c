@@ -6,18 +6,27 @@
 
 #include <arpa/inet.h>
 #include <ctype.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-static void refuse(struct head *head, enum api_fault fault, bool closed, const char *detail)
+/* Notes why a request is refused, if nothing was noted before.
+ *
+ * Given    close    it leaves in doubt where the request ends
+ *          format   printf format and its values: a sentence
+ */
+void head_refuse(struct head *head, enum api_fault fault, bool close, const char *format, ...)
 {
-	head->close |= closed;
+	va_list values;
+	head->close |= close;
 	if (head->fault != API_NO_FAULT)
 		return;
 	head->fault = fault;
-	head->detail = detail;
+	va_start(values, format);
+	vsnprintf(head->detail, sizeof head->detail, format, values);
+	va_end(values);
 }
 
 /* Starts with the request's target as it came.
@@ -30,13 +39,15 @@ void head_target(struct head *head, const char *target)
 	*head = (struct head){.fault = API_NO_FAULT};
 	for (const char *c = target; *c; c++) {
 		if (*c <= ' ' || *c > '~')
-			refuse(head, API_BAD_REQUEST, true, "the target has characters that must be percent-encoded");
+			head_refuse(head, API_BAD_REQUEST, true,
+			            "the target has characters that must be percent-encoded");
 		if (*c != '%')
 			continue;
 		if (!isxdigit((unsigned char)c[1]) || !isxdigit((unsigned char)c[2]))
-			refuse(head, API_BAD_REQUEST, false, "a percent sign must be followed by two hexadecimal digits");
+			head_refuse(head, API_BAD_REQUEST, false,
+			            "a percent sign must be followed by two hexadecimal digits");
 		else if (c[1] == '0' && c[2] == '0')
-			refuse(head, API_BAD_REQUEST, false, "the target must not have %00");
+			head_refuse(head, API_BAD_REQUEST, false, "the target must not have %%00");
 	}
 }
 
@@ -70,9 +81,9 @@ static bool is(const char *name, size_t n, const char *known)
 void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value)
 {
 	if (!is_token(name, n_name))
-		refuse(head, API_BAD_REQUEST, true, "a header's name has characters that no name may have");
+		head_refuse(head, API_BAD_REQUEST, true, "a header's name has characters that no name may have");
 	else if (!is_text(value, n_value))
-		refuse(head, API_BAD_REQUEST, true, "a header's value has control characters");
+		head_refuse(head, API_BAD_REQUEST, true, "a header's value has control characters");
 	else if (is(name, n_name, "Host")) {
 		head->hosts++;
 		snprintf(head->host, sizeof head->host, "%.*s", (int)n_value, value);
@@ -88,6 +99,11 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 		head->chunked = is(value, n_value, "chunked");
 	} else if (is(name, n_name, "Content-Encoding"))
 		head->encoded |= !is(value, n_value, "identity");
+	else if (is(name, n_name, "If-None-Match")) {
+		// lines of one name are a list, as if a comma were between them
+		size_t n = strlen(head->etags);
+		snprintf(head->etags + n, sizeof head->etags - n, "%s%.*s", n ? "," : "", (int)n_value, value);
+	}
 }
 
 /* Judges the whole head.
@@ -100,21 +116,21 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 void head_end(struct head *head, bool needs_host, const char *names)
 {
 	if (head->lengths > 1)
-		refuse(head, API_BAD_REQUEST, true, "a request has one Content-Length");
+		head_refuse(head, API_BAD_REQUEST, true, "a request has one Content-Length");
 	if (head->lengths && head->codings)
-		refuse(head, API_BAD_REQUEST, true,
-		       "a request has a Content-Length or a Transfer-Encoding, not both");
+		head_refuse(head, API_BAD_REQUEST, true,
+		            "a request has a Content-Length or a Transfer-Encoding, not both");
 	if (head->codings > 1 || (head->codings && !head->chunked))
-		refuse(head, API_BAD_REQUEST, true, "the only Transfer-Encoding is chunked");
+		head_refuse(head, API_BAD_REQUEST, true, "the only Transfer-Encoding is chunked");
 	if (head->hosts > 1 || (needs_host && !head->hosts))
-		refuse(head, API_BAD_REQUEST, true, "a request has one Host");
+		head_refuse(head, API_BAD_REQUEST, true, "a request has one Host");
 	if (head->hosts && !head_has_host(head->host, names))
-		refuse(head, API_MISDIRECTED, false,
-		       "this server is not asked by that Host; poundd --host adds names");
+		head_refuse(head, API_MISDIRECTED, false,
+		            "this server is not asked by that Host; poundd --host adds names");
 	if (head->encoded)
-		refuse(head, API_NOT_JSON, false, "the only Content-Encoding is identity");
+		head_refuse(head, API_NOT_JSON, false, "the only Content-Encoding is identity");
 	if (head->too_large)
-		refuse(head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+		head_refuse(head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
 }
 
 /* Whether a Host header names this server: an address in digits, localhost or one of the names, with any port.  A page

@@ -18,8 +18,9 @@ struct head {
 	bool too_large;              /* the length declared is over HEAD_BODY_MAX */
 	bool has_body;
 	char host[256];
+	char etags[512];      /* all If-None-Match */
 	enum api_fault fault; /* the first that was found, API_NO_FAULT: none */
-	const char *detail;   /* a sentence about it */
+	char detail[200];     /* a sentence about it */
 	bool close;           /* it leaves in doubt where the request ends */
 };
 
@@ -27,6 +28,10 @@ void head_target(struct head *head, const char *target); /* the first, with the 
 void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value);
 /* the last; `names` are hosts, between commas, besides localhost and addresses (NULL: none) */
 void head_end(struct head *head, bool needs_host, const char *names);
+
+/* a fault that is found later */
+void head_refuse(struct head *head, enum api_fault fault, bool close, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 bool head_has_host(const char *host, const char *names);
 bool head_has_etag(const char *list, const char *etag); /* an If-None-Match has a tag */

@@ -10,18 +10,15 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/random.h>
 #include <sys/resource.h>
 #include <time.h>
 
 #include <microhttpd.h>
 
-#include "server/connection.h"
 #include "server/log.h"
 #include "server/token.h"
 
@@ -38,14 +35,6 @@ enum {
 	STOP_TICK_NS = 10000000, /* [ns] */
 };
 
-struct http {
-	struct MHD_Daemon *daemon;
-	struct server *server;
-	atomic_bool stopping;
-	atomic_int under_way; /* requests whose headers are here */
-	atomic_ullong number; /* of the last request */
-};
-
 const char *http_header(const struct request *request, const char *name)
 {
 	return MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, name);
@@ -58,26 +47,10 @@ const char *http_argument(const struct request *request, const char *name)
 	return value ? value : api_argument(request->operation, name, "query")->absent;
 }
 
-struct search {
-	const char *etag;
-	bool found;
-};
-
-static enum MHD_Result look_for_etag(void *of, enum MHD_ValueKind kind, const char *name, const char *value)
-{
-	struct search *search = of;
-	(void)kind;
-	search->found |= value && !strcasecmp(name, "If-None-Match") && head_has_etag(value, search->etag);
-	return MHD_YES;
-}
-
 bool http_known(const struct request *request, const char *etag)
 {
-	struct search search = {.etag = etag};
-	if (strcmp(api_operations[request->operation].method, "GET") != 0)
-		return false;
-	MHD_get_connection_values(request->connection, MHD_HEADER_KIND, look_for_etag, &search);
-	return search.found;
+	return !strcmp(api_operations[request->operation].method, "GET") &&
+	       head_has_etag(request->head.etags, etag);
 }
 
 static double wait_until(const struct request *request)
@@ -105,6 +78,12 @@ struct reply http_problem(enum api_fault fault, const char *detail, const struct
 static struct connection *connection_of(struct MHD_Connection *connection)
 {
 	return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context;
+}
+
+/* Closes a connection unless this is called again within so many seconds. */
+static void allow(struct MHD_Connection *connection, double seconds)
+{
+	connection_of(connection)->deadline = connection_now() + seconds;
 }
 
 static enum MHD_Result send_reply(const struct request *request, struct reply *reply)
@@ -139,8 +118,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++)
 		if (headers[i].value)
 			MHD_add_response_header(response, headers[i].name, headers[i].value);
-	connection_allow(server->connections, connection_of(request->connection),
-	                 SEND_S + (double)reply->length / SEND_RATE);
+	allow(request->connection, SEND_S + (double)reply->length / SEND_RATE);
 	metrics_answered(&server->metrics, request->operation, reply->status, seconds);
 	log_line("%s %s %s %d %zu bytes %.1f ms", number, request->method, request->path, reply->status,
 	         reply->length, 1e3 * seconds);
@@ -157,35 +135,23 @@ static enum MHD_Result take_header(void *of, enum MHD_ValueKind kind, const char
 	return MHD_YES;
 }
 
-/* Why the arguments of a request are not those of its operation. */
-struct arguments {
-	int operation;
-	const char *seen[8];
-	int n;
-	char detail[256]; /* "": they are */
-};
-
 static enum MHD_Result take_argument(void *of, enum MHD_ValueKind kind, const char *name, const char *value)
 {
-	struct arguments *arguments = of;
-	const struct api_argument *argument = api_argument(arguments->operation, name, "query");
+	struct request *request = of;
+	const struct api_argument *argument = api_argument(request->operation, name, "query");
 	char expected[128];
-	(void)kind;
 	if (!*name) // an ampersand too many
 		return MHD_YES;
 	if (!argument)
-		snprintf(arguments->detail, sizeof arguments->detail, "%.60s is not an argument of %s", name,
-		         api_operations[arguments->operation].path);
-	for (int i = 0; argument && i < arguments->n; i++)
-		if (!strcmp(arguments->seen[i], name))
-			snprintf(arguments->detail, sizeof arguments->detail, "%s is given twice", name);
-	if (argument && arguments->n < 8)
-		arguments->seen[arguments->n++] = name;
-	if (argument && !api_takes(argument, value ? value : "")) {
+		head_refuse(&request->head, API_BAD_REQUEST, false, "%.60s is not an argument of %s", name,
+		            api_operations[request->operation].path);
+	else if (value != MHD_lookup_connection_value(request->connection, kind, name)) // which finds the first
+		head_refuse(&request->head, API_BAD_REQUEST, false, "%s is given twice", name);
+	else if (!api_takes(argument, value ? value : "")) {
 		api_expected(argument, expected, sizeof expected);
-		snprintf(arguments->detail, sizeof arguments->detail, "%s must be %s", name, expected);
+		head_refuse(&request->head, API_BAD_REQUEST, false, "%s must be %s", name, expected);
 	}
-	return arguments->detail[0] ? MHD_NO : MHD_YES;
+	return MHD_YES;
 }
 
 static bool is_json(const char *type)
@@ -195,56 +161,39 @@ static bool is_json(const char *type)
 	return type && !strncasecmp(type, json, n) && (type[n] == '\0' || type[n] == ';' || type[n] == ' ');
 }
 
-/* Whether the head alone says that there is nothing to do for a request, and the reply that says so. */
-static bool refused(struct request *request, struct reply *reply)
+/* Whether there is something to do for a request, by its head: else that has a fault. */
+static void judge(struct request *request, bool needs_host)
 {
-	struct server *server = request->server;
+	const struct server *server = request->server;
+	struct head *head = &request->head;
 	const struct api_operation *operation =
 	    request->operation < 0 ? NULL : &api_operations[request->operation];
-	struct arguments arguments = {.operation = request->operation};
-	enum api_fault fault = request->head.fault;
-	const char *detail = request->head.detail;
-	if (fault != API_NO_FAULT)
-		;
-	else if (server->http->stopping)
-		fault = API_UNAVAILABLE, detail = "the server stops";
-	else if (!connection_served(connection_of(request->connection)))
-		fault = API_UNAVAILABLE, detail = "the server has as many connections as it takes";
-	else if (server->tokens && !request->token && !(operation && operation->open))
-		fault = API_UNAUTHORIZED,
-		detail = "this needs the header Authorization: Bearer, and a token of this server";
-	else if (!request->allow[0])
-		fault = API_NOT_FOUND, detail = "there is no such path";
-	else if (!operation)
-		fault = API_NOT_ALLOWED, detail = "this path does not take that method";
+	MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, take_header, head);
+	head_end(head, needs_host, server->options->host);
+	if (!connection_of(request->connection)->served)
+		head_refuse(head, API_UNAVAILABLE, false, "the server has as many connections as it takes");
+	if (server->tokens && !request->token && !(operation && operation->open))
+		head_refuse(head, API_UNAUTHORIZED, false,
+		            "this needs the header Authorization: Bearer, and a token of this server");
+	if (!request->allow[0])
+		head_refuse(head, API_NOT_FOUND, false, "there is no such path");
+	if (!operation)
+		head_refuse(head, API_NOT_ALLOWED, false, "this path does not take that method");
 	else if (operation->takes_study && !is_json(http_header(request, "Content-Type")))
-		fault = API_NOT_JSON, detail = "Content-Type must be application/json";
-	else {
-		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, &arguments);
-		fault = arguments.detail[0] ? API_BAD_REQUEST : API_NO_FAULT;
-		detail = arguments.detail;
-	}
-	if (fault != API_NO_FAULT)
-		*reply = http_problem(fault, detail, NULL);
-	return fault != API_NO_FAULT;
+		head_refuse(head, API_NOT_JSON, false, "Content-Type must be application/json");
+	if (head->fault == API_NO_FAULT)
+		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, request);
 }
 
-/* Keeps more of the body, or drops it when it is over the limit. */
+/* Keeps more of the body, or drops it when there is a fault; its pages are had when they are written to. */
 static void collect(struct request *request, const char *bytes, size_t n)
 {
-	request->head.too_large = request->head.too_large || request->length + n > HEAD_BODY_MAX;
-	if (request->head.too_large || request->no_memory)
+	if (n > HEAD_BODY_MAX - request->length)
+		head_refuse(&request->head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+	else if (!request->body && !(request->body = malloc(HEAD_BODY_MAX)))
+		head_refuse(&request->head, API_UNAVAILABLE, false, "out of memory");
+	if (request->head.fault != API_NO_FAULT)
 		return;
-	if (request->length + n > request->capacity) {
-		size_t capacity = 2 * request->capacity + n;
-		char *body = realloc(request->body, capacity);
-		if (!body) {
-			request->no_memory = true;
-			return;
-		}
-		request->body = body;
-		request->capacity = capacity;
-	}
 	memcpy(request->body + request->length, bytes, n);
 	request->length += n;
 }
@@ -257,7 +206,7 @@ static void *begin(void *of, const char *target, struct MHD_Connection *connecti
 	if (!request)
 		return NULL;
 	*request = (struct request){.server = server, .connection = connection, .operation = -1};
-	request->number = atomic_fetch_add(&server->http->number, 1);
+	request->number = server->number++;
 	head_target(&request->head, target ? target : "");
 	return request;
 }
@@ -267,25 +216,22 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
                                  const char *version)
 {
 	struct server *server = request->server;
-	struct connection *connection = connection_of(request->connection);
-	struct reply reply;
-	if (!connection)
+	if (!connection_of(request->connection))
 		return MHD_NO;
-	atomic_fetch_add(&server->http->under_way, 1);
+	server->under_way++;
 	request->method = method;
 	request->path = path;
 	request->arrived = connection_now();
 	request->operation = api_match(method, path, &request->id, request->allow);
 	if (server->tokens)
 		request->token = tokens_name(server->tokens, http_header(request, "Authorization"));
-	MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, take_header, &request->head);
-	head_end(&request->head, strcmp(version, "HTTP/1.0") != 0, server->options->host);
-	connection_allow(server->connections, connection, server->options->body_timeout);
-	if (!request->head.has_body && !request->head.close)
-		return MHD_YES; // a refusal can wait for the next call, and the connection be kept
-	if (!refused(request, &reply))
+	allow(request->connection, server->options->body_timeout);
+	judge(request, strcmp(version, "HTTP/1.0") != 0);
+	// without a body, the refusal can wait for the next call, and the connection be kept
+	if (request->head.fault == API_NO_FAULT || !(request->head.has_body || request->head.close))
 		return MHD_YES;
-	connection_linger(server->connections, connection);
+	connection_of(request->connection)->lingers = true;
+	struct reply reply = http_problem(request->head.fault, request->head.detail, NULL);
 	return send_reply(request, &reply);
 }
 
@@ -295,8 +241,7 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
                               void **kept)
 {
 	struct request *request = *kept;
-	struct server *server = of;
-	struct reply reply;
+	const struct server *server = of;
 	if (!request)
 		return MHD_NO;
 	if (!request->method)
@@ -306,13 +251,12 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 		*n = 0;
 		return MHD_YES;
 	}
-	connection_allow(server->connections, connection_of(connection), INFINITY);
-	if (request->no_memory)
-		reply = http_problem(API_UNAVAILABLE, "out of memory", NULL);
-	else if (request->head.too_large)
-		reply = http_problem(API_TOO_LARGE, "a study document has at most 1 MiB", NULL);
-	else if (!refused(request, &reply))
-		reply = routes_answer(request);
+	allow(connection, INFINITY);
+	if (server->stopping)
+		head_refuse(&request->head, API_UNAVAILABLE, false, "the server stops");
+	struct reply reply = request->head.fault != API_NO_FAULT
+	                         ? http_problem(request->head.fault, request->head.detail, NULL)
+	                         : routes_answer(request);
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag)) {
 		free(reply.body);
 		reply.body = NULL;
@@ -322,8 +266,7 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
 		return send_reply(request, &reply);
 	MHD_suspend_connection(connection);
-	connection_wait(server->connections, connection_of(connection), connection, request->id, reply.changes,
-	                wait_until(request));
+	connection_wait(connection_of(connection), connection, request->id, reply.changes, wait_until(request));
 	return MHD_YES;
 }
 
@@ -337,14 +280,13 @@ static void completed(void *of, struct MHD_Connection *connection, void **kept,
 {
 	struct server *server = of;
 	struct request *request = *kept;
-	struct connection *open = connection_of(connection);
 	(void)why;
 	if (!request)
 		return;
-	if (open)
-		connection_allow(server->connections, open, server->options->idle_timeout);
+	if (connection_of(connection))
+		allow(connection, server->options->idle_timeout);
 	if (request->method)
-		atomic_fetch_sub(&server->http->under_way, 1);
+		server->under_way--;
 	free(request->body);
 	free(request);
 	*kept = NULL;
@@ -356,9 +298,9 @@ static void notice(void *of, struct MHD_Connection *connection, void **context,
 	struct server *server = of;
 	int fd = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
 	if (code == MHD_CONNECTION_NOTIFY_STARTED)
-		*context = connection_opened(server->connections, fd, server->options->header_timeout);
+		*context = connection_opened(&server->connections, fd, server->options->header_timeout);
 	else if (*context)
-		connection_closed(server->connections, *context);
+		connection_closed(&server->connections, *context);
 }
 
 static void log_library(void *of, const char *format, va_list values)
@@ -370,27 +312,28 @@ static void log_library(void *of, const char *format, va_list values)
 	log_line("http: %s", text);
 }
 
-struct address {
-	bool v6, loopback;
+union address {
+	struct sockaddr any;
 	struct sockaddr_in ip4;
 	struct sockaddr_in6 ip6;
 };
 
-static bool address_of(const char *text, int port, struct address *address)
+static bool address_of(const char *text, int port, union address *address)
 {
-	*address = (struct address){
-	    .ip4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)},
-	    .ip6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)},
-	};
-	address->v6 = inet_pton(AF_INET6, text, &address->ip6.sin6_addr) == 1;
-	if (!address->v6 && inet_pton(AF_INET, text, &address->ip4.sin_addr) != 1)
-		return false;
-	address->loopback = address->v6 ? IN6_IS_ADDR_LOOPBACK(&address->ip6.sin6_addr)
-	                                : ntohl(address->ip4.sin_addr.s_addr) >> 24 == 127;
-	return true;
+	*address = (union address){.ip6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)}};
+	if (inet_pton(AF_INET6, text, &address->ip6.sin6_addr) == 1)
+		return true;
+	*address = (union address){.ip4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)}};
+	return inet_pton(AF_INET, text, &address->ip4.sin_addr) == 1;
 }
 
-/* As many descriptors as the connections need. */
+static bool is_loopback(const union address *address)
+{
+	return address->any.sa_family == AF_INET6 ? IN6_IS_ADDR_LOOPBACK(&address->ip6.sin6_addr)
+	                                          : ntohl(address->ip4.sin_addr.s_addr) >> 24 == 127;
+}
+
+/* As many descriptors as the connections need, or as there may be. */
 static void allow_files(void)
 {
 	struct rlimit files;
@@ -402,78 +345,69 @@ static void allow_files(void)
 		log_line("only %llu files may be open: ulimit -n", (unsigned long long)files.rlim_cur);
 }
 
-static struct MHD_Daemon *listen_at(struct server *server, const struct address *address)
+static struct MHD_Daemon *listen_at(struct server *server, const union address *address)
 {
-	const struct sockaddr *at =
-	    address->v6 ? (const struct sockaddr *)&address->ip6 : (const struct sockaddr *)&address->ip4;
 	unsigned flags = MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME |
-	                 (address->v6 ? MHD_USE_IPv6 : 0);
+	                 (address->any.sa_family == AF_INET6 ? MHD_USE_IPv6 : 0);
 	return MHD_start_daemon(
 	    flags, 0, NULL, NULL, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL,
-	    MHD_OPTION_SOCK_ADDR, at, MHD_OPTION_NOTIFY_COMPLETED, completed, server,
+	    MHD_OPTION_SOCK_ADDR, &address->any, MHD_OPTION_NOTIFY_COMPLETED, completed, server,
 	    MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin, server,
 	    MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
 	    (unsigned)CONNECTIONS_MAX, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-	    address->loopback ? 0u : (unsigned)OF_ADDRESS_MAX, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+	    is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
 	    (size_t)HEADERS_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE, (unsigned)BACKLOG,
 	    MHD_OPTION_LISTENING_ADDRESS_REUSE, 1u, MHD_OPTION_END);
 }
 
 /* Starts to answer requests, at the address and the port of the options.
  *
- * Given    server   must outlive the service; its http and connections are set
- * Returns  value    for http_stop; NULL when it cannot or must not listen there, logged
+ * Given    server   whose options, store, work and tokens are set; it must outlive the service
+ * Returns  value    for http_stop; false when it cannot or must not listen there, logged
  * Test     service_security: an_address_that_is_not_loopback_needs_tokens_or_insecure
  */
-struct http *http_start(struct server *server)
+bool http_start(struct server *server)
 {
 	const struct options *options = server->options;
-	struct address address;
-	uint32_t random = 0;
+	union address address;
 	if (!address_of(options->listen, options->port, &address)) {
 		log_line("cannot listen on %s: not an IP address", options->listen);
-		return NULL;
+		return false;
 	}
-	if (!address.loopback && !server->tokens && !options->insecure) {
+	if (!is_loopback(&address) && !server->tokens && !options->insecure) {
 		log_line("cannot listen on %s: others reach it, so it needs --token-file, or --insecure",
 		         options->listen);
-		return NULL;
+		return false;
 	}
-	struct http *http = server->http = calloc(1, sizeof *http);
-	server->connections = http ? connections_start(server->store, resume, options->connections_max) : NULL;
-	if (server->connections) {
-		allow_files();
-		// without it the numbers of two starts are alike, and no more
-		if (getrandom(&random, sizeof random, 0) < 0)
-			random = 0;
-		http->number = (unsigned long long)random << 32;
-		http->server = server;
-		http->daemon = listen_at(server, &address);
-		if (http->daemon)
-			return http;
-		log_line("cannot listen on %s port %d: %s", options->listen, options->port, strerror(errno));
-		connections_stop(server->connections);
-	}
-	free(http);
-	return NULL;
+	allow_files();
+	server->number = (unsigned long long)time(NULL) << 32;
+	server->connections.store = server->store;
+	server->connections.resume = resume;
+	server->connections.most = options->connections_max;
+	if (!connections_start(&server->connections))
+		return false;
+	server->daemon = listen_at(server, &address);
+	if (server->daemon)
+		return true;
+	log_line("cannot listen on %s port %d: %s", options->listen, options->port, strerror(errno));
+	connections_stop(&server->connections);
+	return false;
 }
 
 /* The port listened on. */
-int http_port(const struct http *http)
+int http_port(const struct server *server)
 {
-	return MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+	return MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
 /* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end. */
-void http_stop(struct http *http)
+void http_stop(struct server *server)
 {
-	struct server *server = http->server;
 	double until = connection_now() + STOP_S;
-	http->stopping = true;
-	connections_release(server->connections);
-	while (http->under_way > 0 && connection_now() < until)
+	server->stopping = true;
+	server->connections.released = true;
+	while (server->under_way > 0 && connection_now() < until)
 		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
-	MHD_stop_daemon(http->daemon);
-	connections_stop(server->connections);
-	free(http);
+	MHD_stop_daemon(server->daemon);
+	connections_stop(&server->connections);
 }

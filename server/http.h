@@ -2,11 +2,13 @@
 #ifndef HTTP_H
 #define HTTP_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "schema/api.h"
+#include "server/connection.h"
 #include "server/head.h"
 #include "server/metrics.h"
 #include "server/options.h"
@@ -18,8 +20,11 @@ struct server {
 	struct work *work;
 	struct tokens *tokens; /* NULL: there are none */
 	struct metrics metrics;
-	struct http *http;
-	struct connections *connections;
+	struct connections connections;
+	struct MHD_Daemon *daemon;
+	atomic_bool stopping;
+	atomic_int under_way; /* requests whose headers are here */
+	atomic_ullong number; /* of the next request */
 };
 
 struct MHD_Connection;
@@ -35,8 +40,7 @@ struct request {
 	const char *token; /* name of the one it was sent with; NULL: there are none */
 	char allow[64];    /* methods of the path */
 	char *body;        /* (length) bytes */
-	size_t length, capacity;
-	bool no_memory;  /* the body was not kept */
+	size_t length;
 	double arrived;  /* [s] monotonic */
 	uint64_t number; /* told as X-Request-Id */
 };
@@ -62,9 +66,9 @@ bool http_known(const struct request *request,
 /* an application/problem+json reply; `problems` may be NULL */
 struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);
 
-struct http *http_start(struct server *server); /* NULL: logged */
-int http_port(const struct http *http);
-void http_stop(struct http *http); /* what is under way is answered, who waits is told 503 */
+bool http_start(struct server *server); /* false: logged */
+int http_port(const struct server *server);
+void http_stop(struct server *server); /* what is under way is answered, who waits is told 503 */
 
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);

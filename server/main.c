@@ -61,11 +61,11 @@ static int serve(struct server *server, const sigset_t *signals)
 	server->work = work_start(server->store, server->options->workers);
 	if (!server->work)
 		return EXIT_FAILURE;
-	struct http *http = http_start(server);
-	if (http) {
+	bool listens = http_start(server);
+	if (listens) {
 		const char *listen = server->options->listen;
 		bool v6 = strchr(listen, ':');
-		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", http_port(http));
+		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", http_port(server));
 		fflush(stdout);
 		tell("READY=1");
 		log_line("stopping: %s", strsignal(await(server->store, signals)));
@@ -73,10 +73,10 @@ static int serve(struct server *server, const sigset_t *signals)
 		// the next signal ends the program at once, and so does the clock
 		alarm(STOP_MAX);
 		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
-		http_stop(http);
+		http_stop(server);
 	}
 	work_stop(server->work);
-	return http ? EXIT_SUCCESS : EXIT_FAILURE;
+	return listens ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 int main(int argc, char **argv)

@@ -7,7 +7,6 @@
 
 #include "engine/pound.h"
 #include "schema/writer.h"
-#include "server/connection.h"
 #include "server/http.h"
 #include "server/store.h"
 
@@ -112,9 +111,9 @@ char *metrics_text(const struct server *server, size_t *length)
 		const char *name, *type, *labels, *text;
 		double value;
 	} values[] = {
-	    {"pound_http_connections", "gauge", "", "Open connections.", connections_open(server->connections)},
+	    {"pound_http_connections", "gauge", "", "Open connections.", server->connections.n},
 	    {"pound_http_connections_late_total", "counter", "", "Connections closed for being too slow.",
-	     connections_late(server->connections)},
+	     server->connections.n_late},
 	    {"process_cpu_seconds_total", "counter", "", "Processor time.",
 	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
 	    {"process_resident_memory_bytes", "gauge", "", "Resident memory.", resident_bytes()},
