@@ -285,22 +285,11 @@ static bool second(const struct request *request, const struct format formats[2]
 	return is;
 }
 
-/* Says why there is nothing so far in place of why there is no result yet. */
-static struct reply nothing_so_far(struct reply unready, bool sampled)
-{
-	struct reply reply =
-	    problem(API_NOT_READY, sampled ? "no row of the design is complete yet"
-	                                   : "only sensitivity studies have results so far; this "
-	                                     "study is not finished yet");
-	reply.retry_after = unready.retry_after;
-	free(unready.body);
-	return reply;
-}
-
-/* The result of the rows that are stored whole; `unready` says that there is none yet. */
-static struct reply so_far(struct request *request, struct reply unready, int *rows)
+/* The result of the rows that are stored whole; an unfinished study is looked at again after a time [s]. */
+static struct reply so_far(struct request *request, int retry_after, int *rows)
 {
 	struct work_run opened;
+	struct reply reply;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
 	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
 	*rows = sampled ? pound_run_rows_done(opened.run, opened.stored) : 0;
@@ -313,15 +302,18 @@ static struct reply so_far(struct request *request, struct reply unready, int *r
 			status = pound_run_reduce(opened.run, k, 0);
 		if (!status)
 			body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &length);
-		free(unready.body);
-		unready = !status || status == POUND_NOMEM
-		              ? made("application/json", body, length)
-		              : problem(API_CONFLICT, "none of the runs so far has a result");
-	} else if (!error) {
-		unready = nothing_so_far(unready, sampled);
+		reply = !status || status == POUND_NOMEM
+		            ? made("application/json", body, length)
+		            : problem(API_CONFLICT, "none of the runs so far has a result");
+	} else {
+		reply = error     ? problem(API_UNAVAILABLE, error)
+		        : sampled ? problem(API_NOT_READY, "no row of the design is complete yet")
+		                  : problem(API_NOT_READY, "only sensitivity studies have results so far; this "
+		                                           "study is not finished yet");
+		reply.retry_after = retry_after;
 	}
 	work_close(&opened);
-	return unready;
+	return reply;
 }
 
 /* One table of a result as CSV. */
@@ -344,8 +336,10 @@ static struct reply results(struct request *request)
 		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv, or left out");
 	struct reply reply, json = document(request, "result");
 	int rows = 0;
-	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true"))
-		json = so_far(request, json, &rows);
+	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true")) {
+		free(json.body);
+		json = so_far(request, json.retry_after, &rows);
+	}
 	if (json.status != 200)
 		return json;
 	if (second(request, formats, table, rows, &reply)) {

@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/queue.h>
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
@@ -35,7 +36,7 @@ enum {
 };
 
 struct job {
-	struct job *next; /* a younger one */
+	TAILQ_ENTRY(job) others;
 	int64_t id;
 	bool opened;
 	struct work_run of;
@@ -48,22 +49,17 @@ struct job {
 	double started;    /* [s] monotonic, as if all its sessions were this one */
 };
 
-struct worker {
-	struct work *work;
-	int number;
-	pthread_t thread;
-};
-
 struct work {
 	struct store *store;
 	pthread_mutex_t lock; /* of all below */
 	pthread_cond_t changed;
-	struct job *jobs; /* oldest first */
-	bool queued;      /* the store may hold a queued study */
-	bool claiming;    /* a worker is about to bring the next study */
+	TAILQ_HEAD(, job) jobs; /* oldest first */
+	bool queued;            /* the store may hold a queued study */
+	bool claiming;          /* a worker is about to bring the next study */
 	bool stopping;
+	int n_started;
 	int n_workers;
-	struct worker workers[]; /* (n_workers) */
+	pthread_t workers[]; /* (n_workers) */
 };
 
 static double seconds(clockid_t clock)
@@ -219,6 +215,13 @@ static void finish(struct work *work, struct job *job)
 	free(result);
 }
 
+static void drop(struct work *work, struct job *job)
+{
+	TAILQ_REMOVE(&work->jobs, job, others);
+	work_close(&job->of);
+	free(job);
+}
+
 /* What is to do when a worker has left a study, or it was ended: under the lock, which finishing lets go. */
 static void settle(struct work *work, struct job *job)
 {
@@ -232,12 +235,7 @@ static void settle(struct work *work, struct job *job)
 		finish(work, job);
 		pthread_mutex_lock(&work->lock);
 	}
-	struct job **link = &work->jobs;
-	while (*link != job)
-		link = &(*link)->next;
-	*link = job->next;
-	work_close(&job->of);
-	free(job);
+	drop(work, job);
 }
 
 /* false: the study is not running any more in the store, or the server stops. */
@@ -260,30 +258,21 @@ static bool keep(struct work *work, struct job *job, int block, double cpu_s)
 static _Thread_local volatile int64_t study_here;
 static const struct store *crash_store;
 
-static struct crash {
-	int signal;
-	struct sigaction before;
-} crashes[] = {
-    {.signal = SIGSEGV}, {.signal = SIGBUS}, {.signal = SIGFPE}, {.signal = SIGILL}, {.signal = SIGABRT}};
+static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-enum { N_CRASHES = sizeof crashes / sizeof crashes[0] };
-
-/* Notes the study; what happens next is what would have happened. */
+/* Notes the study; then the signal does what it does without this. */
 static void crash(int signal)
 {
 	store_blame(crash_store, study_here);
-	for (int i = 0; i < N_CRASHES; i++)
-		if (crashes[i].signal == signal)
-			sigaction(signal, &crashes[i].before, NULL);
 	raise(signal);
 }
 
 static void watch_crashes(const struct store *store)
 {
-	struct sigaction action = {.sa_handler = crash};
+	const struct sigaction action = {.sa_handler = crash, .sa_flags = (int)SA_RESETHAND};
 	crash_store = store;
-	for (int i = 0; i < N_CRASHES; i++)
-		sigaction(crashes[i].signal, &action, &crashes[i].before);
+	for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++)
+		sigaction(crashes[i], &action, NULL);
 }
 
 struct step {
@@ -293,7 +282,9 @@ struct step {
 
 static bool take(struct work *work, struct step *step)
 {
-	for (struct job *job = work->jobs; job; job = job->next) {
+	struct job *job;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	{
 		if (!job->opened || job->ended)
 			continue;
 		while (job->block < job->of.n_blocks && job->of.stored[job->block])
@@ -377,10 +368,7 @@ static void claim(struct work *work)
 	work->queued = work->queued || again || status == STORE_OK;
 	if (status == STORE_OK) {
 		job->n_inside = 1;
-		struct job **last = &work->jobs;
-		while (*last)
-			last = &(*last)->next;
-		*last = job;
+		TAILQ_INSERT_TAIL(&work->jobs, job, others);
 		open_run(work, job);
 		job->n_inside = 0;
 		settle(work, job);
@@ -393,14 +381,14 @@ static void claim(struct work *work)
 
 static void *worker(void *of)
 {
-	const struct worker *worker = of;
-	struct work *work = worker->work;
+	struct work *work = of;
 	struct step step;
 	setpriority(PRIO_PROCESS, (id_t)gettid(), WORKER_NICENESS);
 	pthread_mutex_lock(&work->lock);
+	int number = work->n_started++;
 	while (!work->stopping) {
 		if (take(work, &step))
-			perform(work, &step, worker->number);
+			perform(work, &step, number);
 		else if (work->queued && !work->claiming)
 			claim(work);
 		else
@@ -424,11 +412,11 @@ struct work *work_start(struct store *store, int n_workers)
 	work->store = store;
 	work->n_workers = n_workers;
 	work->queued = true;
+	TAILQ_INIT(&work->jobs);
 	pthread_mutex_init(&work->lock, NULL);
 	pthread_cond_init(&work->changed, NULL);
 	for (int w = 0; w < n_workers; w++) {
-		work->workers[w] = (struct worker){.work = work, .number = w};
-		if (pthread_create(&work->workers[w].thread, NULL, worker, &work->workers[w]) != 0) {
+		if (pthread_create(&work->workers[w], NULL, worker, work) != 0) {
 			log_line("cannot start worker %d", w);
 			work->n_workers = w;
 			work_stop(work);
@@ -455,12 +443,13 @@ void work_wake(struct work *work)
 void work_drop(struct work *work, int64_t id)
 {
 	pthread_mutex_lock(&work->lock);
-	for (struct job *job = work->jobs; job; job = job->next)
-		if (job->id == id) {
-			end(job, NULL);
-			settle(work, job);
-			break;
-		}
+	struct job *job;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	if (job->id == id) {
+		end(job, NULL);
+		settle(work, job);
+		break;
+	}
 	pthread_mutex_unlock(&work->lock);
 }
 
@@ -469,18 +458,15 @@ void work_stop(struct work *work)
 {
 	pthread_mutex_lock(&work->lock);
 	work->stopping = true;
-	for (struct job *job = work->jobs; job; job = job->next)
-		end(job, NULL);
+	struct job *job;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	end(job, NULL);
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);
 	for (int w = 0; w < work->n_workers; w++)
-		pthread_join(work->workers[w].thread, NULL);
-	while (work->jobs) {
-		struct job *job = work->jobs;
-		work->jobs = job->next;
-		work_close(&job->of);
-		free(job);
-	}
+		pthread_join(work->workers[w], NULL);
+	while ((job = TAILQ_FIRST(&work->jobs)))
+		drop(work, job);
 	pthread_cond_destroy(&work->changed);
 	pthread_mutex_destroy(&work->lock);
 	free(work);
