@@ -19,6 +19,8 @@ struct server {
 	struct store *store;
 	struct work *work;
 	struct tokens *tokens; /* NULL: there are none */
+	char *document; /* (document_length) bytes, the OpenAPI document: made once, it takes milliseconds */
+	size_t document_length;
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;

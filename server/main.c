@@ -101,11 +101,13 @@ int main(int argc, char **argv)
 	struct server server = {.options = &options};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
-	server.store = store_open(options.database);
+	server.document = api_document(&server.document_length);
+	server.store = server.document ? store_open(options.database) : NULL;
 	if (!server.store)
 		return EXIT_FAILURE;
 	int status = serve(&server, &signals);
 	store_close(server.store);
+	free(server.document);
 	free(server.tokens);
 	return status;
 }
