@@ -10,10 +10,18 @@
 #include <gsl/gsl_randist.h>
 #include <math.h>
 
+enum { RULES_MAX = 3 };
+
+/* What parameters must be to make a distribution.  One that is not a number breaks no rule. */
+struct rule {
+	const char *text;
+	bool (*broken)(const struct pound_distribution *d);
+};
+
 struct distribution {
 	const char *name;
-	const char *parameters[5];             /* up to the first NULL */
-	const char *(*fault)(const double *p); /* parameters that are finite but make no distribution, in words */
+	const char *parameters[5]; /* up to the first NULL */
+	struct rule rules[RULES_MAX + 1];
 	double (*quantile)(const double *p, double u);
 };
 
@@ -22,9 +30,20 @@ static double within(double x, double low, double high)
 	return x < low ? low : x > high ? high : x;
 }
 
-static const char *min_max_fault(const double *p)
+// of parameters 0 and 1, or 2 and 3, or 0 and 2
+static bool no_range(const struct pound_distribution *d)
 {
-	return p[0] < p[1] ? NULL : "min must be less than max";
+	return d->p[0] >= d->p[1];
+}
+
+static bool no_range_last(const struct pound_distribution *d)
+{
+	return d->p[2] >= d->p[3];
+}
+
+static bool no_range_outer(const struct pound_distribution *d)
+{
+	return d->p[0] >= d->p[2];
 }
 
 static double uniform(const double *p, double u)
@@ -32,9 +51,9 @@ static double uniform(const double *p, double u)
 	return within((1.0 - u) * p[0] + u * p[1], p[0], p[1]);
 }
 
-static const char *log_uniform_fault(const double *p)
+static bool first_not_positive(const struct pound_distribution *d)
 {
-	return p[0] > 0.0 ? min_max_fault(p) : "min must be greater than 0";
+	return d->p[0] <= 0.0;
 }
 
 static double log_uniform(const double *p, double u)
@@ -42,9 +61,9 @@ static double log_uniform(const double *p, double u)
 	return within(pow(p[0], 1.0 - u) * pow(p[1], u), p[0], p[1]);
 }
 
-static const char *reciprocal_uniform_fault(const double *p)
+static bool max_not_over_one(const struct pound_distribution *d)
 {
-	return p[0] > 1.0 ? NULL : "max must be greater than 1";
+	return d->p[0] <= 1.0;
 }
 
 /* Quantile of a ratio that is as likely as its inverse, and uniform above 1.
@@ -64,9 +83,9 @@ static double reciprocal_uniform(const double *p, double u)
 	return u < 0.5 ? 1.0 / larger : larger;
 }
 
-static const char *deviation_fault(const double *p)
+static bool no_deviation(const struct pound_distribution *d)
 {
-	return p[1] > 0.0 ? NULL : "standard_deviation must be greater than 0";
+	return d->p[1] <= 0.0;
 }
 
 static double normal(const double *p, double u)
@@ -74,15 +93,15 @@ static double normal(const double *p, double u)
 	return p[0] + p[1] * gsl_cdf_ugaussian_Pinv(u);
 }
 
-static const char *truncated_normal_fault(const double *p)
+static bool too_far_out(const struct pound_distribution *d)
 {
-	if (deviation_fault(p) || min_max_fault(p + 2))
-		return deviation_fault(p) ? deviation_fault(p) : min_max_fault(p + 2);
-	double a = (p[2] - p[0]) / p[1], b = (p[3] - p[0]) / p[1];
+	double a = (d->p[2] - d->p[0]) / d->p[1], b = (d->p[3] - d->p[0]) / d->p[1];
+	if (!(d->p[1] > 0.0 && a < b))
+		return false;
 	double kept = a < 0.0 ? gsl_cdf_ugaussian_P(b) - gsl_cdf_ugaussian_P(a)
 	                      : gsl_cdf_ugaussian_Q(a) - gsl_cdf_ugaussian_Q(b);
 	// below this the tail has lost its digits
-	return kept > DBL_MIN / DBL_EPSILON ? NULL : "min and max are too many standard deviations from the mean";
+	return kept <= DBL_MIN / DBL_EPSILON;
 }
 
 /* Quantile of a normal variable known to lie between two bounds.
@@ -107,21 +126,14 @@ static double truncated_normal(const double *p, double u)
 	return within(p[0] + p[1] * z, p[2], p[3]);
 }
 
-static const char *lognormal_fault(const double *p)
-{
-	return p[1] > 0.0 ? NULL : "log_standard_deviation must be greater than 0";
-}
-
 static double lognormal(const double *p, double u)
 {
 	return exp(normal(p, u));
 }
 
-static const char *triangular_fault(const double *p)
+static bool mode_outside(const struct pound_distribution *d)
 {
-	if (!(p[0] < p[2]))
-		return "min must be less than max";
-	return p[0] <= p[1] && p[1] <= p[2] ? NULL : "mode must lie between min and max";
+	return d->p[0] < d->p[2] && (d->p[1] < d->p[0] || d->p[1] > d->p[2]);
 }
 
 static double triangular(const double *p, double u)
@@ -133,12 +145,14 @@ static double triangular(const double *p, double u)
 
 enum { BETA_MAX = 10000 }; // largest exponent for which GSL's continued fraction surely converges
 
-static const char *beta_fault(const double *p)
+static bool alpha_outside(const struct pound_distribution *d)
 {
-	for (int k = 0; k < 2; k++)
-		if (!(p[k] > 0.0 && p[k] <= BETA_MAX))
-			return k ? "beta must be in (0, 10000]" : "alpha must be in (0, 10000]";
-	return min_max_fault(p + 2);
+	return d->p[0] <= 0.0 || d->p[0] > BETA_MAX;
+}
+
+static bool beta_outside(const struct pound_distribution *d)
+{
+	return d->p[1] <= 0.0 || d->p[1] > BETA_MAX;
 }
 
 /* Quantile of the standard beta distribution.
@@ -184,19 +198,12 @@ static double beta(const double *p, double u)
 	return within(x, p[2], p[3]);
 }
 
-static const char *discrete_fault(const struct pound_distribution *d)
+static bool not_ascending(const struct pound_distribution *d)
 {
-	double last = -INFINITY;
-	for (int k = 0; k < d->n_values; k++) {
-		if (!(fabs(d->values[k]) <= 1e100))
-			return "every value must be a number between -1e100 and 1e100";
-		if (!(d->values[k] > last))
-			return "every value must be greater than the one before";
-		if (d->weights && !(d->weights[k] > 0.0 && d->weights[k] <= 1e100))
-			return "every weight must be greater than 0, and at most 1e100";
-		last = d->values[k];
-	}
-	return d->n_values > 0 ? NULL : "there must be a value";
+	for (int k = 1; k < d->n_values; k++)
+		if (d->values[k] <= d->values[k - 1])
+			return true;
+	return false;
 }
 
 /* Quantile of a variable that takes some values with probabilities as their weights.
@@ -219,16 +226,26 @@ static double discrete(const struct pound_distribution *d, double u)
 }
 
 // clang-format off
+#define MIN_MAX    "min must be less than max"
+#define DEVIATION  "standard_deviation must be greater than 0"
+
 static const struct distribution distributions[] = {
-	{"uniform",            {"min", "max"},                                 min_max_fault,            uniform},
-	{"log_uniform",        {"min", "max"},                                 log_uniform_fault,        log_uniform},
-	{"reciprocal_uniform", {"max"},                                        reciprocal_uniform_fault, reciprocal_uniform},
-	{"normal",             {"mean", "standard_deviation"},                 deviation_fault,          normal},
-	{"truncated_normal",   {"mean", "standard_deviation", "min", "max"},   truncated_normal_fault,   truncated_normal},
-	{"lognormal",          {"log_mean", "log_standard_deviation"},         lognormal_fault,          lognormal},
-	{"triangular",         {"min", "mode", "max"},                         triangular_fault,         triangular},
-	{"beta",               {"alpha", "beta", "min", "max"},                beta_fault,               beta},
-	{"discrete",           {NULL},                                         NULL,                     NULL}, // of lists
+	{"uniform",            {"min", "max"},                               {{MIN_MAX, no_range}}, uniform},
+	{"log_uniform",        {"min", "max"},                               {{"min must be greater than 0", first_not_positive},
+	                                                                      {MIN_MAX, no_range}}, log_uniform},
+	{"reciprocal_uniform", {"max"},                                      {{"max must be greater than 1", max_not_over_one}},
+	                                                                     reciprocal_uniform},
+	{"normal",             {"mean", "standard_deviation"},               {{DEVIATION, no_deviation}}, normal},
+	{"truncated_normal",   {"mean", "standard_deviation", "min", "max"}, {{DEVIATION, no_deviation}, {MIN_MAX, no_range_last},
+	                        {"min and max must not be too many standard deviations from the mean", too_far_out}}, truncated_normal},
+	{"lognormal",          {"log_mean", "log_standard_deviation"},       {{"log_" DEVIATION, no_deviation}}, lognormal},
+	{"triangular",         {"min", "mode", "max"},                       {{MIN_MAX, no_range_outer},
+	                                                                      {"mode must lie between min and max", mode_outside}},
+	                                                                     triangular},
+	{"beta",               {"alpha", "beta", "min", "max"},              {{"alpha must be in (0, 10000]", alpha_outside},
+	                        {"beta must be in (0, 10000]", beta_outside}, {MIN_MAX, no_range_last}}, beta},
+	{"discrete",           {NULL},                                       {{"every value must be greater than the one before",
+	                                                                       not_ascending}}, NULL}, // of lists
 };
 // clang-format on
 
@@ -251,15 +268,16 @@ bool pound_distribution_lists_values(int row)
 	return !distributions[row].quantile;
 }
 
-const char *pound_distribution_fault(const struct pound_distribution *distribution)
+const char *pound_distribution_rule(int row, int k)
 {
-	const struct distribution *row = &distributions[distribution->type];
-	if (!row->quantile)
-		return discrete_fault(distribution);
-	for (int k = 0; row->parameters[k]; k++)
-		if (!(fabs(distribution->p[k]) <= 1e100)) // products of two stay finite
-			return "every parameter must be a number between -1e100 and 1e100";
-	return row->fault(distribution->p);
+	assert(row >= 0 && row < DISTRIBUTIONS && k >= 0 && k <= RULES_MAX);
+	return distributions[row].rules[k].text;
+}
+
+bool pound_distribution_breaks(const struct pound_distribution *distribution, int k)
+{
+	assert(pound_distribution_rule(distribution->type, k));
+	return distributions[distribution->type].rules[k].broken(distribution);
 }
 
 /* Value that a variable of a distribution falls below with a given probability.

@@ -224,7 +224,8 @@ const char *pound_contact_name(int row);
 const char *pound_excitation_name(int row);
 const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
-bool pound_distribution_lists_values(int row);            /* its parameters are values and weights instead */
+const char *pound_distribution_rule(int row, int k); /* "min must be less than max"; NULL past the last */
+bool pound_distribution_lists_values(int row);       /* its parameters are values and weights instead */
 const char *pound_design_name(int row);
 bool pound_design_quasi_random(int row);
 const char *pound_order_name(int row);
@@ -261,8 +262,9 @@ int pound_ratio_input(const struct pound_study *study, const char *path);
 int pound_ratio_variables(const struct pound_study *study, int *rest);
 bool pound_ratio_takes(const struct pound_distribution *distribution);
 
-/* What is wrong with the parameters of a distribution, in words, or NULL. */
-const char *pound_distribution_fault(const struct pound_distribution *distribution);
+#define POUND_PARAMETER_MAX 1e100 /* of a distribution: products of two stay finite */
+/* Whether its parameters break rule k; one that is NAN, not known, breaks none. */
+bool pound_distribution_breaks(const struct pound_distribution *distribution, int k);
 double pound_distribution_quantile(const struct pound_distribution *distribution, double u); /* u in [0, 1] */
 /* The ends of the interval that holds every value; infinite for a normal. */
 void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high);

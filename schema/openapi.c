@@ -141,16 +141,20 @@ static void parameters(struct writer *w)
 			seen[n++] = parameter;
 			writer_object(w, parameter, WRITER_LINE);
 			writer_text(w, "type", "number");
+			writer_number(w, "minimum", -POUND_PARAMETER_MAX);
+			writer_number(w, "maximum", POUND_PARAMETER_MAX);
 			writer_end(w);
 		}
-	for (int list = 0; list < 2; list++) {
-		writer_object(w, list ? "weights" : "values", WRITER_LINE);
-		writer_text(w, "type", "array");
-		writer_object(w, "items", WRITER_LINE);
-		writer_text(w, "type", "number");
-		writer_end(w);
-		writer_end(w);
-	}
+}
+
+/* What the parameters of each distribution must be. */
+static void rules(char *text, size_t size)
+{
+	const char *rule;
+	size_t n = 0;
+	for (int row = 0; pound_distribution_name(row); row++)
+		for (int k = 0; (rule = pound_distribution_rule(row, k)) && n < size; k++)
+			n += (size_t)snprintf(text + n, size - n, "; %s: %s", pound_distribution_name(row), rule);
 }
 
 static void members_of(struct writer *w, const char *pattern)
@@ -235,13 +239,15 @@ static void absent(struct writer *w, const struct field *field)
 /* What stands at a field. */
 static void value(struct writer *w, const char *name, const struct field *field)
 {
-	char text[512];
+	char text[2048];
 	object(w, name);
 	snprintf(text, sizeof text, "%s%s%s%s%s%s", field->text, *field->unit ? " [" : "", field->unit,
 	         *field->unit ? "]" : "", field->kinds ? "; only of kind" : "", field->kinds ? field->kinds : "");
 	size_t n = strlen(text);
 	snprintf(text + n, sizeof text - n, "%s%s", field->types ? "; only of excitation" : "",
 	         field->types ? field->types : "");
+	if (!strcmp(field->pattern, "/inputs/*/distribution"))
+		rules(text + strlen(text), sizeof text - strlen(text));
 	writer_text(w, "description", text);
 	if (field->choice)
 		choices(w, field);

@@ -49,6 +49,21 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
 	va_end(arguments);
 }
 
+/* Whether a member or something in it was found wrong, so that what stands on it need not be looked at.
+ *
+ * Test     unit_problems: a_problem_is_at_its_pointer_and_all_above_it
+ */
+bool problems_at(const struct problems *problems, const char *pointer)
+{
+	size_t length = strlen(pointer);
+	for (int i = 0; i < problems->n; i++) {
+		const char *at = problems->list[i].pointer;
+		if (strncmp(at, pointer, length) == 0 && (at[length] == '/' || at[length] == 0))
+			return true;
+	}
+	return problems->n_more > 0;
+}
+
 /* The body of an error answer.
  *
  * Given    head      -         -       status, title and sentence

@@ -4,6 +4,7 @@
 #ifndef PROBLEMS_H
 #define PROBLEMS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum { PROBLEMS_MAX = 100 };
@@ -31,6 +32,9 @@ struct problems {
 void problems_init(struct problems *problems);
 void problems_add(struct problems *problems, const char *pointer, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Whether something at or below a pointer is known to be wrong, or may be, as the list is full. */
+bool problems_at(const struct problems *problems, const char *pointer);
 
 /* What a problem body says besides its list of errors. */
 struct problem_head {

@@ -243,3 +243,50 @@ int reader_elements(struct reader *r, const struct field *field, const cJSON *no
 		problems_add(r->problems, r->pointer, "must be %s, got %d", expected, n);
 	return n <= field->max ? n : 0;
 }
+
+/* Reads every element of a list, each inside its own pointer. */
+int reader_each(struct reader *r, const struct field *field, const cJSON *node,
+                void (*read)(struct reader *r, const cJSON *element, int i))
+{
+	int n = reader_elements(r, field, node);
+	const cJSON *element = n ? node->child : NULL;
+	for (int i = 0; i < n; i++, element = element->next) {
+		size_t length = reader_enter_element(r, i);
+		read(r, element, i);
+		reader_leave(r, length);
+	}
+	return n;
+}
+
+/* Reads a list of numbers.
+ *
+ * Returns  numbers   (value)   -       in the study's own memory; NAN: that one is none, which is noted
+ *
+ * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
+ */
+int reader_numbers(struct reader *r, const struct field *field, const struct field *element,
+                   const cJSON *node, const double **numbers)
+{
+	int n = reader_elements(r, field, node);
+	const cJSON *at = n ? node->child : NULL;
+	*numbers = r->number;
+	for (int i = 0; i < n; i++, at = at->next, r->number++) {
+		size_t length = reader_enter_element(r, i);
+		if (!reader_number(r, element, at, r->number))
+			*r->number = NAN;
+		reader_leave(r, length);
+	}
+	return n;
+}
+
+void reader_distinct(struct reader *r, const double *numbers, int n, const char *what)
+{
+	for (int i = 1; i < n; i++)
+		for (int k = i - 1; k >= 0; k--)
+			if (numbers[k] == numbers[i]) {
+				size_t length = reader_enter_element(r, i);
+				problems_add(r->problems, r->pointer, "is the same as %s %d", what, k);
+				reader_leave(r, length);
+				break;
+			}
+}

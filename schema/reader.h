@@ -33,8 +33,16 @@ void reader_text(struct reader *reader, const struct field *field, const cJSON *
 void reader_seed(struct reader *reader, const struct field *field, const cJSON *node, uint64_t *seed);
 void reader_store(const struct field *field, void *at, double value);
 
-/* The elements to read: 0 when it is no list or too long; any wrong number is noted. */
+/* Lists.  The elements to read: 0 when it is no list or too long; any wrong number is noted. */
 int reader_elements(struct reader *reader, const struct field *field, const cJSON *node);
+/* Reads each of them by a function; their number. */
+int reader_each(struct reader *reader, const struct field *field, const cJSON *node,
+                void (*read)(struct reader *reader, const cJSON *element, int i));
+/* Reads numbers, each as `element` says, into the study's own memory, NAN for one that is wrong; their number. */
+int reader_numbers(struct reader *reader, const struct field *field, const struct field *element,
+                   const cJSON *node, const double **numbers);
+/* Notes every number that stands before too, as that of a `what`. */
+void reader_distinct(struct reader *reader, const double *numbers, int n, const char *what);
 
 /* Objects: study_json.c. */
 bool reader_seen(const cJSON *object, const cJSON *member); /* an earlier member has its name */

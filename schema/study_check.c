@@ -13,18 +13,6 @@
 
 enum { POINTER_SIZE = 64 };
 
-/* Whether something below a pointer was found wrong. */
-static bool faulty(const struct problems *problems, const char *pointer)
-{
-	size_t length = strlen(pointer);
-	for (int i = 0; i < problems->n; i++) {
-		const char *at = problems->list[i].pointer;
-		if (strncmp(at, pointer, length) == 0 && (at[length] == '/' || at[length] == 0))
-			return true;
-	}
-	return problems->n_more > 0;
-}
-
 /* ---- paths ---- */
 
 struct pound_field study_check_field(const char *path)
@@ -63,7 +51,7 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 		problems_add(problems, pointer, "names several fields, not one");
 	else if (input && field->type != FIELD_REAL)
 		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");
-	else if (faulty(problems, "/scene"))
+	else if (problems_at(problems, "/scene"))
 		return;
 	else if (!fields_used(field, NULL, excitation, NULL))
 		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
@@ -98,25 +86,48 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
 		if (all[i].path && !study->elsewhere)
 			check_path(study, all[i].path, all[i].name != NULL, pointer, problems);
-		for (int k = 0; k < i; k++) {
-			if (all[i].path && all[k].path && strcmp(all[i].path, all[k].path) == 0) {
+		for (int k = 0; k < i && all[i].path; k++)
+			if (all[k].path && strcmp(all[i].path, all[k].path) == 0) {
 				problems_add(problems, pointer, "names the same field as /%s/%d", all[k].list, all[k].index);
 				break;
 			}
-			if (all[i].name && all[k].name && strcmp(all[i].name, all[k].name) == 0) {
-				snprintf(pointer, sizeof pointer, "/inputs/%d/name", all[i].index);
-				problems_add(problems, pointer, "is the name of /inputs/%d too", all[k].index);
-				break;
-			}
-		}
 	}
 }
 
-/* The columns of the samples must be told apart: no input has the name of another column. */
+/* Names of inputs and ratios are columns and rows of results: each must stand for one thing.
+ *
+ * Given    list, n   of the name: "inputs" or "ratios", and how many stand before it there
+ */
+static void check_name(const struct pound_study *study, const char *list, int n, const char *name,
+                       struct problems *problems)
+{
+	char pointer[POINTER_SIZE];
+	const bool ratio = strcmp(list, "ratios") == 0;
+	const bool is_path = !ratio && name == study->inputs[n].path;
+	snprintf(pointer, sizeof pointer, "/%s/%d/name", list, n);
+	for (int k = 0; name && k < (ratio ? study->n_inputs : n); k++) {
+		const struct pound_input *other = &study->inputs[k];
+		// two absent names are alike where two paths are, which is told by itself
+		if (other->name && strcmp(other->name, name) == 0 && !(is_path && other->name == other->path)) {
+			problems_add(problems, pointer, "is the name of /inputs/%d too", k);
+			return;
+		}
+	}
+	for (int k = 0; name && ratio && k < n; k++)
+		if (study->ratios[k].name && strcmp(study->ratios[k].name, name) == 0) {
+			problems_add(problems, pointer, "is the name of /ratios/%d too", k);
+			return;
+		}
+}
+
+/* The columns of the samples must be told apart too: no input has the name of another column. */
 static void check_names(const struct pound_study *study, struct problems *problems)
 {
+	for (int k = 0; k < study->n_ratios; k++)
+		check_name(study, "ratios", k, study->ratios[k].name, problems);
 	for (int j = 0; j < study->n_inputs; j++) {
 		const char *name = study->inputs[j].name;
+		check_name(study, "inputs", j, name, problems);
 		bool taken = name && (strcmp(name, "row") == 0 || strcmp(name, "sample") == 0);
 		for (int o = 0; name && !study->elsewhere && pound_output_name(o); o++) {
 			size_t length = strlen(pound_output_name(o));
@@ -164,7 +175,7 @@ static void check_supports(const struct pound_study *study, struct problems *pro
 		int oscillator;
 		const struct pound_input *input = &study->inputs[j];
 		snprintf(pointer, sizeof pointer, "/inputs/%d", j);
-		if (faulty(problems, pointer))
+		if (problems_at(problems, pointer))
 			continue;
 		const struct field *field = fields_scene(input->path, &oscillator);
 		if (supports(field, &input->distribution))
@@ -286,25 +297,40 @@ static bool above_elsewhere(const struct pound_study *study, int ratio, int side
 {
 	const char *path = study->ratios[ratio].of[side];
 	for (int k = 0; k <= ratio; k++)
-		for (int s = 0; s < 2; s++)
-			if ((k < ratio || s < side) && (s == 0 || side == 0) && strcmp(study->ratios[k].of[s], path) == 0)
+		for (int s = 0; s < 2; s++) {
+			const char *other = study->ratios[k].of[s];
+			if ((k < ratio || s < side) && (s == 0 || side == 0) && other && strcmp(other, path) == 0)
 				return true;
+		}
+	return false;
+}
+
+/* Whether an input was not read to its path, so that a ratio may well mean it. */
+static bool unread_input(const struct pound_study *study)
+{
+	for (int j = 0; j < study->n_inputs; j++)
+		if (!study->inputs[j].path && !(study->elsewhere && study->inputs[j].name))
+			return true;
 	return false;
 }
 
 static void check_ratio(const struct pound_study *study, int ratio, int side, struct problems *problems)
 {
-	char pointer[POINTER_SIZE];
+	char pointer[POINTER_SIZE], distribution[POINTER_SIZE];
 	const char *path = study->ratios[ratio].of[side];
+	if (!path)
+		return;
 	const int input = pound_ratio_input(study, path);
 	snprintf(pointer, sizeof pointer, "/ratios/%d/of/%d", ratio, side);
-	if (input < 0)
+	snprintf(distribution, sizeof distribution, "/inputs/%d/distribution", input);
+	if (input < 0 && !unread_input(study))
 		problems_add(problems, pointer, "is the path of no input of this study");
-	else if (!pound_ratio_takes(&study->inputs[input].distribution))
+	else if (input >= 0 && !problems_at(problems, distribution) &&
+	         !pound_ratio_takes(&study->inputs[input].distribution))
 		problems_add(problems, pointer,
 		             "names /inputs/%d, but inputs of a ratio are \"uniform\" or \"log_uniform\" above 0",
 		             input);
-	else if (above_elsewhere(study, ratio, side))
+	if (above_elsewhere(study, ratio, side))
 		problems_add(problems, pointer, "an input that is above in one ratio may be in no other place");
 }
 
@@ -313,7 +339,7 @@ static void check_ratios(const struct pound_study *study, struct problems *probl
 	for (int k = 0; k < study->n_ratios; k++)
 		for (int side = 0; side < 2; side++)
 			check_ratio(study, k, side, problems);
-	if (study->n_ratios && !faulty(problems, "/ratios") &&
+	if (study->n_ratios && !problems_at(problems, "/ratios") && !problems_at(problems, "/inputs") &&
 	    pound_ratio_variables(study, NULL) > POUND_FACTORIAL_INPUTS_MAX)
 		problems_add(problems, "/ratios",
 		             "ratios and the inputs in none may be at most %d variables, these are %d",
@@ -429,31 +455,30 @@ void study_check(const struct pound_study *study, struct problems *problems)
 {
 	check_paths(study, problems);
 	check_names(study, problems);
-	if (faulty(problems, "/kind"))
+	if (problems_at(problems, "/kind"))
 		return;
-	if (!faulty(problems, "/inputs") && !faulty(problems, "/design"))
+	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
 		check_order(study, problems);
-	if (!faulty(problems, "/inputs") && !faulty(problems, "/ratios"))
-		check_ratios(study, problems);
+	check_ratios(study, problems);
 	if (study->elsewhere)
 		return;
 	check_supports(study, problems);
-	if (faulty(problems, "/sweep"))
+	if (problems_at(problems, "/sweep"))
 		return;
 	if (cells(study) > STUDY_CELLS_MAX) {
 		problems_add(problems, "/sweep", "asks for %.15g cells, a study may have at most %d", cells(study),
 		             STUDY_CELLS_MAX);
 		return;
 	}
-	if (faulty(problems, "/scene") || faulty(problems, "/inputs"))
+	if (problems_at(problems, "/scene") || problems_at(problems, "/inputs"))
 		return;
-	if (!faulty(problems, "/outputs"))
+	if (!problems_at(problems, "/outputs"))
 		check_outputs(study, problems);
 	check_excitation(study, problems);
-	if (!faulty(problems, "/outputs") && !faulty(problems, "/spectrum"))
+	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
 		study_spectrum_check(study, problems);
-	if (!faulty(problems, "/scene") && !faulty(problems, "/design") && !faulty(problems, "/solver") &&
-	    !faulty(problems, "/convergence"))
+	if (!problems_at(problems, "/scene") && !problems_at(problems, "/design") &&
+	    !problems_at(problems, "/solver") && !problems_at(problems, "/convergence"))
 		check_size(study, problems);
 }
 

@@ -20,9 +20,10 @@ static const struct pound_sweep *law_sweep(const struct pound_study *study, int 
 	return NULL;
 }
 
+/* Whether a law is the linear one; one that was not read is NAN or negative. */
 static bool linear(double law)
 {
-	const char *name = pound_law_name((int)law);
+	const char *name = law >= 0 ? pound_law_name((int)law) : NULL;
 	return name && strcmp(name, "linear") == 0;
 }
 

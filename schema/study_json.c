@@ -215,48 +215,30 @@ static void read_oscillator(struct reader *r, const cJSON *node, int i)
 static void read_oscillators(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	(void)base;
-	int n = reader_elements(r, field, node);
-	const cJSON *element = n ? node->child : NULL;
-	for (int i = 0; i < n; i++, element = element->next) {
-		size_t length = reader_enter_element(r, i);
-		read_oscillator(r, element, i);
-		reader_leave(r, length);
-	}
+	reader_each(r, field, node, read_oscillator);
 }
 
 static void read_record(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	(void)base;
-	const struct field *sample = fields_find("/scene/excitation/acceleration_m_s2/*");
-	int n = reader_elements(r, field, node);
-	const cJSON *element = n ? node->child : NULL;
-	double *samples = r->number;
-	for (int i = 0; i < n; i++, element = element->next) {
-		size_t length = reader_enter_element(r, i);
-		reader_number(r, sample, element, r->number++);
-		reader_leave(r, length);
-	}
-	r->study->scene.excitation.record = samples;
-	r->study->scene.excitation.n_record = n;
+	struct pound_excitation *excitation = &r->study->scene.excitation;
+	excitation->n_record = reader_numbers(r, field, field + 1, node, &excitation->record); // the next row
+}
+
+static void read_output(struct reader *r, const cJSON *element, int o)
+{
+	double row;
+	if (reader_choice(r, fields_find("/outputs/*"), element, &row))
+		for (int k = 0; k < o; k++)
+			if (r->study->outputs[k] == (int)row)
+				problems_add(r->problems, r->pointer, "is asked twice");
+	r->study->outputs[o] = (int)row;
 }
 
 static void read_outputs(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	(void)base;
-	const struct field *output = fields_find("/outputs/*");
-	int n = reader_elements(r, field, node);
-	const cJSON *element = n ? node->child : NULL;
-	r->study->n_outputs = n;
-	for (int o = 0; o < n; o++, element = element->next) {
-		double row;
-		size_t length = reader_enter_element(r, o);
-		if (reader_choice(r, output, element, &row))
-			for (int k = 0; k < o; k++)
-				if (r->study->outputs[k] == (int)row)
-					problems_add(r->problems, r->pointer, "is asked twice");
-		r->study->outputs[o] = (int)row;
-		reader_leave(r, length);
-	}
+	r->study->n_outputs = reader_each(r, field, node, read_output);
 }
 
 /* ---- any value ---- */

@@ -18,14 +18,12 @@ void settings_default(struct pound_study *study)
 void reader_settings(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	struct pound_settings *settings = (struct pound_settings *)(void *)(base + field->offset);
-	const struct field *setting = field + 1; // its element is the next row
-	int n = reader_elements(r, field, node);
-	const cJSON *element = n ? node->child : NULL;
-	settings->n = n;
-	for (int k = 0; k < n; k++, element = element->next) {
+	const double *values;
+	settings->n = reader_numbers(r, field, field + 1, node, &values); // its element is the next row
+	for (int k = 0; k < settings->n; k++) {
 		size_t length = reader_enter_element(r, k);
-		if (reader_number(r, setting, element, &settings->values[k]) && k > 0 &&
-		    settings->values[k] >= settings->values[k - 1])
+		settings->values[k] = values[k];
+		if (k > 0 && values[k] >= values[k - 1])
 			problems_add(r->problems, r->pointer, "must be smaller than the one before");
 		reader_leave(r, length);
 	}

@@ -12,25 +12,13 @@
 /* Frequencies times the sample step, at most: an oscillator then takes about 1000 steps in a sample. */
 static const double PITCH_MAX = 100;
 
-static void read_list(struct reader *r, const struct field *field, const cJSON *node)
+/* Whether a member of the object in hand was found wrong. */
+static bool wrong(struct reader *r, const char *name)
 {
-	const struct field *element = field + 1; // the next row
-	struct pound_spectrum *spectrum = &r->study->spectrum;
-	int n = reader_elements(r, field, node);
-	const cJSON *at = n ? node->child : NULL;
-	double *values = r->number;
-	for (int k = 0; k < n; k++, at = at->next) {
-		size_t length = reader_enter_element(r, k);
-		if (reader_number(r, element, at, r->number++))
-			for (int i = k - 1; i >= 0; i--)
-				if (values[i] == values[k]) {
-					problems_add(r->problems, r->pointer, "is the same as frequency %d", i);
-					break;
-				}
-		reader_leave(r, length);
-	}
-	spectrum->frequencies_hz = values;
-	spectrum->n = n;
+	size_t length = reader_enter(r, name);
+	bool is = problems_at(r->problems, r->pointer);
+	reader_leave(r, length);
+	return is;
 }
 
 /* Reads frequencies: a list of them, or a range.
@@ -39,17 +27,17 @@ static void read_list(struct reader *r, const struct field *field, const cJSON *
  */
 void reader_frequencies(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
-	int before = r->problems->n;
-	const struct pound_spectrum *spectrum = &r->study->spectrum;
+	struct pound_spectrum *spectrum = &r->study->spectrum;
 	if (cJSON_IsArray(node)) {
-		read_list(r, field, node);
+		spectrum->n = reader_numbers(r, field, field + 1, node, &spectrum->frequencies_hz); // the next row
+		reader_distinct(r, spectrum->frequencies_hz, spectrum->n, "frequency");
 	} else if (!cJSON_IsObject(node)) {
 		reader_mistyped(r, "an array of frequencies, or an object of min, max and count", node);
 	} else if (cJSON_GetObjectItemCaseSensitive(node, "*")) {
 		problems_add(r->problems, r->pointer, "has an unknown member, \"*\"");
 	} else {
 		reader_object(r, field->pattern, node, base);
-		if (r->problems->n == before && spectrum->min_hz >= spectrum->max_hz)
+		if (!wrong(r, "min") && !wrong(r, "max") && spectrum->min_hz >= spectrum->max_hz)
 			problems_add(r->problems, r->pointer, "min must be less than max, got %.15g and %.15g",
 			             spectrum->min_hz, spectrum->max_hz);
 	}

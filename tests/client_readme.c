@@ -117,7 +117,7 @@ static void every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it(
 	assert_non_null(readme);
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		char absent[64], takes[256], meaning[400], line[900], solvers[256];
+		char absent[64], takes[256], meaning[600], line[1200], solvers[256];
 		if (strncmp(field->pattern, same, strlen(same)) == 0)
 			continue;
 		default_of(field, absent, sizeof absent);
@@ -136,19 +136,22 @@ static void every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it(
 	free(readme);
 }
 
-static void every_distribution_stands_in_the_readme_with_its_parameters(void **state)
+static void every_distribution_stands_in_the_readme_with_its_parameters_and_rules(void **state)
 {
 	const char *name, *parameter;
 	char *readme = program_file("README.md", NULL);
 	(void)state;
 	assert_non_null(readme);
 	for (int row = 0; (name = pound_distribution_name(row)); row++) {
-		char line[256];
+		char line[512];
 		int n = snprintf(line, sizeof line, "| `%s` | ", name);
 		for (int k = 0; (parameter = pound_distribution_parameter(row, k)); k++)
 			n += snprintf(line + n, sizeof line - (size_t)n, "%s`%s`", k ? ", " : "", parameter);
-		snprintf(line + n, sizeof line - (size_t)n,
-		         pound_distribution_lists_values(row) ? "`values`, `weights` |\n" : " |\n");
+		n += snprintf(line + n, sizeof line - (size_t)n,
+		              pound_distribution_lists_values(row) ? "`values`, `weights` | " : " | ");
+		for (int k = 0; (parameter = pound_distribution_rule(row, k)); k++)
+			n += snprintf(line + n, sizeof line - (size_t)n, "%s%s", k ? "; " : "", parameter);
+		snprintf(line + n, sizeof line - (size_t)n, " |\n");
 		if (!strstr(readme, line))
 			fail_msg("README.md has no line\n%s", line);
 	}
@@ -213,7 +216,7 @@ static void every_command_of_the_readme_works(void **state)
 
 CHECK_MAIN(cmocka_unit_test(every_file_the_readme_names_is_there),
            cmocka_unit_test(every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it),
-           cmocka_unit_test(every_distribution_stands_in_the_readme_with_its_parameters),
+           cmocka_unit_test(every_distribution_stands_in_the_readme_with_its_parameters_and_rules),
            cmocka_unit_test(the_usage_stands_in_the_readme_as_it_is_printed),
            cmocka_unit_test_setup_teardown(every_command_of_the_readme_works, program_setup,
                                            service_teardown))

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "schema/fields.h"
+#include "schema/study_json.h"
 #include "tests/check.h"
 
 static void every_default_is_in_its_range(void **state)
@@ -188,7 +189,36 @@ static void kind_excitation_and_solver_decide_what_is_used(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(every_default_is_in_its_range),
+/* A limit that only holds beside other members stands in the text of a field, which the README and OpenAPI show. */
+static void every_limit_between_members_stands_in_the_text_of_its_field(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *pattern;
+		double limit;
+	} limits[] = {
+	    {"/scene/excitation/time_step_s", STUDY_SAMPLES_MAX},
+	    {"/ratios", POUND_FACTORIAL_INPUTS_MAX},
+	    {"/sweep", STUDY_CELLS_MAX},
+	    {"/design/rows", STUDY_RUNS_MAX},
+	    {"/design/order", POUND_FACTORIAL_INPUTS_MAX},
+	    {"/solver/step_s", STUDY_STEPS_MAX},
+	    {"/spectrum/frequencies_hz", POUND_ORDINATES_MAX},
+	    {"/spectrum/frequencies_hz", STUDY_ORDINATES_MAX},
+	    {"/histories", STUDY_HISTORIES_MAX},
+	    {"/convergence", STUDY_TRIALS_MAX},
+	};
+	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
+		char number[32];
+		snprintf(number, sizeof number, " %.0f", limits[i].limit);
+		const char *text = fields_find(limits[i].pattern)->text, *at = strstr(text, number);
+		if (!at || (at[strlen(number)] >= '0' && at[strlen(number)] <= '9'))
+			fail_msg("%s does not say%s", limits[i].pattern, number);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(every_limit_between_members_stands_in_the_text_of_its_field),
+           cmocka_unit_test(every_default_is_in_its_range),
            cmocka_unit_test(every_row_stands_below_an_object_or_a_list),
            cmocka_unit_test(every_field_says_what_it_takes),
            cmocka_unit_test(a_path_names_one_field_of_the_scene),

@@ -93,7 +93,22 @@ static void long_texts_end_with_dots_between_characters(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(a_body_lists_every_problem),
+static void a_problem_is_at_its_pointer_and_all_above_it(void **state)
+{
+	(void)state;
+	struct problems problems;
+	problems_init(&problems);
+	problems_add(&problems, "/inputs/1/name", "x");
+	static const char *const at[] = {"", "/inputs", "/inputs/1", "/inputs/1/name"};
+	static const char *const elsewhere[] = {"/input", "/inputs/10", "/inputs/1/nam", "/inputs/1/name/0"};
+	for (int k = 0; k < 4; k++) {
+		assert_true(problems_at(&problems, at[k]));
+		assert_false(problems_at(&problems, elsewhere[k]));
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(a_problem_is_at_its_pointer_and_all_above_it),
+           cmocka_unit_test(a_body_lists_every_problem),
            cmocka_unit_test(a_body_without_a_study_has_no_errors),
            cmocka_unit_test(malformed_text_has_its_line_and_column),
            cmocka_unit_test(a_full_list_counts_what_it_cannot_hold),

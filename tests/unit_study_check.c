@@ -324,7 +324,77 @@ static void too_many_cells_are_refused_before_they_are_counted_out(void **state)
 	free(swept);
 }
 
-CHECK_MAIN(cmocka_unit_test(an_input_names_a_real_number_that_matters),
+static void no_fault_hides_another(void **state)
+{
+	(void)state;
+	static const char document[] =
+	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+	    "3}]},"
+	    " \"inputs\": ["
+	    "{\"path\": \"/contact/restitution\", \"name\": \"a\", \"distribution\": {\"type\": \"discrete\","
+	    " \"values\": [0.5, 0.2, \"x\", 2e100], \"weights\": [1, 0], \"min\": 1}},"
+	    "{\"path\": \"/contact/restitution\", \"name\": \"a\", \"distribution\": {\"type\": \"beta\", "
+	    "\"alpha\": 0,"
+	    " \"beta\": 20000, \"min\": 1, \"max\": 0}},"
+	    "{\"path\": \"/oscillators/0/frequency_hz\", \"name\": \"b\", \"distribution\": {\"type\":"
+	    " \"truncated_normal\", \"standard_deviation\": -1, \"min\": 3, \"max\": 1}}],"
+	    " \"ratios\": [{\"name\": \"b\", \"of\": [\"/contact/restitution\", \"/no\"]},"
+	    " {\"name\": \"q\", \"of\": [\"/oscillators/0/frequency_hz\", \"/oscillators/0/frequency_hz\"]},"
+	    " {\"name\": \"q\", \"of\": [3]}],"
+	    " \"outputs\": [\"impulse\", \"floor_spectrum\"],"
+	    " \"spectrum\": {\"frequencies_hz\": {\"min\": 5, \"max\": 1, \"count\": 1}}}";
+	static const struct {
+		const char *pointer, *detail;
+	} told[] = {
+	    {"/inputs/0/distribution/values/2", "must be a number, got \"x\""},
+	    {"/inputs/0/distribution/values/3", "must be in [-1e+100, 1e+100], got 2e+100"},
+	    {"/inputs/0/distribution/weights/1", "must be in (0, 1e+100], got 0"},
+	    {"/inputs/0/distribution/min", "is not used by distribution \"discrete\""},
+	    {"/inputs/0/distribution", "there must be as many weights as values, 4, not 2"},
+	    {"/inputs/0/distribution", "every value must be greater than the one before"},
+	    {"/inputs/1/path", "names the same field as /inputs/0"},
+	    {"/inputs/1/name", "is the name of /inputs/0 too"},
+	    {"/inputs/1/distribution", "alpha must be in (0, 10000]"},
+	    {"/inputs/1/distribution", "beta must be in (0, 10000]"},
+	    {"/inputs/1/distribution", "min must be less than max"},
+	    {"/inputs/2/distribution/mean", "is required: a number"},
+	    {"/inputs/2/distribution", "standard_deviation must be greater than 0"},
+	    {"/inputs/2/distribution", "min must be less than max"},
+	    {"/ratios/0/name", "is the name of /inputs/2 too"},
+	    {"/ratios/0/of/1", "is the path of no input of this study"},
+	    {"/ratios/1/of/1", "an input that is above in one ratio may be in no other place"},
+	    {"/ratios/2/name", "is the name of /ratios/1 too"},
+	    {"/ratios/2/of", "must be an array of 2 elements, got 1"},
+	    {"/ratios/2/of/0", "must be a text of 1 to 200 characters, got 3"},
+	    {"/spectrum/frequencies_hz/count", "must be in [2, 10000], got 1"},
+	    {"/spectrum/frequencies_hz", "min must be less than max, got 5 and 1"},
+	};
+	struct problems problems;
+	documents_refused(document, &problems);
+	for (int k = 0; k < COUNT(told); k++) {
+		int i = 0;
+		while (i < problems.n && (strcmp(problems.list[i].pointer, told[k].pointer) != 0 ||
+		                          strcmp(problems.list[i].detail, told[k].detail) != 0))
+			i++;
+		if (i == problems.n)
+			fail_msg("not told: %s: %s", told[k].pointer, told[k].detail);
+	}
+	for (int i = COUNT(told); i < problems.n; i++)
+		print_error("%s: %s\n", problems.list[i].pointer, problems.list[i].detail);
+	assert_int_equal(problems.n, COUNT(told));
+}
+
+static void an_absent_name_may_not_be_that_of_another_input(void **state)
+{
+	(void)state;
+	static const struct change changes[] = {{"\"name\": \"f_e\"", "\"name\": \"/oscillators/1/mass_kg\"",
+	                                         "/inputs/1/name", "is the name of /inputs/0 too"}};
+	try_all(changes, COUNT(changes));
+}
+
+CHECK_MAIN(cmocka_unit_test(no_fault_hides_another),
+           cmocka_unit_test(an_absent_name_may_not_be_that_of_another_input),
+           cmocka_unit_test(an_input_names_a_real_number_that_matters),
            cmocka_unit_test(a_sweep_takes_values_as_the_field_does),
            cmocka_unit_test(inputs_stay_in_the_range_of_their_fields),
            cmocka_unit_test(a_ground_motion_is_shaped_and_sampled_sensibly),
