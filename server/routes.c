@@ -178,17 +178,11 @@ static struct reply status(struct request *request)
 static struct reply invalid(const struct problems *problems)
 {
 	char place[64];
-	switch (problems->status) {
-	case PROBLEMS_MALFORMED:
-		snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
-		return http_problem(API_MALFORMED, place, problems);
-	case PROBLEMS_INVALID:
-		return http_problem(API_INVALID, "the study has faults, listed in errors", problems);
-	case PROBLEMS_NOMEM:
-	case PROBLEMS_NONE:
-		break;
-	}
-	return no_memory();
+	snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
+	return problems->status == PROBLEMS_NOMEM ? no_memory()
+	       : problems->status == PROBLEMS_MALFORMED
+	           ? http_problem(API_MALFORMED, place, problems)
+	           : http_problem(API_INVALID, "the study has faults, listed in errors", problems);
 }
 
 /* Queues a study for a client, if there is room for one more. */

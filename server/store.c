@@ -27,6 +27,15 @@ enum {
 };
 
 // clang-format off
+enum statement {
+	STUDY, LIST, LIST_OF, DOCUMENT, BLOCKS, COUNT,
+	BEGIN, // the first of those that the writer alone has
+	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, FINISH, REQUEUE, POISON,
+	N_STATEMENTS
+};
+
+_Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement has its place");
+
 #define NOW "CAST(round((julianday('now') - 2440587.5) * 86400000) AS INTEGER)"
 #define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
 #define STUDY_ROW                                                                                         \
@@ -38,61 +47,46 @@ enum {
 #define BLOCK_DIGEST(study, number, content) \
 	"digest('" POUND_VERSION " ' || " study " || ' ' || " number " || ' ', " content ")"
 
-// those that read, then those that write
-#define STATEMENTS(X)                                                                                     \
-	X(STUDY,    STUDY_ROW "WHERE id = ?1")                                                                \
-	X(LIST,     STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2")                                      \
-	X(LIST_OF,  STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2")                      \
-	X(DOCUMENT, "SELECT content, sha256 = " DOCUMENT_DIGEST("study", "name", "content") " "               \
-	            "FROM document WHERE study = ?1 AND name = ?2")                                           \
-	X(BLOCKS,   "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "               \
-	            "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number")                \
-	X(COUNT,    "SELECT count(*) FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2)")           \
-	X(BEGIN,    "BEGIN IMMEDIATE")                                                                        \
-	X(COMMIT,   "COMMIT")                                                                                 \
-	X(ROLLBACK, "ROLLBACK")                                                                               \
-	X(KEYED,    "SELECT id FROM study WHERE idempotency_key = ?1")                                        \
-	X(SAME,     "SELECT study FROM document WHERE study = ?1 AND name = 'request' AND content = ?2")      \
-	X(SUBMIT,   "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key, client) " \
-	            "SELECT max((" NOW " << 20) + (random() & 0xfffff), (SELECT coalesce(max(id), 0) + 1 FROM study)), " \
-	            "'queued', " NOW ", ?1, ?2, ?3, ?4, ?5, ?6 RETURNING id")                                 \
-	X(ADD,      "INSERT INTO document (study, name, content, sha256) "                                    \
-	            "VALUES (?1, ?2, ?3, " DOCUMENT_DIGEST("?1", "?2", "?3") ")")                             \
-	X(CANCEL,   "UPDATE study SET status = 'cancelled', finished = max(" NOW ", created) "                \
-	            "WHERE id = ?1 AND status IN ('queued', 'running')")                                      \
-	X(DELETE,   "DELETE FROM study WHERE id = ?1")                                                        \
-	X(CLAIM,    "UPDATE study SET status = 'running', attempt = attempt + 1, "                            \
-	            "started = coalesce(started, max(" NOW ", created)) WHERE id = "                          \
-	            "coalesce((" QUEUED "AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "               \
-	            "(" QUEUED "ORDER BY id LIMIT 1)) RETURNING id")                                          \
-	X(KEEP,     "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) " \
-	            "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, " BLOCK_DIGEST("?1", "?2", "?6") " "             \
-	            "FROM study WHERE id = ?1 AND status = 'running'")                                        \
-	X(PROGRESS, "UPDATE study SET (runs_done, cpu_s) = (SELECT sum(runs), sum(cpu_s) FROM block WHERE study = ?1), " \
-	            "attempt_kept = attempt WHERE id = ?1")                                                   \
-	X(FINISH,   "UPDATE study SET status = ?2, finished = max(" NOW ", started), error = ?3, "            \
-	            "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'") \
-	X(REQUEUE,  "UPDATE study SET status = 'queued', "                                                    \
-	            "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'") \
-	X(POISON,   "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "                  \
-	            "error = 'poison-study: the server crashed three times while it ran this study' "         \
-	            "WHERE status = 'queued' AND crashes >= 3")
-// clang-format on
-
-enum statement {
-#define X(name, sql) name,
-	STATEMENTS(X)
-#undef X
-	    N_STATEMENTS
-};
-
 static const char *const statement_text[] = {
-#define X(name, sql) sql,
-    STATEMENTS(X)
-#undef X
+	[STUDY]    = STUDY_ROW "WHERE id = ?1",
+	[LIST]     = STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2",
+	[LIST_OF]  = STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2",
+	[DOCUMENT] = "SELECT content, sha256 = " DOCUMENT_DIGEST("study", "name", "content") " "
+	              "FROM document WHERE study = ?1 AND name = ?2",
+	[BLOCKS]   = "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "
+	              "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number",
+	[COUNT]    = "SELECT count(*) FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2)",
+	[BEGIN]    = "BEGIN IMMEDIATE",
+	[COMMIT]   = "COMMIT",
+	[ROLLBACK] = "ROLLBACK",
+	[KEYED]    = "SELECT id FROM study WHERE idempotency_key = ?1",
+	[SAME]     = "SELECT study FROM document WHERE study = ?1 AND name = 'request' AND content = ?2",
+	[NEXT]     = "SELECT max((" NOW " << 20) + (random() & 0xfffff), (SELECT coalesce(max(id), 0) + 1 FROM study))",
+	[SUBMIT]   = "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key, client) "
+	              "VALUES (?1, 'queued', " NOW ", ?2, ?3, ?4, ?5, ?6, ?7)",
+	[ADD]      = "INSERT INTO document (study, name, content, sha256) "
+	              "VALUES (?1, ?2, ?3, " DOCUMENT_DIGEST("?1", "?2", "?3") ")",
+	[CANCEL]   = "UPDATE study SET status = 'cancelled', finished = max(" NOW ", created) "
+	              "WHERE id = ?1 AND status IN ('queued', 'running')",
+	[DELETE]   = "DELETE FROM study WHERE id = ?1",
+	[CLAIM]    = "UPDATE study SET status = 'running', attempt = attempt + 1, "
+	              "started = coalesce(started, max(" NOW ", created)) WHERE id = "
+	              "coalesce((" QUEUED "AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "
+	              "(" QUEUED "ORDER BY id LIMIT 1)) RETURNING id",
+	[KEEP]     = "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) "
+	              "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, " BLOCK_DIGEST("?1", "?2", "?6") " "
+	              "FROM study WHERE id = ?1 AND status = 'running'",
+	[PROGRESS] = "UPDATE study SET (runs_done, cpu_s) = (SELECT sum(runs), sum(cpu_s) FROM block WHERE study = ?1), "
+	              "attempt_kept = attempt WHERE id = ?1",
+	[FINISH]   = "UPDATE study SET status = ?2, finished = max(" NOW ", started), error = ?3, "
+	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
+	[REQUEUE]  = "UPDATE study SET status = 'queued', "
+	              "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'",
+	[POISON]   = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
+	              "error = 'poison-study: the server crashed three times while it ran this study' "
+	              "WHERE status = 'queued' AND crashes >= 3",
 };
-
-_Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement has its place");
+// clang-format on
 
 struct store {
 	struct disk disk;
@@ -143,9 +137,14 @@ static enum store_status run(struct database *c, sqlite3_stmt *statement, int64_
 	return ended(c, statement, sqlite3_stmt_readonly(statement) ? n : sqlite3_changes(c->db));
 }
 
-/* Ends a transaction that has come to `status`; a full disk may have rolled it back already. */
-static enum store_status conclude(struct database *c, enum store_status status)
+/* Runs two changes, both or none; without the second (NULL) the first alone.  A full disk may have rolled back already. */
+static enum store_status both(struct database *c, sqlite3_stmt *first, sqlite3_stmt *second)
 {
+	enum store_status status = run(c, bound(c, BEGIN, ""), NULL);
+	if (status != STORE_FAILED)
+		status = run(c, first, NULL);
+	if (status == STORE_OK && second)
+		status = run(c, second, NULL);
 	if (status == STORE_OK && run(c, bound(c, COMMIT, ""), NULL) == STORE_FAILED)
 		status = STORE_FAILED;
 	if (!sqlite3_get_autocommit(c->db))
@@ -297,17 +296,13 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 	enum store_status status = keyed(c, study->key, request, length, id);
 	if (status == STORE_NONE && !roomy)
 		status = STORE_FULL;
-	if (status == STORE_NONE) {
-		status = run(c, bound(c, BEGIN, ""), NULL);
-		if (status != STORE_FAILED)
-			status = run(c,
-			             bound(c, SUBMIT, "ttittt", study->kind, study->name, study->runs, study->hash,
-			                   study->key, study->client),
-			             id);
-		if (status == STORE_OK)
-			status = run(c, bound(c, ADD, "itb", *id, "request", request, length), NULL);
-		status = conclude(c, status);
-	}
+	if (status == STORE_NONE)
+		status = run(c, bound(c, NEXT, ""), id);
+	if (status == STORE_OK)
+		status = both(c,
+		              bound(c, SUBMIT, "ittittt", *id, study->kind, study->name, study->runs, study->hash,
+		                    study->key, study->client),
+		              bound(c, ADD, "itb", *id, "request", request, length));
 	return released(c, status);
 }
 
@@ -452,15 +447,12 @@ void store_blame(const struct store *store, int64_t id)
 enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block)
 {
 	struct database *c = writer(store);
-	enum store_status status = run(c, bound(c, BEGIN, ""), NULL);
-	if (status != STORE_FAILED)
-		status = run(c,
-		             bound(c, KEEP, "iiiddb", id, (int64_t)block->number, block->runs, block->cpu_s,
-		                   block->wall_s, block->values, (size_t)block->n * sizeof(double)),
-		             NULL);
-	if (status == STORE_OK)
-		status = run(c, bound(c, PROGRESS, "i", id), NULL);
-	return changed(store, id, conclude(c, status));
+	enum store_status status =
+	    both(c,
+	         bound(c, KEEP, "iiiddb", id, (int64_t)block->number, block->runs, block->cpu_s, block->wall_s,
+	               block->values, (size_t)block->n * sizeof(double)),
+	         bound(c, PROGRESS, "i", id));
+	return changed(store, id, status);
 }
 
 /* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out. */
@@ -500,10 +492,7 @@ enum store_status store_finish(struct store *store, int64_t id, const char *resu
 {
 	assert(!result != !error);
 	struct database *c = writer(store);
-	enum store_status status = run(c, bound(c, BEGIN, ""), NULL);
-	if (status != STORE_FAILED)
-		status = run(c, bound(c, FINISH, "itt", id, result ? "succeeded" : "failed", error), NULL);
-	if (status == STORE_OK && result)
-		status = run(c, bound(c, ADD, "itb", id, "result", result, length), NULL);
-	return changed(store, id, conclude(c, status));
+	enum store_status status = both(c, bound(c, FINISH, "itt", id, result ? "succeeded" : "failed", error),
+	                                result ? bound(c, ADD, "itb", id, "result", result, length) : NULL);
+	return changed(store, id, status);
 }
