@@ -89,6 +89,14 @@ static void allow(struct MHD_Connection *connection, double seconds)
 	connection_of(connection)->deadline = connection_now() + seconds;
 }
 
+static void drop_body(struct reply *reply)
+{
+	if (!reply->lasts)
+		free(reply->body);
+	reply->body = NULL;
+	reply->length = 0;
+}
+
 static enum MHD_Result send_reply(const struct request *request, struct reply *reply)
 {
 	struct server *server = request->server;
@@ -113,9 +121,10 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	    {"Referrer-Policy", "no-referrer"},
 	};
 	struct MHD_Response *response = MHD_create_response_from_buffer(
-	    reply->length, reply->body, reply->body ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
+	    reply->length, reply->body,
+	    reply->body && !reply->lasts ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
 	if (!response) {
-		free(reply->body);
+		drop_body(reply);
 		return MHD_NO;
 	}
 	for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++)
@@ -261,9 +270,7 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	                         ? http_problem(request->head.fault, request->head.detail, NULL)
 	                         : routes_answer(request);
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag)) {
-		free(reply.body);
-		reply.body = NULL;
-		reply.length = 0;
+		drop_body(&reply);
 		reply.status = 304;
 	}
 	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))

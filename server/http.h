@@ -13,6 +13,27 @@
 #include "server/metrics.h"
 #include "server/options.h"
 
+struct reply {
+	int status;
+	const char *type; /* media type of the body */
+	char *body;       /* (length) bytes on the heap, http.c frees them unless ...; NULL: none */
+	bool lasts;       /* ... it lasts as long as the server */
+	size_t length;
+	char location[64]; /* "": no such header, likewise below */
+	char etag[64];
+	int retry_after;  /* [s], 0: none */
+	bool waits;       /* who knows it already may wait for another, when the study has changed */
+	unsigned changes; /* of the study, before it was looked at */
+};
+
+enum { HTTP_TOLD = 61 }; /* status objects kept; a prime, so that ids fall everywhere */
+
+struct told {
+	int64_t id;
+	unsigned changes;   /* of the study before it was looked at */
+	struct reply reply; /* body NULL: none */
+};
+
 /* What every request can reach. */
 struct server {
 	const struct options *options;
@@ -21,6 +42,8 @@ struct server {
 	struct tokens *tokens; /* NULL: there are none */
 	char *document; /* (document_length) bytes, the OpenAPI document: made once, it takes milliseconds */
 	size_t document_length;
+	pthread_mutex_t told_lock;
+	struct told told[HTTP_TOLD]; /* each where the remainder of its id is */
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;
@@ -45,18 +68,6 @@ struct request {
 	size_t length;
 	double arrived;  /* [s] monotonic */
 	uint64_t number; /* told as X-Request-Id */
-};
-
-struct reply {
-	int status;
-	const char *type; /* media type of the body */
-	char *body;       /* (length) bytes on the heap, http.c frees them; NULL: none */
-	size_t length;
-	char location[64]; /* "": no such header, likewise below */
-	char etag[64];
-	int retry_after;  /* [s], 0: none */
-	bool waits;       /* who knows it already may wait for another, when the study has changed */
-	unsigned changes; /* of the study, before it was looked at */
 };
 
 const char *http_header(const struct request *request, const char *name); /* NULL: none */

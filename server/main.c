@@ -98,7 +98,7 @@ int main(int argc, char **argv)
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.options = &options};
+	struct server server = {.options = &options, .told_lock = PTHREAD_MUTEX_INITIALIZER};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
@@ -107,6 +107,8 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	int status = serve(&server, &signals);
 	store_close(server.store);
+	for (int i = 0; i < HTTP_TOLD; i++)
+		free(server.told[i].reply.body);
 	free(server.document);
 	free(server.tokens);
 	return status;

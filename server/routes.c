@@ -24,8 +24,6 @@
 enum {
 	RETRY_AFTER = 1,      /* [s] */
 	RETRY_AFTER_MAX = 60, /* [s] */
-	TOLD = 61,            /* status objects kept; a prime, so that ids fall everywhere */
-	TOLD_MAX = 4096,      /* [bytes] of one; a longer one is made every time */
 	KEY_MAX = 200,        /* characters of an Idempotency-Key */
 	MIB = 1 << 20,
 };
@@ -121,54 +119,35 @@ static struct reply look(const struct request *request, struct page *page)
 	return reply;
 }
 
-/* Status objects as they were told last, for clients that ask again before anything has changed: to make one takes half
- * of what such an answer takes. */
-static struct {
-	pthread_mutex_t lock;
-	struct told {
-		int64_t id;
-		unsigned changes; /* of the study before it was looked at */
-		struct reply reply;
-		char body[TOLD_MAX];
-	} last[TOLD]; /* place: remainder of the id */
-} lately = {.lock = PTHREAD_MUTEX_INITIALIZER};
-
-static struct reply recall(int64_t id, unsigned changes)
+/* The same reply with a body of its own; NULL: out of memory. */
+static struct reply copied(struct reply reply)
 {
-	struct reply reply = {0};
-	pthread_mutex_lock(&lately.lock);
-	const struct told *last = &lately.last[id % TOLD];
-	char *body = last->id == id && last->changes == changes ? malloc(last->reply.length) : NULL;
-	if (body) {
-		reply = last->reply;
-		reply.body = memcpy(body, last->body, reply.length);
-	}
-	pthread_mutex_unlock(&lately.lock);
+	char *body = reply.status == 200 ? malloc(reply.length) : NULL;
+	reply.body = body ? memcpy(body, reply.body, reply.length) : NULL;
 	return reply;
 }
 
-static void remember(int64_t id, unsigned changes, const struct reply *reply)
-{
-	if (reply->status != 200 || reply->length > TOLD_MAX)
-		return;
-	pthread_mutex_lock(&lately.lock);
-	struct told *last = &lately.last[id % TOLD];
-	last->id = id;
-	last->changes = changes;
-	last->reply = *reply;
-	memcpy(last->body, reply->body, reply->length);
-	pthread_mutex_unlock(&lately.lock);
-}
-
+/* The status object.  The one told last is kept for those who ask again before anything has changed: to make one takes
+ * half of what such an answer takes. */
 static struct reply status(struct request *request)
 {
-	struct page page;
+	struct server *server = request->server;
+	struct told *told = &server->told[request->id % HTTP_TOLD];
 	// before the look, so that no change is missed by who waits for one
-	unsigned changes = store_changes(request->server->store, request->id);
-	struct reply reply = recall(request->id, changes);
+	unsigned changes = store_changes(server->store, request->id);
+	struct reply reply = {0};
+	pthread_mutex_lock(&server->told_lock);
+	if (told->id == request->id && told->changes == changes)
+		reply = copied(told->reply);
+	pthread_mutex_unlock(&server->told_lock);
 	if (!reply.body) {
+		struct page page;
 		reply = look(request, &page);
-		remember(request->id, changes, &reply);
+		struct told last = {request->id, changes, copied(reply)};
+		pthread_mutex_lock(&server->told_lock);
+		free(told->reply.body);
+		*told = last;
+		pthread_mutex_unlock(&server->told_lock);
 	}
 	reply.waits = true;
 	reply.changes = changes;
@@ -452,9 +431,10 @@ static struct reply erase(struct request *request)
 
 static struct reply version(struct request *request)
 {
-	static const char text[] = "{\"name\": \"poundd\", \"version\": \"" POUND_VERSION "\"}\n";
+	static char text[] = "{\"name\": \"poundd\", \"version\": \"" POUND_VERSION "\"}\n";
 	(void)request;
-	return made("application/json", strdup(text), sizeof text - 1);
+	return (struct reply){
+	    .status = 200, .type = "application/json", .body = text, .length = sizeof text - 1, .lasts = true};
 }
 
 static struct reply live(struct request *request)
@@ -477,13 +457,12 @@ static struct reply metrics(struct request *request)
 
 static struct reply openapi(struct request *request)
 {
-	const struct server *server = request->server;
-	char *body = malloc(server->document_length);
-	if (body)
-		memcpy(body, server->document, server->document_length);
-	struct reply reply = made("application/json", body, server->document_length);
-	strcpy(reply.etag, reply.status == 200 ? "\"" POUND_VERSION "\"" : "");
-	return reply;
+	return (struct reply){.status = 200,
+	                      .type = "application/json",
+	                      .body = request->server->document,
+	                      .length = request->server->document_length,
+	                      .lasts = true,
+	                      .etag = "\"" POUND_VERSION "\""};
 }
 
 /* Answers a request.
