@@ -2,6 +2,8 @@
 #include "client/document.h"
 
 #include "client/table.h"
+#include "schema/result_design.h"
+#include "schema/study_json.h"
 
 #include <errno.h>
 #include <math.h>
@@ -89,4 +91,23 @@ enum outcome document_reject(const char *path, const struct problems *problems)
 	reading_close(reading);
 	free(json);
 	return problems->status == PROBLEMS_NOMEM ? OUTCOME_FAILED : OUTCOME_USAGE;
+}
+
+void document_advise(const struct pound_study *study)
+{
+	char note[RESULT_NOTE_SIZE];
+	if (study->kind == POUND_KIND_SENSITIVITY && result_design_note(study, note, sizeof note))
+		command_complain("note: %s", note);
+}
+
+void document_hint(const char *text, size_t length)
+{
+	struct problems problems;
+	struct pound_study *study = study_design_from_json(text, length, &problems);
+	if (study && study->elsewhere)
+		command_complain("a study without \"scene\" is of a model of your own: `pound design' prints the "
+		                 "rows to run it on, "
+		                 "`pound indices' reads what it gave");
+	if (study)
+		study_free(study);
 }

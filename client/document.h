@@ -20,4 +20,11 @@ void document_complain(const char *subject, const struct reading *problem);
 /* The same for a file or standard input that was read here; the outcome that is left. */
 enum outcome document_reject(const char *path, const struct problems *problems);
 
+/* Says what there is to say about a study's design. */
+struct pound_study;
+void document_advise(const struct pound_study *study);
+
+/* Says what a document is for that is no study but the design of one. */
+void document_hint(const char *text, size_t length);
+
 #endif

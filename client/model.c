@@ -11,7 +11,7 @@
 
 enum { ROWS_AT_ONCE = 1000 };
 
-/* The study of a file, for its design alone; NULL: said why, and what that comes to. */
+/* The study of a file as one that is run elsewhere; NULL: said why, and what that comes to. */
 static struct pound_study *study_read(const char *path, enum outcome *outcome)
 {
 	size_t n;
@@ -22,8 +22,12 @@ static struct pound_study *study_read(const char *path, enum outcome *outcome)
 		return NULL;
 	struct pound_study *study = study_design_from_json(document, n, &problems);
 	free(document);
-	if (!study)
+	if (!study) {
 		*outcome = document_reject(path, &problems);
+		return NULL;
+	}
+	study->elsewhere = true;
+	document_advise(study);
 	return study;
 }
 
@@ -43,13 +47,12 @@ enum outcome model_design(const struct options *options)
 	struct pound_study *study = study_read(options->argument, &outcome);
 	if (!study)
 		return outcome;
-	// only the design is wanted of the run
-	study->elsewhere = true;
-	study->n_outputs = 0;
+	study->n_outputs = 0; // only the design is wanted of the run
 	struct pound_run *run = pound_run_create(study, 1);
 	outcome = run ? OUTCOME_OK : no_memory();
-	for (int row = 0; run && row < study->design.rows && outcome == OUTCOME_OK; row += ROWS_AT_ONCE) {
-		int left = study->design.rows - row;
+	const int rows = run ? pound_run_rows(run) : 0;
+	for (int row = 0; row < rows && outcome == OUTCOME_OK; row += ROWS_AT_ONCE) {
+		int left = rows - row;
 		size_t n;
 		char *lines = model_rows(study, run, row, left < ROWS_AT_ONCE ? left : ROWS_AT_ONCE, &n);
 		if (!lines)

@@ -204,9 +204,14 @@ enum outcome run_study(const struct options *options)
 		return OUTCOME_FAILED;
 	struct problems problems;
 	struct pound_study *study = study_from_json(document, n, &problems);
+	if (!study) {
+		enum outcome outcome = document_reject(options->argument, &problems);
+		document_hint(document, n);
+		free(document);
+		return outcome;
+	}
 	free(document);
-	if (!study)
-		return document_reject(options->argument, &problems);
+	document_advise(study);
 	if (options->samples && !has_samples(study)) {
 		command_complain("only sensitivity studies have samples, and floor spectra with \"histories\": true");
 		study_free(study);

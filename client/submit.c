@@ -38,6 +38,8 @@ enum outcome submit_study(const struct options *options)
 		puts(id);
 		if (options->wait)
 			outcome = follow(wire, id);
+	} else if (outcome == OUTCOME_USAGE) {
+		document_hint(document, n);
 	} else if (outcome == OUTCOME_OK) {
 		command_complain("the server's answer has no id");
 		outcome = OUTCOME_FAILED;

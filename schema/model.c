@@ -7,9 +7,11 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "schema/result_json.h"
 #include "schema/writer.h"
@@ -54,21 +56,69 @@ char *model_rows(const struct pound_study *study, const struct pound_run *run, i
 
 /* ---- cells in ---- */
 
-enum { CELL_SIZE = 256 };
+enum { CELL_SIZE = 256, LINES_TOLD = 3 };
+
+/* A fault that many lines may have: it is told once, with the first of them. */
+struct fault {
+	int n, lines[LINES_TOLD]; /* how many lines have it; the first ones */
+	char what[200];           /* of the first of all */
+};
+
+/* What can be wrong with a cell, but for its header. */
+enum fault_kind { FAULT_NUMBER, FAULT_RANGE, FAULT_INPUT, N_FAULTS };
 
 struct csv {
 	const char *at, *end;
 	int line;             /* of the cell in hand, from 1 */
 	bool ended;           /* the cell in hand is the last of its line */
 	char cell[CELL_SIZE]; /* without quotes and the spaces around it */
+	struct fault length;  /* a line has another number of cells than the header */
 	struct problems *problems;
 };
 
+/* Tells a fault of the line in hand. */
 static void complain(const struct csv *csv, const char *column, const char *what)
 {
 	char place[160];
 	snprintf(place, sizeof place, column ? "line %d, %s" : "line %d", csv->line, column);
 	problems_add(csv->problems, place, "%s", what);
+}
+
+/* Keeps a fault of the line in hand, to be told with those of the others. */
+static void fault_note(struct fault *fault, const struct csv *csv, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void fault_note(struct fault *fault, const struct csv *csv, const char *format, ...)
+{
+	if (fault->n < LINES_TOLD)
+		fault->lines[fault->n] = csv->line;
+	if (fault->n++ > 0)
+		return;
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(fault->what, sizeof fault->what, format, arguments);
+	va_end(arguments);
+}
+
+/* Tells a fault of all lines: "line 7, y: ...", or "lines 7, 9, 12 and 30 more, y: ... (line 7)". */
+static void fault_tell(const struct fault *fault, const char *column, struct problems *problems)
+{
+	char place[160];
+	int n = 0;
+	if (fault->n == 0)
+		return;
+	for (int k = 0; k < fault->n && k < LINES_TOLD; k++)
+		n += snprintf(place + n, sizeof place - (size_t)n, "%s%d",
+		              k > 0          ? ", "
+		              : fault->n > 1 ? "lines "
+		                             : "line ",
+		              fault->lines[k]);
+	if (fault->n > LINES_TOLD)
+		n += snprintf(place + n, sizeof place - (size_t)n, " and %d more", fault->n - LINES_TOLD);
+	snprintf(place + n, sizeof place - (size_t)n, "%s%s", column ? ", " : "", column ? column : "");
+	if (fault->n > 1)
+		problems_add(problems, place, "%s (line %d)", fault->what, fault->lines[0]);
+	else
+		problems_add(problems, place, "%s", fault->what);
 }
 
 /* Takes spaces off both ends. */
@@ -124,15 +174,41 @@ static bool blank(const char *at, const char *end)
 	return true;
 }
 
-/* The number in the cell in hand, NAN for none: an empty cell, "nan", "NA". */
+/* Whether a text is a decimal number: C's strtod would take 0x10 and inf too. */
+static bool is_decimal(const char *text)
+{
+	size_t n = strspn(text, "+-") <= 1 ? strspn(text, "+-") : 0;
+	size_t whole = strspn(text + n, "0123456789"), part = 0;
+	n += whole;
+	if (text[n] == '.')
+		part = strspn(text + n + 1, "0123456789"), n += 1 + part;
+	if (whole + part == 0)
+		return false;
+	if (text[n] == 'e' || text[n] == 'E') {
+		n += 1 + (text[n + 1] == '+' || text[n + 1] == '-');
+		if (!strspn(text + n, "0123456789"))
+			return false;
+		n += strspn(text + n, "0123456789");
+	}
+	return !text[n];
+}
+
+/* What marks a failed run: an empty cell, "nan", "NA". */
+static bool is_failed(const char *text)
+{
+	return !*text || strcasecmp(text, "nan") == 0 || strcmp(text, "NA") == 0;
+}
+
+/* The number in the cell in hand, NAN for the mark of a failed run; false: it is neither, or no double holds it. */
 static bool cell_number(const struct csv *csv, double *value)
 {
-	char *end;
 	*value = NAN;
-	if (!*csv->cell || strcmp(csv->cell, "NA") == 0)
+	if (is_failed(csv->cell))
 		return true;
-	*value = strtod(csv->cell, &end);
-	return !*end;
+	if (!is_decimal(csv->cell))
+		return false;
+	*value = strtod(csv->cell, NULL);
+	return isfinite(*value);
 }
 
 /* ---- columns ---- */
@@ -143,6 +219,7 @@ struct column {
 	char *name;
 	enum role role;
 	int index; /* of the output or the input */
+	struct fault faults[N_FAULTS];
 };
 
 struct outputs {
@@ -278,26 +355,23 @@ static bool alike(double given, double wanted)
 
 static void cell_take(const struct outputs *outputs, struct csv *csv, struct line *line, int c)
 {
-	const struct column *column = &outputs->columns[c];
-	char what[160];
+	struct column *column = &outputs->columns[c];
 	double number;
 	if (column->role == ROLE_OTHER)
 		return;
 	if (!cell_number(csv, &number)) {
-		snprintf(what, sizeof what, "must be a number, got \"%.60s\"", csv->cell);
-		complain(csv, column->name, what);
+		fault_note(&column->faults[FAULT_NUMBER], csv,
+		           "must be a decimal number, or empty or nan for a failed run, got \"%.60s\"", csv->cell);
 	} else if (column->role == ROLE_OUTPUT) {
 		line->value[column->index] = number;
 	} else if (column->role == ROLE_VARIANCE) {
 		line->variance[column->index] = isfinite(number) ? number : INFINITY;
-		snprintf(what, sizeof what, "must be at least 0, got %.60s", csv->cell);
 		if (number < 0)
-			complain(csv, column->name, what);
+			fault_note(&column->faults[FAULT_RANGE], csv, "must be at least 0, got %.60s", csv->cell);
 	} else if (!line->strange && !alike(number, line->x[column->index])) {
-		snprintf(what, sizeof what,
-		         "is %.15g, but the design has %.15g there: is this its order and its seed?", number,
-		         line->x[column->index]);
-		complain(csv, column->name, what);
+		fault_note(&column->faults[FAULT_INPUT], csv,
+		           "is %.15g, but the design has %.15g there: is this its order and its seed?", number,
+		           line->x[column->index]);
 		line->strange = true;
 	}
 }
@@ -317,6 +391,7 @@ static void line_read(const struct outputs *outputs, struct csv *csv, struct lin
 {
 	int n = 0;
 	csv->line++;
+	line->strange = false;
 	pound_run_sample_inputs(line->run, line->row, line->sample, line->x);
 	for (int o = 0; o < outputs->study.n_outputs; o++)
 		line->value[o] = line->variance[o] = NAN;
@@ -326,11 +401,17 @@ static void line_read(const struct outputs *outputs, struct csv *csv, struct lin
 			cell_take(outputs, csv, line, n);
 		n++;
 	} while (!csv->ended);
-	char what[80];
-	snprintf(what, sizeof what, "has %d cells, the header has %d", n, outputs->n_columns);
 	if (n != outputs->n_columns)
-		complain(csv, NULL, what);
+		fault_note(&csv->length, csv, "has %d cells, the header has %d", n, outputs->n_columns);
 	line_assign(outputs, line);
+}
+
+static void faults_tell(const struct outputs *outputs, const struct csv *csv)
+{
+	fault_tell(&csv->length, NULL, csv->problems);
+	for (int c = 0; c < outputs->n_columns; c++)
+		for (int kind = 0; kind < N_FAULTS; kind++)
+			fault_tell(&outputs->columns[c].faults[kind], outputs->columns[c].name, csv->problems);
 }
 
 /* All lines after the header into the run. */
@@ -338,7 +419,7 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 {
 	double *numbers = calloc(2 * (size_t)outputs->study.n_outputs, sizeof *numbers);
 	struct line line = {.run = run, .value = numbers, .variance = numbers + outputs->study.n_outputs};
-	const int n_samples = pound_run_samples(run), rows = outputs->study.design.rows;
+	const int n_samples = pound_run_samples(run), rows = pound_run_rows(run);
 	int64_t wanted = (int64_t)rows * n_samples, there = lines_left(csv);
 	const char *after = csv->at;
 	for (int64_t k = 0; k < wanted && after < csv->end; k++) {
@@ -355,6 +436,7 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 		for (line.row = 0; line.row < rows; line.row++)
 			for (line.sample = 0; line.sample < n_samples; line.sample++)
 				line_read(outputs, csv, &line);
+		faults_tell(outputs, csv);
 	}
 	free(numbers);
 }
@@ -384,7 +466,8 @@ static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t
  * Returns  value     (length)      -   JSON; NULL: problems->status says why, pointers are "line 3, NAME"
  * Memory   allocates; the caller frees
  *
- * An output or a variance that is missing or not finite is a failed run: its row is left out for every output.
+ * An output or a variance that is empty or nan is a failed run: its row is left out for every output.  A design that grows
+ * is that of its first look.
  *
  * Test     unit_model
  */

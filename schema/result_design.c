@@ -16,9 +16,11 @@ static bool grows(const struct pound_study *study)
 	return study->design.until.half_width > 0;
 }
 
-/* Fewer rows than the study will have. */
+/* Fewer rows than the study will have; of a model that is run elsewhere none will come. */
 static bool partial(const struct pound_study *study, const struct pound_result *result)
 {
+	if (study->elsewhere)
+		return false;
 	return grows(study) ? result->n_looks == 0 : result->rows < study->design.rows;
 }
 
@@ -80,6 +82,32 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 }
 
+/* What there is to say about a design: points of a net are even for a power of two in each scramble.
+ *
+ * Test     unit_result_json: points_that_do_not_fill_their_nets_are_noted
+ */
+bool result_design_note(const struct pound_study *study, char *text, size_t size)
+{
+	const struct pound_design *design = &study->design;
+	int full = design->randomisations;
+	*text = 0;
+	if (grows(study) && study->elsewhere)
+		snprintf(text, size,
+		         "the design grows; these are the %d rows of its first look, a run of it takes up to %d",
+		         pound_design_rows(study, 0), pound_design_rows_most(study));
+	if (grows(study) || !pound_design_quasi_random(design->method))
+		return *text;
+	while (full < design->rows)
+		full *= 2;
+	if (full != design->rows)
+		snprintf(text, size,
+		         "%d rows are not 2^k for each of %d randomisations, so the points are less even and the "
+		         "indexes less "
+		         "sharp than they could be; %d or %d rows are",
+		         design->rows, design->randomisations, full / 2, full);
+	return *text;
+}
+
 /* Writes the members `design`, `partial` (of an intermediate result) and `stopping` (of a design that grew).
  *
  * Test     unit_result_json: a_result_says_why_its_design_grew_no_further
@@ -87,11 +115,14 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 void result_design(struct writer *w, const struct pound_study *study, const struct pound_result *result)
 {
 	const bool nets = pound_design_quasi_random(study->design.method);
+	char note[RESULT_NOTE_SIZE];
 	writer_object(w, "design", WRITER_LINE);
 	writer_text(w, "method", pound_design_name(study->design.method));
 	writer_whole(w, "rows", result->rows);
 	if (nets)
 		writer_whole(w, "randomisations", study->design.randomisations);
+	if (result_design_note(study, note, sizeof note))
+		writer_text(w, "note", note);
 	writer_end(w);
 	if (partial(study, result)) {
 		writer_object(w, "partial", WRITER_LINE);
@@ -99,7 +130,7 @@ void result_design(struct writer *w, const struct pound_study *study, const stru
 		writer_whole(w, "rows_most", pound_design_rows_most(study));
 		writer_text(w, "note", "of the rows that are complete so far; the study goes on");
 		writer_end(w);
-	} else if (grows(study)) {
+	} else if (result->n_looks) {
 		write_stopping(w, study, result);
 	}
 }

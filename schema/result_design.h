@@ -5,6 +5,11 @@
 #include "engine/pound.h"
 #include "schema/writer.h"
 
+enum { RESULT_NOTE_SIZE = 300 };
+
+/* What there is to say about a design before it is run; false: nothing. */
+bool result_design_note(const struct pound_study *study, char *text, size_t size);
+
 void result_design(struct writer *w, const struct pound_study *study, const struct pound_result *result);
 
 #endif

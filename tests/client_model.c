@@ -5,6 +5,7 @@
 
 #include "schema/reading.h"
 #include "tests/check.h"
+#include "tests/documents.h"
 #include "tests/program.h"
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
@@ -124,6 +125,38 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 	unlink(outputs);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_design_has_its_header_and_its_samples),
+static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
+{
+	(void)state;
+	struct program_outcome until = POUND("example", "until"), design = POUND("example", "design");
+	char *points = documents_with(design.out, "\"lhs\"", "\"sobol\"");
+	struct program_outcome grown =
+	    program_run((const char *const[]){"pound", "design", "-", NULL}, until.out);
+	struct program_outcome uneven = program_run((const char *const[]){"pound", "design", "-", NULL}, points);
+	struct program_outcome run = program_run((const char *const[]){"pound", "run", "-", NULL}, design.out);
+	program_expect(&grown, 0);
+	program_expect(&uneven, 0);
+	program_expect(&run, 2);
+	assert_string_equal(grown.err,
+	                    "pound: note: the design grows; these are the 128 rows of its first look, a run of "
+	                    "it takes up to 2048\n");
+	int lines = 0;
+	for (const char *c = grown.out; *c; c++)
+		lines += *c == '\n';
+	assert_int_equal(lines, 1 + 128 * 5);
+	assert_non_null(strstr(uneven.err, "pound: note: 1000 rows are not 2^k for each of 8 randomisations"));
+	// a study that can only be run elsewhere
+	assert_non_null(strstr(run.err, "`pound design'"));
+	assert_non_null(strstr(run.err, "`pound indices'"));
+	program_free(&run);
+	program_free(&uneven);
+	program_free(&grown);
+	free(points);
+	program_free(&design);
+	program_free(&until);
+}
+
+CHECK_MAIN(cmocka_unit_test(what_there_is_to_say_about_a_design_is_said_on_stderr),
+           cmocka_unit_test(a_design_has_its_header_and_its_samples),
            cmocka_unit_test(indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv),
            cmocka_unit_test(what_is_wrong_is_said_and_ends_with_2))

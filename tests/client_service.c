@@ -46,6 +46,9 @@ static void a_study_that_has_succeeded_has_status_results_and_samples(void **sta
 	expect_words(POUND("results", id), 0, WORDS("\"kind\": \"sensitivity\"", "\"ST_high\""));
 	expect_words(POUND("results", "--format", "table", id), 0, WORDS("S1 [95 % interval]", "variance"));
 	expect_words(POUND("results", "--format", "csv", id), 0, WORDS("ST_high"));
+	expect_words(POUND("results", "--partial", "--format", "csv", "--table", "inputs", id), 0,
+	             WORDS("S1,S1_low,S1_high"));
+	expect_words(POUND("results", "--format", "csv", "--table", "stopping", id), 1, WORDS("has no table"));
 	expect_words(POUND("samples", id), 0, WORDS(".variance", "row"));
 	struct program_outcome npy = POUND("samples", "--format", "npy", id);
 	program_expect(&npy, 0);
@@ -59,7 +62,7 @@ static void a_cancelled_study_ends_wait_and_results_with_3(void **state)
 	char id[32];
 	(void)state;
 	submit("paper", false, id);
-	expect_words(POUND("results", id), 1, WORDS(id, "not finished"));
+	expect_words(POUND("results", id), 1, WORDS(id, "not finished", "try again in"));
 	expect_words(POUND("cancel", id), 0, WORDS("\"status\": \"cancelled\""));
 	expect_words(POUND("wait", id), 3, WORDS("the study is cancelled"));
 	expect_words(POUND("results", id), 3, WORDS(id));

@@ -250,7 +250,7 @@ static void an_inert_input_has_no_total_once_replicates_tell_the_noise(void **st
 static void a_run_without_a_number_takes_its_row_out_of_every_output(void **state)
 {
 	(void)state;
-	static const char *const missing[] = {"", "nan", "NA", "NaN", "inf", " "};
+	static const char *const missing[] = {"", "nan", "NA", "NaN", " "};
 	for (size_t k = 0; k < sizeof missing / sizeof missing[0]; k++) {
 		char *csv = NULL;
 		size_t n;
@@ -356,7 +356,18 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	    {"y\n", "1\n", "", "", "has 23 lines after its header, the design has 24: 4 for each of 6 rows"},
 	    {"y\n", "1\n", "1\n1\n", "",
 	     "has 25 lines after its header, the design has 24: 4 for each of 6 rows"},
-	    {"y\n", "1\n", "abc\n", "line 25, y", "must be a number, got \"abc\""},
+	    {"y\n", "1\n", "abc\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"abc\""},
+	    {"y\n", "1\n", "inf\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"inf\""},
+	    {"y\n", "1\n", "-1e999\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"-1e999\""},
+	    {"y\n", "1\n", "0x10\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"0x10\""},
+	    // many lines with one fault are one message
+	    {"y\n", "0x1\n", "1\n", "lines 2, 3, 4 and 20 more, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"0x1\" (line 2)"},
+	    {"y,z\n", "1,2,3\n", "1,2\n", "lines 2, 3, 4 and 20 more", "has 3 cells, the header has 2 (line 2)"},
 	    {"y\n", "1\n", "1,5\n", "line 25", "has 2 cells, the header has 1"},
 	    {"y,z\n", "1,2\n", "1\n", "line 25", "has 1 cells, the header has 2"},
 	    {"y,y.variance\n", "1,2\n", "1,-2\n", "line 25, y.variance", "must be at least 0, got -2"},
@@ -389,6 +400,66 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	study_free(study);
 }
 
+static void every_spelling_of_a_decimal_number_is_one(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text;
+		bool number;
+	} cases[] = {{"1", true},      {"-1.", true},       {"+.5", true},  {"1e3", true},    {"1.5E-3", true},
+	             {"1e-999", true}, {".", false},        {"-", false},   {"+-1", false},   {"1e", false},
+	             {"1e+", false},   {"e1", false},       {"1 2", false}, {"1_0", false},   {"nan(1)", false},
+	             {"-nan", false},  {"infinity", false}, {"0b1", false}, {"1.2.3", false}, {"0x1p3", false}};
+	struct pound_study *study = study_of(two_inputs);
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct problems problems;
+		char csv[400] = "y\n";
+		size_t n = 0;
+		for (int k = 0; k < 23; k++)
+			strcat(csv, k % 2 ? "1\n" : "2\n");
+		strcat(strcat(csv, cases[i].text), "\n");
+		char *json = model_indices(study, csv, strlen(csv), &problems, &n);
+		if ((json != NULL) != cases[i].number)
+			fail_msg("'%s' is%s taken", cases[i].text, json ? "" : " not");
+		assert_true(!json || strstr(json, "\"runs_failed\": 0"));
+		free(json);
+	}
+	study_free(study);
+}
+
+/* What `pound design` prints of a design that grows is what `pound indices` reads: the rows of its first look. */
+static void a_design_that_grows_is_that_of_its_first_look(void **state)
+{
+	(void)state;
+	struct problems problems;
+	size_t n, n_csv;
+	char *csv = NULL;
+	struct pound_study *study = study_of(example_text("until"));
+	struct pound_run *run = pound_run_create(study, 1);
+	assert_int_equal(pound_run_rows(run), pound_design_rows(study, 0));
+	FILE *out = open_memstream(&csv, &n_csv);
+	fputs("y\n", out);
+	for (int row = 0; row < pound_run_rows(run); row++)
+		for (int sample = 0; sample < pound_run_samples(run); sample++) {
+			double x[POUND_INPUTS_MAX];
+			pound_run_sample_inputs(run, row, sample, x);
+			fprintf(out, "%.17g\n", x[0]);
+		}
+	fclose(out);
+	char *json = model_indices(study, csv, n_csv, &problems, &n);
+	assert_non_null(json);
+	struct reading *result = reading_open(json, n);
+	assert_false(reading_has(result, "/partial") || reading_has(result, "/stopping"));
+	assert_non_null(strstr(reading_text(result, "/design/note"), "rows of its first look"));
+	// y is the first input
+	check_near(index_of(result, 0, 0, "S1_raw"), 1.0, 0.05);
+	check_near(index_of(result, 0, 1, "ST_raw"), 0.0, 0.0);
+	reading_close(result);
+	free(json), free(csv);
+	pound_run_free(run);
+	study_free(study);
+}
+
 static void lines_in_another_order_are_noticed_by_the_inputs_in_them(void **state)
 {
 	(void)state;
@@ -402,7 +473,8 @@ static void lines_in_another_order_are_noticed_by_the_inputs_in_them(void **stat
 		fputs("0.5,1\n", out);
 	fclose(out);
 	assert_null(model_indices(study, csv, n_csv, &problems, &n));
-	assert_string_equal(problems.list[0].pointer, "line 2, p");
+	assert_int_equal(problems.n, 1);
+	assert_string_equal(problems.list[0].pointer, "lines 2, 3, 4 and 21 more, p");
 	assert_non_null(strstr(problems.list[0].detail, "is 0.5, but the design has "));
 	free(csv);
 	study_free(study);
@@ -420,7 +492,9 @@ static void outputs_of_a_sweep_are_refused(void **state)
 	study_free(study);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_study_without_a_scene_is_inputs_and_a_design),
+CHECK_MAIN(cmocka_unit_test(every_spelling_of_a_decimal_number_is_one),
+           cmocka_unit_test(a_design_that_grows_is_that_of_its_first_look),
+           cmocka_unit_test(a_study_without_a_scene_is_inputs_and_a_design),
            cmocka_unit_test(rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers),
            cmocka_unit_test(outputs_computed_elsewhere_give_the_golden_indexes),
            cmocka_unit_test(a_variance_column_takes_independent_noise_out),

@@ -390,6 +390,35 @@ static void left_out_work_adds_up(void **state)
 	free(document);
 }
 
+static void points_that_do_not_fill_their_nets_are_noted(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *design, *note; /* "": none */
+	} cases[] = {
+	    {"\"method\": \"sobol\", \"rows\": 1000", "512 or 1024 rows are"},
+	    {"\"method\": \"sobol\", \"rows\": 17, \"randomisations\": 4", "17 rows are not 2^k for each of 4"},
+	    {"\"method\": \"sobol\", \"rows\": 96, \"randomisations\": 6", ""},
+	    {"\"method\": \"sobol\", \"rows\": 16", ""},
+	    {"\"method\": \"lhs\", \"rows\": 10", ""}};
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		char *document =
+		    documents_with(documents_sensitivity, "\"method\": \"lhs\", \"rows\": 10", cases[k].design);
+		struct pound_study *study = documents_study(document);
+		struct pound_run *run = pound_run_create(study, 1);
+		struct reading *r = result_of(document, pound_run_result(run));
+		const char *note = reading_text(r, "/design/note");
+		if (*cases[k].note)
+			assert_non_null(strstr(note, cases[k].note));
+		else
+			assert_null(note);
+		reading_close(r);
+		pound_run_free(run);
+		study_free(study);
+		free(document);
+	}
+}
+
 static void a_result_says_why_its_design_grew_no_further(void **state)
 {
 	(void)state;
@@ -432,7 +461,8 @@ static void a_result_says_why_its_design_grew_no_further(void **state)
 	free(document);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_result_says_why_its_design_grew_no_further),
+CHECK_MAIN(cmocka_unit_test(points_that_do_not_fill_their_nets_are_noted),
+           cmocka_unit_test(a_result_says_why_its_design_grew_no_further),
            cmocka_unit_test(a_response_is_written_whole),
            cmocka_unit_test(timing_is_the_last_line_but_one_and_all_that_differs),
            cmocka_unit_test(a_swept_law_stands_by_its_name),
