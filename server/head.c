@@ -27,6 +27,9 @@ void head_refuse(struct head *head, enum api_fault fault, bool close, const char
 	va_start(values, format);
 	vsnprintf(head->detail, sizeof head->detail, format, values);
 	va_end(values);
+	// what a client sent may be no text at all, and a problem is JSON
+	for (char *c = head->detail; *c; c++)
+		*c = *c < ' ' || *c > '~' ? '?' : *c;
 }
 
 /* Starts with the request's target as it came.

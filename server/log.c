@@ -1,5 +1,6 @@
 /* A line is the UTC time, what happened, and a newline, written by one call so that threads do not mix.
- * Control characters become '?': a line is a line, whatever a client put into a path. */
+ * What is not visible ASCII becomes '?': a line is a line and a terminal is left alone, whatever a client put into a
+ * path. */
 #include "server/log.h"
 
 #include <stdarg.h>
@@ -28,7 +29,7 @@ void log_line(const char *format, ...)
 	vsnprintf(text + n, sizeof text - n, format, values);
 	va_end(values);
 	for (n = 0; text[n]; n++)
-		if ((unsigned char)text[n] < ' ' || text[n] == 0x7f)
+		if (text[n] < ' ' || text[n] > '~')
 			text[n] = '?';
 	text[n++] = '\n'; // over the zero
 	// a log that cannot be written must not stop the service

@@ -384,25 +384,21 @@ static struct reply samples(struct request *request)
 		return reply;
 	struct work_run opened;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
-	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
-	bool told = !error && opened.study->spectrum.histories;
-	if (sampled)
-		work_finished(&opened);
-	if (told)
-		reply.body = (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, &reply.length);
-	else if (sampled && opened.n_left == 0)
-		reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
 	if (error)
 		reply = problem(API_UNAVAILABLE, error);
-	else if (!sampled && !told)
+	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
+		work_finished(&opened);
+		if (opened.n_left > 0)
+			reply = problem(API_CORRUPT, "stored blocks are damaged or of another version");
+		else
+			reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
+	} else if (opened.study->spectrum.histories)
+		reply.body = (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, &reply.length);
+	else
 		reply =
 		    problem(API_CONFLICT, "only a sensitivity study has samples, and floor spectra with histories");
-	else if (sampled && opened.n_left > 0)
-		reply = problem(API_CORRUPT, "stored blocks are damaged or of another version");
-	else if (!reply.body)
-		reply = no_memory();
 	work_close(&opened);
-	return reply;
+	return reply.body ? reply : no_memory();
 }
 
 static struct reply cancel(struct request *request)

@@ -42,6 +42,8 @@ static const char *take(struct tokens *tokens, FILE *file)
 	if (about.st_mode & (S_IRWXG | S_IRWXO))
 		return "may be used by others: chmod 600";
 	while (fgets(line, sizeof line, file)) {
+		if (strlen(line) == sizeof line - 1)
+			return "has a line of more than 510 characters";
 		line[strcspn(line, "\r\n#")] = '\0';
 		const char *token = line + strspn(line, " \t");
 		size_t n = strcspn(token, " \t");

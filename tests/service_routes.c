@@ -456,12 +456,12 @@ static void a_path_with_a_newline_is_one_line_of_the_log(void **state)
 	struct service *service = *state;
 	char line[1024];
 	bool found = false;
-	problem_is(service_get(service, "/first%%0Asecond%%1b"), 404, "no such path");
+	problem_is(service_get(service, "/first%%0Asecond%%1b%%9b%%c2%%9b"), 404, "no such path");
 	service_stop(service);
 	FILE *log = fopen(service->log, "r");
 	assert_non_null(log);
 	while (fgets(line, sizeof line, log))
-		found = found || strstr(line, "/first?second? 404");
+		found = found || strstr(line, "/first?second???? 404");
 	fclose(log);
 	assert_true(found);
 }

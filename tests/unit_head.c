@@ -164,7 +164,32 @@ static void the_seconds_to_wait_are_found_among_other_preferences(void **state)
 			fail_msg("%s: %d", cases[i].prefer, head_wait(cases[i].prefer));
 }
 
-CHECK_MAIN(cmocka_unit_test(a_target_is_visible_ascii_and_its_escapes_are_whole),
+static void the_first_fault_is_told_in_visible_ascii(void **state)
+{
+	struct head head = judged("/", (const char *const[]){"Host: localhost", NULL}, true);
+	(void)state;
+	head_refuse(&head, API_BAD_REQUEST, false, "%s is not an argument", "\xff\n\xc2\x9b");
+	head_refuse(&head, API_NOT_FOUND, true, "there is no such path");
+	assert_int_equal(head.fault, API_BAD_REQUEST);
+	assert_string_equal(head.detail, "???? is not an argument");
+	assert_true(head.close);
+}
+
+static void the_tags_of_all_lines_are_one_list(void **state)
+{
+	const char *const lines[] = {"Host: localhost", "If-None-Match: \"x\"", "if-none-match: W/\"a,b\"", NULL};
+	(void)state;
+	struct head head = judged("/", lines, true);
+	assert_true(head_has_etag(head.etags, "\"x\""));
+	assert_true(head_has_etag(head.etags, "\"a,b\""));
+	assert_false(head_has_etag(head.etags, "\"a\""));
+	head = judged("/", (const char *const[]){"Host: localhost", "If-None-Match: *", NULL}, true);
+	assert_true(head_has_etag(head.etags, "\"x\""));
+}
+
+CHECK_MAIN(cmocka_unit_test(the_first_fault_is_told_in_visible_ascii),
+           cmocka_unit_test(the_tags_of_all_lines_are_one_list),
+           cmocka_unit_test(a_target_is_visible_ascii_and_its_escapes_are_whole),
            cmocka_unit_test(what_leaves_a_request_s_end_in_doubt_is_refused),
            cmocka_unit_test(a_host_is_an_address_localhost_or_a_name_that_was_given),
            cmocka_unit_test(a_tag_is_found_in_every_form_of_a_list),

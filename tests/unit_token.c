@@ -75,6 +75,10 @@ static void a_file_without_a_good_token_is_refused(void **state)
 	assert_null(opened("# nobody\n\n", 0600));
 	assert_null(opened("short\n", 0600));
 	assert_null(opened("0123456789abcdef0123456789abcdef\n0123456789abcdef0123456789abcde\n", 0600));
+	// not two tokens of one that is cut
+	char line[1024];
+	snprintf(line, sizeof line, "%01000d\n", 1);
+	assert_null(opened(line, 0600));
 	assert_null(tokens_open("/nonexistent"));
 	assert_null(tokens_open("/tmp"));
 }
