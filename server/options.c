@@ -114,5 +114,9 @@ void options_read(struct options *options, int argc, char **argv)
 		flags[i] = (struct argp_option){
 		    .name = row->name, .key = key_of(row), .arg = row->argument, .doc = texts[i]};
 	}
-	argp_parse(&argp, argc, argv, 0, NULL, options);
+	// mistakes have ended the program in there; what is left is no memory, and then nothing is known
+	if (argp_parse(&argp, argc, argv, 0, NULL, options) != 0) {
+		fputs("poundd: out of memory\n", stderr);
+		exit(EXIT_FAILURE);
+	}
 }

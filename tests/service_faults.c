@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "schema/reading.h"
+#include "server/options.h"
 #include "tests/faults.h"
 #include "tests/program.h"
 #include "tests/service.h"
@@ -229,6 +230,8 @@ static void every_allocation_of_the_start_may_fail(void **state)
 		assert_true(status == 0 || status == 1 || status == 127);
 		refused += status != 0;
 		spared = faults->memory_failed > before ? 0 : spared + 1;
+		// it never serves with options other than those given
+		assert_true(status != 0 || service->port != atoi(options_table[0].absent));
 		if (status == 0)
 			service_stop(service);
 	}
