@@ -336,6 +336,41 @@ char *service_timeless(char *result)
 	return result;
 }
 
+static char *body_of(const struct service *service, const char *path, const char *id)
+{
+	struct answer answer = service_get(service, path, id);
+	if (answer.status != 200)
+		fail_msg("%s: %d instead of 200: %s", path, answer.status, answer.body);
+	return answer.body;
+}
+
+struct service_bytes service_bytes(const struct service *service, const char *id)
+{
+	return (struct service_bytes){service_timeless(body_of(service, "/v1/studies/%s/results", id)),
+	                              body_of(service, "/v1/studies/%s/samples", id)};
+}
+
+struct service_bytes service_uninterrupted(const char *study, int n_workers)
+{
+	struct service *service = service_new();
+	char id[17];
+	service_start(service, n_workers);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct service_bytes bytes = service_bytes(service, id);
+	service_stop(service);
+	service_free(service);
+	return bytes;
+}
+
+void service_bytes_compare(struct service_bytes *bytes, const struct service_bytes *reference)
+{
+	assert_string_equal(bytes->result, reference->result);
+	assert_string_equal(bytes->samples, reference->samples);
+	free(bytes->result);
+	free(bytes->samples);
+}
+
 int service_setup(void **state)
 {
 	struct service *service = service_new();

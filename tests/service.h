@@ -83,6 +83,18 @@ char *service_study(int rows, int signals, int seed);
 /* A result with its timing taken out; in place. */
 char *service_timeless(char *result);
 
+/* All that a study has brought forth, but for its timing. */
+struct service_bytes {
+	char *result, *samples;
+};
+
+struct service_bytes service_bytes(const struct service *service,
+                                   const char *id); /* of one that has succeeded */
+/* What a study comes to in a server of its own, with so many workers and nothing in between. */
+struct service_bytes service_uninterrupted(const char *study, int n_workers);
+/* Fails the test unless they are the same; frees the first. */
+void service_bytes_compare(struct service_bytes *bytes, const struct service_bytes *reference);
+
 int service_setup(void **state);    /* a service that runs with two workers */
 int service_teardown(void **state); /* stops it */
 

@@ -37,39 +37,17 @@ static double status_number(const struct service *service, const char *id, const
 	return number;
 }
 
-struct bytes {
-	char *result, *samples;
-};
-
-static struct bytes bytes_of(const struct service *service, const char *id)
+static struct service_bytes uninterrupted(int n_workers)
 {
-	return (struct bytes){service_timeless(answer_of(service, "/v1/studies/%s/results", id, 200).body),
-	                      answer_of(service, "/v1/studies/%s/samples", id, 200).body};
-}
-
-static void bytes_free(struct bytes *bytes)
-{
-	free(bytes->result);
-	free(bytes->samples);
-}
-
-static struct bytes uninterrupted(int n_workers)
-{
-	struct service *service = service_new();
-	char *study = growing_study(), id[17];
-	service_start(service, n_workers);
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "succeeded", 0));
-	struct bytes bytes = bytes_of(service, id);
-	service_stop(service);
-	service_free(service);
+	char *study = growing_study();
+	struct service_bytes bytes = service_uninterrupted(study, n_workers);
 	free(study);
 	return bytes;
 }
 
-static const struct bytes *reference(void)
+static const struct service_bytes *reference(void)
 {
-	static struct bytes bytes;
+	static struct service_bytes bytes;
 	if (!bytes.result)
 		bytes = uninterrupted(1);
 	return &bytes;
@@ -78,10 +56,8 @@ static const struct bytes *reference(void)
 static void a_study_that_grows_has_the_same_bytes_for_any_number_of_workers(void **state)
 {
 	(void)state;
-	struct bytes bytes = uninterrupted(4);
-	assert_string_equal(bytes.result, reference()->result);
-	assert_string_equal(bytes.samples, reference()->samples);
-	bytes_free(&bytes);
+	struct service_bytes bytes = uninterrupted(4);
+	service_bytes_compare(&bytes, reference());
 }
 
 static void
@@ -100,13 +76,11 @@ a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_block
 	char *before = service_text(service, kept);
 	service_start(service, 2);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	struct bytes bytes = bytes_of(service, id);
-	assert_string_equal(bytes.result, reference()->result);
-	assert_string_equal(bytes.samples, reference()->samples);
+	struct service_bytes bytes = service_bytes(service, id);
+	service_bytes_compare(&bytes, reference());
 	char *after = service_text(service, kept);
 	assert_string_equal(after, before);
 	assert_int_equal(service_number(service, "SELECT max(attempt) FROM block"), 2);
-	bytes_free(&bytes);
 	free(before), free(after), free(study);
 	service_stop(service);
 	service_free(service);

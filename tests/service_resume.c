@@ -9,44 +9,18 @@
 /* the study of these tests: long enough to be killed half way, many blocks */
 enum { ROWS = SERVICE_ROWS, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
 
-static char *result_of(const struct service *service, const char *id)
+static struct service_bytes uninterrupted(int n_workers)
 {
-	struct answer answer = service_get(service, "/v1/studies/%s/results", id);
-	assert_int_equal(answer.status, 200);
-	return service_timeless(answer.body);
-}
-
-static char *samples_of(const struct service *service, const char *id)
-{
-	struct answer answer = service_get(service, "/v1/studies/%s/samples", id);
-	assert_int_equal(answer.status, 200);
-	return answer.body;
-}
-
-struct bytes {
-	char *result, *samples;
-};
-
-/* What the study comes to with so many workers and nothing in between. */
-static struct bytes uninterrupted(int n_workers)
-{
-	struct service *service = service_new();
 	char *study = service_study(ROWS, SIGNALS, SEED);
-	char id[17];
-	service_start(service, n_workers);
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "succeeded", 0));
-	struct bytes bytes = {result_of(service, id), samples_of(service, id)};
-	service_stop(service);
-	service_free(service);
+	struct service_bytes bytes = service_uninterrupted(study, n_workers);
 	free(study);
 	return bytes;
 }
 
 /* The bytes that all others must equal: of one worker. */
-static const struct bytes *reference(void)
+static const struct service_bytes *reference(void)
 {
-	static struct bytes bytes;
+	static struct service_bytes bytes;
 	if (!bytes.result)
 		bytes = uninterrupted(1);
 	return &bytes;
@@ -56,11 +30,8 @@ static void results_are_the_same_bytes_for_one_two_and_four_workers(void **state
 {
 	(void)state;
 	for (int n_workers = 2; n_workers <= 4; n_workers += 2) {
-		struct bytes bytes = uninterrupted(n_workers);
-		assert_string_equal(bytes.result, reference()->result);
-		assert_string_equal(bytes.samples, reference()->samples);
-		free(bytes.result);
-		free(bytes.samples);
+		struct service_bytes bytes = uninterrupted(n_workers);
+		service_bytes_compare(&bytes, reference());
 	}
 }
 
@@ -81,12 +52,9 @@ static void resume(struct service *service, const char *id)
 {
 	service_start(service, 2);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	char *result = result_of(service, id), *samples = samples_of(service, id);
-	assert_string_equal(result, reference()->result);
-	assert_string_equal(samples, reference()->samples);
+	struct service_bytes bytes = service_bytes(service, id);
+	service_bytes_compare(&bytes, reference());
 	assert_int_equal(service_number(service, "SELECT sum(runs) FROM block"), RUNS);
-	free(result);
-	free(samples);
 	service_stop(service);
 }
 
