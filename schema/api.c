@@ -68,15 +68,6 @@ const struct api_argument api_arguments[] = {
 // clang-format on
 const int api_arguments_count = sizeof api_arguments / sizeof api_arguments[0];
 
-bool api_listed(const char *names, const char *name)
-{
-	size_t n = strlen(name);
-	for (const char *at = names ? strstr(names, name) : NULL; at && n > 0; at = strstr(at + 1, name))
-		if (at > names && at[-1] == ' ' && at[n] == ' ')
-			return true;
-	return false;
-}
-
 const struct api_argument *api_argument(int operation, const char *name, const char *place)
 {
 	for (int i = 0; i < api_arguments_count; i++) {
@@ -106,7 +97,7 @@ bool api_takes(const struct api_argument *argument, const char *value)
 {
 	char *rest;
 	if (argument->choices)
-		return !strchr(value, ' ') && api_listed(argument->choices, value);
+		return !strchr(value, ' ') && fields_listed(argument->choices, value);
 	if (argument->max == 0)
 		return true;
 	long number = strtol(value, &rest, 10);

@@ -90,8 +90,6 @@ const struct api_argument *api_argument(int operation, const char *name, const c
 void api_expected(const struct api_argument *argument, char *text, size_t size);
 bool api_takes(const struct api_argument *argument, const char *value); /* a query argument's value */
 
-bool api_listed(const char *names, const char *name); /* whether a name is one of those between spaces */
-
 /* The operation that a method and a decoded path name, and the id in the path; `allow` has the methods of the path.
  * HEAD is GET.  -1: there is no such path, or it does not take the method. */
 int api_match(const char *method, const char *path, long long *id, char allow[64]);

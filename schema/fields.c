@@ -271,14 +271,19 @@ bool fields_child(const struct field *field, const char *pattern)
 	return strncmp(field->pattern, pattern, length) == 0 && fields_name(field) == field->pattern + length + 1;
 }
 
-static bool listed(const char *names, const char *name)
+bool fields_listed(const char *names, const char *name)
 {
-	if (!names || !name)
-		return true;
-	for (const char *at = strstr(names, name); at; at = strstr(at + 1, name))
-		if (at[-1] == ' ' && at[strlen(name)] == ' ')
+	size_t n = strlen(name);
+	for (const char *at = names ? strstr(names, name) : NULL; at && n > 0; at = strstr(at + 1, name))
+		if (at > names && at[-1] == ' ' && at[n] == ' ')
 			return true;
 	return false;
+}
+
+/* Whether a name is one of those that a row is for; NULL: any, or all. */
+static bool listed(const char *names, const char *name)
+{
+	return !names || !name || fields_listed(names, name);
 }
 
 bool fields_used(const struct field *field, const char *kind, const char *excitation, const char *solver)

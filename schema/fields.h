@@ -50,6 +50,9 @@ const char *fields_name(const struct field *field);   /* last part of the patter
 bool fields_child(const struct field *field,
                   const char *pattern); /* a member of the object at that pattern */
 
+/* Whether a name is one of those between spaces; NULL: of none. */
+bool fields_listed(const char *names, const char *name);
+
 /* Whether a study of this kind, excitation and solver uses a field; a NULL name is any. */
 bool fields_used(const struct field *field, const char *kind, const char *excitation, const char *solver);
 

@@ -308,7 +308,7 @@ static void answered(struct writer *w, const char *name, const struct member *fi
 {
 	object(w, name);
 	writer_text(w, "type", "object");
-	writer_bool(w, "additionalProperties", api_listed(open_objects, name));
+	writer_bool(w, "additionalProperties", fields_listed(open_objects, name));
 	object(w, "properties");
 	for (const struct member *of = first; of < end; of++)
 		member(w, of);
