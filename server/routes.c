@@ -388,7 +388,7 @@ static struct reply samples(struct request *request)
 		reply = problem(API_UNAVAILABLE, error);
 	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
 		work_finished(&opened);
-		if (opened.n_left > 0)
+		if (work_left(&opened) > 0)
 			reply = problem(API_CORRUPT, "stored blocks are damaged or of another version");
 		else
 			reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);

@@ -82,7 +82,6 @@ static void restore(void *to, const struct store_block *block)
 		return;
 	pound_run_block_restore(opened->run, block->number, block->values);
 	opened->stored[block->number] = true;
-	opened->n_left -= block->number < opened->n_blocks;
 	opened->cpu_s += block->cpu_s;
 	opened->wall_s = block->wall_s > opened->wall_s ? block->wall_s : opened->wall_s;
 }
@@ -115,7 +114,6 @@ const char *work_open(struct store *store, int64_t id, int n_workers, struct wor
 	if (!opened->run)
 		return "out of memory";
 	pound_run_clock(opened->run, thread_cpu);
-	opened->n_blocks = opened->n_left = pound_run_blocks(opened->run);
 	opened->stored = calloc((size_t)pound_run_blocks_most(opened->run), sizeof *opened->stored);
 	if (!opened->stored)
 		return "out of memory";
@@ -124,22 +122,13 @@ const char *work_open(struct store *store, int64_t id, int n_workers, struct wor
 	return NULL;
 }
 
-/* Counts the blocks that a design has grown by. */
-static void count(struct work_run *opened)
+/* Blocks that are not stored, of the rows in hand. */
+int work_left(const struct work_run *opened)
 {
-	int block = opened->n_blocks;
-	opened->n_blocks = pound_run_blocks(opened->run);
-	for (; block < opened->n_blocks; block++)
-		opened->n_left += !opened->stored[block];
-}
-
-/* Whether the design grows; then there are more blocks, some of which may be stored. */
-static bool grow(struct work_run *opened)
-{
-	bool grows = pound_run_grow(opened->run);
-	if (grows)
-		count(opened);
-	return grows;
+	int n = 0;
+	for (int block = pound_run_blocks(opened->run) - 1; block >= 0; block--)
+		n += !opened->stored[block];
+	return n;
 }
 
 /* Takes as many rows as the design of a finished study has: up to its last stored block. */
@@ -148,10 +137,8 @@ void work_finished(struct work_run *opened)
 	int last = pound_run_blocks_most(opened->run) - 1;
 	while (last >= 0 && !opened->stored[last])
 		last--;
-	for (int look = 1; opened->n_blocks <= last; look++) {
+	for (int look = 1; pound_run_blocks(opened->run) <= last; look++)
 		pound_run_rows_take(opened->run, pound_design_rows(opened->study, look));
-		count(opened);
-	}
 }
 
 /* Frees what work_open made. */
@@ -225,8 +212,7 @@ static void drop(struct work *work, struct job *job)
 /* What is to do when a worker has left a study, or it was ended: under the lock, which finishing lets go. */
 static void settle(struct work *work, struct job *job)
 {
-	bool done = !job->of.n_left && !job->reductions_left;
-	if (job->n_inside || !(job->ended || done))
+	if (job->n_inside || (!job->ended && (job->reductions_left || work_left(&job->of))))
 		return;
 	if (!job->ended || job->error) {
 		job->ended = true;
@@ -287,11 +273,12 @@ static bool take(struct work *work, struct step *step)
 	{
 		if (!job->opened || job->ended)
 			continue;
-		while (job->block < job->of.n_blocks && job->of.stored[job->block])
+		int n_blocks = pound_run_blocks(job->of.run);
+		while (job->block < n_blocks && job->of.stored[job->block])
 			job->block++;
-		if (job->block < job->of.n_blocks)
+		if (job->block < n_blocks)
 			*step = (struct step){job, job->block++, -1};
-		else if (!job->of.n_left && job->reduction < job->n_reductions)
+		else if (job->reduction < job->n_reductions && !work_left(&job->of))
 			*step = (struct step){job, -1, job->reduction++};
 		else
 			continue;
@@ -322,8 +309,8 @@ static void perform(struct work *work, const struct step *step, int worker)
 	if (status != POUND_OK || !wanted)
 		end(job, wanted ? pound_status_error(status) : NULL);
 	else if (step->block >= 0)
-		job->of.n_left--;
-	else if (--job->reductions_left == 0 && grow(&job->of)) {
+		job->of.stored[step->block] = true;
+	else if (--job->reductions_left == 0 && pound_run_grow(job->of.run)) {
 		job->reduction = 0;
 		job->reductions_left = job->n_reductions;
 	}

@@ -12,7 +12,6 @@
 struct work_run {
 	struct pound_study *study;
 	struct pound_run *run;
-	int n_blocks, n_left; /* of the rows in hand, and those among them not stored */
 	bool *stored;         /* (pound_run_blocks_most) */
 	bool passing;         /* it could not be opened for want of memory or by a fault of the disk */
 	double cpu_s, wall_s; /* spent on the stored ones [s] */
@@ -20,7 +19,8 @@ struct work_run {
 
 /* NULL, or a sentence why it cannot be opened, and whether that may pass; to be closed in either case */
 const char *work_open(struct store *store, int64_t id, int n_workers, struct work_run *opened);
-void work_finished(struct work_run *opened); /* of a study that succeeded: takes the rows it has */
+int work_left(const struct work_run *opened); /* blocks of the rows in hand that are not stored */
+void work_finished(struct work_run *opened);  /* of a study that succeeded: takes the rows it has */
 void work_close(struct work_run *opened);
 
 struct work;
