@@ -15,6 +15,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
@@ -108,6 +109,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 		const char *name, *value;
 	} headers[] = {
 	    {"Content-Type", reply->type},
+	    {"Connection", server->stopping ? "close" : NULL},
 	    {"Allow", reply->status == 405 ? request->allow : NULL},
 	    {"Location", reply->location[0] ? reply->location : NULL},
 	    {"ETag", reply->etag[0] ? reply->etag : NULL},
@@ -433,10 +435,14 @@ int http_port(const struct server *server)
 void http_stop(struct server *server)
 {
 	double until = connection_now() + STOP_S;
+	int listening = MHD_quiesce_daemon(server->daemon);
 	server->stopping = true;
+	// who is not accepted yet sees at once that nobody is here
+	shutdown(listening, SHUT_RDWR);
 	server->connections.released = true;
 	while (server->under_way > 0 && connection_now() < until)
 		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
 	MHD_stop_daemon(server->daemon);
+	close(listening);
 	connections_stop(&server->connections);
 }

@@ -305,6 +305,17 @@ void service_change(const struct service *service, const char *sql)
 	assert_int_equal(sqlite3_close(db), SQLITE_OK);
 }
 
+void service_erase(const struct service *service)
+{
+	static const char *const ends[] = {"", "-wal", "-shm"};
+	char path[256];
+	assert_int_equal(service->pid, 0);
+	for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+		snprintf(path, sizeof path, "%s%s", service->database, ends[i]);
+		unlink(path);
+	}
+}
+
 char *service_study(int rows, int signals, int seed)
 {
 	static const char form[] =

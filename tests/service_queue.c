@@ -99,11 +99,11 @@ static void a_study_can_be_deleted_at_any_moment(void **state)
 	assert_int_equal(service_number(service, "SELECT count(*) FROM block"), 0);
 }
 
-/* Threads of a process that are nice, as workers are, and have had at least `least` seconds of a core. */
+/* Threads of a process that are nicer than its first one, as workers are, and have had at least `least` seconds of a core. */
 static int nice_threads(pid_t pid, double least)
 {
 	char path[64], line[512];
-	int n = 0;
+	int n = 0, first = getpriority(PRIO_PROCESS, (id_t)pid);
 	snprintf(path, sizeof path, "/proc/%d/task", (int)pid);
 	DIR *tasks = opendir(path);
 	assert_non_null(tasks);
@@ -119,7 +119,7 @@ static int nice_threads(pid_t pid, double least)
 		                        ") %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %*d %*d %*d %*d %ld",
 		                        &user, &nice),
 		                 2);
-		n += nice > 0 && (double)user / (double)sysconf(_SC_CLK_TCK) >= least;
+		n += nice > first && (double)user / (double)sysconf(_SC_CLK_TCK) >= least;
 	}
 	closedir(tasks);
 	return n;

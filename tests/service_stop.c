@@ -13,9 +13,9 @@
 #include <unistd.h>
 
 #include "schema/reading.h"
-#include "tests/service.h"
+#include "tests/raw.h"
 
-enum { ROWS = SERVICE_ROWS, SIGNALS = 5, CLIENTS = 8, IDS_MAX = 4096 };
+enum { ROWS = SERVICE_ROWS, SIGNALS = 5, CLIENTS = 50, WAITERS = 300, IDS_MAX = 65536 };
 
 static double now_s(void)
 {
@@ -115,16 +115,59 @@ static void *client(void *unused)
 	return unused;
 }
 
+/* Clients that wait for a change of a study that is finished, so that only the end of the server ends their waiting. */
+static void waiters_start(const struct service *service, const char *id, int sockets[WAITERS])
+{
+	char bytes[256];
+	struct answer now = service_get(service, "/v1/studies/%s", id);
+	size_t n = (size_t)snprintf(bytes, sizeof bytes,
+	                            "GET /v1/studies/%s HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: %s\r\n"
+	                            "Prefer: wait=30\r\n\r\n",
+	                            id, now.etag);
+	for (int i = 0; i < WAITERS; i++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], bytes, n);
+	}
+	answer_free(&now);
+}
+
+/* Whether a head and as many bytes as it says are there. */
+static bool is_whole(const char *text)
+{
+	const char *length = strstr(text, "Content-Length: "), *body = strstr(text, "\r\n\r\n");
+	return length && body && strlen(body + 4) == strtoul(length + strlen("Content-Length: "), NULL, 10);
+}
+
+/* What came of them: answered 503 in full, or closed without a byte. */
+static void waiters_end(int sockets[WAITERS], int *told, int *closed)
+{
+	for (int i = 0; i < WAITERS; i++) {
+		static struct raw_answer answer;
+		raw_receive(sockets[i], 5, &answer);
+		close(sockets[i]);
+		assert_true(answer.closed);
+		if (answer.status != 0 && (answer.status != 503 || answer.n != 1 || !is_whole(answer.text)))
+			fail_msg("a waiting client was told\n%s", answer.text);
+		assert_true(answer.status != 0 || !answer.text[0]);
+		*told += answer.status != 0;
+		*closed += answer.status == 0;
+	}
+}
+
 static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **state)
 {
 	struct service *service = *state;
-	int n = check_count(5, 50);
+	int n = check_count(5, 50), told = 0, closed = 0;
 	double longest = 0;
+	char *study = service_study(2, 1, 0), id[17];
 	curl_global_init(CURL_GLOBAL_DEFAULT);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
 	for (int k = 0; k < n; k++) {
 		pthread_t clients[CLIENTS];
-		int before = load.n;
+		int before = load.n, sockets[WAITERS];
 		load.service = service;
+		waiters_start(service, id, sockets);
 		for (int i = 0; i < CLIENTS; i++)
 			assert_int_equal(pthread_create(&clients[i], NULL, client, NULL), 0);
 		while (load.n < before + CLIENTS)
@@ -133,15 +176,19 @@ static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **stat
 		longest = s > longest ? s : longest;
 		for (int i = 0; i < CLIENTS; i++)
 			pthread_join(clients[i], NULL);
+		waiters_end(sockets, &told, &closed);
 		service_start(service, 2);
 	}
 	for (int i = 0; i < load.n; i++)
 		assert_true(service_wait(service, load.ids[i], "succeeded", 0));
-	check_report(
-	    "%d stops under %d clients: studies accepted %d, lost 0; then the port was closed for %d requests", n,
-	    CLIENTS, load.n, load.unanswered);
+	check_report("%d stops under %d clients who submit and %d who wait: studies accepted %d, lost 0; the "
+	             "port was closed for "
+	             "%d requests; who waited was told 503 %d times, and closed without a byte %d times",
+	             n, CLIENTS, WAITERS, load.n, load.unanswered, told, closed);
 	judge("under load, the longest of them", longest, 30);
 	assert_true(load.n >= n * CLIENTS);
+	assert_true(told > n * WAITERS / 2);
+	free(study);
 }
 
 static void twenty_more_servers_on_one_database_are_refused(void **state)
