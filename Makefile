@@ -142,7 +142,7 @@ fuzz: $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
 	@for target in $^; do mkdir -p $$target.corpus && \
 	  $$target -max_total_time=$(FUZZ) -max_len=8192 -artifact_prefix=$$target- $$target.corpus \
 	    tests/corpus/$${target##*/fuzz_} schema/examples || exit 1; done
-build/fuzz/%: tests/%.c $(wildcard schema/*.c) server/head.c $(B)/schema/examples.c $(B)/libpound.a
+build/fuzz/%: tests/%.c $(wildcard schema/*.c) $(B)/schema/examples.c $(B)/libpound.a
 	@mkdir -p $(@D)
 	clang -std=c17 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all $(CPPFLAGS) -o $@ $^ \
 	  $(LIBS.schema) $(LIBS.engine)

@@ -152,27 +152,10 @@ static enum MHD_Result take_header(void *of, enum MHD_ValueKind kind, const char
 static enum MHD_Result take_argument(void *of, enum MHD_ValueKind kind, const char *name, const char *value)
 {
 	struct request *request = of;
-	const struct api_argument *argument = api_argument(request->operation, name, "query");
-	char expected[128];
-	if (!*name) // an ampersand too many
-		return MHD_YES;
-	if (!argument)
-		head_refuse(&request->head, API_BAD_REQUEST, false, "%.60s is not an argument of %s", name,
-		            api_operations[request->operation].path);
-	else if (value != MHD_lookup_connection_value(request->connection, kind, name)) // which finds the first
-		head_refuse(&request->head, API_BAD_REQUEST, false, "%s is given twice", name);
-	else if (!api_takes(argument, value ? value : "")) {
-		api_expected(argument, expected, sizeof expected);
-		head_refuse(&request->head, API_BAD_REQUEST, false, "%s must be %s", name, expected);
-	}
+	if (value != MHD_lookup_connection_value(request->connection, kind, name)) // which finds the first
+		head_refuse(&request->head, API_BAD_REQUEST, false, "%.60s is given twice", name);
+	head_argument(&request->head, request->operation, name, value ? value : "");
 	return MHD_YES;
-}
-
-static bool is_json(const char *type)
-{
-	static const char json[] = "application/json";
-	size_t n = sizeof json - 1;
-	return type && !strncasecmp(type, json, n) && (type[n] == '\0' || type[n] == ';' || type[n] == ' ');
 }
 
 /* Whether there is something to do for a request, by its head: else that has a fault. */
@@ -193,7 +176,7 @@ static void judge(struct request *request, bool needs_host)
 		head_refuse(head, API_NOT_FOUND, false, "there is no such path");
 	if (!operation)
 		head_refuse(head, API_NOT_ALLOWED, false, "this path does not take that method");
-	else if (operation->takes_study && !is_json(http_header(request, "Content-Type")))
+	else if (operation->takes_study && !head->json)
 		head_refuse(head, API_NOT_JSON, false, "Content-Type must be application/json");
 	if (head->fault == API_NO_FAULT)
 		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, request);

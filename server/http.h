@@ -9,7 +9,7 @@
 
 #include "schema/api.h"
 #include "server/connection.h"
-#include "server/head.h"
+#include "schema/head.h"
 #include "server/metrics.h"
 #include "server/options.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/head.h"
+#include "schema/head.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 
@@ -46,7 +46,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
 	}
 	head_end(&head, true, "pound.example,other.example");
 	bool framed = head.lengths + head.codings <= 1 && (!head.codings || head.chunked) && head.hosts == 1;
-	if (head.fault == API_NO_FAULT ? !framed || head.too_large || head.encoded || head.close : !head.detail)
+	if (head.fault == API_NO_FAULT ? !framed || head.too_large || head.encoded || head.close : !head.detail[0])
 		abort();
 	return 0;
 }

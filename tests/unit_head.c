@@ -1,5 +1,5 @@
 /* The head of a request: what is refused before anything is done for it. */
-#include "server/head.h"
+#include "schema/head.h"
 
 #include <string.h>
 
@@ -64,6 +64,9 @@ static void what_leaves_a_request_s_end_in_doubt_is_refused(void **state)
 	    {{"Host: localhost", "X: a\x01z"}, API_BAD_REQUEST, true},
 	    {{"Host: localhost", "X: tab\tis a blank, \xc3\xa4 is text"}, API_NO_FAULT, false},
 	    {{"Host: localhost", "Host: localhost"}, API_BAD_REQUEST, true},
+	    {{"Host: localhost", "Content-Type: text/plain", "Content-Type: application/json"},
+	     API_BAD_REQUEST,
+	     true},
 	    {{"X: no host"}, API_BAD_REQUEST, true},
 	    {{"Host: evil.example"}, API_MISDIRECTED, false},
 	    {{"Host: localhost", "Content-Length: 1048576"}, API_NO_FAULT, false},

@@ -12,10 +12,11 @@
 enum { HEAD_BODY_MAX = 1 << 20 }; /* [bytes] */
 
 struct head {
-	int hosts, lengths, codings; /* headers of that name */
-	bool chunked;                /* the coding is "chunked" and no other */
-	bool encoded;                /* the body is compressed or the like */
-	bool too_large;              /* the length declared is over HEAD_BODY_MAX */
+	int hosts, lengths, codings, types; /* headers of that name */
+	bool chunked;                       /* the coding is "chunked" and no other */
+	bool encoded;                       /* the body is compressed or the like */
+	bool json;                          /* the body is declared as JSON */
+	bool too_large;                     /* the length declared is over HEAD_BODY_MAX */
 	bool has_body;
 	char host[256];
 	char etags[512];      /* all If-None-Match */
@@ -29,6 +30,7 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 /* the last; `names` are hosts, between commas, besides localhost and addresses (NULL: none) */
 void head_end(struct head *head, bool needs_host, const char *names);
 
+void head_argument(struct head *head, int operation, const char *name, const char *value);
 /* a fault that is found later */
 void head_refuse(struct head *head, enum api_fault fault, bool close, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

@@ -2,7 +2,7 @@
  *
  * libmicrohttpd takes what RFC 9112 forbids (two lengths, a length and a coding, NUL in a name), and what two servers
  * read differently lets a request hide in another one's body; so the rules are applied here, to what it read. */
-#include "server/head.h"
+#include "schema/head.h"
 
 #include <arpa/inet.h>
 #include <ctype.h>
@@ -75,6 +75,14 @@ static bool is(const char *name, size_t n, const char *known)
 	return n == strlen(known) && !strncasecmp(name, known, n);
 }
 
+static bool is_json(const char *type, size_t n)
+{
+	size_t end = 0;
+	while (end < n && type[end] != ';' && type[end] != ' ')
+		end++;
+	return is(type, end, "application/json");
+}
+
 /* Takes the next header.
  *
  * Given    name    (n_name) bytes
@@ -102,10 +110,32 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 		head->chunked = is(value, n_value, "chunked");
 	} else if (is(name, n_name, "Content-Encoding"))
 		head->encoded |= !is(value, n_value, "identity");
-	else if (is(name, n_name, "If-None-Match")) {
+	else if (is(name, n_name, "Content-Type")) {
+		head->types++;
+		head->json = is_json(value, n_value);
+	} else if (is(name, n_name, "If-None-Match")) {
 		// lines of one name are a list, as if a comma were between them
 		size_t n = strlen(head->etags);
 		snprintf(head->etags + n, sizeof head->etags - n, "%s%.*s", n ? "," : "", (int)n_value, value);
+	}
+}
+
+/* Takes an argument of the target.
+ *
+ * Given    operation   row of api_operations
+ *          name        "" when there is an ampersand too many
+ * Test     service_routes: list_arguments_that_make_no_sense_are_400
+ */
+void head_argument(struct head *head, int operation, const char *name, const char *value)
+{
+	const struct api_argument *argument = api_argument(operation, name, "query");
+	char expected[128];
+	if (*name && !argument)
+		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not an argument of %s", name,
+		            api_operations[operation].path);
+	else if (*name && !api_takes(argument, value)) {
+		api_expected(argument, expected, sizeof expected);
+		head_refuse(head, API_BAD_REQUEST, false, "%s must be %s", name, expected);
 	}
 }
 
@@ -125,6 +155,8 @@ void head_end(struct head *head, bool needs_host, const char *names)
 		            "a request has a Content-Length or a Transfer-Encoding, not both");
 	if (head->codings > 1 || (head->codings && !head->chunked))
 		head_refuse(head, API_BAD_REQUEST, true, "the only Transfer-Encoding is chunked");
+	if (head->types > 1)
+		head_refuse(head, API_BAD_REQUEST, true, "a request has one Content-Type");
 	if (head->hosts > 1 || (needs_host && !head->hosts))
 		head_refuse(head, API_BAD_REQUEST, true, "a request has one Host");
 	if (head->hosts && !head_has_host(head->host, names))
