@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "schema/api.h"
-#include "server/connection.h"
 #include "schema/head.h"
+#include "server/connection.h"
 #include "server/metrics.h"
 #include "server/options.h"
 

@@ -46,7 +46,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
 	}
 	head_end(&head, true, "pound.example,other.example");
 	bool framed = head.lengths + head.codings <= 1 && (!head.codings || head.chunked) && head.hosts == 1;
-	if (head.fault == API_NO_FAULT ? !framed || head.too_large || head.encoded || head.close : !head.detail[0])
+	if (head.fault == API_NO_FAULT ? !framed || head.too_large || head.encoded || head.close
+	                               : !head.detail[0])
 		abort();
 	return 0;
 }
