@@ -24,10 +24,11 @@ struct faults {
 	atomic_int write_fails, sync_fails;
 	// what happened
 	atomic_long disk_calls, disk_failed, memory_calls, memory_failed;
-	atomic_long memory_live; /* allocations not freed */
-	atomic_bool records;     /* writes go to FOLDER/record as well */
-	atomic_bool normal;      /* connections are changed to synchronous=NORMAL after the server has looked */
-	atomic_long clock_s;     /* the wall clock is so far off [s] */
+	atomic_long memory_live;  /* allocations not freed */
+	atomic_long files_opened; /* any */
+	atomic_bool records;      /* writes go to FOLDER/record as well */
+	atomic_bool normal;       /* connections are changed to synchronous=NORMAL after the server has looked */
+	atomic_long clock_s;      /* the wall clock is so far off [s] */
 };
 
 struct faults *faults_new(const char *folder);

@@ -107,6 +107,8 @@ int open(const char *path, int flags, ...)
 	int kind = kind_of(path);
 	bool is_new = kind && (flags & O_CREAT) && access(path, F_OK) != 0;
 	int file = (int)syscall(SYS_openat, AT_FDCWD, path, flags, mode);
+	if (faults)
+		atomic_fetch_add(&faults->files_opened, 1);
 	if (file >= 0 && file < FILES_MAX)
 		kinds[file] = (signed char)kind;
 	if (is_new && file >= 0)

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "schema/reading.h"
+#include "tests/faults.h"
 #include "tests/raw.h"
 
 #define HOST   "Host: localhost\r\n"
@@ -110,7 +111,7 @@ static void a_request_of_doubtful_shape_has_one_answer_and_hides_no_other(void *
 			         answer.closed ? ", closed" : "", answer.reset ? ", reset" : "", answer.text);
 		closed += answer.closed;
 	}
-	printf("%d requests, %d connections closed by the server, 0 hidden ones answered\n", n, closed);
+	check_report("%d requests, %d connections closed by the server, 0 hidden ones answered", n, closed);
 }
 
 /* Escapes, double escapes and other spellings of ../ before and between names of files. */
@@ -124,8 +125,13 @@ static void no_path_leads_to_a_file(void **state)
 	                                    "proc/self/cmdline", "studies.db", "studies.db-wal",
 	                                    "root/.ssh/id_rsa"};
 	static const char *const starts[] = {"/", "/v1/studies/"};
-	struct service *service = *state;
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
 	int n = 0;
+	(void)state;
+	service_start(service, 1);
+	long opened = faults->files_opened;
+	assert_true(opened > 0);
 	for (size_t u = 0; u < sizeof ups / sizeof ups[0]; u++)
 		for (size_t f = 0; f < sizeof files / sizeof files[0]; f++)
 			for (size_t s = 0; s < 2; s++, n++) {
@@ -137,8 +143,12 @@ static void no_path_leads_to_a_file(void **state)
 				if (answer.status != 404 && answer.status != 400)
 					fail_msg("%s: %d %s", bytes, answer.status, answer.text);
 			}
-	printf("%d paths, all 404 or 400\n", n);
+	check_report("%d paths, all 404 or 400; files opened meanwhile: %ld", n, faults->files_opened - opened);
 	assert_true(n >= 200);
+	assert_int_equal(faults->files_opened, opened);
+	service_stop(service);
+	faults_free(faults);
+	service_free(service);
 }
 
 static void a_body_that_is_too_large_is_refused_before_it_is_read_and_without_a_reset(void **state)
@@ -236,7 +246,7 @@ static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
 		closed += answer.closed;
 		close(sockets[i]);
 	}
-	printf("%d slow clients, %d closed; %d of 20 others answered\n", N, closed, answered);
+	check_report("%d slow clients, %d closed; %d of 20 others answered", N, closed, answered);
 	assert_int_equal(closed, N);
 	assert_int_equal(answered, 20);
 	service_stop(service);
@@ -274,7 +284,7 @@ static void more_connections_than_the_limit_are_told_503(void **state)
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other),
-           SERVED(no_path_leads_to_a_file),
+           cmocka_unit_test(no_path_leads_to_a_file),
            SERVED(a_body_that_is_too_large_is_refused_before_it_is_read_and_without_a_reset),
            SERVED(what_is_answered_cannot_be_framed_guessed_or_kept),
            SERVED(an_answer_and_its_line_of_the_log_have_one_number),

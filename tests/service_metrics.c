@@ -135,7 +135,7 @@ static void the_text_keeps_the_rules_of_prometheus(void **state)
 	int n = families_of(answer.body, families, 64), samples = 0;
 	for (int i = 0; i < n; i++)
 		samples += families[i].samples;
-	printf("%d families, %d samples\n", n, samples);
+	check_report("%d families, %d samples", n, samples);
 	assert_true(n >= 7);
 	answer_free(&answer);
 }

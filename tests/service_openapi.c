@@ -257,7 +257,8 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 				            key);
 		}
 	}
-	printf("%d requests: %d of %d documented answers seen, none undocumented\n", world.n, seen, documented);
+	check_report("%d requests: %d of %d documented answers seen, none undocumented", world.n, seen,
+	             documented);
 	assert_int_equal(seen, documented);
 	reading_close(world.api);
 	service_free(world.service);

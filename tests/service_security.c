@@ -79,7 +79,7 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 	while (fgets(line, sizeof line, log))
 		assert_null(strstr(line, "battery"));
 	fclose(log);
-	printf("%d requests with wrong tokens: all 401\n", refused);
+	check_report("%d requests with wrong tokens: all 401", refused);
 	unlink(path);
 	service_free(service);
 }

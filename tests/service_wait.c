@@ -174,7 +174,7 @@ static void who_waits_for_a_change_is_told_of_it(void **state)
 		latest = waiters[i].told - changed > latest ? waiters[i].told - changed : latest;
 		answer_free(&waiters[i].answer);
 	}
-	printf("%d told of a change, the last after %.0f ms\n", WAITERS, 1e3 * latest);
+	check_report("%d told of a change, the last after %.0f ms", WAITERS, 1e3 * latest);
 }
 
 static void a_study_can_be_followed_to_its_end_by_waiting_alone(void **state)

@@ -54,7 +54,7 @@ static void the_corpora_of_the_fuzzers_pass_their_targets(void **state)
 	(void)state;
 	for (size_t i = 0; i < sizeof corpora / sizeof corpora[0]; i++) {
 		int n = replayed(corpora[i].folder, corpora[i].target);
-		printf("%s: %d\n", corpora[i].folder, n);
+		check_report("%s: %d", corpora[i].folder, n);
 		assert_true(n >= 10);
 	}
 }
