@@ -70,7 +70,7 @@ $(B)/%.o: %.c
 $(B)/engine/march_%.o: engine/march.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(MARCH.$(MODE)) $(LANES.$*) -DPOUND_MARCH=pound_march_$* -c -o $@ $<
-$(B)/engine/simulation.o: CFLAGS += $(MAPS.$(MODE))
+$(B)/engine/simulation.o $(B)/engine/press.o: CFLAGS += $(MAPS.$(MODE))
 $(B)/engine/spectrum_%.o: engine/spectrum.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<

@@ -108,7 +108,7 @@ LANE_INLINE vm flight(struct lanes *g, vd ground, vd next, vm flying, bool edged
 /* the base body and the overlap in lanes, and a map of either */
 struct press {
 	vd x[POUND_PRESS_INPUTS];
-	vd map[PRESS_ROWS][POUND_PRESS_INPUTS];
+	vd map[REST_ROWS][POUND_PRESS_INPUTS];
 	struct limits base, other;
 };
 
@@ -117,6 +117,30 @@ LANE_INLINE vd press_row(const vd row[POUND_PRESS_INPUTS], const vd x[POUND_PRES
 {
 	vd slow = vfma(row[6], x[6], row[7] * x[7]), force = vfma(row[4], x[4], row[5] * x[5]);
 	return vfma(row[0], x[0], vfma(row[1], x[1], slow)) + vfma(row[2], x[2], vfma(row[3], x[3], force));
+}
+
+/* The forcing of base and overlap, and its growth over some cells. */
+LANE_INLINE void press_force(vd x[POUND_PRESS_INPUTS], const struct lanes *g, vd rise)
+{
+	x[4] = vfma(g->base_drive, g->ground, g->base_force);
+	x[5] = vfma(g->gap_drive, g->ground, g->gap_force);
+	x[6] = g->base_drive * rise;
+	x[7] = g->gap_drive * rise;
+}
+
+/* Moves the lanes that were taken over some cells. */
+LANE_INLINE void press_move(struct lanes *g, struct press *s, vm pressed, const vd end[4], vd cells, vd rise)
+{
+	vd impulse = press_row(s->map[PRESS_IMPULSE], s->x);
+	g->impulse = vselect(pressed, g->impulse + impulse, g->impulse);
+	g->contact_time = vselect(pressed, vfma(g->cell, cells, g->contact_time), g->contact_time);
+	g->ground = vselect(pressed, g->ground + rise, g->ground);
+	g->cells = vselect(pressed, g->cells - cells, g->cells);
+	for (int j = 0; j < 4; j++)
+		s->x[j] = vselect(pressed, end[j], s->x[j]);
+	vd other = s->x[0] - g->side * (g->gap + s->x[2]);
+	s->base.top = vmax(s->base.top, vabs(s->x[0]));
+	s->other.top = vmax(s->other.top, vabs(other));
 }
 
 /* One cell of pressed contact.
@@ -129,14 +153,11 @@ LANE_INLINE vd press_row(const vd row[POUND_PRESS_INPUTS], const vd x[POUND_PRES
 LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, bool right, bool forced)
 {
 	vd *x = s->x, zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), bound[POUND_PRESS_INPUTS];
-	x[4] = vfma(g->base_drive, g->ground, g->base_force);
-	x[5] = vfma(g->gap_drive, g->ground, g->gap_force);
-	x[6] = g->base_drive * g->rise;
-	x[7] = g->gap_drive * g->rise;
+	press_force(x, g, g->rise);
 	for (int j = 0; j < POUND_PRESS_INPUTS; j++)
 		bound[j] = vabs(x[j]);
-	struct flight b = {.u = press_row(s->map[PRESS_U], x), .v = press_row(s->map[PRESS_V], x)};
-	struct flight p = {.u = press_row(s->map[PRESS_P], x), .v = press_row(s->map[PRESS_Q], x)};
+	struct flight b = {.u = x[0] + press_row(s->map[PRESS_U], x), .v = x[1] + press_row(s->map[PRESS_V], x)};
+	struct flight p = {.u = x[2] + press_row(s->map[PRESS_P], x), .v = x[3] + press_row(s->map[PRESS_Q], x)};
 	b.b1 = vfma(third, x[1], x[0]);
 	b.b2 = vfma(-third, b.v, b.u);
 	p.b1 = vfma(third, x[3], x[2]);
@@ -169,18 +190,81 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 		struct limits limits = {.top = vselect(left, s->base.top, s->other.top)};
 		risk |= flight_risk(vselect(left, x[0], u), v, &l, third, &limits, false);
 	}
-	pressed &= ~risk;
-	vd impulse = press_row(s->map[PRESS_IMPULSE], x);
-	g->impulse = vselect(pressed, g->impulse + impulse, g->impulse);
-	g->contact_time = vselect(pressed, g->contact_time + g->cell, g->contact_time);
-	g->ground = vselect(pressed, g->ground + g->rise, g->ground);
-	g->cells = vselect(pressed, g->cells - vsplat(1), g->cells);
-	s->base.top = vselect(pressed, vmax(s->base.top, vabs(b.u)), s->base.top);
-	s->other.top = vselect(pressed, vmax(s->other.top, vabs(o.u)), s->other.top);
-	x[0] = vselect(pressed, b.u, x[0]);
-	x[1] = vselect(pressed, b.v, x[1]);
-	x[2] = vselect(pressed, p.u, x[2]);
-	x[3] = vselect(pressed, p.v, x[3]);
+	press_move(g, s, pressed & ~risk, (vd[]){b.u, b.v, p.u, p.v}, vsplat(1), g->rise);
+	return risk;
+}
+
+/* Lanes in which something may happen to a body over many cells.
+ *
+ * Given    u, end     at both ends
+ *          low, high  its motion lies between, by the cubic of the slow part of it
+ *          way        sign of its velocity at the start
+ *          steady     lanes whose velocity keeps that sign: nothing lies beyond the ends
+ */
+LANE_INLINE vm rest_risk(vd u, vd end, vd low, vd high, vd way, vm steady, const struct limits *x, bool edged)
+{
+	vd most = vmax(vmax(vabs(u), vabs(end)), x->top);
+	vm risk = vless(most, vfma(vsplat(-16 * DBL_EPSILON), most, vmax(high, -low)));
+	if (edged) {
+		risk |= vless(x->high, high) | vless(low, x->low);
+		risk |= ~vequal(x->direction, vsplat(0));
+	}
+	risk &= ~steady;
+	if (!edged)
+		return risk;
+	risk |= vless(x->high, end) | vless(end, x->low);
+	return risk | vless(x->direction * way, vsplat(0));
+}
+
+/* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in press.c.
+ *
+ * Given    resting  lanes to take over them;  edged: a lane has a law of more than one piece
+ * Returns  value    lanes in which something may happen meanwhile; these stay where they were
+ */
+LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
+{
+	const vd *split = s->map[PRESS_SPLIT];
+	vd *x = s->x, zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4];
+	vd cells = split[SPLIT_CELLS], rise = g->rise * cells, third = g->cell * cells * vsplat(1.0 / 3);
+	press_force(x, g, rise);
+	for (int j = 0; j < 4; j++)
+		end[j] = x[j] + press_row(s->map[PRESS_U + j], x);
+	vd w = vfma(-split[SPLIT_BASE], x[2], x[0]), rate = vfma(-split[SPLIT_BASE], x[3], x[1]);
+	vd w1 = vfma(-split[SPLIT_BASE], end[2], end[0]), rate1 = vfma(-split[SPLIT_BASE], end[3], end[1]);
+	vd pull = vfma(split[SPLIT_DAMPING], rate, vfma(split[SPLIT_STIFFNESS], w, x[5]));
+	vd pull1 = vfma(split[SPLIT_DAMPING], rate1, vfma(split[SPLIT_STIFFNESS], w1, x[5] + x[7]));
+	bound[0] = vabs(w);
+	bound[1] = vabs(rate);
+	bound[2] = vabs(pull) + vabs(pull1);
+	bound[3] = zero;
+	for (int j = 4; j < POUND_PRESS_INPUTS; j++)
+		bound[j] = vabs(x[j]);
+	vd bend = press_row(s->map[REST_BEND], bound), error = press_row(s->map[REST_ERROR], bound);
+	vd omega = split[SPLIT_OMEGA];
+	vd a = vabs(omega * x[3]), c = vabs(vfma(omega * omega, x[2], -pull));
+	// the greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale
+	vd drift = vfma(vsplat(0.5), bend, vabs(pull1 - pull));
+	vd swing = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c)) + drift;
+	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, vsplat(0.125) * bend), vmin(pull, pull1));
+	// the common motion's cubic, and whether its velocity keeps its sign
+	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
+	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + error, low = vmin(vmin(b1, b2), vmin(w, w1)) - error;
+	vd way = vselect(vless(rate, zero), -one, one);
+	vd along = vmin(third * vmin(way * rate, way * rate1), way * (b2 - b1));
+	along = along - vsplat(1.0265) * error;
+	vd still = split[SPLIT_YIELD] * pull, ripple = split[SPLIT_YIELD] * (swing + drift);
+	vd hurry = third * swing / omega, off = g->side * g->gap;
+	const struct limits *limits[2] = {&s->base, &s->other};
+	for (int i = 0; i < 2; i++) {
+		vd share = split[SPLIT_BASE + i], size = vabs(share);
+		vd u = i ? x[0] - vfma(g->side, x[2], off) : x[0];
+		vd u1 = i ? end[0] - vfma(g->side, end[2], off) : end[0];
+		vd mid = i ? vfma(share, still, -off) : share * still;
+		vm steady = vless(size * hurry, along);
+		risk |= rest_risk(u, u1, low + mid - size * ripple, high + mid + size * ripple, way, steady,
+		                  limits[i], edged);
+	}
+	press_move(g, s, resting & ~risk, end, cells, rise);
 	return risk;
 }
 

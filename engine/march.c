@@ -34,6 +34,7 @@ struct work {
 	int n, started;        /* tasks, and those gone through in this pass */
 	int passed;            /* 0: laws of one piece are started, 1: the others */
 	double beyond[W][ROW]; /* ground motion up to its end, and whatever was there behind */
+	struct pound_ladder ladders[POOL];
 };
 
 /* simulations side by side; lanes from n on hold the one at rest */
@@ -196,7 +197,14 @@ static bool press_interval(struct lanes *g, const struct batch *b, int l)
 	return true;
 }
 
-LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
+/* Lanes that keep their rung: it has room before the next sample, where a longer one may go. */
+LANE_INLINE unsigned rest_stays(const struct lanes *g, const struct press *s, unsigned sampled)
+{
+	vd cells = s->map[PRESS_SPLIT][SPLIT_CELLS];
+	return vbits(~vless(g->cells, cells)) & ~(sampled & vbits(vless(cells, g->cells)));
+}
+
+LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
 {
 	struct lanes g;
 	struct press s;
@@ -212,22 +220,30 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 	const double *map[W];
 	for (int l = 0; l < W; l++)
 		map[l] = b->sim[l]->pressed->row[0];
-	for (int r = 0; r < PRESS_ROWS; r++)
-		if (r != PRESS_DROP || forced)
+	for (int r = 0; r < (stage == STAGE_REST ? REST_ROWS : PRESS_ROWS); r++)
+		if (r != PRESS_DROP || forced || stage == STAGE_REST)
 			rows_load(s.map[r], map, r * POUND_PRESS_INPUTS);
 	press_load(&s, &g, edged);
-	unsigned pressed = (1u << b->n) - 1, ended = 0;
+	unsigned pressed = (1u << b->n) - 1, ended = 0, refused = 0, gone = 0;
 	int few = b->n / 2;
 	do {
-		unsigned risk = vbits(press(&g, &s, vmask(pressed), edged, right, forced)) & pressed;
+		vm going = vmask(pressed);
+		unsigned risk = vbits(stage == STAGE_REST ? rest(&g, &s, going, edged)
+		                                          : press(&g, &s, going, edged, right, forced)) &
+		                pressed;
 		pressed &= ~risk;
+		refused |= risk;
 		unsigned sampled = vbits(vequal(g.cells, vsplat(0))) & pressed;
 		for (unsigned bits = sampled; bits; bits &= bits - 1) {
 			int l = __builtin_ctz(bits);
 			if (!press_interval(&g, b, l))
 				ended |= 1u << l;
 		}
-		pressed &= ~ended;
+		g.rounds = g.rounds - vselect(vmask(pressed), vsplat(1), vsplat(0));
+		gone |= vbits(vequal(g.rounds, vsplat(0))) & pressed;
+		pressed &= ~ended & ~gone;
+		if (stage == STAGE_REST)
+			pressed &= rest_stays(&g, &s, sampled);
 	} while (__builtin_popcount(pressed) > few);
 	press_store(&s, &g);
 	double slope[W];
@@ -236,11 +252,13 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, bool edged)
 	g.slope = lanes_load(slope);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
+	lanes_empty(&g, b, ROW_PRESS);
 	for (int l = 0; l < b->n; l++)
 		send(work, b->sim[l],
-		     ended >> l & 1     ? STAGE_END
-		     : pressed >> l & 1 ? STAGE_PRESS
-		                        : pound_simulation_step(b->sim[l]));
+		     ended >> l & 1 ? STAGE_END
+		     : pressed >> l & 1
+		         ? stage
+		         : pound_simulation_pressed(b->sim[l], stage, refused >> l & 1, gone >> l & 1));
 }
 
 /* ---- one step up to an event ---- */
@@ -324,11 +342,19 @@ static void fly_apart_edged(struct work *work, const struct batch *b)
 }
 static void press_plain(struct work *work, const struct batch *b)
 {
-	press_on(work, b, false);
+	press_on(work, b, STAGE_PRESS, false);
 }
 static void press_edged(struct work *work, const struct batch *b)
 {
-	press_on(work, b, true);
+	press_on(work, b, STAGE_PRESS, true);
+}
+static void rest_plain(struct work *work, const struct batch *b)
+{
+	press_on(work, b, STAGE_REST, false);
+}
+static void rest_edged(struct work *work, const struct batch *b)
+{
+	press_on(work, b, STAGE_REST, true);
 }
 static void step_alone(struct work *work, const struct batch *b)
 {
@@ -345,8 +371,9 @@ static void step_touch(struct work *work, const struct batch *b)
 
 static void (*const steps[STAGES][2])(struct work *, const struct batch *) = {
     [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged}, [STAGE_FLY_APART] = {fly_apart, fly_apart_edged},
-    [STAGE_PRESS] = {press_plain, press_edged},       [STAGE_ALONE] = {step_alone, step_alone},
-    [STAGE_APART] = {step_apart, step_apart},         [STAGE_TOUCH] = {step_touch, step_touch},
+    [STAGE_PRESS] = {press_plain, press_edged},       [STAGE_REST] = {rest_plain, rest_edged},
+    [STAGE_ALONE] = {step_alone, step_alone},         [STAGE_APART] = {step_apart, step_apart},
+    [STAGE_TOUCH] = {step_touch, step_touch},
 };
 
 /* Starts tasks as long as there are any and the pool has room: first those of laws of one piece, which need less when
@@ -388,7 +415,7 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	static const struct pound_march_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
 	struct work *work = scratch;
 	struct pound_march_result result;
-	memset(work, 0, sizeof *work);
+	memset(work, 0, offsetof(struct work, ladders));
 	work->tasks = tasks;
 	work->results = results;
 	work->n = n;
@@ -396,8 +423,10 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	work->rest.pressed = &loose;
 	work->rest.x.dt = 1;
 	work->rest.x.gap = 0;
-	for (int j = 0; j < POOL; j++)
+	for (int j = 0; j < POOL; j++) {
+		work->pool[j].ladder = &work->ladders[j];
 		push(&work->idle, j);
+	}
 	for (;;) {
 		tasks_start(work);
 		struct queue *fullest = &work->queues[0];

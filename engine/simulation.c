@@ -67,65 +67,6 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 	map->ef = most(ea, ej / h) + rounding * h * h;
 }
 
-/* Exact map of the base body and the overlap over one cell h of pressed contact, by its power series.
- *
- * Given    sim    its bodies on their pieces, contact
- * Returns  map    rows of POUND_PRESS_INPUTS coefficients
- *
- *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
- *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
- *
- * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288
- * of the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times that of
- * their own columns; the lowest rate of overlap lies at most 1/8 of its largest second derivative below its ends.
- */
-static void press_fill(struct pound_press_map *map, const struct simulation *sim)
-{
-	enum { N = POUND_PRESS_INPUTS };
-	const struct pound_rows *x = &sim->x;
-	const int b = sim->base, o = 1 - b;
-	const double h = x->cell, h2 = h * h, push = b ? -x->mass_ratio : 1;
-	const double cb = x->body[b].damping * h, kb = x->body[b].stiffness * h2;
-	const double co = x->body[o].damping * h, ko = x->body[o].stiffness * h2;
-	const double dc = (x->body[1].damping - x->body[0].damping) * h;
-	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
-	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
-	double u[N] = {1}, w[N] = {0, h}, p[N] = {0, 0, 1}, z[N] = {0, 0, 0, h}; // w, z: rates times h
-	memset(map->row, 0, sizeof map->row);
-	double(*row)[N] = map->row;
-	for (int n = 0; n < MAP_ORDERS; n++) {
-		double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
-		double drop = 0.125 * x->release / h * n * (n - 1.0);
-		double force_b[N] = {[4] = n == 0 ? h2 : 0, [6] = n == 1 ? h2 : 0};
-		double force_p[N] = {[5] = n == 0 ? h2 : 0, [7] = n == 1 ? h2 : 0};
-		for (int j = 0; j < N; j++) {
-			row[PRESS_U][j] += u[j];
-			row[PRESS_V][j] += w[j];
-			row[PRESS_P][j] += p[j];
-			row[PRESS_Q][j] += z[j];
-			row[PRESS_IMPULSE][j] += p[j] * share;
-			row[PRESS_ERROR][j] += bend * most(fabs(u[j]), fabs(p[j]));
-			row[PRESS_DROP][j] += drop * fabs(z[j]);
-			double force = K * p[j] + C * z[j];
-			double w1 = -(cb * w[j] + kb * u[j]) - force_b[j] - push * force;
-			double z1 = dc * w[j] + dk * u[j] - (co * z[j] + ko * p[j]) + force_p[j] - x->both * force;
-			u[j] = w[j] * share;
-			p[j] = z[j] * share;
-			w[j] = w1 * share;
-			z[j] = z1 * share;
-		}
-	}
-	for (int j = 0; j < N; j++) {
-		double begins = j == 2;
-		row[PRESS_IMPULSE][j] = x->contact_stiffness * h * row[PRESS_IMPULSE][j] +
-		                        x->contact_damping * (row[PRESS_P][j] - begins);
-		row[PRESS_V][j] /= h;
-		row[PRESS_Q][j] /= h;
-	}
-	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		map->stiffness[i] = x->body[i].stiffness;
-}
-
 /* Puts a body's current piece, and the map that belongs to it, into the rows. */
 static void piece_enter(struct simulation *sim, int i)
 {
@@ -149,27 +90,6 @@ static void piece_enter(struct simulation *sim, int i)
 	}
 	x->map[i].uu = map->uu, x->map[i].uv = map->uv, x->map[i].ua = map->ua, x->map[i].ud = map->ud;
 	x->map[i].va = map->va, x->map[i].eu = map->eu, x->map[i].ev = map->ev, x->map[i].ef = map->ef;
-}
-
-/* Gets everything ready for whole cells of pressed contact. */
-static void press_ready(struct simulation *sim)
-{
-	struct pound_rows *x = &sim->x;
-	const int b = sim->base, o = 1 - b;
-	sim->pressed = NULL;
-	for (int m = 0; m < POUND_PRESS_MAPS && !sim->pressed; m++)
-		if (sim->press[m].stiffness[0] == x->body[0].stiffness &&
-		    sim->press[m].stiffness[1] == x->body[1].stiffness)
-			sim->pressed = &sim->press[m];
-	if (!sim->pressed) {
-		struct pound_press_map *map = &sim->press[sim->press_next];
-		sim->press_next = (sim->press_next + 1) % POUND_PRESS_MAPS;
-		press_fill(map, sim);
-		sim->pressed = map;
-	}
-	x->base_force = x->body[b].offset;
-	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
-	x->rise = x->slope * x->cell;
 }
 
 /* ---- what follows ---- */
@@ -229,11 +149,27 @@ static enum pound_stage next_stage(struct simulation *sim)
 		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->part * x->q < 0)
 			return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
 	}
-	if (sim->touching && x->part == 0 && sim->can_press) {
-		press_ready(sim);
-		return STAGE_PRESS;
-	}
+	if (sim->touching && x->part == 0 && sim->can_press)
+		return pound_press_ready(sim);
 	return pound_simulation_step(sim);
+}
+
+/* What a simulation does after cells of pressed contact.
+ *
+ * Given    stage    that it was in: STAGE_PRESS or STAGE_REST
+ *          refused  the next cells could not be proved: shorter rungs are to be tried
+ *          gone     it went as far as a longer rung would have: past what refused that
+ */
+enum pound_stage pound_simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
+                                          bool gone)
+{
+	if (stage == STAGE_PRESS && refused)
+		return pound_simulation_step(sim);
+	if (refused)
+		sim->rung_limit = sim->rung - 1;
+	else if (gone)
+		sim->rung_limit = sim->rungs - 1;
+	return pound_press_ready(sim);
 }
 
 /* Contact has begun or ended.
@@ -243,6 +179,7 @@ static enum pound_stage next_stage(struct simulation *sim)
 static void contact_turn(struct simulation *sim, double left, double speed)
 {
 	sim->touching = !sim->touching;
+	sim->rung_limit = sim->rungs - 1;
 	if (!sim->touching) {
 		sim->impulse_max = most(sim->impulse_max, sim->x.impulse);
 		sim->contacts++;
@@ -293,7 +230,7 @@ bool pound_simulation_edged(const struct pound_march_task *task)
 enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
                                         struct pound_march_result *result)
 {
-	memset(sim, 0, sizeof *sim);
+	memset(sim, 0, offsetof(struct simulation, ladder));
 	memset(result, 0, sizeof *result);
 	sim->task = task;
 	sim->result = result;
@@ -346,6 +283,8 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 	while (h > reach * sim->cells_whole)
 		sim->cells_whole *= 2;
 	x->cell = h / sim->cells_whole;
+	if (sim->can_press)
+		pound_press_rungs(sim);
 	sim->base = task->mass_ratio < 1;
 	x->side = sim->base ? -1 : 1;
 	x->base_drive = task->bodies[sim->base].drive;

@@ -11,8 +11,10 @@
 
 enum {
 	POUND_MAPS = 4,        /* free-flight maps a body keeps */
-	POUND_PRESS_MAPS = 3,  /* maps of pressed contact a simulation keeps */
-	POUND_PRESS_INPUTS = 8 /* base u, v, overlap p, q, forcing of either, and its growth over the cell */
+	POUND_PRESS_MAPS = 3,  /* ladders of maps of pressed contact a simulation keeps */
+	POUND_PRESS_RUNGS = 7, /* of a ladder: maps over many cells */
+	POUND_PRESS_INPUTS =
+	    8 /* base u, v, overlap p, q, forcing of either, and its growth over the map's length */
 };
 
 /* Rows of a simulation: T is double at rest, and a vector in lanes; every row has eight. */
@@ -32,8 +34,9 @@ enum {
 	struct {                                                                                                                   \
 		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                      \
 	} map[2];                                                                                                                  \
-	/* PRESS: a cell of pressed contact: forcing, which body is the base, the ground's growth */                               \
-	T base_force, gap_force, base_drive, gap_drive, side, rise, press_spare[2];                                                \
+	/* PRESS: a cell of pressed contact: forcing, which body is the base, the ground's growth; how often the map goes on     \
+	 * until another is asked for */ \
+	T base_force, gap_force, base_drive, gap_drive, side, rise, rounds, press_spare;                                           \
 	/* WORK: the energy balance */                                                                                             \
 	T work_in, work_gap, work_low, right_mass, work_spare[4];
 
@@ -62,21 +65,50 @@ struct pound_map {
 	double eu, ev, ef;         /* the cubic's error is at most eu |u| + ev |v| + ef (|a| + |d|) */
 };
 
-/* rows of a map of pressed contact over one cell, each a linear form of the inputs; the bounds of their magnitudes */
+/* rows of a map of pressed contact, each a linear form of the inputs; the bounds of their magnitudes */
 enum {
-	PRESS_U,
+	PRESS_U, /* what is added to the base's displacement and velocity, the overlap and its rate */
 	PRESS_V,
 	PRESS_P,
 	PRESS_Q,
 	PRESS_IMPULSE,
-	PRESS_ERROR, /* of the cubics of the base's displacement and of the overlap */
+	PRESS_ERROR, /* of a cell: of the cubics of the base's displacement and of the overlap */
 	PRESS_DROP,  /* of release * rate of overlap below the lesser of its ends */
 	PRESS_ROWS,
+	REST_ERROR =
+	    PRESS_ERROR,        /* of a rung, by other magnitudes (press.c): of the cubic of the common motion */
+	REST_BEND = PRESS_DROP, /* of what presses the bodies on each other, off its straight line */
+	PRESS_SPLIT = PRESS_ROWS, /* of a rung: not a form but the enum below */
+	REST_ROWS,
+};
+
+/* how a rung splits the motion into that of both bodies and the contact's own */
+enum {
+	SPLIT_DAMPING,
+	SPLIT_STIFFNESS, /* what presses: times the common velocity and displacement */
+	SPLIT_BASE,
+	SPLIT_OTHER, /* displacement of either body, beyond the common one, by the overlap */
+	SPLIT_OMEGA, /* of the contact [rad/s] */
+	SPLIT_YIELD, /* omega^-2 */
+	SPLIT_LEAD,  /* how much more than the overlap the force swings, where contact ends with it */
+	SPLIT_CELLS,
 };
 
 struct pound_press_map {
-	alignas(64) double row[PRESS_ROWS][POUND_PRESS_INPUTS];
-	double stiffness[2]; /* of the pieces it belongs to; < 0: none */
+	alignas(64) double row[REST_ROWS][POUND_PRESS_INPUTS];
+	double pull[POUND_PRESS_INPUTS]; /* of a rung: what is added to what presses the bodies on each other */
+};
+
+/* pressed contact on a pair of pieces: over a cell, and whether the ladder is filled */
+struct pound_press {
+	struct pound_press_map cell;
+	double stiffness[2]; /* of the pieces; < 0: none */
+	bool laddered;
+};
+
+/* a rung map for every cell map that a simulation keeps */
+struct pound_ladder {
+	struct pound_press_map rung[POUND_PRESS_MAPS][POUND_PRESS_RUNGS];
 };
 
 /* what a simulation does next */
@@ -84,6 +116,7 @@ enum pound_stage {
 	STAGE_FLY_ALONE, /* whole samples of the left body */
 	STAGE_FLY_APART, /* whole samples of both */
 	STAGE_PRESS,     /* whole cells of pressed contact */
+	STAGE_REST,      /* many cells of it at once */
 	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
 	STAGE_APART,     /* of both */
 	STAGE_TOUCH,     /* of both in contact */
@@ -111,19 +144,23 @@ struct simulation {
 	double per_step;
 	double impulse_max, contacts;
 	double cells_whole; /* of an interval */
-	int steps;          /* in this interval */
-	int base;           /* the heavier body, whose motion and the overlap describe pressed contact */
-	bool touching;      /* the contact's force acts */
-	bool parted;        /* force gone before the overlap: bodies still overlap */
-	bool fresh;         /* the force has just passed zero */
-	unsigned traits;    /* see enum above */
-	bool paired;        /* the right body moves, or there is something to touch */
+	double rung_cells[POUND_PRESS_RUNGS];
+	int rungs, rung, rung_limit; /* there are, in use, the longest to try */
+	int steps;                   /* in this interval */
+	int base;                    /* the heavier body, whose motion and the overlap describe pressed contact */
+	bool touching;               /* the contact's force acts */
+	bool parted;                 /* force gone before the overlap: bodies still overlap */
+	bool fresh;                  /* the force has just passed zero */
+	unsigned traits;             /* see enum above */
+	bool paired;                 /* the right body moves, or there is something to touch */
 	bool can_fly, can_press;
 	struct pound_branch at[2];
-	const struct pound_press_map *pressed; /* of this cell */
-	struct pound_map maps[2][POUND_MAPS];
+	const struct pound_press_map *pressed; /* of the next cells */
 	int map_next[2], press_next;
-	struct pound_press_map press[POUND_PRESS_MAPS];
+	// from here on a start clears no more than the maps' keys
+	struct pound_ladder *ladder; /* apart from the rest, which is to stay close together */
+	struct pound_map maps[2][POUND_MAPS];
+	struct pound_press press[POUND_PRESS_MAPS];
 };
 
 bool pound_simulation_edged(const struct pound_march_task *task);
@@ -131,8 +168,14 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
                                         struct pound_march_result *result);
 enum pound_stage pound_simulation_meet(struct simulation *sim);
 enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double left, double speed);
+enum pound_stage pound_simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
+                                          bool gone);
 enum pound_stage pound_simulation_step(struct simulation *sim);
 void pound_simulation_interval(struct simulation *sim);
 void pound_simulation_end(struct simulation *sim, enum pound_status status);
+
+/* press.c */
+void pound_press_rungs(struct simulation *sim);
+enum pound_stage pound_press_ready(struct simulation *sim);
 
 #endif

@@ -1,0 +1,288 @@
+/* press.c - exact maps of pressed contact, over a cell and over many cells at once.
+ *
+ * 1. Pressed on each other the bodies are one linear system: over a cell, a fraction of a radian of the contact's own
+ *    frequency, its map is a power series.
+ * 2. Rungs of a ladder are maps over eight times as many cells each, by doubling, kept as what they add to the state:
+ *    nothing small is lost beside 1.
+ * 3. A bound proves that bodies stay pressed over a rung however often the contact swings within. */
+#include "engine/simulation.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/stepping.h"
+
+enum {
+	N = POUND_PRESS_INPUTS,
+	MOVED = PRESS_IMPULSE +
+	        1,       /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
+	RUNG_RATIO = 8,  /* of a rung to the one below */
+	MAP_ORDERS = 18, /* of a map's series; 0.8^18/18! = 3e-18 */
+};
+
+/* Exact map of the base body and the overlap over one cell h of pressed contact, by its power series.
+ *
+ * Given    sim    its bodies on their pieces, contact
+ * Returns  map    rows of POUND_PRESS_INPUTS coefficients
+ *
+ *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
+ *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
+ *
+ * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288
+ * of the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times that of
+ * their own columns; the lowest rate of overlap lies at most 1/8 of its largest second derivative below its ends.
+ */
+static void cell_fill(struct pound_press_map *map, const struct simulation *sim)
+{
+	const struct pound_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	const double h = x->cell, h2 = h * h, push = b ? -x->mass_ratio : 1;
+	const double cb = x->body[b].damping * h, kb = x->body[b].stiffness * h2;
+	const double co = x->body[o].damping * h, ko = x->body[o].stiffness * h2;
+	const double dc = (x->body[1].damping - x->body[0].damping) * h;
+	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
+	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
+	double u[N] = {1}, w[N] = {0, h}, p[N] = {0, 0, 1}, z[N] = {0, 0, 0, h}; // w, z: rates times h
+	memset(map->row, 0, sizeof map->row);
+	double(*row)[N] = map->row;
+	for (int n = 0; n < MAP_ORDERS; n++) {
+		double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
+		double drop = 0.125 * x->release / h * n * (n - 1.0), added = n > 0;
+		double force_b[N] = {[4] = n == 0 ? h2 : 0, [6] = n == 1 ? h2 : 0};
+		double force_p[N] = {[5] = n == 0 ? h2 : 0, [7] = n == 1 ? h2 : 0};
+		for (int j = 0; j < N; j++) {
+			row[PRESS_U][j] += added * u[j];
+			row[PRESS_V][j] += added * w[j];
+			row[PRESS_P][j] += added * p[j];
+			row[PRESS_Q][j] += added * z[j];
+			row[PRESS_IMPULSE][j] += p[j] * share;
+			row[PRESS_ERROR][j] += bend * (fabs(u[j]) < fabs(p[j]) ? fabs(p[j]) : fabs(u[j]));
+			row[PRESS_DROP][j] += drop * fabs(z[j]);
+			double force = K * p[j] + C * z[j];
+			double w1 = -(cb * w[j] + kb * u[j]) - force_b[j] - push * force;
+			double z1 = dc * w[j] + dk * u[j] - (co * z[j] + ko * p[j]) + force_p[j] - x->both * force;
+			u[j] = w[j] * share;
+			p[j] = z[j] * share;
+			w[j] = w1 * share;
+			z[j] = z1 * share;
+		}
+	}
+	for (int j = 0; j < N; j++) {
+		row[PRESS_IMPULSE][j] =
+		    x->contact_stiffness * h * row[PRESS_IMPULSE][j] + x->contact_damping * row[PRESS_P][j];
+		row[PRESS_V][j] /= h;
+		row[PRESS_Q][j] /= h;
+	}
+}
+
+/* ---- the ladder ---- */
+
+/* The map over twice as long: with s the state, f the forcing and d its growth over the length,
+ *
+ *   R s + R s',   s' = s + X s + F f + D d      in terms of s, f and 2 d, for each row R of (X F D) and the impulse's
+ */
+static void map_double(double row[][N])
+{
+	double once[MOVED][N];
+	memcpy(once, row, sizeof once);
+	for (int r = 0; r < MOVED; r++)
+		for (int j = 0; j < N; j++) {
+			double again = once[r][0] * once[0][j] + once[r][1] * once[1][j] + once[r][2] * once[2][j] +
+			               once[r][3] * once[3][j];
+			row[r][j] = j < 6 ? 2 * once[r][j] + again : once[r][j] + 0.5 * (again + once[r][j - 2]);
+		}
+}
+
+/* What proves that nothing happens over a rung of length h.
+ *
+ * With the slow coordinate w = ub - s/(1 + m1/m2) p of the bodies' common motion
+ *
+ *   p'' + G p' + W^2 p = g,   g = (c2 - c1) w' + (k2 - k1) w + Ap + Dp t/h       w'' = -cw w' - kw w - Aw + kp p + kq p'
+ *
+ * where the damping, stiffness and forcing with the index w are the means of both bodies by mass.  With e = p - g/W^2,
+ * V = (p'^2 + W^2 e^2)^1/2 grows by |g'|/W at most, so that W^2 p >= g - W V: the bodies stay pressed while that is
+ * positive, and meanwhile |p'| <= g/W and p <= 2 g/W^2.  As for a sample apart, with f = 1/(1 - h (cw + kw h)),
+ *
+ *   A2 = f (cw |w'| + kw (|w| + h |w'|) + |Aw| + |kp| p + |kq| |p'|) bounds w'', and so B = h^2 |g''| is bounded:
+ *
+ * between the ends g lies at most B/8 below them and |g'| adds up to at most |g1 - g0| + B/2.
+ * w - kq int p is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h p is
+ * added for the rest.
+ */
+static void rest_fill(struct pound_press_map *map, const struct simulation *sim, double cells)
+{
+	const struct pound_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	double *split = map->row[PRESS_SPLIT];
+	split[SPLIT_CELLS] = cells;
+	const double h = x->cell * cells, share = split[SPLIT_BASE], omega = split[SPLIT_OMEGA];
+	const double dc = split[SPLIT_DAMPING], dk = split[SPLIT_STIFFNESS], yield = split[SPLIT_YIELD];
+	const double cw = x->body[b].damping + share * dc, kw = x->body[b].stiffness + share * dk;
+	const double kp = fabs(share * (x->body[o].stiffness - kw)), kq = fabs(share * (x->body[o].damping - cw));
+	const double damping = x->both * x->contact_damping + x->body[o].damping - dc * share;
+	const double jerk = kp / omega + kq * (1 + damping / omega), jounce = kp * (1 + damping / omega);
+	const double quartic = h * h * h * h * POUND_CUBIC_ERROR, rounding = 16 * DBL_EPSILON;
+	const double ahead = 1 / (1 - h * (cw + kw * h));
+	// of the magnitudes of w, w', g, nothing, Ab, Ap, Db, Dp
+	const double a0[N] = {kw, cw + kw * h, 2 * kp * yield + kq / omega, 0, 1, fabs(share), 1, fabs(share)};
+	const double grown[N] = {[6] = 1 / h, [7] = fabs(share) / h};
+	for (int j = 0; j < N; j++)
+		map->pull[j] = dc * (map->row[PRESS_V][j] - share * map->row[PRESS_Q][j]) +
+		               dk * (map->row[PRESS_U][j] - share * map->row[PRESS_P][j]) + (j == 7);
+	const double rounded[N] = {fabs(dk), fabs(dc), 1, 0, 0, 1}, lost[N] = {1, h};
+	for (int j = 0; j < N; j++) {
+		double a2 = ahead * a0[j], a1 = (j == 1) + h * a2;
+		double a3 = cw * a2 + kw * a1 + grown[j] + (j == 2 ? jerk : 0);
+		double a4 = cw * a3 + kw * a2 + (j == 2 ? jounce : 0);
+		map->row[REST_BEND][j] = h * h * (fabs(dc) * a3 + fabs(dk) * a2) + rounding * rounded[j];
+		map->row[REST_ERROR][j] = quartic * a4 + (j == 2 ? 8 * kq * h * yield : 0) + rounding * lost[j];
+	}
+}
+
+/* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
+static void split_fill(double split[N], const struct simulation *sim)
+{
+	const struct pound_rows *x = &sim->x;
+	const int o = 1 - sim->base;
+	const double share = (sim->base ? -x->mass_ratio : 1) / x->both;
+	const double dc = x->body[1].damping - x->body[0].damping,
+	             dk = x->body[1].stiffness - x->body[0].stiffness;
+	const double stiffness = x->both * x->contact_stiffness + x->body[o].stiffness - dk * share;
+	split[SPLIT_DAMPING] = dc;
+	split[SPLIT_STIFFNESS] = dk;
+	split[SPLIT_BASE] = share;
+	split[SPLIT_OTHER] = share - x->side;
+	split[SPLIT_OMEGA] = sqrt(stiffness);
+	split[SPLIT_YIELD] = 1 / stiffness;
+	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
+	split[SPLIT_CELLS] = 1;
+}
+
+/* Fills a ladder: rungs of as many cells as a whole sample has, or of an eighth, a 64th ... */
+static void ladder_fill(struct pound_press_map rung[], const struct pound_press_map *cell,
+                        const struct simulation *sim)
+{
+	double cells = 1;
+	struct pound_press_map map = *cell;
+	for (int r = 0; r < sim->rungs; r++) {
+		for (; cells < sim->rung_cells[r]; cells *= 2)
+			map_double(map.row);
+		rung[r] = map;
+		rest_fill(&rung[r], sim, cells);
+	}
+}
+
+/* Chooses the rungs of a simulation: of one cell, and of as many as lead to a whole sample, as far as the bodies' own
+ * rates allow.  A few cells a sample go as fast one by one. */
+void pound_press_rungs(struct simulation *sim)
+{
+	const struct pound_rows *x = &sim->x;
+	double first = sim->cells_whole;
+	if (first <= RUNG_RATIO)
+		return;
+	while (first > RUNG_RATIO)
+		first /= RUNG_RATIO;
+	for (double cells = 1; cells <= sim->cells_whole && sim->rungs < POUND_PRESS_RUNGS;
+	     cells *= cells == 1 ? first : RUNG_RATIO) {
+		double h = cells * x->cell;
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			if (h * (x->body[i].damping + sim->task->bodies[i].skeleton.stiffness * h) > 0.5)
+				return;
+		sim->rung_cells[sim->rungs++] = cells;
+	}
+}
+
+/* A linear form, in pairs: its terms need not wait for each other. */
+static double form(const double row[N], const double x[N])
+{
+	double slow = row[6] * x[6] + row[7] * x[7], force = row[4] * x[4] + row[5] * x[5];
+	return (row[0] * x[0] + row[1] * x[1] + slow) + (row[2] * x[2] + row[3] * x[3] + force);
+}
+
+/* Whether bodies in contact are bound to stay pressed over a rung: see rest_fill.
+ *
+ * Given    x     inputs;  bound  magnitudes of w, w', g, and of x from there on
+ *          pull  g at the start;  swing  W V there
+ */
+static bool rests(const struct pound_press_map *map, const double x[N], double bound[N], double pull,
+                  double swing)
+{
+	double change = form(map->pull, x), pull1 = pull + change;
+	bound[2] = fabs(pull) + fabs(pull1);
+	bound[6] = fabs(x[6]);
+	bound[7] = fabs(x[7]);
+	double bend = form(map->row[REST_BEND], bound), drift = fabs(change) + 0.5 * bend;
+	return map->row[PRESS_SPLIT][SPLIT_LEAD] * (swing + drift) + 0.125 * bend < (change < 0 ? pull1 : pull);
+}
+
+/* The longest rung that bodies in contact are bound to stay pressed over; NULL: there is none. */
+static const struct pound_press_map *rung_longest(struct simulation *sim, struct pound_press *press)
+{
+	if (sim->rungs == 0)
+		return NULL;
+	struct pound_rows *x = &sim->x;
+	const double *split = press->cell.row[PRESS_SPLIT], omega = split[SPLIT_OMEGA];
+	double in[N] = {x->u[sim->base],
+	                x->v[sim->base],
+	                x->p,
+	                x->q,
+	                x->base_drive * x->ground + x->base_force,
+	                x->gap_drive * x->ground + x->gap_force};
+	double w = in[0] - split[SPLIT_BASE] * x->p, rate = in[1] - split[SPLIT_BASE] * x->q;
+	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
+	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
+	double a = fabs(omega * x->q), c = fabs(omega * omega * x->p - pull);
+	double swing = a < c ? c + 0.4143 * a : a + 0.4143 * c;
+	if (!(split[SPLIT_LEAD] * swing < pull))
+		return NULL;
+	struct pound_press_map *rung = sim->ladder->rung[press - sim->press];
+	if (!press->laddered)
+		ladder_fill(rung, &press->cell, sim);
+	press->laddered = true;
+	for (int r = sim->rung_limit; r >= 0; r--) {
+		double cells = sim->rung_cells[r];
+		in[6] = x->base_drive * x->rise * cells;
+		in[7] = x->gap_drive * x->rise * cells;
+		if (cells <= x->cells && rests(&rung[r], in, bound, pull, swing)) {
+			sim->rung = r;
+			return &rung[r];
+		}
+	}
+	return NULL;
+}
+
+/* Gets everything ready for whole cells of pressed contact: the longest map over which nothing is known to happen.
+ *
+ * Given    sim    in contact, with whole cells left
+ * Returns  value  STAGE_REST: sim->pressed is a rung of the ladder; STAGE_PRESS: it is a cell
+ */
+enum pound_stage pound_press_ready(struct simulation *sim)
+{
+	struct pound_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	struct pound_press *press = NULL;
+	for (int m = 0; m < POUND_PRESS_MAPS && !press; m++)
+		if (sim->press[m].stiffness[0] == x->body[0].stiffness &&
+		    sim->press[m].stiffness[1] == x->body[1].stiffness)
+			press = &sim->press[m];
+	if (!press) {
+		press = &sim->press[sim->press_next];
+		sim->press_next = (sim->press_next + 1) % POUND_PRESS_MAPS;
+		cell_fill(&press->cell, sim);
+		split_fill(press->cell.row[PRESS_SPLIT], sim);
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			press->stiffness[i] = x->body[i].stiffness;
+		press->laddered = false;
+	}
+	x->base_force = x->body[b].offset;
+	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
+	x->rise = x->slope * x->cell;
+	// a rung goes as far as the next longer one
+	x->rounds = sim->rungs > 0 ? RUNG_RATIO : -1;
+	sim->pressed = rung_longest(sim, press);
+	if (sim->pressed)
+		return STAGE_REST;
+	sim->pressed = &press->cell;
+	return STAGE_PRESS;
+}
