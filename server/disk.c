@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/param.h>
 #include <sys/statvfs.h>
 #include <time.h>
 #include <unistd.h>
@@ -89,11 +90,6 @@ int64_t disk_blamed(const struct disk *disk)
 	return pread(disk->lock, &id, sizeof id, 0) == sizeof id ? id : 0;
 }
 
-static int64_t at_most(int64_t bytes, int64_t most)
-{
-	return bytes < most ? bytes : most;
-}
-
 /* Puts the ballast there, if it is not. */
 static bool ballasted(const struct disk *disk, int64_t size)
 {
@@ -117,8 +113,8 @@ bool disk_roomy(const struct disk *disk)
 	if (fstatvfs(disk->lock, &of) != 0)
 		return false;
 	int64_t size = (int64_t)of.f_blocks * (int64_t)of.f_frsize;
-	return ballasted(disk, at_most(size / BALLAST_PART, BALLAST_MAX)) &&
-	       (int64_t)of.f_bavail * (int64_t)of.f_frsize >= at_most(size / RESERVE_PART, RESERVE_MAX);
+	return ballasted(disk, MIN(size / BALLAST_PART, BALLAST_MAX)) &&
+	       (int64_t)of.f_bavail * (int64_t)of.f_frsize >= MIN(size / RESERVE_PART, RESERVE_MAX);
 }
 
 /* Gives the ballast up. */

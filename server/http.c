@@ -4,7 +4,8 @@
  *    at once and the connection closed; what the client still sends is read for a while (connection.h), for a closed
  *    socket with unread bytes is reset, and the reset overtakes our answer.
  * 2. The body is collected, up to its limit.
- * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again. */
+ * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What
+ *    takes long is answered in a thread of its own, while the connection is suspended. */
 #include "server/http.h"
 
 #include <arpa/inet.h>
@@ -27,6 +28,8 @@
 
 enum {
 	THREADS = 4,
+	TURNS = 2,               /* of them that take long, at a time */
+	ASIDE_NICENESS = 10,     /* the others go first */
 	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
 	FILES_BESIDE = 512,      /* descriptors that are no connections */
 	OF_ADDRESS_MAX = 64,     /* connections of one address, unless it is loopback */
@@ -232,6 +235,38 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	return send_reply(request, &reply);
 }
 
+/* Makes the reply to a suspended request, when it is its turn; none if the server stops meanwhile. */
+static void *answer_aside(void *of)
+{
+	struct request *request = of;
+	struct server *server = request->server;
+	setpriority(PRIO_PROCESS, (id_t)gettid(), ASIDE_NICENESS);
+	sem_wait(&server->turns);
+	if (!server->stopping) {
+		request->reply = routes_answer(request);
+		request->replied = true;
+	}
+	sem_post(&server->turns);
+	MHD_resume_connection(request->connection);
+	server->aside--;
+	return NULL;
+}
+
+/* Gives a request to a thread of its own; if there is none, it is answered where it is. */
+static void put_aside(struct request *request)
+{
+	pthread_t thread;
+	request->aside = true;
+	request->server->aside++;
+	MHD_suspend_connection(request->connection);
+	if (pthread_create(&thread, NULL, answer_aside, request) == 0) {
+		pthread_detach(thread);
+		return;
+	}
+	request->server->aside--;
+	MHD_resume_connection(request->connection);
+}
+
 /* Called by libmicrohttpd with the headers, then with each part of the body, then without bytes for the answer. */
 static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const char *path,
                               const char *method, const char *version, const char *bytes, size_t *n,
@@ -249,11 +284,16 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 		return MHD_YES;
 	}
 	allow(connection, INFINITY);
-	if (server->stopping)
+	if (server->stopping && !request->replied)
 		head_refuse(&request->head, API_UNAVAILABLE, false, "the server stops");
+	if (request->head.fault == API_NO_FAULT && !request->aside && routes_slow(request)) {
+		put_aside(request);
+		return MHD_YES;
+	}
 	struct reply reply = request->head.fault != API_NO_FAULT
 	                         ? http_problem(request->head.fault, request->head.detail, NULL)
-	                         : routes_answer(request);
+	                     : request->replied ? request->reply
+	                                        : routes_answer(request);
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag)) {
 		drop_body(&reply);
 		reply.status = 304;
@@ -394,6 +434,7 @@ bool http_start(struct server *server)
 	}
 	take_short_turns();
 	allow_files();
+	sem_init(&server->turns, 0, TURNS);
 	server->number = (unsigned long long)time(NULL) << 32;
 	server->connections.store = server->store;
 	server->connections.resume = resume;
@@ -423,7 +464,8 @@ void http_stop(struct server *server)
 	// who is not accepted yet sees at once that nobody is here
 	shutdown(listening, SHUT_RDWR);
 	server->connections.released = true;
-	while (server->under_way > 0 && connection_now() < until)
+	// a suspended connection must not be stopped
+	while (server->aside > 0 || (server->under_way > 0 && connection_now() < until))
 		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
 	MHD_stop_daemon(server->daemon);
 	close(listening);

@@ -2,6 +2,7 @@
 #ifndef HTTP_H
 #define HTTP_H
 
+#include <semaphore.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,6 +50,8 @@ struct server {
 	struct MHD_Daemon *daemon;
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
+	atomic_int aside;     /* those in threads of their own, of which ... */
+	sem_t turns;          /* ... a few have their turn at a time */
 	atomic_ullong number; /* of the next request */
 };
 
@@ -66,8 +69,11 @@ struct request {
 	char allow[64];    /* methods of the path */
 	char *body;        /* (length) bytes */
 	size_t length;
-	double arrived;  /* [s] monotonic */
-	uint64_t number; /* told as X-Request-Id */
+	bool aside;         /* it was given to a thread of its own ... */
+	bool replied;       /* ... which has made the reply */
+	struct reply reply; /* if so */
+	double arrived;     /* [s] monotonic */
+	uint64_t number;    /* told as X-Request-Id */
 };
 
 const char *http_header(const struct request *request, const char *name); /* NULL: none */
@@ -85,5 +91,6 @@ void http_stop(struct server *server); /* what is under way is answered, who wai
 
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);
+bool routes_slow(const struct request *request); /* it may take seconds */
 
 #endif

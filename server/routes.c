@@ -461,6 +461,13 @@ static struct reply openapi(struct request *request)
 	                      .etag = "\"" POUND_VERSION "\""};
 }
 
+/* Whether a request is for what is made of all of a study's blocks, which may be many. */
+bool routes_slow(const struct request *request)
+{
+	return request->operation == API_samples ||
+	       (request->operation == API_results && !strcmp(http_argument(request, "partial"), "true"));
+}
+
 /* Answers a request.
  *
  * Given    request   whose head and arguments are those of its operation, and whose body is read

@@ -1,4 +1,5 @@
 /* Every route and status, asked of a real server.  The server must live on and stop cleanly after each test. */
+#include <pthread.h>
 #include <string.h>
 
 #include "schema/api.h"
@@ -404,6 +405,42 @@ static void samples_come_as_csv_or_npy_with_a_row_per_run(void **state)
 	problem_is(service_get(service, "/v1/studies/%s/samples?format=json", id), 400, "format must be");
 }
 
+struct asker {
+	pthread_t thread;
+	const struct service *service;
+	const char *id;
+	struct answer answer;
+};
+
+static void *ask_for_samples(void *of)
+{
+	struct asker *asker = of;
+	asker->answer = service_get(asker->service, "/v1/studies/%s/samples", asker->id);
+	return NULL;
+}
+
+static void samples_asked_for_by_many_at_once_are_the_same_for_all(void **state)
+{
+	enum { ASKERS = 12 };
+	struct service *service = *state;
+	struct asker askers[ASKERS];
+	char id[17], *study = service_study(4, 2, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	for (int i = 0; i < ASKERS; i++) {
+		askers[i] = (struct asker){.service = service, .id = id};
+		assert_int_equal(pthread_create(&askers[i].thread, NULL, ask_for_samples, &askers[i]), 0);
+	}
+	for (int i = 0; i < ASKERS; i++) {
+		pthread_join(askers[i].thread, NULL);
+		status_is(&askers[i].answer, 200);
+		assert_string_equal(askers[i].answer.body, askers[0].answer.body);
+	}
+	for (int i = 0; i < ASKERS; i++)
+		answer_free(&askers[i].answer);
+	free(study);
+}
+
 static void a_response_study_has_no_samples_and_the_server_lives_on(void **state)
 {
 	struct service *service = *state;
@@ -479,6 +516,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(list_arguments_that_make_no_sense_are_400),
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),
+           SERVED(samples_asked_for_by_many_at_once_are_the_same_for_all),
            SERVED(a_response_study_has_no_samples_and_the_server_lives_on),
            SERVED(an_unchanged_status_is_304_to_its_etag),
            SERVED(a_live_and_ready_server_says_so_and_its_version),
