@@ -123,12 +123,12 @@ SEEDS ?= 200
 statistics: $(B)/tests/statistics
 	@$< $(SEEDS)
 $(B)/tests/statistics: $(patsubst %.c,$(B)/%.o,$(wildcard tests/statistics_*.c))
-# what takes minutes of a quiet machine, SOAK seconds for each test: every line it prints is a measurement; and the tests
-# with more kills, cuts and failures
+# what takes minutes of a quiet machine: many and slow clients for SOAK seconds each, then the server's tests with more
+# kills, cuts and failures, MORE of 100 of them; every line that begins with # is a measurement
 SOAK ?= 60
-soak: all $(patsubst %.c,$(B)/%,$(wildcard tests/soak_*.c)) $(TESTS)
-	@for program in $(filter $(B)/tests/soak_%,$^); do POUND_BUILD=$(B) SOAK=$(SOAK) $$program || exit 1; done
-	@POUND_SOAK=1 tests/run-tests $(B) $(T)
+MORE ?= 100
+soak: all $(patsubst %.c,$(B)/%,$(wildcard tests/soak_*.c)) $(filter $(B)/tests/service_%,$(TESTS))
+	@KINDS='soak service' SOAK=$(SOAK) POUND_SOAK=$(MORE) tests/run-tests $(B) $(T)
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
 

@@ -22,8 +22,9 @@ void check_near_at(double got, double want, double allowed, const char *what, co
 /* A line of what a test found, which tests/run-tests shows: counts, times. */
 void check_report(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* How often to try: `brief` in make test, `soak` in make soak (POUND_SOAK is set). */
+/* How often to try: `brief` in make test, POUND_SOAK of 100 parts of `soak` in make soak if that is more. */
 int check_count(int brief, int soak);
+bool check_soaks(void); /* POUND_SOAK is set: the machine is quiet, and times may be judged */
 
 /* Runs a table of tests under the name of the program, only those that T names when it is set. */
 int check_run(const char *program, const struct CMUnitTest *tests, int n);

@@ -15,8 +15,7 @@ double latency_now(void)
 
 double latency_soak_s(void)
 {
-	const char *soak = getenv("SOAK");
-	return soak ? atof(soak) : 60;
+	return atof(getenv("SOAK") ? getenv("SOAK") : "60");
 }
 
 static int ascending(const void *a, const void *b)
@@ -47,8 +46,8 @@ double latency_quantile(struct latencies *l, double part)
 
 void latency_told(const char *what, struct latencies *l)
 {
-	printf("%s: %d, p50 %.2f ms, p99 %.2f ms, most %.1f ms\n", what, l->n, latency_quantile(l, 0.5),
-	       latency_quantile(l, 0.99), latency_quantile(l, 1));
+	check_report("%s: %d, p50 %.2f ms, p99 %.2f ms, most %.1f ms", what, l->n, latency_quantile(l, 0.5),
+	             latency_quantile(l, 0.99), latency_quantile(l, 1));
 }
 
 void latency_there(struct latencies *l)

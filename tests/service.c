@@ -316,6 +316,18 @@ void service_erase(const struct service *service)
 	}
 }
 
+double service_resident_mb(const struct service *service)
+{
+	char path[64];
+	long pages = 0;
+	snprintf(path, sizeof path, "/proc/%d/statm", (int)service->pid);
+	FILE *file = fopen(path, "r");
+	assert_non_null(file);
+	assert_int_equal(fscanf(file, "%*d %ld", &pages), 1);
+	fclose(file);
+	return 1e-6 * (double)pages * (double)sysconf(_SC_PAGESIZE);
+}
+
 char *service_study(int rows, int signals, int seed)
 {
 	static const char form[] =

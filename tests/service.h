@@ -73,7 +73,8 @@ bool service_wait(const struct service *service, const char *id, const char *sta
 int64_t service_number(const struct service *service, const char *sql);
 /* Changes the database of a server that does not run. */
 void service_change(const struct service *service, const char *sql);
-void service_erase(const struct service *service); /* its database, when it is stopped */
+double service_resident_mb(const struct service *service); /* [MB = 1e6 bytes] */
+void service_erase(const struct service *service);         /* its database, when it is stopped */
 /* A text out of the server's database, for free. */
 char *service_text(const struct service *service, const char *sql);
 

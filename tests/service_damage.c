@@ -97,7 +97,7 @@ static void a_flipped_bit_is_refused_or_reported_and_never_served(void **state)
 	struct service *service = service_new();
 	char copy[96], removal[128];
 	size_t n;
-	int flips = check_count(300, 10000);
+	int flips = check_count(1000, 10000);
 	(void)state;
 	remember(service);
 	char *bytes = program_file(service->database, &n);

@@ -47,15 +47,15 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 		         "(SELECT total(length(content)) FROM document WHERE study = %lld)",
 		         strtoll(id, NULL, 16), strtoll(id, NULL, 16));
 		double took_bytes = (double)service_number(service, sql);
-		printf("%-24s %8.3g s estimated, %8.3g taken: %5.2f; %8.3g bytes estimated, %8.3g taken: %5.2f\n",
-		       examples[i].name, cpu_s, took_s, cpu_s / took_s, bytes, took_bytes, bytes / took_bytes);
+		check_report("%-24s %8.3g s estimated, %8.3g taken: %5.2f; %8.3g bytes estimated, %8.3g taken: %5.2f",
+		             examples[i].name, cpu_s, took_s, cpu_s / took_s, bytes, took_bytes, bytes / took_bytes);
 		// below 10 ms the time is the clock's
 		worst = took_s > 0.01 ? fmax(worst, fmax(cpu_s / took_s, took_s / cpu_s)) : worst;
 		worst = fmax(worst, fmax(bytes / took_bytes, took_bytes / bytes));
 		reading_close(result);
 		answer_free(&answer);
 	}
-	printf("off by a factor of %.1f at most\n", worst);
+	check_report("off by a factor of %.1f at most", worst);
 	// within three but for the example of extremes, whose contacts are a million times stiffer than its lightest body's spring
 	assert_true(worst < 10);
 }

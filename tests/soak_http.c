@@ -15,69 +15,6 @@
 #include "tests/latency.h"
 #include "tests/raw.h"
 
-/* ---- studies as fast as they are taken ---- */
-
-enum { SUBMITTERS = 16 };
-
-struct submitter {
-	const struct service *service;
-	const char *study;
-	double until;
-	struct latencies latencies;
-	pthread_t thread;
-};
-
-static void *submit_in_thread(void *of)
-{
-	struct submitter *submitter = of;
-	char *bytes = NULL, answer[16384];
-	int n = asprintf(&bytes,
-	                 "POST /v1/studies HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-	                 "Content-Length: %zu\r\n\r\n%s",
-	                 strlen(submitter->study), submitter->study);
-	int s = raw_open(submitter->service);
-	for (double start = latency_now(); start < submitter->until; start = latency_now()) {
-		raw_send(s, bytes, (size_t)n);
-		ssize_t came = recv(s, answer, sizeof answer, 0);
-		if (came > 12 && !strncmp(answer, "HTTP/1.1 201", 12))
-			latency_add(&submitter->latencies, start, latency_now());
-	}
-	close(s);
-	free(bytes);
-	return NULL;
-}
-
-static void a_hundred_studies_a_second_are_accepted_from_sixteen_clients(void **state)
-{
-	static const char *const settings[][2] = {{"POUNDD_QUEUE_MAX", "1000000"}, {NULL}};
-	static struct submitter submitters[SUBMITTERS];
-	struct latencies all = {0};
-	(void)state;
-	struct service *service = service_with(settings, 2);
-	char *study = service_study(2, 1, 1);
-	double seconds = fmin(latency_soak_s(), 20), until = latency_now() + seconds;
-	for (int i = 0; i < SUBMITTERS; i++) {
-		submitters[i] = (struct submitter){.service = service, .study = study, .until = until};
-		assert_int_equal(pthread_create(&submitters[i].thread, NULL, submit_in_thread, &submitters[i]), 0);
-	}
-	for (int i = 0; i < SUBMITTERS; i++) {
-		pthread_join(submitters[i].thread, NULL);
-		for (int k = 0; k < submitters[i].latencies.n; k++)
-			latency_add(&all, submitters[i].latencies.answers[k].asked,
-			            submitters[i].latencies.answers[k].came);
-		free(submitters[i].latencies.answers);
-	}
-	service_kill(service);
-	int64_t kept = service_number(service, "SELECT count(*) FROM study");
-	printf("%d accepted in %.0f s: %.0f a second, p50 %.1f ms, p99 %.1f ms; %d kept\n", all.n, seconds,
-	       all.n / seconds, latency_quantile(&all, 0.5), latency_quantile(&all, 0.99), (int)kept);
-	assert_true(all.n >= 100 * seconds);
-	assert_true(kept >= all.n && kept <= all.n + SUBMITTERS); // those whose answer was still on its way
-	free(all.answers);
-	free(study);
-	service_free(service);
-}
-
 /* ---- slow clients ---- */
 
 #define FRESH_S 0.2 /* between two requests of others */
@@ -147,10 +84,11 @@ static void attacked(struct service *service, const char *what, const char *firs
 	double closed = latency_now();
 	while (open_files(service) > before + 5 && latency_now() < closed + 30)
 		usleep(100000);
-	printf("%s: %d slow clients, %d connections in %.0f s; %d of %d fresh requests answered; files back "
-	       "after %.0f "
-	       "s; the machine was away for %.2f %%\n",
-	       what, SLOW, opened, seconds, answered, asked, latency_now() - closed, 100 * away_share());
+	check_report(
+	    "%s: %d slow clients, %d connections in %.0f s; %d of %d fresh requests answered; files back "
+	    "after %.0f "
+	    "s; the machine was away for %.2f %%",
+	    what, SLOW, opened, seconds, answered, asked, latency_now() - closed, 100 * away_share());
 	latency_told("  fresh requests", &latencies);
 	latency_there(&latencies);
 	latency_told("  of them while the machine was there", &latencies);
@@ -173,18 +111,6 @@ static void slow_headers_bodies_and_readers_do_not_keep_others_out(void **state)
 }
 
 /* ---- long use ---- */
-
-static double resident_mb(const struct service *service)
-{
-	char path[64];
-	long pages = 0;
-	snprintf(path, sizeof path, "/proc/%d/statm", (int)service->pid);
-	FILE *file = fopen(path, "r");
-	assert_non_null(file);
-	assert_int_equal(fscanf(file, "%*d %ld", &pages), 1);
-	fclose(file);
-	return 1e-6 * (double)pages * (double)sysconf(_SC_PAGESIZE);
-}
 
 struct asker {
 	const struct service *service;
@@ -261,20 +187,21 @@ static void a_million_requests_and_a_thousand_studies_leave_nothing_behind(void 
 	free(study);
 	// warm: SQLite's pages
 	long_use(service, requests / 4, 700, aborted / 4, id);
-	double resident = resident_mb(service);
+	double resident = service_resident_mb(service);
 	int files = open_files(service);
 	long_use(service, requests, studies, aborted, id);
-	double after = resident_mb(service);
+	double after = service_resident_mb(service);
 	double end = latency_now() + 15;
 	while (open_files(service) > files && latency_now() < end)
 		usleep(100000);
 	snprintf(wal, sizeof wal, "%s-wal", service->database);
 	stat(wal, &about);
-	printf("%d requests, %d studies, %d downloads aborted: resident %.1f MB before, %.1f after (%+.1f %%), "
-	       "files %d and "
-	       "%d, WAL %.1f MiB\n",
-	       requests, studies, aborted, resident, after, 100 * (after / resident - 1), files,
-	       open_files(service), (double)about.st_size / (1 << 20));
+	check_report(
+	    "%d requests, %d studies, %d downloads aborted: resident %.1f MB before, %.1f after (%+.1f %%), "
+	    "files %d and "
+	    "%d, WAL %.1f MiB",
+	    requests, studies, aborted, resident, after, 100 * (after / resident - 1), files, open_files(service),
+	    (double)about.st_size / (1 << 20));
 	assert_true(after <= 1.05 * resident + 1);
 	assert_true(open_files(service) <= files);
 	assert_true(about.st_size <= 64 << 20);
@@ -337,8 +264,8 @@ static void the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is(void **st
 	for (int w = 0; w < 2; w++)
 		trimmed(seconds[w], &mean[w], &variance[w]);
 	double t = (mean[1] - mean[0]) / sqrt(variance[0] + variance[1]);
-	printf("wrong at the first character %.1f ns, at the last %.1f ns: t = %.2f\n", 1e9 * mean[0],
-	       1e9 * mean[1], t);
+	check_report("wrong at the first character %.1f ns, at the last %.1f ns: t = %.2f", 1e9 * mean[0],
+	             1e9 * mean[1], t);
 	assert_true(fabs(t) < 2.58); // p > 0.01
 	free(tokens);
 }
@@ -346,6 +273,5 @@ static void the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is(void **st
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(cmocka_unit_test(the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is),
-           cmocka_unit_test(a_hundred_studies_a_second_are_accepted_from_sixteen_clients),
            SERVED(slow_headers_bodies_and_readers_do_not_keep_others_out),
            SERVED(a_million_requests_and_a_thousand_studies_leave_nothing_behind))

@@ -186,14 +186,15 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 	latency_told("answers", &polls.answers);
 	latency_there(&polls.answers);
 	latency_told("of them while the machine was there", &polls.answers);
-	printf("late %d, wrong %d; the machine was away for %.2f %% of %.0f s\n", polls.late, polls.wrong,
-	       100 * away_share(), 2 * wall_s);
+	check_report("late %d, wrong %d; the machine was away for %.2f %% of %.0f s", polls.late, polls.wrong,
+	             100 * away_share(), 2 * wall_s);
 	// half of the rounds lie between the quartiles: the median's standard error from them
 	double error = 1.25 * (dearer[3 * ROUNDS / 4] - dearer[ROUNDS / 4]) / 1.35 / sqrt(ROUNDS);
-	printf("what the study loses: %.1f +- %.1f %%; answers take %.2f %% of the processors, a run takes %.3f "
-	       "times "
-	       "the time\n",
-	       100 * slowed, 200 * error, 100 * share, dearer[ROUNDS / 2]);
+	check_report(
+	    "what the study loses: %.1f +- %.1f %%; answers take %.2f %% of the processors, a run takes %.3f "
+	    "times "
+	    "the time",
+	    100 * slowed, 200 * error, 100 * share, dearer[ROUNDS / 2]);
 	double p99 = latency_quantile(&polls.answers, 0.99);
 	assert_int_equal(polls.late + polls.wrong, 0);
 	assert_true(p99 <= 20);
