@@ -96,6 +96,19 @@ static void row_path(const struct estimates *of, int row, char path[PATH_SIZE])
 		snprintf(path, PATH_SIZE, "%s", of->at);
 }
 
+/* Whether a number has a value in any row, and an interval: then it is an estimate. */
+static bool is_estimate(const struct estimates *of, const char *name)
+{
+	char path[PATH_SIZE];
+	for (int row = 0; row < (of->n_rows ? of->n_rows : 1); row++) {
+		row_path(of, row, path);
+		if (reading_has(of->result, "%s/%s_low", path, name) &&
+		    isfinite(reading_number(of->result, "%s/%s", path, name)))
+			return true;
+	}
+	return false;
+}
+
 /* Finds what there is, but for names between spaces in `but`. */
 static void estimates_find(struct estimates *of, const char *but)
 {
@@ -106,7 +119,7 @@ static void estimates_find(struct estimates *of, const char *but)
 	of->n = 0;
 	for (int i = 0; (name = reading_member(of->result, i, "%s", row)) && of->n < ESTIMATES_MAX; i++) {
 		char *padded = command_text(" %s ", name);
-		if (reading_has(of->result, "%s/%s_low", row, name) && !strstr(but, padded))
+		if (is_estimate(of, name) && !strstr(but, padded))
 			of->names[of->n++] = name;
 		free(padded);
 	}
@@ -420,13 +433,23 @@ static void print_cost(const struct reading *result)
 	putchar('\n');
 }
 
+static void print_design(const struct reading *result)
+{
+	double randomisations = reading_number(result, "/design/randomisations");
+	fputs("design ", stdout);
+	table_say(reading_text(result, "/design/method"));
+	printf(", %.0f rows", reading_number(result, "/design/rows"));
+	if (isfinite(randomisations))
+		printf(" in %.0f randomisations", randomisations);
+	putchar('\n');
+	if (reading_text(result, "/design/note"))
+		table_prose(0, reading_text(result, "/design/note"));
+}
+
 void indexes_print(const struct reading *result)
 {
+	print_design(result);
 	print_partial(result);
-	if (reading_text(result, "/design/note")) {
-		putchar('\n');
-		table_prose(0, reading_text(result, "/design/note"));
-	}
 	if (reading_has(result, "/stopping"))
 		print_stopping(result);
 	print_outputs(result, NULL);
