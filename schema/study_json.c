@@ -85,9 +85,13 @@ bool reader_seen(const cJSON *object, const cJSON *member)
  */
 void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 {
+	const struct field *object = fields_find(pattern);
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		bool needed = isnan(field->absent) && fields_child(field, pattern) && (r->kind || !field->kinds) &&
+		// where the kind is not known, what an object that is there needs in any kind that has it
+		bool kind_known =
+		    r->kind || !field->kinds || (object && object->kinds && strcmp(object->kinds, field->kinds) == 0);
+		bool needed = isnan(field->absent) && fields_child(field, pattern) && kind_known &&
 		              (r->excitation || !field->types) &&
 		              fields_used(field, r->kind, r->excitation, r->solver) &&
 		              !(r->study->elsewhere && field->sceneless);

@@ -384,6 +384,24 @@ static void no_fault_hides_another(void **state)
 	assert_int_equal(problems.n, COUNT(told));
 }
 
+static void an_unknown_kind_hides_nothing_in_what_is_there(void **state)
+{
+	(void)state;
+	struct problems problems;
+	documents_refused("{\"kind\": \"sensitivty\", \"scene\": {\"oscillators\": [{}, {\"frequency_hz\": 2}]},"
+	                  " \"inputs\": [{\"name\": 3}], \"design\": {\"until\": {}}}",
+	                  &problems);
+	static const char *const pointers[] = {"/kind",
+	                                       "/scene/oscillators/0/frequency_hz",
+	                                       "/inputs/0/name",
+	                                       "/inputs/0/path",
+	                                       "/inputs/0/distribution",
+	                                       "/design/until/half_width"};
+	assert_int_equal(problems.n, COUNT(pointers));
+	for (int k = 0; k < COUNT(pointers); k++)
+		assert_string_equal(problems.list[k].pointer, pointers[k]);
+}
+
 static void an_absent_name_may_not_be_that_of_another_input(void **state)
 {
 	(void)state;
@@ -392,7 +410,8 @@ static void an_absent_name_may_not_be_that_of_another_input(void **state)
 	try_all(changes, COUNT(changes));
 }
 
-CHECK_MAIN(cmocka_unit_test(no_fault_hides_another),
+CHECK_MAIN(cmocka_unit_test(an_unknown_kind_hides_nothing_in_what_is_there),
+           cmocka_unit_test(no_fault_hides_another),
            cmocka_unit_test(an_absent_name_may_not_be_that_of_another_input),
            cmocka_unit_test(an_input_names_a_real_number_that_matters),
            cmocka_unit_test(a_sweep_takes_values_as_the_field_does),
