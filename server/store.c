@@ -22,7 +22,8 @@
 #include "server/log.h"
 
 enum {
-	READERS = 4,
+	READERS =
+	    8, /* as many as ask at once: four threads that answer, two beside them, a worker, the watchdog */
 	CHANGES = 1021, /* a prime, so that ids fall everywhere */
 };
 
