@@ -22,8 +22,8 @@
 #include "server/log.h"
 
 enum {
-	READERS =
-	    8, /* as many as ask at once: four threads that answer, two beside them, a worker, the watchdog */
+	// four threads that answer, two beside them, a worker and the watchdog may ask at once
+	READERS = 8,
 	CHANGES = 1021, /* a prime, so that ids fall everywhere */
 };
 
