@@ -40,11 +40,28 @@ struct service *service_with(const char *const settings[][2], int n_workers)
 	return service;
 }
 
+/* What a sanitizer has to say about a server is in its log, however it ended. */
+static void expect_no_report(const struct service *service)
+{
+	char line[512];
+	FILE *log = fopen(service->log, "r");
+	while (log && fgets(line, sizeof line, log))
+		if (strstr(line, "Sanitizer:") || strstr(line, "runtime error:")) {
+			print_error("%s", line);
+			for (int i = 0; i < 60 && fgets(line, sizeof line, log); i++)
+				print_error("%s", line);
+			fail();
+		}
+	if (log)
+		fclose(log);
+}
+
 void service_free(struct service *service)
 {
 	char path[512];
 	if (service->pid)
 		service_kill(service);
+	expect_no_report(service);
 	DIR *files = opendir(service->directory);
 	assert_non_null(files);
 	for (struct dirent *file = readdir(files); file; file = readdir(files)) {
