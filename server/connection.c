@@ -18,7 +18,7 @@ enum {
 	TICK_NS = 50000000,    /* [ns] */
 	LINGER_S = 5,          /* [s] a client may go on sending */
 	LINGERING_MAX = 256,   /* clients who do so */
-	TICK_BYTES = 16 << 20, /* read of one of them in a tick */
+	TICK_BYTES = 16 << 20, /* read of all of them in a tick, while the list is locked */
 };
 
 double connection_now(void)
@@ -28,20 +28,22 @@ double connection_now(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Reads what has come; false: nothing more will. */
-static bool drain(const struct connection *connection)
+/* Reads what has come, and no more than is left for this tick; false: nothing more will. */
+static bool drain(const struct connection *connection, ssize_t *left)
 {
 	static _Thread_local char bytes[65536];
 	ssize_t n = 1;
-	for (ssize_t sum = 0; n > 0 && sum < TICK_BYTES; sum += n)
+	while (n > 0 && *left > 0) {
 		n = recv(connection->fd, bytes, sizeof bytes, MSG_DONTWAIT);
+		*left -= n;
+	}
 	return n > 0 || (n < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
-static void look(struct connections *all, struct connection *connection, double now)
+static void look(struct connections *all, struct connection *connection, double now, ssize_t *left)
 {
 	if (connection->draining) {
-		if (drain(connection) && now < connection->deadline && !all->stopping)
+		if (drain(connection, left) && now < connection->deadline && !all->stopping)
 			return;
 		close(connection->fd);
 		LIST_REMOVE(connection, others);
@@ -67,11 +69,12 @@ static void *watch(void *of)
 	while (!stopping) {
 		nanosleep(&(struct timespec){.tv_nsec = TICK_NS}, NULL);
 		double now = connection_now();
+		ssize_t left = TICK_BYTES;
 		pthread_mutex_lock(&all->lock);
 		stopping = all->stopping;
 		for (struct connection *connection = LIST_FIRST(&all->list), *next; connection; connection = next) {
 			next = LIST_NEXT(connection, others);
-			look(all, connection, now);
+			look(all, connection, now, &left);
 		}
 		pthread_mutex_unlock(&all->lock);
 	}
