@@ -1,7 +1,8 @@
-/* Every command of the README works as it stands there.
+/* Every command of the README and of docs/ works as it stands there.
  *
- * All ```sh blocks of README.md are one script, run in an empty folder with `sh -eu -c`, with two things changed:
+ * All ```sh blocks of a page are one script, run in an empty folder with `sh -eu -c`, with two things changed:
  * a poundd of the test's own stands for the one that is started there, and the build under test for build/release. */
+#include <glob.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -35,8 +36,17 @@ static void put_replaced(FILE *out, const char *line)
 	}
 }
 
-/* The blocks as one script, which says on stderr where it is; `blocks` counts them. */
-static char *script_of(char *readme, int *blocks)
+/* README.md and the pages of docs/; globfree. */
+static glob_t pages_all(void)
+{
+	glob_t pages;
+	assert_int_equal(glob("README.md", 0, NULL, &pages), 0);
+	assert_int_equal(glob("docs/*.md", GLOB_APPEND, NULL, &pages), 0);
+	return pages;
+}
+
+/* The blocks of a page as one script, which says on stderr where it is; `blocks` counts them. */
+static char *script_of(const char *name, char *page, int *blocks)
 {
 	char *script = NULL;
 	size_t n;
@@ -44,14 +54,14 @@ static char *script_of(char *readme, int *blocks)
 	bool inside = false;
 	int number = 1;
 	*blocks = 0;
-	for (char *line = readme, *next; line; line = next, number++) {
+	for (char *line = page, *next; line; line = next, number++) {
 		next = strchr(line, '\n');
 		if (next)
 			*next++ = '\0';
 		if (!inside && strcmp(line, "```sh") == 0) {
 			inside = true;
 			++*blocks;
-			fprintf(out, "echo 'README.md line %d' >&2\n", number);
+			fprintf(out, "echo '%s line %d' >&2\n", name, number);
 		} else if (inside && strcmp(line, "```") == 0)
 			inside = false;
 		else if (inside && strncmp(line, SERVER, strlen(SERVER)) != 0) {
@@ -108,13 +118,15 @@ static const char *solvers_of(const struct field *field, char *text, size_t size
 	return field->solvers ? text : NULL;
 }
 
-static void every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it(void **state)
+static const char STUDY[] = "docs/study.md";
+
+static void every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it(void **state)
 {
 	static const char same[] = "/scene/oscillators/*/law/"; // told once, for the scene's law
-	char *readme = program_file("README.md", NULL);
+	char *page = program_file(STUDY, NULL);
 	int missing = 0;
 	(void)state;
-	assert_non_null(readme);
+	assert_non_null(page);
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		char absent[64], takes[256], meaning[600], line[1200], solvers[256];
@@ -127,21 +139,21 @@ static void every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it(
 		only(field->types, meaning, sizeof meaning);
 		only(solvers_of(field, solvers, sizeof solvers), meaning, sizeof meaning);
 		snprintf(line, sizeof line, "| `%s` | %s | %s | %s |\n", field->pattern, absent, takes, meaning);
-		if (strstr(readme, line))
+		if (strstr(page, line))
 			continue;
-		print_error("README.md has no line\n%s", line);
+		print_error("%s has no line\n%s", STUDY, line);
 		missing++;
 	}
 	assert_int_equal(missing, 0);
-	free(readme);
+	free(page);
 }
 
-static void every_distribution_stands_in_the_readme_with_its_parameters_and_rules(void **state)
+static void every_distribution_stands_in_the_docs_with_its_parameters_and_rules(void **state)
 {
 	const char *name, *parameter;
-	char *readme = program_file("README.md", NULL);
+	char *page = program_file(STUDY, NULL);
 	(void)state;
-	assert_non_null(readme);
+	assert_non_null(page);
 	for (int row = 0; (name = pound_distribution_name(row)); row++) {
 		char line[512];
 		int n = snprintf(line, sizeof line, "| `%s` | ", name);
@@ -152,29 +164,86 @@ static void every_distribution_stands_in_the_readme_with_its_parameters_and_rule
 		for (int k = 0; (parameter = pound_distribution_rule(row, k)); k++)
 			n += snprintf(line + n, sizeof line - (size_t)n, "%s%s", k ? "; " : "", parameter);
 		snprintf(line + n, sizeof line - (size_t)n, " |\n");
-		if (!strstr(readme, line))
-			fail_msg("README.md has no line\n%s", line);
+		if (!strstr(page, line))
+			fail_msg("%s has no line\n%s", STUDY, line);
 	}
-	free(readme);
+	free(page);
 }
 
-static void every_file_the_readme_names_is_there(void **state)
+/* The files that a page names; a name that is none fails the test. */
+static int files_named(const char *page)
 {
-	static const char *const folders[] = {"engine/", "schema/", "server/", "client/", "tests/"};
-	char *readme = program_file("README.md", NULL);
+	static const char *const folders[] = {"engine/", "schema/", "server/", "client/", "tests/", "docs/"};
+	char *text = program_file(page, NULL), *rest;
 	int n = 0;
-	(void)state;
-	assert_non_null(readme);
-	for (char *name = strtok(readme, "` \n|,;()"); name; name = strtok(NULL, "` \n|,;()"))
-		for (int i = 0; i < 5; i++)
+	assert_non_null(text);
+	for (char *name = strtok_r(text, "` \n|,;()[]#", &rest); name;
+	     name = strtok_r(NULL, "` \n|,;()[]#", &rest))
+		for (int i = 0; i < 6; i++)
 			// a folder alone, and forms such as unit_<file>.c, name no file
 			if (strncmp(name, folders[i], strlen(folders[i])) == 0 && !strchr(name, '<')) {
+				name[strlen(name) - (name[strlen(name) - 1] == '.')] = '\0';
 				if (access(name, R_OK) != 0)
-					fail_msg("README.md names %s", name);
+					fail_msg("%s names %s", page, name);
 				n++;
 			}
-	assert_true(n > 20);
-	free(readme);
+	free(text);
+	return n;
+}
+
+static void every_file_that_a_page_names_is_there(void **state)
+{
+	glob_t pages = pages_all();
+	int n = 0;
+	(void)state;
+	for (size_t i = 0; i < pages.gl_pathc; i++)
+		n += files_named(pages.gl_pathv[i]);
+	assert_true(n > 60);
+	globfree(&pages);
+}
+
+/* A heading as a link names it: small letters, - for a blank, nothing for other signs. */
+static bool is_anchor(const char *heading, const char *anchor)
+{
+	for (; *heading && *heading != '\n'; heading++) {
+		char c = *heading == ' '                      ? '-'
+		         : *heading >= 'A' && *heading <= 'Z' ? (char)(*heading + 32)
+		                                              : *heading;
+		if ((c < 'a' || c > 'z') && (c < '0' || c > '9') && c != '-' && c != '_')
+			continue;
+		if (*anchor++ != c)
+			return false;
+	}
+	return *anchor == ')';
+}
+
+/* Every link to a heading of the same page or of another leads to one. */
+static void every_link_between_the_pages_leads_to_a_heading(void **state)
+{
+	glob_t pages = pages_all();
+	int n = 0;
+	(void)state;
+	for (size_t i = 0; i < pages.gl_pathc; i++) {
+		char *text = program_file(pages.gl_pathv[i], NULL), path[128];
+		for (char *link = text; (link = strstr(link, "](")); link += 2) {
+			size_t length = strcspn(link + 2, "#)");
+			if (link[2 + length] != '#' || strncmp(link + 2, "http", 4) == 0)
+				continue;
+			bool docs = strncmp(pages.gl_pathv[i], "docs/", 5) == 0;
+			snprintf(path, sizeof path, "%s%.*s", docs ? "docs/" : "", (int)length, link + 2);
+			char *target = program_file(length ? path : pages.gl_pathv[i], NULL), *at = target;
+			assert_non_null(target);
+			while (at && !is_anchor(at + strspn(at, "\n# "), link + 3 + length))
+				at = strstr(at + 1, "\n#");
+			if (!at)
+				fail_msg("%s: %.60s leads nowhere", pages.gl_pathv[i], link + 2);
+			free(target);
+			n++;
+		}
+		free(text);
+	}
+	assert_true(n > 5);
+	globfree(&pages);
 }
 
 static void the_usage_stands_in_the_readme_as_it_is_printed(void **state)
@@ -188,35 +257,45 @@ static void the_usage_stands_in_the_readme_as_it_is_printed(void **state)
 	program_free(&help);
 }
 
-static void every_command_of_the_readme_works(void **state)
+/* Runs the commands of a page in a folder of their own; how many blocks it has. */
+static int commands_run(const char *name)
 {
-	(void)state;
 	int blocks;
-	char *readme = program_file("README.md", NULL);
-	assert_non_null(readme);
-	char *build = realpath(getenv("POUND_BUILD") ? getenv("POUND_BUILD") : "build/release", NULL);
-	assert_non_null(build);
-	setenv("POUND_BUILD", build, 1);
-	char *script = script_of(readme, &blocks);
-	assert_true(blocks >= 5);
-	char folder[] = "/tmp/pound-test-XXXXXX", removal[64];
+	char *page = program_file(name, NULL);
+	assert_non_null(page);
+	char *script = script_of(name, page, &blocks), folder[] = "/tmp/pound-test-XXXXXX", removal[64];
 	assert_non_null(mkdtemp(folder));
 	snprintf(removal, sizeof removal, "rm -r %s", folder);
-	setenv("no_proxy", "127.0.0.1", 1);
 	struct program_outcome outcome = program_run(
-	    (const char *const[]){"sh", "-euc", "cd \"$1\"; eval \"$2\"", "README.md", folder, script, NULL},
-	    NULL);
+	    (const char *const[]){"sh", "-euc", "cd \"$1\"; eval \"$2\"", name, folder, script, NULL}, NULL);
 	program_expect(&outcome, 0);
 	program_free(&outcome);
 	assert_int_equal(system(removal), 0);
-	free(build);
 	free(script);
-	free(readme);
+	free(page);
+	return blocks;
 }
 
-CHECK_MAIN(cmocka_unit_test(every_file_the_readme_names_is_there),
-           cmocka_unit_test(every_member_of_a_study_stands_in_the_readme_as_the_reader_takes_it),
-           cmocka_unit_test(every_distribution_stands_in_the_readme_with_its_parameters_and_rules),
+static void every_command_of_the_readme_and_the_docs_works(void **state)
+{
+	(void)state;
+	int blocks = 0;
+	char *build = realpath(getenv("POUND_BUILD") ? getenv("POUND_BUILD") : "build/release", NULL);
+	assert_non_null(build);
+	setenv("POUND_BUILD", build, 1);
+	setenv("no_proxy", "127.0.0.1", 1);
+	glob_t pages = pages_all();
+	for (size_t i = 0; i < pages.gl_pathc; i++)
+		blocks += commands_run(pages.gl_pathv[i]);
+	assert_true(blocks >= 10);
+	globfree(&pages);
+	free(build);
+}
+
+CHECK_MAIN(cmocka_unit_test(every_file_that_a_page_names_is_there),
+           cmocka_unit_test(every_link_between_the_pages_leads_to_a_heading),
+           cmocka_unit_test(every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it),
+           cmocka_unit_test(every_distribution_stands_in_the_docs_with_its_parameters_and_rules),
            cmocka_unit_test(the_usage_stands_in_the_readme_as_it_is_printed),
-           cmocka_unit_test_setup_teardown(every_command_of_the_readme_works, program_setup,
+           cmocka_unit_test_setup_teardown(every_command_of_the_readme_and_the_docs_works, program_setup,
                                            service_teardown))

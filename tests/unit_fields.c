@@ -189,7 +189,7 @@ static void kind_excitation_and_solver_decide_what_is_used(void **state)
 	}
 }
 
-/* A limit that only holds beside other members stands in the text of a field, which the README and OpenAPI show. */
+/* A limit that only holds beside other members stands in the text of a field, which docs/study.md and OpenAPI show. */
 static void every_limit_between_members_stands_in_the_text_of_its_field(void **state)
 {
 	(void)state;

@@ -1,4 +1,4 @@
-/* Every option of poundd, as a flag and from the environment, and as the README has it. */
+/* Every option of poundd, as a flag and from the environment, and as docs/server.md has it. */
 #include "server/options.h"
 
 #include <string.h>
@@ -69,27 +69,27 @@ static void what_an_option_does_not_take_is_refused_by_name(void **state)
 	}
 }
 
-static void every_option_stands_in_the_readme(void **state)
+static void every_option_stands_in_the_docs(void **state)
 {
-	char *readme = program_file("README.md", NULL);
+	char *page = program_file("docs/server.md", NULL);
 	int missing = 0;
 	(void)state;
-	assert_non_null(readme);
+	assert_non_null(page);
 	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
 		char name[64], line[400];
 		options_variable(row, name, sizeof name);
 		snprintf(line, sizeof line, "| `--%s%s%s` | `%s` | %s | %s |\n", row->name, row->argument ? " " : "",
 		         row->argument ? row->argument : "", name, row->absent && row->argument ? row->absent : "-",
 		         row->text);
-		if (!strstr(readme, line)) {
-			print_error("README.md has no line\n%s", line);
+		if (!strstr(page, line)) {
+			print_error("docs/server.md has no line\n%s", line);
 			missing++;
 		}
 	}
-	free(readme);
+	free(page);
 	assert_int_equal(missing, 0);
 }
 
 CHECK_MAIN(cmocka_unit_test(every_option_is_taken_as_a_flag_and_from_the_environment),
            cmocka_unit_test(what_an_option_does_not_take_is_refused_by_name),
-           cmocka_unit_test(every_option_stands_in_the_readme))
+           cmocka_unit_test(every_option_stands_in_the_docs))
