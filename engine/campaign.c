@@ -59,5 +59,6 @@ struct pound_sample_values pound_campaign_values(const struct pound_campaign *c,
 	                                    .denominator = elsewhere ? NULL : second,
 	                                    .variance = elsewhere ? second : NULL,
 	                                    .grouping = pound_design_grouping(c->study),
-	                                    .order = pound_design_order(c->study)};
+	                                    .order = pound_design_order(c->study),
+	                                    .inputs = c->study->inputs};
 }

@@ -8,6 +8,7 @@
 #include "engine/indices.h"
 #include "engine/legendre.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -179,6 +180,37 @@ static void fits_fill(struct fits *f)
 	}
 }
 
+/* Takes each fit to its mean by the share of it that the outputs it has not seen bear out, so that the noise of a fit with
+ * few samples for its terms does not make the indexes worse than without it.
+ *
+ *   share = sum (y - b_0) (g - b_0) / sum (g - b_0)^2,  b_0: the fit's own mean
+ *
+ * Test     unit_chaos: a_polynomial_that_cannot_follow_does_no_harm
+ */
+static void fits_shrink(struct fits *f)
+{
+	const int n_samples = f->rows->n_samples;
+	double product = 0.0, square = 0.0;
+	for (int fold = 0; fold < FOLDS; fold++) {
+		const double mean = f->coefficients[(size_t)fold * f->terms];
+		for (int k = 0; k < rows_in(f, fold) * n_samples; k++) {
+			const double g = *sample_of(f, f->fit, fold, k) - mean;
+			product += (*sample_of(f, f->rows->y, fold, k) - mean) * g;
+			square += g * g;
+		}
+	}
+	const double share = square > 0.0 ? fmin(fmax(product / square, 0.0), 1.0) : 0.0;
+	for (int fold = 0; fold < FOLDS; fold++) {
+		double *coefficients = f->coefficients + (size_t)fold * f->terms;
+		for (int term = 1; term < f->terms; term++)
+			coefficients[term] *= share;
+		for (int k = 0; k < rows_in(f, fold) * n_samples; k++) {
+			double *g = sample_of(f, f->fit, fold, k);
+			*g = coefficients[0] + share * (*g - coefficients[0]);
+		}
+	}
+}
+
 /* Closed parts of a fitted polynomial's variance: the squares of the coefficients of all terms in no other inputs. */
 static void parts_fill(const struct fits *f, int fold, double *part)
 {
@@ -214,7 +246,32 @@ static void estimates_fill(const struct fits *f, bool corrected)
 	}
 }
 
-/* The mean of the fits given one input, less that of the outputs, at the places of a curve. */
+enum { GAUSS = 4 }; // points of Gauss' rule: exact up to degree 7
+
+static const double gauss_place[GAUSS] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
+                                          0.9305681557970263};
+static const double gauss_weight[GAUSS] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
+                                           0.17392742256872692};
+
+/* Where the curve of an input is wanted: at its places, or, for the mean over each value of a discrete one, at the points
+ * of Gauss' rule within it; says how many. */
+static int places_fill(const struct pound_rows *rows, int input, double *place)
+{
+	static_assert(GAUSS * POUND_CURVE <= CHUNK, "a chunk holds the points of every value");
+	const int levels = pound_rows_levels(rows, input);
+	for (int k = 0; k < levels; k++) {
+		const struct pound_distribution *distribution = &rows->inputs[input].distribution;
+		const double low = pound_distribution_below(distribution, k),
+		             high = pound_distribution_below(distribution, k + 1);
+		for (int i = 0; i < GAUSS; i++)
+			place[k * GAUSS + i] = low + gauss_place[i] * (high - low);
+	}
+	for (int k = 0; k < POUND_CURVE && levels == 0; k++)
+		place[k] = pound_conditional_place(k);
+	return levels > 0 ? levels * GAUSS : POUND_CURVE;
+}
+
+/* The mean of the fits given one input, less that of the outputs, at the points of a curve. */
 static void trend_fill(struct fits *f, int input, double *trend)
 {
 	const int d = f->closed.n_inputs;
@@ -228,12 +285,18 @@ static void trend_fill(struct fits *f, int input, double *trend)
 		for (int fold = 0; fold < FOLDS && elsewhere == 0; fold++)
 			coefficients[term] += f->coefficients[(size_t)fold * f->terms + term] / FOLDS;
 	}
-	f->chunk.n = POUND_CURVE;
-	for (int k = 0; k < POUND_CURVE; k++)
+	double place[CHUNK];
+	f->chunk.n = places_fill(f->rows, input, place);
+	for (int k = 0; k < f->chunk.n; k++)
 		for (int j = 0; j < d; j++)
-			pound_legendre_point(&f->chunk, k, j, pound_conditional_place(k));
+			pound_legendre_point(&f->chunk, k, j, place[k]);
 	pound_legendre_expand(&f->chunk, f->degree, coefficients, f->value);
-	memcpy(trend, f->value, sizeof *trend * POUND_CURVE);
+	const int levels = pound_rows_levels(f->rows, input);
+	for (int k = 0; k < POUND_CURVE; k++) {
+		trend[k] = levels > 0 ? 0.0 : f->value[k];
+		for (int i = 0; i < GAUSS && k < levels; i++)
+			trend[k] += gauss_weight[i] * f->value[k * GAUSS + i];
+	}
 }
 
 /* The fits become what they leave of the outputs. */
@@ -279,6 +342,7 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
 		fits.mask[sample] = pound_order_mask(rows->n_inputs, sample);
 	folds_fill(&fits);
 	fits_fill(&fits);
+	fits_shrink(&fits);
 	estimates_fill(&fits, corrected);
 	pound_closed_indices(&fits.closed, fits.estimates, rows, fits.rest, results);
 	if (curves)

@@ -141,19 +141,32 @@ static void means_fill(const struct columns *columns)
 /* What an index is made of: a linear combination of the columns. */
 struct combination {
 	const struct pound_closed *closed;
-	bool known; /* the design has every column that is used */
+	unsigned constant; /* inputs of one value */
+	bool known;        /* the design has every column that is used */
 	double weight[POUND_CLOSED_COLUMNS_MAX];
 };
 
-static struct combination combination(const struct pound_closed *closed)
+static struct combination combination(const struct columns *columns)
 {
-	return (struct combination){.closed = closed, .known = true};
+	struct combination c = {.closed = columns->closed, .known = true};
+	for (int j = 0; j < columns->closed->n_inputs; j++)
+		c.constant |= (unsigned)(pound_rows_levels(columns->rows, j) == 1) << j;
+	return c;
+}
+
+/* The column of a set, or of one that differs in inputs of one value alone: what these explain is then exactly 0. */
+static int column_for(const struct combination *c, unsigned set)
+{
+	const unsigned all = all_of(c->closed);
+	const unsigned others = (set | c->constant) == all ? all : set & ~c->constant;
+	const int column = column_of(c->closed, others);
+	return column >= 0 && c->closed->known[column] ? column : column_of(c->closed, set);
 }
 
 /* Adds the closed part of a set as its column has it. */
 static void add(struct combination *c, double weight, unsigned set)
 {
-	const int column = column_of(c->closed, set);
+	const int column = column_for(c, set);
 	assert(column >= 0);
 	c->weight[column] += weight;
 	c->known &= c->closed->known[column];
@@ -204,10 +217,11 @@ static struct pound_estimate ratio_interval(const struct combination *c, const s
  * Source   Owen 2014, SIAM/ASA J. Uncertain. Quantif. 2, 245-251
  * Test     unit_closed: shapley_effects_add_up_to_one
  */
-static struct combination shapley(const struct pound_closed *closed, int j)
+static struct combination shapley(const struct columns *columns, int j)
 {
+	const struct pound_closed *closed = columns->closed;
 	const int d = closed->n_inputs;
-	struct combination c = combination(closed);
+	struct combination c = combination(columns);
 	for (unsigned set = 0; set < all_of(closed); set++) {
 		if (set >> j & 1)
 			continue;
@@ -227,7 +241,7 @@ static void sets_fill(const struct columns *columns, struct pound_set_indices *s
 	sets->n_second = sets->n_closed = 0;
 	for (int k = 1; k < closed->n_columns; k++) {
 		const unsigned set = closed->set[k];
-		struct combination c = combination(closed);
+		struct combination c = combination(columns);
 		add_closed(&c, 1.0, set);
 		if (c.known && set != all_of(closed) && closed->n_inputs <= POUND_FACTORIAL_INPUTS_MAX)
 			sets->closed[sets->n_closed++] = (struct pound_set_index){set, ratio_interval(&c, columns)};
@@ -272,13 +286,13 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 	const unsigned all = all_of(closed);
 	means_fill(&columns);
 	for (int j = 0; j < closed->n_inputs; j++) {
-		struct combination first = combination(closed), total = first, effect = first;
+		struct combination first = combination(&columns), total = first, effect = first;
 		add_closed(&first, 1.0, 1u << j);
 		add_closed(&total, 1.0, all);
 		add_closed(&total, -1.0, all ^ 1u << j);
 		effect.known = closed->n_inputs <= POUND_FACTORIAL_INPUTS_MAX;
 		if (effect.known)
-			effect = shapley(closed, j);
+			effect = shapley(&columns, j);
 		results->first[j] = ratio_interval(&first, &columns);
 		results->total[j] = ratio_interval(&total, &columns);
 		results->shapley[j] = ratio_interval(&effect, &columns);

@@ -50,7 +50,7 @@ static struct line line_of(const struct sums *s)
 static double kernel(double distance, double bandwidth)
 {
 	const double t = distance / bandwidth;
-	return fmax(0.0, 1.0 - t * t);
+	return t * t < 1.0 ? 1.0 - t * t : 0.0;
 }
 
 static void points_fill(struct points *points, const struct pound_conditional *given, int input)
@@ -162,11 +162,28 @@ double pound_conditional_place(int k)
 	return (k + 0.5) / POUND_CURVE;
 }
 
+int pound_conditional_points(const struct pound_distribution *distribution)
+{
+	const bool listed = pound_distribution_lists_values(distribution->type);
+	return listed && distribution->n_values < POUND_CURVE ? distribution->n_values : POUND_CURVE;
+}
+
+double pound_conditional_x(const struct pound_distribution *distribution, int k)
+{
+	const bool listed = pound_distribution_lists_values(distribution->type);
+	return listed && distribution->n_values <= POUND_CURVE
+	           ? distribution->values[k]
+	           : pound_distribution_quantile(distribution, pound_conditional_place(k));
+}
+
 static struct sums sums_at(const struct points *points, double place, double bandwidth)
 {
 	struct sums s = {0};
 	for (int k = 0; k < points->n; k++) {
-		const double u = points->u[k] - place, weight = kernel(u, bandwidth);
+		const double u = points->u[k] - place;
+		if (!(fabs(u) < bandwidth))
+			continue;
+		const double weight = kernel(u, bandwidth);
 		const double one = weight * points->weight[k % 2], y = weight * points->sum[k];
 		s.one += one;
 		s.u += one * u;
@@ -195,6 +212,8 @@ static void influence_fill(const struct points *points, const double *residual, 
 		influence[i] = 0.0;
 		for (int k = 2 * i; k < 2 * i + 2; k++) {
 			const double u = points->u[k] - place;
+			if (!(fabs(u) < bandwidth))
+				continue;
 			influence[i] += n * kernel(u, bandwidth) * (s->uu - s->u * u) / spread * residual[k];
 		}
 	}
@@ -249,6 +268,42 @@ static void curve_fill(const struct pound_conditional *given, const struct work 
 	}
 }
 
+/* The means of the rows at each of a discrete input's values. */
+static void levels_fill(const struct pound_conditional *given, int input, const struct work *work,
+                        struct pound_curve *curve)
+{
+	const struct pound_rows *rows = given->rows;
+	const struct points *points = &work->points;
+	const int n = rows->n_rows, levels = pound_rows_levels(rows, input);
+	for (int k = 0; k < points->n; k++)
+		points->u[k] = pound_distribution_level(&rows->inputs[input].distribution, points->u[k]);
+	for (int level = levels; level < POUND_CURVE; level++)
+		curve->mean[level] = (struct pound_estimate){NAN, NAN, NAN};
+	for (int level = 0; level < levels; level++) {
+		double weight = 0.0, sum = 0.0;
+		int behind = 0; // rows
+		for (int i = 0; i < n; i++) {
+			const bool at[2] = {points->u[2 * i] == level, points->u[2 * i + 1] == level};
+			behind += at[0] || at[1];
+			for (int k = 0; k < 2; k++) {
+				weight += at[k] ? points->weight[k] : 0.0;
+				sum += at[k] ? points->sum[2 * i + k] : 0.0;
+			}
+		}
+		for (int i = 0; i < n; i++) {
+			work->influence[i] = 0.0;
+			for (int k = 0; k < 2; k++)
+				if (points->u[2 * i + k] == level)
+					work->influence[i] +=
+					    n / weight * (points->sum[2 * i + k] - points->weight[k] * sum / weight);
+		}
+		const double mean = behind > 0 ? rows->mean + given->trend[level] + sum / weight : NAN;
+		const double half =
+		    behind > 1 ? pound_jackknife_half_width(work->influence, n, &rows->scatter, work->groups) : NAN;
+		curve->mean[level] = (struct pound_estimate){mean, mean - half, mean + half};
+	}
+}
+
 size_t pound_conditional_scratch(int n_rows)
 {
 	return carve(NULL, NULL, n_rows);
@@ -258,7 +313,8 @@ size_t pound_conditional_scratch(int n_rows)
  *
  * Given    given     -                     rows of POUND_ROWS_MIN at least
  *          input     -
- * Returns  curve     -                     at u = (k + 1/2) / POUND_CURVE, with 95 % bands at each place
+ * Returns  curve     -                     at u = (k + 1/2) / POUND_CURVE, with 95 % bands at each place; of a discrete input
+ *                                          at each value, exact means, and NAN after the last
  * Memory   scratch   (pound_conditional_scratch)
  *
  * Valid    Any design.  A kink that the trend does not have is rounded within the bandwidth.
@@ -270,5 +326,8 @@ void pound_conditional_mean(const struct pound_conditional *given, int input, do
 	struct work work = {0};
 	carve(&work, scratch, given->rows->n_rows);
 	points_fill(&work.points, given, input);
-	curve_fill(given, &work, bandwidth_of(work.bins, &work.points), curve);
+	if (pound_rows_levels(given->rows, input) > 0)
+		levels_fill(given, input, &work, curve);
+	else
+		curve_fill(given, &work, bandwidth_of(work.bins, &work.points), curve);
 }

@@ -206,23 +206,38 @@ static bool not_ascending(const struct pound_distribution *d)
 	return false;
 }
 
-/* Quantile of a variable that takes some values with probabilities as their weights.
+/* Sum of the weights of the first n values. */
+static double weight_of(const struct pound_distribution *d, int n)
+{
+	double sum = 0.0;
+	for (int k = 0; k < n; k++)
+		sum += d->weights ? d->weights[k] : 1.0;
+	return sum;
+}
+
+/* The number of a discrete variable's value that it has or falls below with a given probability.
  *
- * Returns  value     x         -       the smallest value x_k with w_1 + ... + w_k >= u (w_1 + ... + w_n)
+ * Returns  value     k         -       the smallest with w_0 + ... + w_k >= u (w_0 + ... + w_(n-1))
  *
  * Test     unit_distribution: a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_weights
  */
-static double discrete(const struct pound_distribution *d, double u)
+int pound_distribution_level(const struct pound_distribution *distribution, double u)
 {
-	double total = 0.0, below = 0.0;
-	for (int k = 0; k < d->n_values; k++)
-		total += d->weights ? d->weights[k] : 1.0;
-	for (int k = 0; k < d->n_values - 1; k++) {
-		below += d->weights ? d->weights[k] : 1.0;
+	const double total = weight_of(distribution, distribution->n_values);
+	double below = 0.0;
+	int k = 0;
+	for (; k < distribution->n_values - 1; k++) {
+		below += distribution->weights ? distribution->weights[k] : 1.0;
 		if (u * total <= below)
-			return d->values[k];
+			break;
 	}
-	return d->values[d->n_values - 1];
+	return k;
+}
+
+/* Probability of the values of a discrete variable before number k. */
+double pound_distribution_below(const struct pound_distribution *distribution, int k)
+{
+	return weight_of(distribution, k) / weight_of(distribution, distribution->n_values);
 }
 
 // clang-format off
@@ -292,7 +307,8 @@ double pound_distribution_quantile(const struct pound_distribution *distribution
 {
 	assert(u >= 0.0 && u <= 1.0);
 	const struct distribution *row = &distributions[distribution->type];
-	return row->quantile ? row->quantile(distribution->p, u) : discrete(distribution, u);
+	return row->quantile ? row->quantile(distribution->p, u)
+	                     : distribution->values[pound_distribution_level(distribution, u)];
 }
 
 void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high)

@@ -20,6 +20,8 @@ struct pound_sample_values {
 	const double *variance;
 	struct pound_grouping grouping; /* of the rows */
 	int order;                      /* row of the orders: which samples a row has */
+	const struct pound_input
+	    *inputs; /* how they are distributed  (n_inputs); NULL: without values that come often */
 };
 
 /* How they came about. */
@@ -50,10 +52,13 @@ struct pound_rows {
 	double *y;         /* (n_rows x n_samples) */
 	double *deviation; /* (n_rows x n_samples x n_signals); NAN: one signal of unknown variance */
 	bool independent;  /* samples of a row do not share their noise; one signal stands for all */
+	const struct pound_input *inputs; /* of the sample values */
 };
 
 size_t pound_rows_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch);
+/* How many values an input has, if each comes often; 0: as good as no value comes twice. */
+int pound_rows_levels(const struct pound_rows *rows, int input);
 /* Covariances of a row's outputs over draws of the noise  (n_samples x n_samples) */
 void pound_rows_noise(const struct pound_rows *rows, int row, double *noise);
 

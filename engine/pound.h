@@ -266,6 +266,9 @@ bool pound_ratio_takes(const struct pound_distribution *distribution);
 /* Whether its parameters break rule k; one that is NAN, not known, breaks none. */
 bool pound_distribution_breaks(const struct pound_distribution *distribution, int k);
 double pound_distribution_quantile(const struct pound_distribution *distribution, double u); /* u in [0, 1] */
+int pound_distribution_level(const struct pound_distribution *distribution,
+                             double u); /* of its list of values */
+double pound_distribution_below(const struct pound_distribution *distribution, int k); /* that level */
 /* The ends of the interval that holds every value; infinite for a normal. */
 void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high);
 
@@ -334,14 +337,18 @@ struct pound_ratio_indices {
 	    shapley[POUND_FACTORIAL_INPUTS_MAX]; /* (n) each */
 };
 
-/* The mean output given an input, where its probability is (k + 1/2) / POUND_CURVE; NAN: too few rows. */
+/* The mean output given an input: at every value of a discrete one of up to POUND_CURVE, of any other where its
+ * probability is (k + 1/2) / POUND_CURVE; NAN: too few rows. */
 enum { POUND_CURVE = 50 };
 
 struct pound_curve {
 	struct pound_estimate mean[POUND_CURVE];
 };
 
-double pound_conditional_place(int k); /* that probability */
+double pound_conditional_place(int k);                                       /* that probability */
+int pound_conditional_points(const struct pound_distribution *distribution); /* of such a curve */
+double pound_conditional_x(const struct pound_distribution *distribution,
+                           int k); /* the input's value at point k */
 
 /* Those that the design of the study tells, sets in ascending order. */
 struct pound_set_indices {

@@ -63,6 +63,18 @@ void pound_rows_noise(const struct pound_rows *rows, int row, double *noise)
 		}
 }
 
+/* Given    input     -       of the rows
+ * Returns  value     -       the values of a discrete input, up to POUND_CURVE; 0: of any other
+ *
+ * Test     unit_rows: an_input_of_few_values_has_as_many_levels
+ */
+int pound_rows_levels(const struct pound_rows *rows, int input)
+{
+	const struct pound_distribution *distribution = rows->inputs ? &rows->inputs[input].distribution : NULL;
+	const bool listed = distribution && pound_distribution_lists_values(distribution->type);
+	return listed && distribution->n_values <= POUND_CURVE ? distribution->n_values : 0;
+}
+
 /* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros. */
 static void centre(struct pound_rows *rows)
 {
@@ -139,6 +151,7 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 	                            .n_signals = values->n_signals,
 	                            .order = values->order,
 	                            .independent = values->variance,
+	                            .inputs = values->inputs,
 	                            .y = scratch};
 	rows->deviation = rows->y + (size_t)values->n_rows * n_samples;
 	rows->row = (int64_t *)(rows->deviation + (size_t)values->n_rows * n_samples * values->n_signals);

@@ -200,35 +200,44 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 }
 
 /* One member of every point of a curve. */
-static void write_points(struct writer *w, const char *name, const struct pound_curve *curve, size_t member)
+static void write_points(struct writer *w, const char *name, const struct pound_curve *curve, int n,
+                         size_t member)
 {
 	writer_array(w, name, WRITER_LINE);
-	for (int k = 0; k < POUND_CURVE; k++)
+	for (int k = 0; k < n; k++)
 		writer_number(w, NULL, *(const double *)(const void *)((const char *)&curve->mean[k] + member));
 	writer_end(w);
+}
+
+static bool has_points(const struct pound_curve *curve)
+{
+	int k = 0;
+	while (k < POUND_CURVE && isnan(curve->mean[k].value))
+		k++;
+	return k < POUND_CURVE;
 }
 
 /* The mean output given each input; nothing where there is none. */
 static void write_curves(struct writer *w, const struct pound_study *study,
                          const struct pound_indices *indices)
 {
-	if (!indices->curves || isnan(indices->curves[0].mean[0].value))
+	if (!indices->curves || !has_points(&indices->curves[0]))
 		return;
 	writer_array(w, "conditional_means", WRITER_LINES);
 	for (int j = 0; j < study->n_inputs; j++) {
 		const struct pound_curve *curve = &indices->curves[j];
+		const struct pound_distribution *distribution = &study->inputs[j].distribution;
+		const int n = pound_conditional_points(distribution);
 		writer_object(w, NULL, WRITER_LINES);
 		writer_text(w, "name", study->inputs[j].name);
 		writer_text(w, "path", study->inputs[j].path);
 		writer_array(w, "x", WRITER_LINE);
-		for (int k = 0; k < POUND_CURVE; k++)
-			writer_number(
-			    w, NULL,
-			    pound_distribution_quantile(&study->inputs[j].distribution, pound_conditional_place(k)));
+		for (int k = 0; k < n; k++)
+			writer_number(w, NULL, pound_conditional_x(distribution, k));
 		writer_end(w);
-		write_points(w, "mean", curve, offsetof(struct pound_estimate, value));
-		write_points(w, "low", curve, offsetof(struct pound_estimate, low));
-		write_points(w, "high", curve, offsetof(struct pound_estimate, high));
+		write_points(w, "mean", curve, n, offsetof(struct pound_estimate, value));
+		write_points(w, "low", curve, n, offsetof(struct pound_estimate, low));
+		write_points(w, "high", curve, n, offsetof(struct pound_estimate, high));
 		writer_end(w);
 	}
 	writer_end(w);

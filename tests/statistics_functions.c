@@ -60,8 +60,39 @@ static double unequal(const double *u)
 	return 4.0 * u[0] + fabs(2.0 * u[1] - 1.0) + (u[2] - 0.5) * (u[3] - 0.5);
 }
 
+/* A window: the output jumps twice in the middle of one input's range, and once by less in another's.
+ *
+ *   [1/4 < u1 < 3/4]: 1/4;  u2: 1/12;  0.3 [u4 > 1/2]: 0.09 / 4;  no interaction, u3 without effect
+ */
+static double window(const double *u)
+{
+	return (u[0] > 0.25 && u[0] < 0.75 ? 1.0 : 0.0) + u[1] + (u[3] > 0.5 ? 0.3 : 0.0);
+}
+
+/* A jump at an edge of the range, of one sample in twenty.
+ *
+ *   2 [u1 > 0.95] (1 + u2): m = 1/10, 3/2 and q - m^2 = 0.2 - 0.01, 1/12:
+ *   of u1 alone 0.19 9/4 = 0.4275, of u2 alone 0.01 / 12, together 0.19 / 12;  u3: 1/12, u4 without effect
+ */
+static double edge(const double *u)
+{
+	return (u[0] > 0.95 ? 2.0 * (1.0 + u[1]) : 0.0) + u[2];
+}
+
+/* One input's twelve waves, of 21 rows each at n = 250.
+ *
+ *   sin(24 pi u1): 1/2;  u2: 1/12;  2 (u3 - 1/2)(u4 - 1/2): 4 / 144, all of it interaction
+ */
+static double sine(const double *u)
+{
+	return sin(24.0 * M_PI * u[0]) + u[1] + 2.0 * (u[2] - 0.5) * (u[3] - 0.5);
+}
+
 #define CORNER  (0.99 + 5.0 / 12.0)
 #define UNEQUAL (4.0 / 3.0 + 1.0 / 12.0 + 1.0 / 144.0)
+#define WINDOW  (1.0 / 4.0 + 1.0 / 12.0 + 0.09 / 4.0)
+#define EDGE    (0.4275 + 0.01 / 12.0 + 0.19 / 12.0 + 1.0 / 12.0)
+#define SINE    (1.0 / 2.0 + 1.0 / 12.0 + 1.0 / 36.0)
 
 const struct function statistics_functions[] = {
     {.name = "maximum",
@@ -92,5 +123,23 @@ const struct function statistics_functions[] = {
      .variance = UNEQUAL,
      .index = {4.0 / 3.0 / UNEQUAL, 1.0 / 12.0 / UNEQUAL, 0.0, 0.0, 4.0 / 3.0 / UNEQUAL, 1.0 / 12.0 / UNEQUAL,
                1.0 / 144.0 / UNEQUAL, 1.0 / 144.0 / UNEQUAL}},
+    {.name = "window",
+     .y = window,
+     .mean = 1.15,
+     .variance = WINDOW,
+     .index = {0.25 / WINDOW, 1.0 / 12.0 / WINDOW, 0.0, 0.0225 / WINDOW, 0.25 / WINDOW, 1.0 / 12.0 / WINDOW,
+               0.0, 0.0225 / WINDOW}},
+    {.name = "edge",
+     .y = edge,
+     .mean = 0.65,
+     .variance = EDGE,
+     .index = {0.4275 / EDGE, 0.01 / 12.0 / EDGE, 1.0 / 12.0 / EDGE, 0.0, (0.4275 + 0.19 / 12.0) / EDGE,
+               0.2 / 12.0 / EDGE, 1.0 / 12.0 / EDGE, 0.0}},
+    {.name = "sine",
+     .y = sine,
+     .mean = 0.5,
+     .variance = SINE,
+     .index = {0.5 / SINE, 1.0 / 12.0 / SINE, 0.0, 0.0, 0.5 / SINE, 1.0 / 12.0 / SINE, 1.0 / 36.0 / SINE,
+               1.0 / 36.0 / SINE}},
     {.name = NULL},
 };

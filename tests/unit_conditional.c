@@ -184,7 +184,59 @@ static void groups_of_rows_and_all_mixtures_are_taken_as_they_are(void **state)
 	assert_true(factorial.error <= 0.0092 && factorial.coverage >= 0.90);
 }
 
+static double by_level(const double *u)
+{
+	return (u[1] > 0.25 ? 4.0 : 0.0) + u[0] * (u[1] > 0.75 ? 2.0 : 1.0) + 0.2 * u[2];
+}
+
+static void a_discrete_input_has_one_exact_mean_for_each_of_its_values(void **state)
+{
+	(void)state;
+	static const double numbers[] = {-1, 0, 7}, weights[] = {1, 2, 1}, want[] = {0.6, 4.6, 5.1};
+	struct pound_input inputs[D] = {{.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}}};
+	struct pound_distribution *discrete = &inputs[1].distribution;
+	while (!pound_distribution_lists_values(discrete->type))
+		discrete->type++;
+	discrete->n_values = 3;
+	discrete->values = numbers;
+	discrete->weights = weights;
+	assert_int_equal(pound_conditional_points(discrete), 3);
+	assert_int_equal(pound_conditional_points(&inputs[0].distribution), POUND_CURVE);
+	const struct function f = {.name = "by_level", .y = by_level};
+	int covered = 0;
+	for (int seed = 0; seed < 40; seed++) {
+		const struct pound_design design = {.rows = 250, .seed = (uint64_t)seed};
+		struct pound_sample_values values = function_values_of(&f, &design, noiseless);
+		values.inputs = inputs;
+		struct pound_rows rows;
+		struct pound_curve curves[D];
+		struct pound_closed_results results;
+		double *u = function_design_of(&design);
+		double *scratch =
+		    malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_scratch(&values)));
+		pound_rows_init(&rows, &values, scratch);
+		pound_chaos_indices(&rows, u, false, scratch + pound_rows_scratch(&values), &results, curves);
+		for (int k = 0; k < 3; k++) {
+			const struct pound_estimate *mean = &curves[1].mean[k];
+			check_near(pound_conditional_x(discrete, k), numbers[k], 0.0);
+			// the deviation of the other inputs is 0.6 at most, over some 125 rows of either matrix
+			check_near(mean->value, want[k], 5 * 0.6 / sqrt(125));
+			covered += mean->low <= want[k] && want[k] <= mean->high;
+		}
+		assert_true(isnan(curves[1].mean[3].value) && isnan(curves[1].mean[POUND_CURVE - 1].high));
+		assert_false(isnan(curves[0].mean[POUND_CURVE - 1].value));
+		free(scratch), free(u);
+		function_values_free(&values);
+	}
+	// of 120 bands 114 are to hold, give or take 2.4
+	assert_true(covered >= 105);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_straight_line_is_met_but_for_what_the_other_inputs_scatter),
            cmocka_unit_test(a_line_of_one_input_is_exact_and_so_is_its_band),
            cmocka_unit_test(errors_of_six_thousand_runs_are_a_fraction_of_those_of_smoothing_alone),
-           cmocka_unit_test(groups_of_rows_and_all_mixtures_are_taken_as_they_are))
+           cmocka_unit_test(groups_of_rows_and_all_mixtures_are_taken_as_they_are),
+           cmocka_unit_test(a_discrete_input_has_one_exact_mean_for_each_of_its_values))

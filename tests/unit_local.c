@@ -156,12 +156,12 @@ static struct performance performance_of(const struct function *f, struct functi
 static void errors_over_designs_are_a_fraction_of_those_of_pick_freeze(void **state)
 {
 	(void)state;
-	// measured over 150 designs; pick-freeze has 0.020 to 0.033
+	// measured over 100 designs; pick-freeze has 0.020 to 0.033, one reach alone 0.006 to 0.010 and a bias at jumps
 	static const struct {
 		const char *name;
 		double rms;
-	} measured[] = {{"ishigami", .0099}, {"g_a", .0081},   {"g_b", .0104},
-	                {"cusp", .0095},     {"steps", .0102}, {"interactions", .0057}};
+	} measured[] = {{"ishigami", .0120}, {"g_a", .0106},   {"g_b", .0122},
+	                {"cusp", .0116},     {"steps", .0117}, {"interactions", .0091}};
 	for (int k = 0; k < 6; k++) {
 		struct performance p =
 		    performance_of(function_named(measured[k].name), (struct function_noise){1, 0.0, true});
@@ -172,11 +172,85 @@ static void errors_over_designs_are_a_fraction_of_those_of_pick_freeze(void **st
 	}
 }
 
+/* [1/4 < u1 < 3/4] + u2 + 0.3 [u4 > 1/2]; variances 1/4, 1/12, 0, 0.09/4, no interaction. */
+static double jumps(const double *u)
+{
+	return (u[0] > 0.25 && u[0] < 0.75) + u[1] + 0.3 * (u[3] > 0.5);
+}
+
+static void a_jump_within_the_range_leaves_no_bias_and_the_interval_holds(void **state)
+{
+	(void)state;
+	const double variance = 1.0 / 4.0 + 1.0 / 12.0 + 0.09 / 4.0;
+	const struct function f = {.name = "jumps",
+	                           .y = jumps,
+	                           .variance = variance,
+	                           .index = {0.25 / variance, 1.0 / 12.0 / variance, 0.0, 0.0225 / variance}};
+	// one reach alone: a bias of 0.016, and of the intervals of the first input a third held
+	struct performance p = performance_of(&f, (struct function_noise){1, 0.0, true});
+	assert_true(p.bias <= 0.004);
+	assert_true(p.coverage >= 0.95);
+}
+
+/* sin(16 pi u1) + u2: variances 1/2, 1/12. */
+static double waves(const double *u)
+{
+	return sin(16.0 * M_PI * u[0]) + u[1];
+}
+
+static void what_neighbours_cannot_tell_is_in_the_interval(void **state)
+{
+	(void)state;
+	const double variance = 1.0 / 2.0 + 1.0 / 12.0;
+	const struct function f = {
+	    .name = "waves", .y = waves, .variance = variance, .index = {0.5 / variance, 1.0 / 12.0 / variance}};
+	// a wave of 6 of the wider reaches: extrapolation goes too far by some hundredths
+	struct performance p = performance_of(&f, (struct function_noise){1, 0.0, true});
+	assert_true(p.bias > 0.02);
+	assert_true(p.coverage >= 0.95);
+}
+
+enum { LEVELS = 3 };
+
+static double staircase(const double *u)
+{
+	return (u[0] > 0.2 ? 1.0 : 0.0) + (u[0] > 0.7 ? 2.0 : 0.0) + u[1];
+}
+
+static void means_at_the_values_of_a_discrete_input_are_its_index(void **state)
+{
+	(void)state;
+	// values 0, 1, 3 with probabilities 0.2, 0.5, 0.3: mean 1.4, variance 3.2 - 1.96
+	static const double numbers[LEVELS] = {0, 1, 3}, weights[LEVELS] = {2, 5, 3};
+	const double variance = 1.24 + 1.0 / 12.0;
+	const struct function f = {.name = "staircase", .y = staircase};
+	struct pound_input inputs[D] = {{.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}}};
+	while (!pound_distribution_lists_values(inputs[0].distribution.type))
+		inputs[0].distribution.type++;
+	inputs[0].distribution.n_values = LEVELS;
+	inputs[0].distribution.values = numbers;
+	inputs[0].distribution.weights = weights;
+	struct pound_sample_values values = function_values(&f, N, 5, (struct function_noise){.n_signals = 1});
+	values.inputs = inputs;
+	double *x = function_design(N, 5);
+	struct pound_estimate first[D];
+	first_of(&values, x, false, first);
+	// a hypercube has the levels in proportion; what is left is the variance of u2 in the levels, 1/12 over 3000 rows
+	check_near(first[0].value, 1.24 / variance, 2e-3);
+	assert_true(first[0].low <= 1.24 / variance && 1.24 / variance <= first[0].high);
+	check_near(first[1].value, 1.0 / 12.0 / variance, 0.03);
+	free(x);
+	function_values_free(&values);
+}
+
 static void noise_of_few_signals_leaves_no_bias(void **state)
 {
 	(void)state;
 	struct performance p = performance_of(function_named("cusp"), (struct function_noise){5, 1.0, true});
-	assert_true(p.rms <= 1.3 * 0.0133);
+	assert_true(p.rms <= 1.3 * 0.0155);
 	assert_true(p.bias <= 0.006);
 	assert_true(p.coverage >= 0.93);
 }
@@ -187,4 +261,7 @@ CHECK_MAIN(cmocka_unit_test(the_golden_predictions_are_met),
            cmocka_unit_test(too_few_rows_or_a_constant_output_have_no_indexes),
            cmocka_unit_test(shift_and_scale_change_no_index),
            cmocka_unit_test(errors_over_designs_are_a_fraction_of_those_of_pick_freeze),
+           cmocka_unit_test(a_jump_within_the_range_leaves_no_bias_and_the_interval_holds),
+           cmocka_unit_test(what_neighbours_cannot_tell_is_in_the_interval),
+           cmocka_unit_test(means_at_the_values_of_a_discrete_input_are_its_index),
            cmocka_unit_test(noise_of_few_signals_leaves_no_bias))

@@ -151,10 +151,31 @@ static void the_jackknife_sees_the_bias_of_a_ratio_of_few_signals(void **state)
 	free(rows.y), free(numerator), free(denominator);
 }
 
+static void an_input_of_few_values_has_as_many_levels(void **state)
+{
+	(void)state;
+	double numbers[POUND_CURVE + 1];
+	struct pound_input input = {.name = "k"};
+	const struct pound_rows unknown = {0}, rows = {.inputs = &input};
+	for (int k = 0; k <= POUND_CURVE; k++)
+		numbers[k] = k;
+	assert_int_equal(pound_rows_levels(&unknown, 0), 0);
+	assert_int_equal(pound_rows_levels(&rows, 0), 0); // uniform
+	while (!pound_distribution_lists_values(input.distribution.type))
+		input.distribution.type++;
+	input.distribution.values = numbers;
+	const int many[] = {1, 3, POUND_CURVE, POUND_CURVE + 1}, want[] = {1, 3, POUND_CURVE, 0};
+	for (int k = 0; k < 4; k++) {
+		input.distribution.n_values = many[k];
+		assert_int_equal(pound_rows_levels(&rows, 0), want[k]);
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(outputs_are_ratios_of_means_less_the_mean_of_a_and_b),
            cmocka_unit_test(the_variance_of_a_ratio_of_means_is_that_of_its_linearisation),
            cmocka_unit_test(one_signal_says_nothing_of_the_noise),
            cmocka_unit_test(a_known_variance_stands_for_noise_that_samples_do_not_share),
            cmocka_unit_test(a_row_is_left_out_for_any_number_it_lacks),
            cmocka_unit_test(equal_outputs_are_exact_zeros_about_their_mean),
+           cmocka_unit_test(an_input_of_few_values_has_as_many_levels),
            cmocka_unit_test(the_jackknife_sees_the_bias_of_a_ratio_of_few_signals))

@@ -335,6 +335,53 @@ static void a_study_s_result_holds_what_its_samples_give(void **state)
 	}
 }
 
+static void check_zero(struct pound_estimate estimate)
+{
+	check_near(estimate.value, 0.0, 0.0);
+	check_near(estimate.low, 0.0, 0.0);
+	check_near(estimate.high, 0.0, 0.0);
+}
+
+static void an_input_of_one_value_explains_exactly_nothing(void **state)
+{
+	(void)state;
+	static const double one_value[] = {3};
+	struct pound_input inputs[D] = {{.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}},
+	                                {.distribution = {.p = {0, 1}}}};
+	while (!pound_distribution_lists_values(inputs[3].distribution.type))
+		inputs[3].distribution.type++;
+	inputs[3].distribution.n_values = 1;
+	inputs[3].distribution.values = one_value;
+	// the fourth input of this function has no effect; with signals of their own its samples differ all the same
+	for (int common = 0; common < 2; common++)
+		for (int n = 20; n <= 200; n += 180) {
+			struct pound_sample_values values =
+			    function_values(function_named("ishigami"), n, 7, (struct function_noise){5, 0.5, common});
+			values.inputs = inputs;
+			double *u = function_design(n, 7);
+			struct indexes *got = indexes_of(
+			    &values, (struct pound_sampling){.u = u, .random = true, .fresh_signals = !common});
+			check_zero(got->estimates[POUND_S1][3]);
+			check_zero(got->estimates[POUND_ST][3]);
+			for (int j = 0; j < 3 && n == 200; j++)
+				assert_true(width(got->estimates[POUND_ST][j]) > 0.0);
+			double sum = 0.0;
+			for (int j = 0; j < D && n == 200; j++)
+				sum += got->estimates[POUND_SHAPLEY][j].value;
+			if (n == 200) {
+				check_zero(got->estimates[POUND_SHAPLEY][3]);
+				check_near(sum, 1.0, 1e-12);
+			}
+			for (int k = 0; k < got->of.sets.n_second; k++)
+				if (got->of.sets.second[k].inputs >> 3 & 1)
+					check_zero(got->of.sets.second[k].estimate);
+			free(got), free(u);
+			function_values_free(&values);
+		}
+}
+
 CHECK_MAIN(cmocka_unit_test(every_column_comes_from_its_function),
            cmocka_unit_test(raw_indexes_are_the_golden_ones_of_the_plain_protocol),
            cmocka_unit_test(a_single_signal_leaves_the_raw_indexes_and_is_told_from_no_randomness),
@@ -342,4 +389,5 @@ CHECK_MAIN(cmocka_unit_test(every_column_comes_from_its_function),
            cmocka_unit_test(with_few_rows_the_corrected_indexes_stand_in),
            cmocka_unit_test(what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left),
            cmocka_unit_test(nothing_is_defined_where_nothing_varies_or_nothing_is_left),
+           cmocka_unit_test(an_input_of_one_value_explains_exactly_nothing),
            cmocka_unit_test(a_study_s_result_holds_what_its_samples_give))
