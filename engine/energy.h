@@ -6,30 +6,20 @@
 
 #include "engine/series.h"
 
-/* Gauss-Legendre nodes and weights on [0, 1], exact to degree 23: a step's powers are products of series whose terms
- * have died away to rounding there.  Abramowitz and Stegun 1964, Table 25.4. */
-enum { GAUSS = 12 };
-
-static const double GAUSS_NODE[GAUSS / 2] = {0.125233408511468915, 0.367831498998180194,
-                                             0.587317954286617447, 0.769902674194304687,
-                                             0.904117256370474857, 0.981560634246719251};
-static const double GAUSS_WEIGHT[GAUSS / 2] = {0.249147045813402785, 0.233492536538354809,
-                                               0.203167426723065922, 0.160078328543346226,
-                                               0.106939325995318431, 0.047175336386511827};
-
 /* Adds the work of a step, per mass of the left body [m2/s2].
  *
  * Given    s       the step's series;  time: the share of it that was gone
  * Returns  g       work_in: by the ground; work_gap + work_low: by the dashpots, on the laws' springs and on the contact,
- *                  less that by the ground, summed with the rounding of each addition carried on (Kahan 1965)
+ *                  less that by the ground, summed with the rounding of each addition carried on (Kahan 1965);
+ *                  work_top: the largest work_in or kinetic energy so far
  */
 static void energy_add(struct lanes *g, const struct series *s, vd time, bool paired, bool touching)
 {
 	vd in = vsplat(0), out = in, dt = g->dt;
 	const vd mass[2] = {vsplat(1), g->right_mass};
-	for (int j = 0; j < GAUSS; j++) {
-		double node = j < GAUSS / 2 ? -GAUSS_NODE[j] : GAUSS_NODE[j - GAUSS / 2];
-		vd weight = vsplat(0.5 * GAUSS_WEIGHT[j % (GAUSS / 2)]);
+	for (int j = 0; j < POUND_GAUSS; j++) {
+		double node = j < POUND_GAUSS / 2 ? -POUND_GAUSS_NODE[j] : POUND_GAUSS_NODE[j - POUND_GAUSS / 2];
+		vd weight = vsplat(0.5 * POUND_GAUSS_WEIGHT[j % (POUND_GAUSS / 2)]);
 		vd t = vsplat(0.5 + 0.5 * node) * time;
 		vd ground = vfma(g->slope, t * dt, g->ground);
 		for (int i = 0; i < (paired ? 2 : 1); i++) {
@@ -48,6 +38,12 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 	vd gap = vfma(elapsed, out - in, g->work_low), sum = g->work_gap + gap;
 	g->work_low = gap - (sum - g->work_gap);
 	g->work_gap = sum;
+	vd moving = vsplat(0);
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		vd v = power_at(&s->body[i].v, s->order, time) / dt;
+		moving = vfma(0.5 * mass[i] * v, v, moving);
+	}
+	g->work_top = vmax(g->work_top, vmax(vabs(g->work_in), moving));
 }
 
 #endif

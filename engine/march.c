@@ -181,6 +181,26 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 
 /* ---- whole cells of contact ---- */
 
+/* The lanes' state and ground motion at the start of a map. */
+struct press_start {
+	vd x[4], ground;
+};
+
+/* Accounts for the energy of the lanes that went over their map. */
+static void press_account(const struct batch *b, const struct press_start *start, const struct press *s,
+                          unsigned pressed)
+{
+	for (; pressed; pressed &= pressed - 1) {
+		int l = __builtin_ctz(pressed);
+		double x[POUND_PRESS_INPUTS], end[4];
+		for (int j = 0; j < POUND_PRESS_INPUTS; j++)
+			x[j] = ((const double *)(j < 4 ? &start->x[j] : &s->x[j]))[l];
+		for (int j = 0; j < 4; j++)
+			end[j] = ((const double *)&s->x[j])[l];
+		pound_press_account(b->sim[l], x, end, ((const double *)&start->ground)[l]);
+	}
+}
+
 /* A lane at a sample enters the next interval; false: there is none. */
 static bool press_interval(struct lanes *g, const struct batch *b, int l)
 {
@@ -228,11 +248,14 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	int few = b->n / 2;
 	do {
 		vm going = vmask(pressed);
+		struct press_start start = {{s.x[0], s.x[1], s.x[2], s.x[3]}, g.ground};
 		unsigned risk = vbits(stage == STAGE_REST ? rest(&g, &s, going, edged)
 		                                          : press(&g, &s, going, edged, right, forced)) &
 		                pressed;
 		pressed &= ~risk;
 		refused |= risk;
+		if (b->traits & TRAIT_ACCOUNTED)
+			press_account(b, &start, &s, pressed);
 		unsigned sampled = vbits(vequal(g.cells, vsplat(0))) & pressed;
 		for (unsigned bits = sampled; bits; bits &= bits - 1) {
 			int l = __builtin_ctz(bits);

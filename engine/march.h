@@ -41,14 +41,13 @@ struct pound_march_result {
 	double impulse_max;                         /* largest integral of F/m1 over one contact [m/s] */
 	double contact_time;                        /* [s] */
 	int64_t contacts;
-	double
-	    energy_residual; /* |kinetic + absorbed - put in| over what was put in, or the largest kinetic energy; NAN: not
-							   accounted */
+	// |kinetic + absorbed - put in| over the most along the way of what was put in and of kinetic energy; NAN: not accounted
+	double energy_residual;
 	double first_contact,
 	    first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
 };
 
-enum { POUND_MARCH_SCRATCH = 1 << 19 }; /* bytes of work space, 64-byte aligned */
+enum { POUND_MARCH_SCRATCH = 1 << 20 }; /* bytes of work space, 64-byte aligned */
 
 bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
                        int n, void *scratch);

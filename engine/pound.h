@@ -311,7 +311,7 @@ struct pound_response {
 #define X(member, name, oscillator) double member;
 	POUND_MEASURES(X)
 #undef X
-	double energy_residual; /* energy put in and not found again, over what was put in */
+	double energy_residual; /* energy put in and not found again, over the most there was along the way */
 };
 
 struct pound_estimate {

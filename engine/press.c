@@ -21,10 +21,45 @@ enum {
 	MAP_ORDERS = 18, /* of a map's series; 0.8^18/18! = 3e-18 */
 };
 
+/* Adds term n of the rates of base and overlap, times the cell's length, at the nodes of a quadrature. */
+static void rates_add(double rates[POUND_GAUSS][2][N], int n, const double w[N], const double z[N])
+{
+	for (int g = 0; g < POUND_GAUSS; g++) {
+		double node = g < POUND_GAUSS / 2 ? -POUND_GAUSS_NODE[g] : POUND_GAUSS_NODE[g - POUND_GAUSS / 2];
+		double power = 1;
+		for (int m = 0; m < n; m++)
+			power *= 0.5 + 0.5 * node;
+		for (int j = 0; j < N; j++) {
+			rates[g][0][j] += power * w[j];
+			rates[g][1][j] += power * z[j];
+		}
+	}
+}
+
+/* What the dashpots of both bodies and of the contact take over a cell, per mass of the left body, as a quadratic form of
+ * the inputs: the integral of m c v^2 by quadrature, exact to rounding. */
+static void loss_fill(double loss[N][N], const double rates[POUND_GAUSS][2][N], const struct simulation *sim)
+{
+	const struct pound_rows *x = &sim->x;
+	const double mass[2] = {1, x->right_mass};
+	const int b = sim->base, o = 1 - b;
+	memset(loss, 0, sizeof(double[N][N]));
+	for (int g = 0; g < POUND_GAUSS; g++)
+		for (int i = 0; i < N; i++)
+			for (int j = 0; j < N; j++) {
+				const double *v = rates[g][0], *q = rates[g][1];
+				double other = (v[i] - x->side * q[i]) * (v[j] - x->side * q[j]);
+				double rate = mass[b] * x->body[b].damping * v[i] * v[j] +
+				              mass[o] * x->body[o].damping * other + x->contact_damping * q[i] * q[j];
+				loss[i][j] += 0.5 * POUND_GAUSS_WEIGHT[g % (POUND_GAUSS / 2)] * rate / x->cell;
+			}
+}
+
 /* Exact map of the base body and the overlap over one cell h of pressed contact, by its power series.
  *
  * Given    sim    its bodies on their pieces, contact
  * Returns  map    rows of POUND_PRESS_INPUTS coefficients
+ *          work   what an account of energy needs beside them; NULL: there is none
  *
  *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
  *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
@@ -33,7 +68,8 @@ enum {
  * of the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times that of
  * their own columns; the lowest rate of overlap lies at most 1/8 of its largest second derivative below its ends.
  */
-static void cell_fill(struct pound_press_map *map, const struct simulation *sim)
+static void cell_fill(struct pound_press_map *map, struct pound_press_work *work,
+                      const struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
@@ -44,11 +80,14 @@ static void cell_fill(struct pound_press_map *map, const struct simulation *sim)
 	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
 	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
 	double u[N] = {1}, w[N] = {0, h}, p[N] = {0, 0, 1}, z[N] = {0, 0, 0, h}; // w, z: rates times h
+	double rates[POUND_GAUSS][2][N] = {{{0}}}, mean[N] = {0};
 	memset(map->row, 0, sizeof map->row);
 	double(*row)[N] = map->row;
 	for (int n = 0; n < MAP_ORDERS; n++) {
 		double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
 		double drop = 0.125 * x->release / h * n * (n - 1.0), added = n > 0;
+		if (work)
+			rates_add(rates, n, w, z);
 		double force_b[N] = {[4] = n == 0 ? h2 : 0, [6] = n == 1 ? h2 : 0};
 		double force_p[N] = {[5] = n == 0 ? h2 : 0, [7] = n == 1 ? h2 : 0};
 		for (int j = 0; j < N; j++) {
@@ -57,6 +96,7 @@ static void cell_fill(struct pound_press_map *map, const struct simulation *sim)
 			row[PRESS_P][j] += added * p[j];
 			row[PRESS_Q][j] += added * z[j];
 			row[PRESS_IMPULSE][j] += p[j] * share;
+			mean[j] += u[j] * share;
 			row[PRESS_ERROR][j] += bend * (fabs(u[j]) < fabs(p[j]) ? fabs(p[j]) : fabs(u[j]));
 			row[PRESS_DROP][j] += drop * fabs(z[j]);
 			double force = K * p[j] + C * z[j];
@@ -73,6 +113,10 @@ static void cell_fill(struct pound_press_map *map, const struct simulation *sim)
 		    x->contact_stiffness * h * row[PRESS_IMPULSE][j] + x->contact_damping * row[PRESS_P][j];
 		row[PRESS_V][j] /= h;
 		row[PRESS_Q][j] /= h;
+	}
+	if (work) {
+		memcpy(work->mean, mean, sizeof mean);
+		loss_fill(work->loss, rates, sim);
 	}
 }
 
@@ -92,6 +136,40 @@ static void map_double(double row[][N])
 			               once[r][3] * once[3][j];
 			row[r][j] = j < 6 ? 2 * once[r][j] + again : once[r][j] + 0.5 * (again + once[r][j - 2]);
 		}
+}
+
+/* The same for an account of energy.
+ *
+ * Given    row   of the map over the length
+ */
+static void work_double(struct pound_press_work *work, const double row[][N])
+{
+	// from the inputs over the length to those over its second half
+	double next[N][N], once[N][N], half[N];
+	for (int i = 0; i < N; i++)
+		for (int j = 0; j < N; j++)
+			next[i][j] = (i == j) + (i < 4 ? row[i][j] : i < 6 && j == i + 2);
+	for (int i = 0; i < N; i++)
+		for (int j = 0; j < N; j++) {
+			once[i][j] = 0;
+			for (int m = 0; m < N; m++)
+				once[i][j] += work->loss[i][m] * next[m][j];
+		}
+	for (int j = 0; j < N; j++) {
+		half[j] = 0;
+		for (int m = 0; m < N; m++)
+			half[j] += work->mean[m] * next[m][j];
+	}
+	for (int i = 0; i < N; i++) {
+		double share = i < 6 ? 1 : 0.5;
+		work->mean[i] = 0.5 * share * (work->mean[i] + half[i]);
+		for (int j = 0; j < N; j++) {
+			double again = 0;
+			for (int m = 0; m < N; m++)
+				again += next[m][i] * once[m][j];
+			work->loss[i][j] = share * (j < 6 ? 1 : 0.5) * (work->loss[i][j] + again);
+		}
+	}
 }
 
 /* What proves that nothing happens over a rung of length h.
@@ -122,7 +200,7 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 	const double kp = fabs(share * (x->body[o].stiffness - kw)), kq = fabs(share * (x->body[o].damping - cw));
 	const double damping = x->both * x->contact_damping + x->body[o].damping - dc * share;
 	const double jerk = kp / omega + kq * (1 + damping / omega), jounce = kp * (1 + damping / omega);
-	const double quartic = h * h * h * h * POUND_CUBIC_ERROR, rounding = 16 * DBL_EPSILON;
+	const double quartic = h * h * h * h * POUND_CUBIC_ERROR, rounding = 4 * DBL_EPSILON;
 	const double ahead = 1 / (1 - h * (cw + kw * h));
 	// of the magnitudes of w, w', g, nothing, Ab, Ap, Db, Dp
 	const double a0[N] = {kw, cw + kw * h, 2 * kp * yield + kq / omega, 0, 1, fabs(share), 1, fabs(share)};
@@ -160,15 +238,20 @@ static void split_fill(double split[N], const struct simulation *sim)
 }
 
 /* Fills a ladder: rungs of as many cells as a whole sample has, or of an eighth, a 64th ... */
-static void ladder_fill(struct pound_press_map rung[], const struct pound_press_map *cell,
-                        const struct simulation *sim)
+static void ladder_fill(struct pound_press_map rung[], struct pound_press_work work[],
+                        const struct pound_press_map *cell, const struct simulation *sim)
 {
 	double cells = 1;
 	struct pound_press_map map = *cell;
+	struct pound_press_work done = work[POUND_PRESS_RUNGS];
 	for (int r = 0; r < sim->rungs; r++) {
-		for (; cells < sim->rung_cells[r]; cells *= 2)
+		for (; cells < sim->rung_cells[r]; cells *= 2) {
+			if (sim->task->accounted)
+				work_double(&done, map.row);
 			map_double(map.row);
+		}
 		rung[r] = map;
+		work[r] = done;
 		rest_fill(&rung[r], sim, cells);
 	}
 }
@@ -237,8 +320,9 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	if (!(split[SPLIT_LEAD] * swing < pull))
 		return NULL;
 	struct pound_press_map *rung = sim->ladder->rung[press - sim->press];
+	struct pound_press_work *work = sim->ladder->work[press - sim->press];
 	if (!press->laddered)
-		ladder_fill(rung, &press->cell, sim);
+		ladder_fill(rung, work, &press->cell, sim);
 	press->laddered = true;
 	for (int r = sim->rung_limit; r >= 0; r--) {
 		double cells = sim->rung_cells[r];
@@ -246,6 +330,7 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 		in[7] = x->gap_drive * x->rise * cells;
 		if (cells <= x->cells && rests(&rung[r], in, bound, pull, swing)) {
 			sim->rung = r;
+			sim->worked = &work[r];
 			return &rung[r];
 		}
 	}
@@ -266,10 +351,14 @@ enum pound_stage pound_press_ready(struct simulation *sim)
 		if (sim->press[m].stiffness[0] == x->body[0].stiffness &&
 		    sim->press[m].stiffness[1] == x->body[1].stiffness)
 			press = &sim->press[m];
-	if (!press) {
+	bool made = press != NULL;
+	if (!made) {
 		press = &sim->press[sim->press_next];
 		sim->press_next = (sim->press_next + 1) % POUND_PRESS_MAPS;
-		cell_fill(&press->cell, sim);
+	}
+	struct pound_press_work *cell_work = &sim->ladder->work[press - sim->press][POUND_PRESS_RUNGS];
+	if (!made) {
+		cell_fill(&press->cell, sim->task->accounted ? cell_work : NULL, sim);
 		split_fill(press->cell.row[PRESS_SPLIT], sim);
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			press->stiffness[i] = x->body[i].stiffness;
@@ -284,5 +373,45 @@ enum pound_stage pound_press_ready(struct simulation *sim)
 	if (sim->pressed)
 		return STAGE_REST;
 	sim->pressed = &press->cell;
+	sim->worked = cell_work;
 	return STAGE_PRESS;
+}
+
+/* Accounts for the energy of cells that a simulation went over.
+ *
+ * Given    sim     its map and interval
+ *          x, end  inputs of the map, and the state behind it
+ *          ground  acceleration at the start [m/s2]
+ * Returns  sim     work, as energy.h adds it: the ground's is -m (a (u1 - u0) + d (u1 - mean u)), with a growing by d
+ */
+void pound_press_account(struct simulation *sim, const double x[N], const double end[4], double ground)
+{
+	struct pound_rows *r = &sim->x;
+	const struct pound_press_map *map = sim->pressed;
+	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], rise = r->rise * cells, h = r->cell * cells;
+	const int b = sim->base, o = 1 - b;
+	const double mass[2] = {1, r->right_mass};
+	double pressed = form(map->row[PRESS_IMPULSE], x) - r->contact_damping * (end[2] - x[2]);
+	double mean = form(sim->worked->mean, x), mean_p = pressed / (r->contact_stiffness * h);
+	double u0[2], u1[2], v1[2], means[2];
+	u0[b] = x[0], u1[b] = end[0], v1[b] = end[1], means[b] = mean;
+	u0[o] = x[0] - r->side * (r->gap + x[2]);
+	u1[o] = end[0] - r->side * (r->gap + end[2]);
+	v1[o] = end[1] - r->side * end[3];
+	means[o] = mean - r->side * (r->gap + mean_p);
+	double in = 0, moving = 0, out = 0.5 * r->contact_stiffness * (end[2] + x[2]) * (end[2] - x[2]);
+	for (int i = 0; i < N; i++)
+		out += x[i] * form(sim->worked->loss[i], x);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		double way = u1[i] - u0[i], spring = r->body[i].stiffness * 0.5 * (u0[i] + u1[i]) + r->body[i].offset;
+		in -= mass[i] * r->body[i].drive * (ground * way + rise * (u1[i] - means[i]));
+		out += mass[i] * spring * way;
+		moving += 0.5 * mass[i] * v1[i] * v1[i];
+	}
+	r->work_in += in;
+	double gap = out - in + r->work_low, sum = r->work_gap + gap;
+	r->work_low = gap - (sum - r->work_gap);
+	r->work_gap = sum;
+	double most = fabs(r->work_in) < moving ? moving : fabs(r->work_in);
+	r->work_top = r->work_top < most ? most : r->work_top;
 }

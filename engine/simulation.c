@@ -163,13 +163,11 @@ static enum pound_stage next_stage(struct simulation *sim)
 enum pound_stage pound_simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
                                           bool gone)
 {
-	if (stage == STAGE_PRESS && refused)
-		return pound_simulation_step(sim);
 	if (refused)
-		sim->rung_limit = sim->rung - 1;
+		sim->rung_limit = stage == STAGE_REST ? sim->rung - 1 : 0;
 	else if (gone)
 		sim->rung_limit = sim->rungs - 1;
-	return pound_press_ready(sim);
+	return stage == STAGE_PRESS && refused ? pound_simulation_step(sim) : pound_press_ready(sim);
 }
 
 /* Contact has begun or ended.
@@ -277,7 +275,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 	x->body[0].step_gap = h;
 	x->body[1].step_gap = x->gap;
 	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
-	sim->can_press = !task->accounted && task->contact;
+	sim->can_press = task->contact;
 	double reach = REACH_TOUCH / sqrt(rate * rate + x->both * x->contact_stiffness);
 	sim->cells_whole = 1;
 	while (h > reach * sim->cells_whole)
@@ -298,7 +296,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 	return pound_simulation_meet(sim);
 }
 
-/* What is missing of the energy put in, by the ground and by the motion at the start. */
+/* What is missing of the energy put in, by the ground and by the motion at the start, over the most there was. */
 static double residual(const struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
@@ -308,8 +306,8 @@ static double residual(const struct simulation *sim)
 		start += 0.5 * mass * v0 * v0;
 		end += 0.5 * mass * x->v[i] * x->v[i];
 	}
-	double largest = most(fabs(start + x->work_in), most(start, end));
-	return largest > 0 ? fabs(end - start + (x->work_gap + x->work_low)) / largest : 0;
+	double missing = fabs(end - start + (x->work_gap + x->work_low)), largest = most(x->work_top, start);
+	return largest > 0 ? missing / largest : 0;
 }
 
 /* Writes a simulation's result. */

@@ -37,8 +37,8 @@ enum {
 	/* PRESS: a cell of pressed contact: forcing, which body is the base, the ground's growth; how often the map goes on     \
 	 * until another is asked for */ \
 	T base_force, gap_force, base_drive, gap_drive, side, rise, rounds, press_spare;                                           \
-	/* WORK: the energy balance */                                                                                             \
-	T work_in, work_gap, work_low, right_mass, work_spare[4];
+	/* WORK: energy put in, what is found of it less that, and the rounding of the latter; the most there was of it */         \
+	T work_in, work_gap, work_low, work_top, right_mass, work_spare[3];
 
 struct pound_rows {
 	POUND_ROWS(double)
@@ -106,9 +106,16 @@ struct pound_press {
 	bool laddered;
 };
 
-/* a rung map for every cell map that a simulation keeps */
+/* what an account of energy needs beside a map of pressed contact */
+struct pound_press_work {
+	double mean[POUND_PRESS_INPUTS];                     /* of the base's displacement: a linear form */
+	double loss[POUND_PRESS_INPUTS][POUND_PRESS_INPUTS]; /* in the dashpots: a quadratic form */
+};
+
+/* a rung map for every cell map that a simulation keeps, and where energy is accounted for, that of all of these */
 struct pound_ladder {
 	struct pound_press_map rung[POUND_PRESS_MAPS][POUND_PRESS_RUNGS];
+	struct pound_press_work work[POUND_PRESS_MAPS][POUND_PRESS_RUNGS + 1]; /* the last: of the cell */
 };
 
 /* what a simulation does next */
@@ -156,6 +163,7 @@ struct simulation {
 	bool can_fly, can_press;
 	struct pound_branch at[2];
 	const struct pound_press_map *pressed; /* of the next cells */
+	const struct pound_press_work *worked; /* of the same */
 	int map_next[2], press_next;
 	// from here on a start clears no more than the maps' keys
 	struct pound_ladder *ladder; /* apart from the rest, which is to stay close together */
@@ -177,5 +185,7 @@ void pound_simulation_end(struct simulation *sim, enum pound_status status);
 /* press.c */
 void pound_press_rungs(struct simulation *sim);
 enum pound_stage pound_press_ready(struct simulation *sim);
+void pound_press_account(struct simulation *sim, const double x[POUND_PRESS_INPUTS], const double end[4],
+                         double ground);
 
 #endif

@@ -13,4 +13,15 @@ static const double POUND_CUBIC_ERROR = 1.0 / 288;
  * may be far below the rounding of a whole step. */
 static const double POUND_STEP_SHORTER = 0x1p-8, POUND_STEP_SHORTEST = 0x1p-400, POUND_STEP_LONGER = 0x1p4;
 
+/* Gauss-Legendre nodes and weights on [0, 1], exact to degree 23: a step's powers are products of series whose terms
+ * have died away to rounding there.  Abramowitz and Stegun 1964, Table 25.4. */
+enum { POUND_GAUSS = 12 };
+
+static const double POUND_GAUSS_NODE[POUND_GAUSS / 2] = {0.125233408511468915, 0.367831498998180194,
+                                                         0.587317954286617447, 0.769902674194304687,
+                                                         0.904117256370474857, 0.981560634246719251};
+static const double POUND_GAUSS_WEIGHT[POUND_GAUSS / 2] = {0.249147045813402785, 0.233492536538354809,
+                                                           0.203167426723065922, 0.160078328543346226,
+                                                           0.106939325995318431, 0.047175336386511827};
+
 #endif
