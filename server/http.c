@@ -29,7 +29,7 @@
 enum {
 	THREADS = 4,
 	TURNS = 2,               /* of them that take long, at a time */
-	ASIDE_NICENESS = 10,     /* the others go first */
+	ASIDE_NICENESS = 5,      /* between other answers and the workers */
 	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
 	FILES_BESIDE = 512,      /* descriptors that are no connections */
 	OF_ADDRESS_MAX = 64,     /* connections of one address, unless it is loopback */

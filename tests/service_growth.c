@@ -110,15 +110,22 @@ static void the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_to
 
 static void a_running_study_answers_with_the_indexes_of_its_whole_rows(void **state)
 {
+	// long enough for some questions while it runs
+	enum { ROWS = 3 * SERVICE_ROWS };
 	struct service *service = *state;
-	char *study = service_study(SERVICE_ROWS, SIGNALS, SEED), id[17];
+	char *study = service_study(ROWS, SIGNALS, SEED), id[17];
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "running", 100 * ROW_RUNS));
-	struct answer answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 200);
+	// the first block may be the last of the first ones to end
+	struct answer answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
+	while (answer.status == 404) {
+		answer_free(&answer);
+		answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
+	}
 	struct reading *result = answer_read(&answer);
 	double rows = reading_number(result, "/partial/rows");
-	assert_true(rows >= 30 && rows < SERVICE_ROWS);
-	assert_true(reading_number(result, "/partial/rows_most") == SERVICE_ROWS);
+	assert_true(rows > 0 && rows < ROWS);
+	assert_true(reading_number(result, "/partial/rows_most") == ROWS);
 	assert_true(reading_number(result, "/cells/0/runs") == rows * ROW_RUNS);
 	assert_true(reading_number(result, "/cells/0/outputs/0/inputs/0/ST") > 0);
 	assert_true(strlen(answer.etag) > 0);
