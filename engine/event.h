@@ -108,23 +108,26 @@ static void body_search(const struct series *s, const struct lanes *g, int i, vm
 {
 	vd zero = vsplat(0), one = vsplat(1), body = vsplat(EVENT_BODY + EVENT_EDGES * i);
 	const struct motion *m = &s->body[i];
-	vm past_high = may_cross(m, g->body[i].high, one) & active;
-	vm past_low = may_cross(m, g->body[i].low, -one) & active;
+	struct course c = course_of(m);
+	vm past_high = may_cross(&c, g->body[i].high, one) & active;
+	vm past_low = may_cross(&c, g->body[i].low, -one) & active;
 	vm turns = ~vequal(g->body[i].direction, zero) & active;
 	// one search for the lanes that may pass either edge, and another for those that may pass both
 	for (vm past = past_high | past_low; vany(past); past = past_high & past_low, past_high = vmask(0)) {
 		vd level = vselect(past_high, g->body[i].high, g->body[i].low), sign = vselect(past_high, one, -one);
 		vd edge = vselect(past_high, vsplat(POUND_EDGE_HIGH), vsplat(POUND_EDGE_LOW));
-		search_crossing(m, s->order, level, sign, past, body + edge, EVENT_CUT, search);
+		search_crossing(&m->u, &m->v, &c, s->order, level, sign, past, body + edge, EVENT_CUT, search);
 	}
-	if (vany(turns)) {
-		struct motion velocity;
-		motion_velocity(&velocity, m, s->order);
-		turns &= may_cross(&velocity, zero, -g->body[i].direction);
-		if (vany(turns))
-			search_crossing(&velocity, s->order, zero, -g->body[i].direction, turns,
-			                body + vsplat(POUND_EDGE_TURN), EVENT_CUT, search);
-	}
+	if (!vany(turns))
+		return;
+	c = course_of_velocity(m, s->order);
+	turns &= may_cross(&c, zero, -g->body[i].direction);
+	if (!vany(turns))
+		return;
+	struct power rate;
+	power_rate(&rate, &m->v, s->order);
+	search_crossing(&m->v, &rate, &c, s->order, zero, -g->body[i].direction, turns,
+	                body + vsplat(POUND_EDGE_TURN), EVENT_CUT, search);
 }
 
 /* Follows the largest displacement of a body inside the step, before what the search found.
@@ -135,15 +138,16 @@ static void body_search(const struct series *s, const struct lanes *g, int i, vm
 static void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
 {
 	const struct motion *m = &s->body[i];
-	struct motion velocity;
-	motion_velocity(&velocity, m, s->order);
+	struct course c = course_of_velocity(m, s->order);
+	struct power rate;
+	power_rate(&rate, &m->v, s->order);
 	const vd *v = m->v.c;
 	vd zero = vsplat(0), one = vsplat(1), t;
 	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
 	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
 	vd sign = vselect(vless(way, zero), one, -one);
-	vm once = root_quick(&velocity.u, &velocity.v, s->order, zero, sign, sign * v[0], sign * m->v1, one,
-	                     velocity.bend, inside, &t);
+	vm once =
+	    root_quick(&m->v, &rate, s->order, zero, sign, sign * v[0], sign * m->v1, one, c.bend, inside, &t);
 	vd turn = vabs(power_at(&m->u, s->order, t));
 	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], turn), g->top[i]);
 	inside &= ~once;
@@ -190,9 +194,11 @@ LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, c
 	vm by_force = vmask(0);
 	if (e->forced)
 		by_force = (e->touching ? ~vequal(g->release, zero) : e->parted) & e->active;
-	vm risk = may_cross(&s->overlap, zero, sign) & e->active & ~by_force;
+	struct course c = course_of(&s->overlap);
+	vm risk = may_cross(&c, zero, sign) & e->active & ~by_force;
 	if (vany(risk))
-		search_crossing(&s->overlap, s->order, zero, sign, risk, vsplat(EVENT_CONTACT), EVENT_CUT, search);
+		search_crossing(&s->overlap.u, &s->overlap.v, &c, s->order, zero, sign, risk, vsplat(EVENT_CONTACT),
+		                EVENT_CUT, search);
 	if (vany(by_force))
 		force_search(s, g, e, by_force, search);
 }
@@ -319,7 +325,24 @@ LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
 	return turns;
 }
 
-/* Takes the step behind an event, as event_step would, in the lanes where nothing can happen in it. */
+/* Lanes in which something may happen to a body inside a step: a new largest displacement, an edge of its piece. */
+LANE_INLINE vm body_risk(const struct series *s, const struct lanes *g, int i, bool edged)
+{
+	vd zero = vsplat(0), one = vsplat(1);
+	struct course c = course_of(&s->body[i]);
+	vd top = vmax(g->top[i], vabs(c.u1));
+	vm risk = may_cross(&c, top, one) | may_cross(&c, -top, -one);
+	if (!edged)
+		return risk;
+	risk |= may_cross(&c, g->body[i].high, one) | may_cross(&c, g->body[i].low, -one);
+	vm turns = ~vequal(g->body[i].direction, zero);
+	if (!vany(turns))
+		return risk;
+	c = course_of_velocity(&s->body[i], s->order);
+	return risk | (turns & may_cross(&c, zero, -g->body[i].direction));
+}
+
+/* Takes what is left of an interval or of a cell as one step, in the lanes where nothing can happen in it. */
 LANE_INLINE void event_leap(struct lanes *g, const struct event_lanes *e, vm leaping)
 {
 	vd one = vsplat(1), zero = vsplat(0);
@@ -333,18 +356,13 @@ LANE_INLINE void event_leap(struct lanes *g, const struct event_lanes *e, vm lea
 	g->dt = vselect(leaping, g->part, g->dt);
 	struct series s;
 	step_begin(&s, g, e);
-	vm risk = may_cross(&s.overlap, zero, e->touching ? -one : one);
-	for (int i = 0; i < bodies_watched(e); i++) {
-		const struct motion *m = &s.body[i];
-		vd third = vsplat(1.0 / 3);
-		struct limits limits = limits_of(g, i, e->edged);
-		struct flight f = {.u = m->u1,
-		                   .v = m->v1,
-		                   .b1 = vfma(third, m->v.c[0], m->u.c[0]),
-		                   .b2 = vfma(-third, m->v1, m->u1),
-		                   .error = vsplat(POUND_CUBIC_ERROR) * m->bend};
-		risk |= flight_risk(m->u.c[0], m->v.c[0], &f, third, &limits, e->edged);
+	vm risk = vmask(0);
+	if (e->paired) {
+		struct course c = course_of(&s.overlap);
+		risk = may_cross(&c, zero, e->touching ? -one : one);
 	}
+	for (int i = 0; i < bodies_watched(e); i++)
+		risk |= body_risk(&s, g, i, e->edged);
 	step_end(g, &s, e, one, leaping & ~risk);
 }
 

@@ -72,20 +72,21 @@ LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
 
 /* One sample.
  *
- * Given    ground, next  acceleration at both ends [m/s2];  flying: lanes to take over it
- *          edged         a lane has a law of more than one piece;  paired: the lanes have two bodies
- *          right         a lane's largest displacement of the right body is wanted
- * Returns  value         lanes in which something may happen inside the sample; these stay where they were
+ * Given    next    acceleration at its end [m/s2]
+ *          edged   a lane has a law of more than one piece;  paired: the lanes have two bodies
+ *          right   a lane's largest displacement of the right body is wanted
+ * Returns  g       every lane at the end of the sample
+ *          value   lanes in which something may happen inside it
  */
-LANE_INLINE vm flight(struct lanes *g, vd ground, vd next, vm flying, bool edged, bool paired, bool right)
+LANE_INLINE vm flight(struct lanes *g, vd next, bool edged, bool paired, bool right)
 {
-	vd rise = next - ground, third = g->body[0].step_gap * vsplat(1.0 / 3);
+	vd rise = next - g->ground, third = g->body[0].step_gap * vsplat(1.0 / 3);
 	struct flight f[2];
 	struct limits limits = limits_of(g, 0, edged);
-	f[0] = flight_step(g, 0, ground, rise, third);
+	f[0] = flight_step(g, 0, g->ground, rise, third);
 	vm risk = flight_risk(g->u[0], g->v[0], &f[0], third, &limits, edged);
 	if (paired) {
-		f[1] = flight_step(g, 1, ground, rise, third);
+		f[1] = flight_step(g, 1, g->ground, rise, third);
 		vd gap = g->body[1].step_gap;
 		limits = limits_of(g, 1, edged);
 		if (edged || right)
@@ -93,14 +94,25 @@ LANE_INLINE vm flight(struct lanes *g, vd ground, vd next, vm flying, bool edged
 		vd p = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u) - gap;
 		risk |= vless(vsplat(0), p + (f[0].error + f[1].error) + vsplat(4 * DBL_EPSILON) * gap);
 	}
-	flying &= ~risk;
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		g->u[i] = vselect(flying, f[i].u, g->u[i]);
-		g->v[i] = vselect(flying, f[i].v, g->v[i]);
+		g->u[i] = f[i].u;
+		g->v[i] = f[i].v;
 		if (i == 0 || right)
-			g->top[i] = vmax(g->top[i], vabs(g->u[i]));
+			g->top[i] = vmax(g->top[i], vabs(f[i].u));
 	}
+	g->ground = next;
 	return risk;
+}
+
+/* Brings the states of some lanes from one to the other. */
+LANE_INLINE void flight_keep(struct lanes *to, const struct lanes *from, vm which, bool paired, bool right)
+{
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		to->u[i] = vselect(which, from->u[i], to->u[i]);
+		to->v[i] = vselect(which, from->v[i], to->v[i]);
+		if (i == 0 || right)
+			to->top[i] = vselect(which, from->top[i], to->top[i]);
+	}
 }
 
 /* ---- pressed contact ---- */

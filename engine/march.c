@@ -89,59 +89,58 @@ LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int a
 
 /* ---- whole samples apart ---- */
 
-/* The ground motion of each lane at its next ROW samples. */
-LANE_INLINE void ground_load(struct work *work, const struct batch *b, vd ground[ROW])
+/* the ground motion in front of each lane: from its next sample on, and how many samples it has */
+struct ahead {
+	const double *ground[W];
+	int64_t samples[W];
+};
+
+/* The next ROW samples of each lane. */
+LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, vd ground[ROW])
 {
 	const double *at[W];
 	for (int l = 0; l < W; l++) {
-		const struct simulation *sim = b->sim[l];
-		int64_t there = sim->last - sim->next + 1;
-		at[l] = work->beyond[l];
-		if (there >= ROW) {
-			at[l] = &sim->task->ground[sim->next];
+		at[l] = ahead->ground[l];
+		if (ahead->samples[l] >= ROW)
 			__builtin_prefetch(at[l] + ROW);
-		} else
-			memcpy(work->beyond[l], &sim->task->ground[sim->next],
-			       sizeof(double) * (size_t)(there > 0 ? there : 0));
+		else
+			at[l] = memcpy(work->beyond[l], at[l], sizeof(double) * (size_t)ahead->samples[l]);
 	}
 	rows_load(ground, at, 0);
 }
 
 /* Flies ROW samples at most, and not beyond the end of any lane.
  *
- * Given    flying  bit l: lane l flies;  few: so few of them are not worth a round
- * Returns  value   those that still do; sim->next has moved on
+ * All lanes fly on, and each keeps its state in front of its first risk: what they wait for would otherwise be the
+ * proof, which takes longer than the flight.
+ *
+ * Given    flying  lanes that do;  few: so few of them are not worth a round
+ *          edged, paired, right: as flight() has them
+ * Returns  value   those that still do
+ *          ahead   what is left in front of each
  */
-LANE_INLINE unsigned fly_row(struct work *work, const struct batch *b, struct lanes *g, unsigned flying,
-                             int few, bool edged, bool paired)
+LANE_INLINE vm fly_row(struct work *work, struct ahead *ahead, struct lanes *g, vm flying, int few,
+                       bool edged, bool paired, bool right)
 {
-	vd ground[ROW], last = g->ground;
-	ground_load(work, b, ground);
-	int64_t rounds = ROW, next[W];
+	vd ground[ROW], flown = vsplat(0), one = vsplat(1);
+	ground_load(work, ahead, ground);
+	int64_t rounds = ROW;
+	for (int l = 0; l < W; l++)
+		if (ahead->samples[l] < rounds && vbits(flying) >> l & 1)
+			rounds = ahead->samples[l];
+	struct lanes on = *g;
+	for (int round = 0; round < rounds && __builtin_popcount(vbits(flying)) > few; round++) {
+		flying &= ~flight(&on, ground[round], edged, paired, right);
+		flight_keep(g, &on, flying, paired, right);
+		flown = vselect(flying, flown + one, flown);
+	}
+	g->ground = on.ground;
+	double samples[W];
+	lanes_store(samples, flown);
 	for (int l = 0; l < W; l++) {
-		next[l] = b->sim[l]->next;
-		int64_t there = b->sim[l]->last - next[l] + 1;
-		if (flying >> l & 1 && there < rounds)
-			rounds = there;
+		ahead->ground[l] += (int64_t)samples[l];
+		ahead->samples[l] -= (int64_t)samples[l];
 	}
-	int64_t round = 0;
-	while (round < rounds && __builtin_popcount(flying) > few) {
-		unsigned risk =
-		    vbits(flight(g, last, ground[round], vmask(flying), edged, paired, b->traits & TRAIT_RIGHT)) &
-		    flying;
-		last = ground[round];
-		for (unsigned bits = risk; bits; bits &= bits - 1) {
-			int l = __builtin_ctz(bits);
-			b->sim[l]->next = next[l] + round;
-		}
-		flying &= ~risk;
-		round++;
-	}
-	for (unsigned bits = flying; bits; bits &= bits - 1) {
-		int l = __builtin_ctz(bits);
-		b->sim[l]->next = next[l] + round;
-	}
-	g->ground = last;
 	return flying;
 }
 
@@ -156,27 +155,34 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 		lanes_fill(&g, b, ROW_RIGHT);
 		lanes_fill(&g, b, ROW_MAP_RIGHT);
 	}
+	const bool right = b->traits & TRAIT_RIGHT;
+	struct ahead ahead;
 	double ground[W];
-	for (int l = 0; l < W; l++)
-		ground[l] = b->sim[l]->task->ground[b->sim[l]->next - 1];
+	for (int l = 0; l < W; l++) {
+		const struct simulation *sim = b->sim[l];
+		ahead.ground[l] = &sim->task->ground[sim->next];
+		ahead.samples[l] = sim->last - sim->next + 1;
+		ground[l] = ahead.ground[l][-1];
+	}
 	g.ground = lanes_load(ground);
-	unsigned flying = (1u << b->n) - 1, ended = 0;
+	vm flying = vmask((1u << b->n) - 1);
+	unsigned ended = 0;
 	int few = b->n / 2;
 	do {
-		flying = fly_row(work, b, &g, flying, few, edged, paired);
-		for (unsigned bits = flying; bits; bits &= bits - 1) {
-			int l = __builtin_ctz(bits);
-			if (b->sim[l]->next > b->sim[l]->last)
-				ended |= 1u << l;
-		}
-		flying &= ~ended;
-	} while (__builtin_popcount(flying) > few);
+		flying = fly_row(work, &ahead, &g, flying, few, edged, paired, right);
+		for (int l = 0; l < b->n; l++)
+			ended |= (unsigned)(ahead.samples[l] == 0) << l;
+		flying &= ~vmask(ended);
+	} while (__builtin_popcount(vbits(flying)) > few);
 	lanes_empty(&g, b, ROW_STATE);
-	for (int l = 0; l < b->n; l++)
-		send(work, b->sim[l],
-		     ended >> l & 1    ? STAGE_END
-		     : flying >> l & 1 ? stage
-		                       : pound_simulation_meet(b->sim[l]));
+	for (int l = 0; l < b->n; l++) {
+		struct simulation *sim = b->sim[l];
+		sim->next = sim->last + 1 - ahead.samples[l];
+		send(work, sim,
+		     ended >> l & 1           ? STAGE_END
+		     : vbits(flying) >> l & 1 ? stage
+		                              : pound_simulation_meet(sim));
+	}
 }
 
 /* ---- whole cells of contact ---- */
@@ -344,6 +350,31 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	}
 }
 
+/* What is left of a sample. */
+LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, bool edged)
+{
+	struct event_lanes e = {.paired = paired,
+	                        .edged = edged,
+	                        .right = b->traits & TRAIT_RIGHT,
+	                        .forced = b->traits & TRAIT_FORCED,
+	                        .parted = vmask(0),
+	                        .fresh = vmask(0)};
+	if (e.forced)
+		e.parted = event_flags(b, false);
+	struct lanes g;
+	lanes_fill(&g, b, ROW_STATE);
+	lanes_fill(&g, b, ROW_STEP);
+	lanes_fill(&g, b, ROW_LEFT);
+	lanes_fill(&g, b, ROW_PAIR);
+	if (paired)
+		lanes_fill(&g, b, ROW_RIGHT);
+	event_leap(&g, &e, vmask((1u << b->n) - 1));
+	lanes_empty(&g, b, ROW_STATE);
+	lanes_empty(&g, b, ROW_STEP);
+	for (int l = 0; l < b->n; l++)
+		send(work, b->sim[l], pound_simulation_next(b->sim[l]));
+}
+
 /* ---- the march ---- */
 
 /* a kind of step, for laws of one piece and for others */
@@ -392,11 +423,21 @@ static void step_touch(struct work *work, const struct batch *b)
 	step(work, b, STAGE_TOUCH, b->traits & TRAIT_EDGED);
 }
 
+static void leap_alone(struct work *work, const struct batch *b)
+{
+	leap(work, b, false, b->traits & TRAIT_EDGED);
+}
+static void leap_apart(struct work *work, const struct batch *b)
+{
+	leap(work, b, true, b->traits & TRAIT_EDGED);
+}
+
 static void (*const steps[STAGES][2])(struct work *, const struct batch *) = {
     [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged}, [STAGE_FLY_APART] = {fly_apart, fly_apart_edged},
     [STAGE_PRESS] = {press_plain, press_edged},       [STAGE_REST] = {rest_plain, rest_edged},
     [STAGE_ALONE] = {step_alone, step_alone},         [STAGE_APART] = {step_apart, step_apart},
-    [STAGE_TOUCH] = {step_touch, step_touch},
+    [STAGE_TOUCH] = {step_touch, step_touch},         [STAGE_LEAP_ALONE] = {leap_alone, leap_alone},
+    [STAGE_LEAP_APART] = {leap_apart, leap_apart},
 };
 
 /* Starts tasks as long as there are any and the pool has room: first those of laws of one piece, which need less when

@@ -13,7 +13,7 @@ enum {
 	ORDER_APART = 12, /* of the series while apart: even */
 	ORDER_TOUCH = 16, /* while touching */
 	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
-	QUICK_ROUNDS = 6, /* of Newton's method from the parabola through both ends */
+	QUICK_ROUNDS = 5, /* of Halley's method from the parabola through both ends */
 	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
 };
 
@@ -77,7 +77,26 @@ LANE_INLINE void motion_bound(struct motion *m, int order)
 	m->bend = bend;
 }
 
-/* Lanes in which a motion may cross a level inside a step that it starts on the right side of.
+/* What a guard is known to do over a step without being followed: values and slopes at both ends, and a bound of its
+ * fourth derivative. */
+struct course {
+	vd u0, v0, u1, v1, bend;
+};
+
+LANE_INLINE struct course course_of(const struct motion *m)
+{
+	return (struct course){m->u.c[0], m->v.c[0], m->u1, m->v1, m->bend};
+}
+
+LANE_INLINE struct course course_of_velocity(const struct motion *m, int order)
+{
+	vd bend = vsplat(0), end = vsplat(0);
+	ORDERS_UP(n, 1, order, end = vfma(vsplat(n), m->v.c[n], end);)
+	ORDERS_UP(n, 4, order, bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
+	return (struct course){m->v.c[0], m->v.c[1], m->v1, end, bend};
+}
+
+/* Lanes in which a guard may cross a level inside a step that it starts on the right side of.
  *
  * Given    sign  +1: it must not rise above the level, -1: it must not fall below
  *
@@ -85,14 +104,14 @@ LANE_INLINE void motion_bound(struct motion *m, int order)
  * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when the points behind g0 are below -bend/288 (see
  * POUND_CUBIC_ERROR), and also, from a start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
  */
-LANE_INLINE vm may_cross(const struct motion *m, vd level, vd sign)
+LANE_INLINE vm may_cross(const struct course *c, vd level, vd sign)
 {
 	vd zero = vsplat(0), third = vsplat(1.0 / 3);
-	vd g0 = sign * (m->u.c[0] - level), g1 = sign * (m->u1 - level);
-	vd b1 = vfma(sign * third, m->v.c[0], g0), b2 = vfma(-sign * third, m->v1, g1);
+	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
+	vd b1 = vfma(sign * third, c->v0, g0), b2 = vfma(-sign * third, c->v1, g1);
 	vd top = vmax(vmax(b1, b2), g1);
-	vm inside = ~vless(vfma(vsplat(POUND_CUBIC_ERROR), m->bend, top), zero);
-	vm after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), m->bend, 3.0 * b2));
+	vm inside = ~vless(vfma(vsplat(POUND_CUBIC_ERROR), c->bend, top), zero);
+	vm after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), c->bend, 3.0 * b2));
 	return inside & after;
 }
 
@@ -110,7 +129,19 @@ struct search {
 	vd event; /* enum event as a double, 0: none yet */
 };
 
-/* First root by Newton's method where the guard is positive at the limit, with a proof that it is the first.
+/* Second derivative of a series, from its first half: what is left out is near 1e-4 of it. */
+LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
+{
+	vd sum = vsplat(0);
+	if (order == ORDER_TOUCH)
+		for (int n = ORDER_TOUCH / 2; n > ORDER_APART / 2; n--)
+			sum = vfma(sum, t, vsplat((double)n * (n - 1)) * s->c[n]);
+	for (int n = ORDER_APART / 2; n >= 2; n--)
+		sum = vfma(sum, t, vsplat((double)n * (n - 1)) * s->c[n]);
+	return sum;
+}
+
+/* First root by Halley's method where the guard is positive at the limit, with a proof that it is the first.
  *
  * Given    u, v    guard before sign and level, and its derivative: g = sign (u - level)
  *          g0, g1  its values at 0, not positive, and at the limit
@@ -118,14 +149,14 @@ struct search {
  *          active  lanes to search
  * Returns  value   lanes whose root t was found and proved
  *
- * Newton starts at the root of the parabola through value and slope at 0 and the value at the limit.  With g(t) = 0,
+ * The search starts at the root of the parabola through value and slope at 0 and the value at the limit.  With g(t) = 0,
  * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
  * cubic's inner control points are, the second by more than the error: no root lies before t.
  */
 static vm root_quick(const struct power *u, const struct power *v, int order, vd level, vd sign, vd g0, vd g1,
                      vd limit, vd bend, vm active, vd *t)
 {
-	vd zero = vsplat(0), d0 = sign * v->c[0];
+	vd zero = vsplat(0), d0 = sign * v->c[0], slope = zero;
 	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
 	vd c = (g1 - vfma(d0, limit, g0)) / (limit * limit);
 	vd root = vsqrt(vmax(vfma(d0, d0, -4.0 * c * g0), zero));
@@ -133,17 +164,20 @@ static vm root_quick(const struct power *u, const struct power *v, int order, vd
 	*t = vmin(vselect(up, -2.0 * g0, root - d0) / vselect(up, d0 + root, 2.0 * c), limit);
 	vm settled = vless(zero, zero);
 	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
-		vd value = sign * (power_at(u, order, *t) - level), slope = sign * power_at(v, order, *t);
-		vm rises = vless(zero, slope);
-		vd next = vselect(rises, vmin(vmax(*t - value / slope, zero), limit), limit);
+		vd value = sign * (power_at(u, order, *t) - level), bow = sign * curvature_at(u, order, *t);
+		slope = vselect(settled, slope, sign * power_at(v, order, *t));
+		vd fall = vfma(slope, slope, vsplat(-0.5) * value * bow);
+		vm rises = vless(zero, slope) & vless(zero, fall);
+		vd next = vselect(rises, vmin(vmax(*t - value * slope / fall, zero), limit), limit);
 		vd step = next - *t;
 		*t = vselect(settled, *t, next);
-		// Newton squares the relative error: below 2^-27 before a step it is rounding after
-		settled |= vless(vabs(step), vsplat(0x1p-27) * *t) & rises;
+		// the error after a step of s is near s (s bow/slope)^2, and 1e-4 s (s bow/slope) for what bow leaves out
+		vd small = vsplat(0x1p-20);
+		settled |= vless(vabs(step), small * *t) & vless(vabs(step * bow), small * slope) & rises;
 	}
-	vd slope = sign * power_at(v, order, *t);
+	// the slope is that before the last step, which changed it by less than 2^-20
 	return sure & settled & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
-	       vless(bend * (*t * *t * *t) * vsplat(1.0 / 24), slope);
+	       vless(bend * (*t * *t * *t) * vsplat(1.01 / 24), slope);
 }
 
 /* Safe root search: first time at which a guard, negative at 0, becomes positive.
@@ -214,22 +248,31 @@ static void search_safe(struct power *guard, int order, vm active, vd event, dou
 	search->event = vselect(found, event, vselect(unsure, vsplat(cut), search->event));
 }
 
-/* Looks for the first time at which a motion crosses a level, and notes it as the event where it comes first.
+/* Derivative of a series. */
+static void power_rate(struct power *rate, const struct power *s, int order)
+{
+	if (order == ORDER_TOUCH)
+		ORDERS_UP(n, ORDER_APART + 1, ORDER_TOUCH, rate->c[n] = vsplat(n + 1) * s->c[n + 1];)
+	ORDERS_UP(n, 0, ORDER_APART, rate->c[n] = vsplat(n + 1) * s->c[n + 1];)
+	rate->c[order + 1] = vsplat(0);
+}
+
+/* Looks for the first time at which a guard crosses a level, and notes it as the event where it comes first.
  *
- * Given    motion  sign (u - level) is not positive at 0 but for rounding
+ * Given    u, v    the guard and its derivative; sign (u - level) is not positive at 0 but for rounding
  *          active  lanes to search
  *          event   what to note;  cut: what to note where the step is only cut at a safe time
  * Returns  search  time and event of the lanes that have one, up to the time already there
  */
-static void search_crossing(const struct motion *m, int order, vd level, vd sign, vm active, vd event,
-                            double cut, struct search *search)
+static void search_crossing(const struct power *u, const struct power *v, const struct course *c, int order,
+                            vd level, vd sign, vm active, vd event, double cut, struct search *search)
 {
 	vd one = vsplat(1), t;
-	vd g0 = sign * (m->u.c[0] - level), g1 = sign * (m->u1 - level);
+	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
 	vm shorter = vless(search->time, one) & active;
 	if (vany(shorter))
-		g1 = vselect(shorter, sign * (power_at(&m->u, order, search->time) - level), g1);
-	vm found = root_quick(&m->u, &m->v, order, level, sign, g0, g1, search->time, m->bend, active, &t);
+		g1 = vselect(shorter, sign * (power_at(u, order, search->time) - level), g1);
+	vm found = root_quick(u, v, order, level, sign, g0, g1, search->time, c->bend, active, &t);
 	search->time = vselect(found, t, search->time);
 	search->event = vselect(found, event, search->event);
 	active &= ~found;
@@ -237,25 +280,9 @@ static void search_crossing(const struct motion *m, int order, vd level, vd sign
 		return;
 	struct power guard;
 	for (int n = 0; n <= order; n++)
-		guard.c[n] = sign * m->u.c[n];
+		guard.c[n] = sign * u->c[n];
 	guard.c[0] = g0;
 	search_safe(&guard, order, active, event, cut, search);
-}
-
-/* The velocity of a motion as a motion of its own. */
-static void motion_velocity(struct motion *velocity, const struct motion *m, int order)
-{
-	vd bend = vsplat(0), end = vsplat(0);
-	velocity->u = m->v;
-	if (order == ORDER_TOUCH)
-		ORDERS_UP(n, ORDER_APART + 1, ORDER_TOUCH, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
-		          end = end + velocity->v.c[n]; bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
-	ORDERS_UP(n, 0, ORDER_APART, velocity->v.c[n] = vsplat(n + 1) * m->v.c[n + 1];
-	          end = end + velocity->v.c[n]; bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
-	velocity->v.c[order + 1] = vsplat(0);
-	velocity->u1 = m->v1;
-	velocity->v1 = end;
-	velocity->bend = bend;
 }
 
 #endif

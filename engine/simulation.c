@@ -137,7 +137,7 @@ enum pound_stage pound_simulation_meet(struct simulation *sim)
 }
 
 /* What a simulation does next. */
-static enum pound_stage next_stage(struct simulation *sim)
+enum pound_stage pound_simulation_next(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
 	if (x->part + x->cells == 0) {
@@ -209,10 +209,13 @@ enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, dou
 {
 	if (event == EVENT_CONTACT)
 		contact_turn(sim, left, speed);
-	else if (event >= EVENT_BODY)
+	else if (event >= EVENT_BODY) {
 		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
-	return next_stage(sim);
+		if (sim->can_fly && !sim->touching && sim->x.part > 0)
+			return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
+	}
+	return pound_simulation_next(sim);
 }
 
 /* ---- start and end ---- */

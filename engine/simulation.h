@@ -127,6 +127,8 @@ enum pound_stage {
 	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
 	STAGE_APART,     /* of both */
 	STAGE_TOUCH,     /* of both in contact */
+	STAGE_LEAP_ALONE, /* what is left of a sample behind an event, where likely nothing happens: of the left body */
+	STAGE_LEAP_APART, /* of both */
 	STAGES,
 	STAGE_END = STAGES,
 	STAGE_CHATTER,
@@ -179,6 +181,7 @@ enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, dou
 enum pound_stage pound_simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
                                           bool gone);
 enum pound_stage pound_simulation_step(struct simulation *sim);
+enum pound_stage pound_simulation_next(struct simulation *sim);
 void pound_simulation_interval(struct simulation *sim);
 void pound_simulation_end(struct simulation *sim, enum pound_status status);
 
