@@ -181,7 +181,7 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 		for (int s = 0; s < SAMPLES; s++)
 			a[s] = slow = 0.9 * slow + random_number(&seed) - 0.5;
 		double ratio = exp(4 * random_number(&seed) - 2);
-		double stiffness = 0;
+		double stiffness = 0, contact = pow(10, 2 + t % 9 % 4 * 2);
 		tasks[t] = (struct pound_march_task){.ground = a,
 		                                     .n_samples = SAMPLES - t, // so that lanes end at different times
 		                                     .time_step = 0.01,
@@ -198,9 +198,9 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 			    .followed = i == 0 || t % 3 == 0};
 			stiffness = fmax(stiffness, w * w * (i ? 1 / ratio : 1));
 		}
-		tasks[t].contact_stiffness = 100 * stiffness;
+		tasks[t].contact_stiffness = contact * stiffness;
 		double zeta = pound_contact_damping_ratio(0, t % 5 / 4.0);
-		tasks[t].contact_damping = 2 * zeta * sqrt(100 * stiffness / (1 + ratio));
+		tasks[t].contact_damping = 2 * zeta * sqrt(contact * stiffness / (1 + ratio));
 	}
 }
 

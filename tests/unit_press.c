@@ -1,0 +1,135 @@
+/* unit_press.c - long pressed contact in closed form, however stiff it is, with its energy; and what does not depend on
+ * how the motion is divided into cells. */
+#include "tests/check.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/march.h"
+#include "engine/scene.h"
+
+enum { SAMPLES = 201 };
+
+static const double step = 0.01; // [s]
+
+static struct pound_march_result march(const struct pound_march_task *task)
+{
+	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	struct pound_march_result result;
+	assert_true(pound_march_lanes(0, task, &result, 1, scratch));
+	assert_int_equal(result.status, POUND_OK);
+	return result;
+}
+
+/* A free mass on a wall, which the ground presses on it by 1 + rate t [m/s2].
+ *
+ *   p'' + C p' + K p = 1 + rate t     long after the start p = (1 + rate t)/K - C rate/K^2
+ */
+static struct pound_march_task pressed(double ground[SAMPLES], double rate, double stiffness,
+                                       double restitution)
+{
+	for (int i = 0; i < SAMPLES; i++)
+		ground[i] = -(1 + rate * (i * step));
+	return (struct pound_march_task){.ground = ground,
+	                                 .n_samples = SAMPLES,
+	                                 .time_step = step,
+	                                 .bodies = {{.drive = 1, .followed = true}},
+	                                 .contact = true,
+	                                 .contact_stiffness = stiffness,
+	                                 .contact_damping =
+	                                     2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
+	                                 .accounted = true};
+}
+
+static void a_long_press_ends_where_its_ground_pushes_it(void **state)
+{
+	(void)state;
+	double ground[SAMPLES], end = (SAMPLES - 1) * step;
+	for (int t = 0; t < 24; t++) {
+		double stiffness = pow(10, 4 + t / 2), damping; // up to 5e6 radians a sample
+		struct pound_march_task task = pressed(ground, -0.25, stiffness, t % 3 * 0.3);
+		damping = task.contact_damping;
+		task.tension = t % 2;
+		const struct pound_march_result r = march(&task);
+		assert_int_equal(r.contacts, 1);
+		check_near(r.contact_time, end, 1e-12);
+		check_near(r.u[0] * stiffness, 1 - 0.25 * end + 0.25 * damping / stiffness, 1e-12);
+		check_near(r.impulse_max, end - 0.125 * end * end + 0.25 / stiffness, 1e-12);
+		// a map doubled 17 times has 2^17 roundings
+		check_near(r.energy_residual, 0, 3e-11);
+	}
+}
+
+static void a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone(void **state)
+{
+	(void)state;
+	double ground[SAMPLES];
+	for (int t = 0; t < 24; t++) {
+		double stiffness = pow(10, 4 + t / 2);
+		struct pound_march_task task = pressed(ground, -1, stiffness, t % 3 * 0.3);
+		task.tension = t % 2;
+		const struct pound_march_result r = march(&task);
+		double left = task.tension ? 1 + task.contact_damping / stiffness : 1;
+		assert_int_equal(r.contacts, 1);
+		check_near(r.contact_time, left, 1e-12);
+		check_near(r.impulse_max, left - left * left / 2 + 1 / stiffness, 1e-12);
+		check_near(r.energy_residual, 0, 3e-11);
+	}
+}
+
+/* Two bodies of unlike frequency that swing, touch, bounce and stick over ground motion of two sines. */
+static struct pound_march_task pounding(double *ground, int t, int n)
+{
+	double ratio = t % 2 ? 0.6 : 3, w[2] = {2 * M_PI * 2, 2 * M_PI * 3.1}, stiffness = pow(10, 4 + t % 7);
+	for (int i = 0; i < n; i++) {
+		double time = i * step;
+		ground[i] = sin(9 * time) + 0.5 * cos(23 * time);
+	}
+	struct pound_march_task task = {.ground = ground,
+	                                .n_samples = n,
+	                                .time_step = step,
+	                                .contact = true,
+	                                .tension = t % 3,
+	                                .contact_stiffness = stiffness,
+	                                .contact_damping = 2 * pound_contact_damping_ratio(0, t % 4 * 0.3) *
+	                                                   sqrt(stiffness / (1 + ratio)),
+	                                .mass_ratio = ratio};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		task.bodies[i] = (struct pound_march_body){
+		    .skeleton = {.law = t % 5 % 4, .stiffness = w[i] * w[i], .hardening = 0.05, .yield = 1e-3},
+		    .damping = 0.1 * w[i],
+		    .drive = 1,
+		    .followed = true};
+	return task;
+}
+
+static void samples_twice_as_dense_change_no_contact_however_stiff(void **state)
+{
+	(void)state;
+	enum { N = 101, DENSE = 2 * N - 1 };
+	double ground[N], dense[DENSE];
+	int64_t contacts = 0;
+	for (int t = 0; t < 140; t++) {
+		struct pound_march_task task = pounding(ground, t, N);
+		const struct pound_march_result once = march(&task);
+		for (int i = 0; i < DENSE; i++)
+			dense[i] = 0.5 * (ground[i / 2] + ground[(i + 1) / 2]);
+		task.ground = dense;
+		task.n_samples = DENSE;
+		task.time_step = 0.5 * step;
+		task.accounted = true;
+		const struct pound_march_result twice = march(&task);
+		contacts += once.contacts;
+		assert_int_equal(twice.contacts, once.contacts);
+		// the roundings of each contact are magnified by the next ones
+		check_near(twice.impulse_max / once.impulse_max, 1, 1e-9);
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			check_near(twice.displacement_max[i] / once.displacement_max[i], 1, 1e-9);
+		check_near(twice.energy_residual, 0, 1e-12);
+	}
+	assert_true(contacts > 2 * 140); // or the comparison would not say much
+}
+
+CHECK_MAIN(cmocka_unit_test(a_long_press_ends_where_its_ground_pushes_it),
+           cmocka_unit_test(a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone),
+           cmocka_unit_test(samples_twice_as_dense_change_no_contact_however_stiff))
