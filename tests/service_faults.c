@@ -232,7 +232,7 @@ static void every_allocation_of_the_start_may_fail(void **state)
 		skip();
 	struct service *service = service_new();
 	struct faults *faults = faults_new(service->directory);
-	int starts = 0, refused = 0, step = check_soaks() ? 1 : 29;
+	int starts = 0, refused = 0, step = check_soaks() ? 3 : 29;
 	(void)state;
 	service_start(service, 1);
 	service_stop(service);
