@@ -21,6 +21,25 @@ enum {
 	MAP_ORDERS = 18, /* of a map's series; 0.8^18/18! = 3e-18 */
 };
 
+/* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
+static void split_fill(double split[N], const struct simulation *sim)
+{
+	const struct pound_rows *x = &sim->x;
+	const int o = 1 - sim->base;
+	const double share = (sim->base ? -x->mass_ratio : 1) / x->both;
+	const double dc = x->body[1].damping - x->body[0].damping,
+	             dk = x->body[1].stiffness - x->body[0].stiffness;
+	const double stiffness = x->both * x->contact_stiffness + x->body[o].stiffness - dk * share;
+	split[SPLIT_DAMPING] = dc;
+	split[SPLIT_STIFFNESS] = dk;
+	split[SPLIT_BASE] = share;
+	split[SPLIT_OTHER] = share - x->side;
+	split[SPLIT_OMEGA] = sqrt(stiffness);
+	split[SPLIT_YIELD] = 1 / stiffness;
+	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
+	split[SPLIT_CELLS] = 1;
+}
+
 /* Adds term n of the rates of base and overlap, times the cell's length, at the nodes of a quadrature. */
 static void rates_add(double rates[POUND_GAUSS][2][N], int n, const double w[N], const double z[N])
 {
@@ -36,23 +55,43 @@ static void rates_add(double rates[POUND_GAUSS][2][N], int n, const double w[N],
 	}
 }
 
+/* A linear form of the inputs becomes one of the inputs with the overlap off its equilibrium, p - g/W^2, for p.
+ *
+ * Where nothing is lost while the contact does not swing, a quadratic form then has small terms, not a small difference of
+ * large ones, whose error would grow with every doubling.
+ */
+static void form_off(double row[N], const double split[N])
+{
+	double slack = row[2] / (1 + split[SPLIT_YIELD] * split[SPLIT_STIFFNESS] * split[SPLIT_BASE]);
+	double pull = slack * split[SPLIT_YIELD], rate = pull * split[SPLIT_DAMPING];
+	row[0] += pull * split[SPLIT_STIFFNESS];
+	row[1] += rate;
+	row[2] = slack;
+	row[3] -= rate * split[SPLIT_BASE];
+	row[5] += pull;
+}
+
 /* What the dashpots of both bodies and of the contact take over a cell, per mass of the left body, as a quadratic form of
- * the inputs: the integral of m c v^2 by quadrature, exact to rounding. */
-static void loss_fill(double loss[N][N], const double rates[POUND_GAUSS][2][N], const struct simulation *sim)
+ * the inputs with the overlap off its equilibrium: the integral of m c v^2 by quadrature, exact to rounding. */
+static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const double split[N],
+                      const struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
 	const double mass[2] = {1, x->right_mass};
 	const int b = sim->base, o = 1 - b;
 	memset(loss, 0, sizeof(double[N][N]));
-	for (int g = 0; g < POUND_GAUSS; g++)
+	for (int g = 0; g < POUND_GAUSS; g++) {
+		double *v = rates[g][0], *q = rates[g][1];
+		form_off(v, split);
+		form_off(q, split);
 		for (int i = 0; i < N; i++)
 			for (int j = 0; j < N; j++) {
-				const double *v = rates[g][0], *q = rates[g][1];
 				double other = (v[i] - x->side * q[i]) * (v[j] - x->side * q[j]);
 				double rate = mass[b] * x->body[b].damping * v[i] * v[j] +
 				              mass[o] * x->body[o].damping * other + x->contact_damping * q[i] * q[j];
 				loss[i][j] += 0.5 * POUND_GAUSS_WEIGHT[g % (POUND_GAUSS / 2)] * rate / x->cell;
 			}
+	}
 }
 
 /* Exact map of the base body and the overlap over one cell h of pressed contact, by its power series.
@@ -81,8 +120,9 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
 	double u[N] = {1}, w[N] = {0, h}, p[N] = {0, 0, 1}, z[N] = {0, 0, 0, h}; // w, z: rates times h
 	double rates[POUND_GAUSS][2][N] = {{{0}}}, mean[N] = {0};
-	memset(map->row, 0, sizeof map->row);
 	double(*row)[N] = map->row;
+	memset(row, 0, sizeof map->row);
+	split_fill(row[PRESS_SPLIT], sim);
 	for (int n = 0; n < MAP_ORDERS; n++) {
 		double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
 		double drop = 0.125 * x->release / h * n * (n - 1.0), added = n > 0;
@@ -116,7 +156,7 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 	}
 	if (work) {
 		memcpy(work->mean, mean, sizeof mean);
-		loss_fill(work->loss, rates, sim);
+		loss_fill(work->loss, rates, row[PRESS_SPLIT], sim);
 	}
 }
 
@@ -138,31 +178,48 @@ static void map_double(double row[][N])
 		}
 }
 
-/* The same for an account of energy.
+/* From the inputs over a length to those over the next, with the overlap off its equilibrium or as it is. */
+static void inputs_next(double next[N][N], const double row[][N], bool off)
+{
+	const double *split = row[PRESS_SPLIT];
+	for (int i = 0; i < N; i++)
+		for (int j = 0; j < N; j++)
+			next[i][j] = (i == j) + (i < 4 ? row[i][j] : i < 6 && j == i + 2);
+	if (!off)
+		return;
+	for (int i = 0; i < N; i++)
+		form_off(next[i], split);
+	for (int j = 0; j < N; j++) {
+		double w = next[0][j] - split[SPLIT_BASE] * next[2][j],
+		       rate = next[1][j] - split[SPLIT_BASE] * next[3][j];
+		double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + next[5][j];
+		next[2][j] -= split[SPLIT_YIELD] * pull;
+	}
+}
+
+/* An account of energy over twice as long.
  *
  * Given    row   of the map over the length
  */
 static void work_double(struct pound_press_work *work, const double row[][N])
 {
-	// from the inputs over the length to those over its second half
 	double next[N][N], once[N][N], half[N];
-	for (int i = 0; i < N; i++)
-		for (int j = 0; j < N; j++)
-			next[i][j] = (i == j) + (i < 4 ? row[i][j] : i < 6 && j == i + 2);
+	inputs_next(next, row, false);
+	for (int j = 0; j < N; j++) {
+		half[j] = work->mean[j];
+		for (int m = 0; m < N; m++)
+			half[j] += work->mean[m] * next[m][j];
+	}
+	inputs_next(next, row, true);
 	for (int i = 0; i < N; i++)
 		for (int j = 0; j < N; j++) {
 			once[i][j] = 0;
 			for (int m = 0; m < N; m++)
 				once[i][j] += work->loss[i][m] * next[m][j];
 		}
-	for (int j = 0; j < N; j++) {
-		half[j] = 0;
-		for (int m = 0; m < N; m++)
-			half[j] += work->mean[m] * next[m][j];
-	}
 	for (int i = 0; i < N; i++) {
-		double share = i < 6 ? 1 : 0.5;
-		work->mean[i] = 0.5 * share * (work->mean[i] + half[i]);
+		double share = i < 6 ? 1 : 0.5; // growths are over the whole length from here on
+		work->mean[i] = 0.5 * share * half[i];
 		for (int j = 0; j < N; j++) {
 			double again = 0;
 			for (int m = 0; m < N; m++)
@@ -216,25 +273,6 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 		map->row[REST_BEND][j] = h * h * (fabs(dc) * a3 + fabs(dk) * a2) + rounding * rounded[j];
 		map->row[REST_ERROR][j] = quartic * a4 + (j == 2 ? 8 * kq * h * yield : 0) + rounding * lost[j];
 	}
-}
-
-/* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
-static void split_fill(double split[N], const struct simulation *sim)
-{
-	const struct pound_rows *x = &sim->x;
-	const int o = 1 - sim->base;
-	const double share = (sim->base ? -x->mass_ratio : 1) / x->both;
-	const double dc = x->body[1].damping - x->body[0].damping,
-	             dk = x->body[1].stiffness - x->body[0].stiffness;
-	const double stiffness = x->both * x->contact_stiffness + x->body[o].stiffness - dk * share;
-	split[SPLIT_DAMPING] = dc;
-	split[SPLIT_STIFFNESS] = dk;
-	split[SPLIT_BASE] = share;
-	split[SPLIT_OTHER] = share - x->side;
-	split[SPLIT_OMEGA] = sqrt(stiffness);
-	split[SPLIT_YIELD] = 1 / stiffness;
-	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
-	split[SPLIT_CELLS] = 1;
 }
 
 /* Fills a ladder: rungs of as many cells as a whole sample has, or of an eighth, a 64th ... */
@@ -359,7 +397,6 @@ enum pound_stage pound_press_ready(struct simulation *sim)
 	struct pound_press_work *cell_work = &sim->ladder->work[press - sim->press][POUND_PRESS_RUNGS];
 	if (!made) {
 		cell_fill(&press->cell, sim->task->accounted ? cell_work : NULL, sim);
-		split_fill(press->cell.row[PRESS_SPLIT], sim);
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			press->stiffness[i] = x->body[i].stiffness;
 		press->laddered = false;
@@ -393,6 +430,10 @@ void pound_press_account(struct simulation *sim, const double x[N], const double
 	const double mass[2] = {1, r->right_mass};
 	double pressed = form(map->row[PRESS_IMPULSE], x) - r->contact_damping * (end[2] - x[2]);
 	double mean = form(sim->worked->mean, x), mean_p = pressed / (r->contact_stiffness * h);
+	const double *split = map->row[PRESS_SPLIT];
+	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
+	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
+	const double off[N] = {x[0], x[1], x[2] - split[SPLIT_YIELD] * pull, x[3], x[4], x[5], x[6], x[7]};
 	double u0[2], u1[2], v1[2], means[2];
 	u0[b] = x[0], u1[b] = end[0], v1[b] = end[1], means[b] = mean;
 	u0[o] = x[0] - r->side * (r->gap + x[2]);
@@ -401,7 +442,7 @@ void pound_press_account(struct simulation *sim, const double x[N], const double
 	means[o] = mean - r->side * (r->gap + mean_p);
 	double in = 0, moving = 0, out = 0.5 * r->contact_stiffness * (end[2] + x[2]) * (end[2] - x[2]);
 	for (int i = 0; i < N; i++)
-		out += x[i] * form(sim->worked->loss[i], x);
+		out += off[i] * form(sim->worked->loss[i], off);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		double way = u1[i] - u0[i], spring = r->body[i].stiffness * 0.5 * (u0[i] + u1[i]) + r->body[i].offset;
 		in -= mass[i] * r->body[i].drive * (ground * way + rise * (u1[i] - means[i]));

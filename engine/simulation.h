@@ -108,8 +108,10 @@ struct pound_press {
 
 /* what an account of energy needs beside a map of pressed contact */
 struct pound_press_work {
-	double mean[POUND_PRESS_INPUTS];                     /* of the base's displacement: a linear form */
-	double loss[POUND_PRESS_INPUTS][POUND_PRESS_INPUTS]; /* in the dashpots: a quadratic form */
+	double mean[POUND_PRESS_INPUTS]; /* of the base's displacement: a linear form */
+	double
+	    loss[POUND_PRESS_INPUTS]
+	        [POUND_PRESS_INPUTS]; /* in the dashpots: a quadratic form, of the overlap off its equilibrium */
 };
 
 /* a rung map for every cell map that a simulation keeps, and where energy is accounted for, that of all of these */

@@ -55,8 +55,7 @@ static void a_long_press_ends_where_its_ground_pushes_it(void **state)
 		check_near(r.contact_time, end, 1e-12);
 		check_near(r.u[0] * stiffness, 1 - 0.25 * end + 0.25 * damping / stiffness, 1e-12);
 		check_near(r.impulse_max, end - 0.125 * end * end + 0.25 / stiffness, 1e-12);
-		// a map doubled 17 times has 2^17 roundings
-		check_near(r.energy_residual, 0, 3e-11);
+		check_near(r.energy_residual, 0, 1e-13);
 	}
 }
 
@@ -73,7 +72,7 @@ static void a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone(void *
 		assert_int_equal(r.contacts, 1);
 		check_near(r.contact_time, left, 1e-12);
 		check_near(r.impulse_max, left - left * left / 2 + 1 / stiffness, 1e-12);
-		check_near(r.energy_residual, 0, 3e-11);
+		check_near(r.energy_residual, 0, 1e-13);
 	}
 }
 
