@@ -196,7 +196,7 @@ void pound_conditional_mean(const struct pound_conditional *given, int input, do
 size_t pound_ratio_scratch(const struct pound_sample_values *shape,
                            const struct pound_study *study); /* doubles */
 void pound_ratio_indices(const struct pound_rows *rows, const double *u, const struct pound_study *study,
-                         double variance, double *scratch, struct pound_ratio_indices *results);
+                         double noise, double *scratch, struct pound_ratio_indices *results);
 
 /* The plain protocol: mean, variance, noise share and the raw indexes. */
 size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */

@@ -331,8 +331,9 @@ enum {
 
 /* Indexes of the study's ratios and then of the inputs in none, which depend on each other; Shapley effects add up to 1. */
 struct pound_ratio_indices {
-	int n;            /* 0: none were asked, or too few rows */
-	double explained; /* share of the output's variance that these variables explain */
+	int n; /* 0: none were asked, or too few rows */
+	struct pound_estimate
+	    explained; /* share of the output's variance, by these variables; NAN: cannot be told */
 	struct pound_estimate first[POUND_FACTORIAL_INPUTS_MAX], total[POUND_FACTORIAL_INPUTS_MAX],
 	    shapley[POUND_FACTORIAL_INPUTS_MAX]; /* (n) each */
 };

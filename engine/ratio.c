@@ -5,6 +5,7 @@
  * 2. What a set of variables explains, Var E[g | X_u], follows from the coefficients and from the means E[p(X) q(X')] of
  *    products of terms, where X' shares X_u and is drawn anew given it.  These means are of the inputs alone.
  * 3. Eight groups of rows, each left out in turn, give the bias, that of fitting noise above all, and the interval.
+ * 4. What all variables explain is what the fits without a group foretell of its outputs.
  *
  * With dependent variables Shapley effects add up to 1 and first-order indexes do not; one may be above its total. */
 #include "engine/design.h"
@@ -212,7 +213,8 @@ struct fit {
 	struct pound_legendre chunk, ratios;
 	double *sums;     /* of terms of twice the degree, of each group and of all  ((GROUPS + 1) x squares) */
 	double *products; /* of term and output, likewise  ((GROUPS + 1) x terms) */
-	double *gram;     /* (terms x terms) */
+	double square[GROUPS]; /* sum of the outputs squared, of each group */
+	double *gram;          /* (terms x terms) */
 	double *means; /* of products of terms in the ratios, for each set of them  (2^ratios x block x block) */
 	double *point, *anew;          /* terms at a point  (block) each */
 	double *coefficients, *others; /* (terms), (squares) */
@@ -341,7 +343,9 @@ static void group_fill(struct fit *f, int group)
 		}
 		for (int p = 0; p < n_samples && !last && group_of(f, row) == group; p++) {
 			sample_enter(f, f->chunk.n, row, p);
-			value[f->chunk.n++] = f->rows->y[(size_t)row * n_samples + p];
+			const double y = f->rows->y[(size_t)row * n_samples + p];
+			f->square[group] += y * y;
+			value[f->chunk.n++] = y;
 		}
 	}
 }
@@ -428,9 +432,25 @@ static void explained_fill(const struct fit *f, double explained[SETS])
 	}
 }
 
+/* How much of a group's sum of squares the fit without it explains: sum y^2 - (y - g)^2, from the sums of terms. */
+static double foretold(struct fit *f, int group)
+{
+	const double *c = f->coefficients, *products = f->products + (size_t)group * f->terms;
+	double sum = 0.0;
+	pound_legendre_gram(f->variables.n, f->degree, f->sums + (size_t)group * f->squares, f->gram);
+	for (int p = 0; p < f->terms; p++) {
+		const double *row = f->gram + (size_t)p * f->terms;
+		double fitted = 0.5 * c[p] * row[p];
+		for (int q = p + 1; q < f->terms; q++)
+			fitted += c[q] * row[q];
+		sum += 2.0 * c[p] * (products[p] - fitted);
+	}
+	return sum;
+}
+
 enum { FIRST, TOTAL, SHAPLEY, KINDS };
 
-/* The indexes of every variable from what sets explain, and at last the variance that all of them explain. */
+/* The indexes of every variable from what sets explain. */
 static void values_fill(const struct fit *f, const double explained[SETS], double *value)
 {
 	const int n = f->variables.n;
@@ -449,11 +469,10 @@ static void values_fill(const struct fit *f, const double explained[SETS], doubl
 		value[TOTAL * n + v] = 1.0 - explained[all ^ 1u << v] / explained[all];
 		value[SHAPLEY * n + v] = shapley / explained[all];
 	}
-	value[KINDS * n] = explained[all];
 }
 
 /* A value of all rows, by the values without each group: less its bias, with the scatter of the pseudo-values. */
-static struct pound_estimate jackknife(const double value[GROUPS + 1][KINDS * VARIABLES + 1], int k)
+static struct pound_estimate jackknife(const double value[GROUPS + 1][KINDS * VARIABLES], int k)
 {
 	double mean = 0.0, squares = 0.0;
 	for (int g = 0; g < GROUPS; g++)
@@ -463,6 +482,23 @@ static struct pound_estimate jackknife(const double value[GROUPS + 1][KINDS * VA
 	const double middle = GROUPS * value[GROUPS][k] - (GROUPS - 1) * mean;
 	const double half = pound_jackknife_student(GROUPS - 1) * sqrt(squares * (GROUPS - 1.0) / GROUPS);
 	return (struct pound_estimate){middle, middle - half, middle + half};
+}
+
+/* The share of the outputs' squares that fits foretell which have not seen them, of which noise is a part; none, where the
+ * interval says next to nothing.  It errs to the low side, by the square of what the fits err by, and stays below 1. */
+static struct pound_estimate explained_of(const struct fit *f, const double of_group[GROUPS], double noise)
+{
+	const double widest = 0.25; // half of an interval that still tells a half from all
+	double share[GROUPS + 1][KINDS * VARIABLES] = {{0.0}}, above = 0.0, below = 0.0;
+	for (int g = 0; g < GROUPS; g++) {
+		above += of_group[g];
+		below += f->square[g] * (1.0 - noise);
+	}
+	for (int g = 0; g < GROUPS; g++)
+		share[g][0] = (above - of_group[g]) / (below - f->square[g] * (1.0 - noise));
+	share[GROUPS][0] = above / below;
+	const struct pound_estimate e = jackknife(share, 0);
+	return e.high - e.low <= 2.0 * widest && e.high > 0.0 ? e : (struct pound_estimate){NAN, NAN, NAN};
 }
 
 size_t pound_ratio_scratch(const struct pound_sample_values *shape, const struct pound_study *study)
@@ -476,7 +512,7 @@ size_t pound_ratio_scratch(const struct pound_sample_values *shape, const struct
  * Given    rows       -                          outputs
  *          u          (n x 2 x n_inputs)         the design as probabilities in (0, 1), rows of A and B
  *          study      -                          inputs and ratios
- *          variance   -                          of the outputs, for the share that the variables explain
+ *          noise      -                          share of the outputs' variance that no variable explains
  * Returns  results    -                          ratios first, in the order of the study, then the inputs
  * Memory   scratch    (pound_ratio_scratch)
  *
@@ -486,13 +522,13 @@ size_t pound_ratio_scratch(const struct pound_sample_values *shape, const struct
  * Test     unit_ratio
  */
 void pound_ratio_indices(const struct pound_rows *rows, const double *u, const struct pound_study *study,
-                         double variance, double *scratch, struct pound_ratio_indices *results)
+                         double noise, double *scratch, struct pound_ratio_indices *results)
 {
 	struct fit f = {.rows = rows, .u = u, .study = study, .variables = variables_of(study)};
 	const struct pound_sample_values shape = {
 	    .n_rows = rows->n_rows, .n_inputs = rows->n_inputs, .order = rows->order};
 	const int n = f.variables.n;
-	double explained[SETS], value[GROUPS + 1][KINDS * VARIABLES + 1];
+	double explained[SETS], value[GROUPS + 1][KINDS * VARIABLES], of_group[GROUPS];
 	carve(&f, scratch, &shape, study);
 	for (unsigned set = 0; set < 1u << study->n_ratios; set++)
 		means_fill(&f, set);
@@ -501,6 +537,8 @@ void pound_ratio_indices(const struct pound_rows *rows, const double *u, const s
 		coefficients_fill(&f, g);
 		explained_fill(&f, explained);
 		values_fill(&f, explained, value[g]);
+		if (g < GROUPS)
+			of_group[g] = foretold(&f, g);
 	}
 	results->n = n;
 	for (int k = 0; k < n; k++) {
@@ -509,5 +547,5 @@ void pound_ratio_indices(const struct pound_rows *rows, const double *u, const s
 		results->total[k] = jackknife(value, TOTAL * n + v);
 		results->shapley[k] = jackknife(value, SHAPLEY * n + v);
 	}
-	results->explained = jackknife(value, KINDS * n).value / variance;
+	results->explained = explained_of(&f, of_group, noise);
 }

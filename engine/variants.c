@@ -276,14 +276,14 @@ static void levels_init(struct sources *s, int n_rows)
 	}
 }
 
-/* The indexes of ratios, as shares of the variance without the noise of few signals if that is known. */
+/* The indexes of ratios; what they explain is a share of the variance without the noise of few signals if that is known. */
 static void ratios_fill(const struct sources *s, struct pound_indices *indices)
 {
 	const double noise = s->corrected ? indices->noise_share : 0.0;
 	indices->ratios.n = 0;
 	if (s->sampling->ratios && rows_enough(s))
-		pound_ratio_indices(s->rows, s->sampling->u, s->sampling->ratios, indices->variance * (1.0 - noise),
-		                    s->scratch, &indices->ratios);
+		pound_ratio_indices(s->rows, s->sampling->u, s->sampling->ratios, noise, s->scratch,
+		                    &indices->ratios);
 }
 
 /* Whether taking the noise away has left an index without a variance to be a share of. */

@@ -183,7 +183,12 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 		return;
 	pound_ratio_variables(study, rest);
 	writer_object(w, "ratios", WRITER_LINES);
-	writer_number(w, "explained", ratios->explained);
+	write_estimate(w, "explained", &ratios->explained);
+	if (isnan(ratios->explained.value))
+		writer_text(
+		    w, "note",
+		    "too few rows to tell which share of the variance these variables explain, and whether their "
+		    "indexes are those of the output");
 	writer_array(w, "variables", WRITER_LINES);
 	for (int k = 0; k < ratios->n; k++) {
 		writer_object(w, NULL, WRITER_LINE);
