@@ -119,10 +119,10 @@ static struct reply look(const struct request *request, struct page *page)
 	return reply;
 }
 
-/* The same reply with a body of its own; NULL: out of memory. */
+/* The same reply with a body of its own; NULL: it has none to keep, or no memory. */
 static struct reply copied(struct reply reply)
 {
-	char *body = reply.status == 200 ? malloc(reply.length) : NULL;
+	char *body = reply.status == 200 && reply.body ? malloc(reply.length) : NULL;
 	reply.body = body ? memcpy(body, reply.body, reply.length) : NULL;
 	return reply;
 }

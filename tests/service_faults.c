@@ -136,15 +136,16 @@ struct question {
 	const char *name, *method, *rest;
 };
 
-/* Asks with the n-th allocation failing for n = 1, 2, ... until none does; how many failed. */
+/* Asks for one study after the other with the n-th allocation failing for n = 1, 2, ... until none does; how many
+ * failed. */
 static int starve(const struct service *service, struct faults *faults, const struct question *question,
-                  const char *id, int step)
+                  char (*ids)[17], int n_ids, int step)
 {
-	int unanswered = 0, refused = 0, failed = 0;
+	int unanswered = 0, refused = 0, failed = 0, asked = 0;
 	char path[128], *study = service_study(2, 1, 1);
-	snprintf(path, sizeof path, question->rest, id);
 	for (int at = 1, spared = 0; spared < 3; at += step) {
 		long before = faults->memory_failed;
+		snprintf(path, sizeof path, question->rest, ids[asked++ % n_ids]);
 		faults->memory_fails_in = at;
 		bool posts = !strcmp(question->method, "POST");
 		struct answer answer =
@@ -181,21 +182,23 @@ static void every_allocation_of_a_request_may_fail(void **state)
 	    {"samples", "GET", "/v1/studies/%s/samples"},
 	    {"metrics", "GET", "/metrics"},
 	};
-	enum { QUESTIONS = sizeof questions / sizeof questions[0] };
+	enum { QUESTIONS = sizeof questions / sizeof questions[0], FRESH = 100 };
 	if (!MEMORY_IS_OURS)
 		skip();
 	struct service *service = service_new();
 	struct faults *faults = faults_new(service->directory);
-	char *study = service_study(20, 1, 1), id[17];
+	char *study = service_study(20, 1, 1), id[1][17];
 	int step = check_soaks() ? 1 : 3;
 	(void)state;
 	service_start(service, 1);
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "succeeded", 0));
-	struct answer before = service_get(service, "/v1/studies/%s/results", id);
-	int failed = starve(service, faults, &questions[0], id, step);
-	// what was accepted meanwhile finishes
+	service_submit(service, study, id[0]);
+	assert_true(service_wait(service, id[0], "succeeded", 0));
+	struct answer before = service_get(service, "/v1/studies/%s/results", id[0]);
+	int failed = starve(service, faults, &questions[0], id, 1, step);
+	// what was accepted meanwhile finishes; of these each is asked for the first time, as its status is kept when told
 	struct accepted accepted = {0};
+	for (int i = 0; i < FRESH; i++)
+		post(service, i, &accepted);
 	recover(service, &accepted);
 	while (service_number(service, "SELECT count(*) FROM study WHERE finished IS NULL"))
 		usleep(5000);
@@ -204,11 +207,12 @@ static void every_allocation_of_a_request_may_fail(void **state)
 	for (int round = 0; round < 3; round++) {
 		long live = faults->memory_live;
 		for (int q = 1; q < QUESTIONS; q++)
-			failed += starve(service, faults, &questions[q], id, step * (1 + 2 * round));
+			failed += q == 1 ? starve(service, faults, &questions[q], accepted.ids, FRESH, step)
+			                 : starve(service, faults, &questions[q], id, 1, step * (1 + 2 * round));
 		long grown = faults->memory_live - live;
 		left = grown < left ? grown : left;
 	}
-	struct answer after = service_get(service, "/v1/studies/%s/results", id);
+	struct answer after = service_get(service, "/v1/studies/%s/results", id[0]);
 	assert_string_equal(after.body, before.body);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'failed'"), 0);
 	char *check = service_text(service, "PRAGMA integrity_check");
