@@ -294,6 +294,7 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	                         ? http_problem(request->head.fault, request->head.detail, NULL)
 	                     : request->replied ? request->reply
 	                                        : routes_answer(request);
+	request->reply.body = NULL; // it goes with the reply
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag)) {
 		drop_body(&reply);
 		reply.status = 304;
@@ -323,6 +324,7 @@ static void completed(void *of, struct MHD_Connection *connection, void **kept,
 	if (request->method)
 		server->under_way--;
 	free(request->body);
+	drop_body(&request->reply);
 	free(request);
 	*kept = NULL;
 }

@@ -71,7 +71,7 @@ struct request {
 	size_t length;
 	bool aside;         /* it was given to a thread of its own ... */
 	bool replied;       /* ... which has made the reply */
-	struct reply reply; /* if so */
+	struct reply reply; /* if so, until it is sent */
 	double arrived;     /* [s] monotonic */
 	uint64_t number;    /* told as X-Request-Id */
 };
