@@ -4,7 +4,7 @@
  * 2. Local-linear regression with Epanechnikov's kernel; the bandwidth is that of the least error in predicting a fifth of
  *    the rows from the others.  It is of what a trend leaves of the outputs, and the trend's curve is added.
  * 3. The band is that of half the bandwidth, whose bias is small, from what each row adds to the curve (rows, not samples,
- *    are independent).
+ *    are independent) and from what halving the bandwidth has changed, which tells where the output bends or jumps.
  *
  * Fan, Gijbels 1996, Local polynomial modelling and its applications. */
 #include "engine/indices.h"
@@ -260,9 +260,10 @@ static void curve_fill(const struct pound_conditional *given, const struct work 
 	for (int k = 0; k < POUND_CURVE; k++) {
 		influence_fill(points, work->residual, pound_conditional_place(k), 0.5 * bandwidth, &sums[k],
 		               work->influence);
-		const double half =
+		const double sampling =
 		    pound_jackknife_half_width(work->influence, rows->n_rows, &rows->scatter, work->groups);
 		const double middle = rows->mean + given->trend[k] + line[k].level;
+		const double step = curve->mean[k].value - middle, half = sqrt(sampling * sampling + step * step);
 		curve->mean[k].low = middle - half;
 		curve->mean[k].high = middle + half;
 	}
