@@ -46,14 +46,17 @@ struct limits {
 	vd top, low, high, direction;
 };
 
-/* Lanes in which something may happen to a body: a new largest displacement, an edge of its piece. */
-LANE_INLINE vm flight_risk(vd u, vd v, const struct flight *f, vd third, const struct limits *x, bool edged)
+/* Lanes in which something may happen to a body: a new largest displacement, an edge of its piece.
+ *
+ * Given    v  velocity at the start;  f: the flight from there;  x: its top is not below the displacement at the start
+ */
+LANE_INLINE vm flight_risk(vd v, const struct flight *f, vd third, const struct limits *x, bool edged)
 {
-	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2);
-	vd ends = vmax(vmax(vabs(u), vabs(f->u)), x->top);
-	vm risk = vless(ends, vmax(high, -low) + f->error);
+	vd top = vmax(x->top, vabs(f->u));
 	if (!edged)
-		return risk;
+		return vless(top, vmax(vabs(f->b1), vabs(f->b2)) + f->error);
+	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2);
+	vm risk = vless(top, vmax(high, -low) + f->error);
 	risk |= vless(x->high, vmax(high, f->u) + f->error);
 	risk |= vless(vmin(low, f->u) - f->error, x->low);
 	// the velocity's control points times h/3: its own at the ends, b2 - b1 between; it misses the velocity by at
@@ -84,15 +87,15 @@ LANE_INLINE vm flight(struct lanes *g, vd next, bool edged, bool paired, bool ri
 	struct flight f[2];
 	struct limits limits = limits_of(g, 0, edged);
 	f[0] = flight_step(g, 0, g->ground, rise, third);
-	vm risk = flight_risk(g->u[0], g->v[0], &f[0], third, &limits, edged);
+	vm risk = flight_risk(g->v[0], &f[0], third, &limits, edged);
 	if (paired) {
 		f[1] = flight_step(g, 1, g->ground, rise, third);
 		vd gap = g->body[1].step_gap;
 		limits = limits_of(g, 1, edged);
 		if (edged || right)
-			risk |= flight_risk(g->u[1], g->v[1], &f[1], third, &limits, edged);
-		vd p = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u) - gap;
-		risk |= vless(vsplat(0), p + (f[0].error + f[1].error) + vsplat(4 * DBL_EPSILON) * gap);
+			risk |= flight_risk(g->v[1], &f[1], third, &limits, edged);
+		vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
+		risk |= vless(vsplat(1 - 4 * DBL_EPSILON) * gap, nearest + (f[0].error + f[1].error));
 	}
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
 		g->u[i] = f[i].u;
@@ -191,8 +194,8 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 	                   .b2 = b.b2 - vfma(side, p.b2, off)};
 	o.error = vfma(rounding, vabs(u) + vabs(o.u) + g->gap, b.error + p.error);
 	if (edged || right) {
-		risk |= flight_risk(x[0], x[1], &b, third, &s->base, edged);
-		risk |= flight_risk(u, v, &o, third, &s->other, edged);
+		risk |= flight_risk(x[1], &b, third, &s->base, edged);
+		risk |= flight_risk(v, &o, third, &s->other, edged);
 	} else {
 		vm left = vless(zero, side);
 		struct flight l = {.u = vselect(left, b.u, o.u),
@@ -200,7 +203,7 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 		                   .b2 = vselect(left, b.b2, o.b2),
 		                   .error = vselect(left, b.error, o.error)};
 		struct limits limits = {.top = vselect(left, s->base.top, s->other.top)};
-		risk |= flight_risk(vselect(left, x[0], u), v, &l, third, &limits, false);
+		risk |= flight_risk(v, &l, third, &limits, false);
 	}
 	press_move(g, s, pressed & ~risk, (vd[]){b.u, b.v, p.u, p.v}, vsplat(1), g->rise);
 	return risk;

@@ -238,7 +238,7 @@ static void motions_fill(struct pound_plan *plan)
 			motion_halve(m);
 		double peak = 0;
 		for (int t = 0; t < m->n_samples; t++)
-			peak = fmax(peak, fabs(m->ground[t]));
+			peak = fabs(m->ground[t]) > peak ? fabs(m->ground[t]) : peak;
 		m->exponent = peak > 0 ? ilogb(peak) : 0;
 		for (int t = 0; t < m->n_samples && m->exponent != 0; t++)
 			m->ground[t] = ldexp(m->ground[t], -m->exponent);
