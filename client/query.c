@@ -58,40 +58,67 @@ static enum outcome print_studies(const struct wire_reply *reply, const char *fo
 	return OUTCOME_OK;
 }
 
-/* One exchange about the study named on the command line, its answer printed as a status. */
-static enum outcome status_after(const struct options *options, const char *method, const char *rest)
+/* What is asked about the study named on the command line, and what is printed of the answer. */
+struct question {
+	const char *method, *rest, *type;
+	enum outcome conflict; /* what HTTP 409 comes to */
+	enum outcome (*print)(const struct wire_reply *reply, const struct options *options);
+};
+
+static enum outcome ask(const struct options *options, const struct question *question)
 {
 	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
-	enum outcome outcome = answer_about(wire, method, options->argument, rest, NULL, &reply);
+	enum outcome outcome =
+	    answer_about(wire, question->method, options->argument, question->rest, question->type, &reply);
 	if (outcome == OUTCOME_OK)
-		outcome = print_studies(&reply, options->format);
+		outcome = question->print(&reply, options);
+	else if (reply.status == HTTP_CONFLICT)
+		outcome = question->conflict;
 	wire_reply_free(&reply);
 	wire_close(wire);
 	return outcome;
+}
+
+static enum outcome print_status(const struct wire_reply *reply, const struct options *options)
+{
+	return print_studies(reply, options->format);
+}
+
+static enum outcome print_nothing(const struct wire_reply *reply, const struct options *options)
+{
+	(void)reply, (void)options;
+	return OUTCOME_OK;
+}
+
+static enum outcome print_bytes(const struct wire_reply *reply, const struct options *options)
+{
+	(void)options;
+	fwrite(reply->body, 1, reply->n_body, stdout);
+	return OUTCOME_OK;
+}
+
+static enum outcome print_result(const struct wire_reply *reply, const struct options *options)
+{
+	return show_result(reply->body, reply->n_body, options);
 }
 
 /* `pound status ID` */
 enum outcome query_status(const struct options *options)
 {
-	return status_after(options, "GET", "");
+	return ask(options, &(struct question){"GET", "", NULL, OUTCOME_FAILED, print_status});
 }
 
 /* `pound cancel ID`: prints the status the study then has. */
 enum outcome query_cancel(const struct options *options)
 {
-	return status_after(options, "POST", "/cancel");
+	return ask(options, &(struct question){"POST", "/cancel", NULL, OUTCOME_FAILED, print_status});
 }
 
 /* `pound delete ID`: silent. */
 enum outcome query_delete(const struct options *options)
 {
-	struct wire *wire = wire_open(options->url);
-	struct wire_reply reply;
-	enum outcome outcome = answer_about(wire, "DELETE", options->argument, "", NULL, &reply);
-	wire_reply_free(&reply);
-	wire_close(wire);
-	return outcome;
+	return ask(options, &(struct question){"DELETE", "", NULL, OUTCOME_FAILED, print_nothing});
 }
 
 /* `pound wait ID`: prints the last status, however the study ended. */
@@ -148,48 +175,22 @@ static const char *type_of(const char *format)
 	return TYPES[i].type;
 }
 
-/* Exit status of a product that there will never be. */
-static enum outcome never(enum outcome outcome, const struct wire_reply *reply)
-{
-	return reply->status == HTTP_CONFLICT ? OUTCOME_STUDY_FAILED : outcome;
-}
-
 /* `pound results ID`: printed as it comes, or as a table.
  *
  * Returns  value   OUTCOME_STUDY_FAILED when there will never be a result, OUTCOME_FAILED when there is none yet
  */
 enum outcome query_results(const struct options *options)
 {
-	struct wire *wire = wire_open(options->url);
-	struct wire_reply reply;
 	// CSV is the server's own, but for a table: that is made here, as `pound run' does
 	bool csv = strcmp(options->format, "csv") == 0 && !options->table;
-	enum outcome outcome =
-	    answer_about(wire, "GET", options->argument, options->partial ? "/results?partial=true" : "/results",
-	                 type_of(csv ? "csv" : "json"), &reply);
-	if (outcome == OUTCOME_OK && !csv)
-		outcome = show_result(reply.body, reply.n_body, options);
-	else if (outcome == OUTCOME_OK)
-		fwrite(reply.body, 1, reply.n_body, stdout);
-	else
-		outcome = never(outcome, &reply);
-	wire_reply_free(&reply);
-	wire_close(wire);
-	return outcome;
+	return ask(options, &(struct question){"GET", options->partial ? "/results?partial=true" : "/results",
+	                                       type_of(csv ? "csv" : "json"), OUTCOME_STUDY_FAILED,
+	                                       csv ? print_bytes : print_result});
 }
 
 /* `pound samples ID`: printed as they come. */
 enum outcome query_samples(const struct options *options)
 {
-	struct wire *wire = wire_open(options->url);
-	struct wire_reply reply;
-	enum outcome outcome =
-	    answer_about(wire, "GET", options->argument, "/samples", type_of(options->format), &reply);
-	if (outcome == OUTCOME_OK)
-		fwrite(reply.body, 1, reply.n_body, stdout);
-	else
-		outcome = never(outcome, &reply);
-	wire_reply_free(&reply);
-	wire_close(wire);
-	return outcome;
+	return ask(options, &(struct question){"GET", "/samples", type_of(options->format), OUTCOME_STUDY_FAILED,
+	                                       print_bytes});
 }
