@@ -73,7 +73,10 @@ static void finer_steps_stiffer_contacts_and_more_trials_cost_more(void **state)
 	    cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"newmark\", \"step_s\": 1e-4}").cpu_s;
 	double fine = cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"newmark\", \"step_s\": 1e-5}").cpu_s;
 	double adaptive = cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"adaptive\"}").cpu_s;
-	assert_true(stiff > 20 * soft);
+	double follows = cost_of_text(form, 1e8, ", \"solver\": {\"method\": \"adaptive\"}").cpu_s;
+	// the march goes over the contact's swings at once, the adaptive solver through each of them
+	assert_true(stiff > 1.3 * soft && stiff < 3 * soft);
+	assert_true(follows > 20 * adaptive);
 	check_near(fine / coarse, 10, 0.5);
 	assert_true(adaptive > 20 * soft);
 	static const char trials[] =
