@@ -1,6 +1,5 @@
 /* service_growth.c - studies that run until their intervals are narrow, and results of the rows so far, in a real server. */
 #include <string.h>
-#include <unistd.h>
 
 #include "schema/reading.h"
 #include "tests/documents.h"
