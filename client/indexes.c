@@ -307,9 +307,13 @@ static void print_closed(const struct reading *result, const char *output)
 static void print_ratios(const struct reading *result, const char *output)
 {
 	print_estimates(result, output, "ratios/variables", "variable", "");
-	double explained = reading_number(result, "%s/ratios/explained", output);
-	if (isfinite(explained))
-		printf("  these explain %.3f of the variance\n", explained);
+	char ratios[PATH_SIZE], explained[80];
+	snprintf(ratios, sizeof ratios, "%s/ratios", output);
+	interval(explained, sizeof explained, result, ratios, "explained", false);
+	if (*explained)
+		printf("  these explain %s of the variance\n", explained + strspn(explained, " "));
+	if (reading_text(result, "%s/note", ratios))
+		print_note(reading_text(result, "%s/note", ratios));
 }
 
 /* A curve in digits: 0 where it is lowest, 9 where it is highest. */

@@ -116,7 +116,7 @@ static void put_set(struct lines *lines, const struct place *at)
 static void put_variable(struct lines *lines, const struct place *at)
 {
 	put_output(lines, at);
-	put(lines, "", "explained", member(member(at->output, "ratios"), "explained"));
+	put_scalars(lines, member(at->output, "ratios"), "");
 	put_scalars(lines, at->element, "");
 }
 
