@@ -132,8 +132,8 @@ static void body_search(const struct series *s, const struct lanes *g, int i, vm
 
 /* Follows the largest displacement of a body inside the step, before what the search found.
  *
- * Where the velocity turns once, the displacement there is kept: an error of the turning time enters squared.  Where
- * it may turn more often, the step is cut at the first turn.
+ * Where the displacement at the first turn is proved to be the largest but for the step's end, it is kept: an error of the
+ * turning time enters squared.  Otherwise the step is cut at that turn.
  */
 static void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
 {
@@ -148,8 +148,11 @@ static void body_top(const struct series *s, struct lanes *g, int i, vm inside, 
 	vd sign = vselect(vless(way, zero), one, -one);
 	vm once =
 	    root_quick(&m->v, &rate, s->order, zero, sign, sign * v[0], sign * m->v1, one, c.bend, inside, &t);
-	vd turn = vabs(power_at(&m->u, s->order, t));
-	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], turn), g->top[i]);
+	vd turn = power_at(&m->u, s->order, t), behind = one - t, behind2 = behind * behind;
+	struct course rest = {turn, zero, m->u1, m->v1 * behind, m->bend * (behind2 * behind2)};
+	vd most = vmax(vmax(vabs(turn), vabs(m->u1)), g->top[i]);
+	once &= ~(may_cross(&rest, most, one) | may_cross(&rest, -most, -one));
+	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], vabs(turn)), g->top[i]);
 	inside &= ~once;
 	if (!vany(inside))
 		return;

@@ -184,7 +184,8 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 	vm risk = ~vless(zero, least);
 	if (forced) {
 		vd lowest = vmin(x[3], p.v) * g->release - press_row(s->map[PRESS_DROP], bound);
-		risk |= ~vless(zero, vmin(least, x[2]) + lowest);
+		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
+		risk |= ~vless(zero, vmin(least, x[2]) + lowest) & vless(zero, g->release);
 	}
 	// the other body stands off the base by gap and overlap
 	vd side = g->side, off = side * g->gap, u = x[0] - vfma(side, x[2], off), v = x[1] - side * x[3];
@@ -203,7 +204,7 @@ LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, b
 		                   .b2 = vselect(left, b.b2, o.b2),
 		                   .error = vselect(left, b.error, o.error)};
 		struct limits limits = {.top = vselect(left, s->base.top, s->other.top)};
-		risk |= flight_risk(v, &l, third, &limits, false);
+		risk |= flight_risk(vselect(left, x[1], v), &l, third, &limits, false);
 	}
 	press_move(g, s, pressed & ~risk, (vd[]){b.u, b.v, p.u, p.v}, vsplat(1), g->rise);
 	return risk;

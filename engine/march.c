@@ -27,7 +27,7 @@ struct queue {
 
 struct work {
 	struct simulation pool[POOL];
-	struct simulation rest; /* fills the lanes that a batch leaves empty */
+	struct simulation filler; /* of the lanes that a batch leaves empty */
 	struct queue idle, queues[STAGES];
 	const struct pound_march_task *tasks;
 	struct pound_march_result *results;
@@ -37,7 +37,7 @@ struct work {
 	struct pound_ladder ladders[POOL];
 };
 
-/* simulations side by side; lanes from n on hold the one at rest */
+/* simulations side by side; lanes from n on hold the filler */
 struct batch {
 	int n;
 	struct simulation *sim[W];
@@ -70,7 +70,7 @@ static struct batch batch_take(struct work *work, struct queue *queue)
 {
 	struct batch b = {.n = queue->n < W ? queue->n : W};
 	for (int l = 0; l < W; l++) {
-		b.sim[l] = l < b.n ? &work->pool[pop(queue)] : &work->rest;
+		b.sim[l] = l < b.n ? &work->pool[pop(queue)] : &work->filler;
 		b.row[l] = (double *)&b.sim[l]->x;
 		b.traits |= b.sim[l]->traits;
 	}
@@ -198,6 +198,8 @@ static void press_account(const struct batch *b, const struct press_start *start
 {
 	for (; pressed; pressed &= pressed - 1) {
 		int l = __builtin_ctz(pressed);
+		if (!(b->sim[l]->traits & TRAIT_ACCOUNTED))
+			continue;
 		double x[POUND_PRESS_INPUTS], end[4];
 		for (int j = 0; j < POUND_PRESS_INPUTS; j++)
 			x[j] = ((const double *)(j < 4 ? &start->x[j] : &s->x[j]))[l];
@@ -292,12 +294,19 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 
 /* ---- one step up to an event ---- */
 
-/* Lanes of a batch with a flag. */
-LANE_INLINE vm event_flags(const struct batch *b, bool fresh)
+/* Lanes whose bodies overlap without force, and those in which the force has just passed zero. */
+LANE_INLINE vm batch_parted(const struct batch *b)
 {
 	unsigned bits = 0;
 	for (int l = 0; l < W; l++)
-		bits |= (unsigned)(fresh ? b->sim[l]->fresh : b->sim[l]->parted) << l;
+		bits |= (unsigned)b->sim[l]->parted << l;
+	return vmask(bits);
+}
+LANE_INLINE vm batch_fresh(const struct batch *b)
+{
+	unsigned bits = 0;
+	for (int l = 0; l < W; l++)
+		bits |= (unsigned)b->sim[l]->fresh << l;
 	return vmask(bits);
 }
 
@@ -322,8 +331,8 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	if (accounted)
 		lanes_fill(&g, b, ROW_WORK);
 	if (e.forced) {
-		e.parted = event_flags(b, false);
-		e.fresh = event_flags(b, true);
+		e.parted = batch_parted(b);
+		e.fresh = batch_fresh(b);
 	}
 	vd events = event_step(&g, &e, accounted);
 	vm turns = vmask(0);
@@ -360,7 +369,7 @@ LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, boo
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0)};
 	if (e.forced)
-		e.parted = event_flags(b, false);
+		e.parted = batch_parted(b);
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
@@ -483,10 +492,10 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	work->tasks = tasks;
 	work->results = results;
 	work->n = n;
-	pound_simulation_start(&work->rest, &nothing, &result);
-	work->rest.pressed = &loose;
-	work->rest.x.dt = 1;
-	work->rest.x.gap = 0;
+	pound_simulation_start(&work->filler, &nothing, &result);
+	work->filler.pressed = &loose;
+	work->filler.x.dt = 1;
+	work->filler.x.gap = 0;
 	for (int j = 0; j < POOL; j++) {
 		work->pool[j].ladder = &work->ladders[j];
 		push(&work->idle, j);

@@ -16,9 +16,8 @@
 enum {
 	N = POUND_PRESS_INPUTS,
 	MOVED = PRESS_IMPULSE +
-	        1,       /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
-	RUNG_RATIO = 8,  /* of a rung to the one below */
-	MAP_ORDERS = 18, /* of a map's series; 0.8^18/18! = 3e-18 */
+	        1,      /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
+	RUNG_RATIO = 8, /* of a rung to the one below */
 };
 
 /* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
@@ -123,7 +122,7 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 	double(*row)[N] = map->row;
 	memset(row, 0, sizeof map->row);
 	split_fill(row[PRESS_SPLIT], sim);
-	for (int n = 0; n < MAP_ORDERS; n++) {
+	for (int n = 0; n < POUND_MAP_ORDERS; n++) {
 		double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
 		double drop = 0.125 * x->release / h * n * (n - 1.0), added = n > 0;
 		if (work)
@@ -378,10 +377,13 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 /* Gets everything ready for whole cells of pressed contact: the longest map over which nothing is known to happen.
  *
  * Given    sim    in contact, with whole cells left
- * Returns  value  STAGE_REST: sim->pressed is a rung of the ladder; STAGE_PRESS: it is a cell
+ * Returns  value  STAGE_REST: sim->pressed is a rung of the ladder; STAGE_PRESS: it is a cell; STAGE_CHATTER: above 2^53
+ *                 cells in an interval there is no end to them
  */
 enum pound_stage pound_press_ready(struct simulation *sim)
 {
+	if (++sim->steps > POUND_STEPS_LIMIT)
+		return STAGE_CHATTER;
 	struct pound_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
 	struct pound_press *press = NULL;

@@ -144,7 +144,7 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
 /* First root by Halley's method where the guard is positive at the limit, with a proof that it is the first.
  *
  * Given    u, v    guard before sign and level, and its derivative: g = sign (u - level)
- *          g0, g1  its values at 0, not positive, and at the limit
+ *          g0, g1  its values at 0, not positive, and at the limit, the last time of interest
  *          bend    bound of the fourth derivative of g over the step
  *          active  lanes to search
  * Returns  value   lanes whose root t was found and proved
@@ -171,7 +171,8 @@ static vm root_quick(const struct power *u, const struct power *v, int order, vd
 		vd next = vselect(rises, vmin(vmax(*t - value * slope / fall, zero), limit), limit);
 		vd step = next - *t;
 		*t = vselect(settled, *t, next);
-		// the error after a step of s is near s (s bow/slope)^2, and 1e-4 s (s bow/slope) for what bow leaves out
+		// the error after a step of s is near s (s bow/slope)^2, and s^2/slope times what bow leaves out: 1e-4 of the
+		// magnitudes of its terms, so that near an inflection 1e-13 of the whole step may remain
 		vd small = vsplat(0x1p-20);
 		settled |= vless(vabs(step), small * *t) & vless(vabs(step * bow), small * slope) & rises;
 	}
@@ -230,7 +231,13 @@ static vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t
 static void search_safe(struct power *guard, int order, vm active, vd event, double cut,
                         struct search *search)
 {
-	vd zero = vsplat(0);
+	vd zero = vsplat(0), large = zero;
+	// squares are taken: what would vanish in them is raised by a power of two
+	for (int n = 0; n <= order; n++)
+		large = vmax(large, vabs(guard->c[n]));
+	vd raise = vselect(vless(large, vsplat(0x1p-400)), vsplat(0x1p600), vsplat(1));
+	for (int n = 0; n <= order; n++)
+		guard->c[n] = guard->c[n] * raise;
 	guard->c[order + 1] = zero;
 	for (int m = 0; m < DEFLATE_MAX; m++) {
 		vm leading = vequal(guard->c[0], zero) & active;

@@ -15,11 +15,6 @@ static const double REACH_FREE = 0.35, REACH_TOUCH = 0.8;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
-enum {
-	STEPS_LIMIT = 1 << 19, /* by power series in one sample interval: more is chatter */
-	MAP_ORDERS = 18,       /* of a map's series; 0.8^18/18! = 3e-18 */
-};
-
 static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 
 static double most(double a, double b)
@@ -45,7 +40,7 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 {
 	double ch = c * h, kh = k * h * h;
 	double u = 0, w = h, psi = 0, rate_sum = 0, once = 0, twice = 0; // w: u' h
-	for (int n = 0; n < MAP_ORDERS; n++) {
+	for (int n = 0; n < POUND_MAP_ORDERS; n++) {
 		double share = 1.0 / (n + 1), next = -(ch * w + kh * u) * share;
 		psi += u;
 		rate_sum += w;
@@ -109,7 +104,7 @@ void pound_simulation_interval(struct simulation *sim)
 /* The next step by power series. */
 enum pound_stage pound_simulation_step(struct simulation *sim)
 {
-	if (++sim->steps > STEPS_LIMIT)
+	if (++sim->steps > POUND_STEPS_LIMIT)
 		return STAGE_CHATTER;
 	struct pound_rows *x = &sim->x;
 	if (sim->touching) {

@@ -11,7 +11,8 @@
 
 enum {
 	POUND_MAPS = 4,        /* free-flight maps a body keeps */
-	POUND_PRESS_MAPS = 3,  /* ladders of maps of pressed contact a simulation keeps */
+	POUND_MAP_ORDERS = 18, /* of a map's series; 0.8^18/18! = 3e-18 */
+	POUND_PRESS_MAPS = 3,  /* pairs of pieces whose cell map and ladder a simulation keeps */
 	POUND_PRESS_RUNGS = 7, /* of a ladder: maps over many cells */
 	POUND_PRESS_INPUTS =
 	    8 /* base u, v, overlap p, q, forcing of either, and its growth over the map's length */
@@ -78,11 +79,11 @@ enum {
 	REST_ERROR =
 	    PRESS_ERROR,        /* of a rung, by other magnitudes (press.c): of the cubic of the common motion */
 	REST_BEND = PRESS_DROP, /* of what presses the bodies on each other, off its straight line */
-	PRESS_SPLIT = PRESS_ROWS, /* of a rung: not a form but the enum below */
+	PRESS_SPLIT = PRESS_ROWS, /* not a form but the enum below */
 	REST_ROWS,
 };
 
-/* how a rung splits the motion into that of both bodies and the contact's own */
+/* how a map splits the motion into that of both bodies and the contact's own */
 enum {
 	SPLIT_DAMPING,
 	SPLIT_STIFFNESS, /* what presses: times the common velocity and displacement */
@@ -129,7 +130,7 @@ enum pound_stage {
 	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
 	STAGE_APART,     /* of both */
 	STAGE_TOUCH,     /* of both in contact */
-	STAGE_LEAP_ALONE, /* what is left of a sample behind an event, where likely nothing happens: of the left body */
+	STAGE_LEAP_ALONE, /* what is left of a sample behind an edge, where likely nothing happens: of the left body */
 	STAGE_LEAP_APART, /* of both */
 	STAGES,
 	STAGE_END = STAGES,
@@ -147,6 +148,8 @@ enum {
 	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
 };
 
+enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
+
 struct simulation {
 	alignas(64) struct pound_rows x;
 	const struct pound_march_task *task;
@@ -157,19 +160,20 @@ struct simulation {
 	double cells_whole; /* of an interval */
 	double rung_cells[POUND_PRESS_RUNGS];
 	int rungs, rung, rung_limit; /* there are, in use, the longest to try */
-	int steps;                   /* in this interval */
+	int steps;                   /* and turns in the queues of pressed contact, in this interval */
 	int base;                    /* the heavier body, whose motion and the overlap describe pressed contact */
 	bool touching;               /* the contact's force acts */
 	bool parted;                 /* force gone before the overlap: bodies still overlap */
 	bool fresh;                  /* the force has just passed zero */
 	unsigned traits;             /* see enum above */
 	bool paired;                 /* the right body moves, or there is something to touch */
-	bool can_fly, can_press;
+	bool can_fly;                /* samples are short enough for maps, and no balance is kept */
+	bool can_press;
 	struct pound_branch at[2];
 	const struct pound_press_map *pressed; /* of the next cells */
 	const struct pound_press_work *worked; /* of the same */
 	int map_next[2], press_next;
-	// from here on a start clears no more than the maps' keys
+	// from here on a start clears no more than the maps' keys; what else they have is filled with them
 	struct pound_ladder *ladder; /* apart from the rest, which is to stay close together */
 	struct pound_map maps[2][POUND_MAPS];
 	struct pound_press press[POUND_PRESS_MAPS];

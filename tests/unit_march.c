@@ -242,21 +242,62 @@ static void the_energy_put_in_is_found_again(void **state)
 		check_near(results[t].energy_residual, 0, 2e4 * 2.2e-16);
 }
 
-static void a_run_does_not_depend_on_its_neighbours(void **state)
+/* Runs tasks together, and each alone. */
+static void check_alone_as_together(const struct pound_march_task *tasks)
 {
-	(void)state;
 	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
-	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
 	struct pound_march_result together[TASKS], alone;
 	memset(together, 0, sizeof together);
 	memset(&alone, 0, sizeof alone);
-	tasks_fill(tasks, ground, 2);
 	pound_march_lanes(0, tasks, together, TASKS, scratch);
 	for (int t = 0; t < TASKS; t++) {
 		pound_march_lanes(0, &tasks[t], &alone, 1, scratch);
 		assert_memory_equal(&together[t], &alone, sizeof alone);
 	}
+}
+
+static void a_run_does_not_depend_on_its_neighbours(void **state)
+{
+	(void)state;
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS];
+	tasks_fill(tasks, ground, 2);
+	check_alone_as_together(tasks);
+}
+
+/* From the first instant of a contact on its overlap grows from 0: what a neighbour's contact, which ends with its force,
+ * must be looked after for is none of its business. */
+static void a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours(void **state)
+{
+	(void)state;
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS];
+	for (int round = 1; round <= 20; round++) {
+		uint64_t seed = (uint64_t)round;
+		tasks_fill(tasks, ground, seed);
+		for (int t = 0; t < TASKS; t++) {
+			double *a = ground + t * SAMPLES;
+			tasks[t].n_samples = 2 + t % 3;
+			tasks[t].gap = 0;
+			tasks[t].contact = true;
+			tasks[t].bodies[0].v = 1;
+			tasks[t].bodies[1].v = -random_number(&seed);
+			memset(a, 0, sizeof(double) * (size_t)tasks[t].n_samples);
+		}
+		check_alone_as_together(tasks);
+	}
+}
+
+static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter(void **state)
+{
+	(void)state;
+	static const double pushes[3] = {-1, -1, -1};
+	struct pound_march_task task = wall(0, 0.05, 0, 1e34);
+	task.ground = pushes;
+	task.n_samples = 3;
+	task.bodies[0].u = 0;
+	task.bodies[0].drive = 1;
+	assert_int_equal(march(&task).status, POUND_CHATTER);
 }
 
 CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
@@ -267,4 +308,6 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(bodies_at_rest_without_ground_motion_stay_at_rest),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
            cmocka_unit_test(the_energy_put_in_is_found_again),
-           cmocka_unit_test(a_run_does_not_depend_on_its_neighbours))
+           cmocka_unit_test(a_run_does_not_depend_on_its_neighbours),
+           cmocka_unit_test(a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours),
+           cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter))
