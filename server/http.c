@@ -137,7 +137,8 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 			MHD_add_response_header(response, headers[i].name, headers[i].value);
 	allow(request->connection, SEND_S + (double)reply->length / SEND_RATE);
 	metrics_answered(&server->metrics, request->operation, reply->status, seconds);
-	log_line("%s %s %s %d %zu bytes %.1f ms", number, request->method, request->path, reply->status,
+	// a path may be longer than a line
+	log_line("%s %.20s %.400s %d %zu bytes %.1f ms", number, request->method, request->path, reply->status,
 	         reply->length, 1e3 * seconds);
 	enum MHD_Result queued = MHD_queue_response(request->connection, (unsigned)reply->status, response);
 	MHD_destroy_response(response);

@@ -319,7 +319,8 @@ static void list_arguments_that_make_no_sense_are_400(void **state)
 {
 	static const char *const arguments[] = {
 	    "limit=0", "limit=101", "limit=",  "limit=1x",   "status=new",
-	    "status=", "cursor=1",  "cursor=", "cursor=%27", "limit=99999999999999999999"};
+	    "status=", "cursor=1",  "cursor=", "cursor=%27", "limit=99999999999999999999",
+	    "cursor"};
 	struct service *service = *state;
 	for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++)
 		problem_is(service_get(service, "/v1/studies?%s", arguments[i]), 400, "must be");
@@ -491,16 +492,21 @@ static void a_live_and_ready_server_says_so_and_its_version(void **state)
 static void a_path_with_a_newline_is_one_line_of_the_log(void **state)
 {
 	struct service *service = *state;
-	char line[1024];
-	bool found = false;
+	char line[1024], path[2048];
+	bool found = false, cut = false;
 	problem_is(service_get(service, "/first%%0Asecond%%1b%%9b%%c2%%9b"), 404, "no such path");
+	snprintf(path, sizeof path, "/long%02000d", 0);
+	problem_is(service_ask(service, &(struct ask){.method = "GET", .path = path}), 404, "no such path");
 	service_stop(service);
 	FILE *log = fopen(service->log, "r");
 	assert_non_null(log);
-	while (fgets(line, sizeof line, log))
+	while (fgets(line, sizeof line, log)) {
 		found = found || strstr(line, "/first?second???? 404");
+		cut = cut || (strstr(line, "/long000") && strstr(line, "0 404 "));
+	}
 	fclose(log);
 	assert_true(found);
+	assert_true(cut);
 }
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
