@@ -188,9 +188,10 @@ static void finish(struct work *work, struct job *job)
 		                        .cpu_s = job->cpu_s,
 		                        .threads = work->n_workers};
 		int tries = MEMORY_TRIES;
-		do
-			result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length);
-		while (!result && --tries && patient(work));
+		while (!(result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length)) &&
+		       --tries)
+			if (!patient(work))
+				return; // the next start tries again
 		error = result ? NULL : "out of memory";
 	}
 	enum store_status status;
