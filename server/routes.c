@@ -181,17 +181,18 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 	if (store_count(store, "queued", NULL, &all) != STORE_OK ||
 	    (client && store_count(store, "queued", client, &own) != STORE_OK))
 		return refusal(STORE_FAILED);
-	if (all >= options->queue_max)
-		return problem(API_UNAVAILABLE, "as many studies are queued as this server takes");
-	if (own >= options->queue_token_max)
-		return problem(API_TOO_MANY, "as many studies are queued as this server takes from one token");
+	bool full = all >= options->queue_max, own_full = own >= options->queue_token_max;
 	const struct store_study row = {.kind = study_kind_name(study->kind),
 	                                .name = study->name,
 	                                .runs = study_runs(study),
 	                                .hash = hash,
 	                                .key = key ? own_key : NULL,
-	                                .client = client};
+	                                .client = client,
+	                                .barred = full || own_full};
 	enum store_status submitted = store_submit(store, &row, request->body, request->length, &id);
+	if (submitted == STORE_NONE)
+		return full ? problem(API_UNAVAILABLE, "as many studies are queued as this server takes")
+		            : problem(API_TOO_MANY, "as many studies are queued as this server takes from one token");
 	if (submitted != STORE_OK && submitted != STORE_REPEATED)
 		return refusal(submitted);
 	struct page page;

@@ -284,6 +284,7 @@ static enum store_status keyed(struct database *c, const char *key, const char *
  * Given    request   (length) bytes   as the client sent them
  * Returns  id        of the study, or of the one that has the key
  * Status   STORE_REPEATED these bytes were submitted with the key before: nothing new is stored
+ *          STORE_NONE     nothing was, and the study is barred
  *          STORE_CLASH    other bytes were
  *          STORE_FULL     the disk has no room for new studies
  *          STORE_FAILED   nothing is stored
@@ -295,6 +296,8 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 	bool roomy = disk_roomy(&store->disk);
 	struct database *c = writer(store);
 	enum store_status status = keyed(c, study->key, request, length, id);
+	if (status == STORE_NONE && study->barred)
+		return released(c, STORE_NONE);
 	if (status == STORE_NONE && !roomy)
 		status = STORE_FULL;
 	if (status == STORE_NONE)

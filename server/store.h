@@ -29,6 +29,7 @@ struct store_study {
 	const char *hash;   /* of its meaning, hex */
 	const char *key;    /* Idempotency-Key it was submitted with, NULL: none */
 	const char *client; /* name of the token it was submitted with, NULL: there are none */
+	bool barred;        /* it is not stored; only what was submitted with the key before is looked for */
 };
 typedef void store_study_reader(void *to,
                                 const struct study_status *study); /* of texts that end with the call */

@@ -216,7 +216,11 @@ static void a_key_stands_for_one_study(void **state)
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
 	assert_true(again == first);
 	assert_int_equal(store_submit(*state, &study, "{ }", 3, &other), STORE_CLASH);
+	study.barred = true;
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
 	study.key = "b key";
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_NONE);
+	study.barred = false;
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_OK);
 	assert_true(other != first);
 	// when the study has gone, so has its key
