@@ -305,6 +305,18 @@ static bool second(const struct request *request, const struct format formats[2]
 	return is;
 }
 
+/* Why the run of a study cannot be made: not now, or never, for its document is gone or damaged, or not for this version. */
+static struct reply unopened(struct request *request, const struct work_run *opened, const char *error)
+{
+	if (opened->passing)
+		return problem(API_UNAVAILABLE, error);
+	struct reply reply = document(request, "request");
+	if (reply.status != 200)
+		return reply;
+	free(reply.body);
+	return problem(API_CONFLICT, error);
+}
+
 /* The result of the rows that are stored whole; an unfinished study is looked at again after a time [s]. */
 static struct reply so_far(struct request *request, int retry_after, int *rows)
 {
@@ -325,11 +337,12 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 		reply = !status || status == POUND_NOMEM
 		            ? made("application/json", body, length)
 		            : problem(API_CONFLICT, "none of the runs so far has a result");
-	} else {
-		reply = error     ? problem(API_UNAVAILABLE, error)
-		        : sampled ? problem(API_NOT_READY, "no row of the design is complete yet")
-		                  : problem(API_NOT_READY, "only sensitivity studies have results so far; this "
-		                                           "study is not finished yet");
+	} else if (error)
+		reply = unopened(request, &opened, error);
+	else {
+		reply = problem(API_NOT_READY, sampled ? "no row of the design is complete yet"
+		                                       : "only sensitivity studies have results so far; this "
+		                                         "study is not finished yet");
 		reply.retry_after = retry_after;
 	}
 	work_close(&opened);
@@ -379,6 +392,8 @@ static struct reply samples(struct request *request)
 	struct reply reply = document(request, "result");
 	if (reply.status != 200)
 		return reply;
+	// what one version computed is not put beside the rows of another
+	bool ours = strstr(reply.body, "\"engine_version\": \"" POUND_VERSION "\"");
 	free(reply.body);
 	bool npy = second(request, formats, NULL, 0, &reply);
 	if (http_known(request, reply.etag))
@@ -386,11 +401,13 @@ static struct reply samples(struct request *request)
 	struct work_run opened;
 	const char *error = work_open(request->server->store, request->id, 1, &opened);
 	if (error)
-		reply = problem(API_UNAVAILABLE, error);
+		reply = unopened(request, &opened, error);
 	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
 		work_finished(&opened);
 		if (work_left(&opened) > 0)
-			reply = problem(API_CORRUPT, "stored blocks are damaged or of another version");
+			reply = ours ? problem(API_CORRUPT, "stored blocks are damaged")
+			             : problem(API_CONFLICT, "another version of poundd computed the study; only "
+			                                     "that has its samples: submit it again");
 		else
 			reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
 	} else if (opened.study->spectrum.histories)

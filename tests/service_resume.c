@@ -2,6 +2,9 @@
 #include <string.h>
 #include <time.h>
 
+#include <nettle/sha2.h>
+
+#include "engine/pound.h"
 #include "schema/reading.h"
 #include "tests/program.h"
 #include "tests/service.h"
@@ -171,6 +174,60 @@ static void a_damaged_result_is_an_error_not_an_answer(void **state)
 	free(study);
 }
 
+/* Has the stored result say that another version made it, and its digest with it. */
+static void made_by_another_version(const struct service *service, const char *id)
+{
+	char sql[512], place[64], sha256[65];
+	uint8_t bytes[SHA256_DIGEST_SIZE];
+	struct sha256_ctx hash;
+	char *result = service_text(service, "SELECT content FROM document WHERE name = 'result'");
+	char *version = strstr(result, "\"engine_version\": \"" POUND_VERSION);
+	assert_non_null(version);
+	version[strlen("\"engine_version\": \"")] = 'x';
+	snprintf(place, sizeof place, "result %lld ", strtoll(id, NULL, 16));
+	sha256_init(&hash);
+	sha256_update(&hash, strlen(place), (const uint8_t *)place);
+	sha256_update(&hash, strlen(result), (const uint8_t *)result);
+	sha256_digest(&hash, sizeof bytes, bytes);
+	for (int i = 0; i < SHA256_DIGEST_SIZE; i++)
+		snprintf(sha256 + 2 * i, 3, "%02x", bytes[i]);
+	snprintf(
+	    sql, sizeof sql,
+	    "UPDATE document SET sha256 = x'%s', content = CAST(replace(content, '\"engine_version\": \"%c', "
+	    "'\"engine_version\": \"x') AS BLOB) WHERE name = 'result'",
+	    sha256, POUND_VERSION[0]);
+	service_change(service, sql);
+	free(result);
+}
+
+static void samples_of_blocks_that_cannot_be_used_are_500_but_409_from_another_version(void **state)
+{
+	struct service *service = service_new();
+	char *study = service_study(2, 1, 1);
+	char id[17];
+	(void)state;
+	service_start(service, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	service_stop(service);
+	service_change(service, "UPDATE block SET sha256 = zeroblob(32)");
+	for (int another = 0; another < 2; another++) {
+		if (another)
+			made_by_another_version(service, id);
+		service_start(service, 1);
+		struct answer result = service_get(service, "/v1/studies/%s/results", id);
+		assert_int_equal(result.status, 200);
+		struct answer samples = service_get(service, "/v1/studies/%s/samples", id);
+		assert_int_equal(samples.status, another ? 409 : 500);
+		assert_non_null(strstr(samples.body, another ? "another version" : "result-corrupt"));
+		answer_free(&samples);
+		answer_free(&result);
+		service_stop(service);
+	}
+	service_free(service);
+	free(study);
+}
+
 static void a_server_with_ten_thousand_queued_studies_is_soon_ready(void **state)
 {
 	struct service *service = service_new();
@@ -222,5 +279,6 @@ CHECK_MAIN(cmocka_unit_test(results_are_the_same_bytes_for_any_number_of_workers
            cmocka_unit_test(the_time_a_study_takes_is_that_of_all_its_sessions),
            cmocka_unit_test(a_damaged_block_is_run_again_to_the_same_bytes),
            cmocka_unit_test(a_damaged_result_is_an_error_not_an_answer),
+           cmocka_unit_test(samples_of_blocks_that_cannot_be_used_are_500_but_409_from_another_version),
            cmocka_unit_test(a_server_with_ten_thousand_queued_studies_is_soon_ready),
            cmocka_unit_test(a_newer_or_foreign_database_is_refused_and_left_as_it_is))
