@@ -64,6 +64,9 @@ struct fault {
 	char what[200];           /* of the first of all */
 };
 
+// squares of outputs, and products of those, are still doubles
+static const double OUTPUT_MOST = 1e60, VARIANCE_MOST = 1e120;
+
 /* What can be wrong with a cell, but for its header. */
 enum fault_kind { FAULT_NUMBER, FAULT_RANGE, FAULT_INPUT, N_FAULTS };
 
@@ -364,10 +367,16 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 		           "must be a decimal number, or empty or nan for a failed run, got \"%.60s\"", csv->cell);
 	} else if (column->role == ROLE_OUTPUT) {
 		line->value[column->index] = number;
+		if (fabs(number) > OUTPUT_MOST)
+			fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g in size, got %.60s",
+			           OUTPUT_MOST, csv->cell);
 	} else if (column->role == ROLE_VARIANCE) {
 		line->variance[column->index] = isfinite(number) ? number : INFINITY;
 		if (number < 0)
 			fault_note(&column->faults[FAULT_RANGE], csv, "must be at least 0, got %.60s", csv->cell);
+		else if (number > VARIANCE_MOST)
+			fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g, got %.60s", VARIANCE_MOST,
+			           csv->cell);
 	} else if (!line->strange && !alike(number, line->x[column->index])) {
 		fault_note(&column->faults[FAULT_INPUT], csv,
 		           "is %.15g, but the design has %.15g there: is this its order and its seed?", number,

@@ -371,6 +371,8 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	    {"y\n", "1\n", "1,5\n", "line 25", "has 2 cells, the header has 1"},
 	    {"y,z\n", "1,2\n", "1\n", "line 25", "has 1 cells, the header has 2"},
 	    {"y,y.variance\n", "1,2\n", "1,-2\n", "line 25, y.variance", "must be at least 0, got -2"},
+	    {"y,y.variance\n", "1,2\n", "1,1e121\n", "line 25, y.variance", "must be at most 1e+120, got 1e121"},
+	    {"y\n", "1\n", "-1e200\n", "line 25, y", "must be at most 1e+60 in size, got -1e200"},
 	    {"z.variance\n", "1\n", "1\n", "line 1, z.variance", "is the variance of no column here"},
 	    {"p\n", "0.5\n", "0.5\n", "line 1",
 	     "names no output: a column for each, and NAME.variance where it is known"},
