@@ -202,7 +202,8 @@ size_t pound_interval_scratch(int n_rows, int n_moments, int n_values)
  * Returns  estimates  (n_values)      low and high are NAN where no resample defines the value
  * Memory   scratch    (pound_interval_scratch)
  *
- * Resamples for which a value is not defined (all rows alike) are left out of its quantiles.
+ * Resamples for which a value is not defined (all rows alike) are left out of its quantiles; a value that is not defined
+ * has no interval.
  *
  * Valid    Rows that are independent or of one Latin hypercube; mildly wide for the latter (3-13 %)
  * Source   percentile interval, Efron, Tibshirani 1993, section 13.3
@@ -233,7 +234,7 @@ void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_row
 				resampled[v * POUND_RESAMPLES + defined[v]++] = value[v];
 	}
 	for (int v = 0; v < statistic->n_values; v++)
-		if (defined[v]) {
+		if (defined[v] && !isnan(estimates[v].value)) {
 			estimates[v].low = quantile(resampled + v * POUND_RESAMPLES, defined[v], 0.025);
 			estimates[v].high = quantile(resampled + v * POUND_RESAMPLES, defined[v], 0.975);
 		}

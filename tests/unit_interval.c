@@ -129,22 +129,25 @@ static void first_row(const void *subject, int row, double *m)
 	*m = row == 0;
 }
 
-/* 7 for a resample that holds row 0, undefined for the others. */
+/* 7 for a resample that holds row 0, undefined for the others; undefined for all; and for those that hold it once, as all
+ * rows do. */
 static void seven_or_nothing(const void *subject, const double *mean, double *value)
 {
 	(void)subject;
 	value[0] = mean[0] > 0.0 ? 7.0 : NAN;
 	value[1] = NAN;
+	value[2] = fabs(mean[0] - 0.1) > 1e-9 ? 7.0 : NAN;
 }
 
-static void undefined_resamples_are_left_out(void **state)
+static void undefined_resamples_are_left_out_and_undefined_values_have_no_interval(void **state)
 {
 	(void)state;
 	struct pound_estimate *e =
-	    estimates_of((struct pound_statistic){1, 2, first_row, seven_or_nothing, NULL}, 10, 1);
+	    estimates_of((struct pound_statistic){1, 3, first_row, seven_or_nothing, NULL}, 10, 1);
 	check_near(e[0].low, 7.0, 0.0);
 	check_near(e[0].high, 7.0, 0.0);
 	assert_true(isnan(e[1].low) && isnan(e[1].high));
+	assert_true(isnan(e[2].value) && isnan(e[2].low) && isnan(e[2].high));
 	free(e);
 }
 
@@ -186,5 +189,5 @@ static void intervals_of_a_mean_are_those_of_the_normal_law(void **state)
 CHECK_MAIN(cmocka_unit_test(rows_are_drawn_as_often_as_a_multinomial_says),
            cmocka_unit_test(rows_beyond_the_first_segment_are_drawn_as_often_as_the_others),
            cmocka_unit_test(the_interval_ends_at_the_quantiles_of_the_resamples),
-           cmocka_unit_test(undefined_resamples_are_left_out),
+           cmocka_unit_test(undefined_resamples_are_left_out_and_undefined_values_have_no_interval),
            cmocka_unit_test(intervals_of_a_mean_are_those_of_the_normal_law))
