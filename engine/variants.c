@@ -298,6 +298,24 @@ static bool lost_in_noise(const struct pound_indices *indices, int n_inputs)
 	return false;
 }
 
+/* Whether a few rows hold so much of the variance that their scatter does not show how indexes err: of an output that is
+ * 0 but for one sample, say, an interval has no width.  They count for (sum v)^2 / sum v^2 rows, v the squares of each:
+ * of fewer than five, one has a fifth of the sum. */
+static bool few_decide(const struct pound_rows *rows)
+{
+	const double least = 5.0;
+	double sum = 0.0, squares = 0.0;
+	for (int i = 0; i < rows->n_rows; i++) {
+		const double *y = rows->y + (size_t)i * rows->n_samples;
+		double v = 0.0;
+		for (int p = 0; p < rows->n_samples; p++)
+			v += y[p] * y[p];
+		sum += v;
+		squares += v * v;
+	}
+	return sum * sum < least * squares;
+}
+
 static unsigned notes_of(const bool said[POUND_N_NOTES])
 {
 	unsigned notes = 0;
@@ -388,6 +406,7 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	    [POUND_NOTE_FRESH_SIGNALS] = varies && !elsewhere && s.corrected && sampling->fresh_signals,
 	    [POUND_NOTE_FEW_ROWS] = varies && !rows_enough(&s),
 	    [POUND_NOTE_NOISE] = varies && s.corrected && lost_in_noise(indices, d),
+	    [POUND_NOTE_FEW_DECIDE] = varies && rows_enough(&s) && few_decide(&rows),
 	});
 	const int dropped = values->n_rows - rows.n_rows;
 	pound_dropped_changes(&rows, dropped, &indices->accuracy);

@@ -300,7 +300,7 @@ static void all_there_is_to_say_has_room(void **state)
 	struct reading *r = result_of(documents_sensitivity, &result);
 	const char *note = reading_text(r, "/cells/0/outputs/0/note");
 	assert_string_equal(strrchr(note, ';'),
-	                    "; the signals' noise is as large as the variance, so corrected indexes are missing");
+	                    "; one row makes a fifth of the variance or more, so intervals may be too narrow");
 	reading_close(r);
 }
 

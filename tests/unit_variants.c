@@ -228,6 +228,28 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 	free(u);
 }
 
+/* Of one sample that is not as the others the interval of a total is a point, which the note takes back; of ten in as many
+ * rows it is none. */
+static void an_output_that_few_rows_decide_is_noted(void **state)
+{
+	(void)state;
+	enum { N = 100 };
+	double *u = function_design(N, 7), numerator[N * SAMPLES], denominator[N * SAMPLES];
+	for (int rare = 1; rare <= 10; rare += 9) {
+		for (int i = 0; i < N * SAMPLES; i++) {
+			denominator[i] = 1;
+			numerator[i] = i % SAMPLES == 2 && i / SAMPLES < rare ? 1 : 0;
+		}
+		struct pound_sample_values values = {
+		    .n_rows = N, .n_inputs = D, .n_signals = 1, .numerator = numerator, .denominator = denominator};
+		struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u});
+		const int few = rare == 1 ? 1 << POUND_NOTE_FEW_DECIDE : 0;
+		assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOT_RANDOM | few);
+		free(got);
+	}
+	free(u);
+}
+
 /* ---- whole studies ---- */
 
 /* The result of a study as a server with so many workers would reduce it, workers in turn. */
@@ -389,5 +411,6 @@ CHECK_MAIN(cmocka_unit_test(every_column_comes_from_its_function),
            cmocka_unit_test(with_few_rows_the_corrected_indexes_stand_in),
            cmocka_unit_test(what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left),
            cmocka_unit_test(nothing_is_defined_where_nothing_varies_or_nothing_is_left),
+           cmocka_unit_test(an_output_that_few_rows_decide_is_noted),
            cmocka_unit_test(an_input_of_one_value_explains_exactly_nothing),
            cmocka_unit_test(a_study_s_result_holds_what_its_samples_give))
