@@ -27,8 +27,8 @@ static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE]
 	    [POUND_ERROR_SAMPLING] =
 	        {"Too few rows are the largest error: an interval reaches %.2g to either side of ", true},
 	    [POUND_ERROR_EXCITATION] =
-	        {"Too few signals for each row are the largest error: their noise widens an "
-	         "interval by up to %.2g to either side",
+	        {"Too few signals for each row may be the largest error: an upper estimate of what their noise "
+	         "adds to an interval is %.2g to either side",
 	         false},
 	    [POUND_ERROR_INTEGRATION] = {"Inexact runs are the largest error: up to %.2g in ", true},
 	    [POUND_ERROR_FAILED_ROWS] = {"Rows without a result are the largest error: were they all like the "
