@@ -463,15 +463,11 @@ int http_port(const struct server *server)
 void http_stop(struct server *server)
 {
 	double until = connection_now() + STOP_S;
-	int listening = MHD_quiesce_daemon(server->daemon);
 	server->stopping = true;
-	// who is not accepted yet sees at once that nobody is here
-	shutdown(listening, SHUT_RDWR);
 	server->connections.released = true;
 	// a suspended connection must not be stopped
 	while (server->aside > 0 || (server->under_way > 0 && connection_now() < until))
 		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
 	MHD_stop_daemon(server->daemon);
-	close(listening);
 	connections_stop(&server->connections);
 }
