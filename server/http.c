@@ -342,6 +342,15 @@ static void notice(void *of, struct MHD_Connection *connection, void **context,
 		connection_closed(&server->connections, *context);
 }
 
+/* Who comes while the server stops is hung up on: else the clients who keep coming would keep it up. */
+static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen_t n)
+{
+	const struct server *server = of;
+	(void)address;
+	(void)n;
+	return server->stopping ? MHD_NO : MHD_YES;
+}
+
 static void log_library(void *of, const char *format, va_list values)
 {
 	char text[256];
@@ -407,7 +416,7 @@ static struct MHD_Daemon *listen_at(struct server *server, const union address *
 	unsigned flags = MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME |
 	                 (address->any.sa_family == AF_INET6 ? MHD_USE_IPv6 : 0);
 	return MHD_start_daemon(
-	    flags, 0, NULL, NULL, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL,
+	    flags, 0, welcome, server, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL,
 	    MHD_OPTION_SOCK_ADDR, &address->any, MHD_OPTION_NOTIFY_COMPLETED, completed, server,
 	    MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin, server,
 	    MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
