@@ -10,9 +10,8 @@ CPPFLAGS.release := -D_FORTIFY_SOURCE=2
 LDFLAGS.release  := -pie -Wl,-z,relro,-z,now
 MODE.asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 MODE.tsan    := -O1 -g -fsanitize=thread
-# the march's loops over lanes are to be straight code, those over the columns of its maps to be vectors
+# the march's loops over lanes are to be straight code
 MARCH.release := -O3 -fno-tree-vectorize
-MAPS.release  := -O3
 WARN     := -Wall -Wextra -Werror -Wmissing-prototypes -Wshadow -Wvla -Wno-psabi
 CPPFLAGS += -I. -D_GNU_SOURCE $(CPPFLAGS.$(MODE))
 LDFLAGS  += $(LDFLAGS.$(MODE))
@@ -70,7 +69,6 @@ $(B)/%.o: %.c
 $(B)/engine/march_%.o: engine/march.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(MARCH.$(MODE)) $(LANES.$*) -DPOUND_MARCH=pound_march_$* -c -o $@ $<
-$(B)/engine/simulation.o $(B)/engine/press.o: CFLAGS += $(MAPS.$(MODE))
 $(B)/engine/spectrum_%.o: engine/spectrum.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<

@@ -232,7 +232,7 @@ LANE_INLINE vm rest_risk(vd u, vd end, vd low, vd high, vd way, vm steady, const
 	return risk | vless(x->direction * way, vsplat(0));
 }
 
-/* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in press.c.
+/* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in press.h.
  *
  * Given    resting  lanes to take over them;  edged: a lane has a law of more than one piece
  * Returns  value    lanes in which something may happen meanwhile; these stay where they were

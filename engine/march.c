@@ -14,9 +14,10 @@
 
 #include "engine/event.h"
 #include "engine/flight.h"
+#include "engine/turn.h"
 
 enum {
-	POOL = 4 * W, /* simulations in flight */
+	POOL = 16 * W, /* simulations in flight */
 };
 
 /* simulations that wait for one kind of step, last come first served */
@@ -26,14 +27,15 @@ struct queue {
 };
 
 struct work {
-	struct simulation pool[POOL];
-	struct simulation filler; /* of the lanes that a batch leaves empty */
 	struct queue idle, queues[STAGES];
 	const struct pound_march_task *tasks;
 	struct pound_march_result *results;
 	int n, started;        /* tasks, and those gone through in this pass */
 	int passed;            /* 0: laws of one piece are started, 1: the others */
 	double beyond[W][ROW]; /* ground motion up to its end, and whatever was there behind */
+	// from here on nothing is cleared: a simulation's start does
+	struct simulation filler; /* of the lanes that a batch leaves empty */
+	struct simulation pool[POOL];
 	struct pound_ladder ladders[POOL];
 };
 
@@ -62,7 +64,7 @@ static void send(struct work *work, struct simulation *sim, enum pound_stage sta
 	if (stage < STAGES)
 		queue = &work->queues[stage];
 	else
-		pound_simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
+		simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
 	push(queue, (int)(sim - work->pool));
 }
 
@@ -178,10 +180,7 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		sim->next = sim->last + 1 - ahead.samples[l];
-		send(work, sim,
-		     ended >> l & 1           ? STAGE_END
-		     : vbits(flying) >> l & 1 ? stage
-		                              : pound_simulation_meet(sim));
+		send(work, sim, ended >> l & 1 ? STAGE_END : vbits(flying) >> l & 1 ? stage : simulation_meet(sim));
 	}
 }
 
@@ -205,7 +204,7 @@ static void press_account(const struct batch *b, const struct press_start *start
 			x[j] = ((const double *)(j < 4 ? &start->x[j] : &s->x[j]))[l];
 		for (int j = 0; j < 4; j++)
 			end[j] = ((const double *)&s->x[j])[l];
-		pound_press_account(b->sim[l], x, end, ((const double *)&start->ground)[l]);
+		press_work(b->sim[l], x, end, ((const double *)&start->ground)[l]);
 	}
 }
 
@@ -216,7 +215,7 @@ static bool press_interval(struct lanes *g, const struct batch *b, int l)
 	if (sim->next == sim->last)
 		return false;
 	sim->next++;
-	pound_simulation_interval(sim);
+	simulation_interval(sim);
 	sim->x.rise = sim->x.slope * sim->x.cell;
 	double *ground = (double *)&g->ground, *rise = (double *)&g->rise, *cells = (double *)&g->cells;
 	ground[l] = sim->x.ground;
@@ -286,28 +285,28 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	lanes_empty(&g, b, ROW_PRESS);
 	for (int l = 0; l < b->n; l++)
 		send(work, b->sim[l],
-		     ended >> l & 1 ? STAGE_END
-		     : pressed >> l & 1
-		         ? stage
-		         : pound_simulation_pressed(b->sim[l], stage, refused >> l & 1, gone >> l & 1));
+		     ended >> l & 1     ? STAGE_END
+		     : pressed >> l & 1 ? stage
+		                        : simulation_pressed(b->sim[l], stage, refused >> l & 1, gone >> l & 1));
 }
 
 /* ---- one step up to an event ---- */
 
-/* Lanes whose bodies overlap without force, and those in which the force has just passed zero. */
-LANE_INLINE vm batch_parted(const struct batch *b)
+/* Lanes whose bodies overlap without force, those in which the force has just passed zero, and those whose energy balance
+ * is kept. */
+struct lane_flags {
+	vm parted, fresh, accounted;
+};
+
+LANE_INLINE struct lane_flags batch_flags(const struct batch *b)
 {
-	unsigned bits = 0;
-	for (int l = 0; l < W; l++)
-		bits |= (unsigned)b->sim[l]->parted << l;
-	return vmask(bits);
-}
-LANE_INLINE vm batch_fresh(const struct batch *b)
-{
-	unsigned bits = 0;
-	for (int l = 0; l < W; l++)
-		bits |= (unsigned)b->sim[l]->fresh << l;
-	return vmask(bits);
+	unsigned parted = 0, fresh = 0, accounted = 0;
+	for (int l = 0; l < W; l++) {
+		parted |= (unsigned)b->sim[l]->parted << l;
+		fresh |= (unsigned)b->sim[l]->fresh << l;
+		accounted |= (unsigned)((b->sim[l]->traits & TRAIT_ACCOUNTED) != 0) << l;
+	}
+	return (struct lane_flags){vmask(parted), vmask(fresh), vmask(accounted)};
 }
 
 LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
@@ -330,10 +329,11 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 		lanes_fill(&g, b, ROW_RIGHT);
 	if (accounted)
 		lanes_fill(&g, b, ROW_WORK);
-	if (e.forced) {
-		e.parted = batch_parted(b);
-		e.fresh = batch_fresh(b);
-	}
+	struct lane_flags flags = {vmask(0), vmask(0), vmask(0)};
+	if (e.forced || accounted)
+		flags = batch_flags(b);
+	e.parted = flags.parted;
+	e.fresh = flags.fresh;
 	vd events = event_step(&g, &e, accounted);
 	vm turns = vmask(0);
 	if (e.paired)
@@ -343,7 +343,8 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	lanes_store(left, vfma(g.cells, g.cell, g.part));
 	lanes_store(speed, g.q);
 	// the work done is kept of whole steps only
-	if (e.paired && !accounted && vany(turns)) {
+	turns &= ~flags.accounted;
+	if (vany(turns)) {
 		e.touching = !e.touching;
 		event_leap(&g, &e, turns);
 	}
@@ -355,7 +356,7 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 		struct simulation *sim = b->sim[l];
 		sim->parted = vbits(e.parted) >> l & 1;
 		sim->fresh = vbits(e.fresh) >> l & 1;
-		send(work, sim, pound_simulation_stepped(sim, (int)event[l], left[l], speed[l]));
+		send(work, sim, simulation_stepped(sim, (int)event[l], left[l], speed[l]));
 	}
 }
 
@@ -369,7 +370,7 @@ LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, boo
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0)};
 	if (e.forced)
-		e.parted = batch_parted(b);
+		e.parted = batch_flags(b).parted;
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
@@ -381,7 +382,7 @@ LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, boo
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	for (int l = 0; l < b->n; l++)
-		send(work, b->sim[l], pound_simulation_next(b->sim[l]));
+		send(work, b->sim[l], simulation_next(b->sim[l]));
 }
 
 /* ---- the march ---- */
@@ -445,8 +446,8 @@ static void (*const steps[STAGES][2])(struct work *, const struct batch *) = {
     [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged}, [STAGE_FLY_APART] = {fly_apart, fly_apart_edged},
     [STAGE_PRESS] = {press_plain, press_edged},       [STAGE_REST] = {rest_plain, rest_edged},
     [STAGE_ALONE] = {step_alone, step_alone},         [STAGE_APART] = {step_apart, step_apart},
-    [STAGE_TOUCH] = {step_touch, step_touch},         [STAGE_LEAP_ALONE] = {leap_alone, leap_alone},
-    [STAGE_LEAP_APART] = {leap_apart, leap_apart},
+    [STAGE_CLEAR] = {step_apart, step_apart},         [STAGE_TOUCH] = {step_touch, step_touch},
+    [STAGE_LEAP_ALONE] = {leap_alone, leap_alone},    [STAGE_LEAP_APART] = {leap_apart, leap_apart},
 };
 
 /* Starts tasks as long as there are any and the pool has room: first those of laws of one piece, which need less when
@@ -456,10 +457,10 @@ static void tasks_start(struct work *work)
 	while (work->passed < 2 && work->idle.n > 0) {
 		for (; work->started < work->n && work->idle.n > 0; work->started++) {
 			const struct pound_march_task *task = &work->tasks[work->started];
-			if (pound_simulation_edged(task) != work->passed)
+			if (simulation_edged(task) != work->passed)
 				continue;
 			struct simulation *sim = &work->pool[pop(&work->idle)];
-			send(work, sim, pound_simulation_start(sim, task, &work->results[work->started]));
+			send(work, sim, simulation_start(sim, task, &work->results[work->started]));
 		}
 		if (work->started < work->n)
 			return;
@@ -488,11 +489,11 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	static const struct pound_march_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
 	struct work *work = scratch;
 	struct pound_march_result result;
-	memset(work, 0, offsetof(struct work, ladders));
+	memset(work, 0, offsetof(struct work, filler));
 	work->tasks = tasks;
 	work->results = results;
 	work->n = n;
-	pound_simulation_start(&work->filler, &nothing, &result);
+	simulation_start(&work->filler, &nothing, &result);
 	work->filler.pressed = &loose;
 	work->filler.x.dt = 1;
 	work->filler.x.gap = 0;

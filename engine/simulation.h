@@ -1,7 +1,7 @@
 /* simulation.h - one simulation of the march as it rests between its turns in the lanes.
  *
  * Its numbers stand in rows of a cache line each, columns of which become vectors: a batch of simulations is carried
- * into lanes and out by whole rows.  What follows a step in lanes is decided here, one simulation at a time. */
+ * into lanes and out by whole rows.  turn.h has what is done to one at a time. */
 #ifndef SIMULATION_H
 #define SIMULATION_H
 
@@ -77,7 +77,7 @@ enum {
 	PRESS_DROP,  /* of release * rate of overlap below the lesser of its ends */
 	PRESS_ROWS,
 	REST_ERROR =
-	    PRESS_ERROR,        /* of a rung, by other magnitudes (press.c): of the cubic of the common motion */
+	    PRESS_ERROR,        /* of a rung, by other magnitudes (press.h): of the cubic of the common motion */
 	REST_BEND = PRESS_DROP, /* of what presses the bodies on each other, off its straight line */
 	PRESS_SPLIT = PRESS_ROWS, /* not a form but the enum below */
 	REST_ROWS,
@@ -128,7 +128,8 @@ enum pound_stage {
 	STAGE_PRESS,     /* whole cells of pressed contact */
 	STAGE_REST,      /* many cells of it at once */
 	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
-	STAGE_APART,     /* of both */
+	STAGE_APART,     /* of both, who likely meet */
+	STAGE_CLEAR,     /* of both, who likely do not: what a batch looks for alike takes less */
 	STAGE_TOUCH,     /* of both in contact */
 	STAGE_LEAP_ALONE, /* what is left of a sample behind an edge, where likely nothing happens: of the left body */
 	STAGE_LEAP_APART, /* of both */
@@ -178,23 +179,5 @@ struct simulation {
 	struct pound_map maps[2][POUND_MAPS];
 	struct pound_press press[POUND_PRESS_MAPS];
 };
-
-bool pound_simulation_edged(const struct pound_march_task *task);
-enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
-                                        struct pound_march_result *result);
-enum pound_stage pound_simulation_meet(struct simulation *sim);
-enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double left, double speed);
-enum pound_stage pound_simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
-                                          bool gone);
-enum pound_stage pound_simulation_step(struct simulation *sim);
-enum pound_stage pound_simulation_next(struct simulation *sim);
-void pound_simulation_interval(struct simulation *sim);
-void pound_simulation_end(struct simulation *sim, enum pound_status status);
-
-/* press.c */
-void pound_press_rungs(struct simulation *sim);
-enum pound_stage pound_press_ready(struct simulation *sim);
-void pound_press_account(struct simulation *sim, const double x[POUND_PRESS_INPUTS], const double end[4],
-                         double ground);
 
 #endif

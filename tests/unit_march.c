@@ -265,6 +265,20 @@ static void a_run_does_not_depend_on_its_neighbours(void **state)
 	check_alone_as_together(tasks);
 }
 
+/* Keeping a neighbour's balance costs a run no step of its own. */
+static void a_run_does_not_depend_on_whose_energy_is_accounted_for(void **state)
+{
+	(void)state;
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS];
+	for (uint64_t seed = 1; seed <= 4; seed++) {
+		tasks_fill(tasks, ground, seed);
+		for (int t = 0; t < TASKS; t++)
+			tasks[t].accounted = t % 4 == 1;
+		check_alone_as_together(tasks);
+	}
+}
+
 /* From the first instant of a contact on its overlap grows from 0: what a neighbour's contact, which ends with its force,
  * must be looked after for is none of its business. */
 static void a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours(void **state)
@@ -309,5 +323,6 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
            cmocka_unit_test(the_energy_put_in_is_found_again),
            cmocka_unit_test(a_run_does_not_depend_on_its_neighbours),
+           cmocka_unit_test(a_run_does_not_depend_on_whose_energy_is_accounted_for),
            cmocka_unit_test(a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours),
            cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter))

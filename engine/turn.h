@@ -1,11 +1,17 @@
-/* simulation.c - what is done to one simulation at a time: its start, what follows a step, its next piece, its end. */
-#include "engine/simulation.h"
+/* turn.h - what is done to one simulation at a time: its start, what follows a step, its next piece, its end.
+ *
+ * Included by march.c alone, once per lane count. */
+#ifndef TURN_H
+#define TURN_H
 
 #include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/press.h"
+#include "engine/series.h"
+#include "engine/simulation.h"
 #include "engine/stepping.h"
 
 /* Largest rate * time of a series step: the first term left out is near 2^-52 of the first kept or below: apart, at
@@ -40,15 +46,10 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 {
 	double ch = c * h, kh = k * h * h;
 	double u = 0, w = h, psi = 0, rate_sum = 0, once = 0, twice = 0; // w: u' h
-	for (int n = 0; n < POUND_MAP_ORDERS; n++) {
-		double share = 1.0 / (n + 1), next = -(ch * w + kh * u) * share;
-		psi += u;
-		rate_sum += w;
-		once += u * share;
-		twice += u * share * (1.0 / (n + 2));
-		u = w * share;
-		w = next;
-	}
+	ORDERS_UP(n, 0, POUND_MAP_ORDERS - 1, const double share = 1.0 / (n + 1);
+	          double next = fma(-(ch * share), w, -(kh * share) * u); psi += u; rate_sum += w;
+	          once = fma(u, share, once); twice = fma(u, share * (1.0 / (n + 2)), twice); u = w * share;
+	          w = next;)
 	map->stiffness = k;
 	map->uv = psi;
 	map->uu = rate_sum / h + c * psi;
@@ -90,7 +91,7 @@ static void piece_enter(struct simulation *sim, int i)
 /* ---- what follows ---- */
 
 /* Enters the interval that ends at sim->next. */
-void pound_simulation_interval(struct simulation *sim)
+static void simulation_interval(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	const double *a = &sim->task->ground[sim->next];
@@ -102,7 +103,7 @@ void pound_simulation_interval(struct simulation *sim)
 }
 
 /* The next step by power series. */
-enum pound_stage pound_simulation_step(struct simulation *sim)
+static enum pound_stage simulation_step(struct simulation *sim)
 {
 	if (++sim->steps > POUND_STEPS_LIMIT)
 		return STAGE_CHATTER;
@@ -117,36 +118,38 @@ enum pound_stage pound_simulation_step(struct simulation *sim)
 	}
 	double reach = x->reach * x->pace;
 	x->dt = x->part <= reach ? x->part : x->part > 2 * reach ? reach : 0.5 * x->part;
-	return sim->paired ? STAGE_APART : STAGE_ALONE;
+	if (!sim->paired)
+		return STAGE_ALONE;
+	return x->p + x->dt * x->q < 0 ? STAGE_CLEAR : STAGE_APART;
 }
 
 /* A simulation that flew to a sample behind which it cannot fly on. */
-enum pound_stage pound_simulation_meet(struct simulation *sim)
+static enum pound_stage simulation_meet(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
-	pound_simulation_interval(sim);
+	simulation_interval(sim);
 	double p = x->u[0] - x->u[1] - x->gap;
 	x->p = p < 0 ? p : 0; // rounding must not make it overlap
 	x->q = x->v[0] - x->v[1];
-	return pound_simulation_step(sim);
+	return simulation_step(sim);
 }
 
 /* What a simulation does next. */
-enum pound_stage pound_simulation_next(struct simulation *sim)
+static enum pound_stage simulation_next(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
 	if (x->part + x->cells == 0) {
 		if (sim->next == sim->last)
 			return STAGE_END;
 		sim->next++;
-		pound_simulation_interval(sim);
+		simulation_interval(sim);
 		// apart, and not about to touch inside the next interval
 		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->part * x->q < 0)
 			return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
 	}
 	if (sim->touching && x->part == 0 && sim->can_press)
-		return pound_press_ready(sim);
-	return pound_simulation_step(sim);
+		return press_ready(sim);
+	return simulation_step(sim);
 }
 
 /* What a simulation does after cells of pressed contact.
@@ -155,14 +158,14 @@ enum pound_stage pound_simulation_next(struct simulation *sim)
  *          refused  the next cells could not be proved: shorter rungs are to be tried
  *          gone     it went as far as a longer rung would have: past what refused that
  */
-enum pound_stage pound_simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
-                                          bool gone)
+static enum pound_stage simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
+                                           bool gone)
 {
 	if (refused)
 		sim->rung_limit = stage == STAGE_REST ? sim->rung - 1 : 0;
 	else if (gone)
 		sim->rung_limit = sim->rungs - 1;
-	return stage == STAGE_PRESS && refused ? pound_simulation_step(sim) : pound_press_ready(sim);
+	return stage == STAGE_PRESS && refused ? simulation_step(sim) : press_ready(sim);
 }
 
 /* Contact has begun or ended.
@@ -200,7 +203,7 @@ static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
  *
  * Given    event  that ended it;  left, speed: as contact_turn has them
  */
-enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, double left, double speed)
+static enum pound_stage simulation_stepped(struct simulation *sim, int event, double left, double speed)
 {
 	if (event == EVENT_CONTACT)
 		contact_turn(sim, left, speed);
@@ -210,21 +213,21 @@ enum pound_stage pound_simulation_stepped(struct simulation *sim, int event, dou
 		if (sim->can_fly && !sim->touching && sim->x.part > 0)
 			return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
 	}
-	return pound_simulation_next(sim);
+	return simulation_next(sim);
 }
 
 /* ---- start and end ---- */
 
 /* Whether a law of a task has more than one piece. */
-bool pound_simulation_edged(const struct pound_march_task *task)
+static bool simulation_edged(const struct pound_march_task *task)
 {
 	return !pound_pieces_linear(task->bodies[0].skeleton.law) ||
 	       !pound_pieces_linear(task->bodies[1].skeleton.law);
 }
 
 /* A simulation at the start of its task; what it does first. */
-enum pound_stage pound_simulation_start(struct simulation *sim, const struct pound_march_task *task,
-                                        struct pound_march_result *result)
+static enum pound_stage simulation_start(struct simulation *sim, const struct pound_march_task *task,
+                                         struct pound_march_result *result)
 {
 	memset(sim, 0, offsetof(struct simulation, ladder));
 	memset(result, 0, sizeof *result);
@@ -254,7 +257,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 		sim->press[m].stiffness[0] = -1;
 	sim->can_fly = can_fly;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
-	if (pound_simulation_edged(task))
+	if (simulation_edged(task))
 		sim->traits |= TRAIT_EDGED;
 	if (task->bodies[1].followed)
 		sim->traits |= TRAIT_RIGHT;
@@ -280,7 +283,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 		sim->cells_whole *= 2;
 	x->cell = h / sim->cells_whole;
 	if (sim->can_press)
-		pound_press_rungs(sim);
+		press_rungs(sim);
 	sim->base = task->mass_ratio < 1;
 	x->side = sim->base ? -1 : 1;
 	x->base_drive = task->bodies[sim->base].drive;
@@ -291,7 +294,7 @@ enum pound_stage pound_simulation_start(struct simulation *sim, const struct pou
 	}
 	if (can_fly)
 		return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
-	return pound_simulation_meet(sim);
+	return simulation_meet(sim);
 }
 
 /* What is missing of the energy put in, by the ground and by the motion at the start, over the most there was. */
@@ -309,7 +312,7 @@ static double residual(const struct simulation *sim)
 }
 
 /* Writes a simulation's result. */
-void pound_simulation_end(struct simulation *sim, enum pound_status status)
+static void simulation_end(struct simulation *sim, enum pound_status status)
 {
 	struct pound_march_result *r = sim->result;
 	const struct pound_rows *x = &sim->x;
@@ -326,3 +329,5 @@ void pound_simulation_end(struct simulation *sim, enum pound_status status)
 		r->v[i] = x->v[i];
 	}
 }
+
+#endif

@@ -1,16 +1,21 @@
-/* press.c - exact maps of pressed contact, over a cell and over many cells at once.
+/* press.h - exact maps of pressed contact, over a cell and over many cells at once.
+ *
+ * Included by march.c alone, once per lane count: the columns of a map are made side by side in lanes.
  *
  * 1. Pressed on each other the bodies are one linear system: over a cell, a fraction of a radian of the contact's own
  *    frequency, its map is a power series.
  * 2. Rungs of a ladder are maps over eight times as many cells each, by doubling, kept as what they add to the state:
  *    nothing small is lost beside 1.
  * 3. A bound proves that bodies stay pressed over a rung however often the contact swings within. */
-#include "engine/simulation.h"
+#ifndef PRESS_H
+#define PRESS_H
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/lanes.h"
+#include "engine/simulation.h"
 #include "engine/stepping.h"
 
 enum {
@@ -40,17 +45,16 @@ static void split_fill(double split[N], const struct simulation *sim)
 }
 
 /* Adds term n of the rates of base and overlap, times the cell's length, at the nodes of a quadrature. */
-static void rates_add(double rates[POUND_GAUSS][2][N], int n, const double w[N], const double z[N])
+static void rates_add(double rates[POUND_GAUSS][2][N], int n, int column, vd w, vd z)
 {
 	for (int g = 0; g < POUND_GAUSS; g++) {
 		double node = g < POUND_GAUSS / 2 ? -POUND_GAUSS_NODE[g] : POUND_GAUSS_NODE[g - POUND_GAUSS / 2];
 		double power = 1;
 		for (int m = 0; m < n; m++)
 			power *= 0.5 + 0.5 * node;
-		for (int j = 0; j < N; j++) {
-			rates[g][0][j] += power * w[j];
-			rates[g][1][j] += power * z[j];
-		}
+		double *v = &rates[g][0][column], *q = &rates[g][1][column];
+		lanes_store(v, vfma(vsplat(power), w, lanes_load(v)));
+		lanes_store(q, vfma(vsplat(power), z, lanes_load(q)));
 	}
 }
 
@@ -112,51 +116,60 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 	const struct pound_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
 	const double h = x->cell, h2 = h * h, push = b ? -x->mass_ratio : 1;
-	const double cb = x->body[b].damping * h, kb = x->body[b].stiffness * h2;
-	const double co = x->body[o].damping * h, ko = x->body[o].stiffness * h2;
+	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
 	const double dc = (x->body[1].damping - x->body[0].damping) * h;
 	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
-	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
-	double u[N] = {1}, w[N] = {0, h}, p[N] = {0, 0, 1}, z[N] = {0, 0, 0, h}; // w, z: rates times h
-	double rates[POUND_GAUSS][2][N] = {{{0}}}, mean[N] = {0};
+	const double cb = x->body[b].damping * h, kb = x->body[b].stiffness * h2;
+	const double co = x->body[o].damping * h + x->both * C, ko = x->body[o].stiffness * h2 + x->both * K;
+	const double drop = 0.125 * x->release / h;
+	const double start[4][N] = {{1}, {0, h}, {0, 0, 1}, {0, 0, 0, h}}; // rates times h
+	const double force_b[2][N] = {{[4] = -h2}, {[6] = -h2}}, force_p[2][N] = {{[5] = h2}, {[7] = h2}};
+	double rates[POUND_GAUSS][2][N];
 	double(*row)[N] = map->row;
-	memset(row, 0, sizeof map->row);
+	if (work)
+		memset(rates, 0, sizeof rates);
 	split_fill(row[PRESS_SPLIT], sim);
-	for (int n = 0; n < POUND_MAP_ORDERS; n++) {
-		double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
-		double drop = 0.125 * x->release / h * n * (n - 1.0), added = n > 0;
-		if (work)
-			rates_add(rates, n, w, z);
-		double force_b[N] = {[4] = n == 0 ? h2 : 0, [6] = n == 1 ? h2 : 0};
-		double force_p[N] = {[5] = n == 0 ? h2 : 0, [7] = n == 1 ? h2 : 0};
-		for (int j = 0; j < N; j++) {
-			row[PRESS_U][j] += added * u[j];
-			row[PRESS_V][j] += added * w[j];
-			row[PRESS_P][j] += added * p[j];
-			row[PRESS_Q][j] += added * z[j];
-			row[PRESS_IMPULSE][j] += p[j] * share;
-			mean[j] += u[j] * share;
-			row[PRESS_ERROR][j] += bend * (fabs(u[j]) < fabs(p[j]) ? fabs(p[j]) : fabs(u[j]));
-			row[PRESS_DROP][j] += drop * fabs(z[j]);
-			double force = K * p[j] + C * z[j];
-			double w1 = -(cb * w[j] + kb * u[j]) - force_b[j] - push * force;
-			double z1 = dc * w[j] + dk * u[j] - (co * z[j] + ko * p[j]) + force_p[j] - x->both * force;
-			u[j] = w[j] * share;
-			p[j] = z[j] * share;
-			w[j] = w1 * share;
-			z[j] = z1 * share;
+	for (int j = 0; j < N; j += W) {
+		vd zero = vsplat(0), sum[4] = {zero, zero, zero, zero}, area = zero, mean = zero, error = zero,
+		   drops = zero;
+		vd u = lanes_load(&start[0][j]), w = lanes_load(&start[1][j]);
+		vd p = lanes_load(&start[2][j]), z = lanes_load(&start[3][j]);
+		for (int n = 0; n < POUND_MAP_ORDERS; n++) {
+			double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
+			const vd terms[4] = {u, w, p, z};
+			for (int r = 0; r < 4 && n > 0; r++)
+				sum[r] = sum[r] + terms[r];
+			area = vfma(p, vsplat(share), area);
+			mean = vfma(u, vsplat(share), mean);
+			error = vfma(vsplat(bend), vmax(vabs(u), vabs(p)), error);
+			drops = vfma(vsplat(drop * n * (n - 1.0)), vabs(z), drops);
+			if (work)
+				rates_add(rates, n, j, w, z);
+			vd w1 = -vfma(vsplat(kb * share), u, vsplat(push * K * share) * p);
+			vd z1 = vfma(vsplat(dk * share), u, vsplat(-ko * share) * p);
+			if (n < 2) {
+				w1 = vfma(vsplat(share), lanes_load(&force_b[n][j]), w1);
+				z1 = vfma(vsplat(share), lanes_load(&force_p[n][j]), z1);
+			}
+			u = w * vsplat(share);
+			p = z * vsplat(share);
+			w1 = vfma(vsplat(-cb * share), w, vfma(vsplat(-push * C * share), z, w1));
+			z = vfma(vsplat(-co * share), z, vfma(vsplat(dc * share), w, z1));
+			w = w1;
 		}
+		lanes_store(&row[PRESS_U][j], sum[0]);
+		lanes_store(&row[PRESS_V][j], sum[1] / vsplat(h));
+		lanes_store(&row[PRESS_P][j], sum[2]);
+		lanes_store(&row[PRESS_Q][j], sum[3] / vsplat(h));
+		lanes_store(&row[PRESS_IMPULSE][j],
+		            vfma(vsplat(x->contact_stiffness * h), area, vsplat(x->contact_damping) * sum[2]));
+		lanes_store(&row[PRESS_ERROR][j], error);
+		lanes_store(&row[PRESS_DROP][j], drops);
+		if (work)
+			lanes_store(&work->mean[j], mean);
 	}
-	for (int j = 0; j < N; j++) {
-		row[PRESS_IMPULSE][j] =
-		    x->contact_stiffness * h * row[PRESS_IMPULSE][j] + x->contact_damping * row[PRESS_P][j];
-		row[PRESS_V][j] /= h;
-		row[PRESS_Q][j] /= h;
-	}
-	if (work) {
-		memcpy(work->mean, mean, sizeof mean);
+	if (work)
 		loss_fill(work->loss, rates, row[PRESS_SPLIT], sim);
-	}
 }
 
 /* ---- the ladder ---- */
@@ -169,12 +182,18 @@ static void map_double(double row[][N])
 {
 	double once[MOVED][N];
 	memcpy(once, row, sizeof once);
-	for (int r = 0; r < MOVED; r++)
-		for (int j = 0; j < N; j++) {
-			double again = once[r][0] * once[0][j] + once[r][1] * once[1][j] + once[r][2] * once[2][j] +
-			               once[r][3] * once[3][j];
-			row[r][j] = j < 6 ? 2 * once[r][j] + again : once[r][j] + 0.5 * (again + once[r][j - 2]);
+	for (int r = 0; r < MOVED; r++) {
+		double grown[2];
+		for (int j = 0; j < N; j += W) {
+			vd again = vsplat(once[r][0]) * lanes_load(&once[0][j]);
+			for (int m = 1; m < 4; m++)
+				again = vfma(vsplat(once[r][m]), lanes_load(&once[m][j]), again);
+			lanes_store(&row[r][j], vfma(vsplat(2), lanes_load(&once[r][j]), again));
 		}
+		for (int j = 0; j < 2; j++)
+			grown[j] = 0.5 * (row[r][6 + j] + once[r][4 + j]);
+		memcpy(&row[r][6], grown, sizeof grown);
+	}
 }
 
 /* From the inputs over a length to those over the next, with the overlap off its equilibrium or as it is. */
@@ -295,7 +314,7 @@ static void ladder_fill(struct pound_press_map rung[], struct pound_press_work w
 
 /* Chooses the rungs of a simulation: of one cell, and of as many as lead to a whole sample, as far as the bodies' own
  * rates allow.  A few cells a sample go as fast one by one. */
-void pound_press_rungs(struct simulation *sim)
+static void press_rungs(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
 	double first = sim->cells_whole;
@@ -380,7 +399,7 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
  * Returns  value  STAGE_REST: sim->pressed is a rung of the ladder; STAGE_PRESS: it is a cell; STAGE_CHATTER: above 2^53
  *                 cells in an interval there is no end to them
  */
-enum pound_stage pound_press_ready(struct simulation *sim)
+static enum pound_stage press_ready(struct simulation *sim)
 {
 	if (++sim->steps > POUND_STEPS_LIMIT)
 		return STAGE_CHATTER;
@@ -423,7 +442,7 @@ enum pound_stage pound_press_ready(struct simulation *sim)
  *          ground  acceleration at the start [m/s2]
  * Returns  sim     work, as energy.h adds it: the ground's is -m (a (u1 - u0) + d (u1 - mean u)), with a growing by d
  */
-void pound_press_account(struct simulation *sim, const double x[N], const double end[4], double ground)
+static void press_work(struct simulation *sim, const double x[N], const double end[4], double ground)
 {
 	struct pound_rows *r = &sim->x;
 	const struct pound_press_map *map = sim->pressed;
@@ -458,3 +477,5 @@ void pound_press_account(struct simulation *sim, const double x[N], const double
 	double most = fabs(r->work_in) < moving ? moving : fabs(r->work_in);
 	r->work_top = r->work_top < most ? most : r->work_top;
 }
+
+#endif
