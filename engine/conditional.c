@@ -162,16 +162,21 @@ double pound_conditional_place(int k)
 	return (k + 0.5) / POUND_CURVE;
 }
 
-int pound_conditional_points(const struct pound_distribution *distribution)
+int pound_conditional_levels(const struct pound_distribution *distribution)
 {
 	const bool listed = pound_distribution_lists_values(distribution->type);
-	return listed && distribution->n_values < POUND_CURVE ? distribution->n_values : POUND_CURVE;
+	return listed && distribution->n_values <= POUND_CURVE ? distribution->n_values : 0;
+}
+
+int pound_conditional_points(const struct pound_distribution *distribution)
+{
+	const int levels = pound_conditional_levels(distribution);
+	return levels > 0 ? levels : POUND_CURVE;
 }
 
 double pound_conditional_x(const struct pound_distribution *distribution, int k)
 {
-	const bool listed = pound_distribution_lists_values(distribution->type);
-	return listed && distribution->n_values <= POUND_CURVE
+	return pound_conditional_levels(distribution) > 0
 	           ? distribution->values[k]
 	           : pound_distribution_quantile(distribution, pound_conditional_place(k));
 }

@@ -189,6 +189,8 @@ struct pound_conditional {
 	double trend[POUND_CURVE]; /* its own mean given the input, at the places of the curve */
 };
 
+/* The values of a discrete input, if it has no more than its curve has places; 0: of any other. */
+int pound_conditional_levels(const struct pound_distribution *distribution);
 size_t pound_conditional_scratch(int n_rows); /* doubles */
 void pound_conditional_mean(const struct pound_conditional *given, int input, double *scratch,
                             struct pound_curve *curve);

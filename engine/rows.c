@@ -70,9 +70,7 @@ void pound_rows_noise(const struct pound_rows *rows, int row, double *noise)
  */
 int pound_rows_levels(const struct pound_rows *rows, int input)
 {
-	const struct pound_distribution *distribution = rows->inputs ? &rows->inputs[input].distribution : NULL;
-	const bool listed = distribution && pound_distribution_lists_values(distribution->type);
-	return listed && distribution->n_values <= POUND_CURVE ? distribution->n_values : 0;
+	return rows->inputs ? pound_conditional_levels(&rows->inputs[input].distribution) : 0;
 }
 
 /* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros. */

@@ -151,16 +151,24 @@ static void accepted_studies_survive_sigkill(void **state)
 	service_free(service);
 }
 
-static void a_damaged_result_is_an_error_not_an_answer(void **state)
+/* A server that has stopped, with one study computed. */
+static struct service *stopped_with_one_result(char id[17])
 {
 	struct service *service = service_new();
 	char *study = service_study(2, 1, 1);
-	char id[17];
-	(void)state;
 	service_start(service, 1);
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	service_stop(service);
+	free(study);
+	return service;
+}
+
+static void a_damaged_result_is_an_error_not_an_answer(void **state)
+{
+	char id[17];
+	struct service *service = stopped_with_one_result(id);
+	(void)state;
 	service_change(
 	    service,
 	    "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB) WHERE name = 'result'");
@@ -171,7 +179,6 @@ static void a_damaged_result_is_an_error_not_an_answer(void **state)
 	answer_free(&answer);
 	service_stop(service);
 	service_free(service);
-	free(study);
 }
 
 /* Has the stored result say that another version made it, and its digest with it. */
@@ -202,14 +209,9 @@ static void made_by_another_version(const struct service *service, const char *i
 
 static void samples_of_blocks_that_cannot_be_used_are_500_but_409_from_another_version(void **state)
 {
-	struct service *service = service_new();
-	char *study = service_study(2, 1, 1);
 	char id[17];
+	struct service *service = stopped_with_one_result(id);
 	(void)state;
-	service_start(service, 1);
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "succeeded", 0));
-	service_stop(service);
 	service_change(service, "UPDATE block SET sha256 = zeroblob(32)");
 	for (int another = 0; another < 2; another++) {
 		if (another)
@@ -225,7 +227,6 @@ static void samples_of_blocks_that_cannot_be_used_are_500_but_409_from_another_v
 		service_stop(service);
 	}
 	service_free(service);
-	free(study);
 }
 
 static void a_server_with_ten_thousand_queued_studies_is_soon_ready(void **state)
