@@ -172,7 +172,7 @@ static void judge(struct request *request, bool needs_host)
 	MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, take_header, head);
 	head_end(head, needs_host, server->options->host);
 	if (!connection_of(request->connection)->served)
-		head_refuse(head, API_UNAVAILABLE, false, "the server has as many connections as it takes");
+		head_refuse(head, API_UNAVAILABLE, true, "the server has as many connections as it takes");
 	if (server->tokens && !request->token && !(operation && operation->open))
 		head_refuse(head, API_UNAUTHORIZED, false,
 		            "this needs the header Authorization: Bearer, and a token of this server");
@@ -422,8 +422,7 @@ static struct MHD_Daemon *listen_at(struct server *server, const union address *
 	    MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
 	    (unsigned)CONNECTIONS_MAX, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
 	    is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-	    (size_t)HEADERS_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE, (unsigned)BACKLOG,
-	    MHD_OPTION_LISTENING_ADDRESS_REUSE, 1u, MHD_OPTION_END);
+	    (size_t)HEADERS_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE, (unsigned)BACKLOG, MHD_OPTION_END);
 }
 
 /* Starts to answer requests, at the address and the port of the options.

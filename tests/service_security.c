@@ -136,6 +136,22 @@ static void an_address_that_is_not_loopback_needs_tokens_or_insecure(void **stat
 	service_free(service);
 }
 
+static void a_port_that_another_server_has_is_refused(void **state)
+{
+	struct service *service = *state;
+	const char *build = getenv("POUND_BUILD");
+	char program[256], port[8], database[128];
+	snprintf(program, sizeof program, "%s/poundd", build ? build : "build/release");
+	snprintf(port, sizeof port, "%d", service->port);
+	snprintf(database, sizeof database, "%s-other", service->database);
+	// one that listens would not end by itself
+	struct program_outcome other = program_run(
+	    (const char *const[]){"timeout", "20", program, "--port", port, "--database", database, NULL}, NULL);
+	program_expect(&other, 1);
+	assert_non_null(strstr(other.err, "Address already in use"));
+	program_free(&other);
+}
+
 static void a_page_of_the_web_cannot_use_the_server(void **state)
 {
 	struct service *service = *state;
@@ -236,4 +252,5 @@ CHECK_MAIN(cmocka_unit_test(without_a_right_token_everything_but_the_probes_is_4
            cmocka_unit_test(the_command_line_sends_the_token_of_its_environment),
            cmocka_unit_test(an_address_that_is_not_loopback_needs_tokens_or_insecure),
            cmocka_unit_test(a_token_has_a_share_of_the_queue_and_keys_of_its_own),
-           SERVED(a_page_of_the_web_cannot_use_the_server), cmocka_unit_test(a_name_that_was_given_is_a_host))
+           SERVED(a_port_that_another_server_has_is_refused), SERVED(a_page_of_the_web_cannot_use_the_server),
+           cmocka_unit_test(a_name_that_was_given_is_a_host))
