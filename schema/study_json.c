@@ -425,7 +425,7 @@ struct pound_study *study_from_json(const char *text, size_t length, struct prob
  *
  * Given, Returns, Memory as study_from_json
  *
- * Test     unit_elsewhere: a_study_without_a_scene_is_inputs_and_a_design
+ * Test     unit_model: a_study_without_a_scene_is_inputs_and_a_design
  */
 struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems)
 {

@@ -24,7 +24,7 @@ double study_status_eta(const struct study_status *study, int n_workers)
 /* Writes it.
  *
  * Given    eta_s   s   NAN: unknown
- * Test     service_routes: a_study_goes_from_post_to_result
+ * Test     service_routes: a_finished_study_has_times_in_order_and_all_runs_done
  */
 void study_status_write(struct writer *w, const struct study_status *study, double eta_s)
 {

@@ -94,7 +94,7 @@ const char *argp_program_version = "poundd " POUND_VERSION;
 /* Reads flags and environment; help, the version and mistakes end the program.
  *
  * Returns  options   texts are those of argv and of the environment
- * Test     service_options: every_option_is_taken_as_a_flag_and_from_the_environment
+ * Test     unit_options: every_option_is_taken_as_a_flag_and_from_the_environment
  */
 void options_read(struct options *options, int argc, char **argv)
 {
