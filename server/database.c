@@ -87,6 +87,22 @@ static void digest(sqlite3_context *call, int n, sqlite3_value **values)
 
 static bool connected(struct database *d, const char *path, bool writes)
 {
+	int flags = writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+	pthread_mutex_init(&d->lock, NULL);
+	flags |= SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+	bool ok = sqlite3_open_v2(path, &d->db, flags, NULL) == SQLITE_OK &&
+	          sqlite3_create_function(d->db, "digest", 2, SQLITE_UTF8 | SQLITE_DETERMINISTIC, NULL, digest,
+	                                  NULL, NULL) == SQLITE_OK;
+	if (ok) {
+		sqlite3_db_config(d->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+		sqlite3_db_config(d->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !writes, NULL);
+	} else
+		log_line("cannot open the database %s: %s", path, sqlite3_errmsg(d->db));
+	return ok;
+}
+
+static bool configured(const struct database *d)
+{
 	static const struct {
 		const char *name, *value;
 	} settings[] = {
@@ -101,21 +117,10 @@ static bool connected(struct database *d, const char *path, bool writes)
 	    {"secure_delete", "0"},
 	    {"journal_size_limit", "67108864"},
 	};
-	int flags = writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
-	pthread_mutex_init(&d->lock, NULL);
-	flags |= SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
-	bool ok = sqlite3_open_v2(path, &d->db, flags, NULL) == SQLITE_OK &&
-	          sqlite3_create_function(d->db, "digest", 2, SQLITE_UTF8 | SQLITE_DETERMINISTIC, NULL, digest,
-	                                  NULL, NULL) == SQLITE_OK;
-	if (ok) {
-		sqlite3_db_config(d->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
-		sqlite3_db_config(d->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, !writes, NULL);
-	}
-	for (size_t i = 0; ok && i < sizeof settings / sizeof settings[0]; i++)
-		ok = set(d, settings[i].name, settings[i].value);
-	if (!ok)
-		log_line("cannot open the database %s as it must be: %s", path, sqlite3_errmsg(d->db));
-	return ok;
+	for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
+		if (!set(d, settings[i].name, settings[i].value))
+			return false;
+	return true;
 }
 
 /* Writes a copy of the database as it stands now, while others go on; it is on the disk when this returns.
@@ -163,19 +168,30 @@ static bool migrated(const struct database *d, const char *path, int version)
 	return ok;
 }
 
-/* Makes a new database, or finds that this one is ours, and brings it to our version. */
-static bool founded(const struct database *d, const char *path)
+/* The version of a database, 0: there is nothing in it yet, -1: it cannot be read, is not ours, or of a newer version. */
+static int version_of(const struct database *d, const char *path)
 {
 	char text[32];
 	int application = atoi(answer(d, "PRAGMA application_id", text));
 	int version = atoi(answer(d, "PRAGMA user_version", text));
-	if (application == 0 && !strcmp(answer(d, "SELECT count(*) FROM sqlite_schema", text), "0"))
-		return versioned(d, schema_text, USER_VERSION) && disk_sync(path);
+	answer(d, "SELECT count(*) FROM sqlite_schema", text);
+	if (application == 0 && !strcmp(text, "0"))
+		return 0;
 	if (application == APPLICATION_ID && version >= 1 && version <= USER_VERSION)
-		return version == USER_VERSION || migrated(d, path, version);
-	log_line("%s is not a database of poundd, or of a newer one: version %d, not %d", path, version,
-	         USER_VERSION);
-	return false;
+		return version;
+	if (*text)
+		log_line("%s is not a database of poundd, or of a newer one: version %d, not %d", path, version,
+		         USER_VERSION);
+	else
+		log_line("cannot read the database %s: %s", path, sqlite3_errmsg(d->db));
+	return -1;
+}
+
+/* Makes a new database, or brings one of ours to this version. */
+static bool founded(const struct database *d, const char *path, int version)
+{
+	return version == 0 ? versioned(d, schema_text, USER_VERSION) && disk_sync(path)
+	                    : version == USER_VERSION || migrated(d, path, version);
 }
 
 static bool prepared(struct database *d, const char *const statements[], int n)
@@ -203,7 +219,11 @@ bool database_open(struct database *d, const char *path, bool writes, const char
 	if (writes && sqlite3_libversion_number() < RESET_SAFE)
 		log_line("SQLite %s can damage a database that two connections change: leave the changes to poundd",
 		         sqlite3_libversion());
-	return connected(d, path, writes) && (!writes || founded(d, path)) && prepared(d, statements, n);
+	if (!connected(d, path, writes))
+		return false;
+	// a setting stays in the file, so that another's is looked at before
+	int version = writes ? version_of(d, path) : USER_VERSION;
+	return version >= 0 && configured(d) && founded(d, path, version) && prepared(d, statements, n);
 }
 
 /* Closes it, opened or not. */

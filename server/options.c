@@ -3,6 +3,7 @@
 
 #include <argp.h>
 #include <ctype.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,6 +75,9 @@ static void take(struct argp_state *state, const struct option_row *row, const c
 static error_t parse(int key, char *value, struct argp_state *state)
 {
 	error_t status = key == ARGP_KEY_INIT ? 0 : ARGP_ERR_UNKNOWN;
+	// argp has the name only after this
+	if (key == ARGP_KEY_INIT)
+		state->name = program_invocation_short_name;
 	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
 		char name[64];
 		options_variable(row, name, sizeof name);

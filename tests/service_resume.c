@@ -254,9 +254,10 @@ static void a_server_with_ten_thousand_queued_studies_is_soon_ready(void **state
 
 static void a_newer_or_foreign_database_is_refused_and_left_as_it_is(void **state)
 {
-	static const char *const changes[] = {"PRAGMA user_version = 99", "PRAGMA application_id = 1"};
+	static const char *const changes[] = {"PRAGMA user_version = 99", "PRAGMA application_id = 1",
+	                                      "PRAGMA application_id = 1; PRAGMA journal_mode = DELETE"};
 	(void)state;
-	for (int i = 0; i < 2; i++) {
+	for (int i = 0; i < 3; i++) {
 		struct service *service = service_new();
 		service_start(service, 1);
 		service_stop(service);

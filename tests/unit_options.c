@@ -18,7 +18,7 @@ static void refused(const struct option_row *row, const char *value, bool flag)
 	    program_run((const char *const[]){"poundd", flag ? word : NULL, NULL}, NULL);
 	unsetenv(name);
 	assert_int_not_equal(outcome.status, 0);
-	snprintf(word, sizeof word, "%s%s must", flag ? "--" : "", flag ? row->name : name);
+	snprintf(word, sizeof word, "poundd: %s%s must", flag ? "--" : "", flag ? row->name : name);
 	if (!strstr(outcome.err, word) || (*value && !strstr(outcome.err, value)))
 		fail_msg("%s=%s: %s", name, value, outcome.err);
 	program_free(&outcome);
