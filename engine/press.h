@@ -405,21 +405,19 @@ static enum pound_stage press_ready(struct simulation *sim)
 		return STAGE_CHATTER;
 	struct pound_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
-	struct pound_press *press = NULL;
-	for (int m = 0; m < POUND_PRESS_MAPS && !press; m++)
-		if (sim->press[m].stiffness[0] == x->body[0].stiffness &&
-		    sim->press[m].stiffness[1] == x->body[1].stiffness)
-			press = &sim->press[m];
-	bool made = press != NULL;
-	if (!made) {
-		press = &sim->press[sim->press_next];
-		sim->press_next = (sim->press_next + 1) % POUND_PRESS_MAPS;
-	}
-	struct pound_press_work *cell_work = &sim->ladder->work[press - sim->press][POUND_PRESS_RUNGS];
-	if (!made) {
-		cell_fill(&press->cell, sim->task->accounted ? cell_work : NULL, sim);
+	unsigned found = 0;
+	for (int m = 0; m < POUND_PRESS_MAPS; m++)
+		found |= (unsigned)(sim->press_of[0][m] == x->body[0].stiffness &&
+		                    sim->press_of[1][m] == x->body[1].stiffness)
+		         << m;
+	int m = found ? __builtin_ctz(found) : sim->press_next;
+	struct pound_press *press = &sim->press[m];
+	struct pound_press_work *cell_work = &sim->ladder->work[m][POUND_PRESS_RUNGS];
+	if (!found) {
+		sim->press_next = (m + 1) % POUND_PRESS_MAPS;
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			press->stiffness[i] = x->body[i].stiffness;
+			sim->press_of[i][m] = x->body[i].stiffness;
+		cell_fill(&press->cell, sim->task->accounted ? cell_work : NULL, sim);
 		press->laddered = false;
 	}
 	x->base_force = x->body[b].offset;

@@ -59,11 +59,11 @@ enum {
 	ROWS_END = 72,
 };
 
-/* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d */
+/* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d: a row MAP */
 struct pound_map {
-	double stiffness;          /* of the piece it belongs to; < 0: none */
-	double uu, uv, ua, ud, va; /* the velocity follows: see flight.h */
-	double eu, ev, ef;         /* the cubic's error is at most eu |u| + ev |v| + ef (|a| + |d|) */
+	alignas(64) double uu;
+	double uv, ua, ud, va; /* the velocity follows: see flight.h */
+	double eu, ev, ef;     /* the cubic's error is at most eu |u| + ev |v| + ef (|a| + |d|) */
 };
 
 /* rows of a map of pressed contact, each a linear form of the inputs; the bounds of their magnitudes */
@@ -103,7 +103,6 @@ struct pound_press_map {
 /* pressed contact on a pair of pieces: over a cell, and whether the ladder is filled */
 struct pound_press {
 	struct pound_press_map cell;
-	double stiffness[2]; /* of the pieces; < 0: none */
 	bool laddered;
 };
 
@@ -174,7 +173,9 @@ struct simulation {
 	const struct pound_press_map *pressed; /* of the next cells */
 	const struct pound_press_work *worked; /* of the same */
 	int map_next[2], press_next;
-	// from here on a start clears no more than the maps' keys; what else they have is filled with them
+	// stiffnesses of the pieces that the maps below belong to; < 0: none
+	double map_of[2][POUND_MAPS], press_of[2][POUND_PRESS_MAPS];
+	// from here on a start clears nothing: what is there is filled with its key
 	struct pound_ladder *ladder; /* apart from the rest, which is to stay close together */
 	struct pound_map maps[2][POUND_MAPS];
 	struct pound_press press[POUND_PRESS_MAPS];

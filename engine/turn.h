@@ -50,7 +50,6 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 	          double next = fma(-(ch * share), w, -(kh * share) * u); psi += u; rate_sum += w;
 	          once = fma(u, share, once); twice = fma(u, share * (1.0 / (n + 2)), twice); u = w * share;
 	          w = next;)
-	map->stiffness = k;
 	map->uv = psi;
 	map->uu = rate_sum / h + c * psi;
 	map->ua = -h * once;
@@ -75,17 +74,18 @@ static void piece_enter(struct simulation *sim, int i)
 	x->body[i].direction = piece->direction;
 	if (!sim->can_fly)
 		return;
-	struct pound_map *map = NULL;
-	for (int m = 0; m < POUND_MAPS && !map; m++)
-		if (sim->maps[i][m].stiffness == piece->stiffness)
-			map = &sim->maps[i][m];
-	if (!map) {
-		map = &sim->maps[i][sim->map_next[i]];
-		sim->map_next[i] = (sim->map_next[i] + 1) % POUND_MAPS;
-		map_fill(map, piece->stiffness, x->body[i].damping, sim->task->time_step);
+	unsigned found = 0;
+	for (int m = 0; m < POUND_MAPS; m++)
+		found |= (unsigned)(sim->map_of[i][m] == piece->stiffness) << m;
+	int m = sim->map_next[i];
+	if (found)
+		m = __builtin_ctz(found);
+	else {
+		sim->map_next[i] = (m + 1) % POUND_MAPS;
+		sim->map_of[i][m] = piece->stiffness;
+		map_fill(&sim->maps[i][m], piece->stiffness, x->body[i].damping, sim->task->time_step);
 	}
-	x->map[i].uu = map->uu, x->map[i].uv = map->uv, x->map[i].ua = map->ua, x->map[i].ud = map->ud;
-	x->map[i].va = map->va, x->map[i].eu = map->eu, x->map[i].ev = map->ev, x->map[i].ef = map->ef;
+	memcpy(&x->map[i], &sim->maps[i][m], sizeof sim->maps[i][m]);
 }
 
 /* ---- what follows ---- */
@@ -251,10 +251,10 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 		x->body[i].damping = body->damping;
 		x->body[i].drive = body->drive;
 		for (int m = 0; m < POUND_MAPS; m++)
-			sim->maps[i][m].stiffness = -1;
+			sim->map_of[i][m] = -1;
 	}
 	for (int m = 0; m < POUND_PRESS_MAPS; m++)
-		sim->press[m].stiffness[0] = -1;
+		sim->press_of[0][m] = -1;
 	sim->can_fly = can_fly;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
 	if (simulation_edged(task))
