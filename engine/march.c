@@ -91,22 +91,27 @@ LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int a
 
 /* ---- whole samples apart ---- */
 
-/* the ground motion in front of each lane: from its next sample on, and how many samples it has */
+/* the ground motion in front of each lane */
 struct ahead {
-	const double *ground[W];
-	int64_t samples[W];
+	const double *ground[W]; /* from where it started */
+	int64_t gone;            /* samples that those who still fly have gone since */
+	vd samples;              /* that are left */
 };
 
-/* The next ROW samples of each lane. */
-LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, vd ground[ROW])
+/* The next ROW samples of the lanes that fly, as far as there are any. */
+LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsigned flying, vd ground[ROW])
 {
 	const double *at[W];
+	unsigned whole = flying & ~vbits(vless(ahead->samples, vsplat(ROW)));
 	for (int l = 0; l < W; l++) {
-		at[l] = ahead->ground[l];
-		if (ahead->samples[l] >= ROW)
-			__builtin_prefetch(at[l] + ROW);
-		else
-			at[l] = memcpy(work->beyond[l], at[l], sizeof(double) * (size_t)ahead->samples[l]);
+		at[l] = whole >> l & 1 ? ahead->ground[l] + ahead->gone : work->beyond[l];
+		__builtin_prefetch(at[l] + ROW);
+	}
+	double samples[W];
+	lanes_store(samples, ahead->samples);
+	for (unsigned ends = flying & ~whole; ends; ends &= ends - 1) {
+		int l = __builtin_ctz(ends);
+		memcpy(work->beyond[l], ahead->ground[l] + ahead->gone, sizeof(double) * (size_t)samples[l]);
 	}
 	rows_load(ground, at, 0);
 }
@@ -118,31 +123,26 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, vd gr
  *
  * Given    flying  lanes that do;  few: so few of them are not worth a round
  *          edged, paired, right: as flight() has them
- * Returns  value   those that still do
+ * Returns  value   those that still do, with samples left
  *          ahead   what is left in front of each
  */
 LANE_INLINE vm fly_row(struct work *work, struct ahead *ahead, struct lanes *g, vm flying, int few,
                        bool edged, bool paired, bool right)
 {
-	vd ground[ROW], flown = vsplat(0), one = vsplat(1);
-	ground_load(work, ahead, ground);
-	int64_t rounds = ROW;
-	for (int l = 0; l < W; l++)
-		if (ahead->samples[l] < rounds && vbits(flying) >> l & 1)
-			rounds = ahead->samples[l];
+	vd ground[ROW], zero = vsplat(0), flown = zero, one = vsplat(1);
+	ground_load(work, ahead, vbits(flying), ground);
 	struct lanes on = *g;
-	for (int round = 0; round < rounds && __builtin_popcount(vbits(flying)) > few; round++) {
+	int round = 0;
+	do {
 		flying &= ~flight(&on, ground[round], edged, paired, right);
 		flight_keep(g, &on, flying, paired, right);
 		flown = vselect(flying, flown + one, flown);
-	}
+		round++;
+		flying &= vless(flown, ahead->samples);
+	} while (round < ROW && __builtin_popcount(vbits(flying)) > few);
 	g->ground = on.ground;
-	double samples[W];
-	lanes_store(samples, flown);
-	for (int l = 0; l < W; l++) {
-		ahead->ground[l] += (int64_t)samples[l];
-		ahead->samples[l] -= (int64_t)samples[l];
-	}
+	ahead->samples = ahead->samples - flown;
+	ahead->gone += ROW;
 	return flying;
 }
 
@@ -158,29 +158,27 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 		lanes_fill(&g, b, ROW_MAP_RIGHT);
 	}
 	const bool right = b->traits & TRAIT_RIGHT;
-	struct ahead ahead;
-	double ground[W];
+	struct ahead ahead = {.gone = 0};
+	double ground[W], samples[W];
 	for (int l = 0; l < W; l++) {
 		const struct simulation *sim = b->sim[l];
 		ahead.ground[l] = &sim->task->ground[sim->next];
-		ahead.samples[l] = sim->last - sim->next + 1;
+		samples[l] = (double)(sim->last - sim->next + 1);
 		ground[l] = ahead.ground[l][-1];
 	}
 	g.ground = lanes_load(ground);
+	ahead.samples = lanes_load(samples);
 	vm flying = vmask((1u << b->n) - 1);
-	unsigned ended = 0;
 	int few = b->n / 2;
-	do {
+	do
 		flying = fly_row(work, &ahead, &g, flying, few, edged, paired, right);
-		for (int l = 0; l < b->n; l++)
-			ended |= (unsigned)(ahead.samples[l] == 0) << l;
-		flying &= ~vmask(ended);
-	} while (__builtin_popcount(vbits(flying)) > few);
+	while (__builtin_popcount(vbits(flying)) > few);
 	lanes_empty(&g, b, ROW_STATE);
+	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
-		sim->next = sim->last + 1 - ahead.samples[l];
-		send(work, sim, ended >> l & 1 ? STAGE_END : vbits(flying) >> l & 1 ? stage : simulation_meet(sim));
+		sim->next = sim->last + 1 - (int64_t)samples[l];
+		send(work, sim, samples[l] == 0 ? STAGE_END : vbits(flying) >> l & 1 ? stage : simulation_meet(sim));
 	}
 }
 
