@@ -67,7 +67,7 @@ static const char *const statement_text[] = {
 	              "VALUES (?1, 'queued', " NOW ", ?2, ?3, ?4, ?5, ?6, ?7)",
 	[ADD]      = "INSERT INTO document (study, name, content, sha256) "
 	              "VALUES (?1, ?2, ?3, " DOCUMENT_DIGEST("?1", "?2", "?3") ")",
-	[CANCEL]   = "UPDATE study SET status = 'cancelled', finished = max(" NOW ", created) "
+	[CANCEL]   = "UPDATE study SET status = 'cancelled', finished = max(" NOW ", coalesce(started, created)) "
 	              "WHERE id = ?1 AND status IN ('queued', 'running')",
 	[DELETE]   = "DELETE FROM study WHERE id = ?1",
 	[CLAIM]    = "UPDATE study SET status = 'running', attempt = attempt + 1, "

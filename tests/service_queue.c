@@ -79,6 +79,20 @@ static void a_study_can_be_cancelled_at_any_moment(void **state)
 	free(study);
 }
 
+static void a_cancelled_study_has_times_in_order_though_the_clock_went_back(void **state)
+{
+	struct service *service = *state;
+	char *study = service_study(ROWS, SIGNALS, 1), id[17];
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 1));
+	service_stop(service);
+	service_change(service, "UPDATE study SET started = created + 7200000");
+	service_start(service, 2);
+	assert_int_equal(ask_status(service, "POST", id, "/cancel"), 200);
+	assert_int_equal(service_number(service, "SELECT finished >= started FROM study"), 1);
+	free(study);
+}
+
 static void a_study_can_be_deleted_at_any_moment(void **state)
 {
 	struct service *service = *state;
@@ -171,5 +185,6 @@ static void a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_fre
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_cancelled_at_any_moment),
+           SERVED(a_cancelled_study_has_times_in_order_though_the_clock_went_back),
            SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study),
            SERVED(a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_free))
