@@ -16,9 +16,7 @@
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/queue.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -337,7 +335,7 @@ static void open_run(struct work *work, struct job *job)
 	job->cpu_s = opened.cpu_s;
 	job->started = seconds(CLOCK_MONOTONIC) - opened.wall_s;
 	if (error)
-		end(job, error);
+		end(job, opened.passing && work->stopping ? NULL : error); // the next start tries again
 	else
 		job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
 }
