@@ -1,5 +1,6 @@
 /* poundd: opens the store, starts the workers, listens, and waits for the signal to stop. */
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,6 +21,15 @@
 #include "server/work.h"
 
 enum { STOP_MAX = 25 /* [s] from the signal to the end, come what may: what is accepted is on the disk */ };
+
+/* A standard stream that is closed leads to nowhere: else a file opened later would take its number, and what is printed. */
+static void hold_streams(void)
+{
+	int file = open("/dev/null", O_RDWR);
+	while (file >= 0 && file <= STDERR_FILENO)
+		file = dup(file);
+	close(file);
+}
 
 /* Tells systemd what we are at, when it has started us; sd_notify(3) has the words. */
 static void tell(const char *state)
@@ -83,6 +93,7 @@ int main(int argc, char **argv)
 {
 	struct options options;
 	sigset_t signals;
+	hold_streams();
 	options_read(&options, argc, argv);
 	umask(077);
 	if (options.backup)

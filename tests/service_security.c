@@ -136,20 +136,38 @@ static void an_address_that_is_not_loopback_needs_tokens_or_insecure(void **stat
 	service_free(service);
 }
 
+/* What comes of another server on the same port, with a database of its own. */
+static struct program_outcome start_another(const struct service *service, const char *redirection,
+                                            char database[128])
+{
+	const char *build = getenv("POUND_BUILD");
+	char command[512];
+	snprintf(database, 128, "%s-other", service->database);
+	// one that listens would not end by itself
+	snprintf(command, sizeof command, "timeout 20 %s/poundd --port %d --database %s %s",
+	         build ? build : "build/release", service->port, database, redirection);
+	return program_run((const char *const[]){"sh", "-c", command, NULL}, NULL);
+}
+
 static void a_port_that_another_server_has_is_refused(void **state)
 {
-	struct service *service = *state;
-	const char *build = getenv("POUND_BUILD");
-	char program[256], port[8], database[128];
-	snprintf(program, sizeof program, "%s/poundd", build ? build : "build/release");
-	snprintf(port, sizeof port, "%d", service->port);
-	snprintf(database, sizeof database, "%s-other", service->database);
-	// one that listens would not end by itself
-	struct program_outcome other = program_run(
-	    (const char *const[]){"timeout", "20", program, "--port", port, "--database", database, NULL}, NULL);
+	char database[128];
+	struct program_outcome other = start_another(*state, "", database);
 	program_expect(&other, 1);
 	assert_non_null(strstr(other.err, "Address already in use"));
 	program_free(&other);
+}
+
+static void what_is_logged_goes_into_no_file_though_stderr_is_closed(void **state)
+{
+	char database[128], lock[160];
+	struct stat about;
+	struct program_outcome other = start_another(*state, "2>&-", database);
+	program_expect(&other, 1);
+	program_free(&other);
+	snprintf(lock, sizeof lock, "%s-lock", database);
+	assert_int_equal(stat(lock, &about), 0);
+	assert_int_equal(about.st_size, 8); // the number of a study
 }
 
 static void a_page_of_the_web_cannot_use_the_server(void **state)
@@ -252,5 +270,6 @@ CHECK_MAIN(cmocka_unit_test(without_a_right_token_everything_but_the_probes_is_4
            cmocka_unit_test(the_command_line_sends_the_token_of_its_environment),
            cmocka_unit_test(an_address_that_is_not_loopback_needs_tokens_or_insecure),
            cmocka_unit_test(a_token_has_a_share_of_the_queue_and_keys_of_its_own),
-           SERVED(a_port_that_another_server_has_is_refused), SERVED(a_page_of_the_web_cannot_use_the_server),
-           cmocka_unit_test(a_name_that_was_given_is_a_host))
+           SERVED(a_port_that_another_server_has_is_refused),
+           SERVED(what_is_logged_goes_into_no_file_though_stderr_is_closed),
+           SERVED(a_page_of_the_web_cannot_use_the_server), cmocka_unit_test(a_name_that_was_given_is_a_host))
