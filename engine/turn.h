@@ -278,9 +278,10 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
 	sim->can_press = task->contact;
 	double reach = REACH_TOUCH / sqrt(rate * rate + x->both * x->contact_stiffness);
+	// no more cells than it takes, but for rungs, which are made by doubling
 	sim->cells_whole = 1;
 	while (h > reach * sim->cells_whole)
-		sim->cells_whole *= 2;
+		sim->cells_whole += sim->cells_whole < RUNG_RATIO ? 1 : sim->cells_whole;
 	x->cell = h / sim->cells_whole;
 	if (sim->can_press)
 		press_rungs(sim);
