@@ -478,11 +478,10 @@ static struct reply openapi(struct request *request)
 	                      .etag = "\"" POUND_VERSION "\""};
 }
 
-/* Whether a request is for what is made of all of a study's blocks, which may be many. */
+/* Whether a request is for what is made of all of a study's blocks, or of a result, which may be large. */
 bool routes_slow(const struct request *request)
 {
-	return request->operation == API_samples ||
-	       (request->operation == API_results && !strcmp(http_argument(request, "partial"), "true"));
+	return request->operation == API_samples || request->operation == API_results;
 }
 
 /* Answers a request.

@@ -1,5 +1,6 @@
 /* Every route and status, asked of a real server.  The server must live on and stop cleanly after each test. */
 #include <pthread.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "schema/api.h"
@@ -409,15 +410,37 @@ static void samples_come_as_csv_or_npy_with_a_row_per_run(void **state)
 struct asker {
 	pthread_t thread;
 	const struct service *service;
-	const char *id;
+	const char *id, *what;
 	struct answer answer;
+	atomic_int *left;
 };
 
-static void *ask_for_samples(void *of)
+static void *ask_for(void *of)
 {
 	struct asker *asker = of;
-	asker->answer = service_get(asker->service, "/v1/studies/%s/samples", asker->id);
+	asker->answer = service_get(asker->service, "/v1/studies/%s/%s", asker->id, asker->what);
+	--*asker->left;
 	return NULL;
+}
+
+static void ask_at_once(struct asker *askers, int n, struct asker asker)
+{
+	for (int i = 0; i < n; i++) {
+		askers[i] = asker;
+		assert_int_equal(pthread_create(&askers[i].thread, NULL, ask_for, &askers[i]), 0);
+	}
+}
+
+/* All have the same answer. */
+static void join_askers(struct asker *askers, int n)
+{
+	for (int i = 0; i < n; i++) {
+		pthread_join(askers[i].thread, NULL);
+		status_is(&askers[i].answer, 200);
+		assert_string_equal(askers[i].answer.body, askers[0].answer.body);
+	}
+	for (int i = 0; i < n; i++)
+		answer_free(&askers[i].answer);
 }
 
 static void samples_asked_for_by_many_at_once_are_the_same_for_all(void **state)
@@ -425,21 +448,41 @@ static void samples_asked_for_by_many_at_once_are_the_same_for_all(void **state)
 	enum { ASKERS = 12 };
 	struct service *service = *state;
 	struct asker askers[ASKERS];
+	atomic_int left = ASKERS;
 	char id[17], *study = service_study(4, 2, 1);
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	for (int i = 0; i < ASKERS; i++) {
-		askers[i] = (struct asker){.service = service, .id = id};
-		assert_int_equal(pthread_create(&askers[i].thread, NULL, ask_for_samples, &askers[i]), 0);
-	}
-	for (int i = 0; i < ASKERS; i++) {
-		pthread_join(askers[i].thread, NULL);
-		status_is(&askers[i].answer, 200);
-		assert_string_equal(askers[i].answer.body, askers[0].answer.body);
-	}
-	for (int i = 0; i < ASKERS; i++)
-		answer_free(&askers[i].answer);
+	ask_at_once(askers, ASKERS,
+	            (struct asker){.service = service, .id = id, .what = "samples", .left = &left});
+	join_askers(askers, ASKERS);
 	free(study);
+}
+
+static void others_are_answered_while_large_results_become_csv(void **state)
+{
+	static const char study[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
+	                            "2}, {\"frequency_hz\": 3.1}], "
+	                            "\"excitation\": {\"type\": \"white_noise\", \"duration_s\": 0.1, "
+	                            "\"time_step_s\": 0.02, \"signals\": 4000}}}";
+	enum { ASKERS = 12 };
+	struct service *service = *state;
+	struct asker askers[ASKERS];
+	atomic_int left = ASKERS;
+	int others = 0;
+	char id[17];
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	ask_at_once(askers, ASKERS,
+	            (struct asker){.service = service, .id = id, .what = "results?format=csv", .left = &left});
+	for (; left > 0; others++) {
+		struct answer answer = service_get(service, "/livez");
+		status_is(&answer, 200);
+		answer_free(&answer);
+	}
+	join_askers(askers, ASKERS);
+	// behind the results there would be a few for each of them
+	check_report("%d results of 4,000 signals as CSV: %d others were answered meanwhile", ASKERS, others);
+	assert_true(others > 5 * ASKERS);
 }
 
 static void a_response_study_has_no_samples_and_the_server_lives_on(void **state)
@@ -523,6 +566,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),
            SERVED(samples_asked_for_by_many_at_once_are_the_same_for_all),
+           SERVED(others_are_answered_while_large_results_become_csv),
            SERVED(a_response_study_has_no_samples_and_the_server_lives_on),
            SERVED(an_unchanged_status_is_304_to_its_etag),
            SERVED(a_live_and_ready_server_says_so_and_its_version),
