@@ -282,7 +282,7 @@ LANE_INLINE vd event_step(struct lanes *g, const struct event_lanes *e, bool acc
 		// the end of the step does not count where the motion was cut before it
 		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].u1));
 		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
-		// where the search was for a turn, the motion is a straight course up to what it found
+		// a piece with a direction ends where the velocity turns: up to what was found neither end is exceeded
 		if (e->edged)
 			inside &= vequal(g->body[i].direction, zero);
 		if (vany(inside))

@@ -166,7 +166,7 @@ static void bodies_at_rest_without_ground_motion_stay_at_rest(void **state)
 
 /* ---- the same bits at every lane count ---- */
 
-enum { TASKS = 61, SAMPLES = 700 };
+enum { TASKS = 149, SAMPLES = 700 }; // more tasks than are in flight at once, at any lane count
 
 static double random_number(uint64_t *seed)
 {
@@ -213,7 +213,7 @@ static void every_lane_count_gives_the_same_bits(void **state)
 	struct pound_march_result one[TASKS], many[TASKS];
 	memset(one, 0, sizeof one);
 	memset(many, 0, sizeof many);
-	for (uint64_t seed = 1; seed <= 8; seed++) {
+	for (uint64_t seed = 1; seed <= 4; seed++) {
 		tasks_fill(tasks, ground, seed);
 		pound_march_portable(tasks, one, TASKS, scratch);
 		int64_t contacts = 0;
