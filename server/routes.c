@@ -288,16 +288,23 @@ struct format {
 	const char *name, *type;
 };
 
-/* Whether the second of two formats is asked for, by a table that only that has, by ?format= or by Accept, and the reply
- * that a body of it will be.  A result never changes, so that format and version are its tag; one of so many rows alone
- * has these, too. */
+static const struct format result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
+
+/* Whether the second of two formats is asked for, by a table that only that has, by ?format= or by Accept. */
+static bool asks_second(const struct request *request, const struct format formats[2], const char *table)
+{
+	const char *name = http_argument(request, "format"), *accept = http_header(request, "Accept");
+	return table  ? true
+	       : name ? !strcmp(name, formats[1].name)
+	              : accept && strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
+}
+
+/* The same, and the reply that a body of it will be.  A result never changes, so that format and version are its tag; one
+ * of so many rows alone has these, too. */
 static bool second(const struct request *request, const struct format formats[2], const char *table, int rows,
                    struct reply *reply)
 {
-	const char *name = http_argument(request, "format"), *accept = http_header(request, "Accept");
-	bool is = table  ? true
-	          : name ? !strcmp(name, formats[1].name)
-	                 : accept && strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
+	bool is = asks_second(request, formats, table);
 	*reply = (struct reply){.status = 200, .type = formats[is].type};
 	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%s-%d\"" : "\"%s-%s\"",
 	         table ? table : formats[is].name, POUND_VERSION, rows);
@@ -362,7 +369,6 @@ static void tabulate(struct reply *reply, const struct reply *json, const char *
 
 static struct reply results(struct request *request)
 {
-	static const struct format formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
 	const char *table = http_argument(request, "table"), *format = http_argument(request, "format");
 	if (table && format && strcmp(format, "csv") != 0)
 		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv, or left out");
@@ -374,7 +380,7 @@ static struct reply results(struct request *request)
 	}
 	if (json.status != 200)
 		return json;
-	if (second(request, formats, table, rows, &reply)) {
+	if (second(request, result_formats, table, rows, &reply)) {
 		tabulate(&reply, &json, table);
 		free(json.body);
 	} else {
@@ -478,10 +484,13 @@ static struct reply openapi(struct request *request)
 	                      .etag = "\"" POUND_VERSION "\""};
 }
 
-/* Whether a request is for what is made of all of a study's blocks, or of a result, which may be large. */
+/* Whether a request is for what is made of all of a study's blocks, or of a result read again; both may be large. */
 bool routes_slow(const struct request *request)
 {
-	return request->operation == API_samples || request->operation == API_results;
+	return request->operation == API_samples ||
+	       (request->operation == API_results &&
+	        (!strcmp(http_argument(request, "partial"), "true") ||
+	         asks_second(request, result_formats, http_argument(request, "table"))));
 }
 
 /* Answers a request.
