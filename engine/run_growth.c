@@ -43,7 +43,7 @@ static void widen(struct pound_look *widest, int cell, int output, const struct 
  * An output that is the same for every row has no indexes, and none is waited for; an index without an interval for any
  * other reason is as wide as can be.  -1: there is none to wait for.
  *
- * Test     unit_growth: the_widest_interval_decides
+ * Test     unit_growth: a_design_stops_at_the_first_look_that_finds_every_interval_narrow
  */
 static struct pound_look widest_of(const struct pound_campaign *campaign, const struct pound_cell *cells)
 {

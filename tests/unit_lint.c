@@ -25,6 +25,8 @@ static const struct violation VIOLATIONS[] = {
     {"client/h.c", "#include <curl/curl.h>\n", "only wire.c", "client/h.c:1:"},
     {"client/i.c", "#include \"wire.h\"\n", "path from the root", "client/i.c:1:"},
     {"server/http_utils.c", "int http_utils;\n", "named by its noun", "server/http_utils.c"},
+    {"engine/r.h", "/*\n * Test     unit_r: it_is_so\n */\n", "named in a comment",
+     "engine/r.h:2: unit_r: it_is_so"},
     {"engine/j.h", "#if 0\n#endif\n", "dead code", "engine/j.h:1:"},
     {"Makefile", "CFLAGS += -ffast-math\n", "floating point", "1:CFLAGS"},
     {"engine/k.c", "int other_name(void);\nint other_name(void)\n{\n\treturn 1;\n}\n", "start with pound_",
