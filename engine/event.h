@@ -232,9 +232,32 @@ LANE_INLINE int bodies_watched(const struct event_lanes *e)
 	return e->paired && (e->edged || e->right) ? 2 : 1;
 }
 
+/* Bodies that touch without overlap and go on alike part or press by the difference of their accelerations.  Where that is
+ * no more than the rounding of what these are made of it is nothing, and what differs in their later course decides: else
+ * bodies that are alike up to a yield point would part and meet for ever. */
+static void overlap_settle(struct series *s, const struct lanes *g, vm still)
+{
+	vd terms = vsplat(0), zero = vsplat(0), bow = s->overlap.u.c[2];
+	for (int i = 0; i < 2; i++) {
+		terms = terms + vabs(g->body[i].damping * g->v[i]) + vabs(g->body[i].stiffness * g->u[i]);
+		terms = terms + vabs(g->body[i].offset) + vabs(g->body[i].drive * g->ground);
+	}
+	vm nothing = still & vless(vabs(bow), vsplat(2 * DBL_EPSILON) * terms * (g->dt * g->dt));
+	bow = vselect(nothing, bow, zero);
+	s->overlap.u.c[2] = s->overlap.u.c[2] - bow;
+	s->overlap.v.c[1] = s->overlap.v.c[1] - 2.0 * bow;
+	s->overlap.u1 = s->overlap.u1 - bow;
+	s->overlap.v1 = s->overlap.v1 - 2.0 * bow;
+}
+
 LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
 {
 	series_fill(s, g, e->paired, e->touching);
+	if (e->paired) {
+		vm still = vequal(g->p, vsplat(0)) & vequal(g->q, vsplat(0));
+		if (vany(still))
+			overlap_settle(s, g, still);
+	}
 	for (int i = 0; i < bodies_watched(e); i++)
 		motion_bound(&s->body[i], s->order);
 	if (e->paired)

@@ -45,7 +45,7 @@ enum faults_event {
 };
 enum faults_file { FAULTS_DATABASE, FAULTS_WAL, FAULTS_JOURNAL, FAULTS_FOLDER, FAULTS_FILES };
 
-struct faults_entry {
+struct __attribute__((packed)) faults_entry { // one after the other in a file
 	int32_t event, file;
 	int64_t offset, size; /* the bytes of a write follow */
 };
