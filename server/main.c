@@ -114,10 +114,9 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
 	server.store = server.document ? store_open(options.database) : NULL;
-	if (!server.store)
-		return EXIT_FAILURE;
-	int status = serve(&server, &signals);
-	store_close(server.store);
+	int status = server.store ? serve(&server, &signals) : EXIT_FAILURE;
+	if (server.store)
+		store_close(server.store);
 	for (int i = 0; i < HTTP_TOLD; i++)
 		free(server.told[i].reply.body);
 	free(server.document);
