@@ -219,6 +219,15 @@ LANE_INLINE void rows_store(const vd from[ROW], double *const row[W], int at)
 
 #endif
 
+/* Before a return to code of another width: what is left in the upper halves of the registers would slow that down, and the
+ * compiler forgets it at the end of long functions. */
+LANE_INLINE void lanes_leave(void)
+{
+#if POUND_LANES > 1
+	_mm256_zeroupper();
+#endif
+}
+
 /* The lanes of a vector in memory. */
 LANE_INLINE void lanes_store(double to[W], vd x)
 {

@@ -506,8 +506,9 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 			if (work->queues[stage].n > fullest->n)
 				fullest = &work->queues[stage];
 		if (fullest->n == 0)
-			return;
+			break;
 		struct batch b = batch_take(work, fullest);
 		steps[fullest - work->queues][(b.traits & TRAIT_EDGED) != 0](work, &b);
 	}
+	lanes_leave();
 }
