@@ -17,7 +17,7 @@
 #include "engine/turn.h"
 
 enum {
-	POOL = 16 * W, /* simulations in flight */
+	POOL = 8 * W, /* simulations in flight */
 };
 
 /* simulations that wait for one kind of step, last come first served */
