@@ -372,7 +372,7 @@ static void grazing_contacts_fade_with_the_power_three_halves_of_their_depth(voi
 
 /* They move as one, touching without a force, up to a yield point; from there their accelerations differ by what is left
  * of rounding, and by more only later. */
-static void bodies_alike_until_one_yields_part_or_press_but_once(void **state)
+static void bodies_alike_until_one_yields_meet_a_bounded_number_of_times(void **state)
 {
 	(void)state;
 	for (int seed = 1; seed <= 20; seed++)
@@ -487,5 +487,5 @@ static void corners_of_all_extremes_are_finite_and_balanced(void **state)
 CHECK_MAIN(cmocka_unit_test(every_extreme_is_finite_balanced_bounded_and_agreed_on),
            cmocka_unit_test(grazing_contacts_fade_with_the_power_three_halves_of_their_depth),
            cmocka_unit_test(events_at_one_instant_are_all_seen),
-           cmocka_unit_test(bodies_alike_until_one_yields_part_or_press_but_once),
+           cmocka_unit_test(bodies_alike_until_one_yields_meet_a_bounded_number_of_times),
            cmocka_unit_test(corners_of_all_extremes_are_finite_and_balanced))
