@@ -18,6 +18,7 @@
 
 enum {
 	POOL = 8 * W, /* simulations in flight */
+	LEG = 4096,   /* samples that a flight goes at most until it is looked at */
 };
 
 /* simulations that wait for one kind of step, last come first served */
@@ -172,13 +173,17 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	int few = b->n / 2;
 	do
 		flying = fly_row(work, &ahead, &g, flying, few, edged, paired, right);
-	while (__builtin_popcount(vbits(flying)) > few);
+	while (__builtin_popcount(vbits(flying)) > few && ahead.gone < LEG);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		sim->next = sim->last + 1 - (int64_t)samples[l];
-		send(work, sim, samples[l] == 0 ? STAGE_END : vbits(flying) >> l & 1 ? stage : simulation_meet(sim));
+		bool on = vbits(flying) >> l & 1;
+		send(work, sim,
+		     samples[l] == 0 ? STAGE_END
+		     : on            ? simulation_flown(sim, stage)
+		                     : simulation_meet(sim));
 	}
 }
 

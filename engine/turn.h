@@ -21,6 +21,11 @@ static const double REACH_FREE = 0.35, REACH_TOUCH = 0.8;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
+/* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
+ * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
+ * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
+static const double NOTHING = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
+
 static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 
 static double most(double a, double b)
@@ -134,6 +139,65 @@ static enum pound_stage simulation_meet(struct simulation *sim)
 	return simulation_step(sim);
 }
 
+/* Contact has begun or ended.
+ *
+ * Given    left   of the interval [s];  speed: of approach [m/s]
+ */
+static void contact_turn(struct simulation *sim, double left, double speed)
+{
+	sim->touching = !sim->touching;
+	sim->rung_limit = sim->rungs - 1;
+	if (!sim->touching) {
+		sim->impulse_max = most(sim->impulse_max, sim->x.impulse);
+		sim->contacts++;
+	} else if (sim->contacts == 0) {
+		sim->result->first_contact = (double)sim->next * sim->task->time_step - left;
+		sim->result->first_speed = speed;
+	}
+}
+
+/* A simulation at rest, or at its start, goes on from a sample. */
+static enum pound_stage simulation_from(struct simulation *sim)
+{
+	if (sim->can_fly)
+		return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
+	return simulation_meet(sim);
+}
+
+/* Whether nothing is left of the motion, nor comes from the ground in this interval. */
+static bool simulation_over(const struct simulation *sim)
+{
+	const struct pound_rows *x = &sim->x;
+	bool over = x->ground == 0 && x->slope == 0;
+	for (int i = 0; i < POUND_OSCILLATORS && over; i++)
+		over = fabs(x->u[i]) < NOTHING && fabs(x->v[i]) * sim->task->time_step < NOTHING &&
+		       x->body[i].offset == 0 && x->body[i].low <= 0 && x->body[i].high >= 0;
+	return over;
+}
+
+/* Brings a simulation whose motion is over to rest, until the ground moves again. */
+static enum pound_stage simulation_rest(struct simulation *sim)
+{
+	struct pound_rows *x = &sim->x;
+	if (sim->touching)
+		contact_turn(sim, 0, 0);
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		x->u[i] = x->v[i] = 0;
+	sim->parted = sim->fresh = false;
+	x->pace = 1;
+	while (sim->task->ground[sim->next] == 0)
+		if (sim->next++ == sim->last)
+			return STAGE_END;
+	return simulation_from(sim);
+}
+
+/* What a simulation does that may fly on. */
+static enum pound_stage simulation_flown(struct simulation *sim, enum pound_stage stage)
+{
+	simulation_interval(sim);
+	return simulation_over(sim) ? simulation_rest(sim) : stage;
+}
+
 /* What a simulation does next. */
 static enum pound_stage simulation_next(struct simulation *sim)
 {
@@ -143,6 +207,8 @@ static enum pound_stage simulation_next(struct simulation *sim)
 			return STAGE_END;
 		sim->next++;
 		simulation_interval(sim);
+		if (simulation_over(sim))
+			return simulation_rest(sim);
 		// apart, and not about to touch inside the next interval
 		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->part * x->q < 0)
 			return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
@@ -161,28 +227,13 @@ static enum pound_stage simulation_next(struct simulation *sim)
 static enum pound_stage simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
                                            bool gone)
 {
+	if (simulation_over(sim))
+		return simulation_rest(sim);
 	if (refused)
 		sim->rung_limit = stage == STAGE_REST ? sim->rung - 1 : 0;
 	else if (gone)
 		sim->rung_limit = sim->rungs - 1;
 	return stage == STAGE_PRESS && refused ? simulation_step(sim) : press_ready(sim);
-}
-
-/* Contact has begun or ended.
- *
- * Given    left   of the interval [s];  speed: of approach [m/s]
- */
-static void contact_turn(struct simulation *sim, double left, double speed)
-{
-	sim->touching = !sim->touching;
-	sim->rung_limit = sim->rungs - 1;
-	if (!sim->touching) {
-		sim->impulse_max = most(sim->impulse_max, sim->x.impulse);
-		sim->contacts++;
-	} else if (sim->contacts == 0) {
-		sim->result->first_contact = (double)sim->next * sim->task->time_step - left;
-		sim->result->first_speed = speed;
-	}
 }
 
 /* A body's law goes on to its next piece; from here the edge is exact. */
@@ -293,9 +344,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 		pound_pieces_start(&task->bodies[i].skeleton, &sim->at[i]);
 		piece_enter(sim, i);
 	}
-	if (can_fly)
-		return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
-	return simulation_meet(sim);
+	return simulation_from(sim);
 }
 
 /* What is missing of the energy put in, by the ground and by the motion at the start, over the most there was. */

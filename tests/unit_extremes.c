@@ -88,6 +88,7 @@ static const struct extreme extremes[] = {
 	{"600 s", {{EPS, 0.6}}, .samples = 60001, .compared = 101, .contacts = 6000},
 	{"zeros", {{EPS, 0.6}}, ZEROS, .compared = 61, .contacts = 0},
 	{"one spike", {{EPS, 0.6}}, SPIKE, .compared = 61, .contacts = 60},
+	{"one spike and minutes of silence, K/k 1e8, eps 0", {{K_RATIO, 1e8}, {EPS, 0}}, SPIKE, .samples = 33001, .compared = 31, .contacts = 1000},
 	{"1e-300 m/s2", {{EPS, 0.6}}, .amplitude = 1e-300, .compared = 61, .contacts = 60},
 	{"1e300 m/s2", {{EPS, 0.6}}, .amplitude = 1e300, .compared = 61, .contacts = 60},
 	{"1e300 m/s2, gap 1 m", {{GAP, 1}, {TENSION, 0}, {EPS, 0}}, .amplitude = 1e300, .compared = 61, .contacts = 60},
@@ -414,6 +415,38 @@ static void events_at_one_instant_are_all_seen(void **state)
 	specimen_free(&specimen);
 }
 
+/* ---- silence ---- */
+
+/* Bodies that all but stick to each other lose half of their motion in a second: in minutes nothing is left of it, and a
+ * second spike finds them as the first did. */
+static void a_motion_that_dies_away_in_silence_is_over(void **state)
+{
+	(void)state;
+	enum { SILENT = 33001, AFTER = 61 };
+	for (int law = LINEAR; law <= NONLINEAR_ELASTIC; law += NONLINEAR_ELASTIC)
+		for (int tension = 0; tension < 2; tension++) {
+			struct extreme row = {
+			    .changes = {{K_RATIO, 1e8}, {EPS, 0}, {LAW, law}, {YIELD, 1e-4}, {TENSION, tension}},
+			    .ground = SPIKE,
+			    .samples = SILENT};
+			struct specimen once, twice;
+			extreme_make(&once, &row);
+			const struct pound_response over = run(&once).response;
+			assert_true(over.end_u1 == 0 && over.end_v1 == 0 && over.end_u2 == 0 && over.end_v2 == 0);
+			row.samples = SILENT + AFTER;
+			extreme_make(&twice, &row);
+			memcpy(&twice.record[SILENT], once.record, AFTER * sizeof(double));
+			const struct pound_response again = run(&twice).response;
+			once.study.scene.excitation.n_record = AFTER;
+			const struct pound_response first = run(&once).response;
+			assert_true(first.end_u1 != 0 && again.end_u1 == first.end_u1 && again.end_v1 == first.end_v1);
+			assert_true(again.end_u2 == first.end_u2 && again.end_v2 == first.end_v2);
+			assert_true(again.contact_count == over.contact_count + first.contact_count);
+			specimen_free(&once);
+			specimen_free(&twice);
+		}
+}
+
 /* ---- corners ---- */
 
 enum { CORNERS = 100, CORNER_VALUES = 5, CORNER_SAMPLES = 5 };
@@ -488,4 +521,5 @@ CHECK_MAIN(cmocka_unit_test(every_extreme_is_finite_balanced_bounded_and_agreed_
            cmocka_unit_test(grazing_contacts_fade_with_the_power_three_halves_of_their_depth),
            cmocka_unit_test(events_at_one_instant_are_all_seen),
            cmocka_unit_test(bodies_alike_until_one_yields_meet_a_bounded_number_of_times),
+           cmocka_unit_test(a_motion_that_dies_away_in_silence_is_over),
            cmocka_unit_test(corners_of_all_extremes_are_finite_and_balanced))
