@@ -18,7 +18,6 @@
 
 enum {
 	POOL = 8 * W, /* simulations in flight */
-	LEG = 4096,   /* samples that a flight goes at most until it is looked at */
 };
 
 /* simulations that wait for one kind of step, last come first served */
@@ -164,7 +163,7 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	for (int l = 0; l < W; l++) {
 		const struct simulation *sim = b->sim[l];
 		ahead.ground[l] = &sim->task->ground[sim->next];
-		samples[l] = (double)(sim->last - sim->next + 1);
+		samples[l] = (double)(flight_end(sim) - sim->next + 1);
 		ground[l] = ahead.ground[l][-1];
 	}
 	g.ground = lanes_load(ground);
@@ -173,17 +172,14 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	int few = b->n / 2;
 	do
 		flying = fly_row(work, &ahead, &g, flying, few, edged, paired, right);
-	while (__builtin_popcount(vbits(flying)) > few && ahead.gone < LEG);
+	while (__builtin_popcount(vbits(flying)) > few);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
-		sim->next = sim->last + 1 - (int64_t)samples[l];
-		bool on = vbits(flying) >> l & 1;
-		send(work, sim,
-		     samples[l] == 0 ? STAGE_END
-		     : on            ? simulation_flown(sim, stage)
-		                     : simulation_meet(sim));
+		bool there = samples[l] == 0, on = vbits(flying) >> l & 1;
+		sim->next = flight_end(sim) + 1 - (int64_t)samples[l];
+		send(work, sim, there ? simulation_flown(sim, stage) : on ? stage : simulation_meet(sim));
 	}
 }
 

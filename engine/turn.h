@@ -26,6 +26,8 @@ static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
  * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
 static const double NOTHING = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
 
+enum { LEG = 4095 }; /* a flight ends at every sample with these bits, wherever it began */
+
 static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 
 static double most(double a, double b)
@@ -191,9 +193,18 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	return simulation_from(sim);
 }
 
-/* What a simulation does that may fly on. */
+/* The sample up to which a simulation may fly before it is looked at: its neighbours have no part in that. */
+static int64_t flight_end(const struct simulation *sim)
+{
+	int64_t leg = sim->next | LEG;
+	return leg < sim->last ? leg : sim->last;
+}
+
+/* What a simulation does that has flown as far as it might. */
 static enum pound_stage simulation_flown(struct simulation *sim, enum pound_stage stage)
 {
+	if (sim->next > sim->last)
+		return STAGE_END;
 	simulation_interval(sim);
 	return simulation_over(sim) ? simulation_rest(sim) : stage;
 }

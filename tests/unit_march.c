@@ -265,6 +265,27 @@ static void a_run_does_not_depend_on_its_neighbours(void **state)
 	check_alone_as_together(tasks);
 }
 
+/* Apart and at rest in the end: when that is noticed is a simulation's own affair. */
+static void a_motion_that_dies_away_does_not_depend_on_its_neighbours(void **state)
+{
+	(void)state;
+	enum { LONG = 9001 };
+	static double ground[TASKS * SAMPLES], shaken[LONG];
+	struct pound_march_task tasks[TASKS];
+	tasks_fill(tasks, ground, 2);
+	memcpy(shaken, ground, 200 * sizeof(double));
+	for (int t = 0; t < TASKS; t++) {
+		tasks[t].ground = shaken;
+		tasks[t].n_samples = LONG - 40 * t;
+		tasks[t].gap = 1e3;
+		for (int i = 0; i < 2; i++) {
+			tasks[t].bodies[i].skeleton.law = 0;
+			tasks[t].bodies[i].damping = 10 + 0.2 * t; // 1e-277 after 20 to 120 s
+		}
+	}
+	check_alone_as_together(tasks);
+}
+
 /* Keeping a neighbour's balance costs a run no step of its own. */
 static void a_run_does_not_depend_on_whose_energy_is_accounted_for(void **state)
 {
@@ -323,6 +344,7 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
            cmocka_unit_test(the_energy_put_in_is_found_again),
            cmocka_unit_test(a_run_does_not_depend_on_its_neighbours),
+           cmocka_unit_test(a_motion_that_dies_away_does_not_depend_on_its_neighbours),
            cmocka_unit_test(a_run_does_not_depend_on_whose_energy_is_accounted_for),
            cmocka_unit_test(a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours),
            cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter))
