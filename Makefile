@@ -17,7 +17,8 @@ CPPFLAGS += -I. -D_GNU_SOURCE $(CPPFLAGS.$(MODE))
 LDFLAGS  += $(LDFLAGS.$(MODE))
 CFLAGS   += -std=c17 $(WARN) -ffp-contract=off -fno-math-errno -fstack-protector-strong -MMD -MP $(MODE.$(MODE))
 
-# march.c and spectrum.c are compiled once per lane count, chosen among at run time; all give the same bits
+# these files of the engine are compiled once per lane count, chosen among at run time; all give the same bits
+LANED          := march spectrum noise resample
 WIDTHS         := portable w1 w4 w8
 LANES.portable := -DPOUND_LANES=1
 LANES.w1       := -DPOUND_LANES=1 -mfma
@@ -34,8 +35,8 @@ LIBS.client := -lcurl -lcjson -lpthread
 LIBS.tests  := -lcmocka -lcurl
 
 objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
-ENGINE := $(call objs,engine,engine/march.c engine/spectrum.c) $(WIDTHS:%=$(B)/engine/march_%.o) \
-          $(WIDTHS:%=$(B)/engine/spectrum_%.o)
+ENGINE := $(call objs,engine,$(LANED:%=engine/%.c)) \
+          $(foreach file,$(LANED),$(WIDTHS:%=$(B)/engine/$(file)_%.o))
 SCHEMA := $(call objs,schema) $(B)/schema/examples.o
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
@@ -72,6 +73,12 @@ $(B)/engine/march_%.o: engine/march.c
 $(B)/engine/spectrum_%.o: engine/spectrum.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<
+$(B)/engine/noise_%.o: engine/noise.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_NOISE=pound_noise_$* -c -o $@ $<
+$(B)/engine/resample_%.o: engine/resample.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_RESAMPLE=pound_resample_$* -c -o $@ $<
 
 # the database's schema is built into the server, as a C string
 $(B)/schema/store.sql.inc: schema/store.sql

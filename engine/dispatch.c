@@ -1,8 +1,10 @@
-/* dispatch.c - which lanes this machine has, and the march at the widest of them; all widths give the same bits. */
+/* dispatch.c - which lanes this machine has, and what is run at the widest of them; all widths give the same bits. */
 #include <stdbool.h>
 
 #include "engine/dispatch.h"
 #include "engine/march.h"
+#include "engine/noise.h"
+#include "engine/resample.h"
 
 static bool always(void)
 {
@@ -60,4 +62,23 @@ bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct p
 	if (width >= 0)
 		run[width](tasks, results, n, scratch);
 	return width >= 0;
+}
+
+typedef void normals(struct pound_stream, uint32_t, double z[NOISE_WORDS][NOISE_CHUNK]);
+
+void pound_noise_normals(int width, struct pound_stream stream, uint32_t first,
+                         double z[NOISE_WORDS][NOISE_CHUNK])
+{
+	static normals *const run[POUND_WIDTHS] = {pound_noise_w8, pound_noise_w4, pound_noise_w1,
+	                                           pound_noise_portable};
+	run[width](stream, first, z);
+}
+
+typedef void resample(const struct pound_tiles *, uint64_t, int, double *);
+
+void pound_resample_sums(int width, const struct pound_tiles *tiles, uint64_t seed, int first, double *sum)
+{
+	static resample *const run[POUND_WIDTHS] = {pound_resample_w8, pound_resample_w4, pound_resample_w1,
+	                                            pound_resample_portable};
+	run[width](tiles, seed, first, sum);
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/dispatch.h"
 #include "engine/elementary.h"
 #include "engine/filter.h"
 #include "engine/noise.h"
@@ -75,7 +76,7 @@ static void white_noise(const struct pound_excitation *e, struct pound_stream no
 	for (int i = 0; i < n; i++) {
 		const int l = i / NOISE_WORDS % NOISE_CHUNK, w = i % NOISE_WORDS;
 		if (l == 0 && w == 0)
-			pound_noise_normals(pound_noise_width(), noise, (uint32_t)(i / NOISE_WORDS), z);
+			pound_noise_normals(pound_dispatch_width(0), noise, (uint32_t)(i / NOISE_WORDS), z);
 		a[i] = z[w][l];
 	}
 	shape(e->rise, e->fall, n, a);

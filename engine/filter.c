@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "engine/dispatch.h"
 #include "engine/noise.h"
 
 enum { N = FILTER_STATES, NODES = 8 };
@@ -237,9 +238,9 @@ static inline pair combined(const pair column[N], double x0, double x1, double x
  *          the_spectrum_is_the_analytic_one */
 void pound_filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
 {
-	const int width = pound_noise_width();
-	const struct columns transition = columns_of(f->transition), step = columns_of(f->step);
-	struct columns added = columns_of(f->start);
+	const int width = pound_dispatch_width(0);
+	const struct columns transition = columns_of(f->transition), step = columns_of(f->step),
+	                     start = columns_of(f->start), *added = &start;
 	double z[NOISE_WORDS][NOISE_CHUNK];
 	pair top = {0}, bottom = {0};
 	for (int first = 0; first < n; first += NOISE_CHUNK) {
@@ -247,12 +248,12 @@ void pound_filter_run(const struct pound_filter *f, struct pound_stream noise, i
 		pound_noise_normals(width, noise, (uint32_t)first, z);
 		for (int l = 0; l < end; l++) {
 			const double x0 = top[0], x1 = top[1], x2 = bottom[0], x3 = bottom[1];
-			top = combined(added.top, z[0][l], z[1][l], z[2][l], z[3][l]) +
+			top = combined(added->top, z[0][l], z[1][l], z[2][l], z[3][l]) +
 			      combined(transition.top, x0, x1, x2, x3);
-			bottom = combined(added.bottom, z[0][l], z[1][l], z[2][l], z[3][l]) +
+			bottom = combined(added->bottom, z[0][l], z[1][l], z[2][l], z[3][l]) +
 			         combined(transition.bottom, x0, x1, x2, x3);
 			a[first + l] = f->output[0] * top[0] + f->output[1] * top[1];
-			added = step;
+			added = &step;
 		}
 	}
 }

@@ -24,6 +24,7 @@ enum {
 #if POUND_LANES == 1
 
 typedef double vd;
+typedef uint64_t vu;
 typedef uint64_t vm;
 #define LANE_SPLAT(x)        (x)
 #define LANE_LESS(a, b)      (-(vm)((a) < (b)))
@@ -37,12 +38,14 @@ typedef uint64_t vm;
 #define LANE_FLOOR(a)        __builtin_floor(a)
 #define LANE_BITS(m)         ((unsigned)(m)&1)
 #define LANE_MASK(bits)      (-(vm)((bits)&1))
+#define LANE_PRODUCT(a, b)   (((a)&UINT32_MAX) * ((b)&UINT32_MAX))
 
 #else
 
 #include <immintrin.h>
 
 typedef double vd __attribute__((vector_size(8 * POUND_LANES)));
+typedef uint64_t vu __attribute__((vector_size(8 * POUND_LANES)));
 #define LANE_ABS(a) ((vd)((lane_bits)(a)&INT64_MAX))
 typedef int64_t lane_bits __attribute__((vector_size(8 * POUND_LANES)));
 
@@ -59,6 +62,7 @@ typedef lane_bits vm;
 #define LANE_FLOOR(a)        _mm256_floor_pd(a)
 #define LANE_BITS(m)         ((unsigned)_mm256_movemask_pd((vd)(m)))
 #define LANE_MASK(bits)      (((vm)_mm256_set1_epi64x(bits) & (vm){1, 2, 4, 8}) == (vm){1, 2, 4, 8})
+#define LANE_PRODUCT(a, b)   ((vu)_mm256_mul_epu32((__m256i)(a), (__m256i)(b)))
 #else
 typedef __mmask8 vm;
 #define LANE_SPLAT(x)        _mm512_set1_pd(x)
@@ -72,6 +76,7 @@ typedef __mmask8 vm;
 #define LANE_FLOOR(a)        _mm512_roundscale_pd(a, _MM_FROUND_TO_NEG_INF)
 #define LANE_BITS(m)         ((unsigned)(m))
 #define LANE_MASK(bits)      ((vm)(bits))
+#define LANE_PRODUCT(a, b)   ((vu)_mm512_mul_epu32((__m512i)(a), (__m512i)(b)))
 #endif
 
 #endif
@@ -131,6 +136,11 @@ LANE_INLINE vd vfma(vd a, vd b, vd c)
 {
 	return LANE_FMA(a, b, c);
 } /* a b + c, rounded once: the one fused operation */
+
+LANE_INLINE vu vproduct(vu a, vu b)
+{
+	return LANE_PRODUCT(a, b);
+} /* of the lower halves */
 
 /* ---- rows of memory in and out of lanes: lane l of column j is row[l][at + j] ---- */
 

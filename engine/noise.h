@@ -9,10 +9,14 @@ enum {
 	NOISE_CHUNK = 32, /* draws computed at a time */
 };
 
-int pound_noise_width(void); /* the widest vectors of this processor: 8, 4 or 2 doubles */
-
-/* z[w][l]: normal w of draw first + l, the same bits for any width  (NOISE_WORDS x NOISE_CHUNK) */
+/* z[w][l]: normal w of draw first + l, the same bits for any width of dispatch.h  (NOISE_WORDS x NOISE_CHUNK) */
 void pound_noise_normals(int width, struct pound_stream stream, uint32_t first,
                          double z[NOISE_WORDS][NOISE_CHUNK]);
+
+/* noise.c, compiled once for each */
+void pound_noise_w8(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_noise_w4(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_noise_w1(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_noise_portable(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
 
 #endif

@@ -1,8 +1,11 @@
 /* unit_interval.c - the law of the resamples, and intervals whose ends are known. */
+#include "engine/dispatch.h"
 #include "engine/indices.h"
+#include "engine/resample.h"
 #include "tests/check.h"
 
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 
 /* What a statistic is of and what it saw: the sums over all resamples of its means and of their products. */
@@ -186,8 +189,70 @@ static void intervals_of_a_mean_are_those_of_the_normal_law(void **state)
 	free(e), free(again), free(other);
 }
 
+static void sums_are_the_same_bits_at_any_width(void **state)
+{
+	(void)state;
+	enum { MOST = 2500, TILES = 2, SUMS = POUND_RESAMPLE_GROUP * TILES * POUND_TILE };
+	static _Alignas(64) double table[TILES * MOST * POUND_TILE], want[SUMS], got[SUMS];
+	static const int sizes[] = {1, 2, 7, 100, 1024, MOST};
+	for (int k = 0; k < TILES * MOST * POUND_TILE; k++)
+		table[k] = sin(k);
+	for (int s = 0; s < 6; s++) {
+		const struct pound_tiles tiles = {sizes[s], TILES, table};
+		pound_resample_sums(POUND_WIDTH_PORTABLE, &tiles, 3, 8, want);
+		for (int lanes = 1; lanes <= 8; lanes++) {
+			if (pound_dispatch_width(lanes) < 0)
+				continue;
+			pound_resample_sums(pound_dispatch_width(lanes), &tiles, 3, 8, got);
+			assert_memory_equal(got, want, sizeof want);
+		}
+	}
+}
+
+static int ascending(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+struct told {
+	int wanted, n;
+	double value[POUND_RESAMPLES + 1];
+};
+
+/* The first `wanted` values, the one of all rows among them, in no order; NAN afterwards. */
+static void tell(const void *subject, const double *mean, double *value)
+{
+	struct told *told = (struct told *)subject;
+	*value = told->n < told->wanted ? sin(1e3 * *mean) : NAN;
+	told->value[told->n++] = *value;
+}
+
+static void uneven(const void *subject, int row, double *m)
+{
+	(void)subject;
+	*m = row * row;
+}
+
+static void however_many_values_there_are_the_ends_are_their_quantiles(void **state)
+{
+	(void)state;
+	static const int wanted[] = {2, 3, 4, 40, 41, 42, 43, 500, POUND_RESAMPLES + 1};
+	for (int k = 0; k < 9; k++) {
+		struct told told = {.wanted = wanted[k]};
+		struct pound_estimate *e = estimates_of((struct pound_statistic){1, 1, uneven, tell, &told}, 100, k);
+		const int n = wanted[k] - 1;
+		qsort(told.value + 1, n, sizeof(double), ascending);
+		check_near(e->low, gsl_stats_quantile_from_sorted_data(told.value + 1, 1, n, 0.025), 1e-15);
+		check_near(e->high, gsl_stats_quantile_from_sorted_data(told.value + 1, 1, n, 0.975), 1e-15);
+		free(e);
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(rows_are_drawn_as_often_as_a_multinomial_says),
            cmocka_unit_test(rows_beyond_the_first_segment_are_drawn_as_often_as_the_others),
+           cmocka_unit_test(sums_are_the_same_bits_at_any_width),
            cmocka_unit_test(the_interval_ends_at_the_quantiles_of_the_resamples),
+           cmocka_unit_test(however_many_values_there_are_the_ends_are_their_quantiles),
            cmocka_unit_test(undefined_resamples_are_left_out_and_undefined_values_have_no_interval),
            cmocka_unit_test(intervals_of_a_mean_are_those_of_the_normal_law))

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/dispatch.h"
 #include "engine/noise.h"
 #include "tests/check.h"
 
@@ -18,7 +19,7 @@ static int draw_numbers(void **state)
 	(void)state;
 	for (int c = 0; c < CHUNKS; c++) {
 		double z[NOISE_WORDS][NOISE_CHUNK];
-		pound_noise_normals(pound_noise_width(), stream, (uint32_t)(c * NOISE_CHUNK), z);
+		pound_noise_normals(pound_dispatch_width(0), stream, (uint32_t)(c * NOISE_CHUNK), z);
 		for (int l = 0; l < NOISE_CHUNK; l++)
 			for (int w = 0; w < NOISE_WORDS; w++)
 				number[(c * NOISE_CHUNK + l) * NOISE_WORDS + w] = z[w][l];
@@ -34,7 +35,7 @@ static void chunks_hold_the_words_of_single_draws(void **state)
 	const uint32_t firsts[] = {0, 1, 12345, 0xfffffff0}; /* the last one wraps around */
 	for (size_t i = 0; i < sizeof firsts / sizeof firsts[0]; i++) {
 		double z[NOISE_WORDS][NOISE_CHUNK];
-		pound_noise_normals(2, stream, firsts[i], z);
+		pound_noise_normals(POUND_WIDTH_PORTABLE, stream, firsts[i], z);
 		for (int l = 0; l < NOISE_CHUNK; l++) {
 			const philox4x32_ctr_t word = pound_random_words(stream, firsts[i] + (uint32_t)l);
 			for (int w = 0; w < NOISE_WORDS; w += 2) {
@@ -52,22 +53,21 @@ static void a_draw_is_the_same_in_whatever_chunk(void **state)
 {
 	(void)state;
 	double a[NOISE_WORDS][NOISE_CHUNK], b[NOISE_WORDS][NOISE_CHUNK];
-	pound_noise_normals(2, stream, 100, a);
-	pound_noise_normals(2, stream, 107, b);
+	pound_noise_normals(POUND_WIDTH_PORTABLE, stream, 100, a);
+	pound_noise_normals(POUND_WIDTH_PORTABLE, stream, 107, b);
 	for (int w = 0; w < NOISE_WORDS; w++)
 		assert_memory_equal(&a[w][7], &b[w][0], (NOISE_CHUNK - 7) * sizeof(double));
 }
 
-static void vectors_of_any_width_give_the_same_bits(void **state)
+static void lanes_of_any_width_give_the_same_bits(void **state)
 {
 	(void)state;
-	if (pound_noise_width() == 2)
-		skip();
-	for (int width = 4; width <= pound_noise_width(); width *= 2)
-		for (uint32_t first = 0; first < 100 * NOISE_CHUNK; first += NOISE_CHUNK) {
+	for (int lanes = 1; lanes <= 8; lanes++)
+		for (uint32_t first = 0; first < 100 * NOISE_CHUNK && pound_dispatch_width(lanes) >= 0;
+		     first += NOISE_CHUNK) {
 			double a[NOISE_WORDS][NOISE_CHUNK], b[NOISE_WORDS][NOISE_CHUNK];
-			pound_noise_normals(2, stream, first, a);
-			pound_noise_normals(width, stream, first, b);
+			pound_noise_normals(POUND_WIDTH_PORTABLE, stream, first, a);
+			pound_noise_normals(pound_dispatch_width(lanes), stream, first, b);
 			assert_memory_equal(a, b, sizeof a);
 		}
 }
@@ -133,7 +133,7 @@ static void the_distribution_is_normal_out_to_its_tails(void **state)
 
 CHECK_MAIN(cmocka_unit_test(chunks_hold_the_words_of_single_draws),
            cmocka_unit_test(a_draw_is_the_same_in_whatever_chunk),
-           cmocka_unit_test(vectors_of_any_width_give_the_same_bits),
+           cmocka_unit_test(lanes_of_any_width_give_the_same_bits),
            cmocka_unit_test_setup(the_first_four_moments_are_normal, draw_numbers),
            cmocka_unit_test_setup(numbers_are_uncorrelated_and_so_are_their_squares, draw_numbers),
            cmocka_unit_test_setup(the_distribution_is_normal_out_to_its_tails, draw_numbers))
