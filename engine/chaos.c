@@ -45,7 +45,8 @@ struct fits {
 	double *sums;         /* of the terms of twice the degree, of each fold  (FOLDS x squares) */
 	double *products;     /* of term and output, of each fold  (FOLDS x terms) */
 	double *others;       /* sums of all folds but one  (squares) */
-	double *gram;         /* (terms x terms) */
+	double *gram;         /* and then its factor  (terms x terms) */
+	double *kept;         /* pound_chaos_kept_size; NULL: nothing is kept */
 	double *coefficients; /* of each fold's fit to the other folds  (FOLDS x terms) */
 	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
 	struct pound_closed closed;
@@ -137,7 +138,7 @@ static double *sample_of(const struct fits *f, double *values, int fold, int num
 	return values + (size_t)row_in(f, fold, number / n_samples) * n_samples + number % n_samples;
 }
 
-static void sums_fill(struct fits *f)
+static void sums_fill(struct fits *f, bool design_known)
 {
 	double one[CHUNK];
 	memset(f->sums, 0, sizeof *f->sums * FOLDS * f->squares);
@@ -148,7 +149,8 @@ static void sums_fill(struct fits *f)
 		for (int first = 0; chunk_enter(f, fold, first) > 0; first += CHUNK) {
 			for (int i = 0; i < f->chunk.n; i++)
 				f->value[i] = *sample_of(f, f->rows->y, fold, first + i);
-			pound_legendre_project(&f->chunk, 2 * f->degree, one, f->sums + (size_t)fold * f->squares);
+			if (!design_known)
+				pound_legendre_project(&f->chunk, 2 * f->degree, one, f->sums + (size_t)fold * f->squares);
 			pound_legendre_project(&f->chunk, f->degree, f->value, f->products + (size_t)fold * f->terms);
 		}
 }
@@ -163,21 +165,67 @@ static void sums_others(const double *sums, int n, int fold, double *others)
 	}
 }
 
+/* ---- what the outputs of one design have in common ---- */
+
+/* Factor of a fold's Gram matrix; after the last the rows that it came from, fold by fold, and before the first how many
+ * of them each fold has. */
+static double *kept_factor(const struct fits *f, int fold)
+{
+	return f->kept + FOLDS + (size_t)fold * f->terms * f->terms;
+}
+
+static bool kept_is_of(const struct fits *f)
+{
+	bool same = f->kept;
+	for (int fold = 0; fold < FOLDS && same; fold++)
+		same = f->kept[fold] == rows_in(f, fold);
+	for (int i = 0; i < f->rows->n_rows && same; i++)
+		same = kept_factor(f, FOLDS)[i] == f->rows->row[(int)f->sorted[i]];
+	return same;
+}
+
+static void kept_fill(const struct fits *f)
+{
+	for (int fold = 0; fold < FOLDS; fold++)
+		f->kept[fold] = rows_in(f, fold);
+	for (int i = 0; i < f->rows->n_rows; i++)
+		kept_factor(f, FOLDS)[i] = f->rows->row[(int)f->sorted[i]];
+}
+
+size_t pound_chaos_kept_size(const struct pound_sample_values *shape)
+{
+	const int n_samples = pound_order_samples(shape->order, shape->n_inputs);
+	const int degree = pound_chaos_degree(shape->n_rows, shape->n_inputs, n_samples);
+	const size_t terms = (size_t)pound_legendre_terms(shape->n_inputs, degree);
+	return FOLDS + FOLDS * terms * terms + (size_t)shape->n_rows;
+}
+
+/* ---- the fits ---- */
+
 static void fits_fill(struct fits *f)
 {
-	sums_fill(f);
+	const bool design_known = kept_is_of(f);
+	f->chunk.degree = design_known ? f->degree : 2 * f->degree;
+	sums_fill(f, design_known);
+	f->chunk.degree = f->degree;
 	for (int fold = 0; fold < FOLDS; fold++) {
 		double *coefficients = f->coefficients + (size_t)fold * f->terms;
-		sums_others(f->sums, f->squares, fold, f->others);
-		pound_legendre_gram(f->rows->n_inputs, f->degree, f->others, f->gram);
+		double *gram = f->kept ? kept_factor(f, fold) : f->gram;
+		if (!design_known) {
+			sums_others(f->sums, f->squares, fold, f->others);
+			pound_legendre_gram(f->rows->n_inputs, f->degree, f->others, gram);
+			pound_legendre_factor(gram, f->terms);
+		}
 		sums_others(f->products, f->terms, fold, coefficients);
-		pound_legendre_solve(f->gram, f->terms, coefficients);
+		pound_legendre_solve(gram, f->terms, coefficients);
 		for (int first = 0; chunk_enter(f, fold, first) > 0; first += CHUNK) {
 			pound_legendre_expand(&f->chunk, f->degree, coefficients, f->value);
 			for (int i = 0; i < f->chunk.n; i++)
 				*sample_of(f, f->fit, fold, first + i) = f->value[i];
 		}
 	}
+	if (f->kept && !design_known)
+		kept_fill(f);
 }
 
 /* Takes each fit to its mean by the share of it that the outputs it has not seen bear out, so that the noise of a fit with
@@ -322,6 +370,8 @@ size_t pound_chaos_scratch(const struct pound_sample_values *shape)
  * Given    rows       -                      outputs and their noise
  *          u          (n x 2 x n_inputs)     the design as probabilities in (0, 1), rows of A and B
  *          corrected  -                      for the noise of few signals (NAN for one signal)
+ *          kept       (pound_chaos_kept_size)    zeros, or as a call for another output of the design left it, maybe with
+ *                                            other rows; NULL: nothing is kept
  * Returns  results    -                      with 95 % intervals from the scatter of the rows, or of their groups
  *          curves     (n_inputs)             mean outputs given each input; NULL: not wanted
  * Memory   scratch    (pound_chaos_scratch)  for all rows of the design
@@ -333,10 +383,10 @@ size_t pound_chaos_scratch(const struct pound_sample_values *shape)
  *          Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indexes of the polynomial
  * Test     unit_chaos
  */
-void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
-                         struct pound_closed_results *results, struct pound_curve *curves)
+void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
+                         double *scratch, struct pound_closed_results *results, struct pound_curve *curves)
 {
-	struct fits fits = {.rows = rows, .u = u};
+	struct fits fits = {.rows = rows, .u = u, .kept = kept};
 	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
 	for (int sample = 0; sample < rows->n_samples; sample++)
 		fits.mask[sample] = pound_order_mask(rows->n_inputs, sample);

@@ -33,6 +33,7 @@ struct pound_sampling {
 	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
 	const struct pound_study *ratios; /* study with ratios whose indexes are wanted; NULL: none */
 	int estimator; /* row of the estimators whose indexes are wanted besides; 0: none but the plain protocol's */
+	double *kept; /* of the fits, from one output of the design to the next: chaos.c; NULL: nothing */
 };
 
 /* What the scatter of rows is told from: their groups if they have some, else the rows themselves. */
@@ -174,9 +175,10 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
                           struct pound_closed_results *results);
 
 int pound_chaos_degree(int n_rows, int n_inputs, int n_samples);
-size_t pound_chaos_scratch(const struct pound_sample_values *shape); /* doubles */
-void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *scratch,
-                         struct pound_closed_results *results, struct pound_curve *curves);
+size_t pound_chaos_scratch(const struct pound_sample_values *shape);   /* doubles */
+size_t pound_chaos_kept_size(const struct pound_sample_values *shape); /* doubles */
+void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
+                         double *scratch, struct pound_closed_results *results, struct pound_curve *curves);
 /* From the first n of those rows alone, with the polynomials of all; the scratch as it was left. */
 void pound_chaos_first_rows(const struct pound_rows *rows, int n, double *scratch,
                             struct pound_closed_results *results);

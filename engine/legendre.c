@@ -245,13 +245,11 @@ static void subtract(double *x, double factor, const double *y, int n)
 		x[k] -= factor * y[k];
 }
 
-/* Solves gram x = b by Cholesky's method; the upper triangle of gram is overwritten, b becomes x.
+/* Cholesky's factor of a Gram matrix, in its upper triangle, with the inverse of the diagonal.
  *
- * A term that the points do not tell apart from those before it gets the coefficient 0.
- *
- * Test     unit_chaos: a_polynomial_within_the_degree_is_met_exactly
+ * A term that the points do not tell apart from those before it has 0 there.
  */
-void pound_legendre_solve(double *gram, int n, double *b)
+void pound_legendre_factor(double *gram, int n)
 {
 	double largest = 0.0;
 	for (int i = 0; i < n; i++)
@@ -261,15 +259,29 @@ void pound_legendre_solve(double *gram, int n, double *b)
 		double inverse = row[i] > n * DBL_EPSILON * largest ? 1.0 / sqrt(row[i]) : 0.0;
 		for (int k = i; k < n; k++)
 			row[k] *= inverse;
-		b[i] *= inverse;
-		for (int r = i + 1; r < n; r++) {
+		for (int r = i + 1; r < n; r++)
 			subtract(gram + (size_t)r * n + r, row[r], row + r, n - r);
-			b[r] -= row[r] * b[i];
-		}
 		row[i] = inverse;
 	}
+}
+
+/* Solves gram x = b, of which b becomes x.
+ *
+ * Given    factor    of gram, by pound_legendre_factor
+ *
+ * A term that the points do not tell apart from those before it gets the coefficient 0.
+ *
+ * Test     unit_chaos: a_polynomial_within_the_degree_is_met_exactly
+ */
+void pound_legendre_solve(const double *factor, int n, double *b)
+{
+	for (int i = 0; i < n; i++) {
+		const double *row = factor + (size_t)i * n;
+		b[i] *= row[i];
+		subtract(b + i + 1, b[i], row + i + 1, n - i - 1);
+	}
 	for (int i = n - 1; i >= 0; i--) {
-		const double *row = gram + (size_t)i * n;
+		const double *row = factor + (size_t)i * n;
 		for (int k = i + 1; k < n; k++)
 			b[i] -= row[k] * b[k];
 		b[i] *= row[i];

@@ -28,8 +28,9 @@ void pound_legendre_expand(const struct pound_legendre *chunk, int degree, const
                            double *value);
 void pound_legendre_gram(int n_inputs, int degree, const double *sums, double *gram);
 
-/* Least squares: gram x = b, of which b becomes x  (n); overwrites the upper triangle of gram  (n x n). */
-void pound_legendre_solve(double *gram, int n, double *b);
+/* Least squares: gram x = b, of which b becomes x  (n); the factor overwrites the upper triangle of gram  (n x n). */
+void pound_legendre_factor(double *gram, int n);
+void pound_legendre_solve(const double *factor, int n, double *b);
 
 /* The next term's degrees; false after the last. */
 bool pound_legendre_next(int n_inputs, int degree, int *degrees);

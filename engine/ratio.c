@@ -373,6 +373,7 @@ static void coefficients_fill(struct fit *f, int without)
 		f->coefficients[k] = f->products[(size_t)GROUPS * f->terms + k] -
 		                     (without < GROUPS ? f->products[(size_t)without * f->terms + k] : 0.0);
 	pound_legendre_gram(f->variables.n, f->degree, f->others, f->gram);
+	pound_legendre_factor(f->gram, f->terms);
 	pound_legendre_solve(f->gram, f->terms, f->coefficients);
 }
 

@@ -63,8 +63,15 @@ static size_t checks_size(const struct pound_campaign *c)
 	return (size_t)checks_of(c) * (sizeof(struct pound_check) / sizeof(double));
 }
 
-/* Doubles a reduction works in: two columns of measures, the checks, and what the indexes and then their accuracy
- * need. */
+/* Doubles that a worker keeps from one reduction to the next, at the start of its scratch. */
+static size_t kept_size(const struct pound_campaign *c)
+{
+	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
+	return pound_chaos_kept_size(&shape);
+}
+
+/* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indexes and then their
+ * accuracy need. */
 static size_t reduction_size(const struct pound_campaign *c)
 {
 	if (c->study->kind == POUND_KIND_FLOOR_SPECTRUM)
@@ -82,7 +89,7 @@ static size_t reduction_size(const struct pound_campaign *c)
 	size_t accuracy = (size_t)checks_of(c);
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
-	return 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
+	return kept_size(c) + 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
 	       (most > ordinates ? most : ordinates);
 }
 
@@ -427,9 +434,10 @@ static bool any_known(const double *variance, size_t n)
 	return false;
 }
 
-static void indices_reduce(struct pound_run *run, int cell, int output, double *scratch)
+static void indices_reduce(struct pound_run *run, int cell, int output, double *kept)
 {
 	const struct pound_campaign *c = &run->campaign;
+	double *scratch = kept + kept_size(c);
 	const struct pound_sample_values values = pound_campaign_values(c, run->rows, scratch);
 	const size_t n = pound_campaign_values_size(c, run->rows);
 	const bool elsewhere = c->study->elsewhere;
@@ -443,6 +451,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    .n_resamples = c->study->design.resamples,
 	    .quasi_random = pound_design_quasi_random(c->study->design.method),
 	    .estimator = c->study->design.estimator,
+	    .kept = kept,
 	    .ratios = c->study->n_ratios ? c->study : NULL};
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);

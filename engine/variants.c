@@ -378,7 +378,8 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 		                           sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES, s.scratch,
 		                           &s.pick_freeze);
 		if (rows_enough(&s)) {
-			pound_chaos_indices(&rows, sampling->u, s.corrected, s.scratch, &s.closed, indices->curves);
+			pound_chaos_indices(&rows, sampling->u, s.corrected, sampling->kept, s.scratch, &s.closed,
+			                    indices->curves);
 			levels_fill(&s, seed);
 		}
 		indices->sets = s.closed.sets;

@@ -181,7 +181,7 @@ static void half_widths_of_all_rows_are_those_of_the_indexes(void **state)
 		double from_all[D], from_half[D];
 		pound_rows_init(&rows, &values, scratch);
 		double *rest = scratch + pound_rows_scratch(&values);
-		pound_chaos_indices(&rows, u, false, rest, &all, NULL);
+		pound_chaos_indices(&rows, u, false, NULL, rest, &all, NULL);
 		pound_chaos_first_rows(&rows, N, rest, &first_rows);
 		for (int j = 0; j < D; j++) {
 			check_near(half(first_rows.first[j]), half(all.first[j]), 1e-15);

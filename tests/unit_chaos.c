@@ -7,17 +7,23 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
 
-static struct pound_closed_results indexes_of(const struct pound_sample_values *values, const double *u,
-                                              bool corrected)
+static struct pound_closed_results indexes_kept(const struct pound_sample_values *values, const double *u,
+                                                bool corrected, double *kept)
 {
 	struct pound_closed_results result;
 	struct pound_rows rows;
 	size_t rows_size = pound_rows_scratch(values);
 	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_chaos_indices(&rows, u, corrected, scratch + rows_size, &result, NULL);
+	pound_chaos_indices(&rows, u, corrected, kept, scratch + rows_size, &result, NULL);
 	free(scratch);
 	return result;
+}
+
+static struct pound_closed_results indexes_of(const struct pound_sample_values *values, const double *u,
+                                              bool corrected)
+{
+	return indexes_kept(values, u, corrected, NULL);
 }
 
 static const struct function_noise noiseless = {1, 0.0, true};
@@ -216,6 +222,37 @@ static void a_polynomial_that_cannot_follow_does_no_harm(void **state)
 	assert_true(square <= plain);
 }
 
+/* Outputs one after the other: of all rows, another of the same, two without a row, fewer rows, other groups. */
+static void what_is_kept_of_a_design_changes_no_bit(void **state)
+{
+	(void)state;
+	enum { ROWS = 200, FEWER = 100 };
+	static const struct {
+		const char *of;
+		int n_rows, failed; /* -1: none */
+		int groups;
+	} cases[] = {{"cusp", ROWS, -1, 0},  {"steps", ROWS, -1, 0}, {"steps", ROWS, 7, 0}, {"cusp", ROWS, 8, 0},
+	             {"cusp", FEWER, -1, 0}, {"cusp", FEWER, -1, 8}, {"cusp", ROWS, -1, 0}};
+	double *u = function_design(ROWS, 1), *kept = NULL;
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		struct pound_sample_values values = function_values(function_named(cases[k].of), ROWS, 1, noiseless);
+		if (!kept)
+			kept = calloc(pound_chaos_kept_size(&values), sizeof *kept);
+		values.n_rows = cases[k].n_rows;
+		values.grouping = (struct pound_grouping){cases[k].groups, 1};
+		if (cases[k].failed >= 0)
+			((double *)values.numerator)[cases[k].failed * SAMPLES] = NAN;
+		const struct pound_closed_results want = indexes_of(&values, u, false);
+		for (int again = 0; again < 2; again++) {
+			const struct pound_closed_results got = indexes_kept(&values, u, false, kept);
+			assert_memory_equal(got.first, want.first, sizeof want.first[0] * D);
+			assert_memory_equal(got.total, want.total, sizeof want.total[0] * D);
+		}
+		function_values_free(&values);
+	}
+	free(u), free(kept);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_polynomial_within_the_degree_is_met_exactly),
            cmocka_unit_test(the_degree_grows_with_the_rows_and_falls_with_the_inputs),
            cmocka_unit_test(shift_and_scale_change_no_index),
@@ -223,4 +260,5 @@ CHECK_MAIN(cmocka_unit_test(a_polynomial_within_the_degree_is_met_exactly),
            cmocka_unit_test(nothing_is_defined_where_nothing_varies),
            cmocka_unit_test(errors_over_designs_are_a_fraction_of_those_of_pick_freeze),
            cmocka_unit_test(noise_of_few_signals_leaves_no_bias),
-           cmocka_unit_test(a_polynomial_that_cannot_follow_does_no_harm))
+           cmocka_unit_test(a_polynomial_that_cannot_follow_does_no_harm),
+           cmocka_unit_test(what_is_kept_of_a_design_changes_no_bit))
