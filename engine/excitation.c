@@ -47,13 +47,22 @@ static void shape(double rise, double fall, int n, double *a)
 		a[n - 1 - i] *= i * downward;
 }
 
-/* a times what makes its largest |a| the peak; dividing first, nothing in between is too large or too small
- * */
+/* Largest |a|, n >= 1. */
+double pound_excitation_largest(int n, const double *a)
+{
+	// in two parts, as each comparison waits for the one before it
+	double even = 0, odd = fabs(a[n - 1]);
+	for (int i = 0; i + 1 < n; i += 2) {
+		even = fabs(a[i]) > even ? fabs(a[i]) : even;
+		odd = fabs(a[i + 1]) > odd ? fabs(a[i + 1]) : odd;
+	}
+	return even > odd ? even : odd;
+}
+
+/* a times what makes its largest |a| the peak; dividing first, nothing in between is too large or too small */
 static void scale(double peak, int n, double *a)
 {
-	double largest = 0;
-	for (int i = 0; i < n; i++)
-		largest = fabs(a[i]) > largest ? fabs(a[i]) : largest;
+	const double largest = pound_excitation_largest(n, a);
 	if (largest > 0)
 		for (int i = 0; i < n; i++)
 			a[i] = a[i] / largest * peak;

@@ -9,6 +9,7 @@ int pound_excitation_samples(const struct pound_excitation *e); /* n >= 2 */
 void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream noise,
                            double *a); /* [m/s2] (n) */
 
+double pound_excitation_largest(int n, const double *a);             /* |a| */
 double pound_excitation_frequency(const struct pound_excitation *e); /* [Hz], 0: none of its own */
 bool pound_excitation_random(const struct pound_excitation *e);
 

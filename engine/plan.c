@@ -236,12 +236,13 @@ static void motions_fill(struct pound_plan *plan)
 		pound_excitation_fill(&m->excitation, m->noise, m->ground);
 		if (m->halved)
 			motion_halve(m);
-		double peak = 0;
-		for (int t = 0; t < m->n_samples; t++)
-			peak = fabs(m->ground[t]) > peak ? fabs(m->ground[t]) : peak;
+		const double peak = pound_excitation_largest(m->n_samples, m->ground);
 		m->exponent = peak > 0 ? ilogb(peak) : 0;
+		// in two factors, as that of a peak below the normal numbers is beyond the largest one
+		const int first = -m->exponent < DBL_MAX_EXP ? -m->exponent : DBL_MAX_EXP - 1;
+		const double factor = ldexp(1, first), rest = ldexp(1, -m->exponent - first);
 		for (int t = 0; t < m->n_samples && m->exponent != 0; t++)
-			m->ground[t] = ldexp(m->ground[t], -m->exponent);
+			m->ground[t] = m->ground[t] * factor * rest;
 	}
 }
 
