@@ -15,19 +15,22 @@
  */
 static void energy_add(struct lanes *g, const struct series *s, vd time, bool paired, bool touching)
 {
-	vd in = vsplat(0), out = in, dt = g->dt;
+	vd in = vsplat(0), out = in, top = in, dt = g->dt;
 	const vd mass[2] = {vsplat(1), g->right_mass};
 	for (int j = 0; j < POUND_GAUSS; j++) {
 		double node = j < POUND_GAUSS / 2 ? -POUND_GAUSS_NODE[j] : POUND_GAUSS_NODE[j - POUND_GAUSS / 2];
 		vd weight = vsplat(0.5 * POUND_GAUSS_WEIGHT[j % (POUND_GAUSS / 2)]);
 		vd t = vsplat(0.5 + 0.5 * node) * time;
-		vd ground = vfma(g->slope, t * dt, g->ground);
+		vd ground = vfma(g->slope, t * dt, g->ground), moving = vsplat(0);
 		for (int i = 0; i < (paired ? 2 : 1); i++) {
 			vd u = power_at(&s->body[i].u, s->order, t), v = power_at(&s->body[i].v, s->order, t) / dt;
 			vd spring = vfma(g->body[i].stiffness, u, g->body[i].offset);
 			in = vfma(weight * mass[i] * v, -g->body[i].drive * ground, in);
 			out = vfma(weight * mass[i] * v, vfma(g->body[i].damping, v, spring), out);
+			moving = vfma(0.5 * mass[i] * v, v, moving);
 		}
+		// a ground that takes back within the step what it has given leaves little at the end
+		top = vmax(top, moving);
 		if (!touching)
 			continue;
 		vd p = power_at(&s->overlap.u, s->order, t), q = power_at(&s->overlap.v, s->order, t) / dt;
@@ -43,7 +46,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 		vd v = power_at(&s->body[i].v, s->order, time) / dt;
 		moving = vfma(0.5 * mass[i] * v, v, moving);
 	}
-	g->work_top = vmax(g->work_top, vmax(vabs(g->work_in), moving));
+	g->work_top = vmax(g->work_top, vmax(vabs(g->work_in), vmax(top, moving)));
 }
 
 #endif

@@ -19,7 +19,7 @@ static const double balanced = 1e-10;
 static const double pi = 3.14159265358979323846;
 
 enum law { LINEAR, ELASTOPLASTIC, NONLINEAR_ELASTIC, ORIGIN_ORIENTED };
-enum ground { NOISE, ZEROS, SPIKE, STEP };
+enum ground { NOISE, ZEROS, SPIKE, STEP, TO_AND_FRO };
 
 // clang-format off
 #define FIELD(kind, member) {POUND_FIELD_##kind, offsetof(struct pound_scene, member)}
@@ -89,6 +89,9 @@ static const struct extreme extremes[] = {
 	{"zeros", {{EPS, 0.6}}, ZEROS, .compared = 61, .contacts = 0},
 	{"one spike", {{EPS, 0.6}}, SPIKE, .compared = 61, .contacts = 60},
 	{"one spike and minutes of silence, K/k 1e8, eps 0", {{K_RATIO, 1e8}, {EPS, 0}}, SPIKE, .samples = 33001, .compared = 31, .contacts = 1000},
+	// every sample the ground takes back from a soft body what it has given since the last
+	{"to and fro, frequency ratio 1e-3", {{FREQUENCY, 2e-3}, {GAP, 1e3}}, TO_AND_FRO, .samples = 21, .step = 1e-3,
+	 .compared = 21, .contacts = 0},
 	{"1e-300 m/s2", {{EPS, 0.6}}, .amplitude = 1e-300, .compared = 61, .contacts = 60},
 	{"1e300 m/s2", {{EPS, 0.6}}, .amplitude = 1e300, .compared = 61, .contacts = 60},
 	{"1e300 m/s2, gap 1 m", {{GAP, 1}, {TENSION, 0}, {EPS, 0}}, .amplitude = 1e300, .compared = 61, .contacts = 60},
@@ -137,7 +140,9 @@ static void ground_fill(struct specimen *specimen, const struct extreme *row)
 	if (row->ground == SPIKE)
 		specimen->record[10] = -1;
 	for (int t = 0; t < samples; t++)
-		specimen->record[t] = amplitude * (row->ground == STEP ? -1 : specimen->record[t]);
+		specimen->record[t] = amplitude * (row->ground == STEP         ? -1
+		                                   : row->ground == TO_AND_FRO ? (t % 2 ? 1 : -1)
+		                                                               : specimen->record[t]);
 }
 
 static bool nothing(struct pound_field field)
