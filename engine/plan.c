@@ -439,8 +439,10 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 		force[i] = ldexp(ask->scene.oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);
 		double given = pound_scene_law(&ask->scene, i)->yield_displacement;
 		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);
-		demand[i] = yields && body->yield > 0 ? most / body->yield : NAN;
-		demand_free[i] = yields && body->yield > 0 && free ? free->displacement_max[0] / body->yield : NAN;
+		// a yield displacement that is given may be too small beside the motion to be told in its scale
+		double per_yield = !yields || body->yield == 0 ? NAN : given > 0 ? given : body->yield;
+		demand[i] = ldexp(most / per_yield, given > 0 ? e : 0);
+		demand_free[i] = free ? ldexp(free->displacement_max[0] / per_yield, given > 0 ? e : 0) : NAN;
 		u[i] = ldexp(!alone ? with->u[i] : free ? free->u[0] : 0, e);
 		v[i] = ldexp(!alone ? with->v[i] : free ? free->v[0] : 0, e);
 	}
@@ -466,7 +468,11 @@ static enum pound_status ask_response(const struct pound_plan *plan, const struc
 	    .end_v2 = v[1],
 	    .energy_residual = residual,
 	};
-	return status;
+	bool beyond = false; // the motion in its own scale is finite, but not all that is made of it need be
+#define X(member, name, oscillator) beyond |= isinf(out->member) != 0;
+	POUND_MEASURES(X)
+#undef X
+	return beyond && status == POUND_OK ? POUND_OVERFLOW : status;
 }
 
 /* ---- the block ---- */
