@@ -130,14 +130,20 @@ static enum pound_stage simulation_step(struct simulation *sim)
 	return x->p + x->dt * x->q < 0 ? STAGE_CLEAR : STAGE_APART;
 }
 
+/* The overlap of bodies apart, from where they are. */
+static void overlap_start(struct pound_rows *x)
+{
+	double p = x->u[0] - x->u[1] - x->gap;
+	x->p = p < 0 ? p : 0; // rounding must not make it overlap
+	x->q = x->v[0] - x->v[1];
+}
+
 /* A simulation that flew to a sample behind which it cannot fly on. */
 static enum pound_stage simulation_meet(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	simulation_interval(sim);
-	double p = x->u[0] - x->u[1] - x->gap;
-	x->p = p < 0 ? p : 0; // rounding must not make it overlap
-	x->q = x->v[0] - x->v[1];
+	overlap_start(x);
 	return simulation_step(sim);
 }
 
@@ -166,15 +172,25 @@ static enum pound_stage simulation_from(struct simulation *sim)
 	return simulation_meet(sim);
 }
 
-/* Whether nothing is left of the motion, nor comes from the ground in this interval. */
-static bool simulation_over(const struct simulation *sim)
+/* Whether nothing is left of the motion, nor comes from the ground in this interval.
+ *
+ * Bodies that do not touch come to rest each by itself: one may have long ended where the other still moves, or stays where
+ * it has yielded to.
+ */
+static bool simulation_over(struct simulation *sim)
 {
-	const struct pound_rows *x = &sim->x;
-	bool over = x->ground == 0 && x->slope == 0;
-	for (int i = 0; i < POUND_OSCILLATORS && over; i++)
-		over = fabs(x->u[i]) < NOTHING && fabs(x->v[i]) * sim->task->time_step < NOTHING &&
-		       x->body[i].offset == 0 && x->body[i].low <= 0 && x->body[i].high >= 0;
-	return over;
+	struct pound_rows *x = &sim->x;
+	if (x->ground != 0 || x->slope != 0)
+		return false;
+	bool over[POUND_OSCILLATORS];
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		over[i] = fabs(x->u[i]) < NOTHING && fabs(x->v[i]) * sim->task->time_step < NOTHING &&
+		          x->body[i].offset == 0 && x->body[i].low <= 0 && x->body[i].high >= 0;
+	if (over[0] == over[1] || sim->touching || sim->parted)
+		return over[0] && over[1];
+	x->u[over[1]] = x->v[over[1]] = 0;
+	overlap_start(x);
+	return false;
 }
 
 /* Brings a simulation whose motion is over to rest, until the ground moves again. */
