@@ -240,11 +240,11 @@ LANE_INLINE vm rest_risk(vd u, vd end, vd low, vd high, vd way, vm steady, const
 LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
 {
 	const vd *split = s->map[PRESS_SPLIT];
-	vd *x = s->x, zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4];
+	vd *x = s->x, zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4], moved[4];
 	vd cells = split[SPLIT_CELLS], rise = g->rise * cells, third = g->cell * cells * vsplat(1.0 / 3);
 	press_force(x, g, rise);
 	for (int j = 0; j < 4; j++)
-		end[j] = x[j] + press_row(s->map[PRESS_U + j], x);
+		moved[j] = press_row(s->map[PRESS_U + j], x), end[j] = x[j] + moved[j];
 	vd w = vfma(-split[SPLIT_BASE], x[2], x[0]), rate = vfma(-split[SPLIT_BASE], x[3], x[1]);
 	vd w1 = vfma(-split[SPLIT_BASE], end[2], end[0]), rate1 = vfma(-split[SPLIT_BASE], end[3], end[1]);
 	vd pull = vfma(split[SPLIT_DAMPING], rate, vfma(split[SPLIT_STIFFNESS], w, x[5]));
@@ -252,27 +252,32 @@ LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
 	bound[0] = vabs(w);
 	bound[1] = vabs(rate);
 	bound[2] = vabs(pull) + vabs(pull1);
-	bound[3] = zero;
+	bound[3] = vabs(vfma(-split[SPLIT_BASE], moved[3], moved[1]));
 	for (int j = 4; j < POUND_PRESS_INPUTS; j++)
 		bound[j] = vabs(x[j]);
-	vd bend = press_row(s->map[REST_BEND], bound), error = press_row(s->map[REST_ERROR], bound);
-	vd omega = split[SPLIT_OMEGA];
+	vd omega = split[SPLIT_OMEGA], change = vabs(pull1 - pull), bend, drift, swing;
 	vd a = vabs(omega * x[3]), c = vabs(vfma(omega * omega, x[2], -pull));
 	// the greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale
-	vd drift = vfma(vsplat(0.5), bend, vabs(pull1 - pull));
-	vd swing = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c)) + drift;
+	vd swung = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c));
+	for (int round = 0; round < 2; round++) {
+		bend = press_row(s->map[REST_BEND], bound);
+		drift = vfma(vsplat(0.5), bend, change);
+		swing = swung + drift;
+		bound[2] = vmin(bound[2], swing);
+	}
 	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, vsplat(0.125) * bend), vmin(pull, pull1));
+	vd still = split[SPLIT_YIELD] * pull, ripple = split[SPLIT_YIELD] * (swing + drift);
+	vd error = vfma(split[SPLIT_LAG], ripple, press_row(s->map[REST_ERROR], bound));
 	// the common motion's cubic, and whether its velocity keeps its sign
 	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
 	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + error, low = vmin(vmin(b1, b2), vmin(w, w1)) - error;
 	vd way = vselect(vless(rate, zero), -one, one);
 	vd along = vmin(third * vmin(way * rate, way * rate1), way * (b2 - b1));
 	along = along - vsplat(1.0265) * error;
-	vd still = split[SPLIT_YIELD] * pull, ripple = split[SPLIT_YIELD] * (swing + drift);
 	vd hurry = third * swing / omega, off = g->side * g->gap;
 	const struct limits *limits[2] = {&s->base, &s->other};
 	for (int i = 0; i < 2; i++) {
-		vd share = split[SPLIT_BASE + i], size = vabs(share);
+		vd share = i ? split[SPLIT_BASE] - g->side : split[SPLIT_BASE], size = vabs(share);
 		vd u = i ? x[0] - vfma(g->side, x[2], off) : x[0];
 		vd u1 = i ? end[0] - vfma(g->side, end[2], off) : end[0];
 		vd mid = i ? vfma(share, still, -off) : share * still;

@@ -37,7 +37,6 @@ static void split_fill(double split[N], const struct simulation *sim)
 	split[SPLIT_DAMPING] = dc;
 	split[SPLIT_STIFFNESS] = dk;
 	split[SPLIT_BASE] = share;
-	split[SPLIT_OTHER] = share - x->side;
 	split[SPLIT_OMEGA] = sqrt(stiffness);
 	split[SPLIT_YIELD] = 1 / stiffness;
 	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
@@ -255,13 +254,15 @@ static void work_double(struct pound_press_work *work, const double row[][N])
  *
  * where the damping, stiffness and forcing with the index w are the means of both bodies by mass.  With e = p - g/W^2,
  * V = (p'^2 + W^2 e^2)^1/2 grows by |g'|/W at most, so that W^2 p >= g - W V: the bodies stay pressed while that is
- * positive, and meanwhile |p'| <= g/W and p <= 2 g/W^2.  As for a sample apart, with f = 1/(1 - h (cw + kw h)),
+ * positive, and meanwhile |p'| <= g/W and p <= 2 g/W^2, so that f = |kp p + kq p'| is bounded.  The rest of w'' differs from
+ * its mean, (w1' - w0')/h less that of f, by its own growth at most: with F = 1/(1 - h (cw + kw h))
  *
- *   A2 = f (cw |w'| + kw (|w| + h |w'|) + |Aw| + |kp| p + |kq| |p'|) bounds w'', and so B = h^2 |g''| is bounded:
+ *   A2 = F (|w1' - w0'|/h + 2 f + h kw |w'| + |Dw|) bounds w'', and so B = h^2 |g''| is bounded:
  *
- * between the ends g lies at most B/8 below them and |g'| adds up to at most |g1 - g0| + B/2.
- * w - kq int p is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h p is
- * added for the rest.
+ * between the ends g lies at most B/8 below them and |g'| adds up to at most |g1 - g0| + B/2.  Bodies that rest have small
+ * bounds, however far they are pressed.
+ * w - kq int e is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h |e| is
+ * added for the rest, with what kq B/W^2 h/12 the straight part of int p misses a cubic by.
  */
 static void rest_fill(struct pound_press_map *map, const struct simulation *sim, double cells)
 {
@@ -277,19 +278,21 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 	const double jerk = kp / omega + kq * (1 + damping / omega), jounce = kp * (1 + damping / omega);
 	const double quartic = h * h * h * h * POUND_CUBIC_ERROR, rounding = 4 * DBL_EPSILON;
 	const double ahead = 1 / (1 - h * (cw + kw * h));
-	// of the magnitudes of w, w', g, nothing, Ab, Ap, Db, Dp
-	const double a0[N] = {kw, cw + kw * h, 2 * kp * yield + kq / omega, 0, 1, fabs(share), 1, fabs(share)};
+	split[SPLIT_LAG] = 4 * kq * h;
+	// of the magnitudes of w, w', g, w1' - w0', Ab, Ap, Db, Dp
+	const double a0[N] = {[1] = kw * h, 2 * (2 * kp * yield + kq / omega), 1 / h, [6] = 1, fabs(share)};
 	const double grown[N] = {[6] = 1 / h, [7] = fabs(share) / h};
 	for (int j = 0; j < N; j++)
 		map->pull[j] = dc * (map->row[PRESS_V][j] - share * map->row[PRESS_Q][j]) +
 		               dk * (map->row[PRESS_U][j] - share * map->row[PRESS_P][j]) + (j == 7);
-	const double rounded[N] = {fabs(dk), fabs(dc), 1, 0, 0, 1}, lost[N] = {1, h};
+	// twice for the difference of rates, which is one of large numbers
+	const double rounded[N] = {2 * fabs(dk), 2 * fabs(dc), 1, 0, 0, 1}, lost[N] = {1, h};
 	for (int j = 0; j < N; j++) {
 		double a2 = ahead * a0[j], a1 = (j == 1) + h * a2;
 		double a3 = cw * a2 + kw * a1 + grown[j] + (j == 2 ? jerk : 0);
 		double a4 = cw * a3 + kw * a2 + (j == 2 ? jounce : 0);
 		map->row[REST_BEND][j] = h * h * (fabs(dc) * a3 + fabs(dk) * a2) + rounding * rounded[j];
-		map->row[REST_ERROR][j] = quartic * a4 + (j == 2 ? 8 * kq * h * yield : 0) + rounding * lost[j];
+		map->row[REST_ERROR][j] = quartic * a4 + rounding * lost[j];
 	}
 }
 
@@ -341,7 +344,7 @@ static double form(const double row[N], const double x[N])
 
 /* Whether bodies in contact are bound to stay pressed over a rung: see rest_fill.
  *
- * Given    x     inputs;  bound  magnitudes of w, w', g, and of x from there on
+ * Given    x     inputs;  bound  magnitudes of w, w', g, w1' - w0', and of x from there on
  *          pull  g at the start;  swing  W V there
  */
 static bool rests(const struct pound_press_map *map, const double x[N], double bound[N], double pull,
@@ -349,6 +352,8 @@ static bool rests(const struct pound_press_map *map, const double x[N], double b
 {
 	double change = form(map->pull, x), pull1 = pull + change;
 	bound[2] = fabs(pull) + fabs(pull1);
+	bound[3] =
+	    fabs(form(map->row[PRESS_V], x) - map->row[PRESS_SPLIT][SPLIT_BASE] * form(map->row[PRESS_Q], x));
 	bound[6] = fabs(x[6]);
 	bound[7] = fabs(x[7]);
 	double bend = form(map->row[REST_BEND], bound), drift = fabs(change) + 0.5 * bend;

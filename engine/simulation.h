@@ -87,11 +87,11 @@ enum {
 enum {
 	SPLIT_DAMPING,
 	SPLIT_STIFFNESS, /* what presses: times the common velocity and displacement */
-	SPLIT_BASE,
-	SPLIT_OTHER, /* displacement of either body, beyond the common one, by the overlap */
-	SPLIT_OMEGA, /* of the contact [rad/s] */
-	SPLIT_YIELD, /* omega^-2 */
-	SPLIT_LEAD,  /* how much more than the overlap the force swings, where contact ends with it */
+	SPLIT_BASE,      /* displacement of the base, beyond the common one, by the overlap */
+	SPLIT_LAG,       /* of a rung: how far the overlap's own motion takes the common one off a slow course */
+	SPLIT_OMEGA,     /* of the contact [rad/s] */
+	SPLIT_YIELD,     /* omega^-2 */
+	SPLIT_LEAD,      /* how much more than the overlap the force swings, where contact ends with it */
 	SPLIT_CELLS,
 };
 

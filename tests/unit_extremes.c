@@ -124,6 +124,8 @@ static const struct extreme extremes[] = {
 	{"pressed, K/k 1e8", {{WALL, 1}, {K_RATIO, 1e8}}, STEP, .samples = 31, .compared = 11, .contacts = 200},
 	{"pressed, K/k 1e8, eps 0", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 0}}, STEP, .samples = 31, .compared = 11, .contacts = 1},
 	{"pressed, K/k 1e8, eps 1", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 1}}, STEP, .samples = 31, .compared = 3, .contacts = 1},
+	{"pressed at rest, mass ratio 1e3, frequency ratio 1e3, K/k 1e4", {{K_RATIO, 1e4}, {MASS, 1e3}, {FREQUENCY, 2e3}, {DAMPING_2, 0.999}},
+	 STEP, .samples = 5, .contacts = 1},
 	{"contact at the yield point", {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-3}, {GAP, 1e-3}},
 	 .compared = 61, .contacts = 60},
 	{"like bodies, hysteretic", {{FREQUENCY, 2}, {LAW, ELASTOPLASTIC}}, .compared = 61, .contacts = 0},

@@ -129,6 +129,36 @@ static void samples_twice_as_dense_change_no_contact_however_stiff(void **state)
 	assert_true(contacts > 2 * 140); // or the comparison would not say much
 }
 
+/* A light body that the ground presses on a heavy one of a thousand times its frequency: 4e5 radians of their contact go by
+ * in every sample in which they stay where they are, as far out as they ever were.
+ *
+ *   k1 u1 + K p = 1,  k2 u2 - m1/m2 K p = 1,  u1 = u2 + p
+ */
+static void bodies_pressed_for_long_rest_where_their_springs_hold_them(void **state)
+{
+	(void)state;
+	double ground[SAMPLES];
+	for (int tension = 0; tension < 2; tension++) {
+		const double w1 = 4 * M_PI, w2 = 4000 * M_PI, k1 = w1 * w1, k2 = w2 * w2, ratio = 1e-3;
+		const double stiffness = 1e4 * k2 / ratio;
+		struct pound_march_task task = pressed(ground, 0, stiffness, 0.5);
+		task.bodies[0].skeleton.stiffness = k1;
+		task.bodies[1] = (struct pound_march_body){
+		    .skeleton = {.stiffness = k2}, .damping = 1.998 * w2, .drive = 1, .followed = true};
+		task.mass_ratio = ratio;
+		task.tension = tension;
+		const struct pound_march_result r = march(&task);
+		const double p = (1 - k1 / k2) / (stiffness + k1 + k1 * ratio * stiffness / k2);
+		const double u2 = (1 + ratio * stiffness * p) / k2;
+		assert_int_equal(r.contacts, 1);
+		check_near(r.u[0] / (u2 + p), 1, 1e-13);
+		check_near(r.u[1] / u2, 1, 1e-13);
+		check_near(r.displacement_max[1] / u2, 1, 1e-13);
+		check_near(r.energy_residual, 0, 1e-13);
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(a_long_press_ends_where_its_ground_pushes_it),
            cmocka_unit_test(a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone),
-           cmocka_unit_test(samples_twice_as_dense_change_no_contact_however_stiff))
+           cmocka_unit_test(samples_twice_as_dense_change_no_contact_however_stiff),
+           cmocka_unit_test(bodies_pressed_for_long_rest_where_their_springs_hold_them))
