@@ -259,6 +259,7 @@ LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
 	vd a = vabs(omega * x[3]), c = vabs(vfma(omega * omega, x[2], -pull));
 	// the greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale
 	vd swung = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c));
+	// once by all that presses, and then by what of it swings: see rest_fill in press.h
 	for (int round = 0; round < 2; round++) {
 		bend = press_row(s->map[REST_BEND], bound);
 		drift = vfma(vsplat(0.5), bend, change);

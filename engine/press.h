@@ -259,8 +259,9 @@ static void work_double(struct pound_press_work *work, const double row[][N])
  *
  *   A2 = F (|w1' - w0'|/h + 2 f + h kw |w'| + |Dw|) bounds w'', and so B = h^2 |g''| is bounded:
  *
- * between the ends g lies at most B/8 below them and |g'| adds up to at most |g1 - g0| + B/2.  Bodies that rest have small
- * bounds, however far they are pressed.
+ * between the ends g lies at most B/8 below them and |g'| adds up to at most |g1 - g0| + B/2.  With that W V is bounded too:
+ * |p'| by W V/W, |p''| by (1 + G/W) W V, and kp p by what its straight part grows and kp W V/W^2, which is no more than the
+ * terms in g have with W V in its place.  So bodies that rest have small bounds, however far they are pressed.
  * w - kq int e is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h |e| is
  * added for the rest, with what kq B/W^2 h/12 the straight part of int p misses a cubic by.
  */
