@@ -46,24 +46,42 @@ struct limits {
 	vd top, low, high, direction;
 };
 
-/* Lanes in which something may happen to a body: a new largest displacement, an edge of its piece.
- *
- * Given    v  velocity at the start;  f: the flight from there;  x: its top is not below the displacement at the start
- */
-LANE_INLINE vm flight_risk(vd v, const struct flight *f, vd third, const struct limits *x, bool edged)
+/* How far a body may go inside a sample or cell, apart from its ends. */
+LANE_INLINE vd flight_reach(const struct flight *f)
 {
-	vd top = vmax(x->top, vabs(f->u));
-	if (!edged)
-		return vless(top, vmax(vabs(f->b1), vabs(f->b2)) + f->error);
+	return vmax(vabs(f->b1), vabs(f->b2)) + f->error;
+}
+
+/* Lanes in which a body may have a new largest displacement.
+ *
+ * Given    f  its flight;  top: the largest, not below the displacement at the start
+ */
+LANE_INLINE vm flight_peaks(const struct flight *f, vd top)
+{
+	return vless(vmax(top, vabs(f->u)), flight_reach(f));
+}
+
+/* Lanes in which an edge of a body's piece may be reached.
+ *
+ * Given    v  velocity at the start;  f: the flight from there
+ */
+LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct limits *x)
+{
 	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2);
-	vm risk = vless(top, vmax(high, -low) + f->error);
-	risk |= vless(x->high, vmax(high, f->u) + f->error);
+	vm risk = vless(x->high, vmax(high, f->u) + f->error);
 	risk |= vless(vmin(low, f->u) - f->error, x->low);
 	// the velocity's control points times h/3: its own at the ends, b2 - b1 between; it misses the velocity by at
 	// most sqrt(3)/216 h^3 of the fourth derivative, which is 384 sqrt(3)/648 of the displacement's error
 	vd way = x->direction;
 	vd along = vmin(vmin(way * (third * v), way * (third * f->v)), way * (f->b2 - f->b1));
 	return risk | (vless(along, vsplat(1.0265) * f->error) & ~vequal(way, vsplat(0)));
+}
+
+/* Lanes in which either may happen. */
+LANE_INLINE vm flight_risk(vd v, const struct flight *f, vd third, const struct limits *x, bool edged)
+{
+	vm risk = flight_peaks(f, x->top);
+	return edged ? risk | flight_edges(v, f, third, x) : risk;
 }
 
 LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
@@ -73,27 +91,38 @@ LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
 	return (struct limits){g->top[i], g->body[i].low, g->body[i].high, g->body[i].direction};
 }
 
+/* lanes in which either body may have its largest displacement inside a sample, and how far it cannot go */
+struct peaks {
+	vm may[2];
+	vd bound[2];
+};
+
 /* One sample.
  *
  * Given    next    acceleration at its end [m/s2]
  *          edged   a lane has a law of more than one piece;  paired: the lanes have two bodies
  *          right   a lane's largest displacement of the right body is wanted
  * Returns  g       every lane at the end of the sample
- *          value   lanes in which something may happen inside it
+ *          value   lanes in which something else may happen inside it
  */
-LANE_INLINE vm flight(struct lanes *g, vd next, bool edged, bool paired, bool right)
+LANE_INLINE vm flight(struct lanes *g, vd next, bool edged, bool paired, bool right, struct peaks *peaks)
 {
 	vd rise = next - g->ground, third = g->body[0].step_gap * vsplat(1.0 / 3);
 	struct flight f[2];
-	struct limits limits = limits_of(g, 0, edged);
-	f[0] = flight_step(g, 0, g->ground, rise, third);
-	vm risk = flight_risk(g->v[0], &f[0], third, &limits, edged);
+	vm risk = vmask(0);
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		f[i] = flight_step(g, i, g->ground, rise, third);
+		peaks->may[i] = vmask(0);
+		if (i == 0 || right) {
+			peaks->may[i] = flight_peaks(&f[i], g->top[i]);
+			peaks->bound[i] = flight_reach(&f[i]);
+		}
+		struct limits limits = limits_of(g, i, edged);
+		if (edged)
+			risk |= flight_edges(g->v[i], &f[i], third, &limits);
+	}
 	if (paired) {
-		f[1] = flight_step(g, 1, g->ground, rise, third);
 		vd gap = g->body[1].step_gap;
-		limits = limits_of(g, 1, edged);
-		if (edged || right)
-			risk |= flight_risk(g->v[1], &f[1], third, &limits, edged);
 		vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
 		risk |= vless(vsplat(1 - 4 * DBL_EPSILON) * gap, nearest + (f[0].error + f[1].error));
 	}

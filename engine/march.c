@@ -60,12 +60,9 @@ static int pop(struct queue *queue)
 /* Sends a simulation to where it goes next. */
 static void send(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
-	struct queue *queue = &work->idle;
-	if (stage < STAGES)
-		queue = &work->queues[stage];
-	else
-		simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
-	push(queue, (int)(sim - work->pool));
+	if (stage >= STAGES)
+		stage = simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
+	push(stage < STAGES ? &work->queues[stage] : &work->idle, (int)(sim - work->pool));
 }
 
 static struct batch batch_take(struct work *work, struct queue *queue)
@@ -116,6 +113,29 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
 	rows_load(ground, at, 0);
 }
 
+/* Notes the largest displacements that lanes may have inside a sample.
+ *
+ * Given    g       their state at its start;  noted: lanes to note one of;  gone: samples before it since the batch began
+ * Returns  value   lanes that have no room for another
+ */
+static unsigned peaks_keep(const struct batch *b, const struct lanes *g, const struct peaks *peaks, int i,
+                           unsigned noted, int64_t gone)
+{
+	double u[W], v[W], top[W], bound[W];
+	lanes_store(u, g->u[i]);
+	lanes_store(v, g->v[i]);
+	lanes_store(top, g->top[i]);
+	lanes_store(bound, peaks->bound[i]);
+	unsigned full = 0;
+	for (; noted; noted &= noted - 1) {
+		int l = __builtin_ctz(noted);
+		struct simulation *sim = b->sim[l];
+		if (!peak_note(sim, i, sim->next + gone, u[l], v[l], bound[l], top[l]))
+			full |= 1u << l;
+	}
+	return full;
+}
+
 /* Flies ROW samples at most, and not beyond the end of any lane.
  *
  * All lanes fly on, and each keeps its state in front of its first risk: what they wait for would otherwise be the
@@ -126,15 +146,20 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
  * Returns  value   those that still do, with samples left
  *          ahead   what is left in front of each
  */
-LANE_INLINE vm fly_row(struct work *work, struct ahead *ahead, struct lanes *g, vm flying, int few,
-                       bool edged, bool paired, bool right)
+LANE_INLINE vm fly_row(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
+                       vm flying, int few, bool edged, bool paired, bool right)
 {
 	vd ground[ROW], zero = vsplat(0), flown = zero, one = vsplat(1);
 	ground_load(work, ahead, vbits(flying), ground);
 	struct lanes on = *g;
 	int round = 0;
 	do {
-		flying &= ~flight(&on, ground[round], edged, paired, right);
+		struct peaks peaks;
+		flying &= ~flight(&on, ground[round], edged, paired, right, &peaks);
+		for (int i = 0; i < (paired ? 2 : 1); i++)
+			if (vany(peaks.may[i] & flying))
+				flying &= ~vmask(
+				    peaks_keep(b, g, &peaks, i, vbits(peaks.may[i] & flying), ahead->gone + round));
 		flight_keep(g, &on, flying, paired, right);
 		flown = vselect(flying, flown + one, flown);
 		round++;
@@ -171,7 +196,7 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	vm flying = vmask((1u << b->n) - 1);
 	int few = b->n / 2;
 	do
-		flying = fly_row(work, &ahead, &g, flying, few, edged, paired, right);
+		flying = fly_row(work, b, &ahead, &g, flying, few, edged, paired, right);
 	while (__builtin_popcount(vbits(flying)) > few);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);

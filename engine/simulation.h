@@ -11,6 +11,7 @@
 
 enum {
 	POUND_MAPS = 4,        /* free-flight maps a body keeps */
+	POUND_PEAKS = 4,       /* samples that may hold its largest displacement */
 	POUND_MAP_ORDERS = 18, /* of a map's series; 0.8^18/18! = 3e-18 */
 	POUND_PRESS_MAPS = 3,  /* pairs of pieces whose cell map and ladder a simulation keeps */
 	POUND_PRESS_RUNGS = 7, /* of a ladder: maps over many cells */
@@ -106,6 +107,13 @@ struct pound_press {
 	bool laddered;
 };
 
+/* A sample that a body flew over, and inside of which it may have had its largest displacement: how it started, on which
+ * piece, and how far it cannot have gone.  Larger ones come more often than not, so it is looked into at the end. */
+struct pound_peak {
+	int64_t next;
+	double u, v, stiffness, offset, bound;
+};
+
 /* what an account of energy needs beside a map of pressed contact */
 struct pound_press_work {
 	double mean[POUND_PRESS_INPUTS]; /* of the base's displacement: a linear form */
@@ -173,10 +181,12 @@ struct simulation {
 	const struct pound_press_map *pressed; /* of the next cells */
 	const struct pound_press_work *worked; /* of the same */
 	int map_next[2], press_next;
+	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */
 	// stiffnesses of the pieces that the maps below belong to; < 0: none
 	double map_of[2][POUND_MAPS], press_of[2][POUND_PRESS_MAPS];
 	// from here on a start clears nothing: what is there is filled with its key
 	struct pound_ladder *ladder; /* apart from the rest, which is to stay close together */
+	struct pound_peak peak[2][POUND_PEAKS];
 	struct pound_map maps[2][POUND_MAPS];
 	struct pound_press press[POUND_PRESS_MAPS];
 };

@@ -294,6 +294,63 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 	return simulation_next(sim);
 }
 
+/* ---- largest displacements ---- */
+
+/* Notes a sample inside of which a body may have its largest displacement.
+ *
+ * Given    next    sample at its end
+ *          u, v    of body i at its start;  bound: of |u| inside;  top: the largest that is known
+ * Returns  value   false: there is no room, or no need to look later
+ */
+static bool peak_note(struct simulation *sim, int i, int64_t next, double u, double v, double bound,
+                      double top)
+{
+	struct pound_peak *peak = sim->peak[i];
+	int kept = 0;
+	for (int n = 0; n < sim->peaks[i]; n++)
+		if (peak[n].bound > top)
+			peak[kept++] = peak[n];
+	sim->peaks[i] = kept;
+	if (kept == POUND_PEAKS)
+		return false;
+	const struct pound_rows *x = &sim->x;
+	peak[kept] = (struct pound_peak){next, u, v, x->body[i].stiffness, x->body[i].offset, bound};
+	sim->peaks[i]++;
+	return true;
+}
+
+/* Looks, when a simulation has come to its end, into the samples it has noted: the body goes through these again, alone.
+ *
+ * Given    sim    its result written but for what these add to it
+ * Returns  value  its next step; STAGE_END: there is nothing left to look into
+ */
+static enum pound_stage peaks_look(struct simulation *sim)
+{
+	struct pound_rows *x = &sim->x;
+	double *largest = sim->result->displacement_max;
+	if (sim->looked < POUND_OSCILLATORS)
+		largest[sim->looked] = x->top[0];
+	sim->touching = sim->parted = sim->fresh = sim->paired = sim->can_fly = false;
+	x->pace = 1;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		while (sim->peaks[i] > 0) {
+			const struct pound_peak *peak = &sim->peak[i][--sim->peaks[i]];
+			if (!(peak->bound > largest[i]))
+				continue;
+			x->u[0] = peak->u, x->v[0] = peak->v, x->top[0] = largest[i];
+			x->body[0].damping = x->body[i].damping;
+			x->body[0].drive = x->body[i].drive;
+			x->body[0].stiffness = peak->stiffness;
+			x->body[0].offset = peak->offset;
+			x->body[0].low = -DBL_MAX, x->body[0].high = DBL_MAX, x->body[0].direction = 0;
+			sim->looked = i;
+			sim->next = sim->last = peak->next;
+			simulation_interval(sim);
+			return simulation_step(sim);
+		}
+	return STAGE_END;
+}
+
 /* ---- start and end ---- */
 
 /* Whether a law of a task has more than one piece. */
@@ -315,6 +372,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	sim->last = task->n_samples - 1;
 	struct pound_rows *x = &sim->x;
 	x->pace = 1;
+	sim->looked = POUND_OSCILLATORS;
 	double h = task->time_step;
 	double rate = 0;
 	bool can_fly = !task->accounted; // the work in a step is that of its series
@@ -389,7 +447,7 @@ static double residual(const struct simulation *sim)
 }
 
 /* Writes a simulation's result. */
-static void simulation_end(struct simulation *sim, enum pound_status status)
+static void result_write(const struct simulation *sim, enum pound_status status)
 {
 	struct pound_march_result *r = sim->result;
 	const struct pound_rows *x = &sim->x;
@@ -405,6 +463,16 @@ static void simulation_end(struct simulation *sim, enum pound_status status)
 		r->u[i] = x->u[i];
 		r->v[i] = x->v[i];
 	}
+}
+
+/* What a simulation does at the end of its signal, or where it ends early. */
+static enum pound_stage simulation_end(struct simulation *sim, enum pound_status status)
+{
+	if (sim->looked == POUND_OSCILLATORS)
+		result_write(sim, status);
+	else
+		sim->result->status = status;
+	return sim->result->status == POUND_OK ? peaks_look(sim) : STAGE_END;
 }
 
 #endif
