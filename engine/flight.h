@@ -20,25 +20,57 @@ struct flight {
 	vd u, v, b1, b2, error;
 };
 
-/* One body over one whole sample.
+/* One body's map over one whole sample, from displacement, velocity and the ground motion at both ends; its error. */
+struct flyer {
+	vd uu, uv, u_force, u_ground, u_next;
+	vd vu, vv, v_force, v_ground, v_next;
+	vd error_force, error_ground;
+};
+
+/* The map of a body on the piece it is on.
  *
  * With the response psi = uv to an initial velocity, uu = psi' + c psi, and the responses ua and ud to constant and
  * growing forcing have the derivatives -psi and va = ua/h, so that the velocity needs few columns of its own:
  *   u' = uu u + psi v + ua a + ud d     v' = uu v - psi (c v + k u + a) + va d
+ * with the forcing a = offset + drive ground, and d = drive (next - ground).
  */
-LANE_INLINE struct flight flight_step(const struct lanes *g, int i, vd ground, vd rise, vd third)
+LANE_INLINE struct flyer flyer_of(const struct lanes *g, int i)
 {
-	struct flight f;
-	vd u = g->u[i], v = g->v[i], psi = g->map[i].uv;
-	vd a = vfma(g->body[i].drive, ground, g->body[i].offset), d = g->body[i].drive * rise;
-	vd pull = vfma(g->body[i].damping, v, vfma(g->body[i].stiffness, u, a));
-	f.u = vfma(g->map[i].uu, u, vfma(psi, v, vfma(g->map[i].ua, a, g->map[i].ud * d)));
-	f.v = vfma(g->map[i].uu, v, vfma(-psi, pull, g->map[i].va * d));
-	f.b1 = vfma(third, v, u);
-	f.b2 = vfma(-third, f.v, f.u);
-	vd force = vabs(a) + vabs(d);
-	f.error = vfma(g->map[i].eu, vabs(u), vfma(g->map[i].ev, vabs(v), g->map[i].ef * force));
-	return f;
+	vd psi = g->map[i].uv, drive = g->body[i].drive, offset = g->body[i].offset;
+	return (struct flyer){.uu = g->map[i].uu,
+	                      .uv = psi,
+	                      .u_force = g->map[i].ua * offset,
+	                      .u_ground = (g->map[i].ua - g->map[i].ud) * drive,
+	                      .u_next = g->map[i].ud * drive,
+	                      .vu = -psi * g->body[i].stiffness,
+	                      .vv = vfma(-psi, g->body[i].damping, g->map[i].uu),
+	                      .v_force = -psi * offset,
+	                      .v_ground = -(psi + g->map[i].va) * drive,
+	                      .v_next = g->map[i].va * drive,
+	                      .error_force = g->map[i].ef * vabs(offset),
+	                      .error_ground = g->map[i].ef * drive};
+}
+
+/* One body over one whole sample.
+ *
+ * Given    f        its map
+ *          pull     bound of |ground| + |next - ground|
+ *          third    of the sample
+ */
+LANE_INLINE struct flight flight_step(const struct flyer *f, const struct lanes *g, int i, vd next, vd pull,
+                                      vd third)
+{
+	struct flight to;
+	vd u = g->u[i], v = g->v[i];
+	vd u_force = vfma(f->u_ground, g->ground, vfma(f->u_next, next, f->u_force));
+	vd v_force = vfma(f->v_ground, g->ground, vfma(f->v_next, next, f->v_force));
+	to.u = vfma(f->uu, u, vfma(f->uv, v, u_force));
+	to.v = vfma(f->vv, v, vfma(f->vu, u, v_force));
+	to.b1 = vfma(third, v, u);
+	to.b2 = vfma(-third, to.v, to.u);
+	vd error = vfma(f->error_ground, pull, f->error_force);
+	to.error = vfma(g->map[i].eu, vabs(u), vfma(g->map[i].ev, vabs(v), error));
+	return to;
 }
 
 /* what a body must not do inside a sample or cell */
@@ -99,24 +131,23 @@ struct peaks {
 
 /* One sample.
  *
- * Given    next    acceleration at its end [m/s2]
+ * Given    flyers  the bodies' maps
+ *          next    acceleration at its end [m/s2]
  *          edged   a lane has a law of more than one piece;  paired: the lanes have two bodies
  *          right   a lane's largest displacement of the right body is wanted
  * Returns  g       every lane at the end of the sample
  *          value   lanes in which something else may happen inside it
  */
-LANE_INLINE vm flight(struct lanes *g, vd next, bool edged, bool paired, bool right, struct peaks *peaks)
+LANE_INLINE vm flight(struct lanes *g, const struct flyer flyers[2], vd next, bool edged, bool paired,
+                      bool right, struct peaks *peaks)
 {
-	vd rise = next - g->ground, third = g->body[0].step_gap * vsplat(1.0 / 3);
+	vd pull = vabs(g->ground) + vabs(next - g->ground), third = g->body[0].step_gap * vsplat(1.0 / 3);
 	struct flight f[2];
 	vm risk = vmask(0);
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		f[i] = flight_step(g, i, g->ground, rise, third);
-		peaks->may[i] = vmask(0);
-		if (i == 0 || right) {
-			peaks->may[i] = flight_peaks(&f[i], g->top[i]);
-			peaks->bound[i] = flight_reach(&f[i]);
-		}
+		f[i] = flight_step(&flyers[i], g, i, next, pull, third);
+		peaks->bound[i] = flight_reach(&f[i]);
+		peaks->may[i] = i == 0 || right ? flight_peaks(&f[i], g->top[i]) : vmask(0);
 		struct limits limits = limits_of(g, i, edged);
 		if (edged)
 			risk |= flight_edges(g->v[i], &f[i], third, &limits);

@@ -118,14 +118,14 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
  * Given    g       their state at its start;  noted: lanes to note one of;  gone: samples before it since the batch began
  * Returns  value   lanes that have no room for another
  */
-static unsigned peaks_keep(const struct batch *b, const struct lanes *g, const struct peaks *peaks, int i,
-                           unsigned noted, int64_t gone)
+static unsigned peaks_keep(const struct batch *b, int i, vd us, vd vs, vd tops, vd bounds, unsigned noted,
+                           int64_t gone)
 {
 	double u[W], v[W], top[W], bound[W];
-	lanes_store(u, g->u[i]);
-	lanes_store(v, g->v[i]);
-	lanes_store(top, g->top[i]);
-	lanes_store(bound, peaks->bound[i]);
+	lanes_store(u, us);
+	lanes_store(v, vs);
+	lanes_store(top, tops);
+	lanes_store(bound, bounds);
 	unsigned full = 0;
 	for (; noted; noted &= noted - 1) {
 		int l = __builtin_ctz(noted);
@@ -147,7 +147,7 @@ static unsigned peaks_keep(const struct batch *b, const struct lanes *g, const s
  *          ahead   what is left in front of each
  */
 LANE_INLINE vm fly_row(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
-                       vm flying, int few, bool edged, bool paired, bool right)
+                       const struct flyer flyers[2], vm flying, int few, bool edged, bool paired, bool right)
 {
 	vd ground[ROW], zero = vsplat(0), flown = zero, one = vsplat(1);
 	ground_load(work, ahead, vbits(flying), ground);
@@ -155,11 +155,11 @@ LANE_INLINE vm fly_row(struct work *work, const struct batch *b, struct ahead *a
 	int round = 0;
 	do {
 		struct peaks peaks;
-		flying &= ~flight(&on, ground[round], edged, paired, right, &peaks);
+		flying &= ~flight(&on, flyers, ground[round], edged, paired, right, &peaks);
 		for (int i = 0; i < (paired ? 2 : 1); i++)
 			if (vany(peaks.may[i] & flying))
-				flying &= ~vmask(
-				    peaks_keep(b, g, &peaks, i, vbits(peaks.may[i] & flying), ahead->gone + round));
+				flying &= ~vmask(peaks_keep(b, i, g->u[i], g->v[i], g->top[i], peaks.bound[i],
+				                            vbits(peaks.may[i] & flying), ahead->gone + round));
 		flight_keep(g, &on, flying, paired, right);
 		flown = vselect(flying, flown + one, flown);
 		round++;
@@ -193,10 +193,13 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	}
 	g.ground = lanes_load(ground);
 	ahead.samples = lanes_load(samples);
+	struct flyer flyers[2] = {flyer_of(&g, 0)};
+	if (paired)
+		flyers[1] = flyer_of(&g, 1);
 	vm flying = vmask((1u << b->n) - 1);
 	int few = b->n / 2;
 	do
-		flying = fly_row(work, b, &ahead, &g, flying, few, edged, paired, right);
+		flying = fly_row(work, b, &ahead, &g, flyers, flying, few, edged, paired, right);
 	while (__builtin_popcount(vbits(flying)) > few);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
