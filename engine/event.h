@@ -103,8 +103,8 @@ LANE_INLINE void series_fill(struct series *s, const struct lanes *g, bool paire
 }
 
 /* Looks for the edges of a body's piece. */
-static void body_search(const struct series *s, const struct lanes *g, int i, vm active,
-                        struct search *search)
+LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int i, vm active,
+                             struct search *search)
 {
 	vd zero = vsplat(0), one = vsplat(1), body = vsplat(EVENT_BODY + EVENT_EDGES * i);
 	const struct motion *m = &s->body[i];
@@ -135,7 +135,7 @@ static void body_search(const struct series *s, const struct lanes *g, int i, vm
  * Where the displacement at the first turn is proved to be the largest but for the step's end, it is kept: an error of the
  * turning time enters squared.  Otherwise the step is cut at that turn.
  */
-static void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
+LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
 {
 	const struct motion *m = &s->body[i];
 	struct course c = course_of_velocity(m, s->order);
@@ -168,8 +168,8 @@ static void body_top(const struct series *s, struct lanes *g, int i, vm inside, 
  * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then parted: the contact goes
  * on when that force rises again, and they are apart when p has fallen to 0.
  */
-static void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
-                         vm by_force, struct search *search)
+LANE_SHARED void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
+                              vm by_force, struct search *search)
 {
 	const struct motion *p = &s->overlap;
 	vd sign = e->touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;
@@ -235,7 +235,7 @@ LANE_INLINE int bodies_watched(const struct event_lanes *e)
 /* Bodies that touch without overlap and go on alike part or press by the difference of their accelerations.  Where that is
  * no more than the rounding of what these are made of it is nothing, and what differs in their later course decides: else
  * bodies that are alike up to a yield point would part and meet for ever. */
-static void overlap_settle(struct series *s, const struct lanes *g, vm still)
+LANE_SHARED void overlap_settle(struct series *s, const struct lanes *g, vm still)
 {
 	vd terms = vsplat(0), zero = vsplat(0), bow = s->overlap.u.c[2];
 	for (int i = 0; i < 2; i++) {
@@ -250,18 +250,44 @@ static void overlap_settle(struct series *s, const struct lanes *g, vm still)
 	s->overlap.v1 = s->overlap.v1 - 2.0 * bow;
 }
 
-LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
+/* Makes the series of a step, and the bounds of what is looked into. */
+LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, bool paired, bool touching)
 {
-	series_fill(s, g, e->paired, e->touching);
-	if (e->paired) {
+	series_fill(s, g, paired, touching);
+	if (paired) {
 		vm still = vequal(g->p, vsplat(0)) & vequal(g->q, vsplat(0));
 		if (vany(still))
 			overlap_settle(s, g, still);
 	}
-	for (int i = 0; i < bodies_watched(e); i++)
+	for (int i = 0; i < watched; i++)
 		motion_bound(&s->body[i], s->order);
-	if (e->paired)
+	if (paired)
 		motion_bound(&s->overlap, s->order);
+}
+
+LANE_SHARED void series_alone(struct series *s, const struct lanes *g)
+{
+	series_make(s, g, 1, false, false);
+}
+LANE_SHARED void series_apart(struct series *s, const struct lanes *g, int watched)
+{
+	series_make(s, g, watched, true, false);
+}
+LANE_SHARED void series_touch(struct series *s, const struct lanes *g, int watched)
+{
+	series_make(s, g, watched, true, true);
+}
+
+LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
+{
+	int watched = bodies_watched(e);
+	if (!e->paired)
+		series_alone(s, g);
+	else if (e->touching)
+		series_touch(s, g, watched);
+	else
+		series_apart(s, g, watched);
+	s->order = e->touching ? ORDER_TOUCH : ORDER_APART; // the compiler is to know it
 }
 
 /* Lanes arrive at the end of a step, or of the share `time` of it that was gone. */

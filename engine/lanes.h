@@ -20,6 +20,8 @@ enum {
 };
 
 #define LANE_INLINE static inline __attribute__((always_inline))
+/* one copy for all who call it: straight code that is used often is still in the cache, and what is rare is not in its way */
+#define LANE_SHARED static __attribute__((noinline))
 
 #if POUND_LANES == 1
 

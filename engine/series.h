@@ -153,8 +153,8 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
  * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
  * cubic's inner control points are, the second by more than the error: no root lies before t.
  */
-static vm root_quick(const struct power *u, const struct power *v, int order, vd level, vd sign, vd g0, vd g1,
-                     vd limit, vd bend, vm active, vd *t)
+LANE_SHARED vm root_quick(const struct power *u, const struct power *v, int order, vd level, vd sign, vd g0,
+                          vd g1, vd limit, vd bend, vm active, vd *t)
 {
 	vd zero = vsplat(0), d0 = sign * v->c[0], slope = zero;
 	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
@@ -192,7 +192,7 @@ static vm root_quick(const struct power *u, const struct power *v, int order, vd
  * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
  * passes none.
  */
-static vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t, vm *unsure)
+LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t, vm *unsure)
 {
 	vd zero = vsplat(0), curved = zero;
 	struct power d = *g;
@@ -228,8 +228,8 @@ static vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t
  *
  * A guard that starts at exactly 0 is divided by the powers of time it starts with: the sign of its first term decides.
  */
-static void search_safe(struct power *guard, int order, vm active, vd event, double cut,
-                        struct search *search)
+LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event, double cut,
+                             struct search *search)
 {
 	vd zero = vsplat(0), large = zero;
 	// squares are taken: what would vanish in them is raised by a power of two
