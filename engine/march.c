@@ -528,16 +528,17 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 		work->pool[j].ladder = &work->ladders[j];
 		push(&work->idle, j);
 	}
+	struct queue *queue = &work->queues[0];
 	for (;;) {
 		tasks_start(work);
-		struct queue *fullest = &work->queues[0];
-		for (int stage = 1; stage < STAGES; stage++)
-			if (work->queues[stage].n > fullest->n)
-				fullest = &work->queues[stage];
-		if (fullest->n == 0)
+		// as long as it fills a batch: its code is in the cache
+		for (int stage = 0; stage < STAGES && queue->n < W; stage++)
+			if (work->queues[stage].n > queue->n)
+				queue = &work->queues[stage];
+		if (queue->n == 0)
 			break;
-		struct batch b = batch_take(work, fullest);
-		steps[fullest - work->queues][(b.traits & TRAIT_EDGED) != 0](work, &b);
+		struct batch b = batch_take(work, queue);
+		steps[queue - work->queues][(b.traits & TRAIT_EDGED) != 0](work, &b);
 	}
 	lanes_leave();
 }
