@@ -180,93 +180,141 @@ LANE_INLINE void flight_keep(struct lanes *to, const struct lanes *from, vm whic
 
 /* ---- pressed contact ---- */
 
-/* the base body and the overlap in lanes, and a map of either */
-struct press {
-	vd x[POUND_PRESS_INPUTS];
-	vd map[REST_ROWS][POUND_PRESS_INPUTS];
-	struct limits base, other;
+/* how far pressed contact has come: base u, v, overlap p, q; largest displacements of the base and the other body; maps
+ * until another is asked for; samples behind the interval */
+struct pressed {
+	vd x[4], top[2], impulse, ground, rise, cells, rounds, left;
 };
 
-/* A row of the map applied to its inputs. */
+/* a linear form of the state, the ground motion, its growth over the map, and 1 */
+struct form {
+	vd x[4], ground, rise, force;
+};
+
+/* the base body and the overlap in lanes, and the map of either */
+struct press {
+	struct pressed at;
+	struct limits base, other; /* but for their tops */
+	struct form moved[PRESS_IMPULSE + 1];
+	struct form error, drop;                /* of a cell, of the magnitudes */
+	vd rest[REST_ROWS][POUND_PRESS_INPUTS]; /* of a rung: its bounds and how it is split */
+};
+
+/* The form that a row of a map is of the state and the ground motion.
+ *
+ * Given    magnitudes  the row is one of these
+ */
+LANE_INLINE struct form form_of(const vd row[POUND_PRESS_INPUTS], const struct lanes *g, bool magnitudes)
+{
+	vd force[2] = {g->base_force, g->gap_force}, drive[2] = {g->base_drive, g->gap_drive};
+	for (int i = 0; i < 2 && magnitudes; i++)
+		force[i] = vabs(force[i]), drive[i] = vabs(drive[i]);
+	return (struct form){.x = {row[0], row[1], row[2], row[3]},
+	                     .ground = vfma(row[4], drive[0], row[5] * drive[1]),
+	                     .rise = vfma(row[6], drive[0], row[7] * drive[1]),
+	                     .force = vfma(row[4], force[0], row[5] * force[1])};
+}
+
+LANE_INLINE vd form_at(const struct form *f, const vd x[4], vd ground, vd rise)
+{
+	vd slow = vfma(f->ground, ground, vfma(f->rise, rise, f->force));
+	return vfma(f->x[0], x[0], vfma(f->x[1], x[1], slow)) + vfma(f->x[2], x[2], f->x[3] * x[3]);
+}
+
+/* A row of a map applied to its inputs. */
 LANE_INLINE vd press_row(const vd row[POUND_PRESS_INPUTS], const vd x[POUND_PRESS_INPUTS])
 {
 	vd slow = vfma(row[6], x[6], row[7] * x[7]), force = vfma(row[4], x[4], row[5] * x[5]);
 	return vfma(row[0], x[0], vfma(row[1], x[1], slow)) + vfma(row[2], x[2], vfma(row[3], x[3], force));
 }
 
-/* The forcing of base and overlap, and its growth over some cells. */
-LANE_INLINE void press_force(vd x[POUND_PRESS_INPUTS], const struct lanes *g, vd rise)
+/* The inputs of a map over some cells: the state, the forcing of base and overlap, and its growth. */
+LANE_INLINE void press_inputs(vd x[POUND_PRESS_INPUTS], const struct lanes *g, const struct pressed *at,
+                              vd rise)
 {
-	x[4] = vfma(g->base_drive, g->ground, g->base_force);
-	x[5] = vfma(g->gap_drive, g->ground, g->gap_force);
+	for (int j = 0; j < 4; j++)
+		x[j] = at->x[j];
+	x[4] = vfma(g->base_drive, at->ground, g->base_force);
+	x[5] = vfma(g->gap_drive, at->ground, g->gap_force);
 	x[6] = g->base_drive * rise;
 	x[7] = g->gap_drive * rise;
 }
 
-/* Moves the lanes that were taken over some cells. */
-LANE_INLINE void press_move(struct lanes *g, struct press *s, vm pressed, const vd end[4], vd cells, vd rise)
+/* Where the other body is, which stands off the base by gap and overlap.
+ *
+ * Given    off  side * gap
+ */
+LANE_INLINE vd press_other(vd base, vd overlap, vd side, vd off)
 {
-	vd impulse = press_row(s->map[PRESS_IMPULSE], s->x);
-	g->impulse = vselect(pressed, g->impulse + impulse, g->impulse);
-	g->contact_time = vselect(pressed, vfma(g->cell, cells, g->contact_time), g->contact_time);
-	g->ground = vselect(pressed, g->ground + rise, g->ground);
-	g->cells = vselect(pressed, g->cells - cells, g->cells);
+	return base - vfma(side, overlap, off);
+}
+
+/* Moves every lane over some cells. */
+LANE_INLINE void press_move(const struct lanes *g, struct press *s, const vd end[4], vd cells, vd rise)
+{
+	struct pressed *at = &s->at;
+	at->impulse = at->impulse + form_at(&s->moved[PRESS_IMPULSE], at->x, at->ground, rise);
+	at->ground = at->ground + rise;
+	at->cells = at->cells - cells;
 	for (int j = 0; j < 4; j++)
-		s->x[j] = vselect(pressed, end[j], s->x[j]);
-	vd other = s->x[0] - g->side * (g->gap + s->x[2]);
-	s->base.top = vmax(s->base.top, vabs(s->x[0]));
-	s->other.top = vmax(s->other.top, vabs(other));
+		at->x[j] = end[j];
+	at->top[0] = vmax(at->top[0], vabs(end[0]));
+	at->top[1] = vmax(at->top[1], vabs(press_other(end[0], end[2], g->side, g->side * g->gap)));
 }
 
 /* One cell of pressed contact.
  *
- * Given    pressed  lanes to take over it;  edged: a lane has a law of more than one piece
- *          right    a lane's largest displacement of the right body is wanted
- *          forced   a lane's contact ends when its force does
- * Returns  value    lanes in which something may happen inside the cell; these stay where they were
+ * Given    edged   a lane has a law of more than one piece
+ *          right   a lane's largest displacement of the right body is wanted
+ *          forced  a lane's contact ends when its force does
+ * Returns  s       every lane at the end of the cell
+ *          value   lanes in which something may happen inside it
  */
-LANE_INLINE vm press(struct lanes *g, struct press *s, vm pressed, bool edged, bool right, bool forced)
+LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced)
 {
-	vd *x = s->x, zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), bound[POUND_PRESS_INPUTS];
-	press_force(x, g, g->rise);
-	for (int j = 0; j < POUND_PRESS_INPUTS; j++)
+	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
+	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
+	struct limits base = s->base, other = s->other;
+	base.top = s->at.top[0], other.top = s->at.top[1];
+	for (int j = 0; j < 4; j++) {
 		bound[j] = vabs(x[j]);
-	struct flight b = {.u = x[0] + press_row(s->map[PRESS_U], x), .v = x[1] + press_row(s->map[PRESS_V], x)};
-	struct flight p = {.u = x[2] + press_row(s->map[PRESS_P], x), .v = x[3] + press_row(s->map[PRESS_Q], x)};
+		end[j] = x[j] + form_at(&s->moved[PRESS_U + j], x, ground, rise);
+	}
+	struct flight b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
 	b.b1 = vfma(third, x[1], x[0]);
 	b.b2 = vfma(-third, b.v, b.u);
 	p.b1 = vfma(third, x[3], x[2]);
 	p.b2 = vfma(-third, p.v, p.u);
-	vd rounding = vsplat(16 * DBL_EPSILON), error = press_row(s->map[PRESS_ERROR], bound);
+	vd rounding = vsplat(16 * DBL_EPSILON), error = form_at(&s->error, bound, vabs(ground), vabs(rise));
 	p.error = vfma(rounding, bound[2] + vabs(p.u), error);
 	b.error = vfma(rounding, bound[0] + vabs(b.u), error);
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
 	if (forced) {
-		vd lowest = vmin(x[3], p.v) * g->release - press_row(s->map[PRESS_DROP], bound);
+		vd lowest = vmin(x[3], p.v) * g->release - form_at(&s->drop, bound, vabs(ground), vabs(rise));
 		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
 		risk |= ~vless(zero, vmin(least, x[2]) + lowest) & vless(zero, g->release);
 	}
-	// the other body stands off the base by gap and overlap
-	vd side = g->side, off = side * g->gap, u = x[0] - vfma(side, x[2], off), v = x[1] - side * x[3];
-	struct flight o = {.u = b.u - vfma(side, p.u, off),
+	vd side = g->side, off = side * g->gap, v = x[1] - side * x[3];
+	struct flight o = {.u = press_other(b.u, p.u, side, off),
 	                   .v = b.v - side * p.v,
-	                   .b1 = b.b1 - vfma(side, p.b1, off),
-	                   .b2 = b.b2 - vfma(side, p.b2, off)};
-	o.error = vfma(rounding, vabs(u) + vabs(o.u) + g->gap, b.error + p.error);
+	                   .b1 = press_other(b.b1, p.b1, side, off),
+	                   .b2 = press_other(b.b2, p.b2, side, off)};
+	// the magnitudes it is made of are those of base, overlap and gap
+	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	if (edged || right) {
-		risk |= flight_risk(x[1], &b, third, &s->base, edged);
-		risk |= flight_risk(v, &o, third, &s->other, edged);
+		risk |= flight_risk(x[1], &b, third, &base, edged);
+		risk |= flight_risk(v, &o, third, &other, edged);
 	} else {
 		vm left = vless(zero, side);
 		struct flight l = {.u = vselect(left, b.u, o.u),
 		                   .b1 = vselect(left, b.b1, o.b1),
 		                   .b2 = vselect(left, b.b2, o.b2),
 		                   .error = vselect(left, b.error, o.error)};
-		struct limits limits = {.top = vselect(left, s->base.top, s->other.top)};
+		struct limits limits = {.top = vselect(left, base.top, other.top)};
 		risk |= flight_risk(vselect(left, x[1], v), &l, third, &limits, false);
 	}
-	press_move(g, s, pressed & ~risk, (vd[]){b.u, b.v, p.u, p.v}, vsplat(1), g->rise);
+	press_move(g, s, end, vsplat(1), rise);
 	return risk;
 }
 
@@ -294,17 +342,18 @@ LANE_INLINE vm rest_risk(vd u, vd end, vd low, vd high, vd way, vm steady, const
 
 /* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in press.h.
  *
- * Given    resting  lanes to take over them;  edged: a lane has a law of more than one piece
- * Returns  value    lanes in which something may happen meanwhile; these stay where they were
+ * Given    edged  a lane has a law of more than one piece
+ * Returns  s      every lane at their end
+ *          value  lanes in which something may happen meanwhile
  */
-LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
+LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
 {
-	const vd *split = s->map[PRESS_SPLIT];
-	vd *x = s->x, zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4], moved[4];
-	vd cells = split[SPLIT_CELLS], rise = g->rise * cells, third = g->cell * cells * vsplat(1.0 / 3);
-	press_force(x, g, rise);
+	const vd *split = s->rest[PRESS_SPLIT];
+	vd x[POUND_PRESS_INPUTS], zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4], gone[4];
+	vd cells = split[SPLIT_CELLS], rise = s->at.rise * cells, third = g->cell * cells * vsplat(1.0 / 3);
+	press_inputs(x, g, &s->at, rise);
 	for (int j = 0; j < 4; j++)
-		moved[j] = press_row(s->map[PRESS_U + j], x), end[j] = x[j] + moved[j];
+		gone[j] = form_at(&s->moved[PRESS_U + j], x, s->at.ground, rise), end[j] = x[j] + gone[j];
 	vd w = vfma(-split[SPLIT_BASE], x[2], x[0]), rate = vfma(-split[SPLIT_BASE], x[3], x[1]);
 	vd w1 = vfma(-split[SPLIT_BASE], end[2], end[0]), rate1 = vfma(-split[SPLIT_BASE], end[3], end[1]);
 	vd pull = vfma(split[SPLIT_DAMPING], rate, vfma(split[SPLIT_STIFFNESS], w, x[5]));
@@ -312,7 +361,7 @@ LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
 	bound[0] = vabs(w);
 	bound[1] = vabs(rate);
 	bound[2] = vabs(pull) + vabs(pull1);
-	bound[3] = vabs(vfma(-split[SPLIT_BASE], moved[3], moved[1]));
+	bound[3] = vabs(vfma(-split[SPLIT_BASE], gone[3], gone[1]));
 	for (int j = 4; j < POUND_PRESS_INPUTS; j++)
 		bound[j] = vabs(x[j]);
 	vd omega = split[SPLIT_OMEGA], change = vabs(pull1 - pull), bend, drift, swing;
@@ -321,14 +370,14 @@ LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
 	vd swung = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c));
 	// once by all that presses, and then by what of it swings: see rest_fill in press.h
 	for (int round = 0; round < 2; round++) {
-		bend = press_row(s->map[REST_BEND], bound);
+		bend = press_row(s->rest[REST_BEND], bound);
 		drift = vfma(vsplat(0.5), bend, change);
 		swing = swung + drift;
 		bound[2] = vmin(bound[2], swing);
 	}
 	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, vsplat(0.125) * bend), vmin(pull, pull1));
 	vd still = split[SPLIT_YIELD] * pull, ripple = split[SPLIT_YIELD] * (swing + drift);
-	vd error = vfma(split[SPLIT_LAG], ripple, press_row(s->map[REST_ERROR], bound));
+	vd error = vfma(split[SPLIT_LAG], ripple, press_row(s->rest[REST_ERROR], bound));
 	// the common motion's cubic, and whether its velocity keeps its sign
 	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
 	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + error, low = vmin(vmin(b1, b2), vmin(w, w1)) - error;
@@ -336,17 +385,18 @@ LANE_INLINE vm rest(struct lanes *g, struct press *s, vm resting, bool edged)
 	vd along = vmin(third * vmin(way * rate, way * rate1), way * (b2 - b1));
 	along = along - vsplat(1.0265) * error;
 	vd hurry = third * swing / omega, off = g->side * g->gap;
-	const struct limits *limits[2] = {&s->base, &s->other};
+	struct limits limits[2] = {s->base, s->other};
 	for (int i = 0; i < 2; i++) {
+		limits[i].top = s->at.top[i];
 		vd share = i ? split[SPLIT_BASE] - g->side : split[SPLIT_BASE], size = vabs(share);
-		vd u = i ? x[0] - vfma(g->side, x[2], off) : x[0];
-		vd u1 = i ? end[0] - vfma(g->side, end[2], off) : end[0];
+		vd u = i ? press_other(x[0], x[2], g->side, off) : x[0];
+		vd u1 = i ? press_other(end[0], end[2], g->side, off) : end[0];
 		vd mid = i ? vfma(share, still, -off) : share * still;
 		vm steady = vless(size * hurry, along);
 		risk |= rest_risk(u, u1, low + mid - size * ripple, high + mid + size * ripple, way, steady,
-		                  limits[i], edged);
+		                  &limits[i], edged);
 	}
-	press_move(g, s, resting & ~risk, end, cells, rise);
+	press_move(g, s, end, cells, rise);
 	return risk;
 }
 
@@ -356,30 +406,56 @@ LANE_INLINE struct limits limits_select(vm mask, struct limits a, struct limits 
 	                       vselect(mask, a.high, b.high), vselect(mask, a.direction, b.direction)};
 }
 
-/* The base of each lane's bodies, and back. */
-LANE_INLINE void press_load(struct press *s, const struct lanes *g, bool edged)
+/* Pressed contact as the lanes come to it, and back. */
+LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd left_samples, bool edged)
 {
 	vm left = vless(vsplat(0), g->side);
-	s->x[0] = vselect(left, g->u[0], g->u[1]);
-	s->x[1] = vselect(left, g->v[0], g->v[1]);
-	s->x[2] = g->p;
-	s->x[3] = g->q;
 	s->base = limits_select(left, limits_of(g, 0, edged), limits_of(g, 1, edged));
 	s->other = limits_select(left, limits_of(g, 1, edged), limits_of(g, 0, edged));
+	s->at =
+	    (struct pressed){.x = {vselect(left, g->u[0], g->u[1]), vselect(left, g->v[0], g->v[1]), g->p, g->q},
+	                     .top = {s->base.top, s->other.top},
+	                     .impulse = g->impulse,
+	                     .ground = g->ground,
+	                     .rise = g->rise,
+	                     .cells = g->cells,
+	                     .rounds = g->rounds,
+	                     .left = left_samples};
 }
 
-LANE_INLINE void press_store(const struct press *s, struct lanes *g)
+LANE_INLINE void press_store(const struct pressed *at, struct lanes *g)
 {
 	vm left = vless(vsplat(0), g->side);
-	vd u = s->x[0] - g->side * (g->gap + s->x[2]), v = s->x[1] - g->side * s->x[3];
-	g->u[0] = vselect(left, s->x[0], u);
-	g->v[0] = vselect(left, s->x[1], v);
-	g->u[1] = vselect(left, u, s->x[0]);
-	g->v[1] = vselect(left, v, s->x[1]);
-	g->top[0] = vselect(left, s->base.top, s->other.top);
-	g->top[1] = vselect(left, s->other.top, s->base.top);
-	g->p = s->x[2];
-	g->q = s->x[3];
+	const vd *x = at->x;
+	vd u = press_other(x[0], x[2], g->side, g->side * g->gap), v = x[1] - g->side * x[3];
+	g->u[0] = vselect(left, x[0], u);
+	g->v[0] = vselect(left, x[1], v);
+	g->u[1] = vselect(left, u, x[0]);
+	g->v[1] = vselect(left, v, x[1]);
+	g->top[0] = vselect(left, at->top[0], at->top[1]);
+	g->top[1] = vselect(left, at->top[1], at->top[0]);
+	g->p = x[2];
+	g->q = x[3];
+	g->impulse = at->impulse;
+	g->ground = at->ground;
+	g->rise = at->rise;
+	g->cells = at->cells;
+	g->rounds = at->rounds;
+}
+
+/* Brings how far some lanes have come from one to the other. */
+LANE_INLINE void pressed_keep(struct pressed *to, const struct pressed *from, vm which)
+{
+	for (int j = 0; j < 4; j++)
+		to->x[j] = vselect(which, from->x[j], to->x[j]);
+	for (int i = 0; i < 2; i++)
+		to->top[i] = vselect(which, from->top[i], to->top[i]);
+	to->impulse = vselect(which, from->impulse, to->impulse);
+	to->ground = vselect(which, from->ground, to->ground);
+	to->rise = vselect(which, from->rise, to->rise);
+	to->cells = vselect(which, from->cells, to->cells);
+	to->rounds = vselect(which, from->rounds, to->rounds);
+	to->left = vselect(which, from->left, to->left);
 }
 
 #endif

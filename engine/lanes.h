@@ -38,6 +38,8 @@ typedef uint64_t vm;
 #define LANE_FMA(a, b, c)    __builtin_fma(a, b, c)
 #define LANE_SQRT(a)         __builtin_sqrt(a)
 #define LANE_FLOOR(a)        __builtin_floor(a)
+#define LANE_ADD(m, at, n)   ((at) + ((m) & (n)))
+#define LANE_GATHER(at)      (*(const double *)(at))
 #define LANE_BITS(m)         ((unsigned)(m)&1)
 #define LANE_MASK(bits)      (-(vm)((bits)&1))
 #define LANE_PRODUCT(a, b)   (((a)&UINT32_MAX) * ((b)&UINT32_MAX))
@@ -48,8 +50,9 @@ typedef uint64_t vm;
 
 typedef double vd __attribute__((vector_size(8 * POUND_LANES)));
 typedef uint64_t vu __attribute__((vector_size(8 * POUND_LANES)));
-#define LANE_ABS(a) ((vd)((lane_bits)(a)&INT64_MAX))
+#define LANE_ABS(a)    ((vd)((lane_bits)(a)&INT64_MAX))
 typedef int64_t lane_bits __attribute__((vector_size(8 * POUND_LANES)));
+#define LANE_AT(at, l) (*(const double *)(at)[l]) /* a gather takes twice as long */
 
 #if POUND_LANES == 4
 typedef lane_bits vm;
@@ -62,6 +65,8 @@ typedef lane_bits vm;
 #define LANE_FMA(a, b, c)    _mm256_fmadd_pd(a, b, c)
 #define LANE_SQRT(a)         _mm256_sqrt_pd(a)
 #define LANE_FLOOR(a)        _mm256_floor_pd(a)
+#define LANE_ADD(m, at, n)   ((at) + ((vu)(m) & (n)))
+#define LANE_GATHER(at)      _mm256_set_pd(LANE_AT(at, 3), LANE_AT(at, 2), LANE_AT(at, 1), LANE_AT(at, 0))
 #define LANE_BITS(m)         ((unsigned)_mm256_movemask_pd((vd)(m)))
 #define LANE_MASK(bits)      (((vm)_mm256_set1_epi64x(bits) & (vm){1, 2, 4, 8}) == (vm){1, 2, 4, 8})
 #define LANE_PRODUCT(a, b)   ((vu)_mm256_mul_epu32((__m256i)(a), (__m256i)(b)))
@@ -76,9 +81,14 @@ typedef __mmask8 vm;
 #define LANE_FMA(a, b, c)    _mm512_fmadd_pd(a, b, c)
 #define LANE_SQRT(a)         _mm512_sqrt_pd(a)
 #define LANE_FLOOR(a)        _mm512_roundscale_pd(a, _MM_FROUND_TO_NEG_INF)
-#define LANE_BITS(m)         ((unsigned)(m))
-#define LANE_MASK(bits)      ((vm)(bits))
-#define LANE_PRODUCT(a, b)   ((vu)_mm512_mul_epu32((__m512i)(a), (__m512i)(b)))
+#define LANE_ADD(m, at, n) \
+	((vu)_mm512_mask_add_epi64((__m512i)(at), m, (__m512i)(at), _mm512_set1_epi64((int64_t)(n))))
+#define LANE_GATHER(at)                                                                           \
+	_mm512_set_pd(LANE_AT(at, 7), LANE_AT(at, 6), LANE_AT(at, 5), LANE_AT(at, 4), LANE_AT(at, 3), \
+	              LANE_AT(at, 2), LANE_AT(at, 1), LANE_AT(at, 0))
+#define LANE_BITS(m)       ((unsigned)(m))
+#define LANE_MASK(bits)    ((vm)(bits))
+#define LANE_PRODUCT(a, b) ((vu)_mm512_mul_epu32((__m512i)(a), (__m512i)(b)))
 #endif
 
 #endif
@@ -143,6 +153,18 @@ LANE_INLINE vu vproduct(vu a, vu b)
 {
 	return LANE_PRODUCT(a, b);
 } /* of the lower halves */
+
+/* ---- one double of memory for each lane ---- */
+
+/* The next double in the lanes of a mask. */
+LANE_INLINE vu vnext(vm mask, vu at)
+{
+	return LANE_ADD(mask, at, sizeof(double));
+}
+LANE_INLINE vd vgather(vu at)
+{
+	return LANE_GATHER(at);
+}
 
 /* ---- rows of memory in and out of lanes: lane l of column j is row[l][at + j] ---- */
 

@@ -4,8 +4,9 @@
  * 1. whole samples apart, and whole cells of contact, go by precomputed exact maps, where a bound proves that nothing
  *    lies inside (flight.h);
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (event.h);
- * 3. simulations wait in one queue for each kind of step; the fullest queue gives the next batch, which is carried
- *    into lanes, goes on until half of it is done with that kind of step, and is carried out to the next queues.
+ * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
+ *    lanes, goes on until half of it is done with that kind of step, and is carried out to the next queues;
+ * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger.
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/march.h"
 
@@ -213,52 +214,109 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 
 /* ---- whole cells of contact ---- */
 
-/* The lanes' state and ground motion at the start of a map. */
-struct press_start {
-	vd x[4], ground;
-};
-
-/* Accounts for the energy of the lanes that went over their map. */
-static void press_account(const struct batch *b, const struct press_start *start, const struct press *s,
-                          unsigned pressed)
+/* Accounts for the energy of the lanes that went over a map of some cells. */
+static void press_account(const struct batch *b, const struct lanes *g, const struct pressed *from,
+                          const struct pressed *to, vd cells, unsigned pressed)
 {
+	vd inputs[POUND_PRESS_INPUTS];
+	press_inputs(inputs, g, from, from->rise * cells);
 	for (; pressed; pressed &= pressed - 1) {
 		int l = __builtin_ctz(pressed);
 		if (!(b->sim[l]->traits & TRAIT_ACCOUNTED))
 			continue;
 		double x[POUND_PRESS_INPUTS], end[4];
 		for (int j = 0; j < POUND_PRESS_INPUTS; j++)
-			x[j] = ((const double *)(j < 4 ? &start->x[j] : &s->x[j]))[l];
+			x[j] = ((const double *)&inputs[j])[l];
 		for (int j = 0; j < 4; j++)
-			end[j] = ((const double *)&s->x[j])[l];
-		press_work(b->sim[l], x, end, ((const double *)&start->ground)[l]);
+			end[j] = ((const double *)&to->x[j])[l];
+		press_work(b->sim[l], x, end, ((const double *)&from->ground)[l], ((const double *)&from->rise)[l]);
 	}
 }
 
-/* A lane at a sample enters the next interval; false: there is none. */
-static bool press_interval(struct lanes *g, const struct batch *b, int l)
+/* the ground motion at the end of each lane's interval, and at the end of the next one, and where that stands */
+struct samples {
+	vd ground, next;
+	vu at;
+};
+
+/* Given    left  samples behind the interval */
+LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
 {
-	struct simulation *sim = b->sim[l];
-	if (sim->next == sim->last)
-		return false;
-	sim->next++;
-	simulation_interval(sim);
-	sim->x.rise = sim->x.slope * sim->x.cell;
-	double *ground = (double *)&g->ground, *rise = (double *)&g->rise, *cells = (double *)&g->cells;
-	ground[l] = sim->x.ground;
-	rise[l] = sim->x.rise;
-	cells[l] = sim->x.cells;
-	return true;
+	struct samples s;
+	uint64_t at[W];
+	double behind[W], ground[W];
+	for (int l = 0; l < W; l++) {
+		const struct simulation *sim = b->sim[l];
+		const double *end = &sim->task->ground[sim->next];
+		ground[l] = *end;
+		behind[l] = (double)(sim->last - sim->next);
+		at[l] = (uintptr_t)(sim->next < sim->last ? end + 1 : end);
+	}
+	*left = lanes_load(behind);
+	s.ground = lanes_load(ground);
+	__builtin_memcpy(&s.at, at, sizeof s.at);
+	s.next = vgather(s.at);
+	return s;
 }
 
-/* Lanes that keep their rung: it has room before the next sample, where a longer one may go. */
-LANE_INLINE unsigned rest_stays(const struct lanes *g, const struct press *s, unsigned sampled)
+/* Lanes at a sample enter the next interval.
+ *
+ * Given    share  of an interval that a cell is
+ */
+LANE_INLINE void samples_next(struct samples *s, struct pressed *x, vm entering, vd cells, vd share)
 {
-	vd cells = s->map[PRESS_SPLIT][SPLIT_CELLS];
-	return vbits(~vless(g->cells, cells)) & ~(sampled & vbits(vless(cells, g->cells)));
+	vd left = x->left - vsplat(1), rise = (s->next - s->ground) * share;
+	x->ground = vselect(entering, s->ground, x->ground);
+	x->rise = vselect(entering, rise, x->rise);
+	x->cells = vselect(entering, cells, x->cells);
+	x->left = vselect(entering, left, x->left);
+	s->ground = vselect(entering, s->next, s->ground);
+	s->at = vnext(entering & vless(vsplat(0), left), s->at);
+	s->next = vgather(s->at);
 }
 
-LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
+/* Brings a simulation to the interval that its lane is in. */
+static void samples_leave(struct simulation *sim, int64_t next)
+{
+	if (sim->next == next)
+		return;
+	const double *ground = &sim->task->ground[next];
+	sim->next = next;
+	sim->x.slope = (ground[0] - ground[-1]) * sim->per_step;
+	sim->steps = 0;
+}
+
+/* Lanes that keep their rung: it has room before the next sample, and none longer has behind the one just entered. */
+LANE_INLINE vm rest_stays(const struct press *s, vm entered)
+{
+	vd cells = s->rest[PRESS_SPLIT][SPLIT_CELLS];
+	return ~vless(s->at.cells, cells) & ~(entered & vless(cells, s->at.cells));
+}
+
+/* Carries the maps into lanes: of a cell, or of a rung. */
+LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double *const map[W],
+                            enum pound_stage stage, bool forced)
+{
+	vd row[POUND_PRESS_INPUTS];
+	for (int r = 0; r <= PRESS_IMPULSE; r++) {
+		rows_load(row, map, r * POUND_PRESS_INPUTS);
+		s->moved[r] = form_of(row, g, false);
+	}
+	if (stage == STAGE_REST) {
+		for (int r = REST_ERROR; r < REST_ROWS; r++)
+			rows_load(s->rest[r], map, r * POUND_PRESS_INPUTS);
+		return;
+	}
+	rows_load(row, map, PRESS_ERROR * POUND_PRESS_INPUTS);
+	s->error = form_of(row, g, true);
+	if (forced) {
+		rows_load(row, map, PRESS_DROP * POUND_PRESS_INPUTS);
+		s->drop = form_of(row, g, true);
+	}
+}
+
+LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
+                          bool accounted)
 {
 	struct lanes g;
 	struct press s;
@@ -274,47 +332,70 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	const double *map[W];
 	for (int l = 0; l < W; l++)
 		map[l] = b->sim[l]->pressed->row[0];
-	for (int r = 0; r < (stage == STAGE_REST ? REST_ROWS : PRESS_ROWS); r++)
-		if (r != PRESS_DROP || forced || stage == STAGE_REST)
-			rows_load(s.map[r], map, r * POUND_PRESS_INPUTS);
-	press_load(&s, &g, edged);
-	unsigned pressed = (1u << b->n) - 1, ended = 0, refused = 0, gone = 0;
+	press_maps(&s, &g, map, stage, forced);
+	vd zero = vsplat(0), one = vsplat(1), share = one / g.cells_whole, behind;
+	struct samples samples = samples_of(b, &behind);
+	press_load(&s, &g, behind, edged);
+	struct pressed kept = s.at;
+	const vd before = kept.rounds;
+	vm pressed = vmask((1u << b->n) - 1), ended = vmask(0), refused = vmask(0), gone = vmask(0);
 	int few = b->n / 2;
 	do {
-		vm going = vmask(pressed);
-		struct press_start start = {{s.x[0], s.x[1], s.x[2], s.x[3]}, g.ground};
-		unsigned risk = vbits(stage == STAGE_REST ? rest(&g, &s, going, edged)
-		                                          : press(&g, &s, going, edged, right, forced)) &
-		                pressed;
+		struct pressed from;
+		if (accounted)
+			from = s.at;
+		vm risk = stage == STAGE_REST ? rest(&g, &s, edged) : press(&g, &s, edged, right, forced);
+		refused |= risk & pressed;
 		pressed &= ~risk;
-		refused |= risk;
-		if (b->traits & TRAIT_ACCOUNTED)
-			press_account(b, &start, &s, pressed);
-		unsigned sampled = vbits(vequal(g.cells, vsplat(0))) & pressed;
-		for (unsigned bits = sampled; bits; bits &= bits - 1) {
-			int l = __builtin_ctz(bits);
-			if (!press_interval(&g, b, l))
-				ended |= 1u << l;
-		}
-		g.rounds = g.rounds - vselect(vmask(pressed), vsplat(1), vsplat(0));
-		gone |= vbits(vequal(g.rounds, vsplat(0))) & pressed;
+		if (accounted)
+			press_account(b, &g, &from, &s.at, stage == STAGE_REST ? s.rest[PRESS_SPLIT][SPLIT_CELLS] : one,
+			              vbits(pressed));
+		vm sampled = vequal(s.at.cells, zero), last = vequal(s.at.left, zero);
+		ended |= sampled & last & pressed;
+		vm entered = sampled & ~last;
+		if (vany(entered))
+			samples_next(&samples, &s.at, entered, g.cells_whole, share);
+		s.at.rounds = s.at.rounds - one;
+		gone |= vequal(s.at.rounds, zero) & pressed;
+		pressed_keep(&kept, &s.at, pressed);
 		pressed &= ~ended & ~gone;
 		if (stage == STAGE_REST)
-			pressed &= rest_stays(&g, &s, sampled);
-	} while (__builtin_popcount(pressed) > few);
-	press_store(&s, &g);
-	double slope[W];
-	for (int l = 0; l < W; l++)
-		slope[l] = b->sim[l]->x.slope;
-	g.slope = lanes_load(slope);
+			pressed &= rest_stays(&s, entered);
+	} while (__builtin_popcount(vbits(pressed)) > few);
+	press_store(&kept, &g);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	lanes_empty(&g, b, ROW_PRESS);
-	for (int l = 0; l < b->n; l++)
-		send(work, b->sim[l],
-		     ended >> l & 1     ? STAGE_END
-		     : pressed >> l & 1 ? stage
-		                        : simulation_pressed(b->sim[l], stage, refused >> l & 1, gone >> l & 1));
+	double left[W], rounds[W];
+	lanes_store(left, kept.left);
+	lanes_store(rounds, before - kept.rounds);
+	unsigned ends = vbits(ended), refusals = vbits(refused), goes = vbits(gone), stays = vbits(pressed);
+	for (int l = 0; l < b->n; l++) {
+		struct simulation *sim = b->sim[l];
+		samples_leave(sim, sim->last - (int64_t)left[l]);
+		sim->cells_pressed += rounds[l] * sim->pressed->row[PRESS_SPLIT][SPLIT_CELLS];
+		send(work, sim,
+		     ends >> l & 1    ? STAGE_END
+		     : stays >> l & 1 ? stage
+		                      : simulation_pressed(sim, stage, refusals >> l & 1, goes >> l & 1));
+	}
+}
+
+/* Where energy is accounted for all goes one way: it takes its time anyway. */
+static void press_accounted(struct work *work, const struct batch *b, enum pound_stage stage)
+{
+	if (stage == STAGE_REST)
+		press_on(work, b, STAGE_REST, true, true);
+	else
+		press_on(work, b, STAGE_PRESS, true, true);
+}
+
+LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
+{
+	if (b->traits & TRAIT_ACCOUNTED)
+		press_accounted(work, b, stage);
+	else
+		press_on(work, b, stage, edged, false);
 }
 
 /* ---- one step up to an event ---- */
@@ -433,19 +514,19 @@ static void fly_apart_edged(struct work *work, const struct batch *b)
 }
 static void press_plain(struct work *work, const struct batch *b)
 {
-	press_on(work, b, STAGE_PRESS, false);
+	press_any(work, b, STAGE_PRESS, false);
 }
 static void press_edged(struct work *work, const struct batch *b)
 {
-	press_on(work, b, STAGE_PRESS, true);
+	press_any(work, b, STAGE_PRESS, true);
 }
 static void rest_plain(struct work *work, const struct batch *b)
 {
-	press_on(work, b, STAGE_REST, false);
+	press_any(work, b, STAGE_REST, false);
 }
 static void rest_edged(struct work *work, const struct batch *b)
 {
-	press_on(work, b, STAGE_REST, true);
+	press_any(work, b, STAGE_REST, true);
 }
 static void step_alone(struct work *work, const struct batch *b)
 {

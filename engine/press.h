@@ -321,12 +321,12 @@ static void ladder_fill(struct pound_press_map rung[], struct pound_press_work w
 static void press_rungs(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
-	double first = sim->cells_whole;
+	double first = x->cells_whole;
 	if (first <= RUNG_RATIO)
 		return;
 	while (first > RUNG_RATIO)
 		first /= RUNG_RATIO;
-	for (double cells = 1; cells <= sim->cells_whole && sim->rungs < POUND_PRESS_RUNGS;
+	for (double cells = 1; cells <= x->cells_whole && sim->rungs < POUND_PRESS_RUNGS;
 	     cells *= cells == 1 ? first : RUNG_RATIO) {
 		double h = cells * x->cell;
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
@@ -428,7 +428,8 @@ static enum pound_stage press_ready(struct simulation *sim)
 	}
 	x->base_force = x->body[b].offset;
 	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
-	x->rise = x->slope * x->cell;
+	const double *ground = &sim->task->ground[sim->next];
+	x->rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
 	// a rung goes as far as the next longer one
 	x->rounds = sim->rungs > 0 ? RUNG_RATIO : -1;
 	sim->pressed = rung_longest(sim, press);
@@ -443,14 +444,15 @@ static enum pound_stage press_ready(struct simulation *sim)
  *
  * Given    sim     its map and interval
  *          x, end  inputs of the map, and the state behind it
- *          ground  acceleration at the start [m/s2]
+ *          ground  acceleration at the start [m/s2];  rise: its growth over one cell
  * Returns  sim     work, as energy.h adds it: the ground's is -m (a (u1 - u0) + d (u1 - mean u)), with a growing by d
  */
-static void press_work(struct simulation *sim, const double x[N], const double end[4], double ground)
+static void press_work(struct simulation *sim, const double x[N], const double end[4], double ground,
+                       double rise)
 {
 	struct pound_rows *r = &sim->x;
 	const struct pound_press_map *map = sim->pressed;
-	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], rise = r->rise * cells, h = r->cell * cells;
+	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells, h = r->cell * cells;
 	const int b = sim->base, o = 1 - b;
 	const double mass[2] = {1, r->right_mass};
 	double pressed = form(map->row[PRESS_IMPULSE], x) - r->contact_damping * (end[2] - x[2]);
@@ -470,7 +472,7 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 		out += off[i] * form(sim->worked->loss[i], off);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		double way = u1[i] - u0[i], spring = r->body[i].stiffness * 0.5 * (u0[i] + u1[i]) + r->body[i].offset;
-		in -= mass[i] * r->body[i].drive * (ground * way + rise * (u1[i] - means[i]));
+		in -= mass[i] * r->body[i].drive * (ground * way + grown * (u1[i] - means[i]));
 		out += mass[i] * spring * way;
 		moving += 0.5 * mass[i] * v1[i] * v1[i];
 	}

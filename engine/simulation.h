@@ -20,26 +20,26 @@ enum {
 };
 
 /* Rows of a simulation: T is double at rest, and a vector in lanes; every row has eight. */
-#define POUND_ROWS(T)                                                                                                          \
-	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */                  \
-	T u[2], v[2], top[2], p, q;                                                                                                \
-	/* STEP: the next step; the ground at its start and its growth; this contact's impulse, all contacts' time; what is left \
+#define POUND_ROWS(T)                                                                                                                              \
+	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */                                      \
+	T u[2], v[2], top[2], p, q;                                                                                                                    \
+	/* STEP: the next step; the ground at its start and its growth; this contact's impulse, all contacts' time but for whole cells; what is left \
 	 * of the interval: a part, and whole cells; <= 1: steps are shorter where a search was unsure */ \
-	T dt, ground, slope, impulse, contact_time, part, cells, pace;                                                             \
-	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */            \
-	struct {                                                                                                                   \
-		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                   \
-	} body[2];                                                                                                                 \
-	/* PAIR: the contact; lengths of a cell of it, and of the longest step apart */                                            \
-	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, cell, reach;                                         \
-	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                                  \
-	struct {                                                                                                                   \
-		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                      \
-	} map[2];                                                                                                                  \
+	T dt, ground, slope, impulse, contact_time, part, cells, pace;                                                                                 \
+	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */                                \
+	struct {                                                                                                                                       \
+		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                                       \
+	} body[2];                                                                                                                                     \
+	/* PAIR: the contact; lengths of a cell of it, and of the longest step apart */                                                                \
+	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, cell, reach;                                                             \
+	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                                                      \
+	struct {                                                                                                                                       \
+		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                                          \
+	} map[2];                                                                                                                                      \
 	/* PRESS: a cell of pressed contact: forcing, which body is the base, the ground's growth; how often the map goes on     \
-	 * until another is asked for */ \
-	T base_force, gap_force, base_drive, gap_drive, side, rise, rounds, press_spare;                                           \
-	/* WORK: energy put in, what is found of it less that, and the rounding of the latter; the most there was of it */         \
+	 * until another is asked for; cells of an interval */                     \
+	T base_force, gap_force, base_drive, gap_drive, side, rise, rounds, cells_whole;                                                               \
+	/* WORK: energy put in, what is found of it less that, and the rounding of the latter; the most there was of it */                             \
 	T work_in, work_gap, work_low, work_top, right_mass, work_spare[3];
 
 struct pound_rows {
@@ -165,7 +165,7 @@ struct simulation {
 	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
 	double per_step;
 	double impulse_max, contacts;
-	double cells_whole; /* of an interval */
+	double cells_pressed; /* whole cells of contact, which are not in contact_time */
 	double rung_cells[POUND_PRESS_RUNGS];
 	int rungs, rung, rung_limit; /* there are, in use, the longest to try */
 	int steps;                   /* and turns in the queues of pressed contact, in this interval */

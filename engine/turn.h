@@ -105,7 +105,7 @@ static void simulation_interval(struct simulation *sim)
 	x->ground = a[-1];
 	x->slope = (a[0] - a[-1]) * sim->per_step;
 	x->part = sim->touching ? 0 : sim->task->time_step;
-	x->cells = sim->touching ? sim->cells_whole : 0;
+	x->cells = sim->touching ? x->cells_whole : 0;
 	sim->steps = 0;
 }
 
@@ -415,10 +415,10 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	sim->can_press = task->contact;
 	double reach = REACH_TOUCH / sqrt(rate * rate + x->both * x->contact_stiffness);
 	// no more cells than it takes, but for rungs, which are made by doubling
-	sim->cells_whole = 1;
-	while (h > reach * sim->cells_whole)
-		sim->cells_whole += sim->cells_whole < RUNG_RATIO ? 1 : sim->cells_whole;
-	x->cell = h / sim->cells_whole;
+	x->cells_whole = 1;
+	while (h > reach * x->cells_whole)
+		x->cells_whole += x->cells_whole < RUNG_RATIO ? 1 : x->cells_whole;
+	x->cell = h / x->cells_whole;
 	if (sim->can_press)
 		press_rungs(sim);
 	sim->base = task->mass_ratio < 1;
@@ -456,7 +456,7 @@ static void result_write(const struct simulation *sim, enum pound_status status)
 	r->status = finite ? status : POUND_OVERFLOW;
 	r->contacts = (int64_t)sim->contacts + sim->touching;
 	r->impulse_max = most(sim->impulse_max, sim->touching ? x->impulse : 0);
-	r->contact_time = x->contact_time;
+	r->contact_time = x->contact_time + x->cell * sim->cells_pressed;
 	r->energy_residual = sim->task->accounted ? residual(sim) : NAN;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;
