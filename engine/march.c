@@ -116,7 +116,8 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
 
 /* Notes the largest displacements that lanes may have inside a sample.
  *
- * Given    g       their state at its start;  noted: lanes to note one of;  gone: samples before it since the batch began
+ * Given    us, vs  of body i at its start;  tops: the largest so far;  bounds: of |u| inside
+ *          noted   lanes to note it of;  gone: samples before it since the batch began
  * Returns  value   lanes that have no room for another
  */
 static unsigned peaks_keep(const struct batch *b, int i, vd us, vd vs, vd tops, vd bounds, unsigned noted,
