@@ -18,7 +18,7 @@ LDFLAGS  += $(LDFLAGS.$(MODE))
 CFLAGS   += -std=c17 $(WARN) -ffp-contract=off -fno-math-errno -fstack-protector-strong -MMD -MP $(MODE.$(MODE))
 
 # these files of the engine are compiled once per lane count, chosen among at run time; all give the same bits
-LANED          := march spectrum noise resample
+LANED          := march spectrum noise colour resample
 WIDTHS         := portable w1 w4 w8
 LANES.portable := -DPOUND_LANES=1
 LANES.w1       := -DPOUND_LANES=1 -mfma
@@ -76,6 +76,9 @@ $(B)/engine/spectrum_%.o: engine/spectrum.c
 $(B)/engine/noise_%.o: engine/noise.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_NOISE=pound_noise_$* -c -o $@ $<
+$(B)/engine/colour_%.o: engine/colour.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_COLOUR=pound_colour_$* -DPOUND_NOISE=pound_noise_$* -c -o $@ $<
 $(B)/engine/resample_%.o: engine/resample.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_RESAMPLE=pound_resample_$* -c -o $@ $<

@@ -2,6 +2,7 @@
 #include <stdbool.h>
 
 #include "engine/dispatch.h"
+#include "engine/filter.h"
 #include "engine/march.h"
 #include "engine/noise.h"
 #include "engine/resample.h"
@@ -72,6 +73,15 @@ void pound_noise_normals(int width, struct pound_stream stream, uint32_t first,
 	static normals *const run[POUND_WIDTHS] = {pound_noise_w8, pound_noise_w4, pound_noise_w1,
 	                                           pound_noise_portable};
 	run[width](stream, first, z);
+}
+
+typedef void colour(const struct pound_coloured *, int n);
+
+void pound_filters_run(int width, const struct pound_coloured *signals, int n)
+{
+	static colour *const run[POUND_WIDTHS] = {pound_colour_w8, pound_colour_w4, pound_colour_w1,
+	                                          pound_colour_portable};
+	run[width](signals, n);
 }
 
 typedef void resample(const struct pound_tiles *, uint64_t, int, double *);

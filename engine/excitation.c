@@ -50,13 +50,18 @@ static void shape(double rise, double fall, int n, double *a)
 /* Largest |a|, n >= 1. */
 double pound_excitation_largest(int n, const double *a)
 {
-	// in two parts, as each comparison waits for the one before it
-	double even = 0, odd = fabs(a[n - 1]);
-	for (int i = 0; i + 1 < n; i += 2) {
-		even = fabs(a[i]) > even ? fabs(a[i]) : even;
-		odd = fabs(a[i + 1]) > odd ? fabs(a[i + 1]) : odd;
-	}
-	return even > odd ? even : odd;
+	// in parts, as each comparison waits for the one before it
+	enum { PARTS = 8 };
+	double most[PARTS] = {0};
+	int i = 0;
+	for (; i + PARTS <= n; i += PARTS)
+		for (int k = 0; k < PARTS; k++)
+			most[k] = fabs(a[i + k]) > most[k] ? fabs(a[i + k]) : most[k];
+	for (int k = 0; k < PARTS; k++)
+		most[0] = most[k] > most[0] ? most[k] : most[0];
+	for (; i < n; i++)
+		most[0] = fabs(a[i]) > most[0] ? fabs(a[i]) : most[0];
+	return most[0];
 }
 
 /* a times what makes its largest |a| the peak; dividing first, nothing in between is too large or too small */
@@ -68,58 +73,79 @@ static void scale(double peak, int n, double *a)
 			a[i] = a[i] / largest * peak;
 }
 
-static void kanai_tajimi(const struct pound_excitation *e, struct pound_stream noise, double *a)
+/* noise to a ground motion */
+static void finish(const struct pound_excitation *e, int n, double *a)
 {
-	const int n = cycles_samples(e);
-	struct pound_filter filter;
-	pound_filter_init(&filter, 2 * PI * e->frequency_hz * e->time_step, e->damping_ratio, e->high_pass_ratio);
-	pound_filter_run(&filter, noise, n, a);
 	shape(e->rise, e->fall, n, a);
 	scale(e->peak, n, a);
 }
 
-static void white_noise(const struct pound_excitation *e, struct pound_stream noise, double *a)
+static void kanai_tajimi(const struct pound_signal *signals, int n)
 {
+	struct pound_coloured coloured[POUND_SIGNALS_MAX];
+	for (int j = 0; j < n; j++) {
+		const struct pound_excitation *e = signals[j].excitation;
+		const int samples = cycles_samples(e);
+		// by their length, so that those side by side end together
+		int at = j;
+		for (; at > 0 && coloured[at - 1].n > samples; at--)
+			coloured[at] = coloured[at - 1];
+		coloured[at] = (struct pound_coloured){.noise = signals[j].noise, .n = samples, .a = signals[j].a};
+		pound_filter_init(&coloured[at].filter, 2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
+		                  e->high_pass_ratio);
+	}
+	pound_filters_run(pound_dispatch_width(0), coloured, n);
+	for (int j = 0; j < n; j++)
+		finish(signals[j].excitation, cycles_samples(signals[j].excitation), signals[j].a);
+}
+
+static void white_noise(const struct pound_signal *signal, int one)
+{
+	(void)one;
+	const struct pound_excitation *e = signal->excitation;
 	const int n = duration_samples(e);
+	double *a = signal->a;
 	double z[NOISE_WORDS][NOISE_CHUNK];
 	for (int i = 0; i < n; i++) {
 		const int l = i / NOISE_WORDS % NOISE_CHUNK, w = i % NOISE_WORDS;
 		if (l == 0 && w == 0)
-			pound_noise_normals(pound_dispatch_width(0), noise, (uint32_t)(i / NOISE_WORDS), z);
+			pound_noise_normals(pound_dispatch_width(0), signal->noise, (uint32_t)(i / NOISE_WORDS), z);
 		a[i] = z[w][l];
 	}
-	shape(e->rise, e->fall, n, a);
-	scale(e->peak, n, a);
+	finish(e, n, a);
 }
 
-static void harmonic(const struct pound_excitation *e, struct pound_stream noise, double *a)
+static void harmonic(const struct pound_signal *signal, int one)
 {
-	(void)noise;
+	(void)one;
+	const struct pound_excitation *e = signal->excitation;
 	const int n = duration_samples(e);
 	for (int i = 0; i < n; i++) {
 		double sine, cosine;
 		pound_elementary_sincos(e->frequency_hz * (i * e->time_step), &sine, &cosine);
-		a[i] = e->peak * sine;
+		signal->a[i] = e->peak * sine;
 	}
 }
 
-static void record(const struct pound_excitation *e, struct pound_stream noise, double *a)
+static void record(const struct pound_signal *signal, int one)
 {
-	(void)noise;
-	memcpy(a, e->record, (size_t)e->n_record * sizeof *a);
+	(void)one;
+	const struct pound_excitation *e = signal->excitation;
+	memcpy(signal->a, e->record, (size_t)e->n_record * sizeof *signal->a);
 }
 
 static const struct {
 	const char *name;
 	bool tuned;  /* has a frequency of its own */
 	bool random; /* one signal differs from the next */
+	int at_once; /* signals that are made together */
 	int (*samples)(const struct pound_excitation *e);
-	void (*fill)(const struct pound_excitation *e, struct pound_stream noise, double *a);
+	void (*fill)(const struct pound_signal *signals, int n);
 } excitations[] = {
-    {"kanai_tajimi", true, true, cycles_samples, kanai_tajimi},
-    {"white_noise", false, true, duration_samples, white_noise},
-    {"harmonic", true, false, duration_samples, harmonic},
-    {"record", false, false, record_samples, record},
+    {"kanai_tajimi", true, true, POUND_SIGNALS_MAX, cycles_samples, kanai_tajimi},
+    {"white_noise", false, true, 1, duration_samples, white_noise},
+    {"harmonic", true, false, 1, duration_samples, harmonic},
+    {"record", false, false, 1, record_samples, record},
 };
 
 enum { EXCITATIONS = sizeof excitations / sizeof excitations[0] };
@@ -141,11 +167,10 @@ int pound_excitation_samples(const struct pound_excitation *e)
 	return excitations[e->type].samples(e);
 }
 
-/* Samples of the ground acceleration of one signal.
+/* Samples of the ground acceleration of signals.
  *
- * Given    e
- *          noise                 the stream of this signal; unused by harmonic and record
- * Returns  a       (n)    m/s2   n = pound_excitation_samples(e)
+ * Given    signals  (n)    whatever their excitations, the best for speed is of one kind and length
+ * Returns  signals  a      m/s2
  *
  *   kanai_tajimi   filtered noise, times the trapezoid, scaled to peak      (filter.c)
  *   white_noise    independent normal samples, times the trapezoid, scaled to peak
@@ -153,12 +178,19 @@ int pound_excitation_samples(const struct pound_excitation *e)
  *   record         as given
  *
  * Valid    Noise whose every sample is zero stays zero: two samples both at the feet of a trapezoid.
+ *          A signal's bits do not depend on those beside it.
  * Source   model.md 4
  * Test     unit_excitation */
-void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream noise, double *a)
+void pound_signals_fill(const struct pound_signal *signals, int n)
 {
-	assert(pound_excitation_name(e->type));
-	excitations[e->type].fill(e, noise, a);
+	for (int first = 0, end; first < n; first = end) {
+		const int type = signals[first].excitation->type;
+		assert(pound_excitation_name(type));
+		for (end = first + 1; end < n && end - first < excitations[type].at_once; end++)
+			if (signals[end].excitation->type != type)
+				break;
+		excitations[type].fill(&signals[first], end - first);
+	}
 }
 
 /* Frequency around which an excitation shakes [Hz], 0 for one that has none of its own.

@@ -5,9 +5,17 @@
 #include "engine/pound.h"
 #include "engine/random.h"
 
+/* a ground motion to be made */
+struct pound_signal {
+	const struct pound_excitation *excitation;
+	struct pound_stream noise; /* of this signal; unused by harmonic and record */
+	double *a;                 /* [m/s2] (pound_excitation_samples) */
+};
+
+enum { POUND_SIGNALS_MAX = 64 }; /* made at a time */
+
 int pound_excitation_samples(const struct pound_excitation *e); /* n >= 2 */
-void pound_excitation_fill(const struct pound_excitation *e, struct pound_stream noise,
-                           double *a); /* [m/s2] (n) */
+void pound_signals_fill(const struct pound_signal *signals, int n);
 
 double pound_excitation_largest(int n, const double *a);             /* |a| */
 double pound_excitation_frequency(const struct pound_excitation *e); /* [Hz], 0: none of its own */

@@ -1,4 +1,5 @@
-/* White noise through the Kanai-Tajimi filter and the second-order high pass of Clough and Penzien.
+/* White noise through the Kanai-Tajimi filter and the second-order high pass of Clough and Penzien: its matrices, which
+ * colour.c runs.
  *
  *   1. p'''' + c3 p''' + c2 p'' + c1 p' + c0 p = w   and   a = alpha p''' + beta p''
  *   2. from sample to sample: the transition matrix, and the covariance of what the noise adds meanwhile
@@ -12,9 +13,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-
-#include "engine/dispatch.h"
-#include "engine/noise.h"
 
 enum { N = FILTER_STATES, NODES = 8 };
 
@@ -204,56 +202,4 @@ void pound_filter_init(struct pound_filter *f, double theta, double damping_rati
 	stationary(&k, f->start);
 	f->output[0] = k.alpha;
 	f->output[1] = k.beta;
-}
-
-typedef double pair __attribute__((vector_size(2 * sizeof(double))));
-
-/* a matrix by columns, each in two halves */
-struct columns {
-	pair top[N], bottom[N];
-};
-
-static struct columns columns_of(const double m[N][N])
-{
-	struct columns c;
-	for (int j = 0; j < N; j++) {
-		c.top[j] = (pair){m[0][j], m[1][j]};
-		c.bottom[j] = (pair){m[2][j], m[3][j]};
-	}
-	return c;
-}
-
-static inline pair combined(const pair column[N], double x0, double x1, double x2, double x3)
-{
-	return (column[0] * x0 + column[1] * x1) + (column[2] * x2 + column[3] * x3);
-}
-
-/* Samples of the stationary output of a filter.
- *
- * Given    f, n
- *          noise             sample k takes draw k of this stream
- * Returns  a       (n)       standard deviation: |output start|
- *
- * Test     unit_filter: the_variance_and_autocovariance_are_the_analytic_ones,
- *          the_spectrum_is_the_analytic_one */
-void pound_filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
-{
-	const int width = pound_dispatch_width(0);
-	const struct columns transition = columns_of(f->transition), step = columns_of(f->step),
-	                     start = columns_of(f->start), *added = &start;
-	double z[NOISE_WORDS][NOISE_CHUNK];
-	pair top = {0}, bottom = {0};
-	for (int first = 0; first < n; first += NOISE_CHUNK) {
-		const int end = n - first < NOISE_CHUNK ? n - first : NOISE_CHUNK;
-		pound_noise_normals(width, noise, (uint32_t)first, z);
-		for (int l = 0; l < end; l++) {
-			const double x0 = top[0], x1 = top[1], x2 = bottom[0], x3 = bottom[1];
-			top = combined(added->top, z[0][l], z[1][l], z[2][l], z[3][l]) +
-			      combined(transition.top, x0, x1, x2, x3);
-			bottom = combined(added->bottom, z[0][l], z[1][l], z[2][l], z[3][l]) +
-			         combined(transition.bottom, x0, x1, x2, x3);
-			a[first + l] = f->output[0] * top[0] + f->output[1] * top[1];
-			added = &step;
-		}
-	}
 }

@@ -17,7 +17,21 @@ struct pound_filter {
 /* theta: 2 pi filter frequency * sample step; white noise of intensity 1 per sample step */
 void pound_filter_init(struct pound_filter *f, double theta, double damping_ratio, double high_pass_ratio);
 
-/* a[k], k < n: the stationary output  (n) */
-void pound_filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a);
+/* a signal to be made: the stationary output of a filter of its own */
+struct pound_coloured {
+	struct pound_filter filter;
+	struct pound_stream noise;
+	int n;
+	double *a; /* (n) */
+};
+
+/* The same bits for any width of dispatch.h, and whichever signals are beside.  (n) */
+void pound_filters_run(int width, const struct pound_coloured *signals, int n);
+
+/* colour.c, compiled once for each */
+void pound_colour_w8(const struct pound_coloured *signals, int n);
+void pound_colour_w4(const struct pound_coloured *signals, int n);
+void pound_colour_w1(const struct pound_coloured *signals, int n);
+void pound_colour_portable(const struct pound_coloured *signals, int n);
 
 #endif

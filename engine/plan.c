@@ -226,14 +226,22 @@ static void motion_halve(struct motion *m)
 static void motions_fill(struct pound_plan *plan)
 {
 	double *ground = plan->ground;
-	for (int j = 0; j < plan->motion_keys.n; j++) {
+	struct pound_signal signals[POUND_SIGNALS_MAX];
+	for (int j = 0, waiting = 0; j < plan->motion_keys.n; j++) {
 		struct motion *m = &plan->motions[j];
 		m->n_samples = pound_excitation_samples(&m->excitation);
 		m->time_step = m->excitation.time_step;
 		m->ground = ground;
 		ground += m->halved ? 2 * m->n_samples - 1 : m->n_samples;
 		assert(ground - plan->ground <= plan->size.samples);
-		pound_excitation_fill(&m->excitation, m->noise, m->ground);
+		signals[waiting++] = (struct pound_signal){&m->excitation, m->noise, m->ground};
+		if (waiting == POUND_SIGNALS_MAX || j == plan->motion_keys.n - 1) {
+			pound_signals_fill(signals, waiting);
+			waiting = 0;
+		}
+	}
+	for (int j = 0; j < plan->motion_keys.n; j++) {
+		struct motion *m = &plan->motions[j];
 		if (m->halved)
 			motion_halve(m);
 		const double peak = pound_excitation_largest(m->n_samples, m->ground);

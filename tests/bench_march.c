@@ -76,6 +76,25 @@ static double batch_samples(const struct batch *batch)
 	return (double)batch->n * (batch->tasks[0].n_samples - 1);
 }
 
+/* Signals of an excitation, one behind the other.
+ *
+ * Given    n_samples  of one
+ */
+static void signals_make(const struct pound_excitation *e, int n_signals, int n_samples, double *ground)
+{
+	struct pound_signal signals[POUND_SIGNALS_MAX];
+	for (int j = 0, waiting = 0; j < n_signals; j++) {
+		signals[waiting++] =
+		    (struct pound_signal){.excitation = e,
+		                          .noise = {.seed = 1, .what = POUND_STREAM_NOISE, .signal = (uint32_t)j},
+		                          .a = ground + (size_t)j * (size_t)n_samples};
+		if (waiting == POUND_SIGNALS_MAX || j == n_signals - 1) {
+			pound_signals_fill(signals, waiting);
+			waiting = 0;
+		}
+	}
+}
+
 /* A task for each signal of a scene, all in one piece of ground motion that the caller frees. */
 static struct batch scene_batch(const struct pound_scene *scene, double **ground)
 {
@@ -88,12 +107,10 @@ static struct batch scene_batch(const struct pound_scene *scene, double **ground
 		task.bodies[i] = pound_scene_body(scene, i);
 	task.bodies[0].followed = true;
 	pound_scene_contact(scene, &task);
+	signals_make(e, e->signals, n, *ground);
 	for (int j = 0; j < e->signals; j++) {
-		double *a = *ground + (size_t)j * (size_t)n;
-		pound_excitation_fill(
-		    e, (struct pound_stream){.seed = 1, .what = POUND_STREAM_NOISE, .signal = (uint32_t)j}, a);
 		batch.tasks[j] = task;
-		batch.tasks[j].ground = a;
+		batch.tasks[j].ground = *ground + (size_t)j * (size_t)n;
 	}
 	return batch;
 }
@@ -323,23 +340,21 @@ static void stiffness_rows(const struct pound_scene *scene, const struct batch *
 
 struct motions {
 	const struct pound_excitation *excitation;
-	double *ground; /* of one signal */
+	int n_samples;
+	double *ground; /* (SIGNALS x n_samples) */
 };
 
 static void motions_fill(void *of)
 {
 	const struct motions *motions = of;
-	for (int j = 0; j < SIGNALS; j++)
-		pound_excitation_fill(
-		    motions->excitation,
-		    (struct pound_stream){.seed = 1, .what = POUND_STREAM_NOISE, .signal = (uint32_t)j},
-		    motions->ground);
+	signals_make(motions->excitation, SIGNALS, motions->n_samples, motions->ground);
 }
 
 static void signal_rows(const struct pound_excitation *e)
 {
 	int n = pound_excitation_samples(e);
-	struct motions motions = {.excitation = e, .ground = bench_memory(sizeof(double) * (size_t)n)};
+	struct motions motions = {
+	    .excitation = e, .n_samples = n, .ground = bench_memory(sizeof(double) * SIGNALS * (size_t)n)};
 	struct bench_job job = {.run = motions_fill, .of = &motions};
 	bench_jobs(&job, 1, REPEATS);
 	bench_print((struct bench_row){.what = bench_text("ground motions of %d samples, one thread", n),

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/dispatch.h"
 #include "engine/excitation.h"
 #include "engine/filter.h"
 #include "tests/check.h"
@@ -31,6 +32,11 @@ static struct pound_excitation excitation(int type)
 	                                 .signals = 1,
 	                                 .n_record = 5,
 	                                 .record = samples};
+}
+
+static void fill(const struct pound_excitation *e, struct pound_stream stream, double *x)
+{
+	pound_signals_fill(&(struct pound_signal){e, stream, x}, 1);
 }
 
 static double largest(const double *x, int n)
@@ -103,9 +109,9 @@ static void noise_has_exactly_the_peak_asked(void **state)
 		for (size_t i = 0; i < sizeof peaks / sizeof peaks[0]; i++) {
 			struct pound_excitation e = excitation(type);
 			const int n = pound_excitation_samples(&e);
-			pound_excitation_fill(&e, noise, a);
+			fill(&e, noise, a);
 			e.peak = peaks[i];
-			pound_excitation_fill(&e, noise, b);
+			fill(&e, noise, b);
 			assert_true(largest(b, n) == peaks[i]);
 			for (int k = 0; k < n; k++)
 				check_near(b[k] / peaks[i], a[k], 0x1p-52);
@@ -123,9 +129,9 @@ static void noise_rises_and_falls_along_a_trapezoid(void **state)
 			struct pound_excitation e = excitation(type);
 			const int n = pound_excitation_samples(&e), at = n / 2;
 			e.rise = e.fall = 0;
-			pound_excitation_fill(&e, noise, a);
+			fill(&e, noise, a);
 			e.rise = shapes[i][0], e.fall = shapes[i][1];
-			pound_excitation_fill(&e, noise, b);
+			fill(&e, noise, b);
 			double trapezoid[2000];
 			for (int k = 0; k < n; k++) {
 				const double t = (double)k / (n - 1), up = e.rise > 0 ? t / e.rise : 1;
@@ -145,8 +151,8 @@ static void kanai_tajimi_noise_is_the_filter_output_scaled(void **state)
 	const int n = pound_excitation_samples(&e);
 	struct pound_filter f;
 	pound_filter_init(&f, 2 * M_PI * e.frequency_hz * e.time_step, e.damping_ratio, e.high_pass_ratio);
-	pound_filter_run(&f, noise, n, b);
-	pound_excitation_fill(&e, noise, a);
+	pound_filters_run(pound_dispatch_width(0), &(struct pound_coloured){f, noise, n, b}, 1);
+	fill(&e, noise, a);
 	const double most = largest(b, n);
 	for (int k = 0; k < n; k++)
 		check_near(a[k], b[k] / most, 0x1p-52);
@@ -161,7 +167,7 @@ static void white_noise_has_no_memory(void **state)
 	e.rise = e.fall = 0;
 	e.duration = 1000;
 	const int n = pound_excitation_samples(&e);
-	pound_excitation_fill(&e, noise, a);
+	fill(&e, noise, a);
 	double sum = 0, variance = 0, fourth = 0;
 	for (int k = 0; k < n; k++) {
 		sum += a[k] / n;
@@ -185,7 +191,7 @@ static void a_harmonic_is_a_sine_from_zero(void **state)
 	struct pound_excitation e = excitation(HARMONIC);
 	e.peak = 2.5;
 	const int n = pound_excitation_samples(&e);
-	pound_excitation_fill(&e, noise, a);
+	fill(&e, noise, a);
 	assert_true(a[0] == 0);
 	// the phase, up to 20 turns, is off by 3 roundings
 	for (int k = 0; k < n; k++)
@@ -193,7 +199,7 @@ static void a_harmonic_is_a_sine_from_zero(void **state)
 	// the peak is the sine's even where no sample falls on it
 	e.time_step = 0.4;
 	e.duration = 0.8;
-	pound_excitation_fill(&e, noise, a);
+	fill(&e, noise, a);
 	check_near(a[1], 2.5 * sin(2 * M_PI * 0.8), 1e-15 * 2 * M_PI);
 }
 
@@ -201,7 +207,7 @@ static void a_record_is_copied(void **state)
 {
 	(void)state;
 	const struct pound_excitation e = excitation(RECORD);
-	pound_excitation_fill(&e, noise, a);
+	fill(&e, noise, a);
 	assert_memory_equal(a, e.record, 5 * sizeof(double));
 }
 
@@ -213,13 +219,13 @@ static void a_signal_of_one_step_is_finite(void **state)
 		struct pound_excitation e = excitation(type);
 		e.cycles = e.duration = 1e-6;
 		assert_int_equal(pound_excitation_samples(&e), 2);
-		pound_excitation_fill(&e, noise, a);
+		fill(&e, noise, a);
 		assert_true(a[0] == 0 && a[1] == 0);
 		e.rise = e.fall = 0;
-		pound_excitation_fill(&e, noise, a);
+		fill(&e, noise, a);
 		assert_true(largest(a, 2) == 1 && isfinite(a[0]) && isfinite(a[1]));
 		e.rise = 1;
-		pound_excitation_fill(&e, noise, a);
+		fill(&e, noise, a);
 		assert_true(a[0] == 0 && fabs(a[1]) == 1);
 	}
 }
@@ -240,7 +246,7 @@ static void extreme_filters_give_finite_noise(void **state)
 		e.high_pass_ratio = ratios[i % RATIOS];
 		const int n = pound_excitation_samples(&e);
 		assert_int_equal(n, 101);
-		pound_excitation_fill(&e, noise, a);
+		fill(&e, noise, a);
 		for (int k = 0; k < n; k++)
 			assert_true(fabs(a[k]) <= 1);
 		assert_true(largest(a, n) == 1);
@@ -260,7 +266,7 @@ static void the_bits_are_the_same_everywhere(void **state)
 			e.frequency_hz = 0.5 + 0.4 * k;
 			s.row = (uint32_t)k * 1000;
 			const int n = pound_excitation_samples(&e);
-			pound_excitation_fill(&e, s, a);
+			fill(&e, s, a);
 			for (int i = 0; i < n; i++) {
 				uint64_t bits;
 				memcpy(&bits, &a[i], sizeof bits);

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/dispatch.h"
 #include "engine/filter.h"
 #include "tests/check.h"
 
@@ -28,6 +29,11 @@ static struct pound_filter filter_of(int i)
 	struct pound_filter f;
 	pound_filter_init(&f, cases[i].theta, cases[i].xi, cases[i].ratio);
 	return f;
+}
+
+static void filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
+{
+	pound_filters_run(pound_dispatch_width(0), &(struct pound_coloured){*f, noise, n, a}, 1);
 }
 
 /* the spectrum's numerator alpha s + beta and the denominator's four coefficients, from the two factors */
@@ -236,7 +242,7 @@ static void the_spectrum_is_the_analytic_one(void **state)
 		}
 	}
 	for (int row = 0; row < SIGNALS; row++) {
-		pound_filter_run(&f, stream_of(row), LENGTH, a);
+		filter_run(&f, stream_of(row), LENGTH, a);
 		for (int j = 0; j < FREQUENCIES; j++) {
 			double re = 0, im = 0;
 			for (int k = 0; k < LENGTH; k++) {
@@ -272,7 +278,7 @@ static void the_variance_and_autocovariance_are_the_analytic_ones(void **state)
 	static double a[LONG], r[2 * REACH];
 	static const int lags[] = {0, 1, 3, 10, 30, 100};
 	const struct pound_filter f = filter_of(0);
-	pound_filter_run(&f, stream_of(0), LONG, a);
+	filter_run(&f, stream_of(0), LONG, a);
 	for (int j = 0; j < 2 * REACH; j++)
 		r[j] = (double)autocovariance(0, j);
 	for (size_t i = 0; i < sizeof lags / sizeof lags[0]; i++) {
@@ -295,7 +301,7 @@ static void a_signal_is_stationary_from_its_first_sample(void **state)
 	double first = 0, last = 0, neighbours = 0;
 	for (int row = 0; row < ROWS; row++) {
 		double a[SHORT];
-		pound_filter_run(&f, stream_of(row), SHORT, a);
+		filter_run(&f, stream_of(row), SHORT, a);
 		first += a[0] * a[0] / ROWS;
 		last += a[SHORT - 1] * a[SHORT - 1] / ROWS;
 		neighbours += a[0] * a[1] / ROWS;
@@ -315,11 +321,11 @@ static void signals_of_other_rows_samples_and_indexes_are_uncorrelated(void **st
 	double product[3] = {0};
 	for (int row = 0; row < PAIRS; row++) {
 		double a[SHORT], b[SHORT];
-		pound_filter_run(&f, stream_of(row), SHORT, a);
+		filter_run(&f, stream_of(row), SHORT, a);
 		for (int other = 0; other < 3; other++) {
 			struct pound_stream s = stream_of(row);
 			*(uint32_t *[3]){&s.row, &s.sample, &s.signal}[other] += 1;
-			pound_filter_run(&f, s, SHORT, b);
+			filter_run(&f, s, SHORT, b);
 			product[other] += a[SHORT - 1] * b[SHORT - 1] / variance;
 		}
 	}
@@ -333,16 +339,42 @@ static void the_length_of_a_signal_does_not_change_its_samples(void **state)
 	(void)state;
 	const struct pound_filter f = filter_of(0);
 	double whole[100], part[101];
-	pound_filter_run(&f, stream_of(3), 100, whole);
+	filter_run(&f, stream_of(3), 100, whole);
 	for (int n = 1; n <= 100; n++) {
 		part[n] = 12345;
-		pound_filter_run(&f, stream_of(3), n, part);
+		filter_run(&f, stream_of(3), n, part);
 		assert_memory_equal(part, whole, (size_t)n * sizeof(double));
 		assert_true(part[n] == 12345);
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(a_step_is_that_of_the_continuous_filter),
+/* Signals of other filters and lengths beside it, at any width, in groups that fill their lanes and in ones that do not. */
+static void a_signal_has_the_same_bits_whatever_is_beside_it(void **state)
+{
+	(void)state;
+	enum { MOST = 19, LONGEST = 200 };
+	static double alone[MOST][LONGEST], together[MOST][LONGEST + 1];
+	struct pound_coloured signals[MOST];
+	for (int n = 1; n <= MOST; n++)
+		for (int width = pound_dispatch_width(0); width < POUND_WIDTHS; width++) {
+			for (int j = 0; j < n; j++) {
+				signals[j] = (struct pound_coloured){filter_of(j % CASES), stream_of(j),
+				                                     1 + 37 * j * j % LONGEST, together[j]};
+				together[j][signals[j].n] = 12345;
+				struct pound_coloured one = signals[j];
+				one.a = alone[j];
+				pound_filters_run(POUND_WIDTH_PORTABLE, &one, 1);
+			}
+			pound_filters_run(width, signals, n);
+			for (int j = 0; j < n; j++) {
+				assert_memory_equal(together[j], alone[j], sizeof(double) * (size_t)signals[j].n);
+				assert_true(together[j][signals[j].n] == 12345);
+			}
+		}
+}
+
+CHECK_MAIN(cmocka_unit_test(a_signal_has_the_same_bits_whatever_is_beside_it),
+           cmocka_unit_test(a_step_is_that_of_the_continuous_filter),
            cmocka_unit_test(the_stationary_covariance_stays),
            cmocka_unit_test(samples_have_the_autocovariance_of_the_continuous_process),
            cmocka_unit_test(the_kanai_tajimi_variance_is_the_known_one),
