@@ -380,9 +380,12 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
 	vd error = vfma(split[SPLIT_LAG], ripple, press_row(s->rest[REST_ERROR], bound));
 	// the common motion's cubic, and whether its velocity keeps its sign
 	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
-	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + error, low = vmin(vmin(b1, b2), vmin(w, w1)) - error;
+	vd reach = vfma(vsplat(4 * DBL_EPSILON), bound[0], error);
+	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + reach, low = vmin(vmin(b1, b2), vmin(w, w1)) - reach;
 	vd way = vselect(vless(rate, zero), -one, one);
-	vd along = vmin(third * vmin(way * rate, way * rate1), way * (b2 - b1));
+	// b2 - b1 by what the rung adds: creeping bodies go less far than the rounding of where they are
+	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - third * (rate + rate1);
+	vd along = vmin(third * vmin(way * rate, way * rate1), way * mean);
 	along = along - vsplat(1.0265) * error;
 	vd hurry = third * swing / omega, off = g->side * g->gap;
 	struct limits limits[2] = {s->base, s->other};

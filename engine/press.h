@@ -263,7 +263,9 @@ static void work_double(struct pound_press_work *work, const double row[][N])
  * |p'| by W V/W, |p''| by (1 + G/W) W V, and kp p by what its straight part grows and kp W V/W^2, which is no more than the
  * terms in g have with W V in its place.  So bodies that rest have small bounds, however far they are pressed.
  * w - kq int e is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h |e| is
- * added for the rest, with what kq B/W^2 h/12 the straight part of int p misses a cubic by.
+ * added for the rest, with what kq B/W^2 h/12 the straight part of int p misses a cubic by.  Its roundings are those of the
+ * way, that is of h w' and of the terms of h^2 w''; where w itself is looked at, rest() adds that of it: bodies that creep
+ * may go less far than that, and their velocity still has a sign.
  */
 static void rest_fill(struct pound_press_map *map, const struct simulation *sim, double cells)
 {
@@ -287,7 +289,8 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 		map->pull[j] = dc * (map->row[PRESS_V][j] - share * map->row[PRESS_Q][j]) +
 		               dk * (map->row[PRESS_U][j] - share * map->row[PRESS_P][j]) + (j == 7);
 	// twice for the difference of rates, which is one of large numbers
-	const double rounded[N] = {2 * fabs(dk), 2 * fabs(dc), 1, 0, 0, 1}, lost[N] = {1, h};
+	const double rounded[N] = {2 * fabs(dk), 2 * fabs(dc), 1, 0, 0, 1};
+	const double lost[N] = {2 * kw * h * h, h, 0, 0, h * h, 2 * fabs(share) * h * h};
 	for (int j = 0; j < N; j++) {
 		double a2 = ahead * a0[j], a1 = (j == 1) + h * a2;
 		double a3 = cw * a2 + kw * a1 + grown[j] + (j == 2 ? jerk : 0);

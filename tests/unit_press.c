@@ -158,7 +158,38 @@ static void bodies_pressed_for_long_rest_where_their_springs_hold_them(void **st
 	}
 }
 
+/* A yielded body, damped so that it does not swing, that creeps to where its spring holds it with a light one pressed on it:
+ * long before it is there its way over a cell of contact is below the rounding of where it is, and its piece would end
+ * where it turned.
+ *
+ *   (k1 + k2 m2/m1) u = 1 + m2/m1
+ */
+static void a_yielded_body_creeps_to_rest_however_stiff_the_contact(void **state)
+{
+	(void)state;
+	double ground[SAMPLES];
+	for (int t = 0; t < 8; t++) {
+		const double w1 = 8 * M_PI, w2 = 40 * M_PI, light = 1e-6, zeta[] = {0.7, 0.999};
+		const double stiffness = pow(10, 6 + t / 2) * w1 * w1;
+		struct pound_march_task task = pressed(ground, 0, stiffness, 0);
+		task.bodies[0].skeleton =
+		    (struct pound_skeleton){.law = 1, .stiffness = w1 * w1, .hardening = 1, .yield = 1e-5};
+		task.bodies[0].damping = 2 * zeta[t % 2] * w1;
+		task.bodies[1] = task.bodies[0];
+		task.bodies[1].skeleton.stiffness = w2 * w2;
+		task.bodies[1].damping = 0.1 * w2;
+		task.contact_damping = 2 * sqrt(stiffness * light);
+		task.mass_ratio = 1 / light;
+		task.tension = true;
+		const struct pound_march_result r = march(&task);
+		assert_int_equal(r.contacts, 1);
+		check_near(r.u[0] * (w1 * w1 + w2 * w2 * light) / (1 + light), 1, 1e-13);
+		check_near(r.energy_residual, 0, 1e-13);
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(a_long_press_ends_where_its_ground_pushes_it),
            cmocka_unit_test(a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone),
            cmocka_unit_test(samples_twice_as_dense_change_no_contact_however_stiff),
-           cmocka_unit_test(bodies_pressed_for_long_rest_where_their_springs_hold_them))
+           cmocka_unit_test(bodies_pressed_for_long_rest_where_their_springs_hold_them),
+           cmocka_unit_test(a_yielded_body_creeps_to_rest_however_stiff_the_contact))
