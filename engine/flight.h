@@ -364,30 +364,31 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
 	bound[3] = vabs(vfma(-split[SPLIT_BASE], gone[3], gone[1]));
 	for (int j = 4; j < POUND_PRESS_INPUTS; j++)
 		bound[j] = vabs(x[j]);
-	vd omega = split[SPLIT_OMEGA], change = vabs(pull1 - pull), bend, drift, swing;
-	vd a = vabs(omega * x[3]), c = vabs(vfma(omega * omega, x[2], -pull));
+	const vd omega = split[SPLIT_OMEGA], per_omega = one / omega, yield = per_omega * per_omega;
+	const vd change = pull1 - pull, drift = change * (per_omega / (g->cell * cells));
+	vd a = vabs(vfma(omega, x[3], -drift));
+	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_DRAG], drift, -pull)));
 	// the greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale
-	vd swung = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c));
+	vd swung = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c)), grown = vabs(change) + vabs(drift), bend, swing;
 	// once by all that presses, and then by what of it swings: see rest_fill in press.h
 	for (int round = 0; round < 2; round++) {
 		bend = press_row(s->rest[REST_BEND], bound);
-		drift = vfma(vsplat(0.5), bend, change);
-		swing = swung + drift;
-		bound[2] = vmin(bound[2], swing);
+		swing = vfma(vsplat(0.5), bend, swung);
+		bound[2] = vmin(bound[2], swing + grown);
 	}
-	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, vsplat(0.125) * bend), vmin(pull, pull1));
-	vd still = split[SPLIT_YIELD] * pull, ripple = split[SPLIT_YIELD] * (swing + drift);
+	vd lag = vmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * vabs(drift), beside = vsplat(0.125) * bend;
+	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, lag + beside), vmin(pull, pull1));
+	vd still = yield * pull, ripple = yield * (swing + beside);
 	vd error = vfma(split[SPLIT_LAG], ripple, press_row(s->rest[REST_ERROR], bound));
-	// the common motion's cubic, and whether its velocity keeps its sign
+	ripple = vfma(yield, vabs(change) + lag, ripple);
+	// the common motion's cubic, and whether a body's velocity keeps its sign
 	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
 	vd reach = vfma(vsplat(4 * DBL_EPSILON), bound[0], error);
 	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + reach, low = vmin(vmin(b1, b2), vmin(w, w1)) - reach;
-	vd way = vselect(vless(rate, zero), -one, one);
 	// b2 - b1 by what the rung adds: creeping bodies go less far than the rounding of where they are
-	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - third * (rate + rate1);
-	vd along = vmin(third * vmin(way * rate, way * rate1), way * mean);
-	along = along - vsplat(1.0265) * error;
-	vd hurry = third * swing / omega, off = g->side * g->gap;
+	vd way0 = third * rate, way1 = third * rate1;
+	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - (way0 + way1);
+	vd creep = yield * change * vsplat(1.0 / 3), hurry = third * swing * per_omega, off = g->side * g->gap;
 	struct limits limits[2] = {s->base, s->other};
 	for (int i = 0; i < 2; i++) {
 		limits[i].top = s->at.top[i];
@@ -395,7 +396,10 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
 		vd u = i ? press_other(x[0], x[2], g->side, off) : x[0];
 		vd u1 = i ? press_other(end[0], end[2], g->side, off) : end[0];
 		vd mid = i ? vfma(share, still, -off) : share * still;
-		vm steady = vless(size * hurry, along);
+		// the line that the overlap follows goes along
+		vd more = share * creep, way = vselect(vless(way0 + more, zero), -one, one);
+		vd along = vmin(vmin(way * (way0 + more), way * (way1 + more)), way * (mean + more));
+		vm steady = vless(vfma(size, hurry, vsplat(1.0265) * error), along);
 		risk |= rest_risk(u, u1, low + mid - size * ripple, high + mid + size * ripple, way, steady,
 		                  &limits[i], edged);
 	}

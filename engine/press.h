@@ -38,9 +38,15 @@ static void split_fill(double split[N], const struct simulation *sim)
 	split[SPLIT_STIFFNESS] = dk;
 	split[SPLIT_BASE] = share;
 	split[SPLIT_OMEGA] = sqrt(stiffness);
-	split[SPLIT_YIELD] = 1 / stiffness;
+	split[SPLIT_DRAG] = (x->both * x->contact_damping + x->body[o].damping - dc * share) / split[SPLIT_OMEGA];
 	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
 	split[SPLIT_CELLS] = 1;
+}
+
+/* Overlap by what presses the bodies on each other, once it does not swing. */
+static double yield_of(const double split[N])
+{
+	return 1 / (split[SPLIT_OMEGA] * split[SPLIT_OMEGA]);
 }
 
 /* Adds term n of the rates of base and overlap, times the cell's length, at the nodes of a quadrature. */
@@ -64,8 +70,8 @@ static void rates_add(double rates[POUND_GAUSS][2][N], int n, int column, vd w, 
  */
 static void form_off(double row[N], const double split[N])
 {
-	double slack = row[2] / (1 + split[SPLIT_YIELD] * split[SPLIT_STIFFNESS] * split[SPLIT_BASE]);
-	double pull = slack * split[SPLIT_YIELD], rate = pull * split[SPLIT_DAMPING];
+	double yield = yield_of(split), slack = row[2] / (1 + yield * split[SPLIT_STIFFNESS] * split[SPLIT_BASE]);
+	double pull = slack * yield, rate = pull * split[SPLIT_DAMPING];
 	row[0] += pull * split[SPLIT_STIFFNESS];
 	row[1] += rate;
 	row[2] = slack;
@@ -210,7 +216,7 @@ static void inputs_next(double next[N][N], const double row[][N], bool off)
 		double w = next[0][j] - split[SPLIT_BASE] * next[2][j],
 		       rate = next[1][j] - split[SPLIT_BASE] * next[3][j];
 		double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + next[5][j];
-		next[2][j] -= split[SPLIT_YIELD] * pull;
+		next[2][j] -= yield_of(split) * pull;
 	}
 }
 
@@ -252,18 +258,23 @@ static void work_double(struct pound_press_work *work, const double row[][N])
  *
  *   p'' + G p' + W^2 p = g,   g = (c2 - c1) w' + (k2 - k1) w + Ap + Dp t/h       w'' = -cw w' - kw w - Aw + kp p + kq p'
  *
- * where the damping, stiffness and forcing with the index w are the means of both bodies by mass.  With e = p - g/W^2,
- * V = (p'^2 + W^2 e^2)^1/2 grows by |g'|/W at most, so that W^2 p >= g - W V: the bodies stay pressed while that is
- * positive, and meanwhile |p'| <= g/W and p <= 2 g/W^2, so that f = |kp p + kq p'| is bounded.  The rest of w'' differs from
- * its mean, (w1' - w0')/h less that of f, by its own growth at most: with F = 1/(1 - h (cw + kw h))
+ * where the damping, stiffness and forcing with the index w are the means of both bodies by mass.  What presses them goes
+ * up or down by r = (g1 - g0)/h along a straight line, off which it is b, and the overlap follows this line with a lag:
+ *
+ *   e = p - (g0 + r t)/W^2 + G r/W^4      e'' + G e' + W^2 e = b
+ *
+ * V = (e'^2 + (W e - b/W)^2)^1/2 grows by |b'|/W at most.  Pressed bodies have |p'| <= g/W and p <= 2 g/W^2, so that
+ * f = |kp p + kq p'| is bounded.  The rest of w'' differs from its mean, (w1' - w0')/h less that of f, by its own growth at
+ * most: with F = 1/(1 - h (cw + kw h))
  *
  *   A2 = F (|w1' - w0'|/h + 2 f + h kw |w'| + |Dw|) bounds w'', and so B = h^2 |g''| is bounded:
  *
- * between the ends g lies at most B/8 below them and |g'| adds up to at most |g1 - g0| + B/2.  With that W V is bounded too:
- * |p'| by W V/W, |p''| by (1 + G/W) W V, and kp p by what its straight part grows and kp W V/W^2, which is no more than the
- * terms in g have with W V in its place.  So bodies that rest have small bounds, however far they are pressed.
+ * b is at most B/8, and |b'| adds up to at most B/2.  With that W V is bounded, and the bodies stay pressed while the line
+ * less its lag, W V and B/8 is positive.  Meanwhile |p'| is at most (W V + |r|/W)/W, |p''| (1 + G/W) W V, and kp p grows by
+ * kp (W V + |g1 - g0|)/W^2, which is no more than the terms in g have with W V + |r|/W + |g1 - g0| in its place.  So bodies
+ * that rest have small bounds, however far they are pressed, and those that are pressed ever more go steadily.
  * w - kq int e is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h |e| is
- * added for the rest, with what kq B/W^2 h/12 the straight part of int p misses a cubic by.  Its roundings are those of the
+ * added for the rest, e with B/8 for what int p misses a cubic by.  Its roundings are those of the
  * way, that is of h w' and of the terms of h^2 w''; where w itself is looked at, rest() adds that of it: bodies that creep
  * may go less far than that, and their velocity still has a sign.
  */
@@ -274,11 +285,10 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 	double *split = map->row[PRESS_SPLIT];
 	split[SPLIT_CELLS] = cells;
 	const double h = x->cell * cells, share = split[SPLIT_BASE], omega = split[SPLIT_OMEGA];
-	const double dc = split[SPLIT_DAMPING], dk = split[SPLIT_STIFFNESS], yield = split[SPLIT_YIELD];
+	const double dc = split[SPLIT_DAMPING], dk = split[SPLIT_STIFFNESS], yield = yield_of(split);
 	const double cw = x->body[b].damping + share * dc, kw = x->body[b].stiffness + share * dk;
 	const double kp = fabs(share * (x->body[o].stiffness - kw)), kq = fabs(share * (x->body[o].damping - cw));
-	const double damping = x->both * x->contact_damping + x->body[o].damping - dc * share;
-	const double jerk = kp / omega + kq * (1 + damping / omega), jounce = kp * (1 + damping / omega);
+	const double jerk = kp / omega + kq * (1 + split[SPLIT_DRAG]), jounce = kp * (1 + split[SPLIT_DRAG]);
 	const double quartic = h * h * h * h * POUND_CUBIC_ERROR, rounding = 4 * DBL_EPSILON;
 	const double ahead = 1 / (1 - h * (cw + kw * h));
 	split[SPLIT_LAG] = 4 * kq * h;
@@ -346,22 +356,32 @@ static double form(const double row[N], const double x[N])
 	return (row[0] * x[0] + row[1] * x[1] + slow) + (row[2] * x[2] + row[3] * x[3] + force);
 }
 
+/* The greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale. */
+static double length_above(double x, double y)
+{
+	double a = fabs(x), b = fabs(y);
+	return a < b ? b + 0.4143 * a : a + 0.4143 * b;
+}
+
 /* Whether bodies in contact are bound to stay pressed over a rung: see rest_fill.
  *
  * Given    x     inputs;  bound  magnitudes of w, w', g, w1' - w0', and of x from there on
- *          pull  g at the start;  swing  W V there
+ *          pull  g at the start;  hurry, off  W p' and W^2 p - g there
+ *          h     length of the rung [s]
  */
 static bool rests(const struct pound_press_map *map, const double x[N], double bound[N], double pull,
-                  double swing)
+                  double hurry, double off, double h)
 {
-	double change = form(map->pull, x), pull1 = pull + change;
+	const double *split = map->row[PRESS_SPLIT];
+	double change = form(map->pull, x), pull1 = pull + change, drift = change / (split[SPLIT_OMEGA] * h);
 	bound[2] = fabs(pull) + fabs(pull1);
-	bound[3] =
-	    fabs(form(map->row[PRESS_V], x) - map->row[PRESS_SPLIT][SPLIT_BASE] * form(map->row[PRESS_Q], x));
+	bound[3] = fabs(form(map->row[PRESS_V], x) - split[SPLIT_BASE] * form(map->row[PRESS_Q], x));
 	bound[6] = fabs(x[6]);
 	bound[7] = fabs(x[7]);
-	double bend = form(map->row[REST_BEND], bound), drift = fabs(change) + 0.5 * bend;
-	return map->row[PRESS_SPLIT][SPLIT_LEAD] * (swing + drift) + 0.125 * bend < (change < 0 ? pull1 : pull);
+	double bend = form(map->row[REST_BEND], bound);
+	double swing = length_above(hurry - drift, off + split[SPLIT_DRAG] * drift) + 0.5 * bend;
+	double lag = fmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * fabs(drift);
+	return split[SPLIT_LEAD] * swing + lag + 0.125 * bend < (change < 0 ? pull1 : pull);
 }
 
 /* The longest rung that bodies in contact are bound to stay pressed over; NULL: there is none. */
@@ -380,9 +400,8 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	double w = in[0] - split[SPLIT_BASE] * x->p, rate = in[1] - split[SPLIT_BASE] * x->q;
 	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
-	double a = fabs(omega * x->q), c = fabs(omega * omega * x->p - pull);
-	double swing = a < c ? c + 0.4143 * a : a + 0.4143 * c;
-	if (!(split[SPLIT_LEAD] * swing < pull))
+	double hurry = omega * x->q, off = omega * omega * x->p - pull;
+	if (!(split[SPLIT_LEAD] * length_above(hurry, off) < pull))
 		return NULL;
 	struct pound_press_map *rung = sim->ladder->rung[press - sim->press];
 	struct pound_press_work *work = sim->ladder->work[press - sim->press];
@@ -393,7 +412,7 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 		double cells = sim->rung_cells[r];
 		in[6] = x->base_drive * x->rise * cells;
 		in[7] = x->gap_drive * x->rise * cells;
-		if (cells <= x->cells && rests(&rung[r], in, bound, pull, swing)) {
+		if (cells <= x->cells && rests(&rung[r], in, bound, pull, hurry, off, x->cell * cells)) {
 			sim->rung = r;
 			sim->worked = &work[r];
 			return &rung[r];
@@ -463,7 +482,7 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 	const double *split = map->row[PRESS_SPLIT];
 	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
-	const double off[N] = {x[0], x[1], x[2] - split[SPLIT_YIELD] * pull, x[3], x[4], x[5], x[6], x[7]};
+	const double off[N] = {x[0], x[1], x[2] - yield_of(split) * pull, x[3], x[4], x[5], x[6], x[7]};
 	double u0[2], u1[2], v1[2], means[2];
 	u0[b] = x[0], u1[b] = end[0], v1[b] = end[1], means[b] = mean;
 	u0[o] = x[0] - r->side * (r->gap + x[2]);

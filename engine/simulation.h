@@ -91,7 +91,7 @@ enum {
 	SPLIT_BASE,      /* displacement of the base, beyond the common one, by the overlap */
 	SPLIT_LAG,       /* of a rung: how far the overlap's own motion takes the common one off a slow course */
 	SPLIT_OMEGA,     /* of the contact [rad/s] */
-	SPLIT_YIELD,     /* omega^-2 */
+	SPLIT_DRAG,      /* its damping over omega */
 	SPLIT_LEAD,      /* how much more than the overlap the force swings, where contact ends with it */
 	SPLIT_CELLS,
 };

@@ -59,6 +59,27 @@ static void a_long_press_ends_where_its_ground_pushes_it(void **state)
 	}
 }
 
+/* A damped contact that is pressed ever more goes ever farther: each of its cells ends at a new largest displacement. */
+static void a_press_that_grows_for_long_goes_by_more_than_cells(void **state)
+{
+	(void)state;
+	double ground[SAMPLES], end = (SAMPLES - 1) * step;
+	for (int t = 0; t < 24; t++) {
+		double stiffness = pow(10, 4 + t / 2);
+		struct pound_march_task task = pressed(ground, 0.25, stiffness, 0);
+		for (int i = 0; i < SAMPLES; i++)
+			ground[i] += 1; // from nothing
+		task.tension = t % 2;
+		const struct pound_march_result r = march(&task);
+		double pressed_by = 0.25 * end - 0.25 * task.contact_damping / stiffness;
+		assert_int_equal(r.contacts, 1);
+		check_near(r.contact_time, end, 1e-12);
+		check_near(r.u[0] * stiffness, pressed_by, 1e-12);
+		check_near(r.displacement_max[0] * stiffness, pressed_by, 1e-12);
+		check_near(r.energy_residual, 0, 1e-13);
+	}
+}
+
 static void a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone(void **state)
 {
 	(void)state;
@@ -189,6 +210,7 @@ static void a_yielded_body_creeps_to_rest_however_stiff_the_contact(void **state
 }
 
 CHECK_MAIN(cmocka_unit_test(a_long_press_ends_where_its_ground_pushes_it),
+           cmocka_unit_test(a_press_that_grows_for_long_goes_by_more_than_cells),
            cmocka_unit_test(a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone),
            cmocka_unit_test(samples_twice_as_dense_change_no_contact_however_stiff),
            cmocka_unit_test(bodies_pressed_for_long_rest_where_their_springs_hold_them),
