@@ -10,11 +10,11 @@
 #include "engine/march.h"
 
 enum {
-	POUND_MAPS = 4,        /* free-flight maps a body keeps */
-	POUND_PEAKS = 4,       /* samples that may hold its largest displacement */
-	POUND_MAP_ORDERS = 18, /* of a map's series; 0.8^18/18! = 3e-18 */
-	POUND_PRESS_MAPS = 3,  /* pairs of pieces whose cell map and ladder a simulation keeps */
-	POUND_PRESS_RUNGS = 7, /* of a ladder: maps over many cells */
+	POUND_MAPS = 4,         /* free-flight maps a body keeps */
+	POUND_PEAKS = 4,        /* samples that may hold its largest displacement */
+	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.8^18/18! = 3e-18 */
+	POUND_PRESS_MAPS = 3,   /* pairs of pieces whose cell map and ladder a simulation keeps */
+	POUND_PRESS_RUNGS = 12, /* of a ladder: maps over many cells */
 	POUND_PRESS_INPUTS =
 	    8 /* base u, v, overlap p, q, forcing of either, and its growth over the map's length */
 };

@@ -64,8 +64,8 @@ static void a_press_that_grows_for_long_goes_by_more_than_cells(void **state)
 {
 	(void)state;
 	double ground[SAMPLES], end = (SAMPLES - 1) * step;
-	for (int t = 0; t < 24; t++) {
-		double stiffness = pow(10, 4 + t / 2);
+	for (int t = 0; t < 44; t++) {
+		double stiffness = pow(10, 4 + t / 2); // up to 3e10 radians a sample
 		struct pound_march_task task = pressed(ground, 0.25, stiffness, 0);
 		for (int i = 0; i < SAMPLES; i++)
 			ground[i] += 1; // from nothing
