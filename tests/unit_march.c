@@ -327,7 +327,7 @@ static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatte
 {
 	(void)state;
 	static const double pushes[3] = {-1, -1, -1};
-	struct pound_march_task task = wall(0, 0.05, 0, 1e34);
+	struct pound_march_task task = wall(0, 0.05, 0, 1e40);
 	task.ground = pushes;
 	task.n_samples = 3;
 	task.bodies[0].u = 0;
