@@ -226,6 +226,55 @@ static void every_lane_count_gives_the_same_bits(void **state)
 	}
 }
 
+/* Samples of 0.6 and 0.5 rad: the largest of them may lie 4 % below the largest displacement, which is v/w.  Each may add the
+ * 16 roundings that its map is allowed.  In the longer signal more samples than can be noted hold one as large. */
+static void a_largest_displacement_between_samples_is_that_of_the_motion(void **state)
+{
+	(void)state;
+	static const int lengths[] = {5, 9, 401};
+	for (int k = 0; k < 3; k++)
+		for (int paired = 0; paired < 2; paired++) {
+			const struct pound_march_task task = {
+			    .ground = still,
+			    .n_samples = lengths[k],
+			    .time_step = 0.01,
+			    .bodies = {{.skeleton = {.stiffness = 3600}, .drive = 1, .v = 1, .followed = true},
+			               {.skeleton = {.stiffness = 2500}, .drive = paired, .v = -paired, .followed = true}},
+			    .contact = paired,
+			    .gap = 1,
+			    .contact_stiffness = 3.6e5,
+			    .mass_ratio = 1,
+			    .tension = true};
+			const struct pound_march_result r = march(&task);
+			const double roundings = 16 * 2.2e-16 * lengths[k];
+			check_near(60 * r.displacement_max[0], 1, roundings);
+			check_near(50 * r.displacement_max[1], paired, roundings);
+		}
+}
+
+/* Energy is accounted for in single steps only: whole samples are to find what these do, on every law. */
+static void whole_samples_find_the_largest_displacements_of_single_steps(void **state)
+{
+	(void)state;
+	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS];
+	struct pound_march_result flown[TASKS], stepped[TASKS];
+	tasks_fill(tasks, ground, 4);
+	for (int t = 0; t < TASKS; t++) {
+		tasks[t].time_step = 0.017; // up to 0.6 rad
+		tasks[t].gap = 1e3;
+		tasks[t].bodies[1].followed = true;
+	}
+	pound_march_lanes(0, tasks, flown, TASKS, scratch);
+	for (int t = 0; t < TASKS; t++)
+		tasks[t].accounted = true;
+	pound_march_lanes(0, tasks, stepped, TASKS, scratch);
+	for (int t = 0; t < TASKS; t++)
+		for (int i = 0; i < 2; i++)
+			check_near(flown[t].displacement_max[i] / stepped[t].displacement_max[i], 1, 16 * 2.2e-16 * SAMPLES);
+}
+
 static void the_energy_put_in_is_found_again(void **state)
 {
 	(void)state;
@@ -342,6 +391,8 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(wall_impacts_lose_speed_by_restitution_and_damping),
            cmocka_unit_test(bodies_at_rest_without_ground_motion_stay_at_rest),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
+           cmocka_unit_test(a_largest_displacement_between_samples_is_that_of_the_motion),
+           cmocka_unit_test(whole_samples_find_the_largest_displacements_of_single_steps),
            cmocka_unit_test(the_energy_put_in_is_found_again),
            cmocka_unit_test(a_run_does_not_depend_on_its_neighbours),
            cmocka_unit_test(a_motion_that_dies_away_does_not_depend_on_its_neighbours),
