@@ -238,8 +238,9 @@ static void a_largest_displacement_between_samples_is_that_of_the_motion(void **
 			    .ground = still,
 			    .n_samples = lengths[k],
 			    .time_step = 0.01,
-			    .bodies = {{.skeleton = {.stiffness = 3600}, .drive = 1, .v = 1, .followed = true},
-			               {.skeleton = {.stiffness = 2500}, .drive = paired, .v = -paired, .followed = true}},
+			    .bodies =
+			        {{.skeleton = {.stiffness = 3600}, .drive = 1, .v = 1, .followed = true},
+			         {.skeleton = {.stiffness = 2500}, .drive = paired, .v = -paired, .followed = true}},
 			    .contact = paired,
 			    .gap = 1,
 			    .contact_stiffness = 3.6e5,
@@ -250,6 +251,31 @@ static void a_largest_displacement_between_samples_is_that_of_the_motion(void **
 			check_near(60 * r.displacement_max[0], 1, roundings);
 			check_near(50 * r.displacement_max[1], paired, roundings);
 		}
+}
+
+/* Every swing lies alike between its samples, up to 15 degrees off them, so that each may hold the largest displacement: there
+ * is no room to note them all when a pulse of the ground makes the later ones 1 % larger. */
+static void more_swings_than_can_be_noted_have_their_largest_displacement(void **state)
+{
+	(void)state;
+	enum { SWINGS = 241, PULSE = 120 };
+	double ground[SWINGS] = {0};
+	const double h = 0.01, w = PI / 6 / h;
+	// its area is h times its height, and the velocity there, after whole periods, that of the start
+	ground[PULSE] = -0.01 * w / h / sin(PI / 12);
+	struct pound_march_task task = {.ground = ground,
+	                                .n_samples = SWINGS,
+	                                .time_step = h,
+	                                .bodies = {{.skeleton = {.stiffness = w * w},
+	                                            .drive = 1,
+	                                            .u = cos(PI / 12),
+	                                            .v = w * sin(PI / 12),
+	                                            .followed = true}}};
+	const double flown = march(&task).displacement_max[0];
+	task.accounted = true;
+	const double stepped = march(&task).displacement_max[0];
+	assert_true(stepped > 1.005);
+	check_near(flown / stepped, 1, 16 * 2.2e-16 * SWINGS);
 }
 
 /* Energy is accounted for in single steps only: whole samples are to find what these do, on every law. */
@@ -272,7 +298,8 @@ static void whole_samples_find_the_largest_displacements_of_single_steps(void **
 	pound_march_lanes(0, tasks, stepped, TASKS, scratch);
 	for (int t = 0; t < TASKS; t++)
 		for (int i = 0; i < 2; i++)
-			check_near(flown[t].displacement_max[i] / stepped[t].displacement_max[i], 1, 16 * 2.2e-16 * SAMPLES);
+			check_near(flown[t].displacement_max[i] / stepped[t].displacement_max[i], 1,
+			           16 * 2.2e-16 * SAMPLES);
 }
 
 static void the_energy_put_in_is_found_again(void **state)
@@ -392,6 +419,7 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(bodies_at_rest_without_ground_motion_stay_at_rest),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
            cmocka_unit_test(a_largest_displacement_between_samples_is_that_of_the_motion),
+           cmocka_unit_test(more_swings_than_can_be_noted_have_their_largest_displacement),
            cmocka_unit_test(whole_samples_find_the_largest_displacements_of_single_steps),
            cmocka_unit_test(the_energy_put_in_is_found_again),
            cmocka_unit_test(a_run_does_not_depend_on_its_neighbours),
