@@ -2,7 +2,8 @@
  *
  * Included by march.c alone, once per lane count.  A map takes a simulation over its sample or cell at once; the cubic
  * through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
- * edge of a law, no new largest displacement.  A lane in which it cannot prove that stays in front of it. */
+ * edge of a law, no new largest displacement.  A lane in which it cannot prove that stays in front of it; but a sample that
+ * may hold nothing but a largest displacement is flown over, and noted. */
 #ifndef FLIGHT_H
 #define FLIGHT_H
 

@@ -585,7 +585,7 @@ static_assert(sizeof(struct work) <= POUND_MARCH_SCRATCH, "the work space is too
  *
  * Given    tasks    (n)
  *          scratch  POUND_MARCH_SCRATCH bytes, 64-byte aligned
- * Returns  results  (n); status POUND_CHATTER where a task ended early
+ * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
  *
  * Source   model.md 1
  * Test     unit_march, unit_response
