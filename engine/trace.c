@@ -1,6 +1,7 @@
 /* trace.c - one task followed by power series from event to event, every piece handed out.
  *
  * 1. Over a step the bodies and the overlap are power series; the step is short enough for them to end in rounding.
+ *    A contact whose own swing has died away is a series too, as long as the bodies' own motion allows, however stiff.
  * 2. It is cut at the first root of a guard, found by parabolas that pass no root: contact opens or closes, an edge of
  *    a law is reached, a velocity turns.
  * 3. The floor's absolute acceleration -(c v + r + F)/m1 and its part -F/m1 are combinations of the same series.
@@ -23,6 +24,11 @@ enum {
 
 static const double NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
 static const double REACH = 1;                /* largest rate * step of a series */
+
+/* Least rate_touch * step of a settled contact: its overlap is found from a power on by those above, which count by up to
+ * N G/(W^2 h) and N^2/(W h)^2, with G/W up to 2: below 0.3 and 0.02. */
+static const double SETTLED_LEAST = 128;
+enum { SETTLED_ROUNDS = 8 };
 
 enum event { NOTHING, CUT, CONTACT, CLEARS, BODY }; // an edge of body i is BODY + EDGES i + edge
 
@@ -119,6 +125,91 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 		s->p[n + 1] = s->q[n] * share;
 		s->q[n + 1] = (b[0] - b[1] - (1 + task->mass_ratio) * push) * share;
 	}
+}
+
+/* Largest of what the accelerations of both bodies are made of, but for the contact's [m/s2]. */
+static double pull_of(const struct pound_trace *t)
+{
+	double sum = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_march_body *b = &t->task->bodies[i];
+		const struct pound_piece *piece = &t->at[i].piece;
+		sum += fabs(b->damping * t->v[i]) + fabs(piece->stiffness * t->u[i]) + fabs(piece->offset) +
+		       fabs(b->drive * t->ground);
+	}
+	return sum;
+}
+
+/* Whether a contact may be settled: its overlap is neither fast nor accelerated, as the swinging one is all the time. */
+static bool may_settle(const struct pound_trace *t, double pull)
+{
+	const struct pound_march_task *task = t->task;
+	double apart = 0, slow = t->rate / t->rate_touch;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_march_body *b = &task->bodies[i];
+		double force = b->damping * t->v[i] + t->at[i].piece.stiffness * t->u[i] + t->at[i].piece.offset +
+		               b->drive * t->ground;
+		apart += i ? force : -force;
+	}
+	double push = task->contact_stiffness * t->p + task->contact_damping * t->q;
+	return fabs(apart - (1 + task->mass_ratio) * push) <= 4 * slow * slow * pull;
+}
+
+/* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing has
+ * died away to rounding.
+ *
+ * Given    pull    as pull_of has it
+ * Returns  value   false: it has not settled; s is not to be used
+ *
+ *   w = (m1 u1 + m2 u2)/(m1 + m2)     w'' = (r b1 + b2)/(1 + r)     r = m1/m2
+ *   p'' = b1 - b2 - (1 + r) (K p + C p')
+ *
+ * with the accelerations b1, b2 of the bodies without their contact.  The overlap is that part of the solution which has a
+ * power series as short as that of w: its coefficients follow from those above, down from the last.  What it adds to b1 and
+ * b2 is by (rate/W)^2 less than what they are made of, so that few rounds settle that.
+ */
+static bool series_settle(struct series *s, const struct pound_trace *t, double dt, int order, double pull)
+{
+	const struct pound_march_task *task = t->task;
+	const double both = 1 + task->mass_ratio, share[2] = {1 / both, -task->mass_ratio / both}, dt2 = dt * dt;
+	const double spring = both * task->contact_stiffness * dt2, dash = both * task->contact_damping * dt;
+	const double w0 = (task->mass_ratio * t->u[0] + t->u[1]) / both;
+	const double rate0 = (task->mass_ratio * t->v[0] + t->v[1]) / both * dt;
+	double c[2], k[2], f[2][2], apart[N + 1], last = -1;
+	for (int i = 0; i < 2; i++) {
+		const struct pound_march_body *b = &task->bodies[i];
+		const struct pound_piece *piece = &t->at[i].piece;
+		c[i] = b->damping * dt;
+		k[i] = piece->stiffness * dt2;
+		f[i][0] = (b->drive * t->ground + piece->offset) * dt2;
+		f[i][1] = b->drive * t->slope * dt2 * dt;
+	}
+	s->order = order;
+	s->step = dt;
+	for (int n = 0; n <= N + 1; n++)
+		s->p[n] = s->q[n] = 0;
+	s->p[0] = t->p;
+	for (int round = 0; round < SETTLED_ROUNDS && s->p[0] != last; round++) {
+		double w = w0, rate = rate0;
+		last = s->p[0];
+		for (int n = 0; n <= order; n++) {
+			double b[2], off = s->p[n] + (n == 0 ? task->gap : 0);
+			for (int i = 0; i < 2; i++) {
+				s->u[i][n] = w + share[i] * off;
+				s->w[i][n] = rate + share[i] * s->q[n];
+				b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n < 2 ? f[i][n] : 0);
+			}
+			apart[n] = b[0] - b[1];
+			w = rate * SHARE[n];
+			rate = (task->mass_ratio * b[0] + b[1]) / both * SHARE[n];
+		}
+		for (int n = order; n >= 0; n--) {
+			s->q[n] = (n + 1) * s->p[n + 1];
+			s->p[n] = (apart[n] - dash * s->q[n] - (n + 1) * s->q[n + 1]) / spring;
+		}
+	}
+	double swing = fabs(t->p - s->p[0]) * spring, hurry = fabs(t->q * dt - s->q[0]) * sqrt(spring);
+	return swing + hurry <= NOTHING_BESIDE * (pull * dt2);
 }
 
 /* ---- first roots ---- */
@@ -366,17 +457,35 @@ static void state_move(struct pound_trace *t, const struct series *s, double tim
 	t->ground += t->slope * (time * dt);
 }
 
+/* How far a series reaches; whether that is to the next sample. */
+static bool step_length(const struct pound_trace *t, double rate, double *dt)
+{
+	double reach = rate > 0 ? REACH / rate * t->pace : DBL_MAX, steps = t->left / reach;
+	*dt = steps <= 1 ? t->left : steps > 2 ? reach : 0.5 * t->left;
+	return steps <= 1;
+}
+
+/* The series of the next step; whether it goes to the next sample. */
+static bool series_next(struct series *s, const struct pound_trace *t)
+{
+	double dt, rate = t->touching ? t->rate_touch : t->rate;
+	bool whole = step_length(t, t->rate, &dt);
+	if (t->touching && rate * dt >= SETTLED_LEAST) {
+		double pull = pull_of(t);
+		if (may_settle(t, pull) && series_settle(s, t, dt, order_of(t->rate * dt), pull))
+			return whole;
+	}
+	whole = step_length(t, rate, &dt);
+	bool flight = whole && t->sampled && !t->touching;
+	series_fill(s, t, dt, flight ? t->order_sample : order_of(rate * dt));
+	return whole;
+}
+
 /* One step: to the next event, the next sample, or as far as a series reaches. */
 static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 {
-	double rate = t->touching ? t->rate_touch : t->rate;
-	double reach = rate > 0 ? REACH / rate * t->pace : DBL_MAX;
-	double steps = t->left / reach;
-	bool whole = steps <= 1;
-	double dt = whole ? t->left : steps > 2 ? reach : 0.5 * t->left;
 	struct series s;
-	bool flight = whole && t->sampled && !t->touching;
-	series_fill(&s, t, dt, flight ? t->order_sample : order_of(rate * dt));
+	bool whole = series_next(&s, t);
 	struct search search = {.time = 1, .event = NOTHING};
 	if (t->task->contact)
 		search_contact(&search, &s, t);

@@ -89,6 +89,35 @@ static void any_scene_moves_as_in_the_march(void **state)
 	assert_true(touched > 30 && turned > 20);
 }
 
+/* Ten thousand radians of the contact go by in every sample in which the bodies stay pressed on each other. */
+static void a_contact_that_has_settled_is_followed_by_whole_samples(void **state)
+{
+	(void)state;
+	enum { SAMPLES = 301 };
+	for (int wall = 0; wall < 2; wall++) {
+		struct specimen specimen;
+		specimen_init(&specimen);
+		specimen.study.scene.contact.stiffness_ratio = 1e10;
+		specimen.study.scene.contact.restitution = 0;
+		specimen.study.scene.oscillators[1].rigid_wall = wall;
+		double *ground = specimen_record(&specimen, 0.01, SAMPLES);
+		for (int t = 0; t < SAMPLES; t++)
+			ground[t] = -1;
+		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_march_result r = march(&task);
+		const struct ended e = trace_to_end(&task);
+		assert_int_equal(e.trace.status, POUND_OK);
+		assert_int_equal(e.trace.contacts, r.contacts);
+		assert_true(r.contact_time > 0.1);
+		assert_true(e.pieces < 10 * SAMPLES);
+		check_near(e.trace.contact_time, r.contact_time, 1e-9);
+		check_near(e.trace.impulse_max, r.impulse_max, 1e-9);
+		check_near(e.trace.u[0], r.u[0], 1e-12);
+		check_near(e.trace.v[0], r.v[0], 1e-11);
+		specimen_free(&specimen);
+	}
+}
+
 static void pieces_follow_each_other_without_holes(void **state)
 {
 	(void)state;
@@ -174,6 +203,7 @@ static void terms_end_in_rounding(void **state)
 
 CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impacts_come_out_to_their_digits),
            cmocka_unit_test(any_scene_moves_as_in_the_march),
+           cmocka_unit_test(a_contact_that_has_settled_is_followed_by_whole_samples),
            cmocka_unit_test(pieces_follow_each_other_without_holes),
            cmocka_unit_test(the_acceleration_is_that_of_the_motion),
            cmocka_unit_test(a_floor_without_contact_is_all_flight),
