@@ -403,6 +403,7 @@ static void bodies_alike_until_one_yields_meet_a_bounded_number_of_times(void **
 				check_near(r.response.energy_residual, 0, balanced);
 				// each takes half a period of the contact, which is 40 ms, but for a few at an edge
 				assert_true(r.response.contact_count <= 8 / 0.02);
+				specimen_free(&specimen);
 			}
 }
 
