@@ -276,17 +276,6 @@ LANE_INLINE void samples_next(struct samples *s, struct pressed *x, vm entering,
 	s->next = vgather(s->at);
 }
 
-/* Brings a simulation to the interval that its lane is in. */
-static void samples_leave(struct simulation *sim, int64_t next)
-{
-	if (sim->next == next)
-		return;
-	const double *ground = &sim->task->ground[next];
-	sim->next = next;
-	sim->x.slope = (ground[0] - ground[-1]) * sim->per_step;
-	sim->steps = 0;
-}
-
 /* Lanes that keep their rung: it has room before the next sample, and none longer has behind the one just entered. */
 LANE_INLINE vm rest_stays(const struct press *s, vm entered)
 {
@@ -373,7 +362,9 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	unsigned ends = vbits(ended), refusals = vbits(refused), goes = vbits(gone), stays = vbits(pressed);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
-		samples_leave(sim, sim->last - (int64_t)left[l]);
+		int64_t next = sim->last - (int64_t)left[l];
+		if (next != sim->next)
+			interval_set(sim, next);
 		sim->cells_pressed += rounds[l] * sim->pressed->row[PRESS_SPLIT][SPLIT_CELLS];
 		send(work, sim,
 		     ends >> l & 1    ? STAGE_END
@@ -425,9 +416,7 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	                        .edged = edged,
 	                        .right = b->traits & TRAIT_RIGHT,
 	                        .forced = b->traits & TRAIT_FORCED,
-	                        .active = vmask((1u << b->n) - 1),
-	                        .parted = vmask(0),
-	                        .fresh = vmask(0)};
+	                        .active = vmask((1u << b->n) - 1)};
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);

@@ -263,9 +263,9 @@ static void work_double(struct pound_press_work *work, const double row[][N])
  *
  *   e = p - (g0 + r t)/W^2 + G r/W^4      e'' + G e' + W^2 e = b
  *
- * V = (e'^2 + (W e - b/W)^2)^1/2 grows by |b'|/W at most.  Pressed bodies have |p'| <= g/W and p <= 2 g/W^2, so that
- * f = |kp p + kq p'| is bounded.  The rest of w'' differs from its mean, (w1' - w0')/h less that of f, by its own growth at
- * most: with F = 1/(1 - h (cw + kw h))
+ * V = (e'^2 + (W e - b/W)^2)^1/2 grows by |b'|/W at most.  Pressed bodies have |p'| <= g/W and p <= 2 g/W^2: what holds
+ * up to a first release proves that there is none.  So f = |kp p + kq p'| is bounded.  The rest of w'' differs from its
+ * mean, (w1' - w0')/h less that of f, by its own growth at most: with F = 1/(1 - h (cw + kw h))
  *
  *   A2 = F (|w1' - w0'|/h + 2 f + h kw |w'| + |Dw|) bounds w'', and so B = h^2 |g''| is bounded:
  *

@@ -97,16 +97,23 @@ static void piece_enter(struct simulation *sim, int i)
 
 /* ---- what follows ---- */
 
+/* The interval that ends at a sample is the one that a simulation is in. */
+static void interval_set(struct simulation *sim, int64_t next)
+{
+	const double *a = &sim->task->ground[next];
+	sim->next = next;
+	sim->x.slope = (a[0] - a[-1]) * sim->per_step;
+	sim->steps = 0;
+}
+
 /* Enters the interval that ends at sim->next. */
 static void simulation_interval(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
-	const double *a = &sim->task->ground[sim->next];
-	x->ground = a[-1];
-	x->slope = (a[0] - a[-1]) * sim->per_step;
+	interval_set(sim, sim->next);
+	x->ground = sim->task->ground[sim->next - 1];
 	x->part = sim->touching ? 0 : sim->task->time_step;
 	x->cells = sim->touching ? x->cells_whole : 0;
-	sim->steps = 0;
 }
 
 /* The next step by power series. */
@@ -164,7 +171,7 @@ static void contact_turn(struct simulation *sim, double left, double speed)
 	}
 }
 
-/* A simulation at rest, or at its start, goes on from a sample. */
+/* A simulation whose bodies are apart goes on from a sample. */
 static enum pound_stage simulation_from(struct simulation *sim)
 {
 	if (sim->can_fly)
@@ -172,12 +179,14 @@ static enum pound_stage simulation_from(struct simulation *sim)
 	return simulation_meet(sim);
 }
 
-/* Whether nothing is left of the motion, nor comes from the ground in this interval.
+/* Brings to rest what is left of next to nothing, where nothing comes from the ground in this interval.
  *
  * Bodies that do not touch come to rest each by itself: one may have long ended where the other still moves, or stays where
  * it has yielded to.
+ *
+ * Returns  value  nothing is left of either: simulation_rest is to follow
  */
-static bool simulation_over(struct simulation *sim)
+static bool simulation_settles(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	if (x->ground != 0 || x->slope != 0)
@@ -222,7 +231,7 @@ static enum pound_stage simulation_flown(struct simulation *sim, enum pound_stag
 	if (sim->next > sim->last)
 		return STAGE_END;
 	simulation_interval(sim);
-	return simulation_over(sim) ? simulation_rest(sim) : stage;
+	return simulation_settles(sim) ? simulation_rest(sim) : stage;
 }
 
 /* What a simulation does next. */
@@ -234,11 +243,11 @@ static enum pound_stage simulation_next(struct simulation *sim)
 			return STAGE_END;
 		sim->next++;
 		simulation_interval(sim);
-		if (simulation_over(sim))
+		if (simulation_settles(sim))
 			return simulation_rest(sim);
 		// apart, and not about to touch inside the next interval
 		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->part * x->q < 0)
-			return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
+			return simulation_from(sim);
 	}
 	if (sim->touching && x->part == 0 && sim->can_press)
 		return press_ready(sim);
@@ -254,7 +263,7 @@ static enum pound_stage simulation_next(struct simulation *sim)
 static enum pound_stage simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
                                            bool gone)
 {
-	if (simulation_over(sim))
+	if (simulation_settles(sim))
 		return simulation_rest(sim);
 	if (refused)
 		sim->rung_limit = stage == STAGE_REST ? sim->rung - 1 : 0;
@@ -300,7 +309,7 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
  *
  * Given    next    sample at its end
  *          u, v    of body i at its start;  bound: of |u| inside;  top: the largest that is known
- * Returns  value   false: there is no room, or no need to look later
+ * Returns  value   false: there is no room for it
  */
 static bool peak_note(struct simulation *sim, int i, int64_t next, double u, double v, double bound,
                       double top)
