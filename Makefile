@@ -23,7 +23,7 @@ WIDTHS         := portable w1 w4 w8
 LANES.portable := -DPOUND_LANES=1
 LANES.w1       := -DPOUND_LANES=1 -mfma
 LANES.w4       := -DPOUND_LANES=4 -mavx2 -mfma
-LANES.w8       := -DPOUND_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
+LANES.w8       := -DPOUND_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512 -mtune=skylake-avx512
 
 PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libcjson-dev librandom123-dev \
             nettle-dev libcurl4-openssl-dev libcmocka-dev curl

@@ -1,6 +1,6 @@
 /* flight.h - whole samples apart and whole cells of contact, by precomputed exact maps.
  *
- * Included by march.c alone, once per lane count.  A map takes a simulation over its sample or cell at once; the cubic
+ * Included by march.c, once per lane count, and by its test.  A map takes a simulation over its sample or cell at once; the cubic
  * through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
  * edge of a law, no new largest displacement.  A lane in which it cannot prove that stays in front of it; but a sample that
  * may hold nothing but a largest displacement is flown over, and noted. */
@@ -8,13 +8,71 @@
 #define FLIGHT_H
 
 #include <float.h>
+#include <math.h>
 
 #include "engine/lanes.h"
 #include "engine/simulation.h"
+#include "engine/stepping.h"
 
 struct lanes {
 	POUND_ROWS(vd)
 };
+
+/* Largest rate * time of a map over a sample; above the shorter one it takes more terms. */
+static const double REACH_MAP = 2, REACH_MAP_SHORT = 0.8;
+
+/* terms of order n of psi, the response to an initial velocity of 1, and of its derivative times h; sums over the orders:
+ * psi and h psi', the integrals of psi once and twice, and what bounds the fourth derivative of each column of the map */
+struct map_series {
+	double u, w;
+	double psi, rate, once, twice;
+	double bend_u, bend_v, bend_a, bend_d;
+};
+
+/* Given    ch, kh  c h and k h^2 */
+LANE_INLINE void map_order(struct map_series *s, double ch, double kh, int n)
+{
+	const double share = 1.0 / (n + 1), four = n * (n - 1.0) * (n - 2.0) * (n - 3.0);
+	s->psi += s->u;
+	s->rate += s->w;
+	s->once = fma(s->u, share, s->once);
+	s->twice = fma(s->u, share * (1.0 / (n + 2)), s->twice);
+	s->bend_u = fma(four, fabs(fma(ch, s->u, s->w)), s->bend_u);
+	s->bend_v = fma(four, fabs(s->u), s->bend_v);
+	s->bend_a = fma(n * (n - 1.0) * (n - 2.0), fabs(s->u), s->bend_a);
+	s->bend_d = fma(n * (n - 1.0), fabs(s->u), s->bend_d);
+	const double w = fma(-(ch * share), s->w, -(kh * share) * s->u);
+	s->u = s->w * share;
+	s->w = w;
+}
+
+/* Exact map of u'' + c u' + k u = -(a + d t/h) over one sample h, and what bounds the error of the cubic through its ends.
+ *
+ * Given    k, c, h   [1/s2], [1/s], [s]   h (c + k^1/2) <= REACH_MAP
+ * Returns  map       columns for u, v, a, d
+ *
+ * All columns come from the power series of psi, the response to an initial velocity of 1: the response to an initial
+ * displacement is psi' + c psi, those to constant and growing forcing are its integrals.  By linearity the fourth derivative
+ * is at most the sum of the inputs' magnitudes times that of their own columns, and these are at most the sums of their
+ * terms' magnitudes; 16 roundings of the displacement at either end are added.
+ */
+static void map_fill(struct pound_map *map, double k, double c, double h)
+{
+	const double ch = c * h, kh = k * h * h, quartic = POUND_CUBIC_ERROR, rounding = 16 * DBL_EPSILON;
+	struct map_series s = {.w = h};
+	_Pragma("GCC unroll 18") for (int n = 0; n < POUND_MAP_ORDERS; n++) map_order(&s, ch, kh, n);
+	if (ch + sqrt(kh) > REACH_MAP_SHORT)
+		for (int n = POUND_MAP_ORDERS; n < POUND_MAP_LONGER; n++)
+			map_order(&s, ch, kh, n);
+	map->uv = s.psi;
+	map->uu = s.rate / h + c * s.psi;
+	map->ua = -h * s.once;
+	map->ud = -h * s.twice;
+	map->va = -s.once;
+	map->eu = quartic / h * s.bend_u + 3 * rounding;
+	map->ev = quartic * s.bend_v + 2 * rounding * h;
+	map->ef = quartic * h * fmax(s.bend_a, s.bend_d) + rounding * h * h;
+}
 
 /* a body's motion over a sample or cell: its end, the inner control points of the cubic, and the bound of its error */
 struct flight {
@@ -94,20 +152,30 @@ LANE_INLINE vm flight_peaks(const struct flight *f, vd top)
 	return vless(vmax(top, vabs(f->u)), flight_reach(f));
 }
 
+/* How far a third of a sample or cell takes a body one way at least, by its velocity anywhere inside.
+ *
+ * Given    v    velocity at the start;  f: the flight from there
+ *          way  +1, -1
+ *
+ * The velocity's control points times h/3 are its own at the ends, and b2 - b1 between; what they miss the velocity by is
+ * at most sqrt(3)/216 h^3 of the fourth derivative, that is 384 sqrt(3)/648 of the displacement's error.
+ */
+LANE_INLINE vd flight_along(vd v, const struct flight *f, vd third, vd way)
+{
+	vd ends = vmin(way * (third * v), way * (third * f->v));
+	return vmin(ends, way * (f->b2 - f->b1)) - vsplat(1.0265) * f->error;
+}
+
 /* Lanes in which an edge of a body's piece may be reached.
  *
  * Given    v  velocity at the start;  f: the flight from there
  */
 LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct limits *x)
 {
-	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2);
+	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2), zero = vsplat(0);
 	vm risk = vless(x->high, vmax(high, f->u) + f->error);
 	risk |= vless(vmin(low, f->u) - f->error, x->low);
-	// the velocity's control points times h/3: its own at the ends, b2 - b1 between; it misses the velocity by at
-	// most sqrt(3)/216 h^3 of the fourth derivative, which is 384 sqrt(3)/648 of the displacement's error
-	vd way = x->direction;
-	vd along = vmin(vmin(way * (third * v), way * (third * f->v)), way * (f->b2 - f->b1));
-	return risk | (vless(along, vsplat(1.0265) * f->error) & ~vequal(way, vsplat(0)));
+	return risk | (vless(flight_along(v, f, third, x->direction), zero) & ~vequal(x->direction, zero));
 }
 
 /* Lanes in which either may happen. */
@@ -197,7 +265,7 @@ struct press {
 	struct pressed at;
 	struct limits base, other; /* but for their tops */
 	struct form moved[PRESS_IMPULSE + 1];
-	struct form error, drop;                /* of a cell, of the magnitudes */
+	struct form error;                      /* of a cell, of the magnitudes */
 	vd rest[REST_ROWS][POUND_PRESS_INPUTS]; /* of a rung: its bounds and how it is split */
 };
 
@@ -292,9 +360,9 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
 	if (forced) {
-		vd lowest = vmin(x[3], p.v) * g->release - form_at(&s->drop, bound, vabs(ground), vabs(rise));
+		vd force = vfma(g->release / third, flight_along(x[3], &p, third, vsplat(1)), vmin(least, x[2]));
 		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
-		risk |= ~vless(zero, vmin(least, x[2]) + lowest) & vless(zero, g->release);
+		risk |= ~vless(zero, force) & vless(zero, g->release);
 	}
 	vd side = g->side, off = side * g->gap, v = x[1] - side * x[3];
 	struct flight o = {.u = press_other(b.u, p.u, side, off),

@@ -285,7 +285,7 @@ LANE_INLINE vm rest_stays(const struct press *s, vm entered)
 
 /* Carries the maps into lanes: of a cell, or of a rung. */
 LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double *const map[W],
-                            enum pound_stage stage, bool forced)
+                            enum pound_stage stage)
 {
 	vd row[POUND_PRESS_INPUTS];
 	for (int r = 0; r <= PRESS_IMPULSE; r++) {
@@ -299,10 +299,6 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 	}
 	rows_load(row, map, PRESS_ERROR * POUND_PRESS_INPUTS);
 	s->error = form_of(row, g, true);
-	if (forced) {
-		rows_load(row, map, PRESS_DROP * POUND_PRESS_INPUTS);
-		s->drop = form_of(row, g, true);
-	}
 }
 
 LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
@@ -322,7 +318,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	const double *map[W];
 	for (int l = 0; l < W; l++)
 		map[l] = b->sim[l]->pressed->row[0];
-	press_maps(&s, &g, map, stage, forced);
+	press_maps(&s, &g, map, stage);
 	vd zero = vsplat(0), one = vsplat(1), share = one / g.cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
 	press_load(&s, &g, behind, edged);

@@ -113,7 +113,7 @@ static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const 
  *
  * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288
  * of the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times that of
- * their own columns; the lowest rate of overlap lies at most 1/8 of its largest second derivative below its ends.
+ * their own columns.
  */
 static void cell_fill(struct pound_press_map *map, struct pound_press_work *work,
                       const struct simulation *sim)
@@ -126,7 +126,6 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
 	const double cb = x->body[b].damping * h, kb = x->body[b].stiffness * h2;
 	const double co = x->body[o].damping * h + x->both * C, ko = x->body[o].stiffness * h2 + x->both * K;
-	const double drop = 0.125 * x->release / h;
 	const double start[4][N] = {{1}, {0, h}, {0, 0, 1}, {0, 0, 0, h}}; // rates times h
 	const double force_b[2][N] = {{[4] = -h2}, {[6] = -h2}}, force_p[2][N] = {{[5] = h2}, {[7] = h2}};
 	double rates[POUND_GAUSS][2][N];
@@ -135,8 +134,7 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 		memset(rates, 0, sizeof rates);
 	split_fill(row[PRESS_SPLIT], sim);
 	for (int j = 0; j < N; j += W) {
-		vd zero = vsplat(0), sum[4] = {zero, zero, zero, zero}, area = zero, mean = zero, error = zero,
-		   drops = zero;
+		vd zero = vsplat(0), sum[4] = {zero, zero, zero, zero}, area = zero, mean = zero, error = zero;
 		vd u = lanes_load(&start[0][j]), w = lanes_load(&start[1][j]);
 		vd p = lanes_load(&start[2][j]), z = lanes_load(&start[3][j]);
 		for (int n = 0; n < POUND_MAP_ORDERS; n++) {
@@ -147,7 +145,6 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 			area = vfma(p, vsplat(share), area);
 			mean = vfma(u, vsplat(share), mean);
 			error = vfma(vsplat(bend), vmax(vabs(u), vabs(p)), error);
-			drops = vfma(vsplat(drop * n * (n - 1.0)), vabs(z), drops);
 			if (work)
 				rates_add(rates, n, j, w, z);
 			vd w1 = -vfma(vsplat(kb * share), u, vsplat(push * K * share) * p);
@@ -169,7 +166,6 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 		lanes_store(&row[PRESS_IMPULSE][j],
 		            vfma(vsplat(x->contact_stiffness * h), area, vsplat(x->contact_damping) * sum[2]));
 		lanes_store(&row[PRESS_ERROR][j], error);
-		lanes_store(&row[PRESS_DROP][j], drops);
 		if (work)
 			lanes_store(&work->mean[j], mean);
 	}

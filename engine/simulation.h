@@ -13,6 +13,7 @@ enum {
 	POUND_MAPS = 4,         /* free-flight maps a body keeps */
 	POUND_PEAKS = 4,        /* samples that may hold its largest displacement */
 	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.8^18/18! = 3e-18 */
+	POUND_MAP_LONGER = 26,  /* of a long sample's; 2^26/26! = 2e-19 */
 	POUND_PRESS_MAPS = 3,   /* pairs of pieces whose cell map and ladder a simulation keeps */
 	POUND_PRESS_RUNGS = 12, /* of a ladder: maps over many cells */
 	POUND_PRESS_INPUTS =
@@ -75,12 +76,10 @@ enum {
 	PRESS_Q,
 	PRESS_IMPULSE,
 	PRESS_ERROR, /* of a cell: of the cubics of the base's displacement and of the overlap */
-	PRESS_DROP,  /* of release * rate of overlap below the lesser of its ends */
-	PRESS_ROWS,
 	REST_ERROR =
-	    PRESS_ERROR,        /* of a rung, by other magnitudes (press.h): of the cubic of the common motion */
-	REST_BEND = PRESS_DROP, /* of what presses the bodies on each other, off its straight line */
-	PRESS_SPLIT = PRESS_ROWS, /* not a form but the enum below */
+	    PRESS_ERROR, /* of a rung, by other magnitudes (press.h): of the cubic of the common motion */
+	REST_BEND,       /* of a rung: of what presses the bodies on each other, off its straight line */
+	PRESS_SPLIT,     /* not a form but the enum below */
 	REST_ROWS,
 };
 

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/flight.h"
 #include "engine/press.h"
 #include "engine/series.h"
 #include "engine/simulation.h"
@@ -36,38 +37,6 @@ static double most(double a, double b)
 }
 
 /* ---- maps ---- */
-
-/* Exact map of u'' + c u' + k u = -(a + d t/h) over one sample h, and what bounds the error of the cubic through its ends.
- *
- * Given    k, c, h   [1/s2], [1/s], [s]   h (c + k h) <= 1/2
- * Returns  map       columns for u, v, a, d
- *
- * All columns come from the power series of psi, the response to an initial velocity of 1: the response to an initial
- * displacement is psi' + c psi, those to constant and growing forcing are its integrals.
- * With A2, A3, A4 the largest second, third and fourth derivatives inside and h (c + k h) <= 1/2:
- *   A3 <= 2 (J0 + h k A0),  A2 <= A0 + h A3,  A4 <= c A3 + k A2,  error <= A4 h^4/288
- *   A0 = c |v| + k |u| + |a|,  J0 = c A0 + k |v| + |d|/h
- * to which 16 roundings of the displacement at either end are added.
- */
-static void map_fill(struct pound_map *map, double k, double c, double h)
-{
-	double ch = c * h, kh = k * h * h;
-	double u = 0, w = h, psi = 0, rate_sum = 0, once = 0, twice = 0; // w: u' h
-	ORDERS_UP(n, 0, POUND_MAP_ORDERS - 1, const double share = 1.0 / (n + 1);
-	          double next = fma(-(ch * share), w, -(kh * share) * u); psi += u; rate_sum += w;
-	          once = fma(u, share, once); twice = fma(u, share * (1.0 / (n + 2)), twice); u = w * share;
-	          w = next;)
-	map->uv = psi;
-	map->uu = rate_sum / h + c * psi;
-	map->ua = -h * once;
-	map->ud = -h * twice;
-	map->va = -once;
-	double quartic = h * h * h * h * POUND_CUBIC_ERROR, rate = c + k * h, rounding = 16 * DBL_EPSILON;
-	double ej = quartic * 2 * rate, ea = quartic * (k + 2 * rate * rate);
-	map->eu = ea * k + 3 * rounding;
-	map->ev = ea * c + ej * k + 2 * rounding * h;
-	map->ef = most(ea, ej / h) + rounding * h * h;
-}
 
 /* Puts a body's current piece, and the map that belongs to it, into the rows. */
 static void piece_enter(struct simulation *sim, int i)
@@ -390,7 +359,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 		double k = body->skeleton.stiffness;
 		double omega = sqrt(k);
 		rate = most(rate, most(omega, body->damping));
-		can_fly &= h * (body->damping + k * h) <= 0.5;
+		can_fly &= h * (body->damping + omega) <= REACH_MAP;
 		x->u[i] = body->u, x->v[i] = body->v;
 		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
 		x->body[i].damping = body->damping;

@@ -1,0 +1,116 @@
+/* unit_flight.c - whole samples by maps: what bounds a motion inside a sample, against maps over parts of it. */
+#include "tests/check.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/flight.h"
+
+static double random_number(uint64_t *seed)
+{
+	*seed = *seed * 6364136223846793005u + 1442695040888963407u;
+	return (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+/* a body in front of a sample of length h, at the end of which the ground's acceleration is next */
+struct sample {
+	struct lanes g;
+	double h, next;
+};
+
+/* A body whose sample is up to two radians long, damped up to twice the critical damping. */
+static struct sample sample_random(uint64_t *seed)
+{
+	struct sample s = {.h = 0.01, .next = random_number(seed) - 0.5};
+	const double radians = REACH_MAP * random_number(seed), rest = REACH_MAP - radians;
+	const double damping = fmin(4 * radians, rest) * random_number(seed);
+	s.g.body[0].stiffness = radians * radians / (s.h * s.h);
+	s.g.body[0].damping = damping / s.h;
+	s.g.body[0].drive = 1;
+	s.g.body[0].offset = random_number(seed) - 0.5;
+	s.g.ground = random_number(seed) - 0.5;
+	const double unit = 1 / fmax(s.g.body[0].stiffness, 1); // where forcing and spring are alike
+	s.g.u[0] = unit * (random_number(seed) - 0.5);
+	s.g.v[0] = unit / s.h * (random_number(seed) - 0.5);
+	return s;
+}
+
+/* The motion after a share of the sample: displacement, velocity, and what bounds it on the way. */
+static struct flight sample_fly(const struct sample *s, double share)
+{
+	struct sample part = *s;
+	struct pound_map map;
+	map_fill(&map, s->g.body[0].stiffness, s->g.body[0].damping, share * s->h);
+	memcpy(&part.g.map[0], &map, sizeof map);
+	const struct flyer flyer = flyer_of(&part.g, 0);
+	const double grown = share * (s->next - s->g.ground);
+	return flight_step(&flyer, &part.g, 0, s->g.ground + grown, fabs(s->g.ground) + fabs(grown),
+	                   share * s->h / 3);
+}
+
+enum { SAMPLES = 4000, PARTS = 16 };
+
+static void the_cubic_misses_the_motion_by_no_more_than_its_error(void **state)
+{
+	(void)state;
+	uint64_t seed = 1;
+	double nearest = 0;
+	for (int n = 0; n < SAMPLES; n++) {
+		const struct sample s = sample_random(&seed);
+		const struct flight whole = sample_fly(&s, 1);
+		for (int j = 1; j < PARTS; j++) {
+			const double t = (double)j / PARTS, b = 1 - t, u = sample_fly(&s, t).u;
+			const double cubic = b * b * b * s.g.u[0] + 3 * b * b * t * whole.b1 + 3 * b * t * t * whole.b2 +
+			                     t * t * t * whole.u;
+			// the error is that of the inner points: it lifts the cubic by 3/4 of it in the middle
+			const double lifted = 3 * t * b * whole.error;
+			assert_true(fabs(u - cubic) <= lifted);
+			nearest = fmax(nearest, fabs(u - cubic) / lifted);
+		}
+	}
+	assert_true(nearest > 0.5); // or it would be wider than it need be
+}
+
+static void no_velocity_inside_is_below_the_bound_of_it(void **state)
+{
+	(void)state;
+	uint64_t seed = 2;
+	double nearest = INFINITY;
+	for (int n = 0; n < SAMPLES; n++) {
+		const struct sample s = sample_random(&seed);
+		const struct flight whole = sample_fly(&s, 1);
+		const double third = s.h / 3;
+		for (int way = -1; way <= 1; way += 2) {
+			const double bound = flight_along(s.g.v[0], &whole, third, way);
+			for (int j = 1; j < PARTS; j++) {
+				const double v = sample_fly(&s, (double)j / PARTS).v;
+				assert_true(way * third * v >= bound);
+				nearest = fmin(nearest, (way * third * v - bound) / whole.error);
+			}
+		}
+	}
+	assert_true(nearest < 1);
+}
+
+/* The same motion by one sample and by two halves. */
+static void two_halves_of_a_sample_are_the_whole(void **state)
+{
+	(void)state;
+	uint64_t seed = 3;
+	for (int n = 0; n < SAMPLES; n++) {
+		struct sample s = sample_random(&seed);
+		const struct flight whole = sample_fly(&s, 1), half = sample_fly(&s, 0.5);
+		const double h = s.h, unit = fabs(s.g.u[0]) + fabs(s.g.v[0]) * h + h * h;
+		s.g.u[0] = half.u;
+		s.g.v[0] = half.v;
+		s.g.ground = 0.5 * (s.g.ground + s.next);
+		s.h = 0.5 * h;
+		const struct flight rest = sample_fly(&s, 1);
+		check_near((rest.u - whole.u) / unit, 0, 16 * 2.2e-16);
+		check_near((rest.v - whole.v) * h / unit, 0, 32 * 2.2e-16);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(the_cubic_misses_the_motion_by_no_more_than_its_error),
+           cmocka_unit_test(no_velocity_inside_is_below_the_bound_of_it),
+           cmocka_unit_test(two_halves_of_a_sample_are_the_whole))
