@@ -1,5 +1,5 @@
 /* bench_march.c - rows about the march itself, on the reference scene: against the plain loop, by lanes, law and
- * stiffness. */
+ * in other scenes. */
 #include "tests/bench.h"
 
 #include <math.h>
@@ -16,8 +16,8 @@
 
 enum {
 	SIGNALS = 1000,
-	LOOPED = 50, /* of them through the plain loop */
-	STIFF = 100, /* of them with stiffer contacts */
+	LOOPED = 50,  /* of them through the plain loop */
+	OTHERS = 100, /* of them in other scenes */
 	REPEATS = 3,
 };
 
@@ -308,31 +308,70 @@ static void law_rows(const struct batch *linear, const struct batch *apart)
 	}
 }
 
-/* Time of a run as the contact grows stiffer. */
-static void stiffness_rows(const struct pound_scene *scene, const struct batch *like)
+/* the reference scene with something else of it */
+struct variant {
+	const char *what;
+	double stiffness_ratio, restitution;
+	bool clipped; /* without tension */
+	bool apart;   /* without contact */
+	double faster;
+	const char *goal;
+};
+
+static struct batch variant_batch(const struct variant *v, const struct pound_scene *scene,
+                                  const struct batch *like)
 {
-	static const double ratios[] = {1e2, 1e4, 1e6, 1e8};
-	enum { RATIOS = sizeof ratios / sizeof ratios[0] };
-	struct batch batches[RATIOS];
-	struct bench_job jobs[RATIOS];
-	for (int k = 0; k < RATIOS; k++) {
-		struct pound_scene stiff = *scene;
-		stiff.contact.stiffness_ratio = ratios[k];
-		batches[k] = batch_copy(like, STIFF);
-		jobs[k] = (struct bench_job){.run = batch_run, .of = &batches[k]};
-		for (int j = 0; j < STIFF; j++)
-			pound_scene_contact(&stiff, &batches[k].tasks[j]);
+	struct batch batch = batch_copy(like, OTHERS);
+	struct pound_scene with = *scene;
+	with.contact.stiffness_ratio = v->stiffness_ratio;
+	with.contact.restitution = v->restitution;
+	with.contact.tension = !v->clipped;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		with.oscillators[i].frequency_hz *= v->faster;
+	for (int j = 0; j < OTHERS; j++) {
+		for (int i = 0; i < POUND_OSCILLATORS; i++) {
+			const bool followed = batch.tasks[j].bodies[i].followed;
+			batch.tasks[j].bodies[i] = pound_scene_body(&with, i);
+			batch.tasks[j].bodies[i].followed = followed;
+		}
+		pound_scene_contact(&with, &batch.tasks[j]);
+		batch.tasks[j].contact = !v->apart;
 	}
-	bench_jobs(jobs, RATIOS, REPEATS);
-	for (int k = 0; k < RATIOS; k++) {
+	return batch;
+}
+
+/* Time of a run as the contact grows stiffer, as it ends otherwise, and of bodies for which a sample is longer. */
+static void variant_rows(const struct pound_scene *scene, const struct batch *like)
+{
+	static const char goal[] = "at most 3";
+	static const struct variant variants[] = {
+	    {"K/k = 100", 1e2, 0.6, .faster = 1},
+	    {"K/k = 10000", 1e4, 0.6, .faster = 1, .goal = goal},
+	    {"K/k = 1e+06", 1e6, 0.6, .faster = 1, .goal = goal},
+	    {"K/k = 1e+08", 1e8, 0.6, .faster = 1, .goal = goal},
+	    {"restitution 0", 1e2, 0, .faster = 1},
+	    {"no tension", 1e2, 0.6, true, .faster = 1},
+	    {"restitution 0 and no tension", 1e2, 0, true, .faster = 1},
+	    {"bodies apart", 1e2, 0.6, .apart = true, .faster = 1},
+	    {"bodies apart, of 16 and 24.8 Hz", 1e2, 0.6, .apart = true, .faster = 8},
+	};
+	enum { VARIANTS = sizeof variants / sizeof variants[0] };
+	struct batch batches[VARIANTS];
+	struct bench_job jobs[VARIANTS];
+	for (int k = 0; k < VARIANTS; k++) {
+		batches[k] = variant_batch(&variants[k], scene, like);
+		jobs[k] = (struct bench_job){.run = batch_run, .of = &batches[k]};
+	}
+	bench_jobs(jobs, VARIANTS, REPEATS);
+	for (int k = 0; k < VARIANTS; k++) {
 		double ratio = jobs[k].seconds / jobs[0].seconds;
-		bench_print((struct bench_row){.what = bench_text("a run with K/k = %g, %.0f contacts", ratios[k],
-		                                                  batch_contacts(&batches[k]) / STIFF),
-		                               .value = 1e6 * jobs[k].seconds / STIFF,
+		bench_print((struct bench_row){.what = bench_text("a run with %s, %.0f contacts", variants[k].what,
+		                                                  batch_contacts(&batches[k]) / OTHERS),
+		                               .value = 1e6 * jobs[k].seconds / OTHERS,
 		                               .unit = "us",
 		                               .ratio = ratio,
 		                               .to = "times K/k = 100",
-		                               .goal = k ? "at most 3" : NULL,
+		                               .goal = variants[k].goal,
 		                               .met = ratio <= 3});
 		batch_free(&batches[k]);
 	}
@@ -365,7 +404,7 @@ static void signal_rows(const struct pound_excitation *e)
 	free(motions.ground);
 }
 
-/* The reference scene through the march by lanes, law and stiffness, and the making of its ground motions. */
+/* The reference scene through the march by lanes, law and in other scenes, and the making of its ground motions. */
 void bench_kernel(void)
 {
 	struct pound_study *study = bench_study(reference);
@@ -377,7 +416,7 @@ void bench_kernel(void)
 	}
 	lanes_rows(&pounding, &apart);
 	law_rows(&pounding, &apart);
-	stiffness_rows(&study->scene, &pounding);
+	variant_rows(&study->scene, &pounding);
 	signal_rows(&study->scene.excitation);
 	batch_free(&apart);
 	batch_free(&pounding);
