@@ -232,7 +232,7 @@ LANE_INLINE int bodies_watched(const struct event_lanes *e)
 	return e->paired && (e->edged || e->right) ? 2 : 1;
 }
 
-/* Bodies that touch without overlap and go on alike part or press by the difference of their accelerations.  Where that is
+/* Bodies that touch without overlap and go on alike but for a rounding part or press by the difference of their accelerations.  Where that is
  * no more than the rounding of what these are made of it is nothing, and what differs in their later course decides: else
  * bodies that are alike up to a yield point would part and meet for ever. */
 LANE_SHARED void overlap_settle(struct series *s, const struct lanes *g, vm still)
@@ -255,7 +255,8 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 {
 	series_fill(s, g, paired, touching);
 	if (paired) {
-		vm still = vequal(g->p, vsplat(0)) & vequal(g->q, vsplat(0));
+		vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
+		vm still = vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
 		if (vany(still))
 			overlap_settle(s, g, still);
 	}

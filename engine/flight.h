@@ -266,6 +266,7 @@ struct press {
 	struct limits base, other; /* but for their tops */
 	struct form moved[PRESS_IMPULSE + 1];
 	struct form error;                      /* of a cell, of the magnitudes */
+	vm alike;                               /* nothing but the overlap itself presses the bodies */
 	vd rest[REST_ROWS][POUND_PRESS_INPUTS]; /* of a rung: its bounds and how it is split */
 };
 
@@ -331,15 +332,39 @@ LANE_INLINE void press_move(const struct lanes *g, struct press *s, const vd end
 	at->top[1] = vmax(at->top[1], vabs(press_other(end[0], end[2], g->side, g->side * g->gap)));
 }
 
+/* Lanes whose bodies touch without overlap and stay so, as they go the same way: neither presses the other nor leaves it.
+ *
+ * Given    p, q  overlap and its rate
+ */
+LANE_INLINE vm press_still(const struct press *s, vd p, vd q)
+{
+	return s->alike & vequal(p, vsplat(0)) & vequal(q, vsplat(0));
+}
+
+/* An overlap that nothing else presses: it dies away, down to nothing.
+ *
+ * Given    bound  magnitudes of the state;  error  of both cubics
+ * Returns  end    0 where nothing is left;  value  error of the overlap's cubic: there, by its own columns alone
+ */
+LANE_INLINE vd press_fades(const struct lanes *g, const struct press *s, const vd bound[4], vd error,
+                           vd end[4])
+{
+	vd own = vfma(s->error.x[2], bound[2], s->error.x[3] * bound[3]);
+	vm over = s->alike & vless(vmax(vabs(end[2]), vabs(end[3]) * g->cell), vsplat(NOTHING));
+	for (int j = 2; j < 4; j++)
+		end[j] = vselect(over, vsplat(0), end[j]);
+	return vselect(s->alike, own, error);
+}
+
 /* One cell of pressed contact.
  *
  * Given    edged   a lane has a law of more than one piece
  *          right   a lane's largest displacement of the right body is wanted
- *          forced  a lane's contact ends when its force does
+ *          forced  a lane's contact ends when its force does;  alike: nothing presses the bodies of a lane
  * Returns  s       every lane at the end of the cell
  *          value   lanes in which something may happen inside it
  */
-LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced)
+LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced, bool alike)
 {
 	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
 	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
@@ -349,16 +374,21 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 		bound[j] = vabs(x[j]);
 		end[j] = x[j] + form_at(&s->moved[PRESS_U + j], x, ground, rise);
 	}
+	vd error = form_at(&s->error, bound, vabs(ground), vabs(rise)), apart = error;
+	if (alike)
+		apart = press_fades(g, s, bound, error, end);
 	struct flight b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
 	b.b1 = vfma(third, x[1], x[0]);
 	b.b2 = vfma(-third, b.v, b.u);
 	p.b1 = vfma(third, x[3], x[2]);
 	p.b2 = vfma(-third, p.v, p.u);
-	vd rounding = vsplat(16 * DBL_EPSILON), error = form_at(&s->error, bound, vabs(ground), vabs(rise));
-	p.error = vfma(rounding, bound[2] + vabs(p.u), error);
+	vd rounding = vsplat(16 * DBL_EPSILON);
+	p.error = vfma(rounding, bound[2] + vabs(p.u), apart);
 	b.error = vfma(rounding, bound[0] + vabs(b.u), error);
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
+	if (alike)
+		risk &= ~press_still(s, end[2], end[3]);
 	if (forced) {
 		vd force = vfma(g->release / third, flight_along(x[3], &p, third, vsplat(1)), vmin(least, x[2]));
 		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
@@ -447,6 +477,7 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
 	}
 	vd lag = vmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * vabs(drift), beside = vsplat(0.125) * bend;
 	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, lag + beside), vmin(pull, pull1));
+	risk &= ~press_still(s, x[2], x[3]);
 	vd still = yield * pull, ripple = yield * (swing + beside);
 	vd error = vfma(split[SPLIT_LAG], ripple, press_row(s->rest[REST_ERROR], bound));
 	ripple = vfma(yield, vabs(change) + lag, ripple);

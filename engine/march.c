@@ -292,6 +292,10 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 		rows_load(row, map, r * POUND_PRESS_INPUTS);
 		s->moved[r] = form_of(row, g, false);
 	}
+	vd zero = vsplat(0);
+	const struct form *p = &s->moved[PRESS_P];
+	s->alike = vequal(p->x[0], zero) & vequal(p->x[1], zero) & vequal(g->gap_force, zero) &
+	           vequal(g->gap_drive, zero);
 	if (stage == STAGE_REST) {
 		for (int r = REST_ERROR; r < REST_ROWS; r++)
 			rows_load(s->rest[r], map, r * POUND_PRESS_INPUTS);
@@ -301,8 +305,9 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 	s->error = form_of(row, g, true);
 }
 
+/* Given    seldom  a lane's energy is accounted for, or nothing presses its bodies on each other */
 LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
-                          bool accounted)
+                          bool seldom)
 {
 	struct lanes g;
 	struct press s;
@@ -328,12 +333,12 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	int few = b->n / 2;
 	do {
 		struct pressed from;
-		if (accounted)
+		if (seldom)
 			from = s.at;
-		vm risk = stage == STAGE_REST ? rest(&g, &s, edged) : press(&g, &s, edged, right, forced);
+		vm risk = stage == STAGE_REST ? rest(&g, &s, edged) : press(&g, &s, edged, right, forced, seldom);
 		refused |= risk & pressed;
 		pressed &= ~risk;
-		if (accounted)
+		if (seldom)
 			press_account(b, &g, &from, &s.at, stage == STAGE_REST ? s.rest[PRESS_SPLIT][SPLIT_CELLS] : one,
 			              vbits(pressed));
 		vm sampled = vequal(s.at.cells, zero), last = vequal(s.at.left, zero);
@@ -369,8 +374,8 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	}
 }
 
-/* Where energy is accounted for all goes one way: it takes its time anyway. */
-static void press_accounted(struct work *work, const struct batch *b, enum pound_stage stage)
+/* What is asked for or happens seldom goes one way for all laws. */
+static void press_seldom(struct work *work, const struct batch *b, enum pound_stage stage)
 {
 	if (stage == STAGE_REST)
 		press_on(work, b, STAGE_REST, true, true);
@@ -380,8 +385,8 @@ static void press_accounted(struct work *work, const struct batch *b, enum pound
 
 LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
 {
-	if (b->traits & TRAIT_ACCOUNTED)
-		press_accounted(work, b, stage);
+	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE))
+		press_seldom(work, b, stage);
 	else
 		press_on(work, b, stage, edged, false);
 }

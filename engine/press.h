@@ -397,7 +397,9 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
 	double hurry = omega * x->q, off = omega * omega * x->p - pull;
-	if (!(split[SPLIT_LEAD] * length_above(hurry, off) < pull))
+	// over any rung
+	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
+	if (!still && !(split[SPLIT_LEAD] * length_above(hurry, off) < pull))
 		return NULL;
 	struct pound_press_map *rung = sim->ladder->rung[press - sim->press];
 	struct pound_press_work *work = sim->ladder->work[press - sim->press];
@@ -408,7 +410,7 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 		double cells = sim->rung_cells[r];
 		in[6] = x->base_drive * x->rise * cells;
 		in[7] = x->gap_drive * x->rise * cells;
-		if (cells <= x->cells && rests(&rung[r], in, bound, pull, hurry, off, x->cell * cells)) {
+		if (cells <= x->cells && (still || rests(&rung[r], in, bound, pull, hurry, off, x->cell * cells))) {
 			sim->rung = r;
 			sim->worked = &work[r];
 			return &rung[r];
@@ -446,6 +448,10 @@ static enum pound_stage press_ready(struct simulation *sim)
 	}
 	x->base_force = x->body[b].offset;
 	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
+	const bool alike = x->gap_force == 0 && x->gap_drive == 0 &&
+	                   x->body[0].stiffness == x->body[1].stiffness &&
+	                   x->body[0].damping == x->body[1].damping;
+	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 	const double *ground = &sim->task->ground[sim->next];
 	x->rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
 	// a rung goes as far as the next longer one

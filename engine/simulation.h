@@ -5,6 +5,7 @@
 #ifndef SIMULATION_H
 #define SIMULATION_H
 
+#include <float.h>
 #include <stdalign.h>
 
 #include "engine/march.h"
@@ -153,7 +154,14 @@ enum {
 	TRAIT_RIGHT = 2,     /* the right body's largest displacement is wanted */
 	TRAIT_FORCED = 4,    /* contact ends when its force does */
 	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
+	TRAIT_ALIKE =
+	    16, /* of the pieces they are on the bodies go the same way, where they touch without overlap */
 };
+
+/* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
+ * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
+ * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
+static const double NOTHING = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
 
 enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
 

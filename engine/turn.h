@@ -22,11 +22,6 @@ static const double REACH_FREE = 0.35, REACH_TOUCH = 0.8;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
-/* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
- * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
- * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
-static const double NOTHING = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
-
 enum { LEG = 4095 }; /* a flight ends at every sample with these bits, wherever it began */
 
 static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");

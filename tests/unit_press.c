@@ -209,9 +209,41 @@ static void a_yielded_body_creeps_to_rest_however_stiff_the_contact(void **state
 	}
 }
 
+/* After a plastic impact bodies alike go on as one, touching without a force once the overlap has died away; the motion of
+ * both by mass is that of one oscillator all along.
+ *
+ *   u = v m1/(m1 + m2) exp(-zeta w t) sin(wd t)/wd
+ */
+static void bodies_alike_go_on_as_one_after_a_plastic_impact(void **state)
+{
+	(void)state;
+	const double w = 4 * M_PI, zeta = 0.05, wd = w * sqrt(1 - zeta * zeta), ratio = 0.5;
+	const double end = (SAMPLES - 1) * step;
+	const double u = ratio / (1 + ratio) * exp(-zeta * w * end) * sin(wd * end) / wd;
+	double ground[SAMPLES];
+	for (int t = 0; t < 12; t++) {
+		const double stiffness = pow(10, 4 + t / 2 * 2) * w * w;
+		struct pound_march_task task = pressed(ground, 0, stiffness, 0);
+		memset(ground, 0, sizeof ground);
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			task.bodies[i] = (struct pound_march_body){
+			    .skeleton = {.stiffness = w * w}, .damping = 2 * zeta * w, .drive = 1, .followed = true};
+		task.bodies[0].v = 1;
+		task.mass_ratio = ratio;
+		task.contact_damping = 2 * sqrt(stiffness / (1 + ratio));
+		task.tension = true;
+		task.accounted = t % 2;
+		const struct pound_march_result r = march(&task);
+		assert_int_equal(r.contacts, 1);
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			check_near(r.u[i] / u, 1, 1e-12);
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(a_long_press_ends_where_its_ground_pushes_it),
            cmocka_unit_test(a_press_that_grows_for_long_goes_by_more_than_cells),
            cmocka_unit_test(a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone),
            cmocka_unit_test(samples_twice_as_dense_change_no_contact_however_stiff),
            cmocka_unit_test(bodies_pressed_for_long_rest_where_their_springs_hold_them),
-           cmocka_unit_test(a_yielded_body_creeps_to_rest_however_stiff_the_contact))
+           cmocka_unit_test(a_yielded_body_creeps_to_rest_however_stiff_the_contact),
+           cmocka_unit_test(bodies_alike_go_on_as_one_after_a_plastic_impact))
