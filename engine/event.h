@@ -405,8 +405,6 @@ LANE_INLINE void event_leap(struct lanes *g, const struct event_lanes *e, vm lea
 	leaping &= ~e->parted & ~e->fresh & vequal(g->pace, one) & vless(zero, g->part);
 	if (!e->touching)
 		leaping &= ~vless(g->reach, g->part);
-	else if (e->forced)
-		leaping &= vequal(g->release, zero);
 	if (!vany(leaping))
 		return;
 	g->dt = vselect(leaping, g->part, g->dt);
@@ -416,6 +414,9 @@ LANE_INLINE void event_leap(struct lanes *g, const struct event_lanes *e, vm lea
 	if (e->paired) {
 		struct course c = course_of(&s.overlap);
 		risk = may_cross(&c, zero, e->touching ? -one : one);
+		// as long as the overlap grows its force does not end
+		if (e->touching && e->forced)
+			risk |= ~vless(zero, course_slowest(&c)) & vless(zero, g->release);
 	}
 	for (int i = 0; i < bodies_watched(e); i++)
 		risk |= body_risk(&s, g, i, e->edged);

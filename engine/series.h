@@ -115,6 +115,14 @@ LANE_INLINE vm may_cross(const struct course *c, vd level, vd sign)
 	return inside & after;
 }
 
+/* Bound from below of a guard's rate over a step: the velocity's control points are its own at the ends and the third below;
+ * they miss it by sqrt(3)/216 of the fourth derivative at most. */
+LANE_INLINE vd course_slowest(const struct course *c)
+{
+	vd middle = vfma(vsplat(3), c->u1 - c->u0, -(c->v0 + c->v1));
+	return vmin(vmin(c->v0, c->v1), middle) - vsplat(0.00802) * c->bend;
+}
+
 /* Bound of |u| inside a step, apart from its ends. */
 LANE_INLINE vd reach_of(const struct motion *m)
 {

@@ -138,7 +138,7 @@ enum pound_stage {
 	STAGE_APART,     /* of both, who likely meet */
 	STAGE_CLEAR,     /* of both, who likely do not: what a batch looks for alike takes less */
 	STAGE_TOUCH,     /* of both in contact */
-	STAGE_LEAP_ALONE, /* what is left of a sample behind an edge, where likely nothing happens: of the left body */
+	STAGE_LEAP_ALONE, /* what is left of a sample behind an event, where likely nothing happens: of the left body */
 	STAGE_LEAP_APART, /* of both */
 	STAGES,
 	STAGE_END = STAGES,

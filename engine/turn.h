@@ -258,12 +258,11 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 {
 	if (event == EVENT_CONTACT)
 		contact_turn(sim, left, speed);
-	else if (event >= EVENT_BODY) {
+	if (event >= EVENT_BODY)
 		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
-		if (sim->can_fly && !sim->touching && sim->x.part > 0)
-			return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
-	}
+	if (event >= EVENT_CLEARS && sim->can_fly && !sim->touching && sim->x.part > 0)
+		return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
 	return simulation_next(sim);
 }
 
