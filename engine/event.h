@@ -232,17 +232,19 @@ LANE_INLINE int bodies_watched(const struct event_lanes *e)
 	return e->paired && (e->edged || e->right) ? 2 : 1;
 }
 
-/* Bodies that touch without overlap and go on alike but for a rounding part or press by the difference of their accelerations.  Where that is
- * no more than the rounding of what these are made of it is nothing, and what differs in their later course decides: else
- * bodies that are alike up to a yield point would part and meet for ever. */
-LANE_SHARED void overlap_settle(struct series *s, const struct lanes *g, vm still)
+/* Bodies that touch without overlap, with velocities that differ by a rounding at most, part or press by the difference of
+ * their accelerations.  Where that is no more than the rounding of what these are made of it is nothing, and what differs in
+ * their later course decides: else bodies that are alike up to a yield point would part and meet for ever. */
+LANE_SHARED void overlap_settle(struct series *s, const struct lanes *g, vm level, bool touching)
 {
-	vd terms = vsplat(0), zero = vsplat(0), bow = s->overlap.u.c[2];
+	vd terms = vsplat(0), zero = vsplat(0), dt2 = g->dt * g->dt, bow = s->overlap.u.c[2];
 	for (int i = 0; i < 2; i++) {
 		terms = terms + vabs(g->body[i].damping * g->v[i]) + vabs(g->body[i].stiffness * g->u[i]);
 		terms = terms + vabs(g->body[i].offset) + vabs(g->body[i].drive * g->ground);
 	}
-	vm nothing = still & vless(vabs(bow), vsplat(2 * DBL_EPSILON) * terms * (g->dt * g->dt));
+	if (touching) // what the contact's dashpot makes of the rate is no difference of theirs
+		bow = vfma(vsplat(0.5) * g->both * g->contact_damping * dt2, g->q, bow);
+	vm nothing = level & vless(vabs(bow), vsplat(2 * DBL_EPSILON) * terms * dt2);
 	bow = vselect(nothing, bow, zero);
 	s->overlap.u.c[2] = s->overlap.u.c[2] - bow;
 	s->overlap.v.c[1] = s->overlap.v.c[1] - 2.0 * bow;
@@ -256,9 +258,9 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 	series_fill(s, g, paired, touching);
 	if (paired) {
 		vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
-		vm still = vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
-		if (vany(still))
-			overlap_settle(s, g, still);
+		vm level = vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
+		if (vany(level))
+			overlap_settle(s, g, level, touching);
 	}
 	for (int i = 0; i < watched; i++)
 		motion_bound(&s->body[i], s->order);

@@ -158,12 +158,12 @@ LANE_INLINE vm flight_peaks(const struct flight *f, vd top)
  *          way  +1, -1
  *
  * The velocity's control points times h/3 are its own at the ends, and b2 - b1 between; what they miss the velocity by is
- * at most sqrt(3)/216 h^3 of the fourth derivative, that is 384 sqrt(3)/648 of the displacement's error.
+ * at most sqrt(3)/216 h^3 of the fourth derivative, that is 288 sqrt(3)/648 of the error.
  */
 LANE_INLINE vd flight_along(vd v, const struct flight *f, vd third, vd way)
 {
 	vd ends = vmin(way * (third * v), way * (third * f->v));
-	return vmin(ends, way * (f->b2 - f->b1)) - vsplat(1.0265) * f->error;
+	return vmin(ends, way * (f->b2 - f->b1)) - vsplat(0.77) * f->error;
 }
 
 /* Lanes in which an edge of a body's piece may be reached.
@@ -266,7 +266,7 @@ struct press {
 	struct limits base, other; /* but for their tops */
 	struct form moved[PRESS_IMPULSE + 1];
 	struct form error;                      /* of a cell, of the magnitudes */
-	vm alike;                               /* nothing but the overlap itself presses the bodies */
+	vm alike;                               /* lanes of TRAIT_ALIKE */
 	vd rest[REST_ROWS][POUND_PRESS_INPUTS]; /* of a rung: its bounds and how it is split */
 };
 
@@ -360,11 +360,11 @@ LANE_INLINE vd press_fades(const struct lanes *g, const struct press *s, const v
  *
  * Given    edged   a lane has a law of more than one piece
  *          right   a lane's largest displacement of the right body is wanted
- *          forced  a lane's contact ends when its force does;  alike: nothing presses the bodies of a lane
+ *          forced  a lane's contact ends when its force does;  seldom: bodies of a lane may be alike
  * Returns  s       every lane at the end of the cell
  *          value   lanes in which something may happen inside it
  */
-LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced, bool alike)
+LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced, bool seldom)
 {
 	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
 	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
@@ -375,7 +375,7 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 		end[j] = x[j] + form_at(&s->moved[PRESS_U + j], x, ground, rise);
 	}
 	vd error = form_at(&s->error, bound, vabs(ground), vabs(rise)), apart = error;
-	if (alike)
+	if (seldom)
 		apart = press_fades(g, s, bound, error, end);
 	struct flight b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
 	b.b1 = vfma(third, x[1], x[0]);
@@ -387,13 +387,13 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 	b.error = vfma(rounding, bound[0] + vabs(b.u), error);
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
-	if (alike)
-		risk &= ~press_still(s, end[2], end[3]);
 	if (forced) {
 		vd force = vfma(g->release / third, flight_along(x[3], &p, third, vsplat(1)), vmin(least, x[2]));
 		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
 		risk |= ~vless(zero, force) & vless(zero, g->release);
 	}
+	if (seldom)
+		risk &= ~press_still(s, end[2], end[3]);
 	vd side = g->side, off = side * g->gap, v = x[1] - side * x[3];
 	struct flight o = {.u = press_other(b.u, p.u, side, off),
 	                   .v = b.v - side * p.v,

@@ -87,6 +87,24 @@ LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int a
 	rows_store((const vd *)g + at, b->row, at);
 }
 
+/* Lanes whose bodies overlap without force, those in which the force has just passed zero, those whose energy balance is
+ * kept, and those whose bodies go the same way. */
+struct lane_flags {
+	vm parted, fresh, accounted, alike;
+};
+
+LANE_INLINE struct lane_flags batch_flags(const struct batch *b)
+{
+	unsigned parted = 0, fresh = 0, accounted = 0, alike = 0;
+	for (int l = 0; l < W; l++) {
+		parted |= (unsigned)b->sim[l]->parted << l;
+		fresh |= (unsigned)b->sim[l]->fresh << l;
+		accounted |= (unsigned)((b->sim[l]->traits & TRAIT_ACCOUNTED) != 0) << l;
+		alike |= (unsigned)((b->sim[l]->traits & TRAIT_ALIKE) != 0) << l;
+	}
+	return (struct lane_flags){vmask(parted), vmask(fresh), vmask(accounted), vmask(alike)};
+}
+
 /* ---- whole samples apart ---- */
 
 /* the ground motion in front of each lane */
@@ -292,10 +310,6 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 		rows_load(row, map, r * POUND_PRESS_INPUTS);
 		s->moved[r] = form_of(row, g, false);
 	}
-	vd zero = vsplat(0);
-	const struct form *p = &s->moved[PRESS_P];
-	s->alike = vequal(p->x[0], zero) & vequal(p->x[1], zero) & vequal(g->gap_force, zero) &
-	           vequal(g->gap_drive, zero);
 	if (stage == STAGE_REST) {
 		for (int r = REST_ERROR; r < REST_ROWS; r++)
 			rows_load(s->rest[r], map, r * POUND_PRESS_INPUTS);
@@ -324,6 +338,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	for (int l = 0; l < W; l++)
 		map[l] = b->sim[l]->pressed->row[0];
 	press_maps(&s, &g, map, stage);
+	s.alike = seldom ? batch_flags(b).alike : vmask(0);
 	vd zero = vsplat(0), one = vsplat(1), share = one / g.cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
 	press_load(&s, &g, behind, edged);
@@ -393,23 +408,6 @@ LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_
 
 /* ---- one step up to an event ---- */
 
-/* Lanes whose bodies overlap without force, those in which the force has just passed zero, and those whose energy balance
- * is kept. */
-struct lane_flags {
-	vm parted, fresh, accounted;
-};
-
-LANE_INLINE struct lane_flags batch_flags(const struct batch *b)
-{
-	unsigned parted = 0, fresh = 0, accounted = 0;
-	for (int l = 0; l < W; l++) {
-		parted |= (unsigned)b->sim[l]->parted << l;
-		fresh |= (unsigned)b->sim[l]->fresh << l;
-		accounted |= (unsigned)((b->sim[l]->traits & TRAIT_ACCOUNTED) != 0) << l;
-	}
-	return (struct lane_flags){vmask(parted), vmask(fresh), vmask(accounted)};
-}
-
 LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
 {
 	struct event_lanes e = {.touching = stage == STAGE_TOUCH,
@@ -428,7 +426,7 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 		lanes_fill(&g, b, ROW_RIGHT);
 	if (accounted)
 		lanes_fill(&g, b, ROW_WORK);
-	struct lane_flags flags = {vmask(0), vmask(0), vmask(0)};
+	struct lane_flags flags = {vmask(0), vmask(0), vmask(0), vmask(0)};
 	if (e.forced || accounted)
 		flags = batch_flags(b);
 	e.parted = flags.parted;

@@ -397,7 +397,7 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
 	double hurry = omega * x->q, off = omega * omega * x->p - pull;
-	// over any rung
+	// without overlap and rate bodies alike stay so, over any rung
 	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
 	if (!still && !(split[SPLIT_LEAD] * length_above(hurry, off) < pull))
 		return NULL;

@@ -406,6 +406,32 @@ static void a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours(v
 	}
 }
 
+/* After a plastic impact bodies alike stay as they touch, but not their neighbours: every third task has such, every third
+ * differs from them by stiffnesses so small that nothing of the difference is left over a cell. */
+static void a_run_does_not_depend_on_bodies_alike_beside_it(void **state)
+{
+	(void)state;
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS];
+	tasks_fill(tasks, ground, 5);
+	for (int t = 0; t < TASKS; t++) {
+		struct pound_march_body *body = tasks[t].bodies;
+		if (t % 3 == 0)
+			continue;
+		body[1].skeleton = body[0].skeleton;
+		body[1].skeleton.yield *= 2;
+		body[1].damping = body[0].damping;
+		for (int i = 0; i < 2 && t % 3 == 1; i++)
+			body[i].skeleton = (struct pound_skeleton){.stiffness = 1e-321 + i * 2e-321};
+		tasks[t].contact = true;
+		tasks[t].gap = 0;
+		tasks[t].tension = true;
+		tasks[t].bodies[0].v = 0.1;
+		tasks[t].contact_damping = 2 * sqrt(tasks[t].contact_stiffness / (1 + tasks[t].mass_ratio));
+	}
+	check_alone_as_together(tasks);
+}
+
 static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter(void **state)
 {
 	(void)state;
@@ -433,4 +459,5 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(a_motion_that_dies_away_does_not_depend_on_its_neighbours),
            cmocka_unit_test(a_run_does_not_depend_on_whose_energy_is_accounted_for),
            cmocka_unit_test(a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours),
+           cmocka_unit_test(a_run_does_not_depend_on_bodies_alike_beside_it),
            cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter))
