@@ -1,7 +1,7 @@
 /* flight.h - whole samples apart and whole cells of contact, by precomputed exact maps.
  *
- * Included by march.c, once per lane count, and by its test.  A map takes a simulation over its sample or cell at once; the cubic
- * through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
+ * Included by march.c, once per lane count, and by its test.  A map takes a simulation over its sample or cell at once; the
+ * cubic through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
  * edge of a law, no new largest displacement.  A lane in which it cannot prove that stays in front of it; but a sample that
  * may hold nothing but a largest displacement is flown over, and noted. */
 #ifndef FLIGHT_H
@@ -374,16 +374,16 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 		bound[j] = vabs(x[j]);
 		end[j] = x[j] + form_at(&s->moved[PRESS_U + j], x, ground, rise);
 	}
-	vd error = form_at(&s->error, bound, vabs(ground), vabs(rise)), apart = error;
+	vd error = form_at(&s->error, bound, vabs(ground), vabs(rise)), error_overlap = error;
 	if (seldom)
-		apart = press_fades(g, s, bound, error, end);
+		error_overlap = press_fades(g, s, bound, error, end);
 	struct flight b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
 	b.b1 = vfma(third, x[1], x[0]);
 	b.b2 = vfma(-third, b.v, b.u);
 	p.b1 = vfma(third, x[3], x[2]);
 	p.b2 = vfma(-third, p.v, p.u);
 	vd rounding = vsplat(16 * DBL_EPSILON);
-	p.error = vfma(rounding, bound[2] + vabs(p.u), apart);
+	p.error = vfma(rounding, bound[2] + vabs(p.u), error_overlap);
 	b.error = vfma(rounding, bound[0] + vabs(b.u), error);
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);

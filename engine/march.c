@@ -87,22 +87,25 @@ LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int a
 	rows_store((const vd *)g + at, b->row, at);
 }
 
-/* Lanes whose bodies overlap without force, those in which the force has just passed zero, those whose energy balance is
- * kept, and those whose bodies go the same way. */
-struct lane_flags {
-	vm parted, fresh, accounted, alike;
-};
-
-LANE_INLINE struct lane_flags batch_flags(const struct batch *b)
+/* Lanes of simulations with a trait. */
+LANE_INLINE vm batch_trait(const struct batch *b, unsigned trait)
 {
-	unsigned parted = 0, fresh = 0, accounted = 0, alike = 0;
+	unsigned lanes = 0;
+	for (int l = 0; l < W; l++)
+		lanes |= (unsigned)((b->sim[l]->traits & trait) != 0) << l;
+	return vmask(lanes);
+}
+
+/* Lanes whose bodies overlap without force, and those in which the force has just passed zero. */
+LANE_INLINE void batch_forces(const struct batch *b, vm *parted, vm *fresh)
+{
+	unsigned gone = 0, passed = 0;
 	for (int l = 0; l < W; l++) {
-		parted |= (unsigned)b->sim[l]->parted << l;
-		fresh |= (unsigned)b->sim[l]->fresh << l;
-		accounted |= (unsigned)((b->sim[l]->traits & TRAIT_ACCOUNTED) != 0) << l;
-		alike |= (unsigned)((b->sim[l]->traits & TRAIT_ALIKE) != 0) << l;
+		gone |= (unsigned)b->sim[l]->parted << l;
+		passed |= (unsigned)b->sim[l]->fresh << l;
 	}
-	return (struct lane_flags){vmask(parted), vmask(fresh), vmask(accounted), vmask(alike)};
+	*parted = vmask(gone);
+	*fresh = vmask(passed);
 }
 
 /* ---- whole samples apart ---- */
@@ -241,8 +244,6 @@ static void press_account(const struct batch *b, const struct lanes *g, const st
 	press_inputs(inputs, g, from, from->rise * cells);
 	for (; pressed; pressed &= pressed - 1) {
 		int l = __builtin_ctz(pressed);
-		if (!(b->sim[l]->traits & TRAIT_ACCOUNTED))
-			continue;
 		double x[POUND_PRESS_INPUTS], end[4];
 		for (int j = 0; j < POUND_PRESS_INPUTS; j++)
 			x[j] = ((const double *)&inputs[j])[l];
@@ -338,7 +339,8 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	for (int l = 0; l < W; l++)
 		map[l] = b->sim[l]->pressed->row[0];
 	press_maps(&s, &g, map, stage);
-	s.alike = seldom ? batch_flags(b).alike : vmask(0);
+	s.alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
+	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
 	vd zero = vsplat(0), one = vsplat(1), share = one / g.cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
 	press_load(&s, &g, behind, edged);
@@ -355,7 +357,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 		pressed &= ~risk;
 		if (seldom)
 			press_account(b, &g, &from, &s.at, stage == STAGE_REST ? s.rest[PRESS_SPLIT][SPLIT_CELLS] : one,
-			              vbits(pressed));
+			              vbits(pressed & accounted));
 		vm sampled = vequal(s.at.cells, zero), last = vequal(s.at.left, zero);
 		ended |= sampled & last & pressed;
 		vm entered = sampled & ~last;
@@ -415,7 +417,9 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	                        .edged = edged,
 	                        .right = b->traits & TRAIT_RIGHT,
 	                        .forced = b->traits & TRAIT_FORCED,
-	                        .active = vmask((1u << b->n) - 1)};
+	                        .active = vmask((1u << b->n) - 1),
+	                        .parted = vmask(0),
+	                        .fresh = vmask(0)};
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
@@ -426,11 +430,8 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 		lanes_fill(&g, b, ROW_RIGHT);
 	if (accounted)
 		lanes_fill(&g, b, ROW_WORK);
-	struct lane_flags flags = {vmask(0), vmask(0), vmask(0), vmask(0)};
-	if (e.forced || accounted)
-		flags = batch_flags(b);
-	e.parted = flags.parted;
-	e.fresh = flags.fresh;
+	if (e.forced)
+		batch_forces(b, &e.parted, &e.fresh);
 	vd events = event_step(&g, &e, accounted);
 	vm turns = vmask(0);
 	if (e.paired)
@@ -440,7 +441,8 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	lanes_store(left, vfma(g.cells, g.cell, g.part));
 	lanes_store(speed, g.q);
 	// the work done is kept of whole steps only
-	turns &= ~flags.accounted;
+	if (accounted)
+		turns &= ~batch_trait(b, TRAIT_ACCOUNTED);
 	if (vany(turns)) {
 		e.touching = !e.touching;
 		event_leap(&g, &e, turns);
@@ -467,7 +469,7 @@ LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, boo
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0)};
 	if (e.forced)
-		e.parted = batch_flags(b).parted;
+		batch_forces(b, &e.parted, &e.fresh);
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);

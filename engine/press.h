@@ -111,9 +111,9 @@ static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const 
  *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
  *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
  *
- * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288
- * of the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times that of
- * their own columns.
+ * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288 of
+ * the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times
+ * that of their own columns.
  */
 static void cell_fill(struct pound_press_map *map, struct pound_press_work *work,
                       const struct simulation *sim)

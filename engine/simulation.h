@@ -154,8 +154,7 @@ enum {
 	TRAIT_RIGHT = 2,     /* the right body's largest displacement is wanted */
 	TRAIT_FORCED = 4,    /* contact ends when its force does */
 	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
-	TRAIT_ALIKE =
-	    16, /* of the pieces they are on the bodies go the same way, where they touch without overlap */
+	TRAIT_ALIKE = 16,    /* touching without overlap the bodies go the same way, on the pieces they are on */
 };
 
 /* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
