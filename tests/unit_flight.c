@@ -5,12 +5,7 @@
 #include <string.h>
 
 #include "engine/flight.h"
-
-static double random_number(uint64_t *seed)
-{
-	*seed = *seed * 6364136223846793005u + 1442695040888963407u;
-	return (double)(*seed >> 11) / 9007199254740992.0;
-}
+#include "tests/specimen.h"
 
 /* a body in front of a sample of length h, at the end of which the ground's acceleration is next */
 struct sample {
@@ -21,17 +16,17 @@ struct sample {
 /* A body whose sample is up to two radians long, damped up to twice the critical damping. */
 static struct sample sample_random(uint64_t *seed)
 {
-	struct sample s = {.h = 0.01, .next = random_number(seed) - 0.5};
-	const double radians = REACH_MAP * random_number(seed), rest = REACH_MAP - radians;
-	const double damping = fmin(4 * radians, rest) * random_number(seed);
+	struct sample s = {.h = 0.01, .next = specimen_uniform(seed, -0.5, 0.5)};
+	const double radians = specimen_uniform(seed, 0, REACH_MAP), rest = REACH_MAP - radians;
+	const double damping = specimen_uniform(seed, 0, fmin(4 * radians, rest));
 	s.g.body[0].stiffness = radians * radians / (s.h * s.h);
 	s.g.body[0].damping = damping / s.h;
 	s.g.body[0].drive = 1;
-	s.g.body[0].offset = random_number(seed) - 0.5;
-	s.g.ground = random_number(seed) - 0.5;
+	s.g.body[0].offset = specimen_uniform(seed, -0.5, 0.5);
+	s.g.ground = specimen_uniform(seed, -0.5, 0.5);
 	const double unit = 1 / fmax(s.g.body[0].stiffness, 1); // where forcing and spring are alike
-	s.g.u[0] = unit * (random_number(seed) - 0.5);
-	s.g.v[0] = unit / s.h * (random_number(seed) - 0.5);
+	s.g.u[0] = unit * specimen_uniform(seed, -0.5, 0.5);
+	s.g.v[0] = unit / s.h * specimen_uniform(seed, -0.5, 0.5);
 	return s;
 }
 
