@@ -24,7 +24,7 @@ enum {
 /* simulations that wait for one kind of step, last come first served */
 struct queue {
 	int n;
-	int member[POOL];
+	struct simulation *member[POOL];
 };
 
 struct work {
@@ -48,33 +48,55 @@ struct batch {
 	unsigned traits; /* of any of them */
 };
 
-static void push(struct queue *queue, int member)
+static void push(struct queue *queue, struct simulation *sim)
 {
-	queue->member[queue->n++] = member;
+	queue->member[queue->n++] = sim;
 }
 
-static int pop(struct queue *queue)
+static struct simulation *pop(struct queue *queue)
 {
 	return queue->member[--queue->n];
 }
 
-/* Sends a simulation to where it goes next. */
-static void send(struct work *work, struct simulation *sim, enum pound_stage stage)
+/* What becomes of a simulation that has come to an end. */
+LANE_SHARED void leave(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
-	if (stage >= STAGES)
-		stage = simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
-	push(stage < STAGES ? &work->queues[stage] : &work->idle, (int)(sim - work->pool));
+	stage = simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
+	push(stage < STAGES ? &work->queues[stage] : &work->idle, sim);
 }
 
-static struct batch batch_take(struct work *work, struct queue *queue)
+/* Sends a simulation to where it goes next. */
+LANE_INLINE void send(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
-	struct batch b = {.n = queue->n < W ? queue->n : W};
+	if (stage < STAGES)
+		push(&work->queues[stage], sim);
+	else
+		leave(work, sim, stage);
+}
+
+static void batch_take(struct batch *b, struct work *work, struct queue *queue)
+{
+	b->n = queue->n < W ? queue->n : W;
+	b->traits = 0;
 	for (int l = 0; l < W; l++) {
-		b.sim[l] = l < b.n ? &work->pool[pop(queue)] : &work->filler;
-		b.row[l] = (double *)&b.sim[l]->x;
-		b.traits |= b.sim[l]->traits;
+		b->sim[l] = l < b->n ? pop(queue) : &work->filler;
+		b->row[l] = (double *)&b->sim[l]->x;
+		b->traits |= b->sim[l]->traits;
 	}
-	return b;
+}
+
+/* The lanes in use. */
+static unsigned batch_lanes(const struct batch *b)
+{
+	return (1u << b->n) - 1;
+}
+
+/* Takes a simulation out of a set of lanes that is not empty. */
+static struct simulation *batch_next(const struct batch *b, unsigned *lanes)
+{
+	int l = __builtin_ctz(*lanes);
+	*lanes &= *lanes - 1;
+	return b->sim[l];
 }
 
 /* Carries one row of every simulation into lanes, or out. */
@@ -124,7 +146,7 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
 	unsigned whole = flying & ~vbits(vless(ahead->samples, vsplat(ROW)));
 	for (int l = 0; l < W; l++) {
 		at[l] = whole >> l & 1 ? ahead->ground[l] + ahead->gone : work->beyond[l];
-		__builtin_prefetch(at[l] + ROW);
+		__builtin_prefetch(at[l] + 2 * ROW - 1); // the next ones' last: their first are in a line of these
 	}
 	double samples[W];
 	lanes_store(samples, ahead->samples);
@@ -210,7 +232,7 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	double ground[W], samples[W];
 	for (int l = 0; l < W; l++) {
 		const struct simulation *sim = b->sim[l];
-		ahead.ground[l] = &sim->task->ground[sim->next];
+		ahead.ground[l] = &sim->ground[sim->next];
 		samples[l] = (double)(flight_end(sim) - sim->next + 1);
 		ground[l] = ahead.ground[l][-1];
 	}
@@ -219,18 +241,26 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	struct flyer flyers[2] = {flyer_of(&g, 0)};
 	if (paired)
 		flyers[1] = flyer_of(&g, 1);
-	vm flying = vmask((1u << b->n) - 1);
+	vm flying = vmask(batch_lanes(b));
 	int few = b->n / 2;
 	do
 		flying = fly_row(work, b, &ahead, &g, flyers, flying, few, edged, paired, right);
 	while (__builtin_popcount(vbits(flying)) > few);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
-	for (int l = 0; l < b->n; l++) {
-		struct simulation *sim = b->sim[l];
-		bool there = samples[l] == 0, on = vbits(flying) >> l & 1;
-		sim->next = flight_end(sim) + 1 - (int64_t)samples[l];
-		send(work, sim, there ? simulation_flown(sim, stage) : on ? stage : simulation_meet(sim));
+	for (int l = 0; l < b->n; l++)
+		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
+	// those with the same future one after the other: what is decided for each is then seldom a surprise
+	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0))), on = vbits(flying) & ~there;
+	for (unsigned met = batch_lanes(b) & ~there & ~on; met;) {
+		struct simulation *sim = batch_next(b, &met);
+		send(work, sim, simulation_meet(sim));
+	}
+	while (on)
+		push(&work->queues[stage], batch_next(b, &on));
+	while (there) {
+		struct simulation *sim = batch_next(b, &there);
+		send(work, sim, simulation_flown(sim, stage));
 	}
 }
 
@@ -267,7 +297,7 @@ LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
 	double behind[W], ground[W];
 	for (int l = 0; l < W; l++) {
 		const struct simulation *sim = b->sim[l];
-		const double *end = &sim->task->ground[sim->next];
+		const double *end = &sim->ground[sim->next];
 		ground[l] = *end;
 		behind[l] = (double)(sim->last - sim->next);
 		at[l] = (uintptr_t)(sim->next < sim->last ? end + 1 : end);
@@ -346,7 +376,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	press_load(&s, &g, behind, edged);
 	struct pressed kept = s.at;
 	const vd before = kept.rounds;
-	vm pressed = vmask((1u << b->n) - 1), ended = vmask(0), refused = vmask(0), gone = vmask(0);
+	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
 	int few = b->n / 2;
 	do {
 		struct pressed from;
@@ -377,18 +407,24 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	double left[W], rounds[W];
 	lanes_store(left, kept.left);
 	lanes_store(rounds, before - kept.rounds);
-	unsigned ends = vbits(ended), refusals = vbits(refused), goes = vbits(gone), stays = vbits(pressed);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		int64_t next = sim->last - (int64_t)left[l];
-		if (next != sim->next)
-			interval_set(sim, next);
+		int steps = next == sim->next ? sim->steps : 0;
+		interval_set(sim, next);
+		sim->steps = steps;
 		sim->cells_pressed += rounds[l] * sim->pressed->row[PRESS_SPLIT][SPLIT_CELLS];
-		send(work, sim,
-		     ends >> l & 1    ? STAGE_END
-		     : stays >> l & 1 ? stage
-		                      : simulation_pressed(sim, stage, refusals >> l & 1, goes >> l & 1));
 	}
+	unsigned stays = vbits(pressed), ends = vbits(ended), leaves = batch_lanes(b) & ~stays & ~ends;
+	while (stays)
+		push(&work->queues[stage], batch_next(b, &stays));
+	for (unsigned at = leaves; at;) {
+		unsigned lane = at & -at;
+		struct simulation *sim = batch_next(b, &at);
+		send(work, sim, simulation_pressed(sim, stage, vbits(refused) & lane, vbits(gone) & lane));
+	}
+	while (ends)
+		leave(work, batch_next(b, &ends), STAGE_END);
 }
 
 /* What is asked for or happens seldom goes one way for all laws. */
@@ -417,7 +453,7 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	                        .edged = edged,
 	                        .right = b->traits & TRAIT_RIGHT,
 	                        .forced = b->traits & TRAIT_FORCED,
-	                        .active = vmask((1u << b->n) - 1),
+	                        .active = vmask(batch_lanes(b)),
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0)};
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
@@ -477,7 +513,7 @@ LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, boo
 	lanes_fill(&g, b, ROW_PAIR);
 	if (paired)
 		lanes_fill(&g, b, ROW_RIGHT);
-	event_leap(&g, &e, vmask((1u << b->n) - 1));
+	event_leap(&g, &e, vmask(batch_lanes(b)));
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	for (int l = 0; l < b->n; l++)
@@ -558,7 +594,7 @@ static void tasks_start(struct work *work)
 			const struct pound_march_task *task = &work->tasks[work->started];
 			if (simulation_edged(task) != work->passed)
 				continue;
-			struct simulation *sim = &work->pool[pop(&work->idle)];
+			struct simulation *sim = pop(&work->idle);
 			send(work, sim, simulation_start(sim, task, &work->results[work->started]));
 		}
 		if (work->started < work->n)
@@ -598,7 +634,7 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	work->filler.x.gap = 0;
 	for (int j = 0; j < POOL; j++) {
 		work->pool[j].ladder = &work->ladders[j];
-		push(&work->idle, j);
+		push(&work->idle, &work->pool[j]);
 	}
 	struct queue *queue = &work->queues[0];
 	for (;;) {
@@ -609,7 +645,8 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 				queue = &work->queues[stage];
 		if (queue->n == 0)
 			break;
-		struct batch b = batch_take(work, queue);
+		struct batch b;
+		batch_take(&b, work, queue);
 		steps[queue - work->queues][(b.traits & TRAIT_EDGED) != 0](work, &b);
 	}
 	lanes_leave();

@@ -452,7 +452,7 @@ static enum pound_stage press_ready(struct simulation *sim)
 	                   x->body[0].stiffness == x->body[1].stiffness &&
 	                   x->body[0].damping == x->body[1].damping;
 	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
-	const double *ground = &sim->task->ground[sim->next];
+	const double *ground = &sim->ground[sim->next];
 	x->rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
 	// a rung goes as far as the next longer one
 	x->rounds = sim->rungs > 0 ? RUNG_RATIO : -1;

@@ -168,7 +168,8 @@ struct simulation {
 	alignas(64) struct pound_rows x;
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
-	int64_t next, last; /* sample at the end of this interval, and the last of the signal */
+	const double *ground; /* of the task */
+	int64_t next, last;   /* sample at the end of this interval, and the last of the signal */
 	double per_step;
 	double impulse_max, contacts;
 	double cells_pressed; /* whole cells of contact, which are not in contact_time */

@@ -64,7 +64,7 @@ static void piece_enter(struct simulation *sim, int i)
 /* The interval that ends at a sample is the one that a simulation is in. */
 static void interval_set(struct simulation *sim, int64_t next)
 {
-	const double *a = &sim->task->ground[next];
+	const double *a = &sim->ground[next];
 	sim->next = next;
 	sim->x.slope = (a[0] - a[-1]) * sim->per_step;
 	sim->steps = 0;
@@ -75,8 +75,8 @@ static void simulation_interval(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	interval_set(sim, sim->next);
-	x->ground = sim->task->ground[sim->next - 1];
-	x->part = sim->touching ? 0 : sim->task->time_step;
+	x->ground = sim->ground[sim->next - 1];
+	x->part = sim->touching ? 0 : x->body[0].step_gap;
 	x->cells = sim->touching ? x->cells_whole : 0;
 }
 
@@ -176,7 +176,7 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 		x->u[i] = x->v[i] = 0;
 	sim->parted = sim->fresh = false;
 	x->pace = 1;
-	while (sim->task->ground[sim->next] == 0)
+	while (sim->ground[sim->next] == 0)
 		if (sim->next++ == sim->last)
 			return STAGE_END;
 	return simulation_from(sim);
@@ -339,6 +339,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	memset(sim, 0, offsetof(struct simulation, ladder));
 	memset(result, 0, sizeof *result);
 	sim->task = task;
+	sim->ground = task->ground;
 	sim->result = result;
 	sim->next = 1;
 	sim->last = task->n_samples - 1;
