@@ -20,85 +20,79 @@ struct event_lanes {
 	bool forced;        /* a lane's contact ends when its force does */
 };
 
-/* What the recurrences of a step read: each body's damping and stiffness, the contact's, all scaled to the step. */
-struct rates {
-	vd c[2], k[2], spring, dash;
-};
-
-/* coefficients of one order of left, right and overlap, and the sums over the orders so far */
+/* The derivatives of a motion by the share of a step that is gone, order after order: n and n + 1 of left, right and overlap.
+ * What makes the next ones of them: damping, stiffness and forcing of each body, and the contact's, all scaled to the step. */
 struct terms {
-	vd u[3], v[3], u1[3], v1[3];
+	vd u[3], v[3];
+	vd c[2], k[2], force[2], grown[2], spring, dash;
+	vm level; /* lanes whose bodies touch without overlap or approach */
 };
 
-/* Keeps coefficient n of a motion and adds it to the ends. */
-LANE_INLINE void motion_order(struct motion *into, struct terms *x, int j, int n)
+LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool touching)
 {
-	into->u.c[n] = x->u[j];
-	into->v.c[n] = x->v[j];
-	x->u1[j] = n ? x->u1[j] + x->u[j] : x->u[j];
-	x->v1[j] = n ? x->v1[j] + x->v[j] : x->v[j];
+	struct terms t;
+	vd dt = g->dt, dt2 = dt * dt;
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		t.u[i] = g->u[i], t.v[i] = g->v[i] * dt;
+		t.c[i] = -g->body[i].damping * dt;
+		t.k[i] = -g->body[i].stiffness * dt2;
+		t.force[i] = -vfma(g->body[i].drive, g->ground, g->body[i].offset) * dt2;
+		t.grown[i] = -(g->body[i].drive * g->slope) * dt2 * dt;
+	}
+	if (!paired)
+		return t;
+	t.u[2] = g->p, t.v[2] = g->q * dt;
+	vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
+	t.level = vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
+	if (touching) {
+		t.spring = g->contact_stiffness * dt2;
+		t.dash = g->contact_damping * dt;
+	}
+	return t;
 }
 
-/* One order of the series of the bodies and of the overlap: keeps coefficient n and makes coefficient n + 1.
+/* Bodies that touch without overlap, with velocities that differ by a rounding at most, part or press by the difference of
+ * their accelerations.  Where that is no more than the rounding of what these are made of it is nothing, and what differs in
+ * their later course decides: else bodies that are alike up to a yield point would part and meet for ever.
  *
- * Given    force  part of this order of the ground motion and the pieces, orders 0 and 1 only
+ * Given    apart  the difference, times the square of the step
  */
-LANE_INLINE void series_order(struct series *s, const struct rates *r, const struct lanes *g, int n,
-                              const vd force[2], struct terms *x, bool paired, bool touching)
+LANE_SHARED vd apart_settle(const struct lanes *g, vd apart, vm level)
 {
-	vd share = vsplat(1.0 / (n + 1)), b[2];
+	vd made = vsplat(0);
+	for (int i = 0; i < 2; i++) {
+		made = made + vabs(g->body[i].damping * g->v[i]) + vabs(g->body[i].stiffness * g->u[i]);
+		made = made + vabs(g->body[i].offset) + vabs(g->body[i].drive * g->ground);
+	}
+	vm nothing = level & vless(vabs(apart), vsplat(4 * DBL_EPSILON) * made * (g->dt * g->dt));
+	return vselect(nothing, vsplat(0), apart);
+}
+
+/* From the derivatives n and n + 1 to the next.  The overlap has its own: the difference u1 - u2 - gap would lose the digits
+ * of a stiff contact. */
+LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool paired, bool touching)
+{
+	vd b[2];
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		motion_order(&s->body[i], x, i, n);
-		b[i] = vfma(r->c[i], x->v[i], r->k[i] * x->u[i]);
+		vd slow = t->k[i] * t->u[i];
 		if (n < 2)
-			b[i] = b[i] + force[i];
-		x->u[i] = x->v[i] * share;
+			slow = slow + (n ? t->grown[i] : t->force[i]);
+		b[i] = vfma(t->c[i], t->v[i], slow);
 	}
-	if (!paired) {
-		x->v[0] = b[0] * share;
-		return;
-	}
-	motion_order(&s->overlap, x, 2, n);
-	vd apart = b[0] - b[1];
+	vd apart = b[0];
+	if (paired)
+		apart = b[0] - b[1];
+	if (paired && n == 0 && vany(t->level))
+		apart = apart_settle(g, apart, t->level);
 	if (touching) {
-		vd push = vfma(r->spring, x->u[2], r->dash * x->v[2]);
+		vd push = vfma(t->dash, t->v[2], t->spring * t->u[2]);
 		b[0] = b[0] - push;
 		b[1] = vfma(g->mass_ratio, push, b[1]);
 		apart = vfma(g->both, -push, apart);
 	}
-	x->u[2] = x->v[2] * share;
-	x->v[2] = apart * share;
-	x->v[0] = b[0] * share;
-	x->v[1] = b[1] * share;
-}
-
-/* Series of the bodies and of the overlap over a step, and their ends. */
-LANE_INLINE void series_fill(struct series *s, const struct lanes *g, bool paired, bool touching)
-{
-	vd dt = g->dt, dt2 = dt * dt;
-	struct rates r;
-	vd force[2][2];
-	struct terms x;
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		r.c[i] = -g->body[i].damping * dt;
-		r.k[i] = -g->body[i].stiffness * dt2;
-		force[0][i] = -vfma(g->body[i].drive, g->ground, g->body[i].offset) * dt2;
-		force[1][i] = -(g->body[i].drive * g->slope) * dt2 * dt;
-		x.u[i] = g->u[i], x.v[i] = g->v[i] * dt;
-	}
-	if (paired)
-		x.u[2] = g->p, x.v[2] = g->q * dt;
-	if (touching) {
-		r.spring = g->contact_stiffness * dt2;
-		r.dash = g->contact_damping * dt;
-	}
-	s->order = touching ? ORDER_TOUCH : ORDER_APART;
-	ORDERS_UP(n, 0, s->order, series_order(s, &r, g, n, force[n < 2 ? n : 1], &x, paired, touching);)
-	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
 	for (int j = 0; j < (paired ? 3 : 1); j++) {
-		into[j]->u1 = x.u1[j];
-		into[j]->v1 = x.v1[j];
-		into[j]->u.c[s->order + 1] = into[j]->v.c[s->order + 1] = vsplat(0);
+		t->u[j] = t->v[j];
+		t->v[j] = j < 2 ? b[j] : apart;
 	}
 }
 
@@ -232,40 +226,25 @@ LANE_INLINE int bodies_watched(const struct event_lanes *e)
 	return e->paired && (e->edged || e->right) ? 2 : 1;
 }
 
-/* Bodies that touch without overlap, with velocities that differ by a rounding at most, part or press by the difference of
- * their accelerations.  Where that is no more than the rounding of what these are made of it is nothing, and what differs in
- * their later course decides: else bodies that are alike up to a yield point would part and meet for ever. */
-LANE_SHARED void overlap_settle(struct series *s, const struct lanes *g, vm level, bool touching)
-{
-	vd terms = vsplat(0), zero = vsplat(0), dt2 = g->dt * g->dt, bow = s->overlap.u.c[2];
-	for (int i = 0; i < 2; i++) {
-		terms = terms + vabs(g->body[i].damping * g->v[i]) + vabs(g->body[i].stiffness * g->u[i]);
-		terms = terms + vabs(g->body[i].offset) + vabs(g->body[i].drive * g->ground);
-	}
-	if (touching) // what the contact's dashpot makes of the rate is no difference of theirs
-		bow = vfma(vsplat(0.5) * g->both * g->contact_damping * dt2, g->q, bow);
-	vm nothing = level & vless(vabs(bow), vsplat(2 * DBL_EPSILON) * terms * dt2);
-	bow = vselect(nothing, bow, zero);
-	s->overlap.u.c[2] = s->overlap.u.c[2] - bow;
-	s->overlap.v.c[1] = s->overlap.v.c[1] - 2.0 * bow;
-	s->overlap.u1 = s->overlap.u1 - bow;
-	s->overlap.v1 = s->overlap.v1 - 2.0 * bow;
-}
-
 /* Makes the series of a step, and the bounds of what is looked into. */
 LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, bool paired, bool touching)
 {
-	series_fill(s, g, paired, touching);
-	if (paired) {
-		vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
-		vm level = vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
-		if (vany(level))
-			overlap_settle(s, g, level, touching);
-	}
+	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
+	struct terms t = terms_start(g, paired, touching);
+	const int order = touching ? ORDER_TOUCH : ORDER_APART, motions = paired ? 3 : 1;
+	s->order = order;
+	ORDERS_UP(
+	    n, 0, order, for (int j = 0; j < motions; j++) {
+		    into[j]->u.c[n] = t.u[j] * vsplat(factor(n));
+		    into[j]->v.c[n] = t.v[j] * vsplat(factor(n));
+	    } terms_next(&t, g, n, paired, touching);)
+	lanes_spilled();
+	for (int j = 0; j < motions; j++)
+		motion_end(into[j], order);
 	for (int i = 0; i < watched; i++)
-		motion_bound(&s->body[i], s->order);
+		motion_bound(&s->body[i], order);
 	if (paired)
-		motion_bound(&s->overlap, s->order);
+		motion_bound(&s->overlap, order);
 }
 
 LANE_SHARED void series_alone(struct series *s, const struct lanes *g)

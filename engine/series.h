@@ -63,10 +63,29 @@ LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 	return vfma(odd, t, vfma(even, t2, s->c[0]));
 }
 
+/* What a derivative by the share of the step is divided by to be coefficient n: 1/n!, rounded once, as 18! is below 2^53. */
+LANE_INLINE double factor(int n)
+{
+	double product = 1;
+	for (int m = 2; m <= n; m++)
+		product *= m;
+	return 1 / product;
+}
+
 /* Factor of coefficient n in the bound of the fourth derivative. */
 LANE_INLINE double fourth(int n)
 {
 	return (double)n * (n - 1) * (n - 2) * (n - 3);
+}
+
+/* Adds up a motion to the end of its step. */
+LANE_INLINE void motion_end(struct motion *m, int order)
+{
+	vd u1 = m->u.c[0], v1 = m->v.c[0];
+	ORDERS_UP(n, 1, order, u1 = u1 + m->u.c[n]; v1 = v1 + m->v.c[n];)
+	m->u1 = u1;
+	m->v1 = v1;
+	m->u.c[order + 1] = m->v.c[order + 1] = vsplat(0);
 }
 
 /* Bounds the fourth derivative of a motion by the magnitudes of its terms. */
