@@ -7,6 +7,7 @@
 
 #include "engine/march.h"
 #include "engine/scene.h"
+#include "tests/specimen.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -168,19 +169,13 @@ static void bodies_at_rest_without_ground_motion_stay_at_rest(void **state)
 
 enum { TASKS = 149, SAMPLES = 700 }; // more tasks than are in flight at once, at any lane count
 
-static double random_number(uint64_t *seed)
-{
-	*seed = *seed * 6364136223846793005u + 1442695040888963407u;
-	return (double)(*seed >> 11) / 9007199254740992.0;
-}
-
 static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t seed)
 {
 	for (int t = 0; t < TASKS; t++) {
 		double *a = ground + t * SAMPLES, slow = 0;
 		for (int s = 0; s < SAMPLES; s++)
-			a[s] = slow = 0.9 * slow + random_number(&seed) - 0.5;
-		double ratio = exp(4 * random_number(&seed) - 2);
+			a[s] = slow = 0.9 * slow + specimen_uniform(&seed, -0.5, 0.5);
+		double ratio = exp(specimen_uniform(&seed, -2, 2));
 		double stiffness = 0, contact = pow(10, 2 + t % 9 % 4 * 2);
 		tasks[t] = (struct pound_march_task){.ground = a,
 		                                     .n_samples = SAMPLES - t, // so that lanes end at different times
@@ -190,7 +185,7 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 		                                     .mass_ratio = ratio,
 		                                     .tension = t % 2};
 		for (int i = 0; i < 2; i++) {
-			double w = 2 * PI * (0.5 + 5 * random_number(&seed));
+			double w = 2 * PI * specimen_uniform(&seed, 0.5, 5.5);
 			tasks[t].bodies[i] = (struct pound_march_body){
 			    .skeleton = {.law = t % 4, .stiffness = w * w, .hardening = 0.05, .yield = 0.3 / (w * w)},
 			    .damping = 0.1 * w,
@@ -399,7 +394,7 @@ static void a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours(v
 			tasks[t].gap = 0;
 			tasks[t].contact = true;
 			tasks[t].bodies[0].v = 1;
-			tasks[t].bodies[1].v = -random_number(&seed);
+			tasks[t].bodies[1].v = -specimen_uniform(&seed, 0, 1);
 			memset(a, 0, sizeof(double) * (size_t)tasks[t].n_samples);
 		}
 		check_alone_as_together(tasks);
