@@ -13,7 +13,7 @@ MODE.tsan    := -O1 -g -fsanitize=thread
 # the march's loops over lanes are to be straight code
 MARCH.release := -O3 -fno-tree-vectorize
 # a floor is followed by short loops over the orders of a series
-SERIES.release := -O3 -funroll-loops
+FLOOR.release := -O3 -funroll-loops
 WARN     := -Wall -Wextra -Werror -Wmissing-prototypes -Wshadow -Wvla -Wno-psabi
 CPPFLAGS += -I. -D_GNU_SOURCE $(CPPFLAGS.$(MODE))
 LDFLAGS  += $(LDFLAGS.$(MODE))
@@ -74,8 +74,8 @@ $(B)/engine/march_%.o: engine/march.c
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(MARCH.$(MODE)) $(LANES.$*) -DPOUND_MARCH=pound_march_$* -c -o $@ $<
 $(B)/engine/spectrum_%.o: engine/spectrum.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) $(SERIES.$(MODE)) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<
-$(B)/engine/trace.o: CFLAGS += $(SERIES.$(MODE))
+	$(CC) $(CPPFLAGS) $(CFLAGS) $(FLOOR.$(MODE)) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<
+$(B)/engine/trace.o: CFLAGS += $(FLOOR.$(MODE))
 $(B)/engine/noise_%.o: engine/noise.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_NOISE=pound_noise_$* -c -o $@ $<

@@ -20,14 +20,17 @@ struct event_lanes {
 	bool forced;        /* a lane's contact ends when its force does */
 };
 
-/* The derivatives of a motion by the share of a step that is gone, order after order: n and n + 1 of left, right and overlap.
- * What makes the next ones of them: damping, stiffness and forcing of each body, and the contact's, all scaled to the step. */
+/* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
+ * all scaled to the step.  Of a body alone only [0] is set; spring and dash are only set while touching. */
 struct terms {
-	vd u[3], v[3];
-	vd c[2], k[2], force[2], grown[2], spring, dash;
-	vm level; /* lanes whose bodies touch without overlap or approach */
+	vd u[3], v[3];            /* derivatives n and n + 1 */
+	vd c[2], k[2];            /* damping and stiffness of each body, with the sign that they act with */
+	vd force[2], increase[2]; /* its forcing at the start of the step, and what that grows by over it */
+	vd spring, dash;          /* of the contact */
+	vm level; /* lanes whose bodies touch without overlap, at one velocity but for a rounding */
 };
 
+/* Derivatives 0 and 1: where a step starts. */
 LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool touching)
 {
 	struct terms t;
@@ -37,7 +40,7 @@ LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool to
 		t.c[i] = -g->body[i].damping * dt;
 		t.k[i] = -g->body[i].stiffness * dt2;
 		t.force[i] = -vfma(g->body[i].drive, g->ground, g->body[i].offset) * dt2;
-		t.grown[i] = -(g->body[i].drive * g->slope) * dt2 * dt;
+		t.increase[i] = -(g->body[i].drive * g->slope) * dt2 * dt;
 	}
 	if (!paired)
 		return t;
@@ -68,15 +71,14 @@ LANE_SHARED vd apart_settle(const struct lanes *g, vd apart, vm level)
 	return vselect(nothing, vsplat(0), apart);
 }
 
-/* From the derivatives n and n + 1 to the next.  The overlap has its own: the difference u1 - u2 - gap would lose the digits
- * of a stiff contact. */
+/* From the derivatives n and n + 1 to the next. */
 LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool paired, bool touching)
 {
 	vd b[2];
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
 		vd slow = t->k[i] * t->u[i];
 		if (n < 2)
-			slow = slow + (n ? t->grown[i] : t->force[i]);
+			slow = slow + (n ? t->increase[i] : t->force[i]);
 		b[i] = vfma(t->c[i], t->v[i], slow);
 	}
 	vd apart = b[0];
@@ -93,6 +95,16 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool 
 	for (int j = 0; j < (paired ? 3 : 1); j++) {
 		t->u[j] = t->v[j];
 		t->v[j] = j < 2 ? b[j] : apart;
+	}
+}
+
+/* Keeps coefficient n of every motion. */
+LANE_INLINE void terms_keep(const struct terms *t, struct motion *const into[3], int n, int motions)
+{
+	vd share = vsplat(factor(n));
+	for (int j = 0; j < motions; j++) {
+		into[j]->u.c[n] = t->u[j] * share;
+		into[j]->v.c[n] = t->v[j] * share;
 	}
 }
 
@@ -233,12 +245,9 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 	struct terms t = terms_start(g, paired, touching);
 	const int order = touching ? ORDER_TOUCH : ORDER_APART, motions = paired ? 3 : 1;
 	s->order = order;
-	ORDERS_UP(
-	    n, 0, order, for (int j = 0; j < motions; j++) {
-		    into[j]->u.c[n] = t.u[j] * vsplat(factor(n));
-		    into[j]->v.c[n] = t.v[j] * vsplat(factor(n));
-	    } terms_next(&t, g, n, paired, touching);)
-	lanes_spilled();
+	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions); terms_next(&t, g, n, paired, touching);)
+	// no result depends on this: what is added up is to be read from memory, or gcc keeps the coefficients there twice
+	__asm__ volatile("" ::: "memory");
 	for (int j = 0; j < motions; j++)
 		motion_end(into[j], order);
 	for (int i = 0; i < watched; i++)

@@ -262,13 +262,6 @@ LANE_INLINE void lanes_leave(void)
 #endif
 }
 
-/* What has been written to memory is read from there again: a compiler that wants to keep a hundred vectors in registers
- * writes them to memory twice. */
-LANE_INLINE void lanes_spilled(void)
-{
-	__asm__ volatile("" ::: "memory");
-}
-
 /* The lanes of a vector in memory. */
 LANE_INLINE void lanes_store(double to[W], vd x)
 {

@@ -6,7 +6,9 @@
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (event.h);
  * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
  *    lanes, goes on until half of it is done with that kind of step, and is carried out to the next queues;
- * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger.
+ * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
+ * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
+ *    costs more than what it decides.
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/march.h"
 
@@ -59,7 +61,7 @@ static struct simulation *pop(struct queue *queue)
 }
 
 /* What becomes of a simulation that has come to an end. */
-LANE_SHARED void leave(struct work *work, struct simulation *sim, enum pound_stage stage)
+LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
 	stage = simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
 	push(stage < STAGES ? &work->queues[stage] : &work->idle, sim);
@@ -71,7 +73,7 @@ LANE_INLINE void send(struct work *work, struct simulation *sim, enum pound_stag
 	if (stage < STAGES)
 		push(&work->queues[stage], sim);
 	else
-		leave(work, sim, stage);
+		finish(work, sim, stage);
 }
 
 static void batch_take(struct batch *b, struct work *work, struct queue *queue)
@@ -146,7 +148,8 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
 	unsigned whole = flying & ~vbits(vless(ahead->samples, vsplat(ROW)));
 	for (int l = 0; l < W; l++) {
 		at[l] = whole >> l & 1 ? ahead->ground[l] + ahead->gone : work->beyond[l];
-		__builtin_prefetch(at[l] + 2 * ROW - 1); // the next ones' last: their first are in a line of these
+		// the line that the next ROW end in: that in which they begin has come with these
+		__builtin_prefetch((const void *)((uintptr_t)at[l] + (2 * ROW - 1) * sizeof(double)));
 	}
 	double samples[W];
 	lanes_store(samples, ahead->samples);
@@ -250,7 +253,6 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++)
 		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
-	// those with the same future one after the other: what is decided for each is then seldom a surprise
 	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0))), on = vbits(flying) & ~there;
 	for (unsigned met = batch_lanes(b) & ~there & ~on; met;) {
 		struct simulation *sim = batch_next(b, &met);
@@ -410,21 +412,21 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		int64_t next = sim->last - (int64_t)left[l];
-		int steps = next == sim->next ? sim->steps : 0;
+		int steps = next == sim->next ? sim->steps : 0; // counted on in an interval that was not left
 		interval_set(sim, next);
 		sim->steps = steps;
 		sim->cells_pressed += rounds[l] * sim->pressed->row[PRESS_SPLIT][SPLIT_CELLS];
 	}
-	unsigned stays = vbits(pressed), ends = vbits(ended), leaves = batch_lanes(b) & ~stays & ~ends;
+	unsigned stays = vbits(pressed), ends = vbits(ended), turns = batch_lanes(b) & ~stays & ~ends;
 	while (stays)
 		push(&work->queues[stage], batch_next(b, &stays));
-	for (unsigned at = leaves; at;) {
-		unsigned lane = at & -at;
-		struct simulation *sim = batch_next(b, &at);
+	while (turns) {
+		unsigned lane = turns & -turns;
+		struct simulation *sim = batch_next(b, &turns);
 		send(work, sim, simulation_pressed(sim, stage, vbits(refused) & lane, vbits(gone) & lane));
 	}
 	while (ends)
-		leave(work, batch_next(b, &ends), STAGE_END);
+		finish(work, batch_next(b, &ends), STAGE_END);
 }
 
 /* What is asked for or happens seldom goes one way for all laws. */

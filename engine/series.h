@@ -78,7 +78,7 @@ LANE_INLINE double fourth(int n)
 	return (double)n * (n - 1) * (n - 2) * (n - 3);
 }
 
-/* Adds up a motion to the end of its step. */
+/* Adds up a motion to the end of its step, and puts the zero behind its coefficients. */
 LANE_INLINE void motion_end(struct motion *m, int order)
 {
 	vd u1 = m->u.c[0], v1 = m->v.c[0];

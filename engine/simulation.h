@@ -168,7 +168,7 @@ struct simulation {
 	alignas(64) struct pound_rows x;
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
-	const double *ground; /* of the task */
+	const double *ground; /* of the task: at hand, as it is read every turn */
 	int64_t next, last;   /* sample at the end of this interval, and the last of the signal */
 	double per_step;
 	double impulse_max, contacts;

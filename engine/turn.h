@@ -61,7 +61,7 @@ static void piece_enter(struct simulation *sim, int i)
 
 /* ---- what follows ---- */
 
-/* The interval that ends at a sample is the one that a simulation is in. */
+/* The interval that ends at a sample is the one that a simulation is in, with no steps taken in it yet. */
 static void interval_set(struct simulation *sim, int64_t next)
 {
 	const double *a = &sim->ground[next];
@@ -76,7 +76,7 @@ static void simulation_interval(struct simulation *sim)
 	struct pound_rows *x = &sim->x;
 	interval_set(sim, sim->next);
 	x->ground = sim->ground[sim->next - 1];
-	x->part = sim->touching ? 0 : x->body[0].step_gap;
+	x->part = sim->touching ? 0 : x->body[0].step_gap; // the sample step
 	x->cells = sim->touching ? x->cells_whole : 0;
 }
 
