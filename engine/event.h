@@ -101,7 +101,7 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool 
 /* Keeps coefficient n of every motion. */
 LANE_INLINE void terms_keep(const struct terms *t, struct motion *const into[3], int n, int motions)
 {
-	vd share = vsplat(factor(n));
+	vd share = vsplat(POUND_FACTOR[n]);
 	for (int j = 0; j < motions; j++) {
 		into[j]->u.c[n] = t->u[j] * share;
 		into[j]->v.c[n] = t->v[j] * share;

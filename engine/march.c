@@ -93,12 +93,12 @@ static unsigned batch_lanes(const struct batch *b)
 	return (1u << b->n) - 1;
 }
 
-/* Takes a simulation out of a set of lanes that is not empty. */
-static struct simulation *batch_next(const struct batch *b, unsigned *lanes)
+/* Takes a lane out of a set that is not empty. */
+static int lane_next(unsigned *lanes)
 {
 	int l = __builtin_ctz(*lanes);
 	*lanes &= *lanes - 1;
-	return b->sim[l];
+	return l;
 }
 
 /* Carries one row of every simulation into lanes, or out. */
@@ -153,8 +153,8 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
 	}
 	double samples[W];
 	lanes_store(samples, ahead->samples);
-	for (unsigned ends = flying & ~whole; ends; ends &= ends - 1) {
-		int l = __builtin_ctz(ends);
+	for (unsigned ends = flying & ~whole; ends;) {
+		int l = lane_next(&ends);
 		memcpy(work->beyond[l], ahead->ground[l] + ahead->gone, sizeof(double) * (size_t)samples[l]);
 	}
 	rows_load(ground, at, 0);
@@ -175,8 +175,8 @@ static unsigned peaks_keep(const struct batch *b, int i, vd us, vd vs, vd tops, 
 	lanes_store(top, tops);
 	lanes_store(bound, bounds);
 	unsigned full = 0;
-	for (; noted; noted &= noted - 1) {
-		int l = __builtin_ctz(noted);
+	while (noted) {
+		int l = lane_next(&noted);
 		struct simulation *sim = b->sim[l];
 		if (!peak_note(sim, i, sim->next + gone, u[l], v[l], bound[l], top[l]))
 			full |= 1u << l;
@@ -255,13 +255,13 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
 	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0))), on = vbits(flying) & ~there;
 	for (unsigned met = batch_lanes(b) & ~there & ~on; met;) {
-		struct simulation *sim = batch_next(b, &met);
+		struct simulation *sim = b->sim[lane_next(&met)];
 		send(work, sim, simulation_meet(sim));
 	}
 	while (on)
-		push(&work->queues[stage], batch_next(b, &on));
+		push(&work->queues[stage], b->sim[lane_next(&on)]);
 	while (there) {
-		struct simulation *sim = batch_next(b, &there);
+		struct simulation *sim = b->sim[lane_next(&there)];
 		send(work, sim, simulation_flown(sim, stage));
 	}
 }
@@ -274,8 +274,8 @@ static void press_account(const struct batch *b, const struct lanes *g, const st
 {
 	vd inputs[POUND_PRESS_INPUTS];
 	press_inputs(inputs, g, from, from->rise * cells);
-	for (; pressed; pressed &= pressed - 1) {
-		int l = __builtin_ctz(pressed);
+	while (pressed) {
+		int l = lane_next(&pressed);
 		double x[POUND_PRESS_INPUTS], end[4];
 		for (int j = 0; j < POUND_PRESS_INPUTS; j++)
 			x[j] = ((const double *)&inputs[j])[l];
@@ -412,21 +412,20 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		int64_t next = sim->last - (int64_t)left[l];
-		int steps = next == sim->next ? sim->steps : 0; // counted on in an interval that was not left
+		sim->steps = next == sim->next ? sim->steps : 0;
 		interval_set(sim, next);
-		sim->steps = steps;
 		sim->cells_pressed += rounds[l] * sim->pressed->row[PRESS_SPLIT][SPLIT_CELLS];
 	}
 	unsigned stays = vbits(pressed), ends = vbits(ended), turns = batch_lanes(b) & ~stays & ~ends;
 	while (stays)
-		push(&work->queues[stage], batch_next(b, &stays));
+		push(&work->queues[stage], b->sim[lane_next(&stays)]);
 	while (turns) {
-		unsigned lane = turns & -turns;
-		struct simulation *sim = batch_next(b, &turns);
-		send(work, sim, simulation_pressed(sim, stage, vbits(refused) & lane, vbits(gone) & lane));
+		int l = lane_next(&turns);
+		struct simulation *sim = b->sim[l];
+		send(work, sim, simulation_pressed(sim, stage, vbits(refused) >> l & 1, vbits(gone) >> l & 1));
 	}
 	while (ends)
-		finish(work, batch_next(b, &ends), STAGE_END);
+		finish(work, b->sim[lane_next(&ends)], STAGE_END);
 }
 
 /* What is asked for or happens seldom goes one way for all laws. */

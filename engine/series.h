@@ -63,15 +63,6 @@ LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 	return vfma(odd, t, vfma(even, t2, s->c[0]));
 }
 
-/* What a derivative by the share of the step is divided by to be coefficient n: 1/n!, rounded once, as 18! is below 2^53. */
-LANE_INLINE double factor(int n)
-{
-	double product = 1;
-	for (int m = 2; m <= n; m++)
-		product *= m;
-	return 1 / product;
-}
-
 /* Factor of coefficient n in the bound of the fourth derivative. */
 LANE_INLINE double fourth(int n)
 {

@@ -68,32 +68,6 @@ static const double SHARE[TERMS + 1] = {1.0 / 1,  1.0 / 2,  1.0 / 3,  1.0 / 4,  
                                         1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12,
                                         1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18,
                                         1.0 / 19, 1.0 / 20, 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24};
-// 1/n!
-static const double FACTOR[TERMS + 2] = {1 / 1.0,
-                                         1 / 1.0,
-                                         1 / 2.0,
-                                         1 / 6.0,
-                                         1 / 24.0,
-                                         1 / 120.0,
-                                         1 / 720.0,
-                                         1 / 5040.0,
-                                         1 / 40320.0,
-                                         1 / 362880.0,
-                                         1 / 3628800.0,
-                                         1 / 39916800.0,
-                                         1 / 479001600.0,
-                                         1 / 6227020800.0,
-                                         1 / 87178291200.0,
-                                         1 / 1307674368000.0,
-                                         1 / 20922789888000.0,
-                                         1 / 355687428096000.0,
-                                         1 / 6402373705728000.0,
-                                         1 / 121645100408832000.0,
-                                         1 / 2432902008176640000.0,
-                                         1 / 51090942171709440000.0,
-                                         1 / 1124000727777607680000.0,
-                                         1 / 25852016738884976640000.0,
-                                         1 / 620448401733239439360000.0};
 static const double MINUS_SHARE[TERMS + 1] = {
     -1.0 / 1,  -1.0 / 2,  -1.0 / 3,  -1.0 / 4,  -1.0 / 5,  -1.0 / 6,  -1.0 / 7,  -1.0 / 8,
     -1.0 / 9,  -1.0 / 10, -1.0 / 11, -1.0 / 12, -1.0 / 13, -1.0 / 14, -1.0 / 15, -1.0 / 16,
@@ -279,8 +253,8 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 	for (int d = 0; d < n_drives; d++)
 		s->fz[d] = s->fy[d] = g;
 	for (int m = 0; m < p->terms; m++) {
-		rate = vfma(next, vsplat(FACTOR[m]), rate);
-		h = vfma(next, vsplat(FACTOR[m + 1]), h);
+		rate = vfma(next, vsplat(POUND_FACTOR[m]), rate);
+		h = vfma(next, vsplat(POUND_FACTOR[m + 1]), h);
 		for (int d = 0; d < n_drives; d++) {
 			s->fy[d] = vfma(next, vsplat(integral[d][m]), s->fy[d]);
 			s->fz[d] = vfma(next, vsplat(integral[d][m + 1]), s->fz[d]);

@@ -61,13 +61,12 @@ static void piece_enter(struct simulation *sim, int i)
 
 /* ---- what follows ---- */
 
-/* The interval that ends at a sample is the one that a simulation is in, with no steps taken in it yet. */
+/* The interval that ends at a sample is the one that a simulation is in. */
 static void interval_set(struct simulation *sim, int64_t next)
 {
 	const double *a = &sim->ground[next];
 	sim->next = next;
 	sim->x.slope = (a[0] - a[-1]) * sim->per_step;
-	sim->steps = 0;
 }
 
 /* Enters the interval that ends at sim->next. */
@@ -75,6 +74,7 @@ static void simulation_interval(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	interval_set(sim, sim->next);
+	sim->steps = 0;
 	x->ground = sim->ground[sim->next - 1];
 	x->part = sim->touching ? 0 : x->body[0].step_gap; // the sample step
 	x->cells = sim->touching ? x->cells_whole : 0;
