@@ -214,6 +214,12 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 	setenv("POUNDD_CONNECTIONS_MAX", "1", 1);
 	begin(&world);
 	int held = raw_open(world.service);
+	// the one that asked whether the server is there may have been counted still, and this one refused
+	const char *const none[2] = {NULL, NULL};
+	for (int i = 0; i < 100 && ask(&world, "GET", "/v1/openapi.json", none, NULL) != 503; i++) {
+		close(held);
+		held = raw_open(world.service);
+	}
 	ask_each(&world, NULL, 503, true);
 	close(held);
 	service_stop(world.service);
