@@ -15,7 +15,7 @@ struct event_lanes {
 	vm active;          /* lanes in use */
 	vm parted, fresh;   /* as in struct simulation */
 	bool touching;      /* all lanes are in contact, or none */
-	bool paired, edged; /* as flight() has them */
+	bool paired, edged; /* as stretch_fly() has them */
 	bool right;         /* a lane's largest displacement of the right body is wanted */
 	bool forced;        /* a lane's contact ends when its force does */
 };

@@ -74,6 +74,11 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 	map->ef = quartic * h * fmax(s.bend_a, s.bend_d) + rounding * h * h;
 }
 
+/* displacement and velocity of a body */
+struct place {
+	vd u, v;
+};
+
 /* a body's motion over a sample or cell: its end, the inner control points of the cubic, and the bound of its error */
 struct flight {
 	vd u, v, b1, b2, error;
@@ -83,7 +88,7 @@ struct flight {
 struct flyer {
 	vd uu, uv, u_force, u_ground, u_next;
 	vd vu, vv, v_force, v_ground, v_next;
-	vd error_force, error_ground;
+	vd error_u, error_v, error_force, error_ground;
 };
 
 /* The map of a body on the piece it is on.
@@ -106,30 +111,40 @@ LANE_INLINE struct flyer flyer_of(const struct lanes *g, int i)
 	                      .v_force = -psi * offset,
 	                      .v_ground = -(psi + g->map[i].va) * drive,
 	                      .v_next = g->map[i].va * drive,
+	                      .error_u = g->map[i].eu,
+	                      .error_v = g->map[i].ev,
 	                      .error_force = g->map[i].ef * vabs(offset),
 	                      .error_ground = g->map[i].ef * drive};
 }
 
-/* One body over one whole sample.
+/* Where a body is one whole sample later.
  *
- * Given    f        its map
- *          pull     bound of |ground| + |next - ground|
- *          third    of the sample
+ * Given    f             its map
+ *          ground, next  acceleration at both ends [m/s2]
  */
-LANE_INLINE struct flight flight_step(const struct flyer *f, const struct lanes *g, int i, vd next, vd pull,
-                                      vd third)
+LANE_INLINE struct place flight_move(const struct flyer *f, struct place from, vd ground, vd next)
 {
-	struct flight to;
-	vd u = g->u[i], v = g->v[i];
-	vd u_force = vfma(f->u_ground, g->ground, vfma(f->u_next, next, f->u_force));
-	vd v_force = vfma(f->v_ground, g->ground, vfma(f->v_next, next, f->v_force));
-	to.u = vfma(f->uu, u, vfma(f->uv, v, u_force));
-	to.v = vfma(f->vv, v, vfma(f->vu, u, v_force));
-	to.b1 = vfma(third, v, u);
-	to.b2 = vfma(-third, to.v, to.u);
+	vd u_force = vfma(f->u_ground, ground, vfma(f->u_next, next, f->u_force));
+	vd v_force = vfma(f->v_ground, ground, vfma(f->v_next, next, f->v_force));
+	return (struct place){.u = vfma(f->uu, from.u, vfma(f->uv, from.v, u_force)),
+	                      .v = vfma(f->vv, from.v, vfma(f->vu, from.u, v_force))};
+}
+
+/* What is known of the way there.
+ *
+ * Given    f      its map
+ *          pull   bound of |ground| + |next - ground|
+ *          third  of the sample
+ */
+LANE_INLINE struct flight flight_way(const struct flyer *f, struct place from, struct place to, vd pull,
+                                     vd third)
+{
 	vd error = vfma(f->error_ground, pull, f->error_force);
-	to.error = vfma(g->map[i].eu, vabs(u), vfma(g->map[i].ev, vabs(v), error));
-	return to;
+	return (struct flight){.u = to.u,
+	                       .v = to.v,
+	                       .b1 = vfma(third, from.v, from.u),
+	                       .b2 = vfma(-third, to.v, to.u),
+	                       .error = vfma(f->error_u, vabs(from.u), vfma(f->error_v, vabs(from.v), error))};
 }
 
 /* what a body must not do inside a sample or cell */
@@ -192,58 +207,68 @@ LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
 	return (struct limits){g->top[i], g->body[i].low, g->body[i].high, g->body[i].direction};
 }
 
-/* lanes in which either body may have its largest displacement inside a sample, and how far it cannot go */
-struct peaks {
-	vm may[2];
-	vd bound[2];
+/* samples that lanes fly over, one after the other */
+struct stretch {
+	vd ground[ROW + 1]; /* acceleration at them [m/s2] */
+	struct place at[2][ROW + 1];
+	vd top[2][ROW + 1];    /* the largest displacement up to there */
+	vd bound[2][ROW];      /* of |u| inside a sample */
+	unsigned risk[ROW];    /* lanes in which something may happen inside a sample */
+	unsigned peak[2][ROW]; /* and those in which a body may have its largest displacement */
 };
 
-/* One sample.
+/* Flies every lane over a stretch, and then asks what may have happened on the way: no lane waits for its proof.
  *
- * Given    flyers  the bodies' maps
- *          next    acceleration at its end [m/s2]
+ * Given    s       ground
+ *          g       where it begins;  flyers: the bodies' maps
  *          edged   a lane has a law of more than one piece;  paired: the lanes have two bodies
  *          right   a lane's largest displacement of the right body is wanted
- * Returns  g       every lane at the end of the sample
- *          value   lanes in which something else may happen inside it
  */
-LANE_INLINE vm flight(struct lanes *g, const struct flyer flyers[2], vd next, bool edged, bool paired,
-                      bool right, struct peaks *peaks)
+LANE_INLINE void stretch_fly(struct stretch *s, const struct lanes *g, const struct flyer flyers[2],
+                             bool edged, bool paired, bool right)
 {
-	vd pull = vabs(g->ground) + vabs(next - g->ground), third = g->body[0].step_gap * vsplat(1.0 / 3);
-	struct flight f[2];
-	vm risk = vmask(0);
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		f[i] = flight_step(&flyers[i], g, i, next, pull, third);
-		peaks->bound[i] = flight_reach(&f[i]);
-		peaks->may[i] = i == 0 || right ? flight_peaks(&f[i], g->top[i]) : vmask(0);
-		struct limits limits = limits_of(g, i, edged);
-		if (edged)
-			risk |= flight_edges(g->v[i], &f[i], third, &limits);
+	const int bodies = paired ? 2 : 1, watched = paired && right ? 2 : 1;
+	vd third = g->body[0].step_gap * vsplat(1.0 / 3);
+	vd gap = vsplat(1 - 4 * DBL_EPSILON) * g->body[1].step_gap;
+	for (int i = 0; i < bodies; i++)
+		s->at[i][0] = (struct place){g->u[i], g->v[i]};
+	for (int i = 0; i < watched; i++)
+		s->top[i][0] = g->top[i];
+	for (int r = 0; r < ROW; r++)
+		for (int i = 0; i < bodies; i++)
+			s->at[i][r + 1] = flight_move(&flyers[i], s->at[i][r], s->ground[r], s->ground[r + 1]);
+	for (int r = 0; r < ROW; r++) {
+		vd pull = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
+		struct flight f[2];
+		vm risk = vmask(0);
+		for (int i = 0; i < bodies; i++) {
+			f[i] = flight_way(&flyers[i], s->at[i][r], s->at[i][r + 1], pull, third);
+			struct limits limits = limits_of(g, i, edged);
+			if (edged)
+				risk |= flight_edges(s->at[i][r].v, &f[i], third, &limits);
+		}
+		for (int i = 0; i < watched; i++) {
+			s->bound[i][r] = flight_reach(&f[i]);
+			s->top[i][r + 1] = vmax(s->top[i][r], vabs(f[i].u));
+			s->peak[i][r] = vbits(vless(s->top[i][r + 1], s->bound[i][r]));
+		}
+		if (paired) {
+			vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
+			risk |= vless(gap, nearest + (f[0].error + f[1].error));
+		}
+		s->risk[r] = vbits(risk);
 	}
-	if (paired) {
-		vd gap = g->body[1].step_gap;
-		vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
-		risk |= vless(vsplat(1 - 4 * DBL_EPSILON) * gap, nearest + (f[0].error + f[1].error));
-	}
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		g->u[i] = f[i].u;
-		g->v[i] = f[i].v;
-		if (i == 0 || right)
-			g->top[i] = vmax(g->top[i], vabs(f[i].u));
-	}
-	g->ground = next;
-	return risk;
 }
 
-/* Brings the states of some lanes from one to the other. */
-LANE_INLINE void flight_keep(struct lanes *to, const struct lanes *from, vm which, bool paired, bool right)
+/* Some lanes arrive at a sample of a stretch. */
+LANE_INLINE void stretch_keep(struct lanes *g, const struct stretch *s, int r, vm which, bool paired,
+                              bool right)
 {
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		to->u[i] = vselect(which, from->u[i], to->u[i]);
-		to->v[i] = vselect(which, from->v[i], to->v[i]);
+		g->u[i] = vselect(which, s->at[i][r].u, g->u[i]);
+		g->v[i] = vselect(which, s->at[i][r].v, g->v[i]);
 		if (i == 0 || right)
-			to->top[i] = vselect(which, from->top[i], to->top[i]);
+			g->top[i] = vselect(which, s->top[i][r], g->top[i]);
 	}
 }
 

@@ -141,8 +141,12 @@ struct ahead {
 	vd samples;              /* that are left */
 };
 
-/* The next ROW samples of the lanes that fly, as far as there are any. */
-LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsigned flying, vd ground[ROW])
+/* The next ROW samples of the lanes that fly, as far as there are any.
+ *
+ * Returns  value  lanes that have fewer
+ */
+LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, unsigned flying,
+                                 vd ground[ROW])
 {
 	const double *at[W];
 	unsigned whole = flying & ~vbits(vless(ahead->samples, vsplat(ROW)));
@@ -158,22 +162,22 @@ LANE_INLINE void ground_load(struct work *work, const struct ahead *ahead, unsig
 		memcpy(work->beyond[l], ahead->ground[l] + ahead->gone, sizeof(double) * (size_t)samples[l]);
 	}
 	rows_load(ground, at, 0);
+	return flying & ~whole;
 }
 
-/* Notes the largest displacements that lanes may have inside a sample.
+/* Notes the largest displacements that lanes may have inside a sample of a stretch.
  *
- * Given    us, vs  of body i at its start;  tops: the largest so far;  bounds: of |u| inside
- *          noted   lanes to note it of;  gone: samples before it since the batch began
- * Returns  value   lanes that have no room for another
+ * Given    noted  lanes to note that of body i of;  gone: samples before it since the batch began
+ * Returns  value  lanes that have no room for another
  */
-static unsigned peaks_keep(const struct batch *b, int i, vd us, vd vs, vd tops, vd bounds, unsigned noted,
-                           int64_t gone)
+LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stretch *s, int r, unsigned noted,
+                                int64_t gone)
 {
 	double u[W], v[W], top[W], bound[W];
-	lanes_store(u, us);
-	lanes_store(v, vs);
-	lanes_store(top, tops);
-	lanes_store(bound, bounds);
+	lanes_store(u, s->at[i][r].u);
+	lanes_store(v, s->at[i][r].v);
+	lanes_store(top, s->top[i][r]);
+	lanes_store(bound, s->bound[i][r]);
 	unsigned full = 0;
 	while (noted) {
 		int l = lane_next(&noted);
@@ -184,39 +188,36 @@ static unsigned peaks_keep(const struct batch *b, int i, vd us, vd vs, vd tops, 
 	return full;
 }
 
-/* Flies ROW samples at most, and not beyond the end of any lane.
+/* Flies ROW samples at most, and not beyond the end of any lane: each as far as nothing else happens to it.
  *
- * All lanes fly on, and each keeps its state in front of its first risk: what they wait for would otherwise be the
- * proof, which takes longer than the flight.
- *
- * Given    flying  lanes that do;  few: so few of them are not worth a round
- *          edged, paired, right: as flight() has them
- * Returns  value   those that still do, with samples left
+ * Given    flying  lanes that do
+ *          edged, paired, right: as stretch_fly() has them
+ * Returns  g       their states there
+ *          value   those that still do, with samples left
  *          ahead   what is left in front of each
  */
-LANE_INLINE vm fly_row(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
-                       const struct flyer flyers[2], vm flying, int few, bool edged, bool paired, bool right)
+LANE_INLINE vm fly_on(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
+                      const struct flyer flyers[2], vm flying, bool edged, bool paired, bool right)
 {
-	vd ground[ROW], zero = vsplat(0), flown = zero, one = vsplat(1);
-	ground_load(work, ahead, vbits(flying), ground);
-	struct lanes on = *g;
-	int round = 0;
-	do {
-		struct peaks peaks;
-		flying &= ~flight(&on, flyers, ground[round], edged, paired, right, &peaks);
-		for (int i = 0; i < (paired ? 2 : 1); i++)
-			if (vany(peaks.may[i] & flying))
-				flying &= ~vmask(peaks_keep(b, i, g->u[i], g->v[i], g->top[i], peaks.bound[i],
-				                            vbits(peaks.may[i] & flying), ahead->gone + round));
-		flight_keep(g, &on, flying, paired, right);
-		flown = vselect(flying, flown + one, flown);
-		round++;
-		flying &= vless(flown, ahead->samples);
-	} while (round < ROW && __builtin_popcount(vbits(flying)) > few);
-	g->ground = on.ground;
+	struct stretch s;
+	s.ground[0] = g->ground;
+	unsigned on = vbits(flying), ends = ground_load(work, ahead, on, s.ground + 1);
+	stretch_fly(&s, g, flyers, edged, paired, right);
+	vd flown = vsplat(0), one = vsplat(1);
+	for (int r = 0; r < ROW; r++) {
+		on &= ~s.risk[r];
+		if (ends)
+			on &= vbits(vless(vsplat(r), ahead->samples));
+		for (int i = 0; i < (paired && right ? 2 : 1); i++)
+			if (s.peak[i][r] & on)
+				on &= ~peaks_keep(b, i, &s, r, s.peak[i][r] & on, ahead->gone + r);
+		flown = vselect(vmask(on), flown + one, flown);
+		stretch_keep(g, &s, r + 1, vmask(on), paired, right);
+	}
+	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - flown;
 	ahead->gone += ROW;
-	return flying;
+	return vmask(on) & vless(vsplat(0), ahead->samples);
 }
 
 LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
@@ -245,10 +246,9 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	if (paired)
 		flyers[1] = flyer_of(&g, 1);
 	vm flying = vmask(batch_lanes(b));
-	int few = b->n / 2;
 	do
-		flying = fly_row(work, b, &ahead, &g, flyers, flying, few, edged, paired, right);
-	while (__builtin_popcount(vbits(flying)) > few);
+		flying = fly_on(work, b, &ahead, &g, flyers, flying, edged, paired, right);
+	while (__builtin_popcount(vbits(flying)) > b->n / 2);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++)

@@ -38,9 +38,9 @@ static struct flight sample_fly(const struct sample *s, double share)
 	map_fill(&map, s->g.body[0].stiffness, s->g.body[0].damping, share * s->h);
 	memcpy(&part.g.map[0], &map, sizeof map);
 	const struct flyer flyer = flyer_of(&part.g, 0);
-	const double grown = share * (s->next - s->g.ground);
-	return flight_step(&flyer, &part.g, 0, s->g.ground + grown, fabs(s->g.ground) + fabs(grown),
-	                   share * s->h / 3);
+	const double ground = s->g.ground, grown = share * (s->next - ground);
+	const struct place from = {s->g.u[0], s->g.v[0]}, to = flight_move(&flyer, from, ground, ground + grown);
+	return flight_way(&flyer, from, to, fabs(ground) + fabs(grown), share * s->h / 3);
 }
 
 enum { SAMPLES = 4000, PARTS = 16 };
