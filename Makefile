@@ -19,13 +19,17 @@ CPPFLAGS += -I. -D_GNU_SOURCE $(CPPFLAGS.$(MODE))
 LDFLAGS  += $(LDFLAGS.$(MODE))
 CFLAGS   += -std=c17 $(WARN) -ffp-contract=off -fno-math-errno -fstack-protector-strong -MMD -MP $(MODE.$(MODE))
 
+# a jump over a multiple of 32 bytes costs the first AVX-512 processors their cache of decoded code
+comma    := ,
+JUMPS    := $(if $(findstring clang,$(CC)),,-Wa$(comma))-mbranches-within-32B-boundaries
+
 # these files of the engine are compiled once per lane count, chosen among at run time; all give the same bits
 LANED          := march spectrum noise colour resample
 WIDTHS         := portable w1 w4 w8
 LANES.portable := -DPOUND_LANES=1
 LANES.w1       := -DPOUND_LANES=1 -mfma
 LANES.w4       := -DPOUND_LANES=4 -mavx2 -mfma
-LANES.w8       := -DPOUND_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512 -mtune=skylake-avx512
+LANES.w8       := -DPOUND_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512 -mtune=skylake-avx512 $(JUMPS)
 
 PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libcjson-dev librandom123-dev \
             nettle-dev libcurl4-openssl-dev libcmocka-dev curl

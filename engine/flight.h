@@ -539,7 +539,7 @@ LANE_INLINE struct limits limits_select(vm mask, struct limits a, struct limits 
 }
 
 /* Pressed contact as the lanes come to it, and back. */
-LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd left_samples, bool edged)
+LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd rise, vd left_samples, bool edged)
 {
 	vm left = vless(vsplat(0), g->side);
 	s->base = limits_select(left, limits_of(g, 0, edged), limits_of(g, 1, edged));
@@ -549,7 +549,7 @@ LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd left_samp
 	                     .top = {s->base.top, s->other.top},
 	                     .impulse = g->impulse,
 	                     .ground = g->ground,
-	                     .rise = g->rise,
+	                     .rise = rise,
 	                     .cells = g->cells,
 	                     .rounds = g->rounds,
 	                     .left = left_samples};
@@ -570,7 +570,6 @@ LANE_INLINE void press_store(const struct pressed *at, struct lanes *g)
 	g->q = x[3];
 	g->impulse = at->impulse;
 	g->ground = at->ground;
-	g->rise = at->rise;
 	g->cells = at->cells;
 	g->rounds = at->rounds;
 }

@@ -285,9 +285,9 @@ static void press_account(const struct batch *b, const struct lanes *g, const st
 	}
 }
 
-/* the ground motion at the end of each lane's interval, and at the end of the next one, and where that stands */
+/* the ground motion at both ends of each lane's interval, and at the end of the next one, and where that stands */
 struct samples {
-	vd ground, next;
+	vd before, ground, next;
 	vu at;
 };
 
@@ -296,15 +296,17 @@ LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
 {
 	struct samples s;
 	uint64_t at[W];
-	double behind[W], ground[W];
+	double behind[W], before[W], ground[W];
 	for (int l = 0; l < W; l++) {
 		const struct simulation *sim = b->sim[l];
 		const double *end = &sim->ground[sim->next];
+		before[l] = end[-1];
 		ground[l] = *end;
 		behind[l] = (double)(sim->last - sim->next);
 		at[l] = (uintptr_t)(sim->next < sim->last ? end + 1 : end);
 	}
 	*left = lanes_load(behind);
+	s.before = lanes_load(before);
 	s.ground = lanes_load(ground);
 	__builtin_memcpy(&s.at, at, sizeof s.at);
 	s.next = vgather(s.at);
@@ -375,9 +377,9 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
 	vd zero = vsplat(0), one = vsplat(1), share = one / g.cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
-	press_load(&s, &g, behind, edged);
+	press_load(&s, &g, (samples.ground - samples.before) * share, behind, edged);
 	struct pressed kept = s.at;
-	const vd before = kept.rounds;
+	const vd rounds = kept.rounds, cells = stage == STAGE_REST ? s.rest[PRESS_SPLIT][SPLIT_CELLS] : one;
 	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
 	int few = b->n / 2;
 	do {
@@ -388,8 +390,7 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 		refused |= risk & pressed;
 		pressed &= ~risk;
 		if (seldom)
-			press_account(b, &g, &from, &s.at, stage == STAGE_REST ? s.rest[PRESS_SPLIT][SPLIT_CELLS] : one,
-			              vbits(pressed & accounted));
+			press_account(b, &g, &from, &s.at, cells, vbits(pressed & accounted));
 		vm sampled = vequal(s.at.cells, zero), last = vequal(s.at.left, zero);
 		ended |= sampled & last & pressed;
 		vm entered = sampled & ~last;
@@ -403,18 +404,17 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 			pressed &= rest_stays(&s, entered);
 	} while (__builtin_popcount(vbits(pressed)) > few);
 	press_store(&kept, &g);
+	g.pressed = vfma(rounds - kept.rounds, cells, g.pressed);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	lanes_empty(&g, b, ROW_PRESS);
-	double left[W], rounds[W];
+	double left[W];
 	lanes_store(left, kept.left);
-	lanes_store(rounds, before - kept.rounds);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		int64_t next = sim->last - (int64_t)left[l];
 		sim->steps = next == sim->next ? sim->steps : 0;
 		interval_set(sim, next);
-		sim->cells_pressed += rounds[l] * sim->pressed->row[PRESS_SPLIT][SPLIT_CELLS];
 	}
 	unsigned stays = vbits(pressed), ends = vbits(ended), turns = batch_lanes(b) & ~stays & ~ends;
 	while (stays)

@@ -383,8 +383,6 @@ static bool rests(const struct pound_press_map *map, const double x[N], double b
 /* The longest rung that bodies in contact are bound to stay pressed over; NULL: there is none. */
 static const struct pound_press_map *rung_longest(struct simulation *sim, struct pound_press *press)
 {
-	if (sim->rungs == 0)
-		return NULL;
 	struct pound_rows *x = &sim->x;
 	const double *split = press->cell.row[PRESS_SPLIT], omega = split[SPLIT_OMEGA];
 	double in[N] = {x->u[sim->base],
@@ -406,10 +404,11 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	if (!press->laddered)
 		ladder_fill(rung, work, &press->cell, sim);
 	press->laddered = true;
+	const double *ground = &sim->ground[sim->next], rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
 	for (int r = sim->rung_limit; r >= 0; r--) {
 		double cells = sim->rung_cells[r];
-		in[6] = x->base_drive * x->rise * cells;
-		in[7] = x->gap_drive * x->rise * cells;
+		in[6] = x->base_drive * rise * cells;
+		in[7] = x->gap_drive * rise * cells;
 		if (cells <= x->cells && (still || rests(&rung[r], in, bound, pull, hurry, off, x->cell * cells))) {
 			sim->rung = r;
 			sim->worked = &work[r];
@@ -417,6 +416,34 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 		}
 	}
 	return NULL;
+}
+
+/* Finds or makes the map of a cell on the pieces that the bodies are on, and what else depends on these. */
+LANE_SHARED void press_enter(struct simulation *sim)
+{
+	struct pound_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	unsigned found = 0;
+	for (int m = 0; m < POUND_PRESS_MAPS; m++)
+		found |= (unsigned)(sim->press_of[0][m] == x->body[0].stiffness &&
+		                    sim->press_of[1][m] == x->body[1].stiffness)
+		         << m;
+	int m = found ? __builtin_ctz(found) : sim->press_next;
+	struct pound_press *press = &sim->press[m];
+	sim->press_now = press;
+	if (!found) {
+		sim->press_next = (m + 1) % POUND_PRESS_MAPS;
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			sim->press_of[i][m] = x->body[i].stiffness;
+		cell_fill(&press->cell, sim->task->accounted ? &sim->ladder->work[m][POUND_PRESS_RUNGS] : NULL, sim);
+		press->laddered = false;
+	}
+	x->base_force = x->body[b].offset;
+	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
+	const bool alike = x->gap_force == 0 && x->gap_drive == 0 &&
+	                   x->body[0].stiffness == x->body[1].stiffness &&
+	                   x->body[0].damping == x->body[1].damping;
+	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 }
 
 /* Gets everything ready for whole cells of pressed contact: the longest map over which nothing is known to happen.
@@ -429,38 +456,17 @@ static enum pound_stage press_ready(struct simulation *sim)
 {
 	if (++sim->steps > POUND_STEPS_LIMIT)
 		return STAGE_CHATTER;
-	struct pound_rows *x = &sim->x;
-	const int b = sim->base, o = 1 - b;
-	unsigned found = 0;
-	for (int m = 0; m < POUND_PRESS_MAPS; m++)
-		found |= (unsigned)(sim->press_of[0][m] == x->body[0].stiffness &&
-		                    sim->press_of[1][m] == x->body[1].stiffness)
-		         << m;
-	int m = found ? __builtin_ctz(found) : sim->press_next;
-	struct pound_press *press = &sim->press[m];
-	struct pound_press_work *cell_work = &sim->ladder->work[m][POUND_PRESS_RUNGS];
-	if (!found) {
-		sim->press_next = (m + 1) % POUND_PRESS_MAPS;
-		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			sim->press_of[i][m] = x->body[i].stiffness;
-		cell_fill(&press->cell, sim->task->accounted ? cell_work : NULL, sim);
-		press->laddered = false;
+	if (!sim->press_now)
+		press_enter(sim);
+	struct pound_press *press = sim->press_now;
+	if (sim->rungs > 0) {
+		sim->x.rounds = RUNG_RATIO; // a rung goes as far as the next longer one
+		sim->pressed = rung_longest(sim, press);
+		if (sim->pressed)
+			return STAGE_REST;
 	}
-	x->base_force = x->body[b].offset;
-	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
-	const bool alike = x->gap_force == 0 && x->gap_drive == 0 &&
-	                   x->body[0].stiffness == x->body[1].stiffness &&
-	                   x->body[0].damping == x->body[1].damping;
-	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
-	const double *ground = &sim->ground[sim->next];
-	x->rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
-	// a rung goes as far as the next longer one
-	x->rounds = sim->rungs > 0 ? RUNG_RATIO : -1;
-	sim->pressed = rung_longest(sim, press);
-	if (sim->pressed)
-		return STAGE_REST;
 	sim->pressed = &press->cell;
-	sim->worked = cell_work;
+	sim->worked = &sim->ladder->work[press - sim->press][POUND_PRESS_RUNGS];
 	return STAGE_PRESS;
 }
 

@@ -38,9 +38,9 @@ enum {
 	struct {                                                                                                                                       \
 		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                                          \
 	} map[2];                                                                                                                                      \
-	/* PRESS: a cell of pressed contact: forcing, which body is the base, the ground's growth; how often the map goes on     \
-	 * until another is asked for; cells of an interval */                     \
-	T base_force, gap_force, base_drive, gap_drive, side, rise, rounds, cells_whole;                                                               \
+	/* PRESS: a cell of pressed contact: forcing, which body is the base; whole cells that all contacts had; how often the map goes on \
+	 * until another is asked for; cells of an interval */           \
+	T base_force, gap_force, base_drive, gap_drive, side, pressed, rounds, cells_whole;                                                            \
 	/* WORK: energy put in, what is found of it less that, and the rounding of the latter; the most there was of it */                             \
 	T work_in, work_gap, work_low, work_top, right_mass, work_spare[3];
 
@@ -166,29 +166,31 @@ enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval:
 
 struct simulation {
 	alignas(64) struct pound_rows x;
-	const struct pound_march_task *task;
-	struct pound_march_result *result;
-	const double *ground; /* of the task: at hand, as it is read every turn */
-	int64_t next, last;   /* sample at the end of this interval, and the last of the signal */
+	// what is read or written at every turn: two cache lines
+	alignas(64) const double *ground; /* of the task */
+	int64_t next, last;               /* sample at the end of this interval, and the last of the signal */
 	double per_step;
 	double impulse_max, contacts;
-	double cells_pressed; /* whole cells of contact, which are not in contact_time */
-	double rung_cells[POUND_PRESS_RUNGS];
-	int rungs, rung, rung_limit; /* there are, in use, the longest to try */
-	int steps;                   /* and turns in the queues of pressed contact, in this interval */
-	int base;                    /* the heavier body, whose motion and the overlap describe pressed contact */
-	bool touching;               /* the contact's force acts */
-	bool parted;                 /* force gone before the overlap: bodies still overlap */
-	bool fresh;                  /* the force has just passed zero */
-	unsigned traits;             /* see enum above */
-	bool paired;                 /* the right body moves, or there is something to touch */
-	bool can_fly;                /* samples are short enough for maps, and no balance is kept */
-	bool can_press;
-	struct pound_branch at[2];
+	struct pound_press *press_now;         /* of the pieces that the bodies are on; NULL: to be looked for */
 	const struct pound_press_map *pressed; /* of the next cells */
-	const struct pound_press_work *worked; /* of the same */
-	int map_next[2], press_next;
+	unsigned traits;                       /* see enum above */
+	int steps;                             /* and turns in the queues of pressed contact, in this interval */
+	int rungs, rung, rung_limit;           /* there are, in use, the longest to try */
+	int base;      /* the heavier body, whose motion and the overlap describe pressed contact */
+	bool touching; /* the contact's force acts */
+	bool parted;   /* force gone before the overlap: bodies still overlap */
+	bool fresh;    /* the force has just passed zero */
+	bool paired;   /* the right body moves, or there is something to touch */
+	bool can_fly;  /* samples are short enough for maps, and no balance is kept */
+	bool can_press;
+	// and what is not
+	const struct pound_march_task *task;
+	struct pound_march_result *result;
+	const struct pound_press_work *worked; /* of the next cells */
+	double rung_cells[POUND_PRESS_RUNGS];
+	struct pound_branch at[2];
 	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */
+	int map_next[2], press_next;
 	// stiffnesses of the pieces that the maps below belong to; < 0: none
 	double map_of[2][POUND_MAPS], press_of[2][POUND_PRESS_MAPS];
 	// from here on a start clears nothing: what is there is filled with its key

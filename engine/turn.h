@@ -43,6 +43,7 @@ static void piece_enter(struct simulation *sim, int i)
 	x->body[i].low = piece->low;
 	x->body[i].high = piece->high;
 	x->body[i].direction = piece->direction;
+	sim->press_now = NULL;
 	if (!sim->can_fly)
 		return;
 	unsigned found = 0;
@@ -345,6 +346,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	sim->last = task->n_samples - 1;
 	struct pound_rows *x = &sim->x;
 	x->pace = 1;
+	x->rounds = -1; // another map is asked for only where there are rungs
 	sim->looked = POUND_OSCILLATORS;
 	double h = task->time_step;
 	double rate = 0;
@@ -429,7 +431,7 @@ static void result_write(const struct simulation *sim, enum pound_status status)
 	r->status = finite ? status : POUND_OVERFLOW;
 	r->contacts = (int64_t)sim->contacts + sim->touching;
 	r->impulse_max = most(sim->impulse_max, sim->touching ? x->impulse : 0);
-	r->contact_time = x->contact_time + x->cell * sim->cells_pressed;
+	r->contact_time = x->contact_time + x->cell * x->pressed;
 	r->energy_residual = sim->task->accounted ? residual(sim) : NAN;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;
