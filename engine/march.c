@@ -29,6 +29,14 @@ struct queue {
 	struct simulation *member[POOL];
 };
 
+/* of a batch: what its code need not ask of each lane */
+enum kind {
+	KIND_PLAIN,  /* all laws have one piece */
+	KIND_EDGED,  /* a law has more */
+	KIND_COMMON, /* of one scene, whose laws have one piece */
+	KINDS
+};
+
 struct work {
 	struct queue idle, queues[STAGES];
 	const struct pound_march_task *tasks;
@@ -36,10 +44,11 @@ struct work {
 	int n, started;        /* tasks, and those gone through in this pass */
 	int passed;            /* 0: laws of one piece are started, 1: the others */
 	double beyond[W][ROW]; /* ground motion up to its end, and whatever was there behind */
+	struct pound_common common;
 	// from here on nothing is cleared: a simulation's start does
 	struct simulation filler; /* of the lanes that a batch leaves empty */
 	struct simulation pool[POOL];
-	struct pound_ladder ladders[POOL];
+	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
 };
 
 /* simulations side by side; lanes from n on hold the filler */
@@ -47,7 +56,8 @@ struct batch {
 	int n;
 	struct simulation *sim[W];
 	double *row[W];
-	unsigned traits; /* of any of them */
+	unsigned traits;                   /* of any of them */
+	const struct pound_common *common; /* of all, but for TRAIT_OWN */
 };
 
 static void push(struct queue *queue, struct simulation *sim)
@@ -60,9 +70,36 @@ static struct simulation *pop(struct queue *queue)
 	return queue->member[--queue->n];
 }
 
+/* A simulation with the constants of others has them in common with these: from its start, as far as its bodies stay on
+ * their pieces, to its end. */
+static void common_join(struct pound_common *common, struct simulation *sim)
+{
+	if (sim->traits & (TRAIT_EDGED | TRAIT_ACCOUNTED))
+		return;
+	double *shared = (double *)&common->x + ROWS_CONSTANT, *own = (double *)&sim->x + ROWS_CONSTANT;
+	const size_t size = sizeof(double) * (ROWS_CONSTANT_END - ROWS_CONSTANT);
+	if (common->members > 0 && memcmp(shared, own, size) != 0)
+		return;
+	if (common->members++ == 0) {
+		memcpy(shared, own, size);
+		common->pressed = false;
+	}
+	sim->common = common;
+	sim->traits &= ~(unsigned)TRAIT_OWN;
+}
+
+static void common_leave(struct simulation *sim)
+{
+	if (sim->common)
+		sim->common->members--;
+	sim->common = NULL;
+	sim->traits |= TRAIT_OWN;
+}
+
 /* What becomes of a simulation that has come to an end. */
 LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
+	common_leave(sim);
 	stage = simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
 	push(stage < STAGES ? &work->queues[stage] : &work->idle, sim);
 }
@@ -80,6 +117,7 @@ static void batch_take(struct batch *b, struct work *work, struct queue *queue)
 {
 	b->n = queue->n < W ? queue->n : W;
 	b->traits = 0;
+	b->common = &work->common;
 	for (int l = 0; l < W; l++) {
 		b->sim[l] = l < b->n ? pop(queue) : &work->filler;
 		b->row[l] = (double *)&b->sim[l]->x;
@@ -105,6 +143,18 @@ static int lane_next(unsigned *lanes)
 LANE_INLINE void lanes_fill(struct lanes *g, const struct batch *b, int at)
 {
 	rows_load((vd *)g + at, (const double *const *)b->row, at);
+}
+
+/* Carries one row of constants into lanes.
+ *
+ * Given    common  the simulations have them in common
+ */
+LANE_INLINE void lanes_constant(struct lanes *g, const struct batch *b, int at, bool common)
+{
+	for (int j = at; j < at + ROW && common; j++)
+		((vd *)g)[j] = vsplat(((const double *)&b->common->x)[j]);
+	if (!common)
+		lanes_fill(g, b, at);
 }
 LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int at)
 {
@@ -220,16 +270,17 @@ LANE_INLINE vm fly_on(struct work *work, const struct batch *b, struct ahead *ah
 	return vmask(on) & vless(vsplat(0), ahead->samples);
 }
 
-LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
+LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
+                     bool common)
 {
 	bool paired = stage == STAGE_FLY_APART;
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
-	lanes_fill(&g, b, ROW_LEFT);
-	lanes_fill(&g, b, ROW_MAP_LEFT);
+	lanes_constant(&g, b, ROW_LEFT, common);
+	lanes_constant(&g, b, ROW_MAP_LEFT, common);
 	if (paired) {
-		lanes_fill(&g, b, ROW_RIGHT);
-		lanes_fill(&g, b, ROW_MAP_RIGHT);
+		lanes_constant(&g, b, ROW_RIGHT, common);
+		lanes_constant(&g, b, ROW_MAP_RIGHT, common);
 	}
 	const bool right = b->traits & TRAIT_RIGHT;
 	struct ahead ahead = {.gone = 0};
@@ -336,13 +387,22 @@ LANE_INLINE vm rest_stays(const struct press *s, vm entered)
 	return ~vless(s->at.cells, cells) & ~(entered & vless(cells, s->at.cells));
 }
 
+/* Carries one row of the maps into lanes: of one map, where it is common to all. */
+LANE_INLINE void press_map_row(vd row[POUND_PRESS_INPUTS], const double *const map[W], int r, bool common)
+{
+	for (int j = 0; j < POUND_PRESS_INPUTS && common; j++)
+		row[j] = vsplat(map[0][r * POUND_PRESS_INPUTS + j]);
+	if (!common)
+		rows_load(row, map, r * POUND_PRESS_INPUTS);
+}
+
 /* Carries the maps into lanes: of a cell, or of a rung. */
 LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double *const map[W],
-                            enum pound_stage stage)
+                            enum pound_stage stage, bool common)
 {
 	vd row[POUND_PRESS_INPUTS];
 	for (int r = 0; r <= PRESS_IMPULSE; r++) {
-		rows_load(row, map, r * POUND_PRESS_INPUTS);
+		press_map_row(row, map, r, common);
 		s->moved[r] = form_of(row, g, false);
 	}
 	if (stage == STAGE_REST) {
@@ -350,29 +410,29 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 			rows_load(s->rest[r], map, r * POUND_PRESS_INPUTS);
 		return;
 	}
-	rows_load(row, map, PRESS_ERROR * POUND_PRESS_INPUTS);
+	press_map_row(row, map, PRESS_ERROR, common);
 	s->error = form_of(row, g, true);
 }
 
 /* Given    seldom  a lane's energy is accounted for, or nothing presses its bodies on each other */
 LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
-                          bool seldom)
+                          bool common, bool seldom)
 {
 	struct lanes g;
 	struct press s;
 	const bool forced = b->traits & TRAIT_FORCED, right = b->traits & TRAIT_RIGHT;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
-	lanes_fill(&g, b, ROW_PAIR);
+	lanes_constant(&g, b, ROW_PAIR, common);
 	lanes_fill(&g, b, ROW_PRESS);
 	if (edged) {
-		lanes_fill(&g, b, ROW_LEFT);
-		lanes_fill(&g, b, ROW_RIGHT);
+		lanes_constant(&g, b, ROW_LEFT, common);
+		lanes_constant(&g, b, ROW_RIGHT, common);
 	}
 	const double *map[W];
 	for (int l = 0; l < W; l++)
 		map[l] = b->sim[l]->pressed->row[0];
-	press_maps(&s, &g, map, stage);
+	press_maps(&s, &g, map, stage, common);
 	s.alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
 	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
 	vd zero = vsplat(0), one = vsplat(1), share = one / g.cells_whole, behind;
@@ -432,22 +492,24 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 static void press_seldom(struct work *work, const struct batch *b, enum pound_stage stage)
 {
 	if (stage == STAGE_REST)
-		press_on(work, b, STAGE_REST, true, true);
+		press_on(work, b, STAGE_REST, true, false, true);
 	else
-		press_on(work, b, STAGE_PRESS, true, true);
+		press_on(work, b, STAGE_PRESS, true, false, true);
 }
 
-LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
+LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
+                           bool common)
 {
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE))
 		press_seldom(work, b, stage);
 	else
-		press_on(work, b, stage, edged, false);
+		press_on(work, b, stage, edged, common, false);
 }
 
 /* ---- one step up to an event ---- */
 
-LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage stage, bool edged)
+LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
+                      bool common)
 {
 	struct event_lanes e = {.touching = stage == STAGE_TOUCH,
 	                        .paired = stage != STAGE_ALONE,
@@ -461,10 +523,10 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
-	lanes_fill(&g, b, ROW_LEFT);
-	lanes_fill(&g, b, ROW_PAIR);
+	lanes_constant(&g, b, ROW_LEFT, common);
+	lanes_constant(&g, b, ROW_PAIR, common);
 	if (e.paired)
-		lanes_fill(&g, b, ROW_RIGHT);
+		lanes_constant(&g, b, ROW_RIGHT, common);
 	if (accounted)
 		lanes_fill(&g, b, ROW_WORK);
 	if (e.forced)
@@ -523,67 +585,42 @@ LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, boo
 
 /* ---- the march ---- */
 
-/* a kind of step, for laws of one piece and for others */
-static void fly_alone(struct work *work, const struct batch *b)
-{
-	fly(work, b, STAGE_FLY_ALONE, false);
-}
-static void fly_alone_edged(struct work *work, const struct batch *b)
-{
-	fly(work, b, STAGE_FLY_ALONE, true);
-}
-static void fly_apart(struct work *work, const struct batch *b)
-{
-	fly(work, b, STAGE_FLY_APART, false);
-}
-static void fly_apart_edged(struct work *work, const struct batch *b)
-{
-	fly(work, b, STAGE_FLY_APART, true);
-}
-static void press_plain(struct work *work, const struct batch *b)
-{
-	press_any(work, b, STAGE_PRESS, false);
-}
-static void press_edged(struct work *work, const struct batch *b)
-{
-	press_any(work, b, STAGE_PRESS, true);
-}
-static void rest_plain(struct work *work, const struct batch *b)
-{
-	press_any(work, b, STAGE_REST, false);
-}
-static void rest_edged(struct work *work, const struct batch *b)
-{
-	press_any(work, b, STAGE_REST, true);
-}
-static void step_alone(struct work *work, const struct batch *b)
-{
-	step(work, b, STAGE_ALONE, b->traits & TRAIT_EDGED);
-}
-static void step_apart(struct work *work, const struct batch *b)
-{
-	step(work, b, STAGE_APART, b->traits & TRAIT_EDGED);
-}
-static void step_touch(struct work *work, const struct batch *b)
-{
-	step(work, b, STAGE_TOUCH, b->traits & TRAIT_EDGED);
-}
+/* the stages' steps: of laws of one piece, of others, and of simulations of one scene */
+#define STEP(name, ...)                                        \
+	static void name(struct work *work, const struct batch *b) \
+	{                                                          \
+		__VA_ARGS__;                                           \
+	}
+STEP(fly_alone, fly(work, b, STAGE_FLY_ALONE, false, false))
+STEP(fly_alone_edged, fly(work, b, STAGE_FLY_ALONE, true, false))
+STEP(fly_alone_common, fly(work, b, STAGE_FLY_ALONE, false, true))
+STEP(fly_apart, fly(work, b, STAGE_FLY_APART, false, false))
+STEP(fly_apart_edged, fly(work, b, STAGE_FLY_APART, true, false))
+STEP(fly_apart_common, fly(work, b, STAGE_FLY_APART, false, true))
+STEP(press_plain, press_any(work, b, STAGE_PRESS, false, false))
+STEP(press_edged, press_any(work, b, STAGE_PRESS, true, false))
+STEP(press_common, press_any(work, b, STAGE_PRESS, false, true))
+STEP(rest_plain, press_any(work, b, STAGE_REST, false, false))
+STEP(rest_edged, press_any(work, b, STAGE_REST, true, false))
+STEP(step_alone, step(work, b, STAGE_ALONE, (b->traits & TRAIT_EDGED) != 0, false))
+STEP(step_apart, step(work, b, STAGE_APART, (b->traits & TRAIT_EDGED) != 0, false))
+STEP(step_apart_common, step(work, b, STAGE_APART, false, true))
+STEP(step_touch, step(work, b, STAGE_TOUCH, (b->traits & TRAIT_EDGED) != 0, false))
+STEP(step_touch_common, step(work, b, STAGE_TOUCH, false, true))
+STEP(leap_alone, leap(work, b, false, (b->traits & TRAIT_EDGED) != 0))
+STEP(leap_apart, leap(work, b, true, (b->traits & TRAIT_EDGED) != 0))
 
-static void leap_alone(struct work *work, const struct batch *b)
-{
-	leap(work, b, false, b->traits & TRAIT_EDGED);
-}
-static void leap_apart(struct work *work, const struct batch *b)
-{
-	leap(work, b, true, b->traits & TRAIT_EDGED);
-}
-
-static void (*const steps[STAGES][2])(struct work *, const struct batch *) = {
-    [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged}, [STAGE_FLY_APART] = {fly_apart, fly_apart_edged},
-    [STAGE_PRESS] = {press_plain, press_edged},       [STAGE_REST] = {rest_plain, rest_edged},
-    [STAGE_ALONE] = {step_alone, step_alone},         [STAGE_APART] = {step_apart, step_apart},
-    [STAGE_CLEAR] = {step_apart, step_apart},         [STAGE_TOUCH] = {step_touch, step_touch},
-    [STAGE_LEAP_ALONE] = {leap_alone, leap_alone},    [STAGE_LEAP_APART] = {leap_apart, leap_apart},
+static void (*const steps[STAGES][KINDS])(struct work *, const struct batch *) = {
+    [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged, fly_alone_common},
+    [STAGE_FLY_APART] = {fly_apart, fly_apart_edged, fly_apart_common},
+    [STAGE_PRESS] = {press_plain, press_edged, press_common},
+    [STAGE_REST] = {rest_plain, rest_edged, rest_plain},
+    [STAGE_ALONE] = {step_alone, step_alone, step_alone},
+    [STAGE_APART] = {step_apart, step_apart, step_apart_common},
+    [STAGE_CLEAR] = {step_apart, step_apart, step_apart_common},
+    [STAGE_TOUCH] = {step_touch, step_touch, step_touch_common},
+    [STAGE_LEAP_ALONE] = {leap_alone, leap_alone, leap_alone},
+    [STAGE_LEAP_APART] = {leap_apart, leap_apart, leap_apart},
 };
 
 /* Starts tasks as long as there are any and the pool has room: first those of laws of one piece, which need less when
@@ -596,7 +633,9 @@ static void tasks_start(struct work *work)
 			if (simulation_edged(task) != work->passed)
 				continue;
 			struct simulation *sim = pop(&work->idle);
-			send(work, sim, simulation_start(sim, task, &work->results[work->started]));
+			enum pound_stage stage = simulation_start(sim, task, &work->results[work->started]);
+			common_join(&work->common, sim);
+			send(work, sim, stage);
 		}
 		if (work->started < work->n)
 			return;
@@ -633,8 +672,10 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	work->filler.pressed = &loose;
 	work->filler.x.dt = 1;
 	work->filler.x.gap = 0;
+	work->common.press.ladder = &work->common_ladder;
 	for (int j = 0; j < POOL; j++) {
-		work->pool[j].ladder = &work->ladders[j];
+		for (int m = 0; m < POUND_PRESS_MAPS; m++)
+			work->pool[j].press[m].ladder = &work->ladders[j][m];
 		push(&work->idle, &work->pool[j]);
 	}
 	struct queue *queue = &work->queues[0];
@@ -648,7 +689,10 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 			break;
 		struct batch b;
 		batch_take(&b, work, queue);
-		steps[queue - work->queues][(b.traits & TRAIT_EDGED) != 0](work, &b);
+		enum kind kind = b.traits & TRAIT_EDGED ? KIND_EDGED
+		                 : b.traits & TRAIT_OWN ? KIND_PLAIN
+		                                        : KIND_COMMON;
+		steps[queue - work->queues][kind](work, &b);
 	}
 	lanes_leave();
 }

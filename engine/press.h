@@ -307,21 +307,21 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 }
 
 /* Fills a ladder: rungs of as many cells as a whole sample has, or of an eighth, a 64th ... */
-static void ladder_fill(struct pound_press_map rung[], struct pound_press_work work[],
-                        const struct pound_press_map *cell, const struct simulation *sim)
+static void ladder_fill(struct pound_ladder *ladder, const struct pound_press_map *cell,
+                        const struct simulation *sim)
 {
 	double cells = 1;
 	struct pound_press_map map = *cell;
-	struct pound_press_work done = work[POUND_PRESS_RUNGS];
+	struct pound_press_work done = ladder->work[POUND_PRESS_RUNGS];
 	for (int r = 0; r < sim->rungs; r++) {
 		for (; cells < sim->rung_cells[r]; cells *= 2) {
 			if (sim->task->accounted)
 				work_double(&done, map.row);
 			map_double(map.row);
 		}
-		rung[r] = map;
-		work[r] = done;
-		rest_fill(&rung[r], sim, cells);
+		ladder->rung[r] = map;
+		ladder->work[r] = done;
+		rest_fill(&ladder->rung[r], sim, cells);
 	}
 }
 
@@ -399,43 +399,60 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
 	if (!still && !(split[SPLIT_LEAD] * length_above(hurry, off) < pull))
 		return NULL;
-	struct pound_press_map *rung = sim->ladder->rung[press - sim->press];
-	struct pound_press_work *work = sim->ladder->work[press - sim->press];
+	struct pound_ladder *ladder = press->ladder;
 	if (!press->laddered)
-		ladder_fill(rung, work, &press->cell, sim);
+		ladder_fill(ladder, &press->cell, sim);
 	press->laddered = true;
 	const double *ground = &sim->ground[sim->next], rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
 	for (int r = sim->rung_limit; r >= 0; r--) {
 		double cells = sim->rung_cells[r];
 		in[6] = x->base_drive * rise * cells;
 		in[7] = x->gap_drive * rise * cells;
-		if (cells <= x->cells && (still || rests(&rung[r], in, bound, pull, hurry, off, x->cell * cells))) {
+		if (cells <= x->cells &&
+		    (still || rests(&ladder->rung[r], in, bound, pull, hurry, off, x->cell * cells))) {
 			sim->rung = r;
-			sim->worked = &work[r];
-			return &rung[r];
+			return &ladder->rung[r];
 		}
 	}
 	return NULL;
 }
 
-/* Finds or makes the map of a cell on the pieces that the bodies are on, and what else depends on these. */
-LANE_SHARED void press_enter(struct simulation *sim)
+/* The maps of pressed contact on the pieces that the bodies are on.
+ *
+ * Returns  made  that of a cell is there
+ */
+static struct pound_press *press_find(struct simulation *sim, bool *made)
 {
-	struct pound_rows *x = &sim->x;
-	const int b = sim->base, o = 1 - b;
+	if (sim->common) {
+		*made = sim->common->pressed;
+		sim->common->pressed = true;
+		return &sim->common->press;
+	}
+	const struct pound_rows *x = &sim->x;
 	unsigned found = 0;
 	for (int m = 0; m < POUND_PRESS_MAPS; m++)
 		found |= (unsigned)(sim->press_of[0][m] == x->body[0].stiffness &&
 		                    sim->press_of[1][m] == x->body[1].stiffness)
 		         << m;
-	int m = found ? __builtin_ctz(found) : sim->press_next;
-	struct pound_press *press = &sim->press[m];
-	sim->press_now = press;
-	if (!found) {
-		sim->press_next = (m + 1) % POUND_PRESS_MAPS;
-		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			sim->press_of[i][m] = x->body[i].stiffness;
-		cell_fill(&press->cell, sim->task->accounted ? &sim->ladder->work[m][POUND_PRESS_RUNGS] : NULL, sim);
+	*made = found != 0;
+	if (found)
+		return &sim->press[__builtin_ctz(found)];
+	int m = sim->press_next;
+	sim->press_next = (m + 1) % POUND_PRESS_MAPS;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		sim->press_of[i][m] = x->body[i].stiffness;
+	return &sim->press[m];
+}
+
+/* Contact on pieces that the bodies have not been pressed on since they entered them. */
+LANE_SHARED void press_enter(struct simulation *sim)
+{
+	struct pound_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	bool made;
+	struct pound_press *press = sim->press_now = press_find(sim, &made);
+	if (!made) {
+		cell_fill(&press->cell, sim->task->accounted ? &press->ladder->work[POUND_PRESS_RUNGS] : NULL, sim);
 		press->laddered = false;
 	}
 	x->base_force = x->body[b].offset;
@@ -466,7 +483,6 @@ static enum pound_stage press_ready(struct simulation *sim)
 			return STAGE_REST;
 	}
 	sim->pressed = &press->cell;
-	sim->worked = &sim->ladder->work[press - sim->press][POUND_PRESS_RUNGS];
 	return STAGE_PRESS;
 }
 
@@ -482,11 +498,14 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 {
 	struct pound_rows *r = &sim->x;
 	const struct pound_press_map *map = sim->pressed;
+	const struct pound_press *press = sim->press_now;
+	const struct pound_press_work *work =
+	    &press->ladder->work[map == &press->cell ? POUND_PRESS_RUNGS : sim->rung];
 	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells, h = r->cell * cells;
 	const int b = sim->base, o = 1 - b;
 	const double mass[2] = {1, r->right_mass};
 	double pressed = form(map->row[PRESS_IMPULSE], x) - r->contact_damping * (end[2] - x[2]);
-	double mean = form(sim->worked->mean, x), mean_p = pressed / (r->contact_stiffness * h);
+	double mean = form(work->mean, x), mean_p = pressed / (r->contact_stiffness * h);
 	const double *split = map->row[PRESS_SPLIT];
 	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
@@ -499,7 +518,7 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 	means[o] = mean - r->side * (r->gap + mean_p);
 	double in = 0, moving = 0, out = 0.5 * r->contact_stiffness * (end[2] + x[2]) * (end[2] - x[2]);
 	for (int i = 0; i < N; i++)
-		out += off[i] * form(sim->worked->loss[i], off);
+		out += off[i] * form(work->loss[i], off);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		double way = u1[i] - u0[i], spring = r->body[i].stiffness * 0.5 * (u0[i] + u1[i]) + r->body[i].offset;
 		in -= mass[i] * r->body[i].drive * (ground * way + grown * (u1[i] - means[i]));

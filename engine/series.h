@@ -289,8 +289,9 @@ static void power_rate(struct power *rate, const struct power *s, int order)
  *          event   what to note;  cut: what to note where the step is only cut at a safe time
  * Returns  search  time and event of the lanes that have one, up to the time already there
  */
-static void search_crossing(const struct power *u, const struct power *v, const struct course *c, int order,
-                            vd level, vd sign, vm active, vd event, double cut, struct search *search)
+LANE_INLINE void search_crossing(const struct power *u, const struct power *v, const struct course *c,
+                                 int order, vd level, vd sign, vm active, vd event, double cut,
+                                 struct search *search)
 {
 	vd one = vsplat(1), t;
 	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);

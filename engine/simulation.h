@@ -60,6 +60,8 @@ enum {
 	ROW_PRESS = 56,
 	ROW_WORK = 64,
 	ROWS_END = 72,
+	ROWS_CONSTANT = ROW_LEFT, /* from here on, while the bodies stay on their pieces, */
+	ROWS_CONSTANT_END = ROW_PRESS,
 };
 
 /* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d: a row MAP */
@@ -101,12 +103,6 @@ struct pound_press_map {
 	double pull[POUND_PRESS_INPUTS]; /* of a rung: what is added to what presses the bodies on each other */
 };
 
-/* pressed contact on a pair of pieces: over a cell, and whether the ladder is filled */
-struct pound_press {
-	struct pound_press_map cell;
-	bool laddered;
-};
-
 /* A sample that a body flew over, and inside of which it may have had its largest displacement: how it started, on which
  * piece, and how far it cannot have gone.  Larger ones come more often than not, so it is looked into at the end. */
 struct pound_peak {
@@ -122,10 +118,25 @@ struct pound_press_work {
 	        [POUND_PRESS_INPUTS]; /* in the dashpots: a quadratic form, of the overlap off its equilibrium */
 };
 
-/* a rung map for every cell map that a simulation keeps, and where energy is accounted for, that of all of these */
+/* maps over many cells of pressed contact, and where energy is accounted for, what that needs of all of these */
 struct pound_ladder {
-	struct pound_press_map rung[POUND_PRESS_MAPS][POUND_PRESS_RUNGS];
-	struct pound_press_work work[POUND_PRESS_MAPS][POUND_PRESS_RUNGS + 1]; /* the last: of the cell */
+	struct pound_press_map rung[POUND_PRESS_RUNGS];
+	struct pound_press_work work[POUND_PRESS_RUNGS + 1]; /* the last: of a cell */
+};
+
+/* pressed contact on a pair of pieces: over a cell, and whether its ladder is filled */
+struct pound_press {
+	struct pound_press_map cell;
+	bool laddered;
+	struct pound_ladder *ladder; /* elsewhere: what is used often is to stay close together */
+};
+
+/* What simulations of one scene have in common, where their laws have one piece: constants and maps are read and made once. */
+struct pound_common {
+	struct pound_rows x; /* of its constants alone */
+	struct pound_press press;
+	bool pressed; /* this is made */
+	int members;
 };
 
 /* what a simulation does next */
@@ -155,6 +166,7 @@ enum {
 	TRAIT_FORCED = 4,    /* contact ends when its force does */
 	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
 	TRAIT_ALIKE = 16,    /* touching without overlap the bodies go the same way, on the pieces they are on */
+	TRAIT_OWN = 32,      /* its constants are not those of others */
 };
 
 /* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
@@ -173,6 +185,7 @@ struct simulation {
 	double impulse_max, contacts;
 	struct pound_press *press_now;         /* of the pieces that the bodies are on; NULL: to be looked for */
 	const struct pound_press_map *pressed; /* of the next cells */
+	struct pound_common *common;           /* with others; NULL: nothing */
 	unsigned traits;                       /* see enum above */
 	int steps;                             /* and turns in the queues of pressed contact, in this interval */
 	int rungs, rung, rung_limit;           /* there are, in use, the longest to try */
@@ -186,7 +199,6 @@ struct simulation {
 	// and what is not
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
-	const struct pound_press_work *worked; /* of the next cells */
 	double rung_cells[POUND_PRESS_RUNGS];
 	struct pound_branch at[2];
 	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */
@@ -194,7 +206,6 @@ struct simulation {
 	// stiffnesses of the pieces that the maps below belong to; < 0: none
 	double map_of[2][POUND_MAPS], press_of[2][POUND_PRESS_MAPS];
 	// from here on a start clears nothing: what is there is filled with its key
-	struct pound_ladder *ladder; /* apart from the rest, which is to stay close together */
 	struct pound_peak peak[2][POUND_PEAKS];
 	struct pound_map maps[2][POUND_MAPS];
 	struct pound_press press[POUND_PRESS_MAPS];

@@ -111,7 +111,7 @@ static void overlap_start(struct pound_rows *x)
 }
 
 /* A simulation that flew to a sample behind which it cannot fly on. */
-static enum pound_stage simulation_meet(struct simulation *sim)
+LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	simulation_interval(sim);
@@ -337,7 +337,7 @@ static bool simulation_edged(const struct pound_march_task *task)
 static enum pound_stage simulation_start(struct simulation *sim, const struct pound_march_task *task,
                                          struct pound_march_result *result)
 {
-	memset(sim, 0, offsetof(struct simulation, ladder));
+	memset(sim, 0, offsetof(struct simulation, peak));
 	memset(result, 0, sizeof *result);
 	sim->task = task;
 	sim->ground = task->ground;
@@ -367,6 +367,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	for (int m = 0; m < POUND_PRESS_MAPS; m++)
 		sim->press_of[0][m] = -1;
 	sim->can_fly = can_fly;
+	sim->traits = TRAIT_OWN;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
 	if (simulation_edged(task))
 		sim->traits |= TRAIT_EDGED;

@@ -428,6 +428,30 @@ static void a_run_does_not_depend_on_bodies_alike_beside_it(void **state)
 	check_alone_as_together(tasks);
 }
 
+/* A few short runs of one scene, one of each of some others, many of another, and then two by turns: those of one scene have
+ * constants and maps in common from when the ones before are over.  Some keep an account, some have another law. */
+static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **state)
+{
+	(void)state;
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS], scenes[TASKS];
+	for (uint64_t seed = 1; seed <= 6; seed++) {
+		tasks_fill(scenes, ground, seed);
+		for (int t = 0; t < TASKS; t++) {
+			int scene = (int)seed + (t < 20 ? 0 : t < 25 ? t : t < 125 ? 1 : 2 + t % 2);
+			tasks[t] = scenes[scene];
+			tasks[t].ground = scenes[t].ground;
+			tasks[t].n_samples = t < 20 ? 50 : SAMPLES - t;
+			tasks[t].contact = true;
+			tasks[t].time_step = seed < 6 ? 0.01 : 0.3; // too long for maps
+			tasks[t].accounted = t % 16 == 9;
+			for (int i = 0; i < 2 && t % 16 != 10; i++)
+				tasks[t].bodies[i].skeleton.law = 0;
+		}
+		check_alone_as_together(tasks);
+	}
+}
+
 static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter(void **state)
 {
 	(void)state;
@@ -456,4 +480,5 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(a_run_does_not_depend_on_whose_energy_is_accounted_for),
            cmocka_unit_test(a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours),
            cmocka_unit_test(a_run_does_not_depend_on_bodies_alike_beside_it),
+           cmocka_unit_test(a_run_does_not_depend_on_what_it_has_in_common_with_others),
            cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter))
