@@ -1,14 +1,15 @@
 /* march.c - the exact event-driven march, many simulations side by side in lanes.
  *
  * Between events a pair of oscillators is linear and the ground motion a straight line, so:
- * 1. whole samples apart, and whole cells of contact, go by precomputed exact maps, where a bound proves that nothing
- *    lies inside (flight.h);
+ * 1. whole samples apart, eight of them before their proofs, and whole cells of contact, go by precomputed exact maps,
+ *    where a bound proves that nothing lies inside (flight.h);
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (event.h);
  * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
  *    lanes, goes on until half of it is done with that kind of step, and is carried out to the next queues;
  * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
  * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
- *    costs more than what it decides.
+ *    costs more than what it decides;
+ * 6. simulations of one scene, of laws of one piece, read their constants and make their maps once.
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/march.h"
 
@@ -33,7 +34,7 @@ struct queue {
 enum kind {
 	KIND_PLAIN,  /* all laws have one piece */
 	KIND_EDGED,  /* a law has more */
-	KIND_COMMON, /* of one scene, whose laws have one piece */
+	KIND_COMMON, /* all of one scene, whose laws have one piece, and no lane empty */
 	KINDS
 };
 
@@ -56,8 +57,7 @@ struct batch {
 	int n;
 	struct simulation *sim[W];
 	double *row[W];
-	unsigned traits;                   /* of any of them */
-	const struct pound_common *common; /* of all, but for TRAIT_OWN */
+	unsigned traits; /* of any of them */
 };
 
 static void push(struct queue *queue, struct simulation *sim)
@@ -68,32 +68,6 @@ static void push(struct queue *queue, struct simulation *sim)
 static struct simulation *pop(struct queue *queue)
 {
 	return queue->member[--queue->n];
-}
-
-/* A simulation with the constants of others has them in common with these: from its start, as far as its bodies stay on
- * their pieces, to its end. */
-static void common_join(struct pound_common *common, struct simulation *sim)
-{
-	if (sim->traits & (TRAIT_EDGED | TRAIT_ACCOUNTED))
-		return;
-	double *shared = (double *)&common->x + ROWS_CONSTANT, *own = (double *)&sim->x + ROWS_CONSTANT;
-	const size_t size = sizeof(double) * (ROWS_CONSTANT_END - ROWS_CONSTANT);
-	if (common->members > 0 && memcmp(shared, own, size) != 0)
-		return;
-	if (common->members++ == 0) {
-		memcpy(shared, own, size);
-		common->pressed = false;
-	}
-	sim->common = common;
-	sim->traits &= ~(unsigned)TRAIT_OWN;
-}
-
-static void common_leave(struct simulation *sim)
-{
-	if (sim->common)
-		sim->common->members--;
-	sim->common = NULL;
-	sim->traits |= TRAIT_OWN;
 }
 
 /* What becomes of a simulation that has come to an end. */
@@ -117,7 +91,6 @@ static void batch_take(struct batch *b, struct work *work, struct queue *queue)
 {
 	b->n = queue->n < W ? queue->n : W;
 	b->traits = 0;
-	b->common = &work->common;
 	for (int l = 0; l < W; l++) {
 		b->sim[l] = l < b->n ? pop(queue) : &work->filler;
 		b->row[l] = (double *)&b->sim[l]->x;
@@ -144,21 +117,24 @@ LANE_INLINE void lanes_fill(struct lanes *g, const struct batch *b, int at)
 {
 	rows_load((vd *)g + at, (const double *const *)b->row, at);
 }
-
-/* Carries one row of constants into lanes.
- *
- * Given    common  the simulations have them in common
- */
-LANE_INLINE void lanes_constant(struct lanes *g, const struct batch *b, int at, bool common)
-{
-	for (int j = at; j < at + ROW && common; j++)
-		((vd *)g)[j] = vsplat(((const double *)&b->common->x)[j]);
-	if (!common)
-		lanes_fill(g, b, at);
-}
 LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int at)
 {
 	rows_store((const vd *)g + at, b->row, at);
+}
+
+/* Carries one row of constants into lanes.
+ *
+ * Given    common  the rows that all have in common; NULL: they may differ
+ */
+LANE_INLINE void lanes_constant(struct lanes *g, const struct batch *b, const struct pound_rows *common,
+                                int at)
+{
+	if (!common) {
+		lanes_fill(g, b, at);
+		return;
+	}
+	for (int j = at; j < at + ROW; j++)
+		((vd *)g)[j] = vsplat(((const double *)common)[j]);
 }
 
 /* Lanes of simulations with a trait. */
@@ -217,7 +193,8 @@ LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, u
 
 /* Notes the largest displacements that lanes may have inside a sample of a stretch.
  *
- * Given    noted  lanes to note that of body i of;  gone: samples before it since the batch began
+ * Given    s, r   the stretch and the sample in it;  gone: samples before that since the batch began
+ *          noted  lanes whose body i may have it there
  * Returns  value  lanes that have no room for another
  */
 LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stretch *s, int r, unsigned noted,
@@ -274,13 +251,14 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
                      bool common)
 {
 	bool paired = stage == STAGE_FLY_APART;
+	const struct pound_rows *shared = common ? &work->common.x : NULL;
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
-	lanes_constant(&g, b, ROW_LEFT, common);
-	lanes_constant(&g, b, ROW_MAP_LEFT, common);
+	lanes_constant(&g, b, shared, ROW_LEFT);
+	lanes_constant(&g, b, shared, ROW_MAP_LEFT);
 	if (paired) {
-		lanes_constant(&g, b, ROW_RIGHT, common);
-		lanes_constant(&g, b, ROW_MAP_RIGHT, common);
+		lanes_constant(&g, b, shared, ROW_RIGHT);
+		lanes_constant(&g, b, shared, ROW_MAP_RIGHT);
 	}
 	const bool right = b->traits & TRAIT_RIGHT;
 	struct ahead ahead = {.gone = 0};
@@ -390,10 +368,12 @@ LANE_INLINE vm rest_stays(const struct press *s, vm entered)
 /* Carries one row of the maps into lanes: of one map, where it is common to all. */
 LANE_INLINE void press_map_row(vd row[POUND_PRESS_INPUTS], const double *const map[W], int r, bool common)
 {
-	for (int j = 0; j < POUND_PRESS_INPUTS && common; j++)
-		row[j] = vsplat(map[0][r * POUND_PRESS_INPUTS + j]);
-	if (!common)
+	if (!common) {
 		rows_load(row, map, r * POUND_PRESS_INPUTS);
+		return;
+	}
+	for (int j = 0; j < POUND_PRESS_INPUTS; j++)
+		row[j] = vsplat(map[0][r * POUND_PRESS_INPUTS + j]);
 }
 
 /* Carries the maps into lanes: of a cell, or of a rung. */
@@ -421,13 +401,14 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	struct lanes g;
 	struct press s;
 	const bool forced = b->traits & TRAIT_FORCED, right = b->traits & TRAIT_RIGHT;
+	const struct pound_rows *shared = common ? &work->common.x : NULL;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
-	lanes_constant(&g, b, ROW_PAIR, common);
+	lanes_constant(&g, b, shared, ROW_PAIR);
 	lanes_fill(&g, b, ROW_PRESS);
 	if (edged) {
-		lanes_constant(&g, b, ROW_LEFT, common);
-		lanes_constant(&g, b, ROW_RIGHT, common);
+		lanes_constant(&g, b, shared, ROW_LEFT);
+		lanes_constant(&g, b, shared, ROW_RIGHT);
 	}
 	const double *map[W];
 	for (int l = 0; l < W; l++)
@@ -520,13 +501,14 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0)};
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
+	const struct pound_rows *shared = common ? &work->common.x : NULL;
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
-	lanes_constant(&g, b, ROW_LEFT, common);
-	lanes_constant(&g, b, ROW_PAIR, common);
+	lanes_constant(&g, b, shared, ROW_LEFT);
+	lanes_constant(&g, b, shared, ROW_PAIR);
 	if (e.paired)
-		lanes_constant(&g, b, ROW_RIGHT, common);
+		lanes_constant(&g, b, shared, ROW_RIGHT);
 	if (accounted)
 		lanes_fill(&g, b, ROW_WORK);
 	if (e.forced)

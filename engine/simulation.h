@@ -60,7 +60,11 @@ enum {
 	ROW_PRESS = 56,
 	ROW_WORK = 64,
 	ROWS_END = 72,
-	ROWS_CONSTANT = ROW_LEFT, /* from here on, while the bodies stay on their pieces, */
+};
+
+/* what does not change while the bodies stay on their pieces, in doubles */
+enum {
+	ROWS_CONSTANT = ROW_LEFT,
 	ROWS_CONSTANT_END = ROW_PRESS,
 };
 
@@ -196,7 +200,7 @@ struct simulation {
 	bool paired;   /* the right body moves, or there is something to touch */
 	bool can_fly;  /* samples are short enough for maps, and no balance is kept */
 	bool can_press;
-	// and what is not
+	// and what is read seldom
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
 	double rung_cells[POUND_PRESS_RUNGS];

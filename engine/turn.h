@@ -25,6 +25,8 @@ static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 enum { LEG = 4095 }; /* a flight ends at every sample with these bits, wherever it began */
 
 static_assert(sizeof(struct pound_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
+static_assert(offsetof(struct simulation, task) - offsetof(struct simulation, ground) <= 128,
+              "what every turn reads is two cache lines");
 
 static double most(double a, double b)
 {
@@ -324,7 +326,7 @@ static enum pound_stage peaks_look(struct simulation *sim)
 	return STAGE_END;
 }
 
-/* ---- start and end ---- */
+/* ---- the start ---- */
 
 /* Whether a law of a task has more than one piece. */
 static bool simulation_edged(const struct pound_march_task *task)
@@ -407,6 +409,37 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	}
 	return simulation_from(sim);
 }
+
+/* ---- what simulations of one scene have in common ---- */
+
+/* A simulation with the constants of others has them in common with these from its start to its end: bodies with laws of one
+ * piece keep theirs.  When all have left, the next to start sets them. */
+static void common_join(struct pound_common *common, struct simulation *sim)
+{
+	if (sim->traits & (TRAIT_EDGED | TRAIT_ACCOUNTED))
+		return;
+	double *shared = (double *)&common->x + ROWS_CONSTANT, *own = (double *)&sim->x + ROWS_CONSTANT;
+	const size_t size = sizeof(double) * (ROWS_CONSTANT_END - ROWS_CONSTANT);
+	if (common->members > 0 && memcmp(shared, own, size) != 0)
+		return;
+	if (common->members++ == 0) {
+		memcpy(shared, own, size);
+		common->pressed = false;
+	}
+	sim->common = common;
+	sim->traits &= ~(unsigned)TRAIT_OWN;
+}
+
+/* What looks for largest displacements at the end puts other pieces into the rows. */
+static void common_leave(struct simulation *sim)
+{
+	if (sim->common)
+		sim->common->members--;
+	sim->common = NULL;
+	sim->traits |= TRAIT_OWN;
+}
+
+/* ---- the end ---- */
 
 /* What is missing of the energy put in, by the ground and by the motion at the start, over the most there was. */
 static double residual(const struct simulation *sim)
