@@ -452,38 +452,16 @@ static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **st
 	}
 }
 
-/* A wall so stiff that numbers cannot count its swings. */
-static struct pound_march_task chatter(void)
+static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter(void **state)
 {
+	(void)state;
 	static const double pushes[3] = {-1, -1, -1};
 	struct pound_march_task task = wall(0, 0.05, 0, 1e40);
 	task.ground = pushes;
 	task.n_samples = 3;
 	task.bodies[0].u = 0;
 	task.bodies[0].drive = 1;
-	return task;
-}
-
-static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter(void **state)
-{
-	(void)state;
-	const struct pound_march_task task = chatter();
 	assert_int_equal(march(&task).status, POUND_CHATTER);
-}
-
-/* Those that end early take nothing along of what they had in common. */
-static void runs_behind_such_as_end_as_chatter_are_as_alone(void **state)
-{
-	(void)state;
-	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS], scenes[TASKS];
-	tasks_fill(scenes, ground, 1);
-	for (int t = 0; t < TASKS; t++) {
-		tasks[t] = t < 20 ? chatter() : scenes[4];
-		if (t >= 20)
-			tasks[t].ground = scenes[t].ground;
-	}
-	check_alone_as_together(tasks);
 }
 
 CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
@@ -503,5 +481,4 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours),
            cmocka_unit_test(a_run_does_not_depend_on_bodies_alike_beside_it),
            cmocka_unit_test(a_run_does_not_depend_on_what_it_has_in_common_with_others),
-           cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter),
-           cmocka_unit_test(runs_behind_such_as_end_as_chatter_are_as_alone))
+           cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter))
