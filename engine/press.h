@@ -312,15 +312,16 @@ static void ladder_fill(struct pound_ladder *ladder, const struct pound_press_ma
 {
 	double cells = 1;
 	struct pound_press_map map = *cell;
-	struct pound_press_work done = ladder->work[POUND_PRESS_RUNGS];
+	struct pound_press_work *work = ladder->work;
 	for (int r = 0; r < sim->rungs; r++) {
+		if (sim->task->accounted)
+			work[r] = work[r > 0 ? r - 1 : POUND_PRESS_RUNGS];
 		for (; cells < sim->rung_cells[r]; cells *= 2) {
 			if (sim->task->accounted)
-				work_double(&done, map.row);
+				work_double(&work[r], map.row);
 			map_double(map.row);
 		}
 		ladder->rung[r] = map;
-		ladder->work[r] = done;
 		rest_fill(&ladder->rung[r], sim, cells);
 	}
 }
@@ -417,30 +418,24 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	return NULL;
 }
 
-/* The maps of pressed contact on the pieces that the bodies are on.
- *
- * Returns  made  that of a cell is there
- */
-static struct pound_press *press_find(struct simulation *sim, bool *made)
+/* The maps of pressed contact on the pieces that the bodies are on. */
+static struct pound_press *press_find(struct simulation *sim)
 {
-	if (sim->common) {
-		*made = sim->common->pressed;
-		sim->common->pressed = true;
+	if (sim->common)
 		return &sim->common->press;
-	}
 	const struct pound_rows *x = &sim->x;
 	unsigned found = 0;
 	for (int m = 0; m < POUND_PRESS_MAPS; m++)
 		found |= (unsigned)(sim->press_of[0][m] == x->body[0].stiffness &&
 		                    sim->press_of[1][m] == x->body[1].stiffness)
 		         << m;
-	*made = found != 0;
 	if (found)
 		return &sim->press[__builtin_ctz(found)];
 	int m = sim->press_next;
 	sim->press_next = (m + 1) % POUND_PRESS_MAPS;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		sim->press_of[i][m] = x->body[i].stiffness;
+	sim->press[m].made = false;
 	return &sim->press[m];
 }
 
@@ -449,10 +444,10 @@ LANE_SHARED void press_enter(struct simulation *sim)
 {
 	struct pound_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
-	bool made;
-	struct pound_press *press = sim->press_now = press_find(sim, &made);
-	if (!made) {
+	struct pound_press *press = sim->press_now = press_find(sim);
+	if (!press->made) {
 		cell_fill(&press->cell, sim->task->accounted ? &press->ladder->work[POUND_PRESS_RUNGS] : NULL, sim);
+		press->made = true;
 		press->laddered = false;
 	}
 	x->base_force = x->body[b].offset;

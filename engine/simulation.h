@@ -128,10 +128,10 @@ struct pound_ladder {
 	struct pound_press_work work[POUND_PRESS_RUNGS + 1]; /* the last: of a cell */
 };
 
-/* pressed contact on a pair of pieces: over a cell, and whether its ladder is filled */
+/* pressed contact on a pair of pieces: over a cell, and whether that and its ladder are filled */
 struct pound_press {
 	struct pound_press_map cell;
-	bool laddered;
+	bool made, laddered;
 	struct pound_ladder *ladder; /* elsewhere: what is used often is to stay close together */
 };
 
@@ -139,7 +139,6 @@ struct pound_press {
 struct pound_common {
 	struct pound_rows x; /* of its constants alone */
 	struct pound_press press;
-	bool pressed; /* this is made */
 	int members;
 };
 

@@ -424,7 +424,7 @@ static void common_join(struct pound_common *common, struct simulation *sim)
 		return;
 	if (common->members++ == 0) {
 		memcpy(shared, own, size);
-		common->pressed = false;
+		common->press.made = false;
 	}
 	sim->common = common;
 	sim->traits &= ~(unsigned)TRAIT_OWN;
