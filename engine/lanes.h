@@ -40,6 +40,7 @@ typedef uint64_t vm;
 #define LANE_FLOOR(a)        __builtin_floor(a)
 #define LANE_ADD(m, at, n)   ((at) + ((m) & (n)))
 #define LANE_GATHER(at)      (*(const double *)(at))
+#define LANE_EACH(x)         (x)[0]
 #define LANE_BITS(m)         ((unsigned)(m)&1)
 #define LANE_MASK(bits)      (-(vm)((bits)&1))
 #define LANE_PRODUCT(a, b)   (((a)&UINT32_MAX) * ((b)&UINT32_MAX))
@@ -67,6 +68,7 @@ typedef lane_bits vm;
 #define LANE_FLOOR(a)        _mm256_floor_pd(a)
 #define LANE_ADD(m, at, n)   ((at) + ((vu)(m) & (n)))
 #define LANE_GATHER(at)      _mm256_set_pd(LANE_AT(at, 3), LANE_AT(at, 2), LANE_AT(at, 1), LANE_AT(at, 0))
+#define LANE_EACH(x)         (x)[0], (x)[1], (x)[2], (x)[3]
 #define LANE_BITS(m)         ((unsigned)_mm256_movemask_pd((vd)(m)))
 #define LANE_MASK(bits)      (((vm)_mm256_set1_epi64x(bits) & (vm){1, 2, 4, 8}) == (vm){1, 2, 4, 8})
 #define LANE_PRODUCT(a, b)   ((vu)_mm256_mul_epu32((__m256i)(a), (__m256i)(b)))
@@ -86,6 +88,7 @@ typedef __mmask8 vm;
 #define LANE_GATHER(at)                                                                           \
 	_mm512_set_pd(LANE_AT(at, 7), LANE_AT(at, 6), LANE_AT(at, 5), LANE_AT(at, 4), LANE_AT(at, 3), \
 	              LANE_AT(at, 2), LANE_AT(at, 1), LANE_AT(at, 0))
+#define LANE_EACH(x)       (x)[0], (x)[1], (x)[2], (x)[3], (x)[4], (x)[5], (x)[6], (x)[7]
 #define LANE_BITS(m)       ((unsigned)(m))
 #define LANE_MASK(bits)    ((vm)(bits))
 #define LANE_PRODUCT(a, b) ((vu)_mm512_mul_epu32((__m512i)(a), (__m512i)(b)))
@@ -272,6 +275,16 @@ LANE_INLINE vd lanes_load(const double from[W])
 	vd x;
 	__builtin_memcpy(&x, from, sizeof x);
 	return x;
+}
+
+/* Numbers that were made one by one just now: a vector read from memory would wait for all their stores. */
+LANE_INLINE vd lanes_of(const double x[W])
+{
+	return (vd){LANE_EACH(x)};
+}
+LANE_INLINE vu lanes_at(const uint64_t x[W])
+{
+	return (vu){LANE_EACH(x)};
 }
 
 #endif

@@ -269,8 +269,8 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 		samples[l] = (double)(flight_end(sim) - sim->next + 1);
 		ground[l] = ahead.ground[l][-1];
 	}
-	g.ground = lanes_load(ground);
-	ahead.samples = lanes_load(samples);
+	g.ground = lanes_of(ground);
+	ahead.samples = lanes_of(samples);
 	struct flyer flyers[2] = {flyer_of(&g, 0)};
 	if (paired)
 		flyers[1] = flyer_of(&g, 1);
@@ -334,10 +334,10 @@ LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
 		behind[l] = (double)(sim->last - sim->next);
 		at[l] = (uintptr_t)(sim->next < sim->last ? end + 1 : end);
 	}
-	*left = lanes_load(behind);
-	s.before = lanes_load(before);
-	s.ground = lanes_load(ground);
-	__builtin_memcpy(&s.at, at, sizeof s.at);
+	*left = lanes_of(behind);
+	s.before = lanes_of(before);
+	s.ground = lanes_of(ground);
+	s.at = lanes_at(at);
 	s.next = vgather(s.at);
 	return s;
 }
