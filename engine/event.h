@@ -18,6 +18,7 @@ struct event_lanes {
 	bool paired, edged; /* as stretch_fly() has them */
 	bool right;         /* a lane's largest displacement of the right body is wanted */
 	bool forced;        /* a lane's contact ends when its force does */
+	vm decided;         /* lanes in which an edge of a piece decided how far they went */
 };
 
 /* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
@@ -306,9 +307,9 @@ LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct 
 /* One step: every lane goes on to its next event, or as far as it meant to.
  *
  * Given    accounted  a lane's energy balance is kept
- * Returns  value      the events
+ * Returns  value      the events;  e: decided
  */
-LANE_INLINE vd event_step(struct lanes *g, const struct event_lanes *e, bool accounted)
+LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted)
 {
 	vd one = vsplat(1), zero = vsplat(0);
 	struct series s;
@@ -316,8 +317,12 @@ LANE_INLINE vd event_step(struct lanes *g, const struct event_lanes *e, bool acc
 	struct search search = {.time = one, .event = zero};
 	if (e->paired)
 		contact_search(&s, g, e, &search);
-	for (int i = 0; i < (e->paired ? 2 : 1) && e->edged; i++)
-		body_search(&s, g, i, e->active, &search);
+	if (e->edged) {
+		struct search before = search;
+		for (int i = 0; i < (e->paired ? 2 : 1); i++)
+			body_search(&s, g, i, e->active, &search);
+		e->decided = ~vequal(search.time, before.time) | ~vequal(search.event, before.event);
+	}
 	for (int i = 0; i < bodies_watched(e); i++) {
 		// the end of the step does not count where the motion was cut before it
 		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].u1));
@@ -371,16 +376,21 @@ LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
 	return turns;
 }
 
-/* Lanes in which something may happen to a body inside a step: a new largest displacement, an edge of its piece. */
-LANE_INLINE vm body_risk(const struct series *s, const struct lanes *g, int i, bool edged)
+/* Lanes in which a body may have a new largest displacement inside a step. */
+LANE_INLINE vm peak_risk(const struct series *s, const struct lanes *g, int i)
+{
+	vd one = vsplat(1);
+	struct course c = course_of(&s->body[i]);
+	vd top = vmax(g->top[i], vabs(c.u1));
+	return may_cross(&c, top, one) | may_cross(&c, -top, -one);
+}
+
+/* Lanes in which it may reach an edge of its piece. */
+LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
 {
 	vd zero = vsplat(0), one = vsplat(1);
 	struct course c = course_of(&s->body[i]);
-	vd top = vmax(g->top[i], vabs(c.u1));
-	vm risk = may_cross(&c, top, one) | may_cross(&c, -top, -one);
-	if (!edged)
-		return risk;
-	risk |= may_cross(&c, g->body[i].high, one) | may_cross(&c, g->body[i].low, -one);
+	vm risk = may_cross(&c, g->body[i].high, one) | may_cross(&c, g->body[i].low, -one);
 	vm turns = ~vequal(g->body[i].direction, zero);
 	if (!vany(turns))
 		return risk;
@@ -388,8 +398,11 @@ LANE_INLINE vm body_risk(const struct series *s, const struct lanes *g, int i, b
 	return risk | (turns & may_cross(&c, zero, -g->body[i].direction));
 }
 
-/* Takes what is left of an interval or of a cell as one step, in the lanes where nothing can happen in it. */
-LANE_INLINE void event_leap(struct lanes *g, const struct event_lanes *e, vm leaping)
+/* Takes what is left of an interval or of a cell as one step, in the lanes where nothing can happen in it.
+ *
+ * Returns  e  decided
+ */
+LANE_INLINE void event_leap(struct lanes *g, struct event_lanes *e, vm leaping)
 {
 	vd one = vsplat(1), zero = vsplat(0);
 	leaping &= ~e->parted & ~e->fresh & vequal(g->pace, one) & vless(zero, g->part);
@@ -409,7 +422,14 @@ LANE_INLINE void event_leap(struct lanes *g, const struct event_lanes *e, vm lea
 			risk |= ~vless(zero, course_slowest(&c)) & vless(zero, g->release);
 	}
 	for (int i = 0; i < bodies_watched(e); i++)
-		risk |= body_risk(&s, g, i, e->edged);
+		risk |= peak_risk(&s, g, i);
+	if (e->edged) {
+		vm edge = vmask(0);
+		for (int i = 0; i < (e->paired ? 2 : 1); i++)
+			edge |= edge_risk(&s, g, i);
+		risk |= edge;
+		e->decided |= leaping & edge;
+	}
 	step_end(g, &s, e, one, leaping & ~risk);
 }
 

@@ -193,13 +193,6 @@ LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct
 	return risk | (vless(flight_along(v, f, third, x->direction), zero) & ~vequal(x->direction, zero));
 }
 
-/* Lanes in which either may happen. */
-LANE_INLINE vm flight_risk(vd v, const struct flight *f, vd third, const struct limits *x, bool edged)
-{
-	vm risk = flight_peaks(f, x->top);
-	return edged ? risk | flight_edges(v, f, third, x) : risk;
-}
-
 LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
 {
 	if (!edged)
@@ -213,7 +206,8 @@ struct stretch {
 	struct place at[2][ROW + 1];
 	vd top[2][ROW + 1];    /* the largest displacement up to there */
 	vd bound[2][ROW];      /* of |u| inside a sample */
-	unsigned risk[ROW];    /* lanes in which something may happen inside a sample */
+	unsigned edge[ROW];    /* lanes in which an edge of a piece may be reached inside a sample */
+	unsigned meet[ROW];    /* in which bodies may touch */
 	unsigned peak[2][ROW]; /* and those in which a body may have its largest displacement */
 };
 
@@ -240,13 +234,14 @@ LANE_INLINE void stretch_fly(struct stretch *s, const struct lanes *g, const str
 	for (int r = 0; r < ROW; r++) {
 		vd pull = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
 		struct flight f[2];
-		vm risk = vmask(0);
+		vm edge = vmask(0);
 		for (int i = 0; i < bodies; i++) {
 			f[i] = flight_way(&flyers[i], s->at[i][r], s->at[i][r + 1], pull, third);
 			struct limits limits = limits_of(g, i, edged);
 			if (edged)
-				risk |= flight_edges(s->at[i][r].v, &f[i], third, &limits);
+				edge |= flight_edges(s->at[i][r].v, &f[i], third, &limits);
 		}
+		s->edge[r] = vbits(edge);
 		for (int i = 0; i < watched; i++) {
 			s->bound[i][r] = flight_reach(&f[i]);
 			s->top[i][r + 1] = vmax(s->top[i][r], vabs(f[i].u));
@@ -254,9 +249,8 @@ LANE_INLINE void stretch_fly(struct stretch *s, const struct lanes *g, const str
 		}
 		if (paired) {
 			vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
-			risk |= vless(gap, nearest + (f[0].error + f[1].error));
+			s->meet[r] = vbits(vless(gap, nearest + (f[0].error + f[1].error)));
 		}
-		s->risk[r] = vbits(risk);
 	}
 }
 
@@ -387,9 +381,11 @@ LANE_INLINE vd press_fades(const struct lanes *g, const struct press *s, const v
  *          right   a lane's largest displacement of the right body is wanted
  *          forced  a lane's contact ends when its force does;  seldom: bodies of a lane may be alike
  * Returns  s       every lane at the end of the cell
- *          value   lanes in which something may happen inside it
+ *          edge    lanes in which an edge of a piece may be reached
+ *          value   those, and others in which something may happen inside it
  */
-LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced, bool seldom)
+LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced, bool seldom,
+                     vm *edge)
 {
 	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
 	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
@@ -426,51 +422,54 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 	                   .b2 = press_other(b.b2, p.b2, side, off)};
 	// the magnitudes it is made of are those of base, overlap and gap
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
+	*edge = vmask(0);
+	if (edged)
+		*edge = flight_edges(x[1], &b, third, &base) | flight_edges(v, &o, third, &other);
 	if (edged || right) {
-		risk |= flight_risk(x[1], &b, third, &base, edged);
-		risk |= flight_risk(v, &o, third, &other, edged);
+		risk |= flight_peaks(&b, base.top) | flight_peaks(&o, other.top);
 	} else {
 		vm left = vless(zero, side);
 		struct flight l = {.u = vselect(left, b.u, o.u),
 		                   .b1 = vselect(left, b.b1, o.b1),
 		                   .b2 = vselect(left, b.b2, o.b2),
 		                   .error = vselect(left, b.error, o.error)};
-		struct limits limits = {.top = vselect(left, base.top, other.top)};
-		risk |= flight_risk(vselect(left, x[1], v), &l, third, &limits, false);
+		risk |= flight_peaks(&l, vselect(left, base.top, other.top));
 	}
 	press_move(g, s, end, vsplat(1), rise);
-	return risk;
+	return risk | *edge;
 }
 
-/* Lanes in which something may happen to a body over many cells.
+/* Lanes in which a body may have a new largest displacement over many cells.
  *
  * Given    u, end     at both ends
  *          low, high  its motion lies between, by the cubic of the slow part of it
- *          way        sign of its velocity at the start
- *          steady     lanes whose velocity keeps that sign: nothing lies beyond the ends
+ *          steady     lanes whose velocity keeps its sign: nothing lies beyond the ends
  */
-LANE_INLINE vm rest_risk(vd u, vd end, vd low, vd high, vd way, vm steady, const struct limits *x, bool edged)
+LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 {
-	vd most = vmax(vmax(vabs(u), vabs(end)), x->top);
-	vm risk = vless(most, vfma(vsplat(-16 * DBL_EPSILON), most, vmax(high, -low)));
-	if (edged) {
-		risk |= vless(x->high, high) | vless(low, x->low);
-		risk |= ~vequal(x->direction, vsplat(0));
-	}
-	risk &= ~steady;
-	if (!edged)
-		return risk;
-	risk |= vless(x->high, end) | vless(end, x->low);
-	return risk | vless(x->direction * way, vsplat(0));
+	vd most = vmax(vmax(vabs(u), vabs(end)), top);
+	return vless(most, vfma(vsplat(-16 * DBL_EPSILON), most, vmax(high, -low))) & ~steady;
+}
+
+/* Lanes in which an edge of its piece may be reached.
+ *
+ * Given    way  sign of its velocity at the start
+ */
+LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd way, vm steady, const struct limits *x)
+{
+	vm inside = vless(x->high, high) | vless(low, x->low) | ~vequal(x->direction, vsplat(0));
+	return (inside & ~steady) | vless(x->high, end) | vless(end, x->low) |
+	       vless(x->direction * way, vsplat(0));
 }
 
 /* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in press.h.
  *
  * Given    edged  a lane has a law of more than one piece
  * Returns  s      every lane at their end
- *          value  lanes in which something may happen meanwhile
+ *          edge   lanes in which an edge of a piece may be reached
+ *          value  those, and others in which something may happen meanwhile
  */
-LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
+LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge)
 {
 	const vd *split = s->rest[PRESS_SPLIT];
 	vd x[POUND_PRESS_INPUTS], zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4], gone[4];
@@ -514,9 +513,9 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
 	vd way0 = third * rate, way1 = third * rate1;
 	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - (way0 + way1);
 	vd creep = yield * change * vsplat(1.0 / 3), hurry = third * swing * per_omega, off = g->side * g->gap;
-	struct limits limits[2] = {s->base, s->other};
+	const struct limits *limits[2] = {&s->base, &s->other};
+	*edge = vmask(0);
 	for (int i = 0; i < 2; i++) {
-		limits[i].top = s->at.top[i];
 		vd share = i ? split[SPLIT_BASE] - g->side : split[SPLIT_BASE], size = vabs(share);
 		vd u = i ? press_other(x[0], x[2], g->side, off) : x[0];
 		vd u1 = i ? press_other(end[0], end[2], g->side, off) : end[0];
@@ -525,11 +524,13 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged)
 		vd more = share * creep, way = vselect(vless(way0 + more, zero), -one, one);
 		vd along = vmin(vmin(way * (way0 + more), way * (way1 + more)), way * (mean + more));
 		vm steady = vless(vfma(size, hurry, vsplat(1.0265) * error), along);
-		risk |= rest_risk(u, u1, low + mid - size * ripple, high + mid + size * ripple, way, steady,
-		                  &limits[i], edged);
+		vd least = low + mid - size * ripple, most = high + mid + size * ripple;
+		risk |= rest_peaks(u, u1, least, most, steady, s->at.top[i]);
+		if (edged)
+			*edge |= rest_edges(u1, least, most, way, steady, limits[i]);
 	}
 	press_move(g, s, end, cells, rise);
-	return risk;
+	return risk | *edge;
 }
 
 LANE_INLINE struct limits limits_select(vm mask, struct limits a, struct limits b)

@@ -9,19 +9,23 @@
  * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
  * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
  *    costs more than what it decides;
- * 6. simulations of one scene, of laws of one piece, read their constants and make their maps once.
+ * 6. simulations of one scene, of laws of one piece, read their constants and make their maps once;
+ * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (family.h).
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/march.h"
 
 #include <assert.h>
 #include <string.h>
 
+#include "engine/batch.h"
 #include "engine/event.h"
+#include "engine/family.h"
 #include "engine/flight.h"
 #include "engine/turn.h"
 
 enum {
-	POOL = 8 * W, /* simulations in flight */
+	GOING = 8 * W,                    /* simulations in flight */
+	POOL = GOING * (1 + POUND_TWINS), /* and those that have left a family and wait for room among these */
 };
 
 /* simulations that wait for one kind of step, last come first served */
@@ -39,25 +43,19 @@ enum kind {
 };
 
 struct work {
-	struct queue idle, queues[STAGES];
+	struct queue idle, waiting, queues[STAGES];
+	int going; /* simulations in flight */
 	const struct pound_march_task *tasks;
 	struct pound_march_result *results;
 	int n, started;        /* tasks, and those gone through in this pass */
 	int passed;            /* 0: laws of one piece are started, 1: the others */
 	double beyond[W][ROW]; /* ground motion up to its end, and whatever was there behind */
 	struct pound_common common;
-	// from here on nothing is cleared: a simulation's start does
+	// from here on nothing is cleared: a simulation's start does, and what finds the families
+	struct families families;
 	struct simulation filler; /* of the lanes that a batch leaves empty */
 	struct simulation pool[POOL];
 	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
-};
-
-/* simulations side by side; lanes from n on hold the filler */
-struct batch {
-	int n;
-	struct simulation *sim[W];
-	double *row[W];
-	unsigned traits; /* of any of them */
 };
 
 static void push(struct queue *queue, struct simulation *sim)
@@ -75,7 +73,23 @@ LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_st
 {
 	common_leave(sim);
 	stage = simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
-	push(stage < STAGES ? &work->queues[stage] : &work->idle, sim);
+	if (stage < STAGES) {
+		push(&work->queues[stage], sim);
+		return;
+	}
+	family_end(sim);
+	push(&work->idle, sim);
+	work->going--;
+}
+
+/* A member leaves a family, and both try the step again. */
+LANE_SHARED void part(struct work *work, struct simulation *sim, enum pound_stage stage)
+{
+	struct simulation *own = pop(&work->idle);
+	family_part(sim, own, stage);
+	own->stage = stage;
+	push(&work->waiting, own);
+	push(&work->queues[stage], sim);
 }
 
 /* Sends a simulation to where it goes next. */
@@ -98,66 +112,6 @@ static void batch_take(struct batch *b, struct work *work, struct queue *queue)
 	}
 }
 
-/* The lanes in use. */
-static unsigned batch_lanes(const struct batch *b)
-{
-	return (1u << b->n) - 1;
-}
-
-/* Takes a lane out of a set that is not empty. */
-static int lane_next(unsigned *lanes)
-{
-	int l = __builtin_ctz(*lanes);
-	*lanes &= *lanes - 1;
-	return l;
-}
-
-/* Carries one row of every simulation into lanes, or out. */
-LANE_INLINE void lanes_fill(struct lanes *g, const struct batch *b, int at)
-{
-	rows_load((vd *)g + at, (const double *const *)b->row, at);
-}
-LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int at)
-{
-	rows_store((const vd *)g + at, b->row, at);
-}
-
-/* Carries one row of constants into lanes.
- *
- * Given    common  the rows that all have in common; NULL: they may differ
- */
-LANE_INLINE void lanes_constant(struct lanes *g, const struct batch *b, const struct pound_rows *common,
-                                int at)
-{
-	if (!common) {
-		lanes_fill(g, b, at);
-		return;
-	}
-	for (int j = at; j < at + ROW; j++)
-		((vd *)g)[j] = vsplat(((const double *)common)[j]);
-}
-
-/* Lanes of simulations with a trait. */
-LANE_INLINE vm batch_trait(const struct batch *b, unsigned trait)
-{
-	unsigned lanes = 0;
-	for (int l = 0; l < W; l++)
-		lanes |= (unsigned)((b->sim[l]->traits & trait) != 0) << l;
-	return vmask(lanes);
-}
-
-/* Lanes whose bodies overlap without force, and those in which the force has just passed zero. */
-LANE_INLINE void batch_forces(const struct batch *b, vm *parted, vm *fresh)
-{
-	unsigned gone = 0, passed = 0;
-	for (int l = 0; l < W; l++) {
-		gone |= (unsigned)b->sim[l]->parted << l;
-		passed |= (unsigned)b->sim[l]->fresh << l;
-	}
-	*parted = vmask(gone);
-	*fresh = vmask(passed);
-}
-
 /* ---- whole samples apart ---- */
 
 /* the ground motion in front of each lane */
@@ -165,6 +119,7 @@ struct ahead {
 	const double *ground[W]; /* from where it started */
 	int64_t gone;            /* samples that those who still fly have gone since */
 	vd samples;              /* that are left */
+	unsigned edged;          /* lanes that stopped where an edge may be reached */
 };
 
 /* The next ROW samples of the lanes that fly, as far as there are any.
@@ -232,9 +187,13 @@ LANE_INLINE vm fly_on(struct work *work, const struct batch *b, struct ahead *ah
 	stretch_fly(&s, g, flyers, edged, paired, right);
 	vd flown = vsplat(0), one = vsplat(1);
 	for (int r = 0; r < ROW; r++) {
-		on &= ~s.risk[r];
 		if (ends)
 			on &= vbits(vless(vsplat(r), ahead->samples));
+		if (edged)
+			ahead->edged |= on & s.edge[r];
+		on &= ~s.edge[r];
+		if (paired)
+			on &= ~s.meet[r];
 		for (int i = 0; i < (paired && right ? 2 : 1); i++)
 			if (s.peak[i][r] & on)
 				on &= ~peaks_keep(b, i, &s, r, s.peak[i][r] & on, ahead->gone + r);
@@ -283,10 +242,15 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	for (int l = 0; l < b->n; l++)
 		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
 	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0))), on = vbits(flying) & ~there;
-	for (unsigned met = batch_lanes(b) & ~there & ~on; met;) {
+	unsigned met = batch_lanes(b) & ~there & ~on,
+	         parting = edged ? met & batch_parting(b, vmask(ahead.edged)) : 0;
+	met &= ~parting;
+	while (met) {
 		struct simulation *sim = b->sim[lane_next(&met)];
 		send(work, sim, simulation_meet(sim));
 	}
+	while (parting)
+		part(work, b->sim[lane_next(&parting)], stage);
 	while (on)
 		push(&work->queues[stage], b->sim[lane_next(&on)]);
 	while (there) {
@@ -422,13 +386,17 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	struct pressed kept = s.at;
 	const vd rounds = kept.rounds, cells = stage == STAGE_REST ? s.rest[PRESS_SPLIT][SPLIT_CELLS] : one;
 	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
+	vm decided = vmask(0);
 	int few = b->n / 2;
 	do {
 		struct pressed from;
 		if (seldom)
 			from = s.at;
-		vm risk = stage == STAGE_REST ? rest(&g, &s, edged) : press(&g, &s, edged, right, forced, seldom);
+		vm edge, risk = stage == STAGE_REST ? rest(&g, &s, edged, &edge)
+		                                    : press(&g, &s, edged, right, forced, seldom, &edge);
 		refused |= risk & pressed;
+		if (edged)
+			decided |= edge & pressed;
 		pressed &= ~risk;
 		if (seldom)
 			press_account(b, &g, &from, &s.at, cells, vbits(pressed & accounted));
@@ -457,7 +425,10 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 		sim->steps = next == sim->next ? sim->steps : 0;
 		interval_set(sim, next);
 	}
-	unsigned stays = vbits(pressed), ends = vbits(ended), turns = batch_lanes(b) & ~stays & ~ends;
+	unsigned stays = vbits(pressed), ends = vbits(ended), parting = edged ? batch_parting(b, decided) : 0;
+	unsigned turns = batch_lanes(b) & ~stays & ~ends & ~parting;
+	while (parting)
+		part(work, b->sim[lane_next(&parting)], stage);
 	while (stays)
 		push(&work->queues[stage], b->sim[lane_next(&stays)]);
 	while (turns) {
@@ -489,8 +460,7 @@ LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_
 
 /* ---- one step up to an event ---- */
 
-LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
-                      bool common)
+LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
 {
 	struct event_lanes e = {.touching = stage == STAGE_TOUCH,
 	                        .paired = stage != STAGE_ALONE,
@@ -499,7 +469,8 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 	                        .forced = b->traits & TRAIT_FORCED,
 	                        .active = vmask(batch_lanes(b)),
 	                        .parted = vmask(0),
-	                        .fresh = vmask(0)};
+	                        .fresh = vmask(0),
+	                        .decided = vmask(0)};
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
 	const struct pound_rows *shared = common ? &work->common.x : NULL;
 	struct lanes g;
@@ -528,12 +499,18 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 		e.touching = !e.touching;
 		event_leap(&g, &e, turns);
 	}
+	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
+	batch_forget(b, parting, &work->filler);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	if (accounted)
 		lanes_empty(&g, b, ROW_WORK);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
+		if (parting >> l & 1) {
+			part(work, sim, stage);
+			continue;
+		}
 		sim->parted = vbits(e.parted) >> l & 1;
 		sim->fresh = vbits(e.fresh) >> l & 1;
 		send(work, sim, simulation_stepped(sim, (int)event[l], left[l], speed[l]));
@@ -541,14 +518,16 @@ LANE_INLINE void step(struct work *work, const struct batch *b, enum pound_stage
 }
 
 /* What is left of a sample. */
-LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, bool edged)
+LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage, bool edged)
 {
+	const bool paired = stage == STAGE_LEAP_APART;
 	struct event_lanes e = {.paired = paired,
 	                        .edged = edged,
 	                        .right = b->traits & TRAIT_RIGHT,
 	                        .forced = b->traits & TRAIT_FORCED,
 	                        .parted = vmask(0),
-	                        .fresh = vmask(0)};
+	                        .fresh = vmask(0),
+	                        .decided = vmask(0)};
 	if (e.forced)
 		batch_forces(b, &e.parted, &e.fresh);
 	struct lanes g;
@@ -559,19 +538,26 @@ LANE_INLINE void leap(struct work *work, const struct batch *b, bool paired, boo
 	if (paired)
 		lanes_fill(&g, b, ROW_RIGHT);
 	event_leap(&g, &e, vmask(batch_lanes(b)));
+	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
+	batch_forget(b, parting, &work->filler);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
-	for (int l = 0; l < b->n; l++)
-		send(work, b->sim[l], simulation_next(b->sim[l]));
+	for (int l = 0; l < b->n; l++) {
+		struct simulation *sim = b->sim[l];
+		if (parting >> l & 1)
+			part(work, sim, stage);
+		else
+			send(work, sim, simulation_next(sim));
+	}
 }
 
 /* ---- the march ---- */
 
 /* the stages' steps: of laws of one piece, of others, and of simulations of one scene */
-#define STEP(name, ...)                                        \
-	static void name(struct work *work, const struct batch *b) \
-	{                                                          \
-		__VA_ARGS__;                                           \
+#define STEP(name, ...)                                  \
+	static void name(struct work *work, struct batch *b) \
+	{                                                    \
+		__VA_ARGS__;                                     \
 	}
 STEP(fly_alone, fly(work, b, STAGE_FLY_ALONE, false, false))
 STEP(fly_alone_edged, fly(work, b, STAGE_FLY_ALONE, true, false))
@@ -589,10 +575,10 @@ STEP(step_apart, step(work, b, STAGE_APART, (b->traits & TRAIT_EDGED) != 0, fals
 STEP(step_apart_common, step(work, b, STAGE_APART, false, true))
 STEP(step_touch, step(work, b, STAGE_TOUCH, (b->traits & TRAIT_EDGED) != 0, false))
 STEP(step_touch_common, step(work, b, STAGE_TOUCH, false, true))
-STEP(leap_alone, leap(work, b, false, (b->traits & TRAIT_EDGED) != 0))
-STEP(leap_apart, leap(work, b, true, (b->traits & TRAIT_EDGED) != 0))
+STEP(leap_alone, leap(work, b, STAGE_LEAP_ALONE, (b->traits & TRAIT_EDGED) != 0))
+STEP(leap_apart, leap(work, b, STAGE_LEAP_APART, (b->traits & TRAIT_EDGED) != 0))
 
-static void (*const steps[STAGES][KINDS])(struct work *, const struct batch *) = {
+static void (*const steps[STAGES][KINDS])(struct work *, struct batch *) = {
     [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged, fly_alone_common},
     [STAGE_FLY_APART] = {fly_apart, fly_apart_edged, fly_apart_common},
     [STAGE_PRESS] = {press_plain, press_edged, press_common},
@@ -605,20 +591,30 @@ static void (*const steps[STAGES][KINDS])(struct work *, const struct batch *) =
     [STAGE_LEAP_APART] = {leap_apart, leap_apart, leap_apart},
 };
 
-/* Starts tasks as long as there are any and the pool has room: first those of laws of one piece, which need less when
- * they are among themselves. */
+/* Starts a task, with those that go along with it. */
+static void task_start(struct work *work, int j)
+{
+	struct simulation *sim = pop(&work->idle);
+	enum pound_stage stage = simulation_start(sim, &work->tasks[j], &work->results[j]);
+	family_gather(&work->families, work->tasks, work->results, j, sim);
+	common_join(&work->common, sim);
+	work->going++;
+	send(work, sim, stage);
+}
+
+/* Goes on with simulations that wait, and starts tasks, as long as there are any and there is room: first those of laws of
+ * one piece, which need less when they are among themselves. */
 static void tasks_start(struct work *work)
 {
-	while (work->passed < 2 && work->idle.n > 0) {
-		for (; work->started < work->n && work->idle.n > 0; work->started++) {
-			const struct pound_march_task *task = &work->tasks[work->started];
-			if (simulation_edged(task) != work->passed)
-				continue;
-			struct simulation *sim = pop(&work->idle);
-			enum pound_stage stage = simulation_start(sim, task, &work->results[work->started]);
-			common_join(&work->common, sim);
-			send(work, sim, stage);
-		}
+	for (; work->waiting.n > 0 && work->going < GOING; work->going++) {
+		struct simulation *sim = pop(&work->waiting);
+		push(&work->queues[sim->stage], sim);
+	}
+	while (work->passed < 2 && work->going < GOING) {
+		for (; work->started < work->n && work->going < GOING; work->started++)
+			if (family_leads(&work->families, work->started) &&
+			    family_edged(&work->families, work->tasks, work->started) == work->passed)
+				task_start(work, work->started);
 		if (work->started < work->n)
 			return;
 		work->passed++;
@@ -646,10 +642,11 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	static const struct pound_march_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
 	struct work *work = scratch;
 	struct pound_march_result result;
-	memset(work, 0, offsetof(struct work, filler));
+	memset(work, 0, offsetof(struct work, families));
 	work->tasks = tasks;
 	work->results = results;
 	work->n = n;
+	families_find(&work->families, tasks, n);
 	simulation_start(&work->filler, &nothing, &result);
 	work->filler.pressed = &loose;
 	work->filler.x.dt = 1;

@@ -458,6 +458,21 @@ LANE_SHARED void press_enter(struct simulation *sim)
 	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 }
 
+/* Gives a simulation the maps of pressed contact that another has on the same pieces.
+ *
+ * Given    stage  that both are in
+ */
+static void press_copy(struct simulation *to, const struct simulation *from, enum pound_stage stage)
+{
+	struct pound_press *press = to->press_now = &to->press[from->press_now - from->press];
+	press->cell = from->press_now->cell;
+	press->made = true;
+	press->laddered = stage == STAGE_REST;
+	if (stage == STAGE_REST)
+		ladder_fill(press->ladder, &press->cell, to);
+	to->pressed = stage == STAGE_REST ? &press->ladder->rung[to->rung] : &press->cell;
+}
+
 /* Gets everything ready for whole cells of pressed contact: the longest map over which nothing is known to happen.
  *
  * Given    sim    in contact, with whole cells left

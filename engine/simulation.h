@@ -13,6 +13,7 @@
 enum {
 	POUND_MAPS = 4,         /* free-flight maps a body keeps */
 	POUND_PEAKS = 4,        /* samples that may hold its largest displacement */
+	POUND_TWINS = 3,        /* other tasks that go along with a simulation: family.h */
 	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.8^18/18! = 3e-18 */
 	POUND_MAP_LONGER = 26,  /* of a long sample's; 2^26/26! = 2e-19 */
 	POUND_PRESS_MAPS = 3,   /* pairs of pieces whose cell map and ladder a simulation keeps */
@@ -170,12 +171,19 @@ enum {
 	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
 	TRAIT_ALIKE = 16,    /* touching without overlap the bodies go the same way, on the pieces they are on */
 	TRAIT_OWN = 32,      /* its constants are not those of others */
+	TRAIT_FAMILY = 64,   /* there are others that go along: what an edge decides is not for all of them */
 };
 
 /* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
  * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
  * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
 static const double NOTHING = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
+
+/* a task that a simulation is the run of as well */
+struct pound_twin {
+	const struct pound_march_task *task;
+	struct pound_march_result *result;
+};
 
 enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
 
@@ -202,6 +210,9 @@ struct simulation {
 	// and what is read seldom
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
+	struct pound_twin twins[POUND_TWINS];
+	int n_twins;
+	enum pound_stage stage; /* what it does next, while it waits for room */
 	double rung_cells[POUND_PRESS_RUNGS];
 	struct pound_branch at[2];
 	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */

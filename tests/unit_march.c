@@ -452,6 +452,44 @@ static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **st
 	}
 }
 
+/* Tasks that differ in their laws alone are one until a first one yields: four together where there are six, some that yield
+ * at once, both at an instant, or never, and among them others with an account or a shorter signal.  In every other round the
+ * ground falls silent meanwhile, in the last ones samples are too long for maps. */
+static void a_run_does_not_depend_on_those_that_differ_in_their_laws_alone(void **state)
+{
+	(void)state;
+	uint64_t yields = 1;
+	enum { FAMILY = 6, FAMILIES = (TASKS + FAMILY - 1) / FAMILY };
+	static double ground[TASKS * SAMPLES];
+	struct pound_march_task tasks[TASKS], scenes[TASKS];
+	for (uint64_t seed = 1; seed <= 20; seed++) {
+		tasks_fill(scenes, ground, seed);
+		for (int t = 0; t < TASKS; t++) {
+			const int scene = t % FAMILIES, member = t / FAMILIES;
+			const double first = tasks[scene].bodies[0].skeleton.yield;
+			tasks[t] = scenes[scene];
+			tasks[t].n_samples = SAMPLES - scene - (t % 31 == 30);
+			tasks[t].time_step = seed < 11 ? 0.01 : 0.1;
+			tasks[t].accounted = t % 37 == 36;
+			if (!tasks[t].contact)
+				tasks[t].bodies[1] = (struct pound_march_body){0}; // the left one alone
+			if (member == 0 && seed % 2)
+				memset(ground + scene * SAMPLES + 100, 0, sizeof(double) * 400);
+			for (int i = 0; i < 2; i++) {
+				struct pound_skeleton *law = &tasks[t].bodies[i].skeleton;
+				law->law = (member + scene) % 5 == 4 ? (member + scene) % 3 : (member + (int)seed) % 4;
+				law->yield *= member == 3   ? 1e-9
+				              : member == 4 ? 1e9
+				                            : pow(10, specimen_uniform(&yields, -1, 1.5));
+				law->hardening = 0.01 * member;
+			}
+			if (member == 2)
+				tasks[t].bodies[0].skeleton.yield = first;
+		}
+		check_alone_as_together(tasks);
+	}
+}
+
 static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter(void **state)
 {
 	(void)state;
@@ -481,4 +519,5 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours),
            cmocka_unit_test(a_run_does_not_depend_on_bodies_alike_beside_it),
            cmocka_unit_test(a_run_does_not_depend_on_what_it_has_in_common_with_others),
+           cmocka_unit_test(a_run_does_not_depend_on_those_that_differ_in_their_laws_alone),
            cmocka_unit_test(pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatter))

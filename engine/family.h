@@ -1,0 +1,200 @@
+/* family.h - tasks that differ in nothing but their laws, run as one simulation as long as no edge of a piece decides.
+ *
+ * Included by march.c alone, once per lane count.  All laws start on the same elastic piece.  A family goes along it between
+ * the edges nearest to it.  Where one of them decides what it does next, or may, that is taken back: the member with that edge
+ * leaves, to go on from there by itself, and the others try again.  So every member does what it would have done alone, to the
+ * last bit. */
+#ifndef FAMILY_H
+#define FAMILY_H
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/turn.h"
+
+enum {
+	FAMILY_TASKS = 4096,             /* the first of a call's, among which families are looked for */
+	FAMILY_SLOTS = 2 * FAMILY_TASKS, /* of their hash table */
+};
+
+/* the families of a call's tasks */
+struct families {
+	int slot[FAMILY_SLOTS];     /* number of a first member and 1; 0: empty */
+	int next[FAMILY_TASKS];     /* number of the next member; 0: there is none */
+	bool edged[FAMILY_TASKS];   /* of a first member: a law of the family has more than one piece */
+	bool follows[FAMILY_TASKS]; /* is not the first of its family */
+};
+
+static bool bodies_kin(const struct pound_march_body *a, const struct pound_march_body *b)
+{
+	return a->skeleton.stiffness == b->skeleton.stiffness && a->damping == b->damping &&
+	       a->drive == b->drive && a->u == b->u && a->v == b->v && a->followed == b->followed;
+}
+
+/* Whether tasks differ in nothing but their laws. */
+static bool tasks_kin(const struct pound_march_task *a, const struct pound_march_task *b)
+{
+	return a->ground == b->ground && a->n_samples == b->n_samples && a->time_step == b->time_step &&
+	       a->contact == b->contact && a->gap == b->gap && a->contact_stiffness == b->contact_stiffness &&
+	       a->contact_damping == b->contact_damping && a->mass_ratio == b->mass_ratio &&
+	       a->tension == b->tension && !a->accounted && !b->accounted &&
+	       bodies_kin(&a->bodies[0], &b->bodies[0]) && bodies_kin(&a->bodies[1], &b->bodies[1]);
+}
+
+static unsigned task_hash(const struct pound_march_task *task, unsigned slots)
+{
+	const double numbers[] = {task->bodies[0].skeleton.stiffness, task->bodies[1].skeleton.stiffness,
+	                          task->mass_ratio, task->contact_damping};
+	uint64_t hash = (uintptr_t)task->ground;
+	for (size_t j = 0; j < sizeof numbers / sizeof numbers[0]; j++) {
+		uint64_t bits;
+		memcpy(&bits, &numbers[j], sizeof bits);
+		hash = (hash ^ bits) * 0x9E3779B97F4A7C15u; // 2^64 over the golden ratio
+		hash ^= hash >> 32;
+	}
+	return (unsigned)hash & (slots - 1);
+}
+
+/* Adds a task to the family whose first member another is.
+ *
+ * Returns  value  false: it is full, or neither ever leaves its piece
+ */
+static bool family_add(struct families *f, const struct pound_march_task *tasks, int first, int j)
+{
+	bool edged = simulation_edged(&tasks[j]);
+	int last = first, members = 1;
+	for (; f->next[last] > 0; last = f->next[last])
+		members++;
+	if (members > POUND_TWINS || !(edged || f->edged[first]))
+		return false;
+	f->next[last] = j;
+	f->follows[j] = true;
+	f->edged[first] |= edged;
+	return true;
+}
+
+/* Finds the families of n tasks. */
+static void families_find(struct families *f, const struct pound_march_task *tasks, int n)
+{
+	const int looked = n < FAMILY_TASKS ? n : FAMILY_TASKS;
+	unsigned slots = 16;
+	while (slots < 2 * (unsigned)looked)
+		slots *= 2;
+	memset(f->slot, 0, sizeof f->slot[0] * slots);
+	for (int j = 0; j < looked; j++) {
+		f->next[j] = 0;
+		f->edged[j] = simulation_edged(&tasks[j]);
+		f->follows[j] = false;
+		unsigned at = task_hash(&tasks[j], slots);
+		for (; f->slot[at] > 0; at = (at + 1) & (slots - 1))
+			if (tasks_kin(&tasks[f->slot[at] - 1], &tasks[j]) && family_add(f, tasks, f->slot[at] - 1, j))
+				break;
+		if (!f->follows[j])
+			f->slot[at] = j + 1;
+	}
+}
+
+/* Whether a task is the first of its family: a simulation begins with it. */
+static bool family_leads(const struct families *f, int j)
+{
+	return j >= FAMILY_TASKS || !f->follows[j];
+}
+
+/* Whether a law of a task, or of one that goes along with it, has more than one piece. */
+static bool family_edged(const struct families *f, const struct pound_march_task *tasks, int j)
+{
+	return j < FAMILY_TASKS ? f->edged[j] : simulation_edged(&tasks[j]);
+}
+
+/* The first piece of a body's law. */
+static struct pound_piece first_piece(const struct pound_march_task *task, int i)
+{
+	struct pound_branch at;
+	pound_pieces_start(&task->bodies[i].skeleton, &at);
+	return at.piece;
+}
+
+/* A simulation goes between its own edges, and nearer ones of those it has with it. */
+static void family_edges(struct simulation *sim)
+{
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		double low = sim->at[i].piece.low, high = sim->at[i].piece.high;
+		for (int k = 0; k < sim->n_twins; k++) {
+			struct pound_piece piece = first_piece(sim->twins[k].task, i);
+			low = fmax(low, piece.low);
+			high = fmin(high, piece.high);
+		}
+		sim->x.body[i].low = low;
+		sim->x.body[i].high = high;
+	}
+	sim->traits &= ~(unsigned)(TRAIT_FAMILY | TRAIT_EDGED);
+	if (sim->n_twins > 0)
+		sim->traits |= TRAIT_FAMILY | TRAIT_EDGED;
+	if (simulation_edged(sim->task))
+		sim->traits |= TRAIT_EDGED;
+}
+
+/* Takes the others of its family along with the simulation of the first, which is at its start. */
+static void family_gather(const struct families *f, const struct pound_march_task *tasks,
+                          struct pound_march_result *results, int first, struct simulation *sim)
+{
+	if (first >= FAMILY_TASKS || f->next[first] == 0)
+		return;
+	for (int j = f->next[first]; j > 0; j = f->next[j])
+		sim->twins[sim->n_twins++] = (struct pound_twin){&tasks[j], &results[j]};
+	family_edges(sim);
+}
+
+/* How far bodies have come on the first pieces of a task's laws. */
+static double family_share(const struct simulation *sim, const struct pound_march_task *task)
+{
+	double share = 0;
+	for (int i = 0; i < POUND_OSCILLATORS;
+	     i++) // from rest it is the narrower piece that is nearer to its end
+		share = most(share, (fabs(sim->x.u[i]) + DBL_MIN) / first_piece(task, i).high);
+	return share;
+}
+
+/* The member that is nearest to an edge leaves the family.
+ *
+ * Given    stage  that it leaves in
+ * Returns  own    its simulation, with maps of its own
+ */
+static void family_part(struct simulation *sim, struct simulation *own, enum pound_stage stage)
+{
+	struct pound_twin *nearest = &sim->twins[0];
+	for (int k = 1; k < sim->n_twins; k++)
+		if (family_share(sim, sim->twins[k].task) > family_share(sim, nearest->task))
+			nearest = &sim->twins[k];
+	struct pound_twin leaver = *nearest, self = {sim->task, sim->result};
+	*nearest = sim->twins[--sim->n_twins];
+	*leaver.result = *sim->result;
+	memcpy(own, sim, offsetof(struct simulation, press));
+	own->n_twins = 0;
+	if (family_share(sim, leaver.task) < family_share(sim, self.task)) {
+		// it is the one that the others went with: they have another to go with from here on
+		sim->task = leaver.task;
+		sim->result = leaver.result;
+		leaver = self;
+	}
+	own->task = leaver.task;
+	own->result = leaver.result;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		pound_pieces_start(&sim->task->bodies[i].skeleton, &sim->at[i]);
+		pound_pieces_start(&own->task->bodies[i].skeleton, &own->at[i]);
+	}
+	family_edges(sim);
+	family_edges(own);
+	if (sim->press_now)
+		press_copy(own, sim, stage);
+}
+
+/* The end of a simulation is that of those who are still with it. */
+static void family_end(const struct simulation *sim)
+{
+	for (int k = 0; k < sim->n_twins; k++)
+		*sim->twins[k].result = *sim->result;
+}
+
+#endif
