@@ -24,7 +24,7 @@
 #include "engine/turn.h"
 
 enum {
-	GOING = 8 * W,                    /* simulations in flight */
+	GOING = 64,                       /* simulations in flight */
 	POOL = GOING * (1 + POUND_TWINS), /* and those that have left a family and wait for room among these */
 };
 
