@@ -190,7 +190,10 @@ LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct
 	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2), zero = vsplat(0);
 	vm risk = vless(x->high, vmax(high, f->u) + f->error);
 	risk |= vless(vmin(low, f->u) - f->error, x->low);
-	return risk | (vless(flight_along(v, f, third, x->direction), zero) & ~vequal(x->direction, zero));
+	vm turns = ~vequal(x->direction, zero);
+	if (!vany(turns))
+		return risk;
+	return risk | (vless(flight_along(v, f, third, x->direction), zero) & turns);
 }
 
 LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
@@ -211,7 +214,43 @@ struct stretch {
 	unsigned peak[2][ROW]; /* and those in which a body may have its largest displacement */
 };
 
-/* Flies every lane over a stretch, and then asks what may have happened on the way: no lane waits for its proof.
+/* Moves every lane over a sample of a stretch. */
+LANE_INLINE void stretch_move(struct stretch *s, const struct flyer flyers[2], int r, bool paired)
+{
+	for (int i = 0; i < (paired ? 2 : 1); i++)
+		s->at[i][r + 1] = flight_move(&flyers[i], s->at[i][r], s->ground[r], s->ground[r + 1]);
+}
+
+/* Asks what may happen on the way. */
+LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const struct flyer flyers[2], int r,
+                               bool edged, bool paired, bool right)
+{
+	const int bodies = paired ? 2 : 1, watched = paired && right ? 2 : 1;
+	vd third = g->body[0].step_gap * vsplat(1.0 / 3);
+	vd pull = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
+	struct flight f[2];
+	vm edge = vmask(0);
+	for (int i = 0; i < bodies; i++) {
+		f[i] = flight_way(&flyers[i], s->at[i][r], s->at[i][r + 1], pull, third);
+		struct limits limits = limits_of(g, i, edged);
+		if (edged)
+			edge |= flight_edges(s->at[i][r].v, &f[i], third, &limits);
+	}
+	if (edged)
+		s->edge[r] = vbits(edge);
+	for (int i = 0; i < watched; i++) {
+		s->bound[i][r] = flight_reach(&f[i]);
+		s->top[i][r + 1] = vmax(s->top[i][r], vabs(f[i].u));
+		s->peak[i][r] = vbits(vless(s->top[i][r + 1], s->bound[i][r]));
+	}
+	if (paired) {
+		vd gap = vsplat(1 - 4 * DBL_EPSILON) * g->body[1].step_gap;
+		vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
+		s->meet[r] = vbits(vless(gap, nearest + (f[0].error + f[1].error)));
+	}
+}
+
+/* Flies every lane over a stretch, and asks what may have happened on the way: no lane waits for its proof.
  *
  * Given    s       ground
  *          g       where it begins;  flyers: the bodies' maps
@@ -221,36 +260,23 @@ struct stretch {
 LANE_INLINE void stretch_fly(struct stretch *s, const struct lanes *g, const struct flyer flyers[2],
                              bool edged, bool paired, bool right)
 {
-	const int bodies = paired ? 2 : 1, watched = paired && right ? 2 : 1;
-	vd third = g->body[0].step_gap * vsplat(1.0 / 3);
-	vd gap = vsplat(1 - 4 * DBL_EPSILON) * g->body[1].step_gap;
-	for (int i = 0; i < bodies; i++)
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
 		s->at[i][0] = (struct place){g->u[i], g->v[i]};
-	for (int i = 0; i < watched; i++)
 		s->top[i][0] = g->top[i];
-	for (int r = 0; r < ROW; r++)
-		for (int i = 0; i < bodies; i++)
-			s->at[i][r + 1] = flight_move(&flyers[i], s->at[i][r], s->ground[r], s->ground[r + 1]);
-	for (int r = 0; r < ROW; r++) {
-		vd pull = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
-		struct flight f[2];
-		vm edge = vmask(0);
-		for (int i = 0; i < bodies; i++) {
-			f[i] = flight_way(&flyers[i], s->at[i][r], s->at[i][r + 1], pull, third);
-			struct limits limits = limits_of(g, i, edged);
-			if (edged)
-				edge |= flight_edges(s->at[i][r].v, &f[i], third, &limits);
-		}
-		s->edge[r] = vbits(edge);
-		for (int i = 0; i < watched; i++) {
-			s->bound[i][r] = flight_reach(&f[i]);
-			s->top[i][r + 1] = vmax(s->top[i][r], vabs(f[i].u));
-			s->peak[i][r] = vbits(vless(s->top[i][r + 1], s->bound[i][r]));
-		}
-		if (paired) {
-			vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
-			s->meet[r] = vbits(vless(gap, nearest + (f[0].error + f[1].error)));
-		}
+	}
+	if (W == 8) {
+		// there are registers for one thing after the other
+		for (int r = 0; r < ROW; r++)
+			stretch_move(s, flyers, r, paired);
+		for (int r = 0; r < ROW; r++)
+			stretch_prove(s, g, flyers, r, edged, paired, right);
+		return;
+	}
+	// a proof runs while the next move waits for the last
+	_Pragma("GCC unroll 1") for (int r = 0; r < ROW; r++)
+	{
+		stretch_move(s, flyers, r, paired);
+		stretch_prove(s, g, flyers, r, edged, paired, right);
 	}
 }
 

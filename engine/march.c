@@ -189,9 +189,10 @@ LANE_INLINE vm fly_on(struct work *work, const struct batch *b, struct ahead *ah
 	for (int r = 0; r < ROW; r++) {
 		if (ends)
 			on &= vbits(vless(vsplat(r), ahead->samples));
-		if (edged)
+		if (edged) {
 			ahead->edged |= on & s.edge[r];
-		on &= ~s.edge[r];
+			on &= ~s.edge[r];
+		}
 		if (paired)
 			on &= ~s.meet[r];
 		for (int i = 0; i < (paired && right ? 2 : 1); i++)
