@@ -156,10 +156,17 @@ static double family_share(const struct simulation *sim, const struct pound_marc
 	return share;
 }
 
+/* Copies a simulation, as it is before a step. */
+static void simulation_copy(struct simulation *to, const struct simulation *from)
+{
+	memcpy(to, from, offsetof(struct simulation, press));
+	press_copy(to, from);
+}
+
 /* The member that is nearest to an edge leaves the family.
  *
- * Given    stage  that it leaves in
- * Returns  own    its simulation, with maps of its own
+ * Given    stage  in which it does
+ * Returns  own    its simulation, which waits
  */
 static void family_part(struct simulation *sim, struct simulation *own, enum pound_stage stage)
 {
@@ -170,8 +177,9 @@ static void family_part(struct simulation *sim, struct simulation *own, enum pou
 	struct pound_twin leaver = *nearest, self = {sim->task, sim->result};
 	*nearest = sim->twins[--sim->n_twins];
 	*leaver.result = *sim->result;
-	memcpy(own, sim, offsetof(struct simulation, press));
+	simulation_copy(own, sim);
 	own->n_twins = 0;
+	own->stage = stage;
 	if (family_share(sim, leaver.task) < family_share(sim, self.task)) {
 		// it is the one that the others went with: they have another to go with from here on
 		sim->task = leaver.task;
@@ -186,8 +194,13 @@ static void family_part(struct simulation *sim, struct simulation *own, enum pou
 	}
 	family_edges(sim);
 	family_edges(own);
-	if (sim->press_now)
-		press_copy(own, sim, stage);
+}
+
+/* One that has left goes on. */
+static void family_resume(struct simulation *sim, const struct simulation *own)
+{
+	simulation_copy(sim, own);
+	press_resume(sim, sim->stage);
 }
 
 /* The end of a simulation is that of those who are still with it. */

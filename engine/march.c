@@ -24,8 +24,7 @@
 #include "engine/turn.h"
 
 enum {
-	GOING = 64,                       /* simulations in flight */
-	POOL = GOING * (1 + POUND_TWINS), /* and those that have left a family and wait for room among these */
+	POOL = 64, /* simulations in flight */
 };
 
 /* simulations that wait for one kind of step, last come first served */
@@ -43,18 +42,19 @@ enum kind {
 };
 
 struct work {
-	struct queue idle, waiting, queues[STAGES];
-	int going; /* simulations in flight */
+	struct queue idle, queues[STAGES];
 	const struct pound_march_task *tasks;
 	struct pound_march_result *results;
 	int n, started;        /* tasks, and those gone through in this pass */
 	int passed;            /* 0: laws of one piece are started, 1: the others */
+	int parted;            /* simulations that wait */
 	double beyond[W][ROW]; /* ground motion up to its end, and whatever was there behind */
 	struct pound_common common;
 	// from here on nothing is cleared: a simulation's start does, and what finds the families
 	struct families families;
 	struct simulation filler; /* of the lanes that a batch leaves empty */
 	struct simulation pool[POOL];
+	struct simulation waiting[POOL * POUND_TWINS]; /* for room, out of a family: no task starts meanwhile */
 	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
 };
 
@@ -79,16 +79,13 @@ LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_st
 	}
 	family_end(sim);
 	push(&work->idle, sim);
-	work->going--;
 }
 
 /* A member leaves a family, and both try the step again. */
 LANE_SHARED void part(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
-	struct simulation *own = pop(&work->idle);
-	family_part(sim, own, stage);
-	own->stage = stage;
-	push(&work->waiting, own);
+	assert(work->parted < POOL * POUND_TWINS);
+	family_part(sim, &work->waiting[work->parted++], stage);
 	push(&work->queues[stage], sim);
 }
 
@@ -599,7 +596,6 @@ static void task_start(struct work *work, int j)
 	enum pound_stage stage = simulation_start(sim, &work->tasks[j], &work->results[j]);
 	family_gather(&work->families, work->tasks, work->results, j, sim);
 	common_join(&work->common, sim);
-	work->going++;
 	send(work, sim, stage);
 }
 
@@ -607,12 +603,13 @@ static void task_start(struct work *work, int j)
  * one piece, which need less when they are among themselves. */
 static void tasks_start(struct work *work)
 {
-	for (; work->waiting.n > 0 && work->going < GOING; work->going++) {
-		struct simulation *sim = pop(&work->waiting);
+	while (work->parted > 0 && work->idle.n > 0) {
+		struct simulation *sim = pop(&work->idle);
+		family_resume(sim, &work->waiting[--work->parted]);
 		push(&work->queues[sim->stage], sim);
 	}
-	while (work->passed < 2 && work->going < GOING) {
-		for (; work->started < work->n && work->going < GOING; work->started++)
+	while (work->passed < 2 && work->idle.n > 0) {
+		for (; work->started < work->n && work->idle.n > 0; work->started++)
 			if (family_leads(&work->families, work->started) &&
 			    family_edged(&work->families, work->tasks, work->started) == work->passed)
 				task_start(work, work->started);

@@ -47,7 +47,7 @@ struct pound_march_result {
 	    first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
 };
 
-enum { POUND_MARCH_SCRATCH = 1 << 24 }; /* bytes of work space, 64-byte aligned */
+enum { POUND_MARCH_SCRATCH = 1 << 22 }; /* bytes of work space, 64-byte aligned */
 
 bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
                        int n, void *scratch);

@@ -458,19 +458,28 @@ LANE_SHARED void press_enter(struct simulation *sim)
 	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 }
 
-/* Gives a simulation the maps of pressed contact that another has on the same pieces.
- *
- * Given    stage  that both are in
- */
-static void press_copy(struct simulation *to, const struct simulation *from, enum pound_stage stage)
+/* Gives a copy of a simulation what maps of pressed contact that has on the same pieces, but for its ladder. */
+static void press_copy(struct simulation *to, const struct simulation *from)
 {
+	if (!from->press_now)
+		return;
 	struct pound_press *press = to->press_now = &to->press[from->press_now - from->press];
 	press->cell = from->press_now->cell;
 	press->made = true;
-	press->laddered = stage == STAGE_REST;
-	if (stage == STAGE_REST)
-		ladder_fill(press->ladder, &press->cell, to);
-	to->pressed = stage == STAGE_REST ? &press->ladder->rung[to->rung] : &press->cell;
+	press->laddered = false;
+}
+
+/* Finds the map again that a copy goes on with. */
+static void press_resume(struct simulation *sim, enum pound_stage stage)
+{
+	struct pound_press *press = sim->press_now;
+	if (stage == STAGE_PRESS)
+		sim->pressed = &press->cell;
+	if (stage != STAGE_REST)
+		return;
+	ladder_fill(press->ladder, &press->cell, sim);
+	press->laddered = true;
+	sim->pressed = &press->ladder->rung[sim->rung];
 }
 
 /* Gets everything ready for whole cells of pressed contact: the longest map over which nothing is known to happen.
