@@ -346,8 +346,8 @@ static void press_rungs(struct simulation *sim)
 	}
 }
 
-/* A linear form, in pairs: its terms need not wait for each other. */
-static double form(const double row[N], const double x[N])
+/* A row of a map applied to its inputs, in pairs: the terms need not wait for each other. */
+static double row_at(const double row[N], const double x[N])
 {
 	double slow = row[6] * x[6] + row[7] * x[7], force = row[4] * x[4] + row[5] * x[5];
 	return (row[0] * x[0] + row[1] * x[1] + slow) + (row[2] * x[2] + row[3] * x[3] + force);
@@ -370,12 +370,12 @@ static bool rests(const struct pound_press_map *map, const double x[N], double b
                   double hurry, double off, double h)
 {
 	const double *split = map->row[PRESS_SPLIT];
-	double change = form(map->pull, x), pull1 = pull + change, drift = change / (split[SPLIT_OMEGA] * h);
+	double change = row_at(map->pull, x), pull1 = pull + change, drift = change / (split[SPLIT_OMEGA] * h);
 	bound[2] = fabs(pull) + fabs(pull1);
-	bound[3] = fabs(form(map->row[PRESS_V], x) - split[SPLIT_BASE] * form(map->row[PRESS_Q], x));
+	bound[3] = fabs(row_at(map->row[PRESS_V], x) - split[SPLIT_BASE] * row_at(map->row[PRESS_Q], x));
 	bound[6] = fabs(x[6]);
 	bound[7] = fabs(x[7]);
-	double bend = form(map->row[REST_BEND], bound);
+	double bend = row_at(map->row[REST_BEND], bound);
 	double swing = length_above(hurry - drift, off + split[SPLIT_DRAG] * drift) + 0.5 * bend;
 	double lag = fmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * fabs(drift);
 	return split[SPLIT_LEAD] * swing + lag + 0.125 * bend < (change < 0 ? pull1 : pull);
@@ -523,8 +523,8 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells, h = r->cell * cells;
 	const int b = sim->base, o = 1 - b;
 	const double mass[2] = {1, r->right_mass};
-	double pressed = form(map->row[PRESS_IMPULSE], x) - r->contact_damping * (end[2] - x[2]);
-	double mean = form(work->mean, x), mean_p = pressed / (r->contact_stiffness * h);
+	double pressed = row_at(map->row[PRESS_IMPULSE], x) - r->contact_damping * (end[2] - x[2]);
+	double mean = row_at(work->mean, x), mean_p = pressed / (r->contact_stiffness * h);
 	const double *split = map->row[PRESS_SPLIT];
 	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
@@ -537,7 +537,7 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 	means[o] = mean - r->side * (r->gap + mean_p);
 	double in = 0, moving = 0, out = 0.5 * r->contact_stiffness * (end[2] + x[2]) * (end[2] - x[2]);
 	for (int i = 0; i < N; i++)
-		out += off[i] * form(work->loss[i], off);
+		out += off[i] * row_at(work->loss[i], off);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		double way = u1[i] - u0[i], spring = r->body[i].stiffness * 0.5 * (u0[i] + u1[i]) + r->body[i].offset;
 		in -= mass[i] * r->body[i].drive * (ground * way + grown * (u1[i] - means[i]));

@@ -64,10 +64,6 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
-static const double SHARE[TERMS + 1] = {1.0 / 1,  1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
-                                        1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12,
-                                        1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18,
-                                        1.0 / 19, 1.0 / 20, 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24};
 static const double MINUS_SHARE[TERMS + 1] = {
     -1.0 / 1,  -1.0 / 2,  -1.0 / 3,  -1.0 / 4,  -1.0 / 5,  -1.0 / 6,  -1.0 / 7,  -1.0 / 8,
     -1.0 / 9,  -1.0 / 10, -1.0 / 11, -1.0 / 12, -1.0 / 13, -1.0 / 14, -1.0 / 15, -1.0 / 16,
@@ -112,7 +108,7 @@ LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y,
 		s->y1 = s->y1 + y;
 		if (n == s->terms)
 			break;
-		vd share = vsplat(SHARE[n]), minus = vsplat(MINUS_SHARE[n]), force = x2 * z;
+		vd share = vsplat(POUND_SHARE[n]), minus = vsplat(MINUS_SHARE[n]), force = x2 * z;
 		if (n <= order)
 			force = vfma(factor, vsplat(drive[n]), force);
 		z = y * share;

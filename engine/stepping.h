@@ -24,6 +24,12 @@ static const double POUND_GAUSS_WEIGHT[POUND_GAUSS / 2] = {0.249147045813402785,
                                                            0.203167426723065922, 0.160078328543346226,
                                                            0.106939325995318431, 0.047175336386511827};
 
+/* 1/(n + 1): what leads from a coefficient of a series to the next of its integral. */
+static const double POUND_SHARE[] = {1.0 / 1,  1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
+                                     1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12,
+                                     1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18,
+                                     1.0 / 19, 1.0 / 20, 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24};
+
 /* 1/n!: what makes coefficients of derivatives. */
 static const double POUND_FACTOR[] = {1 / 1.0,
                                       1 / 1.0,

@@ -45,10 +45,6 @@ struct search {
 	int event;
 };
 
-static const double SHARE[N + 1] = {1,        1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7,
-                                    1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14,
-                                    1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19};
-
 /* The even and the odd terms apart: half the latency of Horner's rule. */
 static double power_at(const double *c, int order, double t)
 {
@@ -107,14 +103,14 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 	s->p[0] = t->p;
 	s->q[0] = t->q * dt;
 	for (int n = 0; n <= order && !task->contact; n++) { // the left body is alone
-		s->u[0][n + 1] = s->w[0][n] * SHARE[n];
+		s->u[0][n + 1] = s->w[0][n] * POUND_SHARE[n];
 		s->w[0][n + 1] = (-(c[0] * s->w[0][n] + k[0] * s->u[0][n]) - (n == 0   ? f0[0]
 		                                                              : n == 1 ? f1[0]
 		                                                                       : 0)) *
-		                 SHARE[n];
+		                 POUND_SHARE[n];
 	}
 	for (int n = 0; n <= order && task->contact; n++) {
-		double share = SHARE[n], b[2];
+		double share = POUND_SHARE[n], b[2];
 		double push = spring * s->p[n] + dash * s->q[n];
 		for (int i = 0; i < 2; i++) {
 			b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n == 0 ? f0[i] : n == 1 ? f1[i] : 0);
@@ -200,8 +196,8 @@ static bool series_settle(struct series *s, const struct pound_trace *t, double 
 				b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n < 2 ? f[i][n] : 0);
 			}
 			apart[n] = b[0] - b[1];
-			w = rate * SHARE[n];
-			rate = (task->mass_ratio * b[0] + b[1]) / both * SHARE[n];
+			w = rate * POUND_SHARE[n];
+			rate = (task->mass_ratio * b[0] + b[1]) / both * POUND_SHARE[n];
 		}
 		for (int n = order; n >= 0; n--) {
 			s->q[n] = (n + 1) * s->p[n + 1];
@@ -387,7 +383,7 @@ static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch
 	piece->order = order > piece->order ? order : piece->order;
 	double area = 0;
 	for (int n = order; n >= 0; n--)
-		area += piece->push.c[n] * SHARE[n];
+		area += piece->push.c[n] * POUND_SHARE[n];
 	t->impulse -= area * piece->step;
 	t->contact_time += piece->step;
 }
