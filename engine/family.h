@@ -1,12 +1,14 @@
 /* family.h - tasks that differ in nothing but their laws, run as one simulation as long as no edge of a piece decides.
  *
  * Included by march.c alone, once per lane count.  All laws start on the same elastic piece.  A family goes along it between
- * the edges nearest to it.  Where one of them decides what it does next, or may, that is taken back: the member with that edge
- * leaves, to go on from there by itself, and the others try again.  So every member does what it would have done alone, to the
- * last bit. */
+ * the edges nearest to it.  Where one of them decides what it does next, or may, that is taken back: a member leaves, to go on
+ * from there by itself, and the others try again.  Every proof and search that finds nothing of an edge finds nothing of one
+ * farther away.  So every member does what it would have done alone, to the last bit; who leaves first, and when, is of no
+ * consequence for that. */
 #ifndef FAMILY_H
 #define FAMILY_H
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -20,32 +22,46 @@ enum {
 
 /* the families of a call's tasks */
 struct families {
-	int slot[FAMILY_SLOTS];     /* number of a first member and 1; 0: empty */
+	int slot
+	    [FAMILY_SLOTS]; /* number of a first member and 1; 0: empty.  Of a full family: that of the next of its kind */
 	int next[FAMILY_TASKS];     /* number of the next member; 0: there is none */
 	bool edged[FAMILY_TASKS];   /* of a first member: a law of the family has more than one piece */
 	bool follows[FAMILY_TASKS]; /* is not the first of its family */
 };
 
+/* A zero and its negative make different bits. */
+static bool same(double a, double b)
+{
+	return memcmp(&a, &b, sizeof a) == 0;
+}
+
 static bool bodies_kin(const struct pound_march_body *a, const struct pound_march_body *b)
 {
-	return a->skeleton.stiffness == b->skeleton.stiffness && a->damping == b->damping &&
-	       a->drive == b->drive && a->u == b->u && a->v == b->v && a->followed == b->followed;
+	return same(a->skeleton.stiffness, b->skeleton.stiffness) && same(a->damping, b->damping) &&
+	       same(a->drive, b->drive) && same(a->u, b->u) && same(a->v, b->v) && a->followed == b->followed;
 }
 
 /* Whether tasks differ in nothing but their laws. */
 static bool tasks_kin(const struct pound_march_task *a, const struct pound_march_task *b)
 {
-	return a->ground == b->ground && a->n_samples == b->n_samples && a->time_step == b->time_step &&
-	       a->contact == b->contact && a->gap == b->gap && a->contact_stiffness == b->contact_stiffness &&
-	       a->contact_damping == b->contact_damping && a->mass_ratio == b->mass_ratio &&
-	       a->tension == b->tension && !a->accounted && !b->accounted &&
+	return a->ground == b->ground && a->n_samples == b->n_samples && same(a->time_step, b->time_step) &&
+	       a->contact == b->contact && same(a->gap, b->gap) &&
+	       same(a->contact_stiffness, b->contact_stiffness) && same(a->contact_damping, b->contact_damping) &&
+	       same(a->mass_ratio, b->mass_ratio) && a->tension == b->tension && !a->accounted && !b->accounted &&
 	       bodies_kin(&a->bodies[0], &b->bodies[0]) && bodies_kin(&a->bodies[1], &b->bodies[1]);
 }
 
 static unsigned task_hash(const struct pound_march_task *task, unsigned slots)
 {
-	const double numbers[] = {task->bodies[0].skeleton.stiffness, task->bodies[1].skeleton.stiffness,
-	                          task->mass_ratio, task->contact_damping};
+	const struct pound_march_body *body = task->bodies;
+	const double numbers[] = {body[0].skeleton.stiffness,
+	                          body[0].damping,
+	                          body[1].skeleton.stiffness,
+	                          body[1].damping,
+	                          task->gap,
+	                          task->mass_ratio,
+	                          task->contact_stiffness,
+	                          task->contact_damping};
 	uint64_t hash = (uintptr_t)task->ground;
 	for (size_t j = 0; j < sizeof numbers / sizeof numbers[0]; j++) {
 		uint64_t bits;
@@ -56,22 +72,17 @@ static unsigned task_hash(const struct pound_march_task *task, unsigned slots)
 	return (unsigned)hash & (slots - 1);
 }
 
-/* Adds a task to the family whose first member another is.
- *
- * Returns  value  false: it is full, or neither ever leaves its piece
- */
-static bool family_add(struct families *f, const struct pound_march_task *tasks, int first, int j)
+/* Adds a task to the family whose first member another is, if there is room and one of them may leave its piece. */
+static void family_add(struct families *f, int first, int j)
 {
-	bool edged = simulation_edged(&tasks[j]);
 	int last = first, members = 1;
 	for (; f->next[last] > 0; last = f->next[last])
 		members++;
-	if (members > POUND_TWINS || !(edged || f->edged[first]))
-		return false;
+	if (members > POUND_OTHERS || !(f->edged[j] || f->edged[first]))
+		return;
 	f->next[last] = j;
 	f->follows[j] = true;
-	f->edged[first] |= edged;
-	return true;
+	f->edged[first] |= f->edged[j];
 }
 
 /* Finds the families of n tasks. */
@@ -87,9 +98,10 @@ static void families_find(struct families *f, const struct pound_march_task *tas
 		f->edged[j] = simulation_edged(&tasks[j]);
 		f->follows[j] = false;
 		unsigned at = task_hash(&tasks[j], slots);
-		for (; f->slot[at] > 0; at = (at + 1) & (slots - 1))
-			if (tasks_kin(&tasks[f->slot[at] - 1], &tasks[j]) && family_add(f, tasks, f->slot[at] - 1, j))
-				break;
+		while (f->slot[at] > 0 && !tasks_kin(&tasks[f->slot[at] - 1], &tasks[j]))
+			at = (at + 1) & (slots - 1);
+		if (f->slot[at] > 0)
+			family_add(f, f->slot[at] - 1, j);
 		if (!f->follows[j])
 			f->slot[at] = j + 1;
 	}
@@ -120,8 +132,8 @@ static void family_edges(struct simulation *sim)
 {
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		double low = sim->at[i].piece.low, high = sim->at[i].piece.high;
-		for (int k = 0; k < sim->n_twins; k++) {
-			struct pound_piece piece = first_piece(sim->twins[k].task, i);
+		for (int k = 0; k < sim->n_others; k++) {
+			struct pound_piece piece = first_piece(sim->others[k].task, i);
 			low = fmax(low, piece.low);
 			high = fmin(high, piece.high);
 		}
@@ -129,7 +141,7 @@ static void family_edges(struct simulation *sim)
 		sim->x.body[i].high = high;
 	}
 	sim->traits &= ~(unsigned)(TRAIT_FAMILY | TRAIT_EDGED);
-	if (sim->n_twins > 0)
+	if (sim->n_others > 0)
 		sim->traits |= TRAIT_FAMILY | TRAIT_EDGED;
 	if (simulation_edged(sim->task))
 		sim->traits |= TRAIT_EDGED;
@@ -142,11 +154,11 @@ static void family_gather(const struct families *f, const struct pound_march_tas
 	if (first >= FAMILY_TASKS || f->next[first] == 0)
 		return;
 	for (int j = f->next[first]; j > 0; j = f->next[j])
-		sim->twins[sim->n_twins++] = (struct pound_twin){&tasks[j], &results[j]};
+		sim->others[sim->n_others++] = (struct pound_member){&tasks[j], &results[j]};
 	family_edges(sim);
 }
 
-/* How far bodies have come on the first pieces of a task's laws. */
+/* How near bodies are to the ends of the first pieces of a task's laws: roughly, in which order members will leave. */
 static double family_share(const struct simulation *sim, const struct pound_march_task *task)
 {
 	double share = 0;
@@ -163,25 +175,26 @@ static void simulation_copy(struct simulation *to, const struct simulation *from
 	press_copy(to, from);
 }
 
-/* The member that is nearest to an edge leaves the family.
+/* The member that seems nearest to an edge leaves the family.
  *
  * Given    stage  in which it does
  * Returns  own    its simulation, which waits
  */
 static void family_part(struct simulation *sim, struct simulation *own, enum pound_stage stage)
 {
-	struct pound_twin *nearest = &sim->twins[0];
-	for (int k = 1; k < sim->n_twins; k++)
-		if (family_share(sim, sim->twins[k].task) > family_share(sim, nearest->task))
-			nearest = &sim->twins[k];
-	struct pound_twin leaver = *nearest, self = {sim->task, sim->result};
-	*nearest = sim->twins[--sim->n_twins];
+	assert(sim->n_others > 0 && sim->looked == POUND_OSCILLATORS);
+	struct pound_member *nearest = &sim->others[0];
+	for (int k = 1; k < sim->n_others; k++)
+		if (family_share(sim, sim->others[k].task) > family_share(sim, nearest->task))
+			nearest = &sim->others[k];
+	struct pound_member leaver = *nearest, self = {sim->task, sim->result};
+	*nearest = sim->others[--sim->n_others];
 	*leaver.result = *sim->result;
 	simulation_copy(own, sim);
-	own->n_twins = 0;
+	own->n_others = 0;
 	own->stage = stage;
 	if (family_share(sim, leaver.task) < family_share(sim, self.task)) {
-		// it is the one that the others went with: they have another to go with from here on
+		// it is the one that the others go with: these go with another from here on
 		sim->task = leaver.task;
 		sim->result = leaver.result;
 		leaver = self;
@@ -206,8 +219,8 @@ static void family_resume(struct simulation *sim, const struct simulation *own)
 /* The end of a simulation is that of those who are still with it. */
 static void family_end(const struct simulation *sim)
 {
-	for (int k = 0; k < sim->n_twins; k++)
-		*sim->twins[k].result = *sim->result;
+	for (int k = 0; k < sim->n_others; k++)
+		*sim->others[k].result = *sim->result;
 }
 
 #endif

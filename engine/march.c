@@ -54,7 +54,7 @@ struct work {
 	struct families families;
 	struct simulation filler; /* of the lanes that a batch leaves empty */
 	struct simulation pool[POOL];
-	struct simulation waiting[POOL * POUND_TWINS]; /* for room, out of a family: no task starts meanwhile */
+	struct simulation waiting[POOL * POUND_OTHERS]; /* for room, out of a family: no task starts meanwhile */
 	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
 };
 
@@ -84,7 +84,7 @@ LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_st
 /* A member leaves a family, and both try the step again. */
 LANE_SHARED void part(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
-	assert(work->parted < POOL * POUND_TWINS);
+	assert(work->parted < POOL * POUND_OTHERS);
 	family_part(sim, &work->waiting[work->parted++], stage);
 	push(&work->queues[stage], sim);
 }
@@ -536,8 +536,8 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 	if (paired)
 		lanes_fill(&g, b, ROW_RIGHT);
 	event_leap(&g, &e, vmask(batch_lanes(b)));
+	// nothing is to be taken back: they have not moved
 	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
-	batch_forget(b, parting, &work->filler);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	for (int l = 0; l < b->n; l++) {

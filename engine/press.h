@@ -458,13 +458,15 @@ LANE_SHARED void press_enter(struct simulation *sim)
 	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 }
 
-/* Gives a copy of a simulation what maps of pressed contact that has on the same pieces, but for its ladder. */
+/* Gives a copy of a simulation what maps of pressed contact that has, but for the ladder: it is still on its first pieces,
+ * so there is one pair of pieces at most that it has maps of. */
 static void press_copy(struct simulation *to, const struct simulation *from)
 {
 	if (!from->press_now)
 		return;
-	struct pound_press *press = to->press_now = &to->press[from->press_now - from->press];
-	press->cell = from->press_now->cell;
+	assert(from->press_now == &from->press[0]);
+	struct pound_press *press = to->press_now = &to->press[0];
+	press->cell = from->press[0].cell;
 	press->made = true;
 	press->laddered = false;
 }

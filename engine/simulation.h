@@ -13,7 +13,7 @@
 enum {
 	POUND_MAPS = 4,         /* free-flight maps a body keeps */
 	POUND_PEAKS = 4,        /* samples that may hold its largest displacement */
-	POUND_TWINS = 3,        /* other tasks that go along with a simulation: family.h */
+	POUND_OTHERS = 3,       /* other tasks that go along with a simulation: family.h */
 	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.8^18/18! = 3e-18 */
 	POUND_MAP_LONGER = 26,  /* of a long sample's; 2^26/26! = 2e-19 */
 	POUND_PRESS_MAPS = 3,   /* pairs of pieces whose cell map and ladder a simulation keeps */
@@ -180,7 +180,7 @@ enum {
 static const double NOTHING = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
 
 /* a task that a simulation is the run of as well */
-struct pound_twin {
+struct pound_member {
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
 };
@@ -210,8 +210,8 @@ struct simulation {
 	// and what is read seldom
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
-	struct pound_twin twins[POUND_TWINS];
-	int n_twins;
+	struct pound_member others[POUND_OTHERS];
+	int n_others;
 	enum pound_stage stage; /* what it does next, while it waits for room */
 	double rung_cells[POUND_PRESS_RUNGS];
 	struct pound_branch at[2];
