@@ -22,8 +22,8 @@ enum {
 
 /* the families of a call's tasks */
 struct families {
-	int slot
-	    [FAMILY_SLOTS]; /* number of a first member and 1; 0: empty.  Of a full family: that of the next of its kind */
+	// number of a first member and 1, 0: empty; where that family is full, of the next one like it
+	int slot[FAMILY_SLOTS];
 	int next[FAMILY_TASKS];     /* number of the next member; 0: there is none */
 	bool edged[FAMILY_TASKS];   /* of a first member: a law of the family has more than one piece */
 	bool follows[FAMILY_TASKS]; /* is not the first of its family */
@@ -158,12 +158,12 @@ static void family_gather(const struct families *f, const struct pound_march_tas
 	family_edges(sim);
 }
 
-/* How near bodies are to the ends of the first pieces of a task's laws: roughly, in which order members will leave. */
+/* How near bodies are to the ends of the first pieces of a task's laws: roughly, in which order members will leave.  From
+ * rest it is the narrower piece that is nearer to its end. */
 static double family_share(const struct simulation *sim, const struct pound_march_task *task)
 {
 	double share = 0;
-	for (int i = 0; i < POUND_OSCILLATORS;
-	     i++) // from rest it is the narrower piece that is nearer to its end
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		share = most(share, (fabs(sim->x.u[i]) + DBL_MIN) / first_piece(task, i).high);
 	return share;
 }
