@@ -13,6 +13,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/hash.h"
 #include "engine/turn.h"
 
 enum {
@@ -51,7 +52,8 @@ static bool tasks_kin(const struct pound_march_task *a, const struct pound_march
 	       bodies_kin(&a->bodies[0], &b->bodies[0]) && bodies_kin(&a->bodies[1], &b->bodies[1]);
 }
 
-static unsigned task_hash(const struct pound_march_task *task, unsigned slots)
+/* The slot in which the search for those that are kin to a task begins. */
+static int task_slot(const struct pound_march_task *task, int slots)
 {
 	const struct pound_march_body *body = task->bodies;
 	const double numbers[] = {body[0].skeleton.stiffness,
@@ -62,14 +64,7 @@ static unsigned task_hash(const struct pound_march_task *task, unsigned slots)
 	                          task->mass_ratio,
 	                          task->contact_stiffness,
 	                          task->contact_damping};
-	uint64_t hash = (uintptr_t)task->ground;
-	for (size_t j = 0; j < sizeof numbers / sizeof numbers[0]; j++) {
-		uint64_t bits;
-		memcpy(&bits, &numbers[j], sizeof bits);
-		hash = (hash ^ bits) * 0x9E3779B97F4A7C15u; // 2^64 over the golden ratio
-		hash ^= hash >> 32;
-	}
-	return (unsigned)hash & (slots - 1);
+	return pound_hash_slot((uintptr_t)task->ground, numbers, sizeof numbers / sizeof numbers[0], slots);
 }
 
 /* Adds a task to the family whose first member another is, if there is room and one of them may leave its piece. */
@@ -89,15 +84,13 @@ static void family_add(struct families *f, int first, int j)
 static void families_find(struct families *f, const struct pound_march_task *tasks, int n)
 {
 	const int looked = n < FAMILY_TASKS ? n : FAMILY_TASKS;
-	unsigned slots = 16;
-	while (slots < 2 * (unsigned)looked)
-		slots *= 2;
-	memset(f->slot, 0, sizeof f->slot[0] * slots);
+	const int slots = pound_hash_slots(looked);
+	memset(f->slot, 0, sizeof f->slot[0] * (size_t)slots);
 	for (int j = 0; j < looked; j++) {
 		f->next[j] = 0;
 		f->edged[j] = simulation_edged(&tasks[j]);
 		f->follows[j] = false;
-		unsigned at = task_hash(&tasks[j], slots);
+		int at = task_slot(&tasks[j], slots);
 		while (f->slot[at] > 0 && !tasks_kin(&tasks[f->slot[at] - 1], &tasks[j]))
 			at = (at + 1) & (slots - 1);
 		if (f->slot[at] > 0)

@@ -147,9 +147,9 @@ LANE_INLINE struct flight flight_way(const struct flyer *f, struct place from, s
 	                       .error = vfma(f->error_u, vabs(from.u), vfma(f->error_v, vabs(from.v), error))};
 }
 
-/* what a body must not do inside a sample or cell */
-struct limits {
-	vd top, low, high, direction;
+/* the ends of a body's piece: displacements, and the way in which it must go (0: either) */
+struct edges {
+	vd low, high, direction;
 };
 
 /* How far a body may go inside a sample or cell, apart from its ends. */
@@ -185,7 +185,7 @@ LANE_INLINE vd flight_along(vd v, const struct flight *f, vd third, vd way)
  *
  * Given    v  velocity at the start;  f: the flight from there
  */
-LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct limits *x)
+LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct edges *x)
 {
 	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2), zero = vsplat(0);
 	vm risk = vless(x->high, vmax(high, f->u) + f->error);
@@ -196,11 +196,9 @@ LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct
 	return risk | (vless(flight_along(v, f, third, x->direction), zero) & turns);
 }
 
-LANE_INLINE struct limits limits_of(const struct lanes *g, int i, bool edged)
+LANE_INLINE struct edges edges_of(const struct lanes *g, int i)
 {
-	if (!edged)
-		return (struct limits){.top = g->top[i]};
-	return (struct limits){g->top[i], g->body[i].low, g->body[i].high, g->body[i].direction};
+	return (struct edges){g->body[i].low, g->body[i].high, g->body[i].direction};
 }
 
 /* samples that lanes fly over, one after the other */
@@ -232,9 +230,9 @@ LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const s
 	vm edge = vmask(0);
 	for (int i = 0; i < bodies; i++) {
 		f[i] = flight_way(&flyers[i], s->at[i][r], s->at[i][r + 1], pull, third);
-		struct limits limits = limits_of(g, i, edged);
+		const struct edges edges = edges_of(g, i);
 		if (edged)
-			edge |= flight_edges(s->at[i][r].v, &f[i], third, &limits);
+			edge |= flight_edges(s->at[i][r].v, &f[i], third, &edges);
 	}
 	if (edged)
 		s->edge[r] = vbits(edge);
@@ -308,7 +306,7 @@ struct form {
 /* the base body and the overlap in lanes, and the map of either */
 struct press {
 	struct pressed at;
-	struct limits base, other; /* but for their tops */
+	struct edges base, other; /* where a lane has a law of more than one piece */
 	struct form moved[PRESS_IMPULSE + 1];
 	struct form error;                      /* of a cell, of the magnitudes */
 	vm alike;                               /* lanes of TRAIT_ALIKE */
@@ -415,8 +413,7 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 {
 	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
 	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
-	struct limits base = s->base, other = s->other;
-	base.top = s->at.top[0], other.top = s->at.top[1];
+	const vd *top = s->at.top;
 	for (int j = 0; j < 4; j++) {
 		bound[j] = vabs(x[j]);
 		end[j] = x[j] + form_at(&s->moved[PRESS_U + j], x, ground, rise);
@@ -450,16 +447,16 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	*edge = vmask(0);
 	if (edged)
-		*edge = flight_edges(x[1], &b, third, &base) | flight_edges(v, &o, third, &other);
+		*edge = flight_edges(x[1], &b, third, &s->base) | flight_edges(v, &o, third, &s->other);
 	if (edged || right) {
-		risk |= flight_peaks(&b, base.top) | flight_peaks(&o, other.top);
+		risk |= flight_peaks(&b, top[0]) | flight_peaks(&o, top[1]);
 	} else {
 		vm left = vless(zero, side);
 		struct flight l = {.u = vselect(left, b.u, o.u),
 		                   .b1 = vselect(left, b.b1, o.b1),
 		                   .b2 = vselect(left, b.b2, o.b2),
 		                   .error = vselect(left, b.error, o.error)};
-		risk |= flight_peaks(&l, vselect(left, base.top, other.top));
+		risk |= flight_peaks(&l, vselect(left, top[0], top[1]));
 	}
 	press_move(g, s, end, vsplat(1), rise);
 	return risk | *edge;
@@ -481,7 +478,7 @@ LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
  *
  * Given    way  sign of its velocity at the start
  */
-LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd way, vm steady, const struct limits *x)
+LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd way, vm steady, const struct edges *x)
 {
 	vm inside = vless(x->high, high) | vless(low, x->low) | ~vequal(x->direction, vsplat(0));
 	return (inside & ~steady) | vless(x->high, end) | vless(end, x->low) |
@@ -539,7 +536,7 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge
 	vd way0 = third * rate, way1 = third * rate1;
 	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - (way0 + way1);
 	vd creep = yield * change * vsplat(1.0 / 3), hurry = third * swing * per_omega, off = g->side * g->gap;
-	const struct limits *limits[2] = {&s->base, &s->other};
+	const struct edges *const edges[2] = {&s->base, &s->other};
 	*edge = vmask(0);
 	for (int i = 0; i < 2; i++) {
 		vd share = i ? split[SPLIT_BASE] - g->side : split[SPLIT_BASE], size = vabs(share);
@@ -553,27 +550,29 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge
 		vd least = low + mid - size * ripple, most = high + mid + size * ripple;
 		risk |= rest_peaks(u, u1, least, most, steady, s->at.top[i]);
 		if (edged)
-			*edge |= rest_edges(u1, least, most, way, steady, limits[i]);
+			*edge |= rest_edges(u1, least, most, way, steady, edges[i]);
 	}
 	press_move(g, s, end, cells, rise);
 	return risk | *edge;
 }
 
-LANE_INLINE struct limits limits_select(vm mask, struct limits a, struct limits b)
+LANE_INLINE struct edges edges_select(vm mask, struct edges a, struct edges b)
 {
-	return (struct limits){vselect(mask, a.top, b.top), vselect(mask, a.low, b.low),
-	                       vselect(mask, a.high, b.high), vselect(mask, a.direction, b.direction)};
+	return (struct edges){vselect(mask, a.low, b.low), vselect(mask, a.high, b.high),
+	                      vselect(mask, a.direction, b.direction)};
 }
 
 /* Pressed contact as the lanes come to it, and back. */
 LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd rise, vd left_samples, bool edged)
 {
 	vm left = vless(vsplat(0), g->side);
-	s->base = limits_select(left, limits_of(g, 0, edged), limits_of(g, 1, edged));
-	s->other = limits_select(left, limits_of(g, 1, edged), limits_of(g, 0, edged));
+	if (edged) {
+		s->base = edges_select(left, edges_of(g, 0), edges_of(g, 1));
+		s->other = edges_select(left, edges_of(g, 1), edges_of(g, 0));
+	}
 	s->at =
 	    (struct pressed){.x = {vselect(left, g->u[0], g->u[1]), vselect(left, g->v[0], g->v[1]), g->p, g->q},
-	                     .top = {s->base.top, s->other.top},
+	                     .top = {vselect(left, g->top[0], g->top[1]), vselect(left, g->top[1], g->top[0])},
 	                     .impulse = g->impulse,
 	                     .ground = g->ground,
 	                     .rise = rise,

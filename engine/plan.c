@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "engine/excitation.h"
+#include "engine/hash.h"
 #include "engine/outputs.h"
 #include "engine/random.h"
 #include "engine/scene.h"
@@ -71,14 +72,6 @@ struct pound_plan {
 
 /* ---- work space ---- */
 
-static int slots_of(int n)
-{
-	int slots = 16;
-	while (slots < 2 * n)
-		slots *= 2;
-	return slots;
-}
-
 /* Carves a plan out of memory, or with memory NULL only counts the bytes. */
 static size_t plan_carve(char *memory, struct pound_plan *plan, struct pound_plan_size size)
 {
@@ -88,8 +81,8 @@ static size_t plan_carve(char *memory, struct pound_plan *plan, struct pound_pla
 	} parts[] = {
 	    {&plan->motion_keys.keys, sizeof(double) * KEY * (size_t)size.motions},
 	    {&plan->march_keys.keys, sizeof(double) * KEY * (size_t)size.tasks},
-	    {&plan->motion_keys.slots, sizeof(int) * (size_t)slots_of(size.motions)},
-	    {&plan->march_keys.slots, sizeof(int) * (size_t)slots_of(size.tasks)},
+	    {&plan->motion_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.motions)},
+	    {&plan->march_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.tasks)},
 	    {&plan->motions, sizeof *plan->motions * (size_t)size.motions},
 	    {&plan->ground, sizeof(double) * (size_t)size.samples},
 	    {&plan->asks, sizeof *plan->asks * (size_t)size.asks},
@@ -119,8 +112,8 @@ struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size)
 	memset(plan, 0, sizeof *plan);
 	plan_carve(memory, plan, size);
 	plan->size = size;
-	plan->motion_keys.n_slots = slots_of(size.motions);
-	plan->march_keys.n_slots = slots_of(size.tasks);
+	plan->motion_keys.n_slots = pound_hash_slots(size.motions);
+	plan->march_keys.n_slots = pound_hash_slots(size.tasks);
 	return plan;
 }
 
@@ -153,14 +146,7 @@ static void register_clear(struct register_ *r)
 /* Number of a key; a new one gets the next number. */
 static int register_key(struct register_ *r, const double key[static KEY])
 {
-	uint64_t hash = 0;
-	for (int j = 0; j < KEY; j++) {
-		uint64_t bits;
-		memcpy(&bits, &key[j], sizeof bits);
-		hash = (hash ^ bits) * 0x9E3779B97F4A7C15u; // 2^64 over the golden ratio
-		hash ^= hash >> 32;
-	}
-	int slot = (int)(hash & (uint64_t)(r->n_slots - 1));
+	int slot = pound_hash_slot(0, key, KEY, r->n_slots);
 	for (; r->slots[slot] >= 0; slot = (slot + 1) & (r->n_slots - 1))
 		if (memcmp(&r->keys[KEY * r->slots[slot]], key, sizeof(double) * KEY) == 0)
 			return r->slots[slot];

@@ -10,6 +10,7 @@
 #ifndef PRESS_H
 #define PRESS_H
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -1,0 +1,33 @@
+/* hash.h - hash tables of keys that are numbers: as many slots as a power of two, one looked into after the other. */
+#ifndef HASH_H
+#define HASH_H
+
+#include <stdint.h>
+#include <string.h>
+
+/* Slots of a table of n keys: at least twice as many. */
+static inline int pound_hash_slots(int n)
+{
+	int slots = 16;
+	while (slots < 2 * n)
+		slots *= 2;
+	return slots;
+}
+
+/* The slot in which the search for a key begins.
+ *
+ * Given    key    (n)  compared by its bits;  hash: of what else belongs to it, 0: nothing
+ *          slots  of the table
+ */
+static inline int pound_hash_slot(uint64_t hash, const double *key, int n, int slots)
+{
+	for (int j = 0; j < n; j++) {
+		uint64_t bits;
+		memcpy(&bits, &key[j], sizeof bits);
+		hash = (hash ^ bits) * 0x9E3779B97F4A7C15u; // 2^64 over the golden ratio
+		hash ^= hash >> 32;
+	}
+	return (int)(hash & (uint64_t)(slots - 1));
+}
+
+#endif
