@@ -54,6 +54,7 @@ static void look(struct connections *all, struct connection *connection, double 
 		    connection->changes == store_changes(all->store, connection->id))
 			return;
 		// before it goes on, for it may wait again at once
+		all->n_waiting--;
 		all->resume(atomic_exchange(&connection->handle, NULL));
 	} else if (now > connection->deadline) {
 		all->n_late++;
@@ -139,8 +140,10 @@ void connection_closed(struct connections *all, struct connection *connection)
 }
 
 /* Has a suspended request resumed by its handle, when a study changes or its time is over. */
-void connection_wait(struct connection *connection, void *handle, int64_t id, unsigned changes, double until)
+void connection_wait(struct connections *all, struct connection *connection, void *handle, int64_t id,
+                     unsigned changes, double until)
 {
+	all->n_waiting++;
 	connection->id = id;
 	connection->changes = changes;
 	connection->until = until;

@@ -32,6 +32,7 @@ struct connections {
 	void (*resume)(void *handle);
 	int most;             /* are served */
 	atomic_int n, n_late; /* open; shut down for being late, ever */
+	atomic_int n_waiting; /* suspended requests */
 	atomic_bool released; /* nobody waits any more */
 	atomic_bool stopping;
 	pthread_t thread;
@@ -46,7 +47,8 @@ void connections_stop(struct connections *all);  /* after all of them were close
 
 struct connection *connection_opened(struct connections *all, int fd, double seconds); /* NULL: no memory */
 void connection_closed(struct connections *all, struct connection *connection); /* just before its fd is */
-void connection_wait(struct connection *connection, void *handle, int64_t id, unsigned changes, double until);
+void connection_wait(struct connections *all, struct connection *connection, void *handle, int64_t id,
+                     unsigned changes, double until);
 
 double connection_now(void); /* [s] monotonic */
 

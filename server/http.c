@@ -274,7 +274,7 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
                               void **kept)
 {
 	struct request *request = *kept;
-	const struct server *server = of;
+	struct server *server = of;
 	if (!request)
 		return MHD_NO;
 	if (!request->method)
@@ -303,7 +303,8 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
 		return send_reply(request, &reply);
 	MHD_suspend_connection(connection);
-	connection_wait(connection_of(connection), connection, request->id, reply.changes, wait_until(request));
+	connection_wait(&server->connections, connection_of(connection), connection, request->id, reply.changes,
+	                wait_until(request));
 	return MHD_YES;
 }
 

@@ -114,6 +114,8 @@ char *metrics_text(const struct server *server, size_t *length)
 	    {"pound_http_connections", "gauge", "", "Open connections.", server->connections.n},
 	    {"pound_http_connections_late_total", "counter", "", "Connections closed for being too slow.",
 	     server->connections.n_late},
+	    {"pound_http_waiting", "gauge", "", "Requests that wait for a study to change.",
+	     server->connections.n_waiting},
 	    {"process_cpu_seconds_total", "counter", "", "Processor time.",
 	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
 	    {"process_resident_memory_bytes", "gauge", "", "Resident memory.", resident_bytes()},

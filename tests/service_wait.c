@@ -146,11 +146,12 @@ static void waiters_start(struct waiter waiters[WAITERS], const struct service *
 		snprintf(waiters[i].tag, sizeof waiters[i].tag, "%s", tag);
 		assert_int_equal(pthread_create(&waiters[i].thread, NULL, wait_in_thread, &waiters[i]), 0);
 	}
-	// the metric says when all of them are there: they and the one who asks
-	double open = 0;
-	while (open < WAITERS + 1) {
+	// the metric says when all of them wait: an open connection may not have sent its request yet
+	static const char metric[] = "\npound_http_waiting ";
+	double waiting = 0;
+	while (waiting < WAITERS) {
 		struct answer answer = service_get(service, "/metrics");
-		open = atof(strstr(answer.body, "\npound_http_connections ") + strlen("\npound_http_connections "));
+		waiting = atof(strstr(answer.body, metric) + strlen(metric));
 		answer_free(&answer);
 	}
 }
