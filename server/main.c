@@ -61,7 +61,7 @@ static int await(struct store *store, const sigset_t *signals)
 		int caught = half > 0 ? sigtimedwait(signals, NULL, &pause) : sigwaitinfo(signals, NULL);
 		if (caught > 0)
 			return caught;
-		if (errno == EAGAIN && store_count(store, "queued", NULL, &n) == STORE_OK)
+		if (errno == EAGAIN && store_count(store, "queued", &n) == STORE_OK)
 			tell("WATCHDOG=1");
 	}
 }

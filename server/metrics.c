@@ -79,7 +79,7 @@ static void studies(struct writer *w, struct store *store)
 		int64_t n;
 		char label[32];
 		snprintf(label, sizeof label, "{status=\"%s\"}", states[i]);
-		if (store_count(store, states[i], NULL, &n) == STORE_OK)
+		if (store_count(store, states[i], &n) == STORE_OK)
 			sample(w, "pound_studies", label, (double)n);
 	}
 }

@@ -64,6 +64,8 @@ static struct reply refusal(enum store_status status)
 	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
 	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key came with another body before"},
 	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
+	    [STORE_CROWDED] = {API_UNAVAILABLE, "as many studies are queued as this server takes"},
+	    [STORE_OWN] = {API_TOO_MANY, "as many studies are queued as this server takes from one token"},
 	};
 	return problem(refusals[status].fault, refusals[status].detail);
 }
@@ -170,28 +172,22 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 	const struct options *options = request->server->options;
 	const char *key = http_header(request, "Idempotency-Key"), *client = request->token;
 	char hash[STUDY_HASH_SIZE], own_key[KEY_MAX + 32];
-	int64_t all, own = 0, id;
+	int64_t id;
 	// two clients may choose the same key
 	snprintf(own_key, sizeof own_key, "%s %s", client ? client : "", key ? key : "");
 	if (key && (!*key || strlen(key) > KEY_MAX))
 		return problem(API_BAD_REQUEST, "an Idempotency-Key has 1 to 200 characters");
 	if (!study_hash(study, hash))
 		return no_memory();
-	if (store_count(store, "queued", NULL, &all) != STORE_OK ||
-	    (client && store_count(store, "queued", client, &own) != STORE_OK))
-		return refusal(STORE_FAILED);
-	bool full = all >= options->queue_max, own_full = own >= options->queue_token_max;
 	const struct store_study row = {.kind = study_kind_name(study->kind),
 	                                .name = study->name,
 	                                .runs = study_runs(study),
 	                                .hash = hash,
 	                                .key = key ? own_key : NULL,
 	                                .client = client,
-	                                .barred = full || own_full};
+	                                .queue_max = options->queue_max,
+	                                .own_max = client ? options->queue_token_max : 0};
 	enum store_status submitted = store_submit(store, &row, request->body, request->length, &id);
-	if (submitted == STORE_NONE)
-		return full ? problem(API_UNAVAILABLE, "as many studies are queued as this server takes")
-		            : problem(API_TOO_MANY, "as many studies are queued as this server takes from one token");
 	if (submitted != STORE_OK && submitted != STORE_REPEATED)
 		return refusal(submitted);
 	struct page page;

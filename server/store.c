@@ -279,16 +279,36 @@ static enum store_status keyed(struct database *c, const char *key, const char *
 	return status == STORE_OK ? STORE_REPEATED : status == STORE_NONE ? STORE_CLASH : status;
 }
 
+/* Whether one more study may be queued: who submits at the same time is counted before or after. */
+static enum store_status room_of(struct database *c, const struct store_study *study)
+{
+	const struct {
+		int64_t most;
+		const char *client;
+		enum store_status reached;
+	} limits[] = {{study->queue_max, NULL, STORE_CROWDED}, {study->own_max, study->client, STORE_OWN}};
+	for (int i = 0; i < 2; i++) {
+		int64_t n;
+		if (limits[i].most == 0)
+			continue;
+		if (run(c, bound(c, COUNT, "tt", "queued", limits[i].client), &n) != STORE_OK)
+			return STORE_FAILED;
+		if (n >= limits[i].most)
+			return limits[i].reached;
+	}
+	return STORE_OK;
+}
+
 /* Queues a new study; it is on the disk when this returns.
  *
  * Given    request   (length) bytes   as the client sent them
  * Returns  id        of the study, or of the one that has the key
  * Status   STORE_REPEATED these bytes were submitted with the key before: nothing new is stored
- *          STORE_NONE     nothing was, and the study is barred
  *          STORE_CLASH    other bytes were
+ *          STORE_CROWDED, STORE_OWN: a limit of the study is reached
  *          STORE_FULL     the disk has no room for new studies
  *          STORE_FAILED   nothing is stored
- * Test     service_resume: accepted_studies_survive_sigkill
+ * Test     service_resume: accepted_studies_survive_sigkill, unit_store: no_more_are_queued_than_may_be
  */
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
                                size_t length, int64_t *id)
@@ -296,11 +316,12 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 	bool roomy = disk_roomy(&store->disk);
 	struct database *c = writer(store);
 	enum store_status status = keyed(c, study->key, request, length, id);
-	if (status == STORE_NONE && study->barred)
-		return released(c, STORE_NONE);
-	if (status == STORE_NONE && !roomy)
+	if (status != STORE_NONE)
+		return released(c, status);
+	status = room_of(c, study);
+	if (status == STORE_OK && !roomy)
 		status = STORE_FULL;
-	if (status == STORE_NONE)
+	if (status == STORE_OK)
 		status = run(c, bound(c, NEXT, ""), id);
 	if (status == STORE_OK)
 		status = both(c,
@@ -383,10 +404,10 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 }
 
 /* Counts the studies of a status. */
-enum store_status store_count(struct store *store, const char *status, const char *client, int64_t *n)
+enum store_status store_count(struct store *store, const char *status, int64_t *n)
 {
 	struct database *c = reader(store);
-	return released(c, run(c, bound(c, COUNT, "tt", status, client), n));
+	return released(c, run(c, bound(c, COUNT, "tt", status, NULL), n));
 }
 
 /* Whether studies can be stored: STORE_FULL when the disk has no room for new ones.
@@ -396,7 +417,7 @@ enum store_status store_count(struct store *store, const char *status, const cha
 enum store_status store_ready(struct store *store)
 {
 	int64_t n;
-	enum store_status status = store_count(store, "queued", NULL, &n);
+	enum store_status status = store_count(store, "queued", &n);
 	return status == STORE_OK && !disk_roomy(&store->disk) ? STORE_FULL : status;
 }
 

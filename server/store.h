@@ -18,6 +18,8 @@ enum store_status {
 	STORE_REPEATED, /* an earlier study has that key, and the same bytes */
 	STORE_CLASH,    /* an earlier study has that key, and other bytes */
 	STORE_FULL,     /* the disk has no room for new studies */
+	STORE_CROWDED,  /* as many studies are queued as there may be */
+	STORE_OWN,      /* as many of one client are */
 };
 
 struct store;
@@ -26,10 +28,10 @@ struct store;
 struct store_study {
 	const char *kind, *name; /* name: NULL if none */
 	int64_t runs;
-	const char *hash;   /* of its meaning, hex */
-	const char *key;    /* Idempotency-Key it was submitted with, NULL: none */
-	const char *client; /* name of the token it was submitted with, NULL: there are none */
-	bool barred;        /* it is not stored; only what was submitted with the key before is looked for */
+	const char *hash;           /* of its meaning, hex */
+	const char *key;            /* Idempotency-Key it was submitted with, NULL: none */
+	const char *client;         /* name of the token it was submitted with, NULL: there are none */
+	int64_t queue_max, own_max; /* studies that may be queued, and of its client; 0: any number */
 };
 typedef void store_study_reader(void *to,
                                 const struct study_status *study); /* of texts that end with the call */
@@ -47,8 +49,7 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
                              store_study_reader *reader, void *to);
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length); /* on the heap, for the caller to free */
-/* studies of a status, of one client (NULL: any) */
-enum store_status store_count(struct store *store, const char *status, const char *client, int64_t *n);
+enum store_status store_count(struct store *store, const char *status, int64_t *n);
 /* grows with every change of a study; studies may share one */
 unsigned store_changes(struct store *store, int64_t id);
 enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */

@@ -60,8 +60,8 @@ static void serve(const char *path)
 	struct work *work = store ? work_start(store, 2) : NULL;
 	int64_t queued = 1, running = 1;
 	while (work && queued + running > 0) {
-		store_count(store, "queued", NULL, &queued);
-		store_count(store, "running", NULL, &running);
+		store_count(store, "queued", &queued);
+		store_count(store, "running", &running);
 		usleep(1000);
 	}
 	if (work)

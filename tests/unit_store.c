@@ -1,6 +1,7 @@
 /* The store by itself: order, states, and what happens once. */
 #include "server/store.h"
 
+#include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -216,17 +217,76 @@ static void a_key_stands_for_one_study(void **state)
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
 	assert_true(again == first);
 	assert_int_equal(store_submit(*state, &study, "{ }", 3, &other), STORE_CLASH);
-	study.barred = true;
+	// what is there already is found when there is no room for more
+	study.queue_max = 1;
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
 	study.key = "b key";
-	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_NONE);
-	study.barred = false;
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_CROWDED);
+	study.queue_max = 2;
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_OK);
 	assert_true(other != first);
 	// when the study has gone, so has its key
 	assert_int_equal(store_delete(*state, first), STORE_OK);
 	study.key = "a key";
 	assert_int_equal(store_submit(*state, &study, "{ }", 3, &again), STORE_OK);
+}
+
+enum { SUBMITTERS = 8, EACH = 20, QUEUE_MAX = 50, OWN_MAX = 20 };
+
+/* one of those who submit at the same time */
+struct submitter {
+	struct store *store;
+	struct store_study study;
+	int answers[STORE_OWN + 1];
+};
+
+static void *submit_each(void *argument)
+{
+	struct submitter *s = argument;
+	for (int i = 0; i < EACH; i++) {
+		int64_t id;
+		s->answers[store_submit(s->store, &s->study, "{}", 2, &id)]++;
+	}
+	return NULL;
+}
+
+/* How often either of two clients, who submit side by side, had an answer. */
+static void submit_all(struct store *store, int64_t own_max, int answers[2][STORE_OWN + 1])
+{
+	struct submitter submitters[SUBMITTERS];
+	pthread_t threads[SUBMITTERS];
+	for (int i = 0; i < SUBMITTERS; i++) {
+		submitters[i] = (struct submitter){store,
+		                                   {.kind = "response",
+		                                    .runs = 5,
+		                                    .hash = "hash",
+		                                    .client = i % 2 ? "one" : "another",
+		                                    .queue_max = QUEUE_MAX,
+		                                    .own_max = own_max},
+		                                   {0}};
+		assert_int_equal(pthread_create(&threads[i], NULL, submit_each, &submitters[i]), 0);
+	}
+	memset(answers, 0, sizeof(int[2][STORE_OWN + 1]));
+	for (int i = 0; i < SUBMITTERS; i++) {
+		pthread_join(threads[i], NULL);
+		for (int status = 0; status <= STORE_OWN; status++)
+			answers[i % 2][status] += submitters[i].answers[status];
+	}
+}
+
+static void no_more_are_queued_than_may_be(void **state)
+{
+	const int tries = SUBMITTERS / 2 * EACH;
+	int answers[2][STORE_OWN + 1];
+	submit_all(*state, OWN_MAX, answers);
+	for (int client = 0; client < 2; client++) {
+		assert_int_equal(answers[client][STORE_OK], OWN_MAX);
+		assert_int_equal(answers[client][STORE_OWN], tries - OWN_MAX);
+	}
+	submit_all(*state, 0, answers);
+	const int more = QUEUE_MAX - 2 * OWN_MAX;
+	assert_int_equal(answers[0][STORE_OK] + answers[1][STORE_OK], more);
+	assert_int_equal(answers[0][STORE_CROWDED] + answers[1][STORE_CROWDED], 2 * tries - more);
 }
 
 static void a_study_taken_three_times_in_vain_lets_the_others_go_first(void **state)
@@ -265,7 +325,7 @@ static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(vo
 
 #define STORED(test) cmocka_unit_test_setup_teardown(test, database, removal)
 
-CHECK_MAIN(STORED(a_key_stands_for_one_study),
+CHECK_MAIN(STORED(a_key_stands_for_one_study), STORED(no_more_are_queued_than_may_be),
            STORED(a_study_taken_three_times_in_vain_lets_the_others_go_first),
            STORED(only_crashes_that_follow_each_other_without_a_block_make_a_poison),
            STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
