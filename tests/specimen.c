@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/scene.h"
+
 static const double pi = 3.14159265358979323846;
 
 // clang-format off
@@ -130,7 +132,8 @@ void specimen_noise(struct specimen *specimen, uint64_t seed, double peak, doubl
 	}
 }
 
-static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
+const char *const specimen_laws[SPECIMEN_LAWS] = {"linear", "elastoplastic", "nonlinear_elastic",
+                                                  "origin_oriented"};
 
 static void random_oscillator(struct pound_oscillator *o, uint64_t *stream)
 {
@@ -144,14 +147,14 @@ static void random_law(struct specimen *specimen, uint64_t *stream, int number)
 	struct pound_scene *scene = &specimen->study.scene;
 	// of the size of the displacements: a part of the static one of 1 m/s2 at 1 Hz
 	double given = specimen_uniform(stream, -0.01, 0.01);
-	specimen_law(specimen, laws[number % 4], fmax(0, given));
+	specimen_law(specimen, specimen_laws[number % 4], fmax(0, given));
 	scene->law.hardening_ratio = fmax(0, specimen_uniform(stream, -0.05, 0.3));
 	scene->law.target_demand = specimen_uniform(stream, 1.2, 4);
 	scene->law.corrections = (int)specimen_uniform(stream, 0, 3);
 	if (specimen_uniform(stream, 0, 1) > 0.25)
 		return;
 	struct pound_law common = scene->law;
-	specimen_law(specimen, laws[(int)specimen_uniform(stream, 0, 4)], fmax(0, -given));
+	specimen_law(specimen, specimen_laws[(int)specimen_uniform(stream, 0, 4)], fmax(0, -given));
 	scene->oscillators[1].law = scene->law;
 	scene->oscillators[1].has_law = true;
 	scene->law = common;
@@ -191,17 +194,62 @@ void specimen_reference(struct specimen *specimen, const struct specimen_referen
 	specimen_half_sine(specimen, 1, 0.5, 3, time_step);
 }
 
-/* The engine's response of the specimen; it must succeed. */
-struct pound_response specimen_engine(const struct specimen *specimen)
+const double specimen_textbook_u[SPECIMEN_TEXTBOOK] = {.0318,  .2274, .6336, 1.1339, 1.4896,
+                                                       1.4480, .9037, .0579, -.7578, -1.2432};
+
+void specimen_textbook(struct specimen *specimen, int t)
 {
-	struct pound_run *run = pound_run_create(&specimen->study, 1);
-	assert(run);
+	const double mass = 0.2533, stiffness = 10, force = 10;
+	specimen_init(specimen);
+	struct pound_scene *scene = &specimen->study.scene;
+	scene->contact.present = false;
+	scene->oscillators[0].mass = mass;
+	scene->oscillators[0].frequency_hz = sqrt(stiffness / mass) / (2 * pi);
+	double *a = specimen_record(specimen, 0.1, t + 1);
+	for (int i = 0; i <= t && i < 6; i++)
+		a[i] = -force / mass * sin(pi * i / 6);
+}
+
+struct pound_march_task specimen_impact(double restitution, bool tension, int n_samples)
+{
+	static const double still[1000];
+	double stiffness = 7.9e3, ratio = 0.5; // contact, N/m; m1/m2
+	double zeta = pound_contact_damping_ratio(0, restitution);
+	return (struct pound_march_task){.ground = still,
+	                                 .n_samples = n_samples,
+	                                 .time_step = 0.01,
+	                                 .bodies = {{.v = 1}, {.v = -0.5}},
+	                                 .contact = true,
+	                                 .gap = 0.1,
+	                                 .contact_stiffness = stiffness,
+	                                 .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
+	                                 .mass_ratio = ratio,
+	                                 .tension = tension};
+}
+
+enum pound_status specimen_compute(struct pound_run *run)
+{
 	enum pound_status status = POUND_OK;
 	for (int block = 0; block < pound_run_blocks(run) && !status; block++)
 		status = pound_run_block(run, block, 0);
 	for (int reduction = 0; reduction < pound_run_reductions(run) && !status; reduction++)
 		status = pound_run_reduce(run, reduction, 0);
+	return status;
+}
+
+struct pound_run *specimen_run(const struct pound_study *study)
+{
+	struct pound_run *run = pound_run_create(study, 1);
+	assert(run);
+	enum pound_status status = specimen_compute(run);
 	assert(status == POUND_OK);
+	return run;
+}
+
+/* The engine's response of the specimen; it must succeed. */
+struct pound_response specimen_engine(const struct specimen *specimen)
+{
+	struct pound_run *run = specimen_run(&specimen->study);
 	const struct pound_result *result = pound_run_result(run);
 	assert(result->n_cells == 1 && result->cells[0].n_signals == 1 && result->cells[0].runs_failed == 0);
 	struct pound_response response = result->cells[0].signals[0];

@@ -4,6 +4,7 @@
 #ifndef SPECIMEN_H
 #define SPECIMEN_H
 
+#include "engine/march.h"
 #include "engine/pound.h"
 #include "tests/oracle.h"
 
@@ -16,6 +17,9 @@ struct specimen {
  * restitution 0.6, and no ground motion yet. */
 void specimen_init(struct specimen *specimen);
 void specimen_free(struct specimen *specimen);
+
+enum { SPECIMEN_LAWS = 4 };
+extern const char *const specimen_laws[SPECIMEN_LAWS]; /* their names: the linear one and the others */
 
 /* The same law for both; yield 0: found from the target demand. */
 void specimen_law(struct specimen *specimen, const char *name, double yield);
@@ -39,6 +43,16 @@ double specimen_uniform(uint64_t *stream, double low, double high);
  * that jumps to its first value or rises from 0. */
 void specimen_random(struct specimen *specimen, int number, double time_step, int n);
 
+/* A single oscillator under a half sine of force, in samples 0.1 s apart of which there are t behind the first, and its displacement
+ * at the last of them, to four digits: Chopra, Dynamics of Structures, example 5.1. */
+enum { SPECIMEN_TEXTBOOK = 10 };
+void specimen_textbook(struct specimen *specimen, int t);
+extern const double specimen_textbook_u[SPECIMEN_TEXTBOOK];
+
+/* Two free masses, m1 = 1 kg and m2 = 2 kg, that meet at 1.5 m/s after 10 cm, above a ground that rests for that many samples,
+ * 0.01 s apart and 1000 at most. */
+struct pound_march_task specimen_impact(double restitution, bool tension, int n_samples);
+
 /* Two oscillators under a half sine of 0.5 s, 3 s in all, computed elsewhere: a 128-bit Taylor solution. */
 struct specimen_reference {
 	const char *name;
@@ -52,6 +66,12 @@ extern const struct specimen_reference specimen_references[SPECIMEN_REFERENCES];
 
 void specimen_reference(struct specimen *specimen, const struct specimen_reference *reference,
                         double time_step);
+
+/* All blocks of a run, and then all that is made of them, by one thread: the first status that is not POUND_OK. */
+enum pound_status specimen_compute(struct pound_run *run);
+
+/* A run of a study, computed whole; that must succeed.  For pound_run_free. */
+struct pound_run *specimen_run(const struct pound_study *study);
 
 struct pound_response specimen_engine(const struct specimen *specimen);
 struct pound_response specimen_oracle(const struct specimen *specimen, double radians);

@@ -9,7 +9,6 @@
 #include "engine/solver.h"
 
 enum { SCENES = 32, STILL = 21 };
-static const double still[STILL]; // ground at rest
 
 static int row_of(const char *name)
 {
@@ -27,27 +26,11 @@ static struct pound_march_result integrate(double tolerance, const struct pound_
 	return result;
 }
 
-/* Two masses that meet at 1.5 m/s, as in unit_march. */
-static struct pound_march_task impact(double restitution, bool tension)
-{
-	double stiffness = 7.9e3, ratio = 0.5, zeta = pound_contact_damping_ratio(0, restitution);
-	return (struct pound_march_task){.ground = still,
-	                                 .n_samples = STILL,
-	                                 .time_step = 0.01,
-	                                 .bodies = {{.v = 1}, {.v = -0.5}},
-	                                 .contact = true,
-	                                 .gap = 0.1,
-	                                 .contact_stiffness = stiffness,
-	                                 .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
-	                                 .mass_ratio = ratio,
-	                                 .tension = tension};
-}
-
 static void an_isolated_impact_leaves_with_the_restitution(void **state)
 {
 	(void)state;
 	for (int e = 1; e <= 20; e++) {
-		const struct pound_march_task task = impact(e / 20.0, true);
+		const struct pound_march_task task = specimen_impact(e / 20.0, true, STILL);
 		const struct pound_march_result r = integrate(1e-12, &task);
 		// some 20 steps, each to 1e-12
 		check_near((r.v[1] - r.v[0]) / 1.5, e / 20.0, 1e-11);
@@ -63,7 +46,7 @@ static void without_tension_the_rebound_is_that_of_release_at_zero_force(void **
 	(void)state;
 	// known_answers 5.1: e^(1 - 2 asin(zeta)/pi)
 	for (int e = 1; e <= 20; e++) {
-		const struct pound_march_task task = impact(e / 20.0, false);
+		const struct pound_march_task task = specimen_impact(e / 20.0, false, STILL);
 		const struct pound_march_result r = integrate(1e-12, &task);
 		double zeta = pound_contact_damping_ratio(0, e / 20.0);
 		check_near((r.v[1] - r.v[0]) / 1.5, pow(e / 20.0, 1 - 2 * asin(zeta) / acos(-1)), 1e-11);
@@ -103,7 +86,6 @@ static void responses_are_those_of_the_march_to_the_tolerance(void **state)
 static void three_seconds_of_pounding_agree_to_1e_9(void **state)
 {
 	(void)state;
-	static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
 	for (int k = 0; k < 8; k++) {
 		struct specimen specimen;
 		specimen_init(&specimen);
@@ -112,7 +94,7 @@ static void three_seconds_of_pounding_agree_to_1e_9(void **state)
 		scene->oscillators[1] =
 		    (struct pound_oscillator){.mass = 1.7, .frequency_hz = 3.1, .damping_ratio = 0.05};
 		scene->contact.tension = k % 2 == 0;
-		specimen_law(&specimen, laws[k / 2], 0);
+		specimen_law(&specimen, specimen_laws[k / 2], 0);
 		specimen_noise(&specimen, 7, 1, 0.01, 301);
 		const struct pound_response exact = specimen_engine(&specimen);
 		specimen.study.solver = (struct pound_solver){.method = row_of("adaptive"), .tolerance = 1e-12};
@@ -147,7 +129,7 @@ static void a_stiff_contact_is_followed_by_the_implicit_stepper(void **state)
 static void a_tolerance_out_of_reach_is_a_status(void **state)
 {
 	(void)state;
-	const struct pound_march_task task = impact(0.6, true);
+	const struct pound_march_task task = specimen_impact(0.6, true, STILL);
 	const struct pound_march_result r = integrate(1e-300, &task);
 	assert_int_equal(r.status, POUND_TOLERANCE);
 	check_near(r.u[0] + r.v[0] + r.impulse_max + r.displacement_max[0], 0, 0);
@@ -156,7 +138,7 @@ static void a_tolerance_out_of_reach_is_a_status(void **state)
 static void bodies_at_rest_stay_at_rest(void **state)
 {
 	(void)state;
-	struct pound_march_task task = impact(0.6, true);
+	struct pound_march_task task = specimen_impact(0.6, true, STILL);
 	task.gap = 0;
 	task.bodies[0].v = task.bodies[1].v = 0;
 	task.bodies[0].followed = true;

@@ -6,6 +6,7 @@
 #include "schema/study_json.h"
 #include "tests/check.h"
 #include "tests/documents.h"
+#include "tests/specimen.h"
 
 static void every_example_is_a_valid_study(void **state)
 {
@@ -57,12 +58,7 @@ static void every_extreme_of_the_example_has_a_result_that_balances(void **state
 {
 	(void)state;
 	struct pound_study *study = documents_study(example_text("extremes"));
-	struct pound_run *run = pound_run_create(study, 1);
-	assert_non_null(run);
-	for (int block = 0; block < pound_run_blocks(run); block++)
-		assert_int_equal(pound_run_block(run, block, 0), POUND_OK);
-	for (int reduction = 0; reduction < pound_run_reductions(run); reduction++)
-		assert_int_equal(pound_run_reduce(run, reduction, 0), POUND_OK);
+	struct pound_run *run = specimen_run(study);
 	const struct pound_result *result = pound_run_result(run);
 	for (int c = 0; c < result->n_cells; c++) {
 		const struct pound_cell *cell = &result->cells[c];

@@ -191,10 +191,7 @@ static struct run run(const struct specimen *specimen)
 	double from = cpu_seconds();
 	struct run r = {0};
 	struct pound_run *run = pound_run_create(&specimen->study, 1);
-	for (int block = 0; block < pound_run_blocks(run); block++)
-		assert_int_equal(pound_run_block(run, block, 0), POUND_OK);
-	for (int reduction = 0; reduction < pound_run_reductions(run) && !r.status; reduction++)
-		r.status = pound_run_reduce(run, reduction, 0);
+	r.status = specimen_compute(run);
 	r.response = pound_run_result(run)->cells[0].signals[0];
 	pound_run_free(run);
 	r.seconds = cpu_seconds() - from;

@@ -119,29 +119,13 @@ static void a_step_is_cut_to_fit_the_sample_interval(void **state)
 			           0);
 }
 
-/* Two masses that meet at 1.5 m/s, as in unit_march. */
-static struct pound_march_task impact(double restitution, bool tension)
-{
-	double stiffness = 7.9e3, ratio = 0.5, zeta = pound_contact_damping_ratio(0, restitution);
-	return (struct pound_march_task){.ground = still,
-	                                 .n_samples = 21,
-	                                 .time_step = 0.01,
-	                                 .bodies = {{.v = 1}, {.v = -0.5}},
-	                                 .contact = true,
-	                                 .gap = 0.1,
-	                                 .contact_stiffness = stiffness,
-	                                 .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
-	                                 .mass_ratio = ratio,
-	                                 .tension = tension};
-}
-
 static void an_impact_leaves_with_the_restitution_to_the_first_power_of_the_step(void **state)
 {
 	(void)state;
 	for (int method = NEWMARK; method <= CENTRAL_DIFFERENCE; method++)
 		for (int e = 0; e <= 10; e++)
 			for (double step = 1e-4; step > 1e-6; step /= 10) {
-				const struct pound_march_task task = impact(e / 10.0, true);
+				const struct pound_march_task task = specimen_impact(e / 10.0, true, 21);
 				const struct pound_march_result r = integrate(method, step, &task);
 				// the overlap begins and ends up to a step late, each with a force up to C v: 2 w h in all
 				double w = sqrt(task.contact_stiffness * 1.5);

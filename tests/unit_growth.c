@@ -6,6 +6,7 @@
 #include "tests/check.h"
 #include "tests/documents.h"
 #include "tests/functions.h"
+#include "tests/specimen.h"
 
 #include <math.h>
 #include <string.h>
@@ -314,11 +315,7 @@ static void an_intermediate_result_has_whole_rows_only(void **state)
 	// rows of a random design are those of a shorter one
 	struct pound_study *shorter = study_with("\"method\": \"random\", \"rows\": 150");
 	shorter->design.rows = rows;
-	struct pound_run *whole = pound_run_create(shorter, 1);
-	for (int b = 0; b < pound_run_blocks(whole); b++)
-		assert_int_equal(pound_run_block(whole, b, 0), POUND_OK);
-	for (int k = 0; k < pound_run_reductions(whole); k++)
-		assert_int_equal(pound_run_reduce(whole, k, 0), POUND_OK);
+	struct pound_run *whole = specimen_run(shorter);
 	check_same_indexes(study, result, pound_run_result(whole));
 	pound_run_free(run), pound_run_free(whole);
 	study_free(study), study_free(shorter);

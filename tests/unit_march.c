@@ -22,23 +22,6 @@ static struct pound_march_result march(const struct pound_march_task *task)
 	return result;
 }
 
-/* Two free masses, m1 = 1 kg and m2 = 2 kg, that meet at 1.5 m/s after 10 cm. */
-static struct pound_march_task impact(double restitution, bool tension)
-{
-	double stiffness = 7.9e3, ratio = 0.5; // contact, N/m; m1/m2
-	double zeta = pound_contact_damping_ratio(0, restitution);
-	return (struct pound_march_task){.ground = still,
-	                                 .n_samples = 1000,
-	                                 .time_step = 0.01,
-	                                 .bodies = {{.v = 1}, {.v = -0.5}},
-	                                 .contact = true,
-	                                 .gap = 0.1,
-	                                 .contact_stiffness = stiffness,
-	                                 .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
-	                                 .mass_ratio = ratio,
-	                                 .tension = tension};
-}
-
 static double rebound(const struct pound_march_result *r)
 {
 	return (r->v[1] - r->v[0]) / 1.5;
@@ -48,7 +31,7 @@ static void an_isolated_impact_leaves_with_the_restitution(void **state)
 {
 	(void)state;
 	for (int e = 1; e <= 100; e++) {
-		const struct pound_march_task task = impact(e / 100.0, true);
+		const struct pound_march_task task = specimen_impact(e / 100.0, true, 1000);
 		const struct pound_march_result r = march(&task);
 		check_near(rebound(&r), e / 100.0, 1e-12);
 		assert_int_equal(r.contacts, 1);
@@ -64,7 +47,7 @@ static void an_isolated_impact_leaves_with_the_restitution(void **state)
 static void a_plastic_impact_ends_with_one_velocity(void **state)
 {
 	(void)state;
-	struct pound_march_task task = impact(0, true);
+	struct pound_march_task task = specimen_impact(0, true, 1000);
 	task.n_samples = 101; // the overlap dies away as t exp(-w t), to 1e-47 of its height in this second
 	const struct pound_march_result r = march(&task);
 	check_near(rebound(&r), 0, 1e-15);
@@ -76,13 +59,13 @@ static void without_tension_the_rebound_is_that_of_release_at_zero_force(void **
 	(void)state;
 	// known_answers 5.1: e^(1 - 2 asin(zeta)/pi)
 	for (int e = 1; e <= 100; e++) {
-		const struct pound_march_task task = impact(e / 100.0, false);
+		const struct pound_march_task task = specimen_impact(e / 100.0, false, 1000);
 		const struct pound_march_result r = march(&task);
 		double zeta = pound_contact_damping_ratio(0, e / 100.0);
 		check_near(rebound(&r), pow(e / 100.0, 1 - 2 * asin(zeta) / PI), 1e-12);
 		assert_int_equal(r.contacts, 1);
 	}
-	const struct pound_march_task plastic = impact(0, false);
+	const struct pound_march_task plastic = specimen_impact(0, false, 1000);
 	const struct pound_march_result r = march(&plastic);
 	check_near(rebound(&r), 0.135335283236612691894, 1e-12); // exp(-2)
 }

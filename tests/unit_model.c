@@ -12,6 +12,7 @@
 #include "tests/check.h"
 #include "tests/documents.h"
 #include "tests/functions.h"
+#include "tests/specimen.h"
 
 #define UNIFORM "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 1}}"
 
@@ -318,11 +319,7 @@ static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
 	size_t n_csv, n;
 	const char *document = example_text("sensitivity_small");
 	struct pound_study *study = study_of(document);
-	struct pound_run *run = pound_run_create(study, 1);
-	for (int k = 0; k < pound_run_blocks(run); k++)
-		assert_int_equal(pound_run_block(run, k, 0), POUND_OK);
-	for (int k = 0; k < pound_run_reductions(run); k++)
-		assert_int_equal(pound_run_reduce(run, k, 0), POUND_OK);
+	struct pound_run *run = specimen_run(study);
 	const struct pound_cell *cell = &pound_run_result(run)->cells[0];
 	char *csv = samples_to_csv(study, run, &n_csv);
 	char *json = model_indices(study, csv, n_csv, &problems, &n);

@@ -205,27 +205,18 @@ static void every_contact_of_the_first_reference_comes_out(void **state)
 static void an_oscillator_under_a_half_sine_force_follows_the_textbook(void **state)
 {
 	(void)state;
-	// Chopra's example 5.1 data: straight lines between samples 0.1 s apart, and the half sine itself
-	static const double lines[] = {.0318,  .2274, .6336, 1.1339, 1.4896,
-	                               1.4480, .9037, .0579, -.7578, -1.2432};
+	// by straight lines between the samples, and by the half sine itself
 	static const double smooth[] = {.0328,  .2332, .6487, 1.1605, 1.5242,
 	                                1.4814, .9245, .0593, -.7752, -1.2718};
 	struct specimen specimen;
-	specimen_init(&specimen);
-	struct pound_scene *scene = &specimen.study.scene;
-	scene->contact.present = false;
-	scene->oscillators[0].mass = 0.2533;
-	scene->oscillators[0].frequency_hz = sqrt(10 / 0.2533) / (2 * pi);
-	for (int t = 1; t <= 10; t++) {
-		double *a = specimen_record(&specimen, 0.1, t + 1);
-		for (int i = 0; i <= t && i < 6; i++)
-			a[i] = -10 / 0.2533 * sin(pi * i / 6);
-		check_near(respond(&specimen, 0.005, NULL, NULL).end_u1, lines[t - 1], half_digit(4));
+	for (int t = 1; t <= SPECIMEN_TEXTBOOK; t++) {
+		specimen_textbook(&specimen, t);
+		check_near(respond(&specimen, 0.005, NULL, NULL).end_u1, specimen_textbook_u[t - 1], half_digit(4));
 		specimen_half_sine(&specimen, -10 / 0.2533, 0.6, t < 6 ? 0.6 : t / 10.0, 1e-3);
 		specimen.study.scene.excitation.n_record = 100 * t + 1;
 		check_near(respond(&specimen, 0.005, NULL, NULL).end_u1, smooth[t - 1], half_digit(4));
+		specimen_free(&specimen);
 	}
-	specimen_free(&specimen);
 }
 
 // work done on a law (k = 1, yield 1) along straight strokes between turning points
@@ -305,14 +296,12 @@ static void a_pounding_specimen(struct specimen *specimen, const char *law)
 	specimen_noise(specimen, 7, 1, 0.01, 301);
 }
 
-static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
-
 static void the_error_falls_with_the_fourth_power_of_the_step(void **state)
 {
 	(void)state;
 	for (int k = 0; k < 4; k++) {
 		struct specimen specimen;
-		a_pounding_specimen(&specimen, laws[k]);
+		a_pounding_specimen(&specimen, specimen_laws[k]);
 		struct pound_response a = specimen_oracle(&specimen, 0.04);
 		struct pound_response b = specimen_oracle(&specimen, 0.02);
 		struct pound_response c = specimen_oracle(&specimen, 0.01);
@@ -328,7 +317,7 @@ static void locating_nothing_gives_the_same_answers_in_the_limit(void **state)
 	(void)state;
 	for (int k = 0; k < 4; k++) {
 		struct specimen specimen;
-		a_pounding_specimen(&specimen, laws[k]);
+		a_pounding_specimen(&specimen, specimen_laws[k]);
 		struct pound_response want = specimen_oracle(&specimen, 0.005);
 		const struct pound_excitation *e = &specimen.study.scene.excitation;
 		const struct oracle_motion motion = {e->time_step, e->n_record, e->record};
@@ -379,7 +368,7 @@ static void a_correction_divides_the_largest_displacement_by_the_target(void **s
 	(void)state;
 	for (int k = 1; k < 4; k++) {
 		struct specimen specimen;
-		a_pounding_specimen(&specimen, laws[k]);
+		a_pounding_specimen(&specimen, specimen_laws[k]);
 		struct pound_scene *scene = &specimen.study.scene;
 		for (int corrections = 0; corrections < 2; corrections++) {
 			scene->law.corrections = corrections;

@@ -6,6 +6,7 @@
 #include "schema/study_json.h"
 #include "tests/check.h"
 #include "tests/documents.h"
+#include "tests/specimen.h"
 
 /* A law as a document has it, and the nonlinear responses it takes without pounding. */
 struct law {
@@ -36,12 +37,7 @@ enum { CONTACTS = sizeof contacts / sizeof contacts[0] };
 static struct pound_work work_of(const char *document)
 {
 	struct pound_study *study = documents_study(document);
-	struct pound_run *run = pound_run_create(study, 1);
-	assert_non_null(run);
-	for (int block = 0; block < pound_run_blocks(run); block++)
-		assert_int_equal(pound_run_block(run, block, 0), POUND_OK);
-	for (int reduction = 0; reduction < pound_run_reductions(run); reduction++)
-		assert_int_equal(pound_run_reduce(run, reduction, 0), POUND_OK);
+	struct pound_run *run = specimen_run(study);
 	struct pound_work work = pound_run_result(run)->work;
 	pound_run_free(run);
 	study_free(study);

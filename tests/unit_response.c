@@ -78,21 +78,12 @@ static void the_half_sine_shock_spectrum_comes_out(void **state)
 static void an_oscillator_under_sampled_force_follows_the_textbook(void **state)
 {
 	(void)state;
-	// Chopra's example 5.1 data, straight lines between samples
-	static const double u[] = {.0318, .2274, .6336, 1.1339, 1.4896, 1.4480, .9037, .0579, -.7578, -1.2432};
 	struct specimen specimen;
-	specimen_init(&specimen);
-	struct pound_scene *scene = &specimen.study.scene;
-	scene->contact.present = false;
-	scene->oscillators[0].mass = 0.2533;
-	scene->oscillators[0].frequency_hz = sqrt(10 / 0.2533) / (2 * pi);
-	for (int t = 1; t <= 10; t++) {
-		double *a = specimen_record(&specimen, 0.1, t + 1);
-		for (int i = 0; i <= t && i < 6; i++)
-			a[i] = -10 / 0.2533 * sin(pi * i / 6);
-		check_near(specimen_engine(&specimen).end_u1, u[t - 1], 0.5001e-4);
+	for (int t = 1; t <= SPECIMEN_TEXTBOOK; t++) {
+		specimen_textbook(&specimen, t);
+		check_near(specimen_engine(&specimen).end_u1, specimen_textbook_u[t - 1], 0.5001e-4);
+		specimen_free(&specimen);
 	}
-	specimen_free(&specimen);
 }
 
 /* One impact. */
@@ -376,13 +367,12 @@ static void equal_oscillators_never_press_on_each_other(void **state)
 static void nearly_equal_oscillators_nearly_never_press_on_each_other(void **state)
 {
 	(void)state;
-	static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
 	for (int k = 0; k < 8; k++) {
 		struct specimen specimen;
 		specimen_init(&specimen);
 		struct pound_scene *scene = &specimen.study.scene;
 		specimen_noise(&specimen, 7, 1, 0.01, 501);
-		specimen_law(&specimen, laws[k / 2], 0);
+		specimen_law(&specimen, specimen_laws[k / 2], 0);
 		scene->contact.tension = k % 2;
 		double f = scene->oscillators[0].frequency_hz;
 		double impulse[3];
@@ -399,13 +389,12 @@ static void nearly_equal_oscillators_nearly_never_press_on_each_other(void **sta
 static void a_gap_that_is_never_reached_leaves_both_free(void **state)
 {
 	(void)state;
-	static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
 	for (int l = 0; l < 4; l++) {
 		struct specimen specimen;
 		specimen_init(&specimen);
 		struct pound_scene *scene = &specimen.study.scene;
 		specimen_noise(&specimen, 4, 1, 0.01, 501);
-		specimen_law(&specimen, laws[l], 0);
+		specimen_law(&specimen, specimen_laws[l], 0);
 		scene->contact.gap = 10;
 		struct pound_response far = specimen_engine(&specimen);
 		scene->contact.present = false;

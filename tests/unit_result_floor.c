@@ -7,6 +7,7 @@
 #include "schema/study_json.h"
 #include "tests/check.h"
 #include "tests/documents.h"
+#include "tests/specimen.h"
 
 enum { N = 9 };
 
@@ -101,11 +102,7 @@ static void an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse(voi
 	                   "\"outputs\": [\"impulse\", \"floor_spectrum\"], \"spectrum\": "
 	                   "{\"frequencies_hz\": [2.5, 40]}");
 	struct pound_study *study = documents_study(document);
-	struct pound_run *run = pound_run_create(study, 1);
-	for (int b = 0; b < pound_run_blocks(run); b++)
-		assert_int_equal(pound_run_block(run, b, 0), POUND_OK);
-	for (int k = 0; k < pound_run_reductions(run); k++)
-		assert_int_equal(pound_run_reduce(run, k, 0), POUND_OK);
+	struct pound_run *run = specimen_run(study);
 	size_t length, csv_length;
 	const struct timing timing = {1, 1, 1};
 	char *json = result_to_json(study, pound_run_result(run), &timing, &length);

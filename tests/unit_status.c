@@ -7,6 +7,7 @@
 #include "schema/study_json.h"
 #include "tests/check.h"
 #include "tests/documents.h"
+#include "tests/specimen.h"
 
 /* Steps of 0.01 s are too long for anything above 1 / (pi 0.01) = 31.8 Hz. */
 #define STEPS_TOO_LONG "\"solver\": {\"method\": \"central_difference\", \"step_s\": 0.01}"
@@ -45,11 +46,7 @@ static struct reading *computed(const char *document, char **json, enum pound_st
 	struct pound_study *study = documents_study(document);
 	struct pound_run *run = pound_run_create(study, 1);
 	assert_non_null(run);
-	*status = POUND_OK;
-	for (int block = 0; block < pound_run_blocks(run) && !*status; block++)
-		*status = pound_run_block(run, block, 0);
-	for (int reduction = 0; reduction < pound_run_reductions(run) && !*status; reduction++)
-		*status = pound_run_reduce(run, reduction, 0);
+	*status = specimen_compute(run);
 	struct reading *result = NULL;
 	if (!*status) {
 		static const struct timing timing = {1, 1, 1};
