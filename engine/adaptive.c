@@ -360,6 +360,7 @@ static void course_end(struct course *c, enum pound_status status)
  * Returns  result    -          -     all 0 but the status where it failed
  * Status   POUND_TOLERANCE  the steps became too small or too many
  *          POUND_CHATTER    more events in one sample interval than allowed
+ *          POUND_STOPPED    stop, which is looked at between samples, was set; NULL: never
  * Memory   allocates GSL's work space, some kB once for the task, and frees it; without memory GSL ends the program
  *
  * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Steps
@@ -369,7 +370,7 @@ static void course_end(struct course *c, enum pound_status status)
  * Test     unit_adaptive
  */
 void pound_adaptive_run(const struct pound_solver *solver, const struct pound_march_task *task,
-                        struct pound_march_result *result)
+                        struct pound_march_result *result, const atomic_bool *stop)
 {
 	*result = (struct pound_march_result){0};
 	struct course c = {.task = task, .result = result};
@@ -386,7 +387,7 @@ void pound_adaptive_run(const struct pound_solver *solver, const struct pound_ma
 	if (!status)
 		gsl_odeiv2_driver_set_nmax(c.explicit, STEPS_LIMIT);
 	for (int t = 1; t < task->n_samples && !status; t++)
-		status = interval_run(&c, t);
+		status = pound_stopped(stop) ? POUND_STOPPED : interval_run(&c, t);
 	course_end(&c, status);
 	if (c.explicit)
 		gsl_odeiv2_driver_free(c.explicit);

@@ -47,21 +47,23 @@ int pound_dispatch_width(int lanes)
 	return -1;
 }
 
-typedef void march(const struct pound_march_task *, struct pound_march_result *, int n, void *scratch);
+typedef void march(const struct pound_march_task *, struct pound_march_result *, int n, void *scratch,
+                   const atomic_bool *stop);
 
 /* Runs tasks at a lane count; 0: the widest there is.
  *
+ * Given    stop     looked at all the time: when it is set the results are not to be used; NULL: never
  * Returns  value    false: this machine has no such lanes, nothing was run
  *          results  one for each task  (n)
  */
 bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
-                       int n, void *scratch)
+                       int n, void *scratch, const atomic_bool *stop)
 {
 	static march *const run[POUND_WIDTHS] = {pound_march_w8, pound_march_w4, pound_march_w1,
 	                                         pound_march_portable};
 	int width = pound_dispatch_width(lanes);
 	if (width >= 0)
-		run[width](tasks, results, n, scratch);
+		run[width](tasks, results, n, scratch, stop);
 	return width >= 0;
 }
 

@@ -260,7 +260,7 @@ double pound_fixed_step(double time_step, double step)
 
 typedef bool advance(struct course *c, double ground);
 
-static void course_run(struct course *c, int n_steps, advance *step)
+static void course_run(struct course *c, int n_steps, advance *step, const atomic_bool *stop)
 {
 	const struct pound_march_task *task = c->task;
 	struct pound_march_result *r = c->result;
@@ -274,6 +274,8 @@ static void course_run(struct course *c, int n_steps, advance *step)
 			if (!settled || !(fabs(c->v[0]) <= c->speed_max[0] && fabs(c->v[1]) <= c->speed_max[1]))
 				r->status = POUND_UNSTABLE;
 		}
+		if (pound_stopped(stop))
+			r->status = POUND_STOPPED;
 	}
 	if (c->touching)
 		r->impulse_max = fmax(r->impulse_max, c->impulse);
@@ -291,6 +293,7 @@ static void course_run(struct course *c, int n_steps, advance *step)
  *
  * Given    solver    step      s       longest step
  *          task      -         -       see march.h
+ *          stop      -         -       looked at between samples; NULL: never
  * Returns  result    -         -       all 0 but the status where it failed
  * Status   POUND_UNSTABLE  a step had no equilibrium, or velocities grew beyond any the ground motion can give
  *
@@ -298,19 +301,20 @@ static void course_run(struct course *c, int n_steps, advance *step)
  * Test     unit_fixed: the_error_of_free_vibration_falls_with_the_square_of_the_step
  */
 void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result)
+                         struct pound_march_result *result, const atomic_bool *stop)
 {
 	*result = (struct pound_march_result){0};
 	struct course c = {.task = task, .result = result};
 	int n_steps = steps_of(task->time_step, solver->step);
 	course_start(&c, n_steps);
-	course_run(&c, n_steps, newmark_advance);
+	course_run(&c, n_steps, newmark_advance, stop);
 }
 
 /* The response of a task by central differences, the explicit method.
  *
  * Given    solver    step      s       longest step
  *          task      -         -       see march.h
+ *          stop      -         -       looked at between samples; NULL: never
  * Returns  result    -         -       all 0 but the status where it failed
  * Status   POUND_UNSTABLE  velocities grew beyond any the ground motion can give
  *
@@ -318,7 +322,7 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_m
  * Test     unit_fixed: an_explicit_step_beyond_its_limit_ends_with_a_status
  */
 void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result)
+                         struct pound_march_result *result, const atomic_bool *stop)
 {
 	*result = (struct pound_march_result){0};
 	struct course c = {.task = task, .result = result};
@@ -326,5 +330,5 @@ void pound_fixed_central(const struct pound_solver *solver, const struct pound_m
 	course_start(&c, n_steps);
 	for (int i = 0; i < 2; i++)
 		c.rate[i] = c.v[i] + c.step / 2 * c.rate[i];
-	course_run(&c, n_steps, central_advance);
+	course_run(&c, n_steps, central_advance, stop);
 }

@@ -90,7 +90,7 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
  *
  * Given    ask      the task; an undefined lane count is a fault of the caller
  * Returns  answer   largest w^2 |z| of oscillators at rest at first, while the ground motion lasts
- * Status   POUND_CHATTER  the motion could not be followed; the answer is not to be used
+ * Status   POUND_CHATTER, POUND_STOPPED  the motion could not be followed, or was to be no longer: the answer is not to be used
  *
  * Source   model.md 7 of the project's design pages
  * Test     unit_floor
@@ -114,6 +114,8 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 	}
 	pound_trace_start(&floor->trace, ask->task);
 	for (;;) {
+		if (pound_stopped(ask->stop))
+			return POUND_STOPPED;
 		pound_trace_next(&floor->trace, &floor->stretch);
 		if (floor->stretch.n == 0)
 			break;
@@ -141,16 +143,19 @@ static double polynomial_end(const struct pound_polynomial *a, int order)
 
 /* The history of a task's floor.
  *
+ * Given    stop    looked at all the time; NULL: never
  * Returns  take    called in the order of time; at an event twice, for what was before and what is after
- * Status   POUND_CHATTER  the motion could not be followed to its end
+ * Status   POUND_CHATTER, POUND_STOPPED  the motion could not be followed to its end, or was not to be
  * Test     unit_floor: a_history_has_every_sample_and_both_sides_of_every_event
  */
 enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_march_task *task,
-                                      pound_floor_take *take, void *into)
+                                      const atomic_bool *stop, pound_floor_take *take, void *into)
 {
 	struct pound_floor_instant last = {0};
 	pound_trace_start(&floor->trace, task);
 	for (;;) {
+		if (pound_stopped(stop))
+			return POUND_STOPPED;
 		pound_trace_next(&floor->trace, &floor->stretch);
 		if (floor->stretch.n == 0)
 			break;

@@ -14,9 +14,10 @@ struct pound_floor *pound_floor_init(void *memory,
 /* what is asked of one task */
 struct pound_floor_ask {
 	const struct pound_march_task *task;
-	int n_drives;   /* 1: the whole acceleration; 2: the contact's part of it too */
-	double radians; /* an oscillator's longest step, at most 1.5 */
-	int lanes;      /* 0: the widest there are */
+	int n_drives;            /* 1: the whole acceleration; 2: the contact's part of it too */
+	double radians;          /* an oscillator's longest step, at most 1.5 */
+	int lanes;               /* 0: the widest there are */
+	const atomic_bool *stop; /* looked at all the time; NULL: never */
 };
 
 /* what comes out; psa: [m/s2]  (n_frequencies) each */
@@ -35,6 +36,6 @@ struct pound_floor_instant {
 };
 typedef void pound_floor_take(void *into, const struct pound_floor_instant *instant);
 enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_march_task *task,
-                                      pound_floor_take *take, void *into);
+                                      const atomic_bool *stop, pound_floor_take *take, void *into);
 
 #endif

@@ -627,13 +627,14 @@ static_assert(sizeof(struct work) <= POUND_MARCH_SCRATCH, "the work space is too
  *
  * Given    tasks    (n)
  *          scratch  POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ *          stop     looked at between batches: when it is set the results are not to be used; NULL: never
  * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
  *
  * Source   model.md 1
- * Test     unit_march, unit_response
+ * Test     unit_march, unit_response; unit_status: a_run_that_takes_hours_is_stopped
  */
 void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
-                 void *scratch)
+                 void *scratch, const atomic_bool *stop)
 {
 	static const double still[2];
 	static const struct pound_press_map loose;
@@ -656,7 +657,7 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 		push(&work->idle, &work->pool[j]);
 	}
 	struct queue *queue = &work->queues[0];
-	for (;;) {
+	while (!pound_stopped(stop)) {
 		tasks_start(work);
 		// as long as it fills a batch: its code is in the cache
 		for (int stage = 0; stage < STAGES && queue->n < W; stage++)

@@ -4,6 +4,7 @@
 #ifndef MARCH_H
 #define MARCH_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -49,17 +50,23 @@ struct pound_march_result {
 
 enum { POUND_MARCH_SCRATCH = 1 << 22 }; /* bytes of work space, 64-byte aligned */
 
+/* Whether the caller wants no more of it: what follows a motion asks this every few microseconds. */
+static inline bool pound_stopped(const atomic_bool *stop)
+{
+	return stop && atomic_load_explicit(stop, memory_order_relaxed);
+}
+
 bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
-                       int n, void *scratch);
+                       int n, void *scratch, const atomic_bool *stop);
 
 /* march.c, compiled once for each */
 void pound_march_w8(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
-                    void *scratch);
+                    void *scratch, const atomic_bool *stop);
 void pound_march_w4(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
-                    void *scratch);
+                    void *scratch, const atomic_bool *stop);
 void pound_march_w1(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
-                    void *scratch);
+                    void *scratch, const atomic_bool *stop);
 void pound_march_portable(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
-                          void *scratch);
+                          void *scratch, const atomic_bool *stop);
 
 #endif

@@ -96,17 +96,19 @@ static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound
 
 /* All spectra of one signal. */
 static enum pound_status spectra_fill(struct pound_ordinates *o, const struct pound_study *study,
-                                      const struct pound_plan_floor *plan, double radians, double *values)
+                                      const struct pound_plan_floor *plan, double radians, double *values,
+                                      const atomic_bool *stop)
 {
 	int n = study->spectrum.n;
 	struct pound_floor_answer answer = {.psa = {o->psa[0], o->psa[1]}};
-	struct pound_floor_ask ask = {.task = plan->free, .n_drives = 1, .radians = radians};
+	struct pound_floor_ask ask = {.task = plan->free, .n_drives = 1, .radians = radians, .stop = stop};
 	enum pound_status status = pound_floor_spectra(o->floor, &ask, &answer);
 	if (status)
 		return status;
 	scaled(o->psa[POUND_DRIVE_FLOOR], n, plan->exponent, values + POUND_SPECTRUM_FREE * n);
 	memset(o->psa[POUND_DRIVE_PUSH], 0, sizeof(double) * (size_t)n);
-	ask = (struct pound_floor_ask){.task = plan->pounding, .n_drives = POUND_DRIVES, .radians = radians};
+	ask = (struct pound_floor_ask){
+	    .task = plan->pounding, .n_drives = POUND_DRIVES, .radians = radians, .stop = stop};
 	if (plan->pounding)
 		status = pound_floor_spectra(o->floor, &ask, &answer);
 	scaled(o->psa[POUND_DRIVE_FLOOR], n, plan->exponent, values + POUND_SPECTRUM_POUNDING * n);
@@ -125,11 +127,13 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 /* The ordinates of one sample and signal, or those of the ask before it that has the same floor. */
 static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct pound_study *study,
                                         const struct pound_plan_floor *plan, double radians,
-                                        const double *known, double *values)
+                                        const double *known, double *values, const atomic_bool *stop)
 {
 	struct pound_floor_answer answer = {.psa = {o->psa[0]}};
-	const struct pound_floor_ask ask = {
-	    .task = plan->pounding ? plan->pounding : plan->free, .n_drives = 1, .radians = radians};
+	const struct pound_floor_ask ask = {.task = plan->pounding ? plan->pounding : plan->free,
+	                                    .n_drives = 1,
+	                                    .radians = radians,
+	                                    .stop = stop};
 	enum pound_status status = known ? POUND_OK : pound_floor_spectra(o->floor, &ask, &answer);
 	for (int output = 0; output < study->n_outputs; output++) {
 		int k = pound_study_ordinate(study, output);
@@ -149,7 +153,7 @@ static int measures_of(const struct pound_study *study)
  *
  * Given    plan     its asks in the order of their values
  *          values   (asks x measures)  of a failed run the last is NAN
- *          stop     looked at between floors
+ *          stop     looked at all the time
  * Returns  values   with spectra or ordinates; all NAN where a floor could not be followed
  *          work     floors asked and traced, those of checks left out
  * Status   POUND_STOPPED  stop was set
@@ -171,8 +175,8 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		if (isnan(values[n - 1]))
 			continue;
 		enum pound_status status = has_spectra(study)
-		                               ? spectra_fill(o, study, &floor, radians, values)
-		                               : ordinates_fill(o, study, &floor, radians, known, values);
+		                               ? spectra_fill(o, study, &floor, radians, values, stop)
+		                               : ordinates_fill(o, study, &floor, radians, known, values, stop);
 		work->floors.run += a < n_items && !known ? floors : 0;
 		o->known[floor.march] = a + 1;
 		for (int j = 0; j < n && status; j++)
@@ -380,7 +384,7 @@ static void response_leave(void *into, const struct pound_scene *scene, const st
  *
  * Given    run     of a study of spectra
  * Returns  take    called in the order of time
- * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end;  POUND_STOPPED  nor was to be
  * Test     unit_ordinate: a_history_is_that_of_the_signal
  */
 enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into)
@@ -395,5 +399,5 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 	const struct pound_plan_floor floor = pound_plan_floor(run->plans[0], 0);
 	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
 	return pound_floor_history(run->floors[0]->floor, floor.pounding ? floor.pounding : floor.free,
-	                           instant_tell, &to);
+	                           &run->stop, instant_tell, &to);
 }

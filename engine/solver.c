@@ -7,7 +7,8 @@
 
 static const struct solver {
 	const char *name;
-	void (*run)(const struct pound_solver *, const struct pound_march_task *, struct pound_march_result *);
+	void (*run)(const struct pound_solver *, const struct pound_march_task *, struct pound_march_result *,
+	            const atomic_bool *stop);
 	bool tolerance, step; /* the settings it takes */
 } solvers[] = {
     [POUND_SOLVER_EVENT] = {"event", NULL,
@@ -44,7 +45,7 @@ bool pound_solver_takes_step(int row)
  *
  * Given    solver    -       -       row of the solvers, and the setting it takes
  *          tasks     (n)     -       see march.h
- *          stop      -       -       looked at between two tasks; when it is set, some are not run
+ *          stop      -       -       looked at all the time: when it is set the results are not to be used; NULL: never
  * Returns  results   (n)     -       each with a status of its own
  * Memory   scratch: POUND_MARCH_SCRATCH bytes, 64-byte aligned
  * Test     unit_fixed
@@ -54,9 +55,9 @@ void pound_solver_run(const struct pound_solver *solver, const struct pound_marc
 {
 	const struct solver *row = solver_at(solver->method);
 	if (!row->run)
-		pound_march_lanes(0, tasks, results, n, scratch);
-	for (int j = 0; row->run && j < n && !*stop; j++) {
-		row->run(solver, &tasks[j], &results[j]);
+		pound_march_lanes(0, tasks, results, n, scratch, stop);
+	for (int j = 0; row->run && j < n && !pound_stopped(stop); j++) {
+		row->run(solver, &tasks[j], &results[j], stop);
 		results[j].energy_residual = NAN; // only the march keeps the balance
 	}
 }

@@ -17,12 +17,12 @@ void pound_solver_run(const struct pound_solver *solver, const struct pound_marc
 /* fixed.c */
 double pound_fixed_step(double time_step, double step);
 void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result);
+                         struct pound_march_result *result, const atomic_bool *stop);
 void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result);
+                         struct pound_march_result *result, const atomic_bool *stop);
 
 /* adaptive.c */
 void pound_adaptive_run(const struct pound_solver *solver, const struct pound_march_task *task,
-                        struct pound_march_result *result);
+                        struct pound_march_result *result, const atomic_bool *stop);
 
 #endif

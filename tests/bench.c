@@ -98,7 +98,7 @@ static int lanes_widest(void)
 	void *scratch = bench_memory(POUND_MARCH_SCRATCH);
 	int widest = 0;
 	for (int w = 0; w < 3 && widest == 0; w++)
-		widest = pound_march_lanes(widths[w], NULL, NULL, 0, scratch) ? widths[w] : 0;
+		widest = pound_march_lanes(widths[w], NULL, NULL, 0, scratch, NULL) ? widths[w] : 0;
 	free(scratch);
 	return widest;
 }

@@ -60,7 +60,7 @@ static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
 static void batch_run(void *of)
 {
 	const struct batch *batch = of;
-	pound_march_lanes(batch->lanes, batch->tasks, batch->results, batch->n, scratch);
+	pound_march_lanes(batch->lanes, batch->tasks, batch->results, batch->n, scratch, NULL);
 }
 
 static double batch_contacts(const struct batch *batch)
@@ -270,7 +270,7 @@ static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 		    {"more for a contact", (with->seconds - without->seconds) / contacts,
 		     (jobs[0].seconds - jobs[1].seconds) / contacts},
 		};
-		bool runs = pound_march_lanes(widths[w], NULL, NULL, 0, scratch);
+		bool runs = pound_march_lanes(widths[w], NULL, NULL, 0, scratch, NULL);
 		for (size_t r = 0; r < sizeof rows / sizeof rows[0] && runs; r++)
 			bench_print(
 			    (struct bench_row){.what = bench_text("%d lane%s: %s", widths[w], w ? "s" : "", rows[r].what),

@@ -210,6 +210,20 @@ void specimen_textbook(struct specimen *specimen, int t)
 		a[i] = -force / mass * sin(pi * i / 6);
 }
 
+void specimen_bouncing(struct specimen *specimen)
+{
+	enum { SAMPLES = 2000000 };
+	specimen_init(specimen);
+	struct pound_scene *scene = &specimen->study.scene;
+	scene->oscillators[0].damping_ratio = 0;
+	scene->oscillators[1].rigid_wall = true;
+	scene->contact.stiffness_ratio = 1e10;
+	scene->contact.restitution = 1;
+	double *a = specimen_record(specimen, 0.01, SAMPLES);
+	for (int t = 0; t < SAMPLES; t++)
+		a[t] = -1;
+}
+
 struct pound_march_task specimen_impact(double restitution, bool tension, int n_samples)
 {
 	static const double still[1000];

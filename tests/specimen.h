@@ -49,6 +49,10 @@ enum { SPECIMEN_TEXTBOOK = 10 };
 void specimen_textbook(struct specimen *specimen, int t);
 extern const double specimen_textbook_u[SPECIMEN_TEXTBOOK];
 
+/* A body that falls on a wall as a ball without losses on the ground, and bounces a thousand times in each of two million
+ * samples: whoever follows it does so for hours. */
+void specimen_bouncing(struct specimen *specimen);
+
 /* Two free masses, m1 = 1 kg and m2 = 2 kg, that meet at 1.5 m/s after 10 cm, above a ground that rests for that many samples,
  * 0.01 s apart and 1000 at most. */
 struct pound_march_task specimen_impact(double restitution, bool tension, int n_samples);

@@ -22,7 +22,7 @@ static struct pound_march_result integrate(double tolerance, const struct pound_
 {
 	const struct pound_solver solver = {.tolerance = tolerance};
 	struct pound_march_result result;
-	pound_adaptive_run(&solver, task, &result);
+	pound_adaptive_run(&solver, task, &result, NULL);
 	return result;
 }
 

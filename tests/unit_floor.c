@@ -1,6 +1,9 @@
 /* unit_floor.c - spectra and histories of whole scenes: closed forms, a plain integrator, limits and bits. */
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "tests/check.h"
 #include "tests/riding.h"
@@ -252,7 +255,7 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	assert_true(pound_floor_bytes(1) <= sizeof memory);
 	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
 	struct rows rows = {0};
-	assert_int_equal(pound_floor_history(floor, &task, row_take, &rows), POUND_OK);
+	assert_int_equal(pound_floor_history(floor, &task, NULL, row_take, &rows), POUND_OK);
 	// 1201 samples, seven contacts that begin and end
 	assert_int_equal(rows.n, 1201 + 2 * 14);
 	assert_int_equal(rows.doubled, 14);
@@ -265,6 +268,49 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	specimen_free(&specimen);
 }
 
+static void *stop_soon(void *stop)
+{
+	usleep(100000);
+	atomic_store((atomic_bool *)stop, true);
+	return NULL;
+}
+
+static void nothing_take(void *to, const struct pound_floor_instant *instant)
+{
+	(void)to, (void)instant;
+}
+
+static void a_floor_that_takes_hours_is_stopped(void **state)
+{
+	(void)state;
+	const struct pound_spectrum spectrum = {.n = 1, .min_hz = 1, .max_hz = 1};
+	struct specimen specimen;
+	specimen_bouncing(&specimen);
+	const double stiffness = 4 * pi * pi;
+	const struct pound_march_task task = {
+	    .ground = specimen.record,
+	    .n_samples = specimen.study.scene.excitation.n_record,
+	    .time_step = 0.01,
+	    .bodies = {{.skeleton.stiffness = stiffness, .drive = 1, .followed = true}},
+	    .contact = true,
+	    .contact_stiffness = specimen.study.scene.contact.stiffness_ratio * stiffness,
+	    .tension = true};
+	_Alignas(64) static char memory[1 << 20];
+	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
+	struct pound_floor_answer answer = {.psa = {psa[0], psa[1]}};
+	for (int told = 0; told < 2; told++) {
+		atomic_bool stop = false;
+		const struct pound_floor_ask ask = {.task = &task, .n_drives = 1, .radians = 1.5, .stop = &stop};
+		pthread_t thread;
+		assert_int_equal(pthread_create(&thread, NULL, stop_soon, &stop), 0);
+		assert_int_equal(told ? pound_floor_history(floor, &task, &stop, nothing_take, NULL)
+		                      : pound_floor_spectra(floor, &ask, &answer),
+		                 POUND_STOPPED);
+		pthread_join(thread, NULL);
+	}
+	specimen_free(&specimen);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_range_of_frequencies_is_a_geometric_one),
            cmocka_unit_test(a_floor_that_is_stiff_gives_the_shock_spectrum_of_the_ground),
            cmocka_unit_test(a_plain_integrator_finds_the_same_spectrum),
@@ -272,4 +318,5 @@ CHECK_MAIN(cmocka_unit_test(a_range_of_frequencies_is_a_geometric_one),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
            cmocka_unit_test(a_stiff_oscillator_shows_the_largest_acceleration),
            cmocka_unit_test(without_contact_there_is_no_push),
-           cmocka_unit_test(a_history_has_every_sample_and_both_sides_of_every_event))
+           cmocka_unit_test(a_history_has_every_sample_and_both_sides_of_every_event),
+           cmocka_unit_test(a_floor_that_takes_hours_is_stopped))

@@ -18,7 +18,7 @@ static struct pound_march_result march(const struct pound_march_task *task)
 {
 	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
 	struct pound_march_result result;
-	assert_true(pound_march_lanes(0, task, &result, 1, scratch));
+	assert_true(pound_march_lanes(0, task, &result, 1, scratch, NULL));
 	return result;
 }
 
@@ -193,13 +193,13 @@ static void every_lane_count_gives_the_same_bits(void **state)
 	memset(many, 0, sizeof many);
 	for (uint64_t seed = 1; seed <= 4; seed++) {
 		tasks_fill(tasks, ground, seed);
-		pound_march_portable(tasks, one, TASKS, scratch);
+		pound_march_portable(tasks, one, TASKS, scratch, NULL);
 		int64_t contacts = 0;
 		for (int t = 0; t < TASKS; t++)
 			contacts += one[t].contacts;
 		assert_true(contacts > 5 * TASKS); // or the comparison would not say much
 		for (int lanes = 1; lanes <= 8; lanes++)
-			if (pound_march_lanes(lanes, tasks, many, TASKS, scratch))
+			if (pound_march_lanes(lanes, tasks, many, TASKS, scratch, NULL))
 				assert_memory_equal(one, many, sizeof one);
 	}
 }
@@ -276,10 +276,10 @@ static void whole_samples_find_the_largest_displacements_of_single_steps(void **
 			tasks[t].gap = 1e3;
 			tasks[t].bodies[1].followed = true;
 		}
-		pound_march_lanes(0, tasks, flown, TASKS, scratch);
+		pound_march_lanes(0, tasks, flown, TASKS, scratch, NULL);
 		for (int t = 0; t < TASKS; t++)
 			tasks[t].accounted = true;
-		pound_march_lanes(0, tasks, stepped, TASKS, scratch);
+		pound_march_lanes(0, tasks, stepped, TASKS, scratch, NULL);
 		for (int t = 0; t < TASKS; t++)
 			for (int i = 0; i < 2; i++)
 				check_near(flown[t].displacement_max[i] / stepped[t].displacement_max[i], 1,
@@ -297,7 +297,7 @@ static void the_energy_put_in_is_found_again(void **state)
 	tasks_fill(tasks, ground, 3);
 	for (int t = 0; t < TASKS; t++)
 		tasks[t].accounted = true;
-	pound_march_lanes(0, tasks, results, TASKS, scratch);
+	pound_march_lanes(0, tasks, results, TASKS, scratch, NULL);
 	// about 2e4 steps, each with a rounding error of the energy it moves
 	for (int t = 0; t < TASKS; t++)
 		check_near(results[t].energy_residual, 0, 2e4 * 2.2e-16);
@@ -311,9 +311,9 @@ static void check_alone_as_together(const struct pound_march_task *tasks)
 	memset(together, 0, sizeof together);
 	memset(alone, 0, sizeof alone);
 	for (int t = 0; t < TASKS; t++)
-		pound_march_lanes(0, &tasks[t], &alone[t], 1, scratch);
+		pound_march_lanes(0, &tasks[t], &alone[t], 1, scratch, NULL);
 	for (int lanes = 1; lanes <= 8; lanes++)
-		if (pound_march_lanes(lanes, tasks, together, TASKS, scratch))
+		if (pound_march_lanes(lanes, tasks, together, TASKS, scratch, NULL))
 			assert_memory_equal(together, alone, sizeof alone);
 }
 

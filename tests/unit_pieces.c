@@ -169,7 +169,7 @@ static double period(int law, double mu, double about)
 		double energy = 2 * PI * sqrt(1 + 2 * (mu - 1) + 0.05 * (mu - 1) * (mu - 1));
 		task.bodies[0].v = mu <= 1 ? 2 * PI * mu : energy;
 		struct pound_march_result r;
-		pound_march_lanes(0, &task, &r, 1, scratch);
+		pound_march_lanes(0, &task, &r, 1, scratch, NULL);
 		check_near(r.displacement_max[0], mu, 1e-12);
 		*(r.u[0] < 0 ? &low : &high) = middle;
 	}

@@ -16,7 +16,7 @@ static struct pound_march_result march(const struct pound_march_task *task)
 {
 	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
 	struct pound_march_result result;
-	assert_true(pound_march_lanes(0, task, &result, 1, scratch));
+	assert_true(pound_march_lanes(0, task, &result, 1, scratch, NULL));
 	assert_int_equal(result.status, POUND_OK);
 	return result;
 }

@@ -1,6 +1,8 @@
 /* unit_status.c - runs without a result: what is left out, what is said, and when a study as a whole has failed. */
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "schema/reading.h"
 #include "schema/result_json.h"
@@ -178,8 +180,34 @@ static void a_body_that_never_moves_has_no_demand_but_has_not_failed(void **stat
 	reading_close(r);
 }
 
+static void *stop_soon(void *run)
+{
+	usleep(100000);
+	pound_run_stop(run);
+	return NULL;
+}
+
+static void a_run_that_takes_hours_is_stopped(void **state)
+{
+	(void)state;
+	struct specimen specimen;
+	specimen_bouncing(&specimen);
+	for (int method = 0; pound_solver_name(method); method++) {
+		specimen.study.solver = (struct pound_solver){.method = method, .step = 1e-7, .tolerance = 1e-12};
+		struct pound_run *run = pound_run_create(&specimen.study, 1);
+		assert_non_null(run);
+		pthread_t thread;
+		assert_int_equal(pthread_create(&thread, NULL, stop_soon, run), 0);
+		assert_int_equal(specimen_compute(run), POUND_STOPPED);
+		pthread_join(thread, NULL);
+		pound_run_free(run);
+	}
+	specimen_free(&specimen);
+}
+
 CHECK_MAIN(cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a_result),
            cmocka_unit_test(rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says_so),
            cmocka_unit_test(a_cell_without_a_run_has_no_outputs_and_the_others_have),
            cmocka_unit_test(a_study_without_a_result_ends_with_the_reason_of_its_runs),
-           cmocka_unit_test(a_body_that_never_moves_has_no_demand_but_has_not_failed))
+           cmocka_unit_test(a_body_that_never_moves_has_no_demand_but_has_not_failed),
+           cmocka_unit_test(a_run_that_takes_hours_is_stopped))

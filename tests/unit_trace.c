@@ -38,7 +38,7 @@ static struct pound_march_result march(const struct pound_march_task *task)
 {
 	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
 	struct pound_march_result result;
-	assert_true(pound_march_lanes(0, task, &result, 1, scratch));
+	assert_true(pound_march_lanes(0, task, &result, 1, scratch, NULL));
 	return result;
 }
 
