@@ -79,6 +79,39 @@ static void a_study_can_be_cancelled_at_any_moment(void **state)
 	free(study);
 }
 
+/* Submits a study of one run that takes long, a hundred thousand bounces a second, and waits until it runs. */
+static void submit_long(struct service *service, char id[17])
+{
+	enum { SAMPLES = 300000 };
+	static const char start[] =
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1, "
+	    "\"damping_ratio\": 0}, {\"rigid_wall\": true}], \"contact\": {\"stiffness_ratio\": 1e10, "
+	    "\"restitution\": 1}, \"excitation\": {\"type\": \"record\", \"acceleration_m_s2\": [-1";
+	char *study = malloc(sizeof start + 3 * SAMPLES + 8), *end = stpcpy(study, start);
+	for (int t = 1; t < SAMPLES; t++)
+		end = stpcpy(end, ",-1");
+	strcpy(end, "]}}}");
+	service_submit(service, study, id);
+	free(study);
+	assert_true(service_wait(service, id, "running", 0));
+}
+
+static void one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_end(void **state)
+{
+	struct service *service = *state;
+	char ids[2][17], small_id[17], *small = service_study(2, 1, 1);
+	for (int worker = 0; worker < 2; worker++)
+		submit_long(service, ids[worker]);
+	for (int worker = 0; worker < 2; worker++)
+		assert_int_equal(ask_status(service, "POST", ids[worker], "/cancel"), 200);
+	service_submit(service, small, small_id);
+	assert_true(service_wait(service, small_id, "succeeded", 0));
+	submit_long(service, ids[0]);
+	service_stop(service);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'"), 1);
+	free(small);
+}
+
 static void a_cancelled_study_has_times_in_order_though_the_clock_went_back(void **state)
 {
 	struct service *service = *state;
@@ -185,6 +218,7 @@ static void a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_fre
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_cancelled_at_any_moment),
+           SERVED(one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_end),
            SERVED(a_cancelled_study_has_times_in_order_though_the_clock_went_back),
            SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study),
            SERVED(a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_free))
