@@ -476,12 +476,17 @@ LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 
 /* Lanes in which an edge of its piece may be reached.
  *
+ * A body that creeps goes less far than the rounding of where it is, and has a velocity below any bound of it: whether it
+ * turns on the way decides nothing, and at the end of its piece it may be beyond by as much.
+ *
  * Given    way  sign of its velocity at the start
  */
 LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd way, vm steady, const struct edges *x)
 {
-	vm inside = vless(x->high, high) | vless(low, x->low) | ~vequal(x->direction, vsplat(0));
-	return (inside & ~steady) | vless(x->high, end) | vless(end, x->low) |
+	vd slack = vsplat(16 * DBL_EPSILON) * vabs(end), most = x->high + slack, least = x->low - slack;
+	vm creeps = ~vless(2.0 * slack, high - low);
+	vm inside = vless(most, high) | vless(low, least) | ~vequal(x->direction, vsplat(0));
+	return (inside & ~steady & ~creeps) | vless(most, end) | vless(end, least) |
 	       vless(x->direction * way, vsplat(0));
 }
 
@@ -514,8 +519,11 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge
 	const vd change = pull1 - pull, drift = change * (per_omega / (g->cell * cells));
 	vd a = vabs(vfma(omega, x[3], -drift));
 	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_DRAG], drift, -pull)));
-	// the greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale
-	vd swung = vfma(vsplat(0.4143), vmin(a, c), vmax(a, c)), grown = vabs(change) + vabs(drift), bend, swing;
+	// the root of both squares, in their scale, and no more than its rounding: a contact that swings for ever would else stay
+	// above the largest displacement that it had
+	vd larger = vmax(vmax(a, c), vsplat(DBL_MIN)), lesser = vmin(a, c) / larger;
+	vd swung = vsplat(1 + 4 * DBL_EPSILON) * larger * vsqrt(vfma(lesser, lesser, one));
+	vd grown = vabs(change) + vabs(drift), bend, swing;
 	// once by all that presses, and then by what of it swings: see rest_fill in press.h
 	for (int round = 0; round < 2; round++) {
 		bend = press_row(s->rest[REST_BEND], bound);

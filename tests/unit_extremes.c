@@ -19,7 +19,7 @@ static const double balanced = 1e-10;
 static const double pi = 3.14159265358979323846;
 
 enum law { LINEAR, ELASTOPLASTIC, NONLINEAR_ELASTIC, ORIGIN_ORIENTED };
-enum ground { NOISE, ZEROS, SPIKE, STEP, TO_AND_FRO };
+enum ground { NOISE, ZEROS, SPIKE, STEP, RAMP, TO_AND_FRO };
 
 // clang-format off
 #define FIELD(kind, member) {POUND_FIELD_##kind, offsetof(struct pound_scene, member)}
@@ -124,6 +124,12 @@ static const struct extreme extremes[] = {
 	{"pressed, K/k 1e8", {{WALL, 1}, {K_RATIO, 1e8}}, STEP, .samples = 31, .compared = 11, .contacts = 200},
 	{"pressed, K/k 1e8, eps 0", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 0}}, STEP, .samples = 31, .compared = 11, .contacts = 1},
 	{"pressed, K/k 1e8, eps 1", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 1}}, STEP, .samples = 31, .compared = 3, .contacts = 1},
+	// its velocity dies away to nothing, and nothing can tell whether it still goes its way
+	{"creeping where it yielded, K/k 1e12, eps 0",
+	 {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-15}, {K_RATIO, 1e12}, {EPS, 0}}, STEP, .samples = 20, .step = 0.05, .contacts = 1},
+	// the contact swings for ever, never beyond where it swung first
+	{"pressed ever more, then swinging, K/k 1e10, damping 0, eps 1",
+	 {{WALL, 1}, {DAMPING, 0}, {K_RATIO, 1e10}, {EPS, 1}}, RAMP, .samples = 60, .step = 0.1, .contacts = 1},
 	{"pressed at rest, mass ratio 1e3, frequency ratio 1e3, K/k 1e4", {{K_RATIO, 1e4}, {MASS, 1e3}, {FREQUENCY, 2e3}, {DAMPING_2, 0.999}},
 	 STEP, .samples = 5, .contacts = 1},
 	{"contact at the yield point", {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-3}, {GAP, 1e-3}},
@@ -152,6 +158,7 @@ static void ground_fill(struct specimen *specimen, const struct extreme *row)
 		specimen->record[10] = -1;
 	for (int t = 0; t < samples; t++)
 		specimen->record[t] = amplitude * (row->ground == STEP         ? -1
+		                                   : row->ground == RAMP       ? -fmin(0.1 * t, 1)
 		                                   : row->ground == TO_AND_FRO ? (t % 2 ? 1 : -1)
 		                                                               : specimen->record[t]);
 }
