@@ -167,8 +167,10 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 		lanes_store(&row[PRESS_IMPULSE][j],
 		            vfma(vsplat(x->contact_stiffness * h), area, vsplat(x->contact_damping) * sum[2]));
 		lanes_store(&row[PRESS_ERROR][j], error);
-		if (work)
-			lanes_store(&work->mean[j], mean);
+		if (work) {
+			lanes_store(&work->mean[0][j], mean);
+			lanes_store(&work->mean[1][j], area);
+		}
 	}
 	if (work)
 		loss_fill(work->loss, rates, row[PRESS_SPLIT], sim);
@@ -223,13 +225,14 @@ static void inputs_next(double next[N][N], const double row[][N], bool off)
  */
 static void work_double(struct pound_press_work *work, const double row[][N])
 {
-	double next[N][N], once[N][N], half[N];
+	double next[N][N], once[N][N], half[2][N];
 	inputs_next(next, row, false);
-	for (int j = 0; j < N; j++) {
-		half[j] = work->mean[j];
-		for (int m = 0; m < N; m++)
-			half[j] += work->mean[m] * next[m][j];
-	}
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < N; j++) {
+			half[i][j] = work->mean[i][j];
+			for (int m = 0; m < N; m++)
+				half[i][j] += work->mean[i][m] * next[m][j];
+		}
 	inputs_next(next, row, true);
 	for (int i = 0; i < N; i++)
 		for (int j = 0; j < N; j++) {
@@ -239,7 +242,8 @@ static void work_double(struct pound_press_work *work, const double row[][N])
 		}
 	for (int i = 0; i < N; i++) {
 		double share = i < 6 ? 1 : 0.5; // growths are over the whole length from here on
-		work->mean[i] = 0.5 * share * half[i];
+		for (int m = 0; m < 2; m++)
+			work->mean[m][i] = 0.5 * share * half[m][i];
 		for (int j = 0; j < N; j++) {
 			double again = 0;
 			for (int m = 0; m < N; m++)
@@ -523,11 +527,10 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 	const struct pound_press *press = sim->press_now;
 	const struct pound_press_work *work =
 	    &press->ladder->work[map == &press->cell ? POUND_PRESS_RUNGS : sim->rung];
-	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells, h = r->cell * cells;
+	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells;
 	const int b = sim->base, o = 1 - b;
 	const double mass[2] = {1, r->right_mass};
-	double pressed = row_at(map->row[PRESS_IMPULSE], x) - r->contact_damping * (end[2] - x[2]);
-	double mean = row_at(work->mean, x), mean_p = pressed / (r->contact_stiffness * h);
+	double mean = row_at(work->mean[0], x), mean_p = row_at(work->mean[1], x);
 	const double *split = map->row[PRESS_SPLIT];
 	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];

@@ -60,6 +60,7 @@ struct extreme {
 
 // clang-format off
 static const struct extreme extremes[] = {
+	{"K/k 1e-18, eps 0.05, pressed", {{WALL, 1}, {K_RATIO, 1e-18}, {EPS, 0.05}}, RAMP, .compared = 61, .contacts = 60},
 	{"K/k 1e2", {{K_RATIO, 1e2}}, .compared = 101, .contacts = 60},
 	{"K/k 1e4", {{K_RATIO, 1e4}}, .compared = 101, .contacts = 60},
 	{"K/k 1e6", {{K_RATIO, 1e6}}, .compared = 61, .contacts = 100},
