@@ -22,8 +22,9 @@
 enum {
 	N = POUND_PRESS_INPUTS,
 	MOVED = PRESS_IMPULSE +
-	        1,      /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
-	RUNG_RATIO = 8, /* of a rung to the one below */
+	        1, /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
+	RUNG_RATIO =
+	    8, /* of a rung to the one below, where a sample has no more cells than as many rungs as there may be reach */
 };
 
 /* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
@@ -336,13 +337,16 @@ static void ladder_fill(struct pound_ladder *ladder, const struct pound_press_ma
 static void press_rungs(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
-	double first = x->cells_whole;
-	if (first <= RUNG_RATIO)
+	double first = x->cells_whole, ratio = RUNG_RATIO;
+	if (first <= RUNG_RATIO || first > 0x1p53) // more are not counted one by one
 		return;
-	while (first > RUNG_RATIO)
-		first /= RUNG_RATIO;
+	while (pow(ratio, POUND_PRESS_RUNGS - 1) < first)
+		ratio *= 2;
+	while (first > ratio)
+		first /= ratio;
+	sim->rung_ratio = ratio;
 	for (double cells = 1; cells <= x->cells_whole && sim->rungs < POUND_PRESS_RUNGS;
-	     cells *= cells == 1 ? first : RUNG_RATIO) {
+	     cells *= cells == 1 ? first : ratio) {
 		double h = cells * x->cell;
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			if (h * (x->body[i].damping + sim->task->bodies[i].skeleton.stiffness * h) > 0.5)
@@ -503,7 +507,7 @@ static enum pound_stage press_ready(struct simulation *sim)
 		press_enter(sim);
 	struct pound_press *press = sim->press_now;
 	if (sim->rungs > 0) {
-		sim->x.rounds = RUNG_RATIO; // a rung goes as far as the next longer one
+		sim->x.rounds = sim->rung_ratio; // a rung goes as far as the next longer one
 		sim->pressed = rung_longest(sim, press);
 		if (sim->pressed)
 			return STAGE_REST;

@@ -128,6 +128,8 @@ static const struct extreme extremes[] = {
 	// its velocity dies away to nothing, and nothing can tell whether it still goes its way
 	{"creeping where it yielded, K/k 1e12, eps 0",
 	 {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-15}, {K_RATIO, 1e12}, {EPS, 0}}, STEP, .samples = 20, .step = 0.05, .contacts = 1},
+	// 9e15 cells of contact in a sample
+	{"pressed ever more, K/k 2e33", {{WALL, 1}, {K_RATIO, 2e33}}, RAMP, .samples = 20, .contacts = 1},
 	// the contact swings for ever, never beyond where it swung first
 	{"pressed ever more, then swinging, K/k 1e10, damping 0, eps 1",
 	 {{WALL, 1}, {DAMPING, 0}, {K_RATIO, 1e10}, {EPS, 1}}, RAMP, .samples = 60, .step = 0.1, .contacts = 1},
