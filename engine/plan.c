@@ -560,10 +560,10 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	int before = plan->n_before = plan->march_keys.n;
 	pounding_ask(plan, 0, n_items, &work->pounding_runs, work);
 	marches_run(plan, &solver, before, &done, stop);
-	for (int j = before; j < done; j++)
-		work->contacts += plan->results[j].contacts;
 	if (*stop)
 		return POUND_STOPPED;
+	for (int j = before; j < done; j++)
+		work->contacts += plan->results[j].contacts;
 	for (int a = 0; a < n_asks; a++) {
 		struct pound_response response;
 		const struct ask *ask = &plan->asks[a];

@@ -23,8 +23,9 @@ enum {
 	N = POUND_PRESS_INPUTS,
 	MOVED = PRESS_IMPULSE +
 	        1, /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
-	RUNG_RATIO =
-	    8, /* of a rung to the one below, where a sample has no more cells than as many rungs as there may be reach */
+	RUNG_DOUBLINGS =
+	    3, /* from a rung to the next; more where as many as there may be would not reach a sample */
+	RUNG_RATIO = 1 << RUNG_DOUBLINGS,
 };
 
 /* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
@@ -337,14 +338,15 @@ static void ladder_fill(struct pound_ladder *ladder, const struct pound_press_ma
 static void press_rungs(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
-	double first = x->cells_whole, ratio = RUNG_RATIO;
+	double first = x->cells_whole;
+	int doublings = RUNG_DOUBLINGS;            // from a rung to the next
 	if (first <= RUNG_RATIO || first > 0x1p53) // more are not counted one by one
 		return;
-	while (pow(ratio, POUND_PRESS_RUNGS - 1) < first)
-		ratio *= 2;
+	while (ldexp(1, doublings * (POUND_PRESS_RUNGS - 1)) < first)
+		doublings++;
+	const double ratio = sim->rung_ratio = ldexp(1, doublings);
 	while (first > ratio)
 		first /= ratio;
-	sim->rung_ratio = ratio;
 	for (double cells = 1; cells <= x->cells_whole && sim->rungs < POUND_PRESS_RUNGS;
 	     cells *= cells == 1 ? first : ratio) {
 		double h = cells * x->cell;
