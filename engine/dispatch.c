@@ -52,7 +52,7 @@ typedef void march(const struct pound_march_task *, struct pound_march_result *,
 
 /* Runs tasks at a lane count; 0: the widest there is.
  *
- * Given    stop     looked at all the time: when it is set the results are not to be used; NULL: never
+ * Given    stop     looked at throughout: when it is set the results are not to be used; NULL: never
  * Returns  value    false: this machine has no such lanes, nothing was run
  *          results  one for each task  (n)
  */

@@ -296,6 +296,7 @@ static void course_run(struct course *c, int n_steps, advance *step, const atomi
  *          stop      -         -       looked at between samples; NULL: never
  * Returns  result    -         -       all 0 but the status where it failed
  * Status   POUND_UNSTABLE  a step had no equilibrium, or velocities grew beyond any the ground motion can give
+ *          POUND_STOPPED   stop was set
  *
  * Valid    Any step where nothing switches; a contact needs some 20 steps.
  * Test     unit_fixed: the_error_of_free_vibration_falls_with_the_square_of_the_step
@@ -317,6 +318,7 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_m
  *          stop      -         -       looked at between samples; NULL: never
  * Returns  result    -         -       all 0 but the status where it failed
  * Status   POUND_UNSTABLE  velocities grew beyond any the ground motion can give
+ *          POUND_STOPPED   stop was set
  *
  * Valid    Steps below 2/w of the highest angular frequency w, that of the touching pair.
  * Test     unit_fixed: an_explicit_step_beyond_its_limit_ends_with_a_status

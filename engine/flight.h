@@ -476,8 +476,10 @@ LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 
 /* Lanes in which an edge of its piece may be reached.
  *
- * A body that creeps goes less far than the rounding of where it is, and has a velocity below any bound of it: whether it
- * turns on the way decides nothing, and at the end of its piece it may be beyond by as much.
+ * A body that creeps goes less far than the rounding of where it is: no bound of its velocity could show that it goes on, so that
+ * none is asked for, and at the end of its piece it may be beyond by as much.  Its velocity at the start still counts: who
+ * goes back where a piece only goes on must leave that now, however slowly it goes, or what it goes adds up from rung to
+ * rung.
  *
  * Given    way  sign of its velocity at the start
  */
@@ -519,8 +521,8 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge
 	const vd change = pull1 - pull, drift = change * (per_omega / (g->cell * cells));
 	vd a = vabs(vfma(omega, x[3], -drift));
 	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_DRAG], drift, -pull)));
-	// the root of both squares, in their scale, and no more than its rounding: a contact that swings for ever would else stay
-	// above the largest displacement that it had
+	// the root of both squares, in their scale, raised by no more than its rounding: a coarser bound would stay above the
+	// largest displacement of a contact that swings for ever, and refuse every rung
 	vd larger = vmax(vmax(a, c), vsplat(DBL_MIN)), lesser = vmin(a, c) / larger;
 	vd swung = vsplat(1 + 4 * DBL_EPSILON) * larger * vsqrt(vfma(lesser, lesser, one));
 	vd grown = vabs(change) + vabs(drift), bend, swing;

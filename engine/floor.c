@@ -90,7 +90,8 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
  *
  * Given    ask      the task; an undefined lane count is a fault of the caller
  * Returns  answer   largest w^2 |z| of oscillators at rest at first, while the ground motion lasts
- * Status   POUND_CHATTER, POUND_STOPPED  the motion could not be followed, or was to be no longer: the answer is not to be used
+ * Status   POUND_CHATTER  the motion could not be followed; the answer is not to be used
+ *          POUND_STOPPED  stop was set; nor is it
  *
  * Source   model.md 7 of the project's design pages
  * Test     unit_floor
@@ -143,10 +144,11 @@ static double polynomial_end(const struct pound_polynomial *a, int order)
 
 /* The history of a task's floor.
  *
- * Given    stop    looked at all the time; NULL: never
+ * Given    stop    looked at throughout; NULL: never
  * Returns  take    called in the order of time; at an event twice, for what was before and what is after
- * Status   POUND_CHATTER, POUND_STOPPED  the motion could not be followed to its end, or was not to be
- * Test     unit_floor: a_history_has_every_sample_and_both_sides_of_every_event
+ * Status   POUND_CHATTER  the motion could not be followed to its end
+ *          POUND_STOPPED  stop was set
+ * Test     unit_floor: a_history_has_every_sample_and_both_sides_of_every_event, a_floor_that_takes_hours_is_stopped
  */
 enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_march_task *task,
                                       const atomic_bool *stop, pound_floor_take *take, void *into)

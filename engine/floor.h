@@ -17,7 +17,7 @@ struct pound_floor_ask {
 	int n_drives;            /* 1: the whole acceleration; 2: the contact's part of it too */
 	double radians;          /* an oscillator's longest step, at most 1.5 */
 	int lanes;               /* 0: the widest there are */
-	const atomic_bool *stop; /* looked at all the time; NULL: never */
+	const atomic_bool *stop; /* looked at throughout; NULL: never */
 };
 
 /* what comes out; psa: [m/s2]  (n_frequencies) each */

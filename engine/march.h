@@ -50,7 +50,7 @@ struct pound_march_result {
 
 enum { POUND_MARCH_SCRATCH = 1 << 22 }; /* bytes of work space, 64-byte aligned */
 
-/* Whether the caller wants no more of it: what follows a motion asks this every few microseconds. */
+/* Whether the caller wants no more of it: what follows a motion asks this between batches, stretches or samples. */
 static inline bool pound_stopped(const atomic_bool *stop)
 {
 	return stop && atomic_load_explicit(stop, memory_order_relaxed);

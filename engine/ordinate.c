@@ -153,7 +153,7 @@ static int measures_of(const struct pound_study *study)
  *
  * Given    plan     its asks in the order of their values
  *          values   (asks x measures)  of a failed run the last is NAN
- *          stop     looked at all the time
+ *          stop     looked at throughout
  * Returns  values   with spectra or ordinates; all NAN where a floor could not be followed
  *          work     floors asked and traced, those of checks left out
  * Status   POUND_STOPPED  stop was set
@@ -384,7 +384,8 @@ static void response_leave(void *into, const struct pound_scene *scene, const st
  *
  * Given    run     of a study of spectra
  * Returns  take    called in the order of time
- * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end;  POUND_STOPPED  nor was to be
+ * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ *          POUND_STOPPED             pound_run_stop was called
  * Test     unit_ordinate: a_history_is_that_of_the_signal
  */
 enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into)

@@ -519,7 +519,7 @@ static void pounding_ask(struct pound_plan *plan, int first, int end, struct pou
 /* Runs items [first, first + n) of a campaign, and the checks among them.
  *
  * Given    first, n  items, item = row n_signals + signal
- *          stop      looked at all the time
+ *          stop      looked at throughout
  * Returns  take      called for every item, cell and sample in this order, then for those of the checks
  *          work      what was asked and run is added
  * Status   POUND_STOPPED  stop was set; nothing was handed to take

@@ -170,8 +170,8 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 		            vfma(vsplat(x->contact_stiffness * h), area, vsplat(x->contact_damping) * sum[2]));
 		lanes_store(&row[PRESS_ERROR][j], error);
 		if (work) {
-			lanes_store(&work->mean[0][j], mean);
-			lanes_store(&work->mean[1][j], area);
+			lanes_store(&work->mean_base[j], mean);
+			lanes_store(&work->mean_overlap[j], area);
 		}
 	}
 	if (work)
@@ -227,13 +227,13 @@ static void inputs_next(double next[N][N], const double row[][N], bool off)
  */
 static void work_double(struct pound_press_work *work, const double row[][N])
 {
-	double next[N][N], once[N][N], half[2][N];
+	double next[N][N], once[N][N], half[2][N], *const mean[2] = {work->mean_base, work->mean_overlap};
 	inputs_next(next, row, false);
 	for (int i = 0; i < 2; i++)
 		for (int j = 0; j < N; j++) {
-			half[i][j] = work->mean[i][j];
+			half[i][j] = mean[i][j];
 			for (int m = 0; m < N; m++)
-				half[i][j] += work->mean[i][m] * next[m][j];
+				half[i][j] += mean[i][m] * next[m][j];
 		}
 	inputs_next(next, row, true);
 	for (int i = 0; i < N; i++)
@@ -245,7 +245,7 @@ static void work_double(struct pound_press_work *work, const double row[][N])
 	for (int i = 0; i < N; i++) {
 		double share = i < 6 ? 1 : 0.5; // growths are over the whole length from here on
 		for (int m = 0; m < 2; m++)
-			work->mean[m][i] = 0.5 * share * half[m][i];
+			mean[m][i] = 0.5 * share * half[m][i];
 		for (int j = 0; j < N; j++) {
 			double again = 0;
 			for (int m = 0; m < N; m++)
@@ -536,7 +536,7 @@ static void press_work(struct simulation *sim, const double x[N], const double e
 	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells;
 	const int b = sim->base, o = 1 - b;
 	const double mass[2] = {1, r->right_mass};
-	double mean = row_at(work->mean[0], x), mean_p = row_at(work->mean[1], x);
+	double mean = row_at(work->mean_base, x), mean_p = row_at(work->mean_overlap, x);
 	const double *split = map->row[PRESS_SPLIT];
 	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];

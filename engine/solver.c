@@ -45,7 +45,7 @@ bool pound_solver_takes_step(int row)
  *
  * Given    solver    -       -       row of the solvers, and the setting it takes
  *          tasks     (n)     -       see march.h
- *          stop      -       -       looked at all the time: when it is set the results are not to be used; NULL: never
+ *          stop      -       -       looked at throughout: when it is set the results are not to be used; NULL: never
  * Returns  results   (n)     -       each with a status of its own
  * Memory   scratch: POUND_MARCH_SCRATCH bytes, 64-byte aligned
  * Test     unit_fixed

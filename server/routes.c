@@ -65,7 +65,8 @@ static struct reply refusal(enum store_status status)
 	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key came with another body before"},
 	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
 	    [STORE_CROWDED] = {API_UNAVAILABLE, "as many studies are queued as this server takes"},
-	    [STORE_OWN] = {API_TOO_MANY, "as many studies are queued as this server takes from one token"},
+	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY,
+	                              "as many studies are queued as this server takes from one token"},
 	};
 	return problem(refusals[status].fault, refusals[status].detail);
 }

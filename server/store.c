@@ -279,14 +279,17 @@ static enum store_status keyed(struct database *c, const char *key, const char *
 	return status == STORE_OK ? STORE_REPEATED : status == STORE_NONE ? STORE_CLASH : status;
 }
 
-/* Whether one more study may be queued: who submits at the same time is counted before or after. */
+/* Whether one more study may be queued.  Under the lock of the one who writes: of those who submit at the same time each is counted
+ * by the next. */
 static enum store_status room_of(struct database *c, const struct store_study *study)
 {
 	const struct {
 		int64_t most;
 		const char *client;
 		enum store_status reached;
-	} limits[] = {{study->queue_max, NULL, STORE_CROWDED}, {study->own_max, study->client, STORE_OWN}};
+	} limits[] = {{study->queue_max, NULL, STORE_CROWDED},
+	              {study->own_max, study->client, STORE_CLIENT_CROWDED}};
+	assert(study->own_max == 0 || study->client);
 	for (int i = 0; i < 2; i++) {
 		int64_t n;
 		if (limits[i].most == 0)
@@ -305,7 +308,7 @@ static enum store_status room_of(struct database *c, const struct store_study *s
  * Returns  id        of the study, or of the one that has the key
  * Status   STORE_REPEATED these bytes were submitted with the key before: nothing new is stored
  *          STORE_CLASH    other bytes were
- *          STORE_CROWDED, STORE_OWN: a limit of the study is reached
+ *          STORE_CROWDED, STORE_CLIENT_CROWDED: a limit of the study is reached
  *          STORE_FULL     the disk has no room for new studies
  *          STORE_FAILED   nothing is stored
  * Test     service_resume: accepted_studies_survive_sigkill, unit_store: no_more_are_queued_than_may_be

@@ -12,14 +12,14 @@
 
 enum store_status {
 	STORE_OK,
-	STORE_NONE,     /* no such study or document, or the study is not in the state asked for */
-	STORE_CORRUPT,  /* found, but not what was written */
-	STORE_FAILED,   /* the disk or the memory; logged */
-	STORE_REPEATED, /* an earlier study has that key, and the same bytes */
-	STORE_CLASH,    /* an earlier study has that key, and other bytes */
-	STORE_FULL,     /* the disk has no room for new studies */
-	STORE_CROWDED,  /* as many studies are queued as there may be */
-	STORE_OWN,      /* as many of one client are */
+	STORE_NONE,           /* no such study or document, or the study is not in the state asked for */
+	STORE_CORRUPT,        /* found, but not what was written */
+	STORE_FAILED,         /* the disk or the memory; logged */
+	STORE_REPEATED,       /* an earlier study has that key, and the same bytes */
+	STORE_CLASH,          /* an earlier study has that key, and other bytes */
+	STORE_FULL,           /* the disk has no room for new studies */
+	STORE_CROWDED,        /* as many studies are queued as there may be */
+	STORE_CLIENT_CROWDED, /* as many of its client are as there may be */
 };
 
 struct store;
@@ -28,10 +28,11 @@ struct store;
 struct store_study {
 	const char *kind, *name; /* name: NULL if none */
 	int64_t runs;
-	const char *hash;           /* of its meaning, hex */
-	const char *key;            /* Idempotency-Key it was submitted with, NULL: none */
-	const char *client;         /* name of the token it was submitted with, NULL: there are none */
-	int64_t queue_max, own_max; /* studies that may be queued, and of its client; 0: any number */
+	const char *hash;   /* of its meaning, hex */
+	const char *key;    /* Idempotency-Key it was submitted with, NULL: none */
+	const char *client; /* name of the token it was submitted with, NULL: there are none */
+	int64_t queue_max;  /* studies that may be queued, 0: any number */
+	int64_t own_max;    /* of them its client's, 0: any number */
 };
 typedef void store_study_reader(void *to,
                                 const struct study_status *study); /* of texts that end with the call */

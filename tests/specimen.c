@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "engine/scene.h"
 
@@ -239,6 +240,41 @@ struct pound_march_task specimen_impact(double restitution, bool tension, int n_
 	                                 .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
 	                                 .mass_ratio = ratio,
 	                                 .tension = tension};
+}
+
+static struct {
+	void (*act)(void *);
+	void *of;
+	clockid_t clock; /* of who computes */
+	double from;     /* [s] */
+} later;
+
+static double seconds_of(clockid_t clock)
+{
+	struct timespec now;
+	clock_gettime(clock, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void *later_act(void *argument)
+{
+	const struct timespec pause = {.tv_nsec = 1000000};
+	while (seconds_of(later.clock) < later.from + 0.05)
+		nanosleep(&pause, NULL);
+	later.act(later.of);
+	return argument;
+}
+
+pthread_t specimen_later(void act(void *), void *of)
+{
+	pthread_t thread;
+	later.act = act;
+	later.of = of;
+	int failed = pthread_getcpuclockid(pthread_self(), &later.clock);
+	later.from = seconds_of(later.clock);
+	failed |= pthread_create(&thread, NULL, later_act, NULL);
+	assert(!failed);
+	return thread;
 }
 
 enum pound_status specimen_compute(struct pound_run *run)

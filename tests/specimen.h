@@ -4,6 +4,8 @@
 #ifndef SPECIMEN_H
 #define SPECIMEN_H
 
+#include <pthread.h>
+
 #include "engine/march.h"
 #include "engine/pound.h"
 #include "tests/oracle.h"
@@ -17,6 +19,9 @@ struct specimen {
  * restitution 0.6, and no ground motion yet. */
 void specimen_init(struct specimen *specimen);
 void specimen_free(struct specimen *specimen);
+
+/* Calls act(of) in another thread when this one has computed for a twentieth of a second more.  For pthread_join. */
+pthread_t specimen_later(void act(void *), void *of);
 
 enum { SPECIMEN_LAWS = 4 };
 extern const char *const specimen_laws[SPECIMEN_LAWS]; /* their names: the linear one and the others */
@@ -49,8 +54,8 @@ enum { SPECIMEN_TEXTBOOK = 10 };
 void specimen_textbook(struct specimen *specimen, int t);
 extern const double specimen_textbook_u[SPECIMEN_TEXTBOOK];
 
-/* A body that falls on a wall as a ball without losses on the ground, and bounces a thousand times in each of two million
- * samples: whoever follows it does so for hours. */
+/* A body pressed to a wall that bounces on it without losses, a thousand times in each of two million samples: to follow it
+ * takes hours. */
 void specimen_bouncing(struct specimen *specimen);
 
 /* Two free masses, m1 = 1 kg and m2 = 2 kg, that meet at 1.5 m/s after 10 cm, above a ground that rests for that many samples,

@@ -1,9 +1,7 @@
 /* unit_floor.c - spectra and histories of whole scenes: closed forms, a plain integrator, limits and bits. */
 #include <math.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "tests/check.h"
 #include "tests/riding.h"
@@ -268,11 +266,9 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	specimen_free(&specimen);
 }
 
-static void *stop_soon(void *stop)
+static void stop_set(void *stop)
 {
-	usleep(100000);
 	atomic_store((atomic_bool *)stop, true);
-	return NULL;
 }
 
 static void nothing_take(void *to, const struct pound_floor_instant *instant)
@@ -301,8 +297,7 @@ static void a_floor_that_takes_hours_is_stopped(void **state)
 	for (int told = 0; told < 2; told++) {
 		atomic_bool stop = false;
 		const struct pound_floor_ask ask = {.task = &task, .n_drives = 1, .radians = 1.5, .stop = &stop};
-		pthread_t thread;
-		assert_int_equal(pthread_create(&thread, NULL, stop_soon, &stop), 0);
+		pthread_t thread = specimen_later(stop_set, &stop);
 		assert_int_equal(told ? pound_floor_history(floor, &task, &stop, nothing_take, NULL)
 		                      : pound_floor_spectra(floor, &ask, &answer),
 		                 POUND_STOPPED);

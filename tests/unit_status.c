@@ -1,8 +1,6 @@
 /* unit_status.c - runs without a result: what is left out, what is said, and when a study as a whole has failed. */
 #include <math.h>
-#include <pthread.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "schema/reading.h"
 #include "schema/result_json.h"
@@ -180,11 +178,9 @@ static void a_body_that_never_moves_has_no_demand_but_has_not_failed(void **stat
 	reading_close(r);
 }
 
-static void *stop_soon(void *run)
+static void run_stop(void *run)
 {
-	usleep(100000);
 	pound_run_stop(run);
-	return NULL;
 }
 
 static void a_run_that_takes_hours_is_stopped(void **state)
@@ -196,8 +192,7 @@ static void a_run_that_takes_hours_is_stopped(void **state)
 		specimen.study.solver = (struct pound_solver){.method = method, .step = 1e-7, .tolerance = 1e-12};
 		struct pound_run *run = pound_run_create(&specimen.study, 1);
 		assert_non_null(run);
-		pthread_t thread;
-		assert_int_equal(pthread_create(&thread, NULL, stop_soon, run), 0);
+		pthread_t thread = specimen_later(run_stop, run);
 		assert_int_equal(specimen_compute(run), POUND_STOPPED);
 		pthread_join(thread, NULL);
 		pound_run_free(run);

@@ -237,7 +237,7 @@ enum { SUBMITTERS = 8, EACH = 20, QUEUE_MAX = 50, OWN_MAX = 20 };
 struct submitter {
 	struct store *store;
 	struct store_study study;
-	int answers[STORE_OWN + 1];
+	int answers[STORE_CLIENT_CROWDED + 1];
 };
 
 static void *submit_each(void *argument)
@@ -251,7 +251,7 @@ static void *submit_each(void *argument)
 }
 
 /* How often either of two clients, who submit side by side, had an answer. */
-static void submit_all(struct store *store, int64_t own_max, int answers[2][STORE_OWN + 1])
+static void submit_all(struct store *store, int64_t own_max, int answers[2][STORE_CLIENT_CROWDED + 1])
 {
 	struct submitter submitters[SUBMITTERS];
 	pthread_t threads[SUBMITTERS];
@@ -266,10 +266,10 @@ static void submit_all(struct store *store, int64_t own_max, int answers[2][STOR
 		                                   {0}};
 		assert_int_equal(pthread_create(&threads[i], NULL, submit_each, &submitters[i]), 0);
 	}
-	memset(answers, 0, sizeof(int[2][STORE_OWN + 1]));
+	memset(answers, 0, sizeof(int[2][STORE_CLIENT_CROWDED + 1]));
 	for (int i = 0; i < SUBMITTERS; i++) {
 		pthread_join(threads[i], NULL);
-		for (int status = 0; status <= STORE_OWN; status++)
+		for (int status = 0; status <= STORE_CLIENT_CROWDED; status++)
 			answers[i % 2][status] += submitters[i].answers[status];
 	}
 }
@@ -277,11 +277,11 @@ static void submit_all(struct store *store, int64_t own_max, int answers[2][STOR
 static void no_more_are_queued_than_may_be(void **state)
 {
 	const int tries = SUBMITTERS / 2 * EACH;
-	int answers[2][STORE_OWN + 1];
+	int answers[2][STORE_CLIENT_CROWDED + 1];
 	submit_all(*state, OWN_MAX, answers);
 	for (int client = 0; client < 2; client++) {
 		assert_int_equal(answers[client][STORE_OK], OWN_MAX);
-		assert_int_equal(answers[client][STORE_OWN], tries - OWN_MAX);
+		assert_int_equal(answers[client][STORE_CLIENT_CROWDED], tries - OWN_MAX);
 	}
 	submit_all(*state, 0, answers);
 	const int more = QUEUE_MAX - 2 * OWN_MAX;
