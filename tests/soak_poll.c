@@ -162,7 +162,7 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 {
 	struct service *service = *state;
 	double dearer[ROUNDS], seconds = latency_soak_s() / ROUNDS, answers_s = 0, wall_s = 0;
-	char *study = service_study(60000, 9, 1), id[17];
+	char *study = service_study(200000, 9, 1), id[17];
 	// long ground motions: there is to be work for all the time, however fast a run is
 	char *cycles = strstr(study, "\"cycles\": 10");
 	assert_non_null(cycles);
