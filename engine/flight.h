@@ -476,19 +476,12 @@ LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 
 /* Lanes in which an edge of its piece may be reached.
  *
- * A body that creeps goes less far than the rounding of where it is: no bound of its velocity could show that it goes on, so that
- * none is asked for, and at the end of its piece it may be beyond by as much.  Its velocity at the start still counts: who
- * goes back where a piece only goes on must leave that now, however slowly it goes, or what it goes adds up from rung to
- * rung.
- *
  * Given    way  sign of its velocity at the start
  */
 LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd way, vm steady, const struct edges *x)
 {
-	vd slack = vsplat(16 * DBL_EPSILON) * vabs(end), most = x->high + slack, least = x->low - slack;
-	vm creeps = ~vless(2.0 * slack, high - low);
-	vm inside = vless(most, high) | vless(low, least) | ~vequal(x->direction, vsplat(0));
-	return (inside & ~steady & ~creeps) | vless(most, end) | vless(end, least) |
+	vm inside = vless(x->high, high) | vless(low, x->low) | ~vequal(x->direction, vsplat(0));
+	return (inside & ~steady) | vless(x->high, end) | vless(end, x->low) |
 	       vless(x->direction * way, vsplat(0));
 }
 
