@@ -618,8 +618,8 @@ void pound_run_rows_take(struct pound_run *run, int rows);
 int pound_run_rows(const struct pound_run *run); /* that the reductions are of */
 /* Seconds of CPU time of the calling thread, for the times of a convergence study; before the first block. */
 void pound_run_clock(struct pound_run *run, double (*cpu)(void));
-void pound_run_stop(
-    struct pound_run *run); /* blocks return POUND_STOPPED soon, and reductions that have not begun at once */
+/* Blocks return POUND_STOPPED soon, and reductions that have not begun at once. */
+void pound_run_stop(struct pound_run *run);
 
 /* The sample behind row `row` and design block `sample` (0: A, 1: B, 2 + j: A with column j from B, ...), after all
  * blocks: the input values, and of each output in a cell the ratio of means and the variance of that mean

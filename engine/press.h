@@ -364,7 +364,8 @@ static double row_at(const double row[N], const double x[N])
 	return (row[0] * x[0] + row[1] * x[1] + slow) + (row[2] * x[2] + row[3] * x[3] + force);
 }
 
-/* The greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale. */
+/* The greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale.  Not as close as rest() has
+ * it: this only chooses a rung, for one simulation at a time. */
 static double length_above(double x, double y)
 {
 	double a = fabs(x), b = fabs(y);

@@ -117,8 +117,8 @@ struct pound_peak {
 
 /* what an account of energy needs beside a map of pressed contact */
 struct pound_press_work {
-	double mean_base[POUND_PRESS_INPUTS],
-	    mean_overlap[POUND_PRESS_INPUTS]; /* of displacements: linear forms */
+	double mean_base[POUND_PRESS_INPUTS];    /* of the base's displacement: a linear form */
+	double mean_overlap[POUND_PRESS_INPUTS]; /* of the overlap: another */
 	double
 	    loss[POUND_PRESS_INPUTS]
 	        [POUND_PRESS_INPUTS]; /* in the dashpots: a quadratic form, of the overlap off its equilibrium */
