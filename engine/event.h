@@ -28,7 +28,10 @@ struct terms {
 	vd c[2], k[2];            /* damping and stiffness of each body, with the sign that they act with */
 	vd force[2], increase[2]; /* its forcing at the start of the step, and what that grows by over it */
 	vd spring, dash;          /* of the contact */
-	vm level; /* lanes whose bodies touch without overlap, at one velocity but for a rounding */
+	vm still[2];              /* lanes in which a body has no velocity */
+	// where bodies are level
+	vm level;                /* lanes in which they are, and nothing has decided yet */
+	struct place by_time[2]; /* derivatives n and n + 1 by time */
 };
 
 /* Derivatives 0 and 1: where a step starts. */
@@ -42,12 +45,11 @@ LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool to
 		t.k[i] = -g->body[i].stiffness * dt2;
 		t.force[i] = -vfma(g->body[i].drive, g->ground, g->body[i].offset) * dt2;
 		t.increase[i] = -(g->body[i].drive * g->slope) * dt2 * dt;
+		t.still[i] = vequal(g->v[i], vsplat(0));
 	}
 	if (!paired)
 		return t;
 	t.u[2] = g->p, t.v[2] = g->q * dt;
-	vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
-	t.level = vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
 	if (touching) {
 		t.spring = g->contact_stiffness * dt2;
 		t.dash = g->contact_damping * dt;
@@ -55,25 +57,63 @@ LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool to
 	return t;
 }
 
-/* Bodies that touch without overlap, with velocities that differ by a rounding at most, part or press by the difference of
- * their accelerations.  Where that is no more than the rounding of what these are made of it is nothing, and what differs in
- * their later course decides: else bodies that are alike up to a yield point would part and meet for ever.
- *
- * Given    apart  the difference, times the square of the step
- */
-LANE_SHARED vd apart_settle(const struct lanes *g, vd apart, vm level)
+/* Lanes whose bodies touch without overlap, at one velocity but for a rounding. */
+LANE_INLINE vm bodies_level(const struct lanes *g)
 {
-	vd made = vsplat(0);
-	for (int i = 0; i < 2; i++) {
-		made = made + vabs(g->body[i].damping * g->v[i]) + vabs(g->body[i].stiffness * g->u[i]);
-		made = made + vabs(g->body[i].offset) + vabs(g->body[i].drive * g->ground);
-	}
-	vm nothing = level & vless(vabs(apart), vsplat(4 * DBL_EPSILON) * made * (g->dt * g->dt));
-	return vselect(nothing, vsplat(0), apart);
+	vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
+	return vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
 }
 
-/* From the derivatives n and n + 1 to the next. */
-LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool paired, bool touching)
+/* Bodies that are level part or press by the difference of their accelerations.  Where that is no more than the rounding of
+ * what these are made of it is nothing, and the next derivative decides: else bodies that are all but alike would part and
+ * meet for ever.  This is asked of derivatives by time: those by the share of a step have other roundings in contact than
+ * apart, where steps are of another length.
+ *
+ * Given    apart  the difference of the accelerations' derivative n, scaled to the step
+ * Returns  t      level: lanes in which nothing has decided yet
+ *          value  what is left of it
+ */
+LANE_SHARED vd apart_settle(struct terms *t, const struct lanes *g, vd apart, int n)
+{
+	vd a[2], made = vsplat(0);
+	for (int i = 0; i < 2; i++) {
+		vd damping = g->body[i].damping * t->by_time[i].v, spring = g->body[i].stiffness * t->by_time[i].u;
+		vd drive = vsplat(0), offset = drive;
+		if (n < 2)
+			drive = g->body[i].drive * (n ? g->slope : g->ground);
+		if (n == 0)
+			offset = g->body[i].offset;
+		a[i] = -(damping + spring + (drive + offset));
+		made = made + (vabs(damping) + vabs(spring)) + (vabs(drive) + vabs(offset));
+		t->by_time[i] = (struct place){t->by_time[i].v, a[i]};
+	}
+	t->level &= vless(vabs(a[0] - a[1]), vsplat(4 * DBL_EPSILON) * made);
+	return vselect(t->level, vsplat(0), apart);
+}
+
+/* A body that stands still where its piece ends goes on to the next or back by its acceleration.  Where that is no more than
+ * the rounding of what it is made of it is nothing, and what differs in its later course decides: else each of two pieces,
+ * with a rounding of its own, would send the body to the other for ever.
+ *
+ * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while apart
+ *          still  lanes in which it has no velocity
+ */
+LANE_SHARED vd still_settle(const struct lanes *g, int i, vd b, vd push, vm still)
+{
+	vd u = g->u[i], made = vabs(g->body[i].stiffness * u) + vabs(g->body[i].offset);
+	made = vfma(made + vabs(g->body[i].drive * g->ground), g->dt * g->dt, vabs(push));
+	vm ends =
+	    vequal(u, g->body[i].high) | vequal(u, g->body[i].low) | ~vequal(g->body[i].direction, vsplat(0));
+	vm nothing = still & ends & vless(vabs(b), vsplat(4 * DBL_EPSILON) * made);
+	return vselect(nothing, vsplat(0), b);
+}
+
+/* From the derivatives n and n + 1 to the next.
+ *
+ * Given    level  bodies of a lane are
+ */
+LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool paired, bool touching,
+                            bool level)
 {
 	vd b[2];
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
@@ -85,14 +125,18 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool 
 	vd apart = b[0];
 	if (paired)
 		apart = b[0] - b[1];
-	if (paired && n == 0 && vany(t->level))
-		apart = apart_settle(g, apart, t->level);
+	if (level)
+		apart = apart_settle(t, g, apart, n);
+	vd push = vsplat(0);
 	if (touching) {
-		vd push = vfma(t->dash, t->v[2], t->spring * t->u[2]);
+		push = vfma(t->dash, t->v[2], t->spring * t->u[2]);
 		b[0] = b[0] - push;
 		b[1] = vfma(g->mass_ratio, push, b[1]);
 		apart = vfma(g->both, -push, apart);
 	}
+	for (int i = 0; i < (paired ? 2 : 1); i++)
+		if (n == 0 && vany(t->still[i]))
+			b[i] = still_settle(g, i, b[i], i ? g->mass_ratio * push : push, t->still[i]);
 	for (int j = 0; j < (paired ? 3 : 1); j++) {
 		t->u[j] = t->v[j];
 		t->v[j] = j < 2 ? b[j] : apart;
@@ -239,14 +283,24 @@ LANE_INLINE int bodies_watched(const struct event_lanes *e)
 	return e->paired && (e->edged || e->right) ? 2 : 1;
 }
 
-/* Makes the series of a step, and the bounds of what is looked into. */
-LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, bool paired, bool touching)
+/* Makes the series of a step, and the bounds of what is looked into.
+ *
+ * Given    level  lanes whose bodies are, or NULL: there are none
+ */
+LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, bool paired, bool touching,
+                             const vm *level)
 {
 	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
 	struct terms t = terms_start(g, paired, touching);
 	const int order = touching ? ORDER_TOUCH : ORDER_APART, motions = paired ? 3 : 1;
 	s->order = order;
-	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions); terms_next(&t, g, n, paired, touching);)
+	if (level) {
+		t.level = *level;
+		for (int i = 0; i < 2; i++)
+			t.by_time[i] = (struct place){g->u[i], g->v[i]};
+	}
+	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions);
+	          terms_next(&t, g, n, paired, touching, level != NULL);)
 	// no result depends on this: what is added up is to be read from memory, or gcc keeps the coefficients there twice
 	__asm__ volatile("" ::: "memory");
 	for (int j = 0; j < motions; j++)
@@ -259,22 +313,32 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 
 LANE_SHARED void series_alone(struct series *s, const struct lanes *g)
 {
-	series_make(s, g, 1, false, false);
+	series_make(s, g, 1, false, false, NULL);
 }
 LANE_SHARED void series_apart(struct series *s, const struct lanes *g, int watched)
 {
-	series_make(s, g, watched, true, false);
+	series_make(s, g, watched, true, false, NULL);
 }
 LANE_SHARED void series_touch(struct series *s, const struct lanes *g, int watched)
 {
-	series_make(s, g, watched, true, true);
+	series_make(s, g, watched, true, true, NULL);
+}
+LANE_SHARED void series_level(struct series *s, const struct lanes *g, int watched, bool touching, vm level)
+{
+	if (touching)
+		series_make(s, g, watched, true, true, &level);
+	else
+		series_make(s, g, watched, true, false, &level);
 }
 
 LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
 {
 	int watched = bodies_watched(e);
+	vm level = e->paired ? bodies_level(g) : vmask(0);
 	if (!e->paired)
 		series_alone(s, g);
+	else if (vany(level))
+		series_level(s, g, watched, e->touching, level);
 	else if (e->touching)
 		series_touch(s, g, watched);
 	else
@@ -339,6 +403,11 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	if (accounted)
 		energy_add(g, &s, search.time, e->paired, e->touching);
 	step_end(g, &s, e, search.time, ~vless(one, zero));
+	// a body turns with no velocity, but where it had turned before that was noticed
+	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
+		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);
+		g->v[i] = vselect(vequal(search.event, turn) & vless(zero, search.time), zero, g->v[i]);
+	}
 	vm cut = vequal(search.event, vsplat(EVENT_CUT));
 	g->pace = vselect(cut, vmax(g->pace * vsplat(POUND_STEP_SHORTER), vsplat(POUND_STEP_SHORTEST)),
 	                  vmin(g->pace * vsplat(POUND_STEP_LONGER), one));

@@ -462,6 +462,10 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 	return risk | *edge;
 }
 
+/* What the bounds of a rung make of the roundings of a body that stands, over where it is: a few dozen.  Less than this is no
+ * motion, and none is looked for. */
+static const double REST_ROUNDING = 64 * DBL_EPSILON;
+
 /* Lanes in which a body may have a new largest displacement over many cells.
  *
  * Given    u, end     at both ends
@@ -471,18 +475,25 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 {
 	vd most = vmax(vmax(vabs(u), vabs(end)), top);
-	return vless(most, vfma(vsplat(-16 * DBL_EPSILON), most, vmax(high, -low))) & ~steady;
+	return vless(most, vfma(vsplat(-REST_ROUNDING), most, vmax(high, -low))) & ~steady;
 }
 
 /* Lanes in which an edge of its piece may be reached.
  *
- * Given    way  sign of its velocity at the start
+ * A body that creeps goes less far than the rounding of where it is: no bound of its velocity could show that it goes on, so that
+ * none is asked for, and at the end of its piece it may be beyond by as much.  Its velocity at the start still counts: who
+ * goes back where a piece only goes on must leave that now, however slowly it goes, or what it goes adds up from rung to
+ * rung.
+ *
+ * Given    speed  its velocity at the start, or any multiple of it
  */
-LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd way, vm steady, const struct edges *x)
+LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd speed, vm steady, const struct edges *x)
 {
-	vm inside = vless(x->high, high) | vless(low, x->low) | ~vequal(x->direction, vsplat(0));
-	return (inside & ~steady) | vless(x->high, end) | vless(end, x->low) |
-	       vless(x->direction * way, vsplat(0));
+	vd slack = vsplat(REST_ROUNDING) * vabs(end), most = x->high + slack, least = x->low - slack;
+	vm creeps = ~vless(2.0 * slack, high - low);
+	vm inside = vless(most, high) | vless(low, least) | ~vequal(x->direction, vsplat(0));
+	return (inside & ~steady & ~creeps) | vless(most, end) | vless(end, least) |
+	       vless(x->direction * speed, vsplat(0));
 }
 
 /* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in press.h.
@@ -547,13 +558,13 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge
 		vd u1 = i ? press_other(end[0], end[2], g->side, off) : end[0];
 		vd mid = i ? vfma(share, still, -off) : share * still;
 		// the line that the overlap follows goes along
-		vd more = share * creep, way = vselect(vless(way0 + more, zero), -one, one);
-		vd along = vmin(vmin(way * (way0 + more), way * (way1 + more)), way * (mean + more));
+		vd more = share * creep, speed = way0 + more, way = vselect(vless(speed, zero), -one, one);
+		vd along = vmin(vmin(way * speed, way * (way1 + more)), way * (mean + more));
 		vm steady = vless(vfma(size, hurry, vsplat(1.0265) * error), along);
 		vd least = low + mid - size * ripple, most = high + mid + size * ripple;
 		risk |= rest_peaks(u, u1, least, most, steady, s->at.top[i]);
 		if (edged)
-			*edge |= rest_edges(u1, least, most, way, steady, edges[i]);
+			*edge |= rest_edges(u1, least, most, speed, steady, edges[i]);
 	}
 	press_move(g, s, end, cells, rise);
 	return risk | *edge;

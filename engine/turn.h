@@ -243,9 +243,7 @@ static enum pound_stage simulation_pressed(struct simulation *sim, enum pound_st
 static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
 {
 	struct pound_rows *x = &sim->x;
-	if (edge == POUND_EDGE_TURN)
-		x->v[i] = 0;
-	else
+	if (edge != POUND_EDGE_TURN)
 		x->u[i] = edge == POUND_EDGE_HIGH ? x->body[i].high : x->body[i].low;
 	if (edge == POUND_EDGE_TURN && x->body[i].direction == 0)
 		return; // a turn that was only looked for as a largest displacement

@@ -2,6 +2,7 @@
 #include "tests/specimen.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -178,6 +179,70 @@ void specimen_random(struct specimen *specimen, int number, double time_step, in
 	specimen_noise(specimen, stream, 1, time_step, n);
 	if (number % 3 == 0)
 		specimen->record[0] = 0;
+}
+
+/* What presses at a sample, as a share of the most: it rises, stays, goes to and fro, and is gone at the end. */
+static double pressing(int t, int rise, int from, int period, double share, int n)
+{
+	if (t >= n - 50)
+		return 0;
+	double to_and_fro = t < from ? 0 : abs((t - from + period) % (2 * period) - period) - period;
+	return fmin(1, (double)t / rise) + share * to_and_fro;
+}
+
+static int uniform_of(uint64_t *stream, const int *choices, int n)
+{
+	return choices[(int)specimen_uniform(stream, 0, n)];
+}
+
+void specimen_creeping(struct specimen *specimen, int number, int parts)
+{
+	enum { SAMPLES = 301 };
+	static const int rises[] = {1, 5, 10, 100}, froms[] = {110, 150, 200}, periods[] = {3, 7, 20, 50};
+	uint64_t stream = 2000 + (uint64_t)number;
+	specimen_init(specimen);
+	struct pound_scene *scene = &specimen->study.scene;
+	const char *law = specimen_laws[number % 3 ? 1 + number % 3 : 1];
+	specimen_law(specimen, law, pow(10, specimen_uniform(&stream, -11, -2)));
+	scene->law.hardening_ratio = fmax(0, specimen_uniform(&stream, -0.1, 0.3));
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		scene->oscillators[i].frequency_hz = pow(10, specimen_uniform(&stream, -0.3, i ? 1.5 : 1));
+		scene->oscillators[i].damping_ratio = fmax(0, specimen_uniform(&stream, -0.02, 0.05));
+	}
+	scene->oscillators[1].rigid_wall = specimen_uniform(&stream, 0, 1) < 0.5;
+	scene->oscillators[1].mass = pow(10, specimen_uniform(&stream, -3, 3));
+	scene->contact.stiffness_ratio = pow(10, specimen_uniform(&stream, 3, 9));
+	scene->contact.restitution = fmax(0, specimen_uniform(&stream, -0.5, 0.5));
+	scene->contact.tension = number / 3 % 2;
+	const int rise = uniform_of(&stream, rises, 4), from = uniform_of(&stream, froms, 3);
+	const int period = uniform_of(&stream, periods, 4);
+	const double share = pow(10, specimen_uniform(&stream, -17, -1.5)),
+	             step = specimen_uniform(&stream, 0.005, 0.02);
+	double *a = specimen_record(specimen, step / parts, parts * (SAMPLES - 1) + 1), before = 0;
+	for (int t = 0; t < SAMPLES; t++) {
+		const double next = -pressing(t, rise, from, period, share, SAMPLES);
+		for (int k = 0; k < parts; k++)
+			if (parts * (t - 1) + k + 1 >= 0)
+				a[parts * (t - 1) + k + 1] = before + (next - before) * (k + 1) / parts;
+		before = next;
+	}
+}
+
+void specimen_alike(struct specimen *specimen, int number, int law)
+{
+	uint64_t stream = 3000 + (uint64_t)number;
+	specimen_init(specimen);
+	struct pound_scene *scene = &specimen->study.scene;
+	const double frequency = pow(10, specimen_uniform(&stream, -0.3, 1));
+	const int roundings = 1 + (int)specimen_uniform(&stream, 0, 20);
+	scene->oscillators[0].frequency_hz = frequency;
+	scene->oscillators[1].frequency_hz = frequency * (1 + roundings * DBL_EPSILON);
+	scene->oscillators[1].mass = pow(10, specimen_uniform(&stream, -1, 1));
+	scene->contact.stiffness_ratio = pow(10, specimen_uniform(&stream, 2, 6));
+	scene->contact.restitution = fmin(1, fmax(0, specimen_uniform(&stream, -0.5, 1.5)));
+	scene->contact.tension = number % 2;
+	specimen_law(specimen, specimen_laws[law], law ? pow(10, specimen_uniform(&stream, -4, -2)) : 0);
+	specimen_noise(specimen, stream, 1, 0.01, 1001);
 }
 
 /* Makes the scene and the record those of a reference. */

@@ -48,6 +48,19 @@ double specimen_uniform(uint64_t *stream, double low, double high);
  * that jumps to its first value or rises from 0. */
 void specimen_random(struct specimen *specimen, int number, double time_step, int n);
 
+/* A specimen of its own for every number: a body of a law that yields is pressed on a wall or on another body, creeps where it
+ * has yielded, turns there and goes to and fro by anything from a rounding to a thirtieth, and comes free at the end.
+ *
+ * Given    parts  samples that each of the record's, on which it is straight, are split into
+ */
+void specimen_creeping(struct specimen *specimen, int number, int parts);
+
+/* A specimen of its own for every number: bodies that touch at rest and are alike but for 1 to 20 roundings of a frequency.
+ *
+ * Given    law  of both: a row of specimen_laws
+ */
+void specimen_alike(struct specimen *specimen, int number, int law);
+
 /* A single oscillator under a half sine of force, in samples 0.1 s apart of which there are t behind the first, and its displacement
  * at the last of them, to four digits: Chopra, Dynamics of Structures, example 5.1. */
 enum { SPECIMEN_TEXTBOOK = 10 };

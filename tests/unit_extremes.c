@@ -125,6 +125,9 @@ static const struct extreme extremes[] = {
 	{"pressed, K/k 1e8", {{WALL, 1}, {K_RATIO, 1e8}}, STEP, .samples = 31, .compared = 11, .contacts = 200},
 	{"pressed, K/k 1e8, eps 0", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 0}}, STEP, .samples = 31, .compared = 11, .contacts = 1},
 	{"pressed, K/k 1e8, eps 1", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 1}}, STEP, .samples = 31, .compared = 3, .contacts = 1},
+	// its velocity dies away to nothing, and no bound of it can tell that it still goes its way
+	{"creeping where it yielded, K/k 1e12, eps 0",
+	 {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-15}, {K_RATIO, 1e12}, {EPS, 0}}, STEP, .samples = 20, .step = 0.05, .contacts = 1},
 	// 9e15 cells of contact in a sample
 	{"pressed ever more, K/k 2e33", {{WALL, 1}, {K_RATIO, 2e33}}, RAMP, .samples = 20, .contacts = 1},
 	// the contact swings for ever, never beyond where it swung first
@@ -421,6 +424,45 @@ static void bodies_alike_until_one_yields_meet_a_bounded_number_of_times(void **
 			}
 }
 
+/* A body that creeps goes less far than the rounding of where it is.  What it does must not hang on how often it is looked at:
+ * the same ground in half the samples is followed by other maps, in other steps. */
+static void bodies_that_creep_where_they_yielded_turn_there(void **state)
+{
+	(void)state;
+	for (int number = 0; number < 600; number++) {
+		struct pound_response response[2];
+		for (int k = 0; k < 2; k++) {
+			struct specimen specimen;
+			specimen_creeping(&specimen, number, 1 + k);
+			struct run r = run(&specimen);
+			if (r.status != POUND_OK)
+				fail_msg("creeping %d in %d parts ends with: %s", number, 1 + k, pound_status_text(r.status));
+			check_near(r.response.energy_residual, 0, balanced);
+			response[k] = r.response;
+			specimen_free(&specimen);
+		}
+		// impacts make more of a rounding, by orders of magnitude, not of this
+		const struct pound_response *r = response;
+		check_near(r[1].impulse_max, r[0].impulse_max, 1e-10 * r[0].impulse_max);
+		check_near(r[1].displacement_max_1, r[0].displacement_max_1, 1e-10 * r[0].displacement_max_1);
+	}
+}
+
+/* What parts such bodies is below the rounding of what moves them, in contact and apart alike. */
+static void bodies_alike_but_for_roundings_part_or_press_and_do_not_chatter(void **state)
+{
+	(void)state;
+	for (int number = 0; number < 400; number++) {
+		struct specimen specimen;
+		specimen_alike(&specimen, number, number % SPECIMEN_LAWS);
+		struct run r = run(&specimen);
+		if (r.status != POUND_OK)
+			fail_msg("alike %d ends with: %s", number, pound_status_text(r.status));
+		check_near(r.response.energy_residual, 0, balanced);
+		specimen_free(&specimen);
+	}
+}
+
 static void events_at_one_instant_are_all_seen(void **state)
 {
 	(void)state;
@@ -560,6 +602,8 @@ static void corners_of_all_extremes_are_finite_and_balanced(void **state)
 
 CHECK_MAIN(cmocka_unit_test(every_extreme_is_finite_balanced_bounded_and_agreed_on),
            cmocka_unit_test(grazing_contacts_fade_with_the_power_three_halves_of_their_depth),
+           cmocka_unit_test(bodies_that_creep_where_they_yielded_turn_there),
+           cmocka_unit_test(bodies_alike_but_for_roundings_part_or_press_and_do_not_chatter),
            cmocka_unit_test(events_at_one_instant_are_all_seen),
            cmocka_unit_test(bodies_alike_until_one_yields_meet_a_bounded_number_of_times),
            cmocka_unit_test(a_motion_that_dies_away_in_silence_is_over),
