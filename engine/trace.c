@@ -82,6 +82,56 @@ static int order_of(double x)
 
 /* ---- series ---- */
 
+/* Whether a body is exactly where its piece ends. */
+static bool at_end(const struct pound_trace *t, int i)
+{
+	const struct pound_piece *piece = &t->at[i].piece;
+	return t->u[i] == piece->high || t->u[i] == piece->low;
+}
+
+/* Whether a body that stands still where its piece ends stays there: its acceleration would send it on to the next piece or
+ * back, but is no more than the rounding of what it is made of.  Then what differs in its later course decides.
+ *
+ * Given    b  acceleration of body i, times the square of the step;  push: of the contact, so too
+ */
+static bool still_stays(const struct pound_trace *t, int i, double b, double push, double dt)
+{
+	const struct pound_march_body *body = &t->task->bodies[i];
+	const struct pound_piece *piece = &t->at[i].piece;
+	double made = fabs(piece->stiffness * t->u[i]) + fabs(piece->offset) + fabs(body->drive * t->ground);
+	return t->v[i] == 0 && (at_end(t, i) || piece->direction != 0) &&
+	       fabs(b) < 4 * DBL_EPSILON * (made * dt * dt + fabs(push));
+}
+
+/* Whether bodies touch without overlap, at one velocity but for a rounding. */
+static bool bodies_level(const struct pound_trace *t)
+{
+	return t->p == 0 && fabs(t->q) <= DBL_EPSILON * (fabs(t->v[0]) + fabs(t->v[1]));
+}
+
+/* Whether they stay so: what parts or presses them is no more than the rounding of what their accelerations are made of, and
+ * the next derivative decides.
+ *
+ * Given    at  derivatives n and n + 1 of each body by time
+ * Returns  at  the next
+ */
+static bool level_stays(const struct pound_trace *t, double at[2][2], int n)
+{
+	double a[2], made = 0;
+	for (int i = 0; i < 2; i++) {
+		const struct pound_march_body *b = &t->task->bodies[i];
+		const struct pound_piece *piece = &t->at[i].piece;
+		double damping = b->damping * at[i][1], spring = piece->stiffness * at[i][0];
+		double drive = n == 0 ? b->drive * t->ground : n == 1 ? b->drive * t->slope : 0;
+		double offset = n == 0 ? piece->offset : 0;
+		a[i] = -(damping + spring + (drive + offset));
+		made += fabs(damping) + fabs(spring) + fabs(drive) + fabs(offset);
+		at[i][0] = at[i][1];
+		at[i][1] = a[i];
+	}
+	return fabs(a[0] - a[1]) < 4 * DBL_EPSILON * made;
+}
+
 static void series_fill(struct series *s, const struct pound_trace *t, double dt, int order)
 {
 	const struct pound_march_task *task = t->task;
@@ -103,12 +153,13 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 	s->p[0] = t->p;
 	s->q[0] = t->q * dt;
 	for (int n = 0; n <= order && !task->contact; n++) { // the left body is alone
+		double b = -(c[0] * s->w[0][n] + k[0] * s->u[0][n]) - (n == 0 ? f0[0] : n == 1 ? f1[0] : 0);
+		bool stays = n == 0 && still_stays(t, 0, b, 0, dt);
 		s->u[0][n + 1] = s->w[0][n] * POUND_SHARE[n];
-		s->w[0][n + 1] = (-(c[0] * s->w[0][n] + k[0] * s->u[0][n]) - (n == 0   ? f0[0]
-		                                                              : n == 1 ? f1[0]
-		                                                                       : 0)) *
-		                 POUND_SHARE[n];
+		s->w[0][n + 1] = stays ? 0 : b * POUND_SHARE[n];
 	}
+	bool level = bodies_level(t);
+	double by_time[2][2] = {{t->u[0], t->v[0]}, {t->u[1], t->v[1]}};
 	for (int n = 0; n <= order && task->contact; n++) {
 		double share = POUND_SHARE[n], b[2];
 		double push = spring * s->p[n] + dash * s->q[n];
@@ -116,10 +167,21 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 			b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n == 0 ? f0[i] : n == 1 ? f1[i] : 0);
 			s->u[i][n + 1] = s->w[i][n] * share;
 		}
-		s->w[0][n + 1] = (b[0] - push) * share;
-		s->w[1][n + 1] = (b[1] + task->mass_ratio * push) * share;
+		double apart = b[0] - b[1] - (1 + task->mass_ratio) * push;
+		b[0] -= push;
+		b[1] += task->mass_ratio * push;
+		for (int i = 0; i < 2 && n == 0; i++)
+			if (still_stays(t, i, b[i], push * (i ? task->mass_ratio : 1), dt)) {
+				b[i] = 0;
+				apart = b[0] - b[1];
+			}
+		level = level && level_stays(t, by_time, n);
+		if (level)
+			apart = 0;
+		s->w[0][n + 1] = b[0] * share;
+		s->w[1][n + 1] = b[1] * share;
 		s->p[n + 1] = s->q[n] * share;
-		s->q[n + 1] = (b[0] - b[1] - (1 + task->mass_ratio) * push) * share;
+		s->q[n + 1] = apart * share;
 	}
 }
 
@@ -171,7 +233,7 @@ static bool series_settle(struct series *s, const struct pound_trace *t, double 
 	const double spring = both * task->contact_stiffness * dt2, dash = both * task->contact_damping * dt;
 	const double w0 = (task->mass_ratio * t->u[0] + t->u[1]) / both;
 	const double rate0 = (task->mass_ratio * t->v[0] + t->v[1]) / both * dt;
-	double c[2], k[2], f[2][2], apart[N + 1], last = -1;
+	double c[2], k[2], f[2][2], apart[N + 1], last = 0;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_march_body *b = &task->bodies[i];
 		const struct pound_piece *piece = &t->at[i].piece;
@@ -185,7 +247,8 @@ static bool series_settle(struct series *s, const struct pound_trace *t, double 
 	for (int n = 0; n <= N + 1; n++)
 		s->p[n] = s->q[n] = 0;
 	s->p[0] = t->p;
-	for (int round = 0; round < SETTLED_ROUNDS && s->p[0] != last; round++) {
+	// the first round has the bodies go along with an overlap that stays: what it finds takes another to reach them
+	for (int round = 0; round < SETTLED_ROUNDS && (round < 2 || s->p[0] != last); round++) {
 		double w = w0, rate = rate0;
 		last = s->p[0];
 		for (int n = 0; n <= order; n++) {
@@ -204,8 +267,13 @@ static bool series_settle(struct series *s, const struct pound_trace *t, double 
 			s->p[n] = (apart[n] - dash * s->q[n] - (n + 1) * s->q[n + 1]) / spring;
 		}
 	}
+	// a body that is where its piece ends is to stay there, or a rounding would send it on
+	for (int i = 0; i < 2; i++)
+		if (at_end(t, i))
+			s->u[i][0] = t->u[i];
 	double swing = fabs(t->p - s->p[0]) * spring, hurry = fabs(t->q * dt - s->q[0]) * sqrt(spring);
-	return swing + hurry <= NOTHING_BESIDE * (pull * dt2);
+	bool pressed = s->p[0] > 0; // or they are about to part
+	return pressed && swing + hurry <= NOTHING_BESIDE * (pull * dt2);
 }
 
 /* ---- first roots ---- */
@@ -227,13 +295,23 @@ static int root_first(const double *g, int order, double limit, double *t)
 		*t = 0;
 		return g[0] > 0 ? CONTACT : NOTHING;
 	}
-	double top = g[0], curved = 0, d[N + 1];
+	double top = g[0], curved = 0, d[N + 1] = {0};
 	for (int n = 1; n <= order; n++) {
 		top += g[n] > 0 ? g[n] : 0;
 		d[n - 1] = n * g[n];
 	}
 	if (top < 0)
 		return NOTHING;
+	double raised[N + 1], large = 0;
+	for (int n = 0; n <= order; n++)
+		large = fmax(large, fabs(g[n]));
+	if (large < 0x1p-400) { // squares are taken: what would vanish in them is raised by a power of two
+		for (int n = 0; n <= order; n++) {
+			raised[n] = g[n] * 0x1p600;
+			d[n] *= 0x1p600;
+		}
+		g = raised;
+	}
 	for (int n = order; n > 2; n--)
 		curved += (double)n * (n - 1) * fabs(g[n]);
 	double second = order > 1 ? 2 * g[2] : 0, bend = fmax(0, second + curved);

@@ -118,6 +118,41 @@ static void a_contact_that_has_settled_is_followed_by_whole_samples(void **state
 	}
 }
 
+/* A contact that has settled takes its bodies along, to the last rounding: else they turn where they do not. */
+static void a_body_that_creeps_where_it_yielded_moves_as_in_the_march(void **state)
+{
+	(void)state;
+	for (int number = 0; number < 600; number++) {
+		struct specimen specimen;
+		specimen_creeping(&specimen, number, 1);
+		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_march_result r = march(&task);
+		const struct ended e = trace_to_end(&task);
+		if (e.trace.status != POUND_OK)
+			fail_msg("creeping %d ends with: %s", number, pound_status_text(e.trace.status));
+		check_near(e.trace.impulse_max, r.impulse_max, 1e-9 * r.impulse_max);
+		specimen_free(&specimen);
+	}
+}
+
+/* They go the same way but for roundings, and whether they touch the while is one of these. */
+static void linear_bodies_alike_but_for_roundings_move_as_in_the_march(void **state)
+{
+	(void)state;
+	for (int number = 0; number < 200; number++) {
+		struct specimen specimen;
+		specimen_alike(&specimen, number, 0);
+		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_march_result r = march(&task);
+		const struct ended e = trace_to_end(&task);
+		assert_int_equal(r.status, POUND_OK);
+		assert_int_equal(e.trace.status, POUND_OK);
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			check_near(e.trace.u[i], r.u[i], 1e-12 * r.displacement_max[i]); // 10 s of roundings
+		specimen_free(&specimen);
+	}
+}
+
 static void pieces_follow_each_other_without_holes(void **state)
 {
 	(void)state;
@@ -204,6 +239,8 @@ static void terms_end_in_rounding(void **state)
 CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impacts_come_out_to_their_digits),
            cmocka_unit_test(any_scene_moves_as_in_the_march),
            cmocka_unit_test(a_contact_that_has_settled_is_followed_by_whole_samples),
+           cmocka_unit_test(a_body_that_creeps_where_it_yielded_moves_as_in_the_march),
+           cmocka_unit_test(linear_bodies_alike_but_for_roundings_move_as_in_the_march),
            cmocka_unit_test(pieces_follow_each_other_without_holes),
            cmocka_unit_test(the_acceleration_is_that_of_the_motion),
            cmocka_unit_test(a_floor_without_contact_is_all_flight),
