@@ -157,7 +157,10 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	bool written = file && fwrite(bytes, 1, n, file) == n;
 	written = file && fclose(file) == 0 && written;
 	if (!written)
-		command_complain("cannot write '%s': %s", path, bytes ? strerror(errno) : "out of memory");
+		command_complain("cannot write '%s': %s", path,
+		                 bytes         ? strerror(errno)
+		                 : interrupted ? pound_status_text(POUND_STOPPED)
+		                               : pound_status_text(POUND_NOMEM));
 	free(bytes);
 	return written ? OUTCOME_OK : OUTCOME_FAILED;
 }

@@ -164,7 +164,7 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 {
 	int n_items, n_asks = pound_plan_asks(plan, &n_items), n = measures_of(study);
 	memset(o->known, 0, sizeof(int) * (size_t)o->n_tasks);
-	for (int a = 0; a < n_asks && !*stop; a++, values += n) {
+	for (int a = 0; a < n_asks && !pound_stopped(stop); a++, values += n) {
 		const struct pound_plan_floor floor = pound_plan_floor(plan, a);
 		double radians = a < n_items ? RADIANS : RADIANS_CHECK;
 		assert(floor.march < o->n_tasks);
@@ -182,7 +182,7 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		for (int j = 0; j < n && status; j++)
 			values[j] = NAN;
 	}
-	return *stop ? POUND_STOPPED : POUND_OK;
+	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
 }
 
 /* ---- over the signals ---- */

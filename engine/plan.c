@@ -547,20 +547,20 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++)
 		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
-	for (int stage = 0; stage < stages && !*stop; stage++) {
+	for (int stage = 0; stage < stages && !pound_stopped(stop); stage++) {
 		// the checks, which take longer, start first, so that no lane waits for them at the end
 		stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
 		int checks_end = plan->march_keys.n;
 		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
 		marches_run(plan, &solver, checks_end, &done, stop);
 	}
-	if (*stop)
+	if (pound_stopped(stop))
 		return POUND_STOPPED;
 	pounding_ask(plan, n_items, n_asks, &work->checks, &of_checks);
 	int before = plan->n_before = plan->march_keys.n;
 	pounding_ask(plan, 0, n_items, &work->pounding_runs, work);
 	marches_run(plan, &solver, before, &done, stop);
-	if (*stop)
+	if (pound_stopped(stop))
 		return POUND_STOPPED;
 	for (int j = before; j < done; j++)
 		work->contacts += plan->results[j].contacts;
@@ -584,7 +584,7 @@ enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct 
 	assert(sample >= 1 && sample < task.n_samples);
 	task.n_samples = sample + 1;
 	pound_solver_run(solver, &task, &result, 1, plan->scratch, stop);
-	if (*stop)
+	if (pound_stopped(stop))
 		return POUND_STOPPED;
 	*u = ldexp(result.u[0], plan->motions[ask->motion].exponent);
 	return result.status;

@@ -328,7 +328,7 @@ static double run_time(const struct pound_run *run, struct pound_plan *plan,
 	do {
 		n += pound_plan_repeat(plan, solver, &run->stop);
 		now = run->cpu();
-	} while (now - start < CLOCK_LEAST && n > 0 && !run->stop);
+	} while (now - start < CLOCK_LEAST && n > 0 && !pound_stopped(&run->stop));
 	return n > 0 ? (now - start) / n : NAN;
 }
 
@@ -346,7 +346,7 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_p
 	double cpu = run_time(run, plan, &solver);
 	for (int item = 0; item < n; item++)
 		runs[item].cpu = cpu;
-	return atomic_load(&run->stop) ? POUND_STOPPED : POUND_OK;
+	return pound_stopped(&run->stop) ? POUND_STOPPED : POUND_OK;
 }
 
 /* Computes a block into its slice of the values.
@@ -543,7 +543,7 @@ static enum pound_status nothing_left(const struct pound_run *run)
 enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker)
 {
 	int n_outputs = run->campaign.study->n_outputs;
-	if (atomic_load(&run->stop))
+	if (pound_stopped(&run->stop))
 		return POUND_STOPPED;
 	enum pound_status status = reduction == 0 ? nothing_left(run) : POUND_OK;
 	if (status)

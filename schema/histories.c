@@ -50,21 +50,23 @@ static void record_add(void *into, int signal, const struct pound_instant *insta
 	rows->n++;
 }
 
-/* Every signal's history; of one that cannot be followed to its end there is what there is. */
+/* Every signal's history; of one that cannot be followed to its end there is what there is, and of a run that is stopped
+ * nothing at all. */
 static void rows_fill(const struct pound_study *study, struct pound_run *run, pound_run_take *take,
                       struct rows *rows)
 {
 	for (int signal = 0; signal < study->scene.excitation.signals; signal++)
-		pound_run_history(run, signal, take, rows);
+		if (pound_run_history(run, signal, take, rows) == POUND_STOPPED)
+			rows->w.failed = true;
 }
 
 /* Histories as CSV.
  *
  * Given    study, run  -         -       a study of spectra; blocks need not be run
- * Returns  value       (length)  -       NULL: out of memory
+ * Returns  value       (length)  -       NULL: out of memory, or the run is stopped
  * Memory   allocates; the caller frees
  *
- * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event
+ * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event, a_run_that_is_stopped_leaves_no_file
  */
 char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length)
 {

@@ -56,7 +56,7 @@ static const char *const statement_text[] = {
 	              "FROM document WHERE study = ?1 AND name = ?2",
 	[BLOCKS]   = "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "
 	              "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number",
-	[COUNT]    = "SELECT count(*) FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2)",
+	[COUNT]    = "SELECT count(*) FROM (SELECT 1 FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2) LIMIT ?3)",
 	[BEGIN]    = "BEGIN IMMEDIATE",
 	[COMMIT]   = "COMMIT",
 	[ROLLBACK] = "ROLLBACK",
@@ -294,7 +294,7 @@ static enum store_status room_of(struct database *c, const struct store_study *s
 		int64_t n;
 		if (limits[i].most == 0)
 			continue;
-		if (run(c, bound(c, COUNT, "tt", "queued", limits[i].client), &n) != STORE_OK)
+		if (run(c, bound(c, COUNT, "tti", "queued", limits[i].client, limits[i].most), &n) != STORE_OK)
 			return STORE_FAILED;
 		if (n >= limits[i].most)
 			return limits[i].reached;
@@ -410,7 +410,7 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 enum store_status store_count(struct store *store, const char *status, int64_t *n)
 {
 	struct database *c = reader(store);
-	return released(c, run(c, bound(c, COUNT, "tt", status, NULL), n));
+	return released(c, run(c, bound(c, COUNT, "tti", status, NULL, INT64_C(-1)), n));
 }
 
 /* Whether studies can be stored: STORE_FULL when the disk has no room for new ones.

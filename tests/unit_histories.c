@@ -94,7 +94,16 @@ static void a_numpy_file_holds_the_same_numbers(void **state)
 	free(npy);
 }
 
+static void a_run_that_is_stopped_leaves_no_file(void **state)
+{
+	(void)state;
+	size_t length;
+	pound_run_stop(run);
+	assert_null(histories_to_csv(study, run, &length));
+	assert_null(histories_to_npy(study, run, &length));
+}
+
 #define WITH_RUN(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 CHECK_MAIN(WITH_RUN(a_line_for_every_sample_and_both_sides_of_every_event),
-           WITH_RUN(a_numpy_file_holds_the_same_numbers))
+           WITH_RUN(a_numpy_file_holds_the_same_numbers), WITH_RUN(a_run_that_is_stopped_leaves_no_file))
