@@ -32,6 +32,7 @@ struct terms {
 	// where bodies are level
 	vm level;                /* lanes in which they are, and nothing has decided yet */
 	struct place by_time[2]; /* derivatives n and n + 1 by time */
+	vd per_time;             /* the step to the power of n + 2 */
 };
 
 /* Derivatives 0 and 1: where a step starts. */
@@ -66,8 +67,8 @@ LANE_INLINE vm bodies_level(const struct lanes *g)
 
 /* Bodies that are level part or press by the difference of their accelerations.  Where that is no more than the rounding of
  * what these are made of it is nothing, and the next derivative decides: else bodies that are all but alike would part and
- * meet for ever.  This is asked of derivatives by time: those by the share of a step have other roundings in contact than
- * apart, where steps are of another length.
+ * meet for ever.  Derivatives by time decide: those by the share of a step have other roundings in contact than apart, where
+ * steps are of another length.
  *
  * Given    apart  the difference of the accelerations' derivative n, scaled to the step
  * Returns  t      level: lanes in which nothing has decided yet
@@ -87,7 +88,11 @@ LANE_SHARED vd apart_settle(struct terms *t, const struct lanes *g, vd apart, in
 		made = made + (vabs(damping) + vabs(spring)) + (vabs(drive) + vabs(offset));
 		t->by_time[i] = (struct place){t->by_time[i].v, a[i]};
 	}
-	t->level &= vless(vabs(a[0] - a[1]), vsplat(4 * DBL_EPSILON) * made);
+	vd apart_by_time = a[0] - a[1];
+	vm was = t->level;
+	t->level &= ~vless(vsplat(4 * DBL_EPSILON) * made, vabs(apart_by_time));
+	apart = vselect(was, apart_by_time * t->per_time, apart);
+	t->per_time = t->per_time * g->dt;
 	return vselect(t->level, vsplat(0), apart);
 }
 
@@ -296,6 +301,7 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 	s->order = order;
 	if (level) {
 		t.level = *level;
+		t.per_time = g->dt * g->dt;
 		for (int i = 0; i < 2; i++)
 			t.by_time[i] = (struct place){g->u[i], g->v[i]};
 	}
@@ -334,7 +340,7 @@ LANE_SHARED void series_level(struct series *s, const struct lanes *g, int watch
 LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
 {
 	int watched = bodies_watched(e);
-	vm level = e->paired ? bodies_level(g) : vmask(0);
+	vm level = e->paired ? bodies_level(g) & e->active : vmask(0);
 	if (!e->paired)
 		series_alone(s, g);
 	else if (vany(level))
@@ -402,7 +408,8 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 		series_cut(&s, event, search.time, e->paired);
 	if (accounted)
 		energy_add(g, &s, search.time, e->paired, e->touching);
-	step_end(g, &s, e, search.time, ~vless(one, zero));
+	// where no time has gone by nothing is to change, not by a rounding
+	step_end(g, &s, e, search.time, vless(zero, search.time));
 	// a body turns with no velocity, but where it had turned before that was noticed
 	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
 		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);

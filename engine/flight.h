@@ -393,7 +393,7 @@ LANE_INLINE vd press_fades(const struct lanes *g, const struct press *s, const v
                            vd end[4])
 {
 	vd own = vfma(s->error.x[2], bound[2], s->error.x[3] * bound[3]);
-	vm over = s->alike & vless(vmax(vabs(end[2]), vabs(end[3]) * g->cell), vsplat(NOTHING));
+	vm over = s->alike & vless(vmax(vabs(end[2]), vabs(end[3]) * g->cell), vsplat(POUND_AT_REST));
 	for (int j = 2; j < 4; j++)
 		end[j] = vselect(over, vsplat(0), end[j]);
 	return vselect(s->alike, own, error);

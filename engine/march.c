@@ -523,6 +523,7 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 	                        .edged = edged,
 	                        .right = b->traits & TRAIT_RIGHT,
 	                        .forced = b->traits & TRAIT_FORCED,
+	                        .active = vmask(batch_lanes(b)),
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0),
 	                        .decided = vmask(0)};

@@ -175,11 +175,6 @@ enum {
 	TRAIT_FAMILY = 64,   /* there are others that go along: what an edge decides is not for all of them */
 };
 
-/* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
- * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
- * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
-static const double NOTHING = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
-
 /* a task that a simulation is the run of as well */
 struct pound_member {
 	const struct pound_march_task *task;

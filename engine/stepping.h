@@ -4,6 +4,13 @@
 #ifndef STEPPING_H
 #define STEPPING_H
 
+#include <float.h>
+
+/* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
+ * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
+ * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
+static const double POUND_AT_REST = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
+
 /* How far the inner control points of the cubic through both ends of an interval h must stay inside a limit, over h^4 max
  * |u''''|, for the motion to stay inside it: it misses the cubic by at most e = 1/24 t^2 (1 - t)^2 <= 1/384 (Hermite), and
  * inner points pulled in by e' lower the cubic by 3 t (1 - t) e' >= e for e' = e(1/2)/(3/4) = 1/288. */

@@ -82,11 +82,11 @@ static int order_of(double x)
 
 /* ---- series ---- */
 
-/* Whether a body is exactly where its piece ends. */
-static bool at_end(const struct pound_trace *t, int i)
+/* Whether a body stands still where its piece ends. */
+static bool stands_at_end(const struct pound_trace *t, int i)
 {
 	const struct pound_piece *piece = &t->at[i].piece;
-	return t->u[i] == piece->high || t->u[i] == piece->low;
+	return t->v[i] == 0 && (piece->direction != 0 || t->u[i] == piece->high || t->u[i] == piece->low);
 }
 
 /* Whether a body that stands still where its piece ends stays there: its acceleration would send it on to the next piece or
@@ -99,8 +99,7 @@ static bool still_stays(const struct pound_trace *t, int i, double b, double pus
 	const struct pound_march_body *body = &t->task->bodies[i];
 	const struct pound_piece *piece = &t->at[i].piece;
 	double made = fabs(piece->stiffness * t->u[i]) + fabs(piece->offset) + fabs(body->drive * t->ground);
-	return t->v[i] == 0 && (at_end(t, i) || piece->direction != 0) &&
-	       fabs(b) < 4 * DBL_EPSILON * (made * dt * dt + fabs(push));
+	return stands_at_end(t, i) && fabs(b) < 4 * DBL_EPSILON * (made * dt * dt + fabs(push));
 }
 
 /* Whether bodies touch without overlap, at one velocity but for a rounding. */
@@ -109,27 +108,39 @@ static bool bodies_level(const struct pound_trace *t)
 	return t->p == 0 && fabs(t->q) <= DBL_EPSILON * (fabs(t->v[0]) + fabs(t->v[1]));
 }
 
-/* Whether they stay so: what parts or presses them is no more than the rounding of what their accelerations are made of, and
- * the next derivative decides.
+/* derivatives by time of bodies that are level */
+struct level {
+	bool is;         /* nothing has decided yet */
+	double at[2][2]; /* derivatives n and n + 1 of each body */
+	double scale;    /* of a derivative to its coefficient: the step to the power of n + 2, over n! */
+};
+
+/* What parts or presses bodies that are level: nothing, where it is no more than the rounding of what their accelerations are
+ * made of; the next derivative decides.
  *
- * Given    at  derivatives n and n + 1 of each body by time
- * Returns  at  the next
+ * Given    apart  the difference of the accelerations' derivative n, scaled to the step
+ * Returns  level  of the next;  value: what is left of it
  */
-static bool level_stays(const struct pound_trace *t, double at[2][2], int n)
+static double apart_settle(struct level *level, const struct pound_trace *t, double apart, double dt, int n)
 {
 	double a[2], made = 0;
+	if (!level->is)
+		return apart;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_march_body *b = &t->task->bodies[i];
 		const struct pound_piece *piece = &t->at[i].piece;
-		double damping = b->damping * at[i][1], spring = piece->stiffness * at[i][0];
+		double damping = b->damping * level->at[i][1], spring = piece->stiffness * level->at[i][0];
 		double drive = n == 0 ? b->drive * t->ground : n == 1 ? b->drive * t->slope : 0;
 		double offset = n == 0 ? piece->offset : 0;
 		a[i] = -(damping + spring + (drive + offset));
 		made += fabs(damping) + fabs(spring) + fabs(drive) + fabs(offset);
-		at[i][0] = at[i][1];
-		at[i][1] = a[i];
+		level->at[i][0] = level->at[i][1];
+		level->at[i][1] = a[i];
 	}
-	return fabs(a[0] - a[1]) < 4 * DBL_EPSILON * made;
+	apart = (a[0] - a[1]) * level->scale;
+	level->is = !(fabs(a[0] - a[1]) > 4 * DBL_EPSILON * made);
+	level->scale *= dt * POUND_SHARE[n];
+	return level->is ? 0 : apart;
 }
 
 static void series_fill(struct series *s, const struct pound_trace *t, double dt, int order)
@@ -158,8 +169,7 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 		s->u[0][n + 1] = s->w[0][n] * POUND_SHARE[n];
 		s->w[0][n + 1] = stays ? 0 : b * POUND_SHARE[n];
 	}
-	bool level = bodies_level(t);
-	double by_time[2][2] = {{t->u[0], t->v[0]}, {t->u[1], t->v[1]}};
+	struct level level = {bodies_level(t), {{t->u[0], t->v[0]}, {t->u[1], t->v[1]}}, dt2};
 	for (int n = 0; n <= order && task->contact; n++) {
 		double share = POUND_SHARE[n], b[2];
 		double push = spring * s->p[n] + dash * s->q[n];
@@ -167,7 +177,7 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 			b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n == 0 ? f0[i] : n == 1 ? f1[i] : 0);
 			s->u[i][n + 1] = s->w[i][n] * share;
 		}
-		double apart = b[0] - b[1] - (1 + task->mass_ratio) * push;
+		double apart = apart_settle(&level, t, b[0] - b[1], dt, n) - (1 + task->mass_ratio) * push;
 		b[0] -= push;
 		b[1] += task->mass_ratio * push;
 		for (int i = 0; i < 2 && n == 0; i++)
@@ -175,9 +185,6 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 				b[i] = 0;
 				apart = b[0] - b[1];
 			}
-		level = level && level_stays(t, by_time, n);
-		if (level)
-			apart = 0;
 		s->w[0][n + 1] = b[0] * share;
 		s->w[1][n + 1] = b[1] * share;
 		s->p[n + 1] = s->q[n] * share;
@@ -267,12 +274,10 @@ static bool series_settle(struct series *s, const struct pound_trace *t, double 
 			s->p[n] = (apart[n] - dash * s->q[n] - (n + 1) * s->q[n + 1]) / spring;
 		}
 	}
-	// a body that is where its piece ends is to stay there, or a rounding would send it on
-	for (int i = 0; i < 2; i++)
-		if (at_end(t, i))
-			s->u[i][0] = t->u[i];
 	double swing = fabs(t->p - s->p[0]) * spring, hurry = fabs(t->q * dt - s->q[0]) * sqrt(spring);
-	bool pressed = s->p[0] > 0; // or they are about to part
+	double force =
+	    s->p[0] + (task->tension ? 0 : task->contact_damping / task->contact_stiffness / dt * s->q[0]);
+	bool pressed = s->p[0] > 0 && force > 0; // or they are about to part
 	return pressed && swing + hurry <= NOTHING_BESIDE * (pull * dt2);
 }
 
@@ -500,6 +505,24 @@ static void body_turn(struct pound_trace *t, int i, enum pound_edge edge)
 	pound_pieces_leave(&t->task->bodies[i].skeleton, &t->at[i], edge, t->u[i]);
 }
 
+/* Brings to rest what is left of next to nothing where the ground is silent: both bodies, or of bodies apart each by itself. */
+static void motion_settle(struct pound_trace *t)
+{
+	bool over[POUND_OSCILLATORS];
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_piece *piece = &t->at[i].piece;
+		over[i] = fabs(t->u[i]) < POUND_AT_REST && fabs(t->v[i]) * t->task->time_step < POUND_AT_REST &&
+		          piece->offset == 0 && piece->low <= 0 && piece->high >= 0;
+	}
+	if (over[0] && over[1] && t->touching)
+		contact_turn(t, CONTACT);
+	if (over[0] && over[1])
+		t->parted = t->fresh = false;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		if (over[i] && !t->touching && !t->parted)
+			t->u[i] = t->v[i] = 0;
+}
+
 /* Enters the interval that ends at sample `next`. */
 static void interval_enter(struct pound_trace *t)
 {
@@ -509,6 +532,8 @@ static void interval_enter(struct pound_trace *t)
 	t->left = t->task->time_step;
 	t->events = 0;
 	t->sampled = true;
+	if (t->ground == 0 && t->slope == 0)
+		motion_settle(t);
 	if (!t->touching && !t->parted) {
 		t->p = fmin(t->u[0] - t->u[1] - t->task->gap, 0); // rounding must not make it overlap
 		t->q = t->v[0] - t->v[1];
@@ -544,7 +569,9 @@ static bool series_next(struct series *s, const struct pound_trace *t)
 {
 	double dt, rate = t->touching ? t->rate_touch : t->rate;
 	bool whole = step_length(t, t->rate, &dt);
-	if (t->touching && rate * dt >= SETTLED_LEAST) {
+	// where a body stands, its two pieces are to see one motion, to the last bit
+	bool stands = stands_at_end(t, 0) || stands_at_end(t, 1);
+	if (t->touching && !stands && rate * dt >= SETTLED_LEAST) {
 		double pull = pull_of(t);
 		if (may_settle(t, pull) && series_settle(s, t, dt, order_of(t->rate * dt), pull))
 			return whole;
@@ -567,9 +594,10 @@ static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 		search_body(&search, &s, &t->at[i].piece, i);
 	t->pace = search.event == CUT ? fmax(t->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
 	                              : fmin(t->pace * POUND_STEP_LONGER, 1);
-	if (search.time > 0)
+	if (search.time > 0) { // or nothing is to change, not by a rounding
 		piece_add(t, stretch, &s, search.time);
-	state_move(t, &s, search.time);
+		state_move(t, &s, search.time);
+	}
 	t->sampled = t->sampled && search.time == 0;
 	t->turned = search.event > CUT || (t->turned && search.time == 0);
 	contact_turn(t, search.event);

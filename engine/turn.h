@@ -160,7 +160,7 @@ static bool simulation_settles(struct simulation *sim)
 		return false;
 	bool over[POUND_OSCILLATORS];
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		over[i] = fabs(x->u[i]) < NOTHING && fabs(x->v[i]) * sim->task->time_step < NOTHING &&
+		over[i] = fabs(x->u[i]) < POUND_AT_REST && fabs(x->v[i]) * sim->task->time_step < POUND_AT_REST &&
 		          x->body[i].offset == 0 && x->body[i].low <= 0 && x->body[i].high >= 0;
 	if (over[0] == over[1] || sim->touching || sim->parted)
 		return over[0] && over[1];

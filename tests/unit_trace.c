@@ -153,6 +153,26 @@ static void linear_bodies_alike_but_for_roundings_move_as_in_the_march(void **st
 	}
 }
 
+/* Bodies that all but stick to each other lose half of their motion in a second: minutes later there is nothing to follow. */
+static void a_motion_that_dies_away_in_silence_is_over(void **state)
+{
+	(void)state;
+	enum { SAMPLES = 33001 };
+	struct specimen specimen;
+	specimen_init(&specimen);
+	specimen.study.scene.oscillators[0].frequency_hz = 2;
+	specimen.study.scene.oscillators[1].frequency_hz = 3.1;
+	specimen.study.scene.contact.stiffness_ratio = 1e8;
+	specimen.study.scene.contact.restitution = 0;
+	specimen_record(&specimen, 0.01, SAMPLES)[10] = -1;
+	const struct pound_march_task task = riding_task(&specimen, true);
+	const struct ended e = trace_to_end(&task);
+	assert_int_equal(e.trace.status, POUND_OK);
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		assert_true(e.trace.u[i] == 0 && e.trace.v[i] == 0);
+	specimen_free(&specimen);
+}
+
 static void pieces_follow_each_other_without_holes(void **state)
 {
 	(void)state;
@@ -241,6 +261,7 @@ CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impac
            cmocka_unit_test(a_contact_that_has_settled_is_followed_by_whole_samples),
            cmocka_unit_test(a_body_that_creeps_where_it_yielded_moves_as_in_the_march),
            cmocka_unit_test(linear_bodies_alike_but_for_roundings_move_as_in_the_march),
+           cmocka_unit_test(a_motion_that_dies_away_in_silence_is_over),
            cmocka_unit_test(pieces_follow_each_other_without_holes),
            cmocka_unit_test(the_acceleration_is_that_of_the_motion),
            cmocka_unit_test(a_floor_without_contact_is_all_flight),
