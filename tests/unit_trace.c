@@ -122,7 +122,9 @@ static void a_contact_that_has_settled_is_followed_by_whole_samples(void **state
 static void a_body_that_creeps_where_it_yielded_moves_as_in_the_march(void **state)
 {
 	(void)state;
-	for (int number = 0; number < 600; number++) {
+	static const int vanishing[] = {2681, 2858}; // the squares of what is left of their velocities do
+	for (int k = 0; k < 602; k++) {
+		const int number = k < 600 ? k : vanishing[k - 600];
 		struct specimen specimen;
 		specimen_creeping(&specimen, number, 1);
 		const struct pound_march_task task = riding_task(&specimen, true);
