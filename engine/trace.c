@@ -102,6 +102,20 @@ static bool still_stays(const struct pound_trace *t, int i, double b, double pus
 	return stands_at_end(t, i) && fabs(b) < 4 * DBL_EPSILON * (made * dt * dt + fabs(push));
 }
 
+/* Takes the accelerations of bodies that stay where they stand, and what of the difference is left.
+ *
+ * Given    b, push, apart  of the bodies and the contact, and the difference, times the square of the step
+ */
+static double still_settle(const struct pound_trace *t, double b[2], double push, double apart, double dt)
+{
+	for (int i = 0; i < 2; i++)
+		if (still_stays(t, i, b[i], push * (i ? t->task->mass_ratio : 1), dt)) {
+			b[i] = 0;
+			apart = b[0] - b[1];
+		}
+	return apart;
+}
+
 /* Whether bodies touch without overlap, at one velocity but for a rounding. */
 static bool bodies_level(const struct pound_trace *t)
 {
@@ -118,14 +132,12 @@ struct level {
 /* What parts or presses bodies that are level: nothing, where it is no more than the rounding of what their accelerations are
  * made of; the next derivative decides.
  *
- * Given    apart  the difference of the accelerations' derivative n, scaled to the step
- * Returns  level  of the next;  value: what is left of it
+ * Returns  level  of the next order
+ *          value  the difference of their accelerations, coefficient n
  */
-static double apart_settle(struct level *level, const struct pound_trace *t, double apart, double dt, int n)
+static double apart_settle(struct level *level, const struct pound_trace *t, double dt, int n)
 {
 	double a[2], made = 0;
-	if (!level->is)
-		return apart;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_march_body *b = &t->task->bodies[i];
 		const struct pound_piece *piece = &t->at[i].piece;
@@ -137,7 +149,7 @@ static double apart_settle(struct level *level, const struct pound_trace *t, dou
 		level->at[i][0] = level->at[i][1];
 		level->at[i][1] = a[i];
 	}
-	apart = (a[0] - a[1]) * level->scale;
+	double apart = (a[0] - a[1]) * level->scale;
 	level->is = !(fabs(a[0] - a[1]) > 4 * DBL_EPSILON * made);
 	level->scale *= dt * POUND_SHARE[n];
 	return level->is ? 0 : apart;
@@ -177,14 +189,12 @@ static void series_fill(struct series *s, const struct pound_trace *t, double dt
 			b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n == 0 ? f0[i] : n == 1 ? f1[i] : 0);
 			s->u[i][n + 1] = s->w[i][n] * share;
 		}
-		double apart = apart_settle(&level, t, b[0] - b[1], dt, n) - (1 + task->mass_ratio) * push;
+		double apart = level.is ? apart_settle(&level, t, dt, n) : b[0] - b[1];
+		apart -= (1 + task->mass_ratio) * push;
 		b[0] -= push;
 		b[1] += task->mass_ratio * push;
-		for (int i = 0; i < 2 && n == 0; i++)
-			if (still_stays(t, i, b[i], push * (i ? task->mass_ratio : 1), dt)) {
-				b[i] = 0;
-				apart = b[0] - b[1];
-			}
+		if (n == 0)
+			apart = still_settle(t, b, push, apart, dt);
 		s->w[0][n + 1] = b[0] * share;
 		s->w[1][n + 1] = b[1] * share;
 		s->p[n + 1] = s->q[n] * share;
