@@ -90,7 +90,7 @@ LANE_SHARED vd apart_settle(struct terms *t, const struct lanes *g, vd apart, in
 	}
 	vd apart_by_time = a[0] - a[1];
 	vm was = t->level;
-	t->level &= ~vless(vsplat(4 * DBL_EPSILON) * made, vabs(apart_by_time));
+	t->level &= ~vless(vsplat(POUND_UNDECIDED) * made, vabs(apart_by_time));
 	apart = vselect(was, apart_by_time * t->per_time, apart);
 	t->per_time = t->per_time * g->dt;
 	return vselect(t->level, vsplat(0), apart);
@@ -109,7 +109,7 @@ LANE_SHARED vd still_settle(const struct lanes *g, int i, vd b, vd push, vm stil
 	made = vfma(made + vabs(g->body[i].drive * g->ground), g->dt * g->dt, vabs(push));
 	vm ends =
 	    vequal(u, g->body[i].high) | vequal(u, g->body[i].low) | ~vequal(g->body[i].direction, vsplat(0));
-	vm nothing = still & ends & vless(vabs(b), vsplat(4 * DBL_EPSILON) * made);
+	vm nothing = still & ends & vless(vabs(b), vsplat(POUND_UNDECIDED) * made);
 	return vselect(nothing, vsplat(0), b);
 }
 
@@ -409,11 +409,12 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	if (accounted)
 		energy_add(g, &s, search.time, e->paired, e->touching);
 	// where no time has gone by nothing is to change, not by a rounding
-	step_end(g, &s, e, search.time, vless(zero, search.time));
+	vm moved = vless(zero, search.time);
+	step_end(g, &s, e, search.time, moved);
 	// a body turns with no velocity, but where it had turned before that was noticed
 	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
 		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);
-		g->v[i] = vselect(vequal(search.event, turn) & vless(zero, search.time), zero, g->v[i]);
+		g->v[i] = vselect(vequal(search.event, turn) & moved, zero, g->v[i]);
 	}
 	vm cut = vequal(search.event, vsplat(EVENT_CUT));
 	g->pace = vselect(cut, vmax(g->pace * vsplat(POUND_STEP_SHORTER), vsplat(POUND_STEP_SHORTEST)),

@@ -11,6 +11,9 @@
  * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
 static const double POUND_AT_REST = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
 
+/* Of what an acceleration is made of: no more than this of it is a rounding, and decides nothing. */
+static const double POUND_UNDECIDED = 4 * DBL_EPSILON;
+
 /* How far the inner control points of the cubic through both ends of an interval h must stay inside a limit, over h^4 max
  * |u''''|, for the motion to stay inside it: it misses the cubic by at most e = 1/24 t^2 (1 - t)^2 <= 1/384 (Hermite), and
  * inner points pulled in by e' lower the cubic by 3 t (1 - t) e' >= e for e' = e(1/2)/(3/4) = 1/288. */

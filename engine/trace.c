@@ -99,7 +99,7 @@ static bool still_stays(const struct pound_trace *t, int i, double b, double pus
 	const struct pound_march_body *body = &t->task->bodies[i];
 	const struct pound_piece *piece = &t->at[i].piece;
 	double made = fabs(piece->stiffness * t->u[i]) + fabs(piece->offset) + fabs(body->drive * t->ground);
-	return stands_at_end(t, i) && fabs(b) < 4 * DBL_EPSILON * (made * dt * dt + fabs(push));
+	return stands_at_end(t, i) && fabs(b) < POUND_UNDECIDED * (made * dt * dt + fabs(push));
 }
 
 /* Takes the accelerations of bodies that stay where they stand, and what of the difference is left.
@@ -150,7 +150,7 @@ static double apart_settle(struct level *level, const struct pound_trace *t, dou
 		level->at[i][1] = a[i];
 	}
 	double apart = (a[0] - a[1]) * level->scale;
-	level->is = !(fabs(a[0] - a[1]) > 4 * DBL_EPSILON * made);
+	level->is = !(fabs(a[0] - a[1]) > POUND_UNDECIDED * made);
 	level->scale *= dt * POUND_SHARE[n];
 	return level->is ? 0 : apart;
 }
@@ -230,6 +230,12 @@ static bool may_settle(const struct pound_trace *t, double pull)
 	return fabs(apart - (1 + task->mass_ratio) * push) <= 4 * slow * slow * pull;
 }
 
+/* What of the overlap's rate its force has beside the overlap [s], where contact ends with the force; 0: with the overlap. */
+static double release_of(const struct pound_march_task *task)
+{
+	return task->tension ? 0 : task->contact_damping / task->contact_stiffness;
+}
+
 /* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing has
  * died away to rounding.
  *
@@ -285,8 +291,7 @@ static bool series_settle(struct series *s, const struct pound_trace *t, double 
 		}
 	}
 	double swing = fabs(t->p - s->p[0]) * spring, hurry = fabs(t->q * dt - s->q[0]) * sqrt(spring);
-	double force =
-	    s->p[0] + (task->tension ? 0 : task->contact_damping / task->contact_stiffness / dt * s->q[0]);
+	double force = s->p[0] + release_of(task) / dt * s->q[0];
 	bool pressed = s->p[0] > 0 && force > 0; // or they are about to part
 	return pressed && swing + hurry <= NOTHING_BESIDE * (pull * dt2);
 }
@@ -385,7 +390,7 @@ static void search_body(struct search *search, const struct series *s, const str
  * dashpot must not pull, when the force does; parted, when that force rises again or the overlap is gone. */
 static void search_contact(struct search *search, const struct series *s, const struct pound_trace *t)
 {
-	double release = t->task->tension ? 0 : t->task->contact_damping / t->task->contact_stiffness;
+	double release = release_of(t->task);
 	double sign = t->touching ? -1 : 1;
 	if (release == 0 || !(t->touching || t->parted)) {
 		search_level(search, s->p, s->order, 0, sign, CONTACT);

@@ -202,8 +202,7 @@ void specimen_creeping(struct specimen *specimen, int number, int parts)
 	uint64_t stream = 2000 + (uint64_t)number;
 	specimen_init(specimen);
 	struct pound_scene *scene = &specimen->study.scene;
-	const char *law = specimen_laws[number % 3 ? 1 + number % 3 : 1];
-	specimen_law(specimen, law, pow(10, specimen_uniform(&stream, -11, -2)));
+	specimen_law(specimen, specimen_laws[1 + number % 3], pow(10, specimen_uniform(&stream, -11, -2)));
 	scene->law.hardening_ratio = fmax(0, specimen_uniform(&stream, -0.1, 0.3));
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		scene->oscillators[i].frequency_hz = pow(10, specimen_uniform(&stream, -0.3, i ? 1.5 : 1));
@@ -218,13 +217,11 @@ void specimen_creeping(struct specimen *specimen, int number, int parts)
 	const int period = uniform_of(&stream, periods, 4);
 	const double share = pow(10, specimen_uniform(&stream, -17, -1.5)),
 	             step = specimen_uniform(&stream, 0.005, 0.02);
-	double *a = specimen_record(specimen, step / parts, parts * (SAMPLES - 1) + 1), before = 0;
-	for (int t = 0; t < SAMPLES; t++) {
-		const double next = -pressing(t, rise, from, period, share, SAMPLES);
-		for (int k = 0; k < parts; k++)
-			if (parts * (t - 1) + k + 1 >= 0)
-				a[parts * (t - 1) + k + 1] = before + (next - before) * (k + 1) / parts;
-		before = next;
+	double *a = specimen_record(specimen, step / parts, parts * (SAMPLES - 1) + 1);
+	for (int k = 0; k <= parts * (SAMPLES - 1); k++) {
+		const double here = pressing(k / parts, rise, from, period, share, SAMPLES);
+		const double next = pressing(k / parts + 1, rise, from, period, share, SAMPLES);
+		a[k] = -(here + (next - here) * (k % parts) / parts);
 	}
 }
 
@@ -314,7 +311,7 @@ static struct {
 	double from;     /* [s] */
 } later;
 
-static double seconds_of(clockid_t clock)
+double specimen_seconds(clockid_t clock)
 {
 	struct timespec now;
 	clock_gettime(clock, &now);
@@ -324,7 +321,7 @@ static double seconds_of(clockid_t clock)
 static void *later_act(void *argument)
 {
 	const struct timespec pause = {.tv_nsec = 1000000};
-	while (seconds_of(later.clock) < later.from + 0.05)
+	while (specimen_seconds(later.clock) < later.from + 0.05)
 		nanosleep(&pause, NULL);
 	later.act(later.of);
 	return argument;
@@ -336,7 +333,7 @@ pthread_t specimen_later(void act(void *), void *of)
 	later.act = act;
 	later.of = of;
 	int failed = pthread_getcpuclockid(pthread_self(), &later.clock);
-	later.from = seconds_of(later.clock);
+	later.from = specimen_seconds(later.clock);
 	failed |= pthread_create(&thread, NULL, later_act, NULL);
 	assert(!failed);
 	return thread;

@@ -5,6 +5,7 @@
 #define SPECIMEN_H
 
 #include <pthread.h>
+#include <time.h>
 
 #include "engine/march.h"
 #include "engine/pound.h"
@@ -19,6 +20,8 @@ struct specimen {
  * restitution 0.6, and no ground motion yet. */
 void specimen_init(struct specimen *specimen);
 void specimen_free(struct specimen *specimen);
+
+double specimen_seconds(clockid_t clock);
 
 /* Calls act(of) in another thread when this one has computed for a twentieth of a second more.  For pthread_join. */
 pthread_t specimen_later(void act(void *), void *of);

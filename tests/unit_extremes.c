@@ -11,7 +11,6 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 enum { CHANGES = 7, SAMPLES = 301 };
 
@@ -189,22 +188,15 @@ struct run {
 	double seconds;
 };
 
-static double cpu_seconds(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static struct run run(const struct specimen *specimen)
 {
-	double from = cpu_seconds();
+	double from = specimen_seconds(CLOCK_THREAD_CPUTIME_ID);
 	struct run r = {0};
 	struct pound_run *run = pound_run_create(&specimen->study, 1);
 	r.status = specimen_compute(run);
 	r.response = pound_run_result(run)->cells[0].signals[0];
 	pound_run_free(run);
-	r.seconds = cpu_seconds() - from;
+	r.seconds = specimen_seconds(CLOCK_THREAD_CPUTIME_ID) - from;
 	return r;
 }
 
