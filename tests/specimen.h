@@ -21,6 +21,7 @@ struct specimen {
 void specimen_init(struct specimen *specimen);
 void specimen_free(struct specimen *specimen);
 
+/* What a clock shows [s]. */
 double specimen_seconds(clockid_t clock);
 
 /* Calls act(of) in another thread when this one has computed for a twentieth of a second more.  For pthread_join. */
