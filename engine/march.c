@@ -24,7 +24,8 @@
 #include "engine/turn.h"
 
 enum {
-	POOL = 64, /* simulations in flight */
+	POOL = 64,        /* simulations in flight */
+	PRESS_ROUNDS = 2, /* moves of pressed contact before it is asked who is left: no branch foresees that */
 };
 
 /* simulations that wait for one kind of step, last come first served */
@@ -387,28 +388,30 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 	vm decided = vmask(0);
 	int few = b->n / 2;
 	do {
-		struct pressed from;
-		if (seldom)
-			from = s.at;
-		vm edge, risk = stage == STAGE_REST ? rest(&g, &s, edged, &edge)
-		                                    : press(&g, &s, edged, right, forced, seldom, &edge);
-		refused |= risk & pressed;
-		if (edged)
-			decided |= edge & pressed;
-		pressed &= ~risk;
-		if (seldom)
-			press_account(b, &g, &from, &s.at, cells, vbits(pressed & accounted));
-		vm sampled = vequal(s.at.cells, zero), last = vequal(s.at.left, zero);
-		ended |= sampled & last & pressed;
-		vm entered = sampled & ~last;
-		if (vany(entered))
+		_Pragma("GCC unroll 1") for (int round = 0; round < PRESS_ROUNDS; round++)
+		{
+			struct pressed from;
+			if (seldom)
+				from = s.at;
+			vm edge, risk = stage == STAGE_REST ? rest(&g, &s, edged, &edge)
+			                                    : press(&g, &s, edged, right, forced, seldom, &edge);
+			refused |= risk & pressed;
+			if (edged)
+				decided |= edge & pressed;
+			pressed &= ~risk;
+			if (seldom)
+				press_account(b, &g, &from, &s.at, cells, vbits(pressed & accounted));
+			vm sampled = vequal(s.at.cells, zero), last = vequal(s.at.left, zero);
+			ended |= sampled & last & pressed;
+			vm entered = sampled & ~last;
 			samples_next(&samples, &s.at, entered, g.cells_whole, share);
-		s.at.rounds = s.at.rounds - one;
-		gone |= vequal(s.at.rounds, zero) & pressed;
-		pressed_keep(&kept, &s.at, pressed);
-		pressed &= ~ended & ~gone;
-		if (stage == STAGE_REST)
-			pressed &= rest_stays(&s, entered);
+			s.at.rounds = s.at.rounds - one;
+			gone |= vequal(s.at.rounds, zero) & pressed;
+			pressed_keep(&kept, &s.at, pressed);
+			pressed &= ~ended & ~gone;
+			if (stage == STAGE_REST)
+				pressed &= rest_stays(&s, entered);
+		}
 	} while (__builtin_popcount(vbits(pressed)) > few);
 	press_store(&kept, &g);
 	g.pressed = vfma(rounds - kept.rounds, cells, g.pressed);
