@@ -176,12 +176,13 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
  *          value   those that still do, with samples left
  *          ahead   what is left in front of each
  */
-LANE_INLINE vm fly_on(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
-                      const struct flyer flyers[2], vm flying, bool edged, bool paired, bool right)
+LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
+                            const struct flyer flyers[2], unsigned on, bool edged, bool paired, bool right)
 {
 	struct stretch s;
 	s.ground[0] = g->ground;
-	unsigned on = vbits(flying), ends = ground_load(work, ahead, on, s.ground + 1);
+	unsigned beyond = vbits(vless(vsplat(ROW), ahead->samples)),
+	         ends = ground_load(work, ahead, on, s.ground + 1);
 	stretch_fly(&s, g, flyers, edged, paired, right);
 	vd flown = vsplat(0), one = vsplat(1);
 	for (int r = 0; r < ROW; r++) {
@@ -202,7 +203,7 @@ LANE_INLINE vm fly_on(struct work *work, const struct batch *b, struct ahead *ah
 	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - flown;
 	ahead->gone += ROW;
-	return vmask(on) & vless(vsplat(0), ahead->samples);
+	return on & beyond;
 }
 
 LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
@@ -232,15 +233,15 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 	struct flyer flyers[2] = {flyer_of(&g, 0)};
 	if (paired)
 		flyers[1] = flyer_of(&g, 1);
-	vm flying = vmask(batch_lanes(b));
+	unsigned on = batch_lanes(b);
 	do
-		flying = fly_on(work, b, &ahead, &g, flyers, flying, edged, paired, right);
-	while (__builtin_popcount(vbits(flying)) > b->n / 2);
+		on = fly_on(work, b, &ahead, &g, flyers, on, edged, paired, right);
+	while (__builtin_popcount(on) > b->n / 2);
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++)
 		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
-	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0))), on = vbits(flying) & ~there;
+	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0)));
 	unsigned met = batch_lanes(b) & ~there & ~on,
 	         parting = edged ? met & batch_parting(b, vmask(ahead.edged)) : 0;
 	met &= ~parting;
