@@ -28,8 +28,9 @@ struct part {
 	double step; /* [s] */
 	int terms;   /* of a series without a drive, by the fastest of the group */
 	vd x, damp;  /* w step, 2 xi w step */
-	vd on_z, on_v, on_a,
-	    on_rate; /* |z''''|/288 <= on_z |z| + on_v |v| + on_a A + on_rate A' + A''/288, see part_init */
+	vd on_z, on_v;
+	vd on_drive
+	    [3]; /* |z''''|/288 <= on_z |z| + on_v |v| + on_drive (A, A', A''), of the piece: see part_init */
 };
 
 /* the maps of one part of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
@@ -57,6 +58,8 @@ struct scratch {
 	double integral[POUND_TRACE_PIECES][POUND_DRIVES][INTEGRALS]; /* of the pieces that have no map */
 };
 
+static_assert(sizeof POUND_TERMS_REACH == (TERMS + 1) * sizeof(double) && (TERMS + 1) % W == 0,
+              "whole vectors");
 static_assert(sizeof(struct scratch) <= POUND_SPECTRUM_SCRATCH, "the work space is too small");
 
 static int larger(int a, int b)
@@ -69,20 +72,33 @@ static const double MINUS_SHARE[TERMS + 1] = {
     -1.0 / 9,  -1.0 / 10, -1.0 / 11, -1.0 / 12, -1.0 / 13, -1.0 / 14, -1.0 / 15, -1.0 / 16,
     -1.0 / 17, -1.0 / 18, -1.0 / 19, -1.0 / 20, -1.0 / 21, -1.0 / 22, -1.0 / 23, -1.0 / 24};
 
-/* A part of step h, for oscillators of frequency w.
+/* Terms after which x^n/n! is below rounding, as pound_trace_terms() has them: all are looked at, as no branch foresees where
+ * to stop. */
+LANE_INLINE int terms_of(double x)
+{
+	int n = 0;
+	for (int k = 0; k <= TERMS; k += W)
+		n += __builtin_popcount(vbits(vless(lanes_load(&POUND_TERMS_REACH[k]), vsplat(x))));
+	return n;
+}
+
+/* A part of step h, one of n equal ones of a piece, for oscillators of frequency w.
  *
- * With e = x |z0| + h |v0| + A, x = w h and A, A', A'' bounds of the drive times h^2:  x |z| <= e and |z'| <= e inside, so
+ * With e = x |z0| + h |v0| + A, x = w h and A, A', A'' bounds of the drive times h^2, in the part's time:
+ * x |z| <= e and |z'| <= e inside, so
  *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
  */
-LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, double step)
+LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, double step, int n)
 {
-	struct part p = {.step = step, .terms = pound_trace_terms(omega_max * step)};
+	struct part p = {.step = step, .terms = terms_of(omega_max * step)};
+	const double scale = step * step, share = 1.0 / n;
 	vd x = p.x = omega * step, x2 = x * x, damp = p.damp = x * (2 * damping), both = vfma(damp, damp, x2);
 	vd on_e = vfma(both * x, vsplat(2 * damping + 1), damp * x2) * vsplat(POUND_CUBIC_ERROR);
 	p.on_z = on_e * x;
 	p.on_v = on_e * step;
-	p.on_a = vfma(both, vsplat(POUND_CUBIC_ERROR), on_e);
-	p.on_rate = damp * vsplat(POUND_CUBIC_ERROR);
+	p.on_drive[0] = vfma(both, vsplat(POUND_CUBIC_ERROR), on_e) * vsplat(scale);
+	p.on_drive[1] = damp * vsplat(POUND_CUBIC_ERROR * scale * share);
+	p.on_drive[2] = vsplat(POUND_CUBIC_ERROR * scale * share * share);
 	return p;
 }
 
@@ -133,13 +149,15 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 
 /* Lanes in which |z| may have a new largest value inside a part; ends are taken here.
  *
- * Given    z1, v1   at the end;  bound: of the drive and its derivatives, times step^2, the last over 288
+ * Given    z1, v1   at the end;  bound: of the drive and its derivatives over the piece
  */
 LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, const double bound[3])
 {
 	vd third = vsplat(p->step * (1.0 / 3));
 	vd b1 = vfma(third, s->v, s->z), b2 = vfma(-third, v1, z1);
-	vd error = vfma(p->on_a, vsplat(bound[0]), vfma(p->on_rate, vsplat(bound[1]), vsplat(bound[2])));
+	vd error = p->on_drive[2] * vsplat(bound[2]);
+	for (int k = 1; k >= 0; k--)
+		error = vfma(p->on_drive[k], vsplat(bound[k]), error);
 	error = vfma(p->on_z, vabs(s->z), vfma(p->on_v, vabs(s->v), error));
 	s->top = vmax(s->top, vabs(z1));
 	return vless(s->top, vmax(vabs(b1), vabs(b2)) + error);
@@ -157,8 +175,8 @@ LANE_INLINE vd polished(const struct series *s, const vd *bend, vd t)
 	return vabs(series_at(s->z, s->terms, t));
 }
 
-/* The extrema inside a part, from both roots of the velocity of the cubic through its ends. */
-static void peak_add(const struct series *s, vm risk, vd *top)
+/* The larger of |z| at the extrema inside a part, from both roots of the velocity of the cubic through its ends, and of top. */
+static vd peak_add(const struct series *s, vm risk, vd top)
 {
 	vd zero = vsplat(0), one = vsplat(1), bend[TERMS + 1];
 	for (int n = 0; n < s->terms; n++)
@@ -175,7 +193,7 @@ static void peak_add(const struct series *s, vm risk, vd *top)
 		if (vany(inside))
 			most = vselect(inside, vmax(most, polished(s, bend, vmin(vmax(t[i], zero), one))), most);
 	}
-	*top = vselect(risk, vmax(*top, most), *top);
+	return vselect(risk, vmax(top, most), top);
 }
 
 /* ---- drives ---- */
@@ -195,14 +213,6 @@ static const double *part_drive(const struct pound_polynomial *a, int order, int
 	for (int k = 0; k <= order; k++, power *= share)
 		room[k] *= power;
 	return room;
-}
-
-static void part_bound(const struct pound_polynomial *a, int n, double step, double bound[3])
-{
-	double scale = step * step, share = 1.0 / n;
-	bound[0] = a->bound[0] * scale;
-	bound[1] = a->bound[1] * scale * share;
-	bound[2] = a->bound[2] * scale * share * share * POUND_CUBIC_ERROR;
 }
 
 /* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
@@ -274,15 +284,13 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1,
                            const struct pound_polynomial *a, int order, int j, int n)
 {
-	double bound[3];
-	part_bound(a, n, p->step, bound);
-	vm risk = part_risk(p, s, z1, v1, bound);
+	vm risk = part_risk(p, s, z1, v1, a->bound);
 	if (vany(risk)) {
 		double room[POUND_TRACE_ORDER + 1];
 		struct series series;
 		const double *drive = order < 0 ? room : part_drive(a, order, j, n, room);
 		series_fill(&series, p, s->z, s->v * p->step, drive, order, p->step * p->step);
-		peak_add(&series, risk, &s->top);
+		s->top = peak_add(&series, risk, s->top);
 	}
 	s->z = z1;
 	s->v = v1;
@@ -403,7 +411,7 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
 		s[d] = (struct state){*(vd *)(bank->z[d] + at), *(vd *)(bank->v[d] + at), *(vd *)(bank->top[d] + at)};
 	int parts = parts_of(omega_max, ride->time_step, bank->radians);
 	bool mapped = parts <= PARTS_MAX && ride->stretch->n_maps > 0;
-	struct part sample = part_init(omega, omega_max, bank->damping, ride->time_step / parts);
+	struct part sample = part_init(omega, omega_max, bank->damping, ride->time_step / parts, parts);
 	if (mapped)
 		maps_fill(&scratch->maps, bank, &sample, ride, parts);
 	for (int i = 0; i < ride->stretch->n; i++) {
@@ -415,7 +423,7 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
 			continue;
 		}
 		int n = parts_of(omega_max, piece->step, bank->radians);
-		struct part p = part_init(omega, omega_max, bank->damping, piece->step / n);
+		struct part p = part_init(omega, omega_max, bank->damping, piece->step / n, n);
 		if (bank->n_drives > 1)
 			piece_ride(bank, &p, s, POUND_DRIVES, piece, scratch->integral[i], n);
 		else

@@ -5,6 +5,7 @@
 #define STEPPING_H
 
 #include <float.h>
+#include <math.h>
 
 /* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
  * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
@@ -18,6 +19,12 @@ static const double POUND_UNDECIDED = 4 * DBL_EPSILON;
  * |u''''|, for the motion to stay inside it: it misses the cubic by at most e = 1/24 t^2 (1 - t)^2 <= 1/384 (Hermite), and
  * inner points pulled in by e' lower the cubic by 3 t (1 - t) e' >= e for e' = e(1/2)/(3/4) = 1/288. */
 static const double POUND_CUBIC_ERROR = 1.0 / 288;
+
+/* Largest x at which a series of n terms x^n/n! ends in rounding, (n! 2^-54)^(1/n); there are no more than 23. */
+static const double POUND_TERMS_REACH[] = {0,        5.548e-17, 1.053e-08, 6.928e-06, 0.000191, 0.00146,
+                                           0.005844, 0.01609,   0.03496,   0.06477,   0.1072,   0.1633,
+                                           0.2336,   0.3182,    0.417,     0.5295,    0.6552,   0.7934,
+                                           0.9437,   1.105,     1.277,     1.459,     1.651,    INFINITY};
 
 /* A step that a search was unsure of is followed by one this much shorter, and then by longer ones again: what decides
  * may be far below the rounding of a whole step. */

@@ -62,13 +62,8 @@ static double power_at(const double *c, int order, double t)
 /* Test     unit_trace: terms_end_in_rounding */
 int pound_trace_terms(double x)
 {
-	// (n! 2^-54)^(1/n), the largest x of n terms
-	static const double reach[] = {0,        5.548e-17, 1.053e-08, 6.928e-06, 0.000191, 0.00146,
-	                               0.005844, 0.01609,   0.03496,   0.06477,   0.1072,   0.1633,
-	                               0.2336,   0.3182,    0.417,     0.5295,    0.6552,   0.7934,
-	                               0.9437,   1.105,     1.277,     1.459,     1.651,    1.851};
 	int n = 0;
-	while (n < POUND_TRACE_TERMS && x > reach[n])
+	while (x > POUND_TERMS_REACH[n])
 		n++;
 	return n;
 }
