@@ -170,8 +170,7 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
 
 /* Flies ROW samples at most, and not beyond the end of any lane: each as far as nothing else happens to it.
  *
- * Given    flying  lanes that do
- *          edged, paired, right: as stretch_fly() has them
+ * Given    on  lanes that do;  edged, paired, right: as stretch_fly() has them
  * Returns  g       their states there
  *          value   those that still do, with samples left
  *          ahead   what is left in front of each
@@ -181,7 +180,7 @@ LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahe
 {
 	struct stretch s;
 	s.ground[0] = g->ground;
-	unsigned beyond = vbits(vless(vsplat(ROW), ahead->samples)),
+	unsigned more = vbits(vless(vsplat(ROW), ahead->samples)),
 	         ends = ground_load(work, ahead, on, s.ground + 1);
 	stretch_fly(&s, g, flyers, edged, paired, right);
 	vd flown = vsplat(0), one = vsplat(1);
@@ -203,7 +202,7 @@ LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahe
 	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - flown;
 	ahead->gone += ROW;
-	return on & beyond;
+	return on & more;
 }
 
 LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
