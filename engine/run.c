@@ -93,12 +93,17 @@ static size_t reduction_size(const struct pound_campaign *c)
 	       (most > ordinates ? most : ordinates);
 }
 
+/* Allocates work space, 64-byte aligned; NULL: out of memory.  A small study touches little of it: it is not cleared. */
+static void *room(size_t bytes)
+{
+	return aligned_alloc(64, (bytes / 64 + 1) * 64);
+}
+
 /* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
 static void *piece(size_t bytes)
 {
-	size_t whole = (bytes / 64 + 1) * 64;
-	void *memory = aligned_alloc(64, whole);
-	return memory ? memset(memory, 0, whole) : NULL;
+	void *memory = room(bytes);
+	return memory ? memset(memory, 0, bytes) : NULL;
 }
 
 static bool workers_create(struct pound_run *run, int n_workers, struct pound_plan_size largest)
@@ -110,10 +115,10 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_pl
 		return false;
 	size_t spectra = pound_ordinate_bytes(run->campaign.study, largest.tasks);
 	for (int w = 0; w < n_workers; w++) {
-		void *memory = piece(pound_plan_bytes(largest));
+		void *memory = room(pound_plan_bytes(largest));
 		run->plans[w] = memory ? pound_plan_init(memory, largest) : NULL;
-		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
-		memory = spectra ? piece(spectra) : NULL;
+		run->scratch[w] = room(sizeof(double) * reduction_size(&run->campaign));
+		memory = spectra ? room(spectra) : NULL;
 		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;
 		if (!run->plans[w] || !run->scratch[w] || (spectra && !memory))
 			return false;
