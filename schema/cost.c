@@ -1,9 +1,8 @@
 /* What a study will take, before any of it is run.
  *
  * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, and
- * of the spectra of its floor.  The unit costs were measured (README, Speed); they hold within a factor of about three,
- * and of seven where contacts are of extreme stiffness.
- * What a design shares between its samples is in them as it is for the examples. */
+ * of the spectra of its floor.  The unit costs were measured (README, Speed): there every example of more than 10 ms
+ * takes what is told within a factor of two.  What a design shares between its samples is in them as it is for the examples. */
 #include "schema/cost.h"
 
 #include <math.h>

@@ -56,8 +56,8 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 		answer_free(&answer);
 	}
 	check_report("off by a factor of %.1f at most", worst);
-	// within three but for the example of extremes, whose contacts are a million times stiffer than its lightest body's spring
-	assert_true(worst < 10);
+	// within two where the units were measured; other machines may be more than twice as slow
+	assert_true(worst < 5);
 }
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
