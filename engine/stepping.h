@@ -20,7 +20,8 @@ static const double POUND_UNDECIDED = 4 * DBL_EPSILON;
  * inner points pulled in by e' lower the cubic by 3 t (1 - t) e' >= e for e' = e(1/2)/(3/4) = 1/288. */
 static const double POUND_CUBIC_ERROR = 1.0 / 288;
 
-/* Largest x at which a series of n terms x^n/n! ends in rounding, (n! 2^-54)^(1/n); there are no more than 23. */
+/* Largest x at which a series of n terms x^n/n! ends in rounding, (n! 2^-54)^(1/n); the last ends every search: there are no
+ * more than 23. */
 static const double POUND_TERMS_REACH[] = {0,        5.548e-17, 1.053e-08, 6.928e-06, 0.000191, 0.00146,
                                            0.005844, 0.01609,   0.03496,   0.06477,   0.1072,   0.1633,
                                            0.2336,   0.3182,    0.417,     0.5295,    0.6552,   0.7934,

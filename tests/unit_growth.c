@@ -8,6 +8,7 @@
 #include "tests/functions.h"
 #include "tests/specimen.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <string.h>
 
@@ -322,7 +323,30 @@ static void an_intermediate_result_has_whole_rows_only(void **state)
 	free(done);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_design_grows_by_whole_batches_and_by_doubling),
+/* A function's study of the rows before, in memory that is handed out again as it was left. */
+static void a_study_finds_nothing_of_the_one_before_it_in_memory(void **state)
+{
+	(void)state;
+	enum { ROWS = 330, SIZE = sizeof(struct pound_estimate) * D };
+	const struct pound_study study = study_of("lhs", ROWS, 2, 0, 0), other = study_of("lhs", ROWS, 1, 0, 0);
+	char before[POUND_N_INDEXES][SIZE];
+	mallopt(M_MMAP_THRESHOLD, 1 << 30);
+	mallopt(M_TRIM_THRESHOLD, 1 << 30);
+	for (int round = 0; round < 3; round++) {
+		struct pound_run *run = run_of(round == 1 ? &other : &study, "g_a");
+		for (int k = 0; k < POUND_N_INDEXES; k++) {
+			const struct pound_estimate *index = pound_run_result(run)->cells[0].indices[0].index[k];
+			if (round == 0)
+				memcpy(before[k], index, SIZE);
+			else if (round == 2)
+				assert_memory_equal(before[k], index, SIZE);
+		}
+		pound_run_free(run);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(a_study_finds_nothing_of_the_one_before_it_in_memory),
+           cmocka_unit_test(a_design_grows_by_whole_batches_and_by_doubling),
            cmocka_unit_test(a_grown_design_keeps_its_rows),
            cmocka_unit_test(a_design_stops_at_the_first_look_that_finds_every_interval_narrow),
            cmocka_unit_test(max_runs_ends_a_design_that_is_not_narrow_yet),
