@@ -118,8 +118,8 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_pl
 	for (int w = 0; w < n_workers; w++) {
 		void *memory = room(pound_plan_bytes(largest));
 		run->plans[w] = memory ? pound_plan_init(memory, largest) : NULL;
-		run->scratch[w] =
-		    piece(sizeof(double) * reduction_size(&run->campaign)); // kept_size() asks for zeros
+		// cleared: it begins with what pound_chaos_kept_size() asks zeros for
+		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
 		memory = spectra ? room(spectra) : NULL;
 		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;
 		if (!run->plans[w] || !run->scratch[w] || (spectra && !memory))

@@ -28,9 +28,8 @@ struct part {
 	double step; /* [s] */
 	int terms;   /* of a series without a drive, by the fastest of the group */
 	vd x, damp;  /* w step, 2 xi w step */
-	vd on_z, on_v;
-	vd on_drive
-	    [3]; /* |z''''|/288 <= on_z |z| + on_v |v| + on_drive (A, A', A''), of the piece: see part_init */
+	// |z''''|/288 <= on_z |z| + on_v |v| + on_drive (A, A', A''), A of the drive over the piece: see part_init
+	vd on_z, on_v, on_drive[3];
 };
 
 /* the maps of one part of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
