@@ -23,7 +23,8 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 		vd t = vsplat(0.5 + 0.5 * node) * time;
 		vd ground = vfma(g->slope, t * dt, g->ground), moving = vsplat(0);
 		for (int i = 0; i < (paired ? 2 : 1); i++) {
-			vd u = power_at(&s->body[i].u, s->order, t), v = power_at(&s->body[i].v, s->order, t) / dt;
+			struct place at = place_at(&s->body[i].u, s->order, t);
+			vd u = at.u, v = at.v / dt;
 			vd spring = vfma(g->body[i].stiffness, u, g->body[i].offset);
 			in = vfma(weight * mass[i] * v, -g->body[i].drive * ground, in);
 			out = vfma(weight * mass[i] * v, vfma(g->body[i].damping, v, spring), out);
@@ -33,7 +34,8 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 		top = vmax(top, moving);
 		if (!touching)
 			continue;
-		vd p = power_at(&s->overlap.u, s->order, t), q = power_at(&s->overlap.v, s->order, t) / dt;
+		struct place at = place_at(&s->overlap.u, s->order, t);
+		vd p = at.u, q = at.v / dt;
 		out = vfma(weight * q, vfma(g->contact_stiffness, p, g->contact_damping * q), out);
 	}
 	vd elapsed = time * dt;
@@ -43,7 +45,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 	g->work_gap = sum;
 	vd moving = vsplat(0);
 	for (int i = 0; i < (paired ? 2 : 1); i++) {
-		vd v = power_at(&s->body[i].v, s->order, time) / dt;
+		vd v = place_at(&s->body[i].u, s->order, time).v / dt;
 		moving = vfma(0.5 * mass[i] * v, v, moving);
 	}
 	g->work_top = vmax(g->work_top, vmax(vabs(g->work_in), vmax(top, moving)));

@@ -152,10 +152,8 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool 
 LANE_INLINE void terms_keep(const struct terms *t, struct motion *const into[3], int n, int motions)
 {
 	vd share = vsplat(POUND_FACTOR[n]);
-	for (int j = 0; j < motions; j++) {
+	for (int j = 0; j < motions; j++)
 		into[j]->u.c[n] = t->u[j] * share;
-		into[j]->v.c[n] = t->v[j] * share;
-	}
 }
 
 /* Looks for the edges of a body's piece. */
@@ -172,7 +170,7 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 	for (vm past = past_high | past_low; vany(past); past = past_high & past_low, past_high = vmask(0)) {
 		vd level = vselect(past_high, g->body[i].high, g->body[i].low), sign = vselect(past_high, one, -one);
 		vd edge = vselect(past_high, vsplat(POUND_EDGE_HIGH), vsplat(POUND_EDGE_LOW));
-		search_crossing(&m->u, &m->v, &c, s->order, level, sign, past, body + edge, EVENT_CUT, search);
+		search_crossing(&m->u, &c, s->order, level, sign, past, body + edge, EVENT_CUT, search);
 	}
 	if (!vany(turns))
 		return;
@@ -180,9 +178,9 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 	turns &= may_cross(&c, zero, -g->body[i].direction);
 	if (!vany(turns))
 		return;
-	struct power rate;
-	power_rate(&rate, &m->v, s->order);
-	search_crossing(&m->v, &rate, &c, s->order, zero, -g->body[i].direction, turns,
+	struct power velocity;
+	motion_velocity(&velocity, m, s->order);
+	search_crossing(&velocity, &c, s->order, zero, -g->body[i].direction, turns,
 	                body + vsplat(POUND_EDGE_TURN), EVENT_CUT, search);
 }
 
@@ -195,18 +193,18 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 {
 	const struct motion *m = &s->body[i];
 	struct course c = course_of_velocity(m, s->order);
-	struct power rate;
-	power_rate(&rate, &m->v, s->order);
-	const vd *v = m->v.c;
+	struct power velocity;
+	motion_velocity(&velocity, m, s->order);
+	const vd *v = velocity.c;
 	vd zero = vsplat(0), one = vsplat(1), t;
 	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
 	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
 	vd sign = vselect(vless(way, zero), one, -one);
 	vm once =
-	    root_quick(&m->v, &rate, s->order, zero, sign, sign * v[0], sign * m->v1, one, c.bend, inside, &t);
+	    root_quick(&velocity, s->order, zero, sign, sign * v[0], sign * m->end.v, one, c.bend, inside, &t);
 	vd turn = power_at(&m->u, s->order, t), behind = one - t, behind2 = behind * behind;
-	struct course rest = {turn, zero, m->u1, m->v1 * behind, m->bend * (behind2 * behind2)};
-	vd most = vmax(vmax(vabs(turn), vabs(m->u1)), g->top[i]);
+	struct course rest = {turn, zero, m->end.u, m->end.v * behind, m->bend * (behind2 * behind2)};
+	vd most = vmax(vmax(vabs(turn), vabs(m->end.u)), g->top[i]);
 	once &= ~(may_cross(&rest, most, one) | may_cross(&rest, -most, -one));
 	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], vabs(turn)), g->top[i]);
 	inside &= ~once;
@@ -229,12 +227,13 @@ LANE_SHARED void force_search(const struct series *s, const struct lanes *g, con
 {
 	const struct motion *p = &s->overlap;
 	vd sign = e->touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;
-	struct power guard;
+	struct power guard, rate;
+	motion_velocity(&rate, p, s->order);
 	for (int n = 0; n <= s->order; n++)
-		guard.c[n] = sign * vfma(lead, p->v.c[n], p->u.c[n]);
+		guard.c[n] = sign * vfma(lead, rate.c[n], p->u.c[n]);
 	// where the force has just passed 0 it is beyond by the rounding of the overlap and of its acceleration, or
 	// bodies that are alike would turn to and fro at one instant for ever
-	vd pull = vabs(s->body[0].v.c[1]) + vabs(s->body[1].v.c[1]);
+	vd pull = 2.0 * (vabs(s->body[0].u.c[2]) + vabs(s->body[1].u.c[2]));
 	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, pull, p->u.c[0]));
 	guard.c[0] = vselect(e->fresh, below, guard.c[0]);
 	search_safe(&guard, s->order, by_force, vsplat(EVENT_CONTACT), EVENT_CUT, search);
@@ -256,8 +255,8 @@ LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, c
 	struct course c = course_of(&s->overlap);
 	vm risk = may_cross(&c, zero, sign) & e->active & ~by_force;
 	if (vany(risk))
-		search_crossing(&s->overlap.u, &s->overlap.v, &c, s->order, zero, sign, risk, vsplat(EVENT_CONTACT),
-		                EVENT_CUT, search);
+		search_crossing(&s->overlap.u, &c, s->order, zero, sign, risk, vsplat(EVENT_CONTACT), EVENT_CUT,
+		                search);
 	if (vany(by_force))
 		force_search(s, g, e, by_force, search);
 }
@@ -267,8 +266,9 @@ LANE_INLINE void series_cut(struct series *s, vm event, vd time, bool paired)
 {
 	struct motion *m[3] = {&s->body[0], &s->body[1], &s->overlap};
 	for (int j = 0; j < (paired ? 3 : 1); j++) {
-		m[j]->u1 = vselect(event, power_at(&m[j]->u, s->order, time), m[j]->u1);
-		m[j]->v1 = vselect(event, power_at(&m[j]->v, s->order, time), m[j]->v1);
+		struct place at = place_at(&m[j]->u, s->order, time);
+		m[j]->end.u = vselect(event, at.u, m[j]->end.u);
+		m[j]->end.v = vselect(event, at.v, m[j]->end.v);
 	}
 }
 
@@ -279,7 +279,7 @@ LANE_INLINE vd impulse_of(const struct lanes *g, const struct series *s, vd time
 	ORDERS_UP(n, 0, ORDER_TOUCH, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
 	vd elapsed = time * g->dt;
 	return vfma(g->contact_stiffness, power_at(&area, ORDER_TOUCH, time) * elapsed,
-	            g->contact_damping * (s->overlap.u1 - s->overlap.u.c[0]));
+	            g->contact_damping * (s->overlap.end.u - s->overlap.u.c[0]));
 }
 
 /* Which bodies' motion a step must look into: the left one's always. */
@@ -362,13 +362,13 @@ LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct 
 		g->contact_time = vselect(arrived, g->contact_time + elapsed, g->contact_time);
 	}
 	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
-		g->u[i] = vselect(arrived, s->body[i].u1, g->u[i]);
-		g->v[i] = vselect(arrived, s->body[i].v1 * per_dt, g->v[i]);
+		g->u[i] = vselect(arrived, s->body[i].end.u, g->u[i]);
+		g->v[i] = vselect(arrived, s->body[i].end.v * per_dt, g->v[i]);
 		g->top[i] = vmax(g->top[i], vabs(g->u[i]));
 	}
 	if (e->paired) {
-		g->p = vselect(arrived, s->overlap.u1, g->p);
-		g->q = vselect(arrived, s->overlap.v1 * per_dt, g->q);
+		g->p = vselect(arrived, s->overlap.end.u, g->p);
+		g->q = vselect(arrived, s->overlap.end.v * per_dt, g->q);
 	}
 	g->ground = vselect(arrived, vfma(g->slope, elapsed, g->ground), g->ground);
 	g->part = vselect(arrived, vmax(g->part - elapsed, vsplat(0)), g->part);
@@ -395,7 +395,7 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	}
 	for (int i = 0; i < bodies_watched(e); i++) {
 		// the end of the step does not count where the motion was cut before it
-		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].u1));
+		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].end.u));
 		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
 		// a piece with a direction ends where the velocity turns: up to what was found neither end is exceeded
 		if (e->edged)

@@ -466,11 +466,28 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
  * motion, and none is looked for. */
 static const double REST_ROUNDING = 64 * DBL_EPSILON;
 
+/* Lanes in which a body's velocity keeps its sign over many cells, but for times in which it goes back by less than the rounding
+ * of where it is: pressed from rest by a load that grows, it stands still once in every swing, and rounding would decide.
+ *
+ * All rates are times a third of the rung.  Where the swing is ahead of the slow motion by a small share of itself it is so for
+ * 2 acos(1 - share) of its radians, at most pi share^1/2.
+ *
+ * Given    along   of the slow motion, at least;  swing: of the swing, at most;  error: of both
+ *          radian  time of the swing's radian, over a third of the rung
+ *          where   magnitude of its displacement
+ */
+LANE_INLINE vm rest_steady(vd along, vd swing, vd error, vd radian, vd where)
+{
+	vd zero = vsplat(0), ahead = (swing + error) - along;
+	vd back = ahead * vsqrt(ahead / swing) * (vsplat(3.15) * radian);
+	return vless(ahead, zero) | (~vless(along, zero) & vless(back, vsplat(REST_ROUNDING) * where));
+}
+
 /* Lanes in which a body may have a new largest displacement over many cells.
  *
  * Given    u, end     at both ends
  *          low, high  its motion lies between, by the cubic of the slow part of it
- *          steady     lanes whose velocity keeps its sign: nothing lies beyond the ends
+ *          steady     lanes of rest_steady(): nothing lies beyond the ends
  */
 LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 {
@@ -560,7 +577,8 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge
 		// the line that the overlap follows goes along
 		vd more = share * creep, speed = way0 + more, way = vselect(vless(speed, zero), -one, one);
 		vd along = vmin(vmin(way * speed, way * (way1 + more)), way * (mean + more));
-		vm steady = vless(vfma(size, hurry, vsplat(1.0265) * error), along);
+		vm steady = rest_steady(along, size * hurry, vsplat(1.0265) * error, per_omega / third,
+		                        vmax(vabs(u), vabs(u1)));
 		vd least = low + mid - size * ripple, most = high + mid + size * ripple;
 		risk |= rest_peaks(u, u1, least, most, steady, s->at.top[i]);
 		if (edged)

@@ -6,39 +6,42 @@
 
 #include <float.h>
 
+#include "engine/flight.h"
 #include "engine/lanes.h"
 #include "engine/stepping.h"
 
 enum {
-	ORDER_APART = 12, /* of the series while apart: even */
-	ORDER_TOUCH = 16, /* while touching */
+	ORDER_APART = 13, /* of the series of a displacement while apart: odd */
+	ORDER_TOUCH = 17, /* while touching */
 	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
 	QUICK_ROUNDS = 5, /* of Halley's method from the parabola through both ends */
 	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
 };
 
-/* Runs BODY for n from one order up to another, or down by twos, as straight code: the orders are constants. */
+/* Runs BODY for n from one order up to another, as straight code: the orders are constants. */
 #define ORDERS_UP(n, from, to, ...)                               \
 	_Pragma("GCC unroll 20") for (int n = (from); n <= (to); n++) \
 	{                                                             \
 		__VA_ARGS__                                               \
 	}
-#define ORDERS_DOWN(n, from, to, ...)                                \
-	_Pragma("GCC unroll 10") for (int n = (from); n >= (to); n -= 2) \
-	{                                                                \
-		__VA_ARGS__                                                  \
+/* Runs BODY for odd n, down from `below` less than the order of a series: straight code, whichever order that is. */
+#define ORDERS_ODD(n, order, below, ...)                                                            \
+	_Pragma("GCC unroll 10") for (int n = ORDER_TOUCH - (below); n > 0;                             \
+	                              n -= 2) if (n <= ORDER_APART - (below) || (order) == ORDER_TOUCH) \
+	{                                                                                               \
+		__VA_ARGS__                                                                                 \
 	}
 
-/* Coefficients of a series, and a zero behind them: terms are taken in pairs. */
+/* Coefficients of a series. */
 struct power {
-	vd c[ORDER_TOUCH + 2];
+	vd c[ORDER_TOUCH + 1];
 };
 
-/* A motion over a step of time 0 .. 1; v is the derivative of u: displacement, and velocity times the step. */
+/* A motion over a step of time 0 .. 1: its displacement. */
 struct motion {
-	struct power u, v;
-	vd u1, v1; /* at the end of the step */
-	vd bend;   /* bound of the fourth derivative over the step */
+	struct power u;
+	struct place end; /* displacement, and velocity times the step */
+	vd bend;          /* bound of the fourth derivative over the step */
 };
 
 /* Both bodies and the overlap over a step.  The overlap is integrated in its own right: the difference u1 - u2 - gap
@@ -51,16 +54,19 @@ struct series {
 /* Value of a series at time t, the even and the odd terms apart: half the latency of Horner's rule. */
 LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 {
-	vd t2 = t * t, even, odd;
-	if (order == ORDER_TOUCH) {
-		even = s->c[ORDER_TOUCH], odd = s->c[ORDER_TOUCH - 1];
-		ORDERS_DOWN(n, ORDER_TOUCH - 2, ORDER_APART, even = vfma(even, t2, s->c[n]);
-		            odd = vfma(odd, t2, s->c[n - 1]);)
-	} else {
-		even = s->c[ORDER_APART], odd = s->c[ORDER_APART - 1];
-	}
-	ORDERS_DOWN(n, ORDER_APART - 2, 2, even = vfma(even, t2, s->c[n]); odd = vfma(odd, t2, s->c[n - 1]);)
-	return vfma(odd, t, vfma(even, t2, s->c[0]));
+	vd t2 = t * t, even = s->c[order - 1], odd = s->c[order];
+	ORDERS_ODD(n, order, 2, even = vfma(even, t2, s->c[n - 1]); odd = vfma(odd, t2, s->c[n]);)
+	return vfma(odd, t, even);
+}
+
+/* Value and derivative: with x = t^2 of even(x) + t odd(x), by Horner's rule for the derivatives of both as well. */
+LANE_INLINE struct place place_at(const struct power *s, int order, vd t)
+{
+	vd t2 = t * t, even_rate = s->c[order - 1], odd_rate = s->c[order];
+	vd even = vfma(even_rate, t2, s->c[order - 3]), odd = vfma(odd_rate, t2, s->c[order - 2]);
+	ORDERS_ODD(n, order, 4, even_rate = vfma(even_rate, t2, even); odd_rate = vfma(odd_rate, t2, odd);
+	           even = vfma(even, t2, s->c[n - 1]); odd = vfma(odd, t2, s->c[n]);)
+	return (struct place){vfma(odd, t, even), vfma(2.0 * t, vfma(odd_rate, t, even_rate), odd)};
 }
 
 /* Factor of coefficient n in the bound of the fourth derivative. */
@@ -69,14 +75,12 @@ LANE_INLINE double fourth(int n)
 	return (double)n * (n - 1) * (n - 2) * (n - 3);
 }
 
-/* Adds up a motion to the end of its step, and puts the zero behind its coefficients. */
+/* Adds up a motion to the end of its step. */
 LANE_INLINE void motion_end(struct motion *m, int order)
 {
-	vd u1 = m->u.c[0], v1 = m->v.c[0];
-	ORDERS_UP(n, 1, order, u1 = u1 + m->u.c[n]; v1 = v1 + m->v.c[n];)
-	m->u1 = u1;
-	m->v1 = v1;
-	m->u.c[order + 1] = m->v.c[order + 1] = vsplat(0);
+	vd u = m->u.c[0], v = vsplat(0);
+	ORDERS_UP(n, 1, order, u = u + m->u.c[n]; v = n < 2 ? m->u.c[n] : vfma(vsplat(n), m->u.c[n], v);)
+	m->end = (struct place){u, v};
 }
 
 /* Bounds the fourth derivative of a motion by the magnitudes of its terms. */
@@ -95,15 +99,15 @@ struct course {
 
 LANE_INLINE struct course course_of(const struct motion *m)
 {
-	return (struct course){m->u.c[0], m->v.c[0], m->u1, m->v1, m->bend};
+	return (struct course){m->u.c[0], m->u.c[1], m->end.u, m->end.v, m->bend};
 }
 
 LANE_INLINE struct course course_of_velocity(const struct motion *m, int order)
 {
 	vd bend = vsplat(0), end = vsplat(0);
-	ORDERS_UP(n, 1, order, end = vfma(vsplat(n), m->v.c[n], end);)
-	ORDERS_UP(n, 4, order, bend = vfma(vsplat(fourth(n)), vabs(m->v.c[n]), bend);)
-	return (struct course){m->v.c[0], m->v.c[1], m->v1, end, bend};
+	ORDERS_UP(n, 2, order, end = vfma(vsplat(n * (n - 1.0)), m->u.c[n], end);)
+	ORDERS_UP(n, 5, order, bend = vfma(vsplat(n * fourth(n - 1)), vabs(m->u.c[n]), bend);)
+	return (struct course){m->u.c[1], 2.0 * m->u.c[2], m->end.v, end, bend};
 }
 
 /* Lanes in which a guard may cross a level inside a step that it starts on the right side of.
@@ -137,7 +141,7 @@ LANE_INLINE vd course_slowest(const struct course *c)
 LANE_INLINE vd reach_of(const struct motion *m)
 {
 	vd third = vsplat(1.0 / 3);
-	vd b1 = vfma(third, m->v.c[0], m->u.c[0]), b2 = vfma(-third, m->v1, m->u1);
+	vd b1 = vfma(third, m->u.c[1], m->u.c[0]), b2 = vfma(-third, m->end.v, m->end.u);
 	return vfma(vsplat(POUND_CUBIC_ERROR), m->bend, vmax(vabs(b1), vabs(b2)));
 }
 
@@ -161,7 +165,7 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
 
 /* First root by Halley's method where the guard is positive at the limit, with a proof that it is the first.
  *
- * Given    u, v    guard before sign and level, and its derivative: g = sign (u - level)
+ * Given    u       guard before sign and level: g = sign (u - level)
  *          g0, g1  its values at 0, not positive, and at the limit, the last time of interest
  *          bend    bound of the fourth derivative of g over the step
  *          active  lanes to search
@@ -171,19 +175,20 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
  * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
  * cubic's inner control points are, the second by more than the error: no root lies before t.
  */
-LANE_SHARED vm root_quick(const struct power *u, const struct power *v, int order, vd level, vd sign, vd g0,
-                          vd g1, vd limit, vd bend, vm active, vd *t)
+LANE_SHARED vm root_quick(const struct power *u, int order, vd level, vd sign, vd g0, vd g1, vd limit,
+                          vd bend, vm active, vd *t)
 {
-	vd zero = vsplat(0), d0 = sign * v->c[0], slope = zero;
+	vd zero = vsplat(0), d0 = sign * u->c[1], slope = zero;
 	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
-	vd c = (g1 - vfma(d0, limit, g0)) / (limit * limit);
-	vd root = vsqrt(vmax(vfma(d0, d0, -4.0 * c * g0), zero));
+	vd d = d0 * limit, c = g1 - (d + g0);
+	vd root = vsqrt(vmax(vfma(d, d, -4.0 * c * g0), zero));
 	vm up = vless(zero, d0);
-	*t = vmin(vselect(up, -2.0 * g0, root - d0) / vselect(up, d0 + root, 2.0 * c), limit);
+	*t = limit * vmin(vselect(up, -2.0 * g0, root - d) / vselect(up, d + root, 2.0 * c), vsplat(1));
 	vm settled = vless(zero, zero);
 	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
-		vd value = sign * (power_at(u, order, *t) - level), bow = sign * curvature_at(u, order, *t);
-		slope = vselect(settled, slope, sign * power_at(v, order, *t));
+		struct place at = place_at(u, order, *t);
+		vd value = sign * (at.u - level), bow = sign * curvature_at(u, order, *t);
+		slope = vselect(settled, slope, sign * at.v);
 		vd fall = vfma(slope, slope, vsplat(-0.5) * value * bow);
 		vm rises = vless(zero, slope) & vless(zero, fall);
 		vd next = vselect(rises, vmin(vmax(*t - value * slope / fall, zero), limit), limit);
@@ -213,9 +218,6 @@ LANE_SHARED vm root_quick(const struct power *u, const struct power *v, int orde
 LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t, vm *unsure)
 {
 	vd zero = vsplat(0), curved = zero;
-	struct power d = *g;
-	for (int n = 0; n <= order; n++)
-		d.c[n] = vsplat(n + 1) * g->c[n + 1];
 	for (int n = order; n > 2; n--)
 		curved = vfma(vsplat((double)n * (n - 1)), vabs(g->c[n]), curved);
 	vd bend = vmax(zero, vfma(vsplat(2), g->c[2], curved));
@@ -224,8 +226,8 @@ LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, 
 	*unsure = found;
 	*t = vselect(active, zero, *t);
 	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
-		vd slope = power_at(&d, order, *t);
-		vd below = vmin(power_at(g, order, *t), zero);
+		struct place at = place_at(g, order, *t);
+		vd slope = at.v, below = vmin(at.u, zero);
 		vd root = vsqrt(vfma(slope, slope, -2.0 * bend * below));
 		vm rises = vless(zero, slope);
 		vd step = vselect(rises, -2.0 * below, root - slope) / vselect(rises, slope + root, bend);
@@ -256,13 +258,13 @@ LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event
 	vd raise = vselect(vless(large, vsplat(0x1p-400)), vsplat(0x1p600), vsplat(1));
 	for (int n = 0; n <= order; n++)
 		guard->c[n] = guard->c[n] * raise;
-	guard->c[order + 1] = zero;
 	for (int m = 0; m < DEFLATE_MAX; m++) {
 		vm leading = vequal(guard->c[0], zero) & active;
 		if (!vany(leading))
 			break;
-		for (int n = 0; n <= order; n++)
+		for (int n = 0; n < order; n++)
 			guard->c[n] = vselect(leading, guard->c[n + 1], guard->c[n]);
+		guard->c[order] = vselect(leading, zero, guard->c[order]);
 	}
 	vm found = active & vless(zero, guard->c[0]);
 	active &= ~found & ~vequal(guard->c[0], zero);
@@ -273,32 +275,31 @@ LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event
 	search->event = vselect(found, event, vselect(unsure, vsplat(cut), search->event));
 }
 
-/* Derivative of a series. */
-static void power_rate(struct power *rate, const struct power *s, int order)
+/* The velocity of a motion, times the step. */
+static void motion_velocity(struct power *v, const struct motion *m, int order)
 {
 	if (order == ORDER_TOUCH)
-		ORDERS_UP(n, ORDER_APART + 1, ORDER_TOUCH, rate->c[n] = vsplat(n + 1) * s->c[n + 1];)
-	ORDERS_UP(n, 0, ORDER_APART, rate->c[n] = vsplat(n + 1) * s->c[n + 1];)
-	rate->c[order + 1] = vsplat(0);
+		ORDERS_UP(n, ORDER_APART + 1, ORDER_TOUCH, v->c[n - 1] = vsplat(n) * m->u.c[n];)
+	ORDERS_UP(n, 1, ORDER_APART, v->c[n - 1] = vsplat(n) * m->u.c[n];)
+	v->c[order] = vsplat(0);
 }
 
 /* Looks for the first time at which a guard crosses a level, and notes it as the event where it comes first.
  *
- * Given    u, v    the guard and its derivative; sign (u - level) is not positive at 0 but for rounding
+ * Given    u       the guard; sign (u - level) is not positive at 0 but for rounding
  *          active  lanes to search
  *          event   what to note;  cut: what to note where the step is only cut at a safe time
  * Returns  search  time and event of the lanes that have one, up to the time already there
  */
-LANE_INLINE void search_crossing(const struct power *u, const struct power *v, const struct course *c,
-                                 int order, vd level, vd sign, vm active, vd event, double cut,
-                                 struct search *search)
+LANE_INLINE void search_crossing(const struct power *u, const struct course *c, int order, vd level, vd sign,
+                                 vm active, vd event, double cut, struct search *search)
 {
 	vd one = vsplat(1), t;
 	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
 	vm shorter = vless(search->time, one) & active;
 	if (vany(shorter))
 		g1 = vselect(shorter, sign * (power_at(u, order, search->time) - level), g1);
-	vm found = root_quick(u, v, order, level, sign, g0, g1, search->time, c->bend, active, &t);
+	vm found = root_quick(u, order, level, sign, g0, g1, search->time, c->bend, active, &t);
 	search->time = vselect(found, t, search->time);
 	search->event = vselect(found, event, search->event);
 	active &= ~found;
