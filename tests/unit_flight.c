@@ -106,6 +106,26 @@ static void two_halves_of_a_sample_are_the_whole(void **state)
 	}
 }
 
+/* With velocity along - cos(phase) a body goes back for 2 acos(along) radians of the phase, by 2 (sin a - a cos a). */
+static void a_swing_that_is_just_ahead_takes_a_body_back_by_no_more_than_is_said(void **state)
+{
+	(void)state;
+	for (int n = 0; n <= 200; n++) {
+		const double share = pow(10, -0.06 * n), along = 1 - share, radian = 0.01 * (1 + n % 7);
+		const double a = 2 * asin(sqrt(0.5 * share)); // acos(1 - share) to all digits
+		const double way = a > 0.01 ? sin(a) - a * cos(a) : a * a * a * (1.0 / 3 - a * a / 30),
+		             back = 2 * radian * way;
+		// the share is known but for the rounding of along
+		assert_false(rest_steady(along, 1, 0, radian, 0.999 * back / REST_ROUNDING));
+		assert_true(rest_steady(along, 1, 0, radian, 2 * back / REST_ROUNDING));
+		assert_true(rest_steady(1 + share, 1, 0, radian, 0));
+		assert_false(rest_steady(-share, 1, 0, radian, 1));
+	}
+	assert_false(rest_steady(0, 0, 0, 1, 1)); // it stands still: its velocity has no sign
+	assert_false(rest_steady(1, 1, NAN, 1, 1));
+}
+
 CHECK_MAIN(cmocka_unit_test(the_cubic_misses_the_motion_by_no_more_than_its_error),
            cmocka_unit_test(no_velocity_inside_is_below_the_bound_of_it),
-           cmocka_unit_test(two_halves_of_a_sample_are_the_whole))
+           cmocka_unit_test(two_halves_of_a_sample_are_the_whole),
+           cmocka_unit_test(a_swing_that_is_just_ahead_takes_a_body_back_by_no_more_than_is_said))
