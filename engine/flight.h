@@ -470,7 +470,7 @@ static const double REST_ROUNDING = 64 * DBL_EPSILON;
  * of where it is: pressed from rest by a load that grows, it stands still once in every swing, and rounding would decide.
  *
  * All rates are times a third of the rung.  Where the swing is ahead of the slow motion by a small share of itself it is so for
- * 2 acos(1 - share) of its radians, at most pi share^1/2.
+ * 2 acos(1 - share) of its radians, for a share up to 1 at most pi share^1/2.
  *
  * Given    along   of the slow motion, at least;  swing: of the swing, at most;  error: of both
  *          radian  time of the swing's radian, over a third of the rung
@@ -480,7 +480,7 @@ LANE_INLINE vm rest_steady(vd along, vd swing, vd error, vd radian, vd where)
 {
 	vd zero = vsplat(0), ahead = (swing + error) - along;
 	vd back = ahead * vsqrt(ahead / swing) * (vsplat(3.15) * radian);
-	return vless(ahead, zero) | (~vless(along, zero) & vless(back, vsplat(REST_ROUNDING) * where));
+	return vless(ahead, zero) | (~vless(along, error) & vless(back, vsplat(REST_ROUNDING) * where));
 }
 
 /* Lanes in which a body may have a new largest displacement over many cells.

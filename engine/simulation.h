@@ -14,7 +14,7 @@ enum {
 	POUND_MAPS = 4,         /* free-flight maps a body keeps */
 	POUND_PEAKS = 4,        /* samples that may hold its largest displacement */
 	POUND_OTHERS = 3,       /* other tasks that go along with a simulation: family.h */
-	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.8^18/18! = 3e-18 */
+	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.945^18/18! = 6e-17 */
 	POUND_MAP_LONGER = 26,  /* of a long sample's; 2^26/26! = 2e-19 */
 	POUND_PRESS_MAPS = 3,   /* pairs of pieces whose cell map and ladder a simulation keeps */
 	POUND_PRESS_RUNGS = 12, /* of a ladder: maps over many cells */

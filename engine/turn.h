@@ -333,19 +333,22 @@ static bool simulation_edged(const struct pound_march_task *task)
 	       !pound_pieces_linear(task->bodies[1].skeleton.law);
 }
 
-/* Largest rate * time of a step in contact.
+/* Longest step in contact.
  *
- * Derivative n of exp(-zeta t) sin((1 - zeta^2)^1/2 t) is at most the first times 1/(1 - zeta^2)^1/2 and n: a step is shorter by
- * the 16th root of that, which its power of 17 more than makes up for.
+ * The fastest that two bodies may do on each other is that of the faster one on a spring and dashpot as stiff as both see the
+ * contact.  Derivative n of exp(-zeta t) sin((1 - zeta^2)^1/2 t) is at most 1 over (1 - zeta^2)^1/2, and at most n: a step is
+ * shorter by the 16th root of that, which its power of 17 more than makes up for.  Above zeta = 1 the faster root counts.
+ *
+ * Given    omega, damping  the largest of both bodies [1/s]
  */
-static double touch_reach(const struct pound_rows *x)
+static double touch_reach(const struct pound_rows *x, double omega, double damping)
 {
-	const double stiffness = x->both * x->contact_stiffness, damping = x->both * x->contact_damping;
-	const double zeta = stiffness > 0 ? 0.5 * damping / sqrt(stiffness) : 0;
+	const double own = sqrt(omega * omega + x->both * x->contact_stiffness);
+	const double zeta = own > 0 ? 0.5 * (damping + x->both * x->contact_damping) / own : 0;
 	double share = most(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
 	for (int halving = 0; halving < 5; halving++)
 		share = sqrt(share);
-	return REACH_TOUCH * share;
+	return REACH_TOUCH * share / (own * (zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1));
 }
 
 /* A simulation at the start of its task; what it does first. */
@@ -364,13 +367,15 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->rounds = -1; // another map is asked for only where there are rungs
 	sim->looked = POUND_OSCILLATORS;
 	double h = task->time_step;
-	double rate = 0;
+	double rate = 0, fastest = 0, damping = 0;
 	bool can_fly = !task->accounted; // the work in a step is that of its series
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *body = &task->bodies[i];
 		double k = body->skeleton.stiffness;
 		double omega = sqrt(k);
 		rate = most(rate, most(omega, body->damping));
+		fastest = most(fastest, omega);
+		damping = most(damping, body->damping);
 		can_fly &= h * (body->damping + omega) <= REACH_MAP;
 		x->u[i] = body->u, x->v[i] = body->v;
 		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
@@ -404,7 +409,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->body[1].step_gap = x->gap;
 	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
 	sim->can_press = task->contact;
-	double reach = touch_reach(x) / sqrt(rate * rate + x->both * x->contact_stiffness);
+	double reach = touch_reach(x, fastest, damping);
 	// no more cells than it takes, but for rungs, which are made by doubling
 	x->cells_whole = 1;
 	while (h > reach * x->cells_whole)

@@ -132,6 +132,9 @@ static const struct extreme extremes[] = {
 	// the contact swings for ever, never beyond where it swung first
 	{"pressed ever more, then swinging, K/k 1e10, damping 0, eps 1",
 	 {{WALL, 1}, {DAMPING, 0}, {K_RATIO, 1e10}, {EPS, 1}}, RAMP, .samples = 60, .step = 0.1, .contacts = 1},
+	// it stands still once in every swing, 2e6 times in a sample
+	{"pressed ever more, swinging, K/k 1e14, damping 0, eps 1",
+	 {{WALL, 1}, {DAMPING, 0}, {K_RATIO, 1e14}, {EPS, 1}}, RAMP, .samples = 20, .step = 0.1, .contacts = 1},
 	{"pressed at rest, mass ratio 1e3, frequency ratio 1e3, K/k 1e4", {{K_RATIO, 1e4}, {MASS, 1e3}, {FREQUENCY, 2e3}, {DAMPING_2, 0.999}},
 	 STEP, .samples = 5, .contacts = 1},
 	{"contact at the yield point", {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-3}, {GAP, 1e-3}},

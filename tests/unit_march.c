@@ -1,6 +1,7 @@
 /* unit_march.c - the march against closed forms: one impact, impacts on a wall, and the same bits at every lane count. */
 #include "tests/check.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,6 +137,38 @@ static void wall_impacts_lose_speed_by_restitution_and_damping(void **state)
 	assert_int_equal(r.contacts, contacts);
 	// last free flight, away from the wall
 	check_near(r.u[0], -v / wd * exp(-xi * w * (20 - t)) * sin(wd * (20 - t)), 1e-12);
+}
+
+/* Displacement of a body pressed on a wall from rest by an acceleration of 1: of the whole system's frequency and damping ratio. */
+static double pressed_closed(double omega, double zeta, double t)
+{
+	const double root = omega * sqrt(fabs(zeta * zeta - 1)), decay = zeta * omega, fade = exp(-decay * t);
+	const double even = zeta > 1 ? cosh(root * t) : cos(root * t),
+	             odd = zeta > 1 ? sinh(root * t) : sin(root * t);
+	return (1 - fade * (even + decay / root * odd)) / (omega * omega);
+}
+
+static void a_body_pressed_on_a_wall_yields_as_its_own_and_the_contacts_damping_let_it(void **state)
+{
+	(void)state;
+	static const double push[] = {-1, -1, -1, -1};
+	uint64_t seed = 1;
+	for (int n = 0; n < 2000; n++) {
+		const double k = 100, xi = specimen_uniform(&seed, 0.01, 1),
+		             ratio = pow(10, specimen_uniform(&seed, -1, 2));
+		struct pound_march_task task = {.ground = push, .n_samples = 4, .contact = true, .tension = true};
+		task.bodies[0] = (struct pound_march_body){
+		    .skeleton = {.stiffness = k}, .damping = 2 * xi * sqrt(k), .drive = 1, .followed = true};
+		task.contact_stiffness = ratio * k;
+		task.contact_damping = 2 * specimen_uniform(&seed, 0, 1) * sqrt(task.contact_stiffness);
+		const double omega = sqrt(k + task.contact_stiffness);
+		const double zeta = (task.bodies[0].damping + task.contact_damping) / (2 * omega);
+		// about a step for each sample
+		task.time_step = specimen_uniform(&seed, 0.3, 1) / omega;
+		const double settled = 1 / (omega * omega), end = 3 * task.time_step;
+		const struct pound_march_result r = march(&task);
+		check_near((r.u[0] - pressed_closed(omega, zeta, end)) / settled, 0, 32 * DBL_EPSILON);
+	}
 }
 
 static void bodies_at_rest_without_ground_motion_stay_at_rest(void **state)
@@ -517,6 +550,7 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(without_tension_the_rebound_is_that_of_release_at_zero_force),
            cmocka_unit_test(a_wall_is_met_every_half_period),
            cmocka_unit_test(wall_impacts_lose_speed_by_restitution_and_damping),
+           cmocka_unit_test(a_body_pressed_on_a_wall_yields_as_its_own_and_the_contacts_damping_let_it),
            cmocka_unit_test(bodies_at_rest_without_ground_motion_stay_at_rest),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
            cmocka_unit_test(a_largest_displacement_between_samples_is_that_of_the_motion),
