@@ -11,7 +11,7 @@
 #include "engine/stepping.h"
 
 enum {
-	ORDER_APART = 13, /* of the series of a displacement while apart: odd */
+	ORDER_APART = 13, /* of the series of a displacement while apart: odd, as terms are taken in pairs */
 	ORDER_TOUCH = 17, /* while touching */
 	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
 	QUICK_ROUNDS = 5, /* of Halley's method from the parabola through both ends */
