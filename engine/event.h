@@ -306,7 +306,7 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 			t.by_time[i] = (struct place){g->u[i], g->v[i]};
 	}
 	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions);
-	          terms_next(&t, g, n, paired, touching, level != NULL);)
+	          if (n < order) terms_next(&t, g, n, paired, touching, level != NULL);)
 	// no result depends on this: what is added up is to be read from memory, or gcc keeps the coefficients there twice
 	__asm__ volatile("" ::: "memory");
 	for (int j = 0; j < motions; j++)

@@ -102,4 +102,7 @@ struct pound_run *specimen_run(const struct pound_study *study);
 struct pound_response specimen_engine(const struct specimen *specimen);
 struct pound_response specimen_oracle(const struct specimen *specimen, double radians);
 
+/* A body damped as may be, pressed from rest on a wall without a gap by an acceleration of 1, for about three steps. */
+struct pound_march_task specimen_pressed(uint64_t *seed);
+
 #endif

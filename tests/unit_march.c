@@ -151,21 +151,13 @@ static double pressed_closed(double omega, double zeta, double t)
 static void a_body_pressed_on_a_wall_yields_as_its_own_and_the_contacts_damping_let_it(void **state)
 {
 	(void)state;
-	static const double push[] = {-1, -1, -1, -1};
 	uint64_t seed = 1;
 	for (int n = 0; n < 2000; n++) {
-		const double k = 100, xi = specimen_uniform(&seed, 0.01, 1),
-		             ratio = pow(10, specimen_uniform(&seed, -1, 2));
-		struct pound_march_task task = {.ground = push, .n_samples = 4, .contact = true, .tension = true};
-		task.bodies[0] = (struct pound_march_body){
-		    .skeleton = {.stiffness = k}, .damping = 2 * xi * sqrt(k), .drive = 1, .followed = true};
-		task.contact_stiffness = ratio * k;
-		task.contact_damping = 2 * specimen_uniform(&seed, 0, 1) * sqrt(task.contact_stiffness);
-		const double omega = sqrt(k + task.contact_stiffness);
-		const double zeta = (task.bodies[0].damping + task.contact_damping) / (2 * omega);
-		// about a step for each sample
-		task.time_step = specimen_uniform(&seed, 0.3, 1) / omega;
-		const double settled = 1 / (omega * omega), end = 3 * task.time_step;
+		const struct pound_march_task task = specimen_pressed(&seed);
+		const struct pound_march_body *body = &task.bodies[0];
+		const double omega = sqrt(body->skeleton.stiffness + task.contact_stiffness);
+		const double zeta = (body->damping + task.contact_damping) / (2 * omega);
+		const double end = (task.n_samples - 1) * task.time_step, settled = 1 / (omega * omega);
 		const struct pound_march_result r = march(&task);
 		check_near((r.u[0] - pressed_closed(omega, zeta, end)) / settled, 0, 32 * DBL_EPSILON);
 	}

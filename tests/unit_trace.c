@@ -1,4 +1,5 @@
 /* unit_trace.c - the trace against the march, which shares no code with it but the laws, and against known answers. */
+#include <float.h>
 #include <math.h>
 
 #include "tests/check.h"
@@ -156,6 +157,18 @@ static void linear_bodies_alike_but_for_roundings_move_as_in_the_march(void **st
 }
 
 /* Bodies that all but stick to each other lose half of their motion in a second: minutes later there is nothing to follow. */
+static void a_damped_body_pressed_on_a_wall_moves_as_in_the_march(void **state)
+{
+	(void)state;
+	uint64_t seed = 3;
+	for (int n = 0; n < 2000; n++) {
+		const struct pound_march_task task = specimen_pressed(&seed);
+		const double settled = 1 / (task.bodies[0].skeleton.stiffness + task.contact_stiffness);
+		const struct ended e = trace_to_end(&task);
+		check_near((e.trace.u[0] - march(&task).u[0]) / settled, 0, 64 * DBL_EPSILON);
+	}
+}
+
 static void a_motion_that_dies_away_in_silence_is_over(void **state)
 {
 	(void)state;
@@ -263,6 +276,7 @@ CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impac
            cmocka_unit_test(a_contact_that_has_settled_is_followed_by_whole_samples),
            cmocka_unit_test(a_body_that_creeps_where_it_yielded_moves_as_in_the_march),
            cmocka_unit_test(linear_bodies_alike_but_for_roundings_move_as_in_the_march),
+           cmocka_unit_test(a_damped_body_pressed_on_a_wall_moves_as_in_the_march),
            cmocka_unit_test(a_motion_that_dies_away_in_silence_is_over),
            cmocka_unit_test(pieces_follow_each_other_without_holes),
            cmocka_unit_test(the_acceleration_is_that_of_the_motion),
