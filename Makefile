@@ -79,7 +79,7 @@ $(B)/engine/march_%.o: engine/march.c
 $(B)/engine/spectrum_%.o: engine/spectrum.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(FLOOR.$(MODE)) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<
-$(B)/engine/trace.o: CFLAGS += $(FLOOR.$(MODE))
+$(B)/engine/trace.o $(B)/engine/trace_series.o $(B)/engine/root.o: CFLAGS += $(FLOOR.$(MODE))
 $(B)/engine/noise_%.o: engine/noise.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_NOISE=pound_noise_$* -c -o $@ $<

@@ -134,11 +134,11 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 
 /* ---- history ---- */
 
-static double polynomial_end(const struct pound_polynomial *a, int order)
+static double polynomial_end(const double *a, int order)
 {
 	double sum = 0;
 	for (int n = order; n >= 0; n--)
-		sum += a->c[n];
+		sum += a[n];
 	return sum;
 }
 
@@ -163,14 +163,17 @@ enum pound_status pound_floor_history(struct pound_floor *floor, const struct po
 			break;
 		for (int i = 0; i < floor->stretch.n; i++) {
 			const struct pound_trace_piece *p = &floor->stretch.piece[i];
-			struct pound_floor_instant now = {p->start, p->u, p->v, p->floor.c[0], p->push.c[0]};
+			double room[POUND_TRACE_ORDER + 1];
+			const double *a = pound_trace_floor(&floor->stretch, p, task->bodies[0].damping, room);
+			const bool flight = p->map >= 0;
+			struct pound_floor_instant now = {p->start, p->u, p->v, a[0], flight ? 0 : p->push.c[0]};
 			last.time = now.time, last.u = now.u, last.v = now.v;
 			if (p->turned)
 				take(into, &last);
 			if (p->sampled || p->turned)
 				take(into, &now);
-			last.acceleration = polynomial_end(&p->floor, p->order);
-			last.push = polynomial_end(&p->push, p->order);
+			last.acceleration = polynomial_end(a, p->order);
+			last.push = flight ? 0 : polynomial_end(p->push.c, p->order);
 		}
 	}
 	last.time = (task->n_samples - 1) * task->time_step;

@@ -199,13 +199,13 @@ static vd peak_add(const struct series *s, vm risk, vd top)
 
 /* Coefficients of part j of n equal ones in its own time, n a power of two: those of the piece where it is one part, else
  * put into `room`. */
-static const double *part_drive(const struct pound_polynomial *a, int order, int j, int n, double *room)
+static const double *part_drive(const double *a, int order, int j, int n, double *room)
 {
 	double share = 1.0 / n, from = j * share, power = 1;
 	if (n == 1)
-		return a->c;
+		return a;
 	for (int k = 0; k <= order; k++)
-		room[k] = a->c[k];
+		room[k] = a[k];
 	for (int i = 0; i < order && j > 0; i++)
 		for (int k = order - 1; k >= i; k--)
 			room[k] += from * room[k + 1];
@@ -226,11 +226,11 @@ static int parts_of(double omega_max, double step, double radians)
 /* ---- any piece ---- */
 
 /* Integrals of a polynomial over part j of n of its piece. */
-static void integrals_fill(const struct pound_kernel *kernel, const struct pound_polynomial *a, int order,
-                           int j, int n, double integral[INTEGRALS])
+static void integrals_fill(const struct pound_kernel *kernel, const double *a, int order, int j, int n,
+                           double integral[INTEGRALS])
 {
 	double room[POUND_TRACE_ORDER + 1];
-	const double *c = n > PARTS_MAX ? part_drive(a, order, j, n, room) : a->c;
+	const double *c = n > PARTS_MAX ? part_drive(a, order, j, n, room) : a;
 	const double(*row)[INTEGRALS] = kernel->part[n > PARTS_MAX ? 1 : n + j];
 	vd sum[INTEGRALS / W] = {0};
 	for (int k = order; k >= 0; k--)
@@ -279,16 +279,26 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 	s->yy = rate;
 }
 
-/* Moves a state over a part; the series is only made where there may be an extremum inside. */
-LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1,
-                           const struct pound_polynomial *a, int order, int j, int n)
+/* Moves a state over a part; the series is only made where there may be an extremum inside.
+ *
+ * Given    bound   of the drive and its derivatives over the piece;  drive: none where these are 0
+ */
+LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1, const double bound[3],
+                           const struct pound_ride *ride, const struct pound_trace_piece *piece,
+                           enum pound_drive drive, int j, int n)
 {
-	vm risk = part_risk(p, s, z1, v1, a->bound);
+	vm risk = part_risk(p, s, z1, v1, bound);
 	if (vany(risk)) {
-		double room[POUND_TRACE_ORDER + 1];
+		double room[POUND_TRACE_ORDER + 1], flown[POUND_TRACE_ORDER + 1];
 		struct series series;
-		const double *drive = order < 0 ? room : part_drive(a, order, j, n, room);
-		series_fill(&series, p, s->z, s->v * p->step, drive, order, p->step * p->step);
+		const double *a = room;
+		const int order = bound[0] > 0 ? piece->order : -1;
+		if (order >= 0) {
+			a = drive == POUND_DRIVE_PUSH ? piece->push.c
+			                              : pound_trace_floor(ride->stretch, piece, ride->damping, flown);
+			a = part_drive(a, order, j, n, room);
+		}
+		series_fill(&series, p, s->z, s->v * p->step, a, order, p->step * p->step);
 		s->top = peak_add(&series, risk, s->top);
 	}
 	s->z = z1;
@@ -297,10 +307,10 @@ LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1,
 
 /* Oscillators over one part of a piece, by the integrals of its drives. */
 LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
-                           const struct pound_trace_piece *piece, const double *const integral[], int j,
-                           int n)
+                           const struct pound_ride *ride, const struct pound_trace_piece *piece,
+                           const double *const integral[], int j, int n)
 {
-	const struct pound_polynomial *a[POUND_DRIVES] = {&piece->floor, &piece->push};
+	const double *bound[POUND_DRIVES] = {piece->floor.bound, piece->push.bound};
 	struct passage passage;
 	double per_step = 1 / p->step;
 	passage_fill(&passage, p, integral, n_drives);
@@ -308,48 +318,32 @@ LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
 		vd y = s[d].v * p->step;
 		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
 		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
-		part_pass(p, &s[d], z1, y1 * per_step, a[d], a[d]->bound[0] > 0 ? piece->order : -1, j, n);
+		part_pass(p, &s[d], z1, y1 * per_step, bound[d], ride, piece, d, j, n);
 	}
 }
 
 /* Oscillators over a piece; `whole` are the integrals over all of it. */
 LANE_INLINE void piece_ride(const struct pound_bank *bank, const struct part *p, struct state s[],
-                            int n_drives, const struct pound_trace_piece *piece, double whole[][INTEGRALS],
-                            int n)
+                            int n_drives, const struct pound_ride *ride,
+                            const struct pound_trace_piece *piece, double whole[][INTEGRALS], int n)
 {
 	alignas(64) double own[POUND_DRIVES][INTEGRALS];
 	const double *integral[POUND_DRIVES] = {whole[0], whole[1]};
+	double room[POUND_TRACE_ORDER + 1];
+	const double *floor = pound_trace_floor(ride->stretch, piece, ride->damping, room);
+	const int push = piece->map < 0 ? piece->order : -1;
 	for (int j = 0; j < n; j++) {
 		if (n > 1) {
-			integrals_fill(bank->kernel, &piece->floor, piece->order, j, n, own[0]);
+			integrals_fill(bank->kernel, floor, piece->order, j, n, own[0]);
 			if (n_drives > 1)
-				integrals_fill(bank->kernel, &piece->push, piece->order, j, n, own[1]);
+				integrals_fill(bank->kernel, piece->push.c, push, j, n, own[1]);
 			integral[0] = own[0], integral[1] = own[1];
 		}
-		part_ride(p, s, n_drives, piece, integral, j, n);
+		part_ride(p, s, n_drives, ride, piece, integral, j, n);
 	}
 }
 
 /* ---- free flight ---- */
-
-/* Drives of unit states over a sample h: what the floor's acceleration -(c v + r) is for each of r, v, ground, rise.
- *
- *   r' = k v     v' = -(c v + r + ground + rise t/h)
- */
-static int unit_drive(int state, double k, double c, double h, struct pound_polynomial *a)
-{
-	double r = state == 0, v = state == 1, x = fmax(__builtin_sqrt(k), c) * h;
-	int order = larger(pound_trace_terms(x), 4);
-	order = order > POUND_TRACE_ORDER ? POUND_TRACE_ORDER : order;
-	for (int n = 0; n <= order; n++) {
-		double ground = (state == 2 && n == 0) || (state == 3 && n == 1);
-		double next = -h * (c * v + r + ground) / (n + 1);
-		a->c[n] = -(c * v + r);
-		r = h * k * v / (n + 1);
-		v = next;
-	}
-	return order;
-}
 
 /* The maps of all parts of a sample, of every stiffness of a stretch. */
 static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct part *p,
@@ -359,15 +353,18 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 	const double *const integral[] = {integrals};
 	struct passage passage;
 	vd per_step = vsplat(1 / p->step);
+	const int order = ride->stretch->order;
 	passage_fill(&passage, p, integral, 0);
 	maps->zz = passage.zz, maps->vz = passage.yz * per_step;
 	maps->zv = passage.zy * p->step, maps->vv = passage.yy;
 	for (int m = 0; m < ride->stretch->n_maps; m++)
 		for (int state = 0; state < 4; state++) {
-			struct pound_polynomial a;
-			int order = unit_drive(state, ride->stretch->stiffness[m], ride->damping, ride->time_step, &a);
+			const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
+			const double k = ride->stretch->stiffness[m];
+			double a[POUND_TRACE_ORDER + 1];
+			pound_trace_flight(unit, k, ride->damping, ride->time_step, order, a);
 			for (int j = 0; j < parts; j++) {
-				integrals_fill(bank->kernel, &a, order, j, parts, integrals);
+				integrals_fill(bank->kernel, a, order, j, parts, integrals);
 				passage_fill(&passage, p, integral, 1);
 				maps->part[m][j].gz[state] = passage.fz[0];
 				maps->part[m][j].gv[state] = passage.fy[0] * per_step;
@@ -377,10 +374,10 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 
 /* A whole sample by maps; the floor's drive has them, the contact gives none. */
 LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, struct state *s,
-                             const struct pound_trace_piece *piece, enum pound_drive drive, int parts)
+                             const struct pound_ride *ride, const struct pound_trace_piece *piece,
+                             enum pound_drive drive, int parts)
 {
-	static const struct pound_polynomial none;
-	const struct pound_polynomial *a = drive == POUND_DRIVE_FLOOR ? &piece->floor : &none;
+	const double *bound = drive == POUND_DRIVE_FLOOR ? piece->floor.bound : piece->push.bound;
 	for (int j = 0; j < parts; j++) {
 		vd z = vsplat(0), v = vsplat(0);
 		if (drive == POUND_DRIVE_FLOOR) {
@@ -394,7 +391,7 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 		}
 		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
 		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
-		part_pass(p, s, z, v, a, drive == POUND_DRIVE_FLOOR ? piece->order : -1, j, parts);
+		part_pass(p, s, z, v, bound, ride, piece, drive, j, parts);
 	}
 }
 
@@ -416,17 +413,19 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
 	for (int i = 0; i < ride->stretch->n; i++) {
 		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
 		if (piece->map >= 0 && mapped) {
-			flight_ride(&scratch->maps, &sample, &s[POUND_DRIVE_FLOOR], piece, POUND_DRIVE_FLOOR, parts);
+			flight_ride(&scratch->maps, &sample, &s[POUND_DRIVE_FLOOR], ride, piece, POUND_DRIVE_FLOOR,
+			            parts);
 			if (bank->n_drives > 1)
-				flight_ride(&scratch->maps, &sample, &s[POUND_DRIVE_PUSH], piece, POUND_DRIVE_PUSH, parts);
+				flight_ride(&scratch->maps, &sample, &s[POUND_DRIVE_PUSH], ride, piece, POUND_DRIVE_PUSH,
+				            parts);
 			continue;
 		}
 		int n = parts_of(omega_max, piece->step, bank->radians);
 		struct part p = part_init(omega, omega_max, bank->damping, piece->step / n, n);
 		if (bank->n_drives > 1)
-			piece_ride(bank, &p, s, POUND_DRIVES, piece, scratch->integral[i], n);
+			piece_ride(bank, &p, s, POUND_DRIVES, ride, piece, scratch->integral[i], n);
 		else
-			piece_ride(bank, &p, s, 1, piece, scratch->integral[i], n);
+			piece_ride(bank, &p, s, 1, ride, piece, scratch->integral[i], n);
 	}
 	for (int d = 0; d < bank->n_drives; d++) {
 		*(vd *)(bank->z[d] + at) = s[d].z;
@@ -450,9 +449,10 @@ void POUND_SPECTRUM(const struct pound_bank *bank, const struct pound_ride *ride
 		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
 		if (piece->map >= 0)
 			continue;
-		integrals_fill(bank->kernel, &piece->floor, piece->order, 0, 1, room->integral[i][POUND_DRIVE_FLOOR]);
+		integrals_fill(bank->kernel, piece->floor.c, piece->order, 0, 1,
+		               room->integral[i][POUND_DRIVE_FLOOR]);
 		if (bank->n_drives > 1)
-			integrals_fill(bank->kernel, &piece->push, piece->order, 0, 1,
+			integrals_fill(bank->kernel, piece->push.c, piece->order, 0, 1,
 			               room->integral[i][POUND_DRIVE_PUSH]);
 	}
 	for (int g = 0; g < bank->n_groups; g++) {

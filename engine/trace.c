@@ -1,43 +1,32 @@
-/* trace.c - one task followed by power series from event to event, every piece handed out.
+/* trace.c - one task followed from event to event, every piece handed out.
  *
- * 1. Over a step the bodies and the overlap are power series; the step is short enough for them to end in rounding.
- *    A contact whose own swing has died away is a series too, as long as the bodies' own motion allows, however stiff.
- * 2. It is cut at the first root of a guard, found by parabolas that pass no root: contact opens or closes, an edge of
- *    a law is reached, a velocity turns.
- * 3. The floor's absolute acceleration -(c v + r + F)/m1 and its part -F/m1 are combinations of the same series.
+ * 1. A whole sample apart goes by an exact map, where a bound proves that nothing lies inside; of the floor's acceleration there
+ *    its state is handed out, of which a polynomial is made where one is asked for.
+ * 2. Any other step is a power series (trace_series.c), cut at the first root of a guard (root.c): contact opens or closes, an
+ *    edge of a law is reached, a velocity turns.
+ * 3. The floor's absolute acceleration -(c v + r + F)/m1 and its part -F/m1 come with the same series.
  *
- * The march does the same in lanes and keeps nothing; what both must agree in is under test. */
+ * The march does the same in lanes and keeps nothing; they share no code but the laws, and what both must agree in is under
+ * test. */
 #include "engine/trace.h"
+#include "engine/root.h"
 #include "engine/stepping.h"
+#include "engine/trace_series.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+static_assert((int)POUND_TRACE_ORDER <= (int)POUND_ROOT_ORDER, "guards are as long as series");
+
 enum {
 	N = POUND_TRACE_ORDER,
-	ROOT_ROUNDS = 64,
-	DEFLATE_MAX = 6,        /* leading zeros of a guard: at rest, touching, equal ground */
 	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
 	EDGES = 3,
 };
 
-static const double NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
-static const double REACH = 1;                /* largest rate * step of a series */
-
-/* Least rate_touch * step of a settled contact: its overlap is found from a power on by those above, which count by up to
- * N G/(W^2 h) and N^2/(W h)^2, with G/W up to 2: below 0.3 and 0.02. */
-static const double SETTLED_LEAST = 128;
-enum { SETTLED_ROUNDS = 8 };
-
 enum event { NOTHING, CUT, CONTACT, CLEARS, BODY }; // an edge of body i is BODY + EDGES i + edge
-
-/* Both bodies and the overlap over a step of time 0 .. 1: displacement, and velocity times the step. */
-struct series {
-	int order;
-	double step;
-	double u[POUND_OSCILLATORS][N + 2], w[POUND_OSCILLATORS][N + 2], p[N + 2], q[N + 2];
-};
 
 /* First event found so far. */
 struct search {
@@ -45,386 +34,105 @@ struct search {
 	int event;
 };
 
-/* The even and the odd terms apart: half the latency of Horner's rule. */
-static double power_at(const double *c, int order, double t)
-{
-	double even = 0, odd = 0, t2 = t * t;
-	int n = order;
-	if (n % 2 == 0)
-		even = c[n--];
-	for (; n > 0; n -= 2) {
-		odd = odd * t2 + c[n];
-		even = even * t2 + c[n - 1];
-	}
-	return odd * t + even;
-}
-
-/* Test     unit_trace: terms_end_in_rounding */
-int pound_trace_terms(double x)
-{
-	int n = 0;
-	while (x > POUND_TERMS_REACH[n])
-		n++;
-	return n;
-}
-
-/* Order of the series of a step. */
-static int order_of(double x)
-{
-	int n = pound_trace_terms(x);
-	return n < 4 ? 4 : n > N ? N : n;
-}
-
-/* ---- series ---- */
-
-/* Whether a body stands still where its piece ends. */
-static bool stands_at_end(const struct pound_trace *t, int i)
-{
-	const struct pound_piece *piece = &t->at[i].piece;
-	return t->v[i] == 0 && (piece->direction != 0 || t->u[i] == piece->high || t->u[i] == piece->low);
-}
-
-/* Whether a body that stands still where its piece ends stays there: its acceleration would send it on to the next piece or
- * back, but is no more than the rounding of what it is made of.  Then what differs in its later course decides.
- *
- * Given    b  acceleration of body i, times the square of the step;  push: of the contact, so too
- */
-static bool still_stays(const struct pound_trace *t, int i, double b, double push, double dt)
-{
-	const struct pound_march_body *body = &t->task->bodies[i];
-	const struct pound_piece *piece = &t->at[i].piece;
-	double made = fabs(piece->stiffness * t->u[i]) + fabs(piece->offset) + fabs(body->drive * t->ground);
-	return stands_at_end(t, i) && fabs(b) < POUND_UNDECIDED * (made * dt * dt + fabs(push));
-}
-
-/* Takes the accelerations of bodies that stay where they stand, and what of the difference is left.
- *
- * Given    b, push, apart  of the bodies and the contact, and the difference, times the square of the step
- */
-static double still_settle(const struct pound_trace *t, double b[2], double push, double apart, double dt)
-{
-	for (int i = 0; i < 2; i++)
-		if (still_stays(t, i, b[i], push * (i ? t->task->mass_ratio : 1), dt)) {
-			b[i] = 0;
-			apart = b[0] - b[1];
-		}
-	return apart;
-}
-
-/* Whether bodies touch without overlap, at one velocity but for a rounding. */
-static bool bodies_level(const struct pound_trace *t)
-{
-	return t->p == 0 && fabs(t->q) <= DBL_EPSILON * (fabs(t->v[0]) + fabs(t->v[1]));
-}
-
-/* derivatives by time of bodies that are level */
-struct level {
-	bool is;         /* nothing has decided yet */
-	double at[2][2]; /* derivatives n and n + 1 of each body */
-	double scale;    /* of a derivative to its coefficient: the step to the power of n + 2, over n! */
-};
-
-/* What parts or presses bodies that are level: nothing, where it is no more than the rounding of what their accelerations are
- * made of; the next derivative decides.
- *
- * Returns  level  of the next order
- *          value  the difference of their accelerations, coefficient n
- */
-static double apart_settle(struct level *level, const struct pound_trace *t, double dt, int n)
-{
-	double a[2], made = 0;
-	for (int i = 0; i < 2; i++) {
-		const struct pound_march_body *b = &t->task->bodies[i];
-		const struct pound_piece *piece = &t->at[i].piece;
-		double damping = b->damping * level->at[i][1], spring = piece->stiffness * level->at[i][0];
-		double drive = n == 0 ? b->drive * t->ground : n == 1 ? b->drive * t->slope : 0;
-		double offset = n == 0 ? piece->offset : 0;
-		a[i] = -(damping + spring + (drive + offset));
-		made += fabs(damping) + fabs(spring) + fabs(drive) + fabs(offset);
-		level->at[i][0] = level->at[i][1];
-		level->at[i][1] = a[i];
-	}
-	double apart = (a[0] - a[1]) * level->scale;
-	level->is = !(fabs(a[0] - a[1]) > POUND_UNDECIDED * made);
-	level->scale *= dt * POUND_SHARE[n];
-	return level->is ? 0 : apart;
-}
-
-static void series_fill(struct series *s, const struct pound_trace *t, double dt, int order)
-{
-	const struct pound_march_task *task = t->task;
-	double c[2], k[2], f0[2], f1[2], dt2 = dt * dt;
-	for (int i = 0; i < 2; i++) {
-		const struct pound_march_body *b = &task->bodies[i];
-		const struct pound_piece *piece = &t->at[i].piece;
-		c[i] = b->damping * dt;
-		k[i] = piece->stiffness * dt2;
-		f0[i] = (b->drive * t->ground + piece->offset) * dt2;
-		f1[i] = b->drive * t->slope * dt2 * dt;
-		s->u[i][0] = t->u[i];
-		s->w[i][0] = t->v[i] * dt;
-	}
-	double spring = t->touching ? task->contact_stiffness * dt2 : 0;
-	double dash = t->touching ? task->contact_damping * dt : 0;
-	s->order = order;
-	s->step = dt;
-	s->p[0] = t->p;
-	s->q[0] = t->q * dt;
-	for (int n = 0; n <= order && !task->contact; n++) { // the left body is alone
-		double b = -(c[0] * s->w[0][n] + k[0] * s->u[0][n]) - (n == 0 ? f0[0] : n == 1 ? f1[0] : 0);
-		bool stays = n == 0 && still_stays(t, 0, b, 0, dt);
-		s->u[0][n + 1] = s->w[0][n] * POUND_SHARE[n];
-		s->w[0][n + 1] = stays ? 0 : b * POUND_SHARE[n];
-	}
-	struct level level = {bodies_level(t), {{t->u[0], t->v[0]}, {t->u[1], t->v[1]}}, dt2};
-	for (int n = 0; n <= order && task->contact; n++) {
-		double share = POUND_SHARE[n], b[2];
-		double push = spring * s->p[n] + dash * s->q[n];
-		for (int i = 0; i < 2; i++) {
-			b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n == 0 ? f0[i] : n == 1 ? f1[i] : 0);
-			s->u[i][n + 1] = s->w[i][n] * share;
-		}
-		double apart = level.is ? apart_settle(&level, t, dt, n) : b[0] - b[1];
-		apart -= (1 + task->mass_ratio) * push;
-		b[0] -= push;
-		b[1] += task->mass_ratio * push;
-		if (n == 0)
-			apart = still_settle(t, b, push, apart, dt);
-		s->w[0][n + 1] = b[0] * share;
-		s->w[1][n + 1] = b[1] * share;
-		s->p[n + 1] = s->q[n] * share;
-		s->q[n + 1] = apart * share;
-	}
-}
-
-/* Largest of what the accelerations of both bodies are made of, but for the contact's [m/s2]. */
-static double pull_of(const struct pound_trace *t)
-{
-	double sum = 0;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *b = &t->task->bodies[i];
-		const struct pound_piece *piece = &t->at[i].piece;
-		sum += fabs(b->damping * t->v[i]) + fabs(piece->stiffness * t->u[i]) + fabs(piece->offset) +
-		       fabs(b->drive * t->ground);
-	}
-	return sum;
-}
-
-/* Whether a contact may be settled: its overlap is neither fast nor accelerated, as the swinging one is all the time. */
-static bool may_settle(const struct pound_trace *t, double pull)
-{
-	const struct pound_march_task *task = t->task;
-	double apart = 0, slow = t->rate / t->rate_touch;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *b = &task->bodies[i];
-		double force = b->damping * t->v[i] + t->at[i].piece.stiffness * t->u[i] + t->at[i].piece.offset +
-		               b->drive * t->ground;
-		apart += i ? force : -force;
-	}
-	double push = task->contact_stiffness * t->p + task->contact_damping * t->q;
-	return fabs(apart - (1 + task->mass_ratio) * push) <= 4 * slow * slow * pull;
-}
-
-/* What of the overlap's rate its force has beside the overlap [s], where contact ends with the force; 0: with the overlap. */
-static double release_of(const struct pound_march_task *task)
-{
-	return task->tension ? 0 : task->contact_damping / task->contact_stiffness;
-}
-
-/* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing has
- * died away to rounding.
- *
- * Given    pull    as pull_of has it
- * Returns  value   false: it has not settled; s is not to be used
- *
- *   w = (m1 u1 + m2 u2)/(m1 + m2)     w'' = (r b1 + b2)/(1 + r)     r = m1/m2
- *   p'' = b1 - b2 - (1 + r) (K p + C p')
- *
- * with the accelerations b1, b2 of the bodies without their contact.  The overlap is that part of the solution which has a
- * power series as short as that of w: its coefficients follow from those above, down from the last.  What it adds to b1 and
- * b2 is by (rate/W)^2 less than what they are made of, so that few rounds settle that.
- */
-static bool series_settle(struct series *s, const struct pound_trace *t, double dt, int order, double pull)
-{
-	const struct pound_march_task *task = t->task;
-	const double both = 1 + task->mass_ratio, share[2] = {1 / both, -task->mass_ratio / both}, dt2 = dt * dt;
-	const double spring = both * task->contact_stiffness * dt2, dash = both * task->contact_damping * dt;
-	const double w0 = (task->mass_ratio * t->u[0] + t->u[1]) / both;
-	const double rate0 = (task->mass_ratio * t->v[0] + t->v[1]) / both * dt;
-	double c[2], k[2], f[2][2], apart[N + 1], last = 0;
-	for (int i = 0; i < 2; i++) {
-		const struct pound_march_body *b = &task->bodies[i];
-		const struct pound_piece *piece = &t->at[i].piece;
-		c[i] = b->damping * dt;
-		k[i] = piece->stiffness * dt2;
-		f[i][0] = (b->drive * t->ground + piece->offset) * dt2;
-		f[i][1] = b->drive * t->slope * dt2 * dt;
-	}
-	s->order = order;
-	s->step = dt;
-	for (int n = 0; n <= N + 1; n++)
-		s->p[n] = s->q[n] = 0;
-	s->p[0] = t->p;
-	// the first round has the bodies go along with an overlap that stays: what it finds takes another to reach them
-	for (int round = 0; round < SETTLED_ROUNDS && (round < 2 || s->p[0] != last); round++) {
-		double w = w0, rate = rate0;
-		last = s->p[0];
-		for (int n = 0; n <= order; n++) {
-			double b[2], off = s->p[n] + (n == 0 ? task->gap : 0);
-			for (int i = 0; i < 2; i++) {
-				s->u[i][n] = w + share[i] * off;
-				s->w[i][n] = rate + share[i] * s->q[n];
-				b[i] = -(c[i] * s->w[i][n] + k[i] * s->u[i][n]) - (n < 2 ? f[i][n] : 0);
-			}
-			apart[n] = b[0] - b[1];
-			w = rate * POUND_SHARE[n];
-			rate = (task->mass_ratio * b[0] + b[1]) / both * POUND_SHARE[n];
-		}
-		for (int n = order; n >= 0; n--) {
-			s->q[n] = (n + 1) * s->p[n + 1];
-			s->p[n] = (apart[n] - dash * s->q[n] - (n + 1) * s->q[n + 1]) / spring;
-		}
-	}
-	double swing = fabs(t->p - s->p[0]) * spring, hurry = fabs(t->q * dt - s->q[0]) * sqrt(spring);
-	double force = s->p[0] + release_of(task) / dt * s->q[0];
-	bool pressed = s->p[0] > 0 && force > 0; // or they are about to part
-	return pressed && swing + hurry <= NOTHING_BESIDE * (pull * dt2);
-}
-
-/* ---- first roots ---- */
-
-/* First time in (0, limit] at which a guard, not positive at 0, becomes positive.
- *
- * Given    g       (order + 1)  its coefficients
- * Returns  value   NOTHING; CONTACT for found; CUT where the search had to give up
- *          t       that time, or a safe one
- *
- * A parabola with the guard's value and slope at t and a bound of its curvature lies above the guard, so no root lies
- * before the parabola's.
- */
-static int root_first(const double *g, int order, double limit, double *t)
-{
-	for (int m = 0; m < DEFLATE_MAX && g[0] == 0 && order > 0; m++, g++, order--)
-		;
-	if (g[0] >= 0) {
-		*t = 0;
-		return g[0] > 0 ? CONTACT : NOTHING;
-	}
-	double top = g[0], curved = 0, d[N + 1] = {0};
-	for (int n = 1; n <= order; n++) {
-		top += g[n] > 0 ? g[n] : 0;
-		d[n - 1] = n * g[n];
-	}
-	if (top < 0)
-		return NOTHING;
-	double raised[N + 1], large = 0;
-	for (int n = 0; n <= order; n++)
-		large = fmax(large, fabs(g[n]));
-	if (large < 0x1p-400) { // squares are taken: what would vanish in them is raised by a power of two
-		for (int n = 0; n <= order; n++) {
-			raised[n] = g[n] * 0x1p600;
-			d[n] *= 0x1p600;
-		}
-		g = raised;
-	}
-	for (int n = order; n > 2; n--)
-		curved += (double)n * (n - 1) * fabs(g[n]);
-	double second = order > 1 ? 2 * g[2] : 0, bend = fmax(0, second + curved);
-	curved += fabs(second);
-	*t = 0;
-	for (int round = 0; round < ROOT_ROUNDS; round++) {
-		double slope = order > 0 ? power_at(d, order - 1, *t) : 0, below = fmin(power_at(g, order, *t), 0);
-		double root = sqrt(slope * slope - 2 * bend * below);
-		double step = slope > 0 ? -2 * below / (slope + root) : bend > 0 ? (root - slope) / bend : 2;
-		bool near = step * step * curved < 0.5 * DBL_EPSILON * slope;
-		if (!near && step < 0.5 * DBL_EPSILON)
-			return CUT;
-		*t += step;
-		if (*t > limit)
-			return NOTHING;
-		if (near)
-			return CONTACT;
-	}
-	return CUT;
-}
+/* ---- events ---- */
 
 /* Notes the first root of a guard as the event where it comes first. */
 static void search_guard(struct search *search, const double *g, int order, int event)
 {
 	double t;
-	int found = root_first(g, order, search->time, &t);
-	if (found == NOTHING)
+	enum pound_root found = pound_root_first(g, order, search->time, &t);
+	if (found == POUND_ROOT_NONE)
 		return;
 	search->time = t;
-	search->event = found == CUT ? CUT : event;
+	search->event = found == POUND_ROOT_CUT ? CUT : event;
 }
 
-/* Looks for where the series of a motion rises above a level (sign +1) or falls below it (-1). */
-static void search_level(struct search *search, const double *c, int order, double level, double sign,
+/* Looks for where a motion rises above a level (sign +1) or falls below it (-1).
+ *
+ * Given    y  its derivatives
+ */
+static void search_level(struct search *search, const double *y, int order, double level, double sign,
                          int event)
 {
 	double g[N + 1];
-	g[0] = sign * (c[0] - level);
+	g[0] = sign * (y[0] - level);
 	for (int n = 1; n <= order; n++)
-		g[n] = sign * c[n];
+		g[n] = sign * y[n] * POUND_FACTOR[n];
 	search_guard(search, g, order, event);
 }
 
-static void search_body(struct search *search, const struct series *s, const struct pound_piece *piece, int i)
+static void search_body(struct search *search, const struct pound_trace_series *s,
+                        const struct pound_piece *piece, int i)
 {
 	int edge = BODY + EDGES * i;
 	if (piece->high < DBL_MAX)
-		search_level(search, s->u[i], s->order, piece->high, 1, edge + POUND_EDGE_HIGH);
+		search_level(search, s->y[i], s->order, piece->high, 1, edge + POUND_EDGE_HIGH);
 	if (piece->low > -DBL_MAX)
-		search_level(search, s->u[i], s->order, piece->low, -1, edge + POUND_EDGE_LOW);
+		search_level(search, s->y[i], s->order, piece->low, -1, edge + POUND_EDGE_LOW);
 	if (piece->direction != 0)
-		search_level(search, s->w[i], s->order, 0, -piece->direction, edge + POUND_EDGE_TURN);
+		search_level(search, s->y[i] + 1, s->order, 0, -piece->direction, edge + POUND_EDGE_TURN);
 }
 
 /* Apart, contact begins when the overlap rises through 0.  Touching, it ends when that falls through 0 or, where the
  * dashpot must not pull, when the force does; parted, when that force rises again or the overlap is gone. */
-static void search_contact(struct search *search, const struct series *s, const struct pound_trace *t)
+static void search_contact(struct search *search, const struct pound_trace_series *s,
+                           const struct pound_trace *t)
 {
-	double release = release_of(t->task);
-	double sign = t->touching ? -1 : 1;
+	const double release = pound_trace_release(t->task), sign = t->touching ? -1 : 1, *p = s->y[2],
+	             *q = p + 1;
 	if (release == 0 || !(t->touching || t->parted)) {
-		search_level(search, s->p, s->order, 0, sign, CONTACT);
+		search_level(search, p, s->order, 0, sign, CONTACT);
 		return;
 	}
 	double g[N + 1], lead = release / s->step;
 	for (int n = 0; n <= s->order; n++)
-		g[n] = sign * (s->p[n] + lead * s->q[n]);
+		g[n] = sign * (p[n] + lead * q[n]) * POUND_FACTOR[n];
 	if (t->fresh) {
 		// the force has just passed 0: it is beyond by the rounding of the overlap and of its acceleration
-		double pull = fabs(s->w[0][1]) + fabs(s->w[1][1]);
-		g[0] = fmin(g[0], -DBL_EPSILON * (s->p[0] + lead * pull));
+		double pull = fabs(s->y[0][2]) + fabs(s->y[1][2]);
+		g[0] = fmin(g[0], -DBL_EPSILON * (p[0] + lead * pull));
 	}
 	search_guard(search, g, s->order, CONTACT);
 	if (t->parted)
-		search_level(search, s->p, s->order, 0, -1, CLEARS);
+		search_level(search, p, s->order, 0, -1, CLEARS);
 }
 
 /* ---- pieces ---- */
 
-/* Shortens a series to a share of its step, drops the terms that are rounding beside the others, and bounds it with two
- * derivatives; returns its order. */
-static int polynomial_finish(struct pound_polynomial *a, int order, double share)
+/* An acceleration over a share of a step: without the terms that are rounding beside the others, bounded with two
+ * derivatives.
+ *
+ * Given    a  derivatives by the share of the step, times the step squared;  offset: besides
+ * Returns  value  its order
+ */
+static int polynomial_fill(struct pound_polynomial *into, const double *a, int order, double offset,
+                           double step, double share)
 {
-	double power = share, size[N + 1], rest = 0;
-	size[0] = fabs(a->c[0]);
-	for (int n = 1; n <= order; n++, power *= share) {
-		a->c[n] *= power;
-		size[n] = fabs(a->c[n]);
-	}
-	a->bound[0] = a->bound[1] = a->bound[2] = 0;
+	const double per_step = 1 / step;
+	double *const c = into->c, power = 1, size[N + 2], rest = 0, bound[3][2] = {{0}};
+	c[0] = a[0] * per_step * per_step - offset;
+	for (int n = 1; n <= order; n++)
+		c[n] = a[n] * POUND_FACTOR[n] * per_step * per_step;
+	for (int n = 1; n <= order && share != 1; n++)
+		c[n] *= power *= share;
 	for (int n = 0; n <= order; n++)
-		a->bound[0] += size[n];
-	while (order > 0 && rest + size[order] <= NOTHING_BESIDE * a->bound[0])
+		size[n] = fabs(c[n]);
+	size[order + 1] = 0;
+	// the even and the odd terms apart: sums need not wait for each other
+	for (int n = 0; n <= order; n += 2)
+		for (int j = 0; j < 2; j++)
+			bound[0][j] += size[n + j];
+	into->bound[0] = bound[0][0] + bound[0][1];
+	while (order > 0 && rest + size[order] <= POUND_NOTHING_BESIDE * into->bound[0])
 		rest += size[order--];
-	for (int n = 1; n <= order; n++) {
-		a->bound[1] += n * size[n];
-		a->bound[2] += (double)(n * (n - 1)) * size[n];
-	}
+	size[order + 1] = 0;
+	for (int n = 0; n <= order; n += 2)
+		for (int j = 0; j < 2; j++) {
+			bound[1][j] += (n + j) * size[n + j];
+			bound[2][j] += (double)((n + j) * (n + j - 1)) * size[n + j];
+		}
+	into->bound[1] = bound[1][0] + bound[1][1];
+	into->bound[2] = bound[2][0] + bound[2][1];
 	return order;
 }
 
@@ -440,44 +148,136 @@ static int map_of(struct pound_trace_stretch *stretch, double stiffness)
 	return stretch->n_maps++;
 }
 
+/* ---- flights ---- */
+
+void pound_trace_flight(const double state[4], double k, double c, double h, int order, double *a)
+{
+	double r = state[0], v = state[1];
+	for (int n = 0; n <= order; n++) {
+		double ground = n == 0 ? state[2] : n == 1 ? state[3] : 0;
+		a[n] = -(c * v + r);
+		double next = -h * (c * v + r + ground) * POUND_SHARE[n];
+		r = h * k * v * POUND_SHARE[n];
+		v = next;
+	}
+}
+
+const double *pound_trace_floor(const struct pound_trace_stretch *stretch,
+                                const struct pound_trace_piece *piece, double damping, double room[N + 1])
+{
+	if (piece->map < 0)
+		return piece->floor.c;
+	pound_trace_flight(piece->state, stretch->stiffness[piece->map], damping, piece->step, piece->order,
+	                   room);
+	return room;
+}
+
+/* A body over a sample h, by the power series of its responses to each input.
+ *
+ * The cubic through both ends misses the motion by POUND_CUBIC_ERROR of its fourth derivative at most, which by linearity is
+ * bounded by the sums of the magnitudes of their terms; 16 roundings of what either end is made of are added.
+ *
+ * Given    k, c  stiffness [1/s2] and damping [1/s] per mass
+ */
+static void glide_fill(struct pound_trace_glide *g, double k, double c, double h, int order)
+{
+	*g = (struct pound_trace_glide){.stiffness = k};
+	for (int j = 0; j < 4; j++) {
+		double u = j == 0, w = j == 1 ? h : 0, ends[2] = {0}, bend = 0, size = 0;
+		for (int n = 0; n <= order; n++) {
+			double force = (j == 2 && n == 0) || (j == 3 && n == 1) ? h * h : 0;
+			ends[0] += u;
+			ends[1] += w;
+			bend += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * fabs(u);
+			size += fabs(u);
+			double next = -(c * h * w + k * h * h * u + force) * POUND_SHARE[n];
+			u = w * POUND_SHARE[n];
+			w = next;
+		}
+		g->move[0][j] = ends[0];
+		g->move[1][j] = ends[1] / h;
+		g->error[j] = POUND_CUBIC_ERROR * bend + 16 * DBL_EPSILON * (size + (j == 0));
+		double unit[4] = {j == 0, j == 1, j == 2, j == 3}, a[N + 1];
+		pound_trace_flight(unit, k, c, h, order, a);
+		for (int n = 0; n <= order; n++) {
+			g->bound[0][j] += fabs(a[n]);
+			g->bound[1][j] += n * fabs(a[n]);
+			g->bound[2][j] += n * (n - 1.0) * fabs(a[n]);
+		}
+	}
+}
+
+/* That of a body on the piece it is on. */
+static const struct pound_trace_glide *glide_of(struct pound_trace *t, int i)
+{
+	const double stiffness = t->at[i].piece.stiffness;
+	for (int m = 0; m < POUND_TRACE_MAPS; m++)
+		if (t->glide[i][m].stiffness == stiffness)
+			return &t->glide[i][m];
+	struct pound_trace_glide *g = &t->glide[i][t->glide_next[i]];
+	t->glide_next[i] = (t->glide_next[i] + 1) % POUND_TRACE_MAPS;
+	glide_fill(g, stiffness, t->task->bodies[i].damping, t->task->time_step, t->order_sample);
+	return g;
+}
+
+/* The floor over a flight, a whole sample. */
+static void flight_add(const struct pound_trace *t, struct pound_trace_stretch *stretch,
+                       const struct pound_trace_glide *g, int map)
+{
+	const struct pound_piece *law = &t->at[0].piece;
+	struct pound_trace_piece *piece = &stretch->piece[stretch->n++];
+	const double h = t->task->time_step;
+	piece->start = (t->next - 1) * h;
+	piece->step = h;
+	piece->u = t->u[0];
+	piece->v = t->v[0];
+	piece->sampled = true;
+	piece->turned = t->turned;
+	piece->map = map;
+	piece->order = t->order_sample;
+	piece->state[0] = law->stiffness * t->u[0] + law->offset;
+	piece->state[1] = t->v[0];
+	piece->state[2] = t->ground;
+	piece->state[3] = t->slope * h;
+	for (int d = 0; d < 3; d++) {
+		piece->floor.bound[d] = piece->push.bound[d] = 0;
+		for (int j = 0; j < 4; j++)
+			piece->floor.bound[d] += g->bound[d][j] * fabs(piece->state[j]);
+	}
+}
+
 /* The floor over the first `share` of a step. */
-static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch, const struct series *s,
-                      double share)
+static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch,
+                      const struct pound_trace_series *s, double share)
 {
 	const struct pound_march_task *task = t->task;
 	const struct pound_piece *law = &t->at[0].piece;
+	if (t->sampled && !t->touching && s->step == task->time_step && share == 1) {
+		int map = map_of(stretch, law->stiffness);
+		if (map >= 0) {
+			flight_add(t, stretch, glide_of(t, 0), map);
+			return;
+		}
+	}
 	struct pound_trace_piece *piece = &stretch->piece[stretch->n++];
-	double c = task->bodies[0].damping / s->step, dash = task->contact_damping / s->step;
-	bool whole = t->sampled && !t->touching && s->step == task->time_step && share == 1;
 	piece->start = (t->next) * task->time_step - t->left;
 	piece->step = share * s->step;
 	piece->u = t->u[0];
 	piece->v = t->v[0];
 	piece->sampled = t->sampled;
 	piece->turned = t->turned;
-	piece->map = whole ? map_of(stretch, law->stiffness) : -1;
-	piece->state[0] = law->stiffness * t->u[0] + law->offset;
-	piece->state[1] = t->v[0];
-	piece->state[2] = t->ground;
-	piece->state[3] = t->slope * s->step;
-	if (!t->touching)
+	piece->map = -1;
+	piece->order = polynomial_fill(&piece->floor, s->floor, s->order, law->offset, s->step, share);
+	if (!t->touching) {
 		memset(&piece->push, 0, sizeof piece->push);
-	for (int n = 0; n <= s->order; n++)
-		piece->floor.c[n] = -(c * s->w[0][n] + law->stiffness * s->u[0][n]);
-	for (int n = 0; n <= s->order && t->touching; n++) {
-		piece->push.c[n] = -(task->contact_stiffness * s->p[n] + dash * s->q[n]);
-		piece->floor.c[n] += piece->push.c[n];
-	}
-	piece->floor.c[0] -= law->offset;
-	piece->order = polynomial_finish(&piece->floor, s->order, share);
-	if (!t->touching)
 		return;
-	int order = polynomial_finish(&piece->push, s->order, share);
+	}
+	int order = polynomial_fill(&piece->push, s->push, s->order, 0, s->step, share);
 	piece->order = order > piece->order ? order : piece->order;
-	double area = 0;
-	for (int n = order; n >= 0; n--)
-		area += piece->push.c[n] * POUND_SHARE[n];
-	t->impulse -= area * piece->step;
+	double area[2] = {0};
+	for (int n = 0; n <= order; n++)
+		area[n % 2] += piece->push.c[n] * POUND_SHARE[n];
+	t->impulse -= (area[0] + area[1]) * piece->step;
 	t->contact_time += piece->step;
 }
 
@@ -550,53 +350,131 @@ static void interval_enter(struct pound_trace *t)
 	}
 }
 
+/* A motion at a time of its step: at the end the terms are added up, the smallest first. */
+static void motion_at(const double *y, int order, double time, double *u, double *w)
+{
+	if (time == 1) {
+		double even[2] = {0}, odd[2] = {0}; // two sums need not wait for each other
+		for (int n = order / 2 * 2; n >= 0; n -= 2)
+			for (int j = 0; j < 2; j++) {
+				even[j] += y[n + j] * POUND_FACTOR[n];
+				odd[j] += n < order ? y[n + 1 + j] * POUND_FACTOR[n + 1] : 0;
+			}
+		*u = even[0] + odd[0];
+		*w = even[1] + odd[1];
+		return;
+	}
+	double c[N + 1] = {0};
+	pound_trace_taylor(y, order, c);
+	*u = pound_root_value(c, order, time);
+	pound_trace_taylor(y + 1, order, c);
+	*w = pound_root_value(c, order, time);
+}
+
 /* Moves the state to a time of the step. */
-static void state_move(struct pound_trace *t, const struct series *s, double time)
+static void state_move(struct pound_trace *t, const struct pound_trace_series *s, double time)
 {
 	double dt = s->step;
 	for (int i = 0; i < (t->task->contact ? POUND_OSCILLATORS : 1); i++) {
-		t->u[i] = power_at(s->u[i], s->order, time);
-		t->v[i] = power_at(s->w[i], s->order, time) / dt;
+		motion_at(s->y[i], s->order, time, &t->u[i], &t->v[i]);
+		t->v[i] /= dt;
 	}
 	if (t->task->contact) {
-		t->p = power_at(s->p, s->order, time);
-		t->q = power_at(s->q, s->order, time) / dt;
+		motion_at(s->y[2], s->order, time, &t->p, &t->q);
+		t->q /= dt;
 	}
 	t->left -= time * dt;
 	t->ground += t->slope * (time * dt);
 }
 
-/* How far a series reaches; whether that is to the next sample. */
-static bool step_length(const struct pound_trace *t, double rate, double *dt)
+/* a body over a sample: its end, the inner control points of the cubic through both ends, and the bound of its error */
+struct way {
+	double u, v, b1, b2, error;
+};
+
+static struct way way_of(const struct pound_trace *t, int i, const struct pound_trace_glide *g)
 {
-	double reach = rate > 0 ? REACH / rate * t->pace : DBL_MAX, steps = t->left / reach;
-	*dt = steps <= 1 ? t->left : steps > 2 ? reach : 0.5 * t->left;
-	return steps <= 1;
+	const struct pound_march_body *body = &t->task->bodies[i];
+	const double h = t->task->time_step, third = h / 3;
+	const double in[4] = {t->u[i], t->v[i], body->drive * t->ground + t->at[i].piece.offset,
+	                      body->drive * (t->slope * h)};
+	const double *u = g->move[0], *v = g->move[1], *e = g->error;
+	struct way w = {.u = (u[0] * in[0] + u[1] * in[1]) + (u[2] * in[2] + u[3] * in[3]),
+	                .v = (v[0] * in[0] + v[1] * in[1]) + (v[2] * in[2] + v[3] * in[3])};
+	w.error = (e[0] * fabs(in[0]) + e[1] * fabs(in[1])) + (e[2] * fabs(in[2]) + e[3] * fabs(in[3]));
+	w.b1 = t->u[i] + third * t->v[i];
+	w.b2 = w.u - third * w.v;
+	return w;
 }
 
-/* The series of the next step; whether it goes to the next sample. */
-static bool series_next(struct series *s, const struct pound_trace *t)
+/* Whether a motion stays below a limit, by its control points. */
+static bool way_below(const double point[3], double limit)
 {
-	double dt, rate = t->touching ? t->rate_touch : t->rate;
-	bool whole = step_length(t, t->rate, &dt);
-	// where a body stands, its two pieces are to see one motion, to the last bit
-	bool stands = stands_at_end(t, 0) || stands_at_end(t, 1);
-	if (t->touching && !stands && rate * dt >= SETTLED_LEAST) {
-		double pull = pull_of(t);
-		if (may_settle(t, pull) && series_settle(s, t, dt, order_of(t->rate * dt), pull))
-			return whole;
+	return point[0] <= limit && point[1] <= limit && point[2] <= limit;
+}
+
+/* Whether no edge of a body's piece is reached on the way: the velocity's control points times h/3 are its own at the ends
+ * and b2 - b1 between; they miss it by 288 sqrt(3)/648 of the error at most. */
+static bool way_inside(const struct pound_trace *t, int i, const struct way *w)
+{
+	const struct pound_piece *piece = &t->at[i].piece;
+	const double third = t->task->time_step / 3, back = -piece->direction;
+	const double point[3] = {w->b1, w->b2, w->u}, mirrored[3] = {-w->b1, -w->b2, -w->u};
+	const double backward[3] = {back * third * t->v[i], back * third * w->v, back * (w->b2 - w->b1)};
+	return way_below(point, piece->high - w->error) && way_below(mirrored, -piece->low - w->error) &&
+	       (back == 0 || way_below(backward, -0.77 * w->error));
+}
+
+/* Flies over a whole sample; false: something may happen in it, which series are to find out. */
+static bool flight(struct pound_trace *t, struct pound_trace_stretch *stretch)
+{
+	const struct pound_march_task *task = t->task;
+	const int bodies = task->contact ? POUND_OSCILLATORS : 1;
+	if (!t->sampled || t->touching || t->parted || t->pace != 1 ||
+	    t->rate * task->time_step > POUND_TRACE_REACH)
+		return false;
+	struct way w[POUND_OSCILLATORS];
+	const struct pound_trace_glide *glide[POUND_OSCILLATORS];
+	for (int i = 0; i < bodies; i++) {
+		glide[i] = glide_of(t, i);
+		w[i] = way_of(t, i, glide[i]);
 	}
-	whole = step_length(t, rate, &dt);
-	bool flight = whole && t->sampled && !t->touching;
-	series_fill(s, t, dt, flight ? t->order_sample : order_of(rate * dt));
-	return whole;
+	for (int i = 0; i < bodies; i++)
+		if (!way_inside(t, i, &w[i]))
+			return false;
+	if (bodies > 1) {
+		const double apart[3] = {w[0].b1 - w[1].b1, w[0].b2 - w[1].b2, w[0].u - w[1].u};
+		if (!way_below(apart, (1 - 4 * DBL_EPSILON) * task->gap - (w[0].error + w[1].error)))
+			return false;
+	}
+	int map = map_of(stretch, t->at[0].piece.stiffness);
+	if (map < 0)
+		return false;
+	flight_add(t, stretch, glide[0], map);
+	for (int i = 0; i < bodies; i++) {
+		t->u[i] = w[i].u;
+		t->v[i] = w[i].v;
+	}
+	t->left = 0;
+	t->turned = false;
+	return true;
+}
+
+static void sample_next(struct pound_trace *t)
+{
+	if (++t->next < t->task->n_samples)
+		interval_enter(t);
 }
 
 /* One step: to the next event, the next sample, or as far as a series reaches. */
 static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 {
-	struct series s;
-	bool whole = series_next(&s, t);
+	if (flight(t, stretch)) {
+		sample_next(t);
+		return;
+	}
+	struct pound_trace_series s;
+	pound_trace_series(&s, t);
 	struct search search = {.time = 1, .event = NOTHING};
 	if (t->task->contact)
 		search_contact(&search, &s, t);
@@ -613,11 +491,11 @@ static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 	contact_turn(t, search.event);
 	if (search.event >= BODY)
 		body_turn(t, (search.event - BODY) / EDGES, (enum pound_edge)((search.event - BODY) % EDGES));
-	bool ends = (whole && search.event == NOTHING) || t->left <= 0;
+	bool ends = (s.whole && search.event == NOTHING) || t->left <= 0;
 	if (!ends && ++t->events > EVENTS_LIMIT)
 		t->status = POUND_CHATTER;
-	if (ends && ++t->next < t->task->n_samples)
-		interval_enter(t);
+	if (ends)
+		sample_next(t);
 }
 
 /* Puts a trace at the start of its task.
@@ -633,10 +511,12 @@ void pound_trace_start(struct pound_trace *trace, const struct pound_march_task 
 		trace->v[i] = b->v;
 		trace->rate = fmax(trace->rate, fmax(sqrt(b->skeleton.stiffness), b->damping));
 		pound_pieces_start(&b->skeleton, &trace->at[i]);
+		for (int m = 0; m < POUND_TRACE_MAPS; m++)
+			trace->glide[i][m].stiffness = -1;
 	}
 	double stiff = task->contact ? (1 + task->mass_ratio) * task->contact_stiffness : 0;
 	trace->rate_touch = sqrt(trace->rate * trace->rate + stiff);
-	trace->order_sample = order_of(fmin(trace->rate * task->time_step, REACH));
+	trace->order_sample = pound_trace_order(fmin(trace->rate * task->time_step, POUND_TRACE_REACH));
 	interval_enter(trace);
 }
 
@@ -650,6 +530,7 @@ void pound_trace_start(struct pound_trace *trace, const struct pound_march_task 
 void pound_trace_next(struct pound_trace *trace, struct pound_trace_stretch *stretch)
 {
 	stretch->n = stretch->n_maps = 0;
+	stretch->order = trace->order_sample;
 	bool going = trace->next < trace->task->n_samples;
 	while (trace->next < trace->task->n_samples && stretch->n < POUND_TRACE_PIECES && !trace->status)
 		step(trace, stretch);

@@ -24,17 +24,27 @@ struct pound_polynomial {
 struct pound_trace_piece {
 	double start, step; /* [s] */
 	double u, v;        /* of the left body at the start [m], [m/s] */
-	double state[4]; /* in free flight: spring force [m/s2], v, ground acceleration, and what it grows by */
-	int map;         /* a whole sample of free flight: number of its stiffness; -1: any other piece */
+	int map;            /* a whole sample of free flight: number of its stiffness; -1: any other piece */
+	double state[4];    /* of a flight: spring force [m/s2], v, ground acceleration, what it grows by */
 	int order;
-	bool sampled, turned;                /* begins at a sample, at an event */
-	struct pound_polynomial floor, push; /* absolute acceleration; the part of it the contact gives */
+	bool sampled, turned; /* begins at a sample, at an event */
+	// absolute acceleration, and the part of it the contact gives; of a flight without coefficients: pound_trace_floor()
+	struct pound_polynomial floor, push;
 };
 
 struct pound_trace_stretch {
 	int n, n_maps;
+	int order;                          /* of the series of flights */
 	double stiffness[POUND_TRACE_MAPS]; /* per mass [1/s2]  (n_maps) */
 	struct pound_trace_piece piece[POUND_TRACE_PIECES];
+};
+
+/* a body on a piece of its law over a whole sample, by what it has at the start */
+struct pound_trace_glide {
+	double stiffness; /* < 0: none */
+	// u and v at the end, and the error of the cubic, by u, v, the forcing and what that grows by
+	double move[2][4], error[4];
+	double bound[3][4]; /* of the floor's acceleration and its derivatives, by a flight's state */
 };
 
 struct pound_trace {
@@ -46,13 +56,29 @@ struct pound_trace {
 	bool fresh;                                              /* the contact's force is exactly 0 now */
 	bool sampled, turned;    /* the state is that of a sample, that after an event */
 	double rate, rate_touch; /* fastest of the motion [rad/s] */
-	int order_sample;        /* of a series over a sample interval */
+	struct pound_trace_glide glide[POUND_OSCILLATORS][POUND_TRACE_MAPS];
+	int glide_next[POUND_OSCILLATORS];
+	int order_sample; /* of a series over a sample interval */
 	double ground, slope, left;
 	double pace; /* share of the usual step: shorter where a search was unsure */
 	int next, events;
 	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
 	int64_t contacts;
 };
+
+/* Coefficients of the floor's acceleration over a flight of one sample h, from its state.
+ *
+ * Given    k, c  stiffness [1/s2] and damping [1/s] per mass
+ * Returns  a     (order + 1)
+ */
+void pound_trace_flight(const double state[4], double k, double c, double h, int order, double *a);
+/* Coefficients of the floor's acceleration over any piece, (order + 1): its own or, of a flight, those made into `room`.
+ *
+ * Given    damping  of the left body, per mass [1/s]
+ */
+const double *pound_trace_floor(const struct pound_trace_stretch *stretch,
+                                const struct pound_trace_piece *piece, double damping,
+                                double room[POUND_TRACE_ORDER + 1]);
 
 /* Terms after which x^n/n! is below rounding, n <= POUND_TRACE_TERMS. */
 int pound_trace_terms(double x);
