@@ -498,6 +498,23 @@ static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 		sample_next(t);
 }
 
+/* Fastest of the motion in contact [rad/s]; past critical damping it is the faster of two roots.
+ *
+ * Given    rate  of the bodies
+ */
+static double rate_touch(const struct pound_march_task *task, double rate)
+{
+	const double both = 1 + task->mass_ratio, stiff = both * task->contact_stiffness;
+	double frequency = 0, damping = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		frequency = fmax(frequency, sqrt(task->bodies[i].skeleton.stiffness));
+		damping = fmax(damping, task->bodies[i].damping);
+	}
+	const double own = sqrt(frequency * frequency + stiff);
+	const double zeta = 0.5 * (damping + both * task->contact_damping) / own;
+	return fmax(sqrt(rate * rate + stiff), zeta > 1 ? own * (zeta + sqrt(zeta * zeta - 1)) : 0);
+}
+
 /* Puts a trace at the start of its task.
  *
  * Given    task   its bodies, contact and ground motion, which must outlive the trace
@@ -514,8 +531,7 @@ void pound_trace_start(struct pound_trace *trace, const struct pound_march_task 
 		for (int m = 0; m < POUND_TRACE_MAPS; m++)
 			trace->glide[i][m].stiffness = -1;
 	}
-	double stiff = task->contact ? (1 + task->mass_ratio) * task->contact_stiffness : 0;
-	trace->rate_touch = sqrt(trace->rate * trace->rate + stiff);
+	trace->rate_touch = task->contact ? rate_touch(task, trace->rate) : trace->rate;
 	trace->order_sample = pound_trace_order(fmin(trace->rate * task->time_step, POUND_TRACE_REACH));
 	interval_enter(trace);
 }

@@ -169,6 +169,20 @@ static void a_damped_body_pressed_on_a_wall_moves_as_in_the_march(void **state)
 	}
 }
 
+/* Past critical damping the faster of two roots sets the steps: 60 times as fast as the frequency, at most. */
+static void a_contact_past_critical_damping_moves_as_in_the_march(void **state)
+{
+	(void)state;
+	uint64_t seed = 9;
+	for (int n = 0; n < 2000; n++) {
+		struct pound_march_task task = specimen_pressed(&seed);
+		const double settled = 1 / (task.bodies[0].skeleton.stiffness + task.contact_stiffness);
+		task.contact_damping *= specimen_uniform(&seed, 1, 30);
+		const struct ended e = trace_to_end(&task);
+		check_near((e.trace.u[0] - march(&task).u[0]) / settled, 0, 64 * DBL_EPSILON);
+	}
+}
+
 static void a_motion_that_dies_away_in_silence_is_over(void **state)
 {
 	(void)state;
@@ -321,6 +335,7 @@ CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impac
            cmocka_unit_test(a_body_that_creeps_where_it_yielded_moves_as_in_the_march),
            cmocka_unit_test(linear_bodies_alike_but_for_roundings_move_as_in_the_march),
            cmocka_unit_test(a_damped_body_pressed_on_a_wall_moves_as_in_the_march),
+           cmocka_unit_test(a_contact_past_critical_damping_moves_as_in_the_march),
            cmocka_unit_test(a_motion_that_dies_away_in_silence_is_over),
            cmocka_unit_test(pieces_follow_each_other_without_holes),
            cmocka_unit_test(the_acceleration_is_that_of_the_motion),
