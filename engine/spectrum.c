@@ -146,17 +146,23 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 
 /* ---- largest displacements ---- */
 
-/* Lanes in which |z| may have a new largest value inside a part; ends are taken here.
- *
- * Given    z1, v1   at the end;  bound: of the drive and its derivatives over the piece
- */
-LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, const double bound[3])
+/* What a drive with these bounds over its piece adds to the error of the cubic of a part. */
+LANE_INLINE vd drive_error(const struct part *p, const double bound[3])
 {
-	vd third = vsplat(p->step * (1.0 / 3));
-	vd b1 = vfma(third, s->v, s->z), b2 = vfma(-third, v1, z1);
 	vd error = p->on_drive[2] * vsplat(bound[2]);
 	for (int k = 1; k >= 0; k--)
 		error = vfma(p->on_drive[k], vsplat(bound[k]), error);
+	return error;
+}
+
+/* Lanes in which |z| may have a new largest value inside a part; ends are taken here.
+ *
+ * Given    z1, v1  at the end;  error: of the drive
+ */
+LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, vd error)
+{
+	vd third = vsplat(p->step * (1.0 / 3));
+	vd b1 = vfma(third, s->v, s->z), b2 = vfma(-third, v1, z1);
 	error = vfma(p->on_z, vabs(s->z), vfma(p->on_v, vabs(s->v), error));
 	s->top = vmax(s->top, vabs(z1));
 	return vless(s->top, vmax(vabs(b1), vabs(b2)) + error);
@@ -279,28 +285,37 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 	s->yy = rate;
 }
 
+/* The largest |z| of a part in which there may be an extremum, by its series; in the lanes of `risk`, else top.
+ *
+ * Given    z, v   at the start;  order: of the drive, -1: none
+ */
+LANE_SHARED vd part_top(const struct part *p, vd z, vd v, vm risk, vd top, const struct pound_ride *ride,
+                        const struct pound_trace_piece *piece, enum pound_drive drive, int order, int j,
+                        int n)
+{
+	double room[POUND_TRACE_ORDER + 1], flown[POUND_TRACE_ORDER + 1];
+	struct series series;
+	const double *a = room;
+	if (order >= 0) {
+		a = drive == POUND_DRIVE_PUSH ? piece->push.c
+		                              : pound_trace_floor(ride->stretch, piece, ride->damping, flown);
+		a = part_drive(a, order, j, n, room);
+	}
+	series_fill(&series, p, z, v * p->step, a, order, p->step * p->step);
+	return peak_add(&series, risk, top);
+}
+
 /* Moves a state over a part; the series is only made where there may be an extremum inside.
  *
- * Given    bound   of the drive and its derivatives over the piece;  drive: none where these are 0
+ * Given    error   of the drive;  order: of the drive, -1: none
  */
-LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1, const double bound[3],
+LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1, vd error,
                            const struct pound_ride *ride, const struct pound_trace_piece *piece,
-                           enum pound_drive drive, int j, int n)
+                           enum pound_drive drive, int order, int j, int n)
 {
-	vm risk = part_risk(p, s, z1, v1, bound);
-	if (vany(risk)) {
-		double room[POUND_TRACE_ORDER + 1], flown[POUND_TRACE_ORDER + 1];
-		struct series series;
-		const double *a = room;
-		const int order = bound[0] > 0 ? piece->order : -1;
-		if (order >= 0) {
-			a = drive == POUND_DRIVE_PUSH ? piece->push.c
-			                              : pound_trace_floor(ride->stretch, piece, ride->damping, flown);
-			a = part_drive(a, order, j, n, room);
-		}
-		series_fill(&series, p, s->z, s->v * p->step, a, order, p->step * p->step);
-		s->top = peak_add(&series, risk, s->top);
-	}
+	vm risk = part_risk(p, s, z1, v1, error);
+	if (__builtin_expect(vany(risk), 0))
+		s->top = part_top(p, s->z, s->v, risk, s->top, ride, piece, drive, order, j, n);
 	s->z = z1;
 	s->v = v1;
 }
@@ -310,7 +325,7 @@ LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
                            const struct pound_ride *ride, const struct pound_trace_piece *piece,
                            const double *const integral[], int j, int n)
 {
-	const double *bound[POUND_DRIVES] = {piece->floor.bound, piece->push.bound};
+	const struct pound_polynomial *a[POUND_DRIVES] = {&piece->floor, &piece->push};
 	struct passage passage;
 	double per_step = 1 / p->step;
 	passage_fill(&passage, p, integral, n_drives);
@@ -318,8 +333,21 @@ LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
 		vd y = s[d].v * p->step;
 		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
 		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
-		part_pass(p, &s[d], z1, y1 * per_step, bound[d], ride, piece, d, j, n);
+		part_pass(p, &s[d], z1, y1 * per_step, drive_error(p, a[d]->bound), ride, piece, d,
+		          a[d]->bound[0] > 0 ? piece->order : -1, j, n);
 	}
+}
+
+/* Integrals of the drives over part j of n of a piece. */
+LANE_SHARED void parts_integrals(const struct pound_bank *bank, int n_drives, const struct pound_ride *ride,
+                                 const struct pound_trace_piece *piece, int j, int n,
+                                 double integral[POUND_DRIVES][INTEGRALS])
+{
+	double room[POUND_TRACE_ORDER + 1];
+	const double *floor = pound_trace_floor(ride->stretch, piece, ride->damping, room);
+	integrals_fill(bank->kernel, floor, piece->order, j, n, integral[0]);
+	if (n_drives > 1)
+		integrals_fill(bank->kernel, piece->push.c, piece->map < 0 ? piece->order : -1, j, n, integral[1]);
 }
 
 /* Oscillators over a piece; `whole` are the integrals over all of it. */
@@ -329,16 +357,11 @@ LANE_INLINE void piece_ride(const struct pound_bank *bank, const struct part *p,
 {
 	alignas(64) double own[POUND_DRIVES][INTEGRALS];
 	const double *integral[POUND_DRIVES] = {whole[0], whole[1]};
-	double room[POUND_TRACE_ORDER + 1];
-	const double *floor = pound_trace_floor(ride->stretch, piece, ride->damping, room);
-	const int push = piece->map < 0 ? piece->order : -1;
+	if (n > 1)
+		integral[0] = own[0], integral[1] = own[1];
 	for (int j = 0; j < n; j++) {
-		if (n > 1) {
-			integrals_fill(bank->kernel, floor, piece->order, j, n, own[0]);
-			if (n_drives > 1)
-				integrals_fill(bank->kernel, piece->push.c, push, j, n, own[1]);
-			integral[0] = own[0], integral[1] = own[1];
-		}
+		if (n > 1)
+			parts_integrals(bank, n_drives, ride, piece, j, n, own);
 		part_ride(p, s, n_drives, ride, piece, integral, j, n);
 	}
 }
@@ -377,21 +400,25 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
                              const struct pound_ride *ride, const struct pound_trace_piece *piece,
                              enum pound_drive drive, int parts)
 {
-	const double *bound = drive == POUND_DRIVE_FLOOR ? piece->floor.bound : piece->push.bound;
+	const bool driven = drive == POUND_DRIVE_FLOOR;
+	const vd error = driven ? drive_error(p, piece->floor.bound) : vsplat(0);
+	vd state[4];
+	for (int k = 0; k < 4; k++)
+		state[k] = vsplat(piece->state[k]);
 	for (int j = 0; j < parts; j++) {
 		vd z = vsplat(0), v = vsplat(0);
-		if (drive == POUND_DRIVE_FLOOR) {
+		if (driven) {
 			// what does not wait for the sample before comes first
 			const struct flight *f = &maps->part[piece->map][j];
 #pragma GCC unroll 4
 			for (int k = 0; k < 4; k++) {
-				z = vfma(f->gz[k], vsplat(piece->state[k]), z);
-				v = vfma(f->gv[k], vsplat(piece->state[k]), v);
+				z = vfma(f->gz[k], state[k], z);
+				v = vfma(f->gv[k], state[k], v);
 			}
 		}
 		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
 		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
-		part_pass(p, s, z, v, bound, ride, piece, drive, j, parts);
+		part_pass(p, s, z, v, error, ride, piece, drive, driven ? piece->order : -1, j, parts);
 	}
 }
 

@@ -150,14 +150,16 @@ static int map_of(struct pound_trace_stretch *stretch, double stiffness)
 
 /* ---- flights ---- */
 
+/* By derivatives: r' = h k v, v' = -h (c v + r + ground). */
 void pound_trace_flight(const double state[4], double k, double c, double h, int order, double *a)
 {
+	const double hk = h * k, hc = h * c;
 	double r = state[0], v = state[1];
 	for (int n = 0; n <= order; n++) {
-		double ground = n == 0 ? state[2] : n == 1 ? state[3] : 0;
-		a[n] = -(c * v + r);
-		double next = -h * (c * v + r + ground) * POUND_SHARE[n];
-		r = h * k * v * POUND_SHARE[n];
+		double ground = n == 0 ? h * state[2] : n == 1 ? h * state[3] : 0;
+		a[n] = -(c * v + r) * POUND_FACTOR[n];
+		double next = -(hc * v + (h * r + ground));
+		r = hk * v;
 		v = next;
 	}
 }
