@@ -320,12 +320,60 @@ static struct reply unopened(struct request *request, const struct work_run *ope
 	return problem(API_CONFLICT, error);
 }
 
+/* The run of a study of which an answer is computed: from here on it ends when the server stops.
+ *
+ * Returns  value  NULL, or why it cannot be made; to be closed in either case
+ */
+static const char *answer_open(const struct request *request, struct work_run *opened)
+{
+	struct server *server = request->server;
+	const char *error = work_open(server->store, request->id, 1, opened);
+	if (error)
+		return error;
+	pthread_mutex_lock(&server->answers_lock);
+	for (int i = 0; i < HTTP_TURNS; i++)
+		if (!server->answers[i]) {
+			server->answers[i] = opened->run;
+			break;
+		}
+	if (server->stopping)
+		pound_run_stop(opened->run);
+	pthread_mutex_unlock(&server->answers_lock);
+	return NULL;
+}
+
+static void answer_close(const struct request *request, struct work_run *opened)
+{
+	struct server *server = request->server;
+	pthread_mutex_lock(&server->answers_lock);
+	for (int i = 0; i < HTTP_TURNS; i++)
+		if (server->answers[i] == opened->run)
+			server->answers[i] = NULL;
+	pthread_mutex_unlock(&server->answers_lock);
+	work_close(opened);
+}
+
+void routes_stop(struct server *server)
+{
+	pthread_mutex_lock(&server->answers_lock);
+	for (int i = 0; i < HTTP_TURNS; i++)
+		if (server->answers[i])
+			pound_run_stop(server->answers[i]);
+	pthread_mutex_unlock(&server->answers_lock);
+}
+
+/* Nothing was computed: the server stops, or there is no memory. */
+static struct reply nothing(const struct request *request)
+{
+	return request->server->stopping ? problem(API_UNAVAILABLE, "the server stops") : no_memory();
+}
+
 /* The result of the rows that are stored whole; an unfinished study is looked at again after a time [s]. */
 static struct reply so_far(struct request *request, int retry_after, int *rows)
 {
 	struct work_run opened;
 	struct reply reply;
-	const char *error = work_open(request->server->store, request->id, 1, &opened);
+	const char *error = answer_open(request, &opened);
 	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
 	*rows = sampled ? pound_run_rows_done(opened.run, opened.stored) : 0;
 	if (*rows > 0) {
@@ -337,8 +385,9 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 			status = pound_run_reduce(opened.run, k, 0);
 		if (!status)
 			body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &length);
-		reply = !status || status == POUND_NOMEM
-		            ? made("application/json", body, length)
+		reply = body ? made("application/json", body, length)
+		        : !status || status == POUND_NOMEM || status == POUND_STOPPED
+		            ? nothing(request)
 		            : problem(API_CONFLICT, "none of the runs so far has a result");
 	} else if (error)
 		reply = unopened(request, &opened, error);
@@ -348,7 +397,7 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 		                                         "study is not finished yet");
 		reply.retry_after = retry_after;
 	}
-	work_close(&opened);
+	answer_close(request, &opened);
 	return reply;
 }
 
@@ -401,7 +450,7 @@ static struct reply samples(struct request *request)
 	if (http_known(request, reply.etag))
 		return reply;
 	struct work_run opened;
-	const char *error = work_open(request->server->store, request->id, 1, &opened);
+	const char *error = answer_open(request, &opened);
 	if (error)
 		reply = unopened(request, &opened, error);
 	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
@@ -417,8 +466,8 @@ static struct reply samples(struct request *request)
 	else
 		reply =
 		    problem(API_CONFLICT, "only a sensitivity study has samples, and floor spectra with histories");
-	work_close(&opened);
-	return reply.body ? reply : no_memory();
+	answer_close(request, &opened);
+	return reply.body ? reply : nothing(request);
 }
 
 static struct reply cancel(struct request *request)

@@ -191,6 +191,30 @@ static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **stat
 	free(study);
 }
 
+/* Nearly two million lines would take seconds: who asked for them is told that the server stops. */
+static void a_history_that_is_being_computed_ends_with_the_server(void **state)
+{
+	static const char study[] =
+	    "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	    "{\"frequency_hz\": 3}], \"excitation\": {\"type\": \"kanai_tajimi\", \"frequency_hz\": 1, "
+	    "\"cycles\": 20, \"signals\": 900}}, \"spectrum\": {\"frequencies_hz\": [1]}, \"histories\": true}";
+	struct service *service = *state;
+	static struct raw_answer answer;
+	char id[17], bytes[128];
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	int socket = raw_open(service);
+	raw_send(socket, bytes,
+	         (size_t)snprintf(bytes, sizeof bytes,
+	                          "GET /v1/studies/%s/samples HTTP/1.1\r\nHost: localhost\r\n\r\n", id));
+	usleep(100000);
+	judge("while a history is computed", stop_s(service), 2);
+	raw_receive(socket, 5, &answer);
+	close(socket);
+	assert_int_equal(answer.status, 503);
+	assert_true(is_whole(answer.text));
+}
+
 static void twenty_more_servers_on_one_database_are_refused(void **state)
 {
 	enum { OTHERS = 20 };
@@ -253,4 +277,5 @@ CHECK_MAIN(cmocka_unit_test(systemd_is_told_when_it_is_ready_alive_and_stopping)
            SERVED(an_idle_server_and_one_at_work_end_when_they_are_told),
            SERVED(a_second_signal_ends_it_at_once_and_nothing_is_lost),
            SERVED(a_server_that_ends_under_load_keeps_all_that_it_accepted),
+           SERVED(a_history_that_is_being_computed_ends_with_the_server),
            SERVED(twenty_more_servers_on_one_database_are_refused))
