@@ -51,21 +51,25 @@ static double angle(double sine, double cosine)
 	return guess;
 }
 
-/* First extremum of free motion from (z, v/w): |z| there, 0 if it comes after `limit` of w_d t.
+/* First extremum of free motion from (z, v/w): |z| there, 0 if it comes after `limit` of w_d t or is below `top`.
  *
- * Its velocity is 0 at the angle of (z + xi v/w, s v/w), s = sqrt(1 - xi^2), taken upwards.
+ * Its velocity is 0 at the angle of (z + xi v/w, s v/w), s = sqrt(1 - xi^2), taken upwards.  Without damping on the way it would
+ * be as large as `most`, for which no angle is needed: most of a train's are known not to be the largest by that.
  */
-static double extremum(double z, double v, double xi, double s, double limit)
+static double extremum(double z, double v, double xi, double s, double limit, double top)
 {
 	double sine = s * v, cosine = z + xi * v, length = sqrt(sine * sine + cosine * cosine);
 	if (sine == 0)
 		return 0;
 	sine = copysign(length, sine);
 	double up = fabs(s * v) / length, along = cosine / sine;
+	double most = fabs(z * along + (v + xi * z) / s * up);
+	if (most < top)
+		return 0;
 	double turn = angle(up, along);
 	if (turn > limit)
 		return 0;
-	return pound_elementary_exp(-xi * turn / s) * fabs(z * along + (v + xi * z) / s * up);
+	return pound_elementary_exp(-xi * turn / s) * most;
 }
 
 /* Spectrum of N equal velocity steps of the floor, one every `spacing`, and of the free motion after the last.
@@ -86,7 +90,7 @@ double pound_dirac_train(const struct pound_dirac *dirac, double omega, double x
 	for (double k = 0; k < dirac->pulses; k++) {
 		v += jump;
 		double limit = k + 1 < dirac->pulses ? turn : INFINITY;
-		top = fmax(top, extremum(z, v, xi, s, limit));
+		top = fmax(top, extremum(z, v, xi, s, limit, top));
 		double z1 = decay * (z * cosine + (v + xi * z) / s * sine);
 		v = decay * (v * cosine - (z + xi * v) / s * sine);
 		z = z1;
