@@ -2,7 +2,7 @@
 #ifndef ROOT_H
 #define ROOT_H
 
-enum { POUND_ROOT_ORDER = 18 }; /* at most */
+enum { POUND_ROOT_ORDER = 21 }; /* at most */
 
 /* ROOT_CUT: the search had to give up */
 enum pound_root { POUND_ROOT_NONE, POUND_ROOT_CUT, POUND_ROOT_FOUND };

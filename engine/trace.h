@@ -9,7 +9,7 @@
 #include "engine/march.h"
 
 enum {
-	POUND_TRACE_ORDER = 18,   /* of a piece's power series, at most */
+	POUND_TRACE_ORDER = 21,   /* of a piece's power series, at most */
 	POUND_TRACE_TERMS = 23,   /* of any motion it drives: 1.5^23/23! is below rounding */
 	POUND_TRACE_PIECES = 512, /* handed out at once */
 	POUND_TRACE_MAPS = 4,     /* stiffnesses told apart among them */

@@ -13,7 +13,7 @@ enum { N = POUND_TRACE_ORDER };
 
 /* Least rate_touch * step of a settled contact: its overlap is found from a power on by those above, which count by up to
  * N G/(W^2 h) and N^2/(W h)^2, with G/W up to 2: below 0.3 and 0.02. */
-static const double SETTLED_LEAST = 128;
+static const double SETTLED_LEAST = 150;
 enum { SETTLED_ROUNDS = 8 };
 
 /* Test     unit_trace: terms_end_in_rounding */

@@ -6,7 +6,7 @@
 #include "engine/trace.h"
 
 static const double POUND_NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
-static const double POUND_TRACE_REACH = 1;          /* largest rate * step of a series */
+static const double POUND_TRACE_REACH = 1.5;        /* largest rate * step of a series */
 
 /* Derivatives by the share of the step that is gone, times 1/n! the coefficients of powers of it. */
 struct pound_trace_series {

@@ -271,7 +271,7 @@ static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 	specimen_half_sine(&specimen, 1, 0.5, 1, 0.01);
 	const struct pound_march_task task = riding_task(&specimen, false);
 	const struct ended e = trace_to_end(&task);
-	assert_true(e.flights == 0 && e.pieces >= 5600);
+	assert_true(e.flights == 0 && e.pieces >= 3770);
 	check_near(e.trace.v[0], march(&task).v[0], 1e-15);
 	specimen_free(&specimen);
 }
