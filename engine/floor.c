@@ -134,12 +134,17 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 
 /* ---- history ---- */
 
-static double polynomial_end(const double *a, int order)
+/* A drive at both ends of a piece [m/s2]. */
+static void drive_ends(const struct pound_floor *floor, const struct pound_trace_piece *piece,
+                       enum pound_drive drive, double ends[2])
 {
-	double sum = 0;
+	const double *c, damping = floor->trace.task->bodies[0].damping;
+	double room[POUND_TRACE_ORDER + 1];
+	const int order = pound_trace_drive(&floor->stretch, piece, drive, damping, room, &c);
+	ends[0] = order < 0 ? 0 : c[0];
+	ends[1] = 0;
 	for (int n = order; n >= 0; n--)
-		sum += a[n];
-	return sum;
+		ends[1] += c[n];
 }
 
 /* The history of a task's floor.
@@ -163,17 +168,17 @@ enum pound_status pound_floor_history(struct pound_floor *floor, const struct po
 			break;
 		for (int i = 0; i < floor->stretch.n; i++) {
 			const struct pound_trace_piece *p = &floor->stretch.piece[i];
-			double room[POUND_TRACE_ORDER + 1];
-			const double *a = pound_trace_floor(&floor->stretch, p, task->bodies[0].damping, room);
-			const bool flight = p->map >= 0;
-			struct pound_floor_instant now = {p->start, p->u, p->v, a[0], flight ? 0 : p->push.c[0]};
+			double whole[2], push[2];
+			drive_ends(floor, p, POUND_DRIVE_FLOOR, whole);
+			drive_ends(floor, p, POUND_DRIVE_PUSH, push);
+			const struct pound_floor_instant now = {p->start, p->u, p->v, whole[0], push[0]};
 			last.time = now.time, last.u = now.u, last.v = now.v;
 			if (p->turned)
 				take(into, &last);
 			if (p->sampled || p->turned)
 				take(into, &now);
-			last.acceleration = polynomial_end(a, p->order);
-			last.push = flight ? 0 : polynomial_end(p->push.c, p->order);
+			last.acceleration = whole[1];
+			last.push = push[1];
 		}
 	}
 	last.time = (task->n_samples - 1) * task->time_step;

@@ -14,7 +14,9 @@ enum {
 /* First time in (0, limit] at which a guard, not positive at 0, becomes positive.
  *
  * Given    g       (order + 1)  its coefficients, order <= POUND_ROOT_ORDER
+ *          limit   last time of interest
  * Returns  t       that time, or a safe one where the search had to give up
+ *          value   whether there is one up to the limit
  *
  * A parabola with the guard's value and slope at t and a bound of its curvature lies above the guard, so no root lies
  * before the parabola's.

@@ -21,6 +21,7 @@ static inline double pound_root_value(const double *c, int order, double t)
 	return odd * t + even;
 }
 
+/* First time at which a guard becomes positive. */
 enum pound_root pound_root_first(const double *g, int order, double limit, double *t);
 
 #endif

@@ -285,47 +285,48 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 	s->yy = rate;
 }
 
+/* part j of n equal ones of a piece */
+struct place {
+	const struct pound_ride *ride;
+	const struct pound_trace_piece *piece;
+	int j, n;
+};
+
 /* The largest |z| of a part in which there may be an extremum, by its series; in the lanes of `risk`, else top.
  *
- * Given    z, v   at the start;  order: of the drive, -1: none
+ * Given    s  at the start of the part, the largest so far in `top`
  */
-LANE_SHARED vd part_top(const struct part *p, vd z, vd v, vm risk, vd top, const struct pound_ride *ride,
-                        const struct pound_trace_piece *piece, enum pound_drive drive, int order, int j,
-                        int n)
+LANE_SHARED vd part_top(const struct part *p, const struct place *at, enum pound_drive drive, struct state s,
+                        vm risk)
 {
-	double room[POUND_TRACE_ORDER + 1], flown[POUND_TRACE_ORDER + 1];
+	double flown[POUND_TRACE_ORDER + 1], room[POUND_TRACE_ORDER + 1];
+	const double *a;
 	struct series series;
-	const double *a = room;
-	if (order >= 0) {
-		a = drive == POUND_DRIVE_PUSH ? piece->push.c
-		                              : pound_trace_floor(ride->stretch, piece, ride->damping, flown);
-		a = part_drive(a, order, j, n, room);
-	}
-	series_fill(&series, p, z, v * p->step, a, order, p->step * p->step);
-	return peak_add(&series, risk, top);
+	const int order = pound_trace_drive(at->ride->stretch, at->piece, drive, at->ride->damping, flown, &a);
+	a = part_drive(a, order, at->j, at->n, room);
+	series_fill(&series, p, s.z, s.v * p->step, a, order, p->step * p->step);
+	return peak_add(&series, risk, s.top);
 }
 
 /* Moves a state over a part; the series is only made where there may be an extremum inside.
  *
- * Given    error   of the drive;  order: of the drive, -1: none
+ * Given    error  of the drive
  */
-LANE_INLINE void part_pass(const struct part *p, struct state *s, vd z1, vd v1, vd error,
-                           const struct pound_ride *ride, const struct pound_trace_piece *piece,
-                           enum pound_drive drive, int order, int j, int n)
+LANE_INLINE void part_pass(const struct part *p, const struct place *at, enum pound_drive drive,
+                           struct state *s, vd z1, vd v1, vd error)
 {
 	vm risk = part_risk(p, s, z1, v1, error);
 	if (__builtin_expect(vany(risk), 0))
-		s->top = part_top(p, s->z, s->v, risk, s->top, ride, piece, drive, order, j, n);
+		s->top = part_top(p, at, drive, *s, risk);
 	s->z = z1;
 	s->v = v1;
 }
 
 /* Oscillators over one part of a piece, by the integrals of its drives. */
-LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
-                           const struct pound_ride *ride, const struct pound_trace_piece *piece,
-                           const double *const integral[], int j, int n)
+LANE_INLINE void part_ride(const struct part *p, const struct place *at, struct state s[], int n_drives,
+                           const double *const integral[])
 {
-	const struct pound_polynomial *a[POUND_DRIVES] = {&piece->floor, &piece->push};
+	const struct pound_polynomial *a[POUND_DRIVES] = {&at->piece->floor, &at->piece->push};
 	struct passage passage;
 	double per_step = 1 / p->step;
 	passage_fill(&passage, p, integral, n_drives);
@@ -333,36 +334,24 @@ LANE_INLINE void part_ride(const struct part *p, struct state s[], int n_drives,
 		vd y = s[d].v * p->step;
 		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
 		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
-		part_pass(p, &s[d], z1, y1 * per_step, drive_error(p, a[d]->bound), ride, piece, d,
-		          a[d]->bound[0] > 0 ? piece->order : -1, j, n);
+		part_pass(p, at, d, &s[d], z1, y1 * per_step, drive_error(p, a[d]->bound));
 	}
 }
 
-/* Integrals of the drives over part j of n of a piece. */
-LANE_SHARED void parts_integrals(const struct pound_bank *bank, int n_drives, const struct pound_ride *ride,
-                                 const struct pound_trace_piece *piece, int j, int n,
-                                 double integral[POUND_DRIVES][INTEGRALS])
-{
-	double room[POUND_TRACE_ORDER + 1];
-	const double *floor = pound_trace_floor(ride->stretch, piece, ride->damping, room);
-	integrals_fill(bank->kernel, floor, piece->order, j, n, integral[0]);
-	if (n_drives > 1)
-		integrals_fill(bank->kernel, piece->push.c, piece->map < 0 ? piece->order : -1, j, n, integral[1]);
-}
-
-/* Oscillators over a piece; `whole` are the integrals over all of it. */
-LANE_INLINE void piece_ride(const struct pound_bank *bank, const struct part *p, struct state s[],
-                            int n_drives, const struct pound_ride *ride,
-                            const struct pound_trace_piece *piece, double whole[][INTEGRALS], int n)
+/* Oscillators over a piece of many parts: each part has integrals of its own. */
+LANE_SHARED void parts_ride(const struct pound_bank *bank, const struct part *p, struct place *at,
+                            struct state s[])
 {
 	alignas(64) double own[POUND_DRIVES][INTEGRALS];
-	const double *integral[POUND_DRIVES] = {whole[0], whole[1]};
-	if (n > 1)
-		integral[0] = own[0], integral[1] = own[1];
-	for (int j = 0; j < n; j++) {
-		if (n > 1)
-			parts_integrals(bank, n_drives, ride, piece, j, n, own);
-		part_ride(p, s, n_drives, ride, piece, integral, j, n);
+	double room[POUND_TRACE_ORDER + 1];
+	const double *c[POUND_DRIVES], *const integral[POUND_DRIVES] = {own[0], own[1]};
+	int order[POUND_DRIVES];
+	for (int d = 0; d < bank->n_drives; d++)
+		order[d] = pound_trace_drive(at->ride->stretch, at->piece, d, at->ride->damping, room, &c[d]);
+	for (at->j = 0; at->j < at->n; at->j++) {
+		for (int d = 0; d < bank->n_drives; d++)
+			integrals_fill(bank->kernel, c[d], order[d], at->j, at->n, own[d]);
+		part_ride(p, at, s, bank->n_drives, integral);
 	}
 }
 
@@ -396,20 +385,20 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 }
 
 /* A whole sample by maps; the floor's drive has them, the contact gives none. */
-LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, struct state *s,
-                             const struct pound_ride *ride, const struct pound_trace_piece *piece,
-                             enum pound_drive drive, int parts)
+LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, struct place *at,
+                             enum pound_drive drive, struct state *s)
 {
+	const struct pound_trace_piece *piece = at->piece;
 	const bool driven = drive == POUND_DRIVE_FLOOR;
 	const vd error = driven ? drive_error(p, piece->floor.bound) : vsplat(0);
 	vd state[4];
 	for (int k = 0; k < 4; k++)
 		state[k] = vsplat(piece->state[k]);
-	for (int j = 0; j < parts; j++) {
+	for (at->j = 0; at->j < at->n; at->j++) {
 		vd z = vsplat(0), v = vsplat(0);
 		if (driven) {
 			// what does not wait for the sample before comes first
-			const struct flight *f = &maps->part[piece->map][j];
+			const struct flight *f = &maps->part[piece->map][at->j];
 #pragma GCC unroll 4
 			for (int k = 0; k < 4; k++) {
 				z = vfma(f->gz[k], state[k], z);
@@ -418,7 +407,7 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 		}
 		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
 		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
-		part_pass(p, s, z, v, error, ride, piece, drive, driven ? piece->order : -1, j, parts);
+		part_pass(p, at, drive, s, z, v, error);
 	}
 }
 
@@ -439,20 +428,22 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
 		maps_fill(&scratch->maps, bank, &sample, ride, parts);
 	for (int i = 0; i < ride->stretch->n; i++) {
 		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
+		struct place place = {.ride = ride, .piece = piece, .n = parts};
 		if (piece->map >= 0 && mapped) {
-			flight_ride(&scratch->maps, &sample, &s[POUND_DRIVE_FLOOR], ride, piece, POUND_DRIVE_FLOOR,
-			            parts);
+			flight_ride(&scratch->maps, &sample, &place, POUND_DRIVE_FLOOR, &s[POUND_DRIVE_FLOOR]);
 			if (bank->n_drives > 1)
-				flight_ride(&scratch->maps, &sample, &s[POUND_DRIVE_PUSH], ride, piece, POUND_DRIVE_PUSH,
-				            parts);
+				flight_ride(&scratch->maps, &sample, &place, POUND_DRIVE_PUSH, &s[POUND_DRIVE_PUSH]);
 			continue;
 		}
-		int n = parts_of(omega_max, piece->step, bank->radians);
-		struct part p = part_init(omega, omega_max, bank->damping, piece->step / n, n);
-		if (bank->n_drives > 1)
-			piece_ride(bank, &p, s, POUND_DRIVES, ride, piece, scratch->integral[i], n);
+		place.n = parts_of(omega_max, piece->step, bank->radians);
+		struct part p = part_init(omega, omega_max, bank->damping, piece->step / place.n, place.n);
+		const double *const whole[POUND_DRIVES] = {scratch->integral[i][0], scratch->integral[i][1]};
+		if (place.n > 1)
+			parts_ride(bank, &p, &place, s);
+		else if (bank->n_drives > 1)
+			part_ride(&p, &place, s, POUND_DRIVES, whole);
 		else
-			piece_ride(bank, &p, s, 1, ride, piece, scratch->integral[i], n);
+			part_ride(&p, &place, s, 1, whole);
 	}
 	for (int d = 0; d < bank->n_drives; d++) {
 		*(vd *)(bank->z[d] + at) = s[d].z;

@@ -9,9 +9,6 @@ enum {
 	POUND_SPECTRUM_SCRATCH = 1 << 18, /* bytes of work space, 64-byte aligned */
 };
 
-/* what drives a set of oscillators */
-enum pound_drive { POUND_DRIVE_FLOOR, POUND_DRIVE_PUSH, POUND_DRIVES };
-
 /* Oscillators z'' + 2 xi w z' + w^2 z = -a, one set for each drive a; arrays in whole groups, 64-byte aligned. */
 struct pound_bank {
 	int n_groups;

@@ -99,6 +99,18 @@ static void search_contact(struct search *search, const struct pound_trace_serie
 
 /* ---- pieces ---- */
 
+/* Order of a polynomial without the terms that are rounding beside the others.
+ *
+ * Given    size  (order + 1) magnitudes of its terms;  sum: of them
+ */
+static int order_kept(const double *size, int order, double sum)
+{
+	double rest = 0;
+	while (order > 0 && rest + size[order] <= POUND_NOTHING_BESIDE * sum)
+		rest += size[order--];
+	return order;
+}
+
 /* An acceleration over a share of a step: without the terms that are rounding beside the others, bounded with two
  * derivatives.
  *
@@ -109,7 +121,7 @@ static int polynomial_fill(struct pound_polynomial *into, const double *a, int o
                            double step, double share)
 {
 	const double per_step = 1 / step;
-	double *const c = into->c, power = 1, size[N + 2], rest = 0, bound[3][2] = {{0}};
+	double *const c = into->c, power = 1, size[N + 2], bound[3][2] = {{0}};
 	c[0] = a[0] * per_step * per_step - offset;
 	for (int n = 1; n <= order; n++)
 		c[n] = a[n] * POUND_FACTOR[n] * per_step * per_step;
@@ -123,8 +135,7 @@ static int polynomial_fill(struct pound_polynomial *into, const double *a, int o
 		for (int j = 0; j < 2; j++)
 			bound[0][j] += size[n + j];
 	into->bound[0] = bound[0][0] + bound[0][1];
-	while (order > 0 && rest + size[order] <= POUND_NOTHING_BESIDE * into->bound[0])
-		rest += size[order--];
+	order = order_kept(size, order, into->bound[0]);
 	size[order + 1] = 0;
 	for (int n = 0; n <= order; n += 2)
 		for (int j = 0; j < 2; j++) {
@@ -150,28 +161,51 @@ static int map_of(struct pound_trace_stretch *stretch, double stiffness)
 
 /* ---- flights ---- */
 
-/* By derivatives: r' = h k v, v' = -h (c v + r + ground). */
+/* Coefficients of the absolute acceleration -(c v + r) of a body in flight over a sample.
+ *
+ * Given    state  as struct pound_trace_piece has it
+ *          k, c   stiffness [1/s2] and damping [1/s] per mass;  h  the sample step [s]
+ * Returns  a      [m/s2]  (order + 1)
+ *
+ *   r' = h k v     v' = -h (c v + r + forcing)     by the share of the sample that is gone
+ * Test     unit_trace: the_acceleration_is_that_of_the_motion
+ */
 void pound_trace_flight(const double state[4], double k, double c, double h, int order, double *a)
 {
 	const double hk = h * k, hc = h * c;
 	double r = state[0], v = state[1];
 	for (int n = 0; n <= order; n++) {
-		double ground = n == 0 ? h * state[2] : n == 1 ? h * state[3] : 0;
+		double force = n == 0 ? h * state[2] : n == 1 ? h * state[3] : 0;
 		a[n] = -(c * v + r) * POUND_FACTOR[n];
-		double next = -(hc * v + (h * r + ground));
+		double next = -(hc * v + (h * r + force));
 		r = hk * v;
 		v = next;
 	}
 }
 
-const double *pound_trace_floor(const struct pound_trace_stretch *stretch,
-                                const struct pound_trace_piece *piece, double damping, double room[N + 1])
+/* Coefficients of a drive over a piece of a stretch.
+ *
+ * Given    damping  of the left body, per mass [1/s]
+ * Returns  c        [m/s2]  (value + 1): the piece's own, or those of a flight's floor, made into `room`
+ *          value    their order; -1: the drive is 0
+ * Test     unit_trace: the_acceleration_is_that_of_the_motion
+ */
+int pound_trace_drive(const struct pound_trace_stretch *stretch, const struct pound_trace_piece *piece,
+                      enum pound_drive drive, double damping, double room[N + 1], const double **c)
 {
+	const struct pound_polynomial *own = drive == POUND_DRIVE_PUSH ? &piece->push : &piece->floor;
+	*c = own->c;
+	if (!(own->bound[0] > 0))
+		return -1;
 	if (piece->map < 0)
-		return piece->floor.c;
-	pound_trace_flight(piece->state, stretch->stiffness[piece->map], damping, piece->step, piece->order,
+		return piece->order;
+	double size[N + 1], sum = 0;
+	*c = room;
+	pound_trace_flight(piece->state, stretch->stiffness[piece->map], damping, piece->step, stretch->order,
 	                   room);
-	return room;
+	for (int n = 0; n <= stretch->order; n++)
+		sum += size[n] = fabs(room[n]);
+	return order_kept(size, stretch->order, sum);
 }
 
 /* A body over a sample h, by the power series of its responses to each input.
@@ -179,9 +213,10 @@ const double *pound_trace_floor(const struct pound_trace_stretch *stretch,
  * The cubic through both ends misses the motion by POUND_CUBIC_ERROR of its fourth derivative at most, which by linearity is
  * bounded by the sums of the magnitudes of their terms; 16 roundings of what either end is made of are added.
  *
- * Given    k, c  stiffness [1/s2] and damping [1/s] per mass
+ * Given    k, c   stiffness [1/s2] and damping [1/s] per mass
+ *          floor  it is the left body
  */
-static void glide_fill(struct pound_trace_glide *g, double k, double c, double h, int order)
+static void glide_fill(struct pound_trace_glide *g, double k, double c, double h, int order, bool floor)
 {
 	*g = (struct pound_trace_glide){.stiffness = k};
 	for (int j = 0; j < 4; j++) {
@@ -199,6 +234,8 @@ static void glide_fill(struct pound_trace_glide *g, double k, double c, double h
 		g->move[0][j] = ends[0];
 		g->move[1][j] = ends[1] / h;
 		g->error[j] = POUND_CUBIC_ERROR * bend + 16 * DBL_EPSILON * (size + (j == 0));
+		if (!floor)
+			continue;
 		double unit[4] = {j == 0, j == 1, j == 2, j == 3}, a[N + 1];
 		pound_trace_flight(unit, k, c, h, order, a);
 		for (int n = 0; n <= order; n++) {
@@ -213,12 +250,12 @@ static void glide_fill(struct pound_trace_glide *g, double k, double c, double h
 static const struct pound_trace_glide *glide_of(struct pound_trace *t, int i)
 {
 	const double stiffness = t->at[i].piece.stiffness;
-	for (int m = 0; m < POUND_TRACE_MAPS; m++)
+	for (int m = 0; m < POUND_TRACE_GLIDES; m++)
 		if (t->glide[i][m].stiffness == stiffness)
 			return &t->glide[i][m];
 	struct pound_trace_glide *g = &t->glide[i][t->glide_next[i]];
-	t->glide_next[i] = (t->glide_next[i] + 1) % POUND_TRACE_MAPS;
-	glide_fill(g, stiffness, t->task->bodies[i].damping, t->task->time_step, t->order_sample);
+	t->glide_next[i] = (t->glide_next[i] + 1) % POUND_TRACE_GLIDES;
+	glide_fill(g, stiffness, t->task->bodies[i].damping, t->task->time_step, t->order_sample, i == 0);
 	return g;
 }
 
@@ -228,7 +265,7 @@ static void flight_add(const struct pound_trace *t, struct pound_trace_stretch *
 {
 	const struct pound_piece *law = &t->at[0].piece;
 	struct pound_trace_piece *piece = &stretch->piece[stretch->n++];
-	const double h = t->task->time_step;
+	const double h = t->task->time_step, drive = t->task->bodies[0].drive;
 	piece->start = (t->next - 1) * h;
 	piece->step = h;
 	piece->u = t->u[0];
@@ -236,11 +273,11 @@ static void flight_add(const struct pound_trace *t, struct pound_trace_stretch *
 	piece->sampled = true;
 	piece->turned = t->turned;
 	piece->map = map;
-	piece->order = t->order_sample;
+	piece->order = -1;
 	piece->state[0] = law->stiffness * t->u[0] + law->offset;
 	piece->state[1] = t->v[0];
-	piece->state[2] = t->ground;
-	piece->state[3] = t->slope * h;
+	piece->state[2] = drive * t->ground;
+	piece->state[3] = drive * (t->slope * h);
 	for (int d = 0; d < 3; d++) {
 		piece->floor.bound[d] = piece->push.bound[d] = 0;
 		for (int j = 0; j < 4; j++)
@@ -262,7 +299,7 @@ static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch
 		}
 	}
 	struct pound_trace_piece *piece = &stretch->piece[stretch->n++];
-	piece->start = (t->next) * task->time_step - t->left;
+	piece->start = t->sampled ? (t->next - 1) * task->time_step : t->next * task->time_step - t->left;
 	piece->step = share * s->step;
 	piece->u = t->u[0];
 	piece->v = t->v[0];
@@ -530,7 +567,7 @@ void pound_trace_start(struct pound_trace *trace, const struct pound_march_task 
 		trace->v[i] = b->v;
 		trace->rate = fmax(trace->rate, fmax(sqrt(b->skeleton.stiffness), b->damping));
 		pound_pieces_start(&b->skeleton, &trace->at[i]);
-		for (int m = 0; m < POUND_TRACE_MAPS; m++)
+		for (int m = 0; m < POUND_TRACE_GLIDES; m++)
 			trace->glide[i][m].stiffness = -1;
 	}
 	trace->rate_touch = task->contact ? rate_touch(task, trace->rate) : trace->rate;

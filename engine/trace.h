@@ -12,8 +12,12 @@ enum {
 	POUND_TRACE_ORDER = 21,   /* of a piece's power series, at most */
 	POUND_TRACE_TERMS = 23,   /* of any motion it drives: 1.5^23/23! is below rounding */
 	POUND_TRACE_PIECES = 512, /* handed out at once */
-	POUND_TRACE_MAPS = 4,     /* stiffnesses told apart among them */
+	POUND_TRACE_MAPS = 4,     /* stiffnesses of flights told apart among them */
+	POUND_TRACE_GLIDES = 4,   /* stiffnesses of a body that maps are kept of */
 };
+
+/* what drives an oscillator: the floor's absolute acceleration, or the part of it that the contact gives */
+enum pound_drive { POUND_DRIVE_FLOOR, POUND_DRIVE_PUSH, POUND_DRIVES };
 
 /* Coefficients of powers of time over the piece's step, and bounds of |a|, |a'|, |a''| in that time  [m/s2] */
 struct pound_polynomial {
@@ -24,11 +28,12 @@ struct pound_polynomial {
 struct pound_trace_piece {
 	double start, step; /* [s] */
 	double u, v;        /* of the left body at the start [m], [m/s] */
-	int map;            /* a whole sample of free flight: number of its stiffness; -1: any other piece */
-	double state[4];    /* of a flight: spring force [m/s2], v, ground acceleration, what it grows by */
-	int order;
+	int map;            /* a flight, a whole sample apart: number of its stiffness; -1: any other piece */
+	// of a flight: spring force, velocity, forcing and what that grows by  [m/s2], [m/s], [m/s2], [m/s2]
+	double state[4];
+	int order;            /* of floor and push; not of a flight */
 	bool sampled, turned; /* begins at a sample, at an event */
-	// absolute acceleration, and the part of it the contact gives; of a flight without coefficients: pound_trace_floor()
+	// of a flight only the bounds are set, those of its push 0; pound_trace_drive() has the coefficients of both
 	struct pound_polynomial floor, push;
 };
 
@@ -39,12 +44,14 @@ struct pound_trace_stretch {
 	struct pound_trace_piece piece[POUND_TRACE_PIECES];
 };
 
-/* a body on a piece of its law over a whole sample, by what it has at the start */
+/* A body of one stiffness over a whole sample.  What makes its motion: displacement and velocity at the start, the forcing
+ * there (drive times ground, and offset) and what that grows by  [m], [m/s], [m/s2], [m/s2] */
 struct pound_trace_glide {
-	double stiffness; /* < 0: none */
-	// u and v at the end, and the error of the cubic, by u, v, the forcing and what that grows by
-	double move[2][4], error[4];
-	double bound[3][4]; /* of the floor's acceleration and its derivatives, by a flight's state */
+	double stiffness;  /* per mass [1/s2]; < 0: none */
+	double move[2][4]; /* displacement and velocity at the end, by these */
+	double error[4];   /* of the cubic through both ends [m], by their magnitudes */
+	double bound
+	    [3][4]; /* of the left body: of the floor's |a|, |a'|, |a''|, by the magnitudes of a flight's state */
 };
 
 struct pound_trace {
@@ -56,7 +63,7 @@ struct pound_trace {
 	bool fresh;                                              /* the contact's force is exactly 0 now */
 	bool sampled, turned;    /* the state is that of a sample, that after an event */
 	double rate, rate_touch; /* fastest of the motion [rad/s] */
-	struct pound_trace_glide glide[POUND_OSCILLATORS][POUND_TRACE_MAPS];
+	struct pound_trace_glide glide[POUND_OSCILLATORS][POUND_TRACE_GLIDES];
 	int glide_next[POUND_OSCILLATORS];
 	int order_sample; /* of a series over a sample interval */
 	double ground, slope, left;
@@ -66,19 +73,12 @@ struct pound_trace {
 	int64_t contacts;
 };
 
-/* Coefficients of the floor's acceleration over a flight of one sample h, from its state.
- *
- * Given    k, c  stiffness [1/s2] and damping [1/s] per mass
- * Returns  a     (order + 1)
- */
+/* Coefficients of a flight's acceleration from its state. */
 void pound_trace_flight(const double state[4], double k, double c, double h, int order, double *a);
-/* Coefficients of the floor's acceleration over any piece, (order + 1): its own or, of a flight, those made into `room`.
- *
- * Given    damping  of the left body, per mass [1/s]
- */
-const double *pound_trace_floor(const struct pound_trace_stretch *stretch,
-                                const struct pound_trace_piece *piece, double damping,
-                                double room[POUND_TRACE_ORDER + 1]);
+/* Coefficients of a drive over any piece, and their order. */
+int pound_trace_drive(const struct pound_trace_stretch *stretch, const struct pound_trace_piece *piece,
+                      enum pound_drive drive, double damping, double room[POUND_TRACE_ORDER + 1],
+                      const double **c);
 
 /* Terms after which x^n/n! is below rounding, n <= POUND_TRACE_TERMS. */
 int pound_trace_terms(double x);

@@ -9,11 +9,15 @@
 
 #include "engine/stepping.h"
 
-enum { N = POUND_TRACE_ORDER };
+enum {
+	N = POUND_TRACE_ORDER,
+	ORDER_LEAST = 5, /* so that growing forcing has a fourth derivative, which bounds are made of */
+};
 
 /* Least rate_touch * step of a settled contact: its overlap is found from a power on by those above, which count by up to
- * N G/(W^2 h) and N^2/(W h)^2, with G/W up to 2: below 0.3 and 0.02. */
-static const double SETTLED_LEAST = 150;
+ * N G/(W^2 h) and N^2/(W h)^2.  With the bodies' own damping a contact of no restitution is 1.01 times critical, so that
+ * rate_touch is up to 1.15 W: below 0.3 and 0.02. */
+static const double SETTLED_LEAST = 180;
 enum { SETTLED_ROUNDS = 8 };
 
 /* Test     unit_trace: terms_end_in_rounding */
@@ -29,7 +33,7 @@ int pound_trace_terms(double x)
 int pound_trace_order(double x)
 {
 	int n = pound_trace_terms(x);
-	return n < 4 ? 4 : n > N ? N : n;
+	return n < ORDER_LEAST ? ORDER_LEAST : n > N ? N : n;
 }
 
 /* Whether a body stands still where its piece ends. */
@@ -296,7 +300,12 @@ static bool step_length(const struct pound_trace *t, double rate, double *dt)
 	return steps <= 1;
 }
 
-/* The series of the next step of a trace: to the next sample, or as far as it reaches. */
+/* The series of the next step of a trace: to the next sample, or as far as it reaches.
+ *
+ * Returns  s  whole: it reaches the next sample; a share of its step is to be gone, up to the first event
+ * Valid    to rounding: POUND_TRACE_REACH^n/n! is below that at the first term left out
+ * Test     unit_trace
+ */
 void pound_trace_series(struct pound_trace_series *s, const struct pound_trace *t)
 {
 	double dt, rate = t->touching ? t->rate_touch : t->rate;
@@ -309,6 +318,5 @@ void pound_trace_series(struct pound_trace_series *s, const struct pound_trace *
 			return;
 	}
 	s->whole = step_length(t, rate, &dt);
-	bool flight = s->whole && t->sampled && !t->touching;
-	series_fill(s, t, dt, flight ? t->order_sample : pound_trace_order(rate * dt));
+	series_fill(s, t, dt, pound_trace_order(rate * dt));
 }

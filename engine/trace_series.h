@@ -35,6 +35,7 @@ static inline double pound_trace_release(const struct pound_march_task *task)
 /* Order of the series of a step by rate * step. */
 int pound_trace_order(double x);
 
+/* The motion from where a trace is. */
 void pound_trace_series(struct pound_trace_series *s, const struct pound_trace *t);
 
 #endif
