@@ -28,7 +28,7 @@ static const struct {
 };
 /* [s] for a sample of a floor that spectra ride on, and for each frequency of these; and how many there are of both for a run:
  * a study of spectra has the floor with pounding and without, and the contact's own part */
-static const double FLOOR_S = 3e-7, ORDINATE_S = 2e-8;
+static const double FLOOR_S = 3e-7, ORDINATE_S = 1.1e-8;
 static const struct {
 	int floors, spectra;
 } rides[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
