@@ -394,11 +394,11 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 	enum pound_status status = POUND_OK, left = POUND_OK;
 	assert(has_spectra(run->campaign.study));
 	status =
-	    pound_plan_run(run->plans[0], &run->campaign, signal, 1, &run->stop, &work, response_leave, &left);
+	    pound_plan_run(run->plans[0], &run->campaign, signal, 1, run->stop, &work, response_leave, &left);
 	if (status || left)
 		return status ? status : left;
 	const struct pound_plan_floor floor = pound_plan_floor(run->plans[0], 0);
 	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
-	return pound_floor_history(run->floors[0]->floor, floor.pounding ? floor.pounding : floor.free,
-	                           &run->stop, instant_tell, &to);
+	return pound_floor_history(run->floors[0]->floor, floor.pounding ? floor.pounding : floor.free, run->stop,
+	                           instant_tell, &to);
 }

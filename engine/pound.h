@@ -6,6 +6,7 @@
 #ifndef POUND_H
 #define POUND_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -620,6 +621,8 @@ int pound_run_rows(const struct pound_run *run); /* that the reductions are of *
 void pound_run_clock(struct pound_run *run, double (*cpu)(void));
 /* Blocks return POUND_STOPPED soon, and reductions that have not begun at once. */
 void pound_run_stop(struct pound_run *run);
+/* A flag of the caller's, which outlives the run, does that when it is set, and pound_run_stop no more. */
+void pound_run_stop_by(struct pound_run *run, const atomic_bool *stop);
 
 /* The sample behind row `row` and design block `sample` (0: A, 1: B, 2 + j: A with column j from B, ...), after all
  * blocks: the input values, and of each output in a cell the ratio of means and the variance of that mean

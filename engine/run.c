@@ -173,6 +173,7 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	struct pound_run *run = piece(sizeof *run);
 	if (!run)
 		return NULL;
+	run->stop = &run->stopped;
 	run->campaign = campaign_of(study);
 	run->rows = study->kind == POUND_KIND_SENSITIVITY ? pound_design_rows(study, 0) : run->campaign.n_rows;
 	run->layout =
@@ -239,7 +240,12 @@ void pound_run_free(struct pound_run *run)
 
 void pound_run_stop(struct pound_run *run)
 {
-	atomic_store(&run->stop, true);
+	atomic_store(&run->stopped, true);
+}
+
+void pound_run_stop_by(struct pound_run *run, const atomic_bool *stop)
+{
+	run->stop = stop;
 }
 
 void pound_run_clock(struct pound_run *run, double (*cpu)(void))
@@ -333,9 +339,9 @@ static double run_time(const struct pound_run *run, struct pound_plan *plan,
 		return NAN;
 	double start = run->cpu(), now;
 	do {
-		n += pound_plan_repeat(plan, solver, &run->stop);
+		n += pound_plan_repeat(plan, solver, run->stop);
 		now = run->cpu();
-	} while (now - start < CLOCK_LEAST && n > 0 && !pound_stopped(&run->stop));
+	} while (now - start < CLOCK_LEAST && n > 0 && !pound_stopped(run->stop));
 	return n > 0 ? (now - start) / n : NAN;
 }
 
@@ -348,12 +354,12 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_p
 	int samples[POUND_HISTORY], n_times = pound_convergence_times(c->study, samples);
 	for (int item = 0; item < n; item++)
 		for (int k = 0; k < n_times; k++)
-			if (pound_plan_displacement(plan, &solver, item, samples[k], &run->stop, &runs[item].history[k]))
+			if (pound_plan_displacement(plan, &solver, item, samples[k], run->stop, &runs[item].history[k]))
 				runs[item].history[k] = NAN;
 	double cpu = run_time(run, plan, &solver);
 	for (int item = 0; item < n; item++)
 		runs[item].cpu = cpu;
-	return pound_stopped(&run->stop) ? POUND_STOPPED : POUND_OK;
+	return pound_stopped(run->stop) ? POUND_STOPPED : POUND_OK;
 }
 
 /* Computes a block into its slice of the values.
@@ -365,14 +371,14 @@ enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 	struct slice slice = {.study = run->campaign.study, .at = pound_layout_block(&run->layout, block)};
 	struct pound_work work = {0};
 	int first = run->layout.first[block], n = run->layout.first[block + 1] - first;
-	enum pound_status status = pound_plan_run(run->plans[worker], &run->campaign, first, n, &run->stop, &work,
-	                                          response_keep, &slice);
+	enum pound_status status =
+	    pound_plan_run(run->plans[worker], &run->campaign, first, n, run->stop, &work, response_keep, &slice);
 	if (!status && run->campaign.trials)
 		status = trial_block(run, run->plans[worker], first, n,
 		                     (struct pound_trial_run *)pound_layout_block(&run->layout, block));
 	if (!status && run->floors[worker])
 		status = pound_ordinate_block(run->floors[worker], run->campaign.study, run->plans[worker],
-		                              pound_layout_block(&run->layout, block), &run->stop, &work);
+		                              pound_layout_block(&run->layout, block), run->stop, &work);
 	if (status)
 		return status;
 	const int64_t *counts = (const int64_t *)&work;
@@ -550,7 +556,7 @@ static enum pound_status nothing_left(const struct pound_run *run)
 enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker)
 {
 	int n_outputs = run->campaign.study->n_outputs;
-	if (pound_stopped(&run->stop))
+	if (pound_stopped(run->stop))
 		return POUND_STOPPED;
 	enum pound_status status = reduction == 0 ? nothing_left(run) : POUND_OK;
 	if (status)

@@ -20,7 +20,8 @@ struct pound_run {
 	struct pound_response *responses; /* (n_cells x n_signals) */
 	double *spectra;                  /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
 	double (*cpu)(void);              /* clock of the calling thread [s]; NULL: none */
-	atomic_bool stop;
+	atomic_bool stopped;              /* by pound_run_stop ... */
+	const atomic_bool *stop;          /* ... which this is, or what the caller has */
 };
 
 int pound_run_looks_most(const struct pound_study *study); /* 0: the design does not grow */

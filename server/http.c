@@ -27,6 +27,7 @@
 
 enum {
 	THREADS = 4,
+	TURNS = 2,               /* of them that take long, at a time */
 	ASIDE_NICENESS = 5,      /* between other answers and the workers */
 	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
 	FILES_BESIDE = 512,      /* descriptors that are no connections */
@@ -445,7 +446,7 @@ bool http_start(struct server *server)
 	}
 	take_short_turns();
 	allow_files();
-	sem_init(&server->turns, 0, HTTP_TURNS);
+	sem_init(&server->turns, 0, TURNS);
 	server->number = (unsigned long long)time(NULL) << 32;
 	server->connections.store = server->store;
 	server->connections.resume = resume;
@@ -471,7 +472,6 @@ void http_stop(struct server *server)
 {
 	double until = connection_now() + STOP_S;
 	server->stopping = true;
-	routes_stop(server);
 	server->connections.released = true;
 	// a suspended connection must not be stopped
 	while (server->aside > 0 || (server->under_way > 0 && connection_now() < until))

@@ -27,7 +27,6 @@ struct reply {
 	unsigned changes; /* of the study, before it was looked at */
 };
 
-enum { HTTP_TURNS = 2 }; /* of requests that take long, at a time */
 enum { HTTP_TOLD = 61 }; /* status objects kept; a prime, so that ids fall everywhere */
 
 struct told {
@@ -52,10 +51,8 @@ struct server {
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
 	atomic_int aside;     /* those in threads of their own, of which ... */
-	sem_t turns;          /* ... HTTP_TURNS have their turn at a time */
-	pthread_mutex_t answers_lock;
-	struct pound_run *answers[HTTP_TURNS]; /* what these compute, NULL: nothing; stopped with the server */
-	atomic_ullong number;                  /* of the next request */
+	sem_t turns;          /* ... a few have their turn at a time */
+	atomic_ullong number; /* of the next request */
 };
 
 struct MHD_Connection;
@@ -95,6 +92,5 @@ void http_stop(struct server *server); /* what is under way is answered, who wai
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);
 bool routes_slow(const struct request *request); /* it may take seconds */
-void routes_stop(struct server *server); /* once `stopping` is set: what is being computed ends soon */
 
 #endif

@@ -109,9 +109,7 @@ int main(int argc, char **argv)
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.options = &options,
-	                        .told_lock = PTHREAD_MUTEX_INITIALIZER,
-	                        .answers_lock = PTHREAD_MUTEX_INITIALIZER};
+	struct server server = {.options = &options, .told_lock = PTHREAD_MUTEX_INITIALIZER};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);

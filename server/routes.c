@@ -320,46 +320,16 @@ static struct reply unopened(struct request *request, const struct work_run *ope
 	return problem(API_CONFLICT, error);
 }
 
-/* The run of a study of which an answer is computed: from here on it ends when the server stops.
+/* The run of a study of which an answer is computed: it ends when the server stops.
  *
- * Returns  value  NULL, or why it cannot be made; to be closed in either case
+ * Returns  value  NULL, or why it cannot be made; closed by work_close in either case
  */
 static const char *answer_open(const struct request *request, struct work_run *opened)
 {
-	struct server *server = request->server;
-	const char *error = work_open(server->store, request->id, 1, opened);
-	if (error)
-		return error;
-	pthread_mutex_lock(&server->answers_lock);
-	for (int i = 0; i < HTTP_TURNS; i++)
-		if (!server->answers[i]) {
-			server->answers[i] = opened->run;
-			break;
-		}
-	if (server->stopping)
-		pound_run_stop(opened->run);
-	pthread_mutex_unlock(&server->answers_lock);
-	return NULL;
-}
-
-static void answer_close(const struct request *request, struct work_run *opened)
-{
-	struct server *server = request->server;
-	pthread_mutex_lock(&server->answers_lock);
-	for (int i = 0; i < HTTP_TURNS; i++)
-		if (server->answers[i] == opened->run)
-			server->answers[i] = NULL;
-	pthread_mutex_unlock(&server->answers_lock);
-	work_close(opened);
-}
-
-void routes_stop(struct server *server)
-{
-	pthread_mutex_lock(&server->answers_lock);
-	for (int i = 0; i < HTTP_TURNS; i++)
-		if (server->answers[i])
-			pound_run_stop(server->answers[i]);
-	pthread_mutex_unlock(&server->answers_lock);
+	const char *error = work_open(request->server->store, request->id, 1, opened);
+	if (!error)
+		pound_run_stop_by(opened->run, &request->server->stopping);
+	return error;
 }
 
 /* Nothing was computed: the server stops, or there is no memory. */
@@ -397,7 +367,7 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 		                                         "study is not finished yet");
 		reply.retry_after = retry_after;
 	}
-	answer_close(request, &opened);
+	work_close(&opened);
 	return reply;
 }
 
@@ -466,7 +436,7 @@ static struct reply samples(struct request *request)
 	else
 		reply =
 		    problem(API_CONFLICT, "only a sensitivity study has samples, and floor spectra with histories");
-	answer_close(request, &opened);
+	work_close(&opened);
 	return reply.body ? reply : nothing(request);
 }
 
