@@ -291,13 +291,6 @@ static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch
 {
 	const struct pound_march_task *task = t->task;
 	const struct pound_piece *law = &t->at[0].piece;
-	if (t->sampled && !t->touching && s->step == task->time_step && share == 1) {
-		int map = map_of(stretch, law->stiffness);
-		if (map >= 0) {
-			flight_add(t, stretch, glide_of(t, 0), map);
-			return;
-		}
-	}
 	struct pound_trace_piece *piece = &stretch->piece[stretch->n++];
 	piece->start = t->sampled ? (t->next - 1) * task->time_step : t->next * task->time_step - t->left;
 	piece->step = share * s->step;
@@ -403,11 +396,12 @@ static void motion_at(const double *y, int order, double time, double *u, double
 		*w = even[1] + odd[1];
 		return;
 	}
-	double c[N + 1] = {0};
-	pound_trace_taylor(y, order, c);
-	*u = pound_root_value(c, order, time);
-	pound_trace_taylor(y + 1, order, c);
-	*w = pound_root_value(c, order, time);
+	double c[2][N + 1] = {{0}};
+	for (int n = 0; n <= order; n++)
+		for (int j = 0; j < 2; j++)
+			c[j][n] = y[n + j] * POUND_FACTOR[n];
+	*u = pound_root_value(c[0], order, time);
+	*w = pound_root_value(c[1], order, time);
 }
 
 /* Moves the state to a time of the step. */

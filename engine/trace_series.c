@@ -117,6 +117,12 @@ struct terms {
 	double spring, dash, both, ratio;         /* of the contact, 1 + m1/m2, m1/m2 */
 };
 
+/* Derivative n of what the ground and its piece do to a body. */
+static inline double forcing(const struct terms *m, int i, int n)
+{
+	return n == 0 ? m->force[i] : n == 1 ? m->increase[i] : 0;
+}
+
 /* Keeps derivative n, and makes the next. */
 static inline void terms_next(struct pound_trace_series *s, struct terms *m, const struct pound_trace *t,
                               struct level *level, int n)
@@ -124,7 +130,7 @@ static inline void terms_next(struct pound_trace_series *s, struct terms *m, con
 	double free[2], b[2];
 	for (int i = 0; i < 2; i++) {
 		free[i] = -(m->c[i] * m->w[i] + m->k[i] * m->u[i]);
-		b[i] = free[i] - (n == 0 ? m->force[i] : n == 1 ? m->increase[i] : 0);
+		b[i] = free[i] - forcing(m, i, n);
 	}
 	double apart = level->is ? apart_settle(level, t, s->step, n) : b[0] - b[1];
 	double push = m->spring * m->u[2] + m->dash * m->w[2];
@@ -140,17 +146,6 @@ static inline void terms_next(struct pound_trace_series *s, struct terms *m, con
 		m->u[j] = m->w[j];
 		m->w[j] = j < 2 ? b[j] : apart;
 	}
-}
-
-/* The left body's, alone. */
-static inline void terms_next_alone(struct pound_trace_series *s, struct terms *m,
-                                    const struct pound_trace *t, int n)
-{
-	s->floor[n] = -(m->c[0] * m->w[0] + m->k[0] * m->u[0]);
-	double b = s->floor[n] - (n == 0 ? m->force[0] : n == 1 ? m->increase[0] : 0);
-	s->y[0][n] = m->u[0];
-	m->u[0] = m->w[0];
-	m->w[0] = n == 0 && still_stays(t, 0, b, 0, s->step) ? 0 : b;
 }
 
 static struct terms terms_of(const struct pound_trace *t, double dt)
@@ -174,24 +169,14 @@ static struct terms terms_of(const struct pound_trace *t, double dt)
 	return m;
 }
 
-/* The orders with forcing are made apart: the others are straight code. */
 static void series_fill(struct pound_trace_series *s, const struct pound_trace *t, double dt, int order)
 {
 	struct terms m = terms_of(t, dt);
 	s->order = order;
 	s->step = dt;
-	if (!t->task->contact) {
-		for (int n = 0; n < 2; n++)
-			terms_next_alone(s, &m, t, n);
-		for (int n = 2; n <= order; n++)
-			terms_next_alone(s, &m, t, n);
-		s->y[0][order + 1] = m.u[0];
-		return;
-	}
-	struct level level = {bodies_level(t), {{t->u[0], t->v[0]}, {t->u[1], t->v[1]}}, dt * dt};
-	for (int n = 0; n < 2; n++)
-		terms_next(s, &m, t, &level, n);
-	for (int n = 2; n <= order; n++)
+	struct level level = {
+	    t->task->contact && bodies_level(t), {{t->u[0], t->v[0]}, {t->u[1], t->v[1]}}, dt * dt};
+	for (int n = 0; n <= order; n++)
 		terms_next(s, &m, t, &level, n);
 	for (int j = 0; j < 3; j++)
 		s->y[j][order + 1] = m.u[j];
@@ -257,9 +242,7 @@ static bool series_settle(struct pound_trace_series *s, const struct pound_trace
 			for (int i = 0; i < 2; i++) {
 				u[i][n] = mean + share[i] * off;
 				w[i][n] = rate + share[i] * q[n];
-				b[i] = -(m.c[i] * w[i][n] + m.k[i] * u[i][n]) - (n == 0   ? m.force[i]
-				                                                 : n == 1 ? m.increase[i]
-				                                                          : 0);
+				b[i] = -(m.c[i] * w[i][n] + m.k[i] * u[i][n]) - forcing(&m, i, n);
 			}
 			apart[n] = b[0] - b[1];
 			mean = rate * POUND_SHARE[n];

@@ -19,13 +19,6 @@ struct pound_trace_series {
 	double floor[POUND_TRACE_ORDER + 1], push[POUND_TRACE_ORDER + 1];
 };
 
-/* From derivatives to the coefficients of a series  (order + 1). */
-static inline void pound_trace_taylor(const double *y, int order, double *c)
-{
-	for (int n = 0; n <= order; n++)
-		c[n] = y[n] * POUND_FACTOR[n];
-}
-
 /* What of the overlap's rate its force has beside the overlap [s], where contact ends with the force; 0: with the overlap. */
 static inline double pound_trace_release(const struct pound_march_task *task)
 {

@@ -156,7 +156,7 @@ static void linear_bodies_alike_but_for_roundings_move_as_in_the_march(void **st
 	}
 }
 
-/* Bodies that all but stick to each other lose half of their motion in a second: minutes later there is nothing to follow. */
+/* The trace counts the bodies' own damping in contact by a rule of its own. */
 static void a_damped_body_pressed_on_a_wall_moves_as_in_the_march(void **state)
 {
 	(void)state;
@@ -183,6 +183,7 @@ static void a_contact_past_critical_damping_moves_as_in_the_march(void **state)
 	}
 }
 
+/* Bodies that all but stick to each other lose half of their motion in a second: minutes later there is nothing to follow. */
 static void a_motion_that_dies_away_in_silence_is_over(void **state)
 {
 	(void)state;
