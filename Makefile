@@ -48,6 +48,9 @@ SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
 # tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
 TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c))
+# what takes minutes is built with the tests, so that no change breaks it unseen
+LONG    := $(patsubst %.c,$(B)/%,$(wildcard tests/soak_*.c)) $(addprefix $(B)/tests/,bench paper statistics) \
+           $(patsubst %.c,$(B)/%.o,$(wildcard tests/fuzz_*.c))
 FIXTURE := $(call objs,tests,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c tests/fuzz_*.c tests/soak_*.c tests/bench*.c \
              tests/paper*.c tests/statistics*.c tests/preload.c))
 
@@ -118,7 +121,7 @@ run: deps
 	@tests/run-paper $(B)
 test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) -s check
-check: all $(TESTS)
+check: all $(TESTS) $(LONG)
 	@tests/run-tests $(B) $(T)
 # how fast the engine is, a table; ROWS of the paper campaign's design, for trials
 ROWS ?= 1000
@@ -142,7 +145,7 @@ $(B)/tests/statistics: $(patsubst %.c,$(B)/%.o,$(wildcard tests/statistics_*.c))
 # kills, cuts and failures, MORE of 100 of them; every line that begins with # is a measurement
 SOAK ?= 60
 MORE ?= 100
-soak: all $(patsubst %.c,$(B)/%,$(wildcard tests/soak_*.c)) $(filter $(B)/tests/service_%,$(TESTS))
+soak: all $(filter $(B)/tests/soak_%,$(LONG)) $(filter $(B)/tests/service_%,$(TESTS))
 	@KINDS='soak service' SOAK=$(SOAK) POUND_SOAK=$(MORE) tests/run-tests $(B) $(T)
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
