@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <time.h>
@@ -40,6 +41,13 @@ static bool drain(const struct connection *connection, ssize_t *left)
 	return n > 0 || (n < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
+/* Whether a client has gone: one who only says that he sends no more is taken for one, as a closed socket looks like that. */
+static bool gone(const struct connection *connection)
+{
+	struct pollfd end = {.fd = connection->fd, .events = POLLRDHUP};
+	return poll(&end, 1, 0) > 0;
+}
+
 static void look(struct connections *all, struct connection *connection, double now, ssize_t *left)
 {
 	if (connection->draining) {
@@ -56,6 +64,9 @@ static void look(struct connections *all, struct connection *connection, double 
 		// before it goes on, for it may wait again at once
 		all->n_waiting--;
 		all->resume(atomic_exchange(&connection->handle, NULL));
+	} else if (connection->answering) {
+		if (all->released || gone(connection))
+			connection->unwanted = true;
 	} else if (now > connection->deadline) {
 		all->n_late++;
 		connection->deadline = INFINITY;

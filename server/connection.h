@@ -1,4 +1,4 @@
-/* connection.h - the open connections: how long each may take, who waits for a study, who is still sending.
+/* connection.h - the open connections: how long each may take, who waits for a study or an answer, who is still sending.
  *
  * A thread looks at all of them 20 times a second.  Any thread. */
 #ifndef CONNECTION_H
@@ -25,6 +25,8 @@ struct connection {
 	int64_t id;              /* ... the study it waits for, ... */
 	unsigned changes;        /* ... its store_changes when it was looked at, ... */
 	double until;            /* ... and for how long [s] monotonic */
+	atomic_bool answering;   /* an answer is made that may take long, ... */
+	atomic_bool unwanted;    /* ... and nobody waits for it any more: the watch sees to that */
 };
 
 struct connections {

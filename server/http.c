@@ -81,6 +81,12 @@ struct reply http_problem(enum api_fault fault, const char *detail, const struct
 	return reply;
 }
 
+struct reply http_unwanted(const struct request *request)
+{
+	return http_problem(API_UNAVAILABLE,
+	                    request->server->stopping ? "the server stops" : "the client has gone", NULL);
+}
+
 static struct connection *connection_of(struct MHD_Connection *connection)
 {
 	return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context;
@@ -226,6 +232,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	request->operation = api_match(method, path, &request->id, request->allow);
 	if (server->tokens)
 		request->token = tokens_name(server->tokens, http_header(request, "Authorization"));
+	request->unwanted = &connection_of(request->connection)->unwanted;
 	allow(request->connection, server->options->body_timeout);
 	judge(request, strcmp(version, "HTTP/1.0") != 0);
 	// without a body, the refusal can wait for the next call, and the connection be kept
@@ -236,36 +243,45 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	return send_reply(request, &reply);
 }
 
-/* Makes the reply to a suspended request, when it is its turn; none if the server stops meanwhile. */
+/* Goes on with a suspended request, whose reply is made. */
+static void go_on(struct request *request)
+{
+	struct server *server = request->server;
+	request->replied = true;
+	connection_of(request->connection)->answering = false;
+	MHD_resume_connection(request->connection); // which may end it
+	server->aside--;
+}
+
+/* Makes the reply to a suspended request, when it is its turn. */
 static void *answer_aside(void *of)
 {
 	struct request *request = of;
 	struct server *server = request->server;
 	setpriority(PRIO_PROCESS, (id_t)gettid(), ASIDE_NICENESS);
 	sem_wait(&server->turns);
-	if (!server->stopping) {
-		request->reply = routes_answer(request);
-		request->replied = true;
-	}
+	request->reply = *request->unwanted ? http_unwanted(request) : routes_answer(request);
 	sem_post(&server->turns);
-	MHD_resume_connection(request->connection);
-	server->aside--;
+	go_on(request);
 	return NULL;
 }
 
-/* Gives a request to a thread of its own; if there is none, it is answered where it is. */
+/* Gives a request to a thread of its own. */
 static void put_aside(struct request *request)
 {
+	struct connection *connection = connection_of(request->connection);
 	pthread_t thread;
 	request->aside = true;
 	request->server->aside++;
+	connection->unwanted = false;
+	connection->answering = true;
 	MHD_suspend_connection(request->connection);
 	if (pthread_create(&thread, NULL, answer_aside, request) == 0) {
 		pthread_detach(thread);
 		return;
 	}
-	request->server->aside--;
-	MHD_resume_connection(request->connection);
+	request->reply = http_problem(API_UNAVAILABLE, "no thread can be had for this", NULL);
+	go_on(request);
 }
 
 /* Called by libmicrohttpd with the headers, then with each part of the body, then without bytes for the answer. */

@@ -69,11 +69,12 @@ struct request {
 	char allow[64];    /* methods of the path */
 	char *body;        /* (length) bytes */
 	size_t length;
-	bool aside;         /* it was given to a thread of its own ... */
-	bool replied;       /* ... which has made the reply */
-	struct reply reply; /* if so, until it is sent */
-	double arrived;     /* [s] monotonic */
-	uint64_t number;    /* told as X-Request-Id */
+	bool aside;                  /* it was given to a thread of its own ... */
+	bool replied;                /* ... which has made the reply */
+	const atomic_bool *unwanted; /* nobody waits for the reply any more */
+	struct reply reply;          /* if so, until it is sent */
+	double arrived;              /* [s] monotonic */
+	uint64_t number;             /* told as X-Request-Id */
 };
 
 const char *http_header(const struct request *request, const char *name); /* NULL: none */
@@ -84,6 +85,7 @@ bool http_known(const struct request *request,
 
 /* an application/problem+json reply; `problems` may be NULL */
 struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);
+struct reply http_unwanted(const struct request *request); /* one for nobody */
 
 bool http_start(struct server *server); /* false: logged */
 int http_port(const struct server *server);

@@ -320,7 +320,7 @@ static struct reply unopened(struct request *request, const struct work_run *ope
 	return problem(API_CONFLICT, error);
 }
 
-/* The run of a study of which an answer is computed: it ends when the server stops.
+/* The run of a study of which an answer is computed: it ends when nobody waits for that any more.
  *
  * Returns  value  NULL, or why it cannot be made; closed by work_close in either case
  */
@@ -328,14 +328,14 @@ static const char *answer_open(const struct request *request, struct work_run *o
 {
 	const char *error = work_open(request->server->store, request->id, 1, opened);
 	if (!error)
-		pound_run_stop_by(opened->run, &request->server->stopping);
+		pound_run_stop_by(opened->run, request->unwanted);
 	return error;
 }
 
-/* Nothing was computed: the server stops, or there is no memory. */
+/* Nothing was computed: nobody waits for it, or there is no memory. */
 static struct reply nothing(const struct request *request)
 {
-	return request->server->stopping ? problem(API_UNAVAILABLE, "the server stops") : no_memory();
+	return *request->unwanted ? http_unwanted(request) : no_memory();
 }
 
 /* The result of the rows that are stored whole; an unfinished study is looked at again after a time [s]. */

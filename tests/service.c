@@ -403,6 +403,18 @@ struct service_bytes service_uninterrupted(const char *study, int n_workers)
 	return bytes;
 }
 
+void service_histories(const struct service *service, int signals, char id[17])
+{
+	static const char format[] =
+	    "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	    "{\"frequency_hz\": 3}], \"excitation\": {\"type\": \"kanai_tajimi\", \"frequency_hz\": 1, "
+	    "\"cycles\": 20, \"signals\": %d}}, \"spectrum\": {\"frequencies_hz\": [1]}, \"histories\": true}";
+	char study[sizeof format + 16];
+	snprintf(study, sizeof study, format, signals);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+}
+
 void service_bytes_compare(struct service_bytes *bytes, const struct service_bytes *reference)
 {
 	assert_string_equal(bytes->result, reference->result);

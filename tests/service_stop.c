@@ -194,15 +194,10 @@ static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **stat
 /* Nearly two million lines would take seconds: who asked for them is told that the server stops. */
 static void a_history_that_is_being_computed_ends_with_the_server(void **state)
 {
-	static const char study[] =
-	    "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
-	    "{\"frequency_hz\": 3}], \"excitation\": {\"type\": \"kanai_tajimi\", \"frequency_hz\": 1, "
-	    "\"cycles\": 20, \"signals\": 900}}, \"spectrum\": {\"frequencies_hz\": [1]}, \"histories\": true}";
 	struct service *service = *state;
 	static struct raw_answer answer;
 	char id[17], bytes[128];
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "succeeded", 0));
+	service_histories(service, 900, id);
 	int socket = raw_open(service);
 	raw_send(socket, bytes,
 	         (size_t)snprintf(bytes, sizeof bytes,

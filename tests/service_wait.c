@@ -238,6 +238,39 @@ static void a_client_that_waits_and_goes_away_is_no_harm(void **state)
 	service_stop(service);
 }
 
+/* Two answers that take long are made at a time: those for clients who have gone must not keep another waiting. */
+static void an_answer_for_a_client_who_has_gone_is_given_up(void **state)
+{
+	enum { GONE = 8 };
+	struct service *service = *state;
+	char id[17], bytes[128];
+	service_histories(service, 100, id);
+	double before = now();
+	struct answer whole = service_get(service, "/v1/studies/%s/samples", id);
+	double one = now() - before;
+	assert_int_equal(whole.status, 200);
+	snprintf(bytes, sizeof bytes, "GET /v1/studies/%s/samples HTTP/1.1\r\nHost: localhost\r\n\r\n", id);
+	int gone[GONE];
+	for (int i = 0; i < GONE; i++) {
+		gone[i] = raw_open(service);
+		raw_send(gone[i], bytes, strlen(bytes));
+	}
+	usleep(100000);
+	for (int i = 0; i < GONE; i++)
+		close(gone[i]);
+	before = now();
+	struct answer again = service_get(service, "/v1/studies/%s/samples", id);
+	double took = now() - before;
+	check_report("an answer of %.2f s: behind those for %d clients who had gone, after %.2f s", one, GONE,
+	             took);
+	assert_true(took < 3 * one); // behind those of all of them it would be GONE / 2 + 1
+	assert_int_equal(again.status, 200);
+	assert_int_equal(again.length, whole.length);
+	assert_memory_equal(again.body, whole.body, whole.length);
+	answer_free(&whole);
+	answer_free(&again);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
@@ -245,4 +278,5 @@ CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
            SERVED(who_waits_for_nothing_is_told_304_when_the_time_is_over),
            SERVED(who_waits_for_a_change_is_told_of_it),
            SERVED(a_study_can_be_followed_to_its_end_by_waiting_alone),
-           SERVED(a_server_that_stops_tells_who_waits), SERVED(a_client_that_waits_and_goes_away_is_no_harm))
+           SERVED(a_server_that_stops_tells_who_waits), SERVED(a_client_that_waits_and_goes_away_is_no_harm),
+           SERVED(an_answer_for_a_client_who_has_gone_is_given_up))
