@@ -13,7 +13,8 @@ struct batch {
 	int n;
 	struct simulation *sim[W];
 	double *row[W];
-	unsigned traits; /* of any of them */
+	unsigned traits;    /* of any of them */
+	struct queue *from; /* where they waited */
 };
 
 /* The lanes in use. */

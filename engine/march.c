@@ -9,7 +9,8 @@
  * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
  * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
  *    costs more than what it decides;
- * 6. simulations of one scene, of laws of one piece, read their constants and make their maps once;
+ * 6. simulations of one scene, of laws of one piece, make their maps once, and their constants stay in lanes from batch to
+ *    batch;
  * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (family.h).
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/march.h"
@@ -46,10 +47,11 @@ struct work {
 	struct queue idle, queues[STAGES];
 	const struct pound_march_task *tasks;
 	struct pound_march_result *results;
-	int n, started;        /* tasks, and those gone through in this pass */
-	int passed;            /* 0: laws of one piece are started, 1: the others */
-	int parted;            /* simulations that wait */
-	double beyond[W][ROW]; /* ground motion up to its end, and whatever was there behind */
+	int n, started;          /* tasks, and those gone through in this pass */
+	int passed;              /* 0: laws of one piece are started, 1: the others */
+	int parted;              /* simulations that wait */
+	const atomic_bool *stop; /* NULL: never */
+	double beyond[W][ROW];   /* ground motion up to its end, and whatever was there behind */
 	struct pound_common common;
 	// from here on nothing is cleared: a simulation's start does, and what finds the families
 	struct families families;
@@ -101,6 +103,7 @@ LANE_INLINE void send(struct work *work, struct simulation *sim, enum pound_stag
 
 static void batch_take(struct batch *b, struct work *work, struct queue *queue)
 {
+	b->from = queue;
 	b->n = queue->n < W ? queue->n : W;
 	b->traits = 0;
 	for (int l = 0; l < W; l++) {
@@ -108,6 +111,21 @@ static void batch_take(struct batch *b, struct work *work, struct queue *queue)
 		b->row[l] = (double *)&b->sim[l]->x;
 		b->traits |= b->sim[l]->traits;
 	}
+}
+
+/* Takes the next batch of the queue, if it is one of the same scene as well: what these have in common is in lanes already. */
+LANE_INLINE bool batch_again(struct work *work, struct batch *b)
+{
+	struct queue *queue = b->from;
+	unsigned traits = 0;
+	if (queue->n < W || pound_stopped(work->stop))
+		return false;
+	for (int l = 1; l <= W; l++)
+		traits |= queue->member[queue->n - l]->traits;
+	if (traits & (TRAIT_OWN | TRAIT_EDGED | TRAIT_ACCOUNTED | TRAIT_ALIKE))
+		return false;
+	batch_take(b, work, queue);
+	return true;
 }
 
 /* ---- whole samples apart ---- */
@@ -205,38 +223,27 @@ LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahe
 	return on & more;
 }
 
-LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
-                     bool common)
+/* Given    g, flyers  what does not change meanwhile */
+LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
+                           const struct flyer flyers[2], bool edged)
 {
-	bool paired = stage == STAGE_FLY_APART;
-	const struct pound_rows *shared = common ? &work->common.x : NULL;
-	struct lanes g;
-	lanes_fill(&g, b, ROW_STATE);
-	lanes_constant(&g, b, shared, ROW_LEFT);
-	lanes_constant(&g, b, shared, ROW_MAP_LEFT);
-	if (paired) {
-		lanes_constant(&g, b, shared, ROW_RIGHT);
-		lanes_constant(&g, b, shared, ROW_MAP_RIGHT);
-	}
-	const bool right = b->traits & TRAIT_RIGHT;
+	const bool paired = stage == STAGE_FLY_APART, right = b->traits & TRAIT_RIGHT;
 	struct ahead ahead = {.gone = 0};
 	double ground[W], samples[W];
+	lanes_fill(g, b, ROW_STATE);
 	for (int l = 0; l < W; l++) {
 		const struct simulation *sim = b->sim[l];
 		ahead.ground[l] = &sim->ground[sim->next];
 		samples[l] = (double)(flight_end(sim) - sim->next + 1);
 		ground[l] = ahead.ground[l][-1];
 	}
-	g.ground = lanes_of(ground);
+	g->ground = lanes_of(ground);
 	ahead.samples = lanes_of(samples);
-	struct flyer flyers[2] = {flyer_of(&g, 0)};
-	if (paired)
-		flyers[1] = flyer_of(&g, 1);
 	unsigned on = batch_lanes(b);
 	do
-		on = fly_on(work, b, &ahead, &g, flyers, on, edged, paired, right);
+		on = fly_on(work, b, &ahead, g, flyers, on, edged, paired, right);
 	while (__builtin_popcount(on) > b->n / 2);
-	lanes_empty(&g, b, ROW_STATE);
+	lanes_empty(g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++)
 		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
@@ -256,6 +263,23 @@ LANE_INLINE void fly(struct work *work, const struct batch *b, enum pound_stage 
 		struct simulation *sim = b->sim[lane_next(&there)];
 		send(work, sim, simulation_flown(sim, stage));
 	}
+}
+
+LANE_INLINE void fly(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
+{
+	const struct pound_rows *shared = common ? &work->common.x : NULL;
+	struct lanes g;
+	lanes_constant(&g, b, shared, ROW_LEFT);
+	lanes_constant(&g, b, shared, ROW_MAP_LEFT);
+	struct flyer flyers[2] = {flyer_of(&g, 0)};
+	if (stage == STAGE_FLY_APART) {
+		lanes_constant(&g, b, shared, ROW_RIGHT);
+		lanes_constant(&g, b, shared, ROW_MAP_RIGHT);
+		flyers[1] = flyer_of(&g, 1);
+	}
+	do
+		fly_batch(work, b, stage, &g, flyers, edged);
+	while (common && batch_again(work, b));
 }
 
 /* ---- whole cells of contact ---- */
@@ -357,33 +381,21 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 	s->error = form_of(row, g, true);
 }
 
-/* Given    seldom  a lane's energy is accounted for, or nothing presses its bodies on each other */
-LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
-                          bool common, bool seldom)
+/* Given    g, s    what does not change meanwhile, and of g the row PRESS
+ *          seldom  a lane's energy is accounted for, or nothing presses its bodies on each other */
+LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum pound_stage stage,
+                             struct lanes *g, struct press *s, bool edged, bool seldom)
 {
-	struct lanes g;
-	struct press s;
 	const bool forced = b->traits & TRAIT_FORCED, right = b->traits & TRAIT_RIGHT;
-	const struct pound_rows *shared = common ? &work->common.x : NULL;
-	lanes_fill(&g, b, ROW_STATE);
-	lanes_fill(&g, b, ROW_STEP);
-	lanes_constant(&g, b, shared, ROW_PAIR);
-	lanes_fill(&g, b, ROW_PRESS);
-	if (edged) {
-		lanes_constant(&g, b, shared, ROW_LEFT);
-		lanes_constant(&g, b, shared, ROW_RIGHT);
-	}
-	const double *map[W];
-	for (int l = 0; l < W; l++)
-		map[l] = b->sim[l]->pressed->row[0];
-	press_maps(&s, &g, map, stage, common);
-	s.alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
+	lanes_fill(g, b, ROW_STATE);
+	lanes_fill(g, b, ROW_STEP);
+	s->alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
 	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
-	vd zero = vsplat(0), one = vsplat(1), share = one / g.cells_whole, behind;
+	vd zero = vsplat(0), one = vsplat(1), share = one / g->cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
-	press_load(&s, &g, (samples.ground - samples.before) * share, behind, edged);
-	struct pressed kept = s.at;
-	const vd rounds = kept.rounds, cells = stage == STAGE_REST ? s.rest[PRESS_SPLIT][SPLIT_CELLS] : one;
+	press_load(s, g, (samples.ground - samples.before) * share, behind, edged);
+	struct pressed kept = s->at;
+	const vd rounds = kept.rounds, cells = stage == STAGE_REST ? s->rest[PRESS_SPLIT][SPLIT_CELLS] : one;
 	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
 	vm decided = vmask(0);
 	int few = b->n / 2;
@@ -392,32 +404,32 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 		{
 			struct pressed from;
 			if (seldom)
-				from = s.at;
-			vm edge, risk = stage == STAGE_REST ? rest(&g, &s, edged, &edge)
-			                                    : press(&g, &s, edged, right, forced, seldom, &edge);
+				from = s->at;
+			vm edge, risk = stage == STAGE_REST ? rest(g, s, edged, &edge)
+			                                    : press(g, s, edged, right, forced, seldom, &edge);
 			refused |= risk & pressed;
 			if (edged)
 				decided |= edge & pressed;
 			pressed &= ~risk;
 			if (seldom)
-				press_account(b, &g, &from, &s.at, cells, vbits(pressed & accounted));
-			vm sampled = vequal(s.at.cells, zero), last = vequal(s.at.left, zero);
+				press_account(b, g, &from, &s->at, cells, vbits(pressed & accounted));
+			vm sampled = vequal(s->at.cells, zero), last = vequal(s->at.left, zero);
 			ended |= sampled & last & pressed;
 			vm entered = sampled & ~last;
-			samples_next(&samples, &s.at, entered, g.cells_whole, share);
-			s.at.rounds = s.at.rounds - one;
-			gone |= vequal(s.at.rounds, zero) & pressed;
-			pressed_keep(&kept, &s.at, pressed);
+			samples_next(&samples, &s->at, entered, g->cells_whole, share);
+			s->at.rounds = s->at.rounds - one;
+			gone |= vequal(s->at.rounds, zero) & pressed;
+			pressed_keep(&kept, &s->at, pressed);
 			pressed &= ~ended & ~gone;
 			if (stage == STAGE_REST)
-				pressed &= rest_stays(&s, entered);
+				pressed &= rest_stays(s, entered);
 		}
 	} while (__builtin_popcount(vbits(pressed)) > few);
-	press_store(&kept, &g);
-	g.pressed = vfma(rounds - kept.rounds, cells, g.pressed);
-	lanes_empty(&g, b, ROW_STATE);
-	lanes_empty(&g, b, ROW_STEP);
-	lanes_empty(&g, b, ROW_PRESS);
+	press_store(&kept, g);
+	g->pressed = vfma(rounds - kept.rounds, cells, g->pressed);
+	lanes_empty(g, b, ROW_STATE);
+	lanes_empty(g, b, ROW_STEP);
+	lanes_empty(g, b, ROW_PRESS);
 	double left[W];
 	lanes_store(left, kept.left);
 	for (int l = 0; l < b->n; l++) {
@@ -441,8 +453,32 @@ LANE_INLINE void press_on(struct work *work, const struct batch *b, enum pound_s
 		finish(work, b->sim[lane_next(&ends)], STAGE_END);
 }
 
+LANE_INLINE void press_on(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common,
+                          bool seldom)
+{
+	struct lanes g;
+	struct press s;
+	const struct pound_rows *shared = common ? &work->common.x : NULL;
+	lanes_constant(&g, b, shared, ROW_PAIR);
+	lanes_fill(&g, b, ROW_PRESS);
+	if (edged) {
+		lanes_constant(&g, b, shared, ROW_LEFT);
+		lanes_constant(&g, b, shared, ROW_RIGHT);
+	}
+	const double *map[W];
+	for (int l = 0; l < W; l++)
+		map[l] = b->sim[l]->pressed->row[0];
+	press_maps(&s, &g, map, stage, common);
+	for (bool again = true; again;) {
+		press_batch(work, b, stage, &g, &s, edged, seldom);
+		again = common && batch_again(work, b);
+		if (again)
+			lanes_fill(&g, b, ROW_PRESS);
+	}
+}
+
 /* What is asked for or happens seldom goes one way for all laws. */
-static void press_seldom(struct work *work, const struct batch *b, enum pound_stage stage)
+static void press_seldom(struct work *work, struct batch *b, enum pound_stage stage)
 {
 	if (stage == STAGE_REST)
 		press_on(work, b, STAGE_REST, true, false, true);
@@ -450,7 +486,7 @@ static void press_seldom(struct work *work, const struct batch *b, enum pound_st
 		press_on(work, b, STAGE_PRESS, true, false, true);
 }
 
-LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_stage stage, bool edged,
+LANE_INLINE void press_any(struct work *work, struct batch *b, enum pound_stage stage, bool edged,
                            bool common)
 {
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE))
@@ -461,7 +497,9 @@ LANE_INLINE void press_any(struct work *work, const struct batch *b, enum pound_
 
 /* ---- one step up to an event ---- */
 
-LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
+/* Given    g  what does not change meanwhile */
+LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage stage, struct lanes *g,
+                            bool edged)
 {
 	struct event_lanes e = {.touching = stage == STAGE_TOUCH,
 	                        .paired = stage != STAGE_ALONE,
@@ -473,39 +511,33 @@ LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage
 	                        .fresh = vmask(0),
 	                        .decided = vmask(0)};
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
-	const struct pound_rows *shared = common ? &work->common.x : NULL;
-	struct lanes g;
-	lanes_fill(&g, b, ROW_STATE);
-	lanes_fill(&g, b, ROW_STEP);
-	lanes_constant(&g, b, shared, ROW_LEFT);
-	lanes_constant(&g, b, shared, ROW_PAIR);
-	if (e.paired)
-		lanes_constant(&g, b, shared, ROW_RIGHT);
+	lanes_fill(g, b, ROW_STATE);
+	lanes_fill(g, b, ROW_STEP);
 	if (accounted)
-		lanes_fill(&g, b, ROW_WORK);
+		lanes_fill(g, b, ROW_WORK);
 	if (e.forced)
 		batch_forces(b, &e.parted, &e.fresh);
-	vd events = event_step(&g, &e, accounted);
+	vd events = event_step(g, &e, accounted);
 	vm turns = vmask(0);
 	if (e.paired)
-		turns = event_follow(&g, &e, events);
+		turns = event_follow(g, &e, events);
 	double event[W], left[W], speed[W];
 	lanes_store(event, events);
-	lanes_store(left, vfma(g.cells, g.cell, g.part));
-	lanes_store(speed, g.q);
+	lanes_store(left, vfma(g->cells, g->cell, g->part));
+	lanes_store(speed, g->q);
 	// the work done is kept of whole steps only
 	if (accounted)
 		turns &= ~batch_trait(b, TRAIT_ACCOUNTED);
 	if (vany(turns)) {
 		e.touching = !e.touching;
-		event_leap(&g, &e, turns);
+		event_leap(g, &e, turns);
 	}
 	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
 	batch_forget(b, parting, &work->filler);
-	lanes_empty(&g, b, ROW_STATE);
-	lanes_empty(&g, b, ROW_STEP);
+	lanes_empty(g, b, ROW_STATE);
+	lanes_empty(g, b, ROW_STEP);
 	if (accounted)
-		lanes_empty(&g, b, ROW_WORK);
+		lanes_empty(g, b, ROW_WORK);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		if (parting >> l & 1) {
@@ -516,6 +548,19 @@ LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage
 		sim->fresh = vbits(e.fresh) >> l & 1;
 		send(work, sim, simulation_stepped(sim, (int)event[l], left[l], speed[l]));
 	}
+}
+
+LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
+{
+	const struct pound_rows *shared = common ? &work->common.x : NULL;
+	struct lanes g;
+	lanes_constant(&g, b, shared, ROW_LEFT);
+	lanes_constant(&g, b, shared, ROW_PAIR);
+	if (stage != STAGE_ALONE)
+		lanes_constant(&g, b, shared, ROW_RIGHT);
+	do
+		step_batch(work, b, stage, &g, edged);
+	while (common && batch_again(work, b));
 }
 
 /* What is left of a sample. */
@@ -649,6 +694,7 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 	work->tasks = tasks;
 	work->results = results;
 	work->n = n;
+	work->stop = stop;
 	families_find(&work->families, tasks, n);
 	simulation_start(&work->filler, &nothing, &result);
 	work->filler.pressed = &loose;
