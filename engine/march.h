@@ -48,7 +48,7 @@ struct pound_march_result {
 	    first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
 };
 
-enum { POUND_MARCH_SCRATCH = 1 << 22 }; /* bytes of work space, 64-byte aligned */
+enum { POUND_MARCH_SCRATCH = 1 << 23 }; /* bytes of work space, 64-byte aligned */
 
 /* Whether the caller wants no more of it: what follows a motion asks this between batches, stretches or samples. */
 static inline bool pound_stopped(const atomic_bool *stop)

@@ -11,7 +11,7 @@
 #include "engine/family.h"
 #include "engine/turn.h"
 
-enum { POOL = 64 /* simulations in flight */ };
+enum { POOL = 128 /* simulations in flight */ };
 
 /* simulations that wait for one kind of step, last come first served */
 struct queue {
