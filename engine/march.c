@@ -5,7 +5,8 @@
  *    where a bound proves that nothing lies inside (flight.h);
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (event.h);
  * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
- *    lanes, goes on until half of it is done with that kind of step, and is carried out to the next queues;
+ *    lanes, goes on until half of it is done with that kind of step, in flight more than a quarter, and is carried out to the
+ *    next queues;
  * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
  * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
  *    costs more than what it decides;
@@ -140,7 +141,7 @@ LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_
 	unsigned on = batch_lanes(b);
 	do
 		on = fly_on(work, b, &ahead, g, flyers, on, edged, paired, right);
-	while (__builtin_popcount(on) > b->n / 2);
+	while (__builtin_popcount(on) > b->n * 3 / 4);
 	lanes_empty(g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++)
