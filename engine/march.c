@@ -5,8 +5,8 @@
  *    where a bound proves that nothing lies inside (flight.h);
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (event.h);
  * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
- *    lanes, goes on until half of it is done with that kind of step, in flight more than a quarter, and is carried out to the
- *    next queues;
+ *    lanes, goes on until half of it is done with that kind of step (of flights: a quarter), and is carried out to the next
+ *    queues;
  * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
  * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
  *    costs more than what it decides;
@@ -499,14 +499,6 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 
 /* ---- the march ---- */
 
-/* of a batch: what its code need not ask of each lane */
-enum kind {
-	KIND_PLAIN,  /* all laws have one piece */
-	KIND_EDGED,  /* a law has more */
-	KIND_COMMON, /* all of one scene, whose laws have one piece, and no lane empty */
-	KINDS
-};
-
 /* the stages' steps: of laws of one piece, of others, and of simulations of one scene */
 #define STEP(name, ...)                                  \
 	static void name(struct work *work, struct batch *b) \
@@ -573,10 +565,7 @@ void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result
 			break;
 		struct batch b;
 		batch_take(&b, work, queue);
-		enum kind kind = b.traits & TRAIT_EDGED ? KIND_EDGED
-		                 : b.traits & TRAIT_OWN ? KIND_PLAIN
-		                                        : KIND_COMMON;
-		steps[queue - work->queues][kind](work, &b);
+		steps[queue - work->queues][batch_kind(b.traits)](work, &b);
 	}
 	lanes_leave();
 }

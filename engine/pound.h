@@ -623,6 +623,7 @@ void pound_run_clock(struct pound_run *run, double (*cpu)(void));
 void pound_run_stop(struct pound_run *run);
 /* A flag of the caller's, which outlives the run, does that when it is set, and pound_run_stop no more. */
 void pound_run_stop_by(struct pound_run *run, const atomic_bool *stop);
+bool pound_run_stopped(const struct pound_run *run);
 
 /* The sample behind row `row` and design block `sample` (0: A, 1: B, 2 + j: A with column j from B, ...), after all
  * blocks: the input values, and of each output in a cell the ratio of means and the variance of that mean

@@ -248,6 +248,11 @@ void pound_run_stop_by(struct pound_run *run, const atomic_bool *stop)
 	run->stop = stop;
 }
 
+bool pound_run_stopped(const struct pound_run *run)
+{
+	return pound_stopped(run->stop);
+}
+
 void pound_run_clock(struct pound_run *run, double (*cpu)(void))
 {
 	run->cpu = cpu;

@@ -19,6 +19,14 @@ struct queue {
 	struct simulation *member[POOL];
 };
 
+/* of a batch: what its code need not ask of each lane */
+enum kind {
+	KIND_PLAIN,  /* all laws have one piece */
+	KIND_EDGED,  /* a law has more */
+	KIND_COMMON, /* all of one scene, whose laws have one piece, and no lane empty */
+	KINDS
+};
+
 struct work {
 	struct queue idle, queues[STAGES];
 	const struct pound_march_task *tasks;
@@ -31,7 +39,8 @@ struct work {
 	struct pound_common common;
 	// from here on nothing is cleared: a simulation's start does, and what finds the families
 	struct families families;
-	struct simulation filler; /* of the lanes that a batch leaves empty */
+	struct simulation filler;       /* of the lanes that a batch leaves empty, and ... */
+	struct pound_march_result none; /* ... what comes of it */
 	struct simulation pool[POOL];
 	struct simulation waiting[POOL * POUND_OTHERS]; /* for room, out of a family: no task starts meanwhile */
 	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
@@ -91,7 +100,13 @@ static void batch_take(struct batch *b, struct work *work, struct queue *queue)
 	}
 }
 
-/* Takes the next batch of the queue, if it is one of the same scene as well: what these have in common is in lanes already. */
+static enum kind batch_kind(unsigned traits)
+{
+	return traits & TRAIT_EDGED ? KIND_EDGED : traits & TRAIT_OWN ? KIND_PLAIN : KIND_COMMON;
+}
+
+/* Takes the next batch of the queue behind one of a scene, if it is of the same kind: what they have in common is in lanes
+ * already, and stays what it is, as no task starts meanwhile.  Alike bodies go another way (press_any in march.c). */
 LANE_INLINE bool batch_again(struct work *work, struct batch *b)
 {
 	struct queue *queue = b->from;
@@ -100,7 +115,7 @@ LANE_INLINE bool batch_again(struct work *work, struct batch *b)
 		return false;
 	for (int l = 1; l <= W; l++)
 		traits |= queue->member[queue->n - l]->traits;
-	if (traits & (TRAIT_OWN | TRAIT_EDGED | TRAIT_ACCOUNTED | TRAIT_ALIKE))
+	if (batch_kind(traits) != KIND_COMMON || traits & TRAIT_ALIKE)
 		return false;
 	batch_take(b, work, queue);
 	return true;
@@ -144,14 +159,13 @@ static void work_init(struct work *work, const struct pound_march_task *tasks,
 	static const double still[2];
 	static const struct pound_press_map loose;
 	static const struct pound_march_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
-	struct pound_march_result result;
 	memset(work, 0, offsetof(struct work, families));
 	work->tasks = tasks;
 	work->results = results;
 	work->n = n;
 	work->stop = stop;
 	families_find(&work->families, tasks, n);
-	simulation_start(&work->filler, &nothing, &result);
+	simulation_start(&work->filler, &nothing, &work->none);
 	work->filler.pressed = &loose;
 	work->filler.x.dt = 1;
 	work->filler.x.gap = 0;

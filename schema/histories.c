@@ -55,7 +55,7 @@ static void record_add(void *into, int signal, const struct pound_instant *insta
 static void rows_fill(const struct pound_study *study, struct pound_run *run, pound_run_take *take,
                       struct rows *rows)
 {
-	for (int signal = 0; signal < study->scene.excitation.signals; signal++)
+	for (int signal = 0; signal < study->scene.excitation.signals && !rows->w.failed; signal++)
 		if (pound_run_history(run, signal, take, rows) == POUND_STOPPED)
 			rows->w.failed = true;
 }

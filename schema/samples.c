@@ -24,17 +24,20 @@ struct sample {
 
 typedef void put_sample(struct writer *w, const struct sample *sample);
 
+/* Nothing of it is to be used when the run is stopped meanwhile. */
 static void samples_each(const struct pound_study *study, const struct pound_run *run, struct writer *w,
                          put_sample *put)
 {
 	struct sample s = {.study = study, .run = run};
 	for (s.cell = 0; s.cell < study_cells(study); s.cell++) {
 		study_cell(study, s.cell, &s.scene);
-		for (s.row = 0; s.row < pound_run_rows(run); s.row++)
+		for (s.row = 0; s.row < pound_run_rows(run) && !w->failed; s.row++) {
+			w->failed = pound_run_stopped(run);
 			for (s.sample = 0; s.sample < pound_run_samples(run); s.sample++) {
 				pound_run_sample_inputs(run, s.row, s.sample, s.x);
 				put(w, &s);
 			}
+		}
 	}
 }
 

@@ -41,11 +41,14 @@ static bool drain(const struct connection *connection, ssize_t *left)
 	return n > 0 || (n < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
-/* Whether a client has gone: one who only says that he sends no more is taken for one, as a closed socket looks like that. */
-static bool gone(const struct connection *connection)
+/* Whether a client has gone, for a tick at least, so that who is answered at once is.  One who only says that he sends no more
+ * is taken for one: a closed socket looks like that. */
+static bool gone(struct connection *connection)
 {
 	struct pollfd end = {.fd = connection->fd, .events = POLLRDHUP};
-	return poll(&end, 1, 0) > 0;
+	bool before = connection->gone;
+	connection->gone = poll(&end, 1, 0) > 0;
+	return before && connection->gone;
 }
 
 static void look(struct connections *all, struct connection *connection, double now, ssize_t *left)

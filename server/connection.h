@@ -12,7 +12,7 @@
 
 struct store;
 
-/* Written by the thread of its requests, but for what is the watch's. */
+/* Written by the threads of its requests, but for what is the watch's. */
 struct connection {
 	LIST_ENTRY(connection) others; /* the watch's, as are fd and draining */
 	int fd;
@@ -26,7 +26,8 @@ struct connection {
 	unsigned changes;        /* ... its store_changes when it was looked at, ... */
 	double until;            /* ... and for how long [s] monotonic */
 	atomic_bool answering;   /* an answer is made that may take long, ... */
-	atomic_bool unwanted;    /* ... and nobody waits for it any more: the watch sees to that */
+	atomic_bool unwanted;    /* ... and nobody waits for it any more; the watch's, as is ... */
+	bool gone;               /* ... that its client was not there when it last looked */
 };
 
 struct connections {

@@ -5,7 +5,8 @@
  *    socket with unread bytes is reset, and the reset overtakes our answer.
  * 2. The body is collected, up to its limit.
  * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What
- *    takes long is answered in a thread of its own, while the connection is suspended. */
+ *    takes long is answered in a thread of its own, while the connection is suspended, or given up when the client has gone
+ *    or the server stops. */
 #include "server/http.h"
 
 #include <arpa/inet.h>
@@ -28,6 +29,8 @@
 enum {
 	THREADS = 4,
 	TURNS = 2,               /* of them that take long, at a time */
+	TURN_TICK_NS = 50000000, /* [ns] until who waits for one is asked whether he is still wanted */
+	GONE = 499,              /* told of a request whose client has gone */
 	ASIDE_NICENESS = 5,      /* between other answers and the workers */
 	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
 	FILES_BESIDE = 512,      /* descriptors that are no connections */
@@ -79,12 +82,6 @@ struct reply http_problem(enum api_fault fault, const char *detail, const struct
 	reply.body = api_problem(fault, detail, problems, &reply.length);
 	reply.retry_after = fault == API_UNAVAILABLE || fault == API_TOO_MANY;
 	return reply;
-}
-
-struct reply http_unwanted(const struct request *request)
-{
-	return http_problem(API_UNAVAILABLE,
-	                    request->server->stopping ? "the server stops" : "the client has gone", NULL);
 }
 
 static struct connection *connection_of(struct MHD_Connection *connection)
@@ -141,9 +138,11 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 		if (headers[i].value)
 			MHD_add_response_header(response, headers[i].name, headers[i].value);
 	allow(request->connection, SEND_S + (double)reply->length / SEND_RATE);
-	metrics_answered(&server->metrics, request->operation, reply->status, seconds);
+	// who has gone is counted as others count it: it is no failure of the server's
+	const int told = reply->gone ? GONE : reply->status;
+	metrics_answered(&server->metrics, request->operation, told, seconds);
 	// a path may be longer than a line
-	log_line("%s %.20s %.400s %d %zu bytes %.1f ms", number, request->method, request->path, reply->status,
+	log_line("%s %.20s %.400s %d %zu bytes %.1f ms", number, request->method, request->path, told,
 	         reply->length, 1e3 * seconds);
 	enum MHD_Result queued = MHD_queue_response(request->connection, (unsigned)reply->status, response);
 	MHD_destroy_response(response);
@@ -253,15 +252,39 @@ static void go_on(struct request *request)
 	server->aside--;
 }
 
-/* Makes the reply to a suspended request, when it is its turn. */
+/* Waits for a turn; false: nobody waits for the answer any more. */
+static bool take_turn(const struct request *request)
+{
+	bool had = false;
+	while (!had && !*request->unwanted) {
+		struct timespec until;
+		clock_gettime(CLOCK_MONOTONIC, &until);
+		until.tv_nsec += TURN_TICK_NS;
+		until.tv_sec += until.tv_nsec / 1000000000;
+		until.tv_nsec %= 1000000000;
+		had = sem_clockwait(&request->server->turns, CLOCK_MONOTONIC, &until) == 0;
+	}
+	return had;
+}
+
+/* Makes the reply to a suspended request, when it is its turn; none of use when nobody waits for it any more. */
 static void *answer_aside(void *of)
 {
 	struct request *request = of;
 	struct server *server = request->server;
+	struct reply *reply = &request->reply;
 	setpriority(PRIO_PROCESS, (id_t)gettid(), ASIDE_NICENESS);
-	sem_wait(&server->turns);
-	request->reply = *request->unwanted ? http_unwanted(request) : routes_answer(request);
-	sem_post(&server->turns);
+	if (take_turn(request)) {
+		*reply = routes_answer(request);
+		sem_post(&server->turns);
+	}
+	if (*request->unwanted && reply->status != 200) {
+		drop_body(reply);
+		*reply = http_problem(
+		    API_UNAVAILABLE,
+		    server->stopping ? "the server stops" : "the client has closed its side of the connection", NULL);
+		reply->gone = !server->stopping;
+	}
 	go_on(request);
 	return NULL;
 }
@@ -269,12 +292,10 @@ static void *answer_aside(void *of)
 /* Gives a request to a thread of its own. */
 static void put_aside(struct request *request)
 {
-	struct connection *connection = connection_of(request->connection);
 	pthread_t thread;
 	request->aside = true;
 	request->server->aside++;
-	connection->unwanted = false;
-	connection->answering = true;
+	connection_of(request->connection)->answering = true;
 	MHD_suspend_connection(request->connection);
 	if (pthread_create(&thread, NULL, answer_aside, request) == 0) {
 		pthread_detach(thread);

@@ -23,6 +23,7 @@ struct reply {
 	char location[64]; /* "": no such header, likewise below */
 	char etag[64];
 	int retry_after;  /* [s], 0: none */
+	bool gone;        /* the client had gone before it was made */
 	bool waits;       /* who knows it already may wait for another, when the study has changed */
 	unsigned changes; /* of the study, before it was looked at */
 };
@@ -71,8 +72,8 @@ struct request {
 	size_t length;
 	bool aside;                  /* it was given to a thread of its own ... */
 	bool replied;                /* ... which has made the reply */
-	const atomic_bool *unwanted; /* nobody waits for the reply any more */
 	struct reply reply;          /* if so, until it is sent */
+	const atomic_bool *unwanted; /* nobody waits for it any more */
 	double arrived;              /* [s] monotonic */
 	uint64_t number;             /* told as X-Request-Id */
 };
@@ -85,7 +86,6 @@ bool http_known(const struct request *request,
 
 /* an application/problem+json reply; `problems` may be NULL */
 struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);
-struct reply http_unwanted(const struct request *request); /* one for nobody */
 
 bool http_start(struct server *server); /* false: logged */
 int http_port(const struct server *server);

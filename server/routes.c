@@ -320,22 +320,14 @@ static struct reply unopened(struct request *request, const struct work_run *ope
 	return problem(API_CONFLICT, error);
 }
 
-/* The run of a study of which an answer is computed: it ends when nobody waits for that any more.
+/* The run of a study of which an answer is computed, which ends when nobody waits for that any more: what is replied then is
+ * not sent.
  *
  * Returns  value  NULL, or why it cannot be made; closed by work_close in either case
  */
 static const char *answer_open(const struct request *request, struct work_run *opened)
 {
-	const char *error = work_open(request->server->store, request->id, 1, opened);
-	if (!error)
-		pound_run_stop_by(opened->run, request->unwanted);
-	return error;
-}
-
-/* Nothing was computed: nobody waits for it, or there is no memory. */
-static struct reply nothing(const struct request *request)
-{
-	return *request->unwanted ? http_unwanted(request) : no_memory();
+	return work_open(request->server->store, request->id, 1, request->unwanted, opened);
 }
 
 /* The result of the rows that are stored whole; an unfinished study is looked at again after a time [s]. */
@@ -357,7 +349,7 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 			body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &length);
 		reply = body ? made("application/json", body, length)
 		        : !status || status == POUND_NOMEM || status == POUND_STOPPED
-		            ? nothing(request)
+		            ? no_memory()
 		            : problem(API_CONFLICT, "none of the runs so far has a result");
 	} else if (error)
 		reply = unopened(request, &opened, error);
@@ -437,7 +429,7 @@ static struct reply samples(struct request *request)
 		reply =
 		    problem(API_CONFLICT, "only a sensitivity study has samples, and floor spectra with histories");
 	work_close(&opened);
-	return reply.body ? reply : nothing(request);
+	return reply.body ? reply : no_memory();
 }
 
 static struct reply cancel(struct request *request)

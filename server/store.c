@@ -483,13 +483,15 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 	return changed(store, id, status);
 }
 
-/* Hands over the blocks that were kept, by number; a damaged one, or one of another version, is left out. */
+/* Hands over the blocks that were kept, by number, as long as they are wanted; a damaged one, or one of another version, is
+ * left out. */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *each, void *to)
 {
 	struct database *c = reader(store);
 	sqlite3_stmt *rows = bound(c, BLOCKS, "i", id);
 	int n = 0;
-	for (; sqlite3_step(rows) == SQLITE_ROW; n++) {
+	bool wanted = true;
+	for (; wanted && sqlite3_step(rows) == SQLITE_ROW; n++) {
 		char *content;
 		size_t length;
 		struct store_block block = {.number = sqlite3_column_int(rows, 2),
@@ -502,7 +504,7 @@ enum store_status store_blocks(struct store *store, int64_t id, store_block_read
 		}
 		block.n = (int)(length / sizeof(double));
 		block.values = (const double *)content;
-		each(to, &block);
+		wanted = each(to, &block);
 		free(content);
 	}
 	return released(c, ended(c, rows, n));

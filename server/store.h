@@ -68,7 +68,7 @@ struct store_block {
 	int n;
 	const double *values; /* (n) */
 };
-typedef void store_block_reader(void *to, const struct store_block *block);
+typedef bool store_block_reader(void *to, const struct store_block *block); /* false: no more are wanted */
 
 /* keeps a finished block; STORE_NONE: the study is not running any more */
 enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block);

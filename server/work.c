@@ -72,19 +72,21 @@ static double thread_cpu(void)
 	return seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-static void restore(void *to, const struct store_block *block)
+static bool restore(void *to, const struct store_block *block)
 {
 	struct work_run *opened = to;
+	bool goes_on = !pound_run_stopped(opened->run);
 	if (block->number >= pound_run_blocks_most(opened->run) ||
 	    (size_t)block->n != pound_run_block_size(opened->run, block->number))
-		return;
+		return goes_on;
 	pound_run_block_restore(opened->run, block->number, block->values);
 	opened->stored[block->number] = true;
 	opened->cpu_s += block->cpu_s;
 	opened->wall_s = block->wall_s > opened->wall_s ? block->wall_s : opened->wall_s;
+	return goes_on;
 }
 
-/* Makes the run of a stored study, with the blocks that are stored.
+/* Makes the run of a stored study, with the blocks that are stored; without some of these once it is stopped.
  *
  * Given    id          of the study
  *          n_workers   that will run its blocks
@@ -93,7 +95,8 @@ static void restore(void *to, const struct store_block *block)
  * Memory   allocates
  * Test     service_resume: a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again
  */
-const char *work_open(struct store *store, int64_t id, int n_workers, struct work_run *opened)
+const char *work_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
+                      struct work_run *opened)
 {
 	char *request = NULL;
 	size_t length = 0;
@@ -112,6 +115,8 @@ const char *work_open(struct store *store, int64_t id, int n_workers, struct wor
 	if (!opened->run)
 		return "out of memory";
 	pound_run_clock(opened->run, thread_cpu);
+	if (stop)
+		pound_run_stop_by(opened->run, stop);
 	opened->stored = calloc((size_t)pound_run_blocks_most(opened->run), sizeof *opened->stored);
 	if (!opened->stored)
 		return "out of memory";
@@ -326,8 +331,8 @@ static void open_run(struct work *work, struct job *job)
 	int tries = MEMORY_TRIES;
 	pthread_mutex_unlock(&work->lock);
 	study_here = job->id;
-	while ((error = work_open(work->store, job->id, work->n_workers, &opened)) && opened.passing && --tries &&
-	       patient(work))
+	while ((error = work_open(work->store, job->id, work->n_workers, NULL, &opened)) && opened.passing &&
+	       --tries && patient(work))
 		work_close(&opened);
 	pthread_mutex_lock(&work->lock);
 	job->of = opened;

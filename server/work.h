@@ -2,6 +2,7 @@
 #ifndef WORK_H
 #define WORK_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -17,8 +18,10 @@ struct work_run {
 	double cpu_s, wall_s; /* spent on the stored ones [s] */
 };
 
-/* NULL, or a sentence why it cannot be opened, and whether that may pass; to be closed in either case */
-const char *work_open(struct store *store, int64_t id, int n_workers, struct work_run *opened);
+/* NULL, or a sentence why it cannot be opened, and whether that may pass; to be closed in either case.  `stop` is the run's
+ * flag to stop by, NULL: it has its own. */
+const char *work_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
+                      struct work_run *opened);
 int work_left(const struct work_run *opened); /* blocks of the rows in hand that are not stored */
 void work_finished(struct work_run *opened);  /* of a study that succeeded: takes the rows it has */
 void work_close(struct work_run *opened);

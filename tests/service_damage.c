@@ -25,10 +25,11 @@ static struct {
 	int copies, refused, same, damaged, missing, unread, wrong;
 } count;
 
-static void add_block(void *to, const struct store_block *block)
+static bool add_block(void *to, const struct store_block *block)
 {
 	for (int i = 0; i < block->n; i++)
 		*(double *)to += block->values[i] * (block->number + 1);
+	return true;
 }
 
 static void ignore(void *to, const struct study_status *study)

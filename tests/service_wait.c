@@ -238,13 +238,23 @@ static void a_client_that_waits_and_goes_away_is_no_harm(void **state)
 	service_stop(service);
 }
 
+/* How many requests for samples were told a status, by the server's own count. */
+static int told(const struct service *service, int status)
+{
+	char line[128];
+	struct answer metrics = service_get(service, "/metrics");
+	snprintf(line, sizeof line, "path=\"/v1/studies/{id}/samples\",code=\"%d\"} ", status);
+	const char *found = strstr(metrics.body, line);
+	int n = found ? atoi(found + strlen(line)) : 0;
+	answer_free(&metrics);
+	return n;
+}
+
 /* Two answers that take long are made at a time: those for clients who have gone must not keep another waiting. */
-static void an_answer_for_a_client_who_has_gone_is_given_up(void **state)
+static void ask_behind_who_has_gone(const struct service *service, const char *id)
 {
 	enum { GONE = 8 };
-	struct service *service = *state;
-	char id[17], bytes[128];
-	service_histories(service, 100, id);
+	char bytes[128];
 	double before = now();
 	struct answer whole = service_get(service, "/v1/studies/%s/samples", id);
 	double one = now() - before;
@@ -255,7 +265,7 @@ static void an_answer_for_a_client_who_has_gone_is_given_up(void **state)
 		gone[i] = raw_open(service);
 		raw_send(gone[i], bytes, strlen(bytes));
 	}
-	usleep(100000);
+	usleep(50000);
 	for (int i = 0; i < GONE; i++)
 		close(gone[i]);
 	before = now();
@@ -264,11 +274,31 @@ static void an_answer_for_a_client_who_has_gone_is_given_up(void **state)
 	check_report("an answer of %.2f s: behind those for %d clients who had gone, after %.2f s", one, GONE,
 	             took);
 	assert_true(took < 3 * one); // behind those of all of them it would be GONE / 2 + 1
+	// of some it may not even have seen the request
+	assert_in_range(told(service, 499), 1, GONE);
+	assert_int_equal(told(service, 200), 2);
+	assert_int_equal(told(service, 503), 0);
 	assert_int_equal(again.status, 200);
 	assert_int_equal(again.length, whole.length);
 	assert_memory_equal(again.body, whole.body, whole.length);
 	answer_free(&whole);
 	answer_free(&again);
+}
+
+static void histories_for_a_client_who_has_gone_are_given_up(void **state)
+{
+	char id[17];
+	service_histories(*state, SERVICE_ROWS / 9, id);
+	ask_behind_who_has_gone(*state, id);
+}
+
+static void samples_for_a_client_who_has_gone_are_given_up(void **state)
+{
+	char *study = service_study(30 * SERVICE_ROWS, 1, 1), id[17];
+	service_submit(*state, study, id);
+	assert_true(service_wait(*state, id, "succeeded", 0));
+	ask_behind_who_has_gone(*state, id);
+	free(study);
 }
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
@@ -279,4 +309,5 @@ CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
            SERVED(who_waits_for_a_change_is_told_of_it),
            SERVED(a_study_can_be_followed_to_its_end_by_waiting_alone),
            SERVED(a_server_that_stops_tells_who_waits), SERVED(a_client_that_waits_and_goes_away_is_no_harm),
-           SERVED(an_answer_for_a_client_who_has_gone_is_given_up))
+           SERVED(histories_for_a_client_who_has_gone_are_given_up),
+           SERVED(samples_for_a_client_who_has_gone_are_given_up))
