@@ -102,7 +102,8 @@ char *histories_to_npy(const struct pound_study *study, struct pound_run *run, s
 	for (int j = 0; j < COLUMNS; j++)
 		npy_field(&fields, columns[j], "", "<f8");
 	char *records = writer_take(&rows.w, &n);
-	if (records && npy_head(&file, &fields, rows.n))
+	bool headed = npy_head(&file, &fields, rows.n);
+	if (records && headed)
 		writer_raw(&file, records, n);
 	else
 		file.failed = true;

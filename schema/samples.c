@@ -134,7 +134,7 @@ static void put_line(struct writer *w, const struct sample *s)
 /* The samples as CSV; an empty cell where there is no value.
  *
  * Given    study, run  -         -       a finished sensitivity study
- * Returns  value       (length)  -       NULL: out of memory
+ * Returns  value       (length)  -       NULL: out of memory, or the run is stopped
  * Memory   allocates; the caller frees
  *
  * Test     unit_samples: a_line_for_every_sample_in_the_order_of_the_design
@@ -195,7 +195,7 @@ static void put_record(struct writer *w, const struct sample *s)
  * AB of input j, a swept choice is its name in bytes, a value that is not there NaN.
  *
  * Given    study, run  -         -       a finished sensitivity study
- * Returns  value       (length)  -       the bytes of an .npy file; NULL: out of memory
+ * Returns  value       (length)  -       the bytes of an .npy file; NULL: out of memory, or the run is stopped
  * Memory   allocates; the caller frees
  *
  * Source   numpy.lib.format, version 3.0

@@ -136,5 +136,17 @@ static void a_numpy_file_holds_the_same_numbers(void **state)
 	finished_free(&f);
 }
 
+static void a_run_that_is_stopped_leaves_no_table(void **state)
+{
+	(void)state;
+	struct finished f = finished();
+	size_t length;
+	pound_run_stop(f.run);
+	assert_null(samples_to_csv(f.study, f.run, &length));
+	assert_null(samples_to_npy(f.study, f.run, &length));
+	finished_free(&f);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_line_for_every_sample_in_the_order_of_the_design),
-           cmocka_unit_test(a_numpy_file_holds_the_same_numbers))
+           cmocka_unit_test(a_numpy_file_holds_the_same_numbers),
+           cmocka_unit_test(a_run_that_is_stopped_leaves_no_table))
