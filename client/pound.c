@@ -259,7 +259,11 @@ static enum outcome command_run(const struct command *command, int argc, char **
 	                    command->terminal_table && isatty(STDOUT_FILENO) ? "table" : command->formats[0],
 	                .threads = cores()},
 	};
-	struct argp argp = {.options = taken, .parser = take_option, .args_doc = command->arguments, .doc = text};
+	// an empty list, unlike none, is memory that argp's help does not give back
+	struct argp argp = {.options = taken->key ? taken : NULL,
+	                    .parser = take_option,
+	                    .args_doc = command->arguments,
+	                    .doc = text};
 	argp_parse(&argp, argc, argv, 0, NULL, &parsing);
 	return command->run(&parsing.options);
 }
