@@ -14,7 +14,7 @@ struct batch {
 	struct simulation *sim[W];
 	double *row[W];
 	unsigned traits;    /* of any of them */
-	struct queue *from; /* where they waited: work.h */
+	struct queue *from; /* where they waited: queues.h */
 };
 
 /* The lanes in use. */

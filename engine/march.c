@@ -21,7 +21,7 @@
 
 #include "engine/event.h"
 #include "engine/flight.h"
-#include "engine/work.h"
+#include "engine/queues.h"
 
 enum {
 	PRESS_ROUNDS = 2, /* moves of pressed contact before it is asked who is left: no branch foresees that */

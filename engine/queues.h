@@ -1,8 +1,8 @@
-/* work.h - what a march works on: its tasks, the simulations that wait in queues, and the batches that are taken out of them.
+/* queues.h - what a march works on: its tasks, the simulations that wait in queues, and the batches that are taken out of them.
  *
  * Included by march.c alone, once per lane count. */
-#ifndef WORK_H
-#define WORK_H
+#ifndef QUEUES_H
+#define QUEUES_H
 
 #include <assert.h>
 #include <string.h>
