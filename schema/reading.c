@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schema/document.h"
+#include "schema/json.h"
 
 enum { POINTER_SIZE = 512 };
 
@@ -27,7 +27,7 @@ struct reading {
 struct reading *reading_open(const char *text, size_t length)
 {
 	struct gate_fault fault;
-	return (struct reading *)document_parse(text, length, &fault);
+	return (struct reading *)json_parse(text, length, &fault);
 }
 
 void reading_close(struct reading *reading)

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "schema/document.h"
+#include "schema/json.h"
 #include "schema/result_json.h"
 #include "schema/writer.h"
 
@@ -341,7 +341,7 @@ char *result_to_csv(const char *json, size_t json_length, const char *table, siz
 	struct writer w;
 	struct lines lines = {.w = &w, .header = true};
 	*length = 0;
-	cJSON *result = document_parse(json, json_length, &fault);
+	cJSON *result = json_parse(json, json_length, &fault);
 	if (!result)
 		return NULL;
 	writer_init(&w);

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schema/document.h"
 #include "schema/fields.h"
+#include "schema/json.h"
 #include "schema/reader.h"
 #include "schema/study_check.h"
 #include "schema/study_spectrum.h"
@@ -370,7 +370,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 {
 	struct gate_fault fault;
 	problems_init(problems);
-	cJSON *document = document_parse(text, length, &fault);
+	cJSON *document = json_parse(text, length, &fault);
 	if (!document && fault.line) {
 		problems_add(problems, "", "%s", fault.detail);
 		problems->status = PROBLEMS_MALFORMED;

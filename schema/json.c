@@ -1,5 +1,5 @@
-/* document.c - JSON text -> cJSON tree, the gate in front. */
-#include "schema/document.h"
+/* json.c - JSON text -> cJSON tree, the gate in front. */
+#include "schema/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,7 +38,7 @@ static void shorten_numbers(char *text)
  *
  * Test     unit_reading: a_number_of_400_characters_keeps_its_value
  */
-cJSON *document_parse(const char *text, size_t length, struct gate_fault *fault)
+cJSON *json_parse(const char *text, size_t length, struct gate_fault *fault)
 {
 	*fault = (struct gate_fault){0};
 	if (!gate_check(text, length, fault))
