@@ -361,7 +361,8 @@ static void course_end(struct course *c, enum pound_status status)
  * Status   POUND_TOLERANCE  the steps became too small or too many
  *          POUND_CHATTER    more events in one sample interval than allowed
  *          POUND_STOPPED    stop, which is looked at between samples, was set; NULL: never
- * Memory   allocates GSL's work space, some kB once for the task, and frees it; without memory GSL ends the program
+ *          POUND_NOMEM      where the program has told GSL not to end it for that
+ * Memory   allocates GSL's work space, some kB once for the task, and frees it
  *
  * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Steps
  *          follow from the C library's pow, so the last digits may be another machine's own.

@@ -240,19 +240,22 @@ static void motions_fill(struct pound_plan *plan)
 	}
 }
 
-/* Runs the marches asked since the stage before, all of them unless stop is set.  The first ones are those of the
- * checks, which are exact whatever the solver. */
-static void marches_run(struct pound_plan *plan, const struct pound_solver *solver, int checks_end, int *done,
-                        const atomic_bool *stop)
+/* Runs the marches asked since the stage before.  The first ones are those of the checks, which are exact whatever the
+ * solver. */
+static enum pound_status marches_run(struct pound_plan *plan, const struct pound_solver *solver,
+                                     int checks_end, int *done, const atomic_bool *stop)
 {
 	static const struct pound_solver exact = {.method = POUND_SOLVER_EVENT};
 	int from = *done, n = plan->march_keys.n;
 	assert(n <= plan->size.tasks);
 	// one call for both where it can be, as it fills the lanes better
 	int cut = solver->method == POUND_SOLVER_EVENT ? n : checks_end;
-	pound_solver_run(&exact, &plan->tasks[from], &plan->results[from], cut - from, plan->scratch, stop);
-	pound_solver_run(solver, &plan->tasks[cut], &plan->results[cut], n - cut, plan->scratch, stop);
 	*done = n;
+	enum pound_status status =
+	    pound_solver_run(&exact, &plan->tasks[from], &plan->results[from], cut - from, plan->scratch, stop);
+	return status ? status
+	              : pound_solver_run(solver, &plan->tasks[cut], &plan->results[cut], n - cut, plan->scratch,
+	                                 stop);
 }
 
 /* Longest length that is nothing beside the motion [m], scaled as the ground motion is.
@@ -523,6 +526,7 @@ static void pounding_ask(struct pound_plan *plan, int first, int end, struct pou
  * Returns  take      called for every item, cell and sample in this order, then for those of the checks
  *          work      what was asked and run is added
  * Status   POUND_STOPPED  stop was set; nothing was handed to take
+ *          POUND_NOMEM    there was no memory for a run, so too
  */
 enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,
                                  int n, const atomic_bool *stop, struct pound_work *work,
@@ -547,30 +551,32 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++)
 		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
-	for (int stage = 0; stage < stages && !pound_stopped(stop); stage++) {
+	enum pound_status status = POUND_OK;
+	for (int stage = 0; stage < stages && !status; stage++) {
 		// the checks, which take longer, start first, so that no lane waits for them at the end
 		stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
 		int checks_end = plan->march_keys.n;
 		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
-		marches_run(plan, &solver, checks_end, &done, stop);
+		status = marches_run(plan, &solver, checks_end, &done, stop);
 	}
-	if (pound_stopped(stop))
-		return POUND_STOPPED;
+	if (status)
+		return status;
 	pounding_ask(plan, n_items, n_asks, &work->checks, &of_checks);
 	int before = plan->n_before = plan->march_keys.n;
 	pounding_ask(plan, 0, n_items, &work->pounding_runs, work);
-	marches_run(plan, &solver, before, &done, stop);
-	if (pound_stopped(stop))
-		return POUND_STOPPED;
+	status = marches_run(plan, &solver, before, &done, stop);
+	if (status)
+		return status;
 	for (int j = before; j < done; j++)
 		work->contacts += plan->results[j].contacts;
 	for (int a = 0; a < n_asks; a++) {
 		struct pound_response response;
 		const struct ask *ask = &plan->asks[a];
-		enum pound_status status = ask_response(plan, ask, &response);
-		if (status && a < n_items)
-			work->failed[POUND_CHATTER - status]++;
-		take(into, &ask->scene, &response, status);
+		enum pound_status failure = ask_response(plan, ask, &response);
+		assert(!failure || failure <= POUND_CHATTER);
+		if (failure && a < n_items)
+			work->failed[POUND_CHATTER - failure]++;
+		take(into, &ask->scene, &response, failure);
 	}
 	return POUND_OK;
 }
@@ -583,18 +589,19 @@ enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct 
 	struct pound_march_result result;
 	assert(sample >= 1 && sample < task.n_samples);
 	task.n_samples = sample + 1;
-	pound_solver_run(solver, &task, &result, 1, plan->scratch, stop);
-	if (pound_stopped(stop))
-		return POUND_STOPPED;
-	*u = ldexp(result.u[0], plan->motions[ask->motion].exponent);
-	return result.status;
+	enum pound_status status = pound_solver_run(solver, &task, &result, 1, plan->scratch, stop);
+	if (status)
+		return status;
+	*u = result.status ? NAN : ldexp(result.u[0], plan->motions[ask->motion].exponent);
+	return POUND_OK;
 }
 
-int pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver, const atomic_bool *stop)
+enum pound_status pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver,
+                                    const atomic_bool *stop, int *n)
 {
-	int from = plan->n_before < plan->march_keys.n ? plan->n_before : 0, n = plan->march_keys.n - from;
-	pound_solver_run(solver, &plan->tasks[from], &plan->results[from], n, plan->scratch, stop);
-	return n;
+	int from = plan->n_before < plan->march_keys.n ? plan->n_before : 0;
+	*n = plan->march_keys.n - from;
+	return pound_solver_run(solver, &plan->tasks[from], &plan->results[from], *n, plan->scratch, stop);
 }
 
 int pound_plan_asks(const struct pound_plan *plan, int *n_items)

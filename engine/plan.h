@@ -54,7 +54,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
                                  pound_plan_take *take, void *into);
 
 /* After pound_plan_run, for its items in turn where each has one sample: the displacement of the left body at a sample of
- * the ground motion, by running its march that far. */
+ * the ground motion, by running its march that far; NAN: it failed. */
 enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct pound_solver *solver,
                                           int item, int sample, const atomic_bool *stop, double *u);
 
@@ -72,7 +72,8 @@ struct pound_plan_floor {
 struct pound_plan_floor pound_plan_floor(const struct pound_plan *plan, int ask);
 
 /* After pound_plan_run, for taking the time: its marches with pounding once more, all its marches if there is none.
- * Returns how many. */
-int pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver, const atomic_bool *stop);
+ * n: how many. */
+enum pound_status pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver,
+                                    const atomic_bool *stop, int *n);
 
 #endif

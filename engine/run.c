@@ -336,18 +336,24 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
 }
 
 /* CPU time of a run in the plan's last block, NAN without a clock: as many rounds as can be told from its ticks. */
-static double run_time(const struct pound_run *run, struct pound_plan *plan,
-                       const struct pound_solver *solver)
+static enum pound_status run_time(const struct pound_run *run, struct pound_plan *plan,
+                                  const struct pound_solver *solver, double *cpu)
 {
-	int n = 0;
+	*cpu = NAN;
 	if (!run->cpu)
-		return NAN;
+		return POUND_OK;
 	double start = run->cpu(), now;
+	int n = 0, more;
 	do {
-		n += pound_plan_repeat(plan, solver, run->stop);
+		enum pound_status status = pound_plan_repeat(plan, solver, run->stop, &more);
+		if (status)
+			return status;
+		n += more;
 		now = run->cpu();
-	} while (now - start < CLOCK_LEAST && n > 0 && !pound_stopped(run->stop));
-	return n > 0 ? (now - start) / n : NAN;
+	} while (now - start < CLOCK_LEAST && n > 0);
+	if (n > 0)
+		*cpu = (now - start) / n;
+	return POUND_OK;
 }
 
 /* Adds to a block of one trial the histories and the time of a run. */
@@ -357,19 +363,23 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_p
 	const struct pound_campaign *c = &run->campaign;
 	const struct pound_solver solver = pound_campaign_solver(c, first / c->n_signals);
 	int samples[POUND_HISTORY], n_times = pound_convergence_times(c->study, samples);
+	enum pound_status status = POUND_OK;
 	for (int item = 0; item < n; item++)
-		for (int k = 0; k < n_times; k++)
-			if (pound_plan_displacement(plan, &solver, item, samples[k], run->stop, &runs[item].history[k]))
-				runs[item].history[k] = NAN;
-	double cpu = run_time(run, plan, &solver);
+		for (int k = 0; k < n_times && !status; k++)
+			status =
+			    pound_plan_displacement(plan, &solver, item, samples[k], run->stop, &runs[item].history[k]);
+	double cpu = NAN;
+	if (!status)
+		status = run_time(run, plan, &solver, &cpu);
 	for (int item = 0; item < n; item++)
 		runs[item].cpu = cpu;
-	return pound_stopped(run->stop) ? POUND_STOPPED : POUND_OK;
+	return status;
 }
 
 /* Computes a block into its slice of the values.
  *
  * Status   POUND_STOPPED  pound_run_stop was called; the block's values are not to be used
+ *          POUND_NOMEM    there was no memory for a run, so too; it may be tried again
  */
 enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 {

@@ -45,13 +45,16 @@ bool pound_solver_takes_step(int row)
  *
  * Given    solver    -       -       row of the solvers, and the setting it takes
  *          tasks     (n)     -       see march.h
- *          stop      -       -       looked at throughout: when it is set the results are not to be used; NULL: never
+ *          stop      -       -       looked at throughout; NULL: never
  * Returns  results   (n)     -       each with a status of its own
+ * Status   POUND_STOPPED  stop was set: the results are not to be used
+ *          POUND_NOMEM    there was no memory for one of them, so too
  * Memory   scratch: POUND_MARCH_SCRATCH bytes, 64-byte aligned
  * Test     unit_fixed
  */
-void pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
-                      struct pound_march_result *results, int n, void *scratch, const atomic_bool *stop)
+enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
+                                   struct pound_march_result *results, int n, void *scratch,
+                                   const atomic_bool *stop)
 {
 	const struct solver *row = solver_at(solver->method);
 	if (!row->run)
@@ -59,5 +62,8 @@ void pound_solver_run(const struct pound_solver *solver, const struct pound_marc
 	for (int j = 0; row->run && j < n && !pound_stopped(stop); j++) {
 		row->run(solver, &tasks[j], &results[j], stop);
 		results[j].energy_residual = NAN; // only the march keeps the balance
+		if (results[j].status == POUND_NOMEM)
+			return POUND_NOMEM;
 	}
+	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
 }

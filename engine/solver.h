@@ -11,8 +11,9 @@
 
 enum { POUND_SOLVER_EVENT }; /* row of the exact one */
 
-void pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
-                      struct pound_march_result *results, int n, void *scratch, const atomic_bool *stop);
+enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
+                                   struct pound_march_result *results, int n, void *scratch,
+                                   const atomic_bool *stop);
 
 /* fixed.c */
 double pound_fixed_step(double time_step, double step);

@@ -1,4 +1,7 @@
-/* unit_status.c - runs without a result: what is left out, what is said, and when a study as a whole has failed. */
+/* unit_status.c - runs without a result: what is left out, what is said, and when a study as a whole has failed.
+ *
+ * The linker puts __wrap_gsl_odeiv2_driver_alloc_scaled_new in the place of GSL's own. */
+#include <gsl/gsl_odeiv2.h>
 #include <math.h>
 #include <string.h>
 
@@ -200,9 +203,60 @@ static void a_run_that_takes_hours_is_stopped(void **state)
 	specimen_free(&specimen);
 }
 
+gsl_odeiv2_driver *__real_gsl_odeiv2_driver_alloc_scaled_new(const gsl_odeiv2_system *,
+                                                             const gsl_odeiv2_step_type *, double, double,
+                                                             double, double, double, const double[]);
+gsl_odeiv2_driver *__wrap_gsl_odeiv2_driver_alloc_scaled_new(const gsl_odeiv2_system *,
+                                                             const gsl_odeiv2_step_type *, double, double,
+                                                             double, double, double, const double[]);
+
+static int until_starved = -1; /* allocations that GSL still gets before one that it does not get */
+
+gsl_odeiv2_driver *__wrap_gsl_odeiv2_driver_alloc_scaled_new(const gsl_odeiv2_system *system,
+                                                             const gsl_odeiv2_step_type *type, double start,
+                                                             double absolute, double relative, double y,
+                                                             double rate, const double scale[])
+{
+	if (until_starved-- == 0)
+		return NULL;
+	return __real_gsl_odeiv2_driver_alloc_scaled_new(system, type, start, absolute, relative, y, rate, scale);
+}
+
+static void want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again(void **state)
+{
+	(void)state;
+	struct pound_study *study = documents_study(
+	    "{\"kind\": \"convergence\", \"convergence\": {\"adaptive\": {\"tolerances\": [1e-4]}}, \"scene\": {"
+	    "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}], \"excitation\": {"
+	    "\"type\": \"record\", \"time_step_s\": 0.01, \"acceleration_m_s2\": [1, -1, 2, -2, 1, 0, 0, 0]}}}");
+	struct pound_run *once = specimen_run(study), *again = pound_run_create(study, 1);
+	assert_non_null(again);
+	int starved = 0;
+	for (int block = 0; block < pound_run_blocks(again); block++)
+		for (int before = 0;; before++, starved++) {
+			until_starved = before;
+			enum pound_status status = pound_run_block(again, block, 0);
+			if (status == POUND_OK)
+				break;
+			assert_int_equal(status, POUND_NOMEM);
+		}
+	until_starved = -1;
+	// the second opinion and the adaptive solver, whose motions and histories each take two
+	assert_true(starved > 2 * 2 * 2);
+	for (int block = 0; block < pound_run_blocks(again); block++) {
+		// times of runs are measured, and there is no clock
+		size_t size = sizeof(double) * pound_run_block_size(again, block);
+		assert_memory_equal(pound_run_block_values(again, block), pound_run_block_values(once, block), size);
+	}
+	pound_run_free(once);
+	pound_run_free(again);
+	study_free(study);
+}
+
 CHECK_MAIN(cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a_result),
            cmocka_unit_test(rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says_so),
            cmocka_unit_test(a_cell_without_a_run_has_no_outputs_and_the_others_have),
            cmocka_unit_test(a_study_without_a_result_ends_with_the_reason_of_its_runs),
            cmocka_unit_test(a_body_that_never_moves_has_no_demand_but_has_not_failed),
-           cmocka_unit_test(a_run_that_takes_hours_is_stopped))
+           cmocka_unit_test(a_run_that_takes_hours_is_stopped),
+           cmocka_unit_test(want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again))
