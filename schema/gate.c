@@ -154,13 +154,12 @@ static bool escape(struct gate *gate)
 	return true;
 }
 
-/* Bytes of the UTF-8 character at the current place, 0 if it is none (Unicode 15, table 3-7). */
-static size_t character(const struct gate *gate)
+/* Source   Unicode 15, table 3-7 */
+size_t gate_character(const char *text, size_t length)
 {
-	const unsigned char *s = (const unsigned char *)gate->text + gate->at;
-	size_t left = gate->length - gate->at;
+	const unsigned char *s = (const unsigned char *)text;
 	size_t n = s[0] < 0x80 ? 1 : s[0] >= 0xC2 && s[0] < 0xE0 ? 2 : (s[0] & 0xF0) == 0xE0 ? 3 : 4;
-	if (n > left || (n == 4 && (s[0] < 0xF0 || s[0] > 0xF4)))
+	if (n > length || (n == 4 && (s[0] < 0xF0 || s[0] > 0xF4)))
 		return 0;
 	// no overlong forms, no surrogates, nothing past U+10FFFF
 	unsigned low = s[0] == 0xE0 ? 0xA0 : s[0] == 0xF0 ? 0x90 : 0x80;
@@ -185,7 +184,7 @@ static bool string(struct gate *gate)
 			if (!escape(gate))
 				return false;
 		} else {
-			size_t n = character(gate);
+			size_t n = gate_character(gate->text + gate->at, gate->length - gate->at);
 			if (!n)
 				return refuse(gate, "not UTF-8");
 			gate->at += n;

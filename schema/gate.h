@@ -21,4 +21,7 @@ struct gate_fault {
 
 bool gate_check(const char *text, size_t length, struct gate_fault *fault); /* true: strict JSON */
 
+/* Bytes of the UTF-8 character at the start of a text of at least one byte; 0: there is none. */
+size_t gate_character(const char *text, size_t length);
+
 #endif

@@ -13,6 +13,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "schema/gate.h"
 #include "schema/result_json.h"
 #include "schema/writer.h"
 
@@ -56,7 +57,10 @@ char *model_rows(const struct pound_study *study, const struct pound_run *run, i
 
 /* ---- cells in ---- */
 
-enum { CELL_SIZE = 256, LINES_TOLD = 3 };
+enum {
+	CELL_SIZE = 512, /* room for the longest name of an input, 100 characters of 4 bytes */
+	LINES_TOLD = 3,
+};
 
 /* A fault that many lines may have: it is told once, with the first of them. */
 struct fault {
@@ -75,6 +79,7 @@ struct csv {
 	int line;             /* of the cell in hand, from 1 */
 	bool ended;           /* the cell in hand is the last of its line */
 	char cell[CELL_SIZE]; /* without quotes and the spaces around it */
+	bool cut;             /* it was longer */
 	struct fault length;  /* a line has another number of cells than the header */
 	struct problems *problems;
 };
@@ -82,7 +87,7 @@ struct csv {
 /* Tells a fault of the line in hand. */
 static void complain(const struct csv *csv, const char *column, const char *what)
 {
-	char place[160];
+	char place[CELL_SIZE + 80]; // problems_add() cuts it where it is too long
 	snprintf(place, sizeof place, column ? "line %d, %s" : "line %d", csv->line, column);
 	problems_add(csv->problems, place, "%s", what);
 }
@@ -105,7 +110,7 @@ static void fault_note(struct fault *fault, const struct csv *csv, const char *f
 /* Tells a fault of all lines: "line 7, y: ...", or "lines 7, 9, 12 and 30 more, y: ... (line 7)". */
 static void fault_tell(const struct fault *fault, const char *column, struct problems *problems)
 {
-	char place[160];
+	char place[CELL_SIZE + 80]; // problems_add() cuts it where it is too long
 	int n = 0;
 	if (fault->n == 0)
 		return;
@@ -140,15 +145,18 @@ static void trim(char *text)
 static void cell_read(struct csv *csv)
 {
 	size_t n = 0;
-	bool quoted = false;
+	bool quoted = false, closed = false; // inside quotes, right behind them
+	csv->cut = false;
 	for (; csv->at < csv->end && *csv->at != '\n' && (quoted || *csv->at != ','); csv->at++) {
-		if (*csv->at == '"') {
-			quoted = !quoted;
-			if (!quoted || csv->at[-1] != '"')
-				continue;
-		}
+		const bool quote = *csv->at == '"', doubled = quote && closed;
+		closed = quote && quoted;
+		quoted ^= quote;
+		if (quote && !doubled)
+			continue;
 		if (n < CELL_SIZE - 1)
 			csv->cell[n++] = *csv->at;
+		else
+			csv->cut = true;
 	}
 	csv->ended = csv->at == csv->end || *csv->at == '\n';
 	csv->at += csv->at < csv->end;
@@ -208,7 +216,7 @@ static bool cell_number(const struct csv *csv, double *value)
 	*value = NAN;
 	if (is_failed(csv->cell))
 		return true;
-	if (!is_decimal(csv->cell))
+	if (csv->cut || !is_decimal(csv->cell))
 		return false;
 	*value = strtod(csv->cell, NULL);
 	return isfinite(*value);
@@ -310,9 +318,25 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	snprintf(what, sizeof what, "must be the name of a column, got \"%.40s\"", csv->cell);
 	if (!*csv->cell || (cell_number(csv, &number) && !isnan(number)))
 		complain(csv, NULL, what);
+	snprintf(what, sizeof what, "must be shorter than %d bytes", CELL_SIZE);
+	if (csv->cut)
+		complain(csv, column->name, what);
 	snprintf(what, sizeof what, "is the name of column %d too", same + 1);
 	if (same >= 0)
 		complain(csv, column->name, what);
+}
+
+/* Whether the text is UTF-8; the line in hand is the first that is not. */
+static bool is_text(struct csv *csv)
+{
+	const char *at = csv->at;
+	for (size_t n; at < csv->end && (n = gate_character(at, (size_t)(csv->end - at))) > 0; at += n)
+		csv->line += *at == '\n';
+	if (at < csv->end)
+		complain(csv, NULL, "is not UTF-8");
+	else
+		csv->line = 1;
+	return at == csv->end;
 }
 
 /* The first line: what each column is. */
@@ -492,7 +516,7 @@ char *model_indices(const struct pound_study *study, const char *csv, size_t csv
 		at.at += 3;
 	outputs.study.elsewhere = true;
 	check_study(study, problems);
-	if (problems->status == PROBLEMS_NONE && header_read(&outputs, &at)) {
+	if (problems->status == PROBLEMS_NONE && is_text(&at) && header_read(&outputs, &at)) {
 		struct pound_run *run = pound_run_create(&outputs.study, 1);
 		if (run)
 			lines_read(&outputs, &at, run);

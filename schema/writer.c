@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schema/gate.h"
+
 enum { CAPACITY_FIRST = 4096 };
 
 void writer_init(struct writer *writer)
@@ -74,16 +76,25 @@ static void break_line(struct writer *writer)
 	writer_raw(writer, indent, 2 * (size_t)writer->depth);
 }
 
+/* Bytes of the character at the start of a text that need no escape. */
+static size_t plain(const char *text, size_t length)
+{
+	if ((unsigned char)*text < 0x20 || *text == '"' || *text == '\\')
+		return 0;
+	return gate_character(text, length);
+}
+
+/* A byte that is not UTF-8 becomes the replacement character: what is written is JSON whatever was cut or came in. */
 static void quote(struct writer *writer, const char *text)
 {
+	const char *end = text + strlen(text);
 	put(writer, "\"");
-	for (const char *s = text; *s; s++) {
-		size_t plain = 0;
-		while ((unsigned char)s[plain] >= 0x20 && s[plain] != '"' && s[plain] != '\\')
-			plain++;
-		writer_raw(writer, s, plain);
-		s += plain;
-		if (!*s)
+	for (const char *s = text; s < end; s++) {
+		const char *start = s;
+		for (size_t n; s < end && (n = plain(s, (size_t)(end - s))) > 0; s += n)
+			;
+		writer_raw(writer, start, (size_t)(s - start));
+		if (s == end)
 			break;
 		char escaped[8];
 		if (*s == '"' || *s == '\\')
@@ -91,7 +102,7 @@ static void quote(struct writer *writer, const char *text)
 		else if (*s == '\n' || *s == '\t')
 			snprintf(escaped, sizeof escaped, "\\%c", *s == '\n' ? 'n' : 't');
 		else
-			snprintf(escaped, sizeof escaped, "\\u%04x", (unsigned)(unsigned char)*s);
+			snprintf(escaped, sizeof escaped, "\\u%04x", (unsigned char)*s < 0x20 ? (unsigned)*s : 0xFFFD);
 		put(writer, escaped);
 	}
 	put(writer, "\"");

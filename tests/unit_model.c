@@ -312,6 +312,54 @@ static void spelling_and_further_columns_do_not_change_the_result(void **state)
 	study_free(study);
 }
 
+static void a_quote_that_begins_the_text_is_the_first_of_its_cell(void **state)
+{
+	(void)state;
+	char *plain = golden_csv("y\n", "%.17g\n", 0.0), *quoted = golden_csv("\"\"y\"\n", "%.17g\n", 0.0);
+	struct pound_study *study = study_of(two_inputs);
+	struct problems problems;
+	size_t n, n_quoted;
+	char *json = model_indices(study, plain, strlen(plain), &problems, &n);
+	// what stands in front of the text is no part of it: here another quote
+	char *other = model_indices(study, quoted + 1, strlen(quoted + 1), &problems, &n_quoted);
+	assert_non_null(json);
+	assert_non_null(other);
+	assert_string_equal(json, other);
+	free(json), free(other), free(plain), free(quoted);
+	study_free(study);
+}
+
+static void a_column_may_have_the_longest_name_of_an_input(void **state)
+{
+	(void)state;
+	char name[401] = "", document[800], header[420];
+	for (int k = 0; k < 100; k++)
+		strcat(name, "\xf0\x9f\x8f\xa0");
+	snprintf(document, sizeof document,
+	         "{\"inputs\": [{\"name\": \"%s\", " UNIFORM "], \"design\": {\"rows\": 6}}", name);
+	snprintf(header, sizeof header, "%s,y\n", name);
+	struct pound_study *study = study_of(document);
+	struct pound_run *run = pound_run_create(study, 1);
+	char *csv = NULL;
+	size_t n;
+	FILE *out = open_memstream(&csv, &n);
+	fputs(header, out);
+	for (int row = 0; row < 6; row++)
+		for (int sample = 0; sample < 3; sample++) {
+			double x;
+			pound_run_sample_inputs(run, row, sample, &x);
+			fprintf(out, "%.17g,%.17g\n", x, x * x);
+		}
+	fclose(out);
+	struct reading *result = indices_of(document, csv);
+	assert_int_equal(reading_count(result, "/cells/0/outputs"), 1);
+	assert_string_equal(reading_text(result, "/cells/0/outputs/0/name"), "y");
+	reading_close(result);
+	free(csv);
+	pound_run_free(run);
+	study_free(study);
+}
+
 static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
 {
 	(void)state;
@@ -346,7 +394,13 @@ static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
 static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 {
 	(void)state;
-	static const struct {
+	// a place has room for 159 bytes
+	char long_cell[520] = "", long_place[160] = "line 1, ";
+	memset(long_cell, '0', 512);
+	strcat(long_cell, "1\n");
+	memset(long_place + 8, '0', 148);
+	strcpy(long_place + 156, "...");
+	const struct {
 		const char *header, *line, *last; /* of the lines but the last, and the last */
 		const char *pointer, *detail;
 	} refused[] = {
@@ -377,11 +431,20 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	    {"y,y\n", "1,2\n", "1,2\n", "line 1, y", "is the name of column 1 too"},
 	    {"1.25\n", "1\n", "1\n", "line 1", "must be the name of a column, got \"1.25\""},
 	    {"y,\n", "1,2\n", "1,2\n", "line 1", "must be the name of a column, got \"\""},
+	    {"pression \xe9lev\xe9"
+	     "e\n",
+	     "1\n", "1\n", "line 1", "is not UTF-8"},
+	    {"y\n", "1\n", "\xb5\n", "line 25", "is not UTF-8"},
+	    // its first 511 digits are another number, and a cut name another name
+	    {"y\n", "1\n", long_cell, "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got "
+	     "\"000000000000000000000000000000000000000000000000000000000000\""},
+	    {long_cell, "1\n", "1\n", long_place, "must be shorter than 512 bytes"},
 	};
 	struct pound_study *study = study_of(two_inputs);
 	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
 		struct problems problems;
-		char csv[400] = "";
+		char csv[800] = "";
 		size_t n;
 		strcat(csv, refused[i].header);
 		for (int k = 0; k < 23; k++)
@@ -501,6 +564,8 @@ CHECK_MAIN(cmocka_unit_test(every_spelling_of_a_decimal_number_is_one),
            cmocka_unit_test(a_run_without_a_number_takes_its_row_out_of_every_output),
            cmocka_unit_test(spelling_and_further_columns_do_not_change_the_result),
            cmocka_unit_test(the_samples_of_a_study_give_its_raw_indexes_again),
+           cmocka_unit_test(a_quote_that_begins_the_text_is_the_first_of_its_cell),
+           cmocka_unit_test(a_column_may_have_the_longest_name_of_an_input),
            cmocka_unit_test(every_fault_of_the_outputs_is_told_with_its_line),
            cmocka_unit_test(lines_in_another_order_are_noticed_by_the_inputs_in_them),
            cmocka_unit_test(outputs_of_a_sweep_are_refused))

@@ -54,8 +54,11 @@ static void texts_are_escaped(void **state)
 	writer_text(&w, NULL, "");
 	writer_text(&w, NULL, "\"\\/\n\t\r\b\x01\x1f\x7f");
 	writer_text(&w, NULL, "a\"b\xC3\xA9\\");
+	// what is not UTF-8, or was cut
+	writer_text(&w, NULL, "\xE9t\xC3");
 	writer_end(&w);
-	takes(&w, "[\"\", \"\\\"\\\\/\\n\\t\\u000d\\u0008\\u0001\\u001f\x7f\", \"a\\\"b\xC3\xA9\\\\\"]\n");
+	takes(&w, "[\"\", \"\\\"\\\\/\\n\\t\\u000d\\u0008\\u0001\\u001f\x7f\", \"a\\\"b\xC3\xA9\\\\\", "
+	          "\"\\ufffdt\\ufffd\"]\n");
 }
 
 static void a_seed_past_2_to_the_53_is_text(void **state)
