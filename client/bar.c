@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,12 @@ static int line_width(void)
 		width = size.ws_col;
 	// the last column stays free: writing there would wrap the line
 	return (width < WIDTH_MAX ? width : WIDTH_MAX) - 1;
+}
+
+/* A number as one of runs; 0 where it is none. */
+static int64_t count_of(double n)
+{
+	return n >= 0.0 && n < 1e18 ? (int64_t)n : 0;
 }
 
 /* Writes n with a comma between thousands, n >= 0. */
@@ -50,14 +57,14 @@ static void left(char *out, size_t size, double seconds)
  * Given    done, total   pounding runs
  *          left_s   s    time left, < 0: unknown
  */
-void bar_draw(int64_t done, int64_t total, double left_s)
+void bar_draw(double done, double total, double left_s)
 {
 	if (!on_terminal())
 		return;
 	char tail[120], n_done[32], n_total[32], time[40] = "";
-	double part = total > 0 ? (double)done / (double)total : 0.0;
-	grouped(n_done, sizeof n_done, done);
-	grouped(n_total, sizeof n_total, total);
+	double part = total > 0.0 ? fmin(fmax(done / total, 0.0), 1.0) : 0.0; // 0 for a NAN
+	grouped(n_done, sizeof n_done, count_of(done));
+	grouped(n_total, sizeof n_total, count_of(total));
 	if (left_s >= 0.0 && left_s < 1e7)
 		left(time, sizeof time, left_s);
 	int length =

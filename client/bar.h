@@ -2,10 +2,9 @@
 #ifndef BAR_H
 #define BAR_H
 
-#include <stdint.h>
-
-/* Draws the bar: runs done of the runs asked (total 0: not known yet), and seconds left (< 0: not known). */
-void bar_draw(int64_t done, int64_t total, double left_s);
+/* Draws the bar: runs done of the runs asked (total 0: not known yet), and seconds left (< 0: not known).  Whatever the
+ * numbers are that a server has sent: it is not drawn beyond its ends. */
+void bar_draw(double done, double total, double left_s);
 
 /* Takes the bar off its line. */
 void bar_clear(void);

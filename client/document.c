@@ -77,6 +77,10 @@ void document_complain(const char *subject, const struct reading *problem)
 /* Says what is wrong with a document in the words of the server. */
 enum outcome document_reject(const char *path, const struct problems *problems)
 {
+	if (problems->status == PROBLEMS_NOMEM) {
+		command_complain("%s", pound_status_text(POUND_NOMEM));
+		return OUTCOME_FAILED;
+	}
 	char place[64];
 	snprintf(place, sizeof place, "line %d, column %d", problems->line, problems->column);
 	const struct problem_head head = {.status = problems->status == PROBLEMS_MALFORMED ? 400 : 422,
@@ -90,7 +94,7 @@ enum outcome document_reject(const char *path, const struct problems *problems)
 		command_complain("out of memory");
 	reading_close(reading);
 	free(json);
-	return problems->status == PROBLEMS_NOMEM ? OUTCOME_FAILED : OUTCOME_USAGE;
+	return OUTCOME_USAGE;
 }
 
 void document_advise(const struct pound_study *study)

@@ -69,8 +69,8 @@ static bool look(const struct wire *wire, enum outcome sent, const char *id, con
 		if (*outcome != OUTCOME_OK)
 			complain(id, status);
 	} else
-		bar_draw((int64_t)reading_number(status, "/runs_done"),
-		         (int64_t)reading_number(status, "/runs_total"), reading_number(status, "/eta_s"));
+		bar_draw(reading_number(status, "/runs_done"), reading_number(status, "/runs_total"),
+		         reading_number(status, "/eta_s"));
 	reading_close(status);
 	return over;
 }

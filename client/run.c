@@ -23,7 +23,7 @@
 
 enum { REDRAW_MS = 100 };
 
-static volatile sig_atomic_t interrupted;
+static atomic_bool interrupted;
 
 struct crew {
 	struct pound_run *run;
@@ -44,7 +44,7 @@ struct member {
 static void note_interrupt(int number)
 {
 	(void)number;
-	interrupted = 1;
+	atomic_store(&interrupted, true);
 }
 
 static double seconds(clockid_t clock)
@@ -85,9 +85,9 @@ static void watch(struct crew *crew, int n, int64_t runs_total, double start)
 			n--;
 		if (interrupted || atomic_load(&crew->status) != POUND_OK)
 			pound_run_stop(crew->run);
-		int64_t done = atomic_load(&crew->runs_done);
+		double done = (double)atomic_load(&crew->runs_done), total = (double)runs_total;
 		double spent = seconds(CLOCK_MONOTONIC) - start;
-		bar_draw(done, runs_total, done ? spent * (double)(runs_total - done) / (double)done : -1.0);
+		bar_draw(done, total, done > 0.0 ? spent * (total - done) / done : -1.0);
 	}
 }
 
@@ -151,6 +151,7 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	const char *end = strrchr(path, '.');
 	bool npy = end && strcmp(end, ".npy") == 0;
 	size_t n;
+	pound_run_stop_by(run, &interrupted); // its crew, which looked for that, has gone home
 	char *bytes = study->spectrum.histories ? (npy ? histories_to_npy : histories_to_csv)(study, run, &n)
 	                                        : (npy ? samples_to_npy : samples_to_csv)(study, run, &n);
 	FILE *file = bytes ? fopen(path, "wb") : NULL;

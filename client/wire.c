@@ -29,8 +29,12 @@ struct wire *wire_open(const char *url)
 {
 	struct wire *wire = command_sure(calloc(1, sizeof *wire));
 	const char *direct = getenv("no_proxy");
+	if (!direct)
+		direct = getenv("NO_PROXY");
 	wire->curl = command_sure(curl_global_init(CURL_GLOBAL_DEFAULT) == 0 ? curl_easy_init() : NULL);
-	wire->direct = command_text("localhost,127.0.0.1,::1,%s", direct ? direct : "");
+	// "*", for any host, is no part of a list
+	bool any = direct && strcmp(direct, "*") == 0;
+	wire->direct = command_text(any ? "*" : "localhost,127.0.0.1,::1,%s", direct ? direct : "");
 	wire->url = url;
 	wire->n_url = strlen(url);
 	while (wire->n_url && url[wire->n_url - 1] == '/')

@@ -1,9 +1,8 @@
 /* `pound run`: the same bytes whatever computes them, the same complaints as the server, and a clean stop. */
+#include <dirent.h>
 #include <fcntl.h>
-#include <poll.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -361,27 +360,52 @@ static void ctrl_c_stops_a_run_without_a_result(void **state)
 	unlink(study);
 }
 
-/* What a program drew on a terminal of so many columns as its stderr; the caller frees it. */
-static char *drawn(const char *const arguments[], int columns)
+/* Threads of a process; 0: it has ended. */
+static int threads_of(pid_t pid)
 {
-	struct winsize size = {.ws_col = (unsigned short)columns, .ws_row = 25};
-	int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-	assert_true(terminal >= 0 && grantpt(terminal) == 0 && unlockpt(terminal) == 0);
-	assert_int_equal(ioctl(terminal, TIOCSWINSZ, &size), 0);
-	// held open here, so that what was drawn is not lost when the program ends
-	int other = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
-	setenv("TERM", "xterm", 1);
-	assert_int_equal(program_end(program_start(arguments, "/dev/null", ptsname(terminal))), 0);
-	char *text = calloc(1, 65536);
-	size_t n = 0;
-	for (struct pollfd end = {.fd = terminal, .events = POLLIN}; n < 65535 && poll(&end, 1, 0) == 1;) {
-		ssize_t k = read(terminal, text + n, 65535 - n);
-		assert_true(k > 0);
-		n += (size_t)k;
-	}
-	close(other);
-	close(terminal);
-	return text;
+	char path[48];
+	snprintf(path, sizeof path, "/proc/%d/task", (int)pid);
+	DIR *tasks = opendir(path);
+	int n = 0;
+	for (struct dirent *task; tasks && (task = readdir(tasks));)
+		n += task->d_name[0] != '.';
+	if (tasks)
+		closedir(tasks);
+	return n;
+}
+
+static void ctrl_c_stops_histories_that_are_being_written(void **state)
+{
+	char study[32], err[48], histories[48];
+	(void)state;
+	int file = mkstemp(strcpy(study, "/tmp/pound.XXXXXX"));
+	// 1,000 floors at one frequency take a moment, and their histories seconds
+	dprintf(file, "{\"kind\": \"floor_spectrum\", \"histories\": true, \"spectrum\": {\"frequencies_hz\": "
+	              "[3]}, \"scene\": {"
+	              "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
+	              "\"excitation\": {\"signals\": 1000}}}");
+	close(file);
+	snprintf(err, sizeof err, "%s.err", study);
+	snprintf(histories, sizeof histories, "%s.csv", study);
+	pid_t pid = program_start(
+	    (const char *const[]){"pound", "run", "--threads", "2", "--samples", histories, study, NULL},
+	    "/dev/null", err);
+	// its workers have come and gone
+	const struct timespec moment = {.tv_nsec = 1000000};
+	while (threads_of(pid) == 1)
+		nanosleep(&moment, NULL);
+	while (threads_of(pid) > 1)
+		nanosleep(&moment, NULL);
+	nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
+	kill(pid, SIGINT);
+	assert_int_equal(program_end(pid), 1);
+	size_t n;
+	char *said = program_file(err, &n);
+	assert_non_null(strstr(said, "stopped by the caller"));
+	assert_null(program_file(histories, &n));
+	free(said);
+	unlink(err);
+	unlink(study);
 }
 
 static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
@@ -391,7 +415,7 @@ static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
 	(void)state;
 	example_file("sensitivity_small", study);
 	for (int i = 0; i < 3; i++) {
-		char *bar = drawn((const char *const[]){"pound", "run", study, NULL}, widths[i]);
+		char *bar = program_drawn((const char *const[]){"pound", "run", study, NULL}, widths[i]);
 		size_t n = strlen(bar);
 		assert_non_null(strstr(bar, "100 %"));
 		assert_true(n > 4 && strcmp(bar + n - 4, "\r\033[K") == 0);
@@ -439,5 +463,6 @@ CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_
            cmocka_unit_test(one_table_of_a_result_is_shown_by_its_name),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),
            cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
+           cmocka_unit_test(ctrl_c_stops_histories_that_are_being_written),
            cmocka_unit_test(the_bar_keeps_within_its_terminal_and_clears_its_line),
            SERVED(a_paper_study_is_valid_and_its_cost_is_told))

@@ -113,31 +113,43 @@ static void answer_all(int listener, const char *const answers[ANSWERS_MAX])
 	}
 }
 
+/* Starts the server that gives these answers, its address in POUND_URL. */
+static pid_t stand_in(const char *const answers[ANSWERS_MAX])
+{
+	struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+	socklen_t n = sizeof address;
+	int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	assert_int_equal(bind(listener, (struct sockaddr *)&address, n), 0);
+	assert_int_equal(listen(listener, 16), 0);
+	assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &n), 0);
+	pid_t pid = fork();
+	assert_true(pid >= 0);
+	if (pid == 0)
+		answer_all(listener, answers);
+	close(listener);
+	char url[64];
+	snprintf(url, sizeof url, "http://127.0.0.1:%d", ntohs(address.sin_port));
+	setenv("POUND_URL", url, 1);
+	return pid;
+}
+
+static void stand_down(pid_t pid)
+{
+	kill(pid, SIGKILL);
+	waitpid(pid, NULL, 0);
+}
+
 static void every_strange_answer_ends_as_it_should(void **state)
 {
 	(void)state;
 	for (size_t s = 0; s < sizeof SCRIPTS / sizeof SCRIPTS[0]; s++) {
 		const struct script *script = &SCRIPTS[s];
-		struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-		socklen_t n = sizeof address;
-		int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-		assert_int_equal(bind(listener, (struct sockaddr *)&address, n), 0);
-		assert_int_equal(listen(listener, 16), 0);
-		assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &n), 0);
-		pid_t pid = fork();
-		assert_true(pid >= 0);
-		if (pid == 0)
-			answer_all(listener, script->answers);
-		char url[64];
-		snprintf(url, sizeof url, "http://127.0.0.1:%d", ntohs(address.sin_port));
-		setenv("POUND_URL", url, 1);
+		pid_t pid = stand_in(script->answers);
 		const char *arguments[8] = {"pound"};
 		for (int i = 0; script->arguments[i]; i++)
 			arguments[i + 1] = script->arguments[i];
 		struct program_outcome outcome = program_run(arguments, "{}");
-		kill(pid, SIGKILL);
-		waitpid(pid, NULL, 0);
-		close(listener);
+		stand_down(pid);
 		char said[4096];
 		snprintf(said, sizeof said, "%s%s", outcome.out, outcome.err);
 		if (outcome.status != script->status || !strstr(said, script->said) ||
@@ -150,4 +162,49 @@ static void every_strange_answer_ends_as_it_should(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(every_strange_answer_ends_as_it_should))
+static void a_bar_of_strange_numbers_stays_within_its_ends(void **state)
+{
+	static const char *const answers[ANSWERS_MAX] = {
+	    JSON("200 OK",
+	         "{\"status\": \"running\", \"runs_done\": 5000, \"runs_total\": 10, \"eta_s\": -1e300}"),
+	    JSON("200 OK", "{\"status\": \"running\", \"runs_done\": -3e300, \"runs_total\": 1e300}"),
+	    JSON("200 OK", "{\"status\": \"running\", \"runs_done\": \"many\", \"eta_s\": 1e300}"),
+	    JSON("200 OK", "{\"status\": \"succeeded\"}"),
+	};
+	(void)state;
+	pid_t pid = stand_in(answers);
+	char *bar = program_drawn((const char *const[]){"pound", "wait", "1", NULL}, 120);
+	assert_non_null(strstr(bar, "[########################################] 100 %  5,000 / 10 runs\r"));
+	assert_non_null(strstr(bar, "[----------------------------------------]   0 %  0 / 0 runs\r"));
+	free(bar);
+	stand_down(pid);
+}
+
+/* A server that is reached through a proxy alone, and what the environment says of that; then whether it was asked. */
+static void a_proxy_is_asked_but_where_the_environment_says_otherwise(void **state)
+{
+	static const struct {
+		const char *name, *value;
+		int status;
+	} environments[] = {
+	    {"no_proxy", "example.org", 0},   {"NO_PROXY", "example.org", 0}, {"no_proxy", "pound.invalid", 4},
+	    {"NO_PROXY", "pound.invalid", 4}, {"no_proxy", "*", 4},           {"NO_PROXY", "*", 4}};
+	static const char *const answers[ANSWERS_MAX] = {JSON("200 OK", "{\"status\": \"succeeded\"}")};
+	(void)state;
+	for (size_t e = 0; e < sizeof environments / sizeof environments[0]; e++) {
+		pid_t pid = stand_in(answers);
+		setenv("http_proxy", getenv("POUND_URL"), 1);
+		setenv("POUND_URL", "http://pound.invalid", 1); // a name that is no host's (RFC 2606)
+		setenv(environments[e].name, environments[e].value, 1);
+		struct program_outcome outcome = POUND("status", "1");
+		program_expect(&outcome, environments[e].status);
+		program_free(&outcome);
+		unsetenv(environments[e].name);
+		unsetenv("http_proxy");
+		stand_down(pid);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(every_strange_answer_ends_as_it_should),
+           cmocka_unit_test(a_bar_of_strange_numbers_stays_within_its_ends),
+           cmocka_unit_test(a_proxy_is_asked_but_where_the_environment_says_otherwise))

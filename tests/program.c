@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -172,5 +173,27 @@ char *program_file(const char *path, size_t *n)
 	fclose(file);
 	if (n)
 		*n = size;
+	return text;
+}
+
+char *program_drawn(const char *const arguments[], int columns)
+{
+	struct winsize size = {.ws_col = (unsigned short)columns, .ws_row = 25};
+	int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+	assert_true(terminal >= 0 && grantpt(terminal) == 0 && unlockpt(terminal) == 0);
+	assert_int_equal(ioctl(terminal, TIOCSWINSZ, &size), 0);
+	// held open here, so that what was drawn is not lost when the program ends
+	int other = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
+	setenv("TERM", "xterm", 1);
+	assert_int_equal(program_end(program_start(arguments, "/dev/null", ptsname(terminal))), 0);
+	char *text = calloc(1, 65536);
+	size_t n = 0;
+	for (struct pollfd end = {.fd = terminal, .events = POLLIN}; n < 65535 && poll(&end, 1, 0) == 1;) {
+		ssize_t k = read(terminal, text + n, 65535 - n);
+		assert_true(k > 0);
+		n += (size_t)k;
+	}
+	close(other);
+	close(terminal);
 	return text;
 }

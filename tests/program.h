@@ -31,6 +31,9 @@ pid_t program_start(const char *const arguments[], const char *out, const char *
 /* Waits for its end: exit status, or 128 + signal. */
 int program_end(pid_t pid);
 
+/* What a program that ends well drew on a terminal of so many columns as its stderr; the caller frees it. */
+char *program_drawn(const char *const arguments[], int columns);
+
 /* A poundd of the test's own (service.h), its address in POUND_URL; service_teardown ends it. */
 int program_setup(void **state);
 
