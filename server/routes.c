@@ -12,6 +12,7 @@
 #include "engine/pound.h"
 #include "schema/cost.h"
 #include "schema/problems.h"
+#include "schema/reading.h"
 #include "schema/result_json.h"
 #include "schema/study_json.h"
 #include "schema/study_status.h"
@@ -402,25 +403,31 @@ static struct reply samples(struct request *request)
 {
 	static const struct format formats[] = {{"csv", "text/csv"}, {"npy", "application/octet-stream"}};
 	// a result says that all blocks are there
-	struct reply reply = document(request, "result");
-	if (reply.status != 200)
-		return reply;
-	// what one version computed is not put beside the rows of another
-	bool ours = strstr(reply.body, "\"engine_version\": \"" POUND_VERSION "\"");
-	free(reply.body);
-	bool npy = second(request, formats, NULL, 0, &reply);
-	if (http_known(request, reply.etag))
-		return reply;
+	struct reply reply, json = document(request, "result");
+	if (json.status != 200)
+		return json;
+	bool npy = second(request, formats, NULL, 0, &reply), known = http_known(request, reply.etag);
+	struct reading *result = known ? NULL : reading_open(json.body, json.length);
+	free(json.body);
+	if (!result)
+		return known ? reply : no_memory();
+	const char *version = reading_text(result, "/engine_version");
+	const bool ours = version && !strcmp(version, POUND_VERSION);
+	const double rows =
+	    reading_number(result, "/design/rows"); // a design that grew has more than it began with
+	reading_close(result);
 	struct work_run opened;
 	const char *error = answer_open(request, &opened);
 	if (error)
 		reply = unopened(request, &opened, error);
+	else if (opened.study->kind == POUND_KIND_SENSITIVITY && !ours)
+		reply =
+		    problem(API_CONFLICT, "another version of poundd computed the study; only that has its samples: "
+		                          "submit it again");
 	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
-		work_finished(&opened);
+		pound_run_rows_take(opened.run, (int)rows);
 		if (work_left(&opened) > 0)
-			reply = ours ? problem(API_CORRUPT, "stored blocks are damaged")
-			             : problem(API_CONFLICT, "another version of poundd computed the study; only "
-			                                     "that has its samples: submit it again");
+			reply = problem(API_CORRUPT, "stored blocks are damaged");
 		else
 			reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
 	} else if (opened.study->spectrum.histories)

@@ -31,7 +31,8 @@ enum {
 enum statement {
 	STUDY, LIST, LIST_OF, DOCUMENT, BLOCKS, COUNT,
 	BEGIN, // the first of those that the writer alone has
-	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, FINISH, REQUEUE, POISON,
+	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, FINISH, REQUEUE,
+	POISON,
 	N_STATEMENTS
 };
 
@@ -79,6 +80,9 @@ static const char *const statement_text[] = {
 	              "FROM study WHERE id = ?1 AND status = 'running'",
 	[PROGRESS] = "UPDATE study SET (runs_done, cpu_s) = (SELECT sum(runs), sum(cpu_s) FROM block WHERE study = ?1), "
 	              "attempt_kept = attempt WHERE id = ?1",
+	[PRUNE]    = "DELETE FROM block WHERE study = ?1 AND sha256 IS NOT " BLOCK_DIGEST("study", "number", "content"),
+	[RECOUNT]  = "UPDATE study SET (runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), coalesce(sum(cpu_s), 0) "
+	              "FROM block WHERE study = ?1) WHERE id = ?1",
 	[FINISH]   = "UPDATE study SET status = ?2, finished = max(" NOW ", started), error = ?3, "
 	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
 	[REQUEUE]  = "UPDATE study SET status = 'queued', "
@@ -195,17 +199,21 @@ unsigned store_changes(struct store *store, int64_t id)
 	return atomic_load(&store->changes[id % CHANGES]);
 }
 
-/* Closes a store, when nothing runs any more; the writing connection goes last and leaves no WAL behind. */
-void store_close(struct store *store)
+/* The writing connection goes last and leaves no WAL behind. */
+static void let_go(struct store *store)
 {
-	// after a start that was refused there may be no statements
-	if (store->writer.statements[REQUEUE])
-		run(&store->writer, bound(&store->writer, REQUEUE, "i", INT64_C(0)), NULL);
 	for (int i = 0; i < READERS; i++)
 		database_close(&store->readers[i]);
 	database_close(&store->writer);
 	disk_leave(&store->disk);
 	free(store);
+}
+
+/* Closes a store, when nothing runs any more. */
+void store_close(struct store *store)
+{
+	run(&store->writer, bound(&store->writer, REQUEUE, "i", INT64_C(0)), NULL);
+	let_go(store);
 }
 
 /* Opens a database, making it if there is none.  Studies that were running are queued again, but one that made the
@@ -230,7 +238,8 @@ struct store *store_open(const char *path)
 	ok = ok && run(w, bound(w, REQUEUE, "i", disk_blamed(&store->disk)), NULL) != STORE_FAILED &&
 	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED;
 	if (!ok) {
-		store_close(store);
+		// what was running is for the next start to queue, which may still have to count a crash
+		let_go(store);
 		return NULL;
 	}
 	disk_blame(&store->disk, 0);
@@ -484,22 +493,30 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 }
 
 /* Hands over the blocks that were kept, by number, as long as they are wanted; a damaged one, or one of another version, is
- * left out. */
+ * left out.
+ *
+ * Status   STORE_CORRUPT  one was, or more
+ *          STORE_FAILED   the disk, or no memory: some may be missing
+ */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *each, void *to)
 {
 	struct database *c = reader(store);
 	sqlite3_stmt *rows = bound(c, BLOCKS, "i", id);
 	int n = 0;
-	bool wanted = true;
-	for (; wanted && sqlite3_step(rows) == SQLITE_ROW; n++) {
+	bool wanted = true, corrupt = false, starved = false;
+	for (; wanted && !starved && sqlite3_step(rows) == SQLITE_ROW; n++) {
 		char *content;
 		size_t length;
 		struct store_block block = {.number = sqlite3_column_int(rows, 2),
 		                            .runs = sqlite3_column_int64(rows, 3),
 		                            .cpu_s = sqlite3_column_double(rows, 4),
 		                            .wall_s = sqlite3_column_double(rows, 5)};
-		if (checked(rows, &content, &length) != STORE_OK) {
-			log_line("study %016llx: block %d cannot be used", (unsigned long long)id, block.number);
+		enum store_status status = checked(rows, &content, &length);
+		if (status != STORE_OK) {
+			log_line("study %016llx: block %d %s", (unsigned long long)id, block.number,
+			         status == STORE_CORRUPT ? "cannot be used" : "found no memory");
+			corrupt |= status == STORE_CORRUPT;
+			starved |= status == STORE_FAILED;
 			continue;
 		}
 		block.n = (int)(length / sizeof(double));
@@ -507,7 +524,19 @@ enum store_status store_blocks(struct store *store, int64_t id, store_block_read
 		wanted = each(to, &block);
 		free(content);
 	}
-	return released(c, ended(c, rows, n));
+	enum store_status status = ended(c, rows, n);
+	return released(c, starved ? STORE_FAILED : corrupt && status == STORE_OK ? STORE_CORRUPT : status);
+}
+
+/* Deletes the blocks that store_blocks leaves out, with what they count for in the study's progress.
+ *
+ * Status   STORE_NONE   there are none
+ * Test     service_resume: blocks_of_another_version_are_not_counted
+ */
+enum store_status store_prune(struct store *store, int64_t id)
+{
+	struct database *c = writer(store);
+	return changed(store, id, both(c, bound(c, PRUNE, "i", id), bound(c, RECOUNT, "i", id)));
 }
 
 /* Ends a running study.

@@ -72,8 +72,9 @@ typedef bool store_block_reader(void *to, const struct store_block *block); /* f
 
 /* keeps a finished block; STORE_NONE: the study is not running any more */
 enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block);
-/* the stored blocks of this engine version, damaged ones left out */
+/* the stored blocks of this engine version; CORRUPT: others or damaged ones were left out */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *reader, void *to);
+enum store_status store_prune(struct store *store, int64_t id); /* deletes what is left out */
 
 /* A running study ends, once: with a result, or with the reason why it failed (the other is NULL). */
 enum store_status store_finish(struct store *store, int64_t id, const char *result, size_t length,

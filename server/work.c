@@ -120,9 +120,9 @@ const char *work_open(struct store *store, int64_t id, int n_workers, const atom
 	opened->stored = calloc((size_t)pound_run_blocks_most(opened->run), sizeof *opened->stored);
 	if (!opened->stored)
 		return "out of memory";
-	if (store_blocks(store, id, restore, opened) == STORE_FAILED)
-		return "the stored blocks could not be read";
-	return NULL;
+	found = store_blocks(store, id, restore, opened);
+	opened->leftovers = found == STORE_CORRUPT;
+	return found == STORE_FAILED ? "the stored blocks could not be read" : NULL;
 }
 
 /* Blocks that are not stored, of the rows in hand. */
@@ -132,16 +132,6 @@ int work_left(const struct work_run *opened)
 	for (int block = pound_run_blocks(opened->run) - 1; block >= 0; block--)
 		n += !opened->stored[block];
 	return n;
-}
-
-/* Takes as many rows as the design of a finished study has: up to its last stored block. */
-void work_finished(struct work_run *opened)
-{
-	int last = pound_run_blocks_most(opened->run) - 1;
-	while (last >= 0 && !opened->stored[last])
-		last--;
-	for (int look = 1; pound_run_blocks(opened->run) <= last; look++)
-		pound_run_rows_take(opened->run, pound_design_rows(opened->study, look));
 }
 
 /* Frees what work_open made. */
@@ -297,7 +287,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 {
 	struct job *job = step->job;
 	study_here = job->id;
-	double cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID);
+	double cpu_s = thread_cpu();
 	pthread_mutex_unlock(&work->lock);
 	enum pound_status status;
 	int tries = MEMORY_TRIES;
@@ -305,7 +295,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 		status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
 		                          : pound_run_reduce(job->of.run, step->reduction, worker);
 	while (status == POUND_NOMEM && --tries && patient(work));
-	cpu_s = seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_s;
+	cpu_s = thread_cpu() - cpu_s;
 	bool wanted = status != POUND_OK || step->block < 0 || keep(work, job, step->block, cpu_s);
 	pthread_mutex_lock(&work->lock);
 	job->n_inside--;
@@ -334,6 +324,9 @@ static void open_run(struct work *work, struct job *job)
 	while ((error = work_open(work->store, job->id, work->n_workers, NULL, &opened)) && opened.passing &&
 	       --tries && patient(work))
 		work_close(&opened);
+	// they would count as done; where that fails they still do, until they are run again
+	if (!error && opened.leftovers)
+		store_prune(work->store, job->id);
 	pthread_mutex_lock(&work->lock);
 	job->of = opened;
 	job->opened = !error;

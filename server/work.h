@@ -15,6 +15,7 @@ struct work_run {
 	struct pound_run *run;
 	bool *stored;         /* (pound_run_blocks_most) */
 	bool passing;         /* it could not be opened for want of memory or by a fault of the disk */
+	bool leftovers;       /* there are blocks that cannot be used: damaged, or another version's */
 	double cpu_s, wall_s; /* spent on the stored ones [s] */
 };
 
@@ -23,7 +24,6 @@ struct work_run {
 const char *work_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
                       struct work_run *opened);
 int work_left(const struct work_run *opened); /* blocks of the rows in hand that are not stored */
-void work_finished(struct work_run *opened);  /* of a study that succeeded: takes the rows it has */
 void work_close(struct work_run *opened);
 
 struct work;

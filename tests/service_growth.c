@@ -108,6 +108,36 @@ static void the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_to
 	free(study);
 }
 
+static void samples_of_a_design_that_grew_are_all_of_them_or_an_error(void **state)
+{
+	// the blocks that the last look added to the 512 rows before
+	static const char added[] =
+	    "UPDATE block SET content = zeroblob(length(content)) WHERE "
+	    "(SELECT sum(b.runs) FROM block b WHERE b.number <= block.number) > 512 * 5 * 5";
+	struct service *service = service_new();
+	char *study = growing_study(), id[17];
+	(void)state;
+	service_start(service, 2);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct answer answer = answer_of(service, "/v1/studies/%s/samples", id, 200);
+	int lines = 0;
+	for (const char *at = answer.body; (at = strchr(at, '\n')); at++)
+		lines++;
+	// a header, and five samples a row
+	assert_int_equal(lines, 1 + 5 * 1024);
+	answer_free(&answer);
+	service_stop(service);
+	service_change(service, added);
+	service_start(service, 2);
+	answer = answer_of(service, "/v1/studies/%s/samples", id, 500);
+	assert_non_null(strstr(answer.body, "result-corrupt"));
+	answer_free(&answer);
+	service_stop(service);
+	service_free(service);
+	free(study);
+}
+
 static void a_running_study_answers_with_the_indexes_of_its_whole_rows(void **state)
 {
 	// long enough for some questions while it runs
@@ -191,5 +221,6 @@ CHECK_MAIN(
     cmocka_unit_test(a_study_that_grows_has_the_same_bytes_for_any_number_of_workers),
     cmocka_unit_test(a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_blocks_again),
     SERVED(the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_took),
+    cmocka_unit_test(samples_of_a_design_that_grew_are_all_of_them_or_an_error),
     SERVED(a_running_study_answers_with_the_indexes_of_its_whole_rows),
     SERVED(a_study_without_a_row_has_no_results_yet))

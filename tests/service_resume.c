@@ -114,6 +114,23 @@ static void a_damaged_block_is_run_again_to_the_same_bytes(void **state)
 	service_free(service);
 }
 
+static void blocks_of_another_version_are_not_counted(void **state)
+{
+	struct service *service = service_new();
+	char id[17];
+	(void)state;
+	kill_half_way(service, id);
+	// of a version that had more blocks, or grew the design further
+	service_change(service,
+	               "INSERT INTO block (study, number, attempt, runs, cpu_s, sha256, content) "
+	               "SELECT study, 1000000, attempt, 1000, 5, zeroblob(32), content FROM block LIMIT 1");
+	service_change(service, "UPDATE study SET runs_done = runs_done + 1000");
+	resume(service, id);
+	assert_int_equal(service_number(service, "SELECT runs FROM study"), RUNS);
+	assert_int_equal(service_number(service, "SELECT runs_done FROM study"), RUNS);
+	service_free(service);
+}
+
 static void a_stopped_server_takes_its_studies_up_again(void **state)
 {
 	struct service *service = service_new();
@@ -280,6 +297,7 @@ CHECK_MAIN(cmocka_unit_test(results_are_the_same_bytes_for_any_number_of_workers
            cmocka_unit_test(accepted_studies_survive_sigkill),
            cmocka_unit_test(the_time_a_study_takes_is_that_of_all_its_sessions),
            cmocka_unit_test(a_damaged_block_is_run_again_to_the_same_bytes),
+           cmocka_unit_test(blocks_of_another_version_are_not_counted),
            cmocka_unit_test(a_damaged_result_is_an_error_not_an_answer),
            cmocka_unit_test(samples_of_blocks_that_cannot_be_used_are_500_but_409_from_another_version),
            cmocka_unit_test(a_server_with_ten_thousand_queued_studies_is_soon_ready),
