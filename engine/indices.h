@@ -58,6 +58,7 @@ struct pound_rows {
 
 size_t pound_rows_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch);
+struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values, const int64_t *row);
 /* How many values an input has, if each comes often; 0: as good as no value comes twice. */
 int pound_rows_levels(const struct pound_rows *rows, int input);
 /* Covariances of a row's outputs over draws of the noise  (n_samples x n_samples) */

@@ -144,6 +144,8 @@ void pound_interval_estimates(const struct pound_statistic *statistic, const str
                               int n_rows, uint64_t seed, int n_resamples, double *scratch,
                               struct pound_estimate *estimates)
 {
+	assert(pound_jackknife_scratch(scatter, statistic->n_moments) <=
+	       pound_interval_scratch(n_rows, statistic->n_moments, statistic->n_values));
 	if (scatter->grouping.n)
 		pound_jackknife_estimates(statistic, scatter, n_rows, scratch, estimates);
 	else

@@ -179,7 +179,9 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		                               : ordinates_fill(o, study, &floor, radians, known, values, stop);
 		work->floors.run += a < n_items && !known ? floors : 0;
 		o->known[floor.march] = a + 1;
-		for (int j = 0; j < n && status; j++)
+		// nobody has the rest of a run whose floor could not be followed, whoever asked for it first
+		const bool failed = status || (known && isnan(known[n - 1]));
+		for (int j = 0; j < n && failed; j++)
 			values[j] = NAN;
 	}
 	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
@@ -202,7 +204,7 @@ size_t pound_ordinate_scratch(const struct pound_study *study, int n_rows)
 		return 0;
 	if (has_spectra(study))
 		return (size_t)study->scene.excitation.signals;
-	return 4 * (size_t)n_rows + pound_interval_scratch(n_rows, 5, 1);
+	return 5 * (size_t)n_rows + pound_interval_scratch(n_rows, 5, 1);
 }
 
 /* A measure of all signals that have it, sorted; returns how many. */
@@ -318,8 +320,8 @@ static void centre(double *x, int n)
 /* Correlation, over the samples A and B, of an ordinate with the largest impulse over the left mass.
  *
  * Given    scratch  (pound_ordinate_scratch)
- * Returns  value    Pearson's, with a 95 % bootstrap interval over the rows; NAN: no ordinate, or one of them constant
- * Test     unit_ordinate: the_correlation_is_that_of_the_samples
+ * Returns  value    Pearson's, with a 95 % interval by what the rows are; NAN: no ordinate, or one of them constant
+ * Test     unit_ordinate: the_correlation_is_that_of_the_samples, its_interval_is_by_groups_where_the_rows_have_some
  */
 struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, int cell, int output,
                                                  double *scratch)
@@ -330,9 +332,11 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 		return correlation;
 	int n = 0;
 	double *x = scratch, *y = scratch + 2 * run->rows;
+	int64_t *rows = (int64_t *)(y + 2 * run->rows);
 	for (int row = 0; row < run->rows; row++) {
 		bool whole = pair_of(run, cell, row, 0, output, &x[2 * n], &y[2 * n]);
 		whole &= pair_of(run, cell, row, 1, output, &x[2 * n + 1], &y[2 * n + 1]);
+		rows[n] = row;
 		n += whole;
 	}
 	if (n < 2)
@@ -345,8 +349,10 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	                                          .moments = pair_moments,
 	                                          .values = pair_correlation,
 	                                          .subject = &pairs};
-	pound_interval_bootstrap(&statistic, n, study->design.seed, POUND_RESAMPLES, y + 2 * run->rows,
-	                         &correlation);
+	const struct pound_sample_values values = pound_campaign_values(&run->campaign, run->rows, NULL);
+	const struct pound_scatter scatter = pound_rows_scatter(&values, rows);
+	pound_interval_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,
+	                         scratch + 5 * run->rows, &correlation);
 	return correlation;
 }
 

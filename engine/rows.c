@@ -121,11 +121,13 @@ static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *
 	return true;
 }
 
-/* The groups that the rows fall into, no more of them than there are. */
-static struct pound_scatter scatter_of(const struct pound_rows *rows,
-                                       const struct pound_sample_values *values)
+/* The groups that rows fall into, no more of them than there are.
+ *
+ * Given    row       (those that count)    number in the design; held by what is returned
+ */
+struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values, const int64_t *row)
 {
-	struct pound_scatter scatter = {values->grouping, rows->row};
+	struct pound_scatter scatter = {values->grouping, row};
 	const int groups = scatter.grouping.n ? (values->n_rows - 1) / scatter.grouping.run + 1 : 0;
 	scatter.grouping.n = groups < scatter.grouping.n ? groups : scatter.grouping.n;
 	return scatter;
@@ -153,7 +155,7 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 	                            .y = scratch};
 	rows->deviation = rows->y + (size_t)values->n_rows * n_samples;
 	rows->row = (int64_t *)(rows->deviation + (size_t)values->n_rows * n_samples * values->n_signals);
-	rows->scatter = scatter_of(rows, values);
+	rows->scatter = pound_rows_scatter(values, rows->row);
 	double largest = 0.0, bias = 0.0;
 	for (int i = 0; i < values->n_rows; i++)
 		if (row_fill(rows, values, i, &largest, &bias))

@@ -209,6 +209,49 @@ static void the_correlation_is_that_of_the_samples(void **state)
 	study_free(study);
 }
 
+/* The half widths of the correlations are right if they are Student's over the scatter of the correlations that whole groups
+ * leave out: told from the samples by hand. */
+static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
+{
+	(void)state;
+	enum { ROWS = 32 };
+	struct pound_study *study = sensitivity_of(ROWS, "\"impulse\", \"floor_spectrum\"", true);
+	study->design.method = 0;
+	while (strcmp(pound_design_name(study->design.method), "sobol") != 0)
+		study->design.method++;
+	study->design.randomisations = 8;
+	struct pound_run *run = run_all(study, false);
+	const int groups = 8;
+	const struct pound_estimate *r = &pound_run_result(run)->cells[0].indices[1].impulse_correlation;
+	double pseudo[8], mean = 0, squares = 0;
+	for (int without = -1; without < groups; without++) {
+		double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0, unused;
+		for (int i = 0; i < 2 * ROWS; i++) {
+			double x, y = 0;
+			if (without >= 0 && i / 2 % groups == without)
+				continue;
+			pound_run_sample_output(run, 0, i / 2, i % 2, 1, &x, &unused);
+			for (int s = 0; s < 2; s++)
+				y += pound_layout_run(&run->layout, i / 2 * 2 + s, 0, i % 2)[2 * study->n_outputs] / 2;
+			n++, mx += x, my += y, xx += x * x, yy += y * y, xy += x * y;
+		}
+		double value =
+		    (xy / n - mx / n * (my / n)) / sqrt((xx / n - mx / n * (mx / n)) * (yy / n - my / n * (my / n)));
+		if (without < 0)
+			check_near(r->value, value, 1e-10);
+		else
+			mean += (pseudo[without] = groups * r->value - (groups - 1) * value) / groups;
+	}
+	for (int g = 0; g < groups; g++)
+		squares += (pseudo[g] - mean) * (pseudo[g] - mean);
+	// 97.5 % of Student's law of 7 degrees of freedom
+	const double half = 2.364624251592784 * sqrt(squares / (groups - 1) / groups);
+	check_near(r->high - r->value, half, 1e-8);
+	check_near(r->value - r->low, half, 1e-8);
+	pound_run_free(run);
+	study_free(study);
+}
+
 /* ---- histories ---- */
 
 struct told {
@@ -260,4 +303,5 @@ CHECK_MAIN(cmocka_unit_test(a_study_of_one_signal_is_its_floor),
            cmocka_unit_test(an_ordinate_is_that_of_a_study_of_spectra),
            cmocka_unit_test(a_study_without_spectra_does_not_pay_for_them),
            cmocka_unit_test(the_correlation_is_that_of_the_samples),
+           cmocka_unit_test(its_interval_is_by_groups_where_the_rows_have_some),
            cmocka_unit_test(a_history_is_that_of_the_signal))
