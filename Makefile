@@ -5,6 +5,7 @@ MAKEFLAGS += --no-builtin-rules
 B    := build/$(MODE)
 
 MODE.release := -O2 -g
+MODE.debug   := -Og -g
 # what is left of a mistake with memory is an end, not a way in; the sanitizers see more without it
 CPPFLAGS.release := -D_FORTIFY_SOURCE=2
 LDFLAGS.release  := -pie -Wl,-z,relro,-z,now
@@ -122,6 +123,7 @@ run: deps
 	@$(MAKE) --no-print-directory -s all
 	@tests/run-paper $(B)
 test: deps
+	@$(MAKE) --no-print-directory -j$$(nproc) -s lint
 	@$(MAKE) --no-print-directory -j$$(nproc) -s check
 check: all $(TESTS) $(LONG)
 	@tests/run-tests $(B) $(T)

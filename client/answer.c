@@ -51,12 +51,12 @@ char *answer_path(struct wire *wire, const char *id, const char *rest)
 	return path;
 }
 
-/* Sends a request about one study and judges the answer. */
-enum outcome answer_about(struct wire *wire, const char *method, const char *id, const char *rest,
-                          const char *accept, struct wire_reply *reply)
+/* Sends a request about one study, its path that of the study and the rest, and judges the answer. */
+enum outcome answer_about(struct wire *wire, struct wire_request request, const char *id, const char *rest,
+                          struct wire_reply *reply)
 {
 	char *path = answer_path(wire, id, rest);
-	const struct wire_request request = {.method = method, .path = path, .accept = accept};
+	request.path = path;
 	enum outcome outcome = answer_take(wire, &request, id, reply);
 	free(path);
 	return outcome;

@@ -9,8 +9,8 @@ enum outcome answer_take(struct wire *wire, const struct wire_request *request, 
                          struct wire_reply *reply);
 
 /* The same for /v1/studies/{id}{rest}. */
-enum outcome answer_about(struct wire *wire, const char *method, const char *id, const char *rest,
-                          const char *accept, struct wire_reply *reply);
+enum outcome answer_about(struct wire *wire, struct wire_request request, const char *id, const char *rest,
+                          struct wire_reply *reply);
 
 /* What came of wire_send; what is not a success is said on stderr:
  * OUTCOME_UNREACHED, OUTCOME_USAGE (the study is invalid, the URL is none) or OUTCOME_FAILED. */

@@ -63,14 +63,17 @@ struct question {
 	const char *method, *rest, *type;
 	enum outcome conflict; /* what HTTP 409 comes to */
 	enum outcome (*print)(const struct wire_reply *reply, const struct options *options);
+	bool made; /* the server computes the answer */
 };
 
 static enum outcome ask(const struct options *options, const struct question *question)
 {
 	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
-	enum outcome outcome =
-	    answer_about(wire, question->method, options->argument, question->rest, question->type, &reply);
+	enum outcome outcome = answer_about(
+	    wire,
+	    (struct wire_request){.method = question->method, .accept = question->type, .made = question->made},
+	    options->argument, question->rest, &reply);
 	if (outcome == OUTCOME_OK)
 		outcome = question->print(&reply, options);
 	else if (reply.status == HTTP_CONFLICT)
@@ -106,19 +109,19 @@ static enum outcome print_result(const struct wire_reply *reply, const struct op
 /* `pound status ID` */
 enum outcome query_status(const struct options *options)
 {
-	return ask(options, &(struct question){"GET", "", NULL, OUTCOME_FAILED, print_status});
+	return ask(options, &(struct question){"GET", "", NULL, OUTCOME_FAILED, print_status, false});
 }
 
 /* `pound cancel ID`: prints the status the study then has. */
 enum outcome query_cancel(const struct options *options)
 {
-	return ask(options, &(struct question){"POST", "/cancel", NULL, OUTCOME_FAILED, print_status});
+	return ask(options, &(struct question){"POST", "/cancel", NULL, OUTCOME_FAILED, print_status, false});
 }
 
 /* `pound delete ID`: silent. */
 enum outcome query_delete(const struct options *options)
 {
-	return ask(options, &(struct question){"DELETE", "", NULL, OUTCOME_FAILED, print_nothing});
+	return ask(options, &(struct question){"DELETE", "", NULL, OUTCOME_FAILED, print_nothing, false});
 }
 
 /* `pound wait ID`: prints the last status, however the study ended. */
@@ -185,12 +188,12 @@ enum outcome query_results(const struct options *options)
 	bool csv = strcmp(options->format, "csv") == 0 && !options->table;
 	return ask(options, &(struct question){"GET", options->partial ? "/results?partial=true" : "/results",
 	                                       type_of(csv ? "csv" : "json"), OUTCOME_STUDY_FAILED,
-	                                       csv ? print_bytes : print_result});
+	                                       csv ? print_bytes : print_result, options->partial});
 }
 
 /* `pound samples ID`: printed as they come. */
 enum outcome query_samples(const struct options *options)
 {
 	return ask(options, &(struct question){"GET", "/samples", type_of(options->format), OUTCOME_STUDY_FAILED,
-	                                       print_bytes});
+	                                       print_bytes, true});
 }

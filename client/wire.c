@@ -11,6 +11,8 @@
 enum {
 	CONNECT_S = 10, /* to reach the server */
 	SILENCE_S = 60, /* without a byte before the server counts as lost */
+	MADE_S =
+	    3600, /* the same while it may be computing; a machine that is gone is noticed in a minute all the same */
 };
 
 struct wire {
@@ -76,7 +78,10 @@ static void options_set(struct wire *wire, const struct wire_request *request, c
 	curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
 	curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
 	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
-	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, (long)SILENCE_S);
+	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, request->made ? (long)MADE_S : (long)SILENCE_S);
+	curl_easy_setopt(curl, CURLOPT_TCP_KEEPALIVE, 1L);
+	curl_easy_setopt(curl, CURLOPT_TCP_KEEPIDLE, SILENCE_S / 2L);
+	curl_easy_setopt(curl, CURLOPT_TCP_KEEPINTVL, SILENCE_S / 12L);
 	curl_easy_setopt(curl, CURLOPT_USERAGENT, "pound/" POUND_VERSION);
 	curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take_body);
 	curl_easy_setopt(curl, CURLOPT_WRITEDATA, body);

@@ -16,6 +16,7 @@ struct wire_request {
 	const char *accept; /* media type wanted; NULL: any */
 	const char *body;   /* JSON of n_body bytes; NULL: none */
 	size_t n_body;
+	bool made; /* the server computes the answer, which may take minutes, before its first byte */
 };
 
 struct wire_reply {

@@ -28,14 +28,6 @@ int pound_convergence_trials(const struct pound_study *study)
 	return n;
 }
 
-static int adaptive(void)
-{
-	int row = POUND_SOLVERS - 1;
-	while (!pound_solver_takes_tolerance(row))
-		row--;
-	return row;
-}
-
 static struct pound_solver setting(const struct pound_study *study, int row, double value)
 {
 	if (pound_solver_takes_step(row))
@@ -51,7 +43,7 @@ struct pound_solver pound_convergence_solver(const struct pound_study *study, in
 	if (trial == REFERENCE)
 		return (struct pound_solver){.tolerance = NAN, .step = NAN};
 	if (trial == SECOND_OPINION)
-		return setting(study, adaptive(), TIGHTEST);
+		return setting(study, POUND_SOLVER_ADAPTIVE, TIGHTEST);
 	int row = 0, k = trial - FIRST;
 	for (; k >= study->convergence.settings[row].n; row++)
 		k -= study->convergence.settings[row].n;

@@ -78,19 +78,28 @@ typedef double measure(const struct pound_response *, const struct pound_scene *
 
 static const struct output {
 	const char *name;
+	const char *needs; /* of a scene, or a study, in words */
 	bool (*applies)(const struct pound_scene *);
 	measure *numerator, *denominator;
 	bool ordinates; /* one output for each frequency of the spectrum */
 } outputs[] = {
-    {"force_amplification", left_is_linear, displacement, displacement_free, false}, // the paper, Eq. (5)
-    {"demand_amplification", left_yields, demand, demand_free, false},               // Eq. (7)
-    {"impulse", bodies_meet, impulse, displacement_free, false},                     // Eq. (9)
-    {"floor_spectrum", always, absent, one, true},
+    // the paper, Eq. (5), (7) and (9)
+    {"force_amplification", "a linear law of the left oscillator", left_is_linear, displacement,
+     displacement_free, false},
+    {"demand_amplification", "a nonlinear law of the left oscillator", left_yields, demand, demand_free,
+     false},
+    {"impulse", "a contact", bodies_meet, impulse, displacement_free, false},
+    {"floor_spectrum", "a sensitivity study", always, absent, one, true},
 };
 
 const char *pound_output_name(int row)
 {
 	return row >= 0 && row < (int)(sizeof outputs / sizeof outputs[0]) ? outputs[row].name : NULL;
+}
+
+const char *pound_output_needs(int row)
+{
+	return outputs[row].needs;
 }
 
 bool pound_output_has_ordinates(int row)

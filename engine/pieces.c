@@ -98,12 +98,13 @@ static void origin_oriented(const struct pound_skeleton *s, struct pound_branch 
 static const struct law {
 	const char *name;
 	bool linear;
+	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
 	void (*leave)(const struct pound_skeleton *, struct pound_branch *, enum pound_edge, double u);
 } laws[] = {
-    {"linear", true, linear},
-    {"elastoplastic", false, elastoplastic},
-    {"nonlinear_elastic", false, nonlinear_elastic},
-    {"origin_oriented", false, origin_oriented},
+    {"linear", true, false, linear},
+    {"elastoplastic", false, false, elastoplastic},
+    {"nonlinear_elastic", false, false, nonlinear_elastic},
+    {"origin_oriented", false, true, origin_oriented},
 };
 
 const char *pound_law_name(int row)
@@ -134,7 +135,7 @@ void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_bran
 	at->memory[0] = at->memory[1] = 0;
 	at->piece = (struct pound_piece){
 	    .stiffness = skeleton->stiffness, .low = -skeleton->yield, .high = skeleton->yield};
-	if (laws[skeleton->law].leave == origin_oriented)
+	if (laws[skeleton->law].peaks)
 		at->memory[0] = at->memory[1] = skeleton->yield;
 }
 

@@ -235,6 +235,7 @@ const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
 const char *pound_output_name(int row);
+const char *pound_output_needs(int row);  /* from the scene, in words */
 bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */
 int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */
 

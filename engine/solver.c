@@ -15,7 +15,7 @@ static const struct solver {
                             .tolerance = true}, // the march: many tasks at once, exact at any tolerance
     {"newmark", pound_fixed_newmark, .step = true},
     {"central_difference", pound_fixed_central, .step = true},
-    {"adaptive", pound_adaptive_run, .tolerance = true},
+    [POUND_SOLVER_ADAPTIVE] = {"adaptive", pound_adaptive_run, .tolerance = true},
 };
 
 static_assert(sizeof solvers / sizeof solvers[0] == POUND_SOLVERS, "a row for each solver");

@@ -9,7 +9,8 @@
 #include "engine/march.h"
 #include "engine/pound.h"
 
-enum { POUND_SOLVER_EVENT }; /* row of the exact one */
+/* rows of the exact one, and of the independent one that is as exact as its tolerance */
+enum { POUND_SOLVER_EVENT = 0, POUND_SOLVER_ADAPTIVE = 3 };
 
 enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
                                    struct pound_march_result *results, int n, void *scratch,

@@ -5,9 +5,10 @@
  * takes what is told within a factor of two.  What a design shares between its samples is in them as it is for the examples. */
 #include "schema/cost.h"
 
+#include <assert.h>
 #include <math.h>
-#include <string.h>
 
+#include "engine/solver.h"
 #include "schema/fields.h"
 #include "schema/study_json.h"
 #include "schema/writer.h"
@@ -18,14 +19,11 @@ enum { QUANTILES = 64 /* of a distribution, for a mean */ };
 /* [s] of one core: for a study, for a sample of a ground motion by each solver, and for a step within it */
 static const double STUDY_S = 0.001;
 static const struct {
-	const char *solver;
 	double sample, step;
-} units[] = {
-    {"event", 5e-8, 0},
-    {"newmark", 1.0e-7, 6e-8},
-    {"central_difference", 1.0e-7, 4e-8},
-    {"adaptive", 8e-6, 0},
-};
+} units[] = {{5e-8, 0}, {1.0e-7, 6e-8}, {1.0e-7, 4e-8}, {8e-6, 0}}; /* in the order of the solvers */
+
+static_assert(sizeof units / sizeof units[0] == POUND_SOLVERS, "a row for each solver");
+
 /* [s] for a sample of a floor that spectra ride on, and for each frequency of these; and how many there are of both for a run:
  * a study of spectra has the floor with pounding and without, and the contact's own part */
 static const double FLOOR_S = 3e-7, ORDINATE_S = 1.1e-8;
@@ -96,14 +94,11 @@ static double swings(const struct pound_study *study)
 /* [s] of one run by a solver. */
 static double run_s(const struct pound_study *study, const struct pound_solver *solver)
 {
-	const char *name = pound_solver_name(solver->method);
+	const int row = solver->method;
 	bool fixed = pound_solver_takes_step(solver->method);
 	double steps = fixed ? fmax(1, MEAN(study, excitation.time_step, 1) / solver->step) : 0;
-	int row = sizeof units / sizeof units[0] - 1;
-	while (row > 0 && strcmp(units[row].solver, name) != 0)
-		row--;
 	// the march takes few more for more contacts
-	double more = fixed ? 0 : row == 0 ? 0.2 * log1p(swings(study)) : swings(study);
+	double more = fixed ? 0 : row == POUND_SOLVER_EVENT ? 0.2 * log1p(swings(study)) : swings(study);
 	return samples_mean(study) * (units[row].sample * (1 + more) + units[row].step * steps);
 }
 

@@ -493,19 +493,3 @@ bool fields_nearest_path(const char *path, char *nearest, size_t size)
 	}
 	return fields_near(best, path);
 }
-
-const char *fields_output_needs(int output)
-{
-	static const struct {
-		const char *name, *needs;
-	} rows[] = {
-	    {"force_amplification", "a linear law of the left oscillator"},
-	    {"demand_amplification", "a nonlinear law of the left oscillator"},
-	    {"impulse", "a contact"},
-	    {"floor_spectrum", "a sensitivity study"},
-	};
-	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-		if (strcmp(rows[i].name, pound_output_name(output)) == 0)
-			return rows[i].needs;
-	return "another scene";
-}

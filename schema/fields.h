@@ -74,9 +74,6 @@ bool fields_near(int distance, const char *name);
 /* The field of the scene nearest to a mistyped path, as a path; false: none is near. */
 bool fields_nearest_path(const char *path, char *nearest, size_t size);
 
-/* What an output needs from the scene, in words. */
-const char *fields_output_needs(int output);
-
 extern const char
     *const fields_outputs_absent[]; /* names of the outputs of a study that asks for none; up to NULL */
 

@@ -358,7 +358,7 @@ static void write_not_applicable(struct writer *w, const struct pound_study *stu
 		char note[128];
 		if (pound_output_applies(study->outputs[o], scene))
 			continue;
-		snprintf(note, sizeof note, "needs %s", fields_output_needs(study->outputs[o]));
+		snprintf(note, sizeof note, "needs %s", pound_output_needs(study->outputs[o]));
 		writer_object(w, NULL, WRITER_LINE);
 		writer_text(w, "name", pound_output_name(study->outputs[o]));
 		writer_text(w, "note", note);

@@ -274,7 +274,7 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
 		if (!study_check_applies(study, study->outputs[o]))
 			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
-			             fields_output_needs(study->outputs[o]));
+			             pound_output_needs(study->outputs[o]));
 	}
 }
 
@@ -460,8 +460,11 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
 		check_order(study, problems);
 	check_ratios(study, problems);
-	if (study->elsewhere)
+	if (study->elsewhere) {
+		if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
+			check_rows(study, problems);
 		return;
+	}
 	check_supports(study, problems);
 	if (problems_at(problems, "/sweep"))
 		return;

@@ -228,12 +228,6 @@ void writer_bool(struct writer *writer, const char *name, bool value)
 	put(writer, value ? "true" : "false");
 }
 
-void writer_null(struct writer *writer, const char *name)
-{
-	lead(writer, name);
-	put(writer, "null");
-}
-
 /* A value that is JSON already, put as it is but for the white space behind it.
  *
  * Test     unit_api: every_example_of_the_document_is_what_its_schema_says

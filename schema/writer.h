@@ -46,7 +46,6 @@ void writer_number(struct writer *writer, const char *name, double value);
 void writer_whole(struct writer *writer, const char *name, int64_t value);
 void writer_seed(struct writer *writer, const char *name, uint64_t seed); /* text from 2^53 on */
 void writer_bool(struct writer *writer, const char *name, bool value);
-void writer_null(struct writer *writer, const char *name);
 
 /* The shortest of 15, 16 or 17 digits that reads back to the same double; "null" when not finite. */
 int writer_digits(double value, char digits[WRITER_NUMBER_SIZE]);

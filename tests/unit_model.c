@@ -47,6 +47,9 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 	     "is not used without a scene"},
 	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"design\": {\"rowz\": 3}}", "/design/rowz",
 	     "unknown member, did you mean \"rows\"?"},
+	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"design\": {\"method\": \"sobol\", \"rows\": 8, "
+	     "\"randomisations\": 8}}",
+	     "/design/rows", "must be at least 16, two for each randomisation, got 8"},
 	    {"{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": "
 	     "2}]}}",
 	     "/kind", "must be \"sensitivity\", as no other kind has a design"},
