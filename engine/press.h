@@ -339,8 +339,11 @@ static void press_rungs(struct simulation *sim)
 {
 	const struct pound_rows *x = &sim->x;
 	double first = x->cells_whole;
-	int doublings = RUNG_DOUBLINGS;            // from a rung to the next
-	if (first <= RUNG_RATIO || first > 0x1p53) // more are not counted one by one
+	int doublings = RUNG_DOUBLINGS; // from a rung to the next
+	if (first <= RUNG_RATIO)
+		return;
+	sim->rung_ratio = RUNG_RATIO;
+	if (first > 0x1p53) // no double counts them one by one: who is pressed does not come to the end of them
 		return;
 	while (ldexp(1, doublings * (POUND_PRESS_RUNGS - 1)) < first)
 		doublings++;
@@ -509,9 +512,9 @@ static enum pound_stage press_ready(struct simulation *sim)
 	if (!sim->press_now)
 		press_enter(sim);
 	struct pound_press *press = sim->press_now;
-	if (sim->rungs > 0) {
+	if (sim->rung_ratio > 0) {
 		sim->x.rounds = sim->rung_ratio; // a rung goes as far as the next longer one
-		sim->pressed = rung_longest(sim, press);
+		sim->pressed = sim->rungs > 0 ? rung_longest(sim, press) : NULL;
 		if (sim->pressed)
 			return STAGE_REST;
 	}
