@@ -64,6 +64,21 @@ bool problems_at(const struct problems *problems, const char *pointer)
 	return problems->n_more > 0;
 }
 
+/* Whether a member, or one that it is in, was found to be none that can be read; what is wrong inside it does not count.
+ *
+ * Test     unit_problems: a_problem_is_over_all_that_is_in_it
+ */
+bool problems_over(const struct problems *problems, const char *pointer)
+{
+	for (int i = 0; i < problems->n; i++) {
+		const char *at = problems->list[i].pointer;
+		size_t length = strlen(at);
+		if (strncmp(at, pointer, length) == 0 && (pointer[length] == '/' || pointer[length] == 0))
+			return true;
+	}
+	return problems->n_more > 0;
+}
+
 /* The body of an error answer.
  *
  * Given    head      -         -       status, title and sentence

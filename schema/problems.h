@@ -36,6 +36,9 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
 /* Whether something at or below a pointer is known to be wrong, or may be, as the list is full. */
 bool problems_at(const struct problems *problems, const char *pointer);
 
+/* Whether something that a pointer is in, or it itself, is known to be wrong as a whole. */
+bool problems_over(const struct problems *problems, const char *pointer);
+
 /* What a problem body says besides its list of errors. */
 struct problem_head {
 	int status;         /* of HTTP */

@@ -174,13 +174,14 @@ static void check_supports(const struct pound_study *study, struct problems *pro
 		double low, high;
 		int oscillator;
 		const struct pound_input *input = &study->inputs[j];
-		snprintf(pointer, sizeof pointer, "/inputs/%d", j);
-		if (problems_at(problems, pointer))
+		snprintf(pointer, sizeof pointer, "/inputs/%d/path", j);
+		bool found = input->path && !problems_at(problems, pointer);
+		snprintf(pointer, sizeof pointer, "/inputs/%d/distribution", j);
+		if (!found || problems_at(problems, pointer) || problems_over(problems, pointer))
 			continue;
 		const struct field *field = fields_scene(input->path, &oscillator);
 		if (supports(field, &input->distribution))
 			continue;
-		snprintf(pointer, sizeof pointer, "/inputs/%d/distribution", j);
 		pound_distribution_support(&input->distribution, &low, &high);
 		fields_range(field, range, sizeof range);
 		problems_add(problems, pointer, "gives values from %.15g to %.15g, but %s must be %s", low, high,
@@ -206,6 +207,29 @@ static void reach(const struct pound_study *study, const char *path, double *low
 			*high = fmax(*high, sweep->values[i]);
 		}
 	}
+}
+
+/* Whether a field's interval is known, whatever else is wrong: the field was read, and what varies it, if anything does. */
+static bool known(const struct pound_study *study, const char *path, const struct problems *problems)
+{
+	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
+	int n = varied_all(study, all);
+	char pointer[POINTER_SIZE];
+	snprintf(pointer, sizeof pointer, "/scene%s", path);
+	if (problems_at(problems, pointer) || problems_over(problems, pointer))
+		return false;
+	for (int i = 0; i < n; i++) {
+		const bool here = all[i].path && strcmp(all[i].path, path) == 0;
+		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
+		// one that was not read, or names nothing, may have meant it
+		if (!all[i].path || (!here && problems_at(problems, pointer)) || problems_over(problems, pointer))
+			return false;
+		snprintf(pointer, sizeof pointer, "/%s/%d/%s", all[i].list, all[i].index,
+		         all[i].name ? "distribution" : "values");
+		if (here && problems_at(problems, pointer))
+			return false;
+	}
+	return !problems_over(problems, "/inputs") && !problems_over(problems, "/sweep");
 }
 
 static bool excitation_uses(const struct pound_study *study, const char *pattern)
@@ -234,16 +258,36 @@ static void steps(const struct pound_study *study, double *least, double *most)
 	*most = high / step_low;
 }
 
+/* Whether the length of the ground motion is known. */
+static bool steps_known(const struct pound_study *study, const struct problems *problems)
+{
+	static const char *const all[] = {"/excitation/type", "/excitation/time_step_s",
+	                                  "/excitation/acceleration_m_s2"},
+	                         *const by_cycles[] = {"/excitation/cycles", "/excitation/frequency_hz"},
+	                         *const by_duration[] = {"/excitation/duration_s"};
+	bool is = true;
+	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+		is &= known(study, all[i], problems);
+	if (!is || study->scene.excitation.n_record)
+		return is;
+	if (!excitation_uses(study, "/scene/excitation/cycles"))
+		return known(study, by_duration[0], problems);
+	return known(study, by_cycles[0], problems) && known(study, by_cycles[1], problems);
+}
+
 static void check_excitation(const struct pound_study *study, struct problems *problems)
 {
 	double low, rise, fall, least, most;
-	if (excitation_uses(study, "/scene/excitation/rise")) {
+	if (known(study, "/excitation/type", problems) && excitation_uses(study, "/scene/excitation/rise") &&
+	    known(study, "/excitation/rise", problems) && known(study, "/excitation/fall", problems)) {
 		reach(study, "/excitation/rise", &low, &rise);
 		reach(study, "/excitation/fall", &low, &fall);
 		if (rise + fall > 1.0)
 			problems_add(problems, "/scene/excitation/fall", "rise + fall must be at most 1, got %.15g",
 			             rise + fall);
 	}
+	if (!steps_known(study, problems))
+		return;
 	steps(study, &least, &most);
 	if (!(least >= 1.0))
 		problems_add(problems, "/scene/excitation/time_step_s",
@@ -269,6 +313,11 @@ bool study_check_applies(const struct pound_study *study, int output)
 
 static void check_outputs(const struct pound_study *study, struct problems *problems)
 {
+	// what an output needs of a scene
+	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/contact/model"};
+	for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++)
+		if (!known(study, needed[i], problems))
+			return;
 	for (int o = 0; o < study->n_outputs; o++) {
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
@@ -424,10 +473,17 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
 	int most = study->kind == POUND_KIND_CONVERGENCE ? STUDY_TRIALS_MAX : STUDY_RUNS_MAX;
 	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
-	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
+	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1);
+	if (sampled)
+		check_rows(study, problems);
 	if (runs > most)
 		problems_add(problems, pointer, "asks for %.15g pounding runs, a study may have at most %d", runs,
 		             most);
+	if (!steps_known(study, problems) || problems_at(problems, "/solver"))
+		return;
+	at_once *= study_samples(study);
+	if (runs > most)
+		; // told
 	else if (runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_add(problems, pointer, "asks for %.3g samples of ground motion in all runs, at most %.0e",
 		             runs * study_samples(study), STUDY_WORK_MAX);
@@ -440,8 +496,17 @@ static void check_size(const struct pound_study *study, struct problems *problem
 		             "a motion), at most %d",
 		             at_once, STUDY_AT_ONCE_MAX);
 	check_steps(study, problems);
-	if (sampled)
-		check_rows(study, problems);
+}
+
+/* Whether the number of rows is known: what is wrong with the seed does not matter to it. */
+static bool rows_known(const struct problems *problems)
+{
+	static const char *const all[] = {"/design/method", "/design/rows",  "/design/randomisations",
+	                                  "/design/until",  "/design/order", "/design/estimator"};
+	bool is = !problems_over(problems, "/inputs");
+	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+		is &= !problems_at(problems, all[i]) && !problems_over(problems, all[i]);
+	return is;
 }
 
 /* Checks what members mean together.
@@ -461,11 +526,14 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		check_order(study, problems);
 	check_ratios(study, problems);
 	if (study->elsewhere) {
-		if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
+		if (rows_known(problems))
 			check_rows(study, problems);
 		return;
 	}
+	// each as soon as what it reads is known, so that all is told at once
+	bool scene = !problems_at(problems, "/scene") && !problems_at(problems, "/inputs");
 	check_supports(study, problems);
+	check_excitation(study, problems);
 	if (problems_at(problems, "/sweep"))
 		return;
 	if (cells(study) > STUDY_CELLS_MAX) {
@@ -473,15 +541,12 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		             STUDY_CELLS_MAX);
 		return;
 	}
-	if (problems_at(problems, "/scene") || problems_at(problems, "/inputs"))
-		return;
 	if (!problems_at(problems, "/outputs"))
 		check_outputs(study, problems);
-	check_excitation(study, problems);
-	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
+	if (scene && !problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
 		study_spectrum_check(study, problems);
-	if (!problems_at(problems, "/scene") && !problems_at(problems, "/design") &&
-	    !problems_at(problems, "/solver") && !problems_at(problems, "/convergence"))
+	if (rows_known(problems) && known(study, "/excitation/signals", problems) &&
+	    !problems_at(problems, "/convergence"))
 		check_size(study, problems);
 }
 

@@ -107,7 +107,22 @@ static void a_problem_is_at_its_pointer_and_all_above_it(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(a_problem_is_at_its_pointer_and_all_above_it),
+static void a_problem_is_over_all_that_is_in_it(void **state)
+{
+	(void)state;
+	struct problems problems;
+	problems_init(&problems);
+	problems_add(&problems, "/scene/contact", "must be an object, got a number");
+	problems_add(&problems, "/design/rows", "must be at least 2, got 1");
+	assert_true(problems_over(&problems, "/scene/contact"));
+	assert_true(problems_over(&problems, "/scene/contact/gap_m"));
+	assert_false(problems_over(&problems, "/scene/contacts"));
+	assert_false(problems_over(&problems, "/scene"));
+	assert_false(problems_over(&problems, "/design"));
+}
+
+CHECK_MAIN(cmocka_unit_test(a_problem_is_over_all_that_is_in_it),
+           cmocka_unit_test(a_problem_is_at_its_pointer_and_all_above_it),
            cmocka_unit_test(a_body_lists_every_problem),
            cmocka_unit_test(a_body_without_a_study_has_no_errors),
            cmocka_unit_test(malformed_text_has_its_line_and_column),

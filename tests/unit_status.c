@@ -168,6 +168,21 @@ static void a_study_without_a_result_ends_with_the_reason_of_its_runs(void **sta
 	assert_string_equal(pound_status_error(POUND_NOMEM), "out of memory");
 }
 
+static void contact_of_more_cells_than_a_double_counts_ends_by_its_name(void **state)
+{
+	(void)state;
+	static const char *const stiffnesses[] = {"1e33", "1e36", "1e60", "1e300"};
+	for (int i = 0; i < 4; i++) {
+		char document[400];
+		snprintf(document, sizeof document,
+		         "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+		         "{\"frequency_hz\": "
+		         "3.1}], \"contact\": {\"stiffness_ratio\": %s}, \"excitation\": {\"signals\": 1}}}",
+		         stiffnesses[i]);
+		assert_int_equal(failed(document), POUND_CHATTER);
+	}
+}
+
 static void a_body_that_never_moves_has_no_demand_but_has_not_failed(void **state)
 {
 	(void)state;
@@ -257,6 +272,7 @@ CHECK_MAIN(cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a
            cmocka_unit_test(rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says_so),
            cmocka_unit_test(a_cell_without_a_run_has_no_outputs_and_the_others_have),
            cmocka_unit_test(a_study_without_a_result_ends_with_the_reason_of_its_runs),
+           cmocka_unit_test(contact_of_more_cells_than_a_double_counts_ends_by_its_name),
            cmocka_unit_test(a_body_that_never_moves_has_no_demand_but_has_not_failed),
            cmocka_unit_test(a_run_that_takes_hours_is_stopped),
            cmocka_unit_test(want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again))
