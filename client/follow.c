@@ -104,3 +104,18 @@ enum outcome follow_study(struct wire *wire, const char *id, struct wire_reply *
 	free(path);
 	return outcome;
 }
+
+bool follow_failed(struct wire *wire, const char *id)
+{
+	char *path = answer_path(wire, id, "");
+	struct wire_reply reply = {0};
+	enum outcome outcome = OUTCOME_OK;
+	if (wire_send(wire, &(struct wire_request){.method = "GET", .path = path}, &reply) == OUTCOME_OK) {
+		struct reading *status = reading_open(reply.body, reply.n_body);
+		ended(status, &outcome);
+		reading_close(status);
+	}
+	wire_reply_free(&reply);
+	free(path);
+	return outcome == OUTCOME_STUDY_FAILED;
+}

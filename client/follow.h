@@ -8,4 +8,7 @@
  * OUTCOME_STUDY_FAILED: said on stderr why. */
 enum outcome follow_study(struct wire *wire, const char *id, struct wire_reply *last);
 
+/* Whether a study has failed or was cancelled, by what the server says now; false where it does not say. */
+bool follow_failed(struct wire *wire, const char *id);
+
 #endif

@@ -61,7 +61,7 @@ static enum outcome print_studies(const struct wire_reply *reply, const char *fo
 /* What is asked about the study named on the command line, and what is printed of the answer. */
 struct question {
 	const char *method, *rest, *type;
-	enum outcome conflict; /* what HTTP 409 comes to */
+	bool failed; /* HTTP 409 may be due to a study that has failed */
 	enum outcome (*print)(const struct wire_reply *reply, const struct options *options);
 	bool made; /* the server computes the answer */
 };
@@ -77,7 +77,8 @@ static enum outcome ask(const struct options *options, const struct question *qu
 	if (outcome == OUTCOME_OK)
 		outcome = question->print(&reply, options);
 	else if (reply.status == HTTP_CONFLICT)
-		outcome = question->conflict;
+		outcome = question->failed && follow_failed(wire, options->argument) ? OUTCOME_STUDY_FAILED
+		                                                                     : OUTCOME_FAILED;
 	wire_reply_free(&reply);
 	wire_close(wire);
 	return outcome;
@@ -109,19 +110,19 @@ static enum outcome print_result(const struct wire_reply *reply, const struct op
 /* `pound status ID` */
 enum outcome query_status(const struct options *options)
 {
-	return ask(options, &(struct question){"GET", "", NULL, OUTCOME_FAILED, print_status, false});
+	return ask(options, &(struct question){"GET", "", NULL, false, print_status, false});
 }
 
 /* `pound cancel ID`: prints the status the study then has. */
 enum outcome query_cancel(const struct options *options)
 {
-	return ask(options, &(struct question){"POST", "/cancel", NULL, OUTCOME_FAILED, print_status, false});
+	return ask(options, &(struct question){"POST", "/cancel", NULL, false, print_status, false});
 }
 
 /* `pound delete ID`: silent. */
 enum outcome query_delete(const struct options *options)
 {
-	return ask(options, &(struct question){"DELETE", "", NULL, OUTCOME_FAILED, print_nothing, false});
+	return ask(options, &(struct question){"DELETE", "", NULL, false, print_nothing, false});
 }
 
 /* `pound wait ID`: prints the last status, however the study ended. */
@@ -187,13 +188,13 @@ enum outcome query_results(const struct options *options)
 	// CSV is the server's own, but for a table: that is made here, as `pound run' does
 	bool csv = strcmp(options->format, "csv") == 0 && !options->table;
 	return ask(options, &(struct question){"GET", options->partial ? "/results?partial=true" : "/results",
-	                                       type_of(csv ? "csv" : "json"), OUTCOME_STUDY_FAILED,
+	                                       type_of(csv ? "csv" : "json"), true,
 	                                       csv ? print_bytes : print_result, options->partial});
 }
 
 /* `pound samples ID`: printed as they come. */
 enum outcome query_samples(const struct options *options)
 {
-	return ask(options, &(struct question){"GET", "/samples", type_of(options->format), OUTCOME_STUDY_FAILED,
-	                                       print_bytes, true});
+	return ask(options,
+	           &(struct question){"GET", "/samples", type_of(options->format), true, print_bytes, true});
 }

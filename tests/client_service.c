@@ -55,6 +55,9 @@ static void a_study_that_has_succeeded_has_status_results_and_samples(void **sta
 	assert_memory_equal(npy.out, "\x93NUMPY", 6);
 	program_free(&npy);
 	expect_words(POUND("cancel", id), 1, WORDS(id, "finished"));
+	// one that has none has not failed
+	submit("response", true, id);
+	expect_words(POUND("samples", id), 1, WORDS("only a sensitivity study has samples"));
 }
 
 static void a_cancelled_study_ends_wait_and_results_with_3(void **state)
