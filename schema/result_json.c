@@ -58,6 +58,18 @@ static void write_signal(struct writer *w, const struct pound_response *response
 	writer_end(w);
 }
 
+/* The largest that is missing in the energy balances of n cells; null: a solver that does not keep them. */
+static void write_balance(struct writer *w, const struct pound_cell *cells, int n)
+{
+	double residual = NAN;
+	for (int c = 0; c < n; c++)
+		for (int i = 0; i < cells[c].n_signals; i++)
+			residual = fmax(residual, cells[c].signals[i].energy_residual);
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_number(w, "energy_residual", residual);
+	writer_end(w);
+}
+
 static void write_response(struct writer *w, const struct pound_study *study, const struct pound_cell *cell,
                            const struct pound_scene *scene)
 {
@@ -74,12 +86,7 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 		writer_text(w, "note", "no run gave a result, so there are no outputs; work.failures says why");
 	else if (cell->runs_failed)
 		writer_text(w, "note", "runs without a result are left out of the outputs; work.failures says why");
-	double residual = NAN; // a solver that does not keep the balance
-	for (int i = 0; i < cell->n_signals; i++)
-		residual = fmax(residual, cell->signals[i].energy_residual);
-	writer_object(w, "accuracy", WRITER_LINES);
-	writer_number(w, "energy_residual", residual);
-	writer_end(w);
+	write_balance(w, cell, 1);
 }
 
 /* ---- sensitivity ---- */
@@ -533,6 +540,8 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 		write_work(&w, study, &result->work);
 	if (study->kind == POUND_KIND_SENSITIVITY)
 		result_accuracy_study(&w, study, result);
+	else if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps > 0)
+		write_balance(&w, result->cells, result->n_cells);
 	if (timing)
 		write_timing(&w, study, result, timing);
 	writer_end(&w);
