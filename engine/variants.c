@@ -298,6 +298,19 @@ static bool lost_in_noise(const struct pound_indices *indices, int n_inputs)
 	return false;
 }
 
+/* Whether an index has a value that nothing says how good it is: in some group of rows there is no variance left for it. */
+static bool lacks_interval(const struct pound_indices *indices, int n_inputs)
+{
+	static const enum pound_index headline[] = {POUND_S1, POUND_ST};
+	for (size_t k = 0; k < sizeof headline / sizeof headline[0]; k++)
+		for (int j = 0; j < n_inputs; j++) {
+			const struct pound_estimate *e = &indices->index[headline[k]][j];
+			if (!isnan(e->value) && isnan(e->high - e->low))
+				return true;
+		}
+	return false;
+}
+
 /* Whether a few rows hold so much of the variance that their scatter does not show how indexes err: of an output that is
  * 0 but for one sample, say, an interval has no width.  They count for (sum v)^2 / sum v^2 rows, v the squares of each:
  * of fewer than five, one has a fifth of the sum. */
@@ -407,6 +420,7 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	    [POUND_NOTE_FRESH_SIGNALS] = varies && !elsewhere && s.corrected && sampling->fresh_signals,
 	    [POUND_NOTE_FEW_ROWS] = varies && !rows_enough(&s),
 	    [POUND_NOTE_NOISE] = varies && s.corrected && lost_in_noise(indices, d),
+	    [POUND_NOTE_NO_INTERVAL] = varies && lacks_interval(indices, d),
 	    [POUND_NOTE_FEW_DECIDE] = varies && rows_enough(&s) && few_decide(&rows),
 	});
 	const int dropped = values->n_rows - rows.n_rows;

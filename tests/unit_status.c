@@ -146,8 +146,7 @@ static void a_cell_without_a_run_has_no_outputs_and_the_others_have(void **state
 	assert_string_equal(reading_text(r, "/cells/1/note"),
 	                    "no run gave a result, so there are no outputs; work.failures says why");
 	check_near(reading_number(r, "/work/failures/0/runs"), 3 + 5, 0);
-	// of all cells; this solver does not keep the balance
-	assert_int_equal(reading_type(r, "/accuracy/energy_residual"), '0');
+	assert_true(reading_has(r, "/accuracy/energy_residual"));
 	reading_close(r);
 	free(document);
 }

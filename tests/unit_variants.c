@@ -7,6 +7,7 @@
 #include "tests/check.h"
 #include "tests/documents.h"
 #include "tests/functions.h"
+#include "tests/specimen.h"
 
 #include <math.h>
 #include <string.h>
@@ -404,7 +405,40 @@ static void an_input_of_one_value_explains_exactly_nothing(void **state)
 		}
 }
 
-CHECK_MAIN(cmocka_unit_test(every_column_comes_from_its_function),
+/* Sobol' points in 8 scrambles, one of which leaves no variance beside the noise of two signals. */
+static void an_index_without_an_interval_is_noted(void **state)
+{
+	(void)state;
+	static const char study[] =
+	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 0.5}, "
+	    "{\"frequency_hz\": "
+	    "2}], \"excitation\": {\"type\": \"kanai_tajimi\", \"cycles\": 10, \"signals\": 2}}, \"inputs\": ["
+	    "{\"path\": \"/excitation/frequency_hz\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
+	    "\"max\": 5}}, {\"path\": \"/oscillators/1/frequency_hz\", \"distribution\": {\"type\": \"uniform\", "
+	    "\"min\": 0.5, \"max\": 5}}, {\"path\": \"/oscillators/1/mass_kg\", \"distribution\": {\"type\": "
+	    "\"reciprocal_uniform\", \"max\": 6}}, {\"path\": \"/contact/restitution\", \"distribution\": "
+	    "{\"type\": \"uniform\", \"min\": 0, \"max\": 1}}], \"design\": {\"method\": \"sobol\", \"rows\": "
+	    "128, "
+	    "\"signals\": \"common\", \"seed\": 5}, \"outputs\": [\"force_amplification\", \"impulse\"]}";
+	struct pound_study *read = documents_study(study);
+	struct pound_run *run = specimen_run(read);
+	for (int o = 0; o < 2; o++) {
+		const struct pound_indices *indices = &pound_run_result(run)->cells[0].indices[o];
+		bool lacks = false;
+		for (int j = 0; j < 4; j++)
+			for (int k = 0; k < 2; k++) {
+				const struct pound_estimate *e = &indices->index[k ? POUND_ST : POUND_S1][j];
+				lacks |= !isnan(e->value) && isnan(e->high);
+			}
+		assert_int_equal(lacks, o == 0);
+		assert_int_equal(indices->notes >> POUND_NOTE_NO_INTERVAL & 1, lacks);
+	}
+	pound_run_free(run);
+	study_free(read);
+}
+
+CHECK_MAIN(cmocka_unit_test(an_index_without_an_interval_is_noted),
+           cmocka_unit_test(every_column_comes_from_its_function),
            cmocka_unit_test(raw_indexes_are_the_golden_ones_of_the_plain_protocol),
            cmocka_unit_test(a_single_signal_leaves_the_raw_indexes_and_is_told_from_no_randomness),
            cmocka_unit_test(fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_ones),
