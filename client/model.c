@@ -83,7 +83,10 @@ enum outcome model_indexes(const struct options *options)
 	char *csv = study ? document_read(options->second, &n_csv) : NULL;
 	if (csv) {
 		char *json = model_indices(study, csv, n_csv, &problems, &n);
-		outcome = json ? show_result(json, n, options) : document_reject(options->second, &problems);
+		// a JSON Pointer is into the study, any other place is in the outputs
+		const bool of_study = !json && problems.n > 0 && problems.list[0].pointer[0] == '/';
+		outcome = json ? show_result(json, n, options)
+		               : document_reject(of_study ? options->argument : options->second, &problems);
 		free(json);
 	}
 	free(csv);

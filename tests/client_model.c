@@ -118,6 +118,11 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 		program_expect(&refused, 2);
 		program_free(&refused);
 	}
+	// a study that is wrong is not laid at the door of its outputs
+	struct program_outcome swept = POUND("indices", "schema/examples/paper.json", outputs);
+	program_expect(&swept, 2);
+	assert_non_null(strstr(swept.err, "paper.json: 1 fault\npound:   /sweep: "));
+	program_free(&swept);
 	struct program_outcome lost = POUND("indices", study, "/no/such/file");
 	program_expect(&lost, 1);
 	program_free(&lost);
