@@ -9,9 +9,11 @@
 #include <libgen.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/param.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <time.h>
 #include <unistd.h>
@@ -27,18 +29,45 @@ enum {
 	LOCK_PAUSE_NS = 10000000, /* [ns] */
 };
 
+/* Finds the one name of a database: a lock beside a link to it would let a second server in.  NULL, or why there is none. */
+static const char *identify(struct disk *disk, const char *path)
+{
+	struct stat about;
+	if (!realpath(path, disk->database)) {
+		// an empty file is a new database; SQLite, too, makes the one that a link leads to
+		int file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+		if (file < 0)
+			return strerror(errno);
+		close(file);
+		if (!realpath(path, disk->database))
+			return strerror(errno);
+	}
+	if (stat(disk->database, &about) != 0)
+		return strerror(errno);
+	return !S_ISREG(about.st_mode) ? "it is not a file"
+	       : about.st_nlink > 1
+	           ? "the file has another name (a hard link), by which a second server could use it"
+	           : NULL;
+}
+
 /* Locks a database for this process.
  *
- * Given    path   of the database, which need not exist
- * Returns  disk   for disk_leave, whatever the value
+ * Given    path   of the database; an empty one is made if there is none
+ * Returns  disk   its one name is for SQLite too; for disk_leave, whatever the value
  *          value  false: another server has it, or the lock cannot be made; logged
- * Test     unit_store: a_store_in_use_is_not_opened_again
+ * Test     unit_store: a_store_in_use_is_not_opened_again, a_store_in_use_is_not_opened_by_another_name
  */
 bool disk_take(struct disk *disk, const char *path)
 {
-	char name[PATH_MAX];
-	snprintf(name, sizeof name, "%s-lock", path);
-	snprintf(disk->ballast, sizeof disk->ballast, "%s-ballast", path);
+	char name[sizeof disk->ballast];
+	const char *fault = identify(disk, path);
+	disk->lock = -1;
+	if (fault) {
+		log_line("cannot open the database %s: %s", path, fault);
+		return false;
+	}
+	snprintf(name, sizeof name, "%s-lock", disk->database);
+	snprintf(disk->ballast, sizeof disk->ballast, "%s-ballast", disk->database);
 	disk->lock = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 	bool ours = disk->lock >= 0 && flock(disk->lock, LOCK_EX | LOCK_NB) == 0;
 	// a server that was just killed keeps its lock until its memory is given back

@@ -1,6 +1,7 @@
 /* disk.h - the file system under a database: who owns it, and whether it has room.
  *
- * PATH-lock keeps a second server away, and holds the study with which the last one crashed.  PATH-ballast is given up so that deleting works on a full disk. */
+ * PATH-lock keeps a second server away, and holds the study with which the last one crashed.  PATH-ballast is given up
+ * so that deleting works on a full disk.  PATH is the file's one name, whatever links lead to it. */
 #ifndef DISK_H
 #define DISK_H
 
@@ -10,7 +11,8 @@
 
 struct disk {
 	int lock;
-	char ballast[PATH_MAX];
+	char database[PATH_MAX]; /* its one name */
+	char ballast[PATH_MAX + 8];
 };
 
 bool disk_take(struct disk *disk,

@@ -219,7 +219,7 @@ void store_close(struct store *store)
 /* Opens a database, making it if there is none.  Studies that were running are queued again, but one that made the
  * server crash three times has failed.
  *
- * Given    path    of the database file; PATH-lock, PATH-ballast, PATH-wal and PATH-shm stand beside it
+ * Given    path    of the database file, or of a link to it; PATH-lock, PATH-ballast, PATH-wal and PATH-shm stand beside it
  * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
  * Test     unit_store: a_store_in_use_is_not_opened_again
  */
@@ -232,9 +232,9 @@ struct store *store_open(const char *path)
 	bool ok = disk_take(&store->disk, path);
 	if (ok)
 		disk_relieve(&store->disk);
-	ok = ok && database_open(w, path, true, statement_text, N_STATEMENTS);
+	ok = ok && database_open(w, store->disk.database, true, statement_text, N_STATEMENTS);
 	for (int i = 0; ok && i < READERS; i++)
-		ok = database_open(&store->readers[i], path, false, statement_text, BEGIN);
+		ok = database_open(&store->readers[i], store->disk.database, false, statement_text, BEGIN);
 	ok = ok && run(w, bound(w, REQUEUE, "i", disk_blamed(&store->disk)), NULL) != STORE_FAILED &&
 	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED;
 	if (!ok) {

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -146,6 +147,54 @@ static void a_store_in_use_is_not_opened_again(void **state)
 {
 	(void)state;
 	assert_null(store_open(path));
+}
+
+/* Opens a store by another name of the one in use, made by `make`; NULL: refused. */
+static struct store *opened_by(int (*make)(const char *, const char *), const char *name)
+{
+	assert_int_equal(make(path, name), 0);
+	struct store *store = store_open(name);
+	unlink(name);
+	return store;
+}
+
+static void a_store_in_use_is_not_opened_by_another_name(void **state)
+{
+	char name[96], link_of_link[128];
+	snprintf(name, sizeof name, "%s-link", path);
+	snprintf(link_of_link, sizeof link_of_link, "%s-of-link", name);
+	assert_null(opened_by(symlink, name));
+	assert_int_equal(symlink(path, name), 0);
+	assert_int_equal(symlink(strrchr(name, '/') + 1, link_of_link), 0);
+	assert_null(store_open(link_of_link));
+	unlink(link_of_link);
+	unlink(name);
+	// nor by the first name, while there are two
+	assert_null(opened_by(link, name));
+	store_close(*state);
+	*state = NULL;
+	assert_null(opened_by(link, name));
+	*state = store_open(path);
+	assert_non_null(*state);
+}
+
+static void a_link_to_no_database_yet_makes_it_where_it_leads(void **state)
+{
+	char name[96];
+	struct stat about;
+	snprintf(name, sizeof name, "%s-link", path);
+	store_close(*state);
+	unlink(path);
+	assert_int_equal(symlink(path, name), 0);
+	*state = store_open(name);
+	assert_non_null(*state);
+	assert_int_equal(stat(path, &about), 0);
+	assert_null(store_open(path));
+	assert_null(store_open(name));
+	strcat(name, "-lock");
+	assert_int_not_equal(stat(name, &about), 0);
+	name[strlen(name) - strlen("-lock")] = '\0';
+	unlink(name);
 }
 
 /* The lock of a process that was killed lasts until its memory is given back, which takes as long as it is large. */
@@ -331,6 +380,8 @@ CHECK_MAIN(STORED(a_key_stands_for_one_study), STORED(no_more_are_queued_than_ma
            STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
            STORED(a_study_finishes_once), STORED(a_block_is_kept_only_while_its_study_runs),
            STORED(a_failed_study_says_why), STORED(names_are_bytes_and_never_sql),
-           STORED(a_store_in_use_is_not_opened_again), STORED(a_store_whose_server_was_just_killed_is_opened),
+           STORED(a_store_in_use_is_not_opened_again), STORED(a_store_in_use_is_not_opened_by_another_name),
+           STORED(a_link_to_no_database_yet_makes_it_where_it_leads),
+           STORED(a_store_whose_server_was_just_killed_is_opened),
            STORED(a_running_study_is_queued_again_when_the_store_opens),
            STORED(a_file_that_is_no_database_is_refused_and_left_alone))
