@@ -2,7 +2,7 @@
 -- (PRAGMA user_version counts the steps, server/database.c has them).  Times are milliseconds since 1970, UTC.
 
 PRAGMA application_id = 0x706f756e; -- "poun"
-PRAGMA user_version = 4;
+PRAGMA user_version = 5;
 
 CREATE TABLE study (
 	id              INTEGER PRIMARY KEY, -- milliseconds << 20 | random bits: a newer study has a larger id
@@ -16,7 +16,7 @@ CREATE TABLE study (
 	finished        INTEGER,
 	attempt         INTEGER NOT NULL DEFAULT 0, -- times it was taken up
 	error           TEXT,                       -- why it failed
-	idempotency_key TEXT    UNIQUE,
+	idempotency_key TEXT    UNIQUE,             -- after client and a space: a key is its client's own
 	crashes         INTEGER NOT NULL DEFAULT 0, -- of the server by this study, since a block of it was kept
 	client          TEXT,                       -- name of the token it was submitted with
 	runs_done       INTEGER NOT NULL DEFAULT 0, -- pounding runs in its blocks

@@ -20,7 +20,7 @@ static const char schema_text[] =
 
 enum {
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
-	USER_VERSION = 4,            /* as in store.sql */
+	USER_VERSION = 5,            /* as in store.sql */
 	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
 };
 
@@ -40,6 +40,9 @@ static const char *const steps[USER_VERSION] = {
           "UPDATE study SET (runs_done, cpu_s, attempt_kept) = "
           "(SELECT coalesce(sum(runs), 0), total(cpu_s), coalesce(max(attempt), 0) FROM block WHERE study = "
           "id)",
+    // before version 3 a key stood alone; one that came a second time since then has gone to the second study
+    [4] = "UPDATE OR IGNORE study SET idempotency_key = ' ' || idempotency_key "
+          "WHERE client IS NULL AND idempotency_key NOT GLOB ' *'",
 };
 
 static bool done(const struct database *d, const char *sql)
@@ -213,6 +216,7 @@ static bool prepared(struct database *d, const char *const statements[], int n)
  * Returns  database     for database_close, whatever the value
  *          value        false: not to be opened, not ours, or of a newer version; logged
  * Test     service_faults: a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_new
+ *          unit_store: keys_of_every_version_stand_for_their_studies
  */
 bool database_open(struct database *d, const char *path, bool writes, const char *const statements[], int n)
 {

@@ -292,9 +292,9 @@ enum { OLD_STUDIES = 12 };
 /* A database as version 1 left it: finished studies, one that runs and one that waits. */
 static void make_version_1(const struct service *service)
 {
-	static const char row[] =
-	    "INSERT INTO study (id, status, kind, hash, runs, created, started, finished, attempt) VALUES "
-	    "(%d, '%s', 'sensitivity', 'hash', 10, 1, 1, %s, 1)";
+	static const char row[] = "INSERT INTO study (id, status, kind, hash, runs, created, started, finished, "
+	                          "attempt, idempotency_key) "
+	                          "VALUES (%d, '%s', 'sensitivity', 'hash', 10, 1, 1, %s, 1, 'tower %d')";
 	sqlite3 *db;
 	char *schema = program_file("tests/store_1.sql", NULL);
 	assert_non_null(schema);
@@ -309,7 +309,7 @@ static void make_version_1(const struct service *service)
 		         over              ? "succeeded"
 		         : i < OLD_STUDIES ? "running"
 		                           : "queued",
-		         over ? "2" : "NULL");
+		         over ? "2" : "NULL", i);
 		assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
 		put_document(db, i, "request", study);
 		if (over)
@@ -318,6 +318,23 @@ static void make_version_1(const struct service *service)
 	}
 	sqlite3_close(db);
 	free(schema);
+}
+
+/* Posts an old study once more with its key: it is the same study. */
+static void expect_same(const struct service *service, int number, const char *id)
+{
+	char key[64], *study = service_study(2, 1, number);
+	snprintf(key, sizeof key, "Idempotency-Key: tower %d", number);
+	struct answer answer =
+	    service_ask(service, &(struct ask){.method = "POST",
+	                                       .path = "/v1/studies",
+	                                       .headers = {"Content-Type: application/json", key},
+	                                       .body = study,
+	                                       .length = strlen(study)});
+	assert_int_equal(answer.status, 201);
+	assert_string_equal(answer.location + strlen("/v1/studies/"), id);
+	answer_free(&answer);
+	free(study);
 }
 
 static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_new(void **state)
@@ -329,7 +346,8 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 		int version;     /* that it leads to */
 	} added[] = {{"SELECT count(*) FROM pragma_table_info('block') WHERE name = 'wall_s'", 2},
 	             {"SELECT count(*) FROM pragma_table_info('study') WHERE name = 'client'", 3},
-	             {"SELECT count(*) FROM pragma_table_info('study') WHERE name = 'attempt_kept'", 4}};
+	             {"SELECT count(*) FROM pragma_table_info('study') WHERE name = 'attempt_kept'", 4},
+	             {"SELECT count(*) = 12 FROM study WHERE idempotency_key = ' tower ' || id", 5}};
 	struct service *service = service_new();
 	struct faults *faults = faults_new(service->directory);
 	int kills = 0, old = 0;
@@ -354,7 +372,7 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 		assert_string_equal(now, content);
 		for (size_t k = 0; k < sizeof added / sizeof added[0]; k++)
 			assert_int_equal(service_number(service, added[k].sql), version >= added[k].version);
-		assert_true(version >= 1 && version <= 4);
+		assert_true(version >= 1 && version <= 5);
 		old += version == 1;
 		free(now);
 	}
@@ -369,6 +387,7 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 		struct answer answer = service_get(service, "/v1/studies/%s/results", id);
 		assert_int_equal(answer.status, 200);
 		answer_free(&answer);
+		expect_same(service, i, id);
 	}
 	service_stop(service);
 	faults_free(faults);

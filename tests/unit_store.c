@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <sqlite3.h>
+
 #include "tests/check.h"
 
 static char path[64];
@@ -23,10 +25,10 @@ static int database(void **state)
 
 static int removal(void **state)
 {
-	static const char *const ends[] = {"", "-wal", "-shm", "-lock", "-ballast"};
+	static const char *const ends[] = {"", "-wal", "-shm", "-lock", "-ballast", "-v4"};
 	if (*state)
 		store_close(*state);
-	for (int i = 0; i < 5; i++) {
+	for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
 		char name[96];
 		snprintf(name, sizeof name, "%s%s", path, ends[i]);
 		unlink(name);
@@ -280,6 +282,42 @@ static void a_key_stands_for_one_study(void **state)
 	assert_int_equal(store_submit(*state, &study, "{ }", 3, &again), STORE_OK);
 }
 
+/* Until version 3 keys were stored as they came; since then behind the name of the token, if any, and a space. */
+static void keys_of_every_version_stand_for_their_studies(void **state)
+{
+	static const struct {
+		const char *stored, *client, *asked; /* asked: as it is since version 3 */
+	} keys[] = {{"old", NULL, " old"},
+	            {"old with spaces", NULL, " old with spaces"},
+	            {"0123456789abcdef old", NULL, " 0123456789abcdef old"},
+	            {" new", NULL, " new"},
+	            {"0123456789abcdef new", "0123456789abcdef", "0123456789abcdef new"},
+	            {"again", NULL, NULL}, // and asked for since then:
+	            {" again", NULL, " again"}};
+	enum { KEYS = sizeof keys / sizeof keys[0] };
+	int64_t ids[KEYS], id;
+	sqlite3 *db;
+	struct store_study study = {.kind = "response", .runs = 5, .hash = "hash"};
+	for (int i = 0; i < KEYS; i++) {
+		study.key = keys[i].stored;
+		study.client = keys[i].client;
+		assert_int_equal(store_submit(*state, &study, "{}", 2, &ids[i]), STORE_OK);
+	}
+	store_close(*state);
+	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+	assert_int_equal(sqlite3_exec(db, "PRAGMA user_version = 4", NULL, NULL, NULL), SQLITE_OK);
+	assert_int_equal(sqlite3_close(db), SQLITE_OK);
+	*state = store_open(path);
+	assert_non_null(*state);
+	for (int i = 0; i < KEYS; i++) {
+		if (!keys[i].asked)
+			continue;
+		study.key = keys[i].asked;
+		assert_int_equal(store_submit(*state, &study, "{}", 2, &id), STORE_REPEATED);
+		assert_true(id == ids[i]);
+	}
+}
+
 enum { SUBMITTERS = 8, EACH = 20, QUEUE_MAX = 50, OWN_MAX = 20 };
 
 /* one of those who submit at the same time */
@@ -374,7 +412,8 @@ static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(vo
 
 #define STORED(test) cmocka_unit_test_setup_teardown(test, database, removal)
 
-CHECK_MAIN(STORED(a_key_stands_for_one_study), STORED(no_more_are_queued_than_may_be),
+CHECK_MAIN(STORED(a_key_stands_for_one_study), STORED(keys_of_every_version_stand_for_their_studies),
+           STORED(no_more_are_queued_than_may_be),
            STORED(a_study_taken_three_times_in_vain_lets_the_others_go_first),
            STORED(only_crashes_that_follow_each_other_without_a_block_make_a_poison),
            STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
