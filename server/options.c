@@ -1,4 +1,4 @@
-/* A row for every option: argp reads the flags by it, and the environment is read by it before. */
+/* A row for every option: argp reads the flags by it, and then the environment is read by it. */
 #include "server/options.h"
 
 #include <argp.h>
@@ -54,10 +54,16 @@ static int key_of(const struct option_row *row)
 	return row->letter ? row->letter : FIRST_KEY + (int)(row - options_table);
 }
 
+struct reading {
+	struct options *options;
+	bool given[sizeof options_table / sizeof options_table[0]]; /* by a flag */
+};
+
 /* Takes a value, or ends the program, saying what `name` would take. */
 static void take(struct argp_state *state, const struct option_row *row, const char *name, const char *value)
 {
-	char *at = (char *)state->input + row->offset, *rest;
+	const struct reading *reading = state->input;
+	char *at = (char *)reading->options + row->offset, *rest;
 	if (row->max == 0) {
 		*(const char **)(void *)at = value;
 		if (!*value)
@@ -70,27 +76,38 @@ static void take(struct argp_state *state, const struct option_row *row, const c
 		argp_error(state, "%s must be a whole number in [%d, %d], got '%s'", name, row->min, row->max, value);
 }
 
-/* Called by argp for each flag, and before them all: then every option has what stands for it when it is absent, or is
- * in the environment. */
+/* Takes from the environment what no flag has given; an empty variable is none. */
+static void take_variables(struct argp_state *state)
+{
+	const struct reading *reading = state->input;
+	for (int i = 0; i < options_count; i++) {
+		char name[64];
+		options_variable(&options_table[i], name, sizeof name);
+		const char *value = getenv(name);
+		if (!reading->given[i] && value && *value)
+			take(state, &options_table[i], name, value);
+	}
+}
+
+/* Called by argp first, for each flag, and last, so that variables are judged only if they count. */
 static error_t parse(int key, char *value, struct argp_state *state)
 {
-	error_t status = key == ARGP_KEY_INIT ? 0 : ARGP_ERR_UNKNOWN;
-	// argp has the name only after this
-	if (key == ARGP_KEY_INIT)
-		state->name = program_invocation_short_name;
-	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+	struct reading *reading = state->input;
+	if (key == ARGP_KEY_END)
+		take_variables(state);
+	for (int i = 0; i < options_count; i++) {
+		const struct option_row *row = &options_table[i];
 		char name[64];
-		options_variable(row, name, sizeof name);
-		const char *there = getenv(name);
-		if (key == ARGP_KEY_INIT && (there || row->absent))
-			take(state, row, name, there ? there : row->absent);
-		else if (key == key_of(row)) {
-			snprintf(name, sizeof name, "--%s", row->name);
-			take(state, row, name, value ? value : "1");
-			status = 0;
-		}
+		if (key == ARGP_KEY_INIT && row->absent)
+			take(state, row, row->name, row->absent);
+		if (key != key_of(row))
+			continue;
+		snprintf(name, sizeof name, "--%s", row->name);
+		take(state, row, name, value ? value : "1");
+		reading->given[i] = true;
+		return 0;
 	}
-	return status;
+	return key == ARGP_KEY_INIT || key == ARGP_KEY_END ? 0 : ARGP_ERR_UNKNOWN;
 }
 
 const char *argp_program_version = "poundd " POUND_VERSION;
@@ -98,7 +115,8 @@ const char *argp_program_version = "poundd " POUND_VERSION;
 /* Reads flags and environment; help, the version and mistakes end the program.
  *
  * Returns  options   texts are those of argv and of the environment
- * Test     unit_options: every_option_is_taken_as_a_flag_and_from_the_environment
+ * Test     unit_options: every_option_is_taken_as_a_flag_and_from_the_environment,
+ *          what_a_flag_overrides_is_not_judged
  */
 void options_read(struct options *options, int argc, char **argv)
 {
@@ -118,8 +136,9 @@ void options_read(struct options *options, int argc, char **argv)
 		flags[i] = (struct argp_option){
 		    .name = row->name, .key = key_of(row), .arg = row->argument, .doc = texts[i]};
 	}
+	struct reading reading = {.options = options};
 	// mistakes have ended the program in there; what is left is no memory, and then nothing is known
-	if (argp_parse(&argp, argc, argv, 0, NULL, options) != 0) {
+	if (argp_parse(&argp, argc, argv, 0, NULL, &reading) != 0) {
 		fputs("poundd: out of memory\n", stderr);
 		exit(EXIT_FAILURE);
 	}

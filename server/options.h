@@ -1,6 +1,6 @@
 /* options.h - what poundd is told at its start, by flags and by the environment: one row each.
  *
- * --port 0 and POUNDD_PORT=0 are the same; a flag wins.  Constant after options_read; any thread. */
+ * --port 0 and POUNDD_PORT=0 are the same; a flag wins, an empty variable is none.  Constant after options_read; any thread. */
 #ifndef OPTIONS_H
 #define OPTIONS_H
 

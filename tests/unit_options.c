@@ -59,13 +59,74 @@ static void what_an_option_does_not_take_is_refused_by_name(void **state)
 		for (int flag = 0; flag < 2; flag++) {
 			if (flag && !row->argument)
 				continue;
-			refused(row, row->max == 0 ? "" : "x", flag);
+			// an empty variable is none
+			if (row->max > 0 || flag)
+				refused(row, row->max == 0 ? "" : "x", flag);
 			if (row->max > 0) {
 				refused(row, most, flag);
 				refused(row, "-1", flag);
 				refused(row, "1x", flag);
 			}
 		}
+	}
+}
+
+/* Sets every variable, or with NULL none. */
+static void set_variables(const char *value)
+{
+	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+		char name[64];
+		options_variable(row, name, sizeof name);
+		if (value)
+			setenv(name, value, 1);
+		else
+			unsetenv(name);
+	}
+}
+
+static void what_a_flag_overrides_is_not_judged(void **state)
+{
+	char program[] = "poundd", word[128], name[64];
+	(void)state;
+	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {
+		const char *value = row->max == 0 ? "text" : "1";
+		struct options options;
+		options_variable(row, name, sizeof name);
+		snprintf(word, sizeof word, row->argument ? "--%s=%s" : "--%s", row->name, value);
+		setenv(name, "x", 1);
+		options_read(&options, 2, (char *[]){program, word, NULL});
+		unsetenv(name);
+		const char *at = (const char *)&options + row->offset;
+		if (row->max == 0)
+			assert_string_equal(*(const char *const *)(const void *)at, value);
+		else
+			assert_int_equal(*(const int *)(const void *)at, 1);
+	}
+}
+
+static void an_empty_variable_is_none(void **state)
+{
+	char program[] = "poundd";
+	struct options without, with;
+	(void)state;
+	options_read(&without, 1, (char *[]){program, NULL});
+	set_variables("");
+	options_read(&with, 1, (char *[]){program, NULL});
+	set_variables(NULL);
+	assert_memory_equal(&with, &without, sizeof with);
+}
+
+static void help_and_the_version_are_had_with_any_environment(void **state)
+{
+	static const char *const flags[] = {"--help", "--version"};
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		set_variables("x");
+		struct program_outcome outcome = program_run((const char *const[]){"poundd", flags[i], NULL}, NULL);
+		set_variables(NULL);
+		program_expect(&outcome, 0);
+		assert_true(outcome.n_out > 0);
+		program_free(&outcome);
 	}
 }
 
@@ -92,4 +153,6 @@ static void every_option_stands_in_the_docs(void **state)
 
 CHECK_MAIN(cmocka_unit_test(every_option_is_taken_as_a_flag_and_from_the_environment),
            cmocka_unit_test(what_an_option_does_not_take_is_refused_by_name),
+           cmocka_unit_test(what_a_flag_overrides_is_not_judged), cmocka_unit_test(an_empty_variable_is_none),
+           cmocka_unit_test(help_and_the_version_are_had_with_any_environment),
            cmocka_unit_test(every_option_stands_in_the_docs))
