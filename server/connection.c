@@ -18,7 +18,6 @@
 enum {
 	TICK_NS = 50000000,    /* [ns] */
 	LINGER_S = 5,          /* [s] a client may go on sending */
-	LINGERING_MAX = 256,   /* clients who do so */
 	TICK_BYTES = 16 << 20, /* read of all of them in a tick, while the list is locked */
 };
 
@@ -98,7 +97,7 @@ static void *watch(void *of)
 
 /* Starts to watch over connections.
  *
- * Given    all      its store, resume and most
+ * Given    all      its store, resume, most and most_draining
  * Returns  value    false: no thread
  */
 bool connections_start(struct connections *all)
@@ -140,7 +139,7 @@ void connection_closed(struct connections *all, struct connection *connection)
 {
 	all->n--;
 	pthread_mutex_lock(&all->lock);
-	int fd = connection->lingers && all->n_draining < LINGERING_MAX ? dup(connection->fd) : -1;
+	int fd = connection->lingers && all->n_draining < all->most_draining ? dup(connection->fd) : -1;
 	if (fd >= 0) {
 		connection->fd = fd;
 		connection->draining = true;

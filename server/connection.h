@@ -34,6 +34,7 @@ struct connections {
 	struct store *store;
 	void (*resume)(void *handle);
 	int most;             /* are served */
+	int most_draining;    /* are read from after their answer */
 	atomic_int n, n_late; /* open; shut down for being late, ever */
 	atomic_int n_waiting; /* suspended requests */
 	atomic_bool released; /* nobody waits any more */
@@ -45,8 +46,9 @@ struct connections {
 	int n_draining;
 };
 
-bool connections_start(struct connections *all); /* with store, resume and most; false: no thread */
-void connections_stop(struct connections *all);  /* after all of them were closed */
+bool connections_start(
+    struct connections *all); /* with store, resume, most and most_draining; false: no thread */
+void connections_stop(struct connections *all); /* after all of them were closed */
 
 struct connection *connection_opened(struct connections *all, int fd, double seconds); /* NULL: no memory */
 void connection_closed(struct connections *all, struct connection *connection); /* just before its fd is */

@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/param.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -33,7 +34,9 @@ enum {
 	GONE = 499,              /* told of a request whose client has gone */
 	ASIDE_NICENESS = 5,      /* between other answers and the workers */
 	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
-	FILES_BESIDE = 512,      /* descriptors that are no connections */
+	CONNECTIONS_MIN = 8,     /* of which each thread has a share */
+	DRAINING_MAX = 256,      /* clients who go on sending after their answer */
+	FILES_BESIDE = 48,       /* descriptors that are no connections: 33, and what is open for a moment */
 	OF_ADDRESS_MAX = 64,     /* connections of one address, unless it is loopback */
 	HEADERS_MAX = 32 * 1024, /* [bytes] request line and headers */
 	BACKLOG = 1024,
@@ -388,13 +391,37 @@ static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen
 	return server->stopping ? MHD_NO : MHD_YES;
 }
 
+/* Whether a line of libmicrohttpd's is told, and how many like it were not since the last. */
+static bool is_told(struct server *server, const char *format, int *n_since)
+{
+	double now = connection_now();
+	pthread_mutex_lock(&server->complaints_lock);
+	struct complaint *place = server->complaints;
+	for (struct complaint *c = place; c < server->complaints + HTTP_COMPLAINTS; c++)
+		if (c->format == format || (place->format != format && c->told < place->told))
+			place = c;
+	if (place->format != format)
+		*place = (struct complaint){.format = format, .told = -INFINITY};
+	bool told = now >= place->told + 1;
+	*n_since = place->n_since;
+	place->n_since = told ? 0 : place->n_since + 1;
+	place->told = told ? now : place->told;
+	pthread_mutex_unlock(&server->complaints_lock);
+	return told;
+}
+
+/* Called by libmicrohttpd for what it has to say, which may be the same a hundred thousand times a second. */
 static void log_library(void *of, const char *format, va_list values)
 {
-	char text[256];
-	(void)of;
+	char text[256], more[48] = "";
+	int n_since;
+	if (!is_told(of, format, &n_since))
+		return;
 	vsnprintf(text, sizeof text, format, values);
 	text[strcspn(text, "\n")] = '\0';
-	log_line("http: %s", text);
+	if (n_since)
+		snprintf(more, sizeof more, " (and %d like it before)", n_since);
+	log_line("http: %s%s", text, more);
 }
 
 union address {
@@ -418,16 +445,31 @@ static bool is_loopback(const union address *address)
 	                                          : ntohl(address->ip4.sin_addr.s_addr) >> 24 == 127;
 }
 
-/* As many descriptors as the connections need, or as there may be. */
-static void allow_files(void)
+/* Shares out the descriptors there may be, as many as are needed or allowed: a connection without one would keep a thread
+ * that accepts it busy.
+ *
+ * Returns  value   connections that libmicrohttpd may have, 0: too few, logged; of them all but a few are served, and the
+ *                  others told so
+ */
+static int share_files(struct connections *connections, int wanted)
 {
-	struct rlimit files;
-	const rlim_t wanted = CONNECTIONS_MAX + FILES_BESIDE;
-	if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= wanted)
-		return;
-	files.rlim_cur = files.rlim_max < wanted ? files.rlim_max : wanted;
-	if (setrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur < wanted)
-		log_line("only %llu files may be open: ulimit -n", (unsigned long long)files.rlim_cur);
+	struct rlimit files = {RLIM_INFINITY, RLIM_INFINITY};
+	const rlim_t most = CONNECTIONS_MAX + DRAINING_MAX + FILES_BESIDE;
+	if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < most) {
+		struct rlimit more = {MIN(files.rlim_max, most), files.rlim_max};
+		if (setrlimit(RLIMIT_NOFILE, &more) == 0)
+			files = more;
+	}
+	const int left = (int)MIN(files.rlim_cur, most) - FILES_BESIDE;
+	connections->most_draining = MIN(left / 4, DRAINING_MAX);
+	const int all = MIN(left - connections->most_draining, CONNECTIONS_MAX);
+	connections->most = MIN(wanted, all - 1 - all / 64);
+	if (all < CONNECTIONS_MIN)
+		log_line("only %d files may be open, which is too few: ulimit -n", (int)files.rlim_cur);
+	else if (connections->most < wanted)
+		log_line("only %d files may be open (ulimit -n): %d connections are served at a time, not %d",
+		         (int)files.rlim_cur, connections->most, wanted);
+	return all < CONNECTIONS_MIN ? 0 : all;
 }
 
 /* Asks for a short turn soon rather than a long one later, for this thread and those it starts: since Linux 6.12 a thread
@@ -448,18 +490,19 @@ static void take_short_turns(void)
 		log_line("cannot ask for short turns: %s", strerror(errno));
 }
 
-static struct MHD_Daemon *listen_at(struct server *server, const union address *address)
+/* libmicrohttpd with at most n connections. */
+static struct MHD_Daemon *listen_at(struct server *server, const union address *address, int n)
 {
 	unsigned flags = MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME |
 	                 (address->any.sa_family == AF_INET6 ? MHD_USE_IPv6 : 0);
 	return MHD_start_daemon(
-	    flags, 0, welcome, server, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, NULL,
+	    flags, 0, welcome, server, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, server,
 	    MHD_OPTION_SOCK_ADDR, &address->any, MHD_OPTION_NOTIFY_COMPLETED, completed, server,
 	    MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin, server,
-	    MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
-	    (unsigned)CONNECTIONS_MAX, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-	    is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-	    (size_t)HEADERS_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE, (unsigned)BACKLOG, MHD_OPTION_END);
+	    MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT, (unsigned)n,
+	    MHD_OPTION_PER_IP_CONNECTION_LIMIT, is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
+	    MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE,
+	    (unsigned)BACKLOG, MHD_OPTION_END);
 }
 
 /* Starts to answer requests, at the address and the port of the options.
@@ -467,6 +510,7 @@ static struct MHD_Daemon *listen_at(struct server *server, const union address *
  * Given    server   whose options, store, work and tokens are set; it must outlive the service
  * Returns  value    for http_stop; false when it cannot or must not listen there, logged
  * Test     service_security: an_address_that_is_not_loopback_needs_tokens_or_insecure
+ *          service_http: with_few_descriptors_fewer_are_served_and_nothing_spins
  */
 bool http_start(struct server *server)
 {
@@ -482,15 +526,17 @@ bool http_start(struct server *server)
 		return false;
 	}
 	take_short_turns();
-	allow_files();
 	sem_init(&server->turns, 0, TURNS);
 	server->number = (unsigned long long)time(NULL) << 32;
 	server->connections.store = server->store;
 	server->connections.resume = resume;
-	server->connections.most = options->connections_max;
+	pthread_mutex_init(&server->complaints_lock, NULL);
+	const int n = share_files(&server->connections, options->connections_max);
+	if (n == 0)
+		return false;
 	if (!connections_start(&server->connections))
 		return false;
-	server->daemon = listen_at(server, &address);
+	server->daemon = listen_at(server, &address, n);
 	if (server->daemon)
 		return true;
 	log_line("cannot listen on %s port %d: %s", options->listen, options->port, strerror(errno));

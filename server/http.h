@@ -36,6 +36,15 @@ struct told {
 	struct reply reply; /* body NULL: none */
 };
 
+enum { HTTP_COMPLAINTS = 16 };
+
+/* What libmicrohttpd logs, by its format: told once a second at most. */
+struct complaint {
+	const char *format;
+	double told; /* [s] monotonic, the last time */
+	int n_since; /* that were not told */
+};
+
 /* What every request can reach. */
 struct server {
 	const struct options *options;
@@ -49,6 +58,8 @@ struct server {
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;
+	pthread_mutex_t complaints_lock;
+	struct complaint complaints[HTTP_COMPLAINTS]; /* the latest */
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
 	atomic_int aside;     /* those in threads of their own, of which ... */

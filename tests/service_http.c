@@ -1,9 +1,13 @@
 /* Requests as no library would send them: framing, targets, headers, methods, slow and many clients. */
+#include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "schema/reading.h"
 #include "tests/faults.h"
+#include "tests/program.h"
 #include "tests/raw.h"
 
 #define HOST   "Host: localhost\r\n"
@@ -283,6 +287,110 @@ static void more_connections_than_the_limit_are_told_503(void **state)
 	service_free(service);
 }
 
+/* A service that may have no more than so many files open, now and for ever. */
+static struct service *with_files(int n)
+{
+	const char *build = getenv("POUND_BUILD");
+	char limit[64], program[256], out[128];
+	struct service *service = service_new();
+	snprintf(limit, sizeof limit, "ulimit -n %d && exec \"$0\" \"$@\"", n);
+	snprintf(program, sizeof program, "%s/poundd", build ? build : "build/release");
+	snprintf(out, sizeof out, "%s/out", service->directory);
+	service->pid =
+	    program_start((const char *const[]){"sh", "-c", limit, program, "--port", "0", "--database",
+	                                        service->database, "--workers", "1", NULL},
+	                  out, service->log);
+	for (int i = 0; i < 1000 && service->port == 0; i++) {
+		char *line = program_file(out, NULL);
+		if (!line || sscanf(line, "listening on http://127.0.0.1:%d\n", &service->port) != 1)
+			usleep(10000);
+		free(line);
+	}
+	assert_int_not_equal(service->port, 0);
+	return service;
+}
+
+/* [s] that a server has computed for */
+static double cpu_of(const struct service *service)
+{
+	clockid_t clock;
+	struct timespec cpu;
+	assert_int_equal(clock_getcpuclockid(service->pid, &clock), 0);
+	assert_int_equal(clock_gettime(clock, &cpu), 0);
+	return (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec;
+}
+
+/* How often a word stands in a log. */
+static int told(const struct service *service, const char *word)
+{
+	int n = 0;
+	char *log = program_file(service->log, NULL);
+	assert_non_null(log);
+	for (const char *at = log; (at = strstr(at, word)); at++)
+		n++;
+	free(log);
+	return n;
+}
+
+static void with_few_descriptors_fewer_are_served_and_nothing_spins(void **state)
+{
+	enum { N = 120, FILES = 64 };
+	static struct raw_answer answer;
+	int sockets[N], served = 0, refused = 0;
+	struct service *service = with_files(FILES);
+	(void)state;
+	assert_int_equal(told(service, "only 64 files may be open"), 1);
+	for (int i = 0; i < N; i++)
+		sockets[i] = raw_open(service);
+	double before = cpu_of(service);
+	usleep(1000000);
+	double cpu = cpu_of(service) - before;
+	int lines = told(service, "Error accepting");
+	for (int i = 0; i < N; i++)
+		close(sockets[i]);
+	check_report("%d idle connections with %d descriptors: %.2f s of a core in 1 s, %d lines of the log", N,
+	             FILES, cpu, lines);
+	assert_true(cpu < 0.5);
+	assert_int_equal(lines, 0);
+	for (int i = 0; i < 100 && answer.status != 200; i++)
+		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.05, &answer);
+	assert_int_equal(answer.status, 200);
+	// some are served and the next told that there are as many as may be
+	for (int i = 0; i < N && refused == 0; i++, served++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], GET "\r\n", strlen(GET "\r\n"));
+		raw_receive(sockets[i], 0.2, &answer);
+		assert_true(answer.status == 200 || answer.status == 503);
+		refused += answer.status == 503;
+	}
+	assert_true(served > 8 && refused == 1);
+	for (int i = 0; i < served; i++)
+		close(sockets[i]);
+	service_stop(service);
+	service_free(service);
+}
+
+static void what_the_library_says_again_and_again_is_told_once_a_second(void **state)
+{
+	enum { N = 60 };
+	struct rlimit before, few;
+	int sockets[N];
+	struct service *service = *state;
+	// less than it had when it started, so that it cannot know
+	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, NULL, &before), 0);
+	few = (struct rlimit){30, before.rlim_max};
+	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &few, NULL), 0);
+	for (int i = 0; i < N; i++)
+		sockets[i] = raw_open(service);
+	usleep(1500000);
+	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &before, NULL), 0);
+	int lines = told(service, "Error accepting");
+	for (int i = 0; i < N; i++)
+		close(sockets[i]);
+	assert_true(lines >= 1 && lines <= 3);
+	assert_true(told(service, " like it before") >= 1);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other),
@@ -291,4 +399,6 @@ CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other)
            SERVED(what_is_answered_cannot_be_framed_guessed_or_kept),
            SERVED(an_answer_and_its_line_of_the_log_have_one_number),
            cmocka_unit_test(who_is_slow_is_closed_and_others_are_served_meanwhile),
-           cmocka_unit_test(more_connections_than_the_limit_are_told_503))
+           cmocka_unit_test(more_connections_than_the_limit_are_told_503),
+           cmocka_unit_test(with_few_descriptors_fewer_are_served_and_nothing_spins),
+           SERVED(what_the_library_says_again_and_again_is_told_once_a_second))
