@@ -104,24 +104,25 @@ static bool connected(struct database *d, const char *path, bool writes)
 	return ok;
 }
 
-static bool configured(const struct database *d)
+static bool configured(const struct database *d, bool writes)
 {
 	static const struct {
 		const char *name, *value;
+		bool in_file; // and is changed by one who writes; a copy that was never opened has it otherwise
 	} settings[] = {
-	    {"busy_timeout", "5000"},
-	    {"journal_mode", "wal"},
-	    {"synchronous", "2"}, // FULL
-	    {"foreign_keys", "1"},
-	    {"trusted_schema", "0"},
-	    {"cell_size_check", "1"},
-	    {"wal_autocheckpoint", "1000"},
-	    {"mmap_size", "0"},
-	    {"secure_delete", "0"},
-	    {"journal_size_limit", "67108864"},
+	    {"busy_timeout", "5000", false},
+	    {"journal_mode", "wal", true},
+	    {"synchronous", "2", false}, // FULL
+	    {"foreign_keys", "1", false},
+	    {"trusted_schema", "0", false},
+	    {"cell_size_check", "1", false},
+	    {"wal_autocheckpoint", "1000", false},
+	    {"mmap_size", "0", false},
+	    {"secure_delete", "0", false},
+	    {"journal_size_limit", "67108864", false},
 	};
 	for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
-		if (!set(d, settings[i].name, settings[i].value))
+		if ((writes || !settings[i].in_file) && !set(d, settings[i].name, settings[i].value))
 			return false;
 	return true;
 }
@@ -227,7 +228,7 @@ bool database_open(struct database *d, const char *path, bool writes, const char
 		return false;
 	// a setting stays in the file, so that another's is looked at before
 	int version = writes ? version_of(d, path) : USER_VERSION;
-	return version >= 0 && configured(d) && founded(d, path, version) && prepared(d, statements, n);
+	return version >= 0 && configured(d, writes) && founded(d, path, version) && prepared(d, statements, n);
 }
 
 /* Closes it, opened or not. */

@@ -83,5 +83,29 @@ static void a_copy_made_while_studies_run_is_a_whole_database(void **state)
 		assert_true(service_wait(service, ids[i], "succeeded", 0));
 }
 
-CHECK_MAIN(cmocka_unit_test_setup_teardown(a_copy_made_while_studies_run_is_a_whole_database, service_setup,
-                                           service_teardown))
+static void copy(const char *path, const char *to, int status)
+{
+	struct program_outcome outcome =
+	    program_run((const char *const[]){"poundd", "--database", path, "--backup", to, NULL}, NULL);
+	program_expect(&outcome, status);
+	program_free(&outcome);
+}
+
+static void a_copy_can_be_copied(void **state)
+{
+	struct service *service = *state;
+	char first[128], second[128];
+	snprintf(first, sizeof first, "%s/first.db", service->directory);
+	snprintf(second, sizeof second, "%s/second.db", service->directory);
+	submit(service, 2);
+	copy(service->database, first, 0);
+	copy(first, second, 0);
+	struct service last = *service;
+	strcpy(last.database, second);
+	assert_int_equal(service_number(&last, "SELECT count(*) FROM study"),
+	                 service_number(service, "SELECT count(*) FROM study"));
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(a_copy_made_while_studies_run_is_a_whole_database), SERVED(a_copy_can_be_copied))
