@@ -9,10 +9,12 @@
 #include <math.h>
 #include <poll.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "server/log.h"
 #include "server/store.h"
 
 enum {
@@ -98,13 +100,16 @@ static void *watch(void *of)
 /* Starts to watch over connections.
  *
  * Given    all      its store, resume, most and most_draining
- * Returns  value    false: no thread
+ * Returns  value    false: no thread, logged
  */
 bool connections_start(struct connections *all)
 {
 	LIST_INIT(&all->list);
 	pthread_mutex_init(&all->lock, NULL);
-	return pthread_create(&all->thread, NULL, watch, all) == 0;
+	int error = pthread_create(&all->thread, NULL, watch, all);
+	if (error)
+		log_line("cannot start the thread that watches connections: %s", strerror(error));
+	return error == 0;
 }
 
 /* Ends the watch, after all of them were closed. */

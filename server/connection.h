@@ -47,7 +47,7 @@ struct connections {
 };
 
 bool connections_start(
-    struct connections *all); /* with store, resume, most and most_draining; false: no thread */
+    struct connections *all); /* with store, resume, most and most_draining; false: no thread, logged */
 void connections_stop(struct connections *all); /* after all of them were closed */
 
 struct connection *connection_opened(struct connections *all, int fd, double seconds); /* NULL: no memory */

@@ -1,6 +1,7 @@
 /* One SQLite connection: its settings, its statements, and the version of what it finds. */
 #include "server/database.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <stdint.h>
@@ -130,19 +131,31 @@ static bool configured(const struct database *d, bool writes)
 /* Writes a copy of the database as it stands now, while others go on; it is on the disk when this returns.
  *
  * Given    path    of the copy, which must not exist
+ * Returns  value   false: logged, and what was written of it is removed
  * Test     service_backup: a_copy_made_while_studies_run_is_a_whole_database
+ *          service_faults: a_copy_that_fails_says_why_and_is_not_left
  */
 bool database_copy(const struct database *d, const char *path)
 {
-	char *sql = sqlite3_mprintf("VACUUM INTO %Q", path);
+	// an empty file of our own, which SQLite may write to: so it is never another's that is removed
+	int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+	if (file < 0) {
+		log_line("cannot make %s: %s", path, strerror(errno));
+		return false;
+	}
+	// :memory: is a file here
+	char *sql = sqlite3_mprintf("VACUUM INTO '%q%q'", *path == '/' ? "" : "./", path);
 	bool copied = sql && done(d, sql);
 	if (!copied)
-		log_line("cannot write %s: %s", path, sqlite3_errmsg(d->db));
+		log_line("cannot write %s: %s", path, sql ? sqlite3_errmsg(d->db) : "out of memory");
 	sqlite3_free(sql);
-	int file = copied ? open(path, O_RDONLY | O_CLOEXEC) : -1;
-	bool synced = file >= 0 && fsync(file) == 0 && disk_sync(path);
-	if (file >= 0)
-		close(file);
+	bool synced = copied && fsync(file) == 0;
+	if (copied && !synced)
+		log_line("cannot sync %s: %s", path, strerror(errno));
+	close(file);
+	synced = synced && disk_sync(path);
+	if (!synced)
+		unlink(path);
 	return synced;
 }
 

@@ -113,6 +113,8 @@ int main(int argc, char **argv)
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
+	if (!server.document)
+		log_line("cannot make the OpenAPI document: out of memory");
 	server.store = server.document ? store_open(options.database) : NULL;
 	int status = server.store ? serve(&server, &signals) : EXIT_FAILURE;
 	if (server.store)

@@ -226,8 +226,10 @@ void store_close(struct store *store)
 struct store *store_open(const char *path)
 {
 	struct store *store = calloc(1, sizeof *store);
-	if (!store)
+	if (!store) {
+		log_line("cannot open the database %s: out of memory", path);
 		return NULL;
+	}
 	struct database *w = &store->writer;
 	bool ok = disk_take(&store->disk, path);
 	if (ok)

@@ -390,8 +390,10 @@ static void *worker(void *of)
 struct work *work_start(struct store *store, int n_workers)
 {
 	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
-	if (!work)
+	if (!work) {
+		log_line("cannot start %d workers: out of memory", n_workers);
 		return NULL;
+	}
 	watch_crashes(store);
 	work->store = store;
 	work->n_workers = n_workers;

@@ -84,6 +84,26 @@ static void a_disk_that_fails_by_chance_loses_nothing_and_the_server_recovers_by
 	free(accepted.ids);
 }
 
+/* The end of a log, from its last line on that tells more than the version of SQLite. */
+static const char *said(const char *log)
+{
+	const char *line = "";
+	for (const char *at = log; *at; at += strcspn(at, "\n"), at += *at == '\n')
+		if (strncmp(at + strcspn(at, " "), " SQLite ", 8) != 0)
+			line = at;
+	return line;
+}
+
+/* A start that was refused has said why, in the last line of its log; the log is emptied for the next. */
+static void expect_reason(const struct service *service, int status)
+{
+	char *log = program_file(service->log, NULL);
+	if (status == 1 && (!log || !*said(log) || strstr(said(log), "Success")))
+		fail_msg("a start was refused without a reason: '%s'", log ? log : "");
+	free(log);
+	assert_true(truncate(service->log, 0) == 0);
+}
+
 /* Starts, of a server that makes its database or finds it, each with one more call before the one that fails, until none
  * does; how many, and how many of them were refused. */
 static int start_on_a_failing_disk(struct service *service, struct faults *faults, bool makes, int *refused)
@@ -96,6 +116,7 @@ static int start_on_a_failing_disk(struct service *service, struct faults *fault
 		int status = service_try(service, 1);
 		failed = atomic_exchange(&faults->disk_fails_in, 0) <= 0;
 		assert_true(status == 0 || (status == 1 && failed));
+		expect_reason(service, status);
 		*refused += status == 1;
 		if (status == 0)
 			service_stop(service);
@@ -126,6 +147,48 @@ static void every_call_on_the_disk_may_fail(void **state)
 	             "failures, studies accepted %d, lost 0, refused %d",
 	             starts, refused_starts, n, failed, accepted.n, accepted.refused);
 	service_stop(service);
+	faults_free(faults);
+	service_free(service);
+	free(accepted.ids);
+}
+
+static void a_copy_that_fails_says_why_and_is_not_left(void **state)
+{
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	struct accepted accepted = {0};
+	char path[128];
+	const char *const copying[] = {"poundd", "--database", service->database, "--backup", path, NULL};
+	int copies = 0, failures = 0;
+	(void)state;
+	service_start(service, 1);
+	recover(service, &accepted);
+	service_stop(service);
+	snprintf(path, sizeof path, "%s/copy.db", service->directory);
+	struct service copy = *service;
+	strcpy(copy.database, path);
+	for (bool failed = true; failed; copies++) {
+		unlink(path);
+		faults->disk_fails_in = copies + 1;
+		struct program_outcome outcome = program_run(copying, NULL);
+		failed = atomic_exchange(&faults->disk_fails_in, 0) <= 0;
+		assert_true(outcome.status == 0 || (failed && outcome.status == 1 && *said(outcome.err)));
+		assert_int_equal(access(path, F_OK) == 0, outcome.status == 0);
+		if (outcome.status == 0) // SQLite can do without some calls
+			assert_int_equal(service_number(&copy, "SELECT count(*) FROM document"), 2);
+		failures += outcome.status;
+		program_free(&outcome);
+	}
+	check_report("the n-th call on the disk fails: at %d copies, of which %d failed, were told and not left",
+	             copies, failures);
+	assert_true(failures > 2);
+	// what was there, if only an empty file, is another's
+	assert_int_equal(truncate(path, 0), 0);
+	struct program_outcome outcome = program_run(copying, NULL);
+	program_expect(&outcome, 1);
+	assert_non_null(strstr(outcome.err, "File exists"));
+	assert_int_equal(access(path, F_OK), 0);
+	program_free(&outcome);
 	faults_free(faults);
 	service_free(service);
 	free(accepted.ids);
@@ -245,17 +308,24 @@ static void every_allocation_of_the_start_may_fail(void **state)
 		skip();
 	struct service *service = service_new();
 	struct faults *faults = faults_new(service->directory);
+	// our own are among the first and the last; between them are SQLite's, which are many
+	enum { OURS = 150 };
 	int starts = 0, refused = 0, step = check_soaks() ? 3 : 29;
 	(void)state;
 	service_start(service, 1);
 	service_stop(service);
-	for (int at = 1, spared = 0; spared < 3; at += step, starts++) {
+	faults->memory_calls = 0;
+	service_start(service, 1);
+	const long all = faults->memory_calls;
+	service_stop(service);
+	for (int at = 1, spared = 0; spared < 3; at += at < OURS || at > all - OURS ? 1 : step, starts++) {
 		long before = faults->memory_failed;
 		faults->memory_fails_in = at;
 		int status = service_try(service, 1);
 		faults->memory_fails_in = 0;
 		// 127: the loader had no memory for the program
 		assert_true(status == 0 || status == 1 || status == 127);
+		expect_reason(service, status);
 		refused += status != 0;
 		spared = faults->memory_failed > before ? 0 : spared + 1;
 		// it never serves with options other than those given
@@ -397,6 +467,7 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 
 CHECK_MAIN(cmocka_unit_test(a_disk_that_fails_by_chance_loses_nothing_and_the_server_recovers_by_itself),
            cmocka_unit_test(every_call_on_the_disk_may_fail),
+           cmocka_unit_test(a_copy_that_fails_says_why_and_is_not_left),
            cmocka_unit_test(every_allocation_of_a_request_may_fail),
            cmocka_unit_test(every_allocation_of_the_start_may_fail),
            cmocka_unit_test(a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_new))
