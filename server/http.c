@@ -490,19 +490,36 @@ static void take_short_turns(void)
 		log_line("cannot ask for short turns: %s", strerror(errno));
 }
 
-/* libmicrohttpd with at most n connections. */
-static struct MHD_Daemon *listen_at(struct server *server, const union address *address, int n)
+/* A socket that listens at an address, -1: none, and errno says why; made here, for libmicrohttpd would log another line
+ * about it, without the port. */
+static int listening(const union address *address)
 {
-	unsigned flags = MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME |
-	                 (address->any.sa_family == AF_INET6 ? MHD_USE_IPv6 : 0);
-	return MHD_start_daemon(
-	    flags, 0, welcome, server, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, server,
-	    MHD_OPTION_SOCK_ADDR, &address->any, MHD_OPTION_NOTIFY_COMPLETED, completed, server,
-	    MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin, server,
-	    MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT, (unsigned)n,
-	    MHD_OPTION_PER_IP_CONNECTION_LIMIT, is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
-	    MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MAX, MHD_OPTION_LISTEN_BACKLOG_SIZE,
-	    (unsigned)BACKLOG, MHD_OPTION_END);
+	const int on = 1;
+	const bool v6 = address->any.sa_family == AF_INET6;
+	const socklen_t size = v6 ? sizeof address->ip6 : sizeof address->ip4;
+	int fd = socket(address->any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+	bool ok = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
+	          (!v6 || setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &on, sizeof on) == 0) &&
+	          bind(fd, &address->any, size) == 0 && listen(fd, BACKLOG) == 0;
+	if (fd >= 0 && !ok) {
+		int error = errno;
+		close(fd);
+		errno = error;
+	}
+	return ok ? fd : -1;
+}
+
+/* libmicrohttpd on that socket, with at most n connections. */
+static struct MHD_Daemon *serving(struct server *server, const union address *address, int fd, int n)
+{
+	return MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME, 0,
+	                        welcome, server, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, server,
+	                        MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_NOTIFY_COMPLETED, completed, server,
+	                        MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin,
+	                        server, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS,
+	                        MHD_OPTION_CONNECTION_LIMIT, (unsigned)n, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+	                        is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
+	                        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MAX, MHD_OPTION_END);
 }
 
 /* Starts to answer requests, at the address and the port of the options.
@@ -536,7 +553,8 @@ bool http_start(struct server *server)
 		return false;
 	if (!connections_start(&server->connections))
 		return false;
-	server->daemon = listen_at(server, &address, n);
+	int fd = listening(&address);
+	server->daemon = fd >= 0 ? serving(server, &address, fd, n) : NULL;
 	if (server->daemon)
 		return true;
 	log_line("cannot listen on %s port %d: %s", options->listen, options->port, strerror(errno));

@@ -154,7 +154,11 @@ static void a_port_that_another_server_has_is_refused(void **state)
 	char database[128];
 	struct program_outcome other = start_another(*state, "", database);
 	program_expect(&other, 1);
-	assert_non_null(strstr(other.err, "Address already in use"));
+	// in the last line, and in no other
+	const char *told = strstr(other.err, "Address already in use\n");
+	assert_non_null(told);
+	assert_string_equal(told, "Address already in use\n");
+	assert_null(strstr(other.err, "http: "));
 	program_free(&other);
 }
 
