@@ -6,6 +6,7 @@
 
 #include <arpa/inet.h>
 #include <ctype.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,22 +76,58 @@ static bool is(const char *name, size_t n, const char *known)
 	return n == strlen(known) && !strncasecmp(name, known, n);
 }
 
+static bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
+
 static bool is_json(const char *type, size_t n)
 {
 	size_t end = 0;
-	while (end < n && type[end] != ';' && type[end] != ' ')
+	while (end < n && type[end] != ';' && !is_blank(type[end]))
 		end++;
 	return is(type, end, "application/json");
+}
+
+/* Headers that are read later. */
+static const struct {
+	const char *name;
+	size_t at; /* its head_text in struct head */
+	bool list; /* lines of one name are a list, as if a comma were between them; else the first counts */
+} texts[] = {
+    {"Authorization", offsetof(struct head, authorization), false},
+    {"Idempotency-Key", offsetof(struct head, key), false},
+    {"If-None-Match", offsetof(struct head, etags), true},
+    {"Prefer", offsetof(struct head, prefer), true},
+    {"Accept", offsetof(struct head, accept), true},
+};
+
+/* Keeps a value, or those of its elements that there is room for: half of one may mean another thing than the whole. */
+static void keep(struct head_text *text, bool list, const char *value, size_t n_value)
+{
+	size_t n = strlen(text->value), room = sizeof text->value - n;
+	if (text->lines++ > 0 && !list)
+		return;
+	int wanted = snprintf(text->value + n, room, "%s%.*s", n ? "," : "", (int)n_value, value);
+	if ((size_t)wanted < room)
+		return;
+	char *end = list ? strrchr(text->value, ',') : NULL;
+	*(end ? end : text->value) = '\0';
 }
 
 /* Takes the next header.
  *
  * Given    name    (n_name) bytes
- *          value   (n_value) bytes   without white space around
- * Test     unit_head: what_leaves_a_request_s_end_in_doubt_is_refused
+ *          value   (n_value) bytes   without white space before it; what is behind it is no part of it
+ * Source   RFC 9110 section 5.5
+ * Test     unit_head: white_space_behind_a_value_is_no_part_of_it
  */
 void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value)
 {
+	// libmicrohttpd takes a body as chunked by the value as it came, so that "chunked " is no coding it knows
+	const size_t n_coding = n_value;
+	while (n_value > 0 && is_blank(value[n_value - 1]))
+		n_value--;
 	if (!is_token(name, n_name))
 		head_refuse(head, API_BAD_REQUEST, true, "a header's name has characters that no name may have");
 	else if (!is_text(value, n_value))
@@ -107,17 +144,16 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 	} else if (is(name, n_name, "Transfer-Encoding")) {
 		head->codings++;
 		head->has_body = true;
-		head->chunked = is(value, n_value, "chunked");
+		head->chunked = is(value, n_coding, "chunked");
 	} else if (is(name, n_name, "Content-Encoding"))
 		head->encoded |= !is(value, n_value, "identity");
 	else if (is(name, n_name, "Content-Type")) {
 		head->types++;
 		head->json = is_json(value, n_value);
-	} else if (is(name, n_name, "If-None-Match")) {
-		// lines of one name are a list, as if a comma were between them
-		size_t n = strlen(head->etags);
-		snprintf(head->etags + n, sizeof head->etags - n, "%s%.*s", n ? "," : "", (int)n_value, value);
 	}
+	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+		if (is(name, n_name, texts[i].name))
+			keep((void *)((char *)head + texts[i].at), texts[i].list, value, n_value);
 }
 
 /* Takes an argument of the target.
@@ -225,7 +261,8 @@ bool head_has_etag(const char *list, const char *etag)
 	return false;
 }
 
-/* The seconds that a Prefer header is ready to wait (RFC 7240): 0 when it has no wait=N, or one that makes no sense.
+/* The seconds that a Prefer header is ready to wait (RFC 7240): 0 when it has no wait=N, or one that makes no sense; the
+ * largest int when they are more.
  *
  * Test     unit_head: the_seconds_to_wait_are_found_among_other_preferences
  */
@@ -239,8 +276,8 @@ int head_wait(const char *prefer)
 		if (*value++ != '=')
 			continue;
 		value += strspn(value, " \t\"");
-		size_t n = strspn(value, "0123456789");
-		return n == 0 || n > 6 ? 0 : atoi(value);
+		long seconds = isdigit((unsigned char)*value) ? strtol(value, NULL, 10) : 0;
+		return seconds < INT_MAX ? (int)seconds : INT_MAX;
 	}
 	return 0;
 }

@@ -9,7 +9,17 @@
 
 #include "schema/api.h"
 
-enum { HEAD_BODY_MAX = 1 << 20 }; /* [bytes] */
+enum {
+	HEAD_BODY_MAX = 1 << 20, /* [bytes] */
+	HEAD_TEXT_SIZE = 1024,   /* of a value that is kept [bytes] */
+};
+
+/* A header that is read later. */
+struct head_text {
+	int lines;                  /* headers of that name */
+	char value[HEAD_TEXT_SIZE]; /* of the first, "" when it does not fit; of a list all, but for elements
+	                               that do not */
+};
 
 struct head {
 	int hosts, lengths, codings, types; /* headers of that name */
@@ -19,7 +29,9 @@ struct head {
 	bool too_large;                     /* the length declared is over HEAD_BODY_MAX */
 	bool has_body;
 	char host[256];
-	char etags[512];      /* all If-None-Match */
+	struct head_text authorization, key; /* key: Idempotency-Key */
+	struct head_text etags;              /* If-None-Match */
+	struct head_text prefer, accept;
 	enum api_fault fault; /* the first that was found, API_NO_FAULT: none */
 	char detail[200];     /* a sentence about it */
 	bool close;           /* it leaves in doubt where the request ends */

@@ -47,11 +47,6 @@ enum {
 	STOP_TICK_NS = 10000000, /* [ns] */
 };
 
-const char *http_header(const struct request *request, const char *name)
-{
-	return MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, name);
-}
-
 /* An argument of the request's target, or what stands for an absent one. */
 const char *http_argument(const struct request *request, const char *name)
 {
@@ -62,13 +57,12 @@ const char *http_argument(const struct request *request, const char *name)
 bool http_known(const struct request *request, const char *etag)
 {
 	return !strcmp(api_operations[request->operation].method, "GET") &&
-	       head_has_etag(request->head.etags, etag);
+	       head_has_etag(request->head.etags.value, etag);
 }
 
 static double wait_until(const struct request *request)
 {
-	const char *prefer = http_header(request, "Prefer");
-	int seconds = prefer ? head_wait(prefer) : 0, most = request->server->options->wait_max;
+	int seconds = head_wait(request->head.prefer.value), most = request->server->options->wait_max;
 	return request->arrived + (seconds < most ? seconds : most);
 }
 
@@ -178,6 +172,8 @@ static void judge(struct request *request, bool needs_host)
 	    request->operation < 0 ? NULL : &api_operations[request->operation];
 	MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, take_header, head);
 	head_end(head, needs_host, server->options->host);
+	if (server->tokens)
+		request->token = tokens_name(server->tokens, head->authorization.value);
 	if (!connection_of(request->connection)->served)
 		head_refuse(head, API_UNAVAILABLE, true, "the server has as many connections as it takes");
 	if (server->tokens && !request->token && !(operation && operation->open))
@@ -232,8 +228,6 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	request->path = path;
 	request->arrived = connection_now();
 	request->operation = api_match(method, path, &request->id, request->allow);
-	if (server->tokens)
-		request->token = tokens_name(server->tokens, http_header(request, "Authorization"));
 	request->unwanted = &connection_of(request->connection)->unwanted;
 	allow(request->connection, server->options->body_timeout);
 	judge(request, strcmp(version, "HTTP/1.0") != 0);

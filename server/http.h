@@ -89,7 +89,6 @@ struct request {
 	uint64_t number;             /* told as X-Request-Id */
 };
 
-const char *http_header(const struct request *request, const char *name); /* NULL: none */
 const char *http_argument(const struct request *request,
                           const char *name); /* of ?name=value; NULL: what is absent */
 bool http_known(const struct request *request,

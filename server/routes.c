@@ -172,8 +172,8 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 {
 	struct store *store = request->server->store;
 	const struct options *options = request->server->options;
-	const char *key = http_header(request, "Idempotency-Key"), *client = request->token;
-	char hash[STUDY_HASH_SIZE], own_key[KEY_MAX + 32];
+	const char *key = request->head.key.lines ? request->head.key.value : NULL, *client = request->token;
+	char hash[STUDY_HASH_SIZE], own_key[HEAD_TEXT_SIZE + 32];
 	int64_t id;
 	// two clients may choose the same key
 	snprintf(own_key, sizeof own_key, "%s %s", client ? client : "", key ? key : "");
@@ -291,10 +291,10 @@ static const struct format result_formats[] = {{"json", "application/json"}, {"c
 /* Whether the second of two formats is asked for, by a table that only that has, by ?format= or by Accept. */
 static bool asks_second(const struct request *request, const struct format formats[2], const char *table)
 {
-	const char *name = http_argument(request, "format"), *accept = http_header(request, "Accept");
+	const char *name = http_argument(request, "format"), *accept = request->head.accept.value;
 	return table  ? true
 	       : name ? !strcmp(name, formats[1].name)
-	              : accept && strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
+	              : strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
 }
 
 /* The same, and the reply that a body of it will be.  A result never changes, so that format and version are its tag; one

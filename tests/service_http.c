@@ -66,6 +66,13 @@ static const struct {
     {GET "X: \x7f\r\n\r\n" HIDDEN, 400, 400, true, 1},
     {GET "no colon\r\n\r\n", 400, 400, true, 1},
     {GET "Expect: 200-ok\r\n\r\n", 200, 417, false, 1},
+    // white space behind a value is no part of it, but where the parser below would not see the framing
+    {"GET /livez HTTP/1.1\r\nHost: localhost \t\r\n\r\n", 200, 200, false, 1},
+    {POST "Content-Length: 2\r\nContent-Encoding: identity \r\n\r\n{}", 422, 422, false, 1},
+    {"POST /v1/studies HTTP/1.1\r\n" HOST
+     "Content-Type: application/json\t; charset=utf-8 \r\nContent-Length: 2\r\n\r\n{}",
+     422, 422, false, 1},
+    {POST "Transfer-Encoding: chunked \r\n\r\n2\r\n{}\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
     // targets
     {"GET /livez%00 HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
     {"GET /livez%00x HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},

@@ -74,6 +74,9 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 	assert_int_equal(status_of(service, "GET", "/nowhere", right, NULL), 404);
 	// of two headers the first counts: never one that a proxy did not see
 	assert_int_equal(status_of(service, "GET", "/version", wrong[6], right), 401);
+	assert_int_equal(status_of(service, "GET", "/version", "Authorization;", right), 401); // an empty one
+	strcat(right, " \t");
+	assert_int_equal(status_of(service, "GET", "/version", right, NULL), 200);
 	service_stop(service);
 	FILE *log = fopen(service->log, "r");
 	while (fgets(line, sizeof line, log))

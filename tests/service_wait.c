@@ -94,6 +94,17 @@ static void who_waits_for_nothing_is_told_304_when_the_time_is_over(void **state
 	assert_int_equal(answer.status, 304);
 	assert_true(now() - start > 0.99);
 	answer_free(&answer);
+	// preferences may come in lines of their own, and all of them are read
+	char tags[96];
+	snprintf(tags, sizeof tags, "If-None-Match: %s", first.etag);
+	start = now();
+	answer =
+	    service_ask(service, &(struct ask){.method = "GET",
+	                                       .path = path,
+	                                       .headers = {tags, "Prefer: respond-async", "Prefer: wait=1"}});
+	assert_int_equal(answer.status, 304);
+	assert_true(now() - start > 0.99);
+	answer_free(&answer);
 	// an unknown tag, or none to compare with, is answered at once: only the status shows that it did not wait
 	answer = conditional(service, path, "\"x\"", "wait=30");
 	assert_int_equal(answer.status, 200);
@@ -103,6 +114,26 @@ static void who_waits_for_nothing_is_told_304_when_the_time_is_over(void **state
 	assert_int_equal(answer.status, 200);
 	answer_free(&answer);
 	answer_free(&first);
+}
+
+static void more_seconds_than_there_are_are_the_most_there_are(void **state)
+{
+	static const char *const most[][2] = {{"POUNDD_WAIT_MAX", "1"}, {NULL}};
+	static const char *const waits[] = {"wait=999999", "wait=9999999", "wait=99999999999999999999"};
+	struct service *service = service_with(most, 1);
+	char id[17], path[64];
+	(void)state;
+	finished_study(service, id);
+	snprintf(path, sizeof path, "/v1/studies/%s", id);
+	for (size_t i = 0; i < sizeof waits / sizeof waits[0]; i++) {
+		double start = now();
+		struct answer answer = conditional(service, path, "*", waits[i]);
+		assert_int_equal(answer.status, 304);
+		if (now() - start < 0.99)
+			fail_msg("%s: %.3f s", waits[i], now() - start);
+		answer_free(&answer);
+	}
+	service_free(service);
 }
 
 /* A study that is queued behind a long one, so that it changes when the test wants. */
@@ -306,6 +337,7 @@ static void samples_for_a_client_who_has_gone_are_given_up(void **state)
 CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
            SERVED(formats_of_one_result_have_tags_of_their_own),
            SERVED(who_waits_for_nothing_is_told_304_when_the_time_is_over),
+           cmocka_unit_test(more_seconds_than_there_are_are_the_most_there_are),
            SERVED(who_waits_for_a_change_is_told_of_it),
            SERVED(a_study_can_be_followed_to_its_end_by_waiting_alone),
            SERVED(a_server_that_stops_tells_who_waits), SERVED(a_client_that_waits_and_goes_away_is_no_harm),

@@ -1,6 +1,7 @@
 /* The head of a request: what is refused before anything is done for it. */
 #include "schema/head.h"
 
+#include <limits.h>
 #include <string.h>
 
 #include "tests/check.h"
@@ -84,6 +85,59 @@ static void what_leaves_a_request_s_end_in_doubt_is_refused(void **state)
 	assert_int_equal(judged("/", (const char *const[]){"X: no host", NULL}, false).fault, API_NO_FAULT);
 }
 
+static void white_space_behind_a_value_is_no_part_of_it(void **state)
+{
+	const char *const lines[] = {
+	    "Host: localhost \t",          "Content-Type: application/json\t; charset=utf-8\t",
+	    "Content-Encoding: identity ", "Authorization: Bearer x ",
+	    "Idempotency-Key: a b  ",      "Prefer: wait=2\t",
+	    "Accept: text/csv ",           NULL};
+	(void)state;
+	struct head head = judged("/", lines, true);
+	assert_int_equal(head.fault, API_NO_FAULT);
+	assert_true(head.json);
+	assert_string_equal(head.host, "localhost");
+	assert_string_equal(head.authorization.value, "Bearer x");
+	assert_string_equal(head.key.value, "a b");
+	assert_string_equal(head.prefer.value, "wait=2");
+	assert_string_equal(head.accept.value, "text/csv");
+	assert_int_equal(head.key.lines, 1);
+	// what libmicrohttpd does not read as chunked must not be taken for it
+	const char *const coding[] = {"Host: localhost", "Transfer-Encoding: chunked ", NULL};
+	assert_int_equal(judged("/", coding, true).fault, API_BAD_REQUEST);
+	assert_string_equal(judged("/", (const char *const[]){"Accept:  \t ", NULL}, false).accept.value, "");
+}
+
+static void what_does_not_fit_is_left_out_whole(void **state)
+{
+	char line[HEAD_TEXT_SIZE + 64];
+	struct head head;
+	(void)state;
+	static const char last[] = ",text/csv;q=0.5";
+	int whole = 0;
+	// a last element that is longer by a byte every time, and would be text/csv;q=0 once
+	for (int before = HEAD_TEXT_SIZE - 24; before < HEAD_TEXT_SIZE; before++) {
+		memset(line, 'x', sizeof line);
+		strcpy(line + before, last);
+		head_target(&head, "/");
+		head_header(&head, "Accept", 6, "a/b", 3);
+		head_header(&head, "Accept", 6, line, strlen(line));
+		const char *end = strstr(head.accept.value, ",t");
+		whole += end && !strcmp(end, last);
+		assert_true(!end || !strcmp(end, last));
+		assert_memory_equal(head.accept.value, "a/b", 3);
+	}
+	assert_in_range(whole, 1, 23);
+	memset(line, 'x', sizeof line);
+	line[HEAD_TEXT_SIZE] = '\0';
+	head_header(&head, "Authorization", 13, line, strlen(line));
+	// never one that a proxy did not see
+	head_header(&head, "Authorization", 13, "Bearer y", 8);
+	assert_string_equal(head.authorization.value, "");
+	head_header(&head, "Idempotency-Key", 15, line, HEAD_TEXT_SIZE - 1);
+	assert_int_equal(strlen(head.key.value), HEAD_TEXT_SIZE - 1);
+}
+
 static void a_host_is_an_address_localhost_or_a_name_that_was_given(void **state)
 {
 	static const char *const ours[] = {"localhost",       "LOCALHOST:1",  "127.0.0.1",      "127.0.0.1:8437",
@@ -156,7 +210,10 @@ static void the_seconds_to_wait_are_found_among_other_preferences(void **state)
 	    {"wait=x", 0},
 	    {"await=3", 0},
 	    {"", 0},
-	    {"wait=99999999999", 0},
+	    {"wait=9999999", 9999999},
+	    {"wait=99999999999", INT_MAX},
+	    {"wait=99999999999999999999", INT_MAX},
+	    {"wait=00000000007", 7},
 	    {"wait=5; foo=bar", 5},
 	    {"return=minimal,wait=2", 2},
 	    {"waiting=3", 0},
@@ -178,22 +235,28 @@ static void the_first_fault_is_told_in_visible_ascii(void **state)
 	assert_true(head.close);
 }
 
-static void the_tags_of_all_lines_are_one_list(void **state)
+static void the_lines_of_one_name_are_one_list(void **state)
 {
-	const char *const lines[] = {"Host: localhost", "If-None-Match: \"x\"", "if-none-match: W/\"a,b\"", NULL};
+	const char *const lines[] = {
+	    "Host: localhost", "If-None-Match: \"x\"", "if-none-match: W/\"a,b\"", "Prefer: respond-async",
+	    "Prefer: wait=2",  "Accept: text/csv",     "Accept: */*;q=0.5",        NULL};
 	(void)state;
 	struct head head = judged("/", lines, true);
-	assert_true(head_has_etag(head.etags, "\"x\""));
-	assert_true(head_has_etag(head.etags, "\"a,b\""));
-	assert_false(head_has_etag(head.etags, "\"a\""));
+	assert_true(head_has_etag(head.etags.value, "\"x\""));
+	assert_true(head_has_etag(head.etags.value, "\"a,b\""));
+	assert_false(head_has_etag(head.etags.value, "\"a\""));
+	assert_int_equal(head_wait(head.prefer.value), 2);
+	assert_string_equal(head.accept.value, "text/csv,*/*;q=0.5");
 	head = judged("/", (const char *const[]){"Host: localhost", "If-None-Match: *", NULL}, true);
-	assert_true(head_has_etag(head.etags, "\"x\""));
+	assert_true(head_has_etag(head.etags.value, "\"x\""));
 }
 
 CHECK_MAIN(cmocka_unit_test(the_first_fault_is_told_in_visible_ascii),
-           cmocka_unit_test(the_tags_of_all_lines_are_one_list),
+           cmocka_unit_test(the_lines_of_one_name_are_one_list),
            cmocka_unit_test(a_target_is_visible_ascii_and_its_escapes_are_whole),
            cmocka_unit_test(what_leaves_a_request_s_end_in_doubt_is_refused),
+           cmocka_unit_test(white_space_behind_a_value_is_no_part_of_it),
+           cmocka_unit_test(what_does_not_fit_is_left_out_whole),
            cmocka_unit_test(a_host_is_an_address_localhost_or_a_name_that_was_given),
            cmocka_unit_test(a_tag_is_found_in_every_form_of_a_list),
            cmocka_unit_test(the_seconds_to_wait_are_found_among_other_preferences))
