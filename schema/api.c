@@ -50,7 +50,7 @@ const struct api_operation api_operations[] = {
 const struct api_argument api_arguments[] = {
 	{NULL,      "id",              "path",   NULL, 0, 0, NULL, "of the study: 16 hexadecimal digits"},
 	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", "true: checks the study, tells its cost and stores nothing"},
-	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, "1 to 200 characters; the same key and body again give the study of the first time"},
+	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, "1 to 200 characters of UTF-8; the same key and body again give the study of the first time"},
 	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, "only studies of this status"},
 	{"list",    "limit",           "query",  NULL, 1, 100, "20", "studies on a page"},
 	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, "the next of an earlier page"},

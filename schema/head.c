@@ -13,6 +13,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "schema/gate.h"
+
 /* Notes why a request is refused, if nothing was noted before.
  *
  * Given    close    it leaves in doubt where the request ends
@@ -202,6 +204,28 @@ void head_end(struct head *head, bool needs_host, const char *names)
 		head_refuse(head, API_NOT_JSON, false, "the only Content-Encoding is identity");
 	if (head->too_large)
 		head_refuse(head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+}
+
+/* Judges the Idempotency-Key of a request that may have one: it is of UTF-8, as what is stored is text, and a second one
+ * would be a key that a proxy did not see.
+ *
+ * Test     unit_head: a_key_is_one_text_of_1_to_200_characters
+ */
+void head_key(struct head *head)
+{
+	const char *at = head->key.value, *end = at + strlen(at);
+	size_t n = 1;
+	int characters = 0;
+	if (head->key.lines == 0)
+		return;
+	for (; at < end && (n = gate_character(at, (size_t)(end - at))) > 0; at += n)
+		characters++;
+	if (head->key.lines > 1)
+		head_refuse(head, API_BAD_REQUEST, false, "a request has one Idempotency-Key");
+	else if (n == 0)
+		head_refuse(head, API_BAD_REQUEST, false, "an Idempotency-Key must be UTF-8");
+	else if (characters < 1 || characters > HEAD_KEY_MAX)
+		head_refuse(head, API_BAD_REQUEST, false, "an Idempotency-Key has 1 to %d characters", HEAD_KEY_MAX);
 }
 
 /* Whether a Host header names this server: an address in digits, localhost or one of the names, with any port.  A page

@@ -12,6 +12,7 @@
 enum {
 	HEAD_BODY_MAX = 1 << 20, /* [bytes] */
 	HEAD_TEXT_SIZE = 1024,   /* of a value that is kept [bytes] */
+	HEAD_KEY_MAX = 200,      /* characters of an Idempotency-Key */
 };
 
 /* A header that is read later. */
@@ -42,6 +43,7 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 /* the last; `names` are hosts, between commas, besides localhost and addresses (NULL: none) */
 void head_end(struct head *head, bool needs_host, const char *names);
 
+void head_key(struct head *head); /* after that, if the request may have an Idempotency-Key */
 void head_argument(struct head *head, int operation, const char *name, const char *value);
 /* a fault that is found later */
 void head_refuse(struct head *head, enum api_fault fault, bool close, const char *format, ...)

@@ -186,6 +186,8 @@ static void judge(struct request *request, bool needs_host)
 		head_refuse(head, API_NOT_ALLOWED, false, "this path does not take that method");
 	else if (operation->takes_study && !head->json)
 		head_refuse(head, API_NOT_JSON, false, "Content-Type must be application/json");
+	else if (operation->takes_study)
+		head_key(head);
 	if (head->fault == API_NO_FAULT)
 		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, request);
 }

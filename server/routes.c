@@ -19,12 +19,12 @@
 #include "schema/writer.h"
 #include "server/http.h"
 #include "server/store.h"
+#include "server/token.h"
 #include "server/work.h"
 
 enum {
 	RETRY_AFTER = 1,      /* [s] */
 	RETRY_AFTER_MAX = 60, /* [s] */
-	KEY_MAX = 200,        /* characters of an Idempotency-Key */
 	MIB = 1 << 20,
 };
 
@@ -173,12 +173,10 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 	struct store *store = request->server->store;
 	const struct options *options = request->server->options;
 	const char *key = request->head.key.lines ? request->head.key.value : NULL, *client = request->token;
-	char hash[STUDY_HASH_SIZE], own_key[HEAD_TEXT_SIZE + 32];
+	char hash[STUDY_HASH_SIZE], own_key[TOKEN_NAME_SIZE + HEAD_TEXT_SIZE];
 	int64_t id;
 	// two clients may choose the same key
 	snprintf(own_key, sizeof own_key, "%s %s", client ? client : "", key ? key : "");
-	if (key && (!*key || strlen(key) > KEY_MAX))
-		return problem(API_BAD_REQUEST, "an Idempotency-Key has 1 to 200 characters");
 	if (!study_hash(study, hash))
 		return no_memory();
 	const struct store_study row = {.kind = study_kind_name(study->kind),

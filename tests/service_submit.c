@@ -9,7 +9,7 @@
 
 static struct answer post(const struct service *service, const char *study, const char *key)
 {
-	char header[300];
+	char header[500];
 	snprintf(header, sizeof header, "Idempotency-Key: %s", key ? key : "");
 	return service_ask(service,
 	                   &(struct ask){.method = "POST",
@@ -93,16 +93,42 @@ static void a_key_is_known_after_a_crash_and_to_one_body_only(void **state)
 	assert_int_equal(gone.status, 204);
 	struct answer fresh = post(service, other, "\"a key, \xc3\xa4\"");
 	assert_int_equal(fresh.status, 201);
-	char lengthy[202] = {0};
-	memset(lengthy, 'k', 201);
-	struct answer long_key = post(service, study, lengthy);
-	problem_is(&long_key, 400, "bad-request");
 	answer_free(&fresh);
 	answer_free(&gone);
 	answer_free(&free_of_key);
 	answer_free(&again);
 	answer_free(&first);
 	free(other);
+	free(study);
+}
+
+static void a_key_is_one_text_of_1_to_200_characters(void **state)
+{
+	struct service *service = *state;
+	char *study = service_study(2, 1, 1), key[2 * 201 + 1] = "";
+	struct answer first = post(service, study, "a"), again = post(service, study, "a \t");
+	assert_int_equal(first.status, 201);
+	assert_string_equal(first.location, again.location);
+	for (int i = 0; i < 200; i++)
+		strcat(key, "\xc3\xa9");
+	struct answer lengthy = post(service, study, key);
+	assert_int_equal(lengthy.status, 201);
+	struct answer longer = post(service, study, strcat(key, "\xc3\xa9"));
+	problem_is(&longer, 400, "bad-request");
+	struct answer latin = post(service, study, "caf\xe9");
+	problem_is(&latin, 400, "bad-request");
+	struct answer two =
+	    service_ask(service, &(struct ask){.method = "POST",
+	                                       .path = "/v1/studies",
+	                                       .headers = {"Content-Type: application/json", "Idempotency-Key: b",
+	                                                   "Idempotency-Key: a"},
+	                                       .body = study,
+	                                       .length = strlen(study)});
+	problem_is(&two, 400, "bad-request");
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 2);
+	answer_free(&lengthy);
+	answer_free(&again);
+	answer_free(&first);
 	free(study);
 }
 
@@ -338,6 +364,7 @@ static void the_public_suite_is_posted_and_judged_as_it_says(void **state)
 
 CHECK_MAIN(SERVED(a_hundred_posts_at_once_with_one_key_are_one_study),
            SERVED(a_key_is_known_after_a_crash_and_to_one_body_only),
+           SERVED(a_key_is_one_text_of_1_to_200_characters),
            cmocka_unit_test(a_full_queue_is_503_until_there_is_room),
            cmocka_unit_test(a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked),
            SERVED(a_study_beyond_all_measure_is_refused_without_making_it),

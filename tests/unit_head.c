@@ -224,6 +224,46 @@ static void the_seconds_to_wait_are_found_among_other_preferences(void **state)
 			fail_msg("%s: %d", cases[i].prefer, head_wait(cases[i].prefer));
 }
 
+static void a_key_is_one_text_of_1_to_200_characters(void **state)
+{
+	static const struct {
+		const char *unit; /* so many of it are a key */
+		int n;
+		bool refused;
+	} cases[] = {
+	    {"", 1, true},
+	    {"k", 1, false},
+	    {"k", 200, false},
+	    {"k", 201, true},
+	    {"\xc3\xa9", 200, false},
+	    {"\xc3\xa9", 201, true},
+	    {"\xf0\x9f\x8f\xa2", 200, false},
+	    {"\xf0\x9f\x8f\xa2", 201, true},
+	    {"k", 5000, true},
+	    {"\xe9", 1, true},
+	    {"\xc3", 1, true},
+	    {"\xed\xa0\x80", 1, true},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		char line[5100] = "Idempotency-Key: ";
+		for (int k = 0; k < cases[i].n; k++)
+			strcat(line, cases[i].unit);
+		struct head head = judged("/", (const char *const[]){"Host: localhost", line, NULL}, true);
+		head_key(&head);
+		if ((head.fault == API_BAD_REQUEST) != cases[i].refused || head.close)
+			fail_msg("case %zu: %d %s", i, head.fault, head.detail);
+	}
+	struct head none = judged("/", (const char *const[]){"Host: localhost", NULL}, true);
+	head_key(&none);
+	assert_int_equal(none.fault, API_NO_FAULT);
+	struct head two = judged(
+	    "/", (const char *const[]){"Host: localhost", "Idempotency-Key: a", "idempotency-key: a", NULL},
+	    true);
+	head_key(&two);
+	assert_int_equal(two.fault, API_BAD_REQUEST);
+}
+
 static void the_first_fault_is_told_in_visible_ascii(void **state)
 {
 	struct head head = judged("/", (const char *const[]){"Host: localhost", NULL}, true);
@@ -251,7 +291,8 @@ static void the_lines_of_one_name_are_one_list(void **state)
 	assert_true(head_has_etag(head.etags.value, "\"x\""));
 }
 
-CHECK_MAIN(cmocka_unit_test(the_first_fault_is_told_in_visible_ascii),
+CHECK_MAIN(cmocka_unit_test(a_key_is_one_text_of_1_to_200_characters),
+           cmocka_unit_test(the_first_fault_is_told_in_visible_ascii),
            cmocka_unit_test(the_lines_of_one_name_are_one_list),
            cmocka_unit_test(a_target_is_visible_ascii_and_its_escapes_are_whole),
            cmocka_unit_test(what_leaves_a_request_s_end_in_doubt_is_refused),
