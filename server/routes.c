@@ -286,13 +286,14 @@ struct format {
 
 static const struct format result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
 
-/* Whether the second of two formats is asked for, by a table that only that has, by ?format= or by Accept. */
+/* Whether the second of two formats is asked for, by a table that only that has, by ?format=, or by Accept, which must want
+ * it more: the first is for who wants none of them, too. */
 static bool asks_second(const struct request *request, const struct format formats[2], const char *table)
 {
 	const char *name = http_argument(request, "format"), *accept = request->head.accept.value;
 	return table  ? true
 	       : name ? !strcmp(name, formats[1].name)
-	              : strcasestr(accept, formats[1].type) && !strcasestr(accept, formats[0].type);
+	              : head_quality(accept, formats[1].type) > head_quality(accept, formats[0].type);
 }
 
 /* The same, and the reply that a body of it will be.  A result never changes, so that format and version are its tag; one

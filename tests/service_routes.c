@@ -407,6 +407,42 @@ static void samples_come_as_csv_or_npy_with_a_row_per_run(void **state)
 	problem_is(service_get(service, "/v1/studies/%s/samples?format=json", id), 400, "format must be");
 }
 
+static void the_form_that_is_wanted_most_comes_and_the_first_of_equals(void **state)
+{
+	static const struct {
+		const char *document, *accept, *type;
+	} cases[] = {
+	    {"results", "text/csv;q=0.9, application/json;q=0.1", "text/csv"},
+	    {"results", "text/csv, application/json;q=0.5", "text/csv"},
+	    {"results", "text/csv;q=0.5, application/json", "application/json"},
+	    {"results", "text/*", "text/csv"},
+	    {"results", "text/csv;q=0, */*", "application/json"},
+	    {"results", "text/csv, application/json", "application/json"},
+	    {"results", "*/*", "application/json"},
+	    {"results", "image/png", "application/json"},
+	    {"results", "text/csv ", "text/csv"},
+	    {"samples", "application/octet-stream;q=0.9,text/csv;q=0.1", "application/octet-stream"},
+	    {"samples", "application/octet-stream;q=0.1,text/csv;q=0.9", "text/csv"},
+	    {"samples", "application/*", "application/octet-stream"},
+	    {"samples", "*/*", "text/csv"},
+	    {"samples", "image/png", "text/csv"},
+	};
+	struct service *service = *state;
+	char id[17], path[64], header[96];
+	struct answer answer = finished(service, "results", "text/html, */*;q=0.8", id);
+	assert_string_equal(answer.type, "application/json");
+	answer_free(&answer);
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		snprintf(path, sizeof path, "/v1/studies/%s/%s", id, cases[i].document);
+		snprintf(header, sizeof header, "Accept: %s", cases[i].accept);
+		answer = service_ask(service, &(struct ask){.method = "GET", .path = path, .headers = {header}});
+		status_is(&answer, 200);
+		if (strcmp(answer.type, cases[i].type) != 0)
+			fail_msg("%s, %s: %s", path, header, answer.type);
+		answer_free(&answer);
+	}
+}
+
 struct asker {
 	pthread_t thread;
 	const struct service *service;
@@ -566,6 +602,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(list_arguments_that_make_no_sense_are_400),
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),
+           SERVED(the_form_that_is_wanted_most_comes_and_the_first_of_equals),
            SERVED(samples_asked_for_by_many_at_once_are_the_same_for_all),
            SERVED(others_are_answered_while_large_results_become_csv),
            SERVED(a_response_study_has_no_samples_and_the_server_lives_on),

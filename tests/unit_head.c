@@ -217,11 +217,67 @@ static void the_seconds_to_wait_are_found_among_other_preferences(void **state)
 	    {"wait=5; foo=bar", 5},
 	    {"return=minimal,wait=2", 2},
 	    {"waiting=3", 0},
+	    {"a=\"x, wait=3\", wait=4", 4},
 	};
 	(void)state;
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
 		if (head_wait(cases[i].prefer) != cases[i].seconds)
 			fail_msg("%s: %d", cases[i].prefer, head_wait(cases[i].prefer));
+}
+
+static void a_type_is_wanted_as_much_as_the_closest_range_says(void **state)
+{
+	static const struct {
+		const char *accept;
+		int csv, json; /* [thousandths] */
+	} cases[] = {
+	    {"", 0, 0},
+	    {"*/*", 1000, 1000},
+	    {"text/csv", 1000, 0},
+	    {"TEXT/CSV;Q=0.5", 500, 0},
+	    {"text/*", 1000, 0},
+	    {"text/csv;q=0.9, application/json;q=0.1", 900, 100},
+	    {"text/csv, application/json;q=0.5", 1000, 500},
+	    {"text/csv;q=0, */*", 0, 1000},
+	    {"*/*, text/csv;q=0", 0, 1000},
+	    {"*/*;q=0.1,text/*;q=0.2,text/csv;q=0.3", 300, 100},
+	    {"text/csv;q=0.3,text/*;q=0.2,*/*;q=0.1", 300, 100},
+	    {"text/* ; q=0.250 , application/json ;q=1.000", 250, 1000},
+	    {",, text/csv ,", 1000, 0},
+	    // of parameters only the weight is looked at, but where a range without them is there
+	    {"text/csv;header=present", 1000, 0},
+	    {"text/csv; header=present; q=0.4", 400, 0},
+	    {"text/csv;header=present;q=0.4, text/csv;q=0.6", 600, 0},
+	    {"text/csv;q=0.6, text/csv;header=present;q=0.4", 600, 0},
+	    {"text/csv;header=absent;q=0.4, text/*", 400, 0},
+	    {"text/csv;q=0.6;q=0.1;extension", 600, 0},
+	    {"text/csv;x=\"a;q=0.1, application/json\";q=0.7", 700, 0},
+	    {"text/csv;x=\"\\\";q=0.1\";q=0.7", 700, 0},
+	    {"text/csv;x=\"open, application/json", 1000, 0},
+	    // what makes no sense counts for nothing
+	    {"text/csv;q=2, */*;q=0.5", 500, 500},
+	    {"text/csv;q=1.001", 0, 0},
+	    {"text/csv;q=", 0, 0},
+	    {"text/csv;q=-1", 0, 0},
+	    {"text/csv;q=0x1", 0, 0},
+	    {"text/csv;q=0.5x", 0, 0},
+	    {"text/csv;q=1e0", 0, 0},
+	    {"text/csv;q=0.", 0, 0},
+	    {"text/csv;q=0.12399", 123, 0},
+	    {"text/csvx", 0, 0},
+	    {"text/cs", 0, 0},
+	    {"text", 0, 0},
+	    {"*", 0, 0},
+	    {"*/csv", 0, 0},
+	    {"text/html, image/gif, *; q=.2, */*; q=.2", 0, 0},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		int csv = head_quality(cases[i].accept, "text/csv"),
+		    json = head_quality(cases[i].accept, "application/json");
+		if (csv != cases[i].csv || json != cases[i].json)
+			fail_msg("%s: %d, %d", cases[i].accept, csv, json);
+	}
 }
 
 static void a_key_is_one_text_of_1_to_200_characters(void **state)
@@ -291,7 +347,8 @@ static void the_lines_of_one_name_are_one_list(void **state)
 	assert_true(head_has_etag(head.etags.value, "\"x\""));
 }
 
-CHECK_MAIN(cmocka_unit_test(a_key_is_one_text_of_1_to_200_characters),
+CHECK_MAIN(cmocka_unit_test(a_type_is_wanted_as_much_as_the_closest_range_says),
+           cmocka_unit_test(a_key_is_one_text_of_1_to_200_characters),
            cmocka_unit_test(the_first_fault_is_told_in_visible_ascii),
            cmocka_unit_test(the_lines_of_one_name_are_one_list),
            cmocka_unit_test(a_target_is_visible_ascii_and_its_escapes_are_whole),
