@@ -239,6 +239,13 @@ static void samples_of_blocks_that_cannot_be_used_are_500_but_409_from_another_v
 		struct answer samples = service_get(service, "/v1/studies/%s/samples", id);
 		assert_int_equal(samples.status, another ? 409 : 500);
 		assert_non_null(strstr(samples.body, another ? "another version" : "result-corrupt"));
+		char path[64];
+		snprintf(path, sizeof path, "/v1/studies/%s/samples", id);
+		struct answer known = service_ask(
+		    service, &(struct ask){.method = "GET", .path = path, .headers = {"If-None-Match: *"}});
+		if (another && known.status != 409)
+			fail_msg("%d for who has samples already", known.status);
+		answer_free(&known);
 		answer_free(&samples);
 		answer_free(&result);
 		service_stop(service);

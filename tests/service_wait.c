@@ -70,6 +70,40 @@ static void every_form_of_a_known_tag_is_304_on_every_document(void **state)
 	answer_free(&api);
 }
 
+/* A tag is no reason to say that nothing changed where there is nothing. */
+static void a_study_without_samples_is_409_whatever_tag_is_sent(void **state)
+{
+	static const char *const studies[] = {
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+	    "3}], "
+	    "\"excitation\": {\"cycles\": 1, \"signals\": 1}}}",
+	    "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	    "{\"frequency_hz\": 3}], \"excitation\": {\"cycles\": 1, \"signals\": 1}}, "
+	    "\"spectrum\": {\"frequencies_hz\": [1]}}"};
+	struct service *service = *state;
+	char id[17], path[64];
+	finished_study(service, id);
+	struct answer has = service_get(service, "/v1/studies/%s/samples", id);
+	for (size_t i = 0; i < sizeof studies / sizeof studies[0]; i++) {
+		service_submit(service, studies[i], id);
+		assert_true(service_wait(service, id, "succeeded", 0));
+		snprintf(path, sizeof path, "/v1/studies/%s/samples", id);
+		const char *const tags[] = {"\"x\"", "*", has.etag};
+		for (int t = 0; t < 3; t++) {
+			struct answer answer = conditional(service, path, tags[t], NULL);
+			if (answer.status != 409)
+				fail_msg("%s with %s: %d", path, tags[t], answer.status);
+			answer_free(&answer);
+		}
+	}
+	service_histories(service, 1, id);
+	snprintf(path, sizeof path, "/v1/studies/%s/samples", id);
+	struct answer answer = conditional(service, path, has.etag, NULL);
+	assert_int_equal(answer.status, 304);
+	answer_free(&answer);
+	answer_free(&has);
+}
+
 static void formats_of_one_result_have_tags_of_their_own(void **state)
 {
 	struct service *service = *state;
@@ -335,6 +369,7 @@ static void samples_for_a_client_who_has_gone_are_given_up(void **state)
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
+           SERVED(a_study_without_samples_is_409_whatever_tag_is_sent),
            SERVED(formats_of_one_result_have_tags_of_their_own),
            SERVED(who_waits_for_nothing_is_told_304_when_the_time_is_over),
            cmocka_unit_test(more_seconds_than_there_are_are_the_most_there_are),
