@@ -48,22 +48,22 @@ const struct api_operation api_operations[] = {
 };
 
 const struct api_argument api_arguments[] = {
-	{NULL,      "id",              "path",   NULL, 0, 0, NULL, "of the study: 16 hexadecimal digits"},
-	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", "true: checks the study, tells its cost and stores nothing"},
-	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, "1 to 200 characters of UTF-8; the same key and body again give the study of the first time"},
-	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, "only studies of this status"},
-	{"list",    "limit",           "query",  NULL, 1, 100, "20", "studies on a page"},
-	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, "the next of an earlier page"},
-	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
-	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, "wait=N: with If-None-Match, waits up to N seconds for a change"},
-	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
-	{"results", "partial",         "query",  " true false ", 0, 0, "false", "true: of the rows that are complete so far, if there is no result yet"},
-	{"results", "format",          "query",  " json csv ", 0, 0, NULL, "wins over Accept"},
-	{"results", "table",           "query",  TABLES, 0, 0, NULL, "of a sensitivity result, as CSV; inputs when it is CSV and this is absent"},
-	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
-	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, "wins over Accept"},
-	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
-	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, "an ETag of before: 304 if nothing changed"},
+	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "of the study: 16 hexadecimal digits"},
+	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", .text = "true: checks the study, tells its cost and stores nothing"},
+	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, .text = "1 to 200 characters of UTF-8; the same key and body again give the study of the first time"},
+	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies of this status", .blank = true},
+	{"list",    "limit",           "query",  NULL, 1, 100, "20", .text = "studies on a page", .blank = true},
+	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, .text = "the next of an earlier page", .blank = true},
+	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, .text = "wait=N: with If-None-Match, waits up to N seconds for a change, or as long as the server lets it"},
+	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"results", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
+	{"results", "format",          "query",  " json csv ", 0, 0, NULL, .text = "wins over Accept"},
+	{"results", "table",           "query",  TABLES, 0, 0, NULL, .text = "of a sensitivity result, as CSV; inputs when it is CSV and this is absent"},
+	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, .text = "wins over Accept"},
+	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 };
 // clang-format on
 const int api_arguments_count = sizeof api_arguments / sizeof api_arguments[0];
@@ -96,6 +96,8 @@ void api_expected(const struct api_argument *argument, char *text, size_t size)
 bool api_takes(const struct api_argument *argument, const char *value)
 {
 	char *rest;
+	if (!*value)
+		return argument->blank;
 	if (argument->choices)
 		return !strchr(value, ' ') && fields_listed(argument->choices, value);
 	if (argument->max == 0)

@@ -78,6 +78,7 @@ struct api_argument {
 	int min, max;                 /* a whole number in [min, max], when max > 0 */
 	const char *absent;           /* what stands for it when it is not there; NULL: nothing */
 	const char *text;
+	bool blank; /* it may be empty, which is as if it were not there */
 };
 
 extern const struct api_argument api_arguments[];

@@ -171,7 +171,7 @@ void head_argument(struct head *head, int operation, const char *name, const cha
 	if (*name && !argument)
 		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not an argument of %s", name,
 		            api_operations[operation].path);
-	else if (*name && (!*value || !api_takes(argument, value))) {
+	else if (*name && !api_takes(argument, value)) {
 		api_expected(argument, expected, sizeof expected);
 		head_refuse(head, API_BAD_REQUEST, false, "%s must be %s", name, expected);
 	}

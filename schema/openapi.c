@@ -353,6 +353,8 @@ static void argument(struct writer *w, const struct api_argument *of)
 	writer_text(w, "in", of->place);
 	writer_bool(w, "required", !strcmp(of->place, "path"));
 	writer_text(w, "description", of->text);
+	if (of->blank)
+		writer_bool(w, "allowEmptyValue", true);
 	object(w, "schema");
 	writer_text(w, "type", of->max ? "integer" : "string");
 	if (of->max) {

@@ -47,11 +47,11 @@ enum {
 	STOP_TICK_NS = 10000000, /* [ns] */
 };
 
-/* An argument of the request's target, or what stands for an absent one. */
+/* An argument of the request's target, or what stands for an absent or an empty one. */
 const char *http_argument(const struct request *request, const char *name)
 {
 	const char *value = MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
-	return value ? value : api_argument(request->operation, name, "query")->absent;
+	return value && *value ? value : api_argument(request->operation, name, "query")->absent;
 }
 
 bool http_known(const struct request *request, const char *etag)

@@ -24,10 +24,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
 	snprintf(id_text, sizeof id_text, "%016llx", (unsigned long long)(operation >= 0 ? id : 0));
 	if (operation >= 0 && strchr(api_operations[operation].path, '{') && !strstr(path, id_text))
 		abort();
-	for (int i = 0; path && i < api_arguments_count; i++)
-		if (api_takes(&api_arguments[i], path) && api_arguments[i].max > 0 &&
-		    (atoi(path) < api_arguments[i].min || atoi(path) > api_arguments[i].max))
+	for (int i = 0; path && i < api_arguments_count; i++) {
+		const struct api_argument *of = &api_arguments[i];
+		bool wrong = *path ? of->max > 0 && (atoi(path) < of->min || atoi(path) > of->max) : !of->blank;
+		if (api_takes(of, path) && wrong)
 			abort();
+	}
 	free(text);
 	return 0;
 }

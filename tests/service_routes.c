@@ -318,13 +318,38 @@ static void the_list_is_newest_first_and_pages_by_cursor(void **state)
 
 static void list_arguments_that_make_no_sense_are_400(void **state)
 {
-	static const char *const arguments[] = {
-	    "limit=0", "limit=101", "limit=",  "limit=1x",   "status=new",
-	    "status=", "cursor=1",  "cursor=", "cursor=%27", "limit=99999999999999999999",
-	    "cursor"};
+	static const char *const arguments[] = {"limit=0",    "limit=101",
+	                                        "limit=1x",   "status=new",
+	                                        "cursor=1",   "cursor=%27",
+	                                        "limit=+",    "limit=99999999999999999999",
+	                                        "status=%20", "status=&status=queued"};
 	struct service *service = *state;
 	for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++)
-		problem_is(service_get(service, "/v1/studies?%s", arguments[i]), 400, "must be");
+		problem_is(service_get(service, "/v1/studies?%s", arguments[i]), 400,
+		           strchr(arguments[i], '&') ? "twice" : "must be");
+	problem_is(service_get(service, "/v1/studies/0123456789abcdef/results?format="), 400, "must be");
+}
+
+/* A script's variables may be empty. */
+static void list_arguments_that_are_empty_are_as_if_they_were_not_there(void **state)
+{
+	static const char *const arguments[] = {
+	    "status=&limit=&cursor=", "status=", "limit=", "cursor=", "cursor", "limit=&status=queued"};
+	struct service *service = *state;
+	for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
+		struct answer answer = service_get(service, "/v1/studies?%s", arguments[i]);
+		status_is(&answer, 200);
+		answer_free(&answer);
+	}
+	char *study = service_study(2, 1, 1), id[17];
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct answer all = service_get(service, "/v1/studies?status=&limit=1&cursor=");
+	struct reading *page = answer_read(&all);
+	assert_string_equal(reading_text(page, "/studies/0/id"), id);
+	reading_close(page);
+	answer_free(&all);
+	free(study);
 }
 
 static void results_are_404_with_retry_after_until_they_are_there(void **state)
@@ -600,6 +625,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(validate_only_tells_the_cost_and_stores_nothing),
            SERVED(the_list_is_newest_first_and_pages_by_cursor),
            SERVED(list_arguments_that_make_no_sense_are_400),
+           SERVED(list_arguments_that_are_empty_are_as_if_they_were_not_there),
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),
            SERVED(the_form_that_is_wanted_most_comes_and_the_first_of_equals),

@@ -72,7 +72,9 @@ static void an_argument_takes_what_it_says(void **state)
 	    {API_list, "limit", "100", true},
 	    {API_list, "limit", "0", false},
 	    {API_list, "limit", "101", false},
-	    {API_list, "limit", "", false},
+	    {API_list, "limit", "", true},
+	    {API_list, "status", "", true},
+	    {API_list, "cursor", "", true},
 	    {API_list, "limit", "1x", false},
 	    {API_list, "limit", " 1", false},
 	    {API_list, "limit", "+1", false},
@@ -80,6 +82,8 @@ static void an_argument_takes_what_it_says(void **state)
 	    {API_list, "status", "failed", true},
 	    {API_list, "status", "fail", false},
 	    {API_results, "format", "npy", false},
+	    {API_results, "format", "", false},
+	    {API_results, "partial", "", false},
 	    {API_samples, "format", "npy", true},
 	};
 	(void)state;
@@ -91,6 +95,11 @@ static void an_argument_takes_what_it_says(void **state)
 		// what is absent is taken too
 		assert_true(!argument->absent || api_takes(argument, argument->absent));
 	}
+	struct reading *api = document();
+	for (int i = 0; i < 3; i++)
+		assert_true(reading_has(api, "/paths/~1v1~1studies/get/parameters/%d/allowEmptyValue", i));
+	assert_false(reading_has(api, "/paths/~1v1~1studies/post/parameters/0/allowEmptyValue"));
+	reading_close(api);
 	assert_null(api_argument(API_live, "limit", "query"));
 	assert_null(api_argument(API_list, "Prefer", "query"));
 }
