@@ -100,6 +100,33 @@ static void drop_body(struct reply *reply)
 	reply->length = 0;
 }
 
+/* Never called: of an answer without a body. */
+static ssize_t no_bytes(void *of, uint64_t at, char *bytes, size_t n)
+{
+	(void)of;
+	(void)at;
+	(void)bytes;
+	(void)n;
+	return MHD_CONTENT_READER_END_OF_STREAM;
+}
+
+/* What libmicrohttpd sends for a reply, which has its body then; NULL: out of memory.
+ *
+ * It writes the body's length into a 304, too, which must be that of the 200 (RFC 9110 section 8.6): so a 304 keeps its
+ * body, which is not sent.  Where that was not made, it leaves the length out, but must close the connection. */
+static struct MHD_Response *response_of(const struct reply *reply)
+{
+	struct MHD_Response *response;
+	if (reply->status != 304 || reply->body)
+		return MHD_create_response_from_buffer(reply->length, reply->body,
+		                                       reply->body && !reply->lasts ? MHD_RESPMEM_MUST_FREE
+		                                                                    : MHD_RESPMEM_PERSISTENT);
+	response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 1, no_bytes, NULL, NULL);
+	if (response)
+		MHD_set_response_options(response, MHD_RF_HTTP_1_0_COMPATIBLE_STRICT, MHD_RO_END);
+	return response;
+}
+
 static enum MHD_Result send_reply(const struct request *request, struct reply *reply)
 {
 	struct server *server = request->server;
@@ -110,7 +137,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	const struct {
 		const char *name, *value;
 	} headers[] = {
-	    {"Content-Type", reply->type},
+	    {"Content-Type", reply->status == 304 ? NULL : reply->type},
 	    {"Connection", server->stopping ? "close" : NULL},
 	    {"Allow", reply->status == 405 ? request->allow : NULL},
 	    {"Location", reply->location[0] ? reply->location : NULL},
@@ -124,9 +151,8 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	    {"Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'"},
 	    {"Referrer-Policy", "no-referrer"},
 	};
-	struct MHD_Response *response = MHD_create_response_from_buffer(
-	    reply->length, reply->body,
-	    reply->body && !reply->lasts ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
+	const size_t sent = reply->status == 304 ? 0 : reply->length;
+	struct MHD_Response *response = response_of(reply);
 	if (!response) {
 		drop_body(reply);
 		return MHD_NO;
@@ -134,13 +160,13 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++)
 		if (headers[i].value)
 			MHD_add_response_header(response, headers[i].name, headers[i].value);
-	allow(request->connection, SEND_S + (double)reply->length / SEND_RATE);
+	allow(request->connection, SEND_S + (double)sent / SEND_RATE);
 	// who has gone is counted as others count it: it is no failure of the server's
 	const int told = reply->gone ? GONE : reply->status;
 	metrics_answered(&server->metrics, request->operation, told, seconds);
 	// a path may be longer than a line
-	log_line("%s %.20s %.400s %d %zu bytes %.1f ms", number, request->method, request->path, told,
-	         reply->length, 1e3 * seconds);
+	log_line("%s %.20s %.400s %d %zu bytes %.1f ms", number, request->method, request->path, told, sent,
+	         1e3 * seconds);
 	enum MHD_Result queued = MHD_queue_response(request->connection, (unsigned)reply->status, response);
 	MHD_destroy_response(response);
 	return queued;
@@ -332,12 +358,11 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	                     : request->replied ? request->reply
 	                                        : routes_answer(request);
 	request->reply.body = NULL; // it goes with the reply
-	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag)) {
-		drop_body(&reply);
+	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag))
 		reply.status = 304;
-	}
 	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
 		return send_reply(request, &reply);
+	drop_body(&reply);
 	MHD_suspend_connection(connection);
 	connection_wait(&server->connections, connection_of(connection), connection, request->id, reply.changes,
 	                wait_until(request));

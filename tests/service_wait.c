@@ -70,6 +70,62 @@ static void every_form_of_a_known_tag_is_304_on_every_document(void **state)
 	answer_free(&api);
 }
 
+/* The headers of an answer to a raw request, which is one answer. */
+static void asked(const struct service *service, const char *method, const char *path, const char *tags,
+                  struct raw_answer *answer)
+{
+	char bytes[256];
+	snprintf(bytes, sizeof bytes,
+	         "%s %s HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nIf-None-Match: %s\r\n\r\n", method,
+	         path, tags);
+	raw_ask(service, bytes, strlen(bytes), 10, answer);
+	assert_true(answer->closed);
+	assert_int_equal(answer->n, 1);
+}
+
+static void a_304_tells_of_no_body_and_of_no_other_length_than_that_of_the_200(void **state)
+{
+	static const char *const documents[] = {
+	    "", "/request", "/results", "/results?format=csv", "/samples", "/samples?format=npy"};
+	static const char length[] = "\r\nContent-Length: ";
+	static struct raw_answer whole, known;
+	struct service *service = *state;
+	char id[17], path[64];
+	finished_study(service, id);
+	for (size_t d = 0; d <= sizeof documents / sizeof documents[0]; d++) {
+		snprintf(path, sizeof path, "/v1/studies/%s%s", id, documents[d ? d - 1 : 0]);
+		if (d == 0)
+			strcpy(path, "/v1/openapi.json");
+		asked(service, "HEAD", path, "\"x\"", &whole);
+		asked(service, "GET", path, "*", &known);
+		assert_int_equal(whole.status, 200);
+		assert_int_equal(known.status, 304);
+		const char *told = strstr(known.text, length), *right = strstr(whole.text, length);
+		if (told && atoi(told + strlen(length)) != atoi(right + strlen(length)))
+			fail_msg("%s: %s\n%s", path, whole.text, known.text);
+		assert_null(strstr(known.text, "\r\nContent-Type:"));
+		assert_null(strstr(known.text, "\r\nTransfer-Encoding:"));
+		assert_string_equal(strstr(known.text, "\r\n\r\n"), "\r\n\r\n");
+	}
+}
+
+static void a_connection_goes_on_after_a_304(void **state)
+{
+	static struct raw_answer answer;
+	struct service *service = *state;
+	char id[17], bytes[512];
+	finished_study(service, id);
+	snprintf(bytes, sizeof bytes,
+	         "GET /v1/studies/%s HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: *\r\n\r\n"
+	         "GET /v1/studies/%s/results HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: *\r\n\r\n"
+	         "GET /version HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n",
+	         id, id);
+	raw_ask(service, bytes, strlen(bytes), 10, &answer);
+	assert_true(answer.closed);
+	assert_int_equal(answer.n, 3);
+	assert_non_null(strstr(answer.text, "\"version\": "));
+}
+
 /* A tag is no reason to say that nothing changed where there is nothing. */
 static void a_study_without_samples_is_409_whatever_tag_is_sent(void **state)
 {
@@ -369,6 +425,8 @@ static void samples_for_a_client_who_has_gone_are_given_up(void **state)
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
+           SERVED(a_304_tells_of_no_body_and_of_no_other_length_than_that_of_the_200),
+           SERVED(a_connection_goes_on_after_a_304),
            SERVED(a_study_without_samples_is_409_whatever_tag_is_sent),
            SERVED(formats_of_one_result_have_tags_of_their_own),
            SERVED(who_waits_for_nothing_is_told_304_when_the_time_is_over),
