@@ -467,7 +467,7 @@ enum pound_named { POUND_NAMED(X) POUND_N_NAMED };
 
 struct pound_indices {
 	double mean, variance; /* of the output over the rows of A and B */
-	double noise_share;    /* share of that variance due to the excitation's randomness; NAN: one signal */
+	double noise_share;    /* of the variance over all samples, due to the excitation; NAN: one signal */
 	double ratio_bias;     /* of the outputs as ratios of means of few signals, on average; NAN: one signal */
 	unsigned notes;        /* bits 1 << enum pound_note */
 	struct pound_estimate share[POUND_N_SHARES];
