@@ -220,7 +220,9 @@ static enum outcome show_table(const char *json, size_t length, const char *tabl
 {
 	struct reading *result = reading_open(json, length);
 	const char *kind = result ? reading_text(result, "/kind") : NULL;
-	bool shown = kind && (table ? indexes_print_table(result, table) : print_kind(result, kind));
+	// only a sensitivity result has tables by name
+	bool none = kind && table && strcmp(kind, "sensitivity") != 0;
+	bool shown = kind && !none && (table ? indexes_print_table(result, table) : print_kind(result, kind));
 	if (!shown && table && kind)
 		command_complain("this result has no table '%s'", table);
 	else if (!shown)

@@ -277,6 +277,11 @@ static void one_table_of_a_result_is_shown_by_its_name(void **state)
 		program_free(&shown);
 		program_free(&csv);
 	}
+	struct program_outcome other =
+	    POUND("run", "--format", "table", "--table", "inputs", "schema/examples/gap.json");
+	program_expect(&other, 1);
+	assert_string_equal(other.out, "");
+	program_free(&other);
 	static const char *const refused[][8] = {
 	    {"pound", "run", "--format", "table", "--table", "stopping", "-"},
 	    {"pound", "run", "--format", "csv", "--table", "stopping", "-"},
