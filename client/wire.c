@@ -11,8 +11,7 @@
 enum {
 	CONNECT_S = 10, /* to reach the server */
 	SILENCE_S = 60, /* without a byte before the server counts as lost */
-	MADE_S =
-	    3600, /* the same while it may be computing; a machine that is gone is noticed in a minute all the same */
+	MADE_S = 3600,  /* the same while it may be computing: a machine that is gone is noticed before */
 };
 
 struct wire {

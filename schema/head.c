@@ -108,7 +108,7 @@ static const struct {
 static void keep(struct head_text *text, bool list, const char *value, size_t n_value)
 {
 	size_t n = strlen(text->value), room = sizeof text->value - n;
-	if (text->lines++ > 0 && !list)
+	if (text->lines++ > 0 && (!list || room < 2)) // not even for a comma, which would show where to cut
 		return;
 	int wanted = snprintf(text->value + n, room, "%s%.*s", n ? "," : "", (int)n_value, value);
 	if ((size_t)wanted < room)

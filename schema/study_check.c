@@ -51,10 +51,14 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 		problems_add(problems, pointer, "names several fields, not one");
 	else if (input && field->type != FIELD_REAL)
 		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");
-	else if (problems_at(problems, "/scene"))
+	else if (problems_over(problems, "/scene/excitation/type") ||
+	         problems_at(problems, "/scene/excitation/type"))
 		return;
 	else if (!fields_used(field, NULL, excitation, NULL))
 		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
+	else if (problems_at(problems, "/scene/law") || problems_at(problems, "/scene/oscillators") ||
+	         problems_at(problems, "/scene/contact"))
+		return; // whether it has an effect is seen by these
 	else if (study_idle(study, field, oscillator))
 		problems_add(problems, pointer, "%s", study_idle(study, field, oscillator));
 }
@@ -190,7 +194,7 @@ static void check_supports(const struct pound_study *study, struct problems *pro
 }
 
 /* The interval that a field of the scene covers over all samples and cells. */
-static void reach(const struct pound_study *study, const char *path, double *low, double *high)
+void study_check_reach(const struct pound_study *study, const char *path, double *low, double *high)
 {
 	struct pound_field field = study_check_field(path);
 	*low = *high = pound_scene_field(&study->scene, field);
@@ -210,7 +214,7 @@ static void reach(const struct pound_study *study, const char *path, double *low
 }
 
 /* Whether a field's interval is known, whatever else is wrong: the field was read, and what varies it, if anything does. */
-static bool known(const struct pound_study *study, const char *path, const struct problems *problems)
+bool study_check_known(const struct pound_study *study, const char *path, const struct problems *problems)
 {
 	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
 	int n = varied_all(study, all);
@@ -245,21 +249,21 @@ static void steps(const struct pound_study *study, double *least, double *most)
 		*least = *most = study->scene.excitation.n_record - 1;
 		return;
 	}
-	reach(study, "/excitation/time_step_s", &step_low, &step_high);
+	study_check_reach(study, "/excitation/time_step_s", &step_low, &step_high);
 	if (excitation_uses(study, "/scene/excitation/cycles")) {
-		reach(study, "/excitation/cycles", &low, &high);
-		reach(study, "/excitation/frequency_hz", &frequency_low, &frequency_high);
+		study_check_reach(study, "/excitation/cycles", &low, &high);
+		study_check_reach(study, "/excitation/frequency_hz", &frequency_low, &frequency_high);
 		low /= frequency_high;
 		high /= frequency_low;
 	} else {
-		reach(study, "/excitation/duration_s", &low, &high);
+		study_check_reach(study, "/excitation/duration_s", &low, &high);
 	}
 	*least = low / step_high;
 	*most = high / step_low;
 }
 
 /* Whether the length of the ground motion is known. */
-static bool steps_known(const struct pound_study *study, const struct problems *problems)
+bool study_check_steps_known(const struct pound_study *study, const struct problems *problems)
 {
 	static const char *const all[] = {"/excitation/type", "/excitation/time_step_s",
 	                                  "/excitation/acceleration_m_s2"},
@@ -267,26 +271,29 @@ static bool steps_known(const struct pound_study *study, const struct problems *
 	                         *const by_duration[] = {"/excitation/duration_s"};
 	bool is = true;
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-		is &= known(study, all[i], problems);
+		is &= study_check_known(study, all[i], problems);
 	if (!is || study->scene.excitation.n_record)
 		return is;
 	if (!excitation_uses(study, "/scene/excitation/cycles"))
-		return known(study, by_duration[0], problems);
-	return known(study, by_cycles[0], problems) && known(study, by_cycles[1], problems);
+		return study_check_known(study, by_duration[0], problems);
+	return study_check_known(study, by_cycles[0], problems) &&
+	       study_check_known(study, by_cycles[1], problems);
 }
 
 static void check_excitation(const struct pound_study *study, struct problems *problems)
 {
 	double low, rise, fall, least, most;
-	if (known(study, "/excitation/type", problems) && excitation_uses(study, "/scene/excitation/rise") &&
-	    known(study, "/excitation/rise", problems) && known(study, "/excitation/fall", problems)) {
-		reach(study, "/excitation/rise", &low, &rise);
-		reach(study, "/excitation/fall", &low, &fall);
+	if (study_check_known(study, "/excitation/type", problems) &&
+	    excitation_uses(study, "/scene/excitation/rise") &&
+	    study_check_known(study, "/excitation/rise", problems) &&
+	    study_check_known(study, "/excitation/fall", problems)) {
+		study_check_reach(study, "/excitation/rise", &low, &rise);
+		study_check_reach(study, "/excitation/fall", &low, &fall);
 		if (rise + fall > 1.0)
 			problems_add(problems, "/scene/excitation/fall", "rise + fall must be at most 1, got %.15g",
 			             rise + fall);
 	}
-	if (!steps_known(study, problems))
+	if (!study_check_steps_known(study, problems))
 		return;
 	steps(study, &least, &most);
 	if (!(least >= 1.0))
@@ -316,7 +323,7 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 	// what an output needs of a scene
 	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/contact/model"};
 	for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++)
-		if (!known(study, needed[i], problems))
+		if (!study_check_known(study, needed[i], problems))
 			return;
 	for (int o = 0; o < study->n_outputs; o++) {
 		char pointer[POINTER_SIZE];
@@ -426,7 +433,7 @@ static double interval_steps(const struct pound_study *study, const struct pound
 	double low, high;
 	if (!pound_solver_takes_step(solver->method))
 		return 1;
-	reach(study, "/excitation/time_step_s", &low, &high);
+	study_check_reach(study, "/excitation/time_step_s", &low, &high);
 	return fmax(1, ceil(high / solver->step));
 }
 
@@ -479,7 +486,7 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	if (runs > most)
 		problems_add(problems, pointer, "asks for %.15g pounding runs, a study may have at most %d", runs,
 		             most);
-	if (!steps_known(study, problems) || problems_at(problems, "/solver"))
+	if (!study_check_steps_known(study, problems) || problems_at(problems, "/solver"))
 		return;
 	at_once *= study_samples(study);
 	if (runs > most)
@@ -531,7 +538,6 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		return;
 	}
 	// each as soon as what it reads is known, so that all is told at once
-	bool scene = !problems_at(problems, "/scene") && !problems_at(problems, "/inputs");
 	check_supports(study, problems);
 	check_excitation(study, problems);
 	if (problems_at(problems, "/sweep"))
@@ -543,9 +549,9 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	}
 	if (!problems_at(problems, "/outputs"))
 		check_outputs(study, problems);
-	if (scene && !problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
+	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
 		study_spectrum_check(study, problems);
-	if (rows_known(problems) && known(study, "/excitation/signals", problems) &&
+	if (rows_known(problems) && study_check_known(study, "/excitation/signals", problems) &&
 	    !problems_at(problems, "/convergence"))
 		check_size(study, problems);
 }

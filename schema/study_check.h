@@ -11,6 +11,13 @@ void study_check(const struct pound_study *study, struct problems *problems);
 
 bool study_check_applies(const struct pound_study *study, int output); /* in one cell at least */
 
+/* The interval of a real field of the scene, over all samples and cells. */
+void study_check_reach(const struct pound_study *study, const char *path, double *low, double *high);
+
+/* Whether that is known whatever is wrong with other members; the same of the length of the ground motion. */
+bool study_check_known(const struct pound_study *study, const char *path, const struct problems *problems);
+bool study_check_steps_known(const struct pound_study *study, const struct problems *problems);
+
 /* The varied field that a path names, for pound_scene_assign; the path names one. */
 struct pound_field study_check_field(const char *path);
 

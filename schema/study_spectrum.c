@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schema/reader.h"
+#include "schema/study_check.h"
 #include "schema/study_json.h"
 #include "schema/writer.h"
 
@@ -81,7 +82,7 @@ static double highest(const struct pound_spectrum *spectrum)
 
 /* Checks what the members of a spectrum mean beside the rest of the study.
  *
- * Given    study      -     read, its time step known to be right
+ * Given    study      -     read; its outputs and its spectrum known to be right
  * Returns  problems   -     more of them
  *
  * Test     unit_study_spectrum: a_spectrum_has_its_limits
@@ -96,7 +97,10 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 		             "\"floor_spectrum\" has whole spectra");
 	if (!whole && !(asked && study->kind == POUND_KIND_SENSITIVITY))
 		return;
-	double step = study->scene.excitation.time_step, most = highest(spectrum);
+	const bool signals = study_check_known(study, "/excitation/signals", problems);
+	double least = 0, step = 0, most = highest(spectrum);
+	if (study_check_known(study, "/excitation/time_step_s", problems))
+		study_check_reach(study, "/excitation/time_step_s", &least, &step);
 	if (most * step > PITCH_MAX)
 		problems_add(problems, "/spectrum/frequencies_hz",
 		             "must be at most %.15g over the sample step, %.15g Hz, got %.15g", PITCH_MAX,
@@ -104,12 +108,12 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 	if (asked && spectrum->n > POUND_ORDINATES_MAX)
 		problems_add(problems, "/spectrum/frequencies_hz",
 		             "must be at most %d in a sensitivity study, got %d", POUND_ORDINATES_MAX, spectrum->n);
-	if (whole && spectrum->histories &&
+	if (whole && spectrum->histories && signals && study_check_steps_known(study, problems) &&
 	    study_samples(study) * study->scene.excitation.signals > STUDY_HISTORIES_MAX)
 		problems_add(problems, "/histories", "asks for %.15g samples of all signals, at most %d",
 		             study_samples(study) * study->scene.excitation.signals, STUDY_HISTORIES_MAX);
 	double ordinates = (double)spectrum->n * study->scene.excitation.signals;
-	if (whole && ordinates > STUDY_ORDINATES_MAX)
+	if (whole && signals && ordinates > STUDY_ORDINATES_MAX)
 		problems_add(problems, "/spectrum/frequencies_hz",
 		             "asks for %.15g frequencies of all signals, at most %d", ordinates, STUDY_ORDINATES_MAX);
 }

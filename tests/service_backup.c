@@ -7,7 +7,7 @@
 #include "tests/program.h"
 #include "tests/service.h"
 
-enum { COPIES = 20, IDS_MAX = 3 * COPIES };
+enum { COPIES = 20, IDS_MAX = 3 * COPIES + 1 };
 
 static char ids[IDS_MAX][17];
 static int n_ids;

@@ -366,7 +366,9 @@ static void with_few_descriptors_fewer_are_served_and_nothing_spins(void **state
 	for (int i = 0; i < N && refused == 0; i++, served++) {
 		sockets[i] = raw_open(service);
 		raw_send(sockets[i], GET "\r\n", strlen(GET "\r\n"));
-		raw_receive(sockets[i], 0.2, &answer);
+		answer.status = 0;
+		for (int tries = 0; answer.status == 0 && tries < 50; tries++)
+			raw_receive(sockets[i], 0.2, &answer);
 		assert_true(answer.status == 200 || answer.status == 503);
 		refused += answer.status == 503;
 	}
@@ -387,14 +389,18 @@ static void what_the_library_says_again_and_again_is_told_once_a_second(void **s
 	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, NULL, &before), 0);
 	few = (struct rlimit){30, before.rlim_max};
 	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &few, NULL), 0);
+	struct timespec start, end;
+	clock_gettime(CLOCK_MONOTONIC, &start);
 	for (int i = 0; i < N; i++)
 		sockets[i] = raw_open(service);
 	usleep(1500000);
 	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &before, NULL), 0);
 	int lines = told(service, "Error accepting");
+	clock_gettime(CLOCK_MONOTONIC, &end);
 	for (int i = 0; i < N; i++)
 		close(sockets[i]);
-	assert_true(lines >= 1 && lines <= 3);
+	// the seconds that were begun, and one more
+	assert_true(lines >= 1 && lines <= end.tv_sec - start.tv_sec + 2);
 	assert_true(told(service, " like it before") >= 1);
 }
 

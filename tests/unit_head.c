@@ -128,6 +128,13 @@ static void what_does_not_fit_is_left_out_whole(void **state)
 		assert_memory_equal(head.accept.value, "a/b", 3);
 	}
 	assert_in_range(whole, 1, 23);
+	// and no other one with it, be it full
+	memset(line, 'x', sizeof line);
+	strcpy(line + HEAD_TEXT_SIZE - 1 - strlen(",text/csv"), ",text/csv");
+	head_target(&head, "/");
+	head_header(&head, "Accept", 6, line, strlen(line));
+	head_header(&head, "Accept", 6, "a/b", 3);
+	assert_string_equal(head.accept.value, line);
 	memset(line, 'x', sizeof line);
 	line[HEAD_TEXT_SIZE] = '\0';
 	head_header(&head, "Authorization", 13, line, strlen(line));

@@ -99,6 +99,18 @@ static void a_spectrum_has_its_limits(void **state)
 	document = document_with("[1, 20000]");
 	documents_problem(document, "/spectrum/frequencies_hz",
 	                  "must be at most 100 over the sample step, 10000 Hz, got 20000");
+	// the longest step of all cells, whatever else is wrong
+	char *swept = documents_with(document, "\"/contact/restitution\", \"values\": [0.2, 0.9]",
+	                             "\"/excitation/time_step_s\", \"values\": [0.001, 0.02]");
+	documents_problem(swept, "/spectrum/frequencies_hz",
+	                  "must be at most 100 over the sample step, 5000 Hz, got 20000");
+	free(swept);
+	struct problems problems;
+	char *both = documents_with(document, "\"stiffness_ratio\": 100", "\"stiffness_ratio\": -1");
+	documents_refused(both, &problems);
+	assert_int_equal(problems.n, 2);
+	assert_true(problems_at(&problems, "/spectrum/frequencies_hz"));
+	free(both);
 	free(document);
 	document = documents_with(documents_floor, "\"signals\": 3", "\"signals\": 10000");
 	char *many = documents_with(document, "\"count\": 9", "\"count\": 501");
