@@ -192,14 +192,15 @@ static void write_spectrum(struct canon *c)
  */
 void study_value(struct writer *writer, const char *name, const char *path, double value)
 {
-	int oscillator, row = (int)value;
-	bool truth = value != 0.0;
+	int oscillator;
 	const struct field *field = fields_scene(path, &oscillator);
-	if (field->type == FIELD_REAL)
+	if (field->type == FIELD_REAL) {
 		writer_number(writer, name, value);
-	else
-		write_scalar(writer, field, name,
-		             field->type == FIELD_BOOL ? (const void *)&truth : (const void *)&row);
+		return;
+	}
+	const bool truth = value != 0.0;
+	const int row = (int)value;
+	write_scalar(writer, field, name, field->type == FIELD_BOOL ? (const void *)&truth : (const void *)&row);
 }
 
 /* The name of a swept choice, "true" or "false"; NULL when the field is a number. */
