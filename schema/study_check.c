@@ -262,31 +262,34 @@ static void steps(const struct pound_study *study, double *least, double *most)
 	*most = high / step_low;
 }
 
+/* The same of all fields of a list up to NULL. */
+static bool all_known(const struct pound_study *study, const char *const paths[],
+                      const struct problems *problems)
+{
+	while (*paths && study_check_known(study, *paths, problems))
+		paths++;
+	return !*paths;
+}
+
 /* Whether the length of the ground motion is known. */
 bool study_check_steps_known(const struct pound_study *study, const struct problems *problems)
 {
 	static const char *const all[] = {"/excitation/type", "/excitation/time_step_s",
-	                                  "/excitation/acceleration_m_s2"},
-	                         *const by_cycles[] = {"/excitation/cycles", "/excitation/frequency_hz"},
-	                         *const by_duration[] = {"/excitation/duration_s"};
-	bool is = true;
-	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-		is &= study_check_known(study, all[i], problems);
-	if (!is || study->scene.excitation.n_record)
-		return is;
-	if (!excitation_uses(study, "/scene/excitation/cycles"))
-		return study_check_known(study, by_duration[0], problems);
-	return study_check_known(study, by_cycles[0], problems) &&
-	       study_check_known(study, by_cycles[1], problems);
+	                                  "/excitation/acceleration_m_s2", NULL},
+	                         *const by_cycles[] = {"/excitation/cycles", "/excitation/frequency_hz", NULL},
+	                         *const by_duration[] = {"/excitation/duration_s", NULL};
+	if (!all_known(study, all, problems))
+		return false;
+	return study->scene.excitation.n_record ||
+	       all_known(study, excitation_uses(study, "/scene/excitation/cycles") ? by_cycles : by_duration,
+	                 problems);
 }
 
 static void check_excitation(const struct pound_study *study, struct problems *problems)
 {
+	static const char *const envelope[] = {"/excitation/type", "/excitation/rise", "/excitation/fall", NULL};
 	double low, rise, fall, least, most;
-	if (study_check_known(study, "/excitation/type", problems) &&
-	    excitation_uses(study, "/scene/excitation/rise") &&
-	    study_check_known(study, "/excitation/rise", problems) &&
-	    study_check_known(study, "/excitation/fall", problems)) {
+	if (all_known(study, envelope, problems) && excitation_uses(study, "/scene/excitation/rise")) {
 		study_check_reach(study, "/excitation/rise", &low, &rise);
 		study_check_reach(study, "/excitation/fall", &low, &fall);
 		if (rise + fall > 1.0)
@@ -321,10 +324,9 @@ bool study_check_applies(const struct pound_study *study, int output)
 static void check_outputs(const struct pound_study *study, struct problems *problems)
 {
 	// what an output needs of a scene
-	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/contact/model"};
-	for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++)
-		if (!study_check_known(study, needed[i], problems))
-			return;
+	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/contact/model", NULL};
+	if (!all_known(study, needed, problems))
+		return;
 	for (int o = 0; o < study->n_outputs; o++) {
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
@@ -480,7 +482,6 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
 	int most = study->kind == POUND_KIND_CONVERGENCE ? STUDY_TRIALS_MAX : STUDY_RUNS_MAX;
 	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
-	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1);
 	if (sampled)
 		check_rows(study, problems);
 	if (runs > most)
@@ -488,13 +489,12 @@ static void check_size(const struct pound_study *study, struct problems *problem
 		             most);
 	if (!study_check_steps_known(study, problems) || problems_at(problems, "/solver"))
 		return;
-	at_once *= study_samples(study);
-	if (runs > most)
-		; // told
-	else if (runs * study_samples(study) > STUDY_WORK_MAX)
+	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
+	bool few = runs <= most; // more have been told
+	if (few && runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_add(problems, pointer, "asks for %.3g samples of ground motion in all runs, at most %.0e",
 		             runs * study_samples(study), STUDY_WORK_MAX);
-	else if (runs * study_steps(study) > STUDY_WORK_MAX)
+	else if (few && runs * study_steps(study) > STUDY_WORK_MAX)
 		problems_add(problems, pointer, "asks for %.3g steps of the solver in all runs, at most %.0e",
 		             runs * study_steps(study), STUDY_WORK_MAX);
 	if (at_once > STUDY_AT_ONCE_MAX)
