@@ -49,6 +49,10 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 #define BLOCK_DIGEST(study, number, content) \
 	"digest('" POUND_VERSION " ' || " study " || ' ' || " number " || ' ', " content ")"
 
+// what its blocks come to, as columns of their study
+#define BLOCK_SUMS \
+	"(runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), total(cpu_s) FROM block WHERE study = ?1)"
+
 static const char *const statement_text[] = {
 	[STUDY]    = STUDY_ROW "WHERE id = ?1",
 	[LIST]     = STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2",
@@ -78,11 +82,9 @@ static const char *const statement_text[] = {
 	[KEEP]     = "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) "
 	              "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, " BLOCK_DIGEST("?1", "?2", "?6") " "
 	              "FROM study WHERE id = ?1 AND status = 'running'",
-	[PROGRESS] = "UPDATE study SET (runs_done, cpu_s) = (SELECT sum(runs), sum(cpu_s) FROM block WHERE study = ?1), "
-	              "attempt_kept = attempt WHERE id = ?1",
+	[PROGRESS] = "UPDATE study SET " BLOCK_SUMS ", attempt_kept = attempt WHERE id = ?1",
 	[PRUNE]    = "DELETE FROM block WHERE study = ?1 AND sha256 IS NOT " BLOCK_DIGEST("study", "number", "content"),
-	[RECOUNT]  = "UPDATE study SET (runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), coalesce(sum(cpu_s), 0) "
-	              "FROM block WHERE study = ?1) WHERE id = ?1",
+	[RECOUNT]  = "UPDATE study SET " BLOCK_SUMS " WHERE id = ?1",
 	[FINISH]   = "UPDATE study SET status = ?2, finished = max(" NOW ", started), error = ?3, "
 	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
 	[REQUEUE]  = "UPDATE study SET status = 'queued', "
