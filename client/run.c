@@ -140,11 +140,6 @@ static double thread_cpu(void)
 	return seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-static bool has_samples(const struct pound_study *study)
-{
-	return study->spectrum.histories || study->kind == POUND_KIND_SENSITIVITY;
-}
-
 /* Writes every sample of a sensitivity study, or the histories of a study of spectra, to a file. */
 static enum outcome write_samples(const struct pound_study *study, struct pound_run *run, const char *path)
 {
@@ -216,7 +211,7 @@ enum outcome run_study(const struct options *options)
 	}
 	free(document);
 	document_advise(study);
-	if (options->samples && !has_samples(study)) {
+	if (options->samples && !samples_exist(study)) {
 		command_complain("only sensitivity studies have samples, and floor spectra with \"histories\": true");
 		study_free(study);
 		return OUTCOME_USAGE;

@@ -26,6 +26,9 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
  * per cell, output and input of a sensitivity study, per cell and signal of a response, ... */
 char *result_to_csv(const char *json, size_t json_length, const char *table, size_t *length);
 
+/* Whether a study has samples: its runs, or the histories that it asks for. */
+bool samples_exist(const struct pound_study *study);
+
 /* Every input row of a sensitivity study (of no other) and its outputs: cells in order, rows i, samples A_i, B_i,
  * AB_i of each input.  Columns: sweep paths, `row`, `sample`, input names, NAME and NAME.variance of each output. */
 char *samples_to_csv(const struct pound_study *study, const struct pound_run *run, size_t *length);

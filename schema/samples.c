@@ -131,6 +131,11 @@ static void put_line(struct writer *w, const struct sample *s)
 	writer_raw(w, "\r\n", 2);
 }
 
+bool samples_exist(const struct pound_study *study)
+{
+	return study->kind == POUND_KIND_SENSITIVITY || study->spectrum.histories;
+}
+
 /* The samples as CSV; an empty cell where there is no value.
  *
  * Given    study, run  -         -       a finished sensitivity study

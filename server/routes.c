@@ -407,7 +407,8 @@ static bool sampled(const struct request *request, bool ours)
 	if (store_document(request->server->store, request->id, "request", &text, &length) != STORE_OK)
 		return false;
 	struct pound_study *study = study_from_json(text, length, &problems);
-	bool has = study && (study->kind == POUND_KIND_SENSITIVITY ? ours : study->spectrum.histories);
+	// histories are computed again, by any version
+	bool has = study && samples_exist(study) && (ours || study->kind != POUND_KIND_SENSITIVITY);
 	if (study)
 		study_free(study);
 	free(text);
