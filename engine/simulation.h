@@ -209,8 +209,8 @@ struct simulation {
 	struct pound_member others[POUND_OTHERS];
 	int n_others;
 	enum pound_stage stage; /* what it does next, while it waits for room */
-	double rung_cells[POUND_PRESS_RUNGS],
-	    rung_ratio; /* of a rung to the one below; 0: few cells, and no rungs */
+	double rung_cells[POUND_PRESS_RUNGS];
+	double rung_ratio; /* of a rung to the one below; 0: few cells, and no rungs */
 	struct pound_branch at[2];
 	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */
 	int map_next[2], press_next;

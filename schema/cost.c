@@ -20,7 +20,13 @@ enum { QUANTILES = 64 /* of a distribution, for a mean */ };
 static const double STUDY_S = 0.001;
 static const struct {
 	double sample, step;
-} units[] = {{5e-8, 0}, {1.0e-7, 6e-8}, {1.0e-7, 4e-8}, {8e-6, 0}}; /* in the order of the solvers */
+} units[] = {
+    // in the order of the solvers: event, newmark, central_difference, adaptive
+    {5e-8, 0},
+    {1.0e-7, 6e-8},
+    {1.0e-7, 4e-8},
+    {8e-6, 0},
+};
 
 static_assert(sizeof units / sizeof units[0] == POUND_SOLVERS, "a row for each solver");
 

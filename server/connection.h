@@ -46,8 +46,8 @@ struct connections {
 	int n_draining;
 };
 
-bool connections_start(
-    struct connections *all); /* with store, resume, most and most_draining; false: no thread, logged */
+/* with store, resume, most and most_draining; false: no thread, logged */
+bool connections_start(struct connections *all);
 void connections_stop(struct connections *all); /* after all of them were closed */
 
 struct connection *connection_opened(struct connections *all, int fd, double seconds); /* NULL: no memory */
