@@ -1,7 +1,7 @@
 /* The file system under a database.
  *
  * Three levels of what is free: above `reserve` new studies are taken, below it those that are stored still run, and
- * when nothing is left the ballast makes room for what frees more. */
+ * when nothing is left the ballast makes room for what frees more.  Long answers are spooled above the reserve alone. */
 #include "server/disk.h"
 
 #include <errno.h>
@@ -132,18 +132,48 @@ static bool ballasted(const struct disk *disk, int64_t size)
 	return whole;
 }
 
-/* Whether new studies may be taken: more than 256 MiB are free, or a 16th of a small disk, and the ballast is there.
+/* How large a disk is, and what is free on it above the reserve, 256 MiB or a 16th of a small one [bytes]. */
+static bool measure(const struct disk *disk, int64_t *size, int64_t *spare)
+{
+	struct statvfs of;
+	if (fstatvfs(disk->lock, &of) != 0)
+		return false;
+	*size = (int64_t)of.f_blocks * (int64_t)of.f_frsize;
+	*spare = (int64_t)of.f_bavail * (int64_t)of.f_frsize - MIN(*size / RESERVE_PART, RESERVE_MAX);
+	return true;
+}
+
+/* Whether new studies may be taken: there is something to spare, and the ballast is there.
  *
  * Test     service_disk: a_full_disk_refuses_studies_answers_questions_and_is_survived
  */
 bool disk_roomy(const struct disk *disk)
 {
-	struct statvfs of;
-	if (fstatvfs(disk->lock, &of) != 0)
-		return false;
-	int64_t size = (int64_t)of.f_blocks * (int64_t)of.f_frsize;
-	return ballasted(disk, MIN(size / BALLAST_PART, BALLAST_MAX)) &&
-	       (int64_t)of.f_bavail * (int64_t)of.f_frsize >= MIN(size / RESERVE_PART, RESERVE_MAX);
+	int64_t size, spare;
+	return measure(disk, &size, &spare) && ballasted(disk, MIN(size / BALLAST_PART, BALLAST_MAX)) &&
+	       spare >= 0;
+}
+
+/* Puts bytes into a file without a name, if there is room to spare for them: it is gone when it is closed.
+ *
+ * Returns  value   its descriptor, for the caller to close; -1: none
+ * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names
+ */
+int disk_spool(const struct disk *disk, const char *bytes, size_t n)
+{
+	char folder[PATH_MAX];
+	int64_t size, spare;
+	snprintf(folder, sizeof folder, "%s", disk->database);
+	if (!measure(disk, &size, &spare) || (int64_t)n > spare)
+		return -1;
+	int file = open(dirname(folder), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+	ssize_t written = 1;
+	for (size_t at = 0; file >= 0 && written > 0 && at < n; at += (size_t)written)
+		written = write(file, bytes + at, n - at);
+	if (file < 0 || written > 0)
+		return file;
+	close(file);
+	return -1;
 }
 
 /* Gives the ballast up. */

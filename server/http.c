@@ -6,7 +6,8 @@
  * 2. The body is collected, up to its limit.
  * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What
  *    takes long is answered in a thread of its own, while the connection is suspended, or given up when the client has gone
- *    or the server stops. */
+ *    or the server stops.
+ * 4. What is long is put into a file without a name, so that no client who reads slowly keeps it in memory. */
 #include "server/http.h"
 
 #include <arpa/inet.h>
@@ -25,20 +26,24 @@
 #include <microhttpd.h>
 
 #include "server/log.h"
+#include "server/store.h"
 #include "server/token.h"
 
 enum {
 	THREADS = 4,
-	TURNS = 2,               /* of them that take long, at a time */
-	TURN_TICK_NS = 50000000, /* [ns] until who waits for one is asked whether he is still wanted */
-	GONE = 499,              /* told of a request whose client has gone */
-	ASIDE_NICENESS = 5,      /* between other answers and the workers */
-	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
-	CONNECTIONS_MIN = 8,     /* of which each thread has a share */
-	DRAINING_MAX = 256,      /* clients who go on sending after their answer */
-	FILES_BESIDE = 48,       /* descriptors that are no connections: 33, and what is open for a moment */
-	OF_ADDRESS_MAX = 64,     /* connections of one address, unless it is loopback */
-	HEADERS_MAX = 32 * 1024, /* [bytes] request line and headers */
+	TURNS = 2,                /* of them that take long, at a time */
+	TURN_TICK_NS = 50000000,  /* [ns] until who waits for one is asked whether he is still wanted */
+	GONE = 499,               /* told of a request whose client has gone */
+	ASIDE_NICENESS = 5,       /* between other answers and the workers */
+	CONNECTIONS_MAX = 4096,   /* of libmicrohttpd: beyond it clients hang unanswered */
+	CONNECTIONS_MIN = 8,      /* of which each thread has a share */
+	DRAINING_MAX = 256,       /* clients who go on sending after their answer */
+	SPOOLED_MAX = 256,        /* answers in files */
+	SPOOLED_MIN = 256 * 1024, /* [bytes] of one */
+	SPOOLED_PART = 64 * 1024, /* [bytes] read of one at a time */
+	FILES_BESIDE = 48,        /* descriptors that are no connections: 33, and what is open for a moment */
+	OF_ADDRESS_MAX = 64,      /* connections of one address, unless it is loopback */
+	HEADERS_MAX = 32 * 1024,  /* [bytes] request line and headers */
 	BACKLOG = 1024,
 	TURN_NS = 100000,        /* [ns] of a processor, the least that is had */
 	SEND_S = 60,             /* [s] for an answer to arrive, besides */
@@ -110,13 +115,61 @@ static ssize_t no_bytes(void *of, uint64_t at, char *bytes, size_t n)
 	return MHD_CONTENT_READER_END_OF_STREAM;
 }
 
+/* an answer's body in a file without a name */
+struct spooled {
+	int file;
+	atomic_int *n; /* of all of them */
+};
+
+static ssize_t read_spooled(void *of, uint64_t at, char *bytes, size_t n)
+{
+	const struct spooled *spooled = of;
+	ssize_t got = pread(spooled->file, bytes, n, (off_t)at);
+	return got > 0 ? got : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
+static void close_spooled(void *of)
+{
+	struct spooled *spooled = of;
+	close(spooled->file);
+	--*spooled->n;
+	free(spooled);
+}
+
+/* A response that is read from a file, which is not there any more when it has been sent; NULL: the disk or the number of
+ * descriptors does not allow that now.
+ *
+ * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names
+ */
+static struct MHD_Response *response_spooled(struct server *server, const struct reply *reply)
+{
+	struct MHD_Response *response = NULL;
+	struct spooled *spooled = malloc(sizeof *spooled);
+	if (!spooled)
+		return NULL;
+	*spooled = (struct spooled){-1, &server->spooled};
+	if (++*spooled->n <= server->spooled_most)
+		spooled->file = store_spool(server->store, reply->body, reply->length);
+	if (spooled->file >= 0)
+		response = MHD_create_response_from_callback(reply->length, SPOOLED_PART, read_spooled, spooled,
+		                                             close_spooled);
+	if (!response)
+		close_spooled(spooled);
+	return response;
+}
+
 /* What libmicrohttpd sends for a reply, which has its body then; NULL: out of memory.
  *
  * It writes the body's length into a 304, too, which must be that of the 200 (RFC 9110 section 8.6): so a 304 keeps its
  * body, which is not sent.  Where that was not made, it leaves the length out, but must close the connection. */
-static struct MHD_Response *response_of(const struct reply *reply)
+static struct MHD_Response *response_of(struct server *server, struct reply *reply)
 {
 	struct MHD_Response *response;
+	if (reply->status != 304 && reply->length >= SPOOLED_MIN && !reply->lasts &&
+	    (response = response_spooled(server, reply))) {
+		drop_body(reply);
+		return response;
+	}
 	if (reply->status != 304 || reply->body)
 		return MHD_create_response_from_buffer(reply->length, reply->body,
 		                                       reply->body && !reply->lasts ? MHD_RESPMEM_MUST_FREE
@@ -152,7 +205,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	    {"Referrer-Policy", "no-referrer"},
 	};
 	const size_t sent = reply->status == 304 ? 0 : reply->length;
-	struct MHD_Response *response = response_of(reply);
+	struct MHD_Response *response = response_of(server, reply);
 	if (!response) {
 		drop_body(reply);
 		return MHD_NO;
@@ -472,10 +525,11 @@ static bool is_loopback(const union address *address)
  * Returns  value   connections that libmicrohttpd may have, 0: too few, logged; of them all but a few are served, and the
  *                  others told so
  */
-static int share_files(struct connections *connections, int wanted)
+static int share_files(struct server *server, int wanted)
 {
+	struct connections *connections = &server->connections;
 	struct rlimit files = {RLIM_INFINITY, RLIM_INFINITY};
-	const rlim_t most = CONNECTIONS_MAX + DRAINING_MAX + FILES_BESIDE;
+	const rlim_t most = CONNECTIONS_MAX + DRAINING_MAX + SPOOLED_MAX + FILES_BESIDE;
 	if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < most) {
 		struct rlimit more = {MIN(files.rlim_max, most), files.rlim_max};
 		if (setrlimit(RLIMIT_NOFILE, &more) == 0)
@@ -483,7 +537,8 @@ static int share_files(struct connections *connections, int wanted)
 	}
 	const int left = (int)MIN(files.rlim_cur, most) - FILES_BESIDE;
 	connections->most_draining = MIN(left / 4, DRAINING_MAX);
-	const int all = MIN(left - connections->most_draining, CONNECTIONS_MAX);
+	server->spooled_most = MIN(left / 8, SPOOLED_MAX);
+	const int all = MIN(left - connections->most_draining - server->spooled_most, CONNECTIONS_MAX);
 	connections->most = MIN(wanted, all - 1 - all / 64);
 	if (all < CONNECTIONS_MIN)
 		log_line("only %d files may be open, which is too few: ulimit -n", (int)files.rlim_cur);
@@ -569,7 +624,7 @@ bool http_start(struct server *server)
 	server->connections.store = server->store;
 	server->connections.resume = resume;
 	pthread_mutex_init(&server->complaints_lock, NULL);
-	const int n = share_files(&server->connections, options->connections_max);
+	const int n = share_files(server, options->connections_max);
 	if (n == 0)
 		return false;
 	if (!connections_start(&server->connections))

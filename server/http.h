@@ -60,6 +60,8 @@ struct server {
 	struct MHD_Daemon *daemon;
 	pthread_mutex_t complaints_lock;
 	struct complaint complaints[HTTP_COMPLAINTS]; /* the latest */
+	int spooled_most;                             /* answers in files that there may be */
+	atomic_int spooled;                           /* and are */
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
 	atomic_int aside;     /* those in threads of their own, of which ... */

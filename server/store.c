@@ -437,6 +437,12 @@ enum store_status store_ready(struct store *store)
 	return status == STORE_OK && !disk_roomy(&store->disk) ? STORE_FULL : status;
 }
 
+/* A file for bytes that are not to stay in memory. */
+int store_spool(const struct store *store, const char *bytes, size_t n)
+{
+	return disk_spool(&store->disk, bytes, n);
+}
+
 /* A change that frees room: on a full disk it has that of the ballast. */
 static enum store_status relieved(struct store *store, enum statement s, int64_t id)
 {

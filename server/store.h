@@ -41,6 +41,8 @@ struct store *store_open(const char *path); /* NULL: refused or failed, and logg
 void store_close(struct store *store);
 bool store_copy(const char *path, const char *to);  /* of a database that may be in use; false: logged */
 enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
+/* descriptor of a file beside the database that has no name and holds n bytes; -1: there is no room */
+int store_spool(const struct store *store, const char *bytes, size_t n);
 
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
                                size_t length, int64_t *id);

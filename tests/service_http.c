@@ -1,5 +1,7 @@
 /* Requests as no library would send them: framing, targets, headers, methods, slow and many clients. */
+#include <dirent.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -264,6 +266,60 @@ static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
 	service_free(service);
 }
 
+/* Files without a name that a server has open. */
+static int files_unnamed(const struct service *service)
+{
+	char path[64], name[512];
+	snprintf(path, sizeof path, "/proc/%d/fd", (int)service->pid);
+	DIR *folder = opendir(path);
+	assert_non_null(folder);
+	int n = 0;
+	for (struct dirent *file; (file = readdir(folder));) {
+		ssize_t length = readlinkat(dirfd(folder), file->d_name, name, sizeof name - 1);
+		name[length > 0 ? length : 0] = '\0';
+		n += strstr(name, "(deleted)") != NULL;
+	}
+	closedir(folder);
+	return n;
+}
+
+static int files_unnamed_become(const struct service *service, int wanted)
+{
+	int n = -1;
+	for (int tick = 0; tick < 200 && (n = files_unnamed(service)) != wanted; tick++)
+		nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+	return n;
+}
+
+static void long_answers_wait_for_slow_readers_in_files_without_names(void **state)
+{
+	enum { SIGNALS = 100, READERS = 6 };
+	struct service *service = *state;
+	char id[17], get[256];
+	service_histories(service, SIGNALS, id);
+	const int before = files_unnamed(service);
+	struct answer whole = service_get(service, "/v1/studies/%s/samples", id);
+	assert_int_equal(whole.status, 200);
+	assert_true(whole.length > 8 << 20); // more than sockets hold
+	assert_int_equal(files_unnamed_become(service, before), before);
+	int sockets[READERS];
+	snprintf(get, sizeof get, "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "\r\n", id);
+	for (int i = 0; i < READERS; i++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], get, strlen(get));
+	}
+	assert_int_equal(files_unnamed_become(service, before + READERS), before + READERS);
+	struct answer again = service_get(service, "/v1/studies/%s/samples", id);
+	assert_int_equal(again.length, whole.length);
+	assert_memory_equal(again.body, whole.body, whole.length);
+	for (int i = 0; i < READERS; i++)
+		close(sockets[i]);
+	assert_int_equal(files_unnamed_become(service, before), before);
+	check_report("%d readers of %zu bytes", READERS, whole.length);
+	answer_free(&whole);
+	answer_free(&again);
+}
+
 static void more_connections_than_the_limit_are_told_503(void **state)
 {
 	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "3"}, {NULL}};
@@ -412,6 +468,7 @@ CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other)
            SERVED(what_is_answered_cannot_be_framed_guessed_or_kept),
            SERVED(an_answer_and_its_line_of_the_log_have_one_number),
            cmocka_unit_test(who_is_slow_is_closed_and_others_are_served_meanwhile),
+           SERVED(long_answers_wait_for_slow_readers_in_files_without_names),
            cmocka_unit_test(more_connections_than_the_limit_are_told_503),
            cmocka_unit_test(with_few_descriptors_fewer_are_served_and_nothing_spins),
            SERVED(what_the_library_says_again_and_again_is_told_once_a_second))
