@@ -68,7 +68,7 @@ static int await(struct store *store, const sigset_t *signals)
 
 static int serve(struct server *server, const sigset_t *signals)
 {
-	server->work = work_start(server->store, server->options->workers);
+	server->work = work_start(server->store, server->options->workers, server->options->time_max);
 	if (!server->work)
 		return EXIT_FAILURE;
 	bool listens = http_start(server);

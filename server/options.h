@@ -17,7 +17,7 @@ struct options {
 	int port, workers;
 	int connections_max, queue_max, queue_token_max;
 	int header_timeout, body_timeout, idle_timeout, wait_max; /* [s] */
-	int runs_max, cpu_max, result_max;                        /* of one study: number, [s], [MiB] */
+	int runs_max, time_max, cpu_max, result_max;              /* of one study: number, [s], [s], [MiB] */
 };
 
 struct option_row {

@@ -8,12 +8,14 @@
  * 2. When no running study has a step to give, one worker claims the oldest queued study, the others wait for it.
  * 3. Who ends the last reduction asks whether the design grows; if so there are more blocks, and reductions again.
  * 4. Who ends the last step of a study turns its result into bytes and stores them.
+ * 5. A study that runs for longer than it may is ended by a thread that waits for that.
  *
  * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
  * store takes no more blocks and no result. */
 #include "server/work.h"
 
 #include <errno.h>
+#include <math.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -55,6 +57,9 @@ struct work {
 	bool queued;            /* the store may hold a queued study */
 	bool claiming;          /* a worker is about to bring the next study */
 	bool stopping;
+	double time_max; /* that a study may run [s] */
+	bool watched;    /* there is ... */
+	pthread_t watch; /* ... a thread that sees to that */
 	int n_started;
 	int n_workers;
 	pthread_t workers[]; /* (n_workers) */
@@ -382,12 +387,54 @@ static void *worker(void *of)
 	return NULL;
 }
 
+/* Ends the studies that have run for as long as they may; under the lock.
+ *
+ * Returns  value   when the next of the others will have [s] monotonic
+ */
+static double end_late(struct work *work)
+{
+	double now = seconds(CLOCK_MONOTONIC), next = now + work->time_max;
+	for (struct job *job = TAILQ_FIRST(&work->jobs); job;) {
+		double until = job->started + work->time_max;
+		bool late = job->opened && !job->ended && until <= now;
+		if (job->opened && !job->ended && !late)
+			next = until < next ? until : next;
+		if (late)
+			end(job, "timeout");
+		// settling lets the lock go, so the list may be another
+		if (late && job->n_inside == 0) {
+			settle(work, job);
+			job = TAILQ_FIRST(&work->jobs);
+		} else
+			job = TAILQ_NEXT(job, others);
+	}
+	return next;
+}
+
+/* A thread of its own, for all workers may be inside of steps that do not end.
+ *
+ * Test     service_queue: a_study_that_runs_for_too_long_has_failed
+ */
+static void *watch(void *of)
+{
+	struct work *work = of;
+	pthread_mutex_lock(&work->lock);
+	while (!work->stopping) {
+		double until = end_late(work), whole = floor(until);
+		const struct timespec at = {.tv_sec = (time_t)whole, .tv_nsec = (long)(1e9 * (until - whole))};
+		pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &at);
+	}
+	pthread_mutex_unlock(&work->lock);
+	return NULL;
+}
+
 /* Starts the workers, on what the store has queued.
  *
  * Given    n_workers   >= 1
+ *          time_max    that a study may run [s]
  * Returns  value       for work_stop; NULL: no memory, or no threads
  */
-struct work *work_start(struct store *store, int n_workers)
+struct work *work_start(struct store *store, int n_workers, double time_max)
 {
 	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
 	if (!work) {
@@ -396,20 +443,23 @@ struct work *work_start(struct store *store, int n_workers)
 	}
 	watch_crashes(store);
 	work->store = store;
+	work->time_max = time_max;
 	work->n_workers = n_workers;
 	work->queued = true;
 	TAILQ_INIT(&work->jobs);
 	pthread_mutex_init(&work->lock, NULL);
 	pthread_cond_init(&work->changed, NULL);
-	for (int w = 0; w < n_workers; w++) {
-		if (pthread_create(&work->workers[w], NULL, worker, work) != 0) {
-			log_line("cannot start worker %d", w);
-			work->n_workers = w;
-			work_stop(work);
-			return NULL;
-		}
-	}
-	return work;
+	work->watched = pthread_create(&work->watch, NULL, watch, work) == 0;
+	int started = 0;
+	while (work->watched && started < n_workers &&
+	       pthread_create(&work->workers[started], NULL, worker, work) == 0)
+		started++;
+	if (started == n_workers)
+		return work;
+	log_line("cannot start more than %d of %d workers: no thread can be had", started, n_workers);
+	work->n_workers = started;
+	work_stop(work);
+	return NULL;
 }
 
 /* Tells the workers that the store has a queued study. */
@@ -451,6 +501,8 @@ void work_stop(struct work *work)
 	pthread_mutex_unlock(&work->lock);
 	for (int w = 0; w < work->n_workers; w++)
 		pthread_join(work->workers[w], NULL);
+	if (work->watched)
+		pthread_join(work->watch, NULL);
 	while ((job = TAILQ_FIRST(&work->jobs)))
 		drop(work, job);
 	pthread_cond_destroy(&work->changed);

@@ -28,9 +28,10 @@ void work_close(struct work_run *opened);
 
 struct work;
 
-struct work *work_start(struct store *store, int n_workers); /* NULL: no memory or no threads */
-void work_wake(struct work *work);                           /* a study was queued */
-void work_drop(struct work *work, int64_t id);               /* a study was cancelled or deleted */
+struct work *work_start(struct store *store, int n_workers,
+                        double time_max);      /* NULL: no memory or no threads */
+void work_wake(struct work *work);             /* a study was queued */
+void work_drop(struct work *work, int64_t id); /* a study was cancelled or deleted */
 void work_stop(struct work *work); /* ends within a block's time; what is unfinished stays in the store */
 
 #endif

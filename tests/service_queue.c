@@ -113,6 +113,29 @@ static void one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_
 	free(small);
 }
 
+static void a_study_that_runs_for_too_long_has_failed(void **state)
+{
+	(void)state;
+	const char *const settings[][2] = {{"POUNDD_TIME_MAX", "1"}, {NULL}};
+	struct service *service = service_with(settings, 2);
+	char ids[2][17], small_id[17], *small = service_study(2, 1, 1);
+	// all workers are inside of a run that does not end
+	for (int worker = 0; worker < 2; worker++)
+		submit_long(service, ids[worker]);
+	service_submit(service, small, small_id);
+	for (int worker = 0; worker < 2; worker++) {
+		assert_true(service_wait(service, ids[worker], "failed", 0));
+		struct answer answer = service_get(service, "/v1/studies/%s", ids[worker]);
+		struct reading *status = answer_read(&answer);
+		assert_string_equal(reading_text(status, "/error"), "timeout");
+		reading_close(status);
+		answer_free(&answer);
+	}
+	assert_true(service_wait(service, small_id, "succeeded", 0));
+	free(small);
+	service_free(service);
+}
+
 static void a_cancelled_study_has_times_in_order_though_the_clock_went_back(void **state)
 {
 	struct service *service = *state;
@@ -220,6 +243,7 @@ static void a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_fre
 
 CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_cancelled_at_any_moment),
            SERVED(one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_end),
+           cmocka_unit_test(a_study_that_runs_for_too_long_has_failed),
            SERVED(a_cancelled_study_has_times_in_order_though_the_clock_went_back),
            SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study),
            SERVED(a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_free))
