@@ -54,6 +54,8 @@ static const struct member members[] = {
 	{"Problem", "errors_not_listed", "integer", "absent", "how many more"},
 	{"Fault",  "pointer",     "string",  "",     "JSON Pointer into the study document"},
 	{"Fault",  "detail",      "string",  "",     "what was expected there, and what came"},
+	{"Fault",  "requested",   "number",  "absent", "of a study that is too large: how much of it"},
+	{"Fault",  "limit",       "number",  "absent", "and how much there may be"},
 	{"Result", "kind",           "string", "",   "of the study document"},
 	{"Result", "engine_version", "string", "",   "that computed it"},
 	{"Result", "study_hash",     "string", "",   "SHA-256 of the study's meaning"},

@@ -40,6 +40,7 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
 		return;
 	}
 	struct problem *problem = &problems->list[problems->n++];
+	problem->requested = problem->limit = 0;
 	mend(problem->pointer, sizeof problem->pointer,
 	     snprintf(problem->pointer, sizeof problem->pointer, "%s", pointer));
 	va_list arguments;
@@ -47,6 +48,18 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
 	mend(problem->detail, sizeof problem->detail,
 	     vsnprintf(problem->detail, sizeof problem->detail, format, arguments));
 	va_end(arguments);
+}
+
+/* Notes in numbers what the problem added last says in words.
+ *
+ * Given    limit   > 0
+ */
+void problems_limit(struct problems *problems, double requested, double limit)
+{
+	if (problems->n_more > 0)
+		return;
+	problems->list[problems->n - 1].requested = requested;
+	problems->list[problems->n - 1].limit = limit;
 }
 
 /* Whether a member or something in it was found wrong, so that what stands on it need not be looked at.
@@ -108,6 +121,10 @@ char *problem_to_json(const struct problem_head *head, const struct problems *pr
 			writer_object(&w, NULL, WRITER_LINE);
 			writer_text(&w, "pointer", problems->list[i].pointer);
 			writer_text(&w, "detail", problems->list[i].detail);
+			if (problems->list[i].limit > 0) {
+				writer_number(&w, "requested", problems->list[i].requested);
+				writer_number(&w, "limit", problems->list[i].limit);
+			}
 			writer_end(&w);
 		}
 		writer_end(&w);

@@ -17,8 +17,9 @@ enum problems_status {
 };
 
 struct problem {
-	char pointer[160]; /* JSON Pointer (RFC 6901) into the document; "" is the whole document */
-	char detail[320];  /* "must be in [0, 1], got 1.4" */
+	char pointer[160];       /* JSON Pointer (RFC 6901) into the document; "" is the whole document */
+	char detail[320];        /* "must be in [0, 1], got 1.4" */
+	double requested, limit; /* of what there may not be so much of; limit 0: it is no such problem */
 };
 
 struct problems {
@@ -32,6 +33,9 @@ struct problems {
 void problems_init(struct problems *problems);
 void problems_add(struct problems *problems, const char *pointer, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* The problem added last is that a study is over a limit. */
+void problems_limit(struct problems *problems, double requested, double limit);
 
 /* Whether something at or below a pointer is known to be wrong, or may be, as the list is full. */
 bool problems_at(const struct problems *problems, const char *pointer);

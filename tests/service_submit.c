@@ -181,6 +181,11 @@ static void a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked(vo
 			for (int w = 0; w < 3; w++)
 				if (!strstr(answer.body, limits[i].words[w]))
 					fail_msg("'%s' is not in %s", limits[i].words[w], answer.body);
+			struct reading *problem = answer_read(&answer);
+			double limit = reading_number(problem, "/errors/0/limit");
+			check_near(limit, atof(limits[i].most), 0);
+			assert_true(reading_number(problem, "/errors/0/requested") > limit);
+			reading_close(problem);
 			problem_is(&answer, 422, "study-too-large");
 		}
 		struct answer taken = service_post(service, small);
