@@ -362,17 +362,20 @@ LANE_INLINE vd press_other(vd base, vd overlap, vd side, vd off)
 	return base - vfma(side, overlap, off);
 }
 
-/* Moves every lane over some cells. */
-LANE_INLINE void press_move(const struct lanes *g, struct press *s, const vd end[4], vd cells, vd rise)
+/* Moves lanes over some cells. */
+LANE_INLINE void press_move(const struct lanes *g, struct press *s, const vd end[4], vd cells, vd rise,
+                            vm moves)
 {
 	struct pressed *at = &s->at;
-	at->impulse = at->impulse + form_at(&s->moved[PRESS_IMPULSE], at->x, at->ground, rise);
-	at->ground = at->ground + rise;
-	at->cells = at->cells - cells;
+	at->impulse =
+	    vselect(moves, at->impulse + form_at(&s->moved[PRESS_IMPULSE], at->x, at->ground, rise), at->impulse);
+	at->ground = vselect(moves, at->ground + rise, at->ground);
+	at->cells = vselect(moves, at->cells - cells, at->cells);
+	at->top[0] = vselect(moves, vmax(at->top[0], vabs(end[0])), at->top[0]);
+	at->top[1] = vselect(
+	    moves, vmax(at->top[1], vabs(press_other(end[0], end[2], g->side, g->side * g->gap))), at->top[1]);
 	for (int j = 0; j < 4; j++)
-		at->x[j] = end[j];
-	at->top[0] = vmax(at->top[0], vabs(end[0]));
-	at->top[1] = vmax(at->top[1], vabs(press_other(end[0], end[2], g->side, g->side * g->gap)));
+		at->x[j] = vselect(moves, end[j], at->x[j]);
 }
 
 /* Lanes whose bodies touch without overlap and stay so, as they go the same way: neither presses the other nor leaves it.
@@ -404,12 +407,13 @@ LANE_INLINE vd press_fades(const struct lanes *g, const struct press *s, const v
  * Given    edged   a lane has a law of more than one piece
  *          right   a lane's largest displacement of the right body is wanted
  *          forced  a lane's contact ends when its force does;  seldom: bodies of a lane may be alike
- * Returns  s       every lane at the end of the cell
+ *          going   lanes that are to go on
+ * Returns  s       those of them in which nothing can happen, at the end of the cell
  *          edge    lanes in which an edge of a piece may be reached
  *          value   those, and others in which something may happen inside it
  */
 LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced, bool seldom,
-                     vm *edge)
+                     vm going, vm *edge)
 {
 	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
 	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
@@ -458,8 +462,9 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 		                   .error = vselect(left, b.error, o.error)};
 		risk |= flight_peaks(&l, vselect(left, top[0], top[1]));
 	}
-	press_move(g, s, end, vsplat(1), rise);
-	return risk | *edge;
+	risk |= *edge;
+	press_move(g, s, end, vsplat(1), rise, going & ~risk);
+	return risk;
 }
 
 /* What the bounds of a rung make of the roundings of a body that stands, over where it is: a few dozen.  Less than this is no
@@ -515,12 +520,12 @@ LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd speed, vm steady, const st
 
 /* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in press.h.
  *
- * Given    edged  a lane has a law of more than one piece
- * Returns  s      every lane at their end
+ * Given    edged  a lane has a law of more than one piece;  going: lanes that are to go on
+ * Returns  s      those of them in which nothing can happen, at their end
  *          edge   lanes in which an edge of a piece may be reached
  *          value  those, and others in which something may happen meanwhile
  */
-LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge)
+LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm going, vm *edge)
 {
 	const vd *split = s->rest[PRESS_SPLIT];
 	vd x[POUND_PRESS_INPUTS], zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4], gone[4];
@@ -584,8 +589,9 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm *edge
 		if (edged)
 			*edge |= rest_edges(u1, least, most, speed, steady, edges[i]);
 	}
-	press_move(g, s, end, cells, rise);
-	return risk | *edge;
+	risk |= *edge;
+	press_move(g, s, end, cells, rise, going & ~risk);
+	return risk;
 }
 
 LANE_INLINE struct edges edges_select(vm mask, struct edges a, struct edges b)
@@ -630,21 +636,6 @@ LANE_INLINE void press_store(const struct pressed *at, struct lanes *g)
 	g->ground = at->ground;
 	g->cells = at->cells;
 	g->rounds = at->rounds;
-}
-
-/* Brings how far some lanes have come from one to the other. */
-LANE_INLINE void pressed_keep(struct pressed *to, const struct pressed *from, vm which)
-{
-	for (int j = 0; j < 4; j++)
-		to->x[j] = vselect(which, from->x[j], to->x[j]);
-	for (int i = 0; i < 2; i++)
-		to->top[i] = vselect(which, from->top[i], to->top[i]);
-	to->impulse = vselect(which, from->impulse, to->impulse);
-	to->ground = vselect(which, from->ground, to->ground);
-	to->rise = vselect(which, from->rise, to->rise);
-	to->cells = vselect(which, from->cells, to->cells);
-	to->rounds = vselect(which, from->rounds, to->rounds);
-	to->left = vselect(which, from->left, to->left);
 }
 
 #endif

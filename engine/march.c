@@ -293,8 +293,7 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 	vd zero = vsplat(0), one = vsplat(1), share = one / g->cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
 	press_load(s, g, (samples.ground - samples.before) * share, behind, edged);
-	struct pressed kept = s->at;
-	const vd rounds = kept.rounds, cells = stage == STAGE_REST ? s->rest[PRESS_SPLIT][SPLIT_CELLS] : one;
+	const vd rounds = s->at.rounds, cells = stage == STAGE_REST ? s->rest[PRESS_SPLIT][SPLIT_CELLS] : one;
 	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
 	vm decided = vmask(0);
 	int few = b->n / 2;
@@ -304,8 +303,8 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 			struct pressed from;
 			if (seldom)
 				from = s->at;
-			vm edge, risk = stage == STAGE_REST ? rest(g, s, edged, &edge)
-			                                    : press(g, s, edged, right, forced, seldom, &edge);
+			vm edge, risk = stage == STAGE_REST ? rest(g, s, edged, pressed, &edge)
+			                                    : press(g, s, edged, right, forced, seldom, pressed, &edge);
 			refused |= risk & pressed;
 			if (edged)
 				decided |= edge & pressed;
@@ -316,21 +315,20 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 			ended |= sampled & last & pressed;
 			vm entered = sampled & ~last;
 			samples_next(&samples, &s->at, entered, g->cells_whole, share);
-			s->at.rounds = s->at.rounds - one;
+			s->at.rounds = vselect(pressed, s->at.rounds - one, s->at.rounds);
 			gone |= vequal(s->at.rounds, zero) & pressed;
-			pressed_keep(&kept, &s->at, pressed);
 			pressed &= ~ended & ~gone;
 			if (stage == STAGE_REST)
 				pressed &= rest_stays(s, entered);
 		}
 	} while (__builtin_popcount(vbits(pressed)) > few);
-	press_store(&kept, g);
-	g->pressed = vfma(rounds - kept.rounds, cells, g->pressed);
+	press_store(&s->at, g);
+	g->pressed = vfma(rounds - s->at.rounds, cells, g->pressed);
 	lanes_empty(g, b, ROW_STATE);
 	lanes_empty(g, b, ROW_STEP);
 	lanes_empty(g, b, ROW_PRESS);
 	double left[W];
-	lanes_store(left, kept.left);
+	lanes_store(left, s->at.left);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		int64_t next = sim->last - (int64_t)left[l];
