@@ -394,12 +394,10 @@ LANE_INLINE void press_any(struct work *work, struct batch *b, enum pound_stage 
 
 /* ---- one step up to an event ---- */
 
-/* Given    g  what does not change meanwhile */
-LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage stage, struct lanes *g,
-                            bool edged)
+LANE_INLINE struct event_lanes event_lanes_of(const struct batch *b, bool touching, bool paired, bool edged)
 {
-	struct event_lanes e = {.touching = stage == STAGE_TOUCH,
-	                        .paired = stage != STAGE_ALONE,
+	struct event_lanes e = {.touching = touching,
+	                        .paired = paired,
 	                        .edged = edged,
 	                        .right = b->traits & TRAIT_RIGHT,
 	                        .forced = b->traits & TRAIT_FORCED,
@@ -407,13 +405,21 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0),
 	                        .decided = vmask(0)};
+	if (e.forced)
+		batch_forces(b, &e.parted, &e.fresh);
+	return e;
+}
+
+/* Given    g  what does not change meanwhile */
+LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage stage, struct lanes *g,
+                            bool edged)
+{
+	struct event_lanes e = event_lanes_of(b, stage == STAGE_TOUCH, stage != STAGE_ALONE, edged);
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
 	lanes_fill(g, b, ROW_STATE);
 	lanes_fill(g, b, ROW_STEP);
 	if (accounted)
 		lanes_fill(g, b, ROW_WORK);
-	if (e.forced)
-		batch_forces(b, &e.parted, &e.fresh);
 	vd events = event_step(g, &e, accounted);
 	vm turns = vmask(0);
 	if (e.paired)
@@ -464,16 +470,7 @@ LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage
 LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage, bool edged)
 {
 	const bool paired = stage == STAGE_LEAP_APART;
-	struct event_lanes e = {.paired = paired,
-	                        .edged = edged,
-	                        .right = b->traits & TRAIT_RIGHT,
-	                        .forced = b->traits & TRAIT_FORCED,
-	                        .active = vmask(batch_lanes(b)),
-	                        .parted = vmask(0),
-	                        .fresh = vmask(0),
-	                        .decided = vmask(0)};
-	if (e.forced)
-		batch_forces(b, &e.parted, &e.fresh);
+	struct event_lanes e = event_lanes_of(b, false, paired, edged);
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
