@@ -242,6 +242,19 @@ struct answer service_post(const struct service *service, const char *study)
 	                                          .length = strlen(study)});
 }
 
+struct answer service_post_keyed(const struct service *service, const char *study, const char *key)
+{
+	char header[500];
+	snprintf(header, sizeof header, "Idempotency-Key: %s", key ? key : "");
+	return service_ask(service,
+	                   &(struct ask){.method = "POST",
+	                                 .path = "/v1/studies",
+	                                 .headers = {"Content-Type: application/json", key ? header : NULL},
+	                                 .body = study,
+	                                 .length = strlen(study),
+	                                 .may_fail = true});
+}
+
 void answer_free(struct answer *answer)
 {
 	free(answer->body);

@@ -60,6 +60,8 @@ struct answer service_ask(const struct service *service, const struct ask *ask);
 struct answer service_get(const struct service *service, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 struct answer service_post(const struct service *service, const char *study);
+/* with an Idempotency-Key, NULL: none; no answer is one of status 0 */
+struct answer service_post_keyed(const struct service *service, const char *study, const char *key);
 void answer_free(struct answer *answer);
 
 struct reading *answer_read(const struct answer *answer); /* its JSON, for reading_close */

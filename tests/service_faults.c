@@ -394,13 +394,8 @@ static void make_version_1(const struct service *service)
 static void expect_same(const struct service *service, int number, const char *id)
 {
 	char key[64], *study = service_study(2, 1, number);
-	snprintf(key, sizeof key, "Idempotency-Key: tower %d", number);
-	struct answer answer =
-	    service_ask(service, &(struct ask){.method = "POST",
-	                                       .path = "/v1/studies",
-	                                       .headers = {"Content-Type: application/json", key},
-	                                       .body = study,
-	                                       .length = strlen(study)});
+	snprintf(key, sizeof key, "tower %d", number);
+	struct answer answer = service_post_keyed(service, study, key);
 	assert_int_equal(answer.status, 201);
 	assert_string_equal(answer.location + strlen("/v1/studies/"), id);
 	answer_free(&answer);

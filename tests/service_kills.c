@@ -55,14 +55,8 @@ static void undisturbed(char *results[DOCUMENTS])
 static bool submit(const struct service *service, int number)
 {
 	char key[64], *study = document_of(number);
-	snprintf(key, sizeof key, "Idempotency-Key: study-%d", number);
-	struct answer answer =
-	    service_ask(service, &(struct ask){.method = "POST",
-	                                       .path = "/v1/studies",
-	                                       .headers = {"Content-Type: application/json", key},
-	                                       .body = study,
-	                                       .length = strlen(study),
-	                                       .may_fail = true});
+	snprintf(key, sizeof key, "study-%d", number);
+	struct answer answer = service_post_keyed(service, study, key);
 	struct submission *s = &submissions[number];
 	if (answer.status) {
 		assert_int_equal(answer.status, 201);

@@ -7,18 +7,6 @@
 #include "tests/program.h"
 #include "tests/service.h"
 
-static struct answer post(const struct service *service, const char *study, const char *key)
-{
-	char header[500];
-	snprintf(header, sizeof header, "Idempotency-Key: %s", key ? key : "");
-	return service_ask(service,
-	                   &(struct ask){.method = "POST",
-	                                 .path = "/v1/studies",
-	                                 .headers = {"Content-Type: application/json", key ? header : NULL},
-	                                 .body = study,
-	                                 .length = strlen(study)});
-}
-
 static void problem_is(struct answer *answer, int status, const char *type)
 {
 	struct reading *problem = answer_read(answer);
@@ -43,7 +31,7 @@ static void *post_in_thread(void *of)
 	for (int k = 0; k < KEYS; k++) {
 		char key[32];
 		snprintf(key, sizeof key, "key-%d", k);
-		struct answer answer = post(poster->service, poster->study, key);
+		struct answer answer = service_post_keyed(poster->service, poster->study, key);
 		if (answer.status == 201)
 			strcpy(poster->locations[k], answer.location);
 		answer_free(&answer);
@@ -77,21 +65,21 @@ static void a_key_is_known_after_a_crash_and_to_one_body_only(void **state)
 {
 	struct service *service = *state;
 	char *study = service_study(2, 1, 1), *other = service_study(2, 1, 2);
-	struct answer first = post(service, study, "\"a key, \xc3\xa4\"");
+	struct answer first = service_post_keyed(service, study, "\"a key, \xc3\xa4\"");
 	assert_int_equal(first.status, 201);
 	service_kill(service);
 	service_start(service, 2);
-	struct answer again = post(service, study, "\"a key, \xc3\xa4\"");
+	struct answer again = service_post_keyed(service, study, "\"a key, \xc3\xa4\"");
 	assert_int_equal(again.status, 201);
 	assert_string_equal(again.location, first.location);
-	struct answer clash = post(service, other, "\"a key, \xc3\xa4\"");
+	struct answer clash = service_post_keyed(service, other, "\"a key, \xc3\xa4\"");
 	problem_is(&clash, 422, "idempotency-key-reused");
-	struct answer free_of_key = post(service, study, NULL);
+	struct answer free_of_key = service_post_keyed(service, study, NULL);
 	assert_string_not_equal(free_of_key.location, first.location);
 	// a study that is gone takes its key along
 	struct answer gone = service_ask(service, &(struct ask){.method = "DELETE", .path = first.location});
 	assert_int_equal(gone.status, 204);
-	struct answer fresh = post(service, other, "\"a key, \xc3\xa4\"");
+	struct answer fresh = service_post_keyed(service, other, "\"a key, \xc3\xa4\"");
 	assert_int_equal(fresh.status, 201);
 	answer_free(&fresh);
 	answer_free(&gone);
@@ -106,16 +94,17 @@ static void a_key_is_one_text_of_1_to_200_characters(void **state)
 {
 	struct service *service = *state;
 	char *study = service_study(2, 1, 1), key[2 * 201 + 1] = "";
-	struct answer first = post(service, study, "a"), again = post(service, study, "a \t");
+	struct answer first = service_post_keyed(service, study, "a"),
+	              again = service_post_keyed(service, study, "a \t");
 	assert_int_equal(first.status, 201);
 	assert_string_equal(first.location, again.location);
 	for (int i = 0; i < 200; i++)
 		strcat(key, "\xc3\xa9");
-	struct answer lengthy = post(service, study, key);
+	struct answer lengthy = service_post_keyed(service, study, key);
 	assert_int_equal(lengthy.status, 201);
-	struct answer longer = post(service, study, strcat(key, "\xc3\xa9"));
+	struct answer longer = service_post_keyed(service, study, strcat(key, "\xc3\xa9"));
 	problem_is(&longer, 400, "bad-request");
-	struct answer latin = post(service, study, "caf\xe9");
+	struct answer latin = service_post_keyed(service, study, "caf\xe9");
 	problem_is(&latin, 400, "bad-request");
 	struct answer two =
 	    service_ask(service, &(struct ask){.method = "POST",
@@ -304,7 +293,7 @@ static void hostile_texts_are_names_like_any_other_and_never_questions(void **st
 		    "{\"frequency_hz\": 3}], \"excitation\": {\"cycles\": 1, \"signals\": 1}}}",
 		    text);
 		snprintf(key, sizeof key, "%d %s", h, text);
-		struct answer created = post(service, study, key);
+		struct answer created = service_post_keyed(service, study, key);
 		asked++;
 		if (created.status != 201)
 			fail_msg("%s: %d %s", study, created.status, created.body);
