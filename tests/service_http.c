@@ -286,14 +286,14 @@ static int files_unnamed(const struct service *service)
 static int files_unnamed_become(const struct service *service, int wanted)
 {
 	int n = -1;
-	for (int tick = 0; tick < 200 && (n = files_unnamed(service)) != wanted; tick++)
+	for (int tick = 0; tick < 1200 && (n = files_unnamed(service)) != wanted; tick++)
 		nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
 	return n;
 }
 
 static void long_answers_wait_for_slow_readers_in_files_without_names(void **state)
 {
-	enum { SIGNALS = 100, READERS = 6 };
+	enum { SIGNALS = 50, READERS = 4 };
 	struct service *service = *state;
 	char id[17], get[256];
 	service_histories(service, SIGNALS, id);
