@@ -133,13 +133,13 @@ void command_complain(const char *format, ...)
 	free(line);
 }
 
-static int whole_number(struct argp_state *state, const char *text, int max)
+static int whole_number(struct argp_state *state, const char *option, const char *text, int max)
 {
 	char *end;
 	errno = 0;
 	long value = strtol(text, &end, 10);
 	if (*end || end == text || errno || value < 1 || value > max)
-		argp_error(state, "expected a whole number from 1 to %d, got '%s'", max, text);
+		argp_error(state, "%s must be a whole number from 1 to %d, got '%s'", option, max, text);
 	return (int)value;
 }
 
@@ -167,10 +167,10 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 	struct options *options = &parsing->options;
 	switch (key) {
 	case 't':
-		options->threads = whole_number(state, value, THREADS_MAX);
+		options->threads = whole_number(state, "--threads", value, THREADS_MAX);
 		return 0;
 	case 'l':
-		options->limit = whole_number(state, value, LIMIT_MAX);
+		options->limit = whole_number(state, "--limit", value, LIMIT_MAX);
 		return 0;
 	case 'w':
 		options->wait = true;

@@ -12,6 +12,8 @@
 #include "schema/study_json.h"
 
 #include <errno.h>
+#include <libgen.h>
+#include <limits.h>
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
@@ -19,7 +21,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 enum { REDRAW_MS = 100 };
 
@@ -161,6 +165,19 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	return written ? OUTCOME_OK : OUTCOME_FAILED;
 }
 
+/* Whether a file can be written, as far as can be told without making it: a study may take hours before it is. */
+static bool writable(const char *path)
+{
+	char folder[PATH_MAX];
+	snprintf(folder, sizeof folder, "%s", path);
+	struct stat about;
+	if (stat(path, &about) != 0)
+		return errno == ENOENT && access(dirname(folder), W_OK | X_OK) == 0;
+	if (S_ISDIR(about.st_mode))
+		errno = EISDIR;
+	return !S_ISDIR(about.st_mode) && access(path, W_OK) == 0;
+}
+
 static enum outcome run_and_print(const struct pound_study *study, const struct options *options)
 {
 	double wall = seconds(CLOCK_MONOTONIC);
@@ -215,6 +232,11 @@ enum outcome run_study(const struct options *options)
 		command_complain("only sensitivity studies have samples, and floor spectra with \"histories\": true");
 		study_free(study);
 		return OUTCOME_USAGE;
+	}
+	if (options->samples && !writable(options->samples)) {
+		command_complain("cannot write '%s': %s", options->samples, strerror(errno));
+		study_free(study);
+		return OUTCOME_FAILED;
 	}
 	// a second Ctrl-C ends the program at once
 	const struct sigaction act = {.sa_handler = note_interrupt, .sa_flags = (int)SA_RESETHAND};

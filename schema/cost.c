@@ -159,13 +159,11 @@ bool cost_allowed(const struct cost *cost, const struct cost *most, struct probl
 	    {cost->bytes / MIB, most->bytes / MIB, "estimated MiB in the database", "result-max"},
 	};
 	problems_init(problems);
-	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
-		if (!(limits[i].asked > limits[i].most))
-			continue;
-		problems_add(problems, "", "asks for %.6g %s, this server takes at most %.6g (--%s)", limits[i].asked,
-		             limits[i].what, limits[i].most, limits[i].option);
-		problems_limit(problems, limits[i].asked, limits[i].most);
-	}
+	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
+		if (limits[i].asked > limits[i].most)
+			problems_exceed(problems, "", limits[i].asked, limits[i].most,
+			                "asks for %.6g %s, this server takes at most %.6g (--%s)", limits[i].asked,
+			                limits[i].what, limits[i].most, limits[i].option);
 	return problems->n == 0;
 }
 

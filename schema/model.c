@@ -315,8 +315,12 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	outputs->n_columns++;
 	column_role(outputs, column);
 	int same = column_named(outputs, c, column->name, strlen(column->name));
+	snprintf(what, sizeof what, "column %d has no name: pandas writes its index so, but for index=False",
+	         c + 1);
+	if (!*csv->cell)
+		complain(csv, NULL, what);
 	snprintf(what, sizeof what, "must be the name of a column, got \"%.40s\"", csv->cell);
-	if (!*csv->cell || (cell_number(csv, &number) && !isnan(number)))
+	if (*csv->cell && cell_number(csv, &number) && !isnan(number))
 		complain(csv, NULL, what);
 	snprintf(what, sizeof what, "must be shorter than %d bytes", CELL_SIZE);
 	if (csv->cut)
@@ -344,6 +348,11 @@ static bool header_read(struct outputs *outputs, struct csv *csv)
 {
 	const char *newline = memchr(csv->at, '\n', (size_t)(csv->end - csv->at));
 	size_t n = (size_t)((newline ? newline : csv->end) - csv->at), n_columns = 1;
+	if (blank(csv->at, csv->end)) {
+		problems_add(csv->problems, "",
+		             "is empty: a header is expected, and a line for each sample of the design");
+		return false;
+	}
 	for (size_t i = 0; i < n; i++)
 		n_columns += csv->at[i] == ',';
 	if (n_columns == 1 && (memchr(csv->at, ';', n) || memchr(csv->at, '\t', n))) {
@@ -402,9 +411,10 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 			fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g, got %.60s", VARIANCE_MOST,
 			           csv->cell);
 	} else if (!line->strange && !alike(number, line->x[column->index])) {
-		fault_note(&column->faults[FAULT_INPUT], csv,
-		           "is %.15g, but the design has %.15g there: is this its order and its seed?", number,
-		           line->x[column->index]);
+		fault_note(
+		    &column->faults[FAULT_INPUT], csv,
+		    "is %.15g, but the design has %.15g there: is this its order and its seed, or was it rounded?",
+		    number, line->x[column->index]);
 		line->strange = true;
 	}
 }
@@ -522,6 +532,12 @@ char *model_indices(const struct pound_study *study, const char *csv, size_t csv
 			lines_read(&outputs, &at, run);
 		if (run && problems->status == PROBLEMS_NONE)
 			json = reduce(&outputs, run, length);
+		if (json && pound_run_result(run)->cells[0].rows_dropped == pound_run_rows(run)) {
+			free(json);
+			json = NULL;
+			problems_add(problems, "",
+			             "no row of the design has all its outputs: there is nothing to make indexes of");
+		}
 		pound_run_free(run);
 		if (!json && problems->status == PROBLEMS_NONE)
 			problems->status = PROBLEMS_NOMEM;

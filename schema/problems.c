@@ -25,6 +25,23 @@ static void mend(char *text, size_t size, int wanted)
 	memcpy(text + end, "...", 4);
 }
 
+static void add(struct problems *problems, const char *pointer, double requested, double limit,
+                const char *format, va_list arguments)
+{
+	problems->status = PROBLEMS_INVALID;
+	if (problems->n == PROBLEMS_MAX) {
+		problems->n_more++;
+		return;
+	}
+	struct problem *problem = &problems->list[problems->n++];
+	problem->requested = requested;
+	problem->limit = limit;
+	mend(problem->pointer, sizeof problem->pointer,
+	     snprintf(problem->pointer, sizeof problem->pointer, "%s", pointer));
+	mend(problem->detail, sizeof problem->detail,
+	     vsnprintf(problem->detail, sizeof problem->detail, format, arguments));
+}
+
 /* Adds one problem of an invalid study; past PROBLEMS_MAX only counts it.
  *
  * Given    pointer   -         -       JSON Pointer, cut when too long for its place
@@ -34,32 +51,25 @@ static void mend(char *text, size_t size, int wanted)
  */
 void problems_add(struct problems *problems, const char *pointer, const char *format, ...)
 {
-	problems->status = PROBLEMS_INVALID;
-	if (problems->n == PROBLEMS_MAX) {
-		problems->n_more++;
-		return;
-	}
-	struct problem *problem = &problems->list[problems->n++];
-	problem->requested = problem->limit = 0;
-	mend(problem->pointer, sizeof problem->pointer,
-	     snprintf(problem->pointer, sizeof problem->pointer, "%s", pointer));
 	va_list arguments;
 	va_start(arguments, format);
-	mend(problem->detail, sizeof problem->detail,
-	     vsnprintf(problem->detail, sizeof problem->detail, format, arguments));
+	add(problems, pointer, 0, 0, format, arguments);
 	va_end(arguments);
 }
 
-/* Notes in numbers what the problem added last says in words.
+/* Adds a problem whose sentence says that there is more of something than there may be.
  *
- * Given    limit   > 0
+ * Given    requested, limit   in the unit that the sentence has;  limit > 0
+ *
+ * Test     unit_study_check: what_is_too_large_is_told_with_its_limit
  */
-void problems_limit(struct problems *problems, double requested, double limit)
+void problems_exceed(struct problems *problems, const char *pointer, double requested, double limit,
+                     const char *format, ...)
 {
-	if (problems->n_more > 0)
-		return;
-	problems->list[problems->n - 1].requested = requested;
-	problems->list[problems->n - 1].limit = limit;
+	va_list arguments;
+	va_start(arguments, format);
+	add(problems, pointer, requested, limit, format, arguments);
+	va_end(arguments);
 }
 
 /* Whether a member or something in it was found wrong, so that what stands on it need not be looked at.

@@ -34,8 +34,9 @@ void problems_init(struct problems *problems);
 void problems_add(struct problems *problems, const char *pointer, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The problem added last is that a study is over a limit. */
-void problems_limit(struct problems *problems, double requested, double limit);
+/* A problem that is told in numbers too: more is requested than the limit, which is above 0. */
+void problems_exceed(struct problems *problems, const char *pointer, double requested, double limit,
+                     const char *format, ...) __attribute__((format(printf, 5, 6)));
 
 /* Whether something at or below a pointer is known to be wrong, or may be, as the list is full. */
 bool problems_at(const struct problems *problems, const char *pointer);

@@ -240,7 +240,7 @@ int reader_elements(struct reader *r, const struct field *field, const cJSON *no
 	}
 	int n = cJSON_GetArraySize(node);
 	if (n < field->min || n > field->max)
-		problems_add(r->problems, r->pointer, "must be %s, got %d", expected, n);
+		problems_add(r->problems, r->pointer, "must be %s, got one of %d", expected, n);
 	return n <= field->max ? n : 0;
 }
 

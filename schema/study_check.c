@@ -303,9 +303,9 @@ static void check_excitation(const struct pound_study *study, struct problems *p
 		problems_add(problems, "/scene/excitation/time_step_s",
 		             "the ground motion must last one time step at least, not %.3g of one", least);
 	if (!(most < STUDY_SAMPLES_MAX))
-		problems_add(problems, "/scene/excitation/time_step_s",
-		             "a ground motion may have at most %d samples, this asks for %.3g", STUDY_SAMPLES_MAX,
-		             most + 1);
+		problems_exceed(problems, "/scene/excitation/time_step_s", most + 1, STUDY_SAMPLES_MAX,
+		                "a ground motion may have at most %d samples, this asks for %.3g", STUDY_SAMPLES_MAX,
+		                most + 1);
 }
 
 /* ---- outputs ---- */
@@ -444,8 +444,8 @@ static void check_step(const struct pound_study *study, const struct pound_solve
 {
 	double n = interval_steps(study, solver);
 	if (n > STUDY_STEPS_MAX)
-		problems_add(problems, pointer, "asks for %.3g steps in one sample interval, at most %d", n,
-		             STUDY_STEPS_MAX);
+		problems_exceed(problems, pointer, n, STUDY_STEPS_MAX,
+		                "asks for %.3g steps in one sample interval, at most %d", n, STUDY_STEPS_MAX);
 }
 
 static void check_steps(const struct pound_study *study, struct problems *problems)
@@ -485,23 +485,26 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	if (sampled)
 		check_rows(study, problems);
 	if (runs > most)
-		problems_add(problems, pointer, "asks for %.15g pounding runs, a study may have at most %d", runs,
-		             most);
+		problems_exceed(problems, pointer, runs, most,
+		                "asks for %.15g pounding runs, a study may have at most %d", runs, most);
 	if (!study_check_steps_known(study, problems) || problems_at(problems, "/solver"))
 		return;
 	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
 	bool few = runs <= most; // more have been told
 	if (few && runs * study_samples(study) > STUDY_WORK_MAX)
-		problems_add(problems, pointer, "asks for %.3g samples of ground motion in all runs, at most %.0e",
-		             runs * study_samples(study), STUDY_WORK_MAX);
+		problems_exceed(problems, pointer, runs * study_samples(study), STUDY_WORK_MAX,
+		                "asks for %.3g samples of ground motion in all runs, at most %.0e",
+		                runs * study_samples(study), STUDY_WORK_MAX);
 	else if (few && runs * study_steps(study) > STUDY_WORK_MAX)
-		problems_add(problems, pointer, "asks for %.3g steps of the solver in all runs, at most %.0e",
-		             runs * study_steps(study), STUDY_WORK_MAX);
+		problems_exceed(problems, pointer, runs * study_steps(study), STUDY_WORK_MAX,
+		                "asks for %.3g steps of the solver in all runs, at most %.0e",
+		                runs * study_steps(study), STUDY_WORK_MAX);
 	if (at_once > STUDY_AT_ONCE_MAX)
-		problems_add(problems, "/sweep",
-		             "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
-		             "a motion), at most %d",
-		             at_once, STUDY_AT_ONCE_MAX);
+		problems_exceed(
+		    problems, "/sweep", at_once, STUDY_AT_ONCE_MAX,
+		    "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
+		    "a motion), at most %d",
+		    at_once, STUDY_AT_ONCE_MAX);
 	check_steps(study, problems);
 }
 
@@ -543,8 +546,8 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	if (problems_at(problems, "/sweep"))
 		return;
 	if (cells(study) > STUDY_CELLS_MAX) {
-		problems_add(problems, "/sweep", "asks for %.15g cells, a study may have at most %d", cells(study),
-		             STUDY_CELLS_MAX);
+		problems_exceed(problems, "/sweep", cells(study), STUDY_CELLS_MAX,
+		                "asks for %.15g cells, a study may have at most %d", cells(study), STUDY_CELLS_MAX);
 		return;
 	}
 	if (!problems_at(problems, "/outputs"))

@@ -110,12 +110,14 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 		             "must be at most %d in a sensitivity study, got %d", POUND_ORDINATES_MAX, spectrum->n);
 	if (whole && spectrum->histories && signals && study_check_steps_known(study, problems) &&
 	    study_samples(study) * study->scene.excitation.signals > STUDY_HISTORIES_MAX)
-		problems_add(problems, "/histories", "asks for %.15g samples of all signals, at most %d",
-		             study_samples(study) * study->scene.excitation.signals, STUDY_HISTORIES_MAX);
+		problems_exceed(problems, "/histories", study_samples(study) * study->scene.excitation.signals,
+		                STUDY_HISTORIES_MAX, "asks for %.15g samples of all signals, at most %d",
+		                study_samples(study) * study->scene.excitation.signals, STUDY_HISTORIES_MAX);
 	double ordinates = (double)spectrum->n * study->scene.excitation.signals;
 	if (whole && signals && ordinates > STUDY_ORDINATES_MAX)
-		problems_add(problems, "/spectrum/frequencies_hz",
-		             "asks for %.15g frequencies of all signals, at most %d", ordinates, STUDY_ORDINATES_MAX);
+		problems_exceed(problems, "/spectrum/frequencies_hz", ordinates, STUDY_ORDINATES_MAX,
+		                "asks for %.15g frequencies of all signals, at most %d", ordinates,
+		                STUDY_ORDINATES_MAX);
 }
 
 /* ---- outputs ---- */

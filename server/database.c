@@ -235,7 +235,7 @@ static bool prepared(struct database *d, const char *const statements[], int n)
 bool database_open(struct database *d, const char *path, bool writes, const char *const statements[], int n)
 {
 	if (writes && sqlite3_libversion_number() < RESET_SAFE)
-		log_line("SQLite %s can damage a database that two connections change: leave the changes to poundd",
+		log_line("while this runs no other program may write to the database: SQLite %s could damage it then",
 		         sqlite3_libversion());
 	if (!connected(d, path, writes))
 		return false;

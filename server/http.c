@@ -259,8 +259,10 @@ static void judge(struct request *request, bool needs_host)
 		head_refuse(head, API_UNAUTHORIZED, false,
 		            "this needs the header Authorization: Bearer, and a token of this server");
 	if (!request->allow[0])
-		head_refuse(head, API_NOT_FOUND, false,
-		            "there is no such path; an id is 16 digits, 0 to 9 and a to f");
+		head_refuse(
+		    head, API_NOT_FOUND, false,
+		    "there is no such path: those there are stand in /v1/openapi.json; an id is 16 digits, 0 to 9 "
+		    "and a to f");
 	if (!operation)
 		head_refuse(head, API_NOT_ALLOWED, false, "this path does not take that method");
 	else if (operation->takes_study && !head->json)

@@ -99,7 +99,7 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 	static const struct {
 		const char *input, *words;
 	} bad[] = {{"y\n1\n", "has 1 lines after its header, the design has 5000"},
-	           {"", "line 1: must be the name of a column"}};
+	           {"", "is empty: a header is expected"}};
 	for (int i = 0; i < 2; i++) {
 		struct program_outcome refused =
 		    program_run((const char *const[]){"pound", "indices", study, "-", NULL}, bad[i].input);

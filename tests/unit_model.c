@@ -433,7 +433,8 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	    {"y;z\n", "1;2\n", "1;2\n", "line 1", "has no comma: columns are parted by commas"},
 	    {"y,y\n", "1,2\n", "1,2\n", "line 1, y", "is the name of column 1 too"},
 	    {"1.25\n", "1\n", "1\n", "line 1", "must be the name of a column, got \"1.25\""},
-	    {"y,\n", "1,2\n", "1,2\n", "line 1", "must be the name of a column, got \"\""},
+	    {"y,\n", "1,2\n", "1,2\n", "line 1",
+	     "column 2 has no name: pandas writes its index so, but for index=False"},
 	    {"pression \xe9lev\xe9"
 	     "e\n",
 	     "1\n", "1\n", "line 1", "is not UTF-8"},
@@ -443,6 +444,9 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	     "must be a decimal number, or empty or nan for a failed run, got "
 	     "\"000000000000000000000000000000000000000000000000000000000000\""},
 	    {long_cell, "1\n", "1\n", long_place, "must be shorter than 512 bytes"},
+	    {"y\n", "nan\n", "\n", "",
+	     "no row of the design has all its outputs: there is nothing to make indexes of"},
+	    {"", "", "\n\n", "", "is empty: a header is expected, and a line for each sample of the design"},
 	};
 	struct pound_study *study = study_of(two_inputs);
 	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {

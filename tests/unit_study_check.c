@@ -272,6 +272,10 @@ static void what_is_too_large_is_told_with_its_limit(void **state)
 	    documents_with(many, "\"time_step_s\": 0.01", "\"time_step_s\": 3e-4"); // 133,334 samples
 	documents_problem(document, "/design/rows",
 	                  "asks for 1.07e+12 samples of ground motion in all runs, at most 1e+12");
+	struct problems problems;
+	assert_null(study_from_json(document, strlen(document), &problems));
+	check_near(problems.list[0].limit, 1e12, 0);
+	check_near(problems.list[0].requested, 1.0666720e12, 1e8);
 	free(document);
 	free(many);
 }
@@ -364,7 +368,7 @@ static void no_fault_hides_another(void **state)
 	    {"/ratios/0/of/1", "is the path of no input of this study"},
 	    {"/ratios/1/of/1", "an input that is above in one ratio may be in no other place"},
 	    {"/ratios/2/name", "is the name of /ratios/1 too"},
-	    {"/ratios/2/of", "must be an array of 2 elements, got 1"},
+	    {"/ratios/2/of", "must be an array of 2 elements, got one of 1"},
 	    {"/ratios/2/of/0", "must be a text of 1 to 200 characters, got 3"},
 	    {"/spectrum/frequencies_hz/count", "must be in [2, 10000], got 1"},
 	    {"/spectrum/frequencies_hz", "min must be less than max, got 5 and 1"},

@@ -139,7 +139,7 @@ static const struct member members[] = {
      "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
      "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
      "[\"/excitation/frequency_hz\"]}]",
-     "/ratios/0/of", "must be an array of 2 elements, got 1"},
+     "/ratios/0/of", "must be an array of 2 elements, got one of 1"},
     {"/ratios/*/of/*", "\"reciprocal_uniform\", \"max\": 6}}]",
      "\"uniform\", \"min\": 1, \"max\": 6}}], \"ratios\": [{\"name\": \"q\", \"of\": "
      "[\"/excitation/frequency_hz\", \"/oscillators/1/mass_kg\"]}]",
@@ -450,7 +450,7 @@ static void an_excitation_has_its_own_members_only(void **state)
 	                  "is required: an array of 2 to 10000000 elements");
 	documents_problem(SCENE("{\"type\": \"record\", \"acceleration_m_s2\": [1]}"),
 	                  "/scene/excitation/acceleration_m_s2",
-	                  "must be an array of 2 to 10000000 elements, got 1");
+	                  "must be an array of 2 to 10000000 elements, got one of 1");
 	documents_problem(SCENE("{\"type\": \"record\", \"acceleration_m_s2\": [1, \"x\"]}"),
 	                  "/scene/excitation/acceleration_m_s2/1", "must be a number, got \"x\"");
 	documents_problem(SCENE("{\"type\": \"record\", \"acceleration_m_s2\": [1, 2], \"signals\": 1}"),
@@ -494,7 +494,7 @@ static void members_are_known_once_and_used(void **state)
 	    {"\"path\": \"/contact/restitution\", ", "", "/sweep/0/path",
 	     "is required: a text of 1 to 200 characters"},
 	    {", \"values\": [0.2, 0.9]", "", "/sweep/0/values", "is required: an array of 1 to 10000 elements"},
-	    {"[0.2, 0.9]", "[]", "/sweep/0/values", "must be an array of 1 to 10000 elements, got 0"},
+	    {"[0.2, 0.9]", "[]", "/sweep/0/values", "must be an array of 1 to 10000 elements, got one of 0"},
 	    {"[0.2, 0.9]", "[0.2, 0.20]", "/sweep/0/values/1", "is the same as value 0"},
 	    {"[0.2, 0.9]", "0.2", "/sweep/0/values", "must be an array of 1 to 10000 elements, got 0.2"},
 	    {"\"target_demand\": 2", "\"target_demand\": 2, \"yield_displacement_m\": 1",
@@ -503,7 +503,7 @@ static void members_are_known_once_and_used(void **state)
 	     "unknown member, did you mean \"rigid_wall\"?"},
 	    {"\"impulse\"]", "\"demand_amplification\"]", "/outputs/1", "is asked twice"},
 	    {"[\"demand_amplification\", \"impulse\"]", "[]", "/outputs",
-	     "must be an array of 1 to 8 elements, got 0"},
+	     "must be an array of 1 to 8 elements, got one of 0"},
 	    {"[\"demand_amplification\", \"impulse\"]", "{}", "/outputs",
 	     "must be an array of 1 to 8 elements, got an object"},
 	};
@@ -549,7 +549,7 @@ static void what_is_missing_is_named(void **state)
 	documents_problem("{\"kind\": \"response\", \"scene\": {}}", "/scene/oscillators",
 	                  "is required: an array of 2 elements");
 	documents_problem("{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}]}}",
-	                  "/scene/oscillators", "must be an array of 2 elements, got 1");
+	                  "/scene/oscillators", "must be an array of 2 elements, got one of 1");
 	documents_problem("{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {}]}}",
 	                  "/scene/oscillators/1/frequency_hz", "is required: a number greater than 0 Hz");
 	documents_problem("[]", "", "must be an object, got an array");
