@@ -46,9 +46,8 @@ static bool ended(const struct reading *status, enum outcome *outcome)
 static void complain(const char *id, const struct reading *status)
 {
 	const char *state = reading_text(status, "/status"), *error = reading_text(status, "/error");
-	const bool late = error && strcmp(error, "timeout") == 0;
-	command_complain("%s: the study is %s%s%s%s", id, state ? state : "?", error ? ": " : "",
-	                 error ? error : "", late ? " (it ran for longer than the server's --time-max)" : "");
+	command_complain("%s: the study is %s%s%s", id, state ? state : "?", error ? ": " : "",
+	                 error ? error : "");
 }
 
 /* Takes one answer about a study: true when there is nothing more to wait for. */

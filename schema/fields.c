@@ -81,7 +81,7 @@ const struct field fields[] = {
 	{"/scene/oscillators/*/mass_kg", FIELD_REAL, AT(scene.oscillators[0].mass), 1, 0, INFINITY,
 	 FIELD_OPEN, "kg", .text = "mass"},
 	{"/scene/oscillators/*/frequency_hz", FIELD_REAL, AT(scene.oscillators[0].frequency_hz), NAN, 0, INFINITY,
-	 FIELD_OPEN, "Hz", .text = "undamped frequency of the initial stiffness"},
+	 FIELD_OPEN, "Hz", .text = "undamped frequency of the initial stiffness; not of a rigid wall"},
 	{"/scene/oscillators/*/damping_ratio", FIELD_REAL, AT(scene.oscillators[0].damping_ratio), 0.05, 0, 1,
 	 FIELD_OPEN_MAX, "", .text = "fraction of critical damping"},
 	{"/scene/oscillators/*/rigid_wall", FIELD_BOOL, AT(scene.oscillators[0].rigid_wall), 0, 0, 1, FIELD_CLOSED, "",
@@ -91,7 +91,7 @@ const struct field fields[] = {
 	LAW_ROWS("/scene/oscillators/*/law", OWN),
 
 	{"/scene/contact", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "what acts when they touch; null: they never do"},
+	 .text = "what acts when they touch; absent: a contact as below; null: they never touch"},
 	{"/scene/contact/model", FIELD_CHOICE, AT(scene.contact.model), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "contact model", .choice = pound_contact_name},
 	{"/scene/contact/stiffness_ratio", FIELD_REAL, AT(scene.contact.stiffness_ratio), 100, 0, INFINITY,
@@ -104,7 +104,7 @@ const struct field fields[] = {
 	 .text = "the dashpot may pull just before separation"},
 
 	{"/scene/excitation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "ground motion"},
+	 .text = "ground motion; absent: one as below"},
 	{"/scene/excitation/type", FIELD_CHOICE, AT(scene.excitation.type), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "kind of ground motion", .choice = pound_excitation_name,
 	 .fixed = "it decides what the other members mean"},
@@ -185,7 +185,7 @@ const struct field fields[] = {
 	 .text = "independent scrambles of sobol points, whose scatter gives the intervals; only design sobol", SENSITIVITY,
 	 NOT_SCENE},
 	{"/design/until", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "more rows are run until every interval is narrow; rows is then where it begins", SENSITIVITY, WITH_SCENE, NOT_SCENE},
+	 .text = "more rows are run until every interval is narrow; it begins with rows, or with 1000 (16 for each randomisation of sobol) if that is more", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/half_width", FIELD_REAL, AT(design.until.half_width), NAN, 0, 1, FIELD_OPEN, "",
 	 .text = "half of the interval of every S1 and ST, at most", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 200000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
@@ -203,7 +203,7 @@ const struct field fields[] = {
 	 .choice = pound_estimator_name, SENSITIVITY, NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
-	 .text = "what comes out, each once; the amplifications that apply and the impulse when absent", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "what comes out, each once; when absent the amplifications that apply, and with a contact the impulse", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one output; force_amplification of a linear law of the left oscillator, demand_amplification of another, floor_spectrum in sensitivity studies", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
 

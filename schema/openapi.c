@@ -29,7 +29,7 @@ static const struct member members[] = {
 	{"Status", "created",     "string",  "",     "RFC 3339, UTC"},
 	{"Status", "started",     "string",  "null", "RFC 3339, UTC"},
 	{"Status", "finished",    "string",  "null", "RFC 3339, UTC"},
-	{"Status", "error",       "string",  "null", "why it failed"},
+	{"Status", "error",       "string",  "null", "why it failed: poison-study, timeout, or another reason, in a sentence"},
 	{"Status", "links",       "Links",   "",     "where the rest is"},
 	{"Links",  "self",        "string",  "",     "this object"},
 	{"Links",  "request",     "string",  "",     "the bytes that were posted"},
@@ -437,11 +437,11 @@ static void media(struct writer *w, const char *type, const char *schema)
 	writer_end(w);
 }
 
-static void header(struct writer *w, const char *name, const char *text)
+static void header(struct writer *w, const char *name, bool required, const char *text)
 {
 	object(w, name);
 	writer_text(w, "description", text);
-	writer_bool(w, "required", true);
+	writer_bool(w, "required", required);
 	writer_json(w, "schema", "{\"type\": \"string\"}");
 	writer_end(w);
 }
@@ -456,8 +456,8 @@ static void success_headers(struct writer *w, const struct api_operation *operat
 		return;
 	object(w, "headers");
 	if (made)
-		header(w, "Location", "the study");
-	header(w, "ETag", "for If-None-Match");
+		header(w, "Location", true, "the study");
+	header(w, "ETag", true, "for If-None-Match");
 	writer_end(w);
 }
 
@@ -497,12 +497,15 @@ static void failures(struct writer *w, const struct api_operation *operation)
 		snprintf(status, sizeof status, "%d", api_faults[first].status);
 		object(w, status);
 		writer_text(w, "description", text);
-		if (first == API_UNAVAILABLE || first == API_TOO_MANY || first == API_UNAUTHORIZED) {
+		const bool always = first == API_UNAVAILABLE || first == API_TOO_MANY;
+		const bool waits =
+		    api_faults[first].status == api_faults[API_NOT_READY].status && (faults >> API_NOT_READY & 1);
+		if (always || waits || first == API_UNAUTHORIZED) {
 			object(w, "headers");
 			if (first == API_UNAUTHORIZED)
-				header(w, "WWW-Authenticate", "Bearer");
+				header(w, "WWW-Authenticate", true, "Bearer");
 			else
-				header(w, "Retry-After", "seconds");
+				header(w, "Retry-After", always, always ? "seconds" : "seconds, of what is not ready yet");
 			writer_end(w);
 		}
 		object(w, "content");

@@ -400,7 +400,7 @@ static double end_late(struct work *work)
 		if (job->opened && !job->ended && !late)
 			next = until < next ? until : next;
 		if (late)
-			end(job, "timeout");
+			end(job, "timeout: it ran for longer than the server's --time-max");
 		// settling lets the lock go, so the list may be another
 		if (late && job->n_inside == 0) {
 			settle(work, job);
