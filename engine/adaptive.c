@@ -4,7 +4,8 @@
  *    stepper sees is smooth.  Steps end at the samples, where the ground motion has its kinks.
  * 2. A step after which a guard has changed its sign is taken again, shorter and shorter, to the first such change.
  *    Velocities have guards too, so displacements and the overlap go one way within a step: no contact between two
- *    looks is missed, and the largest displacement is at a step's end.
+ *    looks is missed, and the largest displacement is at a step's end.  A velocity that turns twice within a step is found
+ *    at its farthest between the turns, by the cubic through both ends.
  * 3. The stepper is rk8pd.  A stretch that takes it too many steps is stiff (bodies pressed together), and goes on
  *    with msbdf up to the next event or sample.
  *
@@ -113,7 +114,7 @@ static double guard(const struct course *c, enum guard j, const double y[])
 	case TURN_2:
 		return c->way[j - TURN] == 0 ? -1 : -c->way[j - TURN] * y[V1 + 2 * (j - TURN)];
 	case TURN_OVERLAP:
-		return !task->contact || c->way[2] == 0 ? -1 : -c->way[2] * y[Q];
+		return c->way[2] == 0 ? -1 : -c->way[2] * y[Q];
 	case LOW:
 	case LOW_2:
 		return c->at[j - LOW].piece.low - y[U1 + 2 * (j - LOW)];
@@ -142,7 +143,7 @@ static void ways_set(struct course *c)
 		double direction = c->at[i].piece.direction;
 		c->way[i] = direction != 0 ? direction : sign(c->y[V1 + 2 * i]);
 	}
-	c->way[2] = sign(c->y[Q]);
+	c->way[2] = c->task->contact ? sign(c->y[Q]) : 0;
 }
 
 /* ---- events ---- */
@@ -245,6 +246,51 @@ static enum guard crossed(const struct course *c)
 	return j;
 }
 
+/* Where in a step the cubic through both ends of a guard is highest, if that is inside and likely above 0.
+ *
+ * Given    g, d   guard and its rate times the step, at both ends; neither g is above 0
+ * Returns  value  share of the step; 0: it is highest at an end, or likely below 0
+ */
+static double hump(const double g[2], const double d[2])
+{
+	if (!(d[0] > 0 && d[1] < 0))
+		return 0;
+	const double rise = g[1] - g[0], b = 3 * rise - 2 * d[0] - d[1], a = d[0] + d[1] - 2 * rise;
+	// the root between 0 and 1 of the cubic's rate, d0 + 2 b s + 3 a s^2
+	const double s = d[0] / (sqrt(b * b - 3 * a * d[0]) - b);
+	const double top = g[0] + s * (d[0] + s * (b + s * a)), height = top - fmax(g[0], g[1]);
+	// the cubic errs by a part of the height
+	return top + 0.25 * height > 0 ? s : 0;
+}
+
+/* Ends a step where a velocity that turns twice within it is at its farthest in between.
+ *
+ * Given    t, y   end of the step, no guard of a velocity above 0 there
+ * Returns  t, y   the same, or an earlier end, one above 0 there;  value: false: the stepper failed
+ */
+static bool turns_find(struct course *c, double *t, double y[STATES])
+{
+	static const int rate[] = {[TURN] = V1, [TURN_2] = V2, [TURN_OVERLAP] = Q};
+	for (enum guard j = TURN; j <= TURN_OVERLAP; j++) {
+		const double h = *t - c->t, g[2] = {guard(c, j, c->y), guard(c, j, y)};
+		double start[STATES], end[STATES], middle[STATES];
+		if (g[1] > 0)
+			continue;
+		derivative(c->t, c->y, start, c);
+		derivative(*t, y, end, c);
+		const double d[2] = {-c->way[j] * start[rate[j]] * h, -c->way[j] * end[rate[j]] * h}, s = hump(g, d);
+		if (s == 0)
+			continue;
+		if (!state_at(c, c->y, c->t + s * h, middle))
+			return false;
+		if (guard(c, j, middle) > 0) {
+			*t = c->t + s * h;
+			memcpy(y, middle, sizeof middle);
+		}
+	}
+	return true;
+}
+
 /* One step, cut at its first event; false: the stepper failed. */
 static bool course_step(struct course *c)
 {
@@ -261,6 +307,8 @@ static bool course_step(struct course *c)
 		return false;
 	double h = driver->h;
 	enum guard event = GUARDS;
+	if (!turns_find(c, &t, y))
+		return false;
 	for (enum guard j = TURN; j < GUARDS; j++)
 		if (guard(c, j, y) > 0) {
 			event = j;

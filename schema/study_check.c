@@ -285,6 +285,24 @@ bool study_check_steps_known(const struct pound_study *study, const struct probl
 	                 problems);
 }
 
+/* A sine of fewer than two samples a cycle would be another, slower one. */
+static void check_harmonic(const struct pound_study *study, struct problems *problems)
+{
+	static const char *const wave[] = {"/excitation/type", "/excitation/frequency_hz",
+	                                   "/excitation/time_step_s", NULL};
+	double low, frequency, step;
+	if (!all_known(study, wave, problems) || !excitation_uses(study, "/scene/excitation/frequency_hz") ||
+	    excitation_uses(study, "/scene/excitation/signals"))
+		return;
+	study_check_reach(study, "/excitation/frequency_hz", &low, &frequency);
+	study_check_reach(study, "/excitation/time_step_s", &low, &step);
+	if (!(2 * frequency * step < 1))
+		problems_add(problems, "/scene/excitation/frequency_hz",
+		             "a sine needs more than two samples a cycle: at a time step of %.15g s it must be below "
+		             "%.15g Hz, got %.15g",
+		             step, 0.5 / step, frequency);
+}
+
 static void check_excitation(const struct pound_study *study, struct problems *problems)
 {
 	static const char *const envelope[] = {"/excitation/type", "/excitation/rise", "/excitation/fall", NULL};
@@ -296,6 +314,7 @@ static void check_excitation(const struct pound_study *study, struct problems *p
 			problems_add(problems, "/scene/excitation/fall", "rise + fall must be at most 1, got %.15g",
 			             rise + fall);
 	}
+	check_harmonic(study, problems);
 	if (!study_check_steps_known(study, problems))
 		return;
 	steps(study, &least, &most);

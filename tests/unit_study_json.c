@@ -444,6 +444,13 @@ static void an_excitation_has_its_own_members_only(void **state)
 	study_free(s);
 	study_free(documents_study(
 	    SCENE("{\"type\": \"white_noise\", \"duration_s\": 3, \"rise\": 0, \"signals\": 2}")));
+	documents_problem(
+	    SCENE("{\"type\": \"harmonic\", \"duration_s\": 3, \"time_step_s\": 0.02, \"frequency_hz\": 25}"),
+	    "/scene/excitation/frequency_hz",
+	    "a sine needs more than two samples a cycle: at a time step of 0.02 s it must be below 25 Hz, got "
+	    "25");
+	study_free(documents_study(
+	    SCENE("{\"type\": \"harmonic\", \"duration_s\": 3, \"time_step_s\": 0.02, \"frequency_hz\": 24.9}")));
 	documents_problem(SCENE("{\"type\": \"harmonic\"}"), "/scene/excitation/duration_s",
 	                  "is required: a number greater than 0 s");
 	documents_problem(SCENE("{\"type\": \"record\"}"), "/scene/excitation/acceleration_m_s2",
