@@ -42,15 +42,17 @@ struct pound_scatter {
 	const int64_t *row; /* number in the design of each row that counts; NULL: its own */
 };
 
-/* The rows without a failed run.  y: outputs, centred by the mean of A and B; deviation: what each signal adds to an
- * output, times the root that makes their products add up to the covariance of outputs over draws of the signals. */
+/* The rows without a failed run.  y: outputs for infinitely many signals, without the bias that ratios of means of few have;
+ * plain: as they come out; both centred by their mean of A and B.  deviation: what each signal adds to an output y, times the
+ * root that makes their products add up to the covariance of outputs over draws of the signals. */
 struct pound_rows {
 	int n_rows, n_inputs, n_samples, n_signals, order;
-	double mean, variance_floor; /* a variance up to the floor is rounding */
+	double mean, plain_mean; /* of A and B */
+	double variance_floor;   /* a variance up to it is rounding */
 	double ratio_bias; /* of the outputs, mean over all samples: they are ratios of means of few signals */
 	int64_t *row;      /* which row of the design  (n_rows) */
 	struct pound_scatter scatter;
-	double *y;         /* (n_rows x n_samples) */
+	double *y, *plain; /* (n_rows x n_samples) */
 	double *deviation; /* (n_rows x n_samples x n_signals); NAN: one signal of unknown variance */
 	bool independent;  /* samples of a row do not share their noise; one signal stands for all */
 	const struct pound_input *inputs; /* of the sample values */

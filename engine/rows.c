@@ -5,33 +5,40 @@
 #include <float.h>
 #include <math.h>
 
-/* Ratio of means over the signals, and what each signal adds to its deviation.
+/* Ratio of means over the signals, its bias, and what each signal adds to its deviation.
  *
  * Given    numerator, denominator   (n_signals)
  * Returns  value       Y            mean numerator / mean denominator
- *          deviation   (n_signals)  z_r - Y of the pseudo-values z_r = Y + (U_r - Y u_r) / mean(u); their mean is 0
- *          bias        -            of the ratio, by the jackknife: (R - 1) (mean of the ratios without one signal - Y)
+ *          bias        -            of Y, by the jackknife: (R - 1) (mean of the ratios without one signal - Y); NAN: one signal
+ *          deviation   (n_signals)  residuals U_r - Y u_r over the mean of u, each over (1 - h_r)^1/2, h_r = u_r / sum of u, and
+ *                                   times (1 - 1/R)^1/2
  *
- * Source   delta method; model.md 5: a ratio of means, with the same signals above and below; Quenouille 1956,
- *          Biometrika 43, 353-360, for the jackknife
- * Test     unit_rows: the_variance_of_a_ratio_of_means_is_that_of_its_linearisation
+ * Y lies near the signals that have much weight in it: their residuals are too small by (1 - h)^1/2.  Of responses with pounding
+ * the noise would without that be found too small, and by the jackknife's pseudo-values, over 1 - h, too large: of two signals by
+ * so much that total indexes are off by a third.  With equal denominators all of these are one, and nothing is biased.
+ *
+ * Source   model.md 5: a ratio of means, with the same signals above and below; Quenouille 1956, Biometrika 43, 353-360, for
+ *          the jackknife; MacKinnon and White 1985, J. Econometrics 29, 305-325 (HC2), of the regression through 0 that Y is
+ * Test     unit_rows: the_variance_of_a_ratio_of_means_is_that_of_its_residuals
  */
 static double ratio_of_means(const double *numerator, const double *denominator, int n_signals,
                              double *deviation, double *bias)
 {
-	double above = 0.0, below = 0.0, without = 0.0;
+	double above = 0.0, below = 0.0, sum = 0.0;
+	bool even = true;
 	for (int r = 0; r < n_signals; r++) {
 		above += numerator[r];
 		below += denominator[r];
+		even &= denominator[r] == denominator[0];
 	}
-	double y = above / below, scale = n_signals / below;
+	const double y = above / below, others = n_signals - 1.0;
 	for (int r = 0; r < n_signals; r++) {
-		double residual = numerator[r] - y * denominator[r];
-		deviation[r] = residual * scale;
-		// (above - U_r) / (below - u_r) - Y
-		without -= residual / (below - denominator[r]);
+		const double residual = numerator[r] - y * denominator[r], rest = below - denominator[r];
+		sum += residual / rest;
+		deviation[r] =
+		    even ? residual * n_signals / below : residual * sqrt(others * n_signals / (below * rest));
 	}
-	*bias = n_signals > 1 ? (n_signals - 1.0) / n_signals * without : NAN;
+	*bias = n_signals == 1 ? NAN : even ? 0.0 : -others / n_signals * sum;
 	return isfinite(below) ? y : NAN;
 }
 
@@ -47,7 +54,7 @@ static void deviations_scale(double *deviation, int n_signals)
  *
  * Returns  noise    (n_samples x n_samples)
  *
- * Test     unit_rows: the_variance_of_a_ratio_of_means_is_that_of_its_linearisation
+ * Test     unit_rows: the_variance_of_a_ratio_of_means_is_that_of_its_residuals
  */
 void pound_rows_noise(const struct pound_rows *rows, int row, double *noise)
 {
@@ -73,24 +80,27 @@ int pound_rows_levels(const struct pound_rows *rows, int input)
 	return rows->inputs ? pound_conditional_levels(&rows->inputs[input].distribution) : 0;
 }
 
-/* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros. */
-static void centre(struct pound_rows *rows)
+/* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros.
+ *
+ * Returns  value  the mean
+ */
+static double centre(const struct pound_rows *rows, double *y)
 {
-	const double start = rows->y[0];
+	const int n_samples = rows->n_samples;
+	const double start = y[0];
 	double sum = 0.0;
-	for (int i = 0; i < rows->n_rows; i++) {
-		const double *y = rows->y + (size_t)i * rows->n_samples;
-		sum += (y[0] - start) + (y[1] - start);
-	}
-	rows->mean = start + sum / (2.0 * rows->n_rows);
-	for (size_t k = 0; k < (size_t)rows->n_rows * rows->n_samples; k++)
-		rows->y[k] -= rows->mean;
+	for (int i = 0; i < rows->n_rows; i++)
+		sum += (y[i * n_samples] - start) + (y[i * n_samples + 1] - start);
+	const double mean = start + sum / (2.0 * rows->n_rows);
+	for (size_t k = 0; k < (size_t)rows->n_rows * n_samples; k++)
+		y[k] -= mean;
+	return mean;
 }
 
 size_t pound_rows_scratch(const struct pound_sample_values *shape)
 {
 	const size_t samples = (size_t)shape->n_rows * pound_order_samples(shape->order, shape->n_inputs);
-	return samples * (1 + shape->n_signals) + shape->n_rows;
+	return samples * (2 + shape->n_signals) + shape->n_rows;
 }
 
 /* One row's outputs, with their deviations, at the end of the rows; says whether it has them all. */
@@ -99,19 +109,21 @@ static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *
 {
 	const int n_samples = rows->n_samples, n_signals = rows->n_signals;
 	double *y = rows->y + (size_t)rows->n_rows * n_samples, row_largest = 0.0;
+	double *plain = rows->plain + (size_t)rows->n_rows * n_samples;
 	double *deviation = rows->deviation + (size_t)rows->n_rows * n_samples * n_signals, biases = 0.0;
 	for (int p = 0; p < n_samples; p++, deviation += n_signals) {
 		size_t sample = (size_t)row * n_samples + p;
 		double one = NAN;
 		if (values->variance) {
-			y[p] = values->numerator[sample];
+			plain[p] = values->numerator[sample];
 			*deviation = sqrt(values->variance[sample]);
 		} else {
-			y[p] = ratio_of_means(values->numerator + sample * n_signals,
-			                      values->denominator + sample * n_signals, n_signals, deviation, &one);
+			plain[p] = ratio_of_means(values->numerator + sample * n_signals,
+			                          values->denominator + sample * n_signals, n_signals, deviation, &one);
 			deviations_scale(deviation, n_signals);
 		}
-		row_largest = isfinite(y[p]) ? fmax(row_largest, fabs(y[p])) : INFINITY;
+		y[p] = isnan(one) ? plain[p] : plain[p] - one;
+		row_largest = isfinite(y[p]) ? fmax(row_largest, fmax(fabs(y[p]), fabs(plain[p]))) : INFINITY;
 		biases += one;
 	}
 	if (!isfinite(row_largest))
@@ -139,7 +151,8 @@ struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values
  * Returns  rows        -                                  outputs, centred, and their noise
  * Memory   scratch     (pound_rows_scratch)               held by rows
  *
- * A row with a failed run, or a denominator without a mean, is left out whole.
+ * A row with a failed run, or a denominator without a mean, is left out whole, as is one of which no ratio of all signals but
+ * one is known.
  *
  * Test     unit_rows
  */
@@ -153,14 +166,16 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 	                            .independent = values->variance,
 	                            .inputs = values->inputs,
 	                            .y = scratch};
-	rows->deviation = rows->y + (size_t)values->n_rows * n_samples;
+	rows->plain = rows->y + (size_t)values->n_rows * n_samples;
+	rows->deviation = rows->plain + (size_t)values->n_rows * n_samples;
 	rows->row = (int64_t *)(rows->deviation + (size_t)values->n_rows * n_samples * values->n_signals);
 	rows->scatter = pound_rows_scatter(values, rows->row);
 	double largest = 0.0, bias = 0.0;
 	for (int i = 0; i < values->n_rows; i++)
 		if (row_fill(rows, values, i, &largest, &bias))
 			rows->row[rows->n_rows++] = i;
-	centre(rows);
+	rows->mean = centre(rows, rows->y);
+	rows->plain_mean = centre(rows, rows->plain);
 	rows->ratio_bias = bias / rows->n_rows;
 	// a sum of n_signals numbers and a quotient round to no more than this
 	double rounding = (values->n_signals + 2) * DBL_EPSILON * largest;

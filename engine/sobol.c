@@ -20,7 +20,8 @@ static void subject_moments(const void *given, int row, double *m)
 		pound_rows_noise(s->rows, row, noise);
 	const struct pound_outputs outputs = {.n_inputs = s->rows->n_inputs,
 	                                      .n_samples = n_samples,
-	                                      .y = s->rows->y + (size_t)row * n_samples,
+	                                      .y = (s->corrected ? s->rows->y : s->rows->plain) +
+	                                           (size_t)row * n_samples,
 	                                      .noise = s->corrected ? noise : NULL};
 	s->estimator->moments(&outputs, m);
 }
@@ -47,7 +48,7 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 	const int d = rows->n_inputs, n_signals = rows->n_signals;
 	double mean = 0.0, square = 0.0, sum = 0.0, squares = 0.0, noise = 0.0;
 	for (int i = 0; i < rows->n_rows; i++) {
-		const double *y = rows->y + (size_t)i * rows->n_samples;
+		const double *y = rows->plain + (size_t)i * rows->n_samples;
 		const double *deviation = rows->deviation + (size_t)i * rows->n_samples * n_signals;
 		mean += 0.5 * (y[0] + y[1]);
 		square += 0.5 * (y[0] * y[0] + y[1] * y[1]);
@@ -60,7 +61,7 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 	}
 	const double n = rows->n_rows, all = n * (d + 2);
 	double variance = squares / all - sum / all * (sum / all);
-	indices->mean = rows->mean + mean / n;
+	indices->mean = rows->plain_mean + mean / n;
 	indices->variance = square / n - mean / n * (mean / n);
 	indices->ratio_bias = isfinite(rows->ratio_bias) ? rows->ratio_bias : NAN;
 	bool varies = rows->n_rows > 1 && variance > rows->variance_floor;
