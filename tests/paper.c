@@ -364,7 +364,7 @@ static bool noise_apart(const struct pound_indices *independent, const struct po
 		agree &= overlap(&total[0][j], &total[1][j]);
 		agree &= overlap(&independent->index[POUND_S1][j], &common->index[POUND_S1][j]);
 		for (int k = 0; k < 2; k++)
-			below &= (j != F_2 && j != EPS) || total[k][j].high < total[k][F_E].low;
+			below &= (j != F_2 && j != EPS) || total[k][j].value < total[k][F_E].low;
 	}
 	printf("\n");
 	bool all = verdict(
