@@ -274,7 +274,8 @@ static bool turns_find(struct course *c, double *t, double y[STATES])
 	for (enum guard j = TURN; j <= TURN_OVERLAP; j++) {
 		const double h = *t - c->t, g[2] = {guard(c, j, c->y), guard(c, j, y)};
 		double start[STATES], end[STATES], middle[STATES];
-		if (g[1] > 0)
+		// while bodies touch nothing hangs on which way their overlap goes
+		if (g[1] > 0 || (j == TURN_OVERLAP && c->touching))
 			continue;
 		derivative(c->t, c->y, start, c);
 		derivative(*t, y, end, c);

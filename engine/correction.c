@@ -133,7 +133,8 @@ size_t pound_correction_scratch(const struct pound_sample_values *shape)
  * second-order index of signal and input j; the last two are 0 by construction when samples do not share signals.
  * T_w(R) is the share of randomness left in the means used here.
  *
- * Source   within-row covariances are the U-statistics over pairs of different signals
+ * Source   within-row covariances: rows.c; of outputs that are plain means they are the U-statistics over pairs of different
+ *          signals
  * Test     unit_correction: the_golden_row_set_is_met
  */
 void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,

@@ -9,7 +9,7 @@
 /* Moments of the plain estimator, of one row. */
 static void row_moments(const struct pound_rows *rows, int row, double *m)
 {
-	const struct pound_outputs outputs = {.y = rows->y + (size_t)row * (size_t)rows->n_samples,
+	const struct pound_outputs outputs = {.y = rows->plain + (size_t)row * (size_t)rows->n_samples,
 	                                      .n_inputs = rows->n_inputs};
 	pound_estimator_row(0)->moments(&outputs, m);
 }

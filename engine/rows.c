@@ -35,8 +35,9 @@ static double ratio_of_means(const double *numerator, const double *denominator,
 	for (int r = 0; r < n_signals; r++) {
 		const double residual = numerator[r] - y * denominator[r], rest = below - denominator[r];
 		sum += residual / rest;
+		// one of a sum of equal ones, to the last digit, and no product that could leave the range of doubles
 		deviation[r] =
-		    even ? residual * n_signals / below : residual * sqrt(others * n_signals / (below * rest));
+		    residual * n_signals / below * (even ? 1.0 : sqrt(others / n_signals * (below / rest)));
 	}
 	*bias = n_signals == 1 ? NAN : even ? 0.0 : -others / n_signals * sum;
 	return isfinite(below) ? y : NAN;
@@ -122,7 +123,7 @@ static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *
 			                          values->denominator + sample * n_signals, n_signals, deviation, &one);
 			deviations_scale(deviation, n_signals);
 		}
-		y[p] = isnan(one) ? plain[p] : plain[p] - one;
+		y[p] = values->variance || n_signals == 1 ? plain[p] : plain[p] - one;
 		row_largest = isfinite(y[p]) ? fmax(row_largest, fmax(fabs(y[p]), fabs(plain[p]))) : INFINITY;
 		biases += one;
 	}

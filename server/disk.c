@@ -25,6 +25,7 @@ enum {
 	BALLAST_MAX = 16 << 20,  /* [bytes] */
 	RESERVE_PART = 16,       /* of the whole disk, where that is less */
 	BALLAST_PART = 32,
+	SPOOL_PART = 8,           /* of what is to spare, for one spooled answer */
 	LOCK_TRIES = 50,          /* half a second together */
 	LOCK_PAUSE_NS = 10000000, /* [ns] */
 };
@@ -164,7 +165,8 @@ int disk_spool(const struct disk *disk, const char *bytes, size_t n)
 	char folder[PATH_MAX];
 	int64_t size, spare;
 	snprintf(folder, sizeof folder, "%s", disk->database);
-	if (!measure(disk, &size, &spare) || (int64_t)n > spare)
+	// a part of what is left each time: however many are written at once, they do not use it up
+	if (!measure(disk, &size, &spare) || (int64_t)n > spare / SPOOL_PART)
 		return -1;
 	int file = open(dirname(folder), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
 	ssize_t written = 1;

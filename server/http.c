@@ -162,11 +162,11 @@ static struct MHD_Response *response_spooled(struct server *server, const struct
  *
  * It writes the body's length into a 304, too, which must be that of the 200 (RFC 9110 section 8.6): so a 304 keeps its
  * body, which is not sent.  Where that was not made, it leaves the length out, but must close the connection. */
-static struct MHD_Response *response_of(struct server *server, struct reply *reply)
+static struct MHD_Response *response_of(const struct request *request, struct reply *reply)
 {
 	struct MHD_Response *response;
 	if (reply->status != 304 && reply->length >= SPOOLED_MIN && !reply->lasts &&
-	    (response = response_spooled(server, reply))) {
+	    strcmp(request->method, "HEAD") != 0 && (response = response_spooled(request->server, reply))) {
 		drop_body(reply);
 		return response;
 	}
@@ -205,7 +205,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	    {"Referrer-Policy", "no-referrer"},
 	};
 	const size_t sent = reply->status == 304 ? 0 : reply->length;
-	struct MHD_Response *response = response_of(server, reply);
+	struct MHD_Response *response = response_of(request, reply);
 	if (!response) {
 		drop_body(reply);
 		return MHD_NO;

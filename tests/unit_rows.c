@@ -66,6 +66,37 @@ static void the_variance_of_a_ratio_of_means_is_that_of_its_residuals(void **sta
 	free(rows.y);
 }
 
+static void the_noise_of_a_ratio_is_the_same_in_any_unit(void **state)
+{
+	(void)state;
+	static const double units[] = {1, 0x1p530, 0x1p-550};
+	double want[SAMPLES * SAMPLES];
+	for (int k = 0; k < 3; k++) {
+		double numerator[] = {3, 3, 3, 2, 4, 1, 5, 1, 2}, denominator[] = {1, 2, 6, 1, 2, 6, 3, 1, 2};
+		double e[SAMPLES * SAMPLES];
+		for (int i = 0; i < SAMPLES * SIGNALS; i++)
+			numerator[i] *= units[k], denominator[i] *= units[k];
+		struct pound_rows rows = rows_of(1, SIGNALS, numerator, denominator);
+		assert_int_equal(rows.n_rows, 1);
+		pound_rows_noise(&rows, 0, k ? e : want);
+		for (int i = 0; i < SAMPLES * SAMPLES && k; i++)
+			check_near(e[i], want[i], 0.0);
+		free(rows.y);
+	}
+	assert_true(want[0] > 0);
+}
+
+/* A ratio of one signal alone says nothing of what another one would have been. */
+static void a_row_whose_denominator_is_one_signal_s_alone_is_left_out(void **state)
+{
+	(void)state;
+	static const double numerator[] = {1, 0, 0, 1, 2, 3, 1, 2, 3},
+	                    denominator[] = {1, 0, 0, 1, 1, 1, 1, 1, 1};
+	struct pound_rows rows = rows_of(1, SIGNALS, numerator, denominator);
+	assert_int_equal(rows.n_rows, 0);
+	free(rows.y);
+}
+
 static void one_signal_says_nothing_of_the_noise(void **state)
 {
 	(void)state;
@@ -181,6 +212,8 @@ static void an_input_of_few_values_has_as_many_levels(void **state)
 
 CHECK_MAIN(cmocka_unit_test(outputs_are_ratios_of_means_less_the_mean_of_a_and_b),
            cmocka_unit_test(the_variance_of_a_ratio_of_means_is_that_of_its_residuals),
+           cmocka_unit_test(the_noise_of_a_ratio_is_the_same_in_any_unit),
+           cmocka_unit_test(a_row_whose_denominator_is_one_signal_s_alone_is_left_out),
            cmocka_unit_test(one_signal_says_nothing_of_the_noise),
            cmocka_unit_test(a_known_variance_stands_for_noise_that_samples_do_not_share),
            cmocka_unit_test(a_row_is_left_out_for_any_number_it_lacks),
