@@ -63,6 +63,8 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values, const int64_t *row);
 /* How many values an input has, if each comes often; 0: as good as no value comes twice. */
 int pound_rows_levels(const struct pound_rows *rows, int input);
+/* Variance of all samples of the plain protocol, of y or of plain. */
+double pound_rows_variance(const struct pound_rows *rows, const double *y);
 /* Covariances of a row's outputs over draws of the noise  (n_samples x n_samples) */
 void pound_rows_noise(const struct pound_rows *rows, int row, double *noise);
 

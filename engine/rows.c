@@ -71,6 +71,25 @@ void pound_rows_noise(const struct pound_rows *rows, int row, double *noise)
 		}
 }
 
+/* Variance of outputs of all samples of the plain protocol.
+ *
+ * Given    y         (n_rows x n_samples)     those of the rows, without their bias or as they come out
+ *
+ * Test     unit_sobol: the_noise_share_is_that_of_the_signals_mean
+ */
+double pound_rows_variance(const struct pound_rows *rows, const double *y)
+{
+	const int used = rows->n_inputs + 2;
+	const double all = (double)rows->n_rows * used;
+	double sum = 0.0, squares = 0.0;
+	for (int i = 0; i < rows->n_rows; i++, y += rows->n_samples)
+		for (int p = 0; p < used; p++) {
+			sum += y[p];
+			squares += y[p] * y[p];
+		}
+	return squares / all - sum / all * (sum / all);
+}
+
 /* Given    input     -       of the rows
  * Returns  value     -       the values of a discrete input, up to POUND_CURVE; 0: of any other
  *

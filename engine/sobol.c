@@ -46,21 +46,17 @@ static void subject_values(const void *given, const double *mean, double *value)
 bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices)
 {
 	const int d = rows->n_inputs, n_signals = rows->n_signals;
-	double mean = 0.0, square = 0.0, sum = 0.0, squares = 0.0, noise = 0.0;
+	double mean = 0.0, square = 0.0, noise = 0.0;
 	for (int i = 0; i < rows->n_rows; i++) {
 		const double *y = rows->plain + (size_t)i * rows->n_samples;
 		const double *deviation = rows->deviation + (size_t)i * rows->n_samples * n_signals;
 		mean += 0.5 * (y[0] + y[1]);
 		square += 0.5 * (y[0] * y[0] + y[1] * y[1]);
-		for (int p = 0; p < d + 2; p++) {
-			sum += y[p];
-			squares += y[p] * y[p];
-		}
 		for (int k = 0; k < (d + 2) * n_signals; k++)
 			noise += deviation[k] * deviation[k];
 	}
 	const double n = rows->n_rows, all = n * (d + 2);
-	double variance = squares / all - sum / all * (sum / all);
+	const double variance = pound_rows_variance(rows, rows->plain);
 	indices->mean = rows->plain_mean + mean / n;
 	indices->variance = square / n - mean / n * (mean / n);
 	indices->ratio_bias = isfinite(rows->ratio_bias) ? rows->ratio_bias : NAN;

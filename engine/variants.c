@@ -276,31 +276,18 @@ static void levels_init(struct sources *s, int n_rows)
 	}
 }
 
-/* Variance of outputs of all samples of the plain protocol. */
-static double variance_of(const struct pound_rows *rows, const double *y)
-{
-	const int n_samples = rows->n_inputs + 2;
-	const double all = (double)rows->n_rows * n_samples;
-	double sum = 0.0, squares = 0.0;
-	for (int i = 0; i < rows->n_rows; i++)
-		for (int p = 0; p < n_samples; p++) {
-			const double value = y[(size_t)i * rows->n_samples + p];
-			sum += value;
-			squares += value * value;
-		}
-	return squares / all - sum / all * (sum / all);
-}
-
 /* The indexes of ratios; what they explain is a share of the variance without the noise of few signals if that is known: here
  * of that of the outputs without bias. */
 static void ratios_fill(const struct sources *s, struct pound_indices *indices)
 {
-	const double plain = variance_of(s->rows, s->rows->plain), fair = variance_of(s->rows, s->rows->y);
-	const double noise = s->corrected ? indices->noise_share * (plain / fair) : 0.0;
 	indices->ratios.n = 0;
-	if (s->sampling->ratios && rows_enough(s))
-		pound_ratio_indices(s->rows, s->sampling->u, s->sampling->ratios, noise, s->scratch,
-		                    &indices->ratios);
+	if (!s->sampling->ratios || !rows_enough(s))
+		return;
+	double noise = 0.0;
+	if (s->corrected)
+		noise = indices->noise_share * pound_rows_variance(s->rows, s->rows->plain) /
+		        pound_rows_variance(s->rows, s->rows->y);
+	pound_ratio_indices(s->rows, s->sampling->u, s->sampling->ratios, noise, s->scratch, &indices->ratios);
 }
 
 /* Whether taking the noise away has left an index without a variance to be a share of. */

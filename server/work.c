@@ -396,9 +396,9 @@ static double end_late(struct work *work)
 	double now = seconds(CLOCK_MONOTONIC), next = now + work->time_max;
 	for (struct job *job = TAILQ_FIRST(&work->jobs); job;) {
 		double until = job->started + work->time_max;
-		bool late = job->opened && !job->ended && until <= now;
-		if (job->opened && !job->ended && !late)
-			next = until < next ? until : next;
+		bool runs = job->opened && !job->ended, late = runs && until <= now;
+		if (runs && !late)
+			next = fmin(next, until);
 		if (late)
 			end(job, "timeout: it ran for longer than the server's --time-max");
 		// settling lets the lock go, so the list may be another
