@@ -113,11 +113,12 @@ static void campaign_rows(const struct cost *cost, int rows)
 {
 	const char *name = bench_text("the paper's campaign, n = %d, %.0f runs", rows, (double)cost->runs);
 	double per_run = 1e6 * cost->cpu / (double)cost->runs;
-	bench_print((struct bench_row){.what = bench_text("%s: wall, %d threads", name, THREADS),
-	                               .value = cost->wall,
-	                               .unit = "s",
-	                               .goal = rows == 1000 ? "5 s, at the latest 10 s" : NULL,
-	                               .met = cost->wall <= 5});
+	bench_print((struct bench_row){
+	    .what = bench_text("%s: wall, %d threads", name, THREADS),
+	    .value = cost->wall,
+	    .unit = "s",
+	    .goal = rows == 1000 ? bench_text("5 s: %s, at most 10 s", cost->wall <= 5 ? "yes" : "no") : NULL,
+	    .met = cost->wall <= 10});
 	bench_print((struct bench_row){.what = "its CPU time", .value = cost->cpu, .unit = "s"});
 	bench_print((struct bench_row){.what = "of it the indexes and their intervals",
 	                               .value = cost->cpu_reductions,
