@@ -3,9 +3,9 @@
  * 1. Between events the laws and the contact stay as they are and are followed beyond their edges, so that what the
  *    stepper sees is smooth.  Steps end at the samples, where the ground motion has its kinks.
  * 2. A step after which a guard has changed its sign is taken again, shorter and shorter, to the first such change.
- *    Velocities have guards too, so displacements and the overlap go one way within a step: no contact between two
- *    looks is missed, and the largest displacement is at a step's end.  A velocity that turns twice within a step is found
- *    at its farthest between the turns, by the cubic through both ends.
+ *    Their rates have guards too, so displacements, the overlap and the contact's force go one way within a step: no
+ *    contact or release between two looks is missed, and the largest displacement is at a step's end.  A rate that turns
+ *    twice within a step is found at its farthest between the turns, by the cubic through both ends.
  * 3. The stepper is rk8pd.  A stretch that takes it too many steps is stiff (bodies pressed together), and goes on
  *    with msbdf up to the next event or sample.
  *
@@ -32,7 +32,20 @@ static const double FLOOR = 1e-3;
 enum { U1, V1, U2, V2, P, Q, IMPULSE, STATES };
 
 /* what ends a step; turns first, for they make the others change their sign once at most */
-enum guard { TURN, TURN_2, TURN_OVERLAP, LOW, LOW_2, HIGH, HIGH_2, CONTACT, CLEARS, GUARDS };
+enum guard {
+	TURN,
+	TURN_2,
+	TURN_OVERLAP,
+	TURN_FORCE,
+	TURNS,
+	LOW = TURNS,
+	LOW_2,
+	HIGH,
+	HIGH_2,
+	CONTACT,
+	CLEARS,
+	GUARDS
+};
 
 struct course {
 	const struct pound_march_task *task;
@@ -43,11 +56,10 @@ struct course {
 	double ground, slope;  /* acceleration in the interval: ground + slope t */
 	double start, t;       /* of the interval; since then [s] */
 	double y[STATES];
-	double
-	    way[POUND_OSCILLATORS + 1]; /* sign of each velocity and of the overlap's rate when a step begins */
+	double way[TURNS]; /* sign of each rate when a step begins; 0: it may turn */
 	gsl_odeiv2_system system;
 	gsl_odeiv2_driver *explicit, *implicit;
-	int steps, events; /* since the interval began; steps: also since the last event */
+	int steps, events; /* since the interval began; steps: also since the last event; events: but turns */
 };
 
 /* ---- the equations ---- */
@@ -60,17 +72,19 @@ static double contact_force(const struct course *c, const double y[])
 static int derivative(double t, const double y[], double dydt[], void *of)
 {
 	const struct course *c = of;
-	double a = c->ground + c->slope * t, force = contact_force(c, y);
+	double a = c->ground + c->slope * t, force = contact_force(c, y), own[POUND_OSCILLATORS];
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *body = &c->task->bodies[i];
 		const struct pound_piece *piece = &c->at[i].piece;
 		double u = y[U1 + 2 * i], v = y[V1 + 2 * i];
+		own[i] = -body->damping * v - piece->stiffness * u - piece->offset;
 		dydt[U1 + 2 * i] = v;
-		dydt[V1 + 2 * i] = -body->drive * a - body->damping * v - piece->stiffness * u - piece->offset +
-		                   (i == 0 ? -force : c->task->mass_ratio * force);
+		dydt[V1 + 2 * i] = -body->drive * a + own[i] + (i == 0 ? -force : c->task->mass_ratio * force);
 	}
 	dydt[P] = y[Q];
-	dydt[Q] = dydt[V1] - dydt[V2];
+	// not the difference of two accelerations: when the ground begins to move its rounding would decide who meets
+	dydt[Q] = (c->task->bodies[1].drive - c->task->bodies[0].drive) * a + (own[0] - own[1]) -
+	          (1 + c->task->mass_ratio) * force;
 	dydt[IMPULSE] = force;
 	return GSL_SUCCESS;
 }
@@ -104,17 +118,37 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
 
 /* ---- guards ---- */
 
+/* What a guard of a turn looks at, the rate of a displacement, of the overlap or of the contact's force per stiffness, and
+ * how fast that changes. */
+struct rate {
+	double value, change;
+};
+
+static struct rate rate_at(const struct course *c, enum guard j, double t, const double y[])
+{
+	static const int state[] = {[TURN] = V1, [TURN_2] = V2, [TURN_OVERLAP] = Q};
+	double dydt[STATES], dfdy[STATES][STATES], dfdt[STATES];
+	derivative(t, y, dydt, (void *)c);
+	if (j != TURN_FORCE)
+		return (struct rate){y[state[j]], dydt[state[j]]};
+	jacobian(t, y, &dfdy[0][0], dfdt, (void *)c);
+	double jerk = dfdt[Q];
+	for (int i = 0; i < STATES; i++)
+		jerk += dfdy[Q][i] * dydt[i];
+	return (struct rate){y[Q] + c->release * dydt[Q], dydt[Q] + c->release * jerk};
+}
+
 /* A guard above 0 is an event that has come to pass. */
-static double guard(const struct course *c, enum guard j, const double y[])
+static double guard(const struct course *c, enum guard j, double t, const double y[])
 {
 	const struct pound_march_task *task = c->task;
 	double force = y[P] + c->release * y[Q]; // per stiffness
 	switch (j) {
 	case TURN:
 	case TURN_2:
-		return c->way[j - TURN] == 0 ? -1 : -c->way[j - TURN] * y[V1 + 2 * (j - TURN)];
 	case TURN_OVERLAP:
-		return c->way[2] == 0 ? -1 : -c->way[2] * y[Q];
+	case TURN_FORCE:
+		return c->way[j] == 0 ? -1 : -c->way[j] * rate_at(c, j, t, y).value;
 	case LOW:
 	case LOW_2:
 		return c->at[j - LOW].piece.low - y[U1 + 2 * (j - LOW)];
@@ -143,7 +177,10 @@ static void ways_set(struct course *c)
 		double direction = c->at[i].piece.direction;
 		c->way[i] = direction != 0 ? direction : sign(c->y[V1 + 2 * i]);
 	}
-	c->way[2] = c->task->contact ? sign(c->y[Q]) : 0;
+	// a contact ends with its force, or with the overlap
+	bool forced = c->release > 0 && (c->touching || c->parted);
+	c->way[TURN_OVERLAP] = c->task->contact ? sign(c->y[Q]) : 0;
+	c->way[TURN_FORCE] = forced ? sign(rate_at(c, TURN_FORCE, c->t, c->y).value) : 0;
 }
 
 /* ---- events ---- */
@@ -176,6 +213,8 @@ static void body_turn(struct course *c, int i, enum pound_edge edge)
 
 static void event_pass(struct course *c, enum guard j)
 {
+	// bodies that are pressed to rest turn by every rounding: turns count where a branch of a law ends with them
+	c->events += j >= TURNS || (j < TURN_OVERLAP && c->at[j - TURN].piece.direction != 0);
 	if (j == CONTACT)
 		contact_turn(c);
 	else if (j == CLEARS)
@@ -184,9 +223,8 @@ static void event_pass(struct course *c, enum guard j)
 		body_turn(c, j - HIGH, POUND_EDGE_HIGH);
 	else if (j >= LOW)
 		body_turn(c, j - LOW, POUND_EDGE_LOW);
-	else if (j != TURN_OVERLAP)
+	else if (j < TURN_OVERLAP)
 		body_turn(c, j - TURN, POUND_EDGE_TURN);
-	c->events++;
 	c->steps = 0;
 	gsl_odeiv2_driver_reset(c->explicit);
 }
@@ -211,7 +249,7 @@ static bool state_at(struct course *c, const double from[STATES], double t, doub
  */
 static bool locate(struct course *c, enum guard j, const double from[STATES], double *t, double y[STATES])
 {
-	double low = c->t, g_low = guard(c, j, from), g_high = guard(c, j, y), middle[STATES];
+	double low = c->t, g_low = guard(c, j, c->t, from), g_high = guard(c, j, *t, y), middle[STATES];
 	int side = 0;
 	for (int round = 1; *t - low > 4 * DBL_EPSILON * c->task->time_step; round++) {
 		double next = *t - g_high * (*t - low) / (g_high - g_low);
@@ -221,7 +259,7 @@ static bool locate(struct course *c, enum guard j, const double from[STATES], do
 			break;
 		if (!state_at(c, from, next, middle))
 			return false;
-		double g = guard(c, j, middle);
+		double g = guard(c, j, next, middle);
 		// of an end that stays, half the value, so that the other one comes to move
 		if (g > 0) {
 			*t = next, g_high = g;
@@ -241,7 +279,7 @@ static bool locate(struct course *c, enum guard j, const double from[STATES], do
 static enum guard crossed(const struct course *c)
 {
 	enum guard j = TURN;
-	while (j < GUARDS && !(guard(c, j, c->y) > 0))
+	while (j < GUARDS && !(guard(c, j, c->t, c->y) > 0))
 		j++;
 	return j;
 }
@@ -263,28 +301,28 @@ static double hump(const double g[2], const double d[2])
 	return top + 0.25 * height > 0 ? s : 0;
 }
 
-/* Ends a step where a velocity that turns twice within it is at its farthest in between.
+/* Ends a step where a rate that turns twice within it is at its farthest in between.
  *
- * Given    t, y   end of the step, no guard of a velocity above 0 there
+ * Given    t, y   end of the step
  * Returns  t, y   the same, or an earlier end, one above 0 there;  value: false: the stepper failed
  */
 static bool turns_find(struct course *c, double *t, double y[STATES])
 {
-	static const int rate[] = {[TURN] = V1, [TURN_2] = V2, [TURN_OVERLAP] = Q};
-	for (enum guard j = TURN; j <= TURN_OVERLAP; j++) {
-		const double h = *t - c->t, g[2] = {guard(c, j, c->y), guard(c, j, y)};
-		double start[STATES], end[STATES], middle[STATES];
+	for (enum guard j = TURN; j < TURNS; j++) {
 		// while bodies touch nothing hangs on which way their overlap goes
-		if (g[1] > 0 || (j == TURN_OVERLAP && c->touching))
+		if (c->way[j] == 0 || (j == TURN_OVERLAP && c->touching))
 			continue;
-		derivative(c->t, c->y, start, c);
-		derivative(*t, y, end, c);
-		const double d[2] = {-c->way[j] * start[rate[j]] * h, -c->way[j] * end[rate[j]] * h}, s = hump(g, d);
+		const struct rate start = rate_at(c, j, c->t, c->y), end = rate_at(c, j, *t, y);
+		const double h = *t - c->t, way = -c->way[j];
+		const double g[2] = {way * start.value, way * end.value},
+		             d[2] = {way * start.change * h, way * end.change * h};
+		const double s = g[1] > 0 ? 0 : hump(g, d);
+		double middle[STATES];
 		if (s == 0)
 			continue;
 		if (!state_at(c, c->y, c->t + s * h, middle))
 			return false;
-		if (guard(c, j, middle) > 0) {
+		if (guard(c, j, c->t + s * h, middle) > 0) {
 			*t = c->t + s * h;
 			memcpy(y, middle, sizeof middle);
 		}
@@ -311,7 +349,7 @@ static bool course_step(struct course *c)
 	if (!turns_find(c, &t, y))
 		return false;
 	for (enum guard j = TURN; j < GUARDS; j++)
-		if (guard(c, j, y) > 0) {
+		if (guard(c, j, t, y) > 0) {
 			event = j;
 			if (!locate(c, j, c->y, &t, y))
 				return false;
@@ -342,9 +380,11 @@ static enum pound_status interval_run(struct course *c, int sample)
 	for (int n = 0; c->t < task->time_step; n++) {
 		ways_set(c);
 		enum guard j = crossed(c);
+		if (n == STEPS_LIMIT)
+			return POUND_TOLERANCE;
 		if (j != GUARDS)
 			event_pass(c, j);
-		else if (n == STEPS_LIMIT || !course_step(c))
+		else if (!course_step(c))
 			return POUND_TOLERANCE;
 		if (c->events > EVENTS_LIMIT)
 			return POUND_CHATTER;

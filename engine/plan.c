@@ -154,10 +154,12 @@ static int register_key(struct register_ *r, const double key[static KEY])
 	return r->slots[slot] = r->n++;
 }
 
-/* The ground motion of a sample: its excitation, and the noise of its row and signal. */
+/* The ground motion of a sample: its excitation, and the noise of its row and signal, if it has any. */
 static int motion_ask(struct pound_plan *plan, const struct pound_excitation *e, struct pound_stream noise,
                       bool halved)
 {
+	if (!pound_excitation_random(e))
+		noise = (struct pound_stream){0};
 	const double key[KEY] = {
 	    e->type, e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,    e->duration,  e->rise,
 	    e->fall, e->time_step,    e->peak,          noise.row,          noise.sample, noise.signal, halved};

@@ -364,10 +364,15 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_p
 	const struct pound_solver solver = pound_campaign_solver(c, first / c->n_signals);
 	int samples[POUND_HISTORY], n_times = pound_convergence_times(c->study, samples);
 	enum pound_status status = POUND_OK;
-	for (int item = 0; item < n; item++)
-		for (int k = 0; k < n_times && !status; k++)
-			status =
-			    pound_plan_displacement(plan, &solver, item, samples[k], run->stop, &runs[item].history[k]);
+	for (int item = 0; item < n; item++) {
+		double *history = runs[item].history;
+		for (int k = 0; k < n_times && !status; k++) {
+			if (k > 0 && isnan(history[k - 1]))
+				history[k] = NAN; // it came to its end before that
+			else
+				status = pound_plan_displacement(plan, &solver, item, samples[k], run->stop, &history[k]);
+		}
+	}
 	double cpu = NAN;
 	if (!status)
 		status = run_time(run, plan, &solver, &cpu);

@@ -131,6 +131,36 @@ static void no_turn_is_missed_though_another_one_follows_in_the_same_step(void *
 	}
 }
 
+/* Contacts without tension, half of them without restitution, from bodies that stand side by side: their force falls to 0 and
+ * rises again within one of the solver's steps now and then, and the ground sets both bodies going alike.  Seen at the ends of
+ * steps alone, four of these records were off by 0.8 to 69 %; and the rounding of two like accelerations began a contact that
+ * was none in twelve more. */
+static void no_release_is_missed_though_the_force_returns_in_the_same_step(void **state)
+{
+	enum { SCENES_FORCED = 3000 };
+	(void)state;
+	uint64_t seed = 3;
+	for (int k = 0; k < SCENES_FORCED; k++) {
+		struct specimen specimen;
+		specimen_init(&specimen);
+		struct pound_scene *scene = &specimen.study.scene;
+		scene->oscillators[0].frequency_hz = specimen_uniform(&seed, 0.5, 4);
+		scene->oscillators[1] = (struct pound_oscillator){.mass = specimen_uniform(&seed, 0.3, 4),
+		                                                  .frequency_hz = specimen_uniform(&seed, 0.5, 5),
+		                                                  .damping_ratio = 0.05};
+		scene->contact.tension = false;
+		scene->contact.restitution = k % 2 ? specimen_uniform(&seed, 0, 1) : 0;
+		specimen_law(&specimen, specimen_laws[k % SPECIMEN_LAWS], 0);
+		specimen_noise(&specimen, (uint64_t)k, 1, 0.01, 201);
+		const struct pound_response exact = specimen_engine(&specimen);
+		specimen.study.solver = (struct pound_solver){.method = row_of("adaptive"), .tolerance = 1e-9};
+		const struct pound_response response = specimen_engine(&specimen);
+		check_near(distance(&response, &exact), 0, 1e-6);
+		check_near(response.contact_count, exact.contact_count, 0);
+		specimen_free(&specimen);
+	}
+}
+
 /* The ground pushes the softer body against the other for a second; the contact is 1e4 times faster than they are. */
 static void a_stiff_contact_is_followed_by_the_implicit_stepper(void **state)
 {
@@ -179,6 +209,7 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_leaves_with_the_restitution),
            cmocka_unit_test(responses_are_those_of_the_march_to_the_tolerance),
            cmocka_unit_test(three_seconds_of_pounding_agree_to_1e_9),
            cmocka_unit_test(no_turn_is_missed_though_another_one_follows_in_the_same_step),
+           cmocka_unit_test(no_release_is_missed_though_the_force_returns_in_the_same_step),
            cmocka_unit_test(a_stiff_contact_is_followed_by_the_implicit_stepper),
            cmocka_unit_test(a_tolerance_out_of_reach_is_a_status),
            cmocka_unit_test(bodies_at_rest_stay_at_rest))

@@ -94,5 +94,37 @@ static void a_wall_has_no_response_of_its_own(void **state)
 	assert_int_equal(work.linear_unasked + work.nonlinear_unasked + work.yield_given, 0);
 }
 
+static void rows_of_one_ground_motion_share_it_and_the_responses_without_pounding(void **state)
+{
+	(void)state;
+	enum { ROWS = 40, SAMPLES = 4 };
+	static const char *const excitations[] = {
+	    "{\"type\": \"record\", \"acceleration_m_s2\": [0, 1, -1, 0.5, 0]}",
+	    "{\"type\": \"harmonic\", \"frequency_hz\": 2, \"duration_s\": 1}"};
+	for (int k = 0; k < 2; k++) {
+		char document[600];
+		snprintf(
+		    document, sizeof document,
+		    "{\"kind\": \"sensitivity\", \"design\": {\"rows\": %d}, \"scene\": {\"oscillators\": "
+		    "[{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}], \"excitation\": %s}, \"inputs\": [{\"path\": "
+		    "\"/contact/restitution\", \"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 1}}, "
+		    "{\"path\": \"/contact/stiffness_ratio\", \"distribution\": {\"type\": \"uniform\", \"min\": 50, "
+		    "\"max\": 200}}]}",
+		    ROWS, excitations[k]);
+		struct pound_study *study = documents_study(document);
+		struct pound_run *run = specimen_run(study);
+		const int blocks = pound_run_blocks(run);
+		const struct pound_work *work = &pound_run_result(run)->work;
+		assert_true(blocks < ROWS);
+		assert_int_equal(work->signals.asked, ROWS * SAMPLES);
+		assert_int_equal(work->signals.run, blocks);
+		assert_int_equal(work->free_runs.run, blocks);
+		assert_int_equal(work->pounding_runs.run, ROWS * SAMPLES);
+		pound_run_free(run);
+		study_free(study);
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(every_response_is_asked_for_or_left_out_for_a_reason),
+           cmocka_unit_test(rows_of_one_ground_motion_share_it_and_the_responses_without_pounding),
            cmocka_unit_test(a_wall_has_no_response_of_its_own))
