@@ -22,7 +22,7 @@
 enum {
 	STIFF_STEPS = 200,     /* of rk8pd since the last event in one sample interval; an impact takes some 20 */
 	STEPS_LIMIT = 1 << 17, /* in one sample interval: the tolerance is out of reach */
-	EVENTS_LIMIT = 4096,   /* in one sample interval: more is chatter */
+	EVENTS_LIMIT = 2048,   /* in one sample interval: more is chatter */
 };
 
 /* Below this part of the response to be expected a component need not be exact to the tolerance. */

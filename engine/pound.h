@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define POUND_VERSION "0.14.0"
+#define POUND_VERSION "0.15.0"
 
 enum {
 	POUND_OSCILLATORS = 2,                        /* left, right */

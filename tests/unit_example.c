@@ -64,9 +64,16 @@ static void every_extreme_of_the_example_has_a_result_that_balances(void **state
 		const struct pound_cell *cell = &result->cells[c];
 		assert_int_equal(cell->runs_failed, 0);
 		check_near(cell->signals[0].energy_residual, 0, 1e-10);
-		assert_true(cell->signals[0].contact_count > 0);
-		for (int o = 0; o < study->n_outputs; o++)
-			assert_true(!pound_output_applies(study->outputs[o], &study->scene) || cell->outputs[o] > 0);
+		struct pound_scene scene;
+		study_cell(study, c, &scene);
+		// a metre is never gone
+		const bool meet = scene.contact.gap < 1;
+		assert_int_equal(cell->signals[0].contact_count > 0, meet);
+		for (int o = 0; o < study->n_outputs; o++) {
+			const bool impulse = !strcmp(pound_output_name(study->outputs[o]), "impulse");
+			if (pound_output_applies(study->outputs[o], &scene))
+				assert_int_equal(cell->outputs[o] > 0, meet || !impulse);
+		}
 	}
 	pound_run_free(run);
 	study_free(study);

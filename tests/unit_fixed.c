@@ -108,6 +108,21 @@ static void an_explicit_step_beyond_its_limit_ends_with_a_status(void **state)
 	assert_int_equal(integrate(CENTRAL_DIFFERENCE, 0.01, &task).status, POUND_UNSTABLE);
 }
 
+/* A contact that lasts a few steps need not run away to be wrong. */
+static void nor_is_one_beyond_that_of_a_touching_pair_passed_in_silence(void **state)
+{
+	(void)state;
+	struct pound_march_task task = specimen_impact(0.5, true, 21);
+	const double limit = 2 / sqrt(task.contact_stiffness * (1 + task.mass_ratio));
+	task.time_step = 0.99 * limit;
+	assert_int_equal(integrate(CENTRAL_DIFFERENCE, task.time_step, &task).status, POUND_OK);
+	task.time_step = 1.01 * limit;
+	assert_int_equal(integrate(CENTRAL_DIFFERENCE, task.time_step, &task).status, POUND_UNSTABLE);
+	assert_int_equal(integrate(NEWMARK, task.time_step, &task).status, POUND_OK);
+	task.gap = 10;
+	assert_int_equal(integrate(CENTRAL_DIFFERENCE, task.time_step, &task).status, POUND_OK);
+}
+
 static void a_step_is_cut_to_fit_the_sample_interval(void **state)
 {
 	(void)state;
@@ -176,6 +191,7 @@ CHECK_MAIN(cmocka_unit_test(the_solvers_have_their_names_in_these_rows),
            cmocka_unit_test(newmark_keeps_the_energy_of_free_vibration_at_any_step),
            cmocka_unit_test(central_differences_vibrate_with_their_known_period),
            cmocka_unit_test(an_explicit_step_beyond_its_limit_ends_with_a_status),
+           cmocka_unit_test(nor_is_one_beyond_that_of_a_touching_pair_passed_in_silence),
            cmocka_unit_test(a_step_is_cut_to_fit_the_sample_interval),
            cmocka_unit_test(an_impact_leaves_with_the_restitution_to_the_first_power_of_the_step),
            cmocka_unit_test(responses_come_to_those_of_the_march))
