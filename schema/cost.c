@@ -1,8 +1,8 @@
 /* What a study will take, before any of it is run.
  *
  * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, and
- * of the spectra of its floor.  The unit costs were measured (README, Speed): there every example of more than 10 ms
- * takes what is told within a factor of two.  What a design shares between its samples is in them as it is for the examples. */
+ * of the spectra of its floor.  The unit costs are those of four lanes (README, Speed): there every example of more than
+ * 10 ms takes what is told within a factor of two; eight lanes of a newer processor take a half to a quarter.  What a design shares between its samples is in them as it is for the examples. */
 #include "schema/cost.h"
 
 #include <assert.h>
@@ -16,17 +16,20 @@
 enum { MIB = 1 << 20 };
 enum { QUANTILES = 64 /* of a distribution, for a mean */ };
 
-/* [s] of one core: for a study, for a sample of a ground motion by each solver, and for a step within it */
+/* [s] of one core: for a study, for a sample of a ground motion by each solver, for a step within it, and for a radian that
+ * an oscillator turns by within it, where that is too many for maps */
 static const double STUDY_S = 0.001;
 static const struct {
-	double sample, step;
+	double sample, step, radian;
 } units[] = {
     // in the order of the solvers: event, newmark, central_difference, adaptive
-    {5e-8, 0},
-    {1.0e-7, 6e-8},
-    {1.0e-7, 4e-8},
-    {8e-6, 0},
+    {5e-8, 0, 3e-7},
+    {1.0e-7, 6e-8, 0},
+    {1.0e-7, 4e-8, 0},
+    {8e-6, 0, 6e-7},
 };
+static const double MAPPED = 2 /* radians of a sample */,
+                    TURNED_MOST = 5e5 /* a run with more ends as chatter */;
 
 static_assert(sizeof units / sizeof units[0] == POUND_SOLVERS, "a row for each solver");
 
@@ -97,6 +100,19 @@ static double swings(const struct pound_study *study)
 	           : 0;
 }
 
+/* Radians of a sample that oscillators turn by, beyond those that go by maps. */
+static double turned(const struct pound_study *study)
+{
+	const double step = 2 * 3.14159265358979323846 * MEAN(study, excitation.time_step, 1);
+	const double frequency[] = {
+	    MEAN(study, oscillators[0].frequency_hz, 1),
+	    study->scene.oscillators[1].rigid_wall ? 0 : MEAN(study, oscillators[1].frequency_hz, 1)};
+	double sum = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		sum += fmax(0, step * frequency[i] - MAPPED);
+	return fmin(sum, TURNED_MOST);
+}
+
 /* [s] of one run by a solver. */
 static double run_s(const struct pound_study *study, const struct pound_solver *solver)
 {
@@ -105,7 +121,8 @@ static double run_s(const struct pound_study *study, const struct pound_solver *
 	double steps = fixed ? fmax(1, MEAN(study, excitation.time_step, 1) / solver->step) : 0;
 	// the march takes few more for more contacts
 	double more = fixed ? 0 : row == POUND_SOLVER_EVENT ? 0.2 * log1p(swings(study)) : swings(study);
-	return samples_mean(study) * (units[row].sample * (1 + more) + units[row].step * steps);
+	return samples_mean(study) *
+	       (units[row].sample * (1 + more) + units[row].step * steps + units[row].radian * turned(study));
 }
 
 /* What a study will take.

@@ -88,6 +88,26 @@ static void finer_steps_stiffer_contacts_and_more_trials_cost_more(void **state)
 	assert_int_equal(many.runs, few.runs + few.runs / 3);
 }
 
-CHECK_MAIN(cmocka_unit_test(what_is_asked_twice_costs_twice),
+/* Above two radians a sample there are steps for each of them: twice as many for twice the frequency. */
+static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void **state)
+{
+	(void)state;
+	static const char form[] =
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+	    "%g}], "
+	    "\"contact\": null, \"excitation\": {\"signals\": 1000}}, \"solver\": {\"method\": \"%s\"}}";
+	static const char *const solvers[] = {"event", "adaptive"};
+	for (int k = 0; k < 2; k++) {
+		double slow = cost_of_text(form, 3.0, solvers[k]).cpu_s,
+		       mapped = cost_of_text(form, 29.0, solvers[k]).cpu_s;
+		double fast = cost_of_text(form, 1e4, solvers[k]).cpu_s,
+		       faster = cost_of_text(form, 2e4, solvers[k]).cpu_s;
+		check_near(mapped / slow, 1, 0);
+		check_near(faster / fast, 2, 0.05);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns),
+           cmocka_unit_test(what_is_asked_twice_costs_twice),
            cmocka_unit_test(a_motion_is_as_long_as_it_is_in_the_mean),
            cmocka_unit_test(finer_steps_stiffer_contacts_and_more_trials_cost_more))
