@@ -2,7 +2,8 @@
  *
  * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, and
  * of the spectra of its floor.  The unit costs are those of four lanes (README, Speed): there every example of more than
- * 10 ms takes what is told within a factor of two; eight lanes of a newer processor take a half to a quarter.  What a design shares between its samples is in them as it is for the examples. */
+ * 10 ms takes what is told within a factor of two; eight lanes of a newer processor take a half to a quarter of it.  What a
+ * design shares between its samples is in them as it is for the examples. */
 #include "schema/cost.h"
 
 #include <assert.h>
