@@ -309,7 +309,7 @@ static double hump(const double g[2], const double d[2])
 static bool turns_find(struct course *c, double *t, double y[STATES])
 {
 	for (enum guard j = TURN; j < TURNS; j++) {
-		// while bodies touch nothing hangs on which way their overlap goes
+		// contact ends with its force, which has a guard of its own, or with an overlap that the steps then resolve
 		if (c->way[j] == 0 || (j == TURN_OVERLAP && c->touching))
 			continue;
 		const struct rate start = rate_at(c, j, c->t, c->y), end = rate_at(c, j, *t, y);
@@ -379,9 +379,9 @@ static enum pound_status interval_run(struct course *c, int sample)
 	c->steps = c->events = 0;
 	for (int n = 0; c->t < task->time_step; n++) {
 		ways_set(c);
-		enum guard j = crossed(c);
 		if (n == STEPS_LIMIT)
 			return POUND_TOLERANCE;
+		enum guard j = crossed(c);
 		if (j != GUARDS)
 			event_pass(c, j);
 		else if (!course_step(c))

@@ -29,8 +29,8 @@ static const struct {
     {1.0e-7, 4e-8, 0},
     {8e-6, 0, 6e-7},
 };
-static const double MAPPED = 2 /* radians of a sample */,
-                    TURNED_MOST = 5e5 /* a run with more ends as chatter */;
+/* radians of a sample that go by maps, and with more than which a run ends as chatter */
+static const double MAPPED = 2, TURNED_MOST = 5e5;
 
 static_assert(sizeof units / sizeof units[0] == POUND_SOLVERS, "a row for each solver");
 

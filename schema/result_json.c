@@ -77,19 +77,19 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 	for (int i = 0; i < cell->n_signals; i++)
 		write_signal(w, &cell->signals[i], i);
 	writer_end(w);
-	bool void_output = false;
 	writer_object(w, "outputs", WRITER_LINES);
 	for (int o = 0; o < study->n_outputs; o++)
-		if (pound_output_applies(study->outputs[o], scene)) {
+		if (pound_output_applies(study->outputs[o], scene))
 			writer_number(w, pound_output_name(study->outputs[o]), cell->outputs[o]);
-			void_output |= !isfinite(cell->outputs[o]);
-		}
 	writer_end(w);
+	bool moves = false;
+	for (int i = 0; i < cell->n_signals; i++)
+		moves |= cell->signals[i].displacement_max_free_1 != 0;
 	if (cell->runs_failed && cell->runs_failed == cell->runs)
 		writer_text(w, "note", "no run gave a result, so there are no outputs; work.failures says why");
 	else if (cell->runs_failed)
 		writer_text(w, "note", "runs without a result are left out of the outputs; work.failures says why");
-	else if (void_output)
+	else if (!moves)
 		writer_text(
 		    w, "note",
 		    "the left oscillator does not move without pounding: what is told in terms of that has no value");

@@ -25,7 +25,7 @@ static double validated(const struct service *service, const char *study, const 
 static void an_estimate_is_near_what_a_study_takes(void **state)
 {
 	struct service *service = *state;
-	double worst = 1;
+	double late = 1, early = 1, bytes_off = 1;
 	for (int i = 0; examples[i].name; i++) {
 		static struct problems problems;
 		char id[17], sql[256];
@@ -50,14 +50,16 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 		check_report("%-24s %8.3g s estimated, %8.3g taken: %5.2f; %8.3g bytes estimated, %8.3g taken: %5.2f",
 		             examples[i].name, cpu_s, took_s, cpu_s / took_s, bytes, took_bytes, bytes / took_bytes);
 		// below 10 ms the time is the clock's
-		worst = took_s > 0.01 ? fmax(worst, fmax(cpu_s / took_s, took_s / cpu_s)) : worst;
-		worst = fmax(worst, fmax(bytes / took_bytes, took_bytes / bytes));
+		late = took_s > 0.01 ? fmax(late, took_s / cpu_s) : late;
+		early = took_s > 0.01 ? fmax(early, cpu_s / took_s) : early;
+		bytes_off = fmax(bytes_off, fmax(bytes / took_bytes, took_bytes / bytes));
 		reading_close(result);
 		answer_free(&answer);
 	}
-	check_report("off by a factor of %.1f at most", worst);
-	// within two where the units were measured; other machines may be more than twice as slow
-	assert_true(worst < 5);
+	check_report("at most %.1f times the time told, at least 1/%.1f of it; bytes off by %.1f", late, early,
+	             bytes_off);
+	// within two where the units were measured; others may be twice as slow, and newer ones with more lanes take a quarter
+	assert_true(late < 4 && early < 8 && bytes_off < 2);
 }
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)

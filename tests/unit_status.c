@@ -151,6 +151,22 @@ static void a_cell_without_a_run_has_no_outputs_and_the_others_have(void **state
 	free(document);
 }
 
+static void outputs_in_terms_of_no_motion_have_no_value_and_a_note(void **state)
+{
+	(void)state;
+	static const char still[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
+	                            "2}, {\"frequency_hz\": 3}], "
+	                            "\"excitation\": {\"type\": \"record\", \"acceleration_m_s2\": [0, %s, 0]}}}";
+	for (int moves = 0; moves < 2; moves++) {
+		char document[300];
+		snprintf(document, sizeof document, still, moves ? "1" : "0");
+		struct reading *r = succeeded(document);
+		assert_int_equal(isnan(reading_number(r, "/outputs/impulse")) != 0, !moves);
+		assert_int_equal(reading_has(r, "/note"), !moves);
+		reading_close(r);
+	}
+}
+
 static void a_study_without_a_result_ends_with_the_reason_of_its_runs(void **state)
 {
 	(void)state;
@@ -272,6 +288,7 @@ static void want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again(voi
 CHECK_MAIN(cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a_result),
            cmocka_unit_test(rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says_so),
            cmocka_unit_test(a_cell_without_a_run_has_no_outputs_and_the_others_have),
+           cmocka_unit_test(outputs_in_terms_of_no_motion_have_no_value_and_a_note),
            cmocka_unit_test(a_study_without_a_result_ends_with_the_reason_of_its_runs),
            cmocka_unit_test(contact_of_more_cells_than_a_double_counts_ends_by_its_name),
            cmocka_unit_test(a_body_that_never_moves_has_no_demand_but_has_not_failed),
