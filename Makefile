@@ -134,7 +134,7 @@ bench: $(B)/tests/bench
 $(B)/tests/bench: $(patsubst %.c,$(B)/%.o,$(wildcard tests/bench_*.c))
 # what the engine is measured against is to be as fast as a compiler makes it
 $(B)/tests/yardstick.o: CFLAGS += -O3
-# the paper's findings, one by one, for n = 1000: minutes
+# the paper's findings, one by one, for n = 1000: half a minute
 paper: $(B)/tests/paper
 	@$<
 # stiff and extreme scenes, a table: what every one of them is checked for by the tests

@@ -59,7 +59,8 @@ struct course {
 	double way[TURNS]; /* sign of each rate when a step begins; 0: it may turn */
 	gsl_odeiv2_system system;
 	gsl_odeiv2_driver *explicit, *implicit;
-	int steps, events; /* since the interval began; steps: also since the last event; events: but turns */
+	int steps;  /* since the interval began, or the last event */
+	int events; /* since the interval began, without turns that change nothing */
 };
 
 /* ---- the equations ---- */
@@ -118,6 +119,9 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
 
 /* ---- guards ---- */
 
+/* the rates that are states themselves */
+static const int rate_state[] = {[TURN] = V1, [TURN_2] = V2, [TURN_OVERLAP] = Q};
+
 /* What a guard of a turn looks at, the rate of a displacement, of the overlap or of the contact's force per stiffness, and
  * how fast that changes. */
 struct rate {
@@ -126,11 +130,10 @@ struct rate {
 
 static struct rate rate_at(const struct course *c, enum guard j, double t, const double y[])
 {
-	static const int state[] = {[TURN] = V1, [TURN_2] = V2, [TURN_OVERLAP] = Q};
 	double dydt[STATES], dfdy[STATES][STATES], dfdt[STATES];
 	derivative(t, y, dydt, (void *)c);
 	if (j != TURN_FORCE)
-		return (struct rate){y[state[j]], dydt[state[j]]};
+		return (struct rate){y[rate_state[j]], dydt[rate_state[j]]};
 	jacobian(t, y, &dfdy[0][0], dfdt, (void *)c);
 	double jerk = dfdt[Q];
 	for (int i = 0; i < STATES; i++)
@@ -147,6 +150,7 @@ static double guard(const struct course *c, enum guard j, double t, const double
 	case TURN:
 	case TURN_2:
 	case TURN_OVERLAP:
+		return c->way[j] == 0 ? -1 : -c->way[j] * y[rate_state[j]];
 	case TURN_FORCE:
 		return c->way[j] == 0 ? -1 : -c->way[j] * rate_at(c, j, t, y).value;
 	case LOW:
