@@ -70,6 +70,8 @@ $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 $(B)/tests/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create,--wrap=pound_run_block
 # GSL's memory is that of the test
 $(B)/tests/unit_status: LDFLAGS += -Wl,--wrap=gsl_odeiv2_driver_alloc_scaled_new
+# one lane width is asked for
+$(B)/tests/unit_golden: LDFLAGS += -Wl,--wrap=pound_dispatch_width,--wrap=pound_march_lanes
 # between a poundd of the tests and the C library: tests/faults.h
 $(TESTS): | $(B)/tests/preload.so
 $(B)/tests/preload.so: tests/preload.c tests/faults.h
@@ -137,6 +139,9 @@ $(B)/tests/yardstick.o: CFLAGS += -O3
 # the paper's findings, one by one, for n = 1000: half a minute
 paper: $(B)/tests/paper
 	@$<
+# the result bytes of every example, whole, at every lane width and by 1, 2 and 4 threads: minutes
+golden: $(B)/tests/unit_golden
+	@POUND_GOLDEN=whole $<
 # stiff and extreme scenes, a table: what every one of them is checked for by the tests
 extremes: $(B)/tests/unit_extremes
 	@$< | grep '^|'
@@ -183,6 +188,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check soak install bench paper extremes statistics asan tsan lint fuzz fmt clean
+.PHONY: all deps run test check soak install bench golden paper extremes statistics asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)
