@@ -183,8 +183,9 @@ static void every_example_has_its_golden_bytes_at_every_width_and_by_1_2_and_4_t
 	(void)state;
 	static const struct {
 		int lanes, n_threads;
-	} ways[] = {{0, 1}, {0, 2}, {0, 4}, {1, 1}, {4, 2}, {8, 4}, {PORTABLE, 4}};
+	} ways[] = {{0, 1}, {4, 2}, {1, 4}, {PORTABLE, 2}, {0, 2}, {0, 4}, {8, 4}};
 	bool whole = asked("whole");
+	size_t n_ways = whole ? sizeof ways / sizeof ways[0] : 4;
 	int n = 0;
 	if (asked("print")) {
 		print_hashes();
@@ -196,7 +197,7 @@ static void every_example_has_its_golden_bytes_at_every_width_and_by_1_2_and_4_t
 			continue;
 		char known[HASH_TEXT], hash[HASH_TEXT];
 		hash_known(example_name(i), whole, known);
-		for (size_t way = 0; way < sizeof ways / sizeof ways[0]; way++) {
+		for (size_t way = 0; way < n_ways; way++) {
 			asked_lanes = ways[way].lanes;
 			if (asked_lanes > 0 && __real_pound_dispatch_width(asked_lanes) < 0)
 				continue;
@@ -210,7 +211,7 @@ static void every_example_has_its_golden_bytes_at_every_width_and_by_1_2_and_4_t
 		study_free(study);
 	}
 	check_report("%d results of examples, each with its golden bytes", n);
-	assert_true(n > 60);
+	assert_true(n > 50);
 }
 
 CHECK_MAIN(cmocka_unit_test(every_example_has_its_golden_bytes_at_every_width_and_by_1_2_and_4_threads))
