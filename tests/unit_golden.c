@@ -1,7 +1,8 @@
 /* unit_golden.c - the result bytes of every example, timing aside, as hashes in tests/golden.txt: the same at every lane
  * width, by 1, 2 and 4 threads, and in every version until one says that it changes them.
  *
- * Designs are cut to few rows, so that the test takes seconds; `make golden` computes whole examples (POUND_GOLDEN=whole).
+ * `make test` cuts designs to few rows and leaves out the portable build, which is a tenth as fast; `make golden` computes
+ * whole examples in every way (POUND_GOLDEN=whole).
  * A version that changes results on purpose: POUND_GOLDEN=print prints the new file.
  * The Makefile links pound_dispatch_width and pound_march_lanes through this file, which asks for one width. */
 #include <nettle/sha2.h>
@@ -185,7 +186,7 @@ static void every_example_has_its_golden_bytes_at_every_width_and_by_1_2_and_4_t
 		int lanes, n_threads;
 	} ways[] = {{0, 1}, {4, 2}, {1, 4}, {PORTABLE, 2}, {0, 2}, {0, 4}, {8, 4}};
 	bool whole = asked("whole");
-	size_t n_ways = whole ? sizeof ways / sizeof ways[0] : 4;
+	size_t n_ways = whole ? sizeof ways / sizeof ways[0] : 3;
 	int n = 0;
 	if (asked("print")) {
 		print_hashes();
@@ -211,7 +212,7 @@ static void every_example_has_its_golden_bytes_at_every_width_and_by_1_2_and_4_t
 		study_free(study);
 	}
 	check_report("%d results of examples, each with its golden bytes", n);
-	assert_true(n > 50);
+	assert_true(n > 40);
 }
 
 CHECK_MAIN(cmocka_unit_test(every_example_has_its_golden_bytes_at_every_width_and_by_1_2_and_4_threads))
