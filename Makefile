@@ -1,6 +1,6 @@
 # make run, make test: all a fresh Debian 12 needs.  MODE=asan|tsan|debug, CC=clang, T=substring of test names.
 MODE ?= release
-# make's own rules would try to build march_*.d, which it includes, out of march.c
+# make's own rules would try to build march_*.d, which it includes, out of exact.inl
 MAKEFLAGS += --no-builtin-rules
 B    := build/$(MODE)
 
@@ -24,13 +24,11 @@ CFLAGS   += -std=c17 $(WARN) -ffp-contract=off -fno-math-errno -fstack-protector
 comma    := ,
 JUMPS    := $(if $(findstring clang,$(CC)),,-Wa$(comma))-mbranches-within-32B-boundaries
 
-# these files of the engine are compiled once per lane count, chosen among at run time; all give the same bits
-LANED          := march spectrum noise colour resample
-WIDTHS         := portable w1 w4 w8
-LANES.portable := -DPOUND_LANES=1
-LANES.w1       := -DPOUND_LANES=1 -mfma
-LANES.w4       := -DPOUND_LANES=4 -mavx2 -mfma
-LANES.w8       := -DPOUND_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512 -mtune=skylake-avx512 $(JUMPS)
+# NAME.inl of the engine is compiled once per lane count, as NAME_w8.c and so on, chosen among at run time; all give the
+# same bits
+LANES.w1 := -mfma
+LANES.w4 := -mavx2 -mfma
+LANES.w8 := -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512 -mtune=skylake-avx512 $(JUMPS)
 
 PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libcjson-dev librandom123-dev \
             nettle-dev libcurl4-openssl-dev libcmocka-dev curl
@@ -41,19 +39,18 @@ LIBS.server := -lmicrohttpd -lsqlite3 -lpthread
 LIBS.client := -lcurl -lcjson -lpthread
 LIBS.tests  := -lcmocka -lcurl
 
-objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
-ENGINE := $(call objs,engine,$(LANED:%=engine/%.c)) \
-          $(foreach file,$(LANED),$(WIDTHS:%=$(B)/engine/$(file)_%.o))
+# the objects of a folder and of its rooms, but for some
+objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c $(1)/*/*.c)))
+ENGINE := $(call objs,engine)
 SCHEMA := $(call objs,schema) $(B)/schema/examples.o
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
-# tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
-TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c))
+# a program each; the files of tests/support serve them all
+TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/service/*.c tests/client/*.c))
 # what takes minutes is built with the tests, so that no change breaks it unseen
-LONG    := $(patsubst %.c,$(B)/%,$(wildcard tests/soak_*.c)) $(addprefix $(B)/tests/,bench paper statistics) \
-           $(patsubst %.c,$(B)/%.o,$(wildcard tests/fuzz_*.c))
-FIXTURE := $(call objs,tests,$(wildcard tests/unit_*.c tests/service_*.c tests/client_*.c tests/fuzz_*.c tests/soak_*.c tests/bench*.c \
-             tests/paper*.c tests/statistics*.c tests/preload.c))
+LONG    := $(patsubst %.c,$(B)/%,$(wildcard tests/long/soak_*.c)) $(addprefix $(B)/tests/long/,bench paper statistics) \
+           $(call objs,tests/fuzz)
+FIXTURE := $(call objs,tests/support,tests/support/preload.c)
 
 all: $(B)/poundd $(B)/pound
 
@@ -67,48 +64,38 @@ $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.tests) $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
 
 # the test's own blocks crash in their place
-$(B)/tests/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create,--wrap=pound_run_block
+$(B)/tests/service/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create,--wrap=pound_run_block
 # GSL's memory is that of the test
-$(B)/tests/unit_status: LDFLAGS += -Wl,--wrap=gsl_odeiv2_driver_alloc_scaled_new
+$(B)/tests/unit/run/unit_status: LDFLAGS += -Wl,--wrap=gsl_odeiv2_driver_alloc_scaled_new
 # one lane width is asked for
-$(B)/tests/unit_golden: LDFLAGS += -Wl,--wrap=pound_dispatch_width,--wrap=pound_march_lanes
-# between a poundd of the tests and the C library: tests/faults.h
+$(B)/tests/unit/run/unit_golden: LDFLAGS += -Wl,--wrap=pound_dispatch_width
+# between a poundd of the tests and the C library: tests/support/faults.h
 $(TESTS): | $(B)/tests/preload.so
-$(B)/tests/preload.so: tests/preload.c tests/faults.h
+$(B)/tests/preload.so: tests/support/preload.c tests/support/faults.h
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(filter-out -MMD -MP,$(CFLAGS)) -U_FORTIFY_SOURCE -fPIC -shared -o $@ $<
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
-$(B)/engine/march_%.o: engine/march.c
-	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) $(MARCH.$(MODE)) $(LANES.$*) -DPOUND_MARCH=pound_march_$* -c -o $@ $<
-$(B)/engine/spectrum_%.o: engine/spectrum.c
-	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) $(FLOOR.$(MODE)) $(LANES.$*) -DPOUND_SPECTRUM=pound_spectrum_$* -c -o $@ $<
-$(B)/engine/trace.o $(B)/engine/trace_series.o $(B)/engine/root.o: CFLAGS += $(FLOOR.$(MODE))
-$(B)/engine/noise_%.o: engine/noise.c
-	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_NOISE=pound_noise_$* -c -o $@ $<
-$(B)/engine/colour_%.o: engine/colour.c
-	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_COLOUR=pound_colour_$* -DPOUND_NOISE=pound_noise_$* -c -o $@ $<
-$(B)/engine/resample_%.o: engine/resample.c
-	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) $(LANES.$*) -DPOUND_RESAMPLE=pound_resample_$* -c -o $@ $<
+$(B)/%_w1.o: CFLAGS += $(LANES.w1)
+$(B)/%_w4.o: CFLAGS += $(LANES.w4)
+$(B)/%_w8.o: CFLAGS += $(LANES.w8)
+$(B)/engine/exact/exact_%.o: CFLAGS += $(MARCH.$(MODE))
+$(B)/engine/floor/oscillator_bank_%.o: CFLAGS += $(FLOOR.$(MODE))
+$(addprefix $(B)/engine/floor/,trace.o trace_series.o root.o): CFLAGS += $(FLOOR.$(MODE))
 
 # the database's schema is built into the server, as a C string
-$(B)/schema/store.sql.inc: schema/store.sql
+$(B)/server/store.sql.inc: server/store.sql
 	@mkdir -p $(@D)
 	sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $< > $@
-$(B)/server/database.o: $(B)/schema/store.sql.inc
+$(B)/server/database.o: $(B)/server/store.sql.inc
 $(B)/server/database.o: CPPFLAGS += -I$(B)
 
 # the study documents of schema/examples are built into the programs: name, title, text
 $(B)/schema/examples.c: $(wildcard schema/examples/*.json)
 	@mkdir -p $(@D)
-	@{ echo '#include "schema/examples.h"'; echo 'const struct example examples[] = {'; \
+	@{ echo '#include "schema/examples/examples.h"'; echo 'const struct example examples[] = {'; \
 	  for f in $^; do name=$${f##*/}; echo "{\"$${name%.json}\","; \
 	    sed -n 's/^  "name": \(".*"\),$$/\1,/p' $$f; sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $$f; echo '},'; done; \
 	  echo '{0}};'; } >$@
@@ -131,30 +118,30 @@ check: all $(TESTS) $(LONG)
 	@tests/run-tests $(B) $(T)
 # how fast the engine is, a table; ROWS of the paper campaign's design, for trials
 ROWS ?= 1000
-bench: $(B)/tests/bench
+bench: $(B)/tests/long/bench
 	@$< $(ROWS)
-$(B)/tests/bench: $(patsubst %.c,$(B)/%.o,$(wildcard tests/bench_*.c))
+$(B)/tests/long/bench: $(patsubst %.c,$(B)/%.o,$(wildcard tests/long/bench_*.c))
 # what the engine is measured against is to be as fast as a compiler makes it
-$(B)/tests/yardstick.o: CFLAGS += -O3
+$(B)/tests/support/baseline_loop.o: CFLAGS += -O3
 # the paper's findings, one by one, for n = 1000: half a minute
-paper: $(B)/tests/paper
+paper: $(B)/tests/long/paper
 	@$<
 # the result bytes of every example, whole, at every lane width and by 1, 2 and 4 threads: minutes
-golden: $(B)/tests/unit_golden
+golden: $(B)/tests/unit/run/unit_golden
 	@POUND_GOLDEN=whole $<
 # stiff and extreme scenes, a table: what every one of them is checked for by the tests
-extremes: $(B)/tests/unit_extremes
+extremes: $(B)/tests/unit/exact/unit_extremes
 	@$< | grep '^|'
 # how good the indexes are: errors, coverage and bias over SEEDS designs of functions with exact indexes; minutes
 SEEDS ?= 200
-statistics: $(B)/tests/statistics
+statistics: $(B)/tests/long/statistics
 	@$< $(SEEDS)
-$(B)/tests/statistics: $(patsubst %.c,$(B)/%.o,$(wildcard tests/statistics_*.c))
+$(B)/tests/long/statistics: $(patsubst %.c,$(B)/%.o,$(wildcard tests/long/statistics_*.c))
 # what takes minutes of a quiet machine: many and slow clients for SOAK seconds each, then the server's tests with more
 # kills, cuts and failures, MORE of 100 of them; every line that begins with # is a measurement
 SOAK ?= 60
 MORE ?= 100
-soak: all $(filter $(B)/tests/soak_%,$(LONG)) $(filter $(B)/tests/service_%,$(TESTS))
+soak: all $(filter $(B)/tests/long/soak_%,$(LONG)) $(filter $(B)/tests/service/%,$(TESTS))
 	@KINDS='soak service' SOAK=$(SOAK) POUND_SOAK=$(MORE) tests/run-tests $(B) $(T)
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
@@ -162,14 +149,14 @@ asan tsan:
 # rules of the house: who includes what, what the engine may call, layout, sizes
 lint: $(B)/libpound.a
 	@tests/lint $(B)
-# FUZZ seconds for each target of tests/fuzz_*.c, starting from its corpus and the examples; what breaks is left in
+# FUZZ seconds for each target of tests/fuzz/fuzz_*.c, starting from its corpus and the examples; what breaks is left in
 # build/fuzz, what is new in build/fuzz/*.corpus (`-merge=1 tests/corpus/NAME` keeps the part that adds something)
 FUZZ  ?= 60
-fuzz: $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
+fuzz: $(patsubst tests/fuzz/%.c,build/fuzz/%,$(wildcard tests/fuzz/fuzz_*.c))
 	@for target in $^; do mkdir -p $$target.corpus && \
 	  $$target -max_total_time=$(FUZZ) -max_len=8192 -artifact_prefix=$$target- $$target.corpus \
 	    tests/corpus/$${target##*/fuzz_} schema/examples || exit 1; done
-build/fuzz/%: tests/%.c $(wildcard schema/*.c) $(B)/schema/examples.c $(B)/libpound.a
+build/fuzz/%: tests/fuzz/%.c $(wildcard schema/*/*.c) $(B)/schema/examples.c $(B)/libpound.a
 	@mkdir -p $(@D)
 	clang -std=c17 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all $(CPPFLAGS) -o $@ $^ \
 	  $(LIBS.schema) $(LIBS.engine)
@@ -179,12 +166,12 @@ PREFIX ?= /usr/local
 install: all
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin share/man/man1 share/man/man8 lib/systemd/system)
 	install $(B)/poundd $(B)/pound $(DESTDIR)$(PREFIX)/bin
-	install/manual $(B)/pound install/pound.1 >$(DESTDIR)$(PREFIX)/share/man/man1/pound.1
-	install/manual $(B)/poundd install/poundd.8 >$(DESTDIR)$(PREFIX)/share/man/man8/poundd.8
-	sed 's|@PREFIX@|$(PREFIX)|' install/poundd.service >$(DESTDIR)$(PREFIX)/lib/systemd/system/poundd.service
+	client/manual $(B)/pound client/pound.1 >$(DESTDIR)$(PREFIX)/share/man/man1/pound.1
+	client/manual $(B)/poundd server/poundd.8 >$(DESTDIR)$(PREFIX)/share/man/man8/poundd.8
+	sed 's|@PREFIX@|$(PREFIX)|' server/poundd.service >$(DESTDIR)$(PREFIX)/lib/systemd/system/poundd.service
 
 fmt:
-	clang-format -i $$(git ls-files '*.c' '*.h')
+	clang-format -i $$(git ls-files '*.c' '*.h' '*.inl')
 clean:
 	$(RM) -r build
 

@@ -2,7 +2,7 @@
 #include "client/answer.h"
 
 #include "client/document.h"
-#include "schema/reading.h"
+#include "schema/json/json_pointer.h"
 
 #include <stdio.h>
 #include <stdlib.h>

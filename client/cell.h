@@ -2,7 +2,7 @@
 #ifndef CELL_H
 #define CELL_H
 
-#include "schema/reading.h"
+#include "schema/json/json_pointer.h"
 
 /* A line of the swept fields and their values in this cell; nothing where nothing is swept. */
 void cell_sweep(const struct reading *result, int cell);

@@ -2,8 +2,8 @@
 #include "client/document.h"
 
 #include "client/table.h"
-#include "schema/result_design.h"
-#include "schema/study_json.h"
+#include "schema/result/result_design.h"
+#include "schema/study/study_json.h"
 
 #include <errno.h>
 #include <math.h>

@@ -3,8 +3,8 @@
 #define DOCUMENT_H
 
 #include "client/command.h"
-#include "schema/problems.h"
-#include "schema/reading.h"
+#include "schema/json/json_pointer.h"
+#include "schema/json/problems.h"
 
 #include <stddef.h>
 

@@ -3,7 +3,7 @@
 
 #include "client/answer.h"
 #include "client/bar.h"
-#include "schema/reading.h"
+#include "schema/json/json_pointer.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef INDEXES_H
 #define INDEXES_H
 
-#include "schema/reading.h"
+#include "schema/json/json_pointer.h"
 
 /* All of it: what the design came to, and every table of every output of every cell. */
 void indexes_print(const struct reading *result);

@@ -1,9 +1,9 @@
-/* model.c - a model that is run elsewhere: `pound design` prints where, `pound indices` reads what came out. */
-#include "schema/model.h"
+/* external_model.c - a model that is run elsewhere: `pound design` prints where, `pound indices` reads what came out. */
 #include "client/command.h"
 #include "client/document.h"
 #include "client/show.h"
-#include "schema/study_json.h"
+#include "schema/external/external_model.h"
+#include "schema/study/study_json.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "engine/pound.h"
 #include "client/command.h"
 #include "client/table.h"
-#include "schema/result_json.h"
+#include "schema/result/result_json.h"
 
 #include <argp.h>
 #include <errno.h>

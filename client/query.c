@@ -5,7 +5,7 @@
 #include "client/follow.h"
 #include "client/show.h"
 #include "client/table.h"
-#include "schema/reading.h"
+#include "schema/json/json_pointer.h"
 
 #include <stdio.h>
 #include <stdlib.h>

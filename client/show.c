@@ -4,8 +4,8 @@
 #include "client/cell.h"
 #include "client/indexes.h"
 #include "client/table.h"
-#include "schema/reading.h"
-#include "schema/result_json.h"
+#include "schema/json/json_pointer.h"
+#include "schema/result/result_json.h"
 
 #include <math.h>
 #include <stdio.h>

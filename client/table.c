@@ -2,7 +2,7 @@
 #include "client/table.h"
 
 #include "client/command.h"
-#include "schema/writer.h"
+#include "schema/json/json_writer.h"
 
 #include <math.h>
 #include <stdbool.h>

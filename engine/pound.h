@@ -231,6 +231,7 @@ const char *pound_design_name(int row);
 bool pound_design_quasi_random(int row);
 const char *pound_order_name(int row);
 const char *pound_estimator_name(int row);
+int pound_estimator_order(int row); /* row of the orders: which samples a row of its design has, at least */
 const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
@@ -253,7 +254,7 @@ struct pound_solver pound_convergence_solver(const struct pound_study *study, in
 struct pound_trial;
 double pound_convergence_order(const struct pound_trial *trials, int n_trials, int method);
 
-/* Samples of a row of the study's design: A, B, A with column j from B for every j, ... (engine/order.h). */
+/* Samples of a row of the study's design: A, B, A with column j from B for every j, ... (engine/design/row_samples.h). */
 int pound_design_samples(const struct pound_study *study);
 int pound_design_order(const struct pound_study *study);
 unsigned pound_order_mask(int n_inputs, int sample); /* bit j: column j of the sample is from B */

@@ -16,7 +16,7 @@
 #include "server/log.h"
 
 static const char schema_text[] =
-#include "schema/store.sql.inc"
+#include "server/store.sql.inc"
     ;
 
 enum {

@@ -1,7 +1,7 @@
 /* HTTP by libmicrohttpd: a few threads, each with its connections; a route answers in the thread of its connection.
  *
  * 1. The target and the headers are judged before a byte of the body is read.  A refusal of a request with a body is sent
- *    at once and the connection closed; what the client still sends is read for a while (connection.h), for a closed
+ *    at once and the connection closed; what the client still sends is read for a while (deadlines.h), for a closed
  *    socket with unread bytes is reset, and the reset overtakes our answer.
  * 2. The body is collected, up to its limit.
  * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What

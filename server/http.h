@@ -8,9 +8,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "schema/api.h"
-#include "schema/head.h"
-#include "server/connection.h"
+#include "schema/http/api.h"
+#include "schema/http/http_head.h"
+#include "server/deadlines.h"
 #include "server/metrics.h"
 #include "server/options.h"
 

@@ -18,7 +18,7 @@
 #include "server/options.h"
 #include "server/store.h"
 #include "server/token.h"
-#include "server/work.h"
+#include "server/workers.h"
 
 enum { STOP_MAX = 25 /* [s] from the signal to the end, come what may: what is accepted is on the disk */ };
 

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "engine/pound.h"
-#include "schema/writer.h"
+#include "schema/json/json_writer.h"
 #include "server/http.h"
 #include "server/store.h"
 

@@ -5,7 +5,7 @@
 #include <stdatomic.h>
 #include <stddef.h>
 
-#include "schema/api.h"
+#include "schema/http/api.h"
 
 enum {
 	METRICS_OPERATIONS = API_N_OPERATIONS + 1 /* the last: none of them */,

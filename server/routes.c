@@ -10,17 +10,17 @@
 #include <string.h>
 
 #include "engine/pound.h"
-#include "schema/cost.h"
-#include "schema/problems.h"
-#include "schema/reading.h"
-#include "schema/result_json.h"
-#include "schema/study_json.h"
-#include "schema/study_status.h"
-#include "schema/writer.h"
+#include "schema/json/json_pointer.h"
+#include "schema/json/json_writer.h"
+#include "schema/json/problems.h"
+#include "schema/result/result_json.h"
+#include "schema/study/cost.h"
+#include "schema/study/study_json.h"
+#include "schema/study/study_status.h"
 #include "server/http.h"
 #include "server/store.h"
 #include "server/token.h"
-#include "server/work.h"
+#include "server/workers.h"
 
 enum {
 	RETRY_AFTER = 1,      /* [s] */

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "schema/study_status.h"
+#include "schema/study/study_status.h"
 
 enum store_status {
 	STORE_OK,

@@ -1,0 +1,272 @@
+/* design.c - designs by name.  A design fills one column of A or B with probabilities u in (0, 1); the quantile of
+ * the input's distribution makes values of them.
+ *
+ * A number is a function of (seed, row, matrix, input), and of the number of rows for a Latin hypercube that does not
+ * grow.  A design that grows until its intervals are narrow does so in independent Latin hypercubes of some rows, or in
+ * several scrambled nets side by side, each twice as long as before. */
+#include "engine/design/design.h"
+
+#include "engine/design/sobol_sequence.h"
+#include "engine/numeric/random.h"
+
+#include <assert.h>
+
+enum {
+	BATCH = 100,        /* rows of a Latin hypercube of a design that grows */
+	BATCH_LEAST = 10,   /* when max_runs leaves no more */
+	BATCHES_FIRST = 10, /* and how many there are at first: fewer have no good interval */
+	BATCHES_NEXT = 2,   /* and come at a time */
+	POINTS_FIRST = 16,  /* of each net at first */
+	RANDOMISATIONS = 8, /* unless the study says */
+};
+
+struct design {
+	const char *name;
+	void (*column)(const struct pound_study *study, int matrix, int input, int rows, double *u);
+	bool nets; /* grows by doubling, in interleaved nets */
+};
+
+static struct pound_stream stream_of(const struct pound_study *study, int row, int matrix, int input)
+{
+	return (struct pound_stream){.seed = study->design.seed,
+	                             .what = POUND_STREAM_DESIGN,
+	                             .row = (uint32_t)row,
+	                             .sample = (uint32_t)input,
+	                             .signal = 2 * (uint32_t)matrix};
+}
+
+static int stride_of(const struct pound_study *study)
+{
+	return 2 * study->n_inputs;
+}
+
+static void random_column(const struct pound_study *study, int matrix, int input, int rows, double *u)
+{
+	struct pound_stream stream = stream_of(study, 0, matrix, input);
+	for (int i = 0; i < rows; i++)
+		u[(size_t)i * stride_of(study)] = pound_random_uniform(stream, i);
+}
+
+/* Latin hypercube column: one point in each of n equal strata of u, uniform within it, in random order.
+ *
+ * The place within a stratum has 32 bits and stays off its edges by 2^-33: with up to 2^20 strata neither adding
+ * the stratum's number nor dividing by n can round a point into the next one.
+ *
+ * Source   McKay, Beckman, Conover 1979, Technometrics 21(2), 239-245; Fisher-Yates for the order
+ * Test     unit_design: a_latin_hypercube_has_one_point_in_every_stratum_of_every_column
+ */
+static void latin_fill(struct pound_stream stream, int rows, int stride, double *u)
+{
+	assert(rows <= POUND_ROWS_MAX);
+	struct pound_stream order = stream;
+	order.signal++;
+	for (int i = 0; i < rows; i++) {
+		double place = ((double)pound_random_words(stream, i).v[0] + 0.5) * 0x1p-32;
+		double point = (i + place) / rows;
+		// the inside-out shuffle: the new point takes the place of a random earlier one, or its own
+		int k = (int)pound_random_below(order, i, i + 1);
+		u[(size_t)i * stride] = u[(size_t)k * stride];
+		u[(size_t)k * stride] = point;
+	}
+}
+
+static bool grows(const struct pound_study *study)
+{
+	return study->design.until.half_width > 0;
+}
+
+/* One Latin hypercube of all rows; of a design that grows one of each batch. */
+static void latin_column(const struct pound_study *study, int matrix, int input, int rows, double *u)
+{
+	const int batch = grows(study) ? pound_design_grouping(study).run : rows;
+	for (int first = 0; first < rows; first += batch)
+		latin_fill(stream_of(study, first / batch, matrix, input), batch, stride_of(study),
+		           u + (size_t)first * stride_of(study));
+}
+
+/* Nets side by side: row i is point i / n of net i % n.  Columns of A and B alternate, as the first columns of a net are
+ * its best ones.
+ *
+ * Test     unit_design: every_net_of_a_sobol_design_is_a_net_of_its_own
+ */
+static void net_column(const struct pound_study *study, int matrix, int input, int rows, double *u)
+{
+	const int n = pound_design_grouping(study).n;
+	for (int k = 0; k < n; k++) {
+		struct pound_net net;
+		pound_net_init(&net, 2 * input + matrix);
+		pound_net_scramble(&net, stream_of(study, k, matrix, input));
+		for (int i = k; i < rows; i += n)
+			u[(size_t)i * stride_of(study)] = pound_net_point(&net, (uint32_t)(i / n));
+	}
+}
+
+static const struct design designs[] = {
+    {"lhs", latin_column, false},
+    {"random", random_column, false},
+    {"sobol", net_column, true},
+};
+
+static_assert(POUND_NET_COLUMNS >= 2 * POUND_INPUTS_MAX, "every column of A and B has its own");
+
+enum { DESIGNS = sizeof designs / sizeof designs[0] };
+
+const char *pound_design_name(int row)
+{
+	return row >= 0 && row < DESIGNS ? designs[row].name : NULL;
+}
+
+/* The order of a study's design: the one it asks for, or more if its estimator needs more. */
+int pound_design_order(const struct pound_study *study)
+{
+	const int needed = pound_estimator_order(study->design.estimator);
+	return study->design.order > needed ? study->design.order : needed;
+}
+
+/* Samples of a row. */
+int pound_design_samples(const struct pound_study *study)
+{
+	return pound_order_samples(pound_design_order(study), study->n_inputs);
+}
+
+/* Whether rows that are near in one input are arranged in the others, not there by chance. */
+bool pound_design_quasi_random(int row)
+{
+	return designs[row].nets;
+}
+
+/* Pounding runs of one row of the design. */
+int64_t pound_design_row_runs(const struct pound_study *study)
+{
+	int64_t runs =
+	    (int64_t)pound_design_samples(study) * (study->elsewhere ? 1 : study->scene.excitation.signals);
+	for (int s = 0; s < study->n_sweeps; s++)
+		runs *= study->sweeps[s].n_values;
+	return runs;
+}
+
+/* Rows that max_runs allows. */
+static int rows_allowed(const struct pound_study *study)
+{
+	int64_t rows = study->design.until.max_runs / pound_design_row_runs(study);
+	return rows < POUND_ROWS_MAX ? (int)rows : POUND_ROWS_MAX;
+}
+
+/* Rows of a batch: fewer when max_runs leaves none for as many of the usual size. */
+static int batch_of(const struct pound_study *study)
+{
+	int most = rows_allowed(study) / BATCHES_FIRST;
+	return most < BATCH_LEAST ? BATCH_LEAST : most < BATCH ? most : BATCH;
+}
+
+/* The groups of rows that are independent of each other.
+ *
+ * Given    study     -         -       a sensitivity study
+ * Returns  value     -         -       none for a random design, and for one Latin hypercube
+ *
+ * Test     unit_design: rows_of_a_group_are_a_design_of_their_own
+ */
+struct pound_grouping pound_design_grouping(const struct pound_study *study)
+{
+	const struct pound_design *design = &study->design;
+	if (designs[design->method].nets)
+		return (struct pound_grouping){design->randomisations ? design->randomisations : RANDOMISATIONS, 1};
+	if (!grows(study) || designs[design->method].column != latin_column)
+		return (struct pound_grouping){0, 1};
+	int batch = batch_of(study);
+	return (struct pound_grouping){(rows_allowed(study) + batch - 1) / batch, batch};
+}
+
+/* Rows at a look, of nets that double. */
+static int net_rows(const struct pound_study *study, int allowed, int look)
+{
+	int rows = pound_design_rows_least(study);
+	while (rows < study->design.rows && rows <= allowed / 2)
+		rows *= 2;
+	for (int k = 0; k < look && rows <= allowed / 2; k++)
+		rows *= 2;
+	return rows;
+}
+
+/* Rows at a look, of batches added. */
+static int batch_rows(const struct pound_study *study, int allowed, int look)
+{
+	const int batch = batch_of(study), most = allowed / batch;
+	int first = (study->design.rows + batch - 1) / batch;
+	first = first < BATCHES_FIRST ? BATCHES_FIRST : first;
+	int64_t batches = first + (int64_t)BATCHES_NEXT * look;
+	return (int)(batches < most ? batches : most) * batch;
+}
+
+/* Rows of the design when its intervals are looked at for the first, second, ... time; 0 when max_runs does not allow the
+ * first.
+ *
+ * Given    study     -         -       a sensitivity study
+ *          look      -         -       0, 1, ...
+ * Returns  value     -         rows    those of the last look again when max_runs allows no more; of a design that does
+ *                                      not grow always all
+ *
+ * Batches: from 10, or as many as hold the study's rows, 2 at a time.  Nets: from 16 points, or as many, twice as many at
+ * a time.
+ *
+ * Test     unit_growth: a_design_grows_by_whole_batches_and_by_doubling
+ */
+int pound_design_rows(const struct pound_study *study, int look)
+{
+	const struct pound_design *design = &study->design;
+	if (!grows(study))
+		return design->rows;
+	const int allowed = rows_allowed(study);
+	if (pound_design_rows_least(study) > allowed)
+		return 0;
+	return designs[design->method].nets ? net_rows(study, allowed, look) : batch_rows(study, allowed, look);
+}
+
+/* Rows that a design that grows begins with at least. */
+int pound_design_rows_least(const struct pound_study *study)
+{
+	bool nets = designs[study->design.method].nets;
+	return nets ? POINTS_FIRST * pound_design_grouping(study).n : BATCHES_FIRST * BATCH_LEAST;
+}
+
+/* Rows of the design at its last look. */
+int pound_design_rows_most(const struct pound_study *study)
+{
+	return pound_design_rows(study, POUND_ROWS_MAX);
+}
+
+/* The probabilities that a study's two matrices are made of.
+ *
+ * Given    study         -                        inputs and design
+ * Returns  u             (rows x 2 x n_inputs)    in (0, 1); row i of A, then row i of B
+ *
+ * Test     unit_design
+ */
+void pound_design_probabilities(const struct pound_study *study, double *u)
+{
+	const int d = study->n_inputs, rows = pound_design_rows_most(study);
+	for (int matrix = 0; matrix < 2; matrix++)
+		for (int j = 0; j < d; j++)
+			designs[study->design.method].column(study, matrix, j, rows, u + matrix * d + j);
+}
+
+/* The input values of a study's two matrices.
+ *
+ * Given    study         -                        -            inputs and design
+ * Returns  x             (rows x 2 x n_inputs)    the inputs'  row i of A, then row i of B
+ *
+ * Test     unit_design: values_are_quantiles_of_the_inputs_distributions
+ */
+void pound_design_fill(const struct pound_study *study, double *x)
+{
+	const int d = study->n_inputs;
+	pound_design_probabilities(study, x);
+	for (size_t k = 0; k < (size_t)pound_design_rows_most(study) * 2 * d; k++)
+		x[k] = pound_distribution_quantile(&study->inputs[k % d].distribution, x[k]);
+}
+
+double pound_design_input(const double *x, int n_inputs, int row, int sample, int j)
+{
+	const unsigned from_b = pound_order_mask(n_inputs, sample) >> j & 1;
+	return x[((size_t)row * 2 + from_b) * n_inputs + j];
+}

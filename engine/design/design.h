@@ -1,0 +1,23 @@
+/* design.h - where the model is run: the rows of two matrices A and B of input values, and their mixtures.
+ *
+ * Values are in the inputs' own units; x is (rows x 2 x n_inputs), row i of A and then row i of B, with
+ * pound_design_rows_most(study) rows.  A row is a function of its number, so that a design that grows keeps its rows. */
+#ifndef DESIGN_H
+#define DESIGN_H
+
+#include "engine/design/row_samples.h"
+
+void pound_design_probabilities(const struct pound_study *study, double *u); /* of the same shape */
+void pound_design_fill(const struct pound_study *study, double *x);
+
+/* Rows that come in groups, each a design of its own and independent of the others: row i is of group i / run % n.
+ * n = 0: there are none, every row is as good as independent of the others. */
+struct pound_grouping {
+	int n, run;
+};
+struct pound_grouping pound_design_grouping(const struct pound_study *study);
+
+/* Input j of a sample of a row. */
+double pound_design_input(const double *x, int n_inputs, int row, int sample, int j);
+
+#endif

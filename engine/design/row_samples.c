@@ -1,0 +1,90 @@
+/* row_samples.c - the samples of a row by the columns that are from B. */
+#include "engine/design/row_samples.h"
+
+#include <assert.h>
+
+static int total(int n_inputs)
+{
+	return n_inputs + 2;
+}
+
+// with two inputs B with a column from A is A with the other from B, with one it is A
+static int second(int n_inputs)
+{
+	return n_inputs > 2 ? 2 * n_inputs + 2 : n_inputs + 2;
+}
+
+static int factorial(int n_inputs)
+{
+	assert(n_inputs <= POUND_FACTORIAL_INPUTS_MAX);
+	return n_inputs > 2 ? 1 << n_inputs : n_inputs + 2;
+}
+
+static const struct {
+	const char *name;
+	int (*samples)(int n_inputs);
+} orders[] = {
+    [POUND_ORDER_TOTAL] = {"total", total},
+    [POUND_ORDER_SECOND] = {"second", second},
+    [POUND_ORDER_FACTORIAL] = {"factorial", factorial},
+};
+
+enum { ORDERS = sizeof orders / sizeof orders[0] };
+
+const char *pound_order_name(int row)
+{
+	return row >= 0 && row < ORDERS ? orders[row].name : NULL;
+}
+
+int pound_order_samples(int order, int n_inputs)
+{
+	return orders[order].samples(n_inputs);
+}
+
+/* Whether a mixture comes behind those of one column from one matrix. */
+static bool is_other(int n_inputs, unsigned mask)
+{
+	int from_b = __builtin_popcount(mask);
+	return from_b > 1 && from_b < n_inputs - 1;
+}
+
+/* The columns that a sample has from B.
+ *
+ * Given    sample   -     from 0
+ * Returns  value    -     bit j: column j
+ *
+ * Test     unit_row_samples: every_mixture_is_there_once_and_in_the_order_of_the_samples
+ */
+unsigned pound_order_mask(int n_inputs, int sample)
+{
+	const unsigned all = (1u << n_inputs) - 1;
+	if (sample < 2)
+		return sample == POUND_SAMPLE_B ? all : 0;
+	if (sample < 2 + n_inputs)
+		return 1u << (sample - 2);
+	if (sample < 2 + 2 * n_inputs)
+		return all ^ 1u << (sample - 2 - n_inputs);
+	unsigned mask = 0;
+	for (int left = sample - 1 - 2 * n_inputs; left > 0; left -= is_other(n_inputs, mask))
+		mask++;
+	return mask;
+}
+
+/* The first sample that has these columns from B.
+ *
+ * Test     unit_row_samples: every_mixture_is_there_once_and_in_the_order_of_the_samples
+ */
+int pound_order_sample(int n_inputs, unsigned mask)
+{
+	const unsigned all = (1u << n_inputs) - 1;
+	if (mask == 0 || mask == all)
+		return mask ? POUND_SAMPLE_B : POUND_SAMPLE_A;
+	if (__builtin_popcount(mask) == 1)
+		return 2 + __builtin_ctz(mask);
+	if (__builtin_popcount(mask) == n_inputs - 1)
+		return 2 + n_inputs + __builtin_ctz(all ^ mask);
+	int sample = 2 + 2 * n_inputs;
+	for (unsigned other = 0; other < mask; other++)
+		sample += is_other(n_inputs, other);
+	return sample;
+}

@@ -1,0 +1,98 @@
+/* sobol_sequence.c - Sobol' points, scrambled at random.
+ *
+ * 1. A column has 32 direction numbers; point i is the sum without carry (exclusive or) of those of the bits of i.
+ * 2. A scramble adds to every digit of a point a random choice of the digits before it, and a random digit.
+ *
+ * So a point needs no other one.  In base 2 the first 2^m points are spread as evenly as the columns allow, and so is
+ * each next 2^m; a scramble keeps that, while each point by itself becomes uniform.
+ *
+ * Sobol' 1967, USSR Comput. Math. Math. Phys. 7(4), 86-112.  Scramble: Matousek 1998, J. Complexity 14, 527-556. */
+#include "engine/design/sobol_sequence.h"
+
+enum { DEGREE_MAX = 7 };
+
+/* Primitive polynomials x^s + a_1 x^(s-1) + ... + 1 over the field of two elements, with a = a_1 .. a_(s-1) in binary, and
+ * the first s direction numbers m_k < 2^k, odd.  The column before the first is the van der Corput sequence.
+ *
+ * Source   Joe, Kuo 2008, SIAM J. Sci. Comput. 30, 2635-2654: their table "new-joe-kuo-6", dimensions 2 to 32
+ * Test     unit_sobol_sequence: polynomials_are_primitive_and_each_is_used_once */
+// clang-format off
+static const struct polynomial {
+	int degree, a, m[DEGREE_MAX];
+} polynomials[POUND_NET_COLUMNS - 1] = {
+	{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}},
+	{4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}},
+	{5, 2, {1, 1, 5, 5, 17}}, {5, 4, {1, 1, 5, 5, 5}}, {5, 7, {1, 1, 7, 11, 19}},
+	{5, 11, {1, 1, 5, 1, 1}}, {5, 13, {1, 1, 1, 3, 11}}, {5, 14, {1, 3, 5, 5, 31}},
+	{6, 1, {1, 3, 3, 9, 7, 49}}, {6, 13, {1, 1, 1, 15, 21, 21}}, {6, 16, {1, 3, 1, 13, 27, 49}},
+	{6, 19, {1, 1, 1, 15, 7, 5}}, {6, 22, {1, 3, 1, 15, 13, 25}}, {6, 25, {1, 1, 5, 5, 19, 61}},
+	{7, 1, {1, 3, 7, 11, 23, 15, 103}}, {7, 4, {1, 3, 7, 13, 13, 15, 69}}, {7, 7, {1, 1, 3, 13, 7, 35, 63}},
+	{7, 8, {1, 3, 5, 9, 1, 25, 53}}, {7, 14, {1, 3, 1, 13, 9, 35, 107}}, {7, 19, {1, 3, 1, 5, 27, 61, 31}},
+	{7, 21, {1, 1, 5, 11, 19, 41, 61}}, {7, 28, {1, 3, 5, 3, 3, 13, 69}}, {7, 31, {1, 1, 7, 13, 1, 19, 1}},
+	{7, 32, {1, 3, 7, 5, 13, 19, 59}}, {7, 37, {1, 1, 3, 9, 25, 29, 41}}, {7, 41, {1, 3, 5, 13, 23, 1, 55}},
+	{7, 42, {1, 3, 7, 3, 13, 59, 17}},
+};
+// clang-format on
+
+/* Direction numbers of a column, not scrambled.
+ *
+ * Given    column   -      -      [0, POUND_NET_COLUMNS)
+ * Returns  net      -      -      v_k = m_k / 2^k as digits, the first one highest; no shift
+ *
+ *   v_k = a_1 v_(k-1) + ... + a_(s-1) v_(k-s+1) + v_(k-s) + v_(k-s) / 2^s        (sums without carry)
+ *
+ * Source   Bratley, Fox 1988, ACM Trans. Math. Softw. 14, 88-100
+ * Test     unit_sobol_sequence: elementary_intervals_hold_equally_many_points
+ */
+void pound_net_init(struct pound_net *net, int column)
+{
+	assert(column >= 0 && column < POUND_NET_COLUMNS);
+	const struct polynomial *p = column ? &polynomials[column - 1] : NULL;
+	const int s = p ? p->degree : 0;
+	uint32_t *v = net->direction;
+	net->shift = 0;
+	for (int k = 0; k < POUND_NET_DIGITS; k++) {
+		const uint32_t first = UINT32_C(1) << (POUND_NET_DIGITS - 1 - k);
+		if (k < s || !p) {
+			v[k] = p ? (uint32_t)p->m[k] * first : first;
+			continue;
+		}
+		v[k] = v[k - s] ^ v[k - s] >> s;
+		for (int i = 1; i < s; i++)
+			v[k] ^= p->a >> (s - 1 - i) & 1 ? v[k - i] : 0;
+	}
+}
+
+/* Scrambles a column.
+ *
+ * Given    stream   -      -      another one gives an independent scramble
+ * Returns  net      -      -      digit k: itself, plus a random choice of the digits before it, plus a random digit
+ *
+ * Source   Matousek 1998, J. Complexity 14, 527-556: random linear scrambling with a digital shift; the mean of a function
+ *          over the points has the variance that nested uniform scrambling (Owen 1995) gives it
+ * Test     unit_sobol_sequence: a_scramble_keeps_elementary_intervals
+ */
+void pound_net_scramble(struct pound_net *net, struct pound_stream stream)
+{
+	uint32_t digits[POUND_NET_DIGITS] = {0};
+	for (int k = 0; k < POUND_NET_DIGITS; k++) {
+		const int place = POUND_NET_DIGITS - 1 - k;
+		// the digit itself and random ones of those before it
+		const uint32_t random = pound_random_words(stream, (uint32_t)k / 4).v[k % 4];
+		const uint32_t taken = (random & -(UINT32_C(2) << place)) | UINT32_C(1) << place;
+		for (int i = 0; i < POUND_NET_DIGITS; i++)
+			digits[i] |= (uint32_t)__builtin_parity(net->direction[i] & taken) << place;
+	}
+	for (int i = 0; i < POUND_NET_DIGITS; i++)
+		net->direction[i] = digits[i];
+	net->shift = pound_random_words(stream, POUND_NET_DIGITS / 4).v[0];
+}
+
+/* A point of a column: the middle of the interval that its 32 digits name. */
+double pound_net_point(const struct pound_net *net, uint32_t number)
+{
+	uint32_t digits = net->shift;
+	for (int k = 0; number; k++, number >>= 1)
+		digits ^= number & 1 ? net->direction[k] : 0;
+	return ((double)digits + 0.5) * 0x1p-32;
+}

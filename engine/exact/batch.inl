@@ -1,0 +1,91 @@
+/* batch.inl - simulations side by side: their rows into lanes and out, and which lanes have what.
+ *
+ * Included by exact.inl alone, once per lane count.
+ *
+ * Included by exact.inl after shared_start.inl. */
+
+#include "engine/numeric/lanes.h"
+
+/* simulations side by side; lanes from n on hold the filler */
+struct batch {
+	int n;
+	struct simulation *sim[W];
+	double *row[W];
+	unsigned traits;    /* of any of them */
+	struct queue *from; /* where they waited: scheduler.inl */
+};
+
+/* The lanes in use. */
+static unsigned batch_lanes(const struct batch *b)
+{
+	return (1u << b->n) - 1;
+}
+
+/* Takes a lane out of a set that is not empty. */
+static int lane_next(unsigned *lanes)
+{
+	int l = __builtin_ctz(*lanes);
+	*lanes &= *lanes - 1;
+	return l;
+}
+
+/* Carries one row of every simulation into lanes, or out. */
+LANE_INLINE void lanes_fill(struct lanes *g, const struct batch *b, int at)
+{
+	rows_load((vd *)g + at, (const double *const *)b->row, at);
+}
+LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int at)
+{
+	rows_store((const vd *)g + at, b->row, at);
+}
+
+/* Carries one row of constants into lanes.
+ *
+ * Given    common  the rows that all have in common; NULL: they may differ
+ */
+LANE_INLINE void lanes_constant(struct lanes *g, const struct batch *b, const struct state_rows *common,
+                                int at)
+{
+	if (!common) {
+		lanes_fill(g, b, at);
+		return;
+	}
+	for (int j = at; j < at + ROW; j++)
+		((vd *)g)[j] = vsplat(((const double *)common)[j]);
+}
+
+/* Lanes of simulations with a trait. */
+LANE_INLINE vm batch_trait(const struct batch *b, unsigned trait)
+{
+	unsigned lanes = 0;
+	for (int l = 0; l < W; l++)
+		lanes |= (unsigned)((b->sim[l]->traits & trait) != 0) << l;
+	return vmask(lanes);
+}
+
+/* Lanes of families in which an edge decided: that is to be taken back. */
+static unsigned batch_parting(const struct batch *b, vm decided)
+{
+	if (!(b->traits & TRAIT_FAMILY))
+		return 0;
+	return vbits(decided & batch_trait(b, TRAIT_FAMILY)) & batch_lanes(b);
+}
+
+/* Nothing that became of these lanes is carried out: it goes to a simulation that is none. */
+static void batch_forget(struct batch *b, unsigned lanes, struct simulation *filler)
+{
+	while (lanes)
+		b->row[lane_next(&lanes)] = (double *)&filler->x;
+}
+
+/* Lanes whose bodies overlap without force, and those in which the force has just passed zero. */
+LANE_INLINE void batch_forces(const struct batch *b, vm *parted, vm *fresh)
+{
+	unsigned gone = 0, passed = 0;
+	for (int l = 0; l < W; l++) {
+		gone |= (unsigned)b->sim[l]->parted << l;
+		passed |= (unsigned)b->sim[l]->fresh << l;
+	}
+	*parted = vmask(gone);
+	*fresh = vmask(passed);
+}

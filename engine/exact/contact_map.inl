@@ -1,0 +1,568 @@
+/* contact_map.inl - exact maps of pressed contact, over a cell and over many cells at once.
+ *
+ * Included by exact.inl alone, once per lane count: the columns of a map are made side by side in lanes.
+ *
+ * 1. Pressed on each other the bodies are one linear system: over a cell, a fraction of a radian of the contact's own
+ *    frequency, its map is a power series.
+ * 2. Rungs of a ladder are maps over eight times as many cells each, by doubling, kept as what they add to the state:
+ *    nothing small is lost beside 1.
+ * 3. A bound proves that bodies stay pressed over a rung however often the contact swings within.
+ *
+ * Included by exact.inl after series.inl. */
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/exact/tolerances.h"
+#include "engine/numeric/lanes.h"
+
+enum {
+	N = POUND_PRESS_INPUTS,
+	MOVED = PRESS_IMPULSE +
+	        1, /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
+	RUNG_DOUBLINGS =
+	    3, /* from a rung to the next; more where as many as there may be would not reach a sample */
+	RUNG_RATIO = 1 << RUNG_DOUBLINGS,
+};
+
+/* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
+static void split_fill(double split[N], const struct simulation *sim)
+{
+	const struct state_rows *x = &sim->x;
+	const int o = 1 - sim->base;
+	const double share = (sim->base ? -x->mass_ratio : 1) / x->both;
+	const double dc = x->body[1].damping - x->body[0].damping,
+	             dk = x->body[1].stiffness - x->body[0].stiffness;
+	const double stiffness = x->both * x->contact_stiffness + x->body[o].stiffness - dk * share;
+	split[SPLIT_DAMPING] = dc;
+	split[SPLIT_STIFFNESS] = dk;
+	split[SPLIT_BASE] = share;
+	split[SPLIT_OMEGA] = sqrt(stiffness);
+	split[SPLIT_DRAG] = (x->both * x->contact_damping + x->body[o].damping - dc * share) / split[SPLIT_OMEGA];
+	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
+	split[SPLIT_CELLS] = 1;
+}
+
+/* Overlap by what presses the bodies on each other, once it does not swing. */
+static double yield_of(const double split[N])
+{
+	return 1 / (split[SPLIT_OMEGA] * split[SPLIT_OMEGA]);
+}
+
+/* Adds term n of the rates of base and overlap, times the cell's length, at the nodes of a quadrature. */
+static void rates_add(double rates[POUND_GAUSS][2][N], int n, int column, vd w, vd z)
+{
+	for (int g = 0; g < POUND_GAUSS; g++) {
+		double node = g < POUND_GAUSS / 2 ? -POUND_GAUSS_NODE[g] : POUND_GAUSS_NODE[g - POUND_GAUSS / 2];
+		double power = 1;
+		for (int m = 0; m < n; m++)
+			power *= 0.5 + 0.5 * node;
+		double *v = &rates[g][0][column], *q = &rates[g][1][column];
+		lanes_store(v, vfma(vsplat(power), w, lanes_load(v)));
+		lanes_store(q, vfma(vsplat(power), z, lanes_load(q)));
+	}
+}
+
+/* A linear form of the inputs becomes one of the inputs with the overlap off its equilibrium, p - g/W^2, for p.
+ *
+ * Where nothing is lost while the contact does not swing, a quadratic form then has small terms, not a small difference of
+ * large ones, whose error would grow with every doubling.
+ */
+static void form_off(double row[N], const double split[N])
+{
+	double yield = yield_of(split), slack = row[2] / (1 + yield * split[SPLIT_STIFFNESS] * split[SPLIT_BASE]);
+	double pull = slack * yield, rate = pull * split[SPLIT_DAMPING];
+	row[0] += pull * split[SPLIT_STIFFNESS];
+	row[1] += rate;
+	row[2] = slack;
+	row[3] -= rate * split[SPLIT_BASE];
+	row[5] += pull;
+}
+
+/* What the dashpots of both bodies and of the contact take over a cell, per mass of the left body, as a quadratic form of
+ * the inputs with the overlap off its equilibrium: the integral of m c v^2 by quadrature, exact to rounding. */
+static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const double split[N],
+                      const struct simulation *sim)
+{
+	const struct state_rows *x = &sim->x;
+	const double mass[2] = {1, x->right_mass};
+	const int b = sim->base, o = 1 - b;
+	memset(loss, 0, sizeof(double[N][N]));
+	for (int g = 0; g < POUND_GAUSS; g++) {
+		double *v = rates[g][0], *q = rates[g][1];
+		form_off(v, split);
+		form_off(q, split);
+		for (int i = 0; i < N; i++)
+			for (int j = 0; j < N; j++) {
+				double other = (v[i] - x->side * q[i]) * (v[j] - x->side * q[j]);
+				double rate = mass[b] * x->body[b].damping * v[i] * v[j] +
+				              mass[o] * x->body[o].damping * other + x->contact_damping * q[i] * q[j];
+				loss[i][j] += 0.5 * POUND_GAUSS_WEIGHT[g % (POUND_GAUSS / 2)] * rate / x->cell;
+			}
+	}
+}
+
+/* Exact map of the base body and the overlap over one cell h of pressed contact, by its power series.
+ *
+ * Given    sim    its bodies on their pieces, contact
+ * Returns  map    rows of POUND_PRESS_INPUTS coefficients
+ *          work   what an account of energy needs beside them; NULL: there is none
+ *
+ *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
+ *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
+ *
+ * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288 of
+ * the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times
+ * that of their own columns.
+ */
+static void cell_fill(struct pound_press_map *map, struct pound_press_work *work,
+                      const struct simulation *sim)
+{
+	const struct state_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	const double h = x->cell, h2 = h * h, push = b ? -x->mass_ratio : 1;
+	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
+	const double dc = (x->body[1].damping - x->body[0].damping) * h;
+	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
+	const double cb = x->body[b].damping * h, kb = x->body[b].stiffness * h2;
+	const double co = x->body[o].damping * h + x->both * C, ko = x->body[o].stiffness * h2 + x->both * K;
+	const double start[4][N] = {{1}, {0, h}, {0, 0, 1}, {0, 0, 0, h}}; // rates times h
+	const double force_b[2][N] = {{[4] = -h2}, {[6] = -h2}}, force_p[2][N] = {{[5] = h2}, {[7] = h2}};
+	double rates[POUND_GAUSS][2][N];
+	double(*row)[N] = map->row;
+	if (work)
+		memset(rates, 0, sizeof rates);
+	split_fill(row[PRESS_SPLIT], sim);
+	for (int j = 0; j < N; j += W) {
+		vd zero = vsplat(0), sum[4] = {zero, zero, zero, zero}, area = zero, mean = zero, error = zero;
+		vd u = lanes_load(&start[0][j]), w = lanes_load(&start[1][j]);
+		vd p = lanes_load(&start[2][j]), z = lanes_load(&start[3][j]);
+		for (int n = 0; n < POUND_MAP_ORDERS; n++) {
+			double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
+			const vd terms[4] = {u, w, p, z};
+			for (int r = 0; r < 4 && n > 0; r++)
+				sum[r] = sum[r] + terms[r];
+			area = vfma(p, vsplat(share), area);
+			mean = vfma(u, vsplat(share), mean);
+			error = vfma(vsplat(bend), vmax(vabs(u), vabs(p)), error);
+			if (work)
+				rates_add(rates, n, j, w, z);
+			vd w1 = -vfma(vsplat(kb * share), u, vsplat(push * K * share) * p);
+			vd z1 = vfma(vsplat(dk * share), u, vsplat(-ko * share) * p);
+			if (n < 2) {
+				w1 = vfma(vsplat(share), lanes_load(&force_b[n][j]), w1);
+				z1 = vfma(vsplat(share), lanes_load(&force_p[n][j]), z1);
+			}
+			u = w * vsplat(share);
+			p = z * vsplat(share);
+			w1 = vfma(vsplat(-cb * share), w, vfma(vsplat(-push * C * share), z, w1));
+			z = vfma(vsplat(-co * share), z, vfma(vsplat(dc * share), w, z1));
+			w = w1;
+		}
+		lanes_store(&row[PRESS_U][j], sum[0]);
+		lanes_store(&row[PRESS_V][j], sum[1] / vsplat(h));
+		lanes_store(&row[PRESS_P][j], sum[2]);
+		lanes_store(&row[PRESS_Q][j], sum[3] / vsplat(h));
+		lanes_store(&row[PRESS_IMPULSE][j],
+		            vfma(vsplat(x->contact_stiffness * h), area, vsplat(x->contact_damping) * sum[2]));
+		lanes_store(&row[PRESS_ERROR][j], error);
+		if (work) {
+			lanes_store(&work->mean_base[j], mean);
+			lanes_store(&work->mean_overlap[j], area);
+		}
+	}
+	if (work)
+		loss_fill(work->loss, rates, row[PRESS_SPLIT], sim);
+}
+
+/* ---- the ladder ---- */
+
+/* The map over twice as long: with s the state, f the forcing and d its growth over the length,
+ *
+ *   R s + R s',   s' = s + X s + F f + D d      in terms of s, f and 2 d, for each row R of (X F D) and the impulse's
+ */
+static void map_double(double row[][N])
+{
+	double once[MOVED][N];
+	memcpy(once, row, sizeof once);
+	for (int r = 0; r < MOVED; r++) {
+		double grown[2];
+		for (int j = 0; j < N; j += W) {
+			vd again = vsplat(once[r][0]) * lanes_load(&once[0][j]);
+			for (int m = 1; m < 4; m++)
+				again = vfma(vsplat(once[r][m]), lanes_load(&once[m][j]), again);
+			lanes_store(&row[r][j], vfma(vsplat(2), lanes_load(&once[r][j]), again));
+		}
+		for (int j = 0; j < 2; j++)
+			grown[j] = 0.5 * (row[r][6 + j] + once[r][4 + j]);
+		memcpy(&row[r][6], grown, sizeof grown);
+	}
+}
+
+/* From the inputs over a length to those over the next, with the overlap off its equilibrium or as it is. */
+static void inputs_next(double next[N][N], const double row[][N], bool off)
+{
+	const double *split = row[PRESS_SPLIT];
+	for (int i = 0; i < N; i++)
+		for (int j = 0; j < N; j++)
+			next[i][j] = (i == j) + (i < 4 ? row[i][j] : i < 6 && j == i + 2);
+	if (!off)
+		return;
+	for (int i = 0; i < N; i++)
+		form_off(next[i], split);
+	for (int j = 0; j < N; j++) {
+		double w = next[0][j] - split[SPLIT_BASE] * next[2][j],
+		       rate = next[1][j] - split[SPLIT_BASE] * next[3][j];
+		double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + next[5][j];
+		next[2][j] -= yield_of(split) * pull;
+	}
+}
+
+/* An account of energy over twice as long.
+ *
+ * Given    row   of the map over the length
+ */
+static void work_double(struct pound_press_work *work, const double row[][N])
+{
+	double next[N][N], once[N][N], half[2][N], *const mean[2] = {work->mean_base, work->mean_overlap};
+	inputs_next(next, row, false);
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < N; j++) {
+			half[i][j] = mean[i][j];
+			for (int m = 0; m < N; m++)
+				half[i][j] += mean[i][m] * next[m][j];
+		}
+	inputs_next(next, row, true);
+	for (int i = 0; i < N; i++)
+		for (int j = 0; j < N; j++) {
+			once[i][j] = 0;
+			for (int m = 0; m < N; m++)
+				once[i][j] += work->loss[i][m] * next[m][j];
+		}
+	for (int i = 0; i < N; i++) {
+		double share = i < 6 ? 1 : 0.5; // growths are over the whole length from here on
+		for (int m = 0; m < 2; m++)
+			mean[m][i] = 0.5 * share * half[m][i];
+		for (int j = 0; j < N; j++) {
+			double again = 0;
+			for (int m = 0; m < N; m++)
+				again += next[m][i] * once[m][j];
+			work->loss[i][j] = share * (j < 6 ? 1 : 0.5) * (work->loss[i][j] + again);
+		}
+	}
+}
+
+/* What proves that nothing happens over a rung of length h.
+ *
+ * With the slow coordinate w = ub - s/(1 + m1/m2) p of the bodies' common motion
+ *
+ *   p'' + G p' + W^2 p = g,   g = (c2 - c1) w' + (k2 - k1) w + Ap + Dp t/h       w'' = -cw w' - kw w - Aw + kp p + kq p'
+ *
+ * where the damping, stiffness and forcing with the index w are the means of both bodies by mass.  What presses them goes
+ * up or down by r = (g1 - g0)/h along a straight line, off which it is b, and the overlap follows this line with a lag:
+ *
+ *   e = p - (g0 + r t)/W^2 + G r/W^4      e'' + G e' + W^2 e = b
+ *
+ * V = (e'^2 + (W e - b/W)^2)^1/2 grows by |b'|/W at most.  Pressed bodies have |p'| <= g/W and p <= 2 g/W^2: what holds
+ * up to a first release proves that there is none.  So f = |kp p + kq p'| is bounded.  The rest of w'' differs from its
+ * mean, (w1' - w0')/h less that of f, by its own growth at most: with F = 1/(1 - h (cw + kw h))
+ *
+ *   A2 = F (|w1' - w0'|/h + 2 f + h kw |w'| + |Dw|) bounds w'', and so B = h^2 |g''| is bounded:
+ *
+ * b is at most B/8, and |b'| adds up to at most B/2.  With that W V is bounded, and the bodies stay pressed while the line
+ * less its lag, W V and B/8 is positive.  Meanwhile |p'| is at most (W V + |r|/W)/W, |p''| (1 + G/W) W V, and kp p grows by
+ * kp (W V + |g1 - g0|)/W^2, which is no more than the terms in g have with W V + |r|/W + |g1 - g0| in its place.  So bodies
+ * that rest have small bounds, however far they are pressed, and those that are pressed ever more go steadily.
+ * w - kq int e is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h |e| is
+ * added for the rest, e with B/8 for what int p misses a cubic by.  Its roundings are those of the
+ * way, that is of h w' and of the terms of h^2 w''; where w itself is looked at, rest() adds that of it: bodies that creep
+ * may go less far than that, and their velocity still has a sign.
+ */
+static void rest_fill(struct pound_press_map *map, const struct simulation *sim, double cells)
+{
+	const struct state_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	double *split = map->row[PRESS_SPLIT];
+	split[SPLIT_CELLS] = cells;
+	const double h = x->cell * cells, share = split[SPLIT_BASE], omega = split[SPLIT_OMEGA];
+	const double dc = split[SPLIT_DAMPING], dk = split[SPLIT_STIFFNESS], yield = yield_of(split);
+	const double cw = x->body[b].damping + share * dc, kw = x->body[b].stiffness + share * dk;
+	const double kp = fabs(share * (x->body[o].stiffness - kw)), kq = fabs(share * (x->body[o].damping - cw));
+	const double jerk = kp / omega + kq * (1 + split[SPLIT_DRAG]), jounce = kp * (1 + split[SPLIT_DRAG]);
+	const double quartic = h * h * h * h * POUND_CUBIC_ERROR, rounding = 4 * DBL_EPSILON;
+	const double ahead = 1 / (1 - h * (cw + kw * h));
+	split[SPLIT_LAG] = 4 * kq * h;
+	// of the magnitudes of w, w', g, w1' - w0', Ab, Ap, Db, Dp
+	const double a0[N] = {[1] = kw * h, 2 * (2 * kp * yield + kq / omega), 1 / h, [6] = 1, fabs(share)};
+	const double grown[N] = {[6] = 1 / h, [7] = fabs(share) / h};
+	for (int j = 0; j < N; j++)
+		map->pull[j] = dc * (map->row[PRESS_V][j] - share * map->row[PRESS_Q][j]) +
+		               dk * (map->row[PRESS_U][j] - share * map->row[PRESS_P][j]) + (j == 7);
+	// twice for the difference of rates, which is one of large numbers
+	const double rounded[N] = {2 * fabs(dk), 2 * fabs(dc), 1, 0, 0, 1};
+	const double lost[N] = {2 * kw * h * h, h, 0, 0, h * h, 2 * fabs(share) * h * h};
+	for (int j = 0; j < N; j++) {
+		double a2 = ahead * a0[j], a1 = (j == 1) + h * a2;
+		double a3 = cw * a2 + kw * a1 + grown[j] + (j == 2 ? jerk : 0);
+		double a4 = cw * a3 + kw * a2 + (j == 2 ? jounce : 0);
+		map->row[REST_BEND][j] = h * h * (fabs(dc) * a3 + fabs(dk) * a2) + rounding * rounded[j];
+		map->row[REST_ERROR][j] = quartic * a4 + rounding * lost[j];
+	}
+}
+
+/* Fills a ladder: rungs of as many cells as a whole sample has, or of an eighth, a 64th ... */
+static void ladder_fill(struct pound_ladder *ladder, const struct pound_press_map *cell,
+                        const struct simulation *sim)
+{
+	double cells = 1;
+	struct pound_press_map map = *cell;
+	struct pound_press_work *work = ladder->work;
+	for (int r = 0; r < sim->rungs; r++) {
+		if (sim->task->accounted)
+			work[r] = work[r > 0 ? r - 1 : POUND_PRESS_RUNGS];
+		for (; cells < sim->rung_cells[r]; cells *= 2) {
+			if (sim->task->accounted)
+				work_double(&work[r], map.row);
+			map_double(map.row);
+		}
+		ladder->rung[r] = map;
+		rest_fill(&ladder->rung[r], sim, cells);
+	}
+}
+
+/* Chooses the rungs of a simulation: of one cell, and of as many as lead to a whole sample, as far as the bodies' own
+ * rates allow.  A few cells a sample go as fast one by one. */
+static void press_rungs(struct simulation *sim)
+{
+	const struct state_rows *x = &sim->x;
+	double first = x->cells_whole;
+	int doublings = RUNG_DOUBLINGS; // from a rung to the next
+	if (first <= RUNG_RATIO)
+		return;
+	sim->rung_ratio = RUNG_RATIO;
+	if (first > 0x1p53) // no double counts them one by one: who is pressed does not come to the end of them
+		return;
+	while (ldexp(1, doublings * (POUND_PRESS_RUNGS - 1)) < first)
+		doublings++;
+	const double ratio = sim->rung_ratio = ldexp(1, doublings);
+	while (first > ratio)
+		first /= ratio;
+	for (double cells = 1; cells <= x->cells_whole && sim->rungs < POUND_PRESS_RUNGS;
+	     cells *= cells == 1 ? first : ratio) {
+		double h = cells * x->cell;
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			if (h * (x->body[i].damping + sim->task->bodies[i].skeleton.stiffness * h) > 0.5)
+				return;
+		sim->rung_cells[sim->rungs++] = cells;
+	}
+}
+
+/* A row of a map applied to its inputs, in pairs: the terms need not wait for each other. */
+static double row_at(const double row[N], const double x[N])
+{
+	double slow = row[6] * x[6] + row[7] * x[7], force = row[4] * x[4] + row[5] * x[5];
+	return (row[0] * x[0] + row[1] * x[1] + slow) + (row[2] * x[2] + row[3] * x[3] + force);
+}
+
+/* The greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale.  Not as close as rest() has
+ * it: this only chooses a rung, for one simulation at a time. */
+static double length_above(double x, double y)
+{
+	double a = fabs(x), b = fabs(y);
+	return a < b ? b + 0.4143 * a : a + 0.4143 * b;
+}
+
+/* Whether bodies in contact are bound to stay pressed over a rung: see rest_fill.
+ *
+ * Given    x     inputs;  bound  magnitudes of w, w', g, w1' - w0', and of x from there on
+ *          pull  g at the start;  hurry, off  W p' and W^2 p - g there
+ *          h     length of the rung [s]
+ */
+static bool rests(const struct pound_press_map *map, const double x[N], double bound[N], double pull,
+                  double hurry, double off, double h)
+{
+	const double *split = map->row[PRESS_SPLIT];
+	double change = row_at(map->pull, x), pull1 = pull + change, drift = change / (split[SPLIT_OMEGA] * h);
+	bound[2] = fabs(pull) + fabs(pull1);
+	bound[3] = fabs(row_at(map->row[PRESS_V], x) - split[SPLIT_BASE] * row_at(map->row[PRESS_Q], x));
+	bound[6] = fabs(x[6]);
+	bound[7] = fabs(x[7]);
+	double bend = row_at(map->row[REST_BEND], bound);
+	double swing = length_above(hurry - drift, off + split[SPLIT_DRAG] * drift) + 0.5 * bend;
+	double lag = fmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * fabs(drift);
+	return split[SPLIT_LEAD] * swing + lag + 0.125 * bend < (change < 0 ? pull1 : pull);
+}
+
+/* The longest rung that bodies in contact are bound to stay pressed over; NULL: there is none. */
+static const struct pound_press_map *rung_longest(struct simulation *sim, struct pound_press *press)
+{
+	struct state_rows *x = &sim->x;
+	const double *split = press->cell.row[PRESS_SPLIT], omega = split[SPLIT_OMEGA];
+	double in[N] = {x->u[sim->base],
+	                x->v[sim->base],
+	                x->p,
+	                x->q,
+	                x->base_drive * x->ground + x->base_force,
+	                x->gap_drive * x->ground + x->gap_force};
+	double w = in[0] - split[SPLIT_BASE] * x->p, rate = in[1] - split[SPLIT_BASE] * x->q;
+	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
+	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
+	double hurry = omega * x->q, off = omega * omega * x->p - pull;
+	// without overlap and rate bodies alike stay so, over any rung
+	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
+	if (!still && !(split[SPLIT_LEAD] * length_above(hurry, off) < pull))
+		return NULL;
+	struct pound_ladder *ladder = press->ladder;
+	if (!press->laddered)
+		ladder_fill(ladder, &press->cell, sim);
+	press->laddered = true;
+	const double *ground = &sim->ground[sim->next], rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
+	for (int r = sim->rung_limit; r >= 0; r--) {
+		double cells = sim->rung_cells[r];
+		in[6] = x->base_drive * rise * cells;
+		in[7] = x->gap_drive * rise * cells;
+		if (cells <= x->cells &&
+		    (still || rests(&ladder->rung[r], in, bound, pull, hurry, off, x->cell * cells))) {
+			sim->rung = r;
+			return &ladder->rung[r];
+		}
+	}
+	return NULL;
+}
+
+/* The maps of pressed contact on the pieces that the bodies are on. */
+static struct pound_press *press_find(struct simulation *sim)
+{
+	if (sim->common)
+		return &sim->common->press;
+	const struct state_rows *x = &sim->x;
+	unsigned found = 0;
+	for (int m = 0; m < POUND_PRESS_MAPS; m++)
+		found |= (unsigned)(sim->press_of[0][m] == x->body[0].stiffness &&
+		                    sim->press_of[1][m] == x->body[1].stiffness)
+		         << m;
+	if (found)
+		return &sim->press[__builtin_ctz(found)];
+	int m = sim->press_next;
+	sim->press_next = (m + 1) % POUND_PRESS_MAPS;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		sim->press_of[i][m] = x->body[i].stiffness;
+	sim->press[m].made = false;
+	return &sim->press[m];
+}
+
+/* Contact on pieces that the bodies have not been pressed on since they entered them. */
+LANE_SHARED void press_enter(struct simulation *sim)
+{
+	struct state_rows *x = &sim->x;
+	const int b = sim->base, o = 1 - b;
+	struct pound_press *press = sim->press_now = press_find(sim);
+	if (!press->made) {
+		cell_fill(&press->cell, sim->task->accounted ? &press->ladder->work[POUND_PRESS_RUNGS] : NULL, sim);
+		press->made = true;
+		press->laddered = false;
+	}
+	x->base_force = x->body[b].offset;
+	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
+	const bool alike = x->gap_force == 0 && x->gap_drive == 0 &&
+	                   x->body[0].stiffness == x->body[1].stiffness &&
+	                   x->body[0].damping == x->body[1].damping;
+	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
+}
+
+/* Gives a copy of a simulation what maps of pressed contact that has, but for the ladder: it is still on its first pieces,
+ * so there is one pair of pieces at most that it has maps of. */
+static void press_copy(struct simulation *to, const struct simulation *from)
+{
+	if (!from->press_now)
+		return;
+	assert(from->press_now == &from->press[0]);
+	struct pound_press *press = to->press_now = &to->press[0];
+	press->cell = from->press[0].cell;
+	press->made = true;
+	press->laddered = false;
+}
+
+/* Finds the map again that a copy goes on with. */
+static void press_resume(struct simulation *sim, enum pound_stage stage)
+{
+	struct pound_press *press = sim->press_now;
+	if (stage == STAGE_PRESS)
+		sim->pressed = &press->cell;
+	if (stage != STAGE_REST)
+		return;
+	ladder_fill(press->ladder, &press->cell, sim);
+	press->laddered = true;
+	sim->pressed = &press->ladder->rung[sim->rung];
+}
+
+/* Gets everything ready for whole cells of pressed contact: the longest map over which nothing is known to happen.
+ *
+ * Given    sim    in contact, with whole cells left
+ * Returns  value  STAGE_REST: sim->pressed is a rung of the ladder; STAGE_PRESS: it is a cell; STAGE_CHATTER: above 2^53
+ *                 cells in an interval there is no end to them
+ */
+static enum pound_stage press_ready(struct simulation *sim)
+{
+	if (++sim->steps > POUND_STEPS_LIMIT)
+		return STAGE_CHATTER;
+	if (!sim->press_now)
+		press_enter(sim);
+	struct pound_press *press = sim->press_now;
+	if (sim->rung_ratio > 0) {
+		sim->x.rounds = sim->rung_ratio; // a rung goes as far as the next longer one
+		sim->pressed = sim->rungs > 0 ? rung_longest(sim, press) : NULL;
+		if (sim->pressed)
+			return STAGE_REST;
+	}
+	sim->pressed = &press->cell;
+	return STAGE_PRESS;
+}
+
+/* Accounts for the energy of cells that a simulation went over.
+ *
+ * Given    sim     its map and interval
+ *          x, end  inputs of the map, and the state behind it
+ *          ground  acceleration at the start [m/s2];  rise: its growth over one cell
+ * Returns  sim     work, as energy.inl adds it: the ground's is -m (a (u1 - u0) + d (u1 - mean u)), with a growing by d
+ */
+static void press_work(struct simulation *sim, const double x[N], const double end[4], double ground,
+                       double rise)
+{
+	struct state_rows *r = &sim->x;
+	const struct pound_press_map *map = sim->pressed;
+	const struct pound_press *press = sim->press_now;
+	const struct pound_press_work *work =
+	    &press->ladder->work[map == &press->cell ? POUND_PRESS_RUNGS : sim->rung];
+	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells;
+	const int b = sim->base, o = 1 - b;
+	const double mass[2] = {1, r->right_mass};
+	double mean = row_at(work->mean_base, x), mean_p = row_at(work->mean_overlap, x);
+	const double *split = map->row[PRESS_SPLIT];
+	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
+	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
+	const double off[N] = {x[0], x[1], x[2] - yield_of(split) * pull, x[3], x[4], x[5], x[6], x[7]};
+	double u0[2], u1[2], v1[2], means[2];
+	u0[b] = x[0], u1[b] = end[0], v1[b] = end[1], means[b] = mean;
+	u0[o] = x[0] - r->side * (r->gap + x[2]);
+	u1[o] = end[0] - r->side * (r->gap + end[2]);
+	v1[o] = end[1] - r->side * end[3];
+	means[o] = mean - r->side * (r->gap + mean_p);
+	double in = 0, moving = 0, out = 0.5 * r->contact_stiffness * (end[2] + x[2]) * (end[2] - x[2]);
+	for (int i = 0; i < N; i++)
+		out += off[i] * row_at(work->loss[i], off);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		double way = u1[i] - u0[i], spring = r->body[i].stiffness * 0.5 * (u0[i] + u1[i]) + r->body[i].offset;
+		in -= mass[i] * r->body[i].drive * (ground * way + grown * (u1[i] - means[i]));
+		out += mass[i] * spring * way;
+		moving += 0.5 * mass[i] * v1[i] * v1[i];
+	}
+	r->work_in += in;
+	double gap = out - in + r->work_low, sum = r->work_gap + gap;
+	r->work_low = gap - (sum - r->work_gap);
+	r->work_gap = sum;
+	double most = fabs(r->work_in) < moving ? moving : fabs(r->work_in);
+	r->work_top = r->work_top < most ? most : r->work_top;
+}

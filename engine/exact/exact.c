@@ -1,0 +1,42 @@
+/* exact.c - the exact event-driven solver at the widest lanes of this machine.
+ *
+ *   tasks ──> queue of each kind of step ──> batch of W simulations ──> W lanes
+ *                 ^                                                       │
+ *                 └──────────── simulations that need another kind ───────┘   until the queues are empty
+ *
+ * A task is a scene under a ground motion (task.h).  exact.inl runs the lanes and includes, in this order:
+ *
+ *   simulation.inl    one simulation, as it waits in a queue
+ *   free_motion.inl   whole samples without contact, and whole contact substeps, by precomputed maps
+ *   series.inl        motion between two events as power series in time; first roots of a guard on it
+ *   contact_map.inl   maps over many contact substeps at once
+ *   energy.inl        the work done in a step
+ *   step.inl          one step up to an event
+ *   next_step.inl     what is decided for one simulation: its start, what follows a step, its next branch, its end
+ *   shared_start.inl  tasks that differ in their laws alone, run as one until a first of them may yield
+ *   batch.inl         simulations into lanes and out
+ *   scheduler.inl     the queues
+ *
+ * It is compiled once for each lane count: exact_w8.c, exact_w4.c, exact_w1.c, exact_portable.c. */
+#include "engine/exact/task.h"
+#include "engine/numeric/cpu_width.h"
+
+typedef void march(const struct pound_march_task *, struct pound_march_result *, int n, void *scratch,
+                   const atomic_bool *stop);
+
+/* Runs tasks at a lane count; 0: the widest there is.
+ *
+ * Given    stop     looked at throughout: when it is set the results are not to be used; NULL: never
+ * Returns  value    false: this machine has no such lanes, nothing was run
+ *          results  one for each task  (n)
+ */
+bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
+                       int n, void *scratch, const atomic_bool *stop)
+{
+	static march *const run[POUND_WIDTHS] = {pound_march_w8, pound_march_w4, pound_march_w1,
+	                                         pound_march_portable};
+	int width = pound_dispatch_width(lanes);
+	if (width >= 0)
+		run[width](tasks, results, n, scratch, stop);
+	return width >= 0;
+}

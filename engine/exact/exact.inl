@@ -1,0 +1,575 @@
+/* exact.inl - the exact event-driven march, many simulations side by side in lanes.
+ *
+ * Between events a pair of oscillators is linear and the ground motion a straight line, so:
+ * 1. whole samples apart, eight of them before their proofs, and whole cells of contact, go by precomputed exact maps,
+ *    where a bound proves that nothing lies inside (free_motion.inl);
+ * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (step.inl);
+ * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
+ *    lanes, goes on until half of it is done with that kind of step (of flights: a quarter), and is carried out to the next
+ *    queues;
+ * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
+ * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
+ *    costs more than what it decides;
+ * 6. simulations of one scene, of laws of one piece, make their maps once, and their constants stay in lanes from batch to
+ *    batch;
+ * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (shared_start.inl).
+ * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
+#include "engine/exact/task.h"
+
+#include <assert.h>
+#include <string.h>
+
+// clang-format off
+#include "engine/exact/simulation.inl"
+#include "engine/exact/free_motion.inl"
+#include "engine/exact/series.inl"
+#include "engine/exact/contact_map.inl"
+#include "engine/exact/energy.inl"
+#include "engine/exact/step.inl"
+#include "engine/exact/next_step.inl"
+#include "engine/exact/shared_start.inl"
+#include "engine/exact/batch.inl"
+#include "engine/exact/scheduler.inl"
+// clang-format on
+
+enum {
+	PRESS_ROUNDS = 2, /* moves of pressed contact before it is asked who is left: no branch foresees that */
+};
+
+/* ---- whole samples apart ---- */
+
+/* the ground motion in front of each lane */
+struct ahead {
+	const double *ground[W]; /* from where it started */
+	int64_t gone;            /* samples that those who still fly have gone since */
+	vd samples;              /* that are left */
+	unsigned edged;          /* lanes that stopped where an edge may be reached */
+};
+
+/* The next ROW samples of the lanes that fly, as far as there are any.
+ *
+ * Returns  value  lanes that have fewer
+ */
+LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, unsigned flying,
+                                 vd ground[ROW])
+{
+	const double *at[W];
+	unsigned whole = flying & ~vbits(vless(ahead->samples, vsplat(ROW)));
+	for (int l = 0; l < W; l++) {
+		at[l] = whole >> l & 1 ? ahead->ground[l] + ahead->gone : work->beyond[l];
+		// the line that the next ROW end in: that in which they begin has come with these
+		__builtin_prefetch((const void *)((uintptr_t)at[l] + (2 * ROW - 1) * sizeof(double)));
+	}
+	double samples[W];
+	lanes_store(samples, ahead->samples);
+	for (unsigned ends = flying & ~whole; ends;) {
+		int l = lane_next(&ends);
+		memcpy(work->beyond[l], ahead->ground[l] + ahead->gone, sizeof(double) * (size_t)samples[l]);
+	}
+	rows_load(ground, at, 0);
+	return flying & ~whole;
+}
+
+/* Notes the largest displacements that lanes may have inside a sample of a stretch.
+ *
+ * Given    s, r   the stretch and the sample in it;  gone: samples before that since the batch began
+ *          noted  lanes whose body i may have it there
+ * Returns  value  lanes that have no room for another
+ */
+LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stretch *s, int r, unsigned noted,
+                                int64_t gone)
+{
+	double u[W], v[W], top[W], bound[W];
+	lanes_store(u, s->at[i][r].u);
+	lanes_store(v, s->at[i][r].v);
+	lanes_store(top, s->top[i][r]);
+	lanes_store(bound, s->bound[i][r]);
+	unsigned full = 0;
+	while (noted) {
+		int l = lane_next(&noted);
+		struct simulation *sim = b->sim[l];
+		if (!peak_note(sim, i, sim->next + gone, u[l], v[l], bound[l], top[l]))
+			full |= 1u << l;
+	}
+	return full;
+}
+
+/* Flies ROW samples at most, and not beyond the end of any lane: each as far as nothing else happens to it.
+ *
+ * Given    on  lanes that do;  edged, paired, right: as stretch_fly() has them
+ * Returns  g       their states there
+ *          value   those that still do, with samples left
+ *          ahead   what is left in front of each
+ */
+LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
+                            const struct flyer flyers[2], unsigned on, bool edged, bool paired, bool right)
+{
+	struct stretch s;
+	s.ground[0] = g->ground;
+	unsigned more = vbits(vless(vsplat(ROW), ahead->samples)),
+	         ends = ground_load(work, ahead, on, s.ground + 1);
+	stretch_fly(&s, g, flyers, edged, paired, right);
+	vd flown = vsplat(0), one = vsplat(1);
+	for (int r = 0; r < ROW; r++) {
+		if (ends)
+			on &= vbits(vless(vsplat(r), ahead->samples));
+		if (edged) {
+			ahead->edged |= on & s.edge[r];
+			on &= ~s.edge[r];
+		}
+		if (paired)
+			on &= ~s.meet[r];
+		for (int i = 0; i < (paired && right ? 2 : 1); i++)
+			if (s.peak[i][r] & on)
+				on &= ~peaks_keep(b, i, &s, r, s.peak[i][r] & on, ahead->gone + r);
+		flown = vselect(vmask(on), flown + one, flown);
+		stretch_keep(g, &s, r + 1, vmask(on), paired, right);
+	}
+	g->ground = s.ground[ROW];
+	ahead->samples = ahead->samples - flown;
+	ahead->gone += ROW;
+	return on & more;
+}
+
+/* Given    g, flyers  what does not change meanwhile */
+LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
+                           const struct flyer flyers[2], bool edged)
+{
+	const bool paired = stage == STAGE_FLY_APART, right = b->traits & TRAIT_RIGHT;
+	struct ahead ahead = {.gone = 0};
+	double ground[W], samples[W];
+	lanes_fill(g, b, ROW_STATE);
+	for (int l = 0; l < W; l++) {
+		const struct simulation *sim = b->sim[l];
+		ahead.ground[l] = &sim->ground[sim->next];
+		samples[l] = (double)(flight_end(sim) - sim->next + 1);
+		ground[l] = ahead.ground[l][-1];
+	}
+	g->ground = lanes_of(ground);
+	ahead.samples = lanes_of(samples);
+	unsigned on = batch_lanes(b);
+	do
+		on = fly_on(work, b, &ahead, g, flyers, on, edged, paired, right);
+	while (__builtin_popcount(on) > b->n * 3 / 4);
+	lanes_empty(g, b, ROW_STATE);
+	lanes_store(samples, ahead.samples);
+	for (int l = 0; l < b->n; l++)
+		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
+	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0)));
+	unsigned met = batch_lanes(b) & ~there & ~on,
+	         parting = edged ? met & batch_parting(b, vmask(ahead.edged)) : 0;
+	met &= ~parting;
+	while (met) {
+		struct simulation *sim = b->sim[lane_next(&met)];
+		send(work, sim, simulation_meet(sim));
+	}
+	while (parting)
+		part(work, b->sim[lane_next(&parting)], stage);
+	while (on)
+		push(&work->queues[stage], b->sim[lane_next(&on)]);
+	while (there) {
+		struct simulation *sim = b->sim[lane_next(&there)];
+		send(work, sim, simulation_flown(sim, stage));
+	}
+}
+
+LANE_INLINE void fly(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
+{
+	const struct state_rows *shared = common ? &work->common.x : NULL;
+	struct lanes g;
+	lanes_constant(&g, b, shared, ROW_LEFT);
+	lanes_constant(&g, b, shared, ROW_MAP_LEFT);
+	struct flyer flyers[2] = {flyer_of(&g, 0)};
+	if (stage == STAGE_FLY_APART) {
+		lanes_constant(&g, b, shared, ROW_RIGHT);
+		lanes_constant(&g, b, shared, ROW_MAP_RIGHT);
+		flyers[1] = flyer_of(&g, 1);
+	}
+	do
+		fly_batch(work, b, stage, &g, flyers, edged);
+	while (common && batch_again(work, b));
+}
+
+/* ---- whole cells of contact ---- */
+
+/* Accounts for the energy of the lanes that went over a map of some cells. */
+static void press_account(const struct batch *b, const struct lanes *g, const struct pressed *from,
+                          const struct pressed *to, vd cells, unsigned pressed)
+{
+	vd inputs[POUND_PRESS_INPUTS];
+	press_inputs(inputs, g, from, from->rise * cells);
+	while (pressed) {
+		int l = lane_next(&pressed);
+		double x[POUND_PRESS_INPUTS], end[4];
+		for (int j = 0; j < POUND_PRESS_INPUTS; j++)
+			x[j] = ((const double *)&inputs[j])[l];
+		for (int j = 0; j < 4; j++)
+			end[j] = ((const double *)&to->x[j])[l];
+		press_work(b->sim[l], x, end, ((const double *)&from->ground)[l], ((const double *)&from->rise)[l]);
+	}
+}
+
+/* the ground motion at both ends of each lane's interval, and at the end of the next one, and where that stands */
+struct samples {
+	vd before, ground, next;
+	vu at;
+};
+
+/* Given    left  samples behind the interval */
+LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
+{
+	struct samples s;
+	uint64_t at[W];
+	double behind[W], before[W], ground[W];
+	for (int l = 0; l < W; l++) {
+		const struct simulation *sim = b->sim[l];
+		const double *end = &sim->ground[sim->next];
+		before[l] = end[-1];
+		ground[l] = *end;
+		behind[l] = (double)(sim->last - sim->next);
+		at[l] = (uintptr_t)(sim->next < sim->last ? end + 1 : end);
+	}
+	*left = lanes_of(behind);
+	s.before = lanes_of(before);
+	s.ground = lanes_of(ground);
+	s.at = lanes_at(at);
+	s.next = vgather(s.at);
+	return s;
+}
+
+/* Lanes at a sample enter the next interval.
+ *
+ * Given    share  of an interval that a cell is
+ */
+LANE_INLINE void samples_next(struct samples *s, struct pressed *x, vm entering, vd cells, vd share)
+{
+	vd left = x->left - vsplat(1), rise = (s->next - s->ground) * share;
+	x->ground = vselect(entering, s->ground, x->ground);
+	x->rise = vselect(entering, rise, x->rise);
+	x->cells = vselect(entering, cells, x->cells);
+	x->left = vselect(entering, left, x->left);
+	s->ground = vselect(entering, s->next, s->ground);
+	s->at = vnext(entering & vless(vsplat(0), left), s->at);
+	s->next = vgather(s->at);
+}
+
+/* Lanes that keep their rung: it has room before the next sample, and none longer has behind the one just entered. */
+LANE_INLINE vm rest_stays(const struct press *s, vm entered)
+{
+	vd cells = s->rest[PRESS_SPLIT][SPLIT_CELLS];
+	return ~vless(s->at.cells, cells) & ~(entered & vless(cells, s->at.cells));
+}
+
+/* Carries one row of the maps into lanes: of one map, where it is common to all. */
+LANE_INLINE void press_map_row(vd row[POUND_PRESS_INPUTS], const double *const map[W], int r, bool common)
+{
+	if (!common) {
+		rows_load(row, map, r * POUND_PRESS_INPUTS);
+		return;
+	}
+	for (int j = 0; j < POUND_PRESS_INPUTS; j++)
+		row[j] = vsplat(map[0][r * POUND_PRESS_INPUTS + j]);
+}
+
+/* Carries the maps into lanes: of a cell, or of a rung. */
+LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double *const map[W],
+                            enum pound_stage stage, bool common)
+{
+	vd row[POUND_PRESS_INPUTS];
+	for (int r = 0; r <= PRESS_IMPULSE; r++) {
+		press_map_row(row, map, r, common);
+		s->moved[r] = form_of(row, g, false);
+	}
+	if (stage == STAGE_REST) {
+		for (int r = REST_ERROR; r < REST_ROWS; r++)
+			rows_load(s->rest[r], map, r * POUND_PRESS_INPUTS);
+		return;
+	}
+	press_map_row(row, map, PRESS_ERROR, common);
+	s->error = form_of(row, g, true);
+}
+
+/* Given    g, s    what does not change meanwhile, and of g the row PRESS
+ *          seldom  a lane's energy is accounted for, or nothing presses its bodies on each other */
+LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum pound_stage stage,
+                             struct lanes *g, struct press *s, bool edged, bool seldom)
+{
+	const bool forced = b->traits & TRAIT_FORCED, right = b->traits & TRAIT_RIGHT;
+	lanes_fill(g, b, ROW_STATE);
+	lanes_fill(g, b, ROW_STEP);
+	s->alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
+	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
+	vd zero = vsplat(0), one = vsplat(1), share = one / g->cells_whole, behind;
+	struct samples samples = samples_of(b, &behind);
+	press_load(s, g, (samples.ground - samples.before) * share, behind, edged);
+	const vd rounds = s->at.rounds, cells = stage == STAGE_REST ? s->rest[PRESS_SPLIT][SPLIT_CELLS] : one;
+	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
+	vm decided = vmask(0);
+	int few = b->n / 2;
+	do {
+		_Pragma("GCC unroll 1") for (int round = 0; round < PRESS_ROUNDS; round++)
+		{
+			struct pressed from;
+			if (seldom)
+				from = s->at;
+			vm edge, risk = stage == STAGE_REST ? rest(g, s, edged, pressed, &edge)
+			                                    : press(g, s, edged, right, forced, seldom, pressed, &edge);
+			refused |= risk & pressed;
+			if (edged)
+				decided |= edge & pressed;
+			pressed &= ~risk;
+			if (seldom)
+				press_account(b, g, &from, &s->at, cells, vbits(pressed & accounted));
+			vm sampled = vequal(s->at.cells, zero), last = vequal(s->at.left, zero);
+			ended |= sampled & last & pressed;
+			vm entered = sampled & ~last;
+			samples_next(&samples, &s->at, entered, g->cells_whole, share);
+			s->at.rounds = vselect(pressed, s->at.rounds - one, s->at.rounds);
+			gone |= vequal(s->at.rounds, zero) & pressed;
+			pressed &= ~ended & ~gone;
+			if (stage == STAGE_REST)
+				pressed &= rest_stays(s, entered);
+		}
+	} while (__builtin_popcount(vbits(pressed)) > few);
+	press_store(&s->at, g);
+	g->pressed = vfma(rounds - s->at.rounds, cells, g->pressed);
+	lanes_empty(g, b, ROW_STATE);
+	lanes_empty(g, b, ROW_STEP);
+	lanes_empty(g, b, ROW_PRESS);
+	double left[W];
+	lanes_store(left, s->at.left);
+	for (int l = 0; l < b->n; l++) {
+		struct simulation *sim = b->sim[l];
+		int64_t next = sim->last - (int64_t)left[l];
+		sim->steps = next == sim->next ? sim->steps : 0;
+		interval_set(sim, next);
+	}
+	unsigned stays = vbits(pressed), ends = vbits(ended), parting = edged ? batch_parting(b, decided) : 0;
+	unsigned turns = batch_lanes(b) & ~stays & ~ends & ~parting;
+	while (parting)
+		part(work, b->sim[lane_next(&parting)], stage);
+	while (stays)
+		push(&work->queues[stage], b->sim[lane_next(&stays)]);
+	while (turns) {
+		int l = lane_next(&turns);
+		struct simulation *sim = b->sim[l];
+		send(work, sim, simulation_pressed(sim, stage, vbits(refused) >> l & 1, vbits(gone) >> l & 1));
+	}
+	while (ends)
+		finish(work, b->sim[lane_next(&ends)], STAGE_END);
+}
+
+LANE_INLINE void press_on(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common,
+                          bool seldom)
+{
+	struct lanes g;
+	struct press s;
+	const struct state_rows *shared = common ? &work->common.x : NULL;
+	lanes_constant(&g, b, shared, ROW_PAIR);
+	lanes_fill(&g, b, ROW_PRESS);
+	if (edged) {
+		lanes_constant(&g, b, shared, ROW_LEFT);
+		lanes_constant(&g, b, shared, ROW_RIGHT);
+	}
+	const double *map[W];
+	for (int l = 0; l < W; l++)
+		map[l] = b->sim[l]->pressed->row[0];
+	press_maps(&s, &g, map, stage, common);
+	for (bool again = true; again;) {
+		press_batch(work, b, stage, &g, &s, edged, seldom);
+		again = common && batch_again(work, b);
+		if (again)
+			lanes_fill(&g, b, ROW_PRESS);
+	}
+}
+
+/* What is asked for or happens seldom goes one way for all laws. */
+static void press_seldom(struct work *work, struct batch *b, enum pound_stage stage)
+{
+	if (stage == STAGE_REST)
+		press_on(work, b, STAGE_REST, true, false, true);
+	else
+		press_on(work, b, STAGE_PRESS, true, false, true);
+}
+
+LANE_INLINE void press_any(struct work *work, struct batch *b, enum pound_stage stage, bool edged,
+                           bool common)
+{
+	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE))
+		press_seldom(work, b, stage);
+	else
+		press_on(work, b, stage, edged, common, false);
+}
+
+/* ---- one step up to an event ---- */
+
+LANE_INLINE struct event_lanes event_lanes_of(const struct batch *b, bool touching, bool paired, bool edged)
+{
+	struct event_lanes e = {.touching = touching,
+	                        .paired = paired,
+	                        .edged = edged,
+	                        .right = b->traits & TRAIT_RIGHT,
+	                        .forced = b->traits & TRAIT_FORCED,
+	                        .active = vmask(batch_lanes(b)),
+	                        .parted = vmask(0),
+	                        .fresh = vmask(0),
+	                        .decided = vmask(0)};
+	if (e.forced)
+		batch_forces(b, &e.parted, &e.fresh);
+	return e;
+}
+
+/* Given    g  what does not change meanwhile */
+LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage stage, struct lanes *g,
+                            bool edged)
+{
+	struct event_lanes e = event_lanes_of(b, stage == STAGE_TOUCH, stage != STAGE_ALONE, edged);
+	const bool accounted = b->traits & TRAIT_ACCOUNTED;
+	lanes_fill(g, b, ROW_STATE);
+	lanes_fill(g, b, ROW_STEP);
+	if (accounted)
+		lanes_fill(g, b, ROW_WORK);
+	vd events = event_step(g, &e, accounted);
+	vm turns = vmask(0);
+	if (e.paired)
+		turns = event_follow(g, &e, events);
+	double event[W], left[W], speed[W];
+	lanes_store(event, events);
+	lanes_store(left, vfma(g->cells, g->cell, g->part));
+	lanes_store(speed, g->q);
+	// the work done is kept of whole steps only
+	if (accounted)
+		turns &= ~batch_trait(b, TRAIT_ACCOUNTED);
+	if (vany(turns)) {
+		e.touching = !e.touching;
+		event_leap(g, &e, turns);
+	}
+	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
+	batch_forget(b, parting, &work->filler);
+	lanes_empty(g, b, ROW_STATE);
+	lanes_empty(g, b, ROW_STEP);
+	if (accounted)
+		lanes_empty(g, b, ROW_WORK);
+	for (int l = 0; l < b->n; l++) {
+		struct simulation *sim = b->sim[l];
+		if (parting >> l & 1) {
+			part(work, sim, stage);
+			continue;
+		}
+		sim->parted = vbits(e.parted) >> l & 1;
+		sim->fresh = vbits(e.fresh) >> l & 1;
+		send(work, sim, simulation_stepped(sim, (int)event[l], left[l], speed[l]));
+	}
+}
+
+LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
+{
+	const struct state_rows *shared = common ? &work->common.x : NULL;
+	struct lanes g;
+	lanes_constant(&g, b, shared, ROW_LEFT);
+	lanes_constant(&g, b, shared, ROW_PAIR);
+	if (stage != STAGE_ALONE)
+		lanes_constant(&g, b, shared, ROW_RIGHT);
+	do
+		step_batch(work, b, stage, &g, edged);
+	while (common && batch_again(work, b));
+}
+
+/* What is left of a sample. */
+LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage, bool edged)
+{
+	const bool paired = stage == STAGE_LEAP_APART;
+	struct event_lanes e = event_lanes_of(b, false, paired, edged);
+	struct lanes g;
+	lanes_fill(&g, b, ROW_STATE);
+	lanes_fill(&g, b, ROW_STEP);
+	lanes_fill(&g, b, ROW_LEFT);
+	lanes_fill(&g, b, ROW_PAIR);
+	if (paired)
+		lanes_fill(&g, b, ROW_RIGHT);
+	event_leap(&g, &e, vmask(batch_lanes(b)));
+	// nothing is to be taken back: they have not moved
+	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
+	lanes_empty(&g, b, ROW_STATE);
+	lanes_empty(&g, b, ROW_STEP);
+	for (int l = 0; l < b->n; l++) {
+		struct simulation *sim = b->sim[l];
+		if (parting >> l & 1)
+			part(work, sim, stage);
+		else
+			send(work, sim, simulation_next(sim));
+	}
+}
+
+/* ---- the march ---- */
+
+/* the stages' steps: of laws of one piece, of others, and of simulations of one scene */
+#define STEP(name, ...)                                  \
+	static void name(struct work *work, struct batch *b) \
+	{                                                    \
+		__VA_ARGS__;                                     \
+	}
+STEP(fly_alone, fly(work, b, STAGE_FLY_ALONE, false, false))
+STEP(fly_alone_edged, fly(work, b, STAGE_FLY_ALONE, true, false))
+STEP(fly_alone_common, fly(work, b, STAGE_FLY_ALONE, false, true))
+STEP(fly_apart, fly(work, b, STAGE_FLY_APART, false, false))
+STEP(fly_apart_edged, fly(work, b, STAGE_FLY_APART, true, false))
+STEP(fly_apart_common, fly(work, b, STAGE_FLY_APART, false, true))
+STEP(press_plain, press_any(work, b, STAGE_PRESS, false, false))
+STEP(press_edged, press_any(work, b, STAGE_PRESS, true, false))
+STEP(press_common, press_any(work, b, STAGE_PRESS, false, true))
+STEP(rest_plain, press_any(work, b, STAGE_REST, false, false))
+STEP(rest_edged, press_any(work, b, STAGE_REST, true, false))
+STEP(step_alone, step(work, b, STAGE_ALONE, (b->traits & TRAIT_EDGED) != 0, false))
+STEP(step_apart, step(work, b, STAGE_APART, (b->traits & TRAIT_EDGED) != 0, false))
+STEP(step_apart_common, step(work, b, STAGE_APART, false, true))
+STEP(step_touch, step(work, b, STAGE_TOUCH, (b->traits & TRAIT_EDGED) != 0, false))
+STEP(step_touch_common, step(work, b, STAGE_TOUCH, false, true))
+STEP(leap_alone, leap(work, b, STAGE_LEAP_ALONE, (b->traits & TRAIT_EDGED) != 0))
+STEP(leap_apart, leap(work, b, STAGE_LEAP_APART, (b->traits & TRAIT_EDGED) != 0))
+
+static void (*const steps[STAGES][KINDS])(struct work *, struct batch *) = {
+    [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged, fly_alone_common},
+    [STAGE_FLY_APART] = {fly_apart, fly_apart_edged, fly_apart_common},
+    [STAGE_PRESS] = {press_plain, press_edged, press_common},
+    [STAGE_REST] = {rest_plain, rest_edged, rest_plain},
+    [STAGE_ALONE] = {step_alone, step_alone, step_alone},
+    [STAGE_APART] = {step_apart, step_apart, step_apart_common},
+    [STAGE_CLEAR] = {step_apart, step_apart, step_apart_common},
+    [STAGE_TOUCH] = {step_touch, step_touch, step_touch_common},
+    [STAGE_LEAP_ALONE] = {leap_alone, leap_alone, leap_alone},
+    [STAGE_LEAP_APART] = {leap_apart, leap_apart, leap_apart},
+};
+
+static_assert(sizeof(struct lanes) == W * sizeof(struct state_rows), "rows are doubles and nothing else");
+
+/* Runs every task to its end.
+ *
+ * Given    tasks    (n)
+ *          scratch  POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ *          stop     looked at between batches: when it is set the results are not to be used; NULL: never
+ * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
+ *
+ * Source   model.md 1
+ * Test     unit_march, unit_response; unit_status: a_run_that_takes_hours_is_stopped
+ */
+void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                 void *scratch, const atomic_bool *stop)
+{
+	struct work *work = scratch;
+	work_init(work, tasks, results, n, stop);
+	struct queue *queue = &work->queues[0];
+	while (!pound_stopped(stop)) {
+		tasks_start(work);
+		// as long as it fills a batch: its code is in the cache
+		for (int stage = 0; stage < STAGES && queue->n < W; stage++)
+			if (work->queues[stage].n > queue->n)
+				queue = &work->queues[stage];
+		if (queue->n == 0)
+			break;
+		struct batch b;
+		batch_take(&b, work, queue);
+		steps[queue - work->queues][batch_kind(b.traits)](work, &b);
+	}
+	lanes_leave();
+}

@@ -1,0 +1,499 @@
+/* next_step.inl - what is done to one simulation at a time: its start, what follows a step, its next piece, its end.
+ *
+ * Included by exact.inl alone, once per lane count.
+ *
+ * Included by exact.inl after step.inl. */
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/exact/tolerances.h"
+
+/* Largest rate * time of a series step: of a velocity the first term left out is near 2^-52 of the first kept or below: apart
+ * 0.35^13/13! = 1.9e-16; touching 0.945^17/17! = 1.1e-15, and where the dashpot lets it swing less no more: see
+ * touch_reach. */
+static const double REACH_FREE = 0.35, REACH_TOUCH = 0.945;
+
+static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
+
+enum { LEG = 4095 }; /* a flight ends at every sample with these bits, wherever it began */
+
+static_assert(sizeof(struct state_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
+static_assert(offsetof(struct simulation, task) - offsetof(struct simulation, ground) <= 128,
+              "what every turn reads is two cache lines");
+
+static double most(double a, double b)
+{
+	return a < b ? b : a;
+}
+
+/* ---- maps ---- */
+
+/* Puts a body's current piece, and the map that belongs to it, into the rows. */
+static void piece_enter(struct simulation *sim, int i)
+{
+	const struct pound_piece *piece = &sim->at[i].piece;
+	struct state_rows *x = &sim->x;
+	x->body[i].stiffness = piece->stiffness;
+	x->body[i].offset = piece->offset;
+	x->body[i].low = piece->low;
+	x->body[i].high = piece->high;
+	x->body[i].direction = piece->direction;
+	sim->press_now = NULL;
+	if (!sim->can_fly)
+		return;
+	unsigned found = 0;
+	for (int m = 0; m < POUND_MAPS; m++)
+		found |= (unsigned)(sim->map_of[i][m] == piece->stiffness) << m;
+	int m = sim->map_next[i];
+	if (found)
+		m = __builtin_ctz(found);
+	else {
+		sim->map_next[i] = (m + 1) % POUND_MAPS;
+		sim->map_of[i][m] = piece->stiffness;
+		map_fill(&sim->maps[i][m], piece->stiffness, x->body[i].damping, sim->task->time_step);
+	}
+	memcpy(&x->map[i], &sim->maps[i][m], sizeof sim->maps[i][m]);
+}
+
+/* ---- what follows ---- */
+
+/* The interval that ends at a sample is the one that a simulation is in. */
+static void interval_set(struct simulation *sim, int64_t next)
+{
+	const double *a = &sim->ground[next];
+	sim->next = next;
+	sim->x.slope = (a[0] - a[-1]) * sim->per_step;
+}
+
+/* Enters the interval that ends at sim->next. */
+static void simulation_interval(struct simulation *sim)
+{
+	struct state_rows *x = &sim->x;
+	interval_set(sim, sim->next);
+	sim->steps = 0;
+	x->ground = sim->ground[sim->next - 1];
+	x->part = sim->touching ? 0 : x->body[0].step_gap; // the sample step
+	x->cells = sim->touching ? x->cells_whole : 0;
+}
+
+/* The next step by power series. */
+static enum pound_stage simulation_step(struct simulation *sim)
+{
+	if (++sim->steps > POUND_STEPS_LIMIT)
+		return STAGE_CHATTER;
+	struct state_rows *x = &sim->x;
+	if (sim->touching) {
+		if (x->part == 0) {
+			x->part = x->cell;
+			x->cells--;
+		}
+		x->dt = x->part * x->pace;
+		return STAGE_TOUCH;
+	}
+	double reach = x->reach * x->pace;
+	x->dt = x->part <= reach ? x->part : x->part > 2 * reach ? reach : 0.5 * x->part;
+	if (!sim->paired)
+		return STAGE_ALONE;
+	return x->p + x->dt * x->q < 0 ? STAGE_CLEAR : STAGE_APART;
+}
+
+/* The overlap of bodies apart, from where they are. */
+static void overlap_start(struct state_rows *x)
+{
+	double p = x->u[0] - x->u[1] - x->gap;
+	x->p = p < 0 ? p : 0; // rounding must not make it overlap
+	x->q = x->v[0] - x->v[1];
+}
+
+/* A simulation that flew to a sample behind which it cannot fly on. */
+LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
+{
+	struct state_rows *x = &sim->x;
+	simulation_interval(sim);
+	overlap_start(x);
+	return simulation_step(sim);
+}
+
+/* Contact has begun or ended.
+ *
+ * Given    left   of the interval [s];  speed: of approach [m/s]
+ */
+static void contact_turn(struct simulation *sim, double left, double speed)
+{
+	sim->touching = !sim->touching;
+	sim->rung_limit = sim->rungs - 1;
+	if (!sim->touching) {
+		sim->impulse_max = most(sim->impulse_max, sim->x.impulse);
+		sim->contacts++;
+	} else if (sim->contacts == 0) {
+		sim->result->first_contact = (double)sim->next * sim->task->time_step - left;
+		sim->result->first_speed = speed;
+	}
+}
+
+/* A simulation whose bodies are apart goes on from a sample. */
+static enum pound_stage simulation_from(struct simulation *sim)
+{
+	if (sim->can_fly)
+		return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
+	return simulation_meet(sim);
+}
+
+/* Brings to rest what is left of next to nothing, where nothing comes from the ground in this interval.
+ *
+ * Bodies that do not touch come to rest each by itself: one may have long ended where the other still moves, or stays where
+ * it has yielded to.
+ *
+ * Returns  value  nothing is left of either: simulation_rest is to follow
+ */
+static bool simulation_settles(struct simulation *sim)
+{
+	struct state_rows *x = &sim->x;
+	if (x->ground != 0 || x->slope != 0)
+		return false;
+	bool over[POUND_OSCILLATORS];
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		over[i] = fabs(x->u[i]) < POUND_AT_REST && fabs(x->v[i]) * sim->task->time_step < POUND_AT_REST &&
+		          x->body[i].offset == 0 && x->body[i].low <= 0 && x->body[i].high >= 0;
+	if (over[0] == over[1] || sim->touching || sim->parted)
+		return over[0] && over[1];
+	x->u[over[1]] = x->v[over[1]] = 0;
+	overlap_start(x);
+	return false;
+}
+
+/* Brings a simulation whose motion is over to rest, until the ground moves again. */
+static enum pound_stage simulation_rest(struct simulation *sim)
+{
+	struct state_rows *x = &sim->x;
+	if (sim->touching)
+		contact_turn(sim, 0, 0);
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		x->u[i] = x->v[i] = 0;
+	sim->parted = sim->fresh = false;
+	x->pace = 1;
+	while (sim->ground[sim->next] == 0)
+		if (sim->next++ == sim->last)
+			return STAGE_END;
+	return simulation_from(sim);
+}
+
+/* The sample up to which a simulation may fly before it is looked at: its neighbours have no part in that. */
+static int64_t flight_end(const struct simulation *sim)
+{
+	int64_t leg = sim->next | LEG;
+	return leg < sim->last ? leg : sim->last;
+}
+
+/* What a simulation does that has flown as far as it might. */
+static enum pound_stage simulation_flown(struct simulation *sim, enum pound_stage stage)
+{
+	if (sim->next > sim->last)
+		return STAGE_END;
+	simulation_interval(sim);
+	return simulation_settles(sim) ? simulation_rest(sim) : stage;
+}
+
+/* What a simulation does next. */
+static enum pound_stage simulation_next(struct simulation *sim)
+{
+	const struct state_rows *x = &sim->x;
+	if (x->part + x->cells == 0) {
+		if (sim->next == sim->last)
+			return STAGE_END;
+		sim->next++;
+		simulation_interval(sim);
+		if (simulation_settles(sim))
+			return simulation_rest(sim);
+		// apart, and not about to touch inside the next interval
+		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->part * x->q < 0)
+			return simulation_from(sim);
+	}
+	if (sim->touching && x->part == 0 && sim->can_press)
+		return press_ready(sim);
+	return simulation_step(sim);
+}
+
+/* What a simulation does after cells of pressed contact.
+ *
+ * Given    stage    that it was in: STAGE_PRESS or STAGE_REST
+ *          refused  the next cells could not be proved: shorter rungs are to be tried
+ *          gone     it went as far as a longer rung would have: past what refused that
+ */
+static enum pound_stage simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
+                                           bool gone)
+{
+	if (simulation_settles(sim))
+		return simulation_rest(sim);
+	if (refused)
+		sim->rung_limit = stage == STAGE_REST ? sim->rung - 1 : 0;
+	else if (gone)
+		sim->rung_limit = sim->rungs - 1;
+	return stage == STAGE_PRESS && refused ? simulation_step(sim) : press_ready(sim);
+}
+
+/* A body's law goes on to its next piece; from here the edge is exact. */
+static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
+{
+	struct state_rows *x = &sim->x;
+	if (edge != POUND_EDGE_TURN)
+		x->u[i] = edge == POUND_EDGE_HIGH ? x->body[i].high : x->body[i].low;
+	if (edge == POUND_EDGE_TURN && x->body[i].direction == 0)
+		return; // a turn that was only looked for as a largest displacement
+	pound_pieces_leave(&sim->task->bodies[i].skeleton, &sim->at[i], edge, x->u[i]);
+	piece_enter(sim, i);
+}
+
+/* What a simulation does after a step by power series.
+ *
+ * Given    event  that ended it;  left, speed: as contact_turn has them
+ */
+static enum pound_stage simulation_stepped(struct simulation *sim, int event, double left, double speed)
+{
+	if (event == EVENT_CONTACT)
+		contact_turn(sim, left, speed);
+	if (event >= EVENT_BODY)
+		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
+		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
+	if (event >= EVENT_CLEARS && sim->can_fly && !sim->touching && sim->x.part > 0)
+		return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
+	return simulation_next(sim);
+}
+
+/* ---- largest displacements ---- */
+
+/* Notes a sample inside of which a body may have its largest displacement.
+ *
+ * Given    next    sample at its end
+ *          u, v    of body i at its start;  bound: of |u| inside;  top: the largest that is known
+ * Returns  value   false: there is no room for it
+ */
+static bool peak_note(struct simulation *sim, int i, int64_t next, double u, double v, double bound,
+                      double top)
+{
+	struct pound_peak *peak = sim->peak[i];
+	int kept = 0;
+	for (int n = 0; n < sim->peaks[i]; n++)
+		if (peak[n].bound > top)
+			peak[kept++] = peak[n];
+	sim->peaks[i] = kept;
+	if (kept == POUND_PEAKS)
+		return false;
+	const struct state_rows *x = &sim->x;
+	peak[kept] = (struct pound_peak){next, u, v, x->body[i].stiffness, x->body[i].offset, bound};
+	sim->peaks[i]++;
+	return true;
+}
+
+/* Looks, when a simulation has come to its end, into the samples it has noted: the body goes through these again, alone.
+ *
+ * Given    sim    its result written but for what these add to it
+ * Returns  value  its next step; STAGE_END: there is nothing left to look into
+ */
+static enum pound_stage peaks_look(struct simulation *sim)
+{
+	struct state_rows *x = &sim->x;
+	double *largest = sim->result->displacement_max;
+	if (sim->looked < POUND_OSCILLATORS)
+		largest[sim->looked] = x->top[0];
+	sim->touching = sim->parted = sim->fresh = sim->paired = sim->can_fly = false;
+	x->pace = 1;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		while (sim->peaks[i] > 0) {
+			const struct pound_peak *peak = &sim->peak[i][--sim->peaks[i]];
+			if (!(peak->bound > largest[i]))
+				continue;
+			x->u[0] = peak->u, x->v[0] = peak->v, x->top[0] = largest[i];
+			x->body[0].damping = x->body[i].damping;
+			x->body[0].drive = x->body[i].drive;
+			x->body[0].stiffness = peak->stiffness;
+			x->body[0].offset = peak->offset;
+			x->body[0].low = -DBL_MAX, x->body[0].high = DBL_MAX, x->body[0].direction = 0;
+			sim->looked = i;
+			sim->next = sim->last = peak->next;
+			simulation_interval(sim);
+			return simulation_step(sim);
+		}
+	return STAGE_END;
+}
+
+/* ---- the start ---- */
+
+/* Whether a law of a task has more than one piece. */
+static bool simulation_edged(const struct pound_march_task *task)
+{
+	return !pound_pieces_linear(task->bodies[0].skeleton.law) ||
+	       !pound_pieces_linear(task->bodies[1].skeleton.law);
+}
+
+/* Longest step in contact.
+ *
+ * The fastest that two bodies may do on each other is that of the faster one on a spring and dashpot as stiff as both see the
+ * contact.  Derivative n of exp(-zeta t) sin((1 - zeta^2)^1/2 t) is at most 1 over (1 - zeta^2)^1/2, and at most n: a step is
+ * shorter by the 16th root of that, which its power of 17 more than makes up for.  Above zeta = 1 the faster root counts.
+ *
+ * Given    omega, damping  the largest of both bodies [1/s]
+ */
+static double touch_reach(const struct state_rows *x, double omega, double damping)
+{
+	const double own = sqrt(omega * omega + x->both * x->contact_stiffness);
+	const double zeta = own > 0 ? 0.5 * (damping + x->both * x->contact_damping) / own : 0;
+	double share = most(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
+	for (int halving = 0; halving < 5; halving++)
+		share = sqrt(share);
+	return REACH_TOUCH * share / (own * (zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1));
+}
+
+/* A simulation at the start of its task; what it does first. */
+static enum pound_stage simulation_start(struct simulation *sim, const struct pound_march_task *task,
+                                         struct pound_march_result *result)
+{
+	memset(sim, 0, offsetof(struct simulation, peak));
+	memset(result, 0, sizeof *result);
+	sim->task = task;
+	sim->ground = task->ground;
+	sim->result = result;
+	sim->next = 1;
+	sim->last = task->n_samples - 1;
+	struct state_rows *x = &sim->x;
+	x->pace = 1;
+	x->rounds = -1; // another map is asked for only where there are rungs
+	sim->looked = POUND_OSCILLATORS;
+	double h = task->time_step;
+	double rate = 0, fastest = 0, damping = 0;
+	bool can_fly = !task->accounted; // the work in a step is that of its series
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_march_body *body = &task->bodies[i];
+		double k = body->skeleton.stiffness;
+		double omega = sqrt(k);
+		rate = most(rate, most(omega, body->damping));
+		fastest = most(fastest, omega);
+		damping = most(damping, body->damping);
+		can_fly &= h * (body->damping + omega) <= REACH_MAP;
+		x->u[i] = body->u, x->v[i] = body->v;
+		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
+		x->body[i].damping = body->damping;
+		x->body[i].drive = body->drive;
+		for (int m = 0; m < POUND_MAPS; m++)
+			sim->map_of[i][m] = -1;
+	}
+	for (int m = 0; m < POUND_PRESS_MAPS; m++)
+		sim->press_of[0][m] = -1;
+	sim->can_fly = can_fly;
+	sim->traits = TRAIT_OWN;
+	sim->paired = task->contact || task->bodies[1].drive != 0;
+	if (simulation_edged(task))
+		sim->traits |= TRAIT_EDGED;
+	if (task->bodies[1].followed)
+		sim->traits |= TRAIT_RIGHT;
+	if (task->accounted)
+		sim->traits |= TRAIT_ACCOUNTED;
+	sim->per_step = 1 / h;
+	x->right_mass = task->mass_ratio > 0 ? 1 / task->mass_ratio : 0;
+	x->gap = task->contact ? task->gap : -NEVER;
+	x->contact_stiffness = task->contact ? task->contact_stiffness : 0;
+	x->contact_damping = task->contact ? task->contact_damping : 0;
+	x->mass_ratio = task->mass_ratio;
+	x->both = 1 + task->mass_ratio;
+	x->release = task->contact && !task->tension ? task->contact_damping / task->contact_stiffness : 0;
+	if (x->release > 0)
+		sim->traits |= TRAIT_FORCED;
+	x->body[0].step_gap = h;
+	x->body[1].step_gap = x->gap;
+	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
+	sim->can_press = task->contact;
+	double reach = touch_reach(x, fastest, damping);
+	// no more cells than it takes, but for rungs, which are made by doubling
+	x->cells_whole = 1;
+	while (h > reach * x->cells_whole)
+		x->cells_whole += x->cells_whole < RUNG_RATIO ? 1 : x->cells_whole;
+	x->cell = h / x->cells_whole;
+	if (sim->can_press)
+		press_rungs(sim);
+	sim->base = task->mass_ratio < 1;
+	x->side = sim->base ? -1 : 1;
+	x->base_drive = task->bodies[sim->base].drive;
+	x->gap_drive = task->bodies[1].drive - task->bodies[0].drive;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		pound_pieces_start(&task->bodies[i].skeleton, &sim->at[i]);
+		piece_enter(sim, i);
+	}
+	return simulation_from(sim);
+}
+
+/* ---- what simulations of one scene have in common ---- */
+
+/* A simulation with the constants of others has them in common with these from its start to its end: bodies with laws of one
+ * piece keep theirs.  When all have left, the next to start sets them. */
+static void common_join(struct pound_common *common, struct simulation *sim)
+{
+	if (sim->traits & (TRAIT_EDGED | TRAIT_ACCOUNTED))
+		return;
+	double *shared = (double *)&common->x + ROWS_CONSTANT, *own = (double *)&sim->x + ROWS_CONSTANT;
+	const size_t size = sizeof(double) * (ROWS_CONSTANT_END - ROWS_CONSTANT);
+	if (common->members > 0 && memcmp(shared, own, size) != 0)
+		return;
+	if (common->members++ == 0) {
+		memcpy(shared, own, size);
+		common->press.made = false;
+	}
+	sim->common = common;
+	sim->traits &= ~(unsigned)TRAIT_OWN;
+}
+
+/* What looks for largest displacements at the end puts other pieces into the rows. */
+static void common_leave(struct simulation *sim)
+{
+	if (sim->common)
+		sim->common->members--;
+	sim->common = NULL;
+	sim->traits |= TRAIT_OWN;
+}
+
+/* ---- the end ---- */
+
+/* What is missing of the energy put in, by the ground and by the motion at the start, over the most there was. */
+static double residual(const struct simulation *sim)
+{
+	const struct state_rows *x = &sim->x;
+	double start = 0, end = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		double mass = i ? x->right_mass : 1, v0 = sim->task->bodies[i].v;
+		start += 0.5 * mass * v0 * v0;
+		end += 0.5 * mass * x->v[i] * x->v[i];
+	}
+	double missing = fabs(end - start + (x->work_gap + x->work_low)), largest = most(x->work_top, start);
+	return largest > 0 ? missing / largest : 0;
+}
+
+/* Writes a simulation's result. */
+static void result_write(const struct simulation *sim, enum pound_status status)
+{
+	struct pound_march_result *r = sim->result;
+	const struct state_rows *x = &sim->x;
+	// a contact still open at the end counts with what it has
+	bool finite = isfinite(x->u[0]) && isfinite(x->v[0]) && isfinite(x->u[1]) && isfinite(x->v[1]);
+	r->status = finite ? status : POUND_OVERFLOW;
+	r->contacts = (int64_t)sim->contacts + sim->touching;
+	r->impulse_max = most(sim->impulse_max, sim->touching ? x->impulse : 0);
+	r->contact_time = x->contact_time + x->cell * x->pressed;
+	r->energy_residual = sim->task->accounted ? residual(sim) : NAN;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;
+		r->u[i] = x->u[i];
+		r->v[i] = x->v[i];
+	}
+}
+
+/* What a simulation does at the end of its signal, or where it ends early. */
+static enum pound_stage simulation_end(struct simulation *sim, enum pound_status status)
+{
+	if (sim->looked == POUND_OSCILLATORS)
+		result_write(sim, status);
+	else
+		sim->result->status = status;
+	return sim->result->status == POUND_OK ? peaks_look(sim) : STAGE_END;
+}

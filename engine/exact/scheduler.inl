@@ -1,0 +1,174 @@
+/* scheduler.inl - what a march works on: its tasks, the simulations that wait in queues, and the batches that are taken out of them.
+ *
+ * Included by exact.inl alone, once per lane count.
+ *
+ * Included by exact.inl after batch.inl. */
+
+#include <assert.h>
+#include <string.h>
+
+enum { POOL = 128 /* simulations in flight */ };
+
+/* simulations that wait for one kind of step, last come first served */
+struct queue {
+	int n;
+	struct simulation *member[POOL];
+};
+
+/* of a batch: what its code need not ask of each lane */
+enum kind {
+	KIND_PLAIN,  /* all laws have one piece */
+	KIND_EDGED,  /* a law has more */
+	KIND_COMMON, /* all of one scene, whose laws have one piece, and no lane empty */
+	KINDS
+};
+
+struct work {
+	struct queue idle, queues[STAGES];
+	const struct pound_march_task *tasks;
+	struct pound_march_result *results;
+	int n, started;          /* tasks, and those gone through in this pass */
+	int passed;              /* 0: laws of one piece are started, 1: the others */
+	int parted;              /* simulations that wait */
+	const atomic_bool *stop; /* NULL: never */
+	double beyond[W][ROW];   /* ground motion up to its end, and whatever was there behind */
+	struct pound_common common;
+	// from here on nothing is cleared: a simulation's start does, and what finds the families
+	struct families families;
+	struct simulation filler;       /* of the lanes that a batch leaves empty, and ... */
+	struct pound_march_result none; /* ... what comes of it */
+	struct simulation pool[POOL];
+	struct simulation waiting[POOL * POUND_OTHERS]; /* for room, out of a family: no task starts meanwhile */
+	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
+};
+
+static_assert(sizeof(struct work) <= POUND_MARCH_SCRATCH, "the work space is too small");
+
+static void push(struct queue *queue, struct simulation *sim)
+{
+	queue->member[queue->n++] = sim;
+}
+
+static struct simulation *pop(struct queue *queue)
+{
+	return queue->member[--queue->n];
+}
+
+/* What becomes of a simulation that has come to an end. */
+LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_stage stage)
+{
+	common_leave(sim);
+	stage = simulation_end(sim, stage == STAGE_CHATTER ? POUND_CHATTER : POUND_OK);
+	if (stage < STAGES) {
+		push(&work->queues[stage], sim);
+		return;
+	}
+	family_end(sim);
+	push(&work->idle, sim);
+}
+
+/* A member leaves a family, and both try the step again. */
+LANE_SHARED void part(struct work *work, struct simulation *sim, enum pound_stage stage)
+{
+	assert(work->parted < POOL * POUND_OTHERS);
+	family_part(sim, &work->waiting[work->parted++], stage);
+	push(&work->queues[stage], sim);
+}
+
+/* Sends a simulation to where it goes next. */
+LANE_INLINE void send(struct work *work, struct simulation *sim, enum pound_stage stage)
+{
+	if (stage < STAGES)
+		push(&work->queues[stage], sim);
+	else
+		finish(work, sim, stage);
+}
+
+static void batch_take(struct batch *b, struct work *work, struct queue *queue)
+{
+	b->from = queue;
+	b->n = queue->n < W ? queue->n : W;
+	b->traits = 0;
+	for (int l = 0; l < W; l++) {
+		b->sim[l] = l < b->n ? pop(queue) : &work->filler;
+		b->row[l] = (double *)&b->sim[l]->x;
+		b->traits |= b->sim[l]->traits;
+	}
+}
+
+static enum kind batch_kind(unsigned traits)
+{
+	return traits & TRAIT_EDGED ? KIND_EDGED : traits & TRAIT_OWN ? KIND_PLAIN : KIND_COMMON;
+}
+
+/* Takes the next batch of the queue behind one of a scene, if it is of the same kind: what they have in common is in lanes
+ * already, and stays what it is, as no task starts meanwhile.  Alike bodies go another way (press_any in exact.inl). */
+LANE_INLINE bool batch_again(struct work *work, struct batch *b)
+{
+	struct queue *queue = b->from;
+	unsigned traits = 0;
+	if (queue->n < W || pound_stopped(work->stop))
+		return false;
+	for (int l = 1; l <= W; l++)
+		traits |= queue->member[queue->n - l]->traits;
+	if (batch_kind(traits) != KIND_COMMON || traits & TRAIT_ALIKE)
+		return false;
+	batch_take(b, work, queue);
+	return true;
+}
+
+/* Starts a task, with those that go along with it. */
+static void task_start(struct work *work, int j)
+{
+	struct simulation *sim = pop(&work->idle);
+	enum pound_stage stage = simulation_start(sim, &work->tasks[j], &work->results[j]);
+	family_gather(&work->families, work->tasks, work->results, j, sim);
+	common_join(&work->common, sim);
+	send(work, sim, stage);
+}
+
+/* Goes on with simulations that wait, and starts tasks, as long as there are any and there is room: first those of laws of
+ * one piece, which need less when they are among themselves. */
+static void tasks_start(struct work *work)
+{
+	while (work->parted > 0 && work->idle.n > 0) {
+		struct simulation *sim = pop(&work->idle);
+		family_resume(sim, &work->waiting[--work->parted]);
+		push(&work->queues[sim->stage], sim);
+	}
+	while (work->passed < 2 && work->idle.n > 0) {
+		for (; work->started < work->n && work->idle.n > 0; work->started++)
+			if (family_leads(&work->families, work->started) &&
+			    family_edged(&work->families, work->tasks, work->started) == work->passed)
+				task_start(work, work->started);
+		if (work->started < work->n)
+			return;
+		work->passed++;
+		work->started = 0;
+	}
+}
+
+/* Where a march begins: no task is started. */
+static void work_init(struct work *work, const struct pound_march_task *tasks,
+                      struct pound_march_result *results, int n, const atomic_bool *stop)
+{
+	static const double still[2];
+	static const struct pound_press_map loose;
+	static const struct pound_march_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
+	memset(work, 0, offsetof(struct work, families));
+	work->tasks = tasks;
+	work->results = results;
+	work->n = n;
+	work->stop = stop;
+	families_find(&work->families, tasks, n);
+	simulation_start(&work->filler, &nothing, &work->none);
+	work->filler.pressed = &loose;
+	work->filler.x.dt = 1;
+	work->filler.x.gap = 0;
+	work->common.press.ladder = &work->common_ladder;
+	for (int j = 0; j < POOL; j++) {
+		for (int m = 0; m < POUND_PRESS_MAPS; m++)
+			work->pool[j].press[m].ladder = &work->ladders[j][m];
+		push(&work->idle, &work->pool[j]);
+	}
+}

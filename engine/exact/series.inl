@@ -1,0 +1,312 @@
+/* series.inl - motion between two events as power series in time, and the first root of a guard on it.
+ *
+ * Included by exact.inl alone, once per lane count.
+ *
+ * Included by exact.inl after free_motion.inl. */
+
+#include <float.h>
+
+#include "engine/exact/tolerances.h"
+#include "engine/numeric/lanes.h"
+
+enum {
+	ORDER_APART = 13, /* of the series of a displacement while apart: odd, as terms are taken in pairs */
+	ORDER_TOUCH = 17, /* while touching */
+	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
+	QUICK_ROUNDS = 5, /* of Halley's method from the parabola through both ends */
+	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
+};
+
+/* Runs BODY for n from one order up to another, as straight code: the orders are constants. */
+#define ORDERS_UP(n, from, to, ...)                               \
+	_Pragma("GCC unroll 20") for (int n = (from); n <= (to); n++) \
+	{                                                             \
+		__VA_ARGS__                                               \
+	}
+/* Runs BODY for odd n, down from `below` less than the order of a series: straight code, whichever order that is. */
+#define ORDERS_ODD(n, order, below, ...)                                                            \
+	_Pragma("GCC unroll 10") for (int n = ORDER_TOUCH - (below); n > 0;                             \
+	                              n -= 2) if (n <= ORDER_APART - (below) || (order) == ORDER_TOUCH) \
+	{                                                                                               \
+		__VA_ARGS__                                                                                 \
+	}
+
+/* Coefficients of a series. */
+struct power {
+	vd c[ORDER_TOUCH + 1];
+};
+
+/* A motion over a step of time 0 .. 1: its displacement. */
+struct motion {
+	struct power u;
+	struct place end; /* displacement, and velocity times the step */
+	vd bend;          /* bound of the fourth derivative over the step */
+};
+
+/* Both bodies and the overlap over a step.  The overlap is integrated in its own right: the difference u1 - u2 - gap
+ * would lose the digits of a stiff contact. */
+struct series {
+	int order;
+	struct motion body[2], overlap;
+};
+
+/* Value of a series at time t, the even and the odd terms apart: half the latency of Horner's rule. */
+LANE_INLINE vd power_at(const struct power *s, int order, vd t)
+{
+	vd t2 = t * t, even = s->c[order - 1], odd = s->c[order];
+	ORDERS_ODD(n, order, 2, even = vfma(even, t2, s->c[n - 1]); odd = vfma(odd, t2, s->c[n]);)
+	return vfma(odd, t, even);
+}
+
+/* Value and derivative: with x = t^2 of even(x) + t odd(x), by Horner's rule for the derivatives of both as well. */
+LANE_INLINE struct place place_at(const struct power *s, int order, vd t)
+{
+	vd t2 = t * t, even_rate = s->c[order - 1], odd_rate = s->c[order];
+	vd even = vfma(even_rate, t2, s->c[order - 3]), odd = vfma(odd_rate, t2, s->c[order - 2]);
+	ORDERS_ODD(n, order, 4, even_rate = vfma(even_rate, t2, even); odd_rate = vfma(odd_rate, t2, odd);
+	           even = vfma(even, t2, s->c[n - 1]); odd = vfma(odd, t2, s->c[n]);)
+	return (struct place){vfma(odd, t, even), vfma(2.0 * t, vfma(odd_rate, t, even_rate), odd)};
+}
+
+/* Factor of coefficient n in the bound of the fourth derivative. */
+LANE_INLINE double fourth(int n)
+{
+	return (double)n * (n - 1) * (n - 2) * (n - 3);
+}
+
+/* Adds up a motion to the end of its step. */
+LANE_INLINE void motion_end(struct motion *m, int order)
+{
+	vd u = m->u.c[0], v = vsplat(0);
+	ORDERS_UP(n, 1, order, u = u + m->u.c[n]; v = n < 2 ? m->u.c[n] : vfma(vsplat(n), m->u.c[n], v);)
+	m->end = (struct place){u, v};
+}
+
+/* Bounds the fourth derivative of a motion by the magnitudes of its terms. */
+LANE_INLINE void motion_bound(struct motion *m, int order)
+{
+	vd bend = vsplat(0);
+	ORDERS_UP(n, 4, order, bend = vfma(vsplat(fourth(n)), vabs(m->u.c[n]), bend);)
+	m->bend = bend;
+}
+
+/* What a guard is known to do over a step without being followed: values and slopes at both ends, and a bound of its
+ * fourth derivative. */
+struct course {
+	vd u0, v0, u1, v1, bend;
+};
+
+LANE_INLINE struct course course_of(const struct motion *m)
+{
+	return (struct course){m->u.c[0], m->u.c[1], m->end.u, m->end.v, m->bend};
+}
+
+LANE_INLINE struct course course_of_velocity(const struct motion *m, int order)
+{
+	vd bend = vsplat(0), end = vsplat(0);
+	ORDERS_UP(n, 2, order, end = vfma(vsplat(n * (n - 1.0)), m->u.c[n], end);)
+	ORDERS_UP(n, 5, order, bend = vfma(vsplat(n * fourth(n - 1)), vabs(m->u.c[n]), bend);)
+	return (struct course){m->u.c[1], 2.0 * m->u.c[2], m->end.v, end, bend};
+}
+
+/* Lanes in which a guard may cross a level inside a step that it starts on the right side of.
+ *
+ * Given    sign  +1: it must not rise above the level, -1: it must not fall below
+ *
+ * With g = sign (u - level) the cubic through the ends has the control points g0 <= 0, b1, b2, g1, and misses g by at
+ * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when the points behind g0 are below -bend/288 (see
+ * POUND_CUBIC_ERROR), and also, from a start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
+ */
+LANE_INLINE vm may_cross(const struct course *c, vd level, vd sign)
+{
+	vd zero = vsplat(0), third = vsplat(1.0 / 3);
+	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
+	vd b1 = vfma(sign * third, c->v0, g0), b2 = vfma(-sign * third, c->v1, g1);
+	vd top = vmax(vmax(b1, b2), g1);
+	vm inside = ~vless(vfma(vsplat(POUND_CUBIC_ERROR), c->bend, top), zero);
+	vm after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), c->bend, 3.0 * b2));
+	return inside & after;
+}
+
+/* Bound from below of a guard's rate over a step: the velocity's control points are its own at the ends and the third below;
+ * they miss it by sqrt(3)/216 of the fourth derivative at most. */
+LANE_INLINE vd course_slowest(const struct course *c)
+{
+	vd middle = vfma(vsplat(3), c->u1 - c->u0, -(c->v0 + c->v1));
+	return vmin(vmin(c->v0, c->v1), middle) - vsplat(0.00802) * c->bend;
+}
+
+/* Bound of |u| inside a step, apart from its ends. */
+LANE_INLINE vd reach_of(const struct motion *m)
+{
+	vd third = vsplat(1.0 / 3);
+	vd b1 = vfma(third, m->u.c[1], m->u.c[0]), b2 = vfma(-third, m->end.v, m->end.u);
+	return vfma(vsplat(POUND_CUBIC_ERROR), m->bend, vmax(vabs(b1), vabs(b2)));
+}
+
+/* First event found so far in each lane. */
+struct search {
+	vd time;  /* as a share of the step, 1: none yet */
+	vd event; /* enum event as a double, 0: none yet */
+};
+
+/* Second derivative of a series, from its first half: what is left out is near 1e-4 of it. */
+LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
+{
+	vd sum = vsplat(0);
+	if (order == ORDER_TOUCH)
+		for (int n = ORDER_TOUCH / 2; n > ORDER_APART / 2; n--)
+			sum = vfma(sum, t, vsplat((double)n * (n - 1)) * s->c[n]);
+	for (int n = ORDER_APART / 2; n >= 2; n--)
+		sum = vfma(sum, t, vsplat((double)n * (n - 1)) * s->c[n]);
+	return sum;
+}
+
+/* First root by Halley's method where the guard is positive at the limit, with a proof that it is the first.
+ *
+ * Given    u       guard before sign and level: g = sign (u - level)
+ *          g0, g1  its values at 0, not positive, and at the limit, the last time of interest
+ *          bend    bound of the fourth derivative of g over the step
+ *          active  lanes to search
+ * Returns  value   lanes whose root t was found and proved
+ *
+ * The search starts at the root of the parabola through value and slope at 0 and the value at the limit.  With g(t) = 0,
+ * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
+ * cubic's inner control points are, the second by more than the error: no root lies before t.
+ */
+LANE_SHARED vm root_quick(const struct power *u, int order, vd level, vd sign, vd g0, vd g1, vd limit,
+                          vd bend, vm active, vd *t)
+{
+	vd zero = vsplat(0), d0 = sign * u->c[1], slope = zero;
+	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
+	vd d = d0 * limit, c = g1 - (d + g0);
+	vd root = vsqrt(vmax(vfma(d, d, -4.0 * c * g0), zero));
+	vm up = vless(zero, d0);
+	*t = limit * vmin(vselect(up, -2.0 * g0, root - d) / vselect(up, d + root, 2.0 * c), vsplat(1));
+	vm settled = vless(zero, zero);
+	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
+		struct place at = place_at(u, order, *t);
+		vd value = sign * (at.u - level), bow = sign * curvature_at(u, order, *t);
+		slope = vselect(settled, slope, sign * at.v);
+		vd fall = vfma(slope, slope, vsplat(-0.5) * value * bow);
+		vm rises = vless(zero, slope) & vless(zero, fall);
+		vd next = vselect(rises, vmin(vmax(*t - value * slope / fall, zero), limit), limit);
+		vd step = next - *t;
+		*t = vselect(settled, *t, next);
+		// the error after a step of s is near s (s bow/slope)^2, and s^2/slope times what bow leaves out: 1e-4 of the
+		// magnitudes of its terms, so that near an inflection 1e-13 of the whole step may remain
+		vd small = vsplat(0x1p-20);
+		settled |= vless(vabs(step), small * *t) & vless(vabs(step * bow), small * slope) & rises;
+	}
+	// the slope is that before the last step, which changed it by less than 2^-20
+	return sure & settled & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
+	       vless(bend * (*t * *t * *t) * vsplat(1.01 / 24), slope);
+}
+
+/* Safe root search: first time at which a guard, negative at 0, becomes positive.
+ *
+ * Given    g       guard, g(0) < 0 in the active lanes
+ *          limit   last time of interest
+ * Returns  value   lanes with a root; t: that time, or where the search had to give up (`unsure`), a safe time:
+ *                  where the guard does not rise and the parabola still says a rounding is too long a step
+ *
+ * A parabola with the guard's value and slope at t and with a bound of its curvature lies above the guard, so no
+ * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
+ * passes none.
+ */
+LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t, vm *unsure)
+{
+	vd zero = vsplat(0), curved = zero;
+	for (int n = order; n > 2; n--)
+		curved = vfma(vsplat((double)n * (n - 1)), vabs(g->c[n]), curved);
+	vd bend = vmax(zero, vfma(vsplat(2), g->c[2], curved));
+	curved = vfma(vsplat(2), vabs(g->c[2]), curved);
+	vm going = active, found = vless(zero, zero);
+	*unsure = found;
+	*t = vselect(active, zero, *t);
+	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
+		struct place at = place_at(g, order, *t);
+		vd slope = at.v, below = vmin(at.u, zero);
+		vd root = vsqrt(vfma(slope, slope, -2.0 * bend * below));
+		vm rises = vless(zero, slope);
+		vd step = vselect(rises, -2.0 * below, root - slope) / vselect(rises, slope + root, bend);
+		step = vselect(rises | vless(zero, bend), step, vsplat(2));
+		vm near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope);
+		vm stuck = vless(step, vsplat(0.5 * DBL_EPSILON)) & ~near;
+		*t = vselect(going & ~stuck, *t + step, *t);
+		*unsure |= going & stuck;
+		going &= ~vless(limit, *t) & ~stuck;
+		found |= going & near;
+		going &= ~near;
+	}
+	*unsure |= going;
+	return found;
+}
+
+/* The safe search on any guard; `cut` is noted where the step is only cut at a safe time.
+ *
+ * A guard that starts at exactly 0 is divided by the powers of time it starts with: the sign of its first term decides.
+ */
+LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event, double cut,
+                             struct search *search)
+{
+	vd zero = vsplat(0), large = zero;
+	// squares are taken: what would vanish in them is raised by a power of two
+	for (int n = 0; n <= order; n++)
+		large = vmax(large, vabs(guard->c[n]));
+	vd raise = vselect(vless(large, vsplat(0x1p-400)), vsplat(0x1p600), vsplat(1));
+	for (int n = 0; n <= order; n++)
+		guard->c[n] = guard->c[n] * raise;
+	for (int m = 0; m < DEFLATE_MAX; m++) {
+		vm leading = vequal(guard->c[0], zero) & active;
+		if (!vany(leading))
+			break;
+		for (int n = 0; n < order; n++)
+			guard->c[n] = vselect(leading, guard->c[n + 1], guard->c[n]);
+		guard->c[order] = vselect(leading, zero, guard->c[order]);
+	}
+	vm found = active & vless(zero, guard->c[0]);
+	active &= ~found & ~vequal(guard->c[0], zero);
+	vd t = zero;
+	vm unsure;
+	found |= root_safe(guard, order, active, search->time, &t, &unsure);
+	search->time = vselect(found | unsure, t, search->time);
+	search->event = vselect(found, event, vselect(unsure, vsplat(cut), search->event));
+}
+
+/* The velocity of a motion, times the step. */
+static void motion_velocity(struct power *v, const struct motion *m, int order)
+{
+	if (order == ORDER_TOUCH)
+		ORDERS_UP(n, ORDER_APART + 1, ORDER_TOUCH, v->c[n - 1] = vsplat(n) * m->u.c[n];)
+	ORDERS_UP(n, 1, ORDER_APART, v->c[n - 1] = vsplat(n) * m->u.c[n];)
+	v->c[order] = vsplat(0);
+}
+
+/* Looks for the first time at which a guard crosses a level, and notes it as the event where it comes first.
+ *
+ * Given    u       the guard; sign (u - level) is not positive at 0 but for rounding
+ *          active  lanes to search
+ *          event   what to note;  cut: what to note where the step is only cut at a safe time
+ * Returns  search  time and event of the lanes that have one, up to the time already there
+ */
+LANE_INLINE void search_crossing(const struct power *u, const struct course *c, int order, vd level, vd sign,
+                                 vm active, vd event, double cut, struct search *search)
+{
+	vd one = vsplat(1), t;
+	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
+	vm shorter = vless(search->time, one) & active;
+	if (vany(shorter))
+		g1 = vselect(shorter, sign * (power_at(u, order, search->time) - level), g1);
+	vm found = root_quick(u, order, level, sign, g0, g1, search->time, c->bend, active, &t);
+	search->time = vselect(found, t, search->time);
+	search->event = vselect(found, event, search->event);
+	active &= ~found;
+	if (!vany(active))
+		return;
+	struct power guard;
+	for (int n = 0; n <= order; n++)
+		guard.c[n] = sign * u->c[n];
+	guard.c[0] = g0;
+	search_safe(&guard, order, active, event, cut, search);
+}

@@ -1,0 +1,216 @@
+/* shared_start.inl - tasks that differ in nothing but their laws, run as one simulation as long as no edge of a piece decides.
+ *
+ * Included by exact.inl alone, once per lane count.  All laws start on the same elastic piece.  A family goes along it between
+ * the edges nearest to it.  Where one of them decides what it does next, or may, that is taken back: a member leaves, to go on
+ * from there by itself, and the others try again.  Every proof and search that finds nothing of an edge finds nothing of one
+ * farther away.  So every member does what it would have done alone, to the last bit; who leaves first, and when, is of no
+ * consequence for that.
+ *
+ * Included by exact.inl after next_step.inl. */
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/numeric/hash.h"
+
+enum {
+	FAMILY_TASKS = 4096,             /* the first of a call's, among which families are looked for */
+	FAMILY_SLOTS = 2 * FAMILY_TASKS, /* of their hash table */
+};
+
+/* the families of a call's tasks */
+struct families {
+	// number of a first member and 1, 0: empty; where that family is full, of the next one like it
+	int slot[FAMILY_SLOTS];
+	int next[FAMILY_TASKS];     /* number of the next member; 0: there is none */
+	bool edged[FAMILY_TASKS];   /* of a first member: a law of the family has more than one piece */
+	bool follows[FAMILY_TASKS]; /* is not the first of its family */
+};
+
+/* A zero and its negative make different bits. */
+static bool same(double a, double b)
+{
+	return memcmp(&a, &b, sizeof a) == 0;
+}
+
+static bool bodies_kin(const struct pound_march_body *a, const struct pound_march_body *b)
+{
+	return same(a->skeleton.stiffness, b->skeleton.stiffness) && same(a->damping, b->damping) &&
+	       same(a->drive, b->drive) && same(a->u, b->u) && same(a->v, b->v) && a->followed == b->followed;
+}
+
+/* Whether tasks differ in nothing but their laws. */
+static bool tasks_kin(const struct pound_march_task *a, const struct pound_march_task *b)
+{
+	return a->ground == b->ground && a->n_samples == b->n_samples && same(a->time_step, b->time_step) &&
+	       a->contact == b->contact && same(a->gap, b->gap) &&
+	       same(a->contact_stiffness, b->contact_stiffness) && same(a->contact_damping, b->contact_damping) &&
+	       same(a->mass_ratio, b->mass_ratio) && a->tension == b->tension && !a->accounted && !b->accounted &&
+	       bodies_kin(&a->bodies[0], &b->bodies[0]) && bodies_kin(&a->bodies[1], &b->bodies[1]);
+}
+
+/* The slot in which the search for those that are kin to a task begins. */
+static int task_slot(const struct pound_march_task *task, int slots)
+{
+	const struct pound_march_body *body = task->bodies;
+	const double numbers[] = {body[0].skeleton.stiffness,
+	                          body[0].damping,
+	                          body[1].skeleton.stiffness,
+	                          body[1].damping,
+	                          task->gap,
+	                          task->mass_ratio,
+	                          task->contact_stiffness,
+	                          task->contact_damping};
+	return pound_hash_slot((uintptr_t)task->ground, numbers, sizeof numbers / sizeof numbers[0], slots);
+}
+
+/* Adds a task to the family whose first member another is, if there is room and one of them may leave its piece. */
+static void family_add(struct families *f, int first, int j)
+{
+	int last = first, members = 1;
+	for (; f->next[last] > 0; last = f->next[last])
+		members++;
+	if (members > POUND_OTHERS || !(f->edged[j] || f->edged[first]))
+		return;
+	f->next[last] = j;
+	f->follows[j] = true;
+	f->edged[first] |= f->edged[j];
+}
+
+/* Finds the families of n tasks. */
+static void families_find(struct families *f, const struct pound_march_task *tasks, int n)
+{
+	const int looked = n < FAMILY_TASKS ? n : FAMILY_TASKS;
+	const int slots = pound_hash_slots(looked);
+	memset(f->slot, 0, sizeof f->slot[0] * (size_t)slots);
+	for (int j = 0; j < looked; j++) {
+		f->next[j] = 0;
+		f->edged[j] = simulation_edged(&tasks[j]);
+		f->follows[j] = false;
+		int at = task_slot(&tasks[j], slots);
+		while (f->slot[at] > 0 && !tasks_kin(&tasks[f->slot[at] - 1], &tasks[j]))
+			at = (at + 1) & (slots - 1);
+		if (f->slot[at] > 0)
+			family_add(f, f->slot[at] - 1, j);
+		if (!f->follows[j])
+			f->slot[at] = j + 1;
+	}
+}
+
+/* Whether a task is the first of its family: a simulation begins with it. */
+static bool family_leads(const struct families *f, int j)
+{
+	return j >= FAMILY_TASKS || !f->follows[j];
+}
+
+/* Whether a law of a task, or of one that goes along with it, has more than one piece. */
+static bool family_edged(const struct families *f, const struct pound_march_task *tasks, int j)
+{
+	return j < FAMILY_TASKS ? f->edged[j] : simulation_edged(&tasks[j]);
+}
+
+/* The first piece of a body's law. */
+static struct pound_piece first_piece(const struct pound_march_task *task, int i)
+{
+	struct pound_branch at;
+	pound_pieces_start(&task->bodies[i].skeleton, &at);
+	return at.piece;
+}
+
+/* A simulation goes between its own edges, and nearer ones of those it has with it. */
+static void family_edges(struct simulation *sim)
+{
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		double low = sim->at[i].piece.low, high = sim->at[i].piece.high;
+		for (int k = 0; k < sim->n_others; k++) {
+			struct pound_piece piece = first_piece(sim->others[k].task, i);
+			low = fmax(low, piece.low);
+			high = fmin(high, piece.high);
+		}
+		sim->x.body[i].low = low;
+		sim->x.body[i].high = high;
+	}
+	sim->traits &= ~(unsigned)(TRAIT_FAMILY | TRAIT_EDGED);
+	if (sim->n_others > 0)
+		sim->traits |= TRAIT_FAMILY | TRAIT_EDGED;
+	if (simulation_edged(sim->task))
+		sim->traits |= TRAIT_EDGED;
+}
+
+/* Takes the others of its family along with the simulation of the first, which is at its start. */
+static void family_gather(const struct families *f, const struct pound_march_task *tasks,
+                          struct pound_march_result *results, int first, struct simulation *sim)
+{
+	if (first >= FAMILY_TASKS || f->next[first] == 0)
+		return;
+	for (int j = f->next[first]; j > 0; j = f->next[j])
+		sim->others[sim->n_others++] = (struct pound_member){&tasks[j], &results[j]};
+	family_edges(sim);
+}
+
+/* How near bodies are to the ends of the first pieces of a task's laws: roughly, in which order members will leave.  From
+ * rest it is the narrower piece that is nearer to its end. */
+static double family_share(const struct simulation *sim, const struct pound_march_task *task)
+{
+	double share = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		share = most(share, (fabs(sim->x.u[i]) + DBL_MIN) / first_piece(task, i).high);
+	return share;
+}
+
+/* Copies a simulation, as it is before a step. */
+static void simulation_copy(struct simulation *to, const struct simulation *from)
+{
+	memcpy(to, from, offsetof(struct simulation, press));
+	press_copy(to, from);
+}
+
+/* The member that seems nearest to an edge leaves the family.
+ *
+ * Given    stage  in which it does
+ * Returns  own    its simulation, which waits
+ */
+static void family_part(struct simulation *sim, struct simulation *own, enum pound_stage stage)
+{
+	assert(sim->n_others > 0 && sim->looked == POUND_OSCILLATORS);
+	struct pound_member *nearest = &sim->others[0];
+	for (int k = 1; k < sim->n_others; k++)
+		if (family_share(sim, sim->others[k].task) > family_share(sim, nearest->task))
+			nearest = &sim->others[k];
+	struct pound_member leaver = *nearest, self = {sim->task, sim->result};
+	*nearest = sim->others[--sim->n_others];
+	*leaver.result = *sim->result;
+	simulation_copy(own, sim);
+	own->n_others = 0;
+	own->stage = stage;
+	if (family_share(sim, leaver.task) < family_share(sim, self.task)) {
+		// it is the one that the others go with: these go with another from here on
+		sim->task = leaver.task;
+		sim->result = leaver.result;
+		leaver = self;
+	}
+	own->task = leaver.task;
+	own->result = leaver.result;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		pound_pieces_start(&sim->task->bodies[i].skeleton, &sim->at[i]);
+		pound_pieces_start(&own->task->bodies[i].skeleton, &own->at[i]);
+	}
+	family_edges(sim);
+	family_edges(own);
+}
+
+/* One that has left goes on. */
+static void family_resume(struct simulation *sim, const struct simulation *own)
+{
+	simulation_copy(sim, own);
+	press_resume(sim, sim->stage);
+}
+
+/* The end of a simulation is that of those who are still with it. */
+static void family_end(const struct simulation *sim)
+{
+	for (int k = 0; k < sim->n_others; k++)
+		*sim->others[k].result = *sim->result;
+}

@@ -1,0 +1,223 @@
+/* simulation.inl - one simulation of the march as it rests between its turns in the lanes.
+ *
+ * Its numbers stand in rows of a cache line each, columns of which become vectors: a batch of simulations is carried
+ * into lanes and out by whole rows.  next_step.inl has what is done to one at a time.
+ *
+ * Included by exact.inl, first. */
+
+#include <float.h>
+#include <stdalign.h>
+
+#include "engine/exact/task.h"
+
+enum {
+	POUND_MAPS = 4,         /* free-flight maps a body keeps */
+	POUND_PEAKS = 4,        /* samples that may hold its largest displacement */
+	POUND_OTHERS = 3,       /* other tasks that go along with a simulation: shared_start.inl */
+	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.945^18/18! = 6e-17 */
+	POUND_MAP_LONGER = 26,  /* of a long sample's; 2^26/26! = 2e-19 */
+	POUND_PRESS_MAPS = 3,   /* pairs of pieces whose cell map and ladder a simulation keeps */
+	POUND_PRESS_RUNGS = 12, /* of a ladder: maps over many cells */
+	POUND_PRESS_INPUTS =
+	    8 /* base u, v, overlap p, q, forcing of either, and its growth over the map's length */
+};
+
+/* Rows of a simulation: T is double at rest, and a vector in lanes; every row has eight. */
+#define POUND_ROWS(T)                                                                                                                              \
+	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */                                      \
+	T u[2], v[2], top[2], p, q;                                                                                                                    \
+	/* STEP: the next step; the ground at its start and its growth; this contact's impulse, all contacts' time but for whole cells; what is left \
+	 * of the interval: a part, and whole cells; <= 1: steps are shorter where a search was unsure */ \
+	T dt, ground, slope, impulse, contact_time, part, cells, pace;                                                                                 \
+	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */                                \
+	struct {                                                                                                                                       \
+		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                                       \
+	} body[2];                                                                                                                                     \
+	/* PAIR: the contact; lengths of a cell of it, and of the longest step apart */                                                                \
+	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, cell, reach;                                                             \
+	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                                                      \
+	struct {                                                                                                                                       \
+		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                                          \
+	} map[2];                                                                                                                                      \
+	/* PRESS: a cell of pressed contact: forcing, which body is the base; whole cells that all contacts had; how often the map goes on \
+	 * until another is asked for; cells of an interval */           \
+	T base_force, gap_force, base_drive, gap_drive, side, pressed, rounds, cells_whole;                                                            \
+	/* WORK: energy put in, what is found of it less that, and the rounding of the latter; the most there was of it */                             \
+	T work_in, work_gap, work_low, work_top, right_mass, work_spare[3];
+
+struct state_rows {
+	POUND_ROWS(double)
+};
+
+/* where the rows begin, in doubles */
+enum {
+	ROW_STATE = 0,
+	ROW_STEP = 8,
+	ROW_LEFT = 16,
+	ROW_RIGHT = 24,
+	ROW_PAIR = 32,
+	ROW_MAP_LEFT = 40,
+	ROW_MAP_RIGHT = 48,
+	ROW_PRESS = 56,
+	ROW_WORK = 64,
+	ROWS_END = 72,
+};
+
+/* what does not change while the bodies stay on their pieces, in doubles */
+enum {
+	ROWS_CONSTANT = ROW_LEFT,
+	ROWS_CONSTANT_END = ROW_PRESS,
+};
+
+/* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d: a row MAP */
+struct pound_map {
+	alignas(64) double uu;
+	double uv, ua, ud, va; /* the velocity follows: see free_motion.inl */
+	double eu, ev, ef;     /* the cubic's error is at most eu |u| + ev |v| + ef (|a| + |d|) */
+};
+
+/* rows of a map of pressed contact, each a linear form of the inputs; the bounds of their magnitudes */
+enum {
+	PRESS_U, /* what is added to the base's displacement and velocity, the overlap and its rate */
+	PRESS_V,
+	PRESS_P,
+	PRESS_Q,
+	PRESS_IMPULSE,
+	PRESS_ERROR, /* of a cell: of the cubics of the base's displacement and of the overlap */
+	REST_ERROR =
+	    PRESS_ERROR, /* of a rung, by other magnitudes (contact_map.inl): of the cubic of the common motion */
+	REST_BEND,       /* of a rung: of what presses the bodies on each other, off its straight line */
+	PRESS_SPLIT,     /* not a form but the enum below */
+	REST_ROWS,
+};
+
+/* how a map splits the motion into that of both bodies and the contact's own */
+enum {
+	SPLIT_DAMPING,
+	SPLIT_STIFFNESS, /* what presses: times the common velocity and displacement */
+	SPLIT_BASE,      /* displacement of the base, beyond the common one, by the overlap */
+	SPLIT_LAG,       /* of a rung: how far the overlap's own motion takes the common one off a slow course */
+	SPLIT_OMEGA,     /* of the contact [rad/s] */
+	SPLIT_DRAG,      /* its damping over omega */
+	SPLIT_LEAD,      /* how much more than the overlap the force swings, where contact ends with it */
+	SPLIT_CELLS,
+};
+
+struct pound_press_map {
+	alignas(64) double row[REST_ROWS][POUND_PRESS_INPUTS];
+	double pull[POUND_PRESS_INPUTS]; /* of a rung: what is added to what presses the bodies on each other */
+};
+
+/* A sample that a body flew over, and inside of which it may have had its largest displacement: how it started, on which
+ * piece, and how far it cannot have gone.  Larger ones come more often than not, so it is looked into at the end. */
+struct pound_peak {
+	int64_t next;
+	double u, v, stiffness, offset, bound;
+};
+
+/* what an account of energy needs beside a map of pressed contact */
+struct pound_press_work {
+	double mean_base[POUND_PRESS_INPUTS];    /* of the base's displacement: a linear form */
+	double mean_overlap[POUND_PRESS_INPUTS]; /* of the overlap: another */
+	double
+	    loss[POUND_PRESS_INPUTS]
+	        [POUND_PRESS_INPUTS]; /* in the dashpots: a quadratic form, of the overlap off its equilibrium */
+};
+
+/* maps over many cells of pressed contact, and where energy is accounted for, what that needs of all of these */
+struct pound_ladder {
+	struct pound_press_map rung[POUND_PRESS_RUNGS];
+	struct pound_press_work work[POUND_PRESS_RUNGS + 1]; /* the last: of a cell */
+};
+
+/* pressed contact on a pair of pieces: over a cell, and whether that and its ladder are filled */
+struct pound_press {
+	struct pound_press_map cell;
+	bool made, laddered;
+	struct pound_ladder *ladder; /* elsewhere: what is used often is to stay close together */
+};
+
+/* What simulations of one scene have in common, where their laws have one piece: constants and maps are read and made once. */
+struct pound_common {
+	struct state_rows x; /* of its constants alone */
+	struct pound_press press;
+	int members;
+};
+
+/* what a simulation does next */
+enum pound_stage {
+	STAGE_FLY_ALONE, /* whole samples of the left body */
+	STAGE_FLY_APART, /* whole samples of both */
+	STAGE_PRESS,     /* whole cells of pressed contact */
+	STAGE_REST,      /* many cells of it at once */
+	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
+	STAGE_APART,     /* of both, who likely meet */
+	STAGE_CLEAR,     /* of both, who likely do not: what a batch looks for alike takes less */
+	STAGE_TOUCH,     /* of both in contact */
+	STAGE_LEAP_ALONE, /* what is left of a sample behind an event, where likely nothing happens: of the left body */
+	STAGE_LEAP_APART, /* of both */
+	STAGES,
+	STAGE_END = STAGES,
+	STAGE_CHATTER,
+};
+
+/* what ends a step; the event of an edge of body i is EVENT_BODY + EVENT_EDGES i + edge */
+enum { EVENT_NONE, EVENT_CUT, EVENT_CONTACT, EVENT_CLEARS, EVENT_BODY, EVENT_EDGES = 3 };
+
+/* what a step must look after for a simulation; otherwise it is left out */
+enum {
+	TRAIT_EDGED = 1,     /* a law has more than one piece */
+	TRAIT_RIGHT = 2,     /* the right body's largest displacement is wanted */
+	TRAIT_FORCED = 4,    /* contact ends when its force does */
+	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
+	TRAIT_ALIKE = 16,    /* touching without overlap the bodies go the same way, on the pieces they are on */
+	TRAIT_OWN = 32,      /* its constants are not those of others */
+	TRAIT_FAMILY = 64,   /* there are others that go along: what an edge decides is not for all of them */
+};
+
+/* a task that a simulation is the run of as well */
+struct pound_member {
+	const struct pound_march_task *task;
+	struct pound_march_result *result;
+};
+
+enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
+
+struct simulation {
+	alignas(64) struct state_rows x;
+	// what is read or written at every turn: two cache lines
+	alignas(64) const double *ground; /* of the task */
+	int64_t next, last;               /* sample at the end of this interval, and the last of the signal */
+	double per_step;
+	double impulse_max, contacts;
+	struct pound_press *press_now;         /* of the pieces that the bodies are on; NULL: to be looked for */
+	const struct pound_press_map *pressed; /* of the next cells */
+	struct pound_common *common;           /* with others; NULL: nothing */
+	unsigned traits;                       /* see enum above */
+	int steps;                             /* and turns in the queues of pressed contact, in this interval */
+	int rungs, rung, rung_limit;           /* there are, in use, the longest to try */
+	int base;      /* the heavier body, whose motion and the overlap describe pressed contact */
+	bool touching; /* the contact's force acts */
+	bool parted;   /* force gone before the overlap: bodies still overlap */
+	bool fresh;    /* the force has just passed zero */
+	bool paired;   /* the right body moves, or there is something to touch */
+	bool can_fly;  /* samples are short enough for maps, and no balance is kept */
+	bool can_press;
+	// and what is read seldom
+	const struct pound_march_task *task;
+	struct pound_march_result *result;
+	struct pound_member others[POUND_OTHERS];
+	int n_others;
+	enum pound_stage stage; /* what it does next, while it waits for room */
+	double rung_cells[POUND_PRESS_RUNGS];
+	double rung_ratio; /* of a rung to the one below; 0: few cells, and no rungs */
+	struct pound_branch at[2];
+	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */
+	int map_next[2], press_next;
+	// stiffnesses of the pieces that the maps below belong to; < 0: none
+	double map_of[2][POUND_MAPS], press_of[2][POUND_PRESS_MAPS];
+	// from here on a start clears nothing: what is there is filled with its key
+	struct pound_peak peak[2][POUND_PEAKS];
+	struct pound_map maps[2][POUND_MAPS];
+	struct pound_press press[POUND_PRESS_MAPS];
+};

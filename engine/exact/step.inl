@@ -1,0 +1,508 @@
+/* step.inl - one step up to an event, by power series in time.
+ *
+ * Included by exact.inl alone, once per lane count.  A step ends at the first root of a guard (contact opens or closes, an
+ * edge of a piece is reached, the velocity turns), found to rounding, or where it was meant to.
+ *
+ * Included by exact.inl after energy.inl. */
+
+// behind the others: it reads struct lanes
+
+/* lanes of a step by power series, and what they are */
+struct event_lanes {
+	vm active;          /* lanes in use */
+	vm parted, fresh;   /* as in struct simulation */
+	bool touching;      /* all lanes are in contact, or none */
+	bool paired, edged; /* as stretch_fly() has them */
+	bool right;         /* a lane's largest displacement of the right body is wanted */
+	bool forced;        /* a lane's contact ends when its force does */
+	vm decided;         /* lanes in which an edge of a piece decided how far they went */
+};
+
+/* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
+ * all scaled to the step.  Of a body alone only [0] is set; spring and dash are only set while touching. */
+struct terms {
+	vd u[3], v[3];            /* derivatives n and n + 1 */
+	vd c[2], k[2];            /* damping and stiffness of each body, with the sign that they act with */
+	vd force[2], increase[2]; /* its forcing at the start of the step, and what that grows by over it */
+	vd spring, dash;          /* of the contact */
+	vm still[2];              /* lanes in which a body has no velocity */
+	// where bodies are level
+	vm level;                /* lanes in which they are, and nothing has decided yet */
+	struct place by_time[2]; /* derivatives n and n + 1 by time */
+	vd per_time;             /* the step to the power of n + 2 */
+};
+
+/* Derivatives 0 and 1: where a step starts. */
+LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool touching)
+{
+	struct terms t;
+	vd dt = g->dt, dt2 = dt * dt;
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		t.u[i] = g->u[i], t.v[i] = g->v[i] * dt;
+		t.c[i] = -g->body[i].damping * dt;
+		t.k[i] = -g->body[i].stiffness * dt2;
+		t.force[i] = -vfma(g->body[i].drive, g->ground, g->body[i].offset) * dt2;
+		t.increase[i] = -(g->body[i].drive * g->slope) * dt2 * dt;
+		t.still[i] = vequal(g->v[i], vsplat(0));
+	}
+	if (!paired)
+		return t;
+	t.u[2] = g->p, t.v[2] = g->q * dt;
+	if (touching) {
+		t.spring = g->contact_stiffness * dt2;
+		t.dash = g->contact_damping * dt;
+	}
+	return t;
+}
+
+/* Lanes whose bodies touch without overlap, at one velocity but for a rounding. */
+LANE_INLINE vm bodies_level(const struct lanes *g)
+{
+	vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
+	return vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
+}
+
+/* Bodies that are level part or press by the difference of their accelerations.  Where that is no more than the rounding of
+ * what these are made of it is nothing, and the next derivative decides: else bodies that are all but alike would part and
+ * meet for ever.  Derivatives by time decide: those by the share of a step have other roundings in contact than apart, where
+ * steps are of another length.
+ *
+ * Given    apart  the difference of the accelerations' derivative n, scaled to the step
+ * Returns  t      level: lanes in which nothing has decided yet
+ *          value  what is left of it
+ */
+LANE_SHARED vd apart_settle(struct terms *t, const struct lanes *g, vd apart, int n)
+{
+	vd a[2], made = vsplat(0);
+	for (int i = 0; i < 2; i++) {
+		vd damping = g->body[i].damping * t->by_time[i].v, spring = g->body[i].stiffness * t->by_time[i].u;
+		vd drive = vsplat(0), offset = drive;
+		if (n < 2)
+			drive = g->body[i].drive * (n ? g->slope : g->ground);
+		if (n == 0)
+			offset = g->body[i].offset;
+		a[i] = -(damping + spring + (drive + offset));
+		made = made + (vabs(damping) + vabs(spring)) + (vabs(drive) + vabs(offset));
+		t->by_time[i] = (struct place){t->by_time[i].v, a[i]};
+	}
+	vd apart_by_time = a[0] - a[1];
+	vm was = t->level;
+	t->level &= ~vless(vsplat(POUND_UNDECIDED) * made, vabs(apart_by_time));
+	apart = vselect(was, apart_by_time * t->per_time, apart);
+	t->per_time = t->per_time * g->dt;
+	return vselect(t->level, vsplat(0), apart);
+}
+
+/* A body that stands still where its piece ends goes on to the next or back by its acceleration.  Where that is no more than
+ * the rounding of what it is made of it is nothing, and what differs in its later course decides: else each of two pieces,
+ * with a rounding of its own, would send the body to the other for ever.
+ *
+ * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while apart
+ *          still  lanes in which it has no velocity
+ */
+LANE_SHARED vd still_settle(const struct lanes *g, int i, vd b, vd push, vm still)
+{
+	vd u = g->u[i], made = vabs(g->body[i].stiffness * u) + vabs(g->body[i].offset);
+	made = vfma(made + vabs(g->body[i].drive * g->ground), g->dt * g->dt, vabs(push));
+	vm ends =
+	    vequal(u, g->body[i].high) | vequal(u, g->body[i].low) | ~vequal(g->body[i].direction, vsplat(0));
+	vm nothing = still & ends & vless(vabs(b), vsplat(POUND_UNDECIDED) * made);
+	return vselect(nothing, vsplat(0), b);
+}
+
+/* From the derivatives n and n + 1 to the next.
+ *
+ * Given    level  bodies of a lane are
+ */
+LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool paired, bool touching,
+                            bool level)
+{
+	vd b[2];
+	for (int i = 0; i < (paired ? 2 : 1); i++) {
+		vd slow = t->k[i] * t->u[i];
+		if (n < 2)
+			slow = slow + (n ? t->increase[i] : t->force[i]);
+		b[i] = vfma(t->c[i], t->v[i], slow);
+	}
+	vd apart = b[0];
+	if (paired)
+		apart = b[0] - b[1];
+	if (level)
+		apart = apart_settle(t, g, apart, n);
+	vd push = vsplat(0);
+	if (touching) {
+		push = vfma(t->dash, t->v[2], t->spring * t->u[2]);
+		b[0] = b[0] - push;
+		b[1] = vfma(g->mass_ratio, push, b[1]);
+		apart = vfma(g->both, -push, apart);
+	}
+	for (int i = 0; i < (paired ? 2 : 1); i++)
+		if (n == 0 && vany(t->still[i]))
+			b[i] = still_settle(g, i, b[i], i ? g->mass_ratio * push : push, t->still[i]);
+	for (int j = 0; j < (paired ? 3 : 1); j++) {
+		t->u[j] = t->v[j];
+		t->v[j] = j < 2 ? b[j] : apart;
+	}
+}
+
+/* Keeps coefficient n of every motion. */
+LANE_INLINE void terms_keep(const struct terms *t, struct motion *const into[3], int n, int motions)
+{
+	vd share = vsplat(POUND_FACTOR[n]);
+	for (int j = 0; j < motions; j++)
+		into[j]->u.c[n] = t->u[j] * share;
+}
+
+/* Looks for the edges of a body's piece. */
+LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int i, vm active,
+                             struct search *search)
+{
+	vd zero = vsplat(0), one = vsplat(1), body = vsplat(EVENT_BODY + EVENT_EDGES * i);
+	const struct motion *m = &s->body[i];
+	struct course c = course_of(m);
+	vm past_high = may_cross(&c, g->body[i].high, one) & active;
+	vm past_low = may_cross(&c, g->body[i].low, -one) & active;
+	vm turns = ~vequal(g->body[i].direction, zero) & active;
+	// one search for the lanes that may pass either edge, and another for those that may pass both
+	for (vm past = past_high | past_low; vany(past); past = past_high & past_low, past_high = vmask(0)) {
+		vd level = vselect(past_high, g->body[i].high, g->body[i].low), sign = vselect(past_high, one, -one);
+		vd edge = vselect(past_high, vsplat(POUND_EDGE_HIGH), vsplat(POUND_EDGE_LOW));
+		search_crossing(&m->u, &c, s->order, level, sign, past, body + edge, EVENT_CUT, search);
+	}
+	if (!vany(turns))
+		return;
+	c = course_of_velocity(m, s->order);
+	turns &= may_cross(&c, zero, -g->body[i].direction);
+	if (!vany(turns))
+		return;
+	struct power velocity;
+	motion_velocity(&velocity, m, s->order);
+	search_crossing(&velocity, &c, s->order, zero, -g->body[i].direction, turns,
+	                body + vsplat(POUND_EDGE_TURN), EVENT_CUT, search);
+}
+
+/* Follows the largest displacement of a body inside the step, before what the search found.
+ *
+ * Where the displacement at the first turn is proved to be the largest but for the step's end, it is kept: an error of the
+ * turning time enters squared.  Otherwise the step is cut at that turn.
+ */
+LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
+{
+	const struct motion *m = &s->body[i];
+	struct course c = course_of_velocity(m, s->order);
+	struct power velocity;
+	motion_velocity(&velocity, m, s->order);
+	const vd *v = velocity.c;
+	vd zero = vsplat(0), one = vsplat(1), t;
+	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
+	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
+	vd sign = vselect(vless(way, zero), one, -one);
+	vm once =
+	    root_quick(&velocity, s->order, zero, sign, sign * v[0], sign * m->end.v, one, c.bend, inside, &t);
+	vd turn = power_at(&m->u, s->order, t), behind = one - t, behind2 = behind * behind;
+	struct course rest = {turn, zero, m->end.u, m->end.v * behind, m->bend * (behind2 * behind2)};
+	vd most = vmax(vmax(vabs(turn), vabs(m->end.u)), g->top[i]);
+	once &= ~(may_cross(&rest, most, one) | may_cross(&rest, -most, -one));
+	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], vabs(turn)), g->top[i]);
+	inside &= ~once;
+	if (!vany(inside))
+		return;
+	struct power guard;
+	for (int n = 0; n <= s->order; n++)
+		guard.c[n] = sign * v[n];
+	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN), EVENT_CUT,
+	            search);
+}
+
+/* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
+ *
+ * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then parted: the contact goes
+ * on when that force rises again, and they are apart when p has fallen to 0.
+ */
+LANE_SHARED void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
+                              vm by_force, struct search *search)
+{
+	const struct motion *p = &s->overlap;
+	vd sign = e->touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;
+	struct power guard, rate;
+	motion_velocity(&rate, p, s->order);
+	for (int n = 0; n <= s->order; n++)
+		guard.c[n] = sign * vfma(lead, rate.c[n], p->u.c[n]);
+	// where the force has just passed 0 it is beyond by the rounding of the overlap and of its acceleration, or
+	// bodies that are alike would turn to and fro at one instant for ever
+	vd pull = 2.0 * (vabs(s->body[0].u.c[2]) + vabs(s->body[1].u.c[2]));
+	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, pull, p->u.c[0]));
+	guard.c[0] = vselect(e->fresh, below, guard.c[0]);
+	search_safe(&guard, s->order, by_force, vsplat(EVENT_CONTACT), EVENT_CUT, search);
+	if (e->touching)
+		return;
+	for (int n = 0; n <= s->order; n++)
+		guard.c[n] = -p->u.c[n];
+	search_safe(&guard, s->order, by_force, vsplat(EVENT_CLEARS), EVENT_CUT, search);
+}
+
+/* Looks for the beginning or the end of a contact: the overlap p rises or falls through 0. */
+LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
+                                struct search *search)
+{
+	vd zero = vsplat(0), sign = e->touching ? vsplat(-1) : vsplat(1);
+	vm by_force = vmask(0);
+	if (e->forced)
+		by_force = (e->touching ? ~vequal(g->release, zero) : e->parted) & e->active;
+	struct course c = course_of(&s->overlap);
+	vm risk = may_cross(&c, zero, sign) & e->active & ~by_force;
+	if (vany(risk))
+		search_crossing(&s->overlap.u, &c, s->order, zero, sign, risk, vsplat(EVENT_CONTACT), EVENT_CUT,
+		                search);
+	if (vany(by_force))
+		force_search(s, g, e, by_force, search);
+}
+
+/* Moves the ends of a step to its events. */
+LANE_INLINE void series_cut(struct series *s, vm event, vd time, bool paired)
+{
+	struct motion *m[3] = {&s->body[0], &s->body[1], &s->overlap};
+	for (int j = 0; j < (paired ? 3 : 1); j++) {
+		struct place at = place_at(&m[j]->u, s->order, time);
+		m[j]->end.u = vselect(event, at.u, m[j]->end.u);
+		m[j]->end.v = vselect(event, at.v, m[j]->end.v);
+	}
+}
+
+/* Integral of the contact force over the step, per mass of the left body. */
+LANE_INLINE vd impulse_of(const struct lanes *g, const struct series *s, vd time)
+{
+	struct power area; // of the overlap from 0 to t, over t
+	ORDERS_UP(n, 0, ORDER_TOUCH, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
+	vd elapsed = time * g->dt;
+	return vfma(g->contact_stiffness, power_at(&area, ORDER_TOUCH, time) * elapsed,
+	            g->contact_damping * (s->overlap.end.u - s->overlap.u.c[0]));
+}
+
+/* Which bodies' motion a step must look into: the left one's always. */
+LANE_INLINE int bodies_watched(const struct event_lanes *e)
+{
+	return e->paired && (e->edged || e->right) ? 2 : 1;
+}
+
+/* Makes the series of a step, and the bounds of what is looked into.
+ *
+ * Given    level  lanes whose bodies are, or NULL: there are none
+ */
+LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, bool paired, bool touching,
+                             const vm *level)
+{
+	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
+	struct terms t = terms_start(g, paired, touching);
+	const int order = touching ? ORDER_TOUCH : ORDER_APART, motions = paired ? 3 : 1;
+	s->order = order;
+	if (level) {
+		t.level = *level;
+		t.per_time = g->dt * g->dt;
+		for (int i = 0; i < 2; i++)
+			t.by_time[i] = (struct place){g->u[i], g->v[i]};
+	}
+	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions);
+	          if (n < order) terms_next(&t, g, n, paired, touching, level != NULL);)
+	// no result depends on this: what is added up is to be read from memory, or gcc keeps the coefficients there twice
+	__asm__ volatile("" ::: "memory");
+	for (int j = 0; j < motions; j++)
+		motion_end(into[j], order);
+	for (int i = 0; i < watched; i++)
+		motion_bound(&s->body[i], order);
+	if (paired)
+		motion_bound(&s->overlap, order);
+}
+
+LANE_SHARED void series_alone(struct series *s, const struct lanes *g)
+{
+	series_make(s, g, 1, false, false, NULL);
+}
+LANE_SHARED void series_apart(struct series *s, const struct lanes *g, int watched)
+{
+	series_make(s, g, watched, true, false, NULL);
+}
+LANE_SHARED void series_touch(struct series *s, const struct lanes *g, int watched)
+{
+	series_make(s, g, watched, true, true, NULL);
+}
+LANE_SHARED void series_level(struct series *s, const struct lanes *g, int watched, bool touching, vm level)
+{
+	if (touching)
+		series_make(s, g, watched, true, true, &level);
+	else
+		series_make(s, g, watched, true, false, &level);
+}
+
+LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
+{
+	int watched = bodies_watched(e);
+	vm level = e->paired ? bodies_level(g) & e->active : vmask(0);
+	if (!e->paired)
+		series_alone(s, g);
+	else if (vany(level))
+		series_level(s, g, watched, e->touching, level);
+	else if (e->touching)
+		series_touch(s, g, watched);
+	else
+		series_apart(s, g, watched);
+	s->order = e->touching ? ORDER_TOUCH : ORDER_APART; // the compiler is to know it
+}
+
+/* Lanes arrive at the end of a step, or of the share `time` of it that was gone. */
+LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct event_lanes *e, vd time,
+                          vm arrived)
+{
+	vd per_dt = vsplat(1) / g->dt, elapsed = time * g->dt;
+	if (e->touching) {
+		g->impulse = vselect(arrived, g->impulse + impulse_of(g, s, time), g->impulse);
+		g->contact_time = vselect(arrived, g->contact_time + elapsed, g->contact_time);
+	}
+	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
+		g->u[i] = vselect(arrived, s->body[i].end.u, g->u[i]);
+		g->v[i] = vselect(arrived, s->body[i].end.v * per_dt, g->v[i]);
+		g->top[i] = vmax(g->top[i], vabs(g->u[i]));
+	}
+	if (e->paired) {
+		g->p = vselect(arrived, s->overlap.end.u, g->p);
+		g->q = vselect(arrived, s->overlap.end.v * per_dt, g->q);
+	}
+	g->ground = vselect(arrived, vfma(g->slope, elapsed, g->ground), g->ground);
+	g->part = vselect(arrived, vmax(g->part - elapsed, vsplat(0)), g->part);
+}
+
+/* One step: every lane goes on to its next event, or as far as it meant to.
+ *
+ * Given    accounted  a lane's energy balance is kept
+ * Returns  value      the events;  e: decided
+ */
+LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted)
+{
+	vd one = vsplat(1), zero = vsplat(0);
+	struct series s;
+	step_begin(&s, g, e);
+	struct search search = {.time = one, .event = zero};
+	if (e->paired)
+		contact_search(&s, g, e, &search);
+	if (e->edged) {
+		struct search before = search;
+		for (int i = 0; i < (e->paired ? 2 : 1); i++)
+			body_search(&s, g, i, e->active, &search);
+		e->decided = ~vequal(search.time, before.time) | ~vequal(search.event, before.event);
+	}
+	for (int i = 0; i < bodies_watched(e); i++) {
+		// the end of the step does not count where the motion was cut before it
+		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].end.u));
+		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
+		// a piece with a direction ends where the velocity turns: up to what was found neither end is exceeded
+		if (e->edged)
+			inside &= vequal(g->body[i].direction, zero);
+		if (vany(inside))
+			body_top(&s, g, i, inside, &search);
+	}
+	vm event = ~vequal(search.event, zero);
+	if (vany(event))
+		series_cut(&s, event, search.time, e->paired);
+	if (accounted)
+		energy_add(g, &s, search.time, e->paired, e->touching);
+	// where no time has gone by nothing is to change, not by a rounding
+	vm moved = vless(zero, search.time);
+	step_end(g, &s, e, search.time, moved);
+	// a body turns with no velocity, but where it had turned before that was noticed
+	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
+		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);
+		g->v[i] = vselect(vequal(search.event, turn) & moved, zero, g->v[i]);
+	}
+	vm cut = vequal(search.event, vsplat(EVENT_CUT));
+	g->pace = vselect(cut, vmax(g->pace * vsplat(POUND_STEP_SHORTER), vsplat(POUND_STEP_SHORTEST)),
+	                  vmin(g->pace * vsplat(POUND_STEP_LONGER), one));
+	return search.event;
+}
+
+/* What the beginning or end of a contact, or of the overlap it left, does to a simulation's numbers.
+ *
+ * Given    event  of the step
+ * Returns  e      parted and fresh
+ *          value  lanes in which a contact began or ended
+ */
+LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
+{
+	vd zero = vsplat(0);
+	vm turns = vequal(event, vsplat(EVENT_CONTACT)) & e->active, parted = e->parted;
+	if (e->touching) {
+		parted = e->forced ? turns & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
+		g->part = vselect(turns, vfma(g->cells, g->cell, g->part), g->part);
+		g->cells = vselect(turns, zero, g->cells);
+	} else {
+		vd cells = vfloor(g->part / g->cell);
+		g->part = vselect(turns, vmax(g->part - cells * g->cell, zero), g->part);
+		g->cells = vselect(turns, cells, g->cells);
+		g->impulse = vselect(turns, zero, g->impulse);
+	}
+	g->p = vselect(turns & ~parted, zero, g->p); // from here exactly
+	e->fresh = parted & turns;
+	if (e->forced && !e->touching) {
+		vm clears = vequal(event, vsplat(EVENT_CLEARS));
+		g->p = vselect(clears, zero, g->p);
+		parted &= ~clears & ~turns;
+	}
+	e->parted = parted;
+	return turns;
+}
+
+/* Lanes in which a body may have a new largest displacement inside a step. */
+LANE_INLINE vm peak_risk(const struct series *s, const struct lanes *g, int i)
+{
+	vd one = vsplat(1);
+	struct course c = course_of(&s->body[i]);
+	vd top = vmax(g->top[i], vabs(c.u1));
+	return may_cross(&c, top, one) | may_cross(&c, -top, -one);
+}
+
+/* Lanes in which it may reach an edge of its piece. */
+LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
+{
+	vd zero = vsplat(0), one = vsplat(1);
+	struct course c = course_of(&s->body[i]);
+	vm risk = may_cross(&c, g->body[i].high, one) | may_cross(&c, g->body[i].low, -one);
+	vm turns = ~vequal(g->body[i].direction, zero);
+	if (!vany(turns))
+		return risk;
+	c = course_of_velocity(&s->body[i], s->order);
+	return risk | (turns & may_cross(&c, zero, -g->body[i].direction));
+}
+
+/* Takes what is left of an interval or of a cell as one step, in the lanes where nothing can happen in it.
+ *
+ * Returns  e  decided
+ */
+LANE_INLINE void event_leap(struct lanes *g, struct event_lanes *e, vm leaping)
+{
+	vd one = vsplat(1), zero = vsplat(0);
+	leaping &= ~e->parted & ~e->fresh & vequal(g->pace, one) & vless(zero, g->part);
+	if (!e->touching)
+		leaping &= ~vless(g->reach, g->part);
+	if (!vany(leaping))
+		return;
+	g->dt = vselect(leaping, g->part, g->dt);
+	struct series s;
+	step_begin(&s, g, e);
+	vm risk = vmask(0);
+	if (e->paired) {
+		struct course c = course_of(&s.overlap);
+		risk = may_cross(&c, zero, e->touching ? -one : one);
+		// as long as the overlap grows its force does not end
+		if (e->touching && e->forced)
+			risk |= ~vless(zero, course_slowest(&c)) & vless(zero, g->release);
+	}
+	for (int i = 0; i < bodies_watched(e); i++)
+		risk |= peak_risk(&s, g, i);
+	if (e->edged) {
+		vm edge = vmask(0);
+		for (int i = 0; i < (e->paired ? 2 : 1); i++)
+			edge |= edge_risk(&s, g, i);
+		risk |= edge;
+		e->decided |= leaping & edge;
+	}
+	step_end(g, &s, e, one, leaping & ~risk);
+}

@@ -1,0 +1,72 @@
+/* task.h - the response of many pairs of oscillators, event by event, to rounding.
+ *
+ * A task is one scene under one ground motion, divided by masses; tasks do not touch each other. */
+#ifndef MARCH_H
+#define MARCH_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/pound.h"
+#include "engine/scene/law.h"
+
+struct pound_march_body {
+	struct pound_skeleton skeleton;
+	double damping; /* c/m [1/s] */
+	double drive;   /* 1: rides on the ground motion, 0: stays where the ground is (a rigid wall) */
+	double u, v;    /* at the start [m], [m/s] */
+	bool followed;  /* its largest displacement is wanted */
+};
+
+struct pound_march_task {
+	const double *ground; /* acceleration at the samples, linear between  [m/s2]  (n_samples) */
+	int n_samples;        /* >= 2 */
+	double time_step;     /* [s] */
+	struct pound_march_body bodies[POUND_OSCILLATORS];
+	bool contact;             /* false: the bodies never meet */
+	double gap;               /* [m] */
+	double contact_stiffness; /* K/m1 [1/s2] */
+	double contact_damping;   /* C/m1 [1/s] */
+	double mass_ratio;        /* m1/m2, 0: the right body is a wall */
+	bool tension;             /* contact ends at zero overlap; false: at zero force */
+	bool accounted;           /* energy_residual is wanted */
+};
+
+struct pound_march_result {
+	enum pound_status status;
+	double displacement_max[POUND_OSCILLATORS]; /* [m]; NAN where it was not followed */
+	double u[POUND_OSCILLATORS];                /* at the end [m] */
+	double v[POUND_OSCILLATORS];                /* [m/s] */
+	double impulse_max;                         /* largest integral of F/m1 over one contact [m/s] */
+	double contact_time;                        /* [s] */
+	int64_t contacts;
+	// |kinetic + absorbed - put in| over the most along the way of what was put in and of kinetic energy; NAN: not accounted
+	double energy_residual;
+	double first_contact,
+	    first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
+};
+
+enum { POUND_MARCH_SCRATCH = 1 << 23 }; /* bytes of work space, 64-byte aligned */
+
+/* Whether the caller wants no more of it: what follows a motion asks this between batches, stretches or samples. */
+static inline bool pound_stopped(const atomic_bool *stop)
+{
+	return stop && atomic_load_explicit(stop, memory_order_relaxed);
+}
+
+bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
+                       int n, void *scratch, const atomic_bool *stop);
+
+/* exact.inl, compiled once for each */
+void pound_march_w8(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                    void *scratch, const atomic_bool *stop);
+void pound_march_w4(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                    void *scratch, const atomic_bool *stop);
+void pound_march_w1(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                    void *scratch, const atomic_bool *stop);
+void pound_march_portable(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+                          void *scratch, const atomic_bool *stop);
+
+#endif

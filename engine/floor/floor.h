@@ -1,0 +1,41 @@
+/* floor.h - the spectra of one floor under one task: the trace and the oscillators brought together. */
+#ifndef FLOOR_H
+#define FLOOR_H
+
+#include "engine/floor/oscillator_bank.h"
+#include "engine/pound.h"
+
+struct pound_floor; /* work space of one worker */
+
+size_t pound_floor_bytes(int n_frequencies);
+struct pound_floor *pound_floor_init(void *memory,
+                                     const struct pound_spectrum *spectrum); /* 64-byte aligned */
+
+/* what is asked of one task */
+struct pound_floor_ask {
+	const struct pound_march_task *task;
+	int n_drives;            /* 1: the whole acceleration; 2: the contact's part of it too */
+	double radians;          /* an oscillator's longest step, at most 1.5 */
+	int lanes;               /* 0: the widest there are */
+	const atomic_bool *stop; /* looked at throughout; NULL: never */
+};
+
+/* what comes out; psa: [m/s2]  (n_frequencies) each */
+struct pound_floor_answer {
+	double *psa[POUND_DRIVES];
+	double impulse_max; /* over the left mass [m/s] */
+	int64_t contacts;
+};
+
+enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                                      struct pound_floor_answer *answer);
+
+/* Hands every row of a task's history to `take`: at the samples, and on both sides of every event. */
+struct pound_floor_instant {
+	double time, u, v, acceleration, push; /* [s], [m], [m/s], [m/s2]; push: the contact's part */
+};
+typedef void pound_floor_take(void *into, const struct pound_floor_instant *instant);
+enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_march_task *task,
+                                      const atomic_bool *stop, pound_floor_take *take, void *into);
+
+#endif

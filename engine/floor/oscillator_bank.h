@@ -1,0 +1,40 @@
+/* oscillator_bank.h - oscillators of many frequencies that ride on one floor, in vector lanes over the frequencies. */
+#ifndef SPECTRUM_H
+#define SPECTRUM_H
+
+#include "engine/floor/power_integrals.h"
+
+enum {
+	POUND_SPECTRUM_GROUP = 8, /* frequencies that share the length of their steps, whatever the lane count */
+	POUND_SPECTRUM_SCRATCH = 1 << 18, /* bytes of work space, 64-byte aligned */
+};
+
+/* Oscillators z'' + 2 xi w z' + w^2 z = -a, one set for each drive a; arrays in whole groups, 64-byte aligned. */
+struct pound_bank {
+	int n_groups;
+	int n_drives;   /* 1: the floor alone */
+	double damping; /* xi  [0, 1) */
+	double radians; /* w * step at most, at most 1.5 */
+	const struct pound_kernel *kernel;
+	const double *omega;                       /* [rad/s]  > 0 */
+	double *z[POUND_DRIVES], *v[POUND_DRIVES]; /* now [m], [m/s] */
+	double *top[POUND_DRIVES];                 /* largest |z| so far [m] */
+};
+
+/* What all pieces of a stretch have in common. */
+struct pound_ride {
+	const struct pound_trace_stretch *stretch;
+	double time_step; /* of the ground motion [s] */
+	double damping;   /* of the left body, c/m [1/s] */
+};
+
+bool pound_spectrum_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *ride,
+                          void *scratch);
+
+/* oscillator_bank.inl, compiled once for each */
+void pound_spectrum_w8(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_spectrum_w4(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_spectrum_w1(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_spectrum_portable(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+
+#endif

@@ -1,0 +1,484 @@
+/* oscillator_bank.inl - oscillators on a floor, driven by its pieces exactly, their largest displacements between steps too.
+ *
+ * 1. A piece is cut into 2^L equal parts, so that w times a part is at most 1.5 radians and a power series of the
+ *    oscillator ends in rounding; L is that of the fastest of a group of eight.
+ * 2. A whole sample of free flight is linear in the oscillator's state and four numbers of the floor's, with maps
+ *    that are made once; any other piece is done by the series itself.
+ * 3. The cubic through both ends of a part, widened by the bound of its error, proves that no new largest displacement
+ *    lies inside; where it does not, the velocity's roots are polished on the series. */
+#include "engine/floor/oscillator_bank.h"
+
+#include <assert.h>
+#include <stdalign.h>
+
+#include "engine/exact/tolerances.h"
+#include "engine/numeric/lanes.h"
+
+enum {
+	TERMS = POUND_TRACE_TERMS,
+	PARTS_MAX = POUND_KERNEL_PARTS, /* of a sample that has maps */
+	INTEGRALS = POUND_KERNEL_INTEGRALS,
+	PARTS_LIMIT = 1 << 24,
+	POLISH =
+	    2, /* rounds of Newton from the cubic's extremum, which misses by 1e-2 at most: 1e-4, 1e-8, squared in z */
+};
+
+/* A part of a piece: its step and the bounds of the drive over it.  All motions below are in its time 0 .. 1. */
+struct part {
+	double step; /* [s] */
+	int terms;   /* of a series without a drive, by the fastest of the group */
+	vd x, damp;  /* w step, 2 xi w step */
+	// |z''''|/288 <= on_z |z| + on_v |v| + on_drive (A, A', A''), A of the drive over the piece: see part_init
+	vd on_z, on_v, on_drive[3];
+};
+
+/* the maps of one part of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
+struct flight {
+	vd gz[4], gv[4];
+};
+
+struct maps {
+	vd zz, zv, vz, vv;
+	struct flight part[POUND_TRACE_MAPS][PARTS_MAX];
+};
+
+struct state {
+	vd z, v, top;
+};
+
+struct series {
+	int terms;
+	vd z[TERMS + 1], y[TERMS + 1]; /* y: derivative of z */
+	vd z1, y1;
+};
+
+struct scratch {
+	alignas(64) struct maps maps;
+	double integral[POUND_TRACE_PIECES][POUND_DRIVES][INTEGRALS]; /* of the pieces that have no map */
+};
+
+static_assert(sizeof POUND_TERMS_REACH == (TERMS + 1) * sizeof(double) && (TERMS + 1) % W == 0,
+              "whole vectors");
+static_assert(sizeof(struct scratch) <= POUND_SPECTRUM_SCRATCH, "the work space is too small");
+
+static int larger(int a, int b)
+{
+	return a > b ? a : b;
+}
+
+static const double MINUS_SHARE[TERMS + 1] = {
+    -1.0 / 1,  -1.0 / 2,  -1.0 / 3,  -1.0 / 4,  -1.0 / 5,  -1.0 / 6,  -1.0 / 7,  -1.0 / 8,
+    -1.0 / 9,  -1.0 / 10, -1.0 / 11, -1.0 / 12, -1.0 / 13, -1.0 / 14, -1.0 / 15, -1.0 / 16,
+    -1.0 / 17, -1.0 / 18, -1.0 / 19, -1.0 / 20, -1.0 / 21, -1.0 / 22, -1.0 / 23, -1.0 / 24};
+
+/* Terms after which x^n/n! is below rounding, as pound_trace_terms() has them: all are looked at, as no branch foresees where
+ * to stop. */
+LANE_INLINE int terms_of(double x)
+{
+	int n = 0;
+	for (int k = 0; k <= TERMS; k += W)
+		n += __builtin_popcount(vbits(vless(lanes_load(&POUND_TERMS_REACH[k]), vsplat(x))));
+	return n;
+}
+
+/* A part of step h, one of n equal ones of a piece, for oscillators of frequency w.
+ *
+ * With e = x |z0| + h |v0| + A, x = w h and A, A', A'' bounds of the drive times h^2, in the part's time:
+ * x |z| <= e and |z'| <= e inside, so
+ *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
+ */
+LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, double step, int n)
+{
+	struct part p = {.step = step, .terms = terms_of(omega_max * step)};
+	const double scale = step * step, share = 1.0 / n;
+	vd x = p.x = omega * step, x2 = x * x, damp = p.damp = x * (2 * damping), both = vfma(damp, damp, x2);
+	vd on_e = vfma(both * x, vsplat(2 * damping + 1), damp * x2) * vsplat(POUND_CUBIC_ERROR);
+	p.on_z = on_e * x;
+	p.on_v = on_e * step;
+	p.on_drive[0] = vfma(both, vsplat(POUND_CUBIC_ERROR), on_e) * vsplat(scale);
+	p.on_drive[1] = damp * vsplat(POUND_CUBIC_ERROR * scale * share);
+	p.on_drive[2] = vsplat(POUND_CUBIC_ERROR * scale * share * share);
+	return p;
+}
+
+/* Power series of oscillators over a part.
+ *
+ * Given    z, y    at the start, y = z' in the part's time
+ *          drive   (order + 1)  coefficients of the acceleration, to be taken times `scale`;  order -1: none
+ *
+ *   (n + 1) z_n+1 = y_n     (n + 1) y_n+1 = -(2 xi x y_n + x^2 z_n + a_n)
+ *
+ * Only one fused operation of an order has to wait for the order before.
+ */
+LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y, const double *drive,
+                             int order, double scale)
+{
+	vd x2 = p->x * p->x, factor = vsplat(scale);
+	s->terms = larger(p->terms, order + 2);
+	s->z1 = s->y1 = vsplat(0);
+	for (int n = 0;; n++) {
+		s->z[n] = z;
+		s->y[n] = y;
+		s->z1 = s->z1 + z;
+		s->y1 = s->y1 + y;
+		if (n == s->terms)
+			break;
+		vd share = vsplat(POUND_SHARE[n]), minus = vsplat(MINUS_SHARE[n]), force = x2 * z;
+		if (n <= order)
+			force = vfma(factor, vsplat(drive[n]), force);
+		z = y * share;
+		y = vfma(p->damp * minus, y, minus * force);
+	}
+}
+
+LANE_INLINE vd series_at(const vd *c, int terms, vd t)
+{
+	vd even = vsplat(0), odd = vsplat(0), t2 = t * t;
+	int n = terms;
+	if (n % 2 == 0)
+		even = c[n--];
+	for (; n > 0; n -= 2) {
+		odd = vfma(odd, t2, c[n]);
+		even = vfma(even, t2, c[n - 1]);
+	}
+	return vfma(odd, t, even);
+}
+
+/* ---- largest displacements ---- */
+
+/* What a drive with these bounds over its piece adds to the error of the cubic of a part. */
+LANE_INLINE vd drive_error(const struct part *p, const double bound[3])
+{
+	vd error = p->on_drive[2] * vsplat(bound[2]);
+	for (int k = 1; k >= 0; k--)
+		error = vfma(p->on_drive[k], vsplat(bound[k]), error);
+	return error;
+}
+
+/* Lanes in which |z| may have a new largest value inside a part; ends are taken here.
+ *
+ * Given    z1, v1  at the end;  error: of the drive
+ */
+LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, vd error)
+{
+	vd third = vsplat(p->step * (1.0 / 3));
+	vd b1 = vfma(third, s->v, s->z), b2 = vfma(-third, v1, z1);
+	error = vfma(p->on_z, vabs(s->z), vfma(p->on_v, vabs(s->v), error));
+	s->top = vmax(s->top, vabs(z1));
+	return vless(s->top, vmax(vabs(b1), vabs(b2)) + error);
+}
+
+/* |z| at the root of the velocity that Newton's method finds from t; whatever it finds is a value that z takes. */
+LANE_INLINE vd polished(const struct series *s, const vd *bend, vd t)
+{
+	vd zero = vsplat(0), one = vsplat(1);
+	for (int round = 0; round < POLISH; round++) {
+		vd slope = series_at(bend, s->terms - 1, t);
+		vd flat = vselect(vequal(slope, zero), one, slope);
+		t = vmin(vmax(t - series_at(s->y, s->terms, t) / flat, zero), one);
+	}
+	return vabs(series_at(s->z, s->terms, t));
+}
+
+/* The larger of |z| at the extrema inside a part, from both roots of the velocity of the cubic through its ends, and of top. */
+static vd peak_add(const struct series *s, vm risk, vd top)
+{
+	vd zero = vsplat(0), one = vsplat(1), bend[TERMS + 1];
+	for (int n = 0; n < s->terms; n++)
+		bend[n] = s->y[n + 1] * vsplat(n + 1);
+	vd y0 = s->y[0], rise = s->z1 - s->z[0];
+	vd a = 3.0 * rise - 2.0 * y0 - s->y1, b = s->y1 + y0 - 2.0 * rise;
+	vd root = vsqrt(vmax(vfma(a, a, -3.0 * b * y0), zero));
+	vd q = -(a + vselect(vless(a, zero), -root, root));
+	vd t[2] = {q / vselect(vequal(b, zero), one, 3.0 * b), y0 / vselect(vequal(q, zero), one, q)},
+	   most = zero;
+	// most often one of them lies inside; the cubic's may be a little off
+	for (int i = 0; i < 2; i++) {
+		vm inside = vless(vsplat(-0.1), t[i]) & vless(t[i], vsplat(1.1)) & risk;
+		if (vany(inside))
+			most = vselect(inside, vmax(most, polished(s, bend, vmin(vmax(t[i], zero), one))), most);
+	}
+	return vselect(risk, vmax(top, most), top);
+}
+
+/* ---- drives ---- */
+
+/* Coefficients of part j of n equal ones in its own time, n a power of two: those of the piece where it is one part, else
+ * put into `room`. */
+static const double *part_drive(const double *a, int order, int j, int n, double *room)
+{
+	double share = 1.0 / n, from = j * share, power = 1;
+	if (n == 1)
+		return a;
+	for (int k = 0; k <= order; k++)
+		room[k] = a[k];
+	for (int i = 0; i < order && j > 0; i++)
+		for (int k = order - 1; k >= i; k--)
+			room[k] += from * room[k + 1];
+	for (int k = 0; k <= order; k++, power *= share)
+		room[k] *= power;
+	return room;
+}
+
+/* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
+static int parts_of(double omega_max, double step, double radians)
+{
+	int n = 1;
+	while (omega_max * step > radians * n && n < PARTS_LIMIT)
+		n *= 2;
+	return n;
+}
+
+/* ---- any piece ---- */
+
+/* Integrals of a polynomial over part j of n of its piece. */
+static void integrals_fill(const struct pound_kernel *kernel, const double *a, int order, int j, int n,
+                           double integral[INTEGRALS])
+{
+	double room[POUND_TRACE_ORDER + 1];
+	const double *c = n > PARTS_MAX ? part_drive(a, order, j, n, room) : a;
+	const double(*row)[INTEGRALS] = kernel->part[n > PARTS_MAX ? 1 : n + j];
+	vd sum[INTEGRALS / W] = {0};
+	for (int k = order; k >= 0; k--)
+#pragma GCC unroll 6
+		for (int i = 0; i < INTEGRALS / W; i++)
+			sum[i] = vfma(vsplat(c[k]), *(const vd *)(row[k] + i * W), sum[i]);
+	for (int i = 0; i < INTEGRALS / W; i++)
+		*(vd *)(integral + i * W) = sum[i];
+}
+
+/* What a part does to a state: z' = zz z + zy y + fz, y' = yz z + yy y + fy, and the drives' shares (fz, fy). */
+struct passage {
+	vd zz, zy, yz, yy, fz[POUND_DRIVES], fy[POUND_DRIVES];
+};
+
+/* The passage of a part by the response h to an initial y of 1, h = sum g_m t^m/m!, for n drives by their integrals.
+ *
+ *   g_0 = 0, g_1 = 1, g_m+1 = -(2 xi x g_m + x^2 g_m-1)
+ *   z' = (h' + 2 xi x h) z + h y - sum g_m J_m     y' = -x^2 h z + h' y - sum g_m+1 J_m,  J_m the (m+1)-fold integral
+ */
+LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const double *const integral[],
+                              int n_drives)
+{
+	vd damp = -p->damp, x2 = -(p->x * p->x), g = vsplat(0), next = vsplat(1), h = g, rate = g;
+	for (int d = 0; d < n_drives; d++)
+		s->fz[d] = s->fy[d] = g;
+	for (int m = 0; m < p->terms; m++) {
+		rate = vfma(next, vsplat(POUND_FACTOR[m]), rate);
+		h = vfma(next, vsplat(POUND_FACTOR[m + 1]), h);
+		for (int d = 0; d < n_drives; d++) {
+			s->fy[d] = vfma(next, vsplat(integral[d][m]), s->fy[d]);
+			s->fz[d] = vfma(next, vsplat(integral[d][m + 1]), s->fz[d]);
+		}
+		vd before = g;
+		g = next;
+		next = vfma(damp, g, x2 * before);
+	}
+	vd minus = vsplat(-(p->step * p->step));
+	for (int d = 0; d < n_drives; d++) {
+		s->fy[d] = s->fy[d] * minus;
+		s->fz[d] = s->fz[d] * minus;
+	}
+	s->zz = vfma(p->damp, h, rate);
+	s->zy = h;
+	s->yz = x2 * h;
+	s->yy = rate;
+}
+
+/* part j of n equal ones of a piece */
+struct place {
+	const struct pound_ride *ride;
+	const struct pound_trace_piece *piece;
+	int j, n;
+};
+
+/* The largest |z| of a part in which there may be an extremum, by its series; in the lanes of `risk`, else top.
+ *
+ * Given    s  at the start of the part, the largest so far in `top`
+ */
+LANE_SHARED vd part_top(const struct part *p, const struct place *at, enum pound_drive drive, struct state s,
+                        vm risk)
+{
+	double flown[POUND_TRACE_ORDER + 1], room[POUND_TRACE_ORDER + 1];
+	const double *a;
+	struct series series;
+	const int order = pound_trace_drive(at->ride->stretch, at->piece, drive, at->ride->damping, flown, &a);
+	a = part_drive(a, order, at->j, at->n, room);
+	series_fill(&series, p, s.z, s.v * p->step, a, order, p->step * p->step);
+	return peak_add(&series, risk, s.top);
+}
+
+/* Moves a state over a part; the series is only made where there may be an extremum inside.
+ *
+ * Given    error  of the drive
+ */
+LANE_INLINE void part_pass(const struct part *p, const struct place *at, enum pound_drive drive,
+                           struct state *s, vd z1, vd v1, vd error)
+{
+	vm risk = part_risk(p, s, z1, v1, error);
+	if (__builtin_expect(vany(risk), 0))
+		s->top = part_top(p, at, drive, *s, risk);
+	s->z = z1;
+	s->v = v1;
+}
+
+/* Oscillators over one part of a piece, by the integrals of its drives. */
+LANE_INLINE void part_ride(const struct part *p, const struct place *at, struct state s[], int n_drives,
+                           const double *const integral[])
+{
+	const struct pound_polynomial *a[POUND_DRIVES] = {&at->piece->floor, &at->piece->push};
+	struct passage passage;
+	double per_step = 1 / p->step;
+	passage_fill(&passage, p, integral, n_drives);
+	for (int d = 0; d < n_drives; d++) {
+		vd y = s[d].v * p->step;
+		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
+		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
+		part_pass(p, at, d, &s[d], z1, y1 * per_step, drive_error(p, a[d]->bound));
+	}
+}
+
+/* Oscillators over a piece of many parts: each part has integrals of its own. */
+LANE_SHARED void parts_ride(const struct pound_bank *bank, const struct part *p, struct place *at,
+                            struct state s[])
+{
+	alignas(64) double own[POUND_DRIVES][INTEGRALS];
+	double room[POUND_TRACE_ORDER + 1];
+	const double *c[POUND_DRIVES], *const integral[POUND_DRIVES] = {own[0], own[1]};
+	int order[POUND_DRIVES];
+	for (int d = 0; d < bank->n_drives; d++)
+		order[d] = pound_trace_drive(at->ride->stretch, at->piece, d, at->ride->damping, room, &c[d]);
+	for (at->j = 0; at->j < at->n; at->j++) {
+		for (int d = 0; d < bank->n_drives; d++)
+			integrals_fill(bank->kernel, c[d], order[d], at->j, at->n, own[d]);
+		part_ride(p, at, s, bank->n_drives, integral);
+	}
+}
+
+/* ---- free flight ---- */
+
+/* The maps of all parts of a sample, of every stiffness of a stretch. */
+static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct part *p,
+                      const struct pound_ride *ride, int parts)
+{
+	alignas(64) double integrals[INTEGRALS] = {0};
+	const double *const integral[] = {integrals};
+	struct passage passage;
+	vd per_step = vsplat(1 / p->step);
+	const int order = ride->stretch->order;
+	passage_fill(&passage, p, integral, 0);
+	maps->zz = passage.zz, maps->vz = passage.yz * per_step;
+	maps->zv = passage.zy * p->step, maps->vv = passage.yy;
+	for (int m = 0; m < ride->stretch->n_maps; m++)
+		for (int state = 0; state < 4; state++) {
+			const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
+			const double k = ride->stretch->stiffness[m];
+			double a[POUND_TRACE_ORDER + 1];
+			pound_trace_flight(unit, k, ride->damping, ride->time_step, order, a);
+			for (int j = 0; j < parts; j++) {
+				integrals_fill(bank->kernel, a, order, j, parts, integrals);
+				passage_fill(&passage, p, integral, 1);
+				maps->part[m][j].gz[state] = passage.fz[0];
+				maps->part[m][j].gv[state] = passage.fy[0] * per_step;
+			}
+		}
+}
+
+/* A whole sample by maps; the floor's drive has them, the contact gives none. */
+LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, struct place *at,
+                             enum pound_drive drive, struct state *s)
+{
+	const struct pound_trace_piece *piece = at->piece;
+	const bool driven = drive == POUND_DRIVE_FLOOR;
+	const vd error = driven ? drive_error(p, piece->floor.bound) : vsplat(0);
+	vd state[4];
+	for (int k = 0; k < 4; k++)
+		state[k] = vsplat(piece->state[k]);
+	for (at->j = 0; at->j < at->n; at->j++) {
+		vd z = vsplat(0), v = vsplat(0);
+		if (driven) {
+			// what does not wait for the sample before comes first
+			const struct flight *f = &maps->part[piece->map][at->j];
+#pragma GCC unroll 4
+			for (int k = 0; k < 4; k++) {
+				z = vfma(f->gz[k], state[k], z);
+				v = vfma(f->gv[k], state[k], v);
+			}
+		}
+		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
+		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
+		part_pass(p, at, drive, s, z, v, error);
+	}
+}
+
+/* ---- the bank ---- */
+
+/* One vector of oscillators over a whole stretch. */
+static void vector_ride(const struct pound_bank *bank, const struct pound_ride *ride, int at,
+                        double omega_max, struct scratch *scratch)
+{
+	vd omega = *(const vd *)(bank->omega + at);
+	struct state s[POUND_DRIVES];
+	for (int d = 0; d < bank->n_drives; d++)
+		s[d] = (struct state){*(vd *)(bank->z[d] + at), *(vd *)(bank->v[d] + at), *(vd *)(bank->top[d] + at)};
+	int parts = parts_of(omega_max, ride->time_step, bank->radians);
+	bool mapped = parts <= PARTS_MAX && ride->stretch->n_maps > 0;
+	struct part sample = part_init(omega, omega_max, bank->damping, ride->time_step / parts, parts);
+	if (mapped)
+		maps_fill(&scratch->maps, bank, &sample, ride, parts);
+	for (int i = 0; i < ride->stretch->n; i++) {
+		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
+		struct place place = {.ride = ride, .piece = piece, .n = parts};
+		if (piece->map >= 0 && mapped) {
+			flight_ride(&scratch->maps, &sample, &place, POUND_DRIVE_FLOOR, &s[POUND_DRIVE_FLOOR]);
+			if (bank->n_drives > 1)
+				flight_ride(&scratch->maps, &sample, &place, POUND_DRIVE_PUSH, &s[POUND_DRIVE_PUSH]);
+			continue;
+		}
+		place.n = parts_of(omega_max, piece->step, bank->radians);
+		struct part p = part_init(omega, omega_max, bank->damping, piece->step / place.n, place.n);
+		const double *const whole[POUND_DRIVES] = {scratch->integral[i][0], scratch->integral[i][1]};
+		if (place.n > 1)
+			parts_ride(bank, &p, &place, s);
+		else if (bank->n_drives > 1)
+			part_ride(&p, &place, s, POUND_DRIVES, whole);
+		else
+			part_ride(&p, &place, s, 1, whole);
+	}
+	for (int d = 0; d < bank->n_drives; d++) {
+		*(vd *)(bank->z[d] + at) = s[d].z;
+		*(vd *)(bank->v[d] + at) = s[d].v;
+		*(vd *)(bank->top[d] + at) = s[d].top;
+	}
+}
+
+/* Takes all oscillators of a bank over the pieces of a stretch.
+ *
+ * Given    bank     state and largest displacements, moved on
+ *          scratch  POUND_SPECTRUM_SCRATCH bytes, 64-byte aligned
+ *
+ * Valid    exact but for rounding; bits of an oscillator depend on its group, not on the lane count
+ * Test     unit_oscillator_bank
+ */
+void POUND_SPECTRUM(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch)
+{
+	struct scratch *room = scratch;
+	for (int i = 0; i < ride->stretch->n; i++) {
+		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
+		if (piece->map >= 0)
+			continue;
+		integrals_fill(bank->kernel, piece->floor.c, piece->order, 0, 1,
+		               room->integral[i][POUND_DRIVE_FLOOR]);
+		if (bank->n_drives > 1)
+			integrals_fill(bank->kernel, piece->push.c, piece->order, 0, 1,
+			               room->integral[i][POUND_DRIVE_PUSH]);
+	}
+	for (int g = 0; g < bank->n_groups; g++) {
+		const double *omega = bank->omega + g * POUND_SPECTRUM_GROUP;
+		double omega_max = 0;
+		for (int l = 0; l < POUND_SPECTRUM_GROUP; l++)
+			omega_max = omega[l] > omega_max ? omega[l] : omega_max;
+		for (int l = 0; l < POUND_SPECTRUM_GROUP; l += W)
+			vector_ride(bank, ride, g * POUND_SPECTRUM_GROUP + l, omega_max, room);
+	}
+}

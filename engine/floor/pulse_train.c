@@ -1,0 +1,100 @@
+/* pulse_train.c - floor spectra of idealised impacts, in closed form. */
+#include "engine/floor/pulse_train.h"
+
+#include <math.h>
+
+#include "engine/numeric/elementary.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* Line of a single pulse.
+ *
+ *   PSA = v1 w exp(-xi pi/2)
+ *
+ * Source   the paper, Eq. (23)
+ * Test     unit_pulse_train
+ */
+double pound_dirac_line(const struct pound_dirac *dirac, double omega, double xi)
+{
+	return dirac->speed * omega * pound_elementary_exp(-0.5 * PI * xi);
+}
+
+/* What N pulses would give if each found the oscillator on its way up: the peaks of the train at the frequencies 2 n f,
+ * where w spacing = 2 n pi, and a line through them elsewhere.
+ *
+ *   PSA = v1 w exp(-xi pi/2) (1 - E^N)/(1 - E),   E = exp(-xi w spacing)
+ *
+ * Source   the paper, Eq. (21); Eq. (20)'s powers read as exp(-xi 2 n pi k)
+ * Valid    xi << 1: low by 0.03 % at xi = 0.02, 0.2 % at 0.05
+ * Test     unit_pulse_train
+ */
+double pound_dirac_peaks(const struct pound_dirac *dirac, double omega, double xi)
+{
+	double turn = fmin(xi * omega * dirac->spacing, 700), all = fmin(turn * dirac->pulses, 700);
+	double decay = 1 - pound_elementary_exp(-turn);
+	double sum = decay > 0 ? (1 - pound_elementary_exp(-all)) / decay : dirac->pulses;
+	return pound_dirac_line(dirac, omega, xi) * sum;
+}
+
+/* Angle in [0, pi] of a sine >= 0 and a cosine.
+ *
+ * With d = sin(angle - guess) the arc sine is d + d^3/6 but for 3 d^5/40: 0.34 rad at first, 4e-4, below rounding.
+ */
+static double angle(double sine, double cosine)
+{
+	double guess = 0.5 * PI * (1 - cosine), s, c;
+	for (int round = 0; round < 3; round++) {
+		pound_elementary_sincos(guess / (2 * PI), &s, &c);
+		double d = sine * c - cosine * s;
+		guess += d + d * d * d / 6;
+	}
+	return guess;
+}
+
+/* First extremum of free motion from (z, v/w): |z| there, 0 if it comes after `limit` of w_d t or is below `top`.
+ *
+ * Its velocity is 0 at the angle of (z + xi v/w, s v/w), s = sqrt(1 - xi^2), taken upwards.  Without damping on the way it would
+ * be as large as `most`, for which no angle is needed: most of a train's are known not to be the largest by that.
+ */
+static double extremum(double z, double v, double xi, double s, double limit, double top)
+{
+	double sine = s * v, cosine = z + xi * v, length = sqrt(sine * sine + cosine * cosine);
+	if (sine == 0)
+		return 0;
+	sine = copysign(length, sine);
+	double up = fabs(s * v) / length, along = cosine / sine;
+	double most = fabs(z * along + (v + xi * z) / s * up);
+	if (most < top)
+		return 0;
+	double turn = angle(up, along);
+	if (turn > limit)
+		return 0;
+	return pound_elementary_exp(-xi * turn / s) * most;
+}
+
+/* Spectrum of N equal velocity steps of the floor, one every `spacing`, and of the free motion after the last.
+ *
+ * The oscillator's relative velocity jumps by v1 at each pulse and it moves freely between them.  Amplitudes only fall, so
+ * the largest displacement is at the first extremum after a pulse, or where the next pulse finds it.
+ *
+ * Source   the paper, section 6.1
+ * Valid    exact but for rounding
+ * Test     unit_pulse_train: a_train_of_pulses_gives_the_exact_values
+ */
+double pound_dirac_train(const struct pound_dirac *dirac, double omega, double xi)
+{
+	double s = sqrt(1 - xi * xi), turn = omega * s * dirac->spacing, sine, cosine;
+	double decay = pound_elementary_exp(-fmin(xi * omega * dirac->spacing, 700));
+	double jump = dirac->speed / omega, z = 0, v = 0, top = 0; // v over w
+	pound_elementary_sincos(turn / (2 * PI), &sine, &cosine);
+	for (double k = 0; k < dirac->pulses; k++) {
+		v += jump;
+		double limit = k + 1 < dirac->pulses ? turn : INFINITY;
+		top = fmax(top, extremum(z, v, xi, s, limit, top));
+		double z1 = decay * (z * cosine + (v + xi * z) / s * sine);
+		v = decay * (v * cosine - (z + xi * v) / s * sine);
+		z = z1;
+		top = k + 1 < dirac->pulses ? fmax(top, fabs(z)) : top;
+	}
+	return omega * omega * top;
+}

@@ -1,0 +1,17 @@
+/* pulse_train.h - floor spectra of idealised impacts: velocity steps of the floor, one or many alike. */
+#ifndef DIRAC_H
+#define DIRAC_H
+
+/* equal steps of the floor's velocity, one every `spacing` */
+struct pound_dirac {
+	double speed;   /* impulse over the floor's mass [m/s] */
+	double spacing; /* half a period of the floor [s]  > 0 */
+	double pulses;  /* whole number, N */
+};
+
+/* pseudo-accelerations at one frequency omega > 0 and damping xi in [0, 1)  [m/s2] */
+double pound_dirac_line(const struct pound_dirac *dirac, double omega, double xi);
+double pound_dirac_train(const struct pound_dirac *dirac, double omega, double xi);
+double pound_dirac_peaks(const struct pound_dirac *dirac, double omega, double xi);
+
+#endif

@@ -1,0 +1,210 @@
+/* The table of excitations.  Noise is shaped by a trapezoid in time and scaled to its peak. */
+#include "engine/ground/excitation.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/ground/kanai_tajimi.h"
+#include "engine/ground/normals.h"
+#include "engine/numeric/cpu_width.h"
+#include "engine/numeric/elementary.h"
+
+static const double PI = 0x1.921fb54442d18p+1;
+
+/* duration over step to the nearest whole number, at least one, and the sample at time 0 */
+static int samples_within(double duration, double step)
+{
+	const double steps = duration / step;
+	assert(steps < INT_MAX - 1);
+	return steps < 1.5 ? 2 : (int)(steps + 0.5) + 1;
+}
+
+static int duration_samples(const struct pound_excitation *e)
+{
+	return samples_within(e->duration, e->time_step);
+}
+
+static int cycles_samples(const struct pound_excitation *e)
+{
+	return samples_within(e->cycles / e->frequency_hz, e->time_step);
+}
+
+static int record_samples(const struct pound_excitation *e)
+{
+	return e->n_record;
+}
+
+/* a[i] times a trapezoid: up from 0 over the first `rise` of the time, down to 0 over the last `fall` */
+static void shape(double rise, double fall, int n, double *a)
+{
+	const double up = rise * (n - 1), down = fall * (n - 1);
+	const double upward = 1 / up, downward = 1 / down;
+	for (int i = 0; i < up; i++)
+		a[i] *= i * upward;
+	for (int i = 0; i < down; i++)
+		a[n - 1 - i] *= i * downward;
+}
+
+/* Largest |a|, n >= 1. */
+double pound_excitation_largest(int n, const double *a)
+{
+	// in parts, as each comparison waits for the one before it
+	enum { PARTS = 8 };
+	double most[PARTS] = {0};
+	int i = 0;
+	for (; i + PARTS <= n; i += PARTS)
+		for (int k = 0; k < PARTS; k++)
+			most[k] = fabs(a[i + k]) > most[k] ? fabs(a[i + k]) : most[k];
+	for (int k = 0; k < PARTS; k++)
+		most[0] = most[k] > most[0] ? most[k] : most[0];
+	for (; i < n; i++)
+		most[0] = fabs(a[i]) > most[0] ? fabs(a[i]) : most[0];
+	return most[0];
+}
+
+/* a times what makes its largest |a| the peak; dividing first, nothing in between is too large or too small */
+static void scale(double peak, int n, double *a)
+{
+	const double largest = pound_excitation_largest(n, a);
+	if (largest > 0)
+		for (int i = 0; i < n; i++)
+			a[i] = a[i] / largest * peak;
+}
+
+/* noise to a ground motion */
+static void finish(const struct pound_excitation *e, int n, double *a)
+{
+	shape(e->rise, e->fall, n, a);
+	scale(e->peak, n, a);
+}
+
+static void kanai_tajimi(const struct pound_signal *signals, int n)
+{
+	struct pound_coloured coloured[POUND_SIGNALS_MAX];
+	for (int j = 0; j < n; j++) {
+		const struct pound_excitation *e = signals[j].excitation;
+		const int samples = cycles_samples(e);
+		// by their length, so that those side by side end together
+		int at = j;
+		for (; at > 0 && coloured[at - 1].n > samples; at--)
+			coloured[at] = coloured[at - 1];
+		coloured[at] = (struct pound_coloured){.noise = signals[j].noise, .n = samples, .a = signals[j].a};
+		pound_filter_init(&coloured[at].filter, 2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
+		                  e->high_pass_ratio);
+	}
+	pound_filters_run(pound_dispatch_width(0), coloured, n);
+	for (int j = 0; j < n; j++)
+		finish(signals[j].excitation, cycles_samples(signals[j].excitation), signals[j].a);
+}
+
+static void white_noise(const struct pound_signal *signal, int one)
+{
+	(void)one;
+	const struct pound_excitation *e = signal->excitation;
+	const int n = duration_samples(e);
+	double *a = signal->a;
+	double z[NOISE_WORDS][NOISE_CHUNK];
+	for (int i = 0; i < n; i++) {
+		const int l = i / NOISE_WORDS % NOISE_CHUNK, w = i % NOISE_WORDS;
+		if (l == 0 && w == 0)
+			pound_noise_normals(pound_dispatch_width(0), signal->noise, (uint32_t)(i / NOISE_WORDS), z);
+		a[i] = z[w][l];
+	}
+	finish(e, n, a);
+}
+
+static void harmonic(const struct pound_signal *signal, int one)
+{
+	(void)one;
+	const struct pound_excitation *e = signal->excitation;
+	const int n = duration_samples(e);
+	for (int i = 0; i < n; i++) {
+		double sine, cosine;
+		pound_elementary_sincos(e->frequency_hz * (i * e->time_step), &sine, &cosine);
+		signal->a[i] = e->peak * sine;
+	}
+}
+
+static void record(const struct pound_signal *signal, int one)
+{
+	(void)one;
+	const struct pound_excitation *e = signal->excitation;
+	memcpy(signal->a, e->record, (size_t)e->n_record * sizeof *signal->a);
+}
+
+static const struct {
+	const char *name;
+	bool tuned;  /* has a frequency of its own */
+	bool random; /* one signal differs from the next */
+	int at_once; /* signals that are made together */
+	int (*samples)(const struct pound_excitation *e);
+	void (*fill)(const struct pound_signal *signals, int n);
+} excitations[] = {
+    {"kanai_tajimi", true, true, POUND_SIGNALS_MAX, cycles_samples, kanai_tajimi},
+    {"white_noise", false, true, 1, duration_samples, white_noise},
+    {"harmonic", true, false, 1, duration_samples, harmonic},
+    {"record", false, false, 1, record_samples, record},
+};
+
+enum { EXCITATIONS = sizeof excitations / sizeof excitations[0] };
+
+const char *pound_excitation_name(int row)
+{
+	return row >= 0 && row < EXCITATIONS ? excitations[row].name : NULL;
+}
+
+/* Number of samples of an excitation.
+ *
+ * Returns  value   n     from the first to the last is the duration rounded to whole steps, at least one
+ *
+ * Valid    duration over step below 2^31 - 2
+ * Test     unit_excitation: the_last_sample_is_the_one_nearest_to_the_end */
+int pound_excitation_samples(const struct pound_excitation *e)
+{
+	assert(pound_excitation_name(e->type));
+	return excitations[e->type].samples(e);
+}
+
+/* Samples of the ground acceleration of signals.
+ *
+ * Given    signals  (n)    whatever their excitations, the best for speed is of one kind and length
+ * Returns  signals  a      m/s2
+ *
+ *   kanai_tajimi   filtered noise, times the trapezoid, scaled to peak      (kanai_tajimi.c)
+ *   white_noise    independent normal samples, times the trapezoid, scaled to peak
+ *   harmonic       peak * sin 2 pi f t
+ *   record         as given
+ *
+ * Valid    Noise whose every sample is zero stays zero: two samples both at the feet of a trapezoid.
+ *          A signal's bits do not depend on those beside it.
+ * Source   model.md 4
+ * Test     unit_excitation */
+void pound_signals_fill(const struct pound_signal *signals, int n)
+{
+	for (int first = 0, end; first < n; first = end) {
+		const int type = signals[first].excitation->type;
+		assert(pound_excitation_name(type));
+		for (end = first + 1; end < n && end - first < excitations[type].at_once; end++)
+			if (signals[end].excitation->type != type)
+				break;
+		excitations[type].fill(&signals[first], end - first);
+	}
+}
+
+/* Frequency around which an excitation shakes [Hz], 0 for one that has none of its own.
+ *
+ * Test     unit_excitation: noise_without_colour_and_records_have_no_frequency */
+double pound_excitation_frequency(const struct pound_excitation *e)
+{
+	return excitations[e->type].tuned ? e->frequency_hz : 0;
+}
+
+/* Whether the signals of an excitation differ.
+ *
+ * Test     unit_excitation: only_noise_differs_from_signal_to_signal */
+bool pound_excitation_random(const struct pound_excitation *e)
+{
+	return excitations[e->type].random;
+}

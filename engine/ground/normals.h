@@ -1,0 +1,22 @@
+/* normals.h - independent standard normal numbers, a chunk of a stream at a time. */
+#ifndef NOISE_H
+#define NOISE_H
+
+#include "engine/numeric/random.h"
+
+enum {
+	NOISE_WORDS = 4,  /* normals of one draw */
+	NOISE_CHUNK = 32, /* draws computed at a time */
+};
+
+/* z[w][l]: normal w of draw first + l, the same bits for any width of cpu_width.h  (NOISE_WORDS x NOISE_CHUNK) */
+void pound_noise_normals(int width, struct pound_stream stream, uint32_t first,
+                         double z[NOISE_WORDS][NOISE_CHUNK]);
+
+/* normals.inl, compiled once for each */
+void pound_noise_w8(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_noise_w4(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_noise_w1(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_noise_portable(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+
+#endif

@@ -1,0 +1,76 @@
+/* Standard normal numbers from Philox words.
+ *
+ *   1. the ten rounds of Philox4x32 over the counters of a chunk of draws
+ *   2. Box-Muller: of each two words one gives the radius, the other the angle
+ *
+ * Every loop runs over a chunk of fixed length, so that compilers make vector instructions of it, but for the product
+ * of two words of 32 bits, which they do not recognise; no result depends on how wide the vectors are.
+ * Box, Muller 1958, Ann. Math. Stat. 29, 610-611. */
+#include "engine/ground/normals.h"
+
+#include <math.h>
+#include <stdalign.h>
+
+#include "engine/numeric/elementary.h"
+#include "engine/numeric/lanes.h"
+
+/* The words of draws first .. first + NOISE_CHUNK - 1 (modulo 2^32), as pound_random_words gives each of
+ * them.
+ *
+ * Source   Salmon, Moraes, Dror, Shaw 2011, Parallel random numbers: as easy as 1, 2, 3, SC11, section 3.3
+ * Test     unit_normals: chunks_hold_the_words_of_single_draws, through the normals made of them */
+LANE_INLINE void words(struct pound_stream stream, uint32_t first, uint64_t w[NOISE_WORDS][NOISE_CHUNK])
+{
+	const philox4x32_ctr_t counter = pound_random_counter(stream, first);
+	const philox4x32_key_t key = pound_random_key(stream);
+	const vu zero = {0};
+	for (int l = 0; l < NOISE_CHUNK; l++)
+		w[0][l] = counter.v[0] + (uint32_t)l;
+	for (int l = 0; l < NOISE_CHUNK; l += W) {
+		vu x0 = *(vu *)&w[0][l], x1 = zero + counter.v[1], x2 = zero + counter.v[2], x3 = zero + counter.v[3];
+		uint32_t k0 = key.v[0], k1 = key.v[1];
+		// words in 64 bits, so that vectors keep them in place; the upper halves are rubbish between rounds
+#pragma GCC unroll 10
+		for (int round = 0; round < 10; round++) {
+			const vu p0 = vproduct(x0, zero + PHILOX_M4x32_0), p1 = vproduct(x2, zero + PHILOX_M4x32_1);
+			x0 = p1 >> 32 ^ x1 ^ k0;
+			x1 = p1;
+			x2 = p0 >> 32 ^ x3 ^ k1;
+			x3 = p0;
+			k0 += PHILOX_W32_0;
+			k1 += PHILOX_W32_1;
+		}
+		const vu x[NOISE_WORDS] = {x0, x1, x2, x3};
+		for (int i = 0; i < NOISE_WORDS; i++)
+			*(vu *)&w[i][l] = x[i] & UINT32_MAX;
+	}
+}
+
+/* (word + 1/2) / 2^32, in (0, 1): the word becomes the last bits of a number between 2^52 and 2^53 */
+static inline double fraction(uint64_t word)
+{
+	return (pound_elementary_double(word | 0x4330000000000000) - (0x1p52 - 0.5)) * 0x1p-32;
+}
+
+/* Independent standard normal numbers of a chunk of draws.
+ *
+ * Given    stream, first                            draws first .. first + NOISE_CHUNK - 1 of the stream
+ * Returns  z         (NOISE_WORDS x NOISE_CHUNK)    z[w][l] is number w of draw first + l, whatever the lanes
+ *
+ *   z_w = sqrt(-2 ln u) cos 2 pi v,   z_w+1 = sqrt(-2 ln u) sin 2 pi v,   u, v from words w, w + 1
+ *
+ * Valid    |z| <= 6.77, as u >= 2^-33: a true normal number goes beyond that once in 8e10.
+ * Test     unit_normals */
+void POUND_NOISE(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK])
+{
+	alignas(sizeof(vu)) uint64_t word[NOISE_WORDS][NOISE_CHUNK];
+	words(stream, first, word);
+	for (int w = 0; w < NOISE_WORDS; w += 2)
+		for (int l = 0; l < NOISE_CHUNK; l++) {
+			double sine, cosine;
+			const double radius = sqrt(-2 * pound_elementary_log(fraction(word[w][l])));
+			pound_elementary_sincos(fraction(word[w + 1][l]), &sine, &cosine);
+			z[w][l] = radius * cosine;
+			z[w + 1][l] = radius * sine;
+		}
+}

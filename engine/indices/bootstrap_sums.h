@@ -1,0 +1,29 @@
+/* resample.h - means of columns over rows that are drawn with replacement, many resamples one after the other. */
+#ifndef RESAMPLE_H
+#define RESAMPLE_H
+
+#include <stdint.h>
+
+enum {
+	POUND_TILE = 16, /* columns of a tile: two cache lines of a row */
+	POUND_RESAMPLE_GROUP = 8,
+	POUND_RESAMPLE_ROWS_MAX = 1 << 20,
+};
+
+/* A table in tiles of columns, so that a resample reads whole cache lines. */
+struct pound_tiles {
+	int n_rows, n_tiles;
+	double *tile; /* (n_tiles x n_rows x POUND_TILE), 64-byte aligned */
+};
+
+/* Sums of the columns over POUND_RESAMPLE_GROUP resamples from number `first`, each of as many rows as there are;
+ * 64-byte aligned.  sum: (POUND_RESAMPLE_GROUP x n_tiles x POUND_TILE), the same bits for any width of cpu_width.h */
+void pound_resample_sums(int width, const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+
+/* resample.inl, compiled once for each */
+void pound_resample_w8(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_resample_w4(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_resample_w1(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_resample_portable(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+
+#endif

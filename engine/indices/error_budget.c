@@ -1,0 +1,276 @@
+/* error_budget.c - how far S1 and ST of an output may be off: by the integration, by the number of rows, by the number of
+ * signals, by failed rows.
+ *
+ * 1. Integration: some runs were made again on half the sample step, the same signal in other steps.  The difference
+ *    counts as an independent error of every run.
+ * 2. Rows: intervals of the first n/8, n/4, n/2 and of all n rows of the design (index_columns.c).
+ * 3. What each does to the worst index, on one scale, and which is larger than the others together. */
+#include "engine/indices/error_budget.h"
+#include "engine/numeric/elementary.h"
+
+#include <gsl/gsl_statistics_double.h>
+#include <math.h>
+
+const char *pound_error_name(int row)
+{
+	static const char *const names[] = {
+#define X(member, name) name,
+	    POUND_ERRORS(X)
+#undef X
+	};
+	return row >= 0 && row < POUND_ERROR_NONE ? names[row] : NULL;
+}
+
+/* ---- integration ---- */
+
+/* Mean numerator and denominator of a row's sample over its signals. */
+static void means(const struct pound_sample_values *values, const struct pound_check *check, double *above,
+                  double *below)
+{
+	const int n_signals = values->n_signals;
+	size_t at = ((size_t)check->row * pound_order_samples(values->order, values->n_inputs) + check->sample) *
+	            n_signals;
+	*above = *below = 0;
+	for (int r = 0; r < n_signals; r++) {
+		*above += values->numerator[at + r] / n_signals;
+		*below += values->denominator[at + r] / n_signals;
+	}
+}
+
+/* Relative difference of two numbers; 0 for equal ones, even zeros. */
+static double apart(double p, double q)
+{
+	return p == q ? 0 : fabs(p - q) / fmax(fabs(p), fabs(q));
+}
+
+/* Differences between runs and their checks.
+ *
+ * Given    values, checks
+ * Returns  accuracy   runs_checked, runs_unchecked, difference_median, difference_largest
+ *          value      variance of an output (a mean over R signals) that such differences make; NAN: none checked
+ * Memory   relative   (checks.n)
+ *
+ *   e = ((U' - U) - Y (u' - u)) / mean(u)          value = mean(e^2) / R
+ *
+ * Source   delta method of a ratio of means, as in valid_rows.c; errors of different signals taken as independent
+ * Test     unit_error_budget: differences_of_runs_come_out_relative_and_as_a_variance
+ */
+static double differences(const struct pound_sample_values *values, struct pound_checks checks,
+                          double *relative, struct pound_accuracy *accuracy)
+{
+	double squares = 0;
+	int n = 0;
+	for (int k = 0; k < checks.n; k++) {
+		const struct pound_check *c = &checks.check[k];
+		double above, below;
+		means(values, c, &above, &below);
+		double once = c->numerator[0] / c->denominator[0], again = c->numerator[1] / c->denominator[1];
+		double e =
+		    (c->numerator[1] - c->numerator[0] - above / below * (c->denominator[1] - c->denominator[0])) /
+		    below;
+		if (!isfinite(once) || !isfinite(again) || !isfinite(e))
+			continue;
+		relative[n++] = apart(once, again);
+		squares += e * e;
+	}
+	accuracy->runs_checked = n;
+	accuracy->runs_unchecked = checks.n - n;
+	accuracy->difference_median = n ? gsl_stats_median(relative, 1, n) : NAN;
+	accuracy->difference_largest = n ? gsl_stats_max(relative, 1, n) : NAN;
+	return n ? squares / n / values->n_signals : NAN;
+}
+
+/* Change of the indexes when an independent error with the share q of the variance is taken out of all outputs.
+ *
+ *   S: q S / (1 - q)          T: q |1 - T| / (1 - q)
+ *
+ * Source   the error adds q to the variance, nothing to the covariance of B and C, and itself to half of (A - C)^2
+ * Test     unit_error_budget: indexes_move_no_more_than_stated_when_noise_is_added
+ */
+static double first_shift(double q, double first)
+{
+	return q < 1 ? fmin(1, q * fabs(first) / (1 - q)) : 1;
+}
+
+static double total_shift(double q, double total)
+{
+	return q < 1 ? fmin(1, q * fabs(1 - total) / (1 - q)) : 1;
+}
+
+/* Twice the deviation of an index that independent errors with the share q of the variance cause in n rows.
+ *
+ *   S: 2 sqrt(2 q / n) (sqrt(1 + T) + |S|)          T: 4 sqrt(q / n) (sqrt T + T / sqrt(d + 2))
+ *
+ * T is taken at the end of its interval: the polynomial behind ST moves with the errors even where T is 0.
+ *
+ * Source   to first order in the errors: b (c - a) changes by e_b (c - a) + b (e_c - e_a), the variance by 2 mean(a e_a),
+ *          half of (c - a)^2 by (c - a) (e_c - e_a); variances of sums of independent terms, deviations of quotients added
+ * Valid    Pick-freeze estimates; those of S1 and ST are moved less.
+ * Test     unit_error_budget: indexes_move_no_more_than_stated_when_noise_is_added
+ */
+static double first_spread(double q, double n, double first, double total_high)
+{
+	return 2 * sqrt(2 * q / n) * (sqrt(1 + fmax(total_high, 0)) + fabs(first));
+}
+
+static double total_spread(double q, double n, int d, double total_high)
+{
+	return 4 * sqrt(q / n) * (sqrt(fmax(total_high, 0)) + fmax(total_high, 0) / sqrt(d + 2.0));
+}
+
+/* What the errors of integration may change of S1 and ST: the shift, and the spread. */
+static void changes(struct pound_indices *indices, const struct pound_sample_values *values)
+{
+	struct pound_accuracy *accuracy = &indices->accuracy;
+	const double q = accuracy->variance_share, n = values->n_rows;
+	for (int j = 0; j < values->n_inputs; j++) {
+		double first = indices->index[POUND_S1][j].value, total = indices->index[POUND_ST][j].value;
+		double high = indices->index[POUND_ST][j].high;
+		double first_change = first_shift(q, first) + first_spread(q, n, first, high);
+		double total_change = total_shift(q, total) + total_spread(q, n, values->n_inputs, high);
+		bool known = isfinite(q) && isfinite(first) && isfinite(high);
+		accuracy->inputs[j].first_change = known ? fmin(1, first_change) : NAN;
+		accuracy->inputs[j].total_change = known ? fmin(1, total_change) : NAN;
+	}
+}
+
+/* ---- rows ---- */
+
+static double half(struct pound_estimate estimate)
+{
+	return 0.5 * (estimate.high - estimate.low);
+}
+
+/* The half widths of all rows, which are those of the indexes, and the numbers of rows that have any. */
+static void half_widths(const struct pound_indices *indices, int n_rows, int n_inputs,
+                        struct pound_accuracy *accuracy)
+{
+	const int last = POUND_LEVELS - 1;
+	for (int j = 0; j < n_inputs; j++) {
+		accuracy->inputs[j].first_half[last] = half(indices->index[POUND_S1][j]);
+		accuracy->inputs[j].total_half[last] = half(indices->index[POUND_ST][j]);
+	}
+	for (int k = 0; k < POUND_LEVELS; k++) {
+		bool some = k == last;
+		for (int j = 0; j < n_inputs; j++)
+			some |=
+			    isfinite(accuracy->inputs[j].first_half[k]) || isfinite(accuracy->inputs[j].total_half[k]);
+		accuracy->rows[k] = some ? n_rows >> (last - k) : 0;
+	}
+}
+
+/* Root mean square of all half widths of a level. */
+static double typical(const struct pound_accuracy *accuracy, int n_inputs, int level)
+{
+	double squares = 0;
+	for (int j = 0; j < n_inputs; j++)
+		squares +=
+		    pow(accuracy->inputs[j].first_half[level], 2) + pow(accuracy->inputs[j].total_half[level], 2);
+	return sqrt(squares / (2 * n_inputs));
+}
+
+/* 2^x for x in [0, 64], by bisection of the logarithm that is the same on every machine; exact to rounding. */
+static double two_to(double x)
+{
+	double low = 1, high = 0x1p64, wanted = x * pound_elementary_log(2);
+	for (double middle = 0x1p32; low < middle && middle < high; middle = low + 0.5 * (high - low))
+		*(pound_elementary_log(middle) < wanted ? &low : &high) = middle;
+	return high;
+}
+
+/* How half widths fall with the rows: the straight line through their logarithms, and how many rows halve them.
+ *
+ *   rows_to_halve = n 2^(-1/slope)
+ *
+ * Test     unit_error_budget: half_widths_fall_with_the_root_of_the_rows
+ */
+static void slope(struct pound_accuracy *accuracy, int n_inputs)
+{
+	// a flatter line is scatter: halving would take more than 32 times the rows
+	const double flattest = -0.2;
+	double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+	for (int k = 0; k < POUND_LEVELS; k++) {
+		double half = typical(accuracy, n_inputs, k);
+		if (!(half > 0 && isfinite(half)))
+			continue;
+		double p = pound_elementary_log(accuracy->rows[k]), q = pound_elementary_log(half);
+		n++, x += p, y += q, xx += p * p, xy += p * q;
+	}
+	accuracy->slope = n > 1 ? (n * xy - x * y) / (n * xx - x * x) : NAN;
+	bool falls = accuracy->slope < flattest;
+	accuracy->rows_to_halve = falls ? accuracy->rows[POUND_LEVELS - 1] * two_to(-1 / accuracy->slope) : NAN;
+}
+
+/* ---- all together ---- */
+
+/* The error that is larger than all others together. */
+enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
+{
+	double sum = 0;
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		sum += isnan(errors[k]) ? 0 : errors[k];
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		if (errors[k] > 0.5 * sum)
+			return (enum pound_error)k;
+	return POUND_ERROR_NONE;
+}
+
+/* What the noise of few signals adds to the intervals, at most; it is not in the values, from which it was taken away.
+ * An upper estimate where samples share their signals.  NAN: it cannot be told apart. */
+static double excitation(const struct pound_indices *indices, int n_rows, int n_inputs)
+{
+	const double w = indices->noise_share, q = w < 1 ? w / (1 - w) : INFINITY;
+	double worst = indices->notes >> POUND_NOTE_NOT_RANDOM & 1 ? 0 : NAN;
+	for (int j = 0; j < n_inputs && isfinite(w); j++) {
+		double first = indices->index[POUND_S1][j].value, high = indices->index[POUND_ST][j].high;
+		worst = fmax(worst, fmin(1, first_spread(q, n_rows, first, high)));
+		worst = fmax(worst, fmin(1, total_spread(q, n_rows, n_inputs, high)));
+	}
+	return worst;
+}
+
+/* What each error does to the worst index; NAN where no index knows. */
+static void errors_fill(const struct pound_indices *indices, const struct pound_sample_values *values,
+                        double errors[POUND_ERROR_NONE])
+{
+	const struct pound_accuracy *accuracy = &indices->accuracy;
+	const int last = POUND_LEVELS - 1;
+	double sampling = NAN, integration = NAN, dropped = NAN;
+	for (int j = 0; j < values->n_inputs; j++) {
+		sampling =
+		    fmax(sampling, fmax(accuracy->inputs[j].first_half[last], accuracy->inputs[j].total_half[last]));
+		integration =
+		    fmax(integration, fmax(accuracy->inputs[j].first_change, accuracy->inputs[j].total_change));
+		dropped = fmax(dropped, fmax(accuracy->inputs[j].first_dropped, accuracy->inputs[j].total_dropped));
+	}
+	errors[POUND_ERROR_SAMPLING] = sampling;
+	errors[POUND_ERROR_EXCITATION] = excitation(indices, values->n_rows, values->n_inputs);
+	errors[POUND_ERROR_INTEGRATION] = integration;
+	errors[POUND_ERROR_FAILED_ROWS] = dropped;
+}
+
+/* How far the indexes of an output may be off, and for want of what.
+ *
+ * Given    values        the output's runs
+ *          checks        those that were made again
+ *          indices       of values, by pound_variants_indices
+ * Returns  indices       accuracy
+ * Memory   scratch       (checks.n)
+ *
+ * Valid    Pounding is chaotic: after many contacts rounding alone parts two runs of one scene, and neither is the
+ *          better one.  Large differences of single runs then say that the scene does not determine the run; what it
+ *          does to the indexes stays small as long as such runs are few or alike in the mean.
+ * Test     unit_error_budget
+ */
+void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
+                             double *scratch, struct pound_indices *indices)
+{
+	struct pound_accuracy *accuracy = &indices->accuracy;
+	double variance = differences(values, checks, scratch, accuracy);
+	// an output that does not vary has no indexes to be off
+	accuracy->variance_share = indices->variance > 0 ? variance / indices->variance : NAN;
+	changes(indices, values);
+	half_widths(indices, values->n_rows, values->n_inputs, accuracy);
+	slope(accuracy, values->n_inputs);
+	errors_fill(indices, values, accuracy->errors);
+}

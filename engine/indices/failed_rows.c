@@ -1,0 +1,55 @@
+/* failed_rows.c - what rows that were left out, for a failed run, may have done to the indexes.
+ *
+ * Nothing is known of such a row but that it failed, and rows may fail for what makes their outputs large.  So the worst is
+ * taken: that every one of them is like the row among the others that moves the index most. */
+#include "engine/indices/indices.h"
+
+#include <math.h>
+
+/* Moments of the plain estimator, of one row. */
+static void row_moments(const struct pound_rows *rows, int row, double *m)
+{
+	const struct pound_outputs outputs = {.y = rows->plain + (size_t)row * (size_t)rows->n_samples,
+	                                      .n_inputs = rows->n_inputs};
+	pound_estimator_row(0)->moments(&outputs, m);
+}
+
+/* Largest changes of the indexes that rows left out can have made.
+ *
+ * Given    rows       n         those that are left
+ *          dropped    m         how many were left out
+ * Returns  accuracy   -         first_dropped, total_dropped; 0 when none was, NAN when none is left
+ *
+ *   max over rows r of |index((n M + m M_r) / (n + m)) - index(M)|
+ *
+ * with M_r the moments of row r, M their means, and the index as the plain protocol estimates it.
+ *
+ * Valid    A bound if no row that is left out goes beyond the others in what it adds to the moments
+ * Test     unit_failed_rows
+ */
+void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy)
+{
+	const struct pound_estimator *estimator = pound_estimator_row(0);
+	const int n = rows->n_rows, d = rows->n_inputs, n_moments = estimator->n_moments(d);
+	double mean[POUND_MOMENTS_MAX] = {0}, m[POUND_MOMENTS_MAX], value[2 * POUND_INPUTS_MAX];
+	double changed[2 * POUND_INPUTS_MAX], worst[2 * POUND_INPUTS_MAX] = {0};
+	for (int i = 0; i < n && dropped; i++) {
+		row_moments(rows, i, m);
+		for (int k = 0; k < n_moments; k++)
+			mean[k] += m[k] / n;
+	}
+	estimator->indices(mean, d, rows->variance_floor, value);
+	for (int i = 0; i < n && dropped; i++) {
+		row_moments(rows, i, m);
+		for (int k = 0; k < n_moments; k++)
+			m[k] = ((double)n * mean[k] + dropped * m[k]) / (n + dropped);
+		estimator->indices(m, d, rows->variance_floor, changed);
+		for (int k = 0; k < 2 * d; k++)
+			worst[k] = fmax(worst[k], fabs(changed[k] - value[k]));
+	}
+	for (int j = 0; j < d; j++) {
+		bool known = !dropped || (isfinite(value[j]) && isfinite(value[d + j]));
+		accuracy->inputs[j].first_dropped = known ? fmin(1, worst[j]) : NAN;
+		accuracy->inputs[j].total_dropped = known ? fmin(1, worst[d + j]) : NAN;
+	}
+}

@@ -1,0 +1,233 @@
+/* indices.h - from the outputs of a design's runs to sensitivity indexes and their intervals.
+ *
+ *   sample values -> one number for each sample of a row (valid_rows.c) -> moments of a row (pick_freeze.c)
+ *                 -> their means over all rows or resampled ones (bootstrap.c) -> indexes (pick_freeze.c)
+ *
+ * A row of the design with all its samples and signals is the unit throughout: it is kept or dropped, and
+ * resampled, as a whole.  Nothing here allocates; sums are taken in the order of rows. */
+#ifndef INDICES_H
+#define INDICES_H
+
+#include "engine/design/design.h"
+
+/* One output of one cell: a ratio of means over the signals, of every sample of every row.  NAN in any number of a
+ * row: a failed run.  In what follows n_samples is pound_order_samples(order, n_inputs). */
+struct pound_sample_values {
+	int n_rows, n_inputs, n_signals;
+	const double *numerator, *denominator; /* (n_rows x n_samples x n_signals) each */
+	/* outputs computed elsewhere are numerators of one signal, without denominators; their variances  (as these), NAN:
+	 * not known; NULL: computed here */
+	const double *variance;
+	struct pound_grouping grouping; /* of the rows */
+	int order;                      /* row of the orders: which samples a row has */
+	const struct pound_input
+	    *inputs; /* how they are distributed  (n_inputs); NULL: without values that come often */
+};
+
+/* How they came about. */
+struct pound_sampling {
+	const double *u;    /* the design as probabilities in (0, 1), rows of A and B  (n_rows x 2 x n_inputs) */
+	bool random;        /* the excitation; of outputs computed elsewhere: their variances are known */
+	bool fresh_signals; /* each sample of a row has its own */
+	int n_resamples;    /* behind an interval, at most POUND_RESAMPLES; 0: as many */
+	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
+	const struct pound_study *ratios; /* study with ratios whose indexes are wanted; NULL: none */
+	int estimator; /* row of the estimators whose indexes are wanted besides; 0: none but the plain protocol's */
+	double
+	    *kept; /* of the fits, from one output of the design to the next: chaos_expansion.c; NULL: nothing */
+};
+
+/* What the scatter of rows is told from: their groups if they have some, else the rows themselves. */
+struct pound_scatter {
+	struct pound_grouping grouping;
+	const int64_t *row; /* number in the design of each row that counts; NULL: its own */
+};
+
+/* The rows without a failed run.  y: outputs for infinitely many signals, without the bias that ratios of means of few have;
+ * plain: as they come out; both centred by their mean of A and B.  deviation: what each signal adds to an output y, times the
+ * root that makes their products add up to the covariance of outputs over draws of the signals. */
+struct pound_rows {
+	int n_rows, n_inputs, n_samples, n_signals, order;
+	double mean, plain_mean; /* of A and B */
+	double variance_floor;   /* a variance up to it is rounding */
+	double ratio_bias; /* of the outputs, mean over all samples: they are ratios of means of few signals */
+	int64_t *row;      /* which row of the design  (n_rows) */
+	struct pound_scatter scatter;
+	double *y, *plain; /* (n_rows x n_samples) */
+	double *deviation; /* (n_rows x n_samples x n_signals); NAN: one signal of unknown variance */
+	bool independent;  /* samples of a row do not share their noise; one signal stands for all */
+	const struct pound_input *inputs; /* of the sample values */
+};
+
+size_t pound_rows_scratch(const struct pound_sample_values *shape); /* doubles */
+void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch);
+struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values, const int64_t *row);
+/* How many values an input has, if each comes often; 0: as good as no value comes twice. */
+int pound_rows_levels(const struct pound_rows *rows, int input);
+/* Variance of all samples of the plain protocol, of y or of plain. */
+double pound_rows_variance(const struct pound_rows *rows, const double *y);
+/* Covariances of a row's outputs over draws of the noise  (n_samples x n_samples) */
+void pound_rows_noise(const struct pound_rows *rows, int row, double *noise);
+
+/* One row as estimators see it. */
+struct pound_outputs {
+	int n_inputs, n_samples;
+	const double *y;     /* (n_samples) */
+	const double *noise; /* covariances to take off products  (n_samples x n_samples); NULL: none */
+};
+
+/* An estimator: what it adds up over the rows, and the indexes as a function of the means of that.
+ * m: moments;  value: first then total  (2 x n_inputs) */
+struct pound_estimator {
+	const char *name;
+	int order; /* of the design, at least */
+	int (*n_moments)(int n_inputs);
+	void (*moments)(const struct pound_outputs *row, double *m);
+	void (*indices)(const double *m, int n_inputs, double variance_floor, double *value);
+};
+
+const struct pound_estimator *pound_estimator_row(int row); /* NULL past the last */
+
+/* Numbers that are a function of the means over the rows of some moments of each row. */
+struct pound_statistic {
+	int n_moments, n_values;
+	void (*moments)(const void *subject, int row, double *m);
+	void (*values)(const void *subject, const double *mean, double *value);
+	const void *subject;
+};
+
+enum {
+	POUND_RESAMPLES = 2000, /* at most */
+	POUND_MOMENTS_MAX = 9 * POUND_INPUTS_MAX + 8,
+	POUND_VALUES_MAX = POUND_MOMENTS_MAX
+};
+
+/* A statistic's values with 95 % intervals: by resampling rows, or by leaving out groups where there are some. */
+size_t pound_interval_scratch(int n_rows, int n_moments, int n_values); /* doubles */
+void pound_interval_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                              int n_rows, uint64_t seed, int n_resamples, double *scratch,
+                              struct pound_estimate *estimates);
+void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
+                              int n_resamples, double *scratch, struct pound_estimate *estimates);
+size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments); /* doubles */
+void pound_jackknife_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                               int n_rows, double *scratch, struct pound_estimate *estimates);
+int pound_jackknife_group(const struct pound_scatter *scatter, int row);
+double pound_jackknife_student(int freedom); /* 97.5 % quantile of Student's law */
+/* Half of the 95 % interval of a mean over rows, with groups or without.  sums: (groups) */
+double pound_jackknife_half_width(const double *value, int n_rows, const struct pound_scatter *scatter,
+                                  double *sums);
+
+/* Pick-freeze indexes of a model with random signals. */
+struct pound_pick_freeze {
+	struct pound_estimate first_raw[POUND_INPUTS_MAX],
+	    total_raw[POUND_INPUTS_MAX]; /* noise of few signals included */
+	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX]; /* of the mean over all signals */
+	struct pound_estimate with_signal[POUND_INPUTS_MAX]; /* second-order index of the input and the signal */
+	struct pound_estimate signal_total_one;              /* total index of the signal in single runs */
+	struct pound_estimate signal_total; /* share of the randomness left in the means over signals */
+	struct pound_estimate signal_first; /* first-order index of the signal in single runs */
+};
+
+size_t pound_correction_scratch(const struct pound_sample_values *shape); /* doubles */
+void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
+                                double *scratch, struct pound_pick_freeze *result);
+
+#define POUND_NORMAL_95 1.959963984540054 /* 97.5 % quantile of the normal law */
+
+/* rows for local_regression.c and chaos_expansion.c; with fewer, pick-freeze alone has the smaller error */
+enum { POUND_ROWS_MIN = 30 };
+size_t pound_local_scratch(const struct pound_sample_values *shape); /* doubles */
+void pound_local_fit(const double *y, int n, int reach, double *fit);
+void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
+                       struct pound_estimate *first);
+/* Half widths of the intervals from the first n of those rows alone, with the neighbours of all; the scratch as it was left.
+ * half: (n_inputs) */
+void pound_local_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half);
+
+/* Closed parts of the variance: those that sets of inputs explain. */
+enum {
+	POUND_CLOSED_COLUMNS_MAX = 2 + 2 * POUND_INPUTS_MAX + POUND_PAIRS_MAX,
+	POUND_CLOSED_PAIRS_MAX = POUND_SAMPLES_MAX * (POUND_SAMPLES_MAX - 1) / 2,
+};
+
+struct pound_closed_pair {
+	int p, q;        /* samples of a row */
+	int column;      /* of the set of inputs that they share */
+	bool difference; /* estimated from the square of the difference, not from the product */
+	double weight;   /* one over the pairs of the column */
+};
+
+struct pound_closed {
+	int n_inputs, n_samples;
+	int n_columns;
+	unsigned set[POUND_CLOSED_COLUMNS_MAX]; /* bit j: input j; ascending, none first and all last */
+	bool known[POUND_CLOSED_COLUMNS_MAX];   /* the design has a pair for it */
+	int n_pairs;
+	struct pound_closed_pair pair[POUND_CLOSED_PAIRS_MAX];
+};
+
+struct pound_closed_results {
+	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX], shapley[POUND_INPUTS_MAX];
+	struct pound_set_indices sets;
+};
+
+void pound_closed_init(struct pound_closed *closed, int n_inputs, int order);
+void pound_closed_row(const struct pound_closed *closed, const double *y, const double *g, double mean,
+                      const double *part, const double *noise, double *estimate);
+size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows); /* doubles */
+void pound_closed_indices(const struct pound_closed *closed, const double *estimates,
+                          const struct pound_rows *rows, double *scratch,
+                          struct pound_closed_results *results);
+
+int pound_chaos_degree(int n_rows, int n_inputs, int n_samples);
+size_t pound_chaos_scratch(const struct pound_sample_values *shape);   /* doubles */
+size_t pound_chaos_kept_size(const struct pound_sample_values *shape); /* doubles */
+void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
+                         double *scratch, struct pound_closed_results *results, struct pound_curve *curves);
+/* From the first n of those rows alone, with the polynomials of all; the scratch as it was left. */
+void pound_chaos_first_rows(const struct pound_rows *rows, int n, double *scratch,
+                            struct pound_closed_results *results);
+
+/* What the mean output given an input is found from. */
+struct pound_conditional {
+	const struct pound_rows *rows;
+	const double *u;           /* the design as probabilities  (n x 2 x n_inputs) */
+	const double *y;           /* of the outputs less their mean, what a trend leaves  (n_rows x n_samples) */
+	double trend[POUND_CURVE]; /* its own mean given the input, at the places of the curve */
+};
+
+/* The values of a discrete input, if it has no more than its curve has places; 0: of any other. */
+int pound_conditional_levels(const struct pound_distribution *distribution);
+size_t pound_conditional_scratch(int n_rows); /* doubles */
+void pound_conditional_mean(const struct pound_conditional *given, int input, double *scratch,
+                            struct pound_curve *curve);
+
+size_t pound_ratio_scratch(const struct pound_sample_values *shape,
+                           const struct pound_study *study); /* doubles */
+void pound_ratio_indices(const struct pound_rows *rows, const double *u, const struct pound_study *study,
+                         double noise, double *scratch, struct pound_ratio_indices *results);
+
+/* The plain protocol: mean, variance, noise share and the raw indexes. */
+size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */
+int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
+                        double *scratch, struct pound_indices *indices); /* rows dropped */
+/* first then total  (2 x n_inputs);  scratch: (pound_sobol_estimates_scratch) */
+size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
+                                     const struct pound_estimator *estimator); /* doubles */
+void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
+                           bool corrected, uint64_t seed, int n_resamples, double *scratch,
+                           struct pound_estimate *estimates);
+bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
+
+/* Fills first_dropped and total_dropped. */
+void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy);
+
+/* All indexes, shares and notes, and of the accuracy the half widths and what dropped rows may change.  Sampling as it
+ * will be; NULL: nothing but the columns of every study. */
+size_t pound_variants_scratch(const struct pound_sample_values *shape,
+                              const struct pound_sampling *sampling); /* doubles */
+int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
+                           uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */
+
+#endif

@@ -1,0 +1,186 @@
+/* jackknife.c - 95 % intervals from groups of rows that are independent of each other: batches of Latin hypercubes, or
+ * independently scrambled nets.
+ *
+ * 1. The statistic of all rows, theta, and of all but group k, theta_k, give M pseudo-values M theta - (M - 1) theta_k.
+ * 2. Their scatter is that of M independent numbers with the mean theta.
+ * 3. The interval is theta and Student's quantile for M - 1 degrees of freedom times their standard error to either side.
+ *
+ * Within a group rows may be as dependent as they like: a net's small error counts, as does a hypercube's.
+ * Tukey 1958, Ann. Math. Stat. 29, 614; L'Ecuyer, Nakayama, Owen, Tuffin 2023, Winter Simulation Conference. */
+#include "engine/indices/indices.h"
+#include "engine/numeric/elementary.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Student's law ---- */
+
+/* Probability that |t| is less than sqrt(freedom) tan(theta), from the angle's sine and cosine.
+ *
+ *   even   sin theta (1 + 1/2 cos^2 + (1 3)/(2 4) cos^4 + ... )                                  freedom / 2 terms
+ *   odd    2/pi (theta + sin theta (cos + 2/3 cos^3 + (2 4)/(3 5) cos^5 + ...))         (freedom - 1) / 2 terms
+ *
+ * Source   Abramowitz, Stegun 1964, 26.7.3 and 26.7.4
+ */
+static double student_within(int freedom, double turn, double sine, double cosine)
+{
+	const bool odd = freedom % 2;
+	double term = odd ? cosine : 1, sum = 0;
+	for (int k = odd ? 3 : 2; k <= freedom; k += 2) {
+		sum += term;
+		term *= cosine * cosine * (k - 1) / k;
+	}
+	// 2/pi times the angle is four turns
+	return odd ? 4 * turn + 2 / M_PI * sine * sum : sine * sum;
+}
+
+/* 97.5 % quantile of Student's law, the half width of a 95 % interval in standard errors.
+ *
+ * Given    freedom     -       degrees of freedom  >= 1
+ * Returns  value       t       by bisection of the angle whose tangent is t / sqrt(freedom)
+ *
+ * Test     unit_jackknife: student_quantiles_are_those_of_the_tables
+ */
+double pound_jackknife_student(int freedom)
+{
+	if (freedom > 1 << 14)
+		return POUND_NORMAL_95; // by 1.5e-4 of its width
+	double low = 0, high = 0.25, sine = 1, cosine = 0;
+	for (double turn = 0.125; low < turn && turn < high; turn = low + 0.5 * (high - low)) {
+		pound_elementary_sincos(turn, &sine, &cosine);
+		*(student_within(freedom, turn, sine, cosine) < 0.95 ? &low : &high) = turn;
+	}
+	pound_elementary_sincos(high, &sine, &cosine);
+	return sqrt(freedom) * sine / cosine;
+}
+
+/* ---- pseudo-values ---- */
+
+/* The group of a row that counts. */
+int pound_jackknife_group(const struct pound_scatter *scatter, int row)
+{
+	int64_t number = scatter->row ? scatter->row[row] : row;
+	return (int)(number / scatter->grouping.run % scatter->grouping.n);
+}
+
+/* Sums of the moments of each group's rows, and how many rows it has  (n x (n_moments + 1)). */
+static void sums_fill(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                      int n_rows, double *sums)
+{
+	const int n_moments = statistic->n_moments, width = n_moments + 1;
+	memset(sums, 0, sizeof *sums * (size_t)scatter->grouping.n * (size_t)width);
+	for (int i = 0; i < n_rows; i++) {
+		double m[POUND_MOMENTS_MAX] = {0},
+		       *sum = sums + (size_t)pound_jackknife_group(scatter, i) * (size_t)width;
+		statistic->moments(statistic->subject, i, m);
+		for (int k = 0; k < n_moments; k++)
+			sum[k] += m[k];
+		sum[n_moments]++;
+	}
+}
+
+/* No more than pound_interval_scratch for as many rows. */
+size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments)
+{
+	return (size_t)scatter->grouping.n * (size_t)(n_moments + 1);
+}
+
+/* The pseudo-values of the groups, one after the other: their means and sums of squared deviations. */
+struct pseudo {
+	int n;
+	double mean[POUND_VALUES_MAX], squares[POUND_VALUES_MAX];
+};
+
+static void pseudo_add(struct pseudo *pseudo, int groups, const double *all, const double *without,
+                       int n_values)
+{
+	pseudo->n++;
+	for (int v = 0; v < n_values; v++) {
+		double value = groups * all[v] - (groups - 1) * without[v], step = value - pseudo->mean[v];
+		pseudo->mean[v] += step / pseudo->n;
+		pseudo->squares[v] += step * (value - pseudo->mean[v]);
+	}
+}
+
+/* A statistic's values, with 95 % intervals from the groups of rows.
+ *
+ * Given    statistic  -               moments of a row, and n_values numbers from their means
+ *          scatter    -               the groups; those without a row do not count
+ * Returns  estimates  (n_values)      low and high are NAN with fewer than two groups, or where leaving one out leaves
+ *                                     nothing to define the value
+ * Memory   scratch    (pound_jackknife_scratch)
+ *
+ * Source   of pooled moments, not of the mean of the groups' own values, which is biased for small groups
+ * Test     unit_jackknife: the_interval_of_a_mean_is_students, a_ratio_has_the_interval_of_its_pseudo_values
+ */
+void pound_jackknife_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                               int n_rows, double *scratch, struct pound_estimate *estimates)
+{
+	const int n_moments = statistic->n_moments, n_values = statistic->n_values, width = n_moments + 1;
+	const int n = scatter->grouping.n;
+	double sum[POUND_MOMENTS_MAX + 1] = {0}, mean[POUND_MOMENTS_MAX];
+	double all[POUND_VALUES_MAX], without[POUND_VALUES_MAX];
+	struct pseudo pseudo = {0};
+	int groups = 0;
+	sums_fill(statistic, scatter, n_rows, scratch);
+	for (int g = 0; g < n; g++) {
+		const double *of = scratch + (size_t)g * (size_t)width;
+		for (int k = 0; k < width; k++)
+			sum[k] += of[k];
+		groups += of[n_moments] > 0;
+	}
+	for (int k = 0; k < n_moments; k++)
+		mean[k] = sum[k] / n_rows;
+	statistic->values(statistic->subject, mean, all);
+	for (int g = 0; g < n && groups > 1; g++) {
+		const double *of = scratch + (size_t)g * (size_t)width;
+		if (!(of[n_moments] > 0))
+			continue;
+		for (int k = 0; k < n_moments; k++)
+			mean[k] = (sum[k] - of[k]) / (n_rows - of[n_moments]);
+		statistic->values(statistic->subject, mean, without);
+		pseudo_add(&pseudo, groups, all, without, n_values);
+	}
+	const double student = groups > 1 ? pound_jackknife_student(groups - 1) : NAN;
+	for (int v = 0; v < n_values; v++) {
+		double half = student * sqrt(pseudo.squares[v] / (groups - 1.0) / groups);
+		estimates[v] = (struct pound_estimate){all[v], all[v] - half, all[v] + half};
+	}
+}
+
+/* Half of the 95 % interval of a mean over rows.
+ *
+ * Given    value      (n_rows)        of each row
+ *          scatter    -               groups: Student's law over the sums of their rows; none: the normal law over rows
+ * Returns  value      -               NAN for fewer than two rows, or groups
+ * Memory   sums       (groups)
+ *
+ * Test     unit_jackknife: the_interval_of_a_mean_is_students
+ */
+double pound_jackknife_half_width(const double *value, int n_rows, const struct pound_scatter *scatter,
+                                  double *sums)
+{
+	const int n = scatter->grouping.n;
+	double mean = 0, squares = 0;
+	for (int i = 0; i < n_rows; i++)
+		mean += value[i] / n_rows;
+	if (n == 0) {
+		for (int i = 0; i < n_rows; i++)
+			squares += (value[i] - mean) * (value[i] - mean);
+		return POUND_NORMAL_95 * sqrt(squares / (n_rows - 1.0) / n_rows);
+	}
+	for (int g = 0; g < n; g++)
+		sums[g] = NAN; // no row yet
+	for (int i = 0; i < n_rows; i++) {
+		double *sum = &sums[pound_jackknife_group(scatter, i)];
+		*sum = (isnan(*sum) ? 0 : *sum) + (value[i] - mean);
+	}
+	int groups = 0;
+	for (int g = 0; g < n; g++)
+		if (!isnan(sums[g])) {
+			squares += sums[g] * sums[g];
+			groups++;
+		}
+	double student = groups > 1 ? pound_jackknife_student(groups - 1) : NAN;
+	return student * sqrt(squares * groups / (groups - 1.0)) / n_rows;
+}

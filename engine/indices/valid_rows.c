@@ -1,0 +1,203 @@
+/* valid_rows.c - from the runs' values to the rows the statistics are about: one output for each sample, and how it would
+ * scatter if other signals had been drawn. */
+#include "engine/indices/indices.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Ratio of means over the signals, its bias, and what each signal adds to its deviation.
+ *
+ * Given    numerator, denominator   (n_signals)
+ * Returns  value       Y            mean numerator / mean denominator
+ *          bias        -            of Y, by the jackknife: (R - 1) (mean of the ratios without one signal - Y); NAN: one signal
+ *          deviation   (n_signals)  residuals U_r - Y u_r over the mean of u, each over (1 - h_r)^1/2, h_r = u_r / sum of u, and
+ *                                   times (1 - 1/R)^1/2
+ *
+ * Y lies near the signals that have much weight in it: their residuals are too small by (1 - h)^1/2.  Of responses with pounding
+ * the noise would without that be found too small, and by the jackknife's pseudo-values, over 1 - h, too large: of two signals by
+ * so much that total indexes are off by a third.  With equal denominators all of these are one, and nothing is biased.
+ *
+ * Source   model.md 5: a ratio of means, with the same signals above and below; Quenouille 1956, Biometrika 43, 353-360, for
+ *          the jackknife; MacKinnon and White 1985, J. Econometrics 29, 305-325 (HC2), of the regression through 0 that Y is
+ * Test     unit_valid_rows: the_variance_of_a_ratio_of_means_is_that_of_its_residuals
+ */
+static double ratio_of_means(const double *numerator, const double *denominator, int n_signals,
+                             double *deviation, double *bias)
+{
+	double above = 0.0, below = 0.0, sum = 0.0;
+	bool even = true;
+	for (int r = 0; r < n_signals; r++) {
+		above += numerator[r];
+		below += denominator[r];
+		even &= denominator[r] == denominator[0];
+	}
+	const double y = above / below, others = n_signals - 1.0;
+	for (int r = 0; r < n_signals; r++) {
+		const double residual = numerator[r] - y * denominator[r], rest = below - denominator[r];
+		sum += residual / rest;
+		// one of a sum of equal ones, to the last digit, and no product that could leave the range of doubles
+		deviation[r] =
+		    residual * n_signals / below * (even ? 1.0 : sqrt(others / n_signals * (below / rest)));
+	}
+	*bias = n_signals == 1 ? NAN : even ? 0.0 : -others / n_signals * sum;
+	return isfinite(below) ? y : NAN;
+}
+
+/* Brings deviations to the scale on which products of them add up to covariances of means over n_signals. */
+static void deviations_scale(double *deviation, int n_signals)
+{
+	const double scale = sqrt(1.0 / ((n_signals - 1.0) * n_signals));
+	for (int r = 0; r < n_signals; r++)
+		deviation[r] = n_signals > 1 ? deviation[r] * scale : NAN;
+}
+
+/* Covariances of a row's outputs over draws of their noise, all NAN where that is not known.
+ *
+ * Returns  noise    (n_samples x n_samples)
+ *
+ * Test     unit_valid_rows: the_variance_of_a_ratio_of_means_is_that_of_its_residuals
+ */
+void pound_rows_noise(const struct pound_rows *rows, int row, double *noise)
+{
+	const int n_samples = rows->n_samples, n_signals = rows->n_signals;
+	const double *deviation = rows->deviation + (size_t)row * n_samples * n_signals;
+	for (int p = 0; p < n_samples; p++)
+		for (int q = p; q < n_samples; q++) {
+			double products = 0.0;
+			for (int r = 0; r < n_signals; r++)
+				products += deviation[p * n_signals + r] * deviation[q * n_signals + r];
+			noise[p * n_samples + q] = noise[q * n_samples + p] =
+			    rows->independent && p != q ? 0.0 : products;
+		}
+}
+
+/* Variance of outputs of all samples of the plain protocol.
+ *
+ * Given    y         (n_rows x n_samples)     those of the rows, without their bias or as they come out
+ *
+ * Test     unit_plain_indices: the_noise_share_is_that_of_the_signals_mean
+ */
+double pound_rows_variance(const struct pound_rows *rows, const double *y)
+{
+	const int used = rows->n_inputs + 2;
+	const double all = (double)rows->n_rows * used;
+	double sum = 0.0, squares = 0.0;
+	for (int i = 0; i < rows->n_rows; i++, y += rows->n_samples)
+		for (int p = 0; p < used; p++) {
+			sum += y[p];
+			squares += y[p] * y[p];
+		}
+	return squares / all - sum / all * (sum / all);
+}
+
+/* Given    input     -       of the rows
+ * Returns  value     -       the values of a discrete input, up to POUND_CURVE; 0: of any other
+ *
+ * Test     unit_valid_rows: an_input_of_few_values_has_as_many_levels
+ */
+int pound_rows_levels(const struct pound_rows *rows, int input)
+{
+	return rows->inputs ? pound_conditional_levels(&rows->inputs[input].distribution) : 0;
+}
+
+/* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros.
+ *
+ * Returns  value  the mean
+ */
+static double centre(const struct pound_rows *rows, double *y)
+{
+	const int n_samples = rows->n_samples;
+	const double start = y[0];
+	double sum = 0.0;
+	for (int i = 0; i < rows->n_rows; i++)
+		sum += (y[i * n_samples] - start) + (y[i * n_samples + 1] - start);
+	const double mean = start + sum / (2.0 * rows->n_rows);
+	for (size_t k = 0; k < (size_t)rows->n_rows * n_samples; k++)
+		y[k] -= mean;
+	return mean;
+}
+
+size_t pound_rows_scratch(const struct pound_sample_values *shape)
+{
+	const size_t samples = (size_t)shape->n_rows * pound_order_samples(shape->order, shape->n_inputs);
+	return samples * (2 + shape->n_signals) + shape->n_rows;
+}
+
+/* One row's outputs, with their deviations, at the end of the rows; says whether it has them all. */
+static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *values, int row,
+                     double *largest, double *bias)
+{
+	const int n_samples = rows->n_samples, n_signals = rows->n_signals;
+	double *y = rows->y + (size_t)rows->n_rows * n_samples, row_largest = 0.0;
+	double *plain = rows->plain + (size_t)rows->n_rows * n_samples;
+	double *deviation = rows->deviation + (size_t)rows->n_rows * n_samples * n_signals, biases = 0.0;
+	for (int p = 0; p < n_samples; p++, deviation += n_signals) {
+		size_t sample = (size_t)row * n_samples + p;
+		double one = NAN;
+		if (values->variance) {
+			plain[p] = values->numerator[sample];
+			*deviation = sqrt(values->variance[sample]);
+		} else {
+			plain[p] = ratio_of_means(values->numerator + sample * n_signals,
+			                          values->denominator + sample * n_signals, n_signals, deviation, &one);
+			deviations_scale(deviation, n_signals);
+		}
+		y[p] = values->variance || n_signals == 1 ? plain[p] : plain[p] - one;
+		row_largest = isfinite(y[p]) ? fmax(row_largest, fmax(fabs(y[p]), fabs(plain[p]))) : INFINITY;
+		biases += one;
+	}
+	if (!isfinite(row_largest))
+		return false;
+	*largest = fmax(*largest, row_largest);
+	*bias += biases / n_samples;
+	return true;
+}
+
+/* The groups that rows fall into, no more of them than there are.
+ *
+ * Given    row       (those that count)    number in the design; held by what is returned
+ */
+struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values, const int64_t *row)
+{
+	struct pound_scatter scatter = {values->grouping, row};
+	const int groups = scatter.grouping.n ? (values->n_rows - 1) / scatter.grouping.run + 1 : 0;
+	scatter.grouping.n = groups < scatter.grouping.n ? groups : scatter.grouping.n;
+	return scatter;
+}
+
+/* The rows that have an output at every sample.
+ *
+ * Given    values      (n_rows x n_samples x n_signals)   numerators and denominators; a known variance: one signal
+ * Returns  rows        -                                  outputs, centred, and their noise
+ * Memory   scratch     (pound_rows_scratch)               held by rows
+ *
+ * A row with a failed run, or a denominator without a mean, is left out whole, as is one of which no ratio of all signals but
+ * one is known.
+ *
+ * Test     unit_valid_rows
+ */
+void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch)
+{
+	const int n_samples = pound_order_samples(values->order, values->n_inputs);
+	*rows = (struct pound_rows){.n_inputs = values->n_inputs,
+	                            .n_samples = n_samples,
+	                            .n_signals = values->n_signals,
+	                            .order = values->order,
+	                            .independent = values->variance,
+	                            .inputs = values->inputs,
+	                            .y = scratch};
+	rows->plain = rows->y + (size_t)values->n_rows * n_samples;
+	rows->deviation = rows->plain + (size_t)values->n_rows * n_samples;
+	rows->row = (int64_t *)(rows->deviation + (size_t)values->n_rows * n_samples * values->n_signals);
+	rows->scatter = pound_rows_scatter(values, rows->row);
+	double largest = 0.0, bias = 0.0;
+	for (int i = 0; i < values->n_rows; i++)
+		if (row_fill(rows, values, i, &largest, &bias))
+			rows->row[rows->n_rows++] = i;
+	rows->mean = centre(rows, rows->y);
+	rows->plain_mean = centre(rows, rows->plain);
+	rows->ratio_bias = bias / rows->n_rows;
+	// a sum of n_signals numbers and a quotient round to no more than this
+	double rounding = (values->n_signals + 2) * DBL_EPSILON * largest;
+	rows->variance_floor = rounding * rounding;
+}

@@ -1,0 +1,161 @@
+/* blocks.c - a study's items cut into blocks, and where the values of a run lie in them. */
+#include "engine/run/blocks.h"
+
+#include "engine/design/design.h"
+
+enum {
+	BLOCK_RUNS = 768,        /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
+	BLOCK_FLOORS = 96,       /* of them whose floors are followed, which takes longer */
+	BLOCK_SPECTRA = 8,       /* of them with whole spectra, which take longer still */
+	BLOCK_SAMPLES = 1 << 21, /* of its ground motions at most, unless one item has more: 16 MiB */
+};
+
+/* Items of all rows. */
+int pound_layout_items(const struct pound_campaign *campaign)
+{
+	return campaign->n_rows * campaign->n_signals;
+}
+
+static int block_runs(const struct pound_study *study)
+{
+	if (study->spectrum.n == 0)
+		return BLOCK_RUNS;
+	return study->kind == POUND_KIND_FLOOR_SPECTRUM ? BLOCK_SPECTRA : BLOCK_FLOORS;
+}
+
+static void size_add(struct pound_plan_size *block, struct pound_plan_size item, bool checked)
+{
+	int times = checked ? 2 : 1;
+	block->asks += times * item.asks;
+	block->motions += times * item.motions;
+	block->tasks += times * item.tasks;
+	block->samples += (checked ? 3 : 1) * item.samples;
+}
+
+/* Cuts the items into blocks.
+ *
+ * Given    campaign    -              what is run elsewhere is one block
+ * Returns  value       -              blocks
+ *          first       (blocks + 1)   the first item of each, and the end; NULL: not wanted
+ *          largest     -              at least as large as before, and as each block
+ *
+ * A block holds no more than lanes need; it ends where the design is looked at, and with a trial, as it has one solver.
+ *
+ * Test     unit_growth: a_block_ends_where_the_design_is_looked_at
+ */
+int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_plan_size *largest)
+{
+	const struct pound_campaign *c = campaign;
+	const bool sampled = c->study->kind == POUND_KIND_SENSITIVITY;
+	struct pound_plan_size block = {0}, item = {0};
+	int n_blocks = c->study->elsewhere, n_items = pound_layout_items(c), look = 0;
+	int look_end = sampled ? pound_design_rows(c->study, 0) : c->n_rows;
+	for (int i = 0; i < n_items && !c->study->elsewhere; i++) {
+		if (i % c->n_signals == 0)
+			item = pound_plan_size(c, i / c->n_signals);
+		bool full =
+		    block.asks + item.asks > block_runs(c->study) || block.samples + item.samples > BLOCK_SAMPLES;
+		bool solved = c->trials && i % c->n_signals == 0;
+		bool looked = i == look_end * c->n_signals;
+		if (looked)
+			look_end = pound_design_rows(c->study, ++look);
+		if (i == 0 || full || solved || looked) {
+			if (first)
+				first[n_blocks] = i;
+			n_blocks++;
+			block = (struct pound_plan_size){0};
+		}
+		size_add(&block, item, pound_campaign_checks(c, i) < pound_campaign_checks(c, i + 1));
+		largest->asks = block.asks > largest->asks ? block.asks : largest->asks;
+		largest->motions = block.motions > largest->motions ? block.motions : largest->motions;
+		largest->tasks = block.tasks > largest->tasks ? block.tasks : largest->tasks;
+		largest->samples = block.samples > largest->samples ? block.samples : largest->samples;
+	}
+	if (first)
+		first[n_blocks] = n_items;
+	return n_blocks;
+}
+
+/* Doubles of an item's measures. */
+static size_t item_doubles(const struct pound_layout *layout)
+{
+	return (size_t)layout->campaign->n_cells * (size_t)layout->campaign->n_samples *
+	       (size_t)layout->n_measures;
+}
+
+/* How many items before this one are kept, checks counted as items. */
+static size_t kept_before(const struct pound_layout *layout, int item)
+{
+	return (size_t)item + (size_t)pound_campaign_checks(layout->campaign, item);
+}
+
+/* Doubles of all blocks. */
+size_t pound_layout_doubles(const struct pound_layout *layout)
+{
+	return kept_before(layout, pound_layout_items(layout->campaign)) * item_doubles(layout) +
+	       (size_t)layout->n_blocks * (size_t)layout->n_counts;
+}
+
+/* The block that holds an item; of the end the number of blocks. */
+int pound_layout_block_of(const struct pound_layout *layout, int item)
+{
+	int low = 0, high = layout->n_blocks + 1;
+	while (high - low > 1) {
+		int middle = low + (high - low) / 2;
+		if (layout->first[middle] <= item)
+			low = middle;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+/* Pounding runs asked in a block. */
+int64_t pound_layout_block_runs(const struct pound_layout *layout, int block)
+{
+	return (int64_t)(layout->first[block + 1] - layout->first[block]) * layout->campaign->n_cells *
+	       layout->campaign->n_samples;
+}
+
+size_t pound_layout_block_doubles(const struct pound_layout *layout, int block)
+{
+	size_t n = kept_before(layout, layout->first[block + 1]) - kept_before(layout, layout->first[block]);
+	return n * item_doubles(layout) + (size_t)layout->n_counts;
+}
+
+/* Where a block's values begin. */
+double *pound_layout_block(const struct pound_layout *layout, int block)
+{
+	return layout->values + kept_before(layout, layout->first[block]) * item_doubles(layout) +
+	       (size_t)block * (size_t)layout->n_counts;
+}
+
+/* Where its counts of work begin. */
+const double *pound_layout_counts(const struct pound_layout *layout, int block)
+{
+	return pound_layout_block(layout, block) + pound_layout_block_doubles(layout, block) - layout->n_counts;
+}
+
+/* The measures of one run of the place-th item of a block. */
+static double *place_values(const struct pound_layout *layout, int block, int place, int cell, int sample)
+{
+	return pound_layout_block(layout, block) + (size_t)place * item_doubles(layout) +
+	       (size_t)(cell * layout->campaign->n_samples + sample) * (size_t)layout->n_measures;
+}
+
+/* The measures of one run. */
+double *pound_layout_run(const struct pound_layout *layout, int item, int cell, int sample)
+{
+	int block = pound_layout_block_of(layout, item);
+	return place_values(layout, block, item - layout->first[block], cell, sample);
+}
+
+/* The measures of the run that checks it. */
+const double *pound_layout_check(const struct pound_layout *layout, int item, int cell, int sample)
+{
+	const struct pound_campaign *c = layout->campaign;
+	int block = pound_layout_block_of(layout, item);
+	int first = layout->first[block], n = layout->first[block + 1] - first;
+	int place = n + pound_campaign_checks(c, item) - pound_campaign_checks(c, first);
+	return place_values(layout, block, place, cell, sample);
+}

@@ -1,0 +1,34 @@
+/* blocks.h - where the values of a study's runs lie.
+ *
+ * Items in order are cut into blocks.  A block holds the measures of its items' runs, by item, cell and sample, then
+ * those of its checks in the same order, then counts of its work. */
+#ifndef LAYOUT_H
+#define LAYOUT_H
+
+#include "engine/run/plan.h"
+
+struct pound_layout {
+	const struct pound_campaign *campaign;
+	int n_measures; /* doubles kept of a run */
+	int n_counts;   /* at the end of a block */
+	int n_blocks;
+	int *first;     /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
+	double *values; /* of all blocks  (pound_layout_doubles) */
+};
+
+int pound_layout_items(const struct pound_campaign *campaign);
+/* How many blocks; with first NULL they are only counted, and the largest found. */
+int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_plan_size *largest);
+size_t pound_layout_doubles(const struct pound_layout *layout);
+
+int pound_layout_block_of(const struct pound_layout *layout, int item);
+int64_t pound_layout_block_runs(const struct pound_layout *layout, int block);
+size_t pound_layout_block_doubles(const struct pound_layout *layout, int block);
+double *pound_layout_block(const struct pound_layout *layout, int block);
+const double *pound_layout_counts(const struct pound_layout *layout, int block);
+
+/* The measures of one run, and of the run that checks it. */
+double *pound_layout_run(const struct pound_layout *layout, int item, int cell, int sample);
+const double *pound_layout_check(const struct pound_layout *layout, int item, int cell, int sample);
+
+#endif

@@ -1,0 +1,410 @@
+/* floor_outputs.c - floor spectra as what a study asks for.
+ *
+ * 1. After the marches of a block each of its floors is traced once more, under the tasks that the plan found, and its
+ *    spectra are put beside the other measures of the run; equal floors are traced once.
+ * 2. A study of spectra reduces them to mean and percentiles over the signals; a sensitivity study has an output for each
+ *    frequency, and tells how it goes with the largest impulse.
+ * 3. A check's floor has half the sample step and oscillators of half the longest step. */
+#include "engine/run/floor_outputs.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics_double.h>
+
+#include "engine/floor/pulse_train.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* Longest step of an oscillator [rad], for results and for checks. */
+static const double RADIANS = 1.5, RADIANS_CHECK = 0.75;
+
+/* beside the spectra of a signal */
+enum { IMPULSE, PULSES, MEASURES };
+
+struct pound_ordinates {
+	struct pound_floor *floor;
+	double *psa[POUND_DRIVES]; /* (n) */
+	int *known;                /* ask that a task's ordinates were found for, plus one  (n_tasks) */
+	int n_tasks;
+};
+
+static bool has_spectra(const struct pound_study *study)
+{
+	return study->kind == POUND_KIND_FLOOR_SPECTRUM;
+}
+
+/* A run of a study of spectra has all of them; one of a sensitivity study the impulse beside its ordinates. */
+int pound_ordinate_measures(const struct pound_study *study)
+{
+	if (study->spectrum.n == 0)
+		return 0;
+	return has_spectra(study) ? POUND_N_SPECTRA * study->spectrum.n + MEASURES : 1;
+}
+
+/* ---- work space ---- */
+
+static size_t aligned(size_t bytes)
+{
+	return (bytes + 63) / 64 * 64;
+}
+
+size_t pound_ordinate_bytes(const struct pound_study *study, int n_tasks)
+{
+	int n = study->spectrum.n;
+	if (n == 0)
+		return 0;
+	return aligned(sizeof(struct pound_ordinates)) + aligned(pound_floor_bytes(n)) +
+	       POUND_DRIVES * aligned(sizeof(double) * (size_t)n) + aligned(sizeof(int) * (size_t)n_tasks);
+}
+
+struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_study *study, int n_tasks)
+{
+	struct pound_ordinates *ordinates = memory;
+	char *at = (char *)memory + aligned(sizeof *ordinates);
+	ordinates->floor = pound_floor_init(at, &study->spectrum);
+	at += aligned(pound_floor_bytes(study->spectrum.n));
+	for (int d = 0; d < POUND_DRIVES; d++, at += aligned(sizeof(double) * (size_t)study->spectrum.n))
+		ordinates->psa[d] = (double *)(void *)at;
+	ordinates->known = (int *)(void *)at;
+	ordinates->n_tasks = n_tasks;
+	return ordinates;
+}
+
+/* ---- blocks ---- */
+
+static void scaled(const double *psa, int n, int exponent, double *into)
+{
+	for (int k = 0; k < n; k++)
+		into[k] = ldexp(psa[k], exponent);
+}
+
+static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound_dirac *dirac, double *values)
+{
+	static double (*const rows[])(const struct pound_dirac *, double, double) = {
+	    [POUND_SPECTRUM_DIRAC_LINE] = pound_dirac_line,
+	    [POUND_SPECTRUM_DIRAC_TRAIN] = pound_dirac_train,
+	    [POUND_SPECTRUM_DIRAC_PEAKS] = pound_dirac_peaks,
+	};
+	for (int row = POUND_N_INTEGRATED; row < POUND_N_SPECTRA; row++)
+		for (int k = 0; k < spectrum->n; k++)
+			values[row * spectrum->n + k] =
+			    rows[row](dirac, 2 * PI * pound_spectrum_frequency(spectrum, k), spectrum->damping_ratio);
+}
+
+/* All spectra of one signal. */
+static enum pound_status spectra_fill(struct pound_ordinates *o, const struct pound_study *study,
+                                      const struct pound_plan_floor *plan, double radians, double *values,
+                                      const atomic_bool *stop)
+{
+	int n = study->spectrum.n;
+	struct pound_floor_answer answer = {.psa = {o->psa[0], o->psa[1]}};
+	struct pound_floor_ask ask = {.task = plan->free, .n_drives = 1, .radians = radians, .stop = stop};
+	enum pound_status status = pound_floor_spectra(o->floor, &ask, &answer);
+	if (status)
+		return status;
+	scaled(o->psa[POUND_DRIVE_FLOOR], n, plan->exponent, values + POUND_SPECTRUM_FREE * n);
+	memset(o->psa[POUND_DRIVE_PUSH], 0, sizeof(double) * (size_t)n);
+	ask = (struct pound_floor_ask){
+	    .task = plan->pounding, .n_drives = POUND_DRIVES, .radians = radians, .stop = stop};
+	if (plan->pounding)
+		status = pound_floor_spectra(o->floor, &ask, &answer);
+	scaled(o->psa[POUND_DRIVE_FLOOR], n, plan->exponent, values + POUND_SPECTRUM_POUNDING * n);
+	scaled(o->psa[POUND_DRIVE_PUSH], n, plan->exponent, values + POUND_SPECTRUM_IMPACT_ONLY * n);
+	const struct pound_oscillator *left = &plan->scene->oscillators[0];
+	int pulses = study->spectrum.pulses;
+	const struct pound_dirac dirac = {.speed = ldexp(answer.impulse_max, plan->exponent),
+	                                  .spacing = 0.5 / left->frequency_hz,
+	                                  .pulses = pulses ? pulses : (double)answer.contacts};
+	dirac_fill(&study->spectrum, &dirac, values);
+	values[POUND_N_SPECTRA * n + IMPULSE] = left->mass * dirac.speed;
+	values[POUND_N_SPECTRA * n + PULSES] = dirac.pulses;
+	return status;
+}
+
+/* The ordinates of one sample and signal, or those of the ask before it that has the same floor. */
+static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct pound_study *study,
+                                        const struct pound_plan_floor *plan, double radians,
+                                        const double *known, double *values, const atomic_bool *stop)
+{
+	struct pound_floor_answer answer = {.psa = {o->psa[0]}};
+	const struct pound_floor_ask ask = {.task = plan->pounding ? plan->pounding : plan->free,
+	                                    .n_drives = 1,
+	                                    .radians = radians,
+	                                    .stop = stop};
+	enum pound_status status = known ? POUND_OK : pound_floor_spectra(o->floor, &ask, &answer);
+	for (int output = 0; output < study->n_outputs; output++) {
+		int k = pound_study_ordinate(study, output);
+		if (k >= 0)
+			values[2 * output] =
+			    known ? known[2 * output] : ldexp(o->psa[POUND_DRIVE_FLOOR][k], plan->exponent);
+	}
+	return status;
+}
+
+static int measures_of(const struct pound_study *study)
+{
+	return (has_spectra(study) ? 0 : 2 * study->n_outputs) + pound_ordinate_measures(study);
+}
+
+/* Adds to a block that the plan has run what spectra its study asks for.
+ *
+ * Given    plan     its asks in the order of their values
+ *          values   (asks x measures)  of a failed run the last is NAN
+ *          stop     looked at throughout
+ * Returns  values   with spectra or ordinates; all NAN where a floor could not be followed
+ *          work     floors asked and traced, those of checks left out
+ * Status   POUND_STOPPED  stop was set
+ */
+enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct pound_study *study,
+                                       const struct pound_plan *plan, double *values, const atomic_bool *stop,
+                                       struct pound_work *work)
+{
+	int n_items, n_asks = pound_plan_asks(plan, &n_items), n = measures_of(study);
+	memset(o->known, 0, sizeof(int) * (size_t)o->n_tasks);
+	for (int a = 0; a < n_asks && !pound_stopped(stop); a++, values += n) {
+		const struct pound_plan_floor floor = pound_plan_floor(plan, a);
+		double radians = a < n_items ? RADIANS : RADIANS_CHECK;
+		assert(floor.march < o->n_tasks);
+		int before = has_spectra(study) ? 0 : o->known[floor.march];
+		const double *known = before ? values - (size_t)(a + 1 - before) * (size_t)n : NULL;
+		int floors = has_spectra(study) && floor.pounding ? 2 : 1;
+		work->floors.asked += a < n_items ? floors : 0;
+		if (isnan(values[n - 1]))
+			continue;
+		enum pound_status status = has_spectra(study)
+		                               ? spectra_fill(o, study, &floor, radians, values, stop)
+		                               : ordinates_fill(o, study, &floor, radians, known, values, stop);
+		work->floors.run += a < n_items && !known ? floors : 0;
+		o->known[floor.march] = a + 1;
+		// nobody has the rest of a run whose floor could not be followed, whoever asked for it first
+		const bool failed = status || (known && isnan(known[n - 1]));
+		for (int j = 0; j < n && failed; j++)
+			values[j] = NAN;
+	}
+	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
+}
+
+/* ---- over the signals ---- */
+
+void pound_ordinate_layout(const struct pound_study *study, double *numbers,
+                           struct pound_floor_result *result)
+{
+	int n = study->spectrum.n;
+	for (int row = 0; row < POUND_N_SPECTRA; row++, numbers += 4 * n)
+		result->spectra[row] =
+		    (struct pound_floor_spectrum){numbers, numbers + n, numbers + 2 * n, numbers + 3 * n};
+}
+
+size_t pound_ordinate_scratch(const struct pound_study *study, int n_rows)
+{
+	if (study->spectrum.n == 0)
+		return 0;
+	if (has_spectra(study))
+		return (size_t)study->scene.excitation.signals;
+	return 5 * (size_t)n_rows + pound_interval_scratch(n_rows, 5, 1);
+}
+
+/* A measure of all signals that have it, sorted; returns how many. */
+static int measure_sort(const struct pound_run *run, int measure, double *sorted)
+{
+	int n = 0;
+	for (int signal = 0; signal < run->campaign.n_signals; signal++) {
+		double value = pound_layout_run(&run->layout, signal, 0, 0)[measure];
+		if (!isnan(value))
+			sorted[n++] = value;
+	}
+	gsl_sort(sorted, 1, (size_t)n);
+	return n;
+}
+
+/* Largest relative difference of a measure between runs and their checks; NAN: there are none. */
+static double measure_error(const struct pound_run *run, int measure)
+{
+	double largest = NAN;
+	const struct pound_campaign *c = &run->campaign;
+	for (int signal = 0; signal < c->n_signals && c->check_every; signal += c->check_every) {
+		double once = pound_layout_run(&run->layout, signal, 0, 0)[measure];
+		double again = pound_layout_check(&run->layout, signal, 0, 0)[measure];
+		largest = fmax(largest, once == again ? 0 : fabs(again - once) / fabs(once));
+	}
+	return largest;
+}
+
+static double mean_of(const double *value, int n)
+{
+	double sum = 0;
+	for (int i = 0; i < n; i++)
+		sum += value[i];
+	return n ? sum / n : NAN;
+}
+
+/* Mean, 16 and 84 % over the signals of every spectrum, and what the checks say.
+ *
+ * Given    scratch  (pound_ordinate_scratch)
+ * Returns  result   quantiles linear between the order statistics
+ * Test     unit_floor_outputs
+ */
+void pound_ordinate_reduce(const struct pound_run *run, double *scratch, struct pound_floor_result *result)
+{
+	const struct pound_campaign *c = &run->campaign;
+	int n = c->study->spectrum.n;
+	result->signals = c->n_signals;
+	result->signals_checked = pound_campaign_checks(c, c->n_signals);
+	for (int row = 0; row < POUND_N_SPECTRA; row++)
+		for (int k = 0; k < n; k++) {
+			struct pound_floor_spectrum *into = &result->spectra[row];
+			int known = measure_sort(run, row * n + k, scratch);
+			into->mean[k] = mean_of(scratch, known);
+			into->p16[k] = known ? gsl_stats_quantile_from_sorted_data(scratch, 1, (size_t)known, 0.16) : NAN;
+			into->p84[k] = known ? gsl_stats_quantile_from_sorted_data(scratch, 1, (size_t)known, 0.84) : NAN;
+			if (row < POUND_N_INTEGRATED)
+				into->error[k] = measure_error(run, row * n + k);
+		}
+	int known = measure_sort(run, POUND_N_SPECTRA * n + IMPULSE, scratch);
+	result->impulse_mean = mean_of(scratch, known);
+	result->signals_failed = c->n_signals - known;
+	known = measure_sort(run, POUND_N_SPECTRA * n + PULSES, scratch);
+	result->pulses_mean = mean_of(scratch, known);
+}
+
+/* ---- beside the impulse ---- */
+
+/* x: ordinate, y: impulse, of samples A and B, both about their means  (n_rows x 2) each */
+struct pairs {
+	const double *x, *y;
+};
+
+static void pair_moments(const void *subject, int row, double *m)
+{
+	const struct pairs *pairs = subject;
+	for (int j = 0; j < 5; j++)
+		m[j] = 0;
+	for (int i = 2 * row; i < 2 * row + 2; i++) {
+		double x = pairs->x[i], y = pairs->y[i];
+		m[0] += 0.5 * x, m[1] += 0.5 * y;
+		m[2] += 0.5 * x * x, m[3] += 0.5 * y * y, m[4] += 0.5 * x * y;
+	}
+}
+
+static void pair_correlation(const void *subject, const double *m, double *value)
+{
+	(void)subject;
+	double xx = m[2] - m[0] * m[0], yy = m[3] - m[1] * m[1];
+	*value = xx > 0 && yy > 0 ? (m[4] - m[0] * m[1]) / sqrt(xx * yy) : NAN;
+}
+
+/* Means over the signals of one sample's ordinate and of its largest impulse per mass; false: a run failed. */
+static bool pair_of(const struct pound_run *run, int cell, int row, int sample, int output, double *x,
+                    double *y)
+{
+	int n_signals = run->campaign.n_signals;
+	*x = *y = 0;
+	for (int r = 0; r < n_signals; r++) {
+		const double *values = pound_layout_run(&run->layout, row * n_signals + r, cell, sample);
+		*x += values[2 * output] / n_signals;
+		*y += values[2 * run->campaign.study->n_outputs] / n_signals;
+	}
+	return isfinite(*x) && isfinite(*y);
+}
+
+static void centre(double *x, int n)
+{
+	double mean = mean_of(x, n);
+	for (int i = 0; i < n; i++)
+		x[i] -= mean;
+}
+
+/* Correlation, over the samples A and B, of an ordinate with the largest impulse over the left mass.
+ *
+ * Given    scratch  (pound_ordinate_scratch)
+ * Returns  value    Pearson's, with a 95 % interval by what the rows are; NAN: no ordinate, or one of them constant
+ * Test     unit_floor_outputs: the_correlation_is_that_of_the_samples, its_interval_is_by_groups_where_the_rows_have_some
+ */
+struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, int cell, int output,
+                                                 double *scratch)
+{
+	const struct pound_study *study = run->campaign.study;
+	struct pound_estimate correlation = {NAN, NAN, NAN};
+	if (pound_study_ordinate(study, output) < 0)
+		return correlation;
+	int n = 0;
+	double *x = scratch, *y = scratch + 2 * run->rows;
+	int64_t *rows = (int64_t *)(y + 2 * run->rows);
+	for (int row = 0; row < run->rows; row++) {
+		bool whole = pair_of(run, cell, row, 0, output, &x[2 * n], &y[2 * n]);
+		whole &= pair_of(run, cell, row, 1, output, &x[2 * n + 1], &y[2 * n + 1]);
+		rows[n] = row;
+		n += whole;
+	}
+	if (n < 2)
+		return correlation;
+	centre(x, 2 * n);
+	centre(y, 2 * n);
+	const struct pairs pairs = {x, y};
+	const struct pound_statistic statistic = {.n_moments = 5,
+	                                          .n_values = 1,
+	                                          .moments = pair_moments,
+	                                          .values = pair_correlation,
+	                                          .subject = &pairs};
+	const struct pound_sample_values values = pound_campaign_values(&run->campaign, run->rows, NULL);
+	const struct pound_scatter scatter = pound_rows_scatter(&values, rows);
+	pound_interval_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,
+	                         scratch + 5 * run->rows, &correlation);
+	return correlation;
+}
+
+/* ---- histories ---- */
+
+/* Where the instants of a signal go, in the units of the study. */
+struct telling {
+	pound_run_take *take;
+	void *into;
+	int signal, exponent;
+	double mass;
+};
+
+static void instant_tell(void *of, const struct pound_floor_instant *instant)
+{
+	const struct telling *to = of;
+	const struct pound_instant told = {.time = instant->time,
+	                                   .u = ldexp(instant->u, to->exponent),
+	                                   .v = ldexp(instant->v, to->exponent),
+	                                   .acceleration =
+	                                       ldexp(instant->acceleration, to->exponent) + 0.0, // no -0
+	                                   .force = 0 - to->mass * ldexp(instant->push, to->exponent)};
+	to->take(to->into, to->signal, &told);
+}
+
+static void response_leave(void *into, const struct pound_scene *scene, const struct pound_response *response,
+                           enum pound_status status)
+{
+	enum pound_status *first = into;
+	(void)scene, (void)response;
+	*first = *first ? *first : status;
+}
+
+/* Hands out the history of a signal.
+ *
+ * Given    run     of a study of spectra
+ * Returns  take    called in the order of time
+ * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ *          POUND_STOPPED             pound_run_stop was called
+ * Test     unit_floor_outputs: a_history_is_that_of_the_signal
+ */
+enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into)
+{
+	struct pound_work work = {0};
+	enum pound_status status = POUND_OK, left = POUND_OK;
+	assert(has_spectra(run->campaign.study));
+	status =
+	    pound_plan_run(run->plans[0], &run->campaign, signal, 1, run->stop, &work, response_leave, &left);
+	if (status || left)
+		return status ? status : left;
+	const struct pound_plan_floor floor = pound_plan_floor(run->plans[0], 0);
+	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
+	return pound_floor_history(run->floors[0]->floor, floor.pounding ? floor.pounding : floor.free, run->stop,
+	                           instant_tell, &to);
+}

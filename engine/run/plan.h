@@ -1,0 +1,79 @@
+/* plan.h - what a block of a study needs, each thing once.
+ *
+ * An item is one signal of one row of the design.  Its samples in every cell are asked for together, so whatever they
+ * have in common (ground motions, responses without pounding, whole runs) is found and run once. */
+#ifndef PLAN_H
+#define PLAN_H
+
+#include <stdatomic.h>
+
+#include "engine/exact/task.h"
+#include "engine/indices/indices.h"
+#include "engine/pound.h"
+
+/* the scenes of a study by cell, row of the design and sample of the row */
+struct pound_campaign {
+	const struct pound_study *study;
+	const double *design; /* inputs of A and B  (rows x 2 x n_inputs) */
+	int n_cells, n_rows, n_samples, n_signals;
+	int check_every; /* items 0, check_every, ... are run again to check the integration; 0: none */
+	bool trials;     /* the rows are one scene under the same signals, each with a solver of its own */
+};
+
+int pound_campaign_checks(const struct pound_campaign *campaign, int item); /* among the items before this */
+
+struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample);
+struct pound_solver pound_campaign_solver(const struct pound_campaign *campaign, int row);
+double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep);
+size_t pound_campaign_values_size(const struct pound_campaign *c,
+                                  int n_rows); /* numerators of an output in a cell */
+struct pound_sample_values pound_campaign_values(const struct pound_campaign *c, int n_rows,
+                                                 const double *columns);
+
+struct pound_plan_size {
+	int asks;        /* runs asked for at most */
+	int motions;     /* ground motions at most */
+	int tasks;       /* marches at most */
+	int64_t samples; /* of all ground motions at most */
+};
+
+/* Upper bounds for an item of one row, its check left out. */
+struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, int row);
+
+struct pound_plan; /* work space of one worker */
+
+size_t pound_plan_bytes(struct pound_plan_size size);
+struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size);
+
+/* Runs items [first, first + n), of one row where rows are trials, and hands every response to `take`, in the order of
+ * item, cell, sample, then those of the checks in the same order. */
+typedef void pound_plan_take(void *into, const struct pound_scene *scene,
+                             const struct pound_response *response, enum pound_status status);
+enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,
+                                 int n, const atomic_bool *stop, struct pound_work *work,
+                                 pound_plan_take *take, void *into);
+
+/* After pound_plan_run, for its items in turn where each has one sample: the displacement of the left body at a sample of
+ * the ground motion, by running its march that far; NAN: it failed. */
+enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct pound_solver *solver,
+                                          int item, int sample, const atomic_bool *stop, double *u);
+
+/* After pound_plan_run: its asks, of which the first n_items are those of the items and the others those of checks. */
+int pound_plan_asks(const struct pound_plan *plan, int *n_items);
+
+/* The floor of an ask; its motions are times 2^-exponent. */
+struct pound_plan_floor {
+	const struct pound_scene *scene;
+	const struct pound_march_task *pounding, *free; /* pounding NULL: the response without it is the answer */
+	int march;                                      /* number of the task that is the answer */
+	int exponent;
+};
+
+struct pound_plan_floor pound_plan_floor(const struct pound_plan *plan, int ask);
+
+/* After pound_plan_run, for taking the time: its marches with pounding once more, all its marches if there is none.
+ * n: how many. */
+enum pound_status pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver,
+                                    const atomic_bool *stop, int *n);
+
+#endif

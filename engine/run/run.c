@@ -1,0 +1,613 @@
+/* run.c - a study being computed: its memory, its blocks, its reductions.
+ *
+ * 1. create lays out everything: the design, the blocks (ranges of items, see blocks.h), a plan for each worker;
+ * 2. a block writes the measures of its runs into its own slice of `values`;
+ * 3. a reduction turns the measures of one cell and output into its place of the result. */
+#include <assert.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/design/design.h"
+#include "engine/ground/excitation.h"
+#include "engine/indices/error_budget.h"
+#include "engine/indices/indices.h"
+#include "engine/run/floor_outputs.h"
+#include "engine/run/outputs.h"
+#include "engine/run/run.h"
+#include "engine/solver/convergence.h"
+
+enum {
+	MEASURES = sizeof(struct pound_response) / sizeof(double),
+	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
+	CHECK_EVERY = 100, /* items between two checked ones */
+	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
+	COLUMNS = POUND_N_INDEXES + POUND_N_NAMED + POUND_CURVE, /* of estimates for each input */
+	TRIAL_MEASURES = sizeof(struct pound_trial_run) / sizeof(double),
+};
+
+/* CPU time that a run is timed over at least [s]. */
+static const double CLOCK_LEAST = 0.02;
+
+/* ---- life ---- */
+
+static struct pound_campaign campaign_of(const struct pound_study *study)
+{
+	bool sampled = study->kind == POUND_KIND_SENSITIVITY, trials = study->kind == POUND_KIND_CONVERGENCE;
+	struct pound_campaign c = {.study = study,
+	                           .n_cells = 1,
+	                           .n_rows = sampled  ? pound_design_rows_most(study)
+	                                     : trials ? pound_convergence_trials(study)
+	                                              : 1,
+	                           .n_samples = sampled ? pound_design_samples(study) : 1,
+	                           .n_signals = study->elsewhere ? 1 : study->scene.excitation.signals,
+	                           .trials = trials};
+	for (int s = 0; s < study->n_sweeps; s++)
+		c.n_cells *= study->sweeps[s].n_values;
+	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples,
+	    every = pound_layout_items(&c) / checked_min;
+	if ((sampled && !study->elsewhere) || study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		c.check_every = every > CHECK_EVERY ? CHECK_EVERY : every > 1 ? every : 1;
+	return c;
+}
+
+/* Runs of a cell that are checked. */
+static int checks_of(const struct pound_campaign *c)
+{
+	return pound_campaign_checks(c, pound_layout_items(c)) * c->n_samples;
+}
+
+static size_t checks_size(const struct pound_campaign *c)
+{
+	return (size_t)checks_of(c) * (sizeof(struct pound_check) / sizeof(double));
+}
+
+/* Doubles that a worker keeps from one reduction to the next, at the start of its scratch. */
+static size_t kept_size(const struct pound_campaign *c)
+{
+	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
+	return pound_chaos_kept_size(&shape);
+}
+
+/* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indexes and then their
+ * accuracy need. */
+static size_t reduction_size(const struct pound_campaign *c)
+{
+	if (c->study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		return pound_ordinate_scratch(c->study, c->n_rows);
+	if (c->study->n_outputs == 0)
+		return 0;
+	if (c->trials)
+		return (size_t)pound_layout_items(c) * TRIAL_MEASURES;
+	if (c->study->kind != POUND_KIND_SENSITIVITY)
+		return 0;
+	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
+	const struct pound_sampling wanted = {.estimator = c->study->design.estimator,
+	                                      .ratios = c->study->n_ratios ? c->study : NULL};
+	size_t variants = pound_variants_scratch(&shape, &wanted);
+	size_t accuracy = (size_t)checks_of(c);
+	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
+	size_t most = variants > accuracy ? variants : accuracy;
+	return kept_size(c) + 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
+	       (most > ordinates ? most : ordinates);
+}
+
+/* Allocates work space, 64-byte aligned; NULL: out of memory.  It is not cleared, as a small study touches little of it: for
+ * those alone who read nothing that they have not written. */
+static void *room(size_t bytes)
+{
+	return aligned_alloc(64, (bytes / 64 + 1) * 64);
+}
+
+/* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
+static void *piece(size_t bytes)
+{
+	void *memory = room(bytes);
+	return memory ? memset(memory, 0, bytes) : NULL;
+}
+
+static bool workers_create(struct pound_run *run, int n_workers, struct pound_plan_size largest)
+{
+	run->plans = piece(sizeof *run->plans * (size_t)(n_workers + 1)); // ends with NULL
+	run->scratch = piece(sizeof *run->scratch * (size_t)(n_workers + 1));
+	run->floors = piece(sizeof *run->floors * (size_t)(n_workers + 1));
+	if (!run->plans || !run->scratch || !run->floors)
+		return false;
+	size_t spectra = pound_ordinate_bytes(run->campaign.study, largest.tasks);
+	for (int w = 0; w < n_workers; w++) {
+		void *memory = room(pound_plan_bytes(largest));
+		run->plans[w] = memory ? pound_plan_init(memory, largest) : NULL;
+		// cleared: it begins with what pound_chaos_kept_size() asks zeros for
+		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
+		memory = spectra ? room(spectra) : NULL;
+		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;
+		if (!run->plans[w] || !run->scratch[w] || (spectra && !memory))
+			return false;
+	}
+	return true;
+}
+
+static bool result_create(struct pound_run *run)
+{
+	const struct pound_campaign *c = &run->campaign;
+	const struct pound_study *study = c->study;
+	size_t n_cells = (size_t)c->n_cells, n_outputs = (size_t)study->n_outputs;
+	run->result.n_cells = c->n_cells;
+	run->result.cells = piece(sizeof *run->result.cells * n_cells);
+	run->responses = piece(sizeof *run->responses * n_cells * (size_t)c->n_signals);
+	run->indices = piece(sizeof *run->indices * n_cells * n_outputs);
+	run->estimates = piece(sizeof *run->estimates * n_cells * n_outputs * COLUMNS * (size_t)study->n_inputs);
+	run->result.n_trials = c->trials ? c->n_rows : 0;
+	run->result.trials = piece(sizeof *run->result.trials * (size_t)run->result.n_trials);
+	run->spectra = piece(sizeof *run->spectra * POUND_N_SPECTRA * 4 * (size_t)study->spectrum.n);
+	run->result.looks = piece(sizeof *run->result.looks * (size_t)pound_run_looks_most(study));
+	if (!run->result.cells || !run->spectra || !run->responses || !run->indices || !run->estimates ||
+	    !run->result.trials || !run->result.looks)
+		return false;
+	pound_ordinate_layout(study, run->spectra, &run->result.floor);
+	for (int cell = 0; cell < c->n_cells; cell++) {
+		struct pound_cell *into = &run->result.cells[cell];
+		for (int s = 0; s < study->n_sweeps; s++)
+			into->sweep[s] = pound_campaign_sweep(c, cell, s);
+		into->n_signals = c->n_signals;
+		into->signals = &run->responses[cell * c->n_signals];
+		into->indices = &run->indices[cell * study->n_outputs];
+		for (int o = 0; o < study->n_outputs; o++) {
+			size_t first = ((size_t)cell * n_outputs + (size_t)o) * COLUMNS;
+			struct pound_estimate *column = &run->estimates[first * (size_t)study->n_inputs];
+			for (int k = 0; k < POUND_N_INDEXES; k++, column += study->n_inputs)
+				into->indices[o].index[k] = column;
+			for (int k = 0; k < POUND_N_NAMED; k++, column += study->n_inputs)
+				into->indices[o].named[k] = column;
+			into->indices[o].curves = (struct pound_curve *)column;
+		}
+	}
+	return true;
+}
+
+/* A study laid out to be computed by n_workers threads; allocates all it will ever need. */
+struct pound_run *pound_run_create(const struct pound_study *study, int n_workers)
+{
+	assert(n_workers >= 1);
+	struct pound_run *run = piece(sizeof *run);
+	if (!run)
+		return NULL;
+	run->stop = &run->stopped;
+	run->campaign = campaign_of(study);
+	run->rows = study->kind == POUND_KIND_SENSITIVITY ? pound_design_rows(study, 0) : run->campaign.n_rows;
+	run->layout =
+	    (struct pound_layout){.campaign = &run->campaign,
+	                          .n_measures = study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
+	                                        : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
+	                                        : study->kind == POUND_KIND_RESPONSE    ? (int)MEASURES
+	                                                                                : 0,
+	                          .n_counts = COUNTS};
+	run->layout.n_measures += pound_ordinate_measures(study);
+	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
+	double *design = piece(sizeof(double) * n_design);
+	run->campaign.design = design;
+	run->u = piece(sizeof(double) * n_design);
+	if (!design || !run->u)
+		goto fail;
+	if (study->kind == POUND_KIND_SENSITIVITY) {
+		pound_design_probabilities(study, run->u);
+		pound_design_fill(study, design);
+	}
+	struct pound_plan_size largest = {0};
+	run->layout.n_blocks = pound_layout_cut(&run->campaign, NULL, &largest);
+	run->layout.first = piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
+	if (!run->layout.first)
+		goto fail;
+	pound_layout_cut(&run->campaign, run->layout.first, &largest);
+	run->layout.values = piece(sizeof(double) * pound_layout_doubles(&run->layout));
+	if (!run->layout.values || !workers_create(run, n_workers, largest) || !result_create(run))
+		goto fail;
+	return run;
+fail:
+	pound_run_free(run);
+	return NULL;
+}
+
+void pound_run_free(struct pound_run *run)
+{
+	if (!run)
+		return;
+	for (int w = 0; run->plans && run->plans[w]; w++)
+		free(run->plans[w]);
+	for (int w = 0; run->scratch && run->scratch[w]; w++)
+		free(run->scratch[w]);
+	for (int w = 0; run->floors && run->floors[w]; w++)
+		free(run->floors[w]);
+	void *const pieces[] = {(void *)run->campaign.design,
+	                        run->u,
+	                        run->layout.first,
+	                        run->layout.values,
+	                        run->plans,
+	                        run->scratch,
+	                        run->floors,
+	                        run->spectra,
+	                        run->result.cells,
+	                        run->result.trials,
+	                        run->result.looks,
+	                        run->responses,
+	                        run->indices,
+	                        run->estimates};
+	for (size_t j = 0; j < sizeof pieces / sizeof pieces[0]; j++)
+		free(pieces[j]);
+	free(run);
+}
+
+void pound_run_stop(struct pound_run *run)
+{
+	atomic_store(&run->stopped, true);
+}
+
+void pound_run_stop_by(struct pound_run *run, const atomic_bool *stop)
+{
+	run->stop = stop;
+}
+
+bool pound_run_stopped(const struct pound_run *run)
+{
+	return pound_stopped(run->stop);
+}
+
+void pound_run_clock(struct pound_run *run, double (*cpu)(void))
+{
+	run->cpu = cpu;
+}
+
+/* ---- blocks ---- */
+
+/* Blocks of the rows in hand. */
+static int blocks_in_hand(const struct pound_run *run)
+{
+	return run->rows ? pound_layout_block_of(&run->layout, run->rows * run->campaign.n_signals - 1) + 1 : 0;
+}
+
+int pound_run_blocks(const struct pound_run *run)
+{
+	return run->campaign.study->elsewhere ? 0 : blocks_in_hand(run);
+}
+
+int pound_run_blocks_most(const struct pound_run *run)
+{
+	return run->layout.n_blocks;
+}
+
+int64_t pound_run_block_runs(const struct pound_run *run, int block)
+{
+	return pound_layout_block_runs(&run->layout, block);
+}
+
+size_t pound_run_block_size(const struct pound_run *run, int block)
+{
+	return pound_layout_block_doubles(&run->layout, block);
+}
+
+const double *pound_run_block_values(const struct pound_run *run, int block)
+{
+	return pound_layout_block(&run->layout, block);
+}
+
+void pound_run_block_restore(struct pound_run *run, int block, const double *values)
+{
+	memcpy(pound_layout_block(&run->layout, block), values,
+	       sizeof(double) * pound_run_block_size(run, block));
+}
+
+struct slice {
+	const struct pound_study *study;
+	double *at; /* the next run's measures */
+};
+
+/* Keeps of a response what the study's outputs need; NAN for a failed run. */
+static void response_keep(void *into, const struct pound_scene *scene, const struct pound_response *response,
+                          enum pound_status status)
+{
+	struct slice *slice = into;
+	if (slice->study->kind == POUND_KIND_CONVERGENCE) {
+		struct pound_trial_run *trial = (struct pound_trial_run *)slice->at;
+		*trial = (struct pound_trial_run){.displacement = status ? NAN : response->displacement_max_1,
+		                                  .demand = status ? NAN : response->demand_1,
+		                                  .impulse = status ? NAN : response->impulse_max,
+		                                  .cpu = NAN};
+		slice->at += TRIAL_MEASURES;
+		return;
+	}
+	if (slice->study->kind == POUND_KIND_RESPONSE) {
+		memcpy(slice->at, response, sizeof *response);
+		for (size_t j = 0; j < MEASURES && status; j++)
+			slice->at[j] = NAN;
+		slice->at += MEASURES;
+		return;
+	}
+	for (int o = 0; o < slice->study->n_outputs; o++, slice->at += 2) {
+		slice->at[0] = slice->at[1] = 0;
+		if (pound_output_applies(slice->study->outputs[o], scene))
+			pound_outputs_measure(slice->study->outputs[o], scene, response, &slice->at[0], &slice->at[1]);
+		if (status)
+			slice->at[0] = slice->at[1] = NAN;
+	}
+	int n = pound_ordinate_measures(slice->study);
+	for (int j = 0; j < n; j++) // spectra come later
+		*slice->at++ = status ? NAN : response->impulse_max / scene->oscillators[0].mass;
+}
+
+/* CPU time of a run in the plan's last block, NAN without a clock: as many rounds as can be told from its ticks. */
+static enum pound_status run_time(const struct pound_run *run, struct pound_plan *plan,
+                                  const struct pound_solver *solver, double *cpu)
+{
+	*cpu = NAN;
+	if (!run->cpu)
+		return POUND_OK;
+	double start = run->cpu(), now;
+	int n = 0, more;
+	do {
+		enum pound_status status = pound_plan_repeat(plan, solver, run->stop, &more);
+		if (status)
+			return status;
+		n += more;
+		now = run->cpu();
+	} while (now - start < CLOCK_LEAST && n > 0);
+	if (n > 0)
+		*cpu = (now - start) / n;
+	return POUND_OK;
+}
+
+/* Adds to a block of one trial the histories and the time of a run. */
+static enum pound_status trial_block(const struct pound_run *run, struct pound_plan *plan, int first, int n,
+                                     struct pound_trial_run *runs)
+{
+	const struct pound_campaign *c = &run->campaign;
+	const struct pound_solver solver = pound_campaign_solver(c, first / c->n_signals);
+	int samples[POUND_HISTORY], n_times = pound_convergence_times(c->study, samples);
+	enum pound_status status = POUND_OK;
+	for (int item = 0; item < n; item++) {
+		double *history = runs[item].history;
+		for (int k = 0; k < n_times && !status; k++) {
+			if (k > 0 && isnan(history[k - 1]))
+				history[k] = NAN; // it came to its end before that
+			else
+				status = pound_plan_displacement(plan, &solver, item, samples[k], run->stop, &history[k]);
+		}
+	}
+	double cpu = NAN;
+	if (!status)
+		status = run_time(run, plan, &solver, &cpu);
+	for (int item = 0; item < n; item++)
+		runs[item].cpu = cpu;
+	return status;
+}
+
+/* Computes a block into its slice of the values.
+ *
+ * Status   POUND_STOPPED  pound_run_stop was called; the block's values are not to be used
+ *          POUND_NOMEM    there was no memory for a run, so too; it may be tried again
+ */
+enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
+{
+	struct slice slice = {.study = run->campaign.study, .at = pound_layout_block(&run->layout, block)};
+	struct pound_work work = {0};
+	int first = run->layout.first[block], n = run->layout.first[block + 1] - first;
+	enum pound_status status =
+	    pound_plan_run(run->plans[worker], &run->campaign, first, n, run->stop, &work, response_keep, &slice);
+	if (!status && run->campaign.trials)
+		status = trial_block(run, run->plans[worker], first, n,
+		                     (struct pound_trial_run *)pound_layout_block(&run->layout, block));
+	if (!status && run->floors[worker])
+		status = pound_ordinate_block(run->floors[worker], run->campaign.study, run->plans[worker],
+		                              pound_layout_block(&run->layout, block), run->stop, &work);
+	if (status)
+		return status;
+	const int64_t *counts = (const int64_t *)&work;
+	for (int j = 0; j < (int)COUNTS; j++)
+		*slice.at++ = (double)counts[j];
+	return POUND_OK;
+}
+
+/* ---- reductions ---- */
+
+static bool has_indices(const struct pound_run *run)
+{
+	return run->campaign.study->kind == POUND_KIND_SENSITIVITY;
+}
+
+/* One for each output of each cell; one for all trials, one for all spectra. */
+int pound_run_reductions(const struct pound_run *run)
+{
+	if (run->campaign.trials || run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		return 1;
+	return run->campaign.n_cells * run->campaign.study->n_outputs;
+}
+
+/* The measures of an output in a cell as columns (rows x samples x signals); returns the failed runs. */
+static int64_t columns_fill(const struct pound_run *run, int cell, int output, double *numerator,
+                            double *denominator)
+{
+	const struct pound_campaign *c = &run->campaign;
+	int64_t failed = 0;
+	for (int row = 0; row < run->rows; row++)
+		for (int signal = 0; signal < c->n_signals; signal++)
+			for (int sample = 0; sample < c->n_samples; sample++) {
+				const double *values =
+				    pound_layout_run(&run->layout, row * c->n_signals + signal, cell, sample) + 2 * output;
+				size_t at = ((size_t)row * (size_t)c->n_samples + (size_t)sample) * (size_t)c->n_signals +
+				            (size_t)signal;
+				numerator[at] = values[0];
+				denominator[at] = values[1];
+				failed += isnan(values[0]) || (isnan(values[1]) && !c->study->elsewhere);
+			}
+	return failed;
+}
+
+/* The runs of an output in a cell that were made twice; returns how many. */
+static int checks_fill(const struct pound_run *run, int cell, int output, struct pound_check *checks)
+{
+	const struct pound_campaign *c = &run->campaign;
+	int n = 0;
+	for (int item = 0; item < run->rows * c->n_signals && c->check_every; item += c->check_every)
+		for (int sample = 0; sample < c->n_samples; sample++) {
+			const double *run_once = pound_layout_run(&run->layout, item, cell, sample) + 2 * output;
+			const double *again = pound_layout_check(&run->layout, item, cell, sample) + 2 * output;
+			checks[n++] = (struct pound_check){.row = item / c->n_signals,
+			                                   .sample = sample,
+			                                   .numerator = {run_once[0], again[0]},
+			                                   .denominator = {run_once[1], again[1]}};
+		}
+	return n;
+}
+
+static bool any_known(const double *variance, size_t n)
+{
+	for (size_t k = 0; k < n; k++)
+		if (!isnan(variance[k]))
+			return true;
+	return false;
+}
+
+static void indices_reduce(struct pound_run *run, int cell, int output, double *kept)
+{
+	const struct pound_campaign *c = &run->campaign;
+	double *scratch = kept + kept_size(c);
+	const struct pound_sample_values values = pound_campaign_values(c, run->rows, scratch);
+	const size_t n = pound_campaign_values_size(c, run->rows);
+	const bool elsewhere = c->study->elsewhere;
+	struct pound_cell *into = &run->result.cells[cell];
+	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
+	const struct pound_sampling sampling = {
+	    .u = run->u,
+	    .random =
+	        elsewhere ? any_known(values.variance, n) : pound_excitation_random(&c->study->scene.excitation),
+	    .fresh_signals = !c->study->design.common_signals,
+	    .n_resamples = c->study->design.resamples,
+	    .quasi_random = pound_design_quasi_random(c->study->design.method),
+	    .estimator = c->study->design.estimator,
+	    .kept = kept,
+	    .ratios = c->study->n_ratios ? c->study : NULL};
+	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
+	checks.n = checks_fill(run, cell, output, checks.check);
+	double *rest = scratch + 2 * n + checks_size(c);
+	int dropped =
+	    pound_variants_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
+	pound_accuracy_estimate(&values, checks, rest, &into->indices[output]);
+	into->indices[output].impulse_correlation = pound_ordinate_correlation(run, cell, output, rest);
+	if (output == 0) {
+		into->runs_failed = failed;
+		into->rows_dropped = dropped;
+	}
+}
+
+static bool failed(const struct pound_response *response)
+{
+	return isnan(response->displacement_max_1);
+}
+
+/* Ratio of means over the signals whose run has a result. */
+static void responses_reduce(struct pound_run *run, int cell, int output)
+{
+	const struct pound_campaign *c = &run->campaign;
+	struct pound_cell *into = &run->result.cells[cell];
+	struct pound_scene scene = pound_campaign_scene(c, cell, 0, 0);
+	int row = c->study->outputs[output];
+	double above = 0, below = 0;
+	for (int signal = 0; signal < c->n_signals; signal++) {
+		struct pound_response response;
+		memcpy(&response, pound_layout_run(&run->layout, signal, cell, 0), sizeof response);
+		if (failed(&response))
+			continue;
+		double numerator = NAN, denominator = NAN;
+		if (pound_output_applies(row, &scene))
+			pound_outputs_measure(row, &scene, &response, &numerator, &denominator);
+		above += numerator;
+		below += denominator;
+	}
+	into->outputs[output] = below > 0 ? above / below : NAN;
+}
+
+static void trials_reduce(struct pound_run *run, double *scratch)
+{
+	int n = pound_layout_items(&run->campaign);
+	for (int item = 0; item < n; item++)
+		memcpy(scratch + (size_t)item * TRIAL_MEASURES, pound_layout_run(&run->layout, item, 0, 0),
+		       sizeof(double) * TRIAL_MEASURES);
+	pound_convergence_reduce(run->campaign.study, (const struct pound_trial_run *)scratch,
+	                         run->result.trials);
+	run->result.cells[0].runs_failed = 0;
+	for (int j = 0; j < run->result.n_trials; j++)
+		run->result.cells[0].runs_failed += run->result.trials[j].runs_failed;
+}
+
+/* The work of the blocks in hand. */
+static struct pound_work work_of(const struct pound_run *run)
+{
+	struct pound_work work = {0};
+	int64_t *counts = (int64_t *)&work;
+	for (int b = 0; b < blocks_in_hand(run); b++) {
+		const double *counted = pound_layout_counts(&run->layout, b);
+		for (int j = 0; j < (int)COUNTS; j++)
+			counts[j] += (int64_t)counted[j];
+	}
+	return work;
+}
+
+/* The status of most runs where none has a result, POUND_OK where one has. */
+static enum pound_status nothing_left(const struct pound_run *run)
+{
+	struct pound_work work = work_of(run);
+	int64_t failed_runs = 0;
+	int most = 0;
+	for (int k = 0; k < POUND_N_FAILURES; k++) {
+		failed_runs += work.failed[k];
+		most = work.failed[k] > work.failed[most] ? k : most;
+	}
+	return run->campaign.study->elsewhere || failed_runs < work.pounding_runs.asked
+	           ? POUND_OK
+	           : (enum pound_status)(POUND_CHATTER - most);
+}
+
+/* Computes one output of one cell, once all blocks are done; the first also looks whether there is anything to reduce.
+ *
+ * Status   POUND_STOPPED  pound_run_stop was called
+ *          that of runs   no run of the study has a result, most of them for this reason
+ * Test     unit_status: a_study_without_a_result_ends_with_the_reason_of_its_runs
+ */
+enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker)
+{
+	int n_outputs = run->campaign.study->n_outputs;
+	if (pound_stopped(run->stop))
+		return POUND_STOPPED;
+	enum pound_status status = reduction == 0 ? nothing_left(run) : POUND_OK;
+	if (status)
+		return status;
+	if (run->campaign.trials)
+		trials_reduce(run, run->scratch[worker]);
+	else if (run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		pound_ordinate_reduce(run, run->scratch[worker], &run->result.floor);
+	else if (has_indices(run))
+		indices_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
+	else
+		responses_reduce(run, reduction / n_outputs, reduction % n_outputs);
+	return POUND_OK;
+}
+
+/* The result, once all reductions are done; owned by run. */
+const struct pound_result *pound_run_result(struct pound_run *run)
+{
+	const struct pound_campaign *c = &run->campaign;
+	run->result.work = work_of(run);
+	run->result.rows = run->rows;
+	for (int cell = 0; cell < c->n_cells; cell++)
+		run->result.cells[cell].runs = (int64_t)run->rows * c->n_signals * c->n_samples;
+	for (int cell = 0; cell < c->n_cells && c->study->kind == POUND_KIND_RESPONSE; cell++) {
+		struct pound_cell *into = &run->result.cells[cell];
+		into->runs_failed = 0;
+		for (int signal = 0; signal < c->n_signals; signal++) {
+			memcpy(&into->signals[signal], pound_layout_run(&run->layout, signal, cell, 0),
+			       sizeof into->signals[signal]);
+			into->runs_failed += failed(&into->signals[signal]);
+		}
+	}
+	return &run->result;
+}

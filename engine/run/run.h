@@ -1,0 +1,29 @@
+/* run.h - the inside of a study being computed. */
+#ifndef RUN_H
+#define RUN_H
+
+#include <stdatomic.h>
+
+#include "engine/run/blocks.h"
+
+struct pound_run {
+	struct pound_campaign campaign;
+	struct pound_layout layout;
+	int rows;                        /* in hand: of the look, or taken for an intermediate result */
+	struct pound_plan **plans;       /* (n_workers) */
+	double **scratch;                /* of reductions  (n_workers) */
+	struct pound_ordinates **floors; /* (n_workers); NULL each: no spectra are asked */
+	struct pound_result result;
+	double *u;                        /* the design as probabilities  (rows x 2 x n_inputs) */
+	struct pound_estimate *estimates; /* columns  (n_cells x n_outputs x columns x n_inputs) */
+	struct pound_indices *indices;    /* (n_cells x n_outputs) */
+	struct pound_response *responses; /* (n_cells x n_signals) */
+	double *spectra;                  /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
+	double (*cpu)(void);              /* clock of the calling thread [s]; NULL: none */
+	atomic_bool stopped;              /* by pound_run_stop ... */
+	const atomic_bool *stop;          /* ... which this is, or what the caller has */
+};
+
+int pound_run_looks_most(const struct pound_study *study); /* 0: the design does not grow */
+
+#endif

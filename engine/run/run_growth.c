@@ -1,0 +1,106 @@
+/* run_growth.c - a design that grows until every interval that was asked for is narrow, and results of its first rows.
+ *
+ * 1. After each look's reductions the widest interval is sought, over all cells, outputs and inputs, of S1 and ST.
+ * 2. It alone decides; growing further waits for it.
+ *
+ * Looking again and again at a design of 10 batches or more, or of nets that double, leaves the intervals at the stop the
+ * coverage they have anyway: tests/unit/run/unit_growth.c, and make statistics at length. */
+#include "engine/run/run.h"
+
+#include <assert.h>
+#include <math.h>
+
+/* Looks at the intervals when the design grows to its end. */
+int pound_run_looks_most(const struct pound_study *study)
+{
+	int looks = 0, most = pound_design_rows_most(study);
+	if (study->kind != POUND_KIND_SENSITIVITY || !(study->design.until.half_width > 0))
+		return 0;
+	while (pound_design_rows(study, looks++) < most)
+		;
+	return looks;
+}
+
+static void widen(struct pound_look *widest, int cell, int output, const struct pound_indices *indices,
+                  int n_inputs)
+{
+	static const enum pound_index asked[] = {POUND_S1, POUND_ST};
+	for (int k = 0; k < 2; k++)
+		for (int j = 0; j < n_inputs; j++) {
+			const struct pound_estimate *e = &indices->index[asked[k]][j];
+			double width = e->high - e->low, half = isnan(width) ? INFINITY : 0.5 * width;
+			if (half > widest->half_width)
+				*widest = (struct pound_look){
+				    .half_width = half, .cell = cell, .output = output, .input = j, .index = asked[k]};
+		}
+}
+
+/* The widest interval of an S1 or ST.
+ *
+ * Given    cells       (of the study)    reduced
+ * Returns  value       -                 all but the rows; of several as wide the first
+ *
+ * An output that is the same for every row has no indexes, and none is waited for; an index without an interval for any
+ * other reason is as wide as can be.  -1: there is none to wait for.
+ *
+ * Test     unit_growth: a_design_stops_at_the_first_look_that_finds_every_interval_narrow
+ */
+static struct pound_look widest_of(const struct pound_campaign *campaign, const struct pound_cell *cells)
+{
+	const struct pound_study *study = campaign->study;
+	struct pound_look widest = {.half_width = -1};
+	for (int cell = 0; cell < campaign->n_cells; cell++) {
+		const struct pound_scene scene = pound_campaign_scene(campaign, cell, 0, 0);
+		for (int output = 0; output < study->n_outputs; output++) {
+			const struct pound_indices *indices = &cells[cell].indices[output];
+			bool constant = indices->notes >> POUND_NOTE_CONSTANT & 1;
+			if (!constant && (study->elsewhere || pound_output_applies(study->outputs[output], &scene)))
+				widen(&widest, cell, output, indices, study->n_inputs);
+		}
+	}
+	return widest;
+}
+
+/* Looks at the intervals, once all reductions are done.
+ *
+ * Returns  value   the design grows: there are more blocks, and all reductions are to be made again
+ * Test     unit_growth: a_design_stops_at_the_first_look_that_finds_every_interval_narrow
+ */
+bool pound_run_grow(struct pound_run *run)
+{
+	const struct pound_study *study = run->campaign.study;
+	if (!(study->design.until.half_width > 0))
+		return false;
+	struct pound_look *look = &run->result.looks[run->result.n_looks++];
+	*look = widest_of(&run->campaign, run->result.cells);
+	look->rows = run->rows;
+	run->rows = pound_design_rows(study, run->result.n_looks);
+	bool grows = look->half_width > study->design.until.half_width && run->rows > look->rows;
+	run->rows = grows ? run->rows : look->rows;
+	return grows;
+}
+
+/* How many rows at the start of the design are complete.
+ *
+ * Given    done    (pound_run_blocks_most)    blocks that were run or restored
+ * Test     unit_growth: an_intermediate_result_has_whole_rows_only
+ */
+int pound_run_rows_done(const struct pound_run *run, const bool *done)
+{
+	int blocks = 0;
+	while (blocks < run->layout.n_blocks && done[blocks])
+		blocks++;
+	return run->layout.first[blocks] / run->campaign.n_signals;
+}
+
+/* Takes the first rows of the design for the design, in the reductions and the result to come. */
+void pound_run_rows_take(struct pound_run *run, int rows)
+{
+	assert(run->campaign.study->kind == POUND_KIND_SENSITIVITY && rows <= run->campaign.n_rows);
+	run->rows = rows;
+}
+
+int pound_run_rows(const struct pound_run *run)
+{
+	return run->rows;
+}

@@ -1,0 +1,56 @@
+/* run_samples.c - the samples of a study's design: what goes in, what came out. */
+#include <assert.h>
+#include <math.h>
+
+#include "engine/design/design.h"
+#include "engine/run/run.h"
+
+int pound_run_samples(const struct pound_run *run)
+{
+	return run->campaign.n_samples;
+}
+
+void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x)
+{
+	for (int j = 0; j < run->campaign.study->n_inputs; j++)
+		x[j] = pound_design_input(run->campaign.design, run->campaign.study->n_inputs, row, sample, j);
+}
+
+void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
+                             double *mean, double *variance)
+{
+	const struct pound_campaign *c = &run->campaign;
+	assert(c->study->kind == POUND_KIND_SENSITIVITY);
+	if (c->study->elsewhere) {
+		const double *values = pound_layout_run(&run->layout, row, cell, sample) + 2 * output;
+		*mean = values[0];
+		*variance = values[1];
+		return;
+	}
+	// the runs of a row's signals are one item apart, but a block may end between them
+	double above = 0, below = 0;
+	for (int r = 0; r < c->n_signals; r++) {
+		const double *values =
+		    pound_layout_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
+		above += values[0];
+		below += values[1];
+	}
+	*mean = below > 0 ? above / below : NAN;
+	double sum = 0;
+	for (int r = 0; r < c->n_signals; r++) {
+		const double *values =
+		    pound_layout_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
+		double deviation = (values[0] - *mean * values[1]) * c->n_signals / below;
+		sum += deviation * deviation;
+	}
+	*variance = c->n_signals > 1 && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN;
+}
+
+void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
+                             double variance)
+{
+	assert(run->campaign.study->elsewhere);
+	double *values = pound_layout_run(&run->layout, row, 0, sample) + 2 * output;
+	values[0] = isfinite(value) ? value : NAN;
+	values[1] = variance;
+}

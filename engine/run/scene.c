@@ -1,0 +1,98 @@
+/* scene.c - reading and varying the scene of a study, and dividing it by masses for the march. */
+#include "engine/run/scene.h"
+#include "engine/scene/contact.h"
+
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+const struct pound_law *pound_scene_law(const struct pound_scene *scene, int oscillator)
+{
+	const struct pound_oscillator *o = &scene->oscillators[oscillator];
+	return o->has_law ? &o->law : &scene->law;
+}
+
+/* Writes a varied value into the field of a scene, whatever the field holds. */
+void pound_scene_assign(struct pound_scene *scene, struct pound_field field, double value)
+{
+	void *at = (char *)scene + field.offset;
+	if (field.type == POUND_FIELD_REAL)
+		*(double *)at = value;
+	else if (field.type == POUND_FIELD_BOOL)
+		*(bool *)at = value != 0;
+	else
+		*(int *)at = (int)value;
+}
+
+double pound_scene_field(const struct pound_scene *scene, struct pound_field field)
+{
+	const void *at = (const char *)scene + field.offset;
+	if (field.type == POUND_FIELD_REAL)
+		return *(const double *)at;
+	return field.type == POUND_FIELD_BOOL ? *(const bool *)at : *(const int *)at;
+}
+
+/* Oscillator i as the march takes it, at rest; its yield displacement is still to be set.
+ *
+ * Given    scene, i
+ * Returns  body      stiffness w^2 [1/s2], damping 2 xi w [1/s]; a rigid wall stays where the ground is
+ * Source   model.md 1
+ */
+struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i)
+{
+	const struct pound_oscillator *o = &scene->oscillators[i];
+	const struct pound_law *law = pound_scene_law(scene, i);
+	if (o->rigid_wall)
+		return (struct pound_march_body){.drive = 0};
+	double w = 2 * PI * o->frequency_hz;
+	return (struct pound_march_body){
+	    .skeleton = {.law = law->type, .stiffness = w * w, .hardening = law->hardening_ratio},
+	    .damping = 2 * o->damping_ratio * w,
+	    .drive = 1,
+	};
+}
+
+/* Contact of a scene, divided by the left mass, in a task whose bodies are set.
+ *
+ * Returns  task  gap [m], K/m1 [1/s2], C/m1 [1/s], m1/m2 (0: wall)
+ *
+ *   K = ratio max(k1, k2)     C = 2 zeta sqrt(K m),  m = m1 m2/(m1 + m2), a wall counting as infinite
+ *
+ * Source   model.md 1; the paper, Eq. (1)
+ */
+void pound_scene_contact(const struct pound_scene *scene, struct pound_march_task *task)
+{
+	const struct pound_contact *contact = &scene->contact;
+	const struct pound_oscillator *left = &scene->oscillators[0];
+	const struct pound_oscillator *right = &scene->oscillators[1];
+	double k1 = task->bodies[0].skeleton.stiffness; // per own mass
+	double k2 = right->rigid_wall ? 0 : task->bodies[1].skeleton.stiffness;
+	task->contact = true;
+	task->gap = contact->gap;
+	task->tension = contact->tension;
+	task->mass_ratio = right->rigid_wall ? 0 : left->mass / right->mass;
+	// k2 m2/m1 = k2/mass_ratio
+	task->contact_stiffness =
+	    contact->stiffness_ratio * (right->rigid_wall ? k1 : fmax(k1, k2 / task->mass_ratio));
+	double zeta = pound_contact_damping_ratio(contact->model, contact->restitution);
+	// C/m1 = 2 zeta sqrt(K/m1 m/m1), m/m1 = 1/(1 + m1/m2)
+	task->contact_damping = 2 * zeta * sqrt(task->contact_stiffness / (1 + task->mass_ratio));
+}
+
+/* Whether two laws are the same law with the same numbers; a linear law has none. */
+static bool laws_alike(const struct pound_law *a, const struct pound_law *b)
+{
+	if (a->type != b->type)
+		return false;
+	return pound_pieces_linear(a->type) ||
+	       (a->hardening_ratio == b->hardening_ratio && a->target_demand == b->target_demand &&
+	        a->yield_displacement == b->yield_displacement && a->corrections == b->corrections);
+}
+
+/* Whether two oscillators move alike under any ground motion, so that they never touch with force. */
+bool pound_scene_alike(const struct pound_scene *scene)
+{
+	const struct pound_oscillator *o = scene->oscillators;
+	return !o[1].rigid_wall && laws_alike(pound_scene_law(scene, 0), pound_scene_law(scene, 1)) &&
+	       o[0].frequency_hz == o[1].frequency_hz && o[0].damping_ratio == o[1].damping_ratio;
+}

@@ -1,0 +1,12 @@
+/* scene.h - a scene divided by masses, as the march takes it. */
+#ifndef SCENE_H
+#define SCENE_H
+
+#include "engine/exact/task.h"
+#include "engine/pound.h"
+
+struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i);
+void pound_scene_contact(const struct pound_scene *scene, struct pound_march_task *task);
+bool pound_scene_alike(const struct pound_scene *scene);
+
+#endif

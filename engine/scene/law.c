@@ -1,0 +1,161 @@
+/* law.c - the constitutive laws, one function and one row each.
+ *
+ * A law's function makes the next piece out of the branch, the edge that was reached and the displacement there.
+ * Adding a law: its function, its row in laws[], its known answers in tests/unit/scene/unit_law.c. */
+#include "engine/scene/law.h"
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/pound.h"
+
+enum { CENTRE, RIGHT, LEFT, RIGHT_SECANT, LEFT_SECANT };
+
+/* The piece of the skeleton curve beyond the yield point on one side (+1 right, -1 left). */
+static struct pound_piece hardened(const struct pound_skeleton *s, double side)
+{
+	return (struct pound_piece){.stiffness = s->hardening * s->stiffness,
+	                            .offset = side * (1 - s->hardening) * s->stiffness * s->yield,
+	                            .low = -DBL_MAX,
+	                            .high = DBL_MAX};
+}
+
+static void linear(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge, double u)
+{
+	(void)edge, (void)u;
+	at->piece = (struct pound_piece){.stiffness = s->stiffness, .low = -DBL_MAX, .high = DBL_MAX};
+}
+
+/* Kinematic hardening: an elastic range of width 2 yield whose centre, memory[0], plastic flow drags along. */
+static void elastoplastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+                          double u)
+{
+	if (at->branch == CENTRE && edge != POUND_EDGE_TURN) {
+		double side = edge == POUND_EDGE_HIGH ? 1 : -1;
+		at->branch = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
+		at->piece = hardened(s, side);
+		at->piece.direction = side;
+		return;
+	}
+	if (at->branch != CENTRE)
+		at->memory[0] = at->branch == RIGHT ? u - s->yield : u + s->yield;
+	double centre = at->memory[0];
+	// the edge the branch starts from is u itself, so that it starts on it to the last bit
+	double high = at->branch == RIGHT ? u : centre + s->yield;
+	double low = at->branch == LEFT ? u : centre - s->yield;
+	at->branch = CENTRE;
+	at->piece = (struct pound_piece){.stiffness = s->stiffness,
+	                                 .offset = -(1 - s->hardening) * s->stiffness * centre,
+	                                 .low = low,
+	                                 .high = high};
+}
+
+/* Loads and unloads on the skeleton curve. */
+static void nonlinear_elastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+                              double u)
+{
+	(void)u;
+	if (at->branch != CENTRE || edge == POUND_EDGE_TURN) {
+		at->branch = CENTRE;
+		at->piece = (struct pound_piece){.stiffness = s->stiffness, .low = -s->yield, .high = s->yield};
+	} else if (edge == POUND_EDGE_HIGH) {
+		at->branch = RIGHT;
+		at->piece = hardened(s, 1);
+		at->piece.low = s->yield;
+	} else {
+		at->branch = LEFT;
+		at->piece = hardened(s, -1);
+		at->piece.high = -s->yield;
+	}
+}
+
+/* Straight between the origin and the farthest point of each side: memory[0] right, memory[1] left (both > 0). */
+static void origin_oriented(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+                            double u)
+{
+	if (at->branch == RIGHT || at->branch == LEFT) { // turned on the skeleton: this is the farthest point now
+		int side = at->branch == LEFT;
+		at->memory[side] = fabs(u);
+		at->branch = side ? LEFT_SECANT : RIGHT_SECANT;
+	} else if (at->branch == RIGHT_SECANT && edge == POUND_EDGE_LOW) {
+		at->branch = LEFT_SECANT;
+	} else if (at->branch == LEFT_SECANT && edge == POUND_EDGE_HIGH) {
+		at->branch = RIGHT_SECANT;
+	} else { // past the farthest point, or past the yield point of a law never yielded
+		double side = edge == POUND_EDGE_HIGH ? 1 : -1;
+		at->branch = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
+		at->piece = hardened(s, side);
+		at->piece.direction = side;
+		return;
+	}
+	double far = at->memory[at->branch == LEFT_SECANT];
+	at->piece = (struct pound_piece){.stiffness = pound_pieces_envelope(s, far) / far,
+	                                 .low = at->branch == LEFT_SECANT ? -far : 0,
+	                                 .high = at->branch == LEFT_SECANT ? 0 : far};
+}
+
+static const struct law {
+	const char *name;
+	bool linear;
+	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
+	void (*leave)(const struct pound_skeleton *, struct pound_branch *, enum pound_edge, double u);
+} laws[] = {
+    {"linear", true, false, linear},
+    {"elastoplastic", false, false, elastoplastic},
+    {"nonlinear_elastic", false, false, nonlinear_elastic},
+    {"origin_oriented", false, true, origin_oriented},
+};
+
+const char *pound_law_name(int row)
+{
+	return row >= 0 && row < (int)(sizeof laws / sizeof laws[0]) ? laws[row].name : NULL;
+}
+
+/* Whether a law has one piece for ever, so that no yield displacement is needed. */
+bool pound_pieces_linear(int law)
+{
+	return laws[law].linear;
+}
+
+/* Puts an oscillator at rest on the first piece of its law.
+ *
+ * Given    skeleton  the law and its numbers
+ * Returns  at        branch at u = 0, nothing remembered: elastic up to the yield displacement on either side
+ * Source   model.md 2 of the project's design pages; the paper, Figure 2
+ * Test     unit_law
+ */
+void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_branch *at)
+{
+	*at = (struct pound_branch){.branch = CENTRE};
+	if (laws[skeleton->law].linear) {
+		linear(skeleton, at, POUND_EDGE_TURN, 0);
+		return;
+	}
+	at->memory[0] = at->memory[1] = 0;
+	at->piece = (struct pound_piece){
+	    .stiffness = skeleton->stiffness, .low = -skeleton->yield, .high = skeleton->yield};
+	if (laws[skeleton->law].peaks)
+		at->memory[0] = at->memory[1] = skeleton->yield;
+}
+
+/* Moves on to the piece behind an edge.
+ *
+ * Given    skeleton  the law and its numbers
+ *          edge      which end of the piece was reached
+ *          u         displacement there [m]
+ * Returns  at        the next piece, continuous in force with the last
+ */
+void pound_pieces_leave(const struct pound_skeleton *skeleton, struct pound_branch *at, enum pound_edge edge,
+                        double u)
+{
+	laws[skeleton->law].leave(skeleton, at, edge, u);
+}
+
+/* Force per mass on the skeleton curve [m/s2], which is the largest force of a motion that went as far as u >= 0. */
+double pound_pieces_envelope(const struct pound_skeleton *s, double u)
+{
+	if (laws[s->law].linear || u <= s->yield)
+		return s->stiffness * u;
+	return s->stiffness * (s->hardening * u + (1 - s->hardening) * s->yield);
+}

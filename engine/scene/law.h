@@ -1,0 +1,39 @@
+/* law.h - constitutive laws as straight pieces and the edges between them.
+ *
+ * An integrator sees only a piece: on it the restoring force per mass is stiffness * u + offset, until u leaves
+ * [low, high] or, where direction is not 0, the velocity turns against direction.  At such an edge it asks for the next. */
+#ifndef PIECES_H
+#define PIECES_H
+
+#include <stdbool.h>
+
+struct pound_skeleton {
+	int law;          /* row of the laws */
+	double stiffness; /* initial, per mass [1/s2]  > 0 */
+	double hardening; /* second slope over first */
+	double yield;     /* yield displacement [m]  > 0; not read by linear laws */
+};
+
+struct pound_piece {
+	double stiffness; /* [1/s2] */
+	double offset;    /* force per mass at u = 0 [m/s2] */
+	double low, high; /* [m]  -DBL_MAX, DBL_MAX: no edge there */
+	double direction; /* +1, -1: ends when the velocity turns against it; 0: does not */
+};
+
+enum pound_edge { POUND_EDGE_LOW, POUND_EDGE_HIGH, POUND_EDGE_TURN };
+
+/* where on its law an oscillator is */
+struct pound_branch {
+	int branch;       /* the law's own number of the piece */
+	double memory[2]; /* what the law remembers [m] */
+	struct pound_piece piece;
+};
+
+bool pound_pieces_linear(int law);
+void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_branch *at);
+void pound_pieces_leave(const struct pound_skeleton *skeleton, struct pound_branch *at, enum pound_edge edge,
+                        double u);
+double pound_pieces_envelope(const struct pound_skeleton *skeleton, double u);
+
+#endif

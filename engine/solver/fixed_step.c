@@ -1,0 +1,351 @@
+/* fixed_step.c - two integrators with one step for all: Newmark's average acceleration and central differences.
+ *
+ * 1. A sample interval is cut into equal steps, as few as make them no longer than the step asked for.
+ * 2. Laws and contact are looked at where a step ends: on the straight way from the displacement before to the one
+ *    now, and by the sign of the overlap there.  No event is located.
+ * 3. So the error falls with the square of the step while nothing switches, and with its first power where bodies
+ *    touch or part: the force that the dashpot begins with comes up to a step late.
+ *
+ * Newmark 1959, J. Eng. Mech. Div. ASCE 85(3), 67-94; Chopra, Dynamics of Structures, ch. 5. */
+#include <float.h>
+#include <math.h>
+
+#include "engine/solver/solver.h"
+
+enum { ROUNDS = 16 }; /* of a step's iteration; laws alone take two or three */
+
+/* No response has a velocity above what the ground motion can give; one this many times larger is the integrator's. */
+static const double UNSTABLE = 10;
+
+struct course {
+	const struct pound_march_task *task;
+	struct pound_march_result *result;
+	double step, frequency; /* [s], [1/s] */
+	struct pound_branch at[POUND_OSCILLATORS];
+	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS];
+	double
+	    rate[POUND_OSCILLATORS]; /* newmark: acceleration; central difference: velocity half a step later */
+	double force;                /* of the contact per mass of the left body [m/s2] */
+	bool touching;
+	double start;                        /* of the sample interval [s] */
+	int k;                               /* step in it, from 1 */
+	double impulse;                      /* of the contact in hand [m/s] */
+	double speed_max[POUND_OSCILLATORS]; /* [m/s] */
+	bool too_long[2];                    /* the step, for bodies apart and touching */
+};
+
+/* ---- laws and contact at the end of a step ---- */
+
+/* Takes a law along the straight way from one displacement to another. */
+static void law_follow(const struct pound_skeleton *skeleton, struct pound_branch *at, double from, double to)
+{
+	if (at->piece.direction * (to - from) < 0)
+		pound_pieces_leave(skeleton, at, POUND_EDGE_TURN, from);
+	for (;;)
+		if (to > at->piece.high)
+			pound_pieces_leave(skeleton, at, POUND_EDGE_HIGH, at->piece.high);
+		else if (to < at->piece.low)
+			pound_pieces_leave(skeleton, at, POUND_EDGE_LOW, at->piece.low);
+		else
+			return;
+}
+
+static double restoring(const struct pound_branch *at, double u)
+{
+	return at->piece.stiffness * u + at->piece.offset;
+}
+
+static bool same_piece(const struct pound_branch *a, const struct pound_branch *b)
+{
+	return a->piece.stiffness == b->piece.stiffness && a->piece.offset == b->piece.offset;
+}
+
+static double contact_force(const struct pound_march_task *task, double overlap, double rate)
+{
+	return task->contact_stiffness * overlap + task->contact_damping * rate;
+}
+
+static bool touches(const struct pound_march_task *task, double overlap, double rate)
+{
+	return task->contact && overlap > 0 && (task->tension || contact_force(task, overlap, rate) > 0);
+}
+
+/* Share of the contact force per left mass that a body feels. */
+static double share(const struct pound_march_task *task, int i)
+{
+	return i == 0 ? 1 : -task->mass_ratio;
+}
+
+/* Solves the pair that a contact couples: a_0 x_0 + s (x_0 - x_1) = b_0, a_1 x_1 - r s (x_0 - x_1) = b_1. */
+static void pair_solve(const double a[2], double s, double r, const double b[2], double x[2])
+{
+	double determinant = a[0] * a[1] + s * (a[1] + r * a[0]);
+	x[0] = (b[0] * (a[1] + r * s) + s * b[1]) / determinant;
+	x[1] = (b[1] * (a[0] + s) + r * s * b[0]) / determinant;
+}
+
+/* Takes note of the state that a step ended in; force between two such states is a straight line. */
+static void course_note(struct course *c, double force, bool touching, double approach)
+{
+	struct pound_march_result *r = c->result;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		if (fabs(c->u[i]) > r->displacement_max[i])
+			r->displacement_max[i] = fabs(c->u[i]);
+	if (touching && !c->touching) {
+		if (r->contacts++ == 0)
+			r->first_contact = c->start + c->k * c->step, r->first_speed = approach;
+		c->impulse = 0;
+	}
+	c->impulse += 0.5 * (c->force + force) * c->step;
+	if (touching)
+		r->contact_time += c->step;
+	else if (c->touching)
+		r->impulse_max = fmax(r->impulse_max, c->impulse);
+	c->touching = touching;
+	c->force = force;
+}
+
+/* ---- Newmark ---- */
+
+/* One step of average acceleration; false: no equilibrium was found.
+ *
+ *   d = u1 - u,  v1 = 2 d/h - v,  a1 = 4 d/h^2 - 4 v/h - a,  a1 + c v1 + r(u + d) + share F(d) = -a_g
+ *
+ * r and F are straight on the pieces assumed, so a round of Newton's method is one linear solution.  Where bodies are
+ * apart if they touch and touch if they are apart, because the dashpot's force begins with a jump, they stay as they
+ * were until the next step.
+ */
+static bool newmark_advance(struct course *c, double ground)
+{
+	const struct pound_march_task *task = c->task;
+	double h = c->step;
+	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
+	struct pound_branch at[2] = {c->at[0], c->at[1]};
+	bool touching = c->touching, settled = false;
+	double d[2], a[2], b[2];
+	for (int round = 0; round < 2 * ROUNDS && !settled; round++) {
+		double stiff = touching ? contact_force(task, 1, 2 / h) : 0;
+		double still = touching ? contact_force(task, p, -q) : 0;
+		for (int i = 0; i < 2; i++) {
+			const struct pound_march_body *body = &task->bodies[i];
+			a[i] = 4 / (h * h) + 2 * body->damping / h + at[i].piece.stiffness;
+			b[i] = 4 / h * c->v[i] + c->rate[i] + body->damping * c->v[i] - body->drive * ground -
+			       restoring(&at[i], c->u[i]) - share(task, i) * still;
+		}
+		pair_solve(a, stiff, task->mass_ratio, b, d);
+		settled = true;
+		for (int i = 0; i < 2; i++) {
+			struct pound_branch next = c->at[i];
+			law_follow(&task->bodies[i].skeleton, &next, c->u[i], c->u[i] + d[i]);
+			settled &= same_piece(&next, &at[i]);
+			at[i] = next;
+		}
+		bool touch = touches(task, p + d[0] - d[1], 2 / h * (d[0] - d[1]) - q);
+		if (round >= ROUNDS)
+			touch = c->touching;
+		settled &= touch == touching;
+		touching = touch;
+	}
+	for (int i = 0; i < 2; i++) {
+		double v = 2 / h * d[i] - c->v[i];
+		c->rate[i] = 2 / h * (v - c->v[i]) - c->rate[i];
+		c->v[i] = v;
+		c->u[i] += d[i];
+		c->at[i] = at[i];
+	}
+	double overlap = c->u[0] - c->u[1] - task->gap;
+	course_note(c, touching ? contact_force(task, overlap, c->v[0] - c->v[1]) : 0, touching, q);
+	return settled;
+}
+
+/* ---- central differences ---- */
+
+/* One step of central differences, written with the velocities w half a step before and after:
+ *
+ *   (w1 - w)/h + c (w1 + w)/2 + r(u) + share F(u, (w1 + w)/2) = -a_g,   v = (w1 + w)/2
+ */
+static bool central_advance(struct course *c, double ground)
+{
+	const struct pound_march_task *task = c->task;
+	double h = c->step, a[2], b[2], w[2];
+	double approach = c->v[0] - c->v[1];
+	for (int i = 0; i < 2; i++) {
+		const struct pound_march_body *body = &task->bodies[i];
+		double u = c->u[i] + h * c->rate[i];
+		law_follow(&body->skeleton, &c->at[i], c->u[i], u);
+		c->u[i] = u;
+		a[i] = c->frequency + body->damping / 2;
+		b[i] =
+		    (c->frequency - body->damping / 2) * c->rate[i] - restoring(&c->at[i], u) - body->drive * ground;
+	}
+	double p = c->u[0] - c->u[1] - task->gap, q = c->rate[0] - c->rate[1], force = 0;
+	bool touching = task->contact && p > 0;
+	if (touching) {
+		double still = contact_force(task, p, q / 2);
+		const double pushed[2] = {b[0] - share(task, 0) * still, b[1] - share(task, 1) * still};
+		pair_solve(a, task->contact_damping / 2, task->mass_ratio, pushed, w);
+		double rate = (q + w[0] - w[1]) / 2;
+		touching = touches(task, p, rate);
+		force = touching ? contact_force(task, p, rate) : 0;
+	}
+	for (int i = 0; i < 2 && !touching; i++)
+		w[i] = b[i] / a[i];
+	for (int i = 0; i < 2; i++) {
+		c->v[i] = (c->rate[i] + w[i]) / 2;
+		c->rate[i] = w[i];
+	}
+	course_note(c, force, touching, approach);
+	return true;
+}
+
+/* ---- the course of a task ---- */
+
+/* Velocities that no response can have: of the bodies, by the work that the ground motion does on them.
+ *
+ *   E' <= |a_g| sqrt(2 M E), so sqrt(2 E) <= sqrt(2 E_0) + sqrt(M) int |a_g| dt, with M all that rides on the ground
+ */
+static void speed_limits(struct course *c)
+{
+	const struct pound_march_task *task = c->task;
+	double push = 0, mass[2] = {1, task->mass_ratio > 0 ? 1 / task->mass_ratio : 1};
+	double energy = 0, riding = 0;
+	for (int t = 0; t < task->n_samples; t++)
+		push += fabs(task->ground[t]) * task->time_step;
+	for (int i = 0; i < 2; i++) {
+		const struct pound_march_body *body = &task->bodies[i];
+		energy += mass[i] * (body->v * body->v + body->skeleton.stiffness * body->u * body->u);
+		riding += mass[i] * body->drive;
+	}
+	for (int i = 0; i < 2; i++)
+		c->speed_max[i] = UNSTABLE * (sqrt(energy / mass[i]) + sqrt(riding / mass[i]) * push);
+}
+
+/* Square of the highest angular frequency of bodies apart, or touching, on the first pieces of their laws: the stiffest ones
+ * [1/s2]. */
+static double stiffest(const struct pound_march_task *task, bool touching)
+{
+	const double left = task->bodies[0].skeleton.stiffness, right = task->bodies[1].skeleton.stiffness;
+	const double contact = touching ? task->contact_stiffness : 0;
+	const double mean = 0.5 * (left + contact + right + task->mass_ratio * contact);
+	const double half = 0.5 * (left + contact - right - task->mass_ratio * contact);
+	return mean + sqrt(half * half + task->mass_ratio * contact * contact);
+}
+
+/* The state at the start, and the accelerations there in `rate`. */
+static void course_start(struct course *c, int n_steps)
+{
+	const struct pound_march_task *task = c->task;
+	c->step = task->time_step / n_steps;
+	c->frequency = n_steps / task->time_step;
+	for (int i = 0; i < 2; i++) {
+		pound_pieces_start(&task->bodies[i].skeleton, &c->at[i]);
+		c->u[i] = task->bodies[i].u;
+		c->v[i] = task->bodies[i].v;
+		law_follow(&task->bodies[i].skeleton, &c->at[i], 0, c->u[i]);
+	}
+	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
+	c->touching = touches(task, p, q);
+	c->force = c->touching ? contact_force(task, p, q) : 0;
+	c->result->contacts = c->touching;
+	c->result->first_speed = c->touching ? q : 0;
+	for (int i = 0; i < 2; i++) {
+		const struct pound_march_body *body = &task->bodies[i];
+		c->result->displacement_max[i] = fabs(c->u[i]);
+		c->rate[i] = -body->drive * task->ground[0] - body->damping * c->v[i] -
+		             restoring(&c->at[i], c->u[i]) - share(task, i) * c->force;
+	}
+	speed_limits(c);
+}
+
+/* Whole steps of a sample interval, none longer than asked; a step that fits to rounding fits. */
+static int steps_of(double time_step, double step)
+{
+	double steps = time_step / step;
+	return (int)fmin(fmax(1, ceil(steps * (1 - 4 * DBL_EPSILON))), INT32_MAX);
+}
+
+/* The step that is taken where one is asked for [s]. */
+double pound_fixed_step(double time_step, double step)
+{
+	return time_step / steps_of(time_step, step);
+}
+
+typedef bool advance(struct course *c, double ground);
+
+static void course_run(struct course *c, int n_steps, advance *step, const atomic_bool *stop)
+{
+	const struct pound_march_task *task = c->task;
+	struct pound_march_result *r = c->result;
+	for (int t = 1; t < task->n_samples && !r->status; t++) {
+		double from = task->ground[t - 1], rise = (task->ground[t] - from) / n_steps;
+		c->start = (t - 1) * task->time_step;
+		for (int k = 1; k <= n_steps && !r->status; k++) {
+			c->k = k;
+			bool settled = step(c, from + rise * k);
+			// written so that no number is within the limit
+			if (!settled || c->too_long[c->touching] ||
+			    !(fabs(c->v[0]) <= c->speed_max[0] && fabs(c->v[1]) <= c->speed_max[1]))
+				r->status = POUND_UNSTABLE;
+		}
+		if (pound_stopped(stop))
+			r->status = POUND_STOPPED;
+	}
+	if (c->touching)
+		r->impulse_max = fmax(r->impulse_max, c->impulse);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		r->u[i] = c->u[i];
+		r->v[i] = c->v[i];
+		if (!task->bodies[i].followed)
+			r->displacement_max[i] = NAN;
+	}
+	if (r->status)
+		*r = (struct pound_march_result){.status = r->status};
+}
+
+/* The response of a task by Newmark's average acceleration.
+ *
+ * Given    solver    step      s       longest step
+ *          task      -         -       see task.h
+ *          stop      -         -       looked at between samples; NULL: never
+ * Returns  result    -         -       all 0 but the status where it failed
+ * Status   POUND_UNSTABLE  a step had no equilibrium, or velocities grew beyond any the ground motion can give
+ *          POUND_STOPPED   stop was set
+ *
+ * Valid    Any step where nothing switches; a contact needs some 20 steps.
+ * Test     unit_fixed_step: the_error_of_free_vibration_falls_with_the_square_of_the_step
+ */
+void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_march_task *task,
+                         struct pound_march_result *result, const atomic_bool *stop)
+{
+	*result = (struct pound_march_result){0};
+	struct course c = {.task = task, .result = result};
+	int n_steps = steps_of(task->time_step, solver->step);
+	course_start(&c, n_steps);
+	course_run(&c, n_steps, newmark_advance, stop);
+}
+
+/* The response of a task by central differences, the explicit method.
+ *
+ * Given    solver    step      s       longest step
+ *          task      -         -       see task.h
+ *          stop      -         -       looked at between samples; NULL: never
+ * Returns  result    -         -       all 0 but the status where it failed
+ * Status   POUND_UNSTABLE  the step is above 2/w of the highest angular frequency w, where bodies touched that of the touching
+ *                          pair, or velocities grew beyond any the ground motion can give
+ *          POUND_STOPPED   stop was set
+ *
+ * Test     unit_fixed_step: an_explicit_step_beyond_its_limit_ends_with_a_status
+ */
+void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,
+                         struct pound_march_result *result, const atomic_bool *stop)
+{
+	*result = (struct pound_march_result){0};
+	struct course c = {.task = task, .result = result};
+	int n_steps = steps_of(task->time_step, solver->step);
+	course_start(&c, n_steps);
+	for (int i = 0; i < 2; i++) {
+		c.rate[i] = c.v[i] + c.step / 2 * c.rate[i];
+		c.too_long[i] = c.step * sqrt(stiffest(task, i == 1)) > 2;
+	}
+	course_run(&c, n_steps, central_advance, stop);
+}

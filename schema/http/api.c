@@ -1,0 +1,176 @@
+/* What poundd can be asked and what it answers. */
+#include "schema/http/api.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/result/result_json.h"
+#include "schema/study/fields.h"
+
+const struct api_fault_row api_faults[] = {
+#define X(name, status, type, title) [API_##name] = {status, type, title},
+    API_FAULTS(X)
+#undef X
+};
+
+#define F(name) (1u << API_##name)
+const unsigned api_faults_of_all =
+    F(BAD_REQUEST) | F(UNAUTHORIZED) | F(TOO_LARGE) | F(MISDIRECTED) | F(UNAVAILABLE);
+
+// clang-format off
+#define BODY   (F(MALFORMED) | F(NOT_JSON) | F(INVALID) | F(TOO_COSTLY) | F(KEY_REUSED) | F(TOO_MANY))
+#define STORED (F(NOT_FOUND) | F(CORRUPT))
+#define TABLE(name) " " #name
+#define TABLES RESULT_TABLES(TABLE) " "
+
+const struct api_operation api_operations[] = {
+	[API_submit]  = {"POST", "/v1/studies", "submit",
+	                 "hands over a study; answered when it is on disk", " 201=Status 200=Estimate ", .faults = BODY, .takes_study = true},
+	[API_list]    = {"GET", "/v1/studies", "list", "studies, newest first", " 200=Page ", .faults = 0},
+	[API_status]  = {"GET", "/v1/studies/{id}", "status", "how far a study is", " 200=Status 304 ", .faults = F(NOT_FOUND)},
+	[API_erase]   = {"DELETE", "/v1/studies/{id}", "erase",
+	                 "removes a study, which is cancelled first if it has not ended", " 204 ", .faults = F(NOT_FOUND)},
+	[API_posted]  = {"GET", "/v1/studies/{id}/request", "posted",
+	                 "the bytes that were posted", " 200=Study 304 ", .faults = STORED},
+	[API_results] = {"GET", "/v1/studies/{id}/results", "results",
+	                 "the result", " 200=Result 304 ", .media = " text/csv ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	[API_samples] = {"GET", "/v1/studies/{id}/samples", "samples",
+	                 "every input row and its outputs, enough to compute the indexes again", " 200 304 ",
+	                 .media = " text/csv application/octet-stream ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	[API_cancel]  = {"POST", "/v1/studies/{id}/cancel", "cancel",
+	                 "cancels a study that is queued or running", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT)},
+	[API_live]    = {"GET", "/livez", "live", "the process answers", " 200=Version ", .open = true},
+	[API_ready]   = {"GET", "/readyz", "ready", "studies are taken", " 200=Version ", .open = true},
+	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges for Prometheus", " 200 ", .media = " text/plain "},
+	[API_version] = {"GET", "/version", "version", "the version", " 200=Version ", .faults = 0},
+	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 ", .faults = 0},
+};
+
+const struct api_argument api_arguments[] = {
+	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "of the study: 16 hexadecimal digits"},
+	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", .text = "true: checks the study, tells its cost and stores nothing"},
+	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, .text = "1 to 200 characters of UTF-8; the same key and body again give the study of the first time"},
+	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies of this status", .blank = true},
+	{"list",    "limit",           "query",  NULL, 1, 100, "20", .text = "studies on a page", .blank = true},
+	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, .text = "the next of an earlier page", .blank = true},
+	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, .text = "wait=N: with If-None-Match, waits up to N seconds for a change, or as long as the server lets it"},
+	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"results", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
+	{"results", "format",          "query",  " json csv ", 0, 0, NULL, .text = "wins over Accept"},
+	{"results", "table",           "query",  TABLES, 0, 0, NULL, .text = "of a sensitivity result, as CSV; inputs when it is CSV and this is absent"},
+	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, .text = "wins over Accept"},
+	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+};
+// clang-format on
+const int api_arguments_count = sizeof api_arguments / sizeof api_arguments[0];
+
+const struct api_argument *api_argument(int operation, const char *name, const char *place)
+{
+	for (int i = 0; i < api_arguments_count; i++) {
+		const struct api_argument *argument = &api_arguments[i];
+		if (argument->operation && !strcmp(argument->operation, api_operations[operation].name) &&
+		    !strcmp(argument->name, name) && !strcmp(argument->place, place))
+			return argument;
+	}
+	return NULL;
+}
+
+void api_expected(const struct api_argument *argument, char *text, size_t size)
+{
+	if (argument->max > 0)
+		snprintf(text, size, "a whole number in [%d, %d]", argument->min, argument->max);
+	else if (argument->choices)
+		snprintf(text, size, "one of%.*s", (int)strlen(argument->choices) - 1, argument->choices);
+	else
+		snprintf(text, size, "%s", argument->text);
+}
+
+/* Whether the value of a query argument is one that it takes; a cursor is looked at by who reads it.
+ *
+ * Test     unit_api: an_argument_takes_what_it_says
+ */
+bool api_takes(const struct api_argument *argument, const char *value)
+{
+	char *rest;
+	if (!*value)
+		return argument->blank;
+	if (argument->choices)
+		return !strchr(value, ' ') && fields_listed(argument->choices, value);
+	if (argument->max == 0)
+		return true;
+	long number = strtol(value, &rest, 10);
+	return *value >= '0' && *value <= '9' && !*rest && number >= argument->min && number <= argument->max;
+}
+
+/* 16 hexadecimal digits at `text`: the id they stand for, else -1. */
+static long long id_at(const char *text)
+{
+	char digits[17] = {0};
+	if (strspn(text, "0123456789abcdef") < 16)
+		return -1;
+	memcpy(digits, text, 16);
+	long long id = (long long)strtoull(digits, NULL, 16);
+	return id < 0 ? -1 : id;
+}
+
+/* Whether a path is of a form, and the id in it. */
+static bool matches(const char *path, const char *form, long long *id)
+{
+	size_t head = strcspn(form, "{");
+	if (!form[head])
+		return !strcmp(path, form);
+	if (strncmp(path, form, head) != 0 || (*id = id_at(path + head)) < 0)
+		return false;
+	return !strcmp(path + head + 16, form + head + strlen("{id}"));
+}
+
+/* Finds the operation that a request asks for.
+ *
+ * Given    method   as it came; HEAD stands for GET
+ *          path     decoded, without arguments
+ * Returns  id       of the study in the path, 0: none
+ *          allow    methods of the path, for the header; "": there is no such path
+ *          value    row of api_operations, -1: none
+ * Test     unit_api: a_path_is_one_of_the_table_to_the_last_character
+ */
+int api_match(const char *method, const char *path, long long *id, char allow[64])
+{
+	int found = -1;
+	if (!strcmp(method, "HEAD"))
+		method = "GET";
+	*id = 0;
+	*allow = '\0';
+	for (int i = 0; i < API_N_OPERATIONS; i++) {
+		const struct api_operation *operation = &api_operations[i];
+		long long here = 0;
+		if (!matches(path, operation->path, &here))
+			continue;
+		*id = here;
+		if (!strcmp(method, operation->method))
+			found = i;
+		strcat(strcat(allow, *allow ? ", " : ""), operation->method);
+		strcat(allow, !strcmp(operation->method, "GET") ? ", HEAD" : "");
+	}
+	return found;
+}
+
+/* The bytes of an error answer.
+ *
+ * Given    fault      its kind
+ *          detail     a sentence about this request
+ *          problems   listed in it; NULL: none
+ * Returns  value      (length) bytes of application/problem+json; NULL: out of memory
+ * Memory   allocates; the caller frees
+ */
+char *api_problem(enum api_fault fault, const char *detail, const struct problems *problems, size_t *length)
+{
+	const struct problem_head head = {.status = api_faults[fault].status,
+	                                  .type = api_faults[fault].type,
+	                                  .title = api_faults[fault].title,
+	                                  .detail = detail};
+	return problem_to_json(&head, problems, length);
+}

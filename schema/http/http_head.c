@@ -1,0 +1,396 @@
+/* The head of a request: target, headers, framing and host.
+ *
+ * libmicrohttpd takes what RFC 9112 forbids (two lengths, a length and a coding, NUL in a name), and what two servers
+ * read differently lets a request hide in another one's body; so the rules are applied here, to what it read. */
+#include "schema/http/http_head.h"
+
+#include <arpa/inet.h>
+#include <ctype.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "schema/json/json_strict.h"
+
+/* Notes why a request is refused, if nothing was noted before.
+ *
+ * Given    close    it leaves in doubt where the request ends
+ *          format   printf format and its values: a sentence
+ */
+void head_refuse(struct head *head, enum api_fault fault, bool close, const char *format, ...)
+{
+	va_list values;
+	head->close |= close;
+	if (head->fault != API_NO_FAULT)
+		return;
+	head->fault = fault;
+	va_start(values, format);
+	vsnprintf(head->detail, sizeof head->detail, format, values);
+	va_end(values);
+	// what a client sent may be no text at all, and a problem is JSON
+	for (char *c = head->detail; *c; c++)
+		*c = *c < ' ' || *c > '~' ? '?' : *c;
+}
+
+/* Starts with the request's target as it came.
+ *
+ * Given    target   path and arguments, not decoded
+ * Test     unit_http_head: a_target_is_visible_ascii_and_its_escapes_are_whole
+ */
+void head_target(struct head *head, const char *target)
+{
+	*head = (struct head){.fault = API_NO_FAULT};
+	for (const char *c = target; *c; c++) {
+		if (*c <= ' ' || *c > '~')
+			head_refuse(head, API_BAD_REQUEST, true,
+			            "the target has characters that must be percent-encoded");
+		if (*c != '%')
+			continue;
+		if (!isxdigit((unsigned char)c[1]) || !isxdigit((unsigned char)c[2]))
+			head_refuse(head, API_BAD_REQUEST, false,
+			            "a percent sign must be followed by two hexadecimal digits");
+		else if (c[1] == '0' && c[2] == '0')
+			head_refuse(head, API_BAD_REQUEST, false, "the target must not have %%00");
+	}
+}
+
+static bool is_token(const char *name, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (!isalnum((unsigned char)name[i]) && (!name[i] || !strchr("!#$%&'*+-.^_`|~", name[i])))
+			return false;
+	return n > 0;
+}
+
+static bool is_text(const char *value, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (((unsigned char)value[i] < ' ' && value[i] != '\t') || value[i] == 0x7f)
+			return false;
+	return true;
+}
+
+static bool is(const char *name, size_t n, const char *known)
+{
+	return n == strlen(known) && !strncasecmp(name, known, n);
+}
+
+static bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
+
+static bool is_json(const char *type, size_t n)
+{
+	size_t end = 0;
+	while (end < n && type[end] != ';' && !is_blank(type[end]))
+		end++;
+	return is(type, end, "application/json");
+}
+
+/* Headers that are read later. */
+static const struct {
+	const char *name;
+	size_t at; /* its head_text in struct head */
+	bool list; /* lines of one name are a list, as if a comma were between them; else the first counts */
+} texts[] = {
+    {"Authorization", offsetof(struct head, authorization), false},
+    {"Idempotency-Key", offsetof(struct head, key), false},
+    {"If-None-Match", offsetof(struct head, etags), true},
+    {"Prefer", offsetof(struct head, prefer), true},
+    {"Accept", offsetof(struct head, accept), true},
+};
+
+/* Keeps a value, or those of its elements that there is room for: half of one may mean another thing than the whole. */
+static void keep(struct head_text *text, bool list, const char *value, size_t n_value)
+{
+	size_t n = strlen(text->value), room = sizeof text->value - n;
+	if (text->lines++ > 0 && (!list || room < 2)) // not even for a comma, which would show where to cut
+		return;
+	int wanted = snprintf(text->value + n, room, "%s%.*s", n ? "," : "", (int)n_value, value);
+	if ((size_t)wanted < room)
+		return;
+	char *end = list ? strrchr(text->value, ',') : NULL;
+	*(end ? end : text->value) = '\0';
+}
+
+/* Takes the next header.
+ *
+ * Given    name    (n_name) bytes
+ *          value   (n_value) bytes   without white space before it; what is behind it is no part of it
+ * Source   RFC 9110 section 5.5
+ * Test     unit_http_head: white_space_behind_a_value_is_no_part_of_it
+ */
+void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value)
+{
+	// libmicrohttpd takes a body as chunked by the value as it came, so that "chunked " is no coding it knows
+	const size_t n_coding = n_value;
+	while (n_value > 0 && is_blank(value[n_value - 1]))
+		n_value--;
+	if (!is_token(name, n_name))
+		head_refuse(head, API_BAD_REQUEST, true, "a header's name has characters that no name may have");
+	else if (!is_text(value, n_value))
+		head_refuse(head, API_BAD_REQUEST, true, "a header's value has control characters");
+	else if (is(name, n_name, "Host")) {
+		head->hosts++;
+		snprintf(head->host, sizeof head->host, "%.*s", (int)n_value, value);
+	} else if (is(name, n_name, "Content-Length")) {
+		head->lengths++;
+		// what is no number was refused before; what does not fit is the largest
+		unsigned long long length = strtoull(value, NULL, 10);
+		head->has_body |= length > 0;
+		head->too_large |= length > HEAD_BODY_MAX;
+	} else if (is(name, n_name, "Transfer-Encoding")) {
+		head->codings++;
+		head->has_body = true;
+		head->chunked = is(value, n_coding, "chunked");
+	} else if (is(name, n_name, "Content-Encoding"))
+		head->encoded |= !is(value, n_value, "identity");
+	else if (is(name, n_name, "Content-Type")) {
+		head->types++;
+		head->json = is_json(value, n_value);
+	}
+	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+		if (is(name, n_name, texts[i].name))
+			keep((void *)((char *)head + texts[i].at), texts[i].list, value, n_value);
+}
+
+/* Takes an argument of the target.
+ *
+ * Given    operation   row of api_operations
+ *          name        "" when there is an ampersand too many
+ * Test     service_routes: list_arguments_that_make_no_sense_are_400
+ */
+void head_argument(struct head *head, int operation, const char *name, const char *value)
+{
+	const struct api_argument *argument = api_argument(operation, name, "query");
+	char expected[128];
+	if (*name && !argument)
+		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not an argument of %s", name,
+		            api_operations[operation].path);
+	else if (*name && !api_takes(argument, value)) {
+		api_expected(argument, expected, sizeof expected);
+		head_refuse(head, API_BAD_REQUEST, false, "%s must be %s", name, expected);
+	}
+}
+
+/* Judges the whole head.
+ *
+ * Given    needs_host   HTTP/1.1 and later
+ *          names        hosts, between commas, besides localhost and addresses; NULL: none
+ * Returns  head         its fault, API_NO_FAULT: none
+ * Test     unit_http_head: what_leaves_a_request_s_end_in_doubt_is_refused
+ */
+void head_end(struct head *head, bool needs_host, const char *names)
+{
+	if (head->lengths > 1)
+		head_refuse(head, API_BAD_REQUEST, true, "a request has one Content-Length");
+	if (head->lengths && head->codings)
+		head_refuse(head, API_BAD_REQUEST, true,
+		            "a request has a Content-Length or a Transfer-Encoding, not both");
+	if (head->codings > 1 || (head->codings && !head->chunked))
+		head_refuse(head, API_BAD_REQUEST, true, "the only Transfer-Encoding is chunked");
+	if (head->types > 1)
+		head_refuse(head, API_BAD_REQUEST, true, "a request has one Content-Type");
+	if (head->hosts > 1 || (needs_host && !head->hosts))
+		head_refuse(head, API_BAD_REQUEST, true, "a request has one Host");
+	if (head->hosts && !head_has_host(head->host, names))
+		head_refuse(head, API_MISDIRECTED, false,
+		            "this server is not asked by that Host; poundd --host adds names");
+	if (head->encoded)
+		head_refuse(head, API_NOT_JSON, false, "the only Content-Encoding is identity");
+	if (head->too_large)
+		head_refuse(head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+}
+
+/* Judges the Idempotency-Key of a request that may have one: it is of UTF-8, as what is stored is text, and a second one
+ * would be a key that a proxy did not see.
+ *
+ * Test     unit_http_head: a_key_is_one_text_of_1_to_200_characters
+ */
+void head_key(struct head *head)
+{
+	const char *at = head->key.value, *end = at + strlen(at);
+	size_t n = 1;
+	int characters = 0;
+	if (head->key.lines == 0)
+		return;
+	for (; at < end && (n = gate_character(at, (size_t)(end - at))) > 0; at += n)
+		characters++;
+	if (head->key.lines > 1)
+		head_refuse(head, API_BAD_REQUEST, false, "a request has one Idempotency-Key");
+	else if (n == 0)
+		head_refuse(head, API_BAD_REQUEST, false, "an Idempotency-Key must be UTF-8");
+	else if (characters < 1 || characters > HEAD_KEY_MAX)
+		head_refuse(head, API_BAD_REQUEST, false, "an Idempotency-Key has 1 to %d characters", HEAD_KEY_MAX);
+}
+
+/* Whether a Host header names this server: an address in digits, localhost or one of the names, with any port.  A page
+ * of the web that has its own name point here (DNS rebinding) has none of these.
+ *
+ * Test     unit_http_head: a_host_is_an_address_localhost_or_a_name_that_was_given
+ */
+bool head_has_host(const char *host, const char *names)
+{
+	char name[256];
+	struct in6_addr address;
+	bool v6 = *host == '[';
+	size_t n = v6 ? strcspn(host, "]") : strcspn(host, ":");
+	const char *port = host + n + (v6 && host[n]);
+	if ((v6 && !host[n]) || n == 0 || n >= sizeof name)
+		return false;
+	if (*port && (*port != ':' || strspn(port + 1, "0123456789") != strlen(port + 1)))
+		return false;
+	snprintf(name, sizeof name, "%.*s", (int)n - v6, host + v6);
+	if (inet_pton(v6 ? AF_INET6 : AF_INET, name, &address) == 1)
+		return true;
+	if (v6)
+		return false;
+	if (!strcasecmp(name, "localhost"))
+		return true;
+	for (const char *at = names; at && *at; at += strcspn(at, ",") + (at[strcspn(at, ",")] == ','))
+		if (strcspn(at, ",") == n && !strncasecmp(at, name, n))
+			return true;
+	return false;
+}
+
+/* Whether an If-None-Match has a tag: `*`, or a list of tags, weak ones too (RFC 9110 section 13.1.2).
+ *
+ * Given    etag   "\"...\"", strong
+ * Test     unit_http_head: a_tag_is_found_in_every_form_of_a_list
+ */
+bool head_has_etag(const char *list, const char *etag)
+{
+	const char *at = list + strspn(list, " \t");
+	if (*at == '*')
+		return at[1 + strspn(at + 1, " \t")] == '\0';
+	while (*at) {
+		at += strspn(at, " \t,");
+		if (!strncmp(at, "W/", 2))
+			at += 2;
+		if (*at != '"')
+			return false;
+		size_t n = strcspn(at + 1, "\"") + 2;
+		if (n > strlen(at))
+			return false;
+		if (n == strlen(etag) && !strncmp(at, etag, n))
+			return true;
+		at += n + strspn(at + n, " \t");
+		if (*at && *at != ',')
+			return false;
+	}
+	return false;
+}
+
+/* Bytes up to one of some ends that is not inside quotes, or to the end. */
+static size_t part(const char *at, const char *ends)
+{
+	bool quoted = false;
+	size_t n = 0;
+	for (; at[n] && (quoted || !strchr(ends, at[n])); n++) {
+		quoted ^= at[n] == '"';
+		n += quoted && at[n] == '\\' && at[n + 1];
+	}
+	return n;
+}
+
+/* How well a range of media types says which it means: 0 when it is not this type. */
+static int fits(const char *range, size_t n, const char *type)
+{
+	size_t main = strcspn(type, "/") + 1;
+	bool any = n == main + 1 && !strncasecmp(range, type, main) && range[main] == '*';
+	return is(range, n, type) ? 3 : any ? 2 : is(range, n, "*/*") ? 1 : 0;
+}
+
+/* A weight in thousandths; -1: it is none. */
+static int thousandths(const char *value, size_t n)
+{
+	int sum = 0, unit = 1000;
+	if (n == 0 || value[0] > '1' || (n > 1 && value[1] != '.'))
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		if (i == 1)
+			continue;
+		if (!isdigit((unsigned char)value[i]))
+			return -1;
+		sum += (value[i] - '0') * unit;
+		unit /= 10;
+	}
+	return sum <= 1000 ? sum : -1;
+}
+
+/* The parameters behind a range.
+ *
+ * Returns  quality   the weight in thousandths, -1: it makes no sense
+ *          named     there is another parameter before it
+ *          value     their end
+ */
+static const char *parameters(const char *at, int *quality, bool *named)
+{
+	bool weighed = false;
+	*quality = 1000;
+	*named = false;
+	for (at += strspn(at, " \t"); *at == ';'; at += part(at, ";,")) {
+		at += 1 + strspn(at + 1, " \t");
+		size_t n = part(at, ";,");
+		while (n > 0 && is_blank(at[n - 1]))
+			n--;
+		bool weight = !weighed && n > 1 && (*at == 'q' || *at == 'Q') && at[1] == '=';
+		if (weight)
+			*quality = thousandths(at + 2, n - 2);
+		*named |= !weight && !weighed && n > 0;
+		weighed |= weight;
+	}
+	return at;
+}
+
+/* How much a media type is wanted: the weight of the range that names it most closely, 0 when none does.  A range with
+ * parameters, such as text/csv; header=present, is taken for the type too, where none without them is there.
+ *
+ * Given    accept   an Accept, "": there is none
+ * Returns  value    weight in thousandths
+ * Source   RFC 9110 sections 12.4.2 and 12.5.1
+ * Test     unit_http_head: a_type_is_wanted_as_much_as_the_closest_range_says
+ */
+int head_quality(const char *accept, const char *type)
+{
+	int closest = 0, found = 0;
+	for (const char *at = accept; *at; at += part(at, ","), at += *at == ',') {
+		int quality;
+		bool named;
+		at += strspn(at, " \t");
+		size_t n = strcspn(at, " \t;,");
+		int close = 2 * fits(at, n, type);
+		at = parameters(at + n, &quality, &named);
+		close -= named;
+		if (quality < 0 || close <= closest)
+			continue;
+		closest = close;
+		found = quality;
+	}
+	return found;
+}
+
+/* The seconds that a Prefer header is ready to wait (RFC 7240): 0 when it has no wait=N, or one that makes no sense; the
+ * largest int when they are more.
+ *
+ * Test     unit_http_head: the_seconds_to_wait_are_found_among_other_preferences
+ */
+int head_wait(const char *prefer)
+{
+	for (const char *at = prefer; *at; at += part(at, ","), at += *at == ',') {
+		at += strspn(at, " \t");
+		if (strncasecmp(at, "wait", 4) != 0)
+			continue;
+		const char *value = at + 4 + strspn(at + 4, " \t");
+		if (*value++ != '=')
+			continue;
+		value += strspn(value, " \t\"");
+		long seconds = isdigit((unsigned char)*value) ? strtol(value, NULL, 10) : 0;
+		return seconds < INT_MAX ? (int)seconds : INT_MAX;
+	}
+	return 0;
+}

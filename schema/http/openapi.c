@@ -1,0 +1,578 @@
+/* The OpenAPI 3.0 document: paths from the rows of api.c, a study from the rows of fields.c. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/examples/examples.h"
+#include "schema/http/api.h"
+#include "schema/json/json_writer.h"
+#include "schema/study/fields.h"
+#include "schema/study/study_json.h"
+
+/* Members of what is answered.  A type is one of JSON, the name of another object, or [NAME], an array of these. */
+struct member {
+	const char *object, *name, *type;
+	const char *note; /* " null ": may be null; " absent ": may not be there */
+	const char *text;
+};
+
+// clang-format off
+static const struct member members[] = {
+	{"Status", "id",          "string",  "",     "16 hexadecimal digits"},
+	{"Status", "name",        "string",  "null", "of the study document"},
+	{"Status", "kind",        "string",  "",     "of the study document"},
+	{"Status", "status",      "string",  "",     "queued, running, succeeded, failed or cancelled"},
+	{"Status", "progress",    "number",  "",     "0 to 1"},
+	{"Status", "runs_done",   "integer", "",     "pounding runs that are done and stored"},
+	{"Status", "runs_total",  "integer", "",     "pounding runs asked for"},
+	{"Status", "eta_s",       "number",  "null", "seconds to the end, while it runs"},
+	{"Status", "created",     "string",  "",     "RFC 3339, UTC"},
+	{"Status", "started",     "string",  "null", "RFC 3339, UTC"},
+	{"Status", "finished",    "string",  "null", "RFC 3339, UTC"},
+	{"Status", "error",       "string",  "null", "why it failed: poison-study, timeout, or another reason, in a sentence"},
+	{"Status", "links",       "Links",   "",     "where the rest is"},
+	{"Links",  "self",        "string",  "",     "this object"},
+	{"Links",  "request",     "string",  "",     "the bytes that were posted"},
+	{"Links",  "results",     "string",  "",     "the result"},
+	{"Links",  "samples",     "string",  "",     "every input row and its outputs"},
+	{"Links",  "cancel",      "string",  "",     "POST ends the study"},
+	{"Page",   "studies",     "[Status]", "",    "newest first"},
+	{"Page",   "next",        "string",  "null", "cursor of the next page"},
+	{"Estimate", "kind",            "string",  "", "of the study document"},
+	{"Estimate", "runs_total",      "integer", "", "pounding runs asked for"},
+	{"Estimate", "estimated_cpu_s", "number",  "", "seconds of one core"},
+	{"Estimate", "estimated_bytes", "number",  "", "in the database"},
+	{"Version", "name",       "string",  "",     "poundd"},
+	{"Version", "version",    "string",  "",     "of the engine and the server"},
+	{"Problem", "type",       "string",  "",     "short name of the kind of problem"},
+	{"Problem", "title",      "string",  "",     "the kind of problem"},
+	{"Problem", "status",     "integer", "",     "the HTTP status"},
+	{"Problem", "detail",     "string",  "",     "a sentence about this request"},
+	{"Problem", "line",       "integer", "absent", "of malformed JSON"},
+	{"Problem", "column",     "integer", "absent", "of malformed JSON"},
+	{"Problem", "errors",     "[Fault]", "absent", "everything that is wrong with a study"},
+	{"Problem", "errors_not_listed", "integer", "absent", "how many more"},
+	{"Fault",  "pointer",     "string",  "",     "JSON Pointer into the study document"},
+	{"Fault",  "detail",      "string",  "",     "what was expected there, and what came"},
+	{"Fault",  "requested",   "number",  "absent", "of a study that is too large: how much of it"},
+	{"Fault",  "limit",       "number",  "absent", "and how much there may be"},
+	{"Result", "kind",           "string", "",   "of the study document"},
+	{"Result", "engine_version", "string", "",   "that computed it"},
+	{"Result", "study_hash",     "string", "",   "SHA-256 of the study's meaning"},
+	{"Result", "timing",         "Timing", "",   "what may differ between two runs of one study"},
+	{"Timing", "wall_s",      "number",  "",     "time it took"},
+	{"Timing", "cpu_s",       "number",  "",     "of all threads"},
+	{"Timing", "threads",     "integer", "",     "that computed it"},
+	{"OpenAPI", "openapi",    "string",  "",     "version of OpenAPI"},
+};
+
+/* objects with further members that depend on the kind of study */
+static const char open_objects[] = " Result Timing OpenAPI ";
+
+static const struct {
+	const char *object, *text;
+} samples[] = {
+	{"Status", "{\"id\": \"0019c5a0b1c2d3e4\", \"name\": \"two towers\", \"kind\": \"sensitivity\", \"status\": \"running\", "
+	           "\"progress\": 0.25, \"runs_done\": 7500, \"runs_total\": 30000, \"eta_s\": 2.5, "
+	           "\"created\": \"2026-01-01T00:00:00.000Z\", \"started\": \"2026-01-01T00:00:00.010Z\", \"finished\": null, "
+	           "\"error\": null, \"links\": {\"self\": \"/v1/studies/0019c5a0b1c2d3e4\", "
+	           "\"request\": \"/v1/studies/0019c5a0b1c2d3e4/request\", \"results\": \"/v1/studies/0019c5a0b1c2d3e4/results\", "
+	           "\"samples\": \"/v1/studies/0019c5a0b1c2d3e4/samples\", \"cancel\": \"/v1/studies/0019c5a0b1c2d3e4/cancel\"}}"},
+	{"Estimate", "{\"kind\": \"sensitivity\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000}"},
+	{"Problem", "{\"type\": \"invalid-study\", \"title\": \"Invalid Study\", \"status\": 422, "
+	            "\"detail\": \"the study has faults, listed in errors\", \"errors\": "
+	            "[{\"pointer\": \"/scene/contact/gap_m\", \"detail\": \"must be at least 0, got -0.1\"}]}"},
+};
+// clang-format on
+
+static void object(struct writer *w, const char *name)
+{
+	writer_object(w, name, WRITER_LINES);
+}
+
+static void reference(struct writer *w, const char *schema)
+{
+	char path[64];
+	snprintf(path, sizeof path, "#/components/schemas/%s", schema);
+	writer_text(w, "$ref", path);
+}
+
+/* ---- a study ---- */
+
+static bool has_end(double end)
+{
+	return isfinite(end);
+}
+
+static void numbers(struct writer *w, const struct field *field)
+{
+	writer_text(w, "type", field->type == FIELD_COUNT ? "integer" : "number");
+	if (has_end(field->min)) {
+		writer_number(w, "minimum", field->min);
+		writer_bool(w, "exclusiveMinimum", field->ends & FIELD_OPEN_MIN);
+	}
+	if (has_end(field->max)) {
+		writer_number(w, "maximum", field->max);
+		writer_bool(w, "exclusiveMaximum", field->ends & FIELD_OPEN_MAX);
+	}
+}
+
+static void choices(struct writer *w, const struct field *field)
+{
+	writer_text(w, "type", "string");
+	writer_array(w, "enum", WRITER_LINE);
+	for (int row = 0; field->choice(row); row++)
+		writer_text(w, NULL, field->choice(row));
+	writer_end(w);
+}
+
+static void value(struct writer *w, const char *name, const struct field *field);
+
+/* The parameters of all distributions: which of them there are depends on its type. */
+static void parameters(struct writer *w)
+{
+	const char *seen[16], *parameter;
+	int n = 0;
+	for (int row = 0; pound_distribution_name(row); row++)
+		for (int k = 0; (parameter = pound_distribution_parameter(row, k)); k++) {
+			int i = 0;
+			while (i < n && strcmp(seen[i], parameter) != 0)
+				i++;
+			if (i < n || n == 16)
+				continue;
+			seen[n++] = parameter;
+			writer_object(w, parameter, WRITER_LINE);
+			writer_text(w, "type", "number");
+			writer_number(w, "minimum", -POUND_PARAMETER_MAX);
+			writer_number(w, "maximum", POUND_PARAMETER_MAX);
+			writer_end(w);
+		}
+}
+
+/* What the parameters of each distribution must be. */
+static void rules(char *text, size_t size)
+{
+	const char *rule;
+	size_t n = 0;
+	for (int row = 0; pound_distribution_name(row); row++)
+		for (int k = 0; (rule = pound_distribution_rule(row, k)) && n < size; k++)
+			n += (size_t)snprintf(text + n, size - n, "; %s: %s", pound_distribution_name(row), rule);
+}
+
+static void members_of(struct writer *w, const char *pattern)
+{
+	bool distribution = !strcmp(pattern, "/inputs/*/distribution");
+	bool oscillator = !strcmp(pattern, "/scene/oscillators/*");
+	int required = 0;
+	writer_text(w, "type", "object");
+	writer_bool(w, "additionalProperties", false);
+	object(w, "properties");
+	for (int i = 0; i < fields_count; i++)
+		if (fields_child(&fields[i], pattern) && *fields_name(&fields[i]) != '*')
+			value(w, fields_name(&fields[i]), &fields[i]);
+	if (distribution)
+		parameters(w);
+	writer_end(w);
+	if (oscillator) {
+		writer_json(w, "anyOf", "[{\"required\": [\"frequency_hz\"]}, {\"required\": [\"rigid_wall\"]}]");
+		return;
+	}
+	for (int i = 0; i < fields_count; i++) {
+		const struct field *field = &fields[i];
+		if (!fields_child(field, pattern) || !isnan(field->absent) ||
+		    field->kinds != fields_find(*pattern ? pattern : "/kind")->kinds || field->types)
+			continue;
+		if (required++ == 0)
+			writer_array(w, "required", WRITER_LINE);
+		writer_text(w, NULL, fields_name(field));
+	}
+	if (required)
+		writer_end(w);
+}
+
+static void elements(struct writer *w, const struct field *field)
+{
+	char pattern[128];
+	snprintf(pattern, sizeof pattern, "%s/*", field->pattern);
+	const struct field *element = fields_find(pattern);
+	writer_text(w, "type", "array");
+	writer_number(w, "minItems", field->min);
+	writer_number(w, "maxItems", field->max);
+	if (element)
+		value(w, "items", element);
+	else
+		writer_json(w, "items", "{}");
+}
+
+/* A list; one that may be a range has the members of a range too. */
+static void list(struct writer *w, const struct field *field)
+{
+	bool range = false;
+	for (int i = 0; i < fields_count; i++)
+		range |= fields_child(&fields[i], field->pattern) && *fields_name(&fields[i]) != '*';
+	if (!range) {
+		elements(w, field);
+		return;
+	}
+	writer_array(w, "oneOf", WRITER_LINES);
+	object(w, NULL);
+	elements(w, field);
+	writer_end(w);
+	object(w, NULL);
+	members_of(w, field->pattern);
+	writer_end(w);
+	writer_end(w);
+}
+
+static void absent(struct writer *w, const struct field *field)
+{
+	bool found_otherwise = field->ends == FIELD_OPEN_MIN && field->absent == field->min;
+	if (isnan(field->absent) || field->type >= FIELD_TEXT || found_otherwise ||
+	    strchr(fields_name(field), '*'))
+		return;
+	if (field->choice)
+		writer_text(w, "default", field->choice((int)field->absent));
+	else if (field->type == FIELD_BOOL)
+		writer_bool(w, "default", field->absent != 0.0);
+	else
+		writer_number(w, "default", field->absent);
+}
+
+/* What stands at a field. */
+static void value(struct writer *w, const char *name, const struct field *field)
+{
+	char text[2048];
+	object(w, name);
+	snprintf(text, sizeof text, "%s%s%s%s%s%s", field->text, *field->unit ? " [" : "", field->unit,
+	         *field->unit ? "]" : "", field->kinds ? "; only of kind" : "", field->kinds ? field->kinds : "");
+	size_t n = strlen(text);
+	snprintf(text + n, sizeof text - n, "%s%s", field->types ? "; only of excitation" : "",
+	         field->types ? field->types : "");
+	if (!strcmp(field->pattern, "/inputs/*/distribution"))
+		rules(text + strlen(text), sizeof text - strlen(text));
+	writer_text(w, "description", text);
+	if (field->choice)
+		choices(w, field);
+	else if (field->type == FIELD_REAL || field->type == FIELD_COUNT)
+		numbers(w, field);
+	else if (field->type == FIELD_BOOL)
+		writer_text(w, "type", "boolean");
+	else if (field->type == FIELD_SEED)
+		writer_json(w, "oneOf",
+		            "[{\"type\": \"integer\", \"minimum\": 0, \"maximum\": 9007199254740991}, "
+		            "{\"type\": \"string\", \"pattern\": \"^[0-9]{1,20}$\"}]");
+	else if (field->type == FIELD_TEXT) {
+		writer_text(w, "type", "string");
+		writer_number(w, "minLength", field->min);
+		writer_number(w, "maxLength", field->max);
+	} else if (field->type == FIELD_LIST)
+		list(w, field);
+	else
+		members_of(w, field->pattern);
+	if (!strcmp(field->pattern, "/scene/contact"))
+		writer_bool(w, "nullable", true);
+	absent(w, field);
+	writer_end(w);
+}
+
+/* ---- what is answered ---- */
+
+static void member(struct writer *w, const struct member *of)
+{
+	bool array = *of->type == '[', another = of->type[array] <= 'Z';
+	char type[32];
+	snprintf(type, sizeof type, "%.*s", (int)strcspn(of->type + array, "]"), of->type + array);
+	object(w, of->name);
+	writer_text(w, "description", of->text);
+	if (array) {
+		writer_text(w, "type", "array");
+		object(w, "items");
+	}
+	if (another && !array) {
+		// beside a $ref nothing else counts
+		writer_array(w, "allOf", WRITER_LINE);
+		writer_object(w, NULL, WRITER_LINE);
+		reference(w, type);
+		writer_end(w);
+		writer_end(w);
+	} else if (another)
+		reference(w, type);
+	else
+		writer_text(w, "type", type);
+	if (array)
+		writer_end(w);
+	if (!strcmp(of->note, "null"))
+		writer_bool(w, "nullable", true);
+	writer_end(w);
+}
+
+static void answered(struct writer *w, const char *name, const struct member *first, const struct member *end)
+{
+	object(w, name);
+	writer_text(w, "type", "object");
+	writer_bool(w, "additionalProperties", fields_listed(open_objects, name));
+	object(w, "properties");
+	for (const struct member *of = first; of < end; of++)
+		member(w, of);
+	writer_end(w);
+	writer_array(w, "required", WRITER_LINE);
+	for (const struct member *of = first; of < end; of++)
+		if (strcmp(of->note, "absent") != 0)
+			writer_text(w, NULL, of->name);
+	writer_end(w);
+	for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++)
+		if (!strcmp(samples[i].object, name))
+			writer_json(w, "example", samples[i].text);
+	writer_end(w);
+}
+
+static void schemas(struct writer *w)
+{
+	const struct member *end = members + sizeof members / sizeof members[0];
+	object(w, "schemas");
+	object(w, "Study");
+	writer_text(
+	    w, "description",
+	    "A study document. Which members it may have depends on its kind, its excitation and its solver; "
+	    "validate_only tells all that is wrong at once.");
+	members_of(w, "");
+	writer_end(w);
+	for (const struct member *first = members, *next; first < end; first = next) {
+		for (next = first; next < end && !strcmp(next->object, first->object);)
+			next++;
+		answered(w, first->object, first, next);
+	}
+	writer_end(w);
+}
+
+/* ---- paths ---- */
+
+static void argument(struct writer *w, const struct api_argument *of)
+{
+	char text[256];
+	object(w, NULL);
+	writer_text(w, "name", of->name);
+	writer_text(w, "in", of->place);
+	writer_bool(w, "required", !strcmp(of->place, "path"));
+	writer_text(w, "description", of->text);
+	if (of->blank)
+		writer_bool(w, "allowEmptyValue", true);
+	object(w, "schema");
+	writer_text(w, "type", of->max ? "integer" : "string");
+	if (of->max) {
+		writer_whole(w, "minimum", of->min);
+		writer_whole(w, "maximum", of->max);
+	}
+	if (!strcmp(of->place, "path"))
+		writer_text(w, "pattern", "^[0-9a-f]{16}$");
+	if (of->choices) {
+		writer_array(w, "enum", WRITER_LINE);
+		snprintf(text, sizeof text, "%s", of->choices);
+		for (char *rest, *name = strtok_r(text, " ", &rest); name; name = strtok_r(NULL, " ", &rest))
+			writer_text(w, NULL, name);
+		writer_end(w);
+	}
+	if (of->absent && of->max)
+		writer_json(w, "default", of->absent);
+	else if (of->absent)
+		writer_text(w, "default", of->absent);
+	writer_end(w);
+	writer_end(w);
+}
+
+static void arguments(struct writer *w, const struct api_operation *operation)
+{
+	writer_array(w, "parameters", WRITER_LINES);
+	for (int i = 0; i < api_arguments_count; i++) {
+		const struct api_argument *of = &api_arguments[i];
+		if (of->operation ? !strcmp(of->operation, operation->name) : strstr(operation->path, "{id}") != NULL)
+			argument(w, of);
+	}
+	writer_end(w);
+}
+
+/* Whether an example is a whole study, and not a design alone. */
+static bool is_study(const char *text)
+{
+	struct problems problems;
+	struct pound_study *study = study_from_json(text, strlen(text), &problems);
+	if (study)
+		study_free(study);
+	return study != NULL;
+}
+
+static void body(struct writer *w)
+{
+	object(w, "requestBody");
+	writer_bool(w, "required", true);
+	object(w, "content");
+	object(w, "application/json");
+	object(w, "schema");
+	reference(w, "Study");
+	writer_end(w);
+	object(w, "examples");
+	for (int i = 0; examples[i].name; i++) {
+		if (!is_study(examples[i].text))
+			continue;
+		object(w, examples[i].name);
+		writer_text(w, "summary", examples[i].title);
+		writer_json(w, "value", examples[i].text);
+		writer_end(w);
+	}
+	writer_end(w);
+	writer_end(w);
+	writer_end(w);
+	writer_end(w);
+}
+
+static void media(struct writer *w, const char *type, const char *schema)
+{
+	object(w, type);
+	object(w, "schema");
+	if (schema)
+		reference(w, schema);
+	else
+		writer_text(w, "type", "string");
+	writer_end(w);
+	writer_end(w);
+}
+
+static void header(struct writer *w, const char *name, bool required, const char *text)
+{
+	object(w, name);
+	writer_text(w, "description", text);
+	writer_bool(w, "required", required);
+	writer_json(w, "schema", "{\"type\": \"string\"}");
+	writer_end(w);
+}
+
+/* Headers of a success: where what was made is, and the tag of what may be asked for again. */
+static void success_headers(struct writer *w, const struct api_operation *operation, const char *answer,
+                            const char *schema)
+{
+	bool made = !strcmp(answer, "201"), status = schema && !strcmp(schema, "Status");
+	bool tagged = status || strstr(operation->answers, "304");
+	if (!tagged)
+		return;
+	object(w, "headers");
+	if (made)
+		header(w, "Location", true, "the study");
+	header(w, "ETag", true, "for If-None-Match");
+	writer_end(w);
+}
+
+/* An answer such as "200=Page" or "304". */
+static void success(struct writer *w, const struct api_operation *operation, char *answer)
+{
+	char types[128], *object_name = strchr(answer, '=');
+	if (object_name)
+		*object_name++ = '\0';
+	object(w, answer);
+	writer_text(w, "description", !strcmp(answer, "304") ? "not changed" : operation->text);
+	success_headers(w, operation, answer, object_name);
+	if (*answer == '2' && strcmp(answer, "204") != 0) {
+		object(w, "content");
+		if (object_name)
+			media(w, "application/json", object_name);
+		snprintf(types, sizeof types, "%s", operation->media ? operation->media : "");
+		for (char *rest, *type = strtok_r(types, " ", &rest); type; type = strtok_r(NULL, " ", &rest))
+			media(w, type, NULL);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+static void failures(struct writer *w, const struct api_operation *operation)
+{
+	unsigned faults = api_faults_of_all | operation->faults;
+	for (int first = 0; first < API_NO_FAULT; first++) {
+		char status[8], text[256] = "";
+		bool told = first > 0 && api_faults[first - 1].status == api_faults[first].status;
+		for (int i = first; !told && i < API_NO_FAULT && api_faults[i].status == api_faults[first].status;
+		     i++)
+			if ((faults >> i & 1) && !(operation->open && i == API_UNAUTHORIZED))
+				strcat(strcat(text, *text ? ", or " : ""), api_faults[i].title);
+		if (!*text)
+			continue;
+		snprintf(status, sizeof status, "%d", api_faults[first].status);
+		object(w, status);
+		writer_text(w, "description", text);
+		const bool always = first == API_UNAVAILABLE || first == API_TOO_MANY;
+		const bool waits =
+		    api_faults[first].status == api_faults[API_NOT_READY].status && (faults >> API_NOT_READY & 1);
+		if (always || waits || first == API_UNAUTHORIZED) {
+			object(w, "headers");
+			if (first == API_UNAUTHORIZED)
+				header(w, "WWW-Authenticate", true, "Bearer");
+			else
+				header(w, "Retry-After", always, always ? "seconds" : "seconds, of what is not ready yet");
+			writer_end(w);
+		}
+		object(w, "content");
+		media(w, "application/problem+json", "Problem");
+		writer_end(w);
+		writer_end(w);
+	}
+}
+
+static void operations(struct writer *w)
+{
+	char answers[64], method[8];
+	object(w, "paths");
+	for (int i = 0; i < API_N_OPERATIONS; i++) {
+		const struct api_operation *operation = &api_operations[i];
+		if (i == 0 || strcmp(operation->path, api_operations[i - 1].path) != 0)
+			object(w, operation->path);
+		snprintf(method, sizeof method, "%s", operation->method);
+		for (char *c = method; *c; c++)
+			*c |= 0x20; // lower case
+		object(w, method);
+		writer_text(w, "operationId", operation->name);
+		writer_text(w, "summary", operation->text);
+		writer_json(w, "security", operation->open ? "[]" : "[{}, {\"bearer\": []}]");
+		arguments(w, operation);
+		if (operation->takes_study)
+			body(w);
+		object(w, "responses");
+		snprintf(answers, sizeof answers, "%s", operation->answers);
+		for (char *rest, *one = strtok_r(answers, " ", &rest); one; one = strtok_r(NULL, " ", &rest))
+			success(w, operation, one);
+		failures(w, operation);
+		writer_end(w);
+		writer_end(w);
+		if (i + 1 == API_N_OPERATIONS || strcmp(operation->path, api_operations[i + 1].path) != 0)
+			writer_end(w);
+	}
+	writer_end(w);
+}
+
+/* The document that tells what poundd can be asked.
+ *
+ * Returns  value     (length)  -       JSON, OpenAPI 3.0; NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Source   OpenAPI Specification 3.0.3
+ * Test     unit_api: the_schema_and_the_reader_take_and_refuse_the_same_studies, service_openapi
+ */
+char *api_document(size_t *length)
+{
+	struct writer w;
+	writer_init(&w);
+	object(&w, NULL);
+	writer_text(&w, "openapi", "3.0.3");
+	object(&w, "info");
+	writer_text(&w, "title", "poundd");
+	writer_text(&w, "version", POUND_VERSION);
+	writer_text(
+	    &w, "description",
+	    "Earthquake-induced pounding between two oscillators, and what it is sensitive to. What the HTTP "
+	    "parser itself refuses (400, 414, 431, 505) is answered without a problem object.");
+	writer_end(&w);
+	operations(&w);
+	object(&w, "components");
+	schemas(&w);
+	writer_json(&w, "securitySchemes", "{\"bearer\": {\"type\": \"http\", \"scheme\": \"bearer\"}}");
+	writer_end(&w);
+	writer_end(&w);
+	return writer_take(&w, length);
+}

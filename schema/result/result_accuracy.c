@@ -1,0 +1,168 @@
+/* result_accuracy.c - error estimates of a sensitivity result, in numbers and in one sentence. */
+#include "schema/result/result_accuracy.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "schema/study/study_json.h"
+
+/* The sizes of the errors, and which is larger than all others together.
+ *
+ * Given    index   the one that the sampling and the integration may be wrong about most, in words
+ */
+static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE], const char *index)
+{
+	enum pound_error dominant = pound_accuracy_dominant(errors);
+	writer_object(w, "errors", WRITER_LINE);
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		writer_number(w, pound_error_name(k), errors[k]);
+	writer_end(w);
+	writer_text(w, "dominant", pound_error_name(dominant));
+	if (dominant == POUND_ERROR_NONE)
+		return;
+	static const struct {
+		const char *sentence;
+		bool of_index;
+	} notes[] = {
+	    [POUND_ERROR_SAMPLING] =
+	        {"Too few rows are the largest error: an interval reaches %.2g to either side of ", true},
+	    [POUND_ERROR_EXCITATION] =
+	        {"Too few signals for each row may be the largest error: an upper estimate of what their noise "
+	         "adds to an interval is %.2g to either side",
+	         false},
+	    [POUND_ERROR_INTEGRATION] = {"Inexact runs are the largest error: up to %.2g in ", true},
+	    [POUND_ERROR_FAILED_ROWS] = {"Rows without a result are the largest error: were they all like the "
+	                                 "most extreme of the others, an index "
+	                                 "would be another by up to %.2g",
+	                                 false}};
+	char note[400];
+	int n = snprintf(note, sizeof note, notes[dominant].sentence, errors[dominant]);
+	snprintf(note + n, sizeof note - (size_t)n, "%s.", notes[dominant].of_index ? index : "");
+	writer_text(w, "note", note);
+}
+
+/* The index of an output that is the least certain: by its interval, or by the integration where that dominates. */
+static void least_certain(const struct pound_study *study, const struct pound_accuracy *accuracy, char *text,
+                          size_t size)
+{
+	const bool runs = pound_accuracy_dominant(accuracy->errors) == POUND_ERROR_INTEGRATION;
+	double worst = -1;
+	for (int j = 0; j < study->n_inputs; j++) {
+		double of[] = {
+		    runs ? accuracy->inputs[j].first_change : accuracy->inputs[j].first_half[POUND_LEVELS - 1],
+		    runs ? accuracy->inputs[j].total_change : accuracy->inputs[j].total_half[POUND_LEVELS - 1]};
+		for (int k = 0; k < 2; k++)
+			if (of[k] > worst) {
+				worst = of[k];
+				snprintf(text, size, "%s of %s", k ? "ST" : "S1", study->inputs[j].name);
+			}
+	}
+}
+
+static void write_halves(struct writer *w, const char *name, const struct pound_accuracy *accuracy,
+                         const double half[POUND_LEVELS])
+{
+	writer_array(w, name, WRITER_LINE);
+	for (int k = 0; k < POUND_LEVELS; k++)
+		if (accuracy->rows[k] > 0)
+			writer_number(w, NULL, half[k]);
+	writer_end(w);
+}
+
+/* Writes the error estimates of one output of one cell.
+ *
+ * Test     unit_result_json: every_output_says_how_far_it_may_be_off
+ */
+void result_accuracy_output(struct writer *w, const struct pound_study *study,
+                            const struct pound_indices *indices)
+{
+	const struct pound_accuracy *accuracy = &indices->accuracy;
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_whole(w, "runs_checked", accuracy->runs_checked);
+	writer_whole(w, "runs_unchecked", accuracy->runs_unchecked);
+	writer_number(w, "difference_median", accuracy->difference_median);
+	writer_number(w, "difference_largest", accuracy->difference_largest);
+	writer_number(w, "variance_share", accuracy->variance_share);
+	writer_number(w, "slope", accuracy->slope);
+	writer_number(w, "rows_to_halve",
+	              isfinite(accuracy->rows_to_halve) ? ceil(accuracy->rows_to_halve) : NAN);
+	writer_array(w, "rows", WRITER_LINE);
+	for (int k = 0; k < POUND_LEVELS; k++)
+		if (accuracy->rows[k] > 0)
+			writer_whole(w, NULL, accuracy->rows[k]);
+	writer_end(w);
+	writer_array(w, "inputs", WRITER_LINES);
+	for (int j = 0; j < study->n_inputs; j++) {
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name", study->inputs[j].name);
+		writer_number(w, "S1_integration", accuracy->inputs[j].first_change);
+		writer_number(w, "ST_integration", accuracy->inputs[j].total_change);
+		writer_number(w, "S1_failed_rows", accuracy->inputs[j].first_dropped);
+		writer_number(w, "ST_failed_rows", accuracy->inputs[j].total_dropped);
+		write_halves(w, "S1_half_widths", accuracy, accuracy->inputs[j].first_half);
+		write_halves(w, "ST_half_widths", accuracy, accuracy->inputs[j].total_half);
+		writer_end(w);
+	}
+	writer_end(w);
+	char index[160] = "an index";
+	least_certain(study, accuracy, index, sizeof index);
+	write_errors(w, accuracy->errors, index);
+	writer_end(w);
+}
+
+/* Writes the worst of all outputs of all cells.
+ *
+ * Test     unit_result_json: every_output_says_how_far_it_may_be_off
+ */
+void result_accuracy_study(struct writer *w, const struct pound_study *study,
+                           const struct pound_result *result)
+{
+	double median = NAN, largest = NAN, errors[POUND_ERROR_NONE];
+	int64_t checked = 0;
+	for (int k = 0; k < POUND_ERROR_NONE; k++)
+		errors[k] = NAN;
+	for (int c = 0; c < result->n_cells; c++) {
+		struct pound_scene scene;
+		int64_t checked_of_cell = 0;
+		study_cell(study, c, &scene);
+		for (int o = 0; o < study->n_outputs; o++) {
+			const struct pound_accuracy *accuracy = &result->cells[c].indices[o].accuracy;
+			if (!study->elsewhere && !pound_output_applies(study->outputs[o], &scene))
+				continue;
+			if (accuracy->runs_checked > checked_of_cell)
+				checked_of_cell = accuracy->runs_checked;
+			median = fmax(median, accuracy->difference_median);
+			largest = fmax(largest, accuracy->difference_largest);
+			for (int k = 0; k < POUND_ERROR_NONE; k++)
+				errors[k] = fmax(errors[k], accuracy->errors[k]);
+		}
+		checked += checked_of_cell;
+	}
+	writer_object(w, "accuracy", WRITER_LINES);
+	if (!study->elsewhere)
+		writer_text(
+		    w, "check",
+		    "runs made again on half the sample step; pounding can be chaotic, so single runs may part "
+		    "by rounding alone");
+	writer_whole(w, "runs_checked", checked);
+	writer_number(w, "difference_median", median);
+	writer_number(w, "difference_largest", largest);
+	write_errors(w, errors, "an index");
+	writer_end(w);
+}
+
+/* Writes the CPU time of n/8, n/4, n/2 and n rows. */
+void result_accuracy_timing(struct writer *w, const struct pound_result *result, double cpu_s)
+{
+	const int *rows = result->cells[0].indices[0].accuracy.rows;
+	writer_array(w, "rows", WRITER_LINE);
+	for (int k = 0; k < POUND_LEVELS; k++) {
+		if (!rows[k])
+			continue;
+		writer_object(w, NULL, WRITER_LINE);
+		writer_whole(w, "rows", rows[k]);
+		writer_number(w, "cpu_s", cpu_s * rows[k] / rows[POUND_LEVELS - 1]);
+		writer_end(w);
+	}
+	writer_end(w);
+}

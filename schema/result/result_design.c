@@ -1,0 +1,136 @@
+/* result_design.c - the rows a sensitivity result is of: all, those that were enough, or the first so far. */
+#include "schema/result/result_design.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "schema/study/study_json.h"
+#include "schema/study/study_spectrum.h"
+
+#define X(name, text) text,
+static const char *const index_names[] = {POUND_INDEXES(X)};
+#undef X
+
+static bool grows(const struct pound_study *study)
+{
+	return study->design.until.half_width > 0;
+}
+
+/* Fewer rows than the study will have; of a model that is run elsewhere none will come. */
+static bool partial(const struct pound_study *study, const struct pound_result *result)
+{
+	if (study->elsewhere)
+		return false;
+	return grows(study) ? result->n_looks == 0 : result->rows < study->design.rows;
+}
+
+static int64_t runs_of(const struct pound_study *study, int rows)
+{
+	return rows * pound_design_row_runs(study);
+}
+
+static void write_look(struct writer *w, const char *name, const struct pound_study *study,
+                       const struct pound_result *result, const struct pound_look *look)
+{
+	const struct pound_cell *cell = &result->cells[look->cell];
+	char output[STUDY_OUTPUT_SIZE];
+	writer_object(w, name, WRITER_LINE);
+	writer_whole(w, "rows", look->rows);
+	writer_whole(w, "runs", runs_of(study, look->rows));
+	writer_number(w, "half_width", look->half_width < 0 ? NAN : look->half_width);
+	if (look->half_width >= 0) {
+		writer_text(w, "index", index_names[look->index]);
+		writer_text(w, "input", study->inputs[look->input].name);
+		writer_text(w, "output", study_output_name(study, look->output, output));
+		writer_object(w, "sweep", WRITER_LINE);
+		for (int s = 0; s < study->n_sweeps; s++)
+			study_value(w, study->sweeps[s].path, study->sweeps[s].path, cell->sweep[s]);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+/* Why the design grew no further, and which interval was the widest then. */
+static void write_stopping(struct writer *w, const struct pound_study *study,
+                           const struct pound_result *result)
+{
+	const struct pound_until *until = &study->design.until;
+	const struct pound_look *last = &result->looks[result->n_looks - 1];
+	const bool reached = last->half_width <= until->half_width;
+	char note[400], output[STUDY_OUTPUT_SIZE];
+	int n = snprintf(note, sizeof note,
+	                 reached ? "every interval of S1 and ST reaches %.3g or less to either side of its index"
+	                         : "max_runs allows no more rows, and not every interval reaches %.3g or less to "
+	                           "either side of its index",
+	                 until->half_width);
+	if (last->half_width >= 0)
+		snprintf(note + n, sizeof note - (size_t)n, "; the widest is that of %s of %s in %s",
+		         index_names[last->index], study->inputs[last->input].name,
+		         study_output_name(study, last->output, output));
+	writer_object(w, "stopping", WRITER_LINES);
+	writer_number(w, "half_width", until->half_width);
+	writer_whole(w, "max_runs", until->max_runs);
+	writer_bool(w, "reached", reached);
+	writer_whole(w, "rows", last->rows);
+	writer_whole(w, "runs", runs_of(study, last->rows));
+	write_look(w, "decided_by", study, result, last);
+	writer_array(w, "looks", WRITER_LINES);
+	for (int k = 0; k < result->n_looks; k++)
+		write_look(w, NULL, study, result, &result->looks[k]);
+	writer_end(w);
+	writer_text(w, "note", note);
+	writer_end(w);
+}
+
+/* What there is to say about a design: points of a net are even for a power of two in each scramble.
+ *
+ * Test     unit_result_json: points_that_do_not_fill_their_nets_are_noted
+ */
+bool result_design_note(const struct pound_study *study, char *text, size_t size)
+{
+	const struct pound_design *design = &study->design;
+	int full = design->randomisations;
+	*text = 0;
+	if (grows(study) && study->elsewhere)
+		snprintf(text, size,
+		         "the design grows; these are the %d rows of its first look, a run of it takes up to %d",
+		         pound_design_rows(study, 0), pound_design_rows_most(study));
+	if (grows(study) || !pound_design_quasi_random(design->method))
+		return *text;
+	while (full < design->rows)
+		full *= 2;
+	if (full != design->rows)
+		snprintf(text, size,
+		         "%d rows are not 2^k for each of %d randomisations, so the points are less even and the "
+		         "indexes less "
+		         "sharp than they could be; %d or %d rows are",
+		         design->rows, design->randomisations, full / 2, full);
+	return *text;
+}
+
+/* Writes the members `design`, `partial` (of an intermediate result) and `stopping` (of a design that grew).
+ *
+ * Test     unit_result_json: a_result_says_why_its_design_grew_no_further
+ */
+void result_design(struct writer *w, const struct pound_study *study, const struct pound_result *result)
+{
+	const bool nets = pound_design_quasi_random(study->design.method);
+	char note[RESULT_NOTE_SIZE];
+	writer_object(w, "design", WRITER_LINE);
+	writer_text(w, "method", pound_design_name(study->design.method));
+	writer_whole(w, "rows", result->rows);
+	if (nets)
+		writer_whole(w, "randomisations", study->design.randomisations);
+	if (result_design_note(study, note, sizeof note))
+		writer_text(w, "note", note);
+	writer_end(w);
+	if (partial(study, result)) {
+		writer_object(w, "partial", WRITER_LINE);
+		writer_whole(w, "rows", result->rows);
+		writer_whole(w, "rows_most", pound_design_rows_most(study));
+		writer_text(w, "note", "of the rows that are complete so far; the study goes on");
+		writer_end(w);
+	} else if (result->n_looks) {
+		write_stopping(w, study, result);
+	}
+}

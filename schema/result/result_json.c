@@ -1,0 +1,556 @@
+/* result_json.c - a study's result -> JSON, member by member as the contract names them. */
+#include "schema/result/result_json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/json/json_writer.h"
+#include "schema/result/result_accuracy.h"
+#include "schema/result/result_design.h"
+#include "schema/result/result_floor.h"
+#include "schema/study/fields.h"
+#include "schema/study/study_json.h"
+
+/* ---- response ---- */
+
+static const struct {
+	const char *member, *name;
+	int oscillator;
+	size_t offset; /* in struct pound_response */
+} measures[] = {
+#define X(member, name, oscillator) {#member, name, oscillator, offsetof(struct pound_response, member)},
+    POUND_MEASURES(X)
+#undef X
+};
+
+enum { MEASURES = sizeof measures / sizeof measures[0] };
+
+static bool at_end(int measure)
+{
+	return strncmp(measures[measure].member, "end_", 4) == 0;
+}
+
+/* The measures of one oscillator, of the pair (-1), or of the end. */
+static void write_measures(struct writer *w, const struct pound_response *response, int oscillator, bool end)
+{
+	for (int k = 0; k < MEASURES; k++)
+		if (measures[k].oscillator == oscillator && at_end(k) == end)
+			writer_number(w, measures[k].name,
+			              *(const double *)(const void *)((const char *)response + measures[k].offset));
+}
+
+static void write_signal(struct writer *w, const struct pound_response *response, int index)
+{
+	writer_object(w, NULL, WRITER_LINES);
+	writer_whole(w, "index", index);
+	writer_array(w, "oscillators", WRITER_LINES);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		writer_object(w, NULL, WRITER_LINE);
+		write_measures(w, response, i, false);
+		writer_end(w);
+	}
+	writer_end(w);
+	write_measures(w, response, -1, false);
+	writer_object(w, "end", WRITER_LINE);
+	write_measures(w, response, -1, true);
+	writer_end(w);
+	writer_end(w);
+}
+
+/* The largest that is missing in the energy balances of n cells; null: a solver that does not keep them. */
+static void write_balance(struct writer *w, const struct pound_cell *cells, int n)
+{
+	double residual = NAN;
+	for (int c = 0; c < n; c++)
+		for (int i = 0; i < cells[c].n_signals; i++)
+			residual = fmax(residual, cells[c].signals[i].energy_residual);
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_number(w, "energy_residual", residual);
+	writer_end(w);
+}
+
+static void write_response(struct writer *w, const struct pound_study *study, const struct pound_cell *cell,
+                           const struct pound_scene *scene)
+{
+	writer_array(w, "signals", WRITER_LINES);
+	for (int i = 0; i < cell->n_signals; i++)
+		write_signal(w, &cell->signals[i], i);
+	writer_end(w);
+	writer_object(w, "outputs", WRITER_LINES);
+	for (int o = 0; o < study->n_outputs; o++)
+		if (pound_output_applies(study->outputs[o], scene))
+			writer_number(w, pound_output_name(study->outputs[o]), cell->outputs[o]);
+	writer_end(w);
+	bool moves = false;
+	for (int i = 0; i < cell->n_signals; i++)
+		moves |= cell->signals[i].displacement_max_free_1 != 0;
+	if (cell->runs_failed && cell->runs_failed == cell->runs)
+		writer_text(w, "note", "no run gave a result, so there are no outputs; work.failures says why");
+	else if (cell->runs_failed)
+		writer_text(w, "note", "runs without a result are left out of the outputs; work.failures says why");
+	else if (!moves)
+		writer_text(
+		    w, "note",
+		    "the left oscillator does not move without pounding: what is told in terms of that has no value");
+	write_balance(w, cell, 1);
+}
+
+/* ---- sensitivity ---- */
+
+#define X(name, text) text,
+static const char *const index_names[] = {POUND_INDEXES(X)};
+static const char *const share_names[] = {POUND_SHARES(X)};
+static const char *const notes[] = {POUND_NOTES(X)};
+static const char *const named_forms[] = {POUND_NAMED(X)};
+#undef X
+
+static void write_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate)
+{
+	char member[64];
+	writer_number(w, name, estimate->value);
+	snprintf(member, sizeof member, "%s_low", name);
+	writer_number(w, member, estimate->low);
+	snprintf(member, sizeof member, "%s_high", name);
+	writer_number(w, member, estimate->high);
+}
+
+/* All there is to say about an output's indexes, in one text. */
+static void write_notes(struct writer *w, const struct pound_indices *indices)
+{
+	char text[1024];
+	int n = 0;
+	for (int k = 0; k < POUND_N_NOTES; k++)
+		if (indices->notes >> k & 1)
+			n += snprintf(text + n, sizeof text - (size_t)n, "%s%s", n ? "; " : "", notes[k]);
+	if (n)
+		writer_text(w, "note", text);
+}
+
+static void write_excitation(struct writer *w, const struct pound_indices *indices)
+{
+	writer_object(w, "excitation", WRITER_LINE);
+	for (int k = 0; k < POUND_N_SHARES; k++)
+		write_estimate(w, share_names[k], &indices->share[k]);
+	writer_end(w);
+}
+
+/* The columns of an estimator that the study names; says whether one is negative. */
+static bool write_named(struct writer *w, const char *estimator, const struct pound_indices *indices, int j)
+{
+	bool negative = false;
+	for (int k = 0; k < POUND_N_NAMED; k++) {
+		char name[64];
+		snprintf(name, sizeof name, named_forms[k], estimator);
+		write_estimate(w, name, &indices->named[k][j]);
+		negative |= indices->named[k][j].value < 0.0;
+	}
+	return negative;
+}
+
+static void write_input(struct writer *w, const struct pound_study *study,
+                        const struct pound_indices *indices, int j)
+{
+	const struct pound_input *input = &study->inputs[j];
+	bool negative = false;
+	writer_object(w, NULL, WRITER_LINE);
+	writer_text(w, "name", input->name);
+	writer_text(w, "path", input->path);
+	for (int k = 0; k < POUND_N_INDEXES; k++) {
+		write_estimate(w, index_names[k], &indices->index[k][j]);
+		negative |= indices->index[k][j].value < 0.0;
+	}
+	if (study->design.estimator)
+		negative |= write_named(w, pound_estimator_name(study->design.estimator), indices, j);
+	if (negative)
+		writer_text(w, "note", "a value below 0 is sampling error around a small index");
+	writer_end(w);
+}
+
+/* Indexes of sets of inputs; nothing where the design tells none. */
+static void write_sets(struct writer *w, const struct pound_study *study, const char *name, const char *index,
+                       const struct pound_set_index *sets, int n)
+{
+	if (n == 0)
+		return;
+	writer_array(w, name, WRITER_LINES);
+	for (int k = 0; k < n; k++) {
+		writer_object(w, NULL, WRITER_LINE);
+		writer_array(w, "inputs", WRITER_LINE);
+		for (int j = 0; j < study->n_inputs; j++)
+			if (sets[k].inputs >> j & 1)
+				writer_text(w, NULL, study->inputs[j].name);
+		writer_end(w);
+		write_estimate(w, index, &sets[k].estimate);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+/* The indexes of ratios and of the inputs in none; nothing where none were asked. */
+static void write_ratios(struct writer *w, const struct pound_study *study,
+                         const struct pound_indices *indices)
+{
+	const struct pound_ratio_indices *ratios = &indices->ratios;
+	int rest[POUND_INPUTS_MAX];
+	if (ratios->n == 0)
+		return;
+	pound_ratio_variables(study, rest);
+	writer_object(w, "ratios", WRITER_LINES);
+	write_estimate(w, "explained", &ratios->explained);
+	if (isnan(ratios->explained.value))
+		writer_text(
+		    w, "note",
+		    "too few rows to tell which share of the variance these variables explain, and whether their "
+		    "indexes are those of the output");
+	writer_array(w, "variables", WRITER_LINES);
+	for (int k = 0; k < ratios->n; k++) {
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name",
+		            k < study->n_ratios ? study->ratios[k].name
+		                                : study->inputs[rest[k - study->n_ratios]].name);
+		write_estimate(w, "shapley", &ratios->shapley[k]);
+		write_estimate(w, "S1", &ratios->first[k]);
+		write_estimate(w, "ST", &ratios->total[k]);
+		writer_end(w);
+	}
+	writer_end(w);
+	writer_end(w);
+}
+
+/* One member of every point of a curve. */
+static void write_points(struct writer *w, const char *name, const struct pound_curve *curve, int n,
+                         size_t member)
+{
+	writer_array(w, name, WRITER_LINE);
+	for (int k = 0; k < n; k++)
+		writer_number(w, NULL, *(const double *)(const void *)((const char *)&curve->mean[k] + member));
+	writer_end(w);
+}
+
+static bool has_points(const struct pound_curve *curve)
+{
+	int k = 0;
+	while (k < POUND_CURVE && isnan(curve->mean[k].value))
+		k++;
+	return k < POUND_CURVE;
+}
+
+/* The mean output given each input; nothing where there is none. */
+static void write_curves(struct writer *w, const struct pound_study *study,
+                         const struct pound_indices *indices)
+{
+	if (!indices->curves || !has_points(&indices->curves[0]))
+		return;
+	writer_array(w, "conditional_means", WRITER_LINES);
+	for (int j = 0; j < study->n_inputs; j++) {
+		const struct pound_curve *curve = &indices->curves[j];
+		const struct pound_distribution *distribution = &study->inputs[j].distribution;
+		const int n = pound_conditional_points(distribution);
+		writer_object(w, NULL, WRITER_LINES);
+		writer_text(w, "name", study->inputs[j].name);
+		writer_text(w, "path", study->inputs[j].path);
+		writer_array(w, "x", WRITER_LINE);
+		for (int k = 0; k < n; k++)
+			writer_number(w, NULL, pound_conditional_x(distribution, k));
+		writer_end(w);
+		write_points(w, "mean", curve, n, offsetof(struct pound_estimate, value));
+		write_points(w, "low", curve, n, offsetof(struct pound_estimate, low));
+		write_points(w, "high", curve, n, offsetof(struct pound_estimate, high));
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+static void write_indices(struct writer *w, const struct pound_study *study,
+                          const struct pound_indices *indices, int o)
+{
+	writer_object(w, NULL, WRITER_LINES);
+	writer_text(w, "name", study->elsewhere ? study->output_names[o] : pound_output_name(study->outputs[o]));
+	result_floor_ordinate(w, study, indices, o);
+	writer_number(w, "mean", indices->mean);
+	writer_number(w, "variance", indices->variance);
+	writer_number(w, "noise_share", indices->noise_share);
+	writer_number(w, "ratio_bias", indices->ratio_bias);
+	write_notes(w, indices);
+	write_excitation(w, indices);
+	writer_array(w, "inputs", WRITER_LINES);
+	for (int j = 0; j < study->n_inputs; j++)
+		write_input(w, study, indices, j);
+	writer_end(w);
+	write_sets(w, study, "second_order", "S2", indices->sets.second, indices->sets.n_second);
+	write_sets(w, study, "closed", "S_closed", indices->sets.closed, indices->sets.n_closed);
+	write_ratios(w, study, indices);
+	write_curves(w, study, indices);
+	result_accuracy_output(w, study, indices);
+	writer_end(w);
+}
+
+static void write_sensitivity(struct writer *w, const struct pound_study *study,
+                              const struct pound_cell *cell, const struct pound_scene *scene)
+{
+	writer_array(w, "outputs", WRITER_LINES);
+	for (int o = 0; o < study->n_outputs; o++)
+		if (study->elsewhere || pound_output_applies(study->outputs[o], scene))
+			write_indices(w, study, &cell->indices[o], o);
+	writer_end(w);
+}
+
+/* ---- convergence ---- */
+
+static void write_error(struct writer *w, const char *name, const struct pound_deviation *error)
+{
+	char member[48];
+	snprintf(member, sizeof member, "%s_error_mean", name);
+	writer_number(w, member, error->mean);
+	snprintf(member, sizeof member, "%s_error_max", name);
+	writer_number(w, member, error->largest);
+}
+
+/* The errors of one setting; the reference has none. */
+static void write_trial(struct writer *w, const struct pound_trial *trial)
+{
+	writer_object(w, NULL, WRITER_LINE);
+	writer_text(w, "method", pound_solver_name(trial->solver.method));
+	writer_number(w, "step_s", trial->solver.step);
+	writer_number(w, "tolerance", trial->solver.tolerance);
+	writer_whole(w, "runs_failed", trial->runs_failed);
+	write_error(w, "displacement", &trial->displacement);
+	write_error(w, "demand", &trial->demand);
+	write_error(w, "impulse", &trial->impulse);
+	write_error(w, "history", &trial->history);
+	writer_number(w, "order", trial->order);
+	writer_end(w);
+}
+
+/* Trial 0 is the reference, trial 1 the second opinion on it. */
+static void write_trials(struct writer *w, const struct pound_result *result)
+{
+	writer_whole(w, "runs", result->cells[0].runs);
+	writer_whole(w, "runs_failed", result->cells[0].runs_failed);
+	if (result->trials[0].runs_failed * (int64_t)result->n_trials == result->cells[0].runs)
+		writer_text(w, "note", "the reference has no result, so there are no errors; work.failures says why");
+	writer_array(w, "rows", WRITER_LINES);
+	for (int j = 0; j < result->n_trials; j++)
+		write_trial(w, &result->trials[j]);
+	writer_end(w);
+	writer_object(w, "orders", WRITER_LINE);
+	for (int row = 1; row < POUND_SOLVERS; row++)
+		writer_number(w, pound_solver_name(row),
+		              pound_convergence_order(result->trials, result->n_trials, row));
+	writer_end(w);
+	writer_object(w, "accuracy", WRITER_LINES);
+	writer_text(w, "reference", pound_solver_name(result->trials[0].solver.method));
+	writer_number(w, "second_opinion_displacement", result->trials[1].displacement.largest);
+	writer_number(w, "second_opinion_impulse", result->trials[1].impulse.largest);
+	writer_number(w, "second_opinion_history", result->trials[1].history.largest);
+	writer_end(w);
+}
+
+/* CPU time of a run in each row. */
+static void write_run_times(struct writer *w, const struct pound_result *result)
+{
+	writer_array(w, "run_cpu_s", WRITER_LINE);
+	for (int j = 0; j < result->n_trials; j++)
+		writer_number(w, NULL, result->trials[j].cpu);
+	writer_end(w);
+}
+
+/* ---- cells ---- */
+
+/* Outputs that were asked and that this cell cannot have. */
+static void write_not_applicable(struct writer *w, const struct pound_study *study,
+                                 const struct pound_scene *scene)
+{
+	int n = 0;
+	for (int o = 0; o < study->n_outputs; o++)
+		n += !pound_output_applies(study->outputs[o], scene);
+	if (!n)
+		return;
+	writer_array(w, "not_applicable", WRITER_LINES);
+	for (int o = 0; o < study->n_outputs; o++) {
+		char note[128];
+		if (pound_output_applies(study->outputs[o], scene))
+			continue;
+		snprintf(note, sizeof note, "needs %s", pound_output_needs(study->outputs[o]));
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name", pound_output_name(study->outputs[o]));
+		writer_text(w, "note", note);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+static void write_cell(struct writer *w, const struct pound_study *study, const struct pound_result *result,
+                       int c)
+{
+	const struct pound_cell *cell = &result->cells[c];
+	struct pound_scene scene;
+	study_cell(study, c, &scene);
+	writer_whole(w, "runs", cell->runs);
+	writer_whole(w, "runs_failed", cell->runs_failed);
+	if (study->kind == POUND_KIND_SENSITIVITY) {
+		writer_whole(w, "rows_dropped", cell->rows_dropped);
+		write_sensitivity(w, study, cell, &scene);
+	} else {
+		write_response(w, study, cell, &scene);
+	}
+	if (!study->elsewhere)
+		write_not_applicable(w, study, &scene);
+}
+
+static void write_cells(struct writer *w, const struct pound_study *study, const struct pound_result *result)
+{
+	writer_array(w, "cells", WRITER_LINES);
+	for (int c = 0; c < result->n_cells; c++) {
+		writer_object(w, NULL, WRITER_LINES);
+		writer_object(w, "sweep", WRITER_LINE);
+		for (int s = 0; s < study->n_sweeps; s++)
+			study_value(w, study->sweeps[s].path, study->sweeps[s].path, result->cells[c].sweep[s]);
+		writer_end(w);
+		write_cell(w, study, result, c);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+/* ---- work ---- */
+
+static void leave_out(struct writer *w, int64_t n, const char *what, const char *why)
+{
+	char sentence[200];
+	if (n <= 0)
+		return;
+	snprintf(sentence, sizeof sentence, "%lld %s: %s", (long long)n, what, why);
+	writer_text(w, NULL, sentence);
+}
+
+/* What was not needed, in sentences, from the counts alone. */
+static void write_left_out(struct writer *w, const struct pound_study *study, const struct pound_work *work)
+{
+	static const char repeated[] = "equal to one that was made", unasked[] = "no output needs them";
+	static const char linear[] = "linear responses without pounding",
+	                  nonlinear[] = "nonlinear responses without pounding",
+	                  with[] = "responses with pounding";
+	int64_t made = work->pounding_runs.run + work->never_touching + work->moving_alike;
+	writer_array(w, "left_out", WRITER_LINES);
+	leave_out(w, work->signals.asked - work->signals.run, "ground motions", repeated);
+	leave_out(w, work->free_runs.asked - work->free_runs.run, linear, repeated);
+	leave_out(w, work->yield_given, linear, "the yield displacement is given");
+	leave_out(w, work->linear_unasked, "linear responses of the right oscillator without pounding", unasked);
+	if (work->yield_runs.asked + work->nonlinear_unasked == 0)
+		writer_text(w, NULL, "all nonlinear responses without pounding: no law needs one");
+	leave_out(w, work->yield_runs.asked - work->yield_runs.run, nonlinear, repeated);
+	leave_out(w, work->nonlinear_unasked, "last nonlinear responses of the right oscillator without pounding",
+	          unasked);
+	leave_out(w, work->never_touching, with, "the bodies alone never close the gap");
+	leave_out(w, work->moving_alike, with, "equal oscillators move alike and never touch with force");
+	if (study->scene.contact.present)
+		leave_out(w, work->pounding_runs.asked - made, with, repeated);
+	else
+		writer_text(w, NULL, "all responses with pounding: the scene has no contact");
+	writer_end(w);
+}
+
+/* Why runs have no result, the reasons that there are. */
+static void write_failures(struct writer *w, const struct pound_work *work)
+{
+	static const char *const reasons[] = {
+#define X(name, value, text) [name##_RUNS] = text,
+	    POUND_FAILURES(X)
+#undef X
+	};
+	writer_array(w, "failures", WRITER_LINES);
+	for (int k = 0; k < POUND_N_FAILURES; k++) {
+		if (!work->failed[k])
+			continue;
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "reason", reasons[k]);
+		writer_whole(w, "runs", work->failed[k]);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+static void write_work(struct writer *w, const struct pound_study *study, const struct pound_work *work)
+{
+	writer_object(w, "work", WRITER_LINES);
+#define X(member, text)                           \
+	writer_object(w, #member, WRITER_LINE);       \
+	writer_text(w, "what", text);                 \
+	writer_whole(w, "asked", work->member.asked); \
+	writer_whole(w, "run", work->member.run);     \
+	writer_end(w);
+	POUND_STAGES(X)
+#undef X
+	writer_whole(w, "never_touching", work->never_touching);
+	writer_whole(w, "moving_alike", work->moving_alike);
+	writer_whole(w, "contacts", work->contacts);
+	write_failures(w, work);
+	write_left_out(w, study, work);
+	writer_end(w);
+}
+
+/* ---- the document ---- */
+
+static void write_timing(struct writer *w, const struct pound_study *study, const struct pound_result *result,
+                         const struct timing *timing)
+{
+	writer_object(w, "timing", WRITER_LINE);
+	writer_number(w, "wall_s", timing->wall_s);
+	writer_number(w, "cpu_s", timing->cpu_s);
+	writer_whole(w, "threads", timing->threads);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		result_accuracy_timing(w, result, timing->cpu_s);
+	if (result->n_trials)
+		write_run_times(w, result);
+	writer_end(w);
+}
+
+/* The bytes of a result.
+ *
+ * Given    study     -         -       read by study_from_json
+ *          result    -         -       of that study
+ *          timing    -         s       what it took; NULL: left out
+ * Returns  value     (length)  -       JSON; NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Test     unit_result_json
+ */
+char *result_to_json(const struct pound_study *study, const struct pound_result *result,
+                     const struct timing *timing, size_t *length)
+{
+	struct writer w;
+	char hash[STUDY_HASH_SIZE];
+	*length = 0;
+	if (!study_hash(study, hash))
+		return NULL;
+	writer_init(&w);
+	writer_object(&w, NULL, WRITER_LINES);
+	writer_text(&w, "kind", study_kind_name(study->kind));
+	if (study->name)
+		writer_text(&w, "name", study->name);
+	writer_text(&w, "engine_version", POUND_VERSION);
+	writer_text(&w, "study_hash", hash);
+	writer_seed(&w, "seed", study->design.seed);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		result_design(&w, study, result);
+	if (study->kind == POUND_KIND_CONVERGENCE)
+		write_trials(&w, result);
+	else if (study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		result_floor_spectra(&w, study, result);
+	else if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps == 0)
+		write_cell(&w, study, result, 0);
+	else
+		write_cells(&w, study, result);
+	if (!study->elsewhere)
+		write_work(&w, study, &result->work);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		result_accuracy_study(&w, study, result);
+	else if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps > 0)
+		write_balance(&w, result->cells, result->n_cells);
+	if (timing)
+		write_timing(&w, study, result, timing);
+	writer_end(&w);
+	return writer_take(&w, length);
+}

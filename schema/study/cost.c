@@ -1,0 +1,200 @@
+/* What a study will take, before any of it is run.
+ *
+ * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, and
+ * of the spectra of its floor.  The unit costs are those of four lanes (README, Speed): there every example of more than
+ * 10 ms takes what is told within a factor of two; eight lanes of a newer processor take a half to a quarter of it.  What a
+ * design shares between its samples is in them as it is for the examples. */
+#include "schema/study/cost.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "engine/solver/solver.h"
+#include "schema/json/json_writer.h"
+#include "schema/study/fields.h"
+#include "schema/study/study_json.h"
+
+enum { MIB = 1 << 20 };
+enum { QUANTILES = 64 /* of a distribution, for a mean */ };
+
+/* [s] of one core: for a study, for a sample of a ground motion by each solver, for a step within it, and for a radian that
+ * an oscillator turns by within it, where that is too many for maps */
+static const double STUDY_S = 0.001;
+static const struct {
+	double sample, step, radian;
+} units[] = {
+    // in the order of the solvers: event, newmark, central_difference, adaptive
+    {5e-8, 0, 3e-7},
+    {1.0e-7, 6e-8, 0},
+    {1.0e-7, 4e-8, 0},
+    {8e-6, 0, 6e-7},
+};
+/* radians of a sample that go by maps, and with more than which a run ends as chatter */
+static const double MAPPED = 2, TURNED_MOST = 5e5;
+
+static_assert(sizeof units / sizeof units[0] == POUND_SOLVERS, "a row for each solver");
+
+/* [s] for a sample of a floor that spectra ride on, and for each frequency of these; and how many there are of both for a run:
+ * a study of spectra has the floor with pounding and without, and the contact's own part */
+static const double FLOOR_S = 3e-7, ORDINATE_S = 1.1e-8;
+static const struct {
+	int floors, spectra;
+} rides[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
+
+/* how much more a kind computes of a run than the outputs of a sensitivity study: other measures, histories */
+static const double kinds[] = {[POUND_KIND_RESPONSE] = 3,
+                               [POUND_KIND_SENSITIVITY] = 1,
+                               [POUND_KIND_CONVERGENCE] = 6,
+                               [POUND_KIND_FLOOR_SPECTRUM] = 3};
+
+/* [bytes] in a result: of an index or of a signal, with its name and all that stands beside it */
+static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, DOCUMENT_BYTES = 3000;
+
+/* The mean of a power of a field of the scene, over its distribution or its sweep. */
+static double mean(const struct pound_study *study, size_t offset, double power)
+{
+	double sum = 0;
+	for (int j = 0; j < study->n_inputs; j++) {
+		if (study->inputs[j].field.offset != offset)
+			continue;
+		for (int k = 0; k < QUANTILES; k++)
+			sum += pow(pound_distribution_quantile(&study->inputs[j].distribution, (k + 0.5) / QUANTILES),
+			           power);
+		return sum / QUANTILES;
+	}
+	for (int s = 0; s < study->n_sweeps; s++) {
+		const struct pound_sweep *sweep = &study->sweeps[s];
+		if (sweep->field.offset != offset)
+			continue;
+		for (int k = 0; k < sweep->n_values; k++)
+			sum += pow(sweep->values[k], power);
+		return sum / sweep->n_values;
+	}
+	const struct pound_field field = {POUND_FIELD_REAL, offset};
+	return pow(pound_scene_field(&study->scene, field), power);
+}
+
+#define MEAN(study, member, power) mean((study), offsetof(struct pound_scene, member), (power))
+
+/* Samples of a ground motion, in the mean. */
+static double samples_mean(const struct pound_study *study)
+{
+	const struct pound_excitation *excitation = &study->scene.excitation;
+	if (excitation->n_record)
+		return excitation->n_record;
+	bool cycles = fields_used(fields_find("/scene/excitation/cycles"), NULL,
+	                          pound_excitation_name(excitation->type), NULL);
+	double duration = cycles ? MEAN(study, excitation.cycles, 1) * MEAN(study, excitation.frequency_hz, -1)
+	                         : MEAN(study, excitation.duration, 1);
+	return duration * MEAN(study, excitation.time_step, -1) + 1;
+}
+
+/* What the contact's own frequency, over those of the oscillators, adds to the steps of a solver that follows each swing
+ * of it: it goes with the root of the stiffness and of the masses' ratio. */
+static double swings(const struct pound_study *study)
+{
+	bool wall = study->scene.oscillators[1].rigid_wall;
+	double light = wall ? 1 : MEAN(study, oscillators[0].mass, 0.5) * MEAN(study, oscillators[1].mass, -0.5);
+	double heavy = wall ? 1 : MEAN(study, oscillators[0].mass, -0.5) * MEAN(study, oscillators[1].mass, 0.5);
+	return study->scene.contact.present
+	           ? 0.008 * MEAN(study, contact.stiffness_ratio, 0.5) * fmax(light, heavy)
+	           : 0;
+}
+
+/* Radians of a sample that oscillators turn by, beyond those that go by maps. */
+static double turned(const struct pound_study *study)
+{
+	const double step = 2 * 3.14159265358979323846 * MEAN(study, excitation.time_step, 1);
+	const double frequency[] = {
+	    MEAN(study, oscillators[0].frequency_hz, 1),
+	    study->scene.oscillators[1].rigid_wall ? 0 : MEAN(study, oscillators[1].frequency_hz, 1)};
+	double sum = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		sum += fmax(0, step * frequency[i] - MAPPED);
+	return fmin(sum, TURNED_MOST);
+}
+
+/* [s] of one run by a solver. */
+static double run_s(const struct pound_study *study, const struct pound_solver *solver)
+{
+	const int row = solver->method;
+	bool fixed = pound_solver_takes_step(solver->method);
+	double steps = fixed ? fmax(1, MEAN(study, excitation.time_step, 1) / solver->step) : 0;
+	// the march takes few more for more contacts
+	double more = fixed ? 0 : row == POUND_SOLVER_EVENT ? 0.2 * log1p(swings(study)) : swings(study);
+	return samples_mean(study) *
+	       (units[row].sample * (1 + more) + units[row].step * steps + units[row].radian * turned(study));
+}
+
+/* What a study will take.
+ *
+ * Given    study   valid
+ * Returns  value   runs exactly; time and bytes as told above
+ * Test     unit_cost: what_is_asked_twice_costs_twice; soak_cost: an_estimate_is_near_what_a_study_takes
+ */
+struct cost cost_of(const struct pound_study *study)
+{
+	struct cost cost = {.runs = study_runs(study), .cpu_s = STUDY_S, .bytes = DOCUMENT_BYTES};
+	double cells = study_cells(study), runs = (double)cost.runs;
+	double numbers; // doubles that are stored of a run
+	if (study->kind == POUND_KIND_CONVERGENCE) {
+		int n = pound_convergence_trials(study);
+		for (int j = 0; j < n; j++) {
+			const struct pound_solver solver = pound_convergence_solver(study, j);
+			cost.cpu_s += kinds[study->kind] * runs / n * run_s(study, &solver);
+		}
+	} else
+		cost.cpu_s += kinds[study->kind] * runs * run_s(study, &study->solver);
+	if (study->spectrum.n)
+		cost.cpu_s += runs * samples_mean(study) *
+		              (rides[study->kind].floors * FLOOR_S +
+		               rides[study->kind].spectra * study->spectrum.n * ORDINATE_S);
+	if (study->kind == POUND_KIND_SENSITIVITY) {
+		numbers = 2 * study->n_outputs;
+		cost.bytes += cells * study->n_outputs * (study->n_inputs + 1) * INDEX_BYTES;
+	} else {
+		numbers = sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
+		cost.bytes += runs * SIGNAL_BYTES + cells * 20 * study->spectrum.n * NUMBER_BYTES;
+	}
+	cost.bytes += runs * numbers * sizeof(double);
+	return cost;
+}
+
+/* Whether a server takes a study.
+ *
+ * Given    most       of each, that it takes
+ * Returns  problems   a sentence for every limit that the study would go over
+ * Test     service_submit: a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked
+ */
+bool cost_allowed(const struct cost *cost, const struct cost *most, struct problems *problems)
+{
+	const struct {
+		double asked, most;
+		const char *what, *option;
+	} limits[] = {
+	    {(double)cost->runs, (double)most->runs, "pounding runs", "runs-max"},
+	    {cost->cpu_s, most->cpu_s, "estimated seconds of one core", "cpu-max"},
+	    {cost->bytes / MIB, most->bytes / MIB, "estimated MiB in the database", "result-max"},
+	};
+	problems_init(problems);
+	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
+		if (limits[i].asked > limits[i].most)
+			problems_exceed(problems, "", limits[i].asked, limits[i].most,
+			                "asks for %.6g %s, this server takes at most %.6g (--%s)", limits[i].asked,
+			                limits[i].what, limits[i].most, limits[i].option);
+	return problems->n == 0;
+}
+
+/* The object Estimate of the OpenAPI document. */
+char *cost_to_json(const struct cost *cost, const struct pound_study *study, size_t *length)
+{
+	struct writer w;
+	writer_init(&w);
+	writer_object(&w, NULL, WRITER_LINES);
+	writer_text(&w, "kind", study_kind_name(study->kind));
+	writer_whole(&w, "runs_total", cost->runs);
+	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
+	writer_number(&w, "estimated_bytes", ceil(cost->bytes));
+	writer_end(&w);
+	return writer_take(&w, length);
+}

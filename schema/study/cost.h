@@ -1,0 +1,23 @@
+/* cost.h - what a study will take, before any of it is run.  Any thread. */
+#ifndef COST_H
+#define COST_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/pound.h"
+#include "schema/json/problems.h"
+
+struct cost {
+	int64_t runs; /* pounding runs asked for, before anything is shared */
+	double cpu_s; /* of one core, all in all [s] */
+	double bytes; /* in the database: blocks and result */
+};
+
+struct cost cost_of(const struct pound_study *study);
+bool cost_allowed(const struct cost *cost, const struct cost *most, struct problems *problems);
+char *cost_to_json(const struct cost *cost, const struct pound_study *study,
+                   size_t *length); /* NULL: no memory */
+
+#endif

@@ -1,0 +1,624 @@
+/* study_check.c - what the members of a study mean together: paths, reaches of varied fields, outputs, size.
+ *
+ * A check is left out when a member it stands on is wrong itself: one mistake, one problem. */
+#include "schema/study/study_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/study/fields.h"
+#include "schema/study/study_json.h"
+#include "schema/study/study_spectrum.h"
+
+enum { POINTER_SIZE = 64 };
+
+/* ---- paths ---- */
+
+struct pound_field study_check_field(const char *path)
+{
+	static const enum pound_field_type types[] = {
+	    [FIELD_REAL] = POUND_FIELD_REAL,
+	    [FIELD_COUNT] = POUND_FIELD_COUNT,
+	    [FIELD_CHOICE] = POUND_FIELD_CHOICE,
+	    [FIELD_BOOL] = POUND_FIELD_BOOL,
+	};
+	int oscillator;
+	const struct field *field = fields_scene(path, &oscillator);
+	size_t shift = oscillator == 1 ? sizeof(struct pound_oscillator) : 0;
+	return (struct pound_field){types[field->type],
+	                            field->offset - offsetof(struct pound_study, scene) + shift};
+}
+
+static void check_path(const struct pound_study *study, const char *path, bool input, const char *pointer,
+                       struct problems *problems)
+{
+	char nearest[128];
+	int oscillator;
+	const struct pound_scene *scene = &study->scene;
+	const struct field *field = fields_scene(path, &oscillator);
+	const char *excitation = pound_excitation_name(scene->excitation.type);
+	if (strncmp(path, "/excitation/acceleration_m_s2/", 30) == 0)
+		field = fields_find("/scene/excitation/acceleration_m_s2/*");
+	if (!field && fields_nearest_path(path, nearest, sizeof nearest))
+		problems_add(problems, pointer, "names nothing in \"scene\", did you mean \"%s\"?", nearest);
+	else if (!field)
+		problems_add(problems, pointer,
+		             "must be a JSON Pointer into \"scene\", such as \"/contact/restitution\"");
+	else if (field->fixed)
+		problems_add(problems, pointer, "names a field that may not vary: %s", field->fixed);
+	else if (field->type >= FIELD_SEED)
+		problems_add(problems, pointer, "names several fields, not one");
+	else if (input && field->type != FIELD_REAL)
+		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");
+	else if (problems_over(problems, "/scene/excitation/type") ||
+	         problems_at(problems, "/scene/excitation/type"))
+		return;
+	else if (!fields_used(field, NULL, excitation, NULL))
+		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
+	else if (problems_at(problems, "/scene/law") || problems_at(problems, "/scene/oscillators") ||
+	         problems_at(problems, "/scene/contact"))
+		return; // whether it has an effect is seen by these
+	else if (study_idle(study, field, oscillator))
+		problems_add(problems, pointer, "%s", study_idle(study, field, oscillator));
+}
+
+/* Inputs and sweeps in one row, as they are both named by paths. */
+struct varied {
+	const char *list; /* "inputs" or "sweep" */
+	int index;
+	const char *path; /* NULL: not read */
+	const char *name; /* of an input */
+};
+
+static int varied_all(const struct pound_study *study, struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX])
+{
+	int n = 0;
+	for (int j = 0; j < study->n_inputs; j++)
+		all[n++] = (struct varied){"inputs", j, study->inputs[j].path, study->inputs[j].name};
+	for (int s = 0; s < study->n_sweeps; s++)
+		all[n++] = (struct varied){"sweep", s, study->sweeps[s].path, NULL};
+	return n;
+}
+
+static void check_paths(const struct pound_study *study, struct problems *problems)
+{
+	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
+	int n = varied_all(study, all);
+	for (int i = 0; i < n; i++) {
+		char pointer[POINTER_SIZE];
+		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
+		if (all[i].path && !study->elsewhere)
+			check_path(study, all[i].path, all[i].name != NULL, pointer, problems);
+		for (int k = 0; k < i && all[i].path; k++)
+			if (all[k].path && strcmp(all[i].path, all[k].path) == 0) {
+				problems_add(problems, pointer, "names the same field as /%s/%d", all[k].list, all[k].index);
+				break;
+			}
+	}
+}
+
+/* Names of inputs and ratios are columns and rows of results: each must stand for one thing.
+ *
+ * Given    list, n   of the name: "inputs" or "ratios", and how many stand before it there
+ */
+static void check_name(const struct pound_study *study, const char *list, int n, const char *name,
+                       struct problems *problems)
+{
+	char pointer[POINTER_SIZE];
+	const bool ratio = strcmp(list, "ratios") == 0;
+	const bool is_path = !ratio && name == study->inputs[n].path;
+	snprintf(pointer, sizeof pointer, "/%s/%d/name", list, n);
+	for (int k = 0; name && k < (ratio ? study->n_inputs : n); k++) {
+		const struct pound_input *other = &study->inputs[k];
+		// two absent names are alike where two paths are, which is told by itself
+		if (other->name && strcmp(other->name, name) == 0 && !(is_path && other->name == other->path)) {
+			problems_add(problems, pointer, "is the name of /inputs/%d too", k);
+			return;
+		}
+	}
+	for (int k = 0; name && ratio && k < n; k++)
+		if (study->ratios[k].name && strcmp(study->ratios[k].name, name) == 0) {
+			problems_add(problems, pointer, "is the name of /ratios/%d too", k);
+			return;
+		}
+}
+
+/* The columns of the samples must be told apart too: no input has the name of another column. */
+static void check_names(const struct pound_study *study, struct problems *problems)
+{
+	for (int k = 0; k < study->n_ratios; k++)
+		check_name(study, "ratios", k, study->ratios[k].name, problems);
+	for (int j = 0; j < study->n_inputs; j++) {
+		const char *name = study->inputs[j].name;
+		check_name(study, "inputs", j, name, problems);
+		bool taken = name && (strcmp(name, "row") == 0 || strcmp(name, "sample") == 0);
+		for (int o = 0; name && !study->elsewhere && pound_output_name(o); o++) {
+			size_t length = strlen(pound_output_name(o));
+			taken |=
+			    strncmp(name, pound_output_name(o), length) == 0 &&
+			    (!name[length] || strcmp(name + length, ".variance") == 0 || pound_output_has_ordinates(o));
+		}
+		char pointer[POINTER_SIZE];
+		snprintf(pointer, sizeof pointer, "/inputs/%d/name", j);
+		if (taken)
+			problems_add(problems, pointer, "is the name of another column of the samples");
+		else if (study->elsewhere && !name && !study->inputs[j].path)
+			problems_add(problems, pointer, "is required: a text of 1 to 100 characters");
+	}
+}
+
+/* ---- where varied values go ---- */
+
+static bool has_parameter(const struct pound_distribution *distribution, const char *name)
+{
+	if (pound_distribution_lists_values(distribution->type))
+		return true;
+	for (int k = 0; pound_distribution_parameter(distribution->type, k); k++)
+		if (strcmp(pound_distribution_parameter(distribution->type, k), name) == 0)
+			return true;
+	return false;
+}
+
+/* Whether every value of a distribution is in a field's range.  An end that the distribution names is reached, any
+ * other (0 of a lognormal) is not. */
+static bool supports(const struct field *field, const struct pound_distribution *distribution)
+{
+	double low, high;
+	pound_distribution_support(distribution, &low, &high);
+	bool from = fields_in_range(field, low) || (low == field->min && !has_parameter(distribution, "min"));
+	bool to = fields_in_range(field, high) || (high == field->max && !has_parameter(distribution, "max"));
+	return from && to;
+}
+
+static void check_supports(const struct pound_study *study, struct problems *problems)
+{
+	for (int j = 0; j < study->n_inputs; j++) {
+		char pointer[POINTER_SIZE], range[80];
+		double low, high;
+		int oscillator;
+		const struct pound_input *input = &study->inputs[j];
+		snprintf(pointer, sizeof pointer, "/inputs/%d/path", j);
+		bool found = input->path && !problems_at(problems, pointer);
+		snprintf(pointer, sizeof pointer, "/inputs/%d/distribution", j);
+		if (!found || problems_at(problems, pointer) || problems_over(problems, pointer))
+			continue;
+		const struct field *field = fields_scene(input->path, &oscillator);
+		if (supports(field, &input->distribution))
+			continue;
+		pound_distribution_support(&input->distribution, &low, &high);
+		fields_range(field, range, sizeof range);
+		problems_add(problems, pointer, "gives values from %.15g to %.15g, but %s must be %s", low, high,
+		             input->path, range);
+	}
+}
+
+/* The interval that a field of the scene covers over all samples and cells. */
+void study_check_reach(const struct pound_study *study, const char *path, double *low, double *high)
+{
+	struct pound_field field = study_check_field(path);
+	*low = *high = pound_scene_field(&study->scene, field);
+	for (int j = 0; j < study->n_inputs; j++)
+		if (study->inputs[j].field.offset == field.offset)
+			pound_distribution_support(&study->inputs[j].distribution, low, high);
+	for (int s = 0; s < study->n_sweeps; s++) {
+		const struct pound_sweep *sweep = &study->sweeps[s];
+		if (sweep->field.offset != field.offset)
+			continue;
+		*low = *high = sweep->values[0];
+		for (int i = 1; i < sweep->n_values; i++) {
+			*low = fmin(*low, sweep->values[i]);
+			*high = fmax(*high, sweep->values[i]);
+		}
+	}
+}
+
+/* Whether a field's interval is known, whatever else is wrong: the field was read, and what varies it, if anything does. */
+bool study_check_known(const struct pound_study *study, const char *path, const struct problems *problems)
+{
+	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
+	int n = varied_all(study, all);
+	char pointer[POINTER_SIZE];
+	snprintf(pointer, sizeof pointer, "/scene%s", path);
+	if (problems_at(problems, pointer) || problems_over(problems, pointer))
+		return false;
+	for (int i = 0; i < n; i++) {
+		const bool here = all[i].path && strcmp(all[i].path, path) == 0;
+		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
+		// one that was not read, or names nothing, may have meant it
+		if (!all[i].path || (!here && problems_at(problems, pointer)) || problems_over(problems, pointer))
+			return false;
+		snprintf(pointer, sizeof pointer, "/%s/%d/%s", all[i].list, all[i].index,
+		         all[i].name ? "distribution" : "values");
+		if (here && problems_at(problems, pointer))
+			return false;
+	}
+	return !problems_over(problems, "/inputs") && !problems_over(problems, "/sweep");
+}
+
+static bool excitation_uses(const struct pound_study *study, const char *pattern)
+{
+	return fields_used(fields_find(pattern), NULL, pound_excitation_name(study->scene.excitation.type), NULL);
+}
+
+/* Time steps of the shortest and the longest ground motion. */
+static void steps(const struct pound_study *study, double *least, double *most)
+{
+	double low, high, step_low, step_high, frequency_low, frequency_high;
+	if (study->scene.excitation.n_record) {
+		*least = *most = study->scene.excitation.n_record - 1;
+		return;
+	}
+	study_check_reach(study, "/excitation/time_step_s", &step_low, &step_high);
+	if (excitation_uses(study, "/scene/excitation/cycles")) {
+		study_check_reach(study, "/excitation/cycles", &low, &high);
+		study_check_reach(study, "/excitation/frequency_hz", &frequency_low, &frequency_high);
+		low /= frequency_high;
+		high /= frequency_low;
+	} else {
+		study_check_reach(study, "/excitation/duration_s", &low, &high);
+	}
+	*least = low / step_high;
+	*most = high / step_low;
+}
+
+/* The same of all fields of a list up to NULL. */
+static bool all_known(const struct pound_study *study, const char *const paths[],
+                      const struct problems *problems)
+{
+	while (*paths && study_check_known(study, *paths, problems))
+		paths++;
+	return !*paths;
+}
+
+/* Whether the length of the ground motion is known. */
+bool study_check_steps_known(const struct pound_study *study, const struct problems *problems)
+{
+	static const char *const all[] = {"/excitation/type", "/excitation/time_step_s",
+	                                  "/excitation/acceleration_m_s2", NULL},
+	                         *const by_cycles[] = {"/excitation/cycles", "/excitation/frequency_hz", NULL},
+	                         *const by_duration[] = {"/excitation/duration_s", NULL};
+	if (!all_known(study, all, problems))
+		return false;
+	return study->scene.excitation.n_record ||
+	       all_known(study, excitation_uses(study, "/scene/excitation/cycles") ? by_cycles : by_duration,
+	                 problems);
+}
+
+/* A sine of fewer than two samples a cycle would be another, slower one. */
+static void check_harmonic(const struct pound_study *study, struct problems *problems)
+{
+	static const char *const wave[] = {"/excitation/type", "/excitation/frequency_hz",
+	                                   "/excitation/time_step_s", NULL};
+	double low, frequency, step;
+	if (!all_known(study, wave, problems) || !excitation_uses(study, "/scene/excitation/frequency_hz") ||
+	    excitation_uses(study, "/scene/excitation/signals"))
+		return;
+	study_check_reach(study, "/excitation/frequency_hz", &low, &frequency);
+	study_check_reach(study, "/excitation/time_step_s", &low, &step);
+	if (!(2 * frequency * step < 1))
+		problems_add(problems, "/scene/excitation/frequency_hz",
+		             "a sine needs more than two samples a cycle: at a time step of %.15g s it must be below "
+		             "%.15g Hz, got %.15g",
+		             step, 0.5 / step, frequency);
+}
+
+static void check_excitation(const struct pound_study *study, struct problems *problems)
+{
+	static const char *const envelope[] = {"/excitation/type", "/excitation/rise", "/excitation/fall", NULL};
+	double low, rise, fall, least, most;
+	if (all_known(study, envelope, problems) && excitation_uses(study, "/scene/excitation/rise")) {
+		study_check_reach(study, "/excitation/rise", &low, &rise);
+		study_check_reach(study, "/excitation/fall", &low, &fall);
+		if (rise + fall > 1.0)
+			problems_add(problems, "/scene/excitation/fall", "rise + fall must be at most 1, got %.15g",
+			             rise + fall);
+	}
+	check_harmonic(study, problems);
+	if (!study_check_steps_known(study, problems))
+		return;
+	steps(study, &least, &most);
+	if (!(least >= 1.0))
+		problems_add(problems, "/scene/excitation/time_step_s",
+		             "the ground motion must last one time step at least, not %.3g of one", least);
+	if (!(most < STUDY_SAMPLES_MAX))
+		problems_exceed(problems, "/scene/excitation/time_step_s", most + 1, STUDY_SAMPLES_MAX,
+		                "a ground motion may have at most %d samples, this asks for %.3g", STUDY_SAMPLES_MAX,
+		                most + 1);
+}
+
+/* ---- outputs ---- */
+
+bool study_check_applies(const struct pound_study *study, int output)
+{
+	for (int cell = 0; cell < study_cells(study); cell++) {
+		struct pound_scene scene;
+		study_cell(study, cell, &scene);
+		if (pound_output_applies(output, &scene))
+			return true;
+	}
+	return false;
+}
+
+static void check_outputs(const struct pound_study *study, struct problems *problems)
+{
+	// what an output needs of a scene
+	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/contact/model", NULL};
+	if (!all_known(study, needed, problems))
+		return;
+	for (int o = 0; o < study->n_outputs; o++) {
+		char pointer[POINTER_SIZE];
+		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
+		if (!study_check_applies(study, study->outputs[o]))
+			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
+			             pound_output_needs(study->outputs[o]));
+	}
+}
+
+/* ---- design ---- */
+
+static void check_order(const struct pound_study *study, struct problems *problems)
+{
+	const char *order = pound_order_name(study->design.order);
+	if (study->kind == POUND_KIND_SENSITIVITY && strcmp(order, "factorial") == 0 &&
+	    study->n_inputs > POUND_FACTORIAL_INPUTS_MAX)
+		problems_add(problems, "/design/order",
+		             "\"factorial\" runs all 2^n mixtures of n inputs and takes at most %d of them, not %d",
+		             POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
+}
+
+/* ---- ratios ---- */
+
+/* An input that is above in one ratio may be nowhere else in them. */
+static bool above_elsewhere(const struct pound_study *study, int ratio, int side)
+{
+	const char *path = study->ratios[ratio].of[side];
+	for (int k = 0; k <= ratio; k++)
+		for (int s = 0; s < 2; s++) {
+			const char *other = study->ratios[k].of[s];
+			if ((k < ratio || s < side) && (s == 0 || side == 0) && other && strcmp(other, path) == 0)
+				return true;
+		}
+	return false;
+}
+
+/* Whether an input was not read to its path, so that a ratio may well mean it. */
+static bool unread_input(const struct pound_study *study)
+{
+	for (int j = 0; j < study->n_inputs; j++)
+		if (!study->inputs[j].path && !(study->elsewhere && study->inputs[j].name))
+			return true;
+	return false;
+}
+
+static void check_ratio(const struct pound_study *study, int ratio, int side, struct problems *problems)
+{
+	char pointer[POINTER_SIZE], distribution[POINTER_SIZE];
+	const char *path = study->ratios[ratio].of[side];
+	if (!path)
+		return;
+	const int input = pound_ratio_input(study, path);
+	snprintf(pointer, sizeof pointer, "/ratios/%d/of/%d", ratio, side);
+	snprintf(distribution, sizeof distribution, "/inputs/%d/distribution", input);
+	if (input < 0 && !unread_input(study))
+		problems_add(problems, pointer, "is the path of no input of this study");
+	else if (input >= 0 && !problems_at(problems, distribution) &&
+	         !pound_ratio_takes(&study->inputs[input].distribution))
+		problems_add(problems, pointer,
+		             "names /inputs/%d, but inputs of a ratio are \"uniform\" or \"log_uniform\" above 0",
+		             input);
+	if (above_elsewhere(study, ratio, side))
+		problems_add(problems, pointer, "an input that is above in one ratio may be in no other place");
+}
+
+static void check_ratios(const struct pound_study *study, struct problems *problems)
+{
+	for (int k = 0; k < study->n_ratios; k++)
+		for (int side = 0; side < 2; side++)
+			check_ratio(study, k, side, problems);
+	if (study->n_ratios && !problems_at(problems, "/ratios") && !problems_at(problems, "/inputs") &&
+	    pound_ratio_variables(study, NULL) > POUND_FACTORIAL_INPUTS_MAX)
+		problems_add(problems, "/ratios",
+		             "ratios and the inputs in none may be at most %d variables, these are %d",
+		             POUND_FACTORIAL_INPUTS_MAX, pound_ratio_variables(study, NULL));
+}
+
+/* ---- size ---- */
+
+static double cells(const struct pound_study *study)
+{
+	double product = 1.0;
+	for (int s = 0; s < study->n_sweeps; s++)
+		product *= study->sweeps[s].n_values;
+	return product;
+}
+
+static const char *size_pointer(const struct pound_study *study)
+{
+	return study->kind == POUND_KIND_SENSITIVITY ? "/design/rows" : "/scene/excitation/signals";
+}
+
+/* Runs of one cell for one signal. */
+static double design_runs(const struct pound_study *study)
+{
+	if (study->kind == POUND_KIND_CONVERGENCE)
+		return pound_convergence_trials(study);
+	return study->kind != POUND_KIND_SENSITIVITY
+	           ? 1
+	           : (double)pound_design_rows_most(study) * pound_design_samples(study);
+}
+
+/* Steps of the longest sample interval; those of an adaptive solver are not known, its samples count as one each. */
+static double interval_steps(const struct pound_study *study, const struct pound_solver *solver)
+{
+	double low, high;
+	if (!pound_solver_takes_step(solver->method))
+		return 1;
+	study_check_reach(study, "/excitation/time_step_s", &low, &high);
+	return fmax(1, ceil(high / solver->step));
+}
+
+static void check_step(const struct pound_study *study, const struct pound_solver *solver,
+                       const char *pointer, struct problems *problems)
+{
+	double n = interval_steps(study, solver);
+	if (n > STUDY_STEPS_MAX)
+		problems_exceed(problems, pointer, n, STUDY_STEPS_MAX,
+		                "asks for %.3g steps in one sample interval, at most %d", n, STUDY_STEPS_MAX);
+}
+
+static void check_steps(const struct pound_study *study, struct problems *problems)
+{
+	char pointer[POINTER_SIZE];
+	if (study->kind != POUND_KIND_CONVERGENCE)
+		check_step(study, &study->solver, "/solver/step_s", problems);
+	for (int row = 0; row < POUND_SOLVERS && study->kind == POUND_KIND_CONVERGENCE; row++)
+		for (int k = 0; k < study->convergence.settings[row].n; k++) {
+			const struct pound_solver solver = {.method = row,
+			                                    .step = study->convergence.settings[row].values[k]};
+			snprintf(pointer, sizeof pointer, "/convergence/%s/steps_s/%d", pound_solver_name(row), k);
+			check_step(study, &solver, pointer, problems);
+		}
+}
+
+/* Rows enough for intervals, from the start. */
+static void check_rows(const struct pound_study *study, struct problems *problems)
+{
+	const struct pound_design *design = &study->design;
+	bool nets = pound_design_quasi_random(design->method), grows = design->until.half_width > 0;
+	if (grows && pound_design_rows(study, 0) == 0)
+		problems_add(problems, "/design/until/max_runs", "must be at least %lld: %d rows of %lld runs",
+		             (long long)(pound_design_rows_least(study) * pound_design_row_runs(study)),
+		             pound_design_rows_least(study), (long long)pound_design_row_runs(study));
+	if (nets && !grows && design->rows < 2 * design->randomisations)
+		problems_add(problems, "/design/rows", "must be at least %d, two for each randomisation, got %d",
+		             2 * design->randomisations, design->rows);
+}
+
+static void check_size(const struct pound_study *study, struct problems *problems)
+{
+	const char *pointer = size_pointer(study);
+	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
+	int most = study->kind == POUND_KIND_CONVERGENCE ? STUDY_TRIALS_MAX : STUDY_RUNS_MAX;
+	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
+	if (sampled)
+		check_rows(study, problems);
+	if (runs > most)
+		problems_exceed(problems, pointer, runs, most,
+		                "asks for %.15g pounding runs, a study may have at most %d", runs, most);
+	if (!study_check_steps_known(study, problems) || problems_at(problems, "/solver"))
+		return;
+	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
+	bool few = runs <= most; // more have been told
+	if (few && runs * study_samples(study) > STUDY_WORK_MAX)
+		problems_exceed(problems, pointer, runs * study_samples(study), STUDY_WORK_MAX,
+		                "asks for %.3g samples of ground motion in all runs, at most %.0e",
+		                runs * study_samples(study), STUDY_WORK_MAX);
+	else if (few && runs * study_steps(study) > STUDY_WORK_MAX)
+		problems_exceed(problems, pointer, runs * study_steps(study), STUDY_WORK_MAX,
+		                "asks for %.3g steps of the solver in all runs, at most %.0e",
+		                runs * study_steps(study), STUDY_WORK_MAX);
+	if (at_once > STUDY_AT_ONCE_MAX)
+		problems_exceed(
+		    problems, "/sweep", at_once, STUDY_AT_ONCE_MAX,
+		    "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
+		    "a motion), at most %d",
+		    at_once, STUDY_AT_ONCE_MAX);
+	check_steps(study, problems);
+}
+
+/* Whether the number of rows is known: what is wrong with the seed does not matter to it. */
+static bool rows_known(const struct problems *problems)
+{
+	static const char *const all[] = {"/design/method", "/design/rows",  "/design/randomisations",
+	                                  "/design/until",  "/design/order", "/design/estimator"};
+	bool is = !problems_over(problems, "/inputs");
+	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+		is &= !problems_at(problems, all[i]) && !problems_over(problems, all[i]);
+	return is;
+}
+
+/* Checks what members mean together.
+ *
+ * Given    study     -         -       read, with problems or without
+ * Returns  problems  -         -       more of them
+ *
+ * Test     unit_study_check
+ */
+void study_check(const struct pound_study *study, struct problems *problems)
+{
+	check_paths(study, problems);
+	check_names(study, problems);
+	if (problems_at(problems, "/kind"))
+		return;
+	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
+		check_order(study, problems);
+	check_ratios(study, problems);
+	if (study->elsewhere) {
+		if (rows_known(problems))
+			check_rows(study, problems);
+		return;
+	}
+	// each as soon as what it reads is known, so that all is told at once
+	check_supports(study, problems);
+	check_excitation(study, problems);
+	if (problems_at(problems, "/sweep"))
+		return;
+	if (cells(study) > STUDY_CELLS_MAX) {
+		problems_exceed(problems, "/sweep", cells(study), STUDY_CELLS_MAX,
+		                "asks for %.15g cells, a study may have at most %d", cells(study), STUDY_CELLS_MAX);
+		return;
+	}
+	if (!problems_at(problems, "/outputs"))
+		check_outputs(study, problems);
+	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
+		study_spectrum_check(study, problems);
+	if (rows_known(problems) && study_check_known(study, "/excitation/signals", problems) &&
+	    !problems_at(problems, "/convergence"))
+		check_size(study, problems);
+}
+
+/* ---- what a study asks for ---- */
+
+int study_cells(const struct pound_study *study)
+{
+	return (int)cells(study);
+}
+
+int64_t study_runs(const struct pound_study *study)
+{
+	return (int64_t)(cells(study) * design_runs(study) * study->scene.excitation.signals);
+}
+
+double study_samples(const struct pound_study *study)
+{
+	double least, most;
+	steps(study, &least, &most);
+	return floor(most + 0.5) + 1;
+}
+
+double study_steps(const struct pound_study *study)
+{
+	int n = study->kind == POUND_KIND_CONVERGENCE ? pound_convergence_trials(study) : 1;
+	double sum = 0;
+	for (int j = 0; j < n; j++) {
+		const struct pound_solver solver =
+		    study->kind == POUND_KIND_CONVERGENCE ? pound_convergence_solver(study, j) : study->solver;
+		sum += interval_steps(study, &solver);
+	}
+	return study_samples(study) * sum / n;
+}
+
+/* The scene of a cell; the last sweep runs fastest.
+ *
+ * Test     unit_study_check: cells_are_the_product_of_the_sweeps_the_last_one_fastest
+ */
+void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene)
+{
+	*scene = study->scene;
+	for (int s = study->n_sweeps - 1; s >= 0; s--) {
+		const struct pound_sweep *sweep = &study->sweeps[s];
+		pound_scene_assign(scene, sweep->field, sweep->values[cell % sweep->n_values]);
+		cell /= sweep->n_values;
+	}
+}

@@ -1,0 +1,268 @@
+/* study_hash.c - what a study means, as one number.
+ *
+ * The study is written back as a document with every member that its kind and excitation use, in the order of
+ * fields.c, numbers in their shortest form, names left out; the hash is the SHA-256 of that text. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <nettle/sha2.h>
+
+#include "schema/json/json_writer.h"
+#include "schema/study/fields.h"
+#include "schema/study/study_json.h"
+
+struct canon {
+	struct writer w;
+	const struct pound_study *study;
+	const char *kind, *excitation, *solver;
+};
+
+/* A field's value as it lies in memory, written as a document has it. */
+static void write_scalar(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	switch (field->type) {
+	case FIELD_REAL:
+		writer_number(w, name, *(const double *)at);
+		break;
+	case FIELD_COUNT:
+		writer_whole(w, name, *(const int *)at);
+		break;
+	case FIELD_CHOICE:
+		writer_text(w, name, field->choice(*(const int *)at));
+		break;
+	case FIELD_BOOL:
+		if (field->choice)
+			writer_text(w, name, field->choice(*(const bool *)at));
+		else
+			writer_bool(w, name, *(const bool *)at);
+		break;
+	case FIELD_SEED:
+		writer_seed(w, name, *(const uint64_t *)at);
+		break;
+	case FIELD_TEXT:
+		writer_text(w, name, *(const char *const *)at);
+		break;
+	case FIELD_OBJECT:
+	case FIELD_LIST:
+		break;
+	}
+}
+
+static bool is_name(const struct field *field)
+{
+	return strcmp(field->pattern, "/name") == 0 || strcmp(field->pattern, "/ratios/*/name") == 0 ||
+	       strcmp(field->pattern, "/inputs/*/name") == 0;
+}
+
+/* The members at a pattern that hold one value each. */
+static void write_members(struct canon *c, const char *pattern, const void *base)
+{
+	for (int i = 0; i < fields_count; i++) {
+		const struct field *field = &fields[i];
+		if (fields_child(field, pattern) && fields_used(field, c->kind, c->excitation, c->solver) &&
+		    !is_name(field))
+			write_scalar(&c->w, field, fields_name(field), (const char *)base + field->offset);
+	}
+}
+
+static void write_object(struct canon *c, const char *name, const char *pattern, const void *base)
+{
+	writer_object(&c->w, name, WRITER_LINES);
+	write_members(c, pattern, base);
+	writer_end(&c->w);
+}
+
+static void write_oscillators(struct canon *c)
+{
+	writer_array(&c->w, "oscillators", WRITER_LINES);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_oscillator *o = &c->study->scene.oscillators[i];
+		const char *base = (const char *)c->study + (size_t)i * sizeof *o;
+		writer_object(&c->w, NULL, WRITER_LINES);
+		if (o->rigid_wall)
+			writer_bool(&c->w, "rigid_wall", true);
+		else
+			write_members(c, "/scene/oscillators/*", base);
+		if (o->has_law)
+			write_object(c, "law", "/scene/oscillators/*/law", base);
+		writer_end(&c->w);
+	}
+	writer_end(&c->w);
+}
+
+static void write_scene(struct canon *c)
+{
+	const struct pound_excitation *e = &c->study->scene.excitation;
+	writer_object(&c->w, "scene", WRITER_LINES);
+	write_object(c, "law", "/scene/law", c->study);
+	write_oscillators(c);
+	if (c->study->scene.contact.present)
+		write_object(c, "contact", "/scene/contact", c->study);
+	write_object(c, "excitation", "/scene/excitation", c->study);
+	writer_array(&c->w, "record", WRITER_LINES);
+	for (int i = 0; i < e->n_record; i++)
+		writer_number(&c->w, NULL, e->record[i]);
+	writer_end(&c->w);
+	writer_end(&c->w);
+}
+
+/* A list, if there is one. */
+static void write_numbers(struct canon *c, const char *name, const double *number, int n)
+{
+	if (!n)
+		return;
+	writer_array(&c->w, name, WRITER_LINES);
+	for (int k = 0; k < n; k++)
+		writer_number(&c->w, NULL, number[k]);
+	writer_end(&c->w);
+}
+
+static void write_inputs(struct canon *c)
+{
+	writer_array(&c->w, "inputs", WRITER_LINES);
+	for (int j = 0; j < c->study->n_inputs; j++) {
+		const struct pound_input *input = &c->study->inputs[j];
+		writer_object(&c->w, NULL, WRITER_LINES);
+		write_members(c, "/inputs/*", input);
+		write_members(c, "/inputs/*/distribution", input);
+		for (int k = 0; pound_distribution_parameter(input->distribution.type, k); k++)
+			writer_number(&c->w, pound_distribution_parameter(input->distribution.type, k),
+			              input->distribution.p[k]);
+		write_numbers(c, "values", input->distribution.values, input->distribution.n_values);
+		write_numbers(c, "weights", input->distribution.weights,
+		              input->distribution.weights ? input->distribution.n_values : 0);
+		writer_end(&c->w);
+	}
+	writer_end(&c->w);
+}
+
+static void write_ratios(struct canon *c)
+{
+	writer_array(&c->w, "ratios", WRITER_LINES);
+	for (int k = 0; k < c->study->n_ratios; k++)
+		for (int side = 0; side < 2; side++)
+			writer_text(&c->w, NULL, c->study->ratios[k].of[side]);
+	writer_end(&c->w);
+}
+
+static void write_sweeps(struct canon *c)
+{
+	writer_array(&c->w, "sweep", WRITER_LINES);
+	for (int s = 0; s < c->study->n_sweeps; s++) {
+		const struct pound_sweep *sweep = &c->study->sweeps[s];
+		writer_object(&c->w, NULL, WRITER_LINES);
+		write_members(c, "/sweep/*", sweep);
+		writer_array(&c->w, "values", WRITER_LINES);
+		for (int i = 0; i < sweep->n_values; i++)
+			study_value(&c->w, NULL, sweep->path, sweep->values[i]);
+		writer_end(&c->w);
+		writer_end(&c->w);
+	}
+	writer_end(&c->w);
+}
+
+static void write_convergence(struct canon *c)
+{
+	write_object(c, "convergence", "/convergence", c->study);
+	for (int row = 0; row < POUND_SOLVERS; row++) {
+		const struct pound_settings *settings = &c->study->convergence.settings[row];
+		writer_array(&c->w, pound_solver_name(row), WRITER_LINES);
+		for (int k = 0; k < settings->n; k++)
+			writer_number(&c->w, NULL, settings->values[k]);
+		writer_end(&c->w);
+	}
+}
+
+static void write_spectrum(struct canon *c)
+{
+	write_object(c, "spectrum", "/spectrum", c->study);
+	writer_array(&c->w, "frequencies_hz", WRITER_LINES);
+	for (int k = 0; k < c->study->spectrum.n; k++)
+		writer_number(&c->w, NULL, pound_spectrum_frequency(&c->study->spectrum, k));
+	writer_end(&c->w);
+}
+
+/* A varied value as a document has it: a number, the name of a choice, true or false.
+ *
+ * Given    path      -         -       of the field
+ *          value     -         -       as pound_scene_assign takes it
+ *
+ * Test     unit_result_json: a_swept_law_stands_by_its_name
+ */
+void study_value(struct writer *writer, const char *name, const char *path, double value)
+{
+	int oscillator;
+	const struct field *field = fields_scene(path, &oscillator);
+	if (field->type == FIELD_REAL) {
+		writer_number(writer, name, value);
+		return;
+	}
+	const bool truth = value != 0.0;
+	const int row = (int)value;
+	write_scalar(writer, field, name, field->type == FIELD_BOOL ? (const void *)&truth : (const void *)&row);
+}
+
+/* The name of a swept choice, "true" or "false"; NULL when the field is a number. */
+const char *study_choice(const char *path, double value)
+{
+	int oscillator;
+	const struct field *field = fields_scene(path, &oscillator);
+	if (field->choice)
+		return field->choice((int)value);
+	return field->type != FIELD_BOOL ? NULL : value != 0.0 ? "true" : "false";
+}
+
+/* The hash of a study's meaning.
+ *
+ * Given    study     -         -       read by study_from_json
+ * Returns  hex       (65)      -       SHA-256 in lower-case hex, zero-terminated
+ *          value     -         -       false: out of memory
+ *
+ * Test     unit_study_hash: spelling_order_and_names_do_not_change_it
+ */
+bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
+{
+	struct canon c = {.study = study,
+	                  .kind = study_kind_name(study->kind),
+	                  .excitation = pound_excitation_name(study->scene.excitation.type),
+	                  .solver = pound_solver_name(study->solver.method)};
+	writer_init(&c.w);
+	writer_object(&c.w, NULL, WRITER_LINES);
+	write_members(&c, "", study);
+	if (!study->elsewhere)
+		write_scene(&c);
+	write_inputs(&c);
+	if (study->n_ratios)
+		write_ratios(&c);
+	if (!study->elsewhere)
+		write_sweeps(&c);
+	write_object(&c, "design", "/design", study);
+	if (study->design.until.half_width > 0)
+		write_object(&c, "until", "/design/until", study);
+	if (!study->elsewhere) {
+		writer_array(&c.w, "outputs", WRITER_LINES);
+		for (int o = 0; o < study->n_outputs; o++)
+			writer_text(&c.w, NULL, pound_output_name(study->outputs[o]));
+		writer_end(&c.w);
+		write_object(&c, "solver", "/solver", study);
+	}
+	if (study->spectrum.n)
+		write_spectrum(&c);
+	if (study->kind == POUND_KIND_CONVERGENCE)
+		write_convergence(&c);
+	writer_end(&c.w);
+	size_t length;
+	char *text = writer_take(&c.w, &length);
+	if (!text)
+		return false;
+	struct sha256_ctx sha;
+	uint8_t digest[SHA256_DIGEST_SIZE];
+	sha256_init(&sha);
+	sha256_update(&sha, length, (const uint8_t *)text);
+	sha256_digest(&sha, sizeof digest, digest);
+	free(text);
+	for (int i = 0; i < SHA256_DIGEST_SIZE; i++)
+		snprintf(hex + 2 * i, 3, "%02x", digest[i]);
+	return true;
+}

@@ -1,0 +1,438 @@
+/* study_json.c - the bytes of a study document -> the study.
+ *
+ * 1. the gate and the parser: text -> tree, or where it is not JSON;
+ * 2. the tree is walked beside the rows of fields.c: each member known, used, there once, of its type, in range;
+ * 3. study_check.c looks at what members mean together.
+ *
+ * reader.c reads one value, study_varied.c the inputs and sweeps. */
+#include "schema/study/study_json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/json/json.h"
+#include "schema/study/fields.h"
+#include "schema/study/reader.h"
+#include "schema/study/study_check.h"
+#include "schema/study/study_spectrum.h"
+
+// rows of a quasi-random design when the document says nothing: powers of two; one that grows begins with few
+enum { ROWS_QUASI_RANDOM = 1024, ROWS_FIRST = 2 };
+
+/* One allocation holds a study and all it points to. */
+struct block {
+	struct pound_study study;
+	struct pound_input inputs[POUND_INPUTS_MAX];
+	struct pound_sweep sweeps[POUND_SWEEPS_MAX];
+	double numbers[]; /* samples and sweep values; texts stand behind them */
+};
+
+/* ---- objects ---- */
+
+static const struct field *member_field(const char *pattern, const char *name)
+{
+	for (int i = 0; i < fields_count; i++)
+		if (fields_child(&fields[i], pattern) && strcmp(fields_name(&fields[i]), name) == 0)
+			return &fields[i];
+	return NULL;
+}
+
+static void unknown(struct reader *r, const char *pattern, const char *name)
+{
+	const struct field *nearest = NULL;
+	int best = 1000;
+	for (int i = 0; i < fields_count; i++) {
+		if (!fields_child(&fields[i], pattern) ||
+		    !fields_used(&fields[i], r->kind, r->excitation, r->solver) ||
+		    (r->study->elsewhere && fields[i].sceneless == FIELD_UNUSED))
+			continue;
+		int distance = fields_distance(name, fields_name(&fields[i]));
+		if (distance < best) {
+			best = distance;
+			nearest = &fields[i];
+		}
+	}
+	if (nearest && fields_near(best, name))
+		problems_add(r->problems, r->pointer, "unknown member, did you mean \"%s\"?", fields_name(nearest));
+	else
+		problems_add(r->problems, r->pointer, "unknown member");
+}
+
+static void unused(struct reader *r, const struct field *field)
+{
+	if (!fields_used(field, r->kind, NULL, NULL))
+		problems_add(r->problems, r->pointer, "is not used by kind \"%s\"", r->kind);
+	else if (!fields_used(field, NULL, NULL, r->solver))
+		problems_add(r->problems, r->pointer, "is not used by solver \"%s\"", r->solver);
+	else
+		problems_add(r->problems, r->pointer, "is not used by excitation \"%s\"", r->excitation);
+}
+
+/* Whether a member has the name of an earlier one. */
+bool reader_seen(const cJSON *object, const cJSON *member)
+{
+	for (const cJSON *other = object->child; other != member; other = other->next)
+		if (strcmp(other->string, member->string) == 0)
+			return true;
+	return false;
+}
+
+/* Notes every member of an object that must be there and is not.
+ *
+ * Test     unit_study_json: what_is_missing_is_named
+ */
+void reader_require(struct reader *r, const cJSON *node, const char *pattern)
+{
+	const struct field *object = fields_find(pattern);
+	for (int i = 0; i < fields_count; i++) {
+		const struct field *field = &fields[i];
+		// where the kind is not known, what an object that is there needs in any kind that has it
+		bool kind_known =
+		    r->kind || !field->kinds || (object && object->kinds && strcmp(object->kinds, field->kinds) == 0);
+		bool needed = isnan(field->absent) && fields_child(field, pattern) && kind_known &&
+		              (r->excitation || !field->types) &&
+		              fields_used(field, r->kind, r->excitation, r->solver) &&
+		              !(r->study->elsewhere && field->sceneless);
+		if (!needed || cJSON_GetObjectItemCaseSensitive(node, fields_name(field)))
+			continue;
+		char expected[256];
+		fields_expected(field, expected, sizeof expected);
+		size_t length = reader_enter(r, fields_name(field));
+		problems_add(r->problems, r->pointer, "is required: %s", expected);
+		reader_leave(r, length);
+	}
+}
+
+/* Reads the members of an object, each by its row of fields.c.
+ *
+ * Given    pattern   -         -       of the object in fields.c
+ *          base      -         -       what the offsets of its members count from
+ * Returns  value     -         -       false: it is no object
+ *
+ * Test     unit_study_json: members_are_known_once_and_used
+ */
+bool reader_object(struct reader *r, const char *pattern, const cJSON *node, char *base)
+{
+	if (!cJSON_IsObject(node)) {
+		reader_mistyped(r, "an object", node);
+		return false;
+	}
+	const cJSON *member;
+	cJSON_ArrayForEach(member, node)
+	{
+		size_t length = reader_enter(r, member->string);
+		const struct field *field = member_field(pattern, member->string);
+		if (reader_seen(node, member))
+			problems_add(r->problems, r->pointer, "duplicate member");
+		else if (!field)
+			unknown(r, pattern, member->string);
+		else if (!fields_used(field, r->kind, r->excitation, r->solver))
+			unused(r, field);
+		else if (r->study->elsewhere && field->sceneless == FIELD_UNUSED)
+			problems_add(r->problems, r->pointer, "is not used without a scene");
+		else
+			reader_value(r, field, member, base);
+		reader_leave(r, length);
+	}
+	reader_require(r, node, pattern);
+	return true;
+}
+
+static void read_law(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	if (!reader_object(r, field->pattern, node, base) ||
+	    !cJSON_GetObjectItemCaseSensitive(node, "yield_displacement_m") ||
+	    !cJSON_GetObjectItemCaseSensitive(node, "target_demand"))
+		return;
+	size_t length = reader_enter(r, "target_demand");
+	problems_add(r->problems, r->pointer, "is not used when yield_displacement_m is given");
+	reader_leave(r, length);
+}
+
+static void read_own_law(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	((struct pound_study *)base)->scene.oscillators[0].has_law =
+	    true; // base is that of the oscillator in hand
+	read_law(r, field, node, base);
+}
+
+static void read_contact(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	r->study->scene.contact.present = !cJSON_IsNull(node);
+	if (!cJSON_IsNull(node))
+		reader_object(r, field->pattern, node, base);
+}
+
+/* Notes a member that is there for nothing. */
+static void unneeded(struct reader *r, const cJSON *object, const char *name, const char *design)
+{
+	if (!cJSON_GetObjectItemCaseSensitive(object, name))
+		return;
+	size_t length = reader_enter(r, name);
+	problems_add(r->problems, r->pointer, "is not used by design \"%s\"", design);
+	reader_leave(r, length);
+}
+
+static void read_design(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	struct pound_design *design = &r->study->design;
+	if (!reader_object(r, field->pattern, node, base) || !r->kind || strcmp(r->kind, "sensitivity") != 0)
+		return;
+	if (!pound_design_quasi_random(design->method))
+		unneeded(r, node, "randomisations", pound_design_name(design->method));
+	else if (!cJSON_GetObjectItemCaseSensitive(node, "rows"))
+		design->rows = design->until.half_width > 0 ? ROWS_FIRST : ROWS_QUASI_RANDOM;
+}
+
+/* ---- lists ---- */
+
+static void read_oscillator(struct reader *r, const cJSON *node, int i)
+{
+	struct pound_oscillator *oscillator = &r->study->scene.oscillators[i];
+	// rows are told for the first oscillator
+	char *base = (char *)r->study + (size_t)i * sizeof *oscillator;
+	const cJSON *wall = cJSON_GetObjectItemCaseSensitive(node, "rigid_wall");
+	if (!cJSON_IsTrue(wall)) {
+		reader_object(r, "/scene/oscillators/*", node, base);
+		return;
+	}
+	oscillator->rigid_wall = true;
+	const cJSON *member;
+	cJSON_ArrayForEach(member, node)
+	{
+		size_t length = reader_enter(r, member->string);
+		if (reader_seen(node, member))
+			problems_add(r->problems, r->pointer, "duplicate member");
+		else if (member != wall && !member_field("/scene/oscillators/*", member->string))
+			unknown(r, "/scene/oscillators/*", member->string);
+		else if (member != wall)
+			problems_add(r->problems, r->pointer, "is not used by a rigid wall");
+		else if (i == 0)
+			problems_add(r->problems, r->pointer,
+			             "only the right oscillator, the second, may be a rigid wall");
+		reader_leave(r, length);
+	}
+}
+
+static void read_oscillators(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	reader_each(r, field, node, read_oscillator);
+}
+
+static void read_record(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	struct pound_excitation *excitation = &r->study->scene.excitation;
+	excitation->n_record = reader_numbers(r, field, field + 1, node, &excitation->record); // the next row
+}
+
+static void read_output(struct reader *r, const cJSON *element, int o)
+{
+	double row;
+	if (reader_choice(r, fields_find("/outputs/*"), element, &row))
+		for (int k = 0; k < o; k++)
+			if (r->study->outputs[k] == (int)row)
+				problems_add(r->problems, r->pointer, "is asked twice");
+	r->study->outputs[o] = (int)row;
+}
+
+static void read_outputs(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	r->study->n_outputs = reader_each(r, field, node, read_output);
+}
+
+/* ---- any value ---- */
+
+static const struct {
+	const char *pattern;
+	void (*read)(struct reader *r, const struct field *field, const cJSON *node, char *base);
+} readers[] = {
+    {"/scene/law", read_law},
+    {"/scene/oscillators", read_oscillators},
+    {"/scene/oscillators/*/law", read_own_law},
+    {"/scene/contact", read_contact},
+    {"/scene/excitation/acceleration_m_s2", read_record},
+    {"/inputs", reader_inputs},
+    {"/inputs/*/distribution", reader_distribution},
+    {"/ratios", reader_ratios},
+    {"/ratios/*/of", reader_ratio},
+    {"/sweep", reader_sweeps},
+    {"/design", read_design},
+    {"/sweep/*/values", reader_values},
+    {"/outputs", read_outputs},
+    {"/spectrum/frequencies_hz", reader_frequencies},
+    {"/convergence/newmark/steps_s", reader_settings},
+    {"/convergence/central_difference/steps_s", reader_settings},
+    {"/convergence/adaptive/tolerances", reader_settings},
+};
+
+/* Reads whatever stands at a field: by its own function if it has one, else by its type. */
+void reader_value(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	for (size_t i = 0; i < sizeof readers / sizeof readers[0]; i++)
+		if (strcmp(readers[i].pattern, field->pattern) == 0) {
+			readers[i].read(r, field, node, base);
+			return;
+		}
+	double value;
+	char *at = base + field->offset;
+	if (field->type == FIELD_OBJECT) {
+		reader_object(r, field->pattern, node, base);
+	} else if (field->type == FIELD_TEXT) {
+		reader_text(r, field, node, (const char **)(void *)at);
+	} else if (field->type == FIELD_SEED) {
+		reader_seed(r, field, node, (uint64_t *)(void *)at);
+	} else if (reader_number(r, field, node, &value)) {
+		reader_store(field, at, value);
+	}
+}
+
+/* ---- the document ---- */
+
+/* Fills a study with what absent members mean; what its excitation does not use is 0. */
+static void defaults(struct pound_study *study, const char *excitation)
+{
+	for (int i = 0; i < fields_count; i++) {
+		const struct field *field = &fields[i];
+		if (strncmp(field->pattern, "/inputs/", 8) == 0 || strncmp(field->pattern, "/sweep/", 7) == 0 ||
+		    strncmp(field->pattern, "/ratios/", 8) == 0)
+			continue;
+		bool absent = !isnan(field->absent) && fields_used(field, NULL, excitation, NULL);
+		int copies = strncmp(field->pattern, "/scene/oscillators/*/", 21) == 0 ? POUND_OSCILLATORS : 1;
+		for (int k = 0; k < copies; k++)
+			reader_store(field,
+			             (char *)study + field->offset + (size_t)k * sizeof study->scene.oscillators[0],
+			             absent ? field->absent : 0.0);
+	}
+	settings_default(study);
+	study->scene.contact.present = true;
+	if (study->scene.excitation.signals == 0)
+		study->scene.excitation.signals = 1;
+}
+
+/* The name that a choice has in an object, or its default; NULL: it has a wrong one. */
+static const char *chosen(const cJSON *object, const char *pattern)
+{
+	const struct field *field = fields_find(pattern);
+	const cJSON *name = cJSON_GetObjectItemCaseSensitive(object, fields_name(field));
+	if (cJSON_IsString(name))
+		return field->choice(fields_choice(field->choice, name->valuestring));
+	return name || isnan(field->absent) ? NULL : field->choice((int)field->absent);
+}
+
+/* Kind, excitation and solver decide which members there are, so they are looked up before anything is read. */
+static void foresee(struct reader *r, const cJSON *document)
+{
+	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(document, "scene");
+	const cJSON *excitation = cJSON_GetObjectItemCaseSensitive(scene, "excitation");
+	const cJSON *solver = cJSON_GetObjectItemCaseSensitive(document, "solver");
+	r->kind = chosen(document, "/kind");
+	r->excitation = chosen(excitation, "/scene/excitation/type");
+	r->solver = chosen(solver, "/solver/method");
+}
+
+static void outputs_default(struct pound_study *study)
+{
+	for (int k = 0; fields_outputs_absent[k]; k++) {
+		int output = fields_choice(pound_output_name, fields_outputs_absent[k]);
+		if (study_check_applies(study, output))
+			study->outputs[study->n_outputs++] = output;
+	}
+}
+
+static struct pound_study *block_create(size_t length)
+{
+	// an element takes two characters at least, and a text is never longer than its spelling
+	size_t numbers = length / 2 + 1;
+	struct block *block = calloc(1, sizeof *block + numbers * sizeof(double) + length + 1);
+	if (!block)
+		return NULL;
+	block->study.inputs = block->inputs;
+	block->study.sweeps = block->sweeps;
+	return &block->study;
+}
+
+/* What is run elsewhere is a sensitivity study, whether it says so or not. */
+static void sceneless(struct reader *r)
+{
+	r->study->elsewhere = true;
+	r->study->design.common_signals = false;
+	r->study->kind = POUND_KIND_SENSITIVITY;
+	if (!r->kind)
+		r->kind = study_kind_name(POUND_KIND_SENSITIVITY);
+}
+
+static struct pound_study *study_read(const char *text, size_t length, bool design, struct problems *problems)
+{
+	struct gate_fault fault;
+	problems_init(problems);
+	cJSON *document = json_parse(text, length, &fault);
+	if (!document && fault.line) {
+		problems_add(problems, "", "%s", fault.detail);
+		problems->status = PROBLEMS_MALFORMED;
+		problems->line = fault.line;
+		problems->column = fault.column;
+		return NULL;
+	}
+	struct pound_study *study = document ? block_create(length) : NULL;
+	if (!study) {
+		problems->status = PROBLEMS_NOMEM;
+		cJSON_Delete(document);
+		return NULL;
+	}
+	struct reader r = {.problems = problems, .study = study, .number = ((struct block *)study)->numbers};
+	r.text = (char *)(r.number + length / 2 + 1);
+	foresee(&r, document);
+	defaults(study, r.excitation);
+	if (design && cJSON_IsObject(document) && !cJSON_HasObjectItem(document, "scene"))
+		sceneless(&r);
+	reader_object(&r, "", document, (char *)study);
+	reader_ordinates(&r, document);
+	cJSON_Delete(document);
+	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
+		problems_add(problems, "/kind", "must be \"%s\", as no other kind has a design",
+		             study_kind_name(POUND_KIND_SENSITIVITY));
+	study_check(study, problems);
+	if (problems->n) {
+		study_free(study);
+		return NULL;
+	}
+	if (study->n_outputs == 0 && study->kind != POUND_KIND_FLOOR_SPECTRUM && !study->elsewhere)
+		outputs_default(study);
+	study_spectrum_lay(study);
+	return study;
+}
+
+/* Reads a study document.
+ *
+ * Given    text      (length)  bytes   need not end with a zero
+ * Returns  value     -         -       the study; NULL: problems->status says why
+ *          problems  -         -       all that is wrong, in the order of the document, then between members
+ * Memory   allocates one block for study_free, about 5 bytes per byte of text
+ *
+ * Test     unit_study_json
+ */
+struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems)
+{
+	return study_read(text, length, false, problems);
+}
+
+/* Reads a document for its design alone: a sensitivity study, with a scene or of a model that is run elsewhere.
+ *
+ * Given, Returns, Memory as study_from_json
+ *
+ * Test     unit_external_model: a_study_without_a_scene_is_inputs_and_a_design
+ */
+struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems)
+{
+	return study_read(text, length, true, problems);
+}
+
+void study_free(struct pound_study *study)
+{
+	free(study);
+}

@@ -1,0 +1,57 @@
+/* study_json.h - the bytes of a study document -> the study, checked to the last member.
+ *
+ * Any thread. */
+#ifndef STUDY_JSON_H
+#define STUDY_JSON_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/pound.h"
+#include "schema/json/problems.h"
+
+struct writer;
+
+/* What one study may ask for. */
+enum {
+	STUDY_SAMPLES_MAX = 10000000, /* samples of one ground motion */
+	STUDY_RUNS_MAX = 10000000,    /* pounding runs of one study */
+	STUDY_VALUES_MAX = 1000,      /* of a discrete distribution */
+	STUDY_CELLS_MAX = 10000,      /* combinations of sweep values */
+	STUDY_AT_ONCE_MAX =
+	    50000000, /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
+	STUDY_TRIALS_MAX = 100000,     /* runs of one convergence study */
+	STUDY_FREQUENCIES_MAX = 10000, /* of one spectrum */
+	STUDY_HISTORIES_MAX = 2000000, /* samples of all signals whose histories are wanted */
+	STUDY_ORDINATES_MAX = 5000000, /* frequencies of the spectra of all signals */
+	STUDY_STEPS_MAX = 1000000,     /* of a solver in one sample interval */
+	STUDY_HASH_SIZE = 65,          /* characters of a study hash and its zero */
+};
+#define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
+
+/* The study on the heap, one owner, for study_free; NULL: every problem is in `problems`, its status says why. */
+struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems);
+/* The same for its design alone: a sensitivity study, which may have no scene (then `elsewhere` is set). */
+struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems);
+void study_free(struct pound_study *study);
+
+const char *study_kind_name(int kind);            /* "response", "sensitivity", ...; NULL past the last */
+int study_cells(const struct pound_study *study); /* combinations of sweep values, 1 without a sweep */
+int64_t
+study_runs(const struct pound_study *study); /* pounding runs it asks for, before anything is shared */
+double study_samples(const struct pound_study *study); /* samples of its longest ground motion */
+double study_steps(
+    const struct pound_study *study); /* mean steps of a run, at most; its samples where each is one */
+
+/* The scene of one cell: the study's with that combination of sweep values. */
+void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene);
+
+/* A varied value as a document has it: a number, the name of a choice, true or false. */
+void study_value(struct writer *writer, const char *name, const char *path, double value);
+const char *study_choice(const char *path, double value); /* its name, or "true", "false"; NULL: a number */
+
+/* SHA-256 in hex over the study's meaning: all defaults filled in; names, order and spelling do not count. */
+bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE]); /* false: out of memory */
+
+#endif

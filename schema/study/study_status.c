@@ -1,0 +1,58 @@
+/* The object Status of the OpenAPI document. */
+#include "schema/study/study_status.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A few digits of a value, towards zero, so that a part is 1 only when it is all: to print 17 of them takes longer than
+ * the rest of the object. */
+static double rounded(double value)
+{
+	return floor(1e4 * value) / 1e4;
+}
+
+/* Time left, when what is left takes as long as what was done. */
+double study_status_eta(const struct study_status *study, int n_workers)
+{
+	if (strcmp(study->status, "running") != 0 || study->runs_done == 0)
+		return NAN;
+	return study->cpu_s / (double)study->runs_done * (double)(study->runs - study->runs_done) / n_workers;
+}
+
+/* Writes it.
+ *
+ * Given    eta_s   s   NAN: unknown
+ * Test     service_routes: a_finished_study_has_times_in_order_and_all_runs_done
+ */
+void study_status_write(struct writer *w, const struct study_status *study, double eta_s)
+{
+	static const char *const links[][2] = {{"self", ""},
+	                                       {"request", "/request"},
+	                                       {"results", "/results"},
+	                                       {"samples", "/samples"},
+	                                       {"cancel", "/cancel"}};
+	char id[17], link[64];
+	snprintf(id, sizeof id, "%016" PRIx64, (uint64_t)study->id);
+	writer_object(w, NULL, WRITER_LINES);
+	writer_text(w, "id", id);
+	writer_text(w, "name", study->name);
+	writer_text(w, "kind", study->kind);
+	writer_text(w, "status", study->status);
+	writer_number(w, "progress", rounded((double)study->runs_done / (double)study->runs));
+	writer_whole(w, "runs_done", study->runs_done);
+	writer_whole(w, "runs_total", study->runs);
+	writer_number(w, "eta_s", rounded(eta_s));
+	writer_text(w, "created", study->created);
+	writer_text(w, "started", study->started);
+	writer_text(w, "finished", study->finished);
+	writer_text(w, "error", study->error);
+	writer_object(w, "links", WRITER_LINE);
+	for (size_t i = 0; i < sizeof links / sizeof links[0]; i++) {
+		snprintf(link, sizeof link, "/v1/studies/%s%s", id, links[i][1]);
+		writer_text(w, links[i][0], link);
+	}
+	writer_end(w);
+	writer_end(w);
+}

@@ -1,0 +1,22 @@
+/* study_status.h - how far a study is: as the store has it, and as a client is told. */
+#ifndef STUDY_STATUS_H
+#define STUDY_STATUS_H
+
+#include <stdint.h>
+
+#include "schema/json/json_writer.h"
+
+/* Texts are whose hands it over. */
+struct study_status {
+	int64_t id;
+	const char *status, *kind, *name;         /* name: NULL if none */
+	const char *created, *started, *finished; /* RFC 3339 UTC, NULL: not yet */
+	const char *error;                        /* NULL unless failed */
+	int64_t runs, runs_done;
+	double cpu_s; /* of the blocks done [s] */
+};
+
+double study_status_eta(const struct study_status *study, int n_workers); /* [s] to its end, NAN: unknown */
+void study_status_write(struct writer *writer, const struct study_status *study, double eta_s);
+
+#endif

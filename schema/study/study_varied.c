@@ -1,0 +1,187 @@
+/* study_varied.c - what varies in a study: inputs with their distributions, their ratios, sweeps with their values. */
+#include <math.h>
+#include <string.h>
+
+#include "schema/study/reader.h"
+#include "schema/study/study_check.h"
+#include "schema/study/study_json.h"
+
+/* Reads a list of a discrete distribution: its values, or their weights. */
+static int read_list(struct reader *r, const char *pattern, const cJSON *node, const double **numbers)
+{
+	const struct field *list = fields_find(pattern);
+	return reader_numbers(r, list, list + 1, node, numbers); // its element is the next row
+}
+
+static void read_parameter(struct reader *r, struct pound_distribution *distribution, const cJSON *member,
+                           int *n_weights)
+{
+	const bool lists = pound_distribution_lists_values(distribution->type);
+	int k = 0;
+	const char *name = pound_distribution_parameter(distribution->type, k);
+	while (name && strcmp(name, member->string) != 0)
+		name = pound_distribution_parameter(distribution->type, ++k);
+	if (lists && strcmp(member->string, "values") == 0)
+		distribution->n_values = read_list(r, "/inputs/*/distribution/values", member, &distribution->values);
+	else if (lists && strcmp(member->string, "weights") == 0)
+		*n_weights = read_list(r, "/inputs/*/distribution/weights", member, &distribution->weights);
+	else if (!name)
+		problems_add(r->problems, r->pointer, "is not used by distribution \"%s\"",
+		             pound_distribution_name(distribution->type));
+	else if (!cJSON_IsNumber(member))
+		reader_mistyped(r, "a number", member);
+	else if (fabs(member->valuedouble) > POUND_PARAMETER_MAX)
+		reader_mistyped(r, "a number between -1e100 and 1e100", member);
+	else
+		distribution->p[k] = member->valuedouble + 0.0;
+}
+
+static void require_parameter(struct reader *r, const cJSON *node, const char *name, const char *what)
+{
+	if (cJSON_GetObjectItemCaseSensitive(node, name))
+		return;
+	size_t length = reader_enter(r, name);
+	problems_add(r->problems, r->pointer, "is required: %s", what);
+	reader_leave(r, length);
+}
+
+/* Reads the parameters of a distribution whose type is known, and tells every rule that they break. */
+static void read_parameters(struct reader *r, struct pound_distribution *distribution, const cJSON *node,
+                            const cJSON *type)
+{
+	const cJSON *member;
+	const char *text;
+	int n_weights = 0;
+	for (int k = 0; pound_distribution_parameter(distribution->type, k); k++)
+		distribution->p[k] = NAN;
+	cJSON_ArrayForEach(member, node)
+	{
+		if (member == type)
+			continue;
+		size_t length = reader_enter(r, member->string);
+		if (reader_seen(node, member))
+			problems_add(r->problems, r->pointer, "duplicate member");
+		else
+			read_parameter(r, distribution, member, &n_weights);
+		reader_leave(r, length);
+	}
+	for (int k = 0; (text = pound_distribution_parameter(distribution->type, k)); k++)
+		require_parameter(r, node, text, "a number");
+	if (pound_distribution_lists_values(distribution->type))
+		require_parameter(r, node, "values", "an array of numbers, ascending");
+	if (n_weights && distribution->n_values && n_weights != distribution->n_values)
+		problems_add(r->problems, r->pointer, "there must be as many weights as values, %d, not %d",
+		             distribution->n_values, n_weights);
+	for (int k = 0; (text = pound_distribution_rule(distribution->type, k)); k++)
+		if (pound_distribution_breaks(distribution, k))
+			problems_add(r->problems, r->pointer, "%s", text);
+}
+
+/* Reads a distribution; the engine's table says which members it has.
+ *
+ * Test     unit_study_json: members_are_known_once_and_used
+ */
+void reader_distribution(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	struct pound_distribution *distribution = &((struct pound_input *)base)->distribution;
+	const cJSON *type = cJSON_GetObjectItemCaseSensitive(node, "type");
+	if (!cJSON_IsObject(node)) {
+		reader_mistyped(r, "an object", node);
+	} else if (!type) {
+		reader_require(r, node, field->pattern);
+	} else {
+		int before = r->problems->n;
+		size_t length = reader_enter(r, "type");
+		reader_value(r, fields_find("/inputs/*/distribution/type"), type, base);
+		reader_leave(r, length);
+		if (r->problems->n == before)
+			read_parameters(r, distribution, node, type);
+	}
+}
+
+/* The field of the scene that a path names if it may vary, else NULL. */
+static const struct field *varying(const char *path)
+{
+	int oscillator;
+	const struct field *field = path ? fields_scene(path, &oscillator) : NULL;
+	return field && !field->fixed && field->type < FIELD_SEED ? field : NULL;
+}
+
+static void read_input(struct reader *r, const cJSON *element, int j)
+{
+	struct pound_input *input = &r->study->inputs[j];
+	reader_object(r, "/inputs/*", element, (char *)input);
+	input->name = input->name ? input->name : input->path;
+	if (varying(input->path))
+		input->field = study_check_field(input->path);
+}
+
+/* Reads the inputs; what their paths mean in this scene is for study_check.c.
+ *
+ * Test     unit_study_json: what_a_document_says_is_in_the_study
+ */
+void reader_inputs(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	r->study->n_inputs = reader_each(r, field, node, read_input);
+}
+
+static void read_ratio(struct reader *r, const cJSON *element, int k)
+{
+	reader_object(r, "/ratios/*", element, (char *)&r->study->ratios[k]);
+}
+
+/* Reads the ratios; whether their paths name inputs is for study_check.c.
+ *
+ * Test     unit_study_json: what_a_document_says_is_in_the_study
+ */
+void reader_ratios(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	r->study->n_ratios = reader_each(r, field, node, read_ratio);
+}
+
+/* Reads the two paths of the ratio in hand. */
+void reader_ratio(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	int n = reader_elements(r, field, node);
+	const cJSON *element = n ? node->child : NULL;
+	for (int side = 0; side < n; side++, element = element->next) {
+		size_t length = reader_enter_element(r, side);
+		reader_text(r, fields_find("/ratios/*/of/*"), element, &((struct pound_ratio *)base)->of[side]);
+		reader_leave(r, length);
+	}
+}
+
+static void read_sweep(struct reader *r, const cJSON *element, int s)
+{
+	struct pound_sweep *sweep = &r->study->sweeps[s];
+	const cJSON *path = cJSON_GetObjectItemCaseSensitive(element, "path");
+	r->swept = varying(cJSON_GetStringValue(path));
+	reader_object(r, "/sweep/*", element, (char *)sweep);
+	if (r->swept)
+		sweep->field = study_check_field(cJSON_GetStringValue(path));
+}
+
+/* Reads the sweeps; their paths come first, as they say what the values are.
+ *
+ * Test     unit_study_check: a_sweep_takes_values_as_the_field_does
+ */
+void reader_sweeps(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	r->study->n_sweeps = reader_each(r, field, node, read_sweep);
+}
+
+/* Reads the values of the sweep in hand, each as the swept field itself is read.
+ *
+ * Test     unit_study_check: a_sweep_takes_values_as_the_field_does
+ */
+void reader_values(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	struct pound_sweep *sweep = (struct pound_sweep *)base;
+	if (!r->swept)
+		return; // the path is the problem, told by study_check.c
+	sweep->n_values = reader_numbers(r, field, r->swept, node, &sweep->values);
+	reader_distinct(r, sweep->values, sweep->n_values, "value");
+}

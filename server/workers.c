@@ -1,0 +1,511 @@
+/* Workers and the studies they run.
+ *
+ *   worker 0  | claim | open | block 0 | block 2 | block 3      | reduce 0 | finish |
+ *   worker 1  | wait         | block 1 | block 4 | block 5 | ...| reduce 1 | claim the next study ...
+ *
+ * 1. A worker takes the next step of the oldest study that has one to give: a block, or when all blocks are done a
+ *    reduction.  A finished block is stored before it counts.
+ * 2. When no running study has a step to give, one worker claims the oldest queued study, the others wait for it.
+ * 3. Who ends the last reduction asks whether the design grows; if so there are more blocks, and reductions again.
+ * 4. Who ends the last step of a study turns its result into bytes and stores them.
+ * 5. A study that runs for longer than it may is ended by a thread that waits for that.
+ *
+ * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
+ * store takes no more blocks and no result. */
+#include "server/workers.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/queue.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "schema/json/problems.h"
+#include "schema/result/result_json.h"
+#include "schema/study/study_json.h"
+#include "server/log.h"
+
+enum {
+	WORKER_NICENESS = 10, /* requests are answered first */
+	PATIENCE = 1,         /* [s] between two tries to get memory or to store something */
+	MEMORY_TRIES = 30,    /* before a study fails for want of memory */
+};
+
+struct job {
+	TAILQ_ENTRY(job) others;
+	int64_t id;
+	bool opened;
+	struct work_run of;
+	int block, reduction; /* next to hand out */
+	int n_reductions, reductions_left;
+	int n_inside;      /* workers in one of its steps */
+	bool ended;        /* gives no more steps */
+	const char *error; /* why it failed, NULL if it did not */
+	double cpu_s;      /* [s] */
+	double started;    /* [s] monotonic, as if all its sessions were this one */
+};
+
+struct work {
+	struct store *store;
+	pthread_mutex_t lock; /* of all below */
+	pthread_cond_t changed;
+	TAILQ_HEAD(, job) jobs; /* oldest first */
+	bool queued;            /* the store may hold a queued study */
+	bool claiming;          /* a worker is about to bring the next study */
+	bool stopping;
+	double time_max; /* that a study may run [s] */
+	bool watched;    /* there is ... */
+	pthread_t watch; /* ... a thread that sees to that */
+	int n_started;
+	int n_workers;
+	pthread_t workers[]; /* (n_workers) */
+};
+
+static double seconds(clockid_t clock)
+{
+	struct timespec now;
+	clock_gettime(clock, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double thread_cpu(void)
+{
+	return seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
+static bool restore(void *to, const struct store_block *block)
+{
+	struct work_run *opened = to;
+	bool goes_on = !pound_run_stopped(opened->run);
+	if (block->number >= pound_run_blocks_most(opened->run) ||
+	    (size_t)block->n != pound_run_block_size(opened->run, block->number))
+		return goes_on;
+	pound_run_block_restore(opened->run, block->number, block->values);
+	opened->stored[block->number] = true;
+	opened->cpu_s += block->cpu_s;
+	opened->wall_s = block->wall_s > opened->wall_s ? block->wall_s : opened->wall_s;
+	return goes_on;
+}
+
+/* Makes the run of a stored study, with the blocks that are stored; without some of these once it is stopped.
+ *
+ * Given    id          of the study
+ *          n_workers   that will run its blocks
+ * Returns  opened      closed by work_close, even after a failure
+ *          value       NULL, or why it failed
+ * Memory   allocates
+ * Test     service_resume: a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again
+ */
+const char *work_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
+                      struct work_run *opened)
+{
+	char *request = NULL;
+	size_t length = 0;
+	*opened = (struct work_run){0};
+	enum store_status found = store_document(store, id, "request", &request, &length);
+	opened->passing = found == STORE_FAILED;
+	if (found != STORE_OK)
+		return "the stored study could not be read";
+	struct problems problems;
+	opened->study = study_from_json(request, length, &problems);
+	free(request);
+	if (!opened->study && problems.status != PROBLEMS_NOMEM)
+		return "this version does not accept the study";
+	opened->passing = true;
+	opened->run = opened->study ? pound_run_create(opened->study, n_workers) : NULL;
+	if (!opened->run)
+		return "out of memory";
+	pound_run_clock(opened->run, thread_cpu);
+	if (stop)
+		pound_run_stop_by(opened->run, stop);
+	opened->stored = calloc((size_t)pound_run_blocks_most(opened->run), sizeof *opened->stored);
+	if (!opened->stored)
+		return "out of memory";
+	found = store_blocks(store, id, restore, opened);
+	opened->leftovers = found == STORE_CORRUPT;
+	return found == STORE_FAILED ? "the stored blocks could not be read" : NULL;
+}
+
+/* Blocks that are not stored, of the rows in hand. */
+int work_left(const struct work_run *opened)
+{
+	int n = 0;
+	for (int block = pound_run_blocks(opened->run) - 1; block >= 0; block--)
+		n += !opened->stored[block];
+	return n;
+}
+
+/* Frees what work_open made. */
+void work_close(struct work_run *opened)
+{
+	if (opened->run)
+		pound_run_free(opened->run);
+	if (opened->study)
+		study_free(opened->study);
+	free(opened->stored);
+}
+
+/* No more steps of this study; those that run stop soon. */
+static void end(struct job *job, const char *error)
+{
+	if (!job->error && !job->ended)
+		job->error = error;
+	job->ended = true;
+	if (job->opened)
+		pound_run_stop(job->of.run);
+}
+
+/* Waits when there is no memory, or the disk does not take what there is to store; false: the server stops, so do not
+ * try again. */
+static bool patient(struct work *work)
+{
+	struct timespec until;
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_sec += PATIENCE;
+	pthread_mutex_lock(&work->lock);
+	while (!work->stopping &&
+	       pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until) != ETIMEDOUT)
+		;
+	bool stopping = work->stopping;
+	pthread_mutex_unlock(&work->lock);
+	return !stopping;
+}
+
+static void finish(struct work *work, struct job *job)
+{
+	// the job's own may be looked at meanwhile
+	const char *error = job->error;
+	size_t length = 0;
+	char *result = NULL;
+	if (!error) {
+		struct timing timing = {.wall_s = seconds(CLOCK_MONOTONIC) - job->started,
+		                        .cpu_s = job->cpu_s,
+		                        .threads = work->n_workers};
+		int tries = MEMORY_TRIES;
+		while (!(result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length)) &&
+		       --tries)
+			if (!patient(work))
+				return; // the next start tries again
+		error = result ? NULL : "out of memory";
+	}
+	enum store_status status;
+	do
+		status = store_finish(work->store, job->id, result, length, error);
+	while (status == STORE_FAILED && patient(work));
+	if (status == STORE_OK)
+		log_line("study %016llx %s", (unsigned long long)job->id, error ? error : "succeeded");
+	free(result);
+}
+
+static void drop(struct work *work, struct job *job)
+{
+	TAILQ_REMOVE(&work->jobs, job, others);
+	work_close(&job->of);
+	free(job);
+}
+
+/* What is to do when a worker has left a study, or it was ended: under the lock, which finishing lets go. */
+static void settle(struct work *work, struct job *job)
+{
+	if (job->n_inside || (!job->ended && (job->reductions_left || work_left(&job->of))))
+		return;
+	if (!job->ended || job->error) {
+		job->ended = true;
+		job->n_inside = 1;
+		pthread_mutex_unlock(&work->lock);
+		finish(work, job);
+		pthread_mutex_lock(&work->lock);
+	}
+	drop(work, job);
+}
+
+/* false: the study is not running any more in the store, or the server stops. */
+static bool keep(struct work *work, struct job *job, int block, double cpu_s)
+{
+	struct store_block done = {.number = block,
+	                           .runs = pound_run_block_runs(job->of.run, block),
+	                           .cpu_s = cpu_s,
+	                           .wall_s = seconds(CLOCK_MONOTONIC) - job->started,
+	                           .n = (int)pound_run_block_size(job->of.run, block),
+	                           .values = pound_run_block_values(job->of.run, block)};
+	enum store_status status;
+	do
+		status = store_keep(work->store, job->id, &done);
+	while (status == STORE_FAILED && patient(work));
+	return status == STORE_OK;
+}
+
+/* What a crash is due to: the study this thread is at, and where that is noted. */
+static _Thread_local volatile int64_t study_here;
+static const struct store *crash_store;
+
+static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+
+/* Notes the study; then the signal does what it does without this. */
+static void crash(int signal)
+{
+	store_blame(crash_store, study_here);
+	raise(signal);
+}
+
+static void watch_crashes(const struct store *store)
+{
+	const struct sigaction action = {.sa_handler = crash, .sa_flags = (int)SA_RESETHAND};
+	crash_store = store;
+	for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++)
+		sigaction(crashes[i], &action, NULL);
+}
+
+struct step {
+	struct job *job;
+	int block, reduction; /* one of them, the other is -1 */
+};
+
+static bool take(struct work *work, struct step *step)
+{
+	struct job *job;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	{
+		if (!job->opened || job->ended)
+			continue;
+		int n_blocks = pound_run_blocks(job->of.run);
+		while (job->block < n_blocks && job->of.stored[job->block])
+			job->block++;
+		if (job->block < n_blocks)
+			*step = (struct step){job, job->block++, -1};
+		else if (job->reduction < job->n_reductions && !work_left(&job->of))
+			*step = (struct step){job, -1, job->reduction++};
+		else
+			continue;
+		job->n_inside++;
+		return true;
+	}
+	return false;
+}
+
+/* Runs a step; the lock is free meanwhile. */
+static void perform(struct work *work, const struct step *step, int worker)
+{
+	struct job *job = step->job;
+	study_here = job->id;
+	double cpu_s = thread_cpu();
+	pthread_mutex_unlock(&work->lock);
+	enum pound_status status;
+	int tries = MEMORY_TRIES;
+	do
+		status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
+		                          : pound_run_reduce(job->of.run, step->reduction, worker);
+	while (status == POUND_NOMEM && --tries && patient(work));
+	cpu_s = thread_cpu() - cpu_s;
+	bool wanted = status != POUND_OK || step->block < 0 || keep(work, job, step->block, cpu_s);
+	pthread_mutex_lock(&work->lock);
+	job->n_inside--;
+	job->cpu_s += cpu_s;
+	if (status != POUND_OK || !wanted)
+		end(job, wanted ? pound_status_error(status) : NULL);
+	else if (step->block >= 0)
+		job->of.stored[step->block] = true;
+	else if (--job->reductions_left == 0 && pound_run_grow(job->of.run)) {
+		job->reduction = 0;
+		job->reductions_left = job->n_reductions;
+	}
+	settle(work, job);
+	study_here = 0;
+	pthread_cond_broadcast(&work->changed);
+}
+
+/* Makes the run of a claimed study, waiting for memory or the disk; the lock is free meanwhile. */
+static void open_run(struct work *work, struct job *job)
+{
+	struct work_run opened;
+	const char *error;
+	int tries = MEMORY_TRIES;
+	pthread_mutex_unlock(&work->lock);
+	study_here = job->id;
+	while ((error = work_open(work->store, job->id, work->n_workers, NULL, &opened)) && opened.passing &&
+	       --tries && patient(work))
+		work_close(&opened);
+	// they would count as done; where that fails they still do, until they are run again
+	if (!error && opened.leftovers)
+		store_prune(work->store, job->id);
+	pthread_mutex_lock(&work->lock);
+	job->of = opened;
+	job->opened = !error;
+	job->cpu_s = opened.cpu_s;
+	job->started = seconds(CLOCK_MONOTONIC) - opened.wall_s;
+	if (error)
+		end(job, opened.passing && work->stopping ? NULL : error); // the next start tries again
+	else
+		job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
+}
+
+/* Brings the oldest queued study; the lock is free meanwhile. */
+static void claim(struct work *work)
+{
+	struct job *job = calloc(1, sizeof *job);
+	work->claiming = true;
+	// before the question, so that a study queued during it is not missed
+	work->queued = false;
+	pthread_mutex_unlock(&work->lock);
+	enum store_status status = job ? store_claim(work->store, &job->id) : STORE_FAILED;
+	bool again = status == STORE_FAILED && patient(work);
+	pthread_mutex_lock(&work->lock);
+	work->queued = work->queued || again || status == STORE_OK;
+	if (status == STORE_OK) {
+		job->n_inside = 1;
+		TAILQ_INSERT_TAIL(&work->jobs, job, others);
+		open_run(work, job);
+		job->n_inside = 0;
+		settle(work, job);
+		study_here = 0;
+	} else
+		free(job);
+	work->claiming = false;
+	pthread_cond_broadcast(&work->changed);
+}
+
+static void *worker(void *of)
+{
+	struct work *work = of;
+	struct step step;
+	setpriority(PRIO_PROCESS, (id_t)gettid(), WORKER_NICENESS);
+	pthread_mutex_lock(&work->lock);
+	int number = work->n_started++;
+	while (!work->stopping) {
+		if (take(work, &step))
+			perform(work, &step, number);
+		else if (work->queued && !work->claiming)
+			claim(work);
+		else
+			pthread_cond_wait(&work->changed, &work->lock);
+	}
+	pthread_mutex_unlock(&work->lock);
+	return NULL;
+}
+
+/* Ends the studies that have run for as long as they may; under the lock.
+ *
+ * Returns  value   when the next of the others will have [s] monotonic
+ */
+static double end_late(struct work *work)
+{
+	double now = seconds(CLOCK_MONOTONIC), next = now + work->time_max;
+	for (struct job *job = TAILQ_FIRST(&work->jobs); job;) {
+		double until = job->started + work->time_max;
+		bool runs = job->opened && !job->ended, late = runs && until <= now;
+		if (runs && !late)
+			next = fmin(next, until);
+		if (late)
+			end(job, "timeout: it ran for longer than the server's --time-max");
+		// settling lets the lock go, so the list may be another
+		if (late && job->n_inside == 0) {
+			settle(work, job);
+			job = TAILQ_FIRST(&work->jobs);
+		} else
+			job = TAILQ_NEXT(job, others);
+	}
+	return next;
+}
+
+/* A thread of its own, for all workers may be inside of steps that do not end.
+ *
+ * Test     service_queue: a_study_that_runs_for_too_long_has_failed
+ */
+static void *watch(void *of)
+{
+	struct work *work = of;
+	pthread_mutex_lock(&work->lock);
+	while (!work->stopping) {
+		double until = end_late(work), whole = floor(until);
+		const struct timespec at = {.tv_sec = (time_t)whole, .tv_nsec = (long)(1e9 * (until - whole))};
+		pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &at);
+	}
+	pthread_mutex_unlock(&work->lock);
+	return NULL;
+}
+
+/* Starts the workers, on what the store has queued.
+ *
+ * Given    n_workers   >= 1
+ *          time_max    that a study may run [s]
+ * Returns  value       for work_stop; NULL: no memory, or no threads
+ */
+struct work *work_start(struct store *store, int n_workers, double time_max)
+{
+	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
+	if (!work) {
+		log_line("cannot start %d workers: out of memory", n_workers);
+		return NULL;
+	}
+	watch_crashes(store);
+	work->store = store;
+	work->time_max = time_max;
+	work->n_workers = n_workers;
+	work->queued = true;
+	TAILQ_INIT(&work->jobs);
+	pthread_mutex_init(&work->lock, NULL);
+	pthread_cond_init(&work->changed, NULL);
+	work->watched = pthread_create(&work->watch, NULL, watch, work) == 0;
+	int started = 0;
+	while (work->watched && started < n_workers &&
+	       pthread_create(&work->workers[started], NULL, worker, work) == 0)
+		started++;
+	if (started == n_workers)
+		return work;
+	log_line("cannot start more than %d of %d workers: no thread can be had", started, n_workers);
+	work->n_workers = started;
+	work_stop(work);
+	return NULL;
+}
+
+/* Tells the workers that the store has a queued study. */
+void work_wake(struct work *work)
+{
+	pthread_mutex_lock(&work->lock);
+	work->queued = true;
+	pthread_cond_broadcast(&work->changed);
+	pthread_mutex_unlock(&work->lock);
+}
+
+/* Stops the run of a study that was cancelled or deleted in the store.
+ *
+ * Given    id   of the study, running or not
+ * Test     service_queue: a_study_can_be_cancelled_at_any_moment
+ */
+void work_drop(struct work *work, int64_t id)
+{
+	pthread_mutex_lock(&work->lock);
+	struct job *job;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	if (job->id == id) {
+		end(job, NULL);
+		settle(work, job);
+		break;
+	}
+	pthread_mutex_unlock(&work->lock);
+}
+
+/* Stops the workers; studies that were running are taken up again at the next start. */
+void work_stop(struct work *work)
+{
+	pthread_mutex_lock(&work->lock);
+	work->stopping = true;
+	struct job *job;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	end(job, NULL);
+	pthread_cond_broadcast(&work->changed);
+	pthread_mutex_unlock(&work->lock);
+	for (int w = 0; w < work->n_workers; w++)
+		pthread_join(work->workers[w], NULL);
+	if (work->watched)
+		pthread_join(work->watch, NULL);
+	while ((job = TAILQ_FIRST(&work->jobs)))
+		drop(work, job);
+	pthread_cond_destroy(&work->changed);
+	pthread_mutex_destroy(&work->lock);
+	free(work);
+}

@@ -1,0 +1,167 @@
+/* `pound design` and `pound indices`: a model of the user's own from its design to its indexes. */
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "schema/json/json_pointer.h"
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+#include "tests/support/study_documents.h"
+
+#define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
+
+/* Puts a text into a new file; the caller deletes it. */
+static void file_of(const char *text, char path[32])
+{
+	strcpy(path, "/tmp/pound-test-XXXXXX");
+	FILE *file = fdopen(mkstemp(path), "w");
+	assert_non_null(file);
+	fputs(text, file);
+	fclose(file);
+}
+
+/* The example's document in a file, and the Ishigami function of its rows as CSV in another. */
+static void ishigami(char study[32], char outputs[32])
+{
+	struct program_outcome document = POUND("example", "design");
+	program_expect(&document, 0);
+	file_of(document.out, study);
+	struct program_outcome rows = POUND("design", study);
+	program_expect(&rows, 0);
+	char *csv = NULL, *end;
+	size_t n;
+	FILE *out = open_memstream(&csv, &n);
+	fputs("y\n", out);
+	for (char *line = strchr(rows.out, '\n') + 1; *line; line = end + 1) {
+		double x1 = strtod(line, &end), x2 = strtod(end + 1, &end), x3 = strtod(end + 1, &end);
+		fprintf(out, "%.17g\n", sin(x1) + 7.0 * sin(x2) * sin(x2) + 0.1 * pow(x3, 4) * sin(x1));
+	}
+	fclose(out);
+	file_of(csv, outputs);
+	free(csv);
+	program_free(&rows);
+	program_free(&document);
+}
+
+static void a_design_has_its_header_and_its_samples(void **state)
+{
+	(void)state;
+	struct program_outcome document = POUND("example", "paper_linear");
+	struct program_outcome rows =
+	    program_run((const char *const[]){"pound", "design", "-", NULL}, document.out);
+	program_expect(&rows, 0);
+	assert_string_equal(rows.err, "");
+	assert_memory_equal(rows.out, "f_e,f_2,m_2/m_1,eps\n", 20);
+	int lines = 0;
+	for (const char *c = rows.out; *c; c++)
+		lines += *c == '\n';
+	assert_int_equal(lines, 1 + 6000);
+	program_free(&rows);
+	program_free(&document);
+}
+
+static void indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv(void **state)
+{
+	(void)state;
+	// closed form of the Ishigami function; four times the error over designs of n = 1000
+	static const double first[3] = {0.3139, 0.4424, 0.0}, total[3] = {0.5576, 0.4424, 0.2437};
+	char study[32], outputs[32];
+	ishigami(study, outputs);
+	struct program_outcome json = POUND("indices", study, outputs), again = POUND("indices", study, outputs);
+	program_expect(&json, 0);
+	assert_string_equal(json.out, again.out);
+	struct reading *result = reading_open(json.out, json.n_out);
+	for (int j = 0; j < 3; j++) {
+		check_near(reading_number(result, "/cells/0/outputs/0/inputs/%d/S1", j), first[j], 4 * 0.0099);
+		check_near(reading_number(result, "/cells/0/outputs/0/inputs/%d/ST", j), total[j], 4 * 0.0046);
+	}
+	reading_close(result);
+	struct program_outcome table = POUND("indices", "--format", "table", study, outputs);
+	program_expect(&table, 0);
+	assert_non_null(strstr(table.out, "\n  x3 "));
+	assert_null(strstr(table.out, "nan"));
+	struct program_outcome csv = POUND("indices", "--format", "csv", study, outputs);
+	program_expect(&csv, 0);
+	assert_non_null(strstr(csv.out, "\r\ny,"));
+	program_free(&csv);
+	program_free(&table);
+	program_free(&again);
+	program_free(&json);
+	unlink(study);
+	unlink(outputs);
+}
+
+static void what_is_wrong_is_said_and_ends_with_2(void **state)
+{
+	(void)state;
+	char study[32], outputs[32];
+	ishigami(study, outputs);
+	static const struct {
+		const char *input, *words;
+	} bad[] = {{"y\n1\n", "has 1 lines after its header, the design has 5000"},
+	           {"", "is empty: a header is expected"}};
+	for (int i = 0; i < 2; i++) {
+		struct program_outcome refused =
+		    program_run((const char *const[]){"pound", "indices", study, "-", NULL}, bad[i].input);
+		program_expect(&refused, 2);
+		assert_string_equal(refused.out, "");
+		assert_non_null(strstr(refused.err, "standard input: "));
+		assert_non_null(strstr(refused.err, bad[i].words));
+		program_free(&refused);
+	}
+	static const char *const calls[][5] = {{"pound", "indices", "-", "-"},
+	                                       {"pound", "indices", "study.json"},
+	                                       {"pound", "design"},
+	                                       {"pound", "design", "a", "b"}};
+	for (int i = 0; i < 4; i++) {
+		struct program_outcome refused = program_run(calls[i], "{}");
+		program_expect(&refused, 2);
+		program_free(&refused);
+	}
+	// a study that is wrong is not laid at the door of its outputs
+	struct program_outcome swept = POUND("indices", "schema/examples/paper.json", outputs);
+	program_expect(&swept, 2);
+	assert_non_null(strstr(swept.err, "paper.json: 1 fault\npound:   /sweep: "));
+	program_free(&swept);
+	struct program_outcome lost = POUND("indices", study, "/no/such/file");
+	program_expect(&lost, 1);
+	program_free(&lost);
+	unlink(study);
+	unlink(outputs);
+}
+
+static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
+{
+	(void)state;
+	struct program_outcome until = POUND("example", "until"), design = POUND("example", "design");
+	char *points = documents_with(design.out, "\"lhs\"", "\"sobol\"");
+	struct program_outcome grown =
+	    program_run((const char *const[]){"pound", "design", "-", NULL}, until.out);
+	struct program_outcome uneven = program_run((const char *const[]){"pound", "design", "-", NULL}, points);
+	struct program_outcome run = program_run((const char *const[]){"pound", "run", "-", NULL}, design.out);
+	program_expect(&grown, 0);
+	program_expect(&uneven, 0);
+	program_expect(&run, 2);
+	assert_string_equal(grown.err,
+	                    "pound: note: the design grows; these are the 128 rows of its first look, a run of "
+	                    "it takes up to 2048\n");
+	int lines = 0;
+	for (const char *c = grown.out; *c; c++)
+		lines += *c == '\n';
+	assert_int_equal(lines, 1 + 128 * 5);
+	assert_non_null(strstr(uneven.err, "pound: note: 1000 rows are not 2^k for each of 8 randomisations"));
+	// a study that can only be run elsewhere
+	assert_non_null(strstr(run.err, "`pound design'"));
+	assert_non_null(strstr(run.err, "`pound indices'"));
+	program_free(&run);
+	program_free(&uneven);
+	program_free(&grown);
+	free(points);
+	program_free(&design);
+	program_free(&until);
+}
+
+CHECK_MAIN(cmocka_unit_test(what_there_is_to_say_about_a_design_is_said_on_stderr),
+           cmocka_unit_test(a_design_has_its_header_and_its_samples),
+           cmocka_unit_test(indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv),
+           cmocka_unit_test(what_is_wrong_is_said_and_ends_with_2))

@@ -1,0 +1,491 @@
+/* `pound run`: the same bytes whatever computes them, the same complaints as the server, and a clean stop. */
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+#include "tests/support/service.h"
+#include "tests/support/study_documents.h"
+
+#define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
+
+static struct program_outcome run_threads(const char *document, const char *threads)
+{
+	struct program_outcome outcome =
+	    program_run((const char *const[]){"pound", "run", "--threads", threads, "-", NULL}, document);
+	program_expect(&outcome, 0);
+	assert_string_equal(outcome.err, "");
+	service_timeless(outcome.out);
+	return outcome;
+}
+
+static struct program_outcome run_on_server(const char *document)
+{
+	struct program_outcome id =
+	    program_run((const char *const[]){"pound", "submit", "--wait", "-", NULL}, document);
+	program_expect(&id, 0);
+	assert_string_equal(id.err, "");
+	id.out[strcspn(id.out, "\n")] = '\0';
+	struct program_outcome result = POUND("results", id.out);
+	program_expect(&result, 0);
+	service_timeless(result.out);
+	program_free(&id);
+	return result;
+}
+
+/* Puts an example into a new file; the caller deletes it. */
+static void example_file(const char *name, char path[32])
+{
+	strcpy(path, "/tmp/pound-test-XXXXXX");
+	struct program_outcome document = POUND("example", name);
+	FILE *file = fdopen(mkstemp(path), "w");
+	assert_non_null(file);
+	fputs(document.out, file);
+	fclose(file);
+	program_free(&document);
+}
+
+/* The examples that are quick; the others are only validated. */
+static bool is_long(const char *name)
+{
+	return strncmp(name, "paper", 5) == 0;
+}
+
+static void every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server(void **state)
+{
+	static const char *const threads[] = {"2", "4"};
+	struct program_outcome names = POUND("example", "--names");
+	int n_run = 0;
+	(void)state;
+	for (char *name = strtok(names.out, "\n"); name; name = strtok(NULL, "\n")) {
+		if (is_long(name))
+			continue;
+		struct program_outcome document = POUND("example", name);
+		if (!strstr(document.out, "\"scene\"")) { // to be run elsewhere
+			program_free(&document);
+			continue;
+		}
+		struct program_outcome one = run_threads(document.out, "1");
+		for (int i = 0; i < 2; i++) {
+			struct program_outcome other = run_threads(document.out, threads[i]);
+			assert_string_equal(other.out, one.out);
+			program_free(&other);
+		}
+		struct program_outcome served = run_on_server(document.out);
+		assert_string_equal(served.out, one.out);
+		program_free(&served);
+		program_free(&one);
+		program_free(&document);
+		n_run++;
+	}
+	assert_true(n_run >= 2);
+	program_free(&names);
+}
+
+// documents with faults, and words that the list of them must hold
+static const struct {
+	const char *text;
+	const char *words[4];
+} BAD[] = {
+    {"{\"kind\": \"response\",\n  \"scene\" {}}", {"line 2, column 11"}},
+    {"", {"line 1, column 1"}},
+    {"[]", {"object"}},
+    {"{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": -1}, {\"frequency_hz\": 2}],"
+     " \"contact\": {\"restitution\": 1.4, \"gap\": 0}}}",
+     {"/scene/oscillators/0/frequency_hz: ", "/scene/contact/restitution: must be in [0, 1], got 1.4",
+      "gap_m"}},
+    {"{\"kind\": \"sensitivty\"}", {"sensitivity", "/scene"}},
+};
+
+static void a_bad_study_gets_the_same_list_from_run_and_from_the_server(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+		struct program_outcome run =
+		    program_run((const char *const[]){"pound", "run", "-", NULL}, BAD[i].text);
+		struct program_outcome submit =
+		    program_run((const char *const[]){"pound", "submit", "-", NULL}, BAD[i].text);
+		program_expect(&run, 2);
+		program_expect(&submit, 2);
+		assert_string_equal(run.out, "");
+		assert_string_equal(submit.out, "");
+		assert_string_equal(run.err, submit.err);
+		for (int w = 0; w < 4 && BAD[i].words[w]; w++)
+			if (!strstr(run.err, BAD[i].words[w])) {
+				print_error("'%s' is not in\n%s", BAD[i].words[w], run.err);
+				fail();
+			}
+		program_free(&run);
+		program_free(&submit);
+	}
+}
+
+static int count(const char *text, const char *part)
+{
+	int n = 0;
+	for (; (text = strstr(text, part)); text += strlen(part))
+		n++;
+	return n;
+}
+
+static void a_table_of_responses_has_each_value_of_a_sweep(void **state)
+{
+	(void)state;
+	struct program_outcome document = POUND("example", "gap");
+	struct program_outcome table =
+	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
+	program_expect(&table, 0);
+	assert_int_equal(count(document.out, "[0, 0.001, 0.002, 0.004, 0.008]"), 1);
+	assert_int_equal(count(table.out, "/contact/gap_m = "), 5);
+	assert_int_equal(count(table.out, " left  "), 5);
+	assert_int_equal(count(table.out, "\nimpulse "), 5);
+	assert_non_null(strstr(table.out, "/contact/gap_m = 0.008"));
+	program_free(&table);
+	program_free(&document);
+}
+
+// steps as long as the period of an oscillator of 1 Hz are unstable
+#define UNSTABLE(values)                                                                                 \
+	"{\"kind\": \"response\", \"solver\": {\"method\": \"central_difference\", \"step_s\": 1},"          \
+	" \"sweep\": [{\"path\": \"/oscillators/0/frequency_hz\", \"values\": " values "}],"                 \
+	" \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 0.1}], \"contact\": null," \
+	" \"excitation\": {\"type\": \"record\", \"time_step_s\": 1,"                                        \
+	" \"acceleration_m_s2\": [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1]}}}"
+
+static void a_table_says_how_many_responses_failed_and_why(void **state)
+{
+	(void)state;
+	struct program_outcome table = program_run(
+	    (const char *const[]){"pound", "run", "--format", "table", "-", NULL}, UNSTABLE("[0.1, 1]"));
+	program_expect(&table, 0);
+	assert_non_null(strstr(table.out, "\n1 of 1 runs failed\n"));
+	assert_non_null(
+	    strstr(table.out, "failed: 1 of the runs: the steps of the solver are too long for this scene\n"));
+	program_free(&table);
+}
+
+static void a_study_without_any_result_ends_with_3_and_says_why(void **state)
+{
+	(void)state;
+	struct program_outcome run =
+	    program_run((const char *const[]){"pound", "run", "-", NULL}, UNSTABLE("[1, 2]"));
+	program_expect(&run, 3);
+	assert_string_equal(run.out, "");
+	assert_string_equal(run.err, "pound: the study failed: no run gave a result: "
+	                             "the steps of the solver are too long for this scene\n");
+	program_free(&run);
+	struct program_outcome submit =
+	    program_run((const char *const[]){"pound", "submit", "--wait", "-", NULL}, UNSTABLE("[1, 2]"));
+	program_expect(&submit, 3);
+	submit.out[strcspn(submit.out, "\n")] = '\0';
+	struct program_outcome ended = POUND("status", submit.out);
+	program_expect(&ended, 0);
+	assert_non_null(strstr(ended.out, "\"status\": \"failed\""));
+	assert_non_null(strstr(ended.out, "no run gave a result: the steps of the solver are too long"));
+	program_free(&ended);
+	program_free(&submit);
+}
+
+static void a_table_fits_in_100_columns(void **state)
+{
+	static const struct {
+		const char *example, *holds;
+	} tables[] = {{"response", "impulse_n_s"},
+	              {"sensitivity_small", "ST [95 % interval]"},
+	              {"until", "widest"},
+	              {"convergence", "central_difference   0.001"}};
+	(void)state;
+	for (int i = 0; i < 4; i++) {
+		struct program_outcome document = POUND("example", tables[i].example);
+		struct program_outcome table =
+		    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
+		program_expect(&table, 0);
+		assert_non_null(strstr(table.out, tables[i].holds));
+		for (char *line = strtok(table.out, "\n"); line; line = strtok(NULL, "\n"))
+			assert_true(strlen(line) <= 100);
+		program_free(&table);
+		program_free(&document);
+	}
+}
+
+/* Four inputs of which two make a ratio, few rows, and an estimator of its own: a result with every table but that of
+ * a design that grew. */
+static char *with_every_table(void)
+{
+	struct program_outcome document = POUND("example", "paper_linear");
+	char *study = documents_with(document.out, "\"rows\": 1000", "\"rows\": 100, \"estimator\": \"janon\"");
+	char *common = documents_with(study, "\"independent\"", "\"common\"");
+	char *whole =
+	    documents_with(common, "\"design\":",
+	                   "\"ratios\": [{\"name\": \"f_e/f_2\", \"of\": [\"/excitation/frequency_hz\", "
+	                   "\"/oscillators/1/frequency_hz\"]}], \"design\":");
+	program_free(&document);
+	free(study), free(common);
+	return whole;
+}
+
+static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
+{
+	static const char *const words[] = {
+	    "S1 [95 % interval]", "S1_pick_freeze", "ST_raw",   "S1_janon_corrected", "shapley",
+	    "S2_excitation",      "\n  inputs",     "S2",       "S_closed",           "f_e/f_2",
+	    "these explain",      "ratio bias",     "0 lowest", "ST_one_signal",      "note: a value below 0"};
+	char *study = with_every_table();
+	struct program_outcome table =
+	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study);
+	(void)state;
+	program_expect(&table, 0);
+	for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
+		if (!strstr(table.out, words[k]))
+			fail_msg("'%s' is not in\n%s", words[k], table.out);
+	for (char *line = strtok(table.out, "\n"); line; line = strtok(NULL, "\n"))
+		if (strlen(line) > 100)
+			fail_msg("over 100 columns: %s", line);
+	program_free(&table);
+	free(study);
+}
+
+static void one_table_of_a_result_is_shown_by_its_name(void **state)
+{
+	static const struct {
+		const char *table, *shown, *csv; /* a word in it; the start of its CSV behind the swept field */
+	} tables[] = {
+	    {"inputs", "ST from 0 to 1", "output.name,output.mean,"},
+	    {"second_order", " S2\n", "output.name,input_1,input_2,S2,S2_low,S2_high\r\n"},
+	    {"closed", " S_closed\n", "output.name,input_1,input_2,input_3,"},
+	    {"ratios", "these explain ", "output.name,explained,explained_low,explained_high,name,shapley,"},
+	    {"conditional_means", "0 lowest ... 9 highest", "output.name,name,path,x,mean,low,high\r\n"}};
+	char *study = with_every_table();
+	(void)state;
+	for (int i = 0; i < 5; i++) {
+		struct program_outcome shown = program_run(
+		    (const char *const[]){"pound", "run", "--format", "table", "--table", tables[i].table, "-", NULL},
+		    study);
+		struct program_outcome csv = program_run(
+		    (const char *const[]){"pound", "run", "--format", "csv", "--table", tables[i].table, "-", NULL},
+		    study);
+		program_expect(&shown, 0);
+		program_expect(&csv, 0);
+		for (int k = 0; k < 5; k++)
+			if (!strstr(shown.out, tables[k].shown) != (k != i))
+				fail_msg("%s shows\n%s", tables[i].table, shown.out);
+		assert_non_null(strstr(csv.out, tables[i].csv));
+		program_free(&shown);
+		program_free(&csv);
+	}
+	struct program_outcome other =
+	    POUND("run", "--format", "table", "--table", "inputs", "schema/examples/gap.json");
+	program_expect(&other, 1);
+	assert_string_equal(other.out, "");
+	program_free(&other);
+	static const char *const refused[][8] = {
+	    {"pound", "run", "--format", "table", "--table", "stopping", "-"},
+	    {"pound", "run", "--format", "csv", "--table", "stopping", "-"},
+	    {"pound", "run", "--format", "csv", "--table", "nonsense", "-"},
+	    {"pound", "run", "--format", "csv", "--table", "closed ratios", "-"},
+	    {"pound", "run", "--table", "closed", "-"}};
+	for (int i = 0; i < 5; i++) {
+		struct program_outcome outcome = program_run(refused[i], study);
+		program_expect(&outcome, i < 2 ? 1 : 2);
+		assert_string_equal(outcome.out, "");
+		assert_non_null(strstr(outcome.err, "table"));
+		program_free(&outcome);
+	}
+	free(study);
+}
+
+static void csv_has_as_many_cells_in_every_row(void **state)
+{
+	(void)state;
+	static const char *const examples[] = {"sensitivity_small", "convergence"};
+	for (int i = 0; i < 2; i++) {
+		struct program_outcome document = POUND("example", examples[i]);
+		struct program_outcome csv =
+		    program_run((const char *const[]){"pound", "run", "--format", "csv", "-", NULL}, document.out);
+		program_expect(&csv, 0);
+		int commas = -1, rows = 0;
+		for (char *line = strtok(csv.out, "\r\n"); line; line = strtok(NULL, "\r\n"), rows++) {
+			int n = 0;
+			for (char *c = line; *c; c++)
+				n += *c == ',';
+			assert_true(commas < 0 || n == commas);
+			commas = n;
+		}
+		assert_true(rows > 1 && commas > 5);
+		program_free(&csv);
+		program_free(&document);
+	}
+}
+
+/* Waits until a process has a handler for a signal of its own. */
+static bool catches(pid_t pid, int number)
+{
+	char path[48], line[256];
+	snprintf(path, sizeof path, "/proc/%d/status", (int)pid);
+	for (int tries = 0; tries < 10000; tries++) {
+		unsigned long long caught = 0;
+		FILE *file = fopen(path, "r");
+		while (file && fgets(line, sizeof line, file))
+			sscanf(line, "SigCgt: %llx", &caught);
+		if (file)
+			fclose(file);
+		if (caught >> (number - 1) & 1)
+			return true;
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+	}
+	return false;
+}
+
+static void ctrl_c_stops_a_run_without_a_result(void **state)
+{
+	static const int signals[] = {SIGINT, SIGTERM};
+	char study[32], out[48], err[48];
+	(void)state;
+	example_file("paper", study);
+	snprintf(out, sizeof out, "%s.out", study);
+	snprintf(err, sizeof err, "%s.err", study);
+	for (int i = 0; i < 2; i++) {
+		size_t n;
+		pid_t pid = program_start((const char *const[]){"pound", "run", study, NULL}, out, err);
+		assert_true(catches(pid, signals[i]));
+		kill(pid, signals[i]);
+		assert_int_equal(program_end(pid), 1);
+		free(program_file(out, &n));
+		assert_int_equal(n, 0);
+		char *said = program_file(err, &n);
+		assert_string_equal(said, "pound: stopped by the caller\n");
+		free(said);
+		unlink(out);
+		unlink(err);
+	}
+	unlink(study);
+}
+
+/* Threads of a process; 0: it has ended. */
+static int threads_of(pid_t pid)
+{
+	char path[48];
+	snprintf(path, sizeof path, "/proc/%d/task", (int)pid);
+	DIR *tasks = opendir(path);
+	int n = 0;
+	for (struct dirent *task; tasks && (task = readdir(tasks));)
+		n += task->d_name[0] != '.';
+	if (tasks)
+		closedir(tasks);
+	return n;
+}
+
+static void a_file_that_cannot_be_written_is_told_before_the_study_runs(void **state)
+{
+	(void)state;
+	static const char *const files[][2] = {{"/nonexistent/x.csv", "No such file or directory"},
+	                                       {"/tmp", "Is a directory"}};
+	for (int i = 0; i < 2; i++) {
+		struct program_outcome refused =
+		    program_run((const char *const[]){"pound", "run", "--samples", files[i][0],
+		                                      "schema/examples/sensitivity_small.json", NULL},
+		                "");
+		program_expect(&refused, 1);
+		assert_string_equal(refused.out, "");
+		assert_non_null(strstr(refused.err, files[i][1]));
+		program_free(&refused);
+	}
+}
+
+static void ctrl_c_stops_histories_that_are_being_written(void **state)
+{
+	char study[32], err[48], histories[48];
+	(void)state;
+	int file = mkstemp(strcpy(study, "/tmp/pound.XXXXXX"));
+	// 1,000 floors at one frequency take a moment, and their histories seconds
+	dprintf(file, "{\"kind\": \"floor_spectrum\", \"histories\": true, \"spectrum\": {\"frequencies_hz\": "
+	              "[3]}, \"scene\": {"
+	              "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
+	              "\"excitation\": {\"signals\": 1000}}}");
+	close(file);
+	snprintf(err, sizeof err, "%s.err", study);
+	snprintf(histories, sizeof histories, "%s.csv", study);
+	pid_t pid = program_start(
+	    (const char *const[]){"pound", "run", "--threads", "2", "--samples", histories, study, NULL},
+	    "/dev/null", err);
+	// its two workers have come and gone; a sanitizer has a thread of its own
+	const struct timespec moment = {.tv_nsec = 1000000};
+	for (int now = 1, most = 1; most < 3 || now > most - 2; nanosleep(&moment, NULL)) {
+		now = threads_of(pid);
+		most = now > most ? now : most;
+	}
+	nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
+	kill(pid, SIGINT);
+	assert_int_equal(program_end(pid), 1);
+	size_t n;
+	char *said = program_file(err, &n);
+	assert_non_null(strstr(said, "stopped by the caller"));
+	assert_null(program_file(histories, &n));
+	free(said);
+	unlink(err);
+	unlink(study);
+}
+
+static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
+{
+	static const int widths[] = {120, 60, 20};
+	char study[32];
+	(void)state;
+	example_file("sensitivity_small", study);
+	for (int i = 0; i < 3; i++) {
+		char *bar = program_drawn((const char *const[]){"pound", "run", study, NULL}, widths[i]);
+		size_t n = strlen(bar);
+		assert_non_null(strstr(bar, "100 %"));
+		assert_true(n > 4 && strcmp(bar + n - 4, "\r\033[K") == 0);
+		for (char *line = strtok(bar, "\r"); line; line = strtok(NULL, "\r"))
+			// the escape takes three bytes and no column
+			assert_true(strncmp(line, "\033[K", 3) == 0 && strlen(line) - 3 < (size_t)widths[i]);
+		free(bar);
+	}
+	unlink(study);
+}
+
+static void a_paper_study_is_valid_and_its_cost_is_told(void **state)
+{
+	struct program_outcome names = POUND("example", "--names");
+	int n = 0;
+	for (char *name = strtok(names.out, "\n"); name; name = strtok(NULL, "\n")) {
+		if (!is_long(name))
+			continue;
+		struct program_outcome document = POUND("example", name);
+		struct answer estimate =
+		    service_ask(*state, &(struct ask){.method = "POST",
+		                                      .path = "/v1/studies?validate_only=true",
+		                                      .headers = {"Content-Type: application/json"},
+		                                      .body = document.out,
+		                                      .length = document.n_out});
+		assert_int_equal(estimate.status, 200);
+		assert_non_null(strstr(estimate.body, "\"estimated_cpu_s\": "));
+		answer_free(&estimate);
+		program_free(&document);
+		n++;
+	}
+	assert_true(n >= 2);
+	program_free(&names);
+}
+
+#define SERVED(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
+
+CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by_the_server),
+           SERVED(a_bad_study_gets_the_same_list_from_run_and_from_the_server),
+           cmocka_unit_test(a_table_of_responses_has_each_value_of_a_sweep),
+           cmocka_unit_test(a_table_says_how_many_responses_failed_and_why),
+           SERVED(a_study_without_any_result_ends_with_3_and_says_why),
+           cmocka_unit_test(a_table_fits_in_100_columns),
+           cmocka_unit_test(a_table_shows_every_estimate_of_a_result_and_its_notes),
+           cmocka_unit_test(one_table_of_a_result_is_shown_by_its_name),
+           cmocka_unit_test(csv_has_as_many_cells_in_every_row),
+           cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
+           cmocka_unit_test(a_file_that_cannot_be_written_is_told_before_the_study_runs),
+           cmocka_unit_test(ctrl_c_stops_histories_that_are_being_written),
+           cmocka_unit_test(the_bar_keeps_within_its_terminal_and_clears_its_line),
+           SERVED(a_paper_study_is_valid_and_its_cost_is_told))

@@ -1,0 +1,229 @@
+/* bench_study.c - rows about whole studies: the paper's campaign, threads, and what grows. */
+#include "tests/long/bench.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "schema/examples/examples.h"
+#include "schema/study/study_json.h"
+
+enum { THREADS = 2, REPEATS = 3 };
+
+/* ---- a study run ---- */
+
+struct crew {
+	struct pound_run *run;
+	enum pound_status (*step)(struct pound_run *run, int index, int worker);
+	int n_steps;
+	atomic_int next, worker;
+};
+
+static void *crew_work(void *of)
+{
+	struct crew *crew = of;
+	int worker = atomic_fetch_add(&crew->worker, 1);
+	for (int i; (i = atomic_fetch_add(&crew->next, 1)) < crew->n_steps;)
+		if (crew->step(crew->run, i, worker) != POUND_OK)
+			bench_fail("a block of a study failed");
+	return NULL;
+}
+
+static void crew_run(struct crew *crew, int threads)
+{
+	pthread_t thread[THREADS];
+	atomic_store(&crew->next, 0);
+	atomic_store(&crew->worker, 0);
+	for (int w = 0; w < threads; w++)
+		if (pthread_create(&thread[w], NULL, crew_work, crew) != 0)
+			bench_fail("no thread");
+	for (int w = 0; w < threads; w++)
+		pthread_join(thread[w], NULL);
+}
+
+/* what a study took */
+struct cost {
+	double wall, cpu, cpu_reductions; /* [s] */
+	double memory;                    /* peak of the process [B] */
+	struct pound_work work;
+	int64_t runs;
+};
+
+static double peak_memory(void)
+{
+	char line[128];
+	double kib = 0;
+	FILE *status = fopen("/proc/self/status", "r");
+	while (status && fgets(line, sizeof line, status))
+		if (sscanf(line, "VmHWM: %lf", &kib) == 1)
+			break;
+	if (status)
+		fclose(status);
+	return 1024 * kib;
+}
+
+static struct cost study_cost(const struct pound_study *study, int threads)
+{
+	double wall = bench_seconds(CLOCK_MONOTONIC), cpu = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
+	struct crew crew = {.run = pound_run_create(study, threads)};
+	if (!crew.run)
+		bench_fail("out of memory");
+	crew.step = pound_run_block;
+	crew.n_steps = pound_run_blocks(crew.run);
+	crew_run(&crew, threads);
+	double blocks = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
+	crew.step = pound_run_reduce;
+	crew.n_steps = pound_run_reductions(crew.run);
+	crew_run(&crew, threads);
+	struct cost cost = {.work = pound_run_result(crew.run)->work, .runs = study_runs(study)};
+	cost.wall = bench_seconds(CLOCK_MONOTONIC) - wall;
+	cost.cpu = bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+	cost.cpu_reductions = bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - blocks;
+	cost.memory = peak_memory();
+	pound_run_free(crew.run);
+	return cost;
+}
+
+/* The same in a process of its own, whose memory is its own. */
+static struct cost study_cost_apart(const struct pound_study *study, int threads)
+{
+	struct cost cost;
+	int ends[2], status;
+	fflush(stdout);
+	pid_t child = pipe(ends) == 0 ? fork() : -1;
+	if (child == 0) {
+		cost = study_cost(study, threads);
+		_exit(write(ends[1], &cost, sizeof cost) == sizeof cost ? 0 : 1);
+	}
+	if (child > 0)
+		close(ends[1]);
+	if (child < 0 || read(ends[0], &cost, sizeof cost) != sizeof cost || waitpid(child, &status, 0) != child)
+		bench_fail("the process of a study failed");
+	close(ends[0]);
+	return cost;
+}
+
+/* ---- the paper's campaign ---- */
+
+static void campaign_rows(const struct cost *cost, int rows)
+{
+	const char *name = bench_text("the paper's campaign, n = %d, %.0f runs", rows, (double)cost->runs);
+	double per_run = 1e6 * cost->cpu / (double)cost->runs;
+	bench_print((struct bench_row){
+	    .what = bench_text("%s: wall, %d threads", name, THREADS),
+	    .value = cost->wall,
+	    .unit = "s",
+	    .goal = rows == 1000 ? bench_text("5 s: %s, at most 10 s", cost->wall <= 5 ? "yes" : "no") : NULL,
+	    .met = cost->wall <= 10});
+	bench_print((struct bench_row){.what = "its CPU time", .value = cost->cpu, .unit = "s"});
+	bench_print((struct bench_row){.what = "of it the indexes and their intervals",
+	                               .value = cost->cpu_reductions,
+	                               .unit = "s",
+	                               .ratio = cost->cpu_reductions / cost->cpu,
+	                               .to = "of the CPU time"});
+	bench_print((struct bench_row){
+	    .what = "CPU time of a pounding run with all it needs", .value = per_run, .unit = "us"});
+	bench_print((struct bench_row){.what = "its peak memory",
+	                               .value = 1e-6 * cost->memory,
+	                               .unit = "MB",
+	                               .goal = "below 200 MB",
+	                               .met = cost->memory < 200e6});
+#define X(member, text)                                                                                      \
+	bench_print((struct bench_row){.what = "its " text ", made",                                             \
+	                               .value = (double)cost->work.member.run,                                   \
+	                               .ratio = (double)cost->work.member.run / (double)cost->work.member.asked, \
+	                               .to = "of those asked"});
+	POUND_STAGES(X)
+#undef X
+	bench_print(
+	    (struct bench_row){.what = "its contacts",
+	                       .value = (double)cost->work.contacts,
+	                       .ratio = (double)cost->work.contacts / (double)cost->work.pounding_runs.run,
+	                       .to = "a run"});
+}
+
+/* The paper's campaign with `rows` rows, and with twenty by one thread and by two. */
+void bench_campaign(int rows)
+{
+	struct pound_study *study = bench_study(example_text("paper"));
+	study->design.rows = rows;
+	struct cost cost = study_cost_apart(study, THREADS);
+	campaign_rows(&cost, rows);
+
+	study->design.rows = 20;
+	struct cost best[THREADS + 1] = {0};
+	for (int repeat = 0; repeat < REPEATS; repeat++)
+		for (int threads = 1; threads <= THREADS; threads++) {
+			cost = study_cost_apart(study, threads);
+			if (repeat == 0 || cost.wall < best[threads].wall)
+				best[threads] = cost;
+		}
+	for (int threads = 1; threads <= THREADS; threads++) {
+		const char *name = bench_text("the same with n = 20, %d thread%s", threads, threads > 1 ? "s" : "");
+		bench_print((struct bench_row){.what = bench_text("%s: wall", name),
+		                               .value = best[threads].wall,
+		                               .unit = "s",
+		                               .ratio = best[1].wall / best[threads].wall,
+		                               .to = "times as fast as one thread"});
+		bench_print((struct bench_row){.what = bench_text("%s: CPU", name),
+		                               .value = best[threads].cpu,
+		                               .unit = "s",
+		                               .ratio = best[threads].cpu / best[1].cpu,
+		                               .to = "of one thread's"});
+	}
+	study_free(study);
+}
+
+/* ---- what grows ---- */
+
+struct growth {
+	const char *what;
+	int rows, signals;
+	double cycles; /* of the excitation: its duration */
+};
+
+static void growth_run(void *of)
+{
+	const struct growth *growth = of;
+	struct pound_study *study = bench_study(example_text("paper_linear"));
+	study->design.rows = growth->rows;
+	study->scene.excitation.signals = growth->signals;
+	study->scene.excitation.cycles = growth->cycles;
+	study_cost(study, 1);
+	study_free(study);
+}
+
+/* The paper's study of linear oscillators, with n, the duration and the number of signals doubled and doubled again. */
+void bench_growth(void)
+{
+	struct growth growths[] = {
+	    {"n = 100, T f_e = 20, 5 signals", 100, 5, 20},
+	    {"n = 200", 200, 5, 20},
+	    {"n = 400", 400, 5, 20},
+	    {"T f_e = 40", 100, 5, 40},
+	    {"T f_e = 80", 100, 5, 80},
+	    {"10 signals", 100, 10, 20},
+	    {"20 signals", 100, 20, 20},
+	};
+	enum { GROWTHS = sizeof growths / sizeof growths[0] };
+	struct bench_job jobs[GROWTHS];
+	for (int j = 0; j < GROWTHS; j++)
+		jobs[j] = (struct bench_job){.run = growth_run, .of = &growths[j]};
+	bench_jobs(jobs, GROWTHS, REPEATS);
+	for (int j = 0; j < GROWTHS; j++) {
+		// the doubled ones come in pairs behind the first
+		const struct bench_job *half = &jobs[j == 0 ? 0 : j % 2 ? 0 : j - 1];
+		double ratio = jobs[j].seconds / half->seconds;
+		bench_print((struct bench_row){.what = bench_text("study of linear oscillators, %s", growths[j].what),
+		                               .value = jobs[j].seconds,
+		                               .unit = "s",
+		                               .ratio = j == 0 ? 0 : ratio,
+		                               .to = "times half of it",
+		                               .goal = j == 0 ? NULL : "2, at most 2.2",
+		                               .met = ratio <= 2.2});
+	}
+}

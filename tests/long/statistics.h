@@ -1,0 +1,58 @@
+/* statistics.h - what `make statistics` is made of: functions with exact indexes, other packages' formulas, jobs for all
+ * cores, and the tables, each of which prints itself as Markdown. */
+#ifndef STATISTICS_H
+#define STATISTICS_H
+
+#include "tests/support/functions.h"
+
+enum { STATISTICS_INDEXES = 2 * FUNCTION_INPUTS }; /* first-order, then total */
+
+/* The functions of functions.c and those of statistics_functions.c in one row; NULL past the last. */
+extern const struct function statistics_functions[]; /* ends with a row of NULLs */
+const struct function *statistics_function(int k);
+
+/* First-order indexes, then totals, from the outputs of n rows of n_samples samples: A, B, A with column j from B, ... */
+struct statistics_package {
+	const char *name;
+	void (*indices)(const double *y, int n, int d, int n_samples, double *value); /* value  (2 x d) */
+};
+
+extern const struct statistics_package statistics_packages[]; /* ends with a row of NULLs */
+
+/* Errors of one estimator's indexes over the seeds, and how often its intervals cover the exact ones. */
+struct statistics_score {
+	int n;
+	double bias[STATISTICS_INDEXES], square[STATISTICS_INDEXES], covered[STATISTICS_INDEXES]; /* sums */
+};
+
+void statistics_score_values(struct statistics_score *score, const struct function *f, const double *value);
+/* of two columns of the indexes of an output */
+void statistics_score_indices(struct statistics_score *score, const struct function *f,
+                              const struct pound_indices *indices, enum pound_index first,
+                              enum pound_index total);
+/* Of the first-order indexes (0), the totals (1) or both (-1): root mean square error, share covered, largest bias. */
+double statistics_error(const struct statistics_score *score, int total);
+double statistics_coverage(const struct statistics_score *score, int total);
+double statistics_bias(const struct statistics_score *score, int total);
+
+/* A design of n rows, or of the nearest power of two if it is of nets. */
+struct pound_design statistics_design(int method, int rows, uint64_t seed);
+
+/* A study of four uniform inputs and one output that is run here, in this program. */
+struct pound_study statistics_study(const struct pound_design *design);
+
+/* Gives a run of such a study the outputs of its rows [first, rows in hand); they are also put into y
+ * (rows x samples) unless that is NULL. */
+void statistics_assign(struct pound_run *run, const struct function *f, int first, double *y);
+
+void *statistics_sure(void *memory); /* ends the program when there is none */
+
+/* Jobs 0 .. n - 1, in any order, on all cores; how far they are goes to stderr. */
+void statistics_jobs(int n, void (*job)(void *of, int k), void *of);
+
+void statistics_designs(int n_seeds); /* errors and coverage by design and number of rows */
+void statistics_named(int n_seeds);   /* errors of the estimators by name */
+void statistics_noise(int n_seeds);   /* bias, errors and coverage under noise */
+void statistics_growth(int n_seeds);  /* designs that grow until their intervals are narrow */
+
+#endif

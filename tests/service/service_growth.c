@@ -1,0 +1,226 @@
+/* service_growth.c - studies that run until their intervals are narrow, and results of the rows so far, in a real server. */
+#include <string.h>
+
+#include "schema/json/json_pointer.h"
+#include "tests/support/service.h"
+#include "tests/support/study_documents.h"
+
+enum { SIGNALS = 5, ROW_RUNS = 5 * SIGNALS, SEED = 7 };
+
+/* A study that looks at its intervals after 128, 256, 512 and 1024 rows, and after 2048 if it is not narrow yet.  For free. */
+static char *growing_study(void)
+{
+	char *plain = service_study(SERVICE_ROWS, SIGNALS, SEED), rows[32];
+	snprintf(rows, sizeof rows, "\"rows\": %d, ", SERVICE_ROWS);
+	char *study = documents_with(
+	    plain, rows, "\"method\": \"sobol\", \"until\": {\"half_width\": 0.15, \"max_runs\": 80000}, ");
+	free(plain);
+	return study;
+}
+
+/* Path ID, which must be answered with that status. */
+static struct answer answer_of(const struct service *service, const char *path, const char *id, int status)
+{
+	struct answer answer = service_get(service, path, id);
+	if (answer.status != status)
+		fail_msg("%s: %d instead of %d: %s", path, answer.status, status, answer.body);
+	return answer;
+}
+
+static double status_number(const struct service *service, const char *id, const char *pointer)
+{
+	struct answer answer = answer_of(service, "/v1/studies/%s", id, 200);
+	struct reading *status = answer_read(&answer);
+	double number = reading_number(status, "%s", pointer);
+	reading_close(status);
+	answer_free(&answer);
+	return number;
+}
+
+static struct service_bytes uninterrupted(int n_workers)
+{
+	char *study = growing_study();
+	struct service_bytes bytes = service_uninterrupted(study, n_workers);
+	free(study);
+	return bytes;
+}
+
+static const struct service_bytes *reference(void)
+{
+	static struct service_bytes bytes;
+	if (!bytes.result)
+		bytes = uninterrupted(1);
+	return &bytes;
+}
+
+static void a_study_that_grows_has_the_same_bytes_for_any_number_of_workers(void **state)
+{
+	(void)state;
+	struct service_bytes bytes = uninterrupted(4);
+	service_bytes_compare(&bytes, reference());
+}
+
+static void
+a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_blocks_again(void **state)
+{
+	static const char kept[] =
+	    "SELECT group_concat(number || ' ' || hex(sha256)) FROM block WHERE attempt = 1";
+	struct service *service = service_new();
+	char *study = growing_study(), id[17];
+	(void)state;
+	service_start(service, 2);
+	service_submit(service, study, id);
+	// the third look is at 512 rows: between the second and the third
+	assert_true(service_wait(service, id, "running", 300 * ROW_RUNS));
+	service_kill(service);
+	char *before = service_text(service, kept);
+	service_start(service, 2);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct service_bytes bytes = service_bytes(service, id);
+	service_bytes_compare(&bytes, reference());
+	char *after = service_text(service, kept);
+	assert_string_equal(after, before);
+	assert_int_equal(service_number(service, "SELECT max(attempt) FROM block"), 2);
+	free(before), free(after), free(study);
+	service_stop(service);
+	service_free(service);
+}
+
+static void the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_took(void **state)
+{
+	struct service *service = *state;
+	char *study = growing_study(), id[17];
+	service_submit(service, study, id);
+	// 2048 rows are what 80000 runs allow
+	assert_true(status_number(service, id, "/runs_total") == 2048 * ROW_RUNS);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct answer answer = answer_of(service, "/v1/studies/%s/results", id, 200);
+	struct reading *result = answer_read(&answer);
+	double runs = reading_number(result, "/stopping/runs");
+	assert_true(runs < 2048 * ROW_RUNS && reading_true(result, "/stopping/reached"));
+	assert_true(reading_number(result, "/cells/0/runs") == runs);
+	assert_true(status_number(service, id, "/runs_total") == runs);
+	assert_true(status_number(service, id, "/runs_done") == runs);
+	assert_true(status_number(service, id, "/progress") == 1);
+	assert_int_equal(service_number(service, "SELECT sum(runs) FROM block"), runs);
+	reading_close(result);
+	answer_free(&answer);
+	free(study);
+}
+
+static void samples_of_a_design_that_grew_are_all_of_them_or_an_error(void **state)
+{
+	// the blocks that the last look added to the 512 rows before
+	static const char added[] =
+	    "UPDATE block SET content = zeroblob(length(content)) WHERE "
+	    "(SELECT sum(b.runs) FROM block b WHERE b.number <= block.number) > 512 * 5 * 5";
+	struct service *service = service_new();
+	char *study = growing_study(), id[17];
+	(void)state;
+	service_start(service, 2);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct answer answer = answer_of(service, "/v1/studies/%s/samples", id, 200);
+	int lines = 0;
+	for (const char *at = answer.body; (at = strchr(at, '\n')); at++)
+		lines++;
+	// a header, and five samples a row
+	assert_int_equal(lines, 1 + 5 * 1024);
+	answer_free(&answer);
+	service_stop(service);
+	service_change(service, added);
+	service_start(service, 2);
+	answer = answer_of(service, "/v1/studies/%s/samples", id, 500);
+	assert_non_null(strstr(answer.body, "result-corrupt"));
+	answer_free(&answer);
+	service_stop(service);
+	service_free(service);
+	free(study);
+}
+
+static void a_running_study_answers_with_the_indexes_of_its_whole_rows(void **state)
+{
+	// long enough for some questions while it runs
+	enum { ROWS = 3 * SERVICE_ROWS };
+	struct service *service = *state;
+	char *study = service_study(ROWS, SIGNALS, SEED), id[17];
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "running", 100 * ROW_RUNS));
+	// the first block may be the last of the first ones to end
+	struct answer answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
+	while (answer.status == 404) {
+		answer_free(&answer);
+		answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
+	}
+	struct reading *result = answer_read(&answer);
+	double rows = reading_number(result, "/partial/rows");
+	assert_true(rows > 0 && rows < ROWS);
+	assert_true(reading_number(result, "/partial/rows_most") == ROWS);
+	assert_true(reading_number(result, "/cells/0/runs") == rows * ROW_RUNS);
+	assert_true(reading_number(result, "/cells/0/outputs/0/inputs/0/ST") > 0);
+	assert_true(strlen(answer.etag) > 0);
+	reading_close(result);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true&format=csv", id, 200);
+	assert_string_equal(answer.type, "text/csv");
+	assert_memory_equal(answer.body, "partial.rows,partial.rows_most,", 31);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true&table=closed", id, 200);
+	assert_string_equal(answer.type, "text/csv");
+	assert_memory_equal(answer.body, "partial.rows,partial.rows_most,output.name,input_1,", 51);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true&table=stopping", id, 409);
+	assert_non_null(strstr(answer.body, "this result has no table \\\"stopping\\\""));
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?format=json&table=closed", id, 400);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results", id, 404);
+	assert_true(atoi(answer.retry_after) > 0);
+	answer_free(&answer);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	// then it is the result
+	struct answer whole = answer_of(service, "/v1/studies/%s/results", id, 200);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 200);
+	assert_string_equal(answer.body, whole.body);
+	answer_free(&answer);
+	answer_free(&whole);
+	free(study);
+}
+
+static void a_study_without_a_row_has_no_results_yet(void **state)
+{
+	struct service *service = *state;
+	char *first = service_study(SERVICE_ROWS, SIGNALS, SEED),
+	     *second = service_study(SERVICE_ROWS, SIGNALS, 8);
+	char id[17], waiting[17];
+	service_submit(service, first, id);
+	service_submit(service, second, waiting);
+	// two workers are busy with the first study
+	struct answer answer = answer_of(service, "/v1/studies/%s/results?partial=true", waiting, 404);
+	assert_true(atoi(answer.retry_after) > 0);
+	assert_non_null(strstr(answer.body, "no row of the design is complete yet"));
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=perhaps", waiting, 400);
+	answer_free(&answer);
+	static const char *const ids[] = {"/v1/studies/%s/cancel"};
+	for (int k = 0; k < 2; k++) {
+		char path[64];
+		snprintf(path, sizeof path, ids[0], k ? id : waiting);
+		struct answer cancelled = service_ask(service, &(struct ask){.method = "POST", .path = path});
+		assert_int_equal(cancelled.status, 200);
+		answer_free(&cancelled);
+	}
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 409);
+	answer_free(&answer);
+	free(first), free(second);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(
+    cmocka_unit_test(a_study_that_grows_has_the_same_bytes_for_any_number_of_workers),
+    cmocka_unit_test(a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_blocks_again),
+    SERVED(the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_took),
+    cmocka_unit_test(samples_of_a_design_that_grew_are_all_of_them_or_an_error),
+    SERVED(a_running_study_answers_with_the_indexes_of_its_whole_rows),
+    SERVED(a_study_without_a_row_has_no_results_yet))

@@ -1,0 +1,474 @@
+/* Requests as no library would send them: framing, targets, headers, methods, slow and many clients. */
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "schema/json/json_pointer.h"
+#include "tests/support/faults.h"
+#include "tests/support/program.h"
+#include "tests/support/raw_http.h"
+
+#define HOST   "Host: localhost\r\n"
+#define POST   "POST /v1/studies HTTP/1.1\r\n" HOST "Content-Type: application/json\r\n"
+#define GET    "GET /livez HTTP/1.1\r\n" HOST
+
+// a request that hides behind another one: it must never be answered
+#define HIDDEN "GET /version HTTP/1.1\r\n" HOST "\r\n"
+
+/* `may`: further statuses that are as good; 0 is a connection that is closed, or waits, without an answer. */
+static const struct {
+	const char *bytes;
+	int status, may;
+	bool closes;
+	int answers; /* at most */
+} CASES[] = {
+    // framing
+    {POST "Content-Length: 2\r\nContent-Length: 2\r\n\r\n{}" HIDDEN, 400, 400, true, 1},
+    {POST "Content-Length: 2\r\nContent-Length: 60\r\n\r\n{}" HIDDEN, 400, 400, true, 1},
+    {POST "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked\r\nContent-Length: 5\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: gzip\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: xchunked\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked, gzip\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: identity\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked\r\nTransfer-Encoding: gzip\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding : chunked\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {POST "Transfer-Encoding: chunked\r\n\r\nzz\r\n" HIDDEN, 400, 0, true, 1},
+    {POST "Transfer-Encoding: chunked\r\n\r\n-1\r\n" HIDDEN, 400, 0, true, 1},
+    {POST "Transfer-Encoding: chunked\r\n\r\nfffffffffffffffff\r\n" HIDDEN, 400, 413, true, 1},
+    // the parser below writes the head of this answer twice
+    {POST "Content-Length: -1\r\n\r\n" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: +2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 0x2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 2, 2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 2x\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: \r\n\r\n" HIDDEN, 400, 400, true, 2},
+    {POST "Content-Length: 99999999999999999999999\r\n\r\n" HIDDEN, 413, 413, true, 2},
+    {POST "Content-Length: 9223372036854775808\r\n\r\n" HIDDEN, 413, 413, true, 1},
+    {POST "Content-Length: 9000000000\r\n\r\n" HIDDEN, 413, 413, true, 1},
+    {POST "Content-Length: 1048577\r\nExpect: 100-continue\r\n\r\n", 413, 413, true, 1},
+    {POST "Content-Length: 2\r\nContent-Encoding: gzip\r\n\r\n{}" HIDDEN, 415, 415, true, 1},
+    // headers
+    {GET "Host: localhost\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {"GET /livez HTTP/1.1\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {"GET /livez HTTP/1.1\r\nHost: evil.example\r\n\r\n", 421, 421, false, 1},
+    {"GET /livez HTTP/1.1\r\nHost: localhost.evil.example:8437\r\n\r\n", 421, 421, false, 1},
+    {"GET /livez HTTP/1.1\r\nHost:\r\n\r\n", 421, 421, false, 1},
+    {"GET /livez HTTP/1.1\r\nHost: 10.1.2.3:80\r\n\r\n", 200, 200, false, 1},
+    {"GET /livez HTTP/1.0\r\n\r\n", 200, 200, true, 1},
+    // dropped by the parser below, so that we never see it
+    {GET ": nameless\r\n\r\n", 200, 400, false, 1},
+    {GET "X Y: blank in a name\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "X\x01: control\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "X: \x01\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "X: \x7f\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    {GET "no colon\r\n\r\n", 400, 400, true, 1},
+    {GET "Expect: 200-ok\r\n\r\n", 200, 417, false, 1},
+    // white space behind a value is no part of it, but where the parser below would not see the framing
+    {"GET /livez HTTP/1.1\r\nHost: localhost \t\r\n\r\n", 200, 200, false, 1},
+    {POST "Content-Length: 2\r\nContent-Encoding: identity \r\n\r\n{}", 422, 422, false, 1},
+    {"POST /v1/studies HTTP/1.1\r\n" HOST
+     "Content-Type: application/json\t; charset=utf-8 \r\nContent-Length: 2\r\n\r\n{}",
+     422, 422, false, 1},
+    {POST "Transfer-Encoding: chunked \r\n\r\n2\r\n{}\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
+    // targets
+    {"GET /livez%00 HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez%00x HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /v1/studies?status=queued%00x HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez% HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez%2 HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /livez%gg HTTP/1.1\r\n" HOST "\r\n", 400, 404, false, 1},
+    {"GET /li vez HTTP/1.1\r\n" HOST "\r\n", 400, 400, true, 1},
+    {"GET /liv\x01z HTTP/1.1\r\n" HOST "\r\n", 400, 400, true, 1},
+    {"GET /liv\xc3\xa4z HTTP/1.1\r\n" HOST "\r\n", 400, 400, true, 1},
+    {"GET http://localhost/livez HTTP/1.1\r\n" HOST "\r\n", 404, 400, false, 1},
+    {"GET livez HTTP/1.1\r\n" HOST "\r\n", 404, 400, false, 1},
+    {"OPTIONS * HTTP/1.1\r\n" HOST "\r\n", 404, 405, false, 1},
+    {"GET  /livez HTTP/1.1\r\n" HOST "\r\n", 200, 400, false, 1},
+    // methods and versions
+    {"get /livez HTTP/1.1\r\n" HOST "\r\n", 405, 405, false, 1},
+    {"BREW /livez HTTP/1.1\r\n" HOST "\r\n", 405, 405, false, 1},
+    {"PUT /livez HTTP/1.1\r\n" HOST "Content-Length: 2\r\n\r\n{}", 405, 405, true, 1},
+    {"TRACE /livez HTTP/1.1\r\n" HOST "\r\n", 405, 405, false, 1},
+    {"CONNECT localhost:80 HTTP/1.1\r\n" HOST "\r\n", 404, 405, false, 1},
+    {"GET /livez HTTP/2.0\r\n" HOST "\r\n", 505, 400, true, 1},
+    {"GET /livez HTTP/0.9\r\n" HOST "\r\n", 400, 505, true, 1},
+    {"GET /livez\r\n", 400, 505, true, 1},
+    {"GET \r\n\r\n", 400, 505, true, 1},
+    {"GET\r\n\r\n", 400, 0, true, 1},
+    {"GET /livez HTTX/1.1\r\n" HOST "\r\n", 400, 505, true, 1},
+    {"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 505, 400, true, 1},
+    {"\x16\x03\x01\x02\x01\x01\xfc\x03\x03\r\n\r\n", 400, 0, true, 1},
+    {"\r\n\r\n" GET "\r\n", 200, 400, false, 1},
+    // two in one packet are both answered, in order
+    {GET "\r\n" HIDDEN, 200, 200, false, 2},
+    {POST "Content-Length: 2\r\n\r\n{}" HIDDEN, 422, 422, false, 2},
+};
+
+static void a_request_of_doubtful_shape_has_one_answer_and_hides_no_other(void **state)
+{
+	struct service *service = *state;
+	int n = (int)(sizeof CASES / sizeof CASES[0]), closed = 0;
+	for (int i = 0; i < n; i++) {
+		static struct raw_answer answer;
+		raw_ask(service, CASES[i].bytes, strlen(CASES[i].bytes), CASES[i].closes ? 5 : 0.1, &answer);
+		bool status = answer.status == CASES[i].status || answer.status == CASES[i].may;
+		bool hidden = CASES[i].answers == 1 && strstr(answer.text, "\"version\"") && answer.status != 200;
+		if (!status || answer.n > CASES[i].answers || hidden || answer.reset ||
+		    (CASES[i].closes && !answer.closed))
+			fail_msg("%.120s...: status %d, %d answers%s%s\n%s", CASES[i].bytes, answer.status, answer.n,
+			         answer.closed ? ", closed" : "", answer.reset ? ", reset" : "", answer.text);
+		closed += answer.closed;
+	}
+	check_report("%d requests, %d connections closed by the server, 0 hidden ones answered", n, closed);
+}
+
+/* Escapes, double escapes and other spellings of ../ before and between names of files. */
+static void no_path_leads_to_a_file(void **state)
+{
+	static const char *const ups[] = {"../",           "..%2f",           "%2e%2e/", "%2e%2e%2f",
+	                                  "..%5c",         "%252e%252e%252f", "....//",  "..;/",
+	                                  "%c0%ae%c0%ae/", "./../",           "..%252f", "/..//../",
+	                                  "..%00/",        "%2e./",           "..\\",    "%uff0e%uff0e/"};
+	static const char *const files[] = {"etc/passwd",        "etc/shadow", "proc/self/environ",
+	                                    "proc/self/cmdline", "studies.db", "studies.db-wal",
+	                                    "root/.ssh/id_rsa"};
+	static const char *const starts[] = {"/", "/v1/studies/"};
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	int n = 0;
+	(void)state;
+	service_start(service, 1);
+	long opened = faults->files_opened;
+	assert_true(opened > 0);
+	for (size_t u = 0; u < sizeof ups / sizeof ups[0]; u++)
+		for (size_t f = 0; f < sizeof files / sizeof files[0]; f++)
+			for (size_t s = 0; s < 2; s++, n++) {
+				char bytes[512];
+				static struct raw_answer answer;
+				snprintf(bytes, sizeof bytes, "GET %s%s%s%s HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
+				         starts[s], ups[u], ups[u], files[f]);
+				raw_ask(service, bytes, strlen(bytes), 5, &answer);
+				if (answer.status != 404 && answer.status != 400)
+					fail_msg("%s: %d %s", bytes, answer.status, answer.text);
+			}
+	check_report("%d paths, all 404 or 400; files opened meanwhile: %ld", n, faults->files_opened - opened);
+	assert_true(n >= 200);
+	assert_int_equal(faults->files_opened, opened);
+	service_stop(service);
+	faults_free(faults);
+	service_free(service);
+}
+
+static void a_body_that_is_too_large_is_refused_before_it_is_read_and_without_a_reset(void **state)
+{
+	static const char head[] = POST "Content-Length: 67108864\r\n\r\n";
+	enum { SIZE = 64 << 20, TRIES = 5 };
+	struct service *service = *state;
+	char *bytes = calloc(1, SIZE + sizeof head);
+	assert_non_null(bytes);
+	memcpy(bytes, head, strlen(head));
+	for (int i = 0; i < TRIES; i++) {
+		static struct raw_answer answer;
+		// a client that reads nothing until it has sent all
+		raw_ask(service, bytes, strlen(head) + SIZE, 5, &answer);
+		if (answer.status != 413 || answer.reset || answer.n != 1)
+			fail_msg("%d%s: %s", answer.status, answer.reset ? " reset" : "", answer.text);
+		// and one that has only said what it will send
+		raw_ask(service, bytes, strlen(head), 2, &answer);
+		assert_int_equal(answer.status, 413);
+	}
+	free(bytes);
+}
+
+static void what_is_answered_cannot_be_framed_guessed_or_kept(void **state)
+{
+	static const char *const headers[] = {
+	    "X-Content-Type-Options: nosniff",
+	    "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'", "Referrer-Policy: no-referrer",
+	    "Cache-Control: no-store", "X-Request-Id: "};
+	static const char *const requests[] = {GET "\r\n", "GET /nowhere HTTP/1.1\r\n" HOST "\r\n",
+	                                       "PUT /livez HTTP/1.1\r\n" HOST "\r\n",
+	                                       POST "Content-Length: 2\r\n\r\n{}"};
+	struct service *service = *state;
+	for (size_t r = 0; r < sizeof requests / sizeof requests[0]; r++) {
+		static struct raw_answer answer;
+		raw_ask(service, requests[r], strlen(requests[r]), 0.1, &answer);
+		for (size_t h = 0; h < sizeof headers / sizeof headers[0]; h++)
+			if (!strstr(answer.text, headers[h]))
+				fail_msg("%s is not in\n%s", headers[h], answer.text);
+		assert_null(strstr(answer.text, "Access-Control-"));
+		assert_null(strstr(answer.text, "Server:"));
+	}
+}
+
+static void an_answer_and_its_line_of_the_log_have_one_number(void **state)
+{
+	struct service *service = *state;
+	static struct raw_answer answer;
+	char line[1024], id[17] = "";
+	raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.1, &answer);
+	const char *header = strstr(answer.text, "X-Request-Id: ");
+	assert_non_null(header);
+	snprintf(id, sizeof id, "%s", header + strlen("X-Request-Id: "));
+	service_stop(service);
+	FILE *log = fopen(service->log, "r");
+	assert_non_null(log);
+	bool found = false;
+	while (fgets(line, sizeof line, log))
+		found |= strstr(line, id) && strstr(line, " GET /livez 200 ");
+	fclose(log);
+	assert_true(found);
+}
+
+static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
+{
+	static const char *const settings[][2] = {
+	    {"POUNDD_HEADER_TIMEOUT", "1"}, {"POUNDD_BODY_TIMEOUT", "1"}, {"POUNDD_IDLE_TIMEOUT", "1"}, {NULL}};
+	static const struct {
+		const char *first, *then;
+	} clients[] = {
+	    {"", "G"},                                 // nothing, then a letter at a time
+	    {"GET /livez HTTP/1.1\r\n", "X-Y: a\r\n"}, // a header at a time
+	    {POST "Content-Length: 100000\r\n\r\n", " "},
+	    {POST "Transfer-Encoding: chunked\r\n\r\n", "1\r\n \r\n"},
+	    {GET "\r\n", ""}, // an answer, then silence
+	};
+	enum { KINDS = sizeof clients / sizeof clients[0], EACH = 40, N = KINDS * EACH };
+	(void)state;
+	struct service *service = service_with(settings, 1);
+	int sockets[N], answered = 0, closed = 0;
+	static struct raw_answer answer;
+	for (int i = 0; i < N; i++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], clients[i % KINDS].first, strlen(clients[i % KINDS].first));
+	}
+	// the deadlines are absolute: a byte now and then does not move them
+	for (int round = 0; round < 20; round++) {
+		for (int i = 0; i < N; i++)
+			raw_send(sockets[i], clients[i % KINDS].then, strlen(clients[i % KINDS].then));
+		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.1, &answer);
+		answered += answer.status == 200;
+	}
+	for (int i = 0; i < N; i++) {
+		raw_receive(sockets[i], 5, &answer);
+		closed += answer.closed;
+		close(sockets[i]);
+	}
+	check_report("%d slow clients, %d closed; %d of 20 others answered", N, closed, answered);
+	assert_int_equal(closed, N);
+	assert_int_equal(answered, 20);
+	service_stop(service);
+	service_free(service);
+}
+
+/* Files without a name that a server has open. */
+static int files_unnamed(const struct service *service)
+{
+	char path[64], name[512];
+	snprintf(path, sizeof path, "/proc/%d/fd", (int)service->pid);
+	DIR *folder = opendir(path);
+	assert_non_null(folder);
+	int n = 0;
+	for (struct dirent *file; (file = readdir(folder));) {
+		ssize_t length = readlinkat(dirfd(folder), file->d_name, name, sizeof name - 1);
+		name[length > 0 ? length : 0] = '\0';
+		n += strstr(name, "(deleted)") != NULL;
+	}
+	closedir(folder);
+	return n;
+}
+
+static int files_unnamed_become(const struct service *service, int wanted)
+{
+	int n = -1;
+	for (int tick = 0; tick < 1200 && (n = files_unnamed(service)) != wanted; tick++)
+		nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+	return n;
+}
+
+static void long_answers_wait_for_slow_readers_in_files_without_names(void **state)
+{
+	enum { SIGNALS = 50, READERS = 4 };
+	struct service *service = *state;
+	char id[17], get[256];
+	service_histories(service, SIGNALS, id);
+	const int before = files_unnamed(service);
+	struct answer whole = service_get(service, "/v1/studies/%s/samples", id);
+	assert_int_equal(whole.status, 200);
+	assert_true(whole.length > 8 << 20); // more than sockets hold
+	assert_int_equal(files_unnamed_become(service, before), before);
+	int sockets[READERS];
+	snprintf(get, sizeof get, "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "\r\n", id);
+	for (int i = 0; i < READERS; i++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], get, strlen(get));
+	}
+	assert_int_equal(files_unnamed_become(service, before + READERS), before + READERS);
+	struct answer again = service_get(service, "/v1/studies/%s/samples", id);
+	assert_int_equal(again.length, whole.length);
+	assert_memory_equal(again.body, whole.body, whole.length);
+	for (int i = 0; i < READERS; i++)
+		close(sockets[i]);
+	assert_int_equal(files_unnamed_become(service, before), before);
+	check_report("%d readers of %zu bytes", READERS, whole.length);
+	answer_free(&whole);
+	answer_free(&again);
+}
+
+static void more_connections_than_the_limit_are_told_503(void **state)
+{
+	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "3"}, {NULL}};
+	enum { N = 6 };
+	(void)state;
+	struct service *service = service_with(settings, 1);
+	int sockets[N], served = 0, refused = 0;
+	for (int i = 0; i < N; i++) {
+		static struct raw_answer answer;
+		const char *request = i % 2 ? GET "\r\n" : POST "Content-Length: 2\r\n\r\n{}";
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], request, strlen(request));
+		raw_receive(sockets[i], 0.2, &answer);
+		served += answer.status == (i % 2 ? 200 : 422);
+		// whoever is refused does not keep the place of another
+		refused += answer.status == 503 && strstr(answer.text, "Retry-After: ") && answer.closed;
+	}
+	assert_int_equal(served, 3);
+	assert_int_equal(refused, 3);
+	for (int i = 0; i < N; i++)
+		close(sockets[i]);
+	// and when they have gone, others are served
+	static struct raw_answer answer;
+	for (int i = 0; i < 100 && answer.status != 200; i++)
+		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.05, &answer);
+	assert_int_equal(answer.status, 200);
+	service_stop(service);
+	service_free(service);
+}
+
+/* A service that may have no more than so many files open, now and for ever. */
+static struct service *with_files(int n)
+{
+	const char *build = getenv("POUND_BUILD");
+	char limit[64], program[256], out[128];
+	struct service *service = service_new();
+	snprintf(limit, sizeof limit, "ulimit -n %d && exec \"$0\" \"$@\"", n);
+	snprintf(program, sizeof program, "%s/poundd", build ? build : "build/release");
+	snprintf(out, sizeof out, "%s/out", service->directory);
+	service->pid =
+	    program_start((const char *const[]){"sh", "-c", limit, program, "--port", "0", "--database",
+	                                        service->database, "--workers", "1", NULL},
+	                  out, service->log);
+	for (int i = 0; i < 1000 && service->port == 0; i++) {
+		char *line = program_file(out, NULL);
+		if (!line || sscanf(line, "listening on http://127.0.0.1:%d\n", &service->port) != 1)
+			usleep(10000);
+		free(line);
+	}
+	assert_int_not_equal(service->port, 0);
+	return service;
+}
+
+/* [s] that a server has computed for */
+static double cpu_of(const struct service *service)
+{
+	clockid_t clock;
+	struct timespec cpu;
+	assert_int_equal(clock_getcpuclockid(service->pid, &clock), 0);
+	assert_int_equal(clock_gettime(clock, &cpu), 0);
+	return (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec;
+}
+
+/* How often a word stands in a log. */
+static int told(const struct service *service, const char *word)
+{
+	int n = 0;
+	char *log = program_file(service->log, NULL);
+	assert_non_null(log);
+	for (const char *at = log; (at = strstr(at, word)); at++)
+		n++;
+	free(log);
+	return n;
+}
+
+static void with_few_descriptors_fewer_are_served_and_nothing_spins(void **state)
+{
+	enum { N = 120, FILES = 64 };
+	static struct raw_answer answer;
+	int sockets[N], served = 0, refused = 0;
+	struct service *service = with_files(FILES);
+	(void)state;
+	assert_int_equal(told(service, "only 64 files may be open"), 1);
+	for (int i = 0; i < N; i++)
+		sockets[i] = raw_open(service);
+	double before = cpu_of(service);
+	usleep(1000000);
+	double cpu = cpu_of(service) - before;
+	int lines = told(service, "Error accepting");
+	for (int i = 0; i < N; i++)
+		close(sockets[i]);
+	check_report("%d idle connections with %d descriptors: %.2f s of a core in 1 s, %d lines of the log", N,
+	             FILES, cpu, lines);
+	assert_true(cpu < 0.5);
+	assert_int_equal(lines, 0);
+	for (int i = 0; i < 100 && answer.status != 200; i++)
+		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.05, &answer);
+	assert_int_equal(answer.status, 200);
+	// some are served and the next told that there are as many as may be
+	for (int i = 0; i < N && refused == 0; i++, served++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], GET "\r\n", strlen(GET "\r\n"));
+		answer.status = 0;
+		for (int tries = 0; answer.status == 0 && tries < 50; tries++)
+			raw_receive(sockets[i], 0.2, &answer);
+		assert_true(answer.status == 200 || answer.status == 503);
+		refused += answer.status == 503;
+	}
+	assert_true(served > 8 && refused == 1);
+	for (int i = 0; i < served; i++)
+		close(sockets[i]);
+	service_stop(service);
+	service_free(service);
+}
+
+static void what_the_library_says_again_and_again_is_told_once_a_second(void **state)
+{
+	enum { N = 60 };
+	struct rlimit before, few;
+	int sockets[N];
+	struct service *service = *state;
+	// less than it had when it started, so that it cannot know
+	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, NULL, &before), 0);
+	few = (struct rlimit){30, before.rlim_max};
+	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &few, NULL), 0);
+	struct timespec start, end;
+	clock_gettime(CLOCK_MONOTONIC, &start);
+	for (int i = 0; i < N; i++)
+		sockets[i] = raw_open(service);
+	usleep(1500000);
+	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &before, NULL), 0);
+	int lines = told(service, "Error accepting");
+	clock_gettime(CLOCK_MONOTONIC, &end);
+	for (int i = 0; i < N; i++)
+		close(sockets[i]);
+	// the seconds that were begun, and one more
+	assert_true(lines >= 1 && lines <= end.tv_sec - start.tv_sec + 2);
+	assert_true(told(service, " like it before") >= 1);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other),
+           cmocka_unit_test(no_path_leads_to_a_file),
+           SERVED(a_body_that_is_too_large_is_refused_before_it_is_read_and_without_a_reset),
+           SERVED(what_is_answered_cannot_be_framed_guessed_or_kept),
+           SERVED(an_answer_and_its_line_of_the_log_have_one_number),
+           cmocka_unit_test(who_is_slow_is_closed_and_others_are_served_meanwhile),
+           SERVED(long_answers_wait_for_slow_readers_in_files_without_names),
+           cmocka_unit_test(more_connections_than_the_limit_are_told_503),
+           cmocka_unit_test(with_few_descriptors_fewer_are_served_and_nothing_spins),
+           SERVED(what_the_library_says_again_and_again_is_told_once_a_second))

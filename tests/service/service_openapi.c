@@ -1,0 +1,275 @@
+/* The OpenAPI document is true: every operation and every status in it happens, nothing else does, and every answer is
+ * what its schema says. */
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "schema/http/api.h"
+#include "tests/support/jsonschema.h"
+#include "tests/support/raw_http.h"
+
+enum { HEAD_ROOM = (1 << 20) + 2 /* a body of one byte too many, and a zero */ };
+
+enum situation { PLAIN, DAMAGED };
+
+// {done} is a study that has succeeded, {new} one that is queued behind a long one, {none} no study at all
+static const struct {
+	enum situation situation;
+	const char *method, *path;
+	const char *headers[2];
+	const char *body; /* NULL: none; "study": a small one */
+	int status;
+} ASKED[] = {
+    {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json"}, "study", 201},
+    {PLAIN, "POST", "/v1/studies?validate_only=true", {"Content-Type: application/json"}, "study", 200},
+    {PLAIN, "POST", "/v1/studies?validate_only=1", {"Content-Type: application/json"}, "study", 400},
+    {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json"}, "{", 400},
+    {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json"}, "large", 413},
+    {PLAIN, "POST", "/v1/studies", {"Content-Type: text/plain"}, "study", 415},
+    {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json", "Host: evil.example"}, "study", 421},
+    {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json"}, "{}", 422},
+    {PLAIN, "GET", "/v1/studies", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies?status=queued&limit=1", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies?limit=0", {0}, NULL, 400},
+    {PLAIN, "GET", "/v1/studies/{done}", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{new}", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/studies/{none}", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{done}/request", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/request", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/studies/{none}/request", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{done}/results", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/results", {"Accept: text/csv"}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/results", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/studies/{new}/results", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{done}/samples", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/samples?format=npy", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/samples", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/studies/{new}/samples", {0}, NULL, 404},
+    {PLAIN, "POST", "/v1/studies/{done}/cancel", {0}, NULL, 409},
+    {PLAIN, "POST", "/v1/studies/{new}/cancel", {0}, NULL, 200},
+    {PLAIN, "POST", "/v1/studies/{none}/cancel", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{new}/results", {0}, NULL, 409},
+    {PLAIN, "GET", "/v1/studies/{new}/samples", {0}, NULL, 409},
+    {PLAIN, "DELETE", "/v1/studies/{new}", {0}, NULL, 204},
+    {PLAIN, "DELETE", "/v1/studies/{none}", {0}, NULL, 404},
+    {PLAIN, "GET", "/livez", {0}, NULL, 200},
+    {PLAIN, "GET", "/readyz", {0}, NULL, 200},
+    {PLAIN, "GET", "/metrics", {0}, NULL, 200},
+    {PLAIN, "GET", "/version", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/openapi.json", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/openapi.json", {"If-None-Match: *"}, NULL, 304},
+    {DAMAGED, "GET", "/v1/studies/{done}/request", {0}, NULL, 500},
+    {DAMAGED, "GET", "/v1/studies/{done}/results", {0}, NULL, 500},
+    {DAMAGED, "GET", "/v1/studies/{done}/samples", {0}, NULL, 500},
+};
+
+static const char STUDY_OF_A_TOKEN[] = "Authorization: Bearer 0123456789abcdef0123456789abcdef";
+
+struct world {
+	struct service *service;
+	struct reading *api;
+	char done[17], new[17], tokens[128];
+	char *large, *study;
+	bool seen[API_N_OPERATIONS][600];
+	int n;
+};
+
+/* Sends one request; its answer must be one of the document's. */
+static int ask(struct world *world, const char *method, const char *path, const char *const headers[2],
+               const char *body)
+{
+	char target[160], allow[64], pointer[160], schema[200], escaped[96] = "";
+	long long id;
+	struct jsonschema_fault fault = {0};
+	struct ask asked = {.method = method, .path = target, .headers = {headers[0], headers[1]}};
+	if (body) {
+		asked.body = !strcmp(body, "study") ? world->study : !strcmp(body, "large") ? world->large : body;
+		asked.length = strlen(asked.body);
+	}
+	const char *open = strchr(path, '{'), *close = open ? strchr(open, '}') : NULL;
+	const char *name = !open            ? ""
+	                   : open[1] == 'd' ? world->done
+	                   : open[2] == 'e' ? world->new
+	                                    : "0123456789abcdef";
+	snprintf(target, sizeof target, "%.*s%s%s", open ? (int)(open - path) : (int)strlen(path), path, name,
+	         open ? close + 1 : "");
+	struct answer answer = service_ask(world->service, &asked);
+	int status = answer.status;
+	char decoded[160];
+	snprintf(decoded, sizeof decoded, "%.*s", (int)strcspn(target, "?"), target);
+	int operation = api_match(method, decoded, &id, allow);
+	assert_true(operation >= 0);
+	const char *form = api_operations[operation].path;
+	for (size_t n = 0; *form; form++)
+		n += (size_t)sprintf(escaped + n, *form == '/' ? "~1" : "%c", *form);
+	snprintf(pointer, sizeof pointer, "/paths/%s/%s/responses/%d", escaped,
+	         !strcmp(method, "GET")    ? "get"
+	         : !strcmp(method, "POST") ? "post"
+	                                   : "delete",
+	         status);
+	if (!reading_has(world->api, "%s", pointer))
+		fail_msg("%s %s: %d is not in the document\n%s", method, target, status, answer.body);
+	const struct {
+		const char *name, *value;
+	} heads[] = {{"Location", answer.location}, {"ETag", answer.etag}, {"Retry-After", answer.retry_after}};
+	for (int i = 0; i < 3; i++) {
+		bool told = reading_has(world->api, "%s/headers/%s", pointer, heads[i].name);
+		// a result that is not there yet may say when to come again; a missing study does not
+		if (told != (*heads[i].value != '\0') && status != 404)
+			fail_msg("%s %s: %d, %s '%s' is%s in the document", method, target, status, heads[i].name,
+			         heads[i].value, told ? "" : " not");
+	}
+	// the media type, and for JSON the schema
+	char media[96] = "";
+	for (const char *c = answer.type; *c && *c != ';'; c++)
+		sprintf(media + strlen(media), *c == '/' ? "~1" : "%c", *c);
+	snprintf(schema, sizeof schema, "%.120s/content/%.60s/schema", pointer, media);
+	if (answer.length > 0 && !reading_has(world->api, "%s", schema))
+		fail_msg("%s %s: %d as %s is not in the document", method, target, status, answer.type);
+	if (answer.length > 0 && strstr(answer.type, "json")) {
+		struct reading *value = answer_read(&answer);
+		if (!jsonschema_takes(world->api, schema, value, "", &fault))
+			fail_msg("%s %s: %d: %s %s\n%s", method, target, status, fault.pointer, fault.text, answer.body);
+		reading_close(value);
+	}
+	world->seen[operation][status] = true;
+	world->n++;
+	answer_free(&answer);
+	return status;
+}
+
+static void ask_all(struct world *world, enum situation situation)
+{
+	for (size_t i = 0; i < sizeof ASKED / sizeof ASKED[0]; i++) {
+		const char *const headers[] = {ASKED[i].headers[0], ASKED[i].headers[1]};
+		if (ASKED[i].situation != situation)
+			continue;
+		int status = ask(world, ASKED[i].method, ASKED[i].path, headers, ASKED[i].body);
+		if (status != ASKED[i].status)
+			fail_msg("%s %s: %d instead of %d", ASKED[i].method, ASKED[i].path, status, ASKED[i].status);
+	}
+}
+
+/* Every operation by its method and path, with a body if it takes one; all must answer so. */
+static void ask_each(struct world *world, const char *header, int status, bool open_too)
+{
+	for (int o = 0; o < API_N_OPERATIONS; o++) {
+		const struct api_operation *operation = &api_operations[o];
+		char path[96];
+		const char *rest = strstr(operation->path, "{id}");
+		snprintf(path, sizeof path, "%.*s%s%s", (int)strcspn(operation->path, "{"), operation->path,
+		         rest ? "{none}" : "", rest ? rest + 4 : "");
+		const char *const headers[] = {"Content-Type: application/json", header};
+		if (operation->open && !open_too)
+			continue;
+		int got = ask(world, operation->method, path, headers, operation->takes_study ? "study" : NULL);
+		if (got != status)
+			fail_msg("%s %s: %d instead of %d", operation->method, operation->path, got, status);
+	}
+}
+
+static void begin(struct world *world)
+{
+	char first[17];
+	struct answer answer;
+	service_start(world->service, 1);
+	if (!world->api) {
+		answer = service_get(world->service, "/v1/openapi.json");
+		world->api = answer_read(&answer);
+		answer_free(&answer);
+		service_submit(world->service, world->study, world->done);
+		assert_true(service_wait(world->service, world->done, "succeeded", 0));
+		char *lengthy = service_study(SERVICE_ROWS, 5, 1);
+		service_submit(world->service, lengthy, first);
+		assert_true(service_wait(world->service, first, "running", 1));
+		service_submit(world->service, lengthy, world->new);
+		free(lengthy);
+	}
+}
+
+static void every_operation_and_status_of_the_document_happens_and_no_other(void **state)
+{
+	static struct world world;
+	int documented = 0, seen = 0;
+	(void)state;
+	world.service = service_new();
+	world.study = service_study(4, 2, 1);
+	world.large = malloc(HEAD_ROOM);
+	assert_non_null(world.large);
+	memset(world.large, ' ', HEAD_ROOM);
+	world.large[HEAD_ROOM - 1] = '\0';
+	begin(&world);
+	ask_all(&world, PLAIN);
+	ask_each(&world, "Host: evil.example", 421, true);
+	ask_each(&world, "X: \x01", 400, true);
+	ask_each(&world, "Content-Length: 2000000", 413, true);
+	service_stop(world.service);
+
+	service_change(world.service, "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB)");
+	begin(&world);
+	ask_all(&world, DAMAGED);
+	service_stop(world.service);
+
+	setenv("POUNDD_CONNECTIONS_MAX", "1", 1);
+	begin(&world);
+	int held = raw_open(world.service);
+	// the one that asked whether the server is there may have been counted still, and this one refused
+	const char *const none[2] = {NULL, NULL};
+	for (int i = 0; i < 100 && ask(&world, "GET", "/v1/openapi.json", none, NULL) != 503; i++) {
+		close(held);
+		held = raw_open(world.service);
+	}
+	ask_each(&world, NULL, 503, true);
+	close(held);
+	service_stop(world.service);
+	unsetenv("POUNDD_CONNECTIONS_MAX");
+
+	snprintf(world.tokens, sizeof world.tokens, "%s.tokens", world.service->log);
+	FILE *file = fopen(world.tokens, "w");
+	fprintf(file, "%s\n", STUDY_OF_A_TOKEN + strlen("Authorization: Bearer "));
+	fclose(file);
+	chmod(world.tokens, 0600);
+	setenv("POUNDD_TOKEN_FILE", world.tokens, 1);
+	setenv("POUNDD_QUEUE_TOKEN_MAX", "1", 1);
+	service_change(world.service, "UPDATE study SET client = 'x'; DELETE FROM study");
+	begin(&world);
+	ask_each(&world, NULL, 401, false);
+	int status = 201;
+	const char *const headers[] = {"Content-Type: application/json", STUDY_OF_A_TOKEN};
+	char *lengthy = service_study(SERVICE_ROWS, 5, 1);
+	for (int i = 0; i < 4 && status == 201; i++)
+		status = ask(&world, "POST", "/v1/studies", headers, lengthy);
+	assert_int_equal(status, 429);
+	free(lengthy);
+	unsetenv("POUNDD_TOKEN_FILE");
+	unsetenv("POUNDD_QUEUE_TOKEN_MAX");
+	service_stop(world.service);
+	unlink(world.tokens);
+
+	for (int o = 0; o < API_N_OPERATIONS; o++) {
+		const char *key, *method = api_operations[o].method;
+		char escaped[96] = "", path[160];
+		for (const char *c = api_operations[o].path; *c; c++)
+			sprintf(escaped + strlen(escaped), *c == '/' ? "~1" : "%c", *c);
+		snprintf(path, sizeof path, "/paths/%s/%s/responses", escaped,
+		         !strcmp(method, "GET")    ? "get"
+		         : !strcmp(method, "POST") ? "post"
+		                                   : "delete");
+		for (int i = 0; (key = reading_member(world.api, i, "%s", path)); i++, documented++) {
+			seen += world.seen[o][atoi(key)];
+			if (!world.seen[o][atoi(key)])
+				print_error("%s %s: %s is in the document and never came\n", method, api_operations[o].path,
+				            key);
+		}
+	}
+	check_report("%d requests: %d of %d documented answers seen, none undocumented", world.n, seen,
+	             documented);
+	assert_int_equal(seen, documented);
+	reading_close(world.api);
+	service_free(world.service);
+	free(world.large);
+	free(world.study);
+}
+
+CHECK_MAIN(cmocka_unit_test(every_operation_and_status_of_the_document_happens_and_no_other))

@@ -1,0 +1,129 @@
+/* A study that makes the server crash: it fails after three times, and the others finish.
+ *
+ * A child process is the server's store and workers; the parent starts it again when it crashes, as systemd would.
+ * Its blocks crash instead of running when their study has the poisonous seed: the linker puts __wrap_pound_run_block
+ * in the place of pound_run_block. */
+#include <signal.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "engine/pound.h"
+#include "server/store.h"
+#include "server/workers.h"
+#include "tests/support/service.h"
+
+enum { POISON = 666, STUDIES = 11, POISON_AT = 4 };
+
+static _Atomic(const struct pound_run *) poisoned;
+static int crash_signal; /* 0: none */
+
+struct pound_run *__real_pound_run_create(const struct pound_study *study, int n_workers);
+struct pound_run *__wrap_pound_run_create(const struct pound_study *study, int n_workers);
+enum pound_status __real_pound_run_block(struct pound_run *run, int block, int worker);
+enum pound_status __wrap_pound_run_block(struct pound_run *run, int block, int worker);
+
+struct pound_run *__wrap_pound_run_create(const struct pound_study *study, int n_workers)
+{
+	struct pound_run *run = __real_pound_run_create(study, n_workers);
+	if (study->design.seed == POISON)
+		poisoned = run;
+	return run;
+}
+
+enum pound_status __wrap_pound_run_block(struct pound_run *run, int block, int worker)
+{
+	if (run == poisoned && crash_signal)
+		raise(crash_signal);
+	return __real_pound_run_block(run, block, worker);
+}
+
+static void submit(struct store *store, int seed)
+{
+	const struct store_study study = {.kind = "sensitivity", .runs = 10, .hash = "hash"};
+	char *document = service_study(2, 1, seed);
+	int64_t id;
+	assert_int_equal(store_submit(store, &study, document, strlen(document), &id), STORE_OK);
+	free(document);
+}
+
+/* The server: runs what is queued and ends, if it does not crash. */
+static void serve(const char *path)
+{
+	const struct rlimit none = {0, 0};
+	setrlimit(RLIMIT_CORE, &none);
+	// those of the test's framework
+	for (int i = 1; i < SIGRTMIN; i++)
+		signal(i, SIG_DFL);
+	struct store *store = store_open(path);
+	struct work *work = store ? work_start(store, 2, 3600) : NULL;
+	int64_t queued = 1, running = 1;
+	while (work && queued + running > 0) {
+		store_count(store, "queued", &queued);
+		store_count(store, "running", &running);
+		usleep(1000);
+	}
+	if (work)
+		work_stop(work);
+	if (store)
+		store_close(store);
+	_exit(work ? 0 : 1);
+}
+
+/* Serves until it ends well; how often it did not. */
+static int crashes_of(const struct service *service, const int signals[], int n)
+{
+	int crashes = 0, status = 0;
+	do {
+		crash_signal = crashes < n ? signals[crashes] : SIGABRT;
+		pid_t pid = fork();
+		if (pid == 0)
+			serve(service->database);
+		assert_int_equal(waitpid(pid, &status, 0), pid);
+		crashes += status != 0;
+	} while (status != 0 && crashes < 20);
+	return crashes;
+}
+
+static void a_study_that_crashes_the_server_three_times_fails_and_the_others_finish(void **state)
+{
+	static const int signals[] = {SIGABRT, SIGSEGV, SIGFPE};
+	struct service *service = service_new();
+	struct store *store = store_open(service->database);
+	(void)state;
+	assert_non_null(store);
+	for (int i = 0; i < STUDIES; i++)
+		submit(store, i == POISON_AT ? POISON : i);
+	store_close(store);
+	int crashes = crashes_of(service, signals, 3);
+	char *error = service_text(service, "SELECT error FROM study WHERE status = 'failed'");
+	int64_t succeeded = service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'");
+	check_report("a poisonous study among %d: crashes %d, succeeded %lld, failed: %s", STUDIES, crashes,
+	             (long long)succeeded, error);
+	assert_int_equal(crashes, 3);
+	assert_int_equal(succeeded, STUDIES - 1);
+	assert_int_equal(strncmp(error, "poison-study: ", 14), 0);
+	assert_int_equal(service_number(service, "SELECT id FROM study WHERE status = 'failed'"),
+	                 service_number(service, "SELECT id FROM study ORDER BY id LIMIT 1 OFFSET 4"));
+	free(error);
+	service_free(service);
+}
+
+static void a_study_that_crashes_the_server_twice_and_then_runs_has_succeeded(void **state)
+{
+	static const int signals[] = {SIGABRT, SIGABRT, 0};
+	struct service *service = service_new();
+	struct store *store = store_open(service->database);
+	(void)state;
+	assert_non_null(store);
+	submit(store, POISON);
+	store_close(store);
+	assert_int_equal(crashes_of(service, signals, 3), 2);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'"), 1);
+	assert_int_equal(service_number(service, "SELECT attempt FROM study"), 3);
+	service_free(service);
+}
+
+CHECK_MAIN(cmocka_unit_test(a_study_that_crashes_the_server_three_times_fails_and_the_others_finish),
+           cmocka_unit_test(a_study_that_crashes_the_server_twice_and_then_runs_has_succeeded))

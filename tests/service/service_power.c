@@ -1,0 +1,327 @@
+/* Power cuts: what a client was told is on the disk, whatever the disk makes of what was not synced.
+ *
+ * A real poundd takes studies, runs them and hands out results while every write, sync, change of size, creation and
+ * removal of its database is recorded (tests/support/preload.c), and with them what the client was told.  A cut is a place in
+ * that record.  What was synced before it is there; of the rest, write by write, a part is lost, a part is there, and a
+ * part is there in some of its 512-byte sectors, as disks may have it that keep no order.  The database is then opened
+ * as after a restart: it must be whole, and have every study and result the client was told of, byte for byte.
+ *
+ * With synchronous=NORMAL the same test must fail, or it would not show anything. */
+#include <fcntl.h>
+#include <math.h>
+#include <sqlite3.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "server/store.h"
+#include "tests/support/faults.h"
+#include "tests/support/program.h"
+#include "tests/support/service.h"
+
+enum {
+	STUDIES = 100,
+	BLANKS = 24000, /* in each document, for pages: at 1000 of them the WAL is copied into the database */
+	SECTOR = 512,
+	STORE_EVERY = 50, /* cuts that are opened by the server's own code as well */
+};
+
+/* What the client was told: that study i is stored (number i), and its result (number STUDIES + i). */
+static struct told {
+	char id[17];
+	char *bytes; /* the result */
+	size_t length;
+} told[STUDIES];
+
+/* A file as it is, and as it would be after a cut. */
+struct image {
+	uint8_t *bytes;
+	int64_t size, capacity;
+	bool exists;
+};
+
+static void resize(struct image *image, int64_t size)
+{
+	if (size > image->capacity) {
+		image->capacity = 2 * size;
+		image->bytes = realloc(image->bytes, (size_t)image->capacity);
+		assert_non_null(image->bytes);
+	}
+	if (size > image->size)
+		memset(image->bytes + image->size, 0, (size_t)(size - image->size));
+	image->size = size;
+}
+
+static void copy(struct image *to, const struct image *from)
+{
+	to->size = 0;
+	resize(to, from->size);
+	if (from->size)
+		memcpy(to->bytes, from->bytes, (size_t)from->size);
+	to->exists = from->exists;
+}
+
+struct record {
+	char *bytes;
+	size_t length;
+};
+
+static uint64_t random_state;
+
+static unsigned pick(unsigned n)
+{
+	random_state = random_state * 6364136223846793005u + 1442695040888963407u;
+	return (unsigned)((random_state >> 33) % n);
+}
+
+enum part { NOTHING, SOME, ALL };
+
+/* Does to a file what an entry of the record says, or a part of it. */
+static void play(struct image *image, const struct faults_entry *entry, enum part part)
+{
+	const uint8_t *bytes = (const uint8_t *)(entry + 1);
+	if (part == NOTHING)
+		return;
+	switch ((enum faults_event)entry->event) {
+	case FAULTS_OPEN:
+	case FAULTS_UNLINK:
+		// its bytes are settled by another sync, before this or after
+		image->exists = entry->event == FAULTS_OPEN;
+		break;
+	case FAULTS_TRUNCATE:
+		resize(image, entry->offset);
+		break;
+	case FAULTS_WRITE:
+		if (entry->offset + entry->size > image->size)
+			resize(image, entry->offset + entry->size);
+		for (int64_t k = 0; k < entry->size; k += SECTOR)
+			if (part == ALL || pick(2))
+				memcpy(image->bytes + entry->offset + k, bytes + k,
+				       (size_t)(entry->size - k < SECTOR ? entry->size - k : SECTOR));
+		break;
+	case FAULTS_SYNC:
+	case FAULTS_TOLD:
+		break;
+	}
+}
+
+/* Entries whose effect is not synced at some place in the record. */
+struct pending {
+	const struct faults_entry **entries;
+	int n, capacity;
+};
+
+static void pend(struct pending *pending, const struct faults_entry *entry)
+{
+	if (pending->n == pending->capacity) {
+		pending->capacity = 2 * pending->capacity + 64;
+		pending->entries = realloc(pending->entries, (size_t)pending->capacity * sizeof *pending->entries);
+		assert_non_null(pending->entries);
+	}
+	pending->entries[pending->n++] = entry;
+}
+
+/* A creation or removal is on the disk when the folder is synced, everything else when its file is. */
+static bool settled_by(const struct faults_entry *entry, const struct faults_entry *sync)
+{
+	bool of_folder = entry->event == FAULTS_OPEN || entry->event == FAULTS_UNLINK;
+	return sync->file == (of_folder ? FAULTS_FOLDER : entry->file);
+}
+
+static void settle(struct image images[FAULTS_FILES], struct pending *pending,
+                   const struct faults_entry *sync)
+{
+	int n = 0;
+	for (int i = 0; i < pending->n; i++)
+		if (settled_by(pending->entries[i], sync))
+			play(&images[pending->entries[i]->file], pending->entries[i], ALL);
+		else
+			pending->entries[n++] = pending->entries[i];
+	pending->n = n;
+}
+
+static void write_file(const char *path, const struct image *image)
+{
+	unlink(path);
+	if (!image->exists)
+		return;
+	int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+	assert_true(file >= 0);
+	assert_int_equal(write(file, image->bytes, (size_t)image->size), image->size);
+	close(file);
+}
+
+/* The blob a question about study `id` comes to; false: none, or the database cannot be read. */
+static bool has(sqlite3_stmt *question, int64_t id, const char *name, const char *bytes, size_t length)
+{
+	sqlite3_bind_int64(question, 1, id);
+	sqlite3_bind_text(question, 2, name, -1, SQLITE_STATIC);
+	bool there = sqlite3_step(question) == SQLITE_ROW &&
+	             (!bytes || ((size_t)sqlite3_column_bytes(question, 0) == length &&
+	                         !memcmp(sqlite3_column_blob(question, 0), bytes, length)));
+	sqlite3_reset(question);
+	return there;
+}
+
+struct damage {
+	int cuts, corrupt, lost; /* cuts, those with a database that is not whole, or not all that was told */
+	int opened;              /* by the server's code */
+	int syncs, checkpoints;  /* in the record: of any file, of the database */
+};
+
+/* Opens what a cut left, and compares it with what was told before. */
+static void judge(const char *path, const bool known[2 * STUDIES], struct damage *damage)
+{
+	sqlite3 *db;
+	sqlite3_stmt *check = NULL, *document = NULL;
+	int lost = 0;
+	damage->cuts++;
+	sqlite3_open(path, &db);
+	bool whole = sqlite3_prepare_v2(db, "PRAGMA integrity_check", -1, &check, NULL) == SQLITE_OK &&
+	             sqlite3_step(check) == SQLITE_ROW &&
+	             !strcmp((const char *)sqlite3_column_text(check, 0), "ok");
+	sqlite3_finalize(check);
+	sqlite3_prepare_v2(
+	    db, "SELECT content FROM document JOIN study ON study = id WHERE id = ?1 AND document.name = ?2", -1,
+	    &document, NULL);
+	for (int i = 0; i < STUDIES; i++) {
+		int64_t id = (int64_t)strtoull(told[i].id, NULL, 16);
+		lost += known[i] && !(document && has(document, id, "request", NULL, 0));
+		lost +=
+		    known[STUDIES + i] && !(document && has(document, id, "result", told[i].bytes, told[i].length));
+	}
+	sqlite3_finalize(document);
+	sqlite3_close(db);
+	damage->corrupt += !whole;
+	damage->lost += lost > 0;
+	if (whole && !lost && damage->cuts % STORE_EVERY == 0) {
+		struct store *store = store_open(path);
+		assert_non_null(store);
+		store_close(store);
+		damage->opened++;
+	}
+}
+
+/* Cuts the power at `n` places of the record that are drawn, and judges each. */
+static struct damage cut(const struct record *record, int n)
+{
+	struct damage damage = {0};
+	struct image images[FAULTS_FILES] = {0}, after = {0};
+	struct pending pending = {0};
+	bool known[2 * STUDIES] = {0};
+	char folder[64], path[96], file[112], removal[96];
+	static const char *const ends[] = {"", "-wal", "-journal"};
+	snprintf(folder, sizeof folder, "%s/pound-test-XXXXXX",
+	         access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
+	assert_non_null(mkdtemp(folder));
+	snprintf(path, sizeof path, "%s/cut.db", folder);
+	int entries = 0, entry_number = 0;
+	for (size_t at = 0; at < record->length; entries++)
+		at += sizeof(struct faults_entry) + (size_t)((const struct faults_entry *)(record->bytes + at))->size;
+	for (size_t at = 0; at < record->length; entry_number++) {
+		const struct faults_entry *entry = (const struct faults_entry *)(record->bytes + at);
+		at += sizeof *entry + (size_t)entry->size;
+		if (entry->event == FAULTS_TOLD)
+			known[entry->offset] = true;
+		else if (entry->event == FAULTS_SYNC) {
+			settle(images, &pending, entry);
+			damage.syncs++;
+			damage.checkpoints += entry->file == FAULTS_DATABASE;
+		} else
+			pend(&pending, entry);
+		// as many cuts at this place as fall on it when n are drawn from all places
+		for (int left = n - damage.cuts; left > 0 && (int)pick((unsigned)(entries - entry_number)) < left;
+		     left--) {
+			for (int f = 0; f < FAULTS_FOLDER; f++) {
+				copy(&after, &images[f]);
+				for (int i = 0; i < pending.n; i++)
+					if (pending.entries[i]->file == f)
+						play(&after, pending.entries[i], (enum part)pick(3));
+				snprintf(file, sizeof file, "%s%s", path, ends[f]);
+				write_file(file, &after);
+			}
+			judge(path, known, &damage);
+		}
+	}
+	for (int f = 0; f < FAULTS_FILES; f++)
+		free(images[f].bytes);
+	free(after.bytes);
+	free(pending.entries);
+	snprintf(removal, sizeof removal, "rm -r %s", folder);
+	assert_int_equal(system(removal), 0);
+	return damage;
+}
+
+/* A server at work, and the record of its disk. */
+static struct record recorded(bool normal)
+{
+	struct service *service = service_new();
+	struct faults *faults = faults_new(service->directory);
+	struct record record;
+	char path[128];
+	faults->records = true;
+	faults->normal = normal;
+	service_start(service, 2);
+	for (int i = 0; i < STUDIES; i++) {
+		char *study = service_study(2, 1, i);
+		size_t n = strlen(study);
+		study = realloc(study, n + BLANKS + 1);
+		assert_non_null(study);
+		memset(study + n, ' ', BLANKS);
+		study[n + BLANKS] = '\0';
+		service_submit(service, study, told[i].id);
+		faults_told(faults, i);
+		free(study);
+		if (i % 4 != 0)
+			continue;
+		assert_true(service_wait(service, told[i].id, "succeeded", 0));
+		struct answer result = service_get(service, "/v1/studies/%s/results", told[i].id);
+		assert_int_equal(result.status, 200);
+		faults_told(faults, STUDIES + i);
+		free(told[i].bytes);
+		told[i].bytes = result.body;
+		told[i].length = result.length;
+	}
+	service_kill(service);
+	snprintf(path, sizeof path, "%s/record", service->directory);
+	record.bytes = program_file(path, &record.length);
+	assert_non_null(record.bytes);
+	faults_free(faults);
+	service_free(service);
+	return record;
+}
+
+static struct damage cut_of(bool normal, int n)
+{
+	struct record record = recorded(normal);
+	random_state = 1;
+	struct damage damage = cut(&record, n);
+	check_report(
+	    "power cuts, synchronous=%s: %d in a record of %d syncs (%d of the database); databases damaged %d, "
+	    "studies or results lost in %d; %d opened by the server",
+	    normal ? "NORMAL" : "FULL", damage.cuts, damage.syncs, damage.checkpoints, damage.corrupt,
+	    damage.lost, damage.opened);
+	assert_int_equal(damage.cuts, n);
+	free(record.bytes);
+	return damage;
+}
+
+static void what_a_client_was_told_is_on_the_disk_whatever_the_moment_of_a_power_cut(void **state)
+{
+	struct damage damage = cut_of(false, check_count(1000, 10000));
+	(void)state;
+	assert_int_equal(damage.corrupt, 0);
+	assert_int_equal(damage.lost, 0);
+	assert_true(damage.opened > 0);
+	// a WAL that was never copied into the database would be half the test
+	assert_true(damage.checkpoints > 2);
+}
+
+static void the_same_cuts_lose_studies_when_the_disk_is_not_synced_at_every_commit(void **state)
+{
+	enum { N = 100 };
+	(void)state;
+	assert_true(cut_of(true, N).lost > N / 4);
+}
+
+CHECK_MAIN(cmocka_unit_test(what_a_client_was_told_is_on_the_disk_whatever_the_moment_of_a_power_cut),
+           cmocka_unit_test(the_same_cuts_lose_studies_when_the_disk_is_not_synced_at_every_commit))

@@ -1,0 +1,21 @@
+/* baseline_loop.h - two linear oscillators that pound, by the plain loop everyone writes first: what the engine's speed is
+ * measured against.
+ *
+ * Never linked into the product.  SI units; calls may run in any thread. */
+#ifndef YARDSTICK_H
+#define YARDSTICK_H
+
+#include "engine/exact/task.h"
+
+struct yardstick_result {
+	double displacement_max; /* of the left body [m] */
+	double impulse_max;      /* largest integral of F/m1 over one contact [m/s] */
+	int contacts;
+};
+
+/* `steps` steps of equal length from each sample to the next; the task's laws are linear, its contact ends at no
+ * overlap. */
+struct yardstick_result yardstick_plain(const struct pound_march_task *task, int steps);
+struct yardstick_result yardstick_tuned(const struct pound_march_task *task, int steps);
+
+#endif

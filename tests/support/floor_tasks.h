@@ -1,0 +1,16 @@
+/* floor_tasks.h - tasks of specimens, for tests of what follows one floor. */
+#ifndef RIDING_H
+#define RIDING_H
+
+#include "engine/floor/floor.h"
+#include "tests/support/scenes.h"
+
+/* The task of a specimen's scene, with the yield displacements that the engine finds; contact false: without it. */
+struct pound_march_task riding_task(const struct specimen *specimen, bool contact);
+
+/* Spectra of a task, as many drives as asked; fails the test when the motion cannot be followed. */
+struct pound_floor_answer riding_spectra(const struct pound_march_task *task,
+                                         const struct pound_spectrum *spectrum, int n_drives, double radians,
+                                         int lanes, double *psa[POUND_DRIVES]);
+
+#endif

@@ -1,0 +1,19 @@
+/* host_pauses.h - when the machine itself did nothing: a virtual one whose processors the host has taken.
+ *
+ * A thread on each processor, before all others where it may (SCHED_FIFO), wakes every two milliseconds; when it was not
+ * woken, nobody was. */
+#ifndef AWAY_H
+#define AWAY_H
+
+#include <stdbool.h>
+
+void away_start(void);
+void away_stop(void);
+
+/* Whether a processor was away at some time from `from` to `to` [s of the wall clock], or shortly before: as much later as
+ * it was away, what had piled up meanwhile is counted to it. */
+bool away_between(double from, double to);
+
+double away_share(void); /* part of the time for which a processor was away, after away_stop */
+
+#endif

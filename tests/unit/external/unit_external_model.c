@@ -1,0 +1,578 @@
+/* unit_external_model.c - a model that is run elsewhere: its design out, its outputs in, and the indexes they give. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/design/design.h"
+#include "engine/indices/indices.h"
+#include "schema/examples/examples.h"
+#include "schema/external/external_model.h"
+#include "schema/json/json_pointer.h"
+#include "schema/result/result_json.h"
+#include "schema/study/study_json.h"
+#include "tests/support/check.h"
+#include "tests/support/functions.h"
+#include "tests/support/scenes.h"
+#include "tests/support/study_documents.h"
+
+#define UNIFORM "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 1}}"
+
+static const char two_inputs[] =
+    "{\"inputs\": [{\"name\": \"p\", " UNIFORM ", {\"name\": \"q, r\", " UNIFORM "],"
+    " \"design\": {\"rows\": 6}}";
+
+static struct pound_study *study_of(const char *document)
+{
+	struct problems problems;
+	struct pound_study *study = study_design_from_json(document, strlen(document), &problems);
+	if (!study)
+		fail_msg("%s: %s", problems.list[0].pointer, problems.list[0].detail);
+	return study;
+}
+
+static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *document, *pointer, *detail;
+	} refused[] = {
+	    {"{}", "/inputs", "is required: an array of 1 to 16 elements"},
+	    {"{\"inputs\": [{" UNIFORM "]}", "/inputs/0/name", "is required: a text of 1 to 100 characters"},
+	    {"{\"inputs\": [{\"name\": \"row\", " UNIFORM "]}", "/inputs/0/name",
+	     "is the name of another column of the samples"},
+	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"sweep\": []}", "/sweep",
+	     "is not used without a scene"},
+	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"solver\": {}}", "/solver",
+	     "is not used without a scene"},
+	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"outputs\": [\"impulse\"]}", "/outputs",
+	     "is not used without a scene"},
+	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"design\": {\"rowz\": 3}}", "/design/rowz",
+	     "unknown member, did you mean \"rows\"?"},
+	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"design\": {\"method\": \"sobol\", \"rows\": 8, "
+	     "\"randomisations\": 8}}",
+	     "/design/rows", "must be at least 16, two for each randomisation, got 8"},
+	    {"{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": "
+	     "2}]}}",
+	     "/kind", "must be \"sensitivity\", as no other kind has a design"},
+	};
+	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+		struct problems problems;
+		assert_null(study_design_from_json(refused[i].document, strlen(refused[i].document), &problems));
+		assert_int_equal(problems.n, 1);
+		assert_string_equal(problems.list[0].pointer, refused[i].pointer);
+		assert_string_equal(problems.list[0].detail, refused[i].detail);
+	}
+	struct pound_study *study = study_of(two_inputs);
+	assert_true(study->elsewhere && study->kind == POUND_KIND_SENSITIVITY && study->n_inputs == 2);
+	assert_int_equal(study->design.rows, 6);
+	study_free(study);
+	// to be run here it needs its scene
+	struct problems problems;
+	documents_refused(two_inputs, &problems);
+	// a study with a scene has a design too
+	study = study_of(documents_sensitivity);
+	assert_false(study->elsewhere);
+	study_free(study);
+}
+
+static void rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers(void **state)
+{
+	(void)state;
+	struct pound_study *study = study_of(two_inputs);
+	struct pound_run *run = pound_run_create(study, 1);
+	size_t n, n_rest;
+	char *head = model_rows(study, run, 0, 2, &n), *rest = model_rows(study, run, 2, 4, &n_rest);
+	assert_memory_equal(head, "p,\"q, r\"\n", 9);
+	double x[6 * 2 * 2];
+	pound_design_fill(study, x);
+	char *at = head + 9;
+	for (int row = 0; row < 6; row++)
+		for (int sample = 0; sample < 4; sample++) {
+			const double *a = x + row * 4, *b = a + 2;
+			// A, B, A with column 0 from B, A with column 1 from B
+			const double wanted[4][2] = {{a[0], a[1]}, {b[0], b[1]}, {b[0], a[1]}, {a[0], b[1]}};
+			for (int j = 0; j < 2; j++) {
+				assert_true(strtod(at, &at) == wanted[sample][j]);
+				assert_int_equal(*at++, j ? '\n' : ',');
+			}
+			if (row == 1 && sample == 3) {
+				assert_ptr_equal(at, head + n);
+				at = rest;
+			}
+		}
+	assert_ptr_equal(at, rest + n_rest);
+	free(head), free(rest);
+	pound_run_free(run);
+	study_free(study);
+}
+
+/* ---- indexes ---- */
+
+// statistics_golden.json, estimators_d2_n6: A, B, AB1, AB2 of each row
+static const double golden[6][4] = {{3.3, 3.13, 3.25, 3.65},  {1.96, 2.68, 2.88, 2.3},
+                                    {3.75, 2.98, 3.6, 3.27},  {3.94, 2.15, 2.62, 2.7},
+                                    {1.05, 3.88, 2.65, 3.08}, {1.7, 3.78, 2.26, 2.66}};
+
+/* The result of a text that must be right. */
+static struct reading *indices_of(const char *document, const char *csv)
+{
+	struct problems problems;
+	size_t n;
+	struct pound_study *study = study_of(document);
+	char *json = model_indices(study, csv, strlen(csv), &problems, &n);
+	if (!json)
+		fail_msg("%s: %s", problems.list[0].pointer, problems.list[0].detail);
+	struct reading *result = reading_open(json, n);
+	assert_non_null(result);
+	free(json);
+	study_free(study);
+	return result;
+}
+
+static double index_of(const struct reading *result, int output, int input, const char *name)
+{
+	return reading_number(result, "/cells/0/outputs/%d/inputs/%d/%s", output, input, name);
+}
+
+/* The golden rows as CSV with every number formed by the format, which takes the output and its variance. */
+static char *golden_csv(const char *header, const char *format, double variance)
+{
+	char *csv = NULL;
+	size_t n;
+	FILE *out = open_memstream(&csv, &n);
+	fputs(header, out);
+	for (int i = 0; i < 6; i++)
+		for (int p = 0; p < 4; p++)
+			fprintf(out, format, golden[i][p], variance * (1 + p));
+	fclose(out);
+	return csv;
+}
+
+static void outputs_computed_elsewhere_give_the_golden_indexes(void **state)
+{
+	(void)state;
+	char *csv = golden_csv("y\n", "%.17g\n", 0.0);
+	struct reading *result = indices_of(two_inputs, csv);
+	check_near(index_of(result, 0, 0, "S1_raw"), 0.572576783750673, 1e-12);
+	check_near(index_of(result, 0, 1, "S1_raw"), 0.755503894911683, 1e-12);
+	check_near(index_of(result, 0, 0, "ST_raw"), 0.880662387875659, 1e-12);
+	check_near(index_of(result, 0, 1, "ST_raw"), 1.13121640616328, 2e-12);
+	assert_string_equal(reading_text(result, "/cells/0/outputs/0/name"), "y");
+	assert_string_equal(reading_text(result, "/cells/0/outputs/0/inputs/1/name"), "q, r");
+	check_near(reading_number(result, "/cells/0/runs"), 24.0, 0.0);
+	check_near(reading_number(result, "/cells/0/runs_failed"), 0.0, 0.0);
+	assert_false(reading_has(result, "/timing"));
+	reading_close(result);
+	free(csv);
+}
+
+/* Corrected indexes by their definition, of independent noise of variance v (1 + p) in sample p of every row:
+ * S = (P_BC - P_AB) / ((P_AA + P_BB) / 2), T = (P_AA + P_CC - 2 P_AC) / (2 w), about the mean of all samples. */
+static void corrected(double v, double value[4])
+{
+	double g = 0.0, pair = 0.0, all = 0.0;
+	for (int k = 0; k < 24; k++)
+		g += golden[k / 4][k % 4] / 24;
+	for (int k = 0; k < 24; k++) {
+		double y = golden[k / 4][k % 4] - g, square = y * y - v * (1 + k % 4);
+		all += square / 24;
+		pair += k % 4 < 2 ? square / 12 : 0.0;
+	}
+	for (int j = 0; j < 2; j++) {
+		double above = 0.0, square = 0.0;
+		for (int i = 0; i < 6; i++) {
+			double a = golden[i][0] - g, b = golden[i][1] - g, c = golden[i][2 + j] - g;
+			above += (b * c - a * b) / 6;
+			square += (a * a - v + c * c - v * (3 + j) - 2.0 * a * c) / 6;
+		}
+		value[j] = above / pair;
+		value[2 + j] = 0.5 * square / all;
+	}
+}
+
+static void a_variance_column_takes_independent_noise_out(void **state)
+{
+	(void)state;
+	const double v = 0.01;
+	double wanted[4];
+	corrected(v, wanted);
+	char *csv = golden_csv("y,y.variance\n", "%.17g,%.17g\n", v);
+	struct reading *result = indices_of(two_inputs, csv);
+	for (int j = 0; j < 2; j++) {
+		check_near(index_of(result, 0, j, "S1_pick_freeze"), wanted[j], 1e-12);
+		check_near(index_of(result, 0, j, "ST_pick_freeze"), wanted[2 + j], 1e-12);
+		assert_true(isnan(index_of(result, 0, j, "S2_excitation")));
+	}
+	check_near(index_of(result, 0, 0, "S1_raw"), 0.572576783750673, 1e-12);
+	assert_true(reading_number(result, "/cells/0/outputs/0/noise_share") > 0.0);
+	assert_true(isnan(reading_number(result, "/cells/0/outputs/0/excitation/ST_one_signal")));
+	reading_close(result);
+	// a row whose samples share their noise needs covariances, which are not there
+	char *document = documents_with(two_inputs, "\"rows\": 6", "\"rows\": 6, \"signals\": \"common\"");
+	result = indices_of(document, csv);
+	check_near(index_of(result, 0, 0, "S1_pick_freeze"), 0.572576783750673, 1e-12);
+	assert_non_null(strstr(reading_text(result, "/cells/0/outputs/0/note"), "share their noise"));
+	reading_close(result);
+	free(document);
+	free(csv);
+}
+
+static void an_inert_input_has_no_total_once_replicates_tell_the_noise(void **state)
+{
+	(void)state;
+	enum { N = 1000, D = FUNCTION_INPUTS, SAMPLES = D + 2, R = 5 };
+	const struct function *f = function_named("ishigami");
+	struct pound_sample_values values = function_values(f, N, 42, (struct function_noise){R, 1.0, false});
+	char *csv = NULL;
+	size_t n;
+	FILE *out = open_memstream(&csv, &n);
+	fputs("y.variance,y\n", out);
+	for (int k = 0; k < N * SAMPLES; k++) {
+		double mean = 0.0, square = 0.0;
+		for (int r = 0; r < R; r++)
+			mean += values.numerator[k * R + r] / R;
+		for (int r = 0; r < R; r++)
+			square += pow(values.numerator[k * R + r] - mean, 2);
+		fprintf(out, "%.17g,%.17g\n", square / (R - 1) / R, mean);
+	}
+	fclose(out);
+	struct reading *result =
+	    indices_of("{\"inputs\": [{\"name\": \"a\", " UNIFORM ", {\"name\": \"b\", " UNIFORM
+	               ", {\"name\": \"c\", " UNIFORM ", {\"name\": \"d\", " UNIFORM "]}",
+	               csv);
+	// nu = sigma^2 / (R V) = 0.2: raw T -> nu / (1 + nu); corrected RMSE 0.0097 of an inert input of this function
+	check_near(index_of(result, 0, 3, "ST_raw"), 0.2 / 1.2, 4 * 0.0097);
+	check_near(index_of(result, 0, 3, "ST_pick_freeze"), 0.0, 4 * 0.0097);
+	for (int j = 0; j < D; j++) {
+		check_near(index_of(result, 0, j, "ST"), f->index[D + j], 4 * 0.030);
+		check_near(index_of(result, 0, j, "S1"), f->index[j], 4 * 0.034);
+	}
+	reading_close(result);
+	function_values_free(&values);
+	free(csv);
+}
+
+static void a_run_without_a_number_takes_its_row_out_of_every_output(void **state)
+{
+	(void)state;
+	static const char *const missing[] = {"", "nan", "NA", "NaN", " "};
+	for (size_t k = 0; k < sizeof missing / sizeof missing[0]; k++) {
+		char *csv = NULL;
+		size_t n;
+		FILE *out = open_memstream(&csv, &n);
+		fputs("y,z\n", out);
+		for (int i = 0; i < 6; i++)
+			for (int p = 0; p < 4; p++)
+				fprintf(out, i == 2 && p == 3 ? "%.17g,%s\n" : "%.17g,1\n", golden[i][p], missing[k]);
+		fclose(out);
+		struct reading *result = indices_of(two_inputs, csv);
+		check_near(reading_number(result, "/cells/0/runs_failed"), 1.0, 0.0);
+		check_near(reading_number(result, "/cells/0/rows_dropped"), 1.0, 0.0);
+		// as from five rows; centred Saltelli by hand
+		double mu = 0.0, square = 0.0, above = 0.0;
+		for (int i = 0; i < 6; i++)
+			mu += i == 2 ? 0.0 : (golden[i][0] + golden[i][1]) / 10;
+		for (int i = 0; i < 6; i++) {
+			const double *y = golden[i];
+			square += i == 2 ? 0.0 : (pow(y[0] - mu, 2) + pow(y[1] - mu, 2)) / 10;
+			above += i == 2 ? 0.0 : (y[1] - mu) * (y[2] - y[0]) / 5;
+		}
+		check_near(index_of(result, 0, 0, "S1_raw"), above / square, 1e-12);
+		// the other output is constant
+		assert_true(isnan(index_of(result, 1, 0, "ST")));
+		assert_non_null(strstr(reading_text(result, "/cells/0/outputs/1/note"), "the same for every row"));
+		reading_close(result);
+		free(csv);
+	}
+}
+
+static void spelling_and_further_columns_do_not_change_the_result(void **state)
+{
+	(void)state;
+	size_t n, n_other, n_rows;
+	struct problems problems;
+	struct pound_study *study = study_of(two_inputs);
+	struct pound_run *run = pound_run_create(study, 1);
+	char *plain = golden_csv("y\n", "%.17g\n", 0.0), *rows = model_rows(study, run, 0, 6, &n_rows);
+	// the design's own columns, quotes, spaces, the line ends and the mark of a spreadsheet
+	char *csv = NULL;
+	FILE *out = open_memstream(&csv, &n_other);
+	fputs("\xEF\xBB\xBFrow, \"y\" ,p,\"q, r\",sample\r\n", out);
+	char *line = strchr(rows, '\n') + 1;
+	for (int k = 0; k < 24; k++) {
+		int length = (int)strcspn(line, "\n");
+		fprintf(out, "%d,\"%.17g\",%.*s,AB_p\r\n", k / 4, golden[k / 4][k % 4], length, line);
+		line += length + 1;
+	}
+	fputs("\r\n\n", out);
+	fclose(out);
+	char *json = model_indices(study, plain, strlen(plain), &problems, &n);
+	char *other = model_indices(study, csv, n_other, &problems, &n_other);
+	assert_non_null(json);
+	assert_non_null(other);
+	assert_string_equal(json, other);
+	free(json), free(other), free(plain), free(rows), free(csv);
+	pound_run_free(run);
+	study_free(study);
+}
+
+static void a_quote_that_begins_the_text_is_the_first_of_its_cell(void **state)
+{
+	(void)state;
+	char *plain = golden_csv("y\n", "%.17g\n", 0.0), *quoted = golden_csv("\"\"y\"\n", "%.17g\n", 0.0);
+	struct pound_study *study = study_of(two_inputs);
+	struct problems problems;
+	size_t n, n_quoted;
+	char *json = model_indices(study, plain, strlen(plain), &problems, &n);
+	// what stands in front of the text is no part of it: here another quote
+	char *other = model_indices(study, quoted + 1, strlen(quoted + 1), &problems, &n_quoted);
+	assert_non_null(json);
+	assert_non_null(other);
+	assert_string_equal(json, other);
+	free(json), free(other), free(plain), free(quoted);
+	study_free(study);
+}
+
+static void a_column_may_have_the_longest_name_of_an_input(void **state)
+{
+	(void)state;
+	char name[401] = "", document[800], header[420];
+	for (int k = 0; k < 100; k++)
+		strcat(name, "\xf0\x9f\x8f\xa0");
+	snprintf(document, sizeof document,
+	         "{\"inputs\": [{\"name\": \"%s\", " UNIFORM "], \"design\": {\"rows\": 6}}", name);
+	snprintf(header, sizeof header, "%s,y\n", name);
+	struct pound_study *study = study_of(document);
+	struct pound_run *run = pound_run_create(study, 1);
+	char *csv = NULL;
+	size_t n;
+	FILE *out = open_memstream(&csv, &n);
+	fputs(header, out);
+	for (int row = 0; row < 6; row++)
+		for (int sample = 0; sample < 3; sample++) {
+			double x;
+			pound_run_sample_inputs(run, row, sample, &x);
+			fprintf(out, "%.17g,%.17g\n", x, x * x);
+		}
+	fclose(out);
+	struct reading *result = indices_of(document, csv);
+	assert_int_equal(reading_count(result, "/cells/0/outputs"), 1);
+	assert_string_equal(reading_text(result, "/cells/0/outputs/0/name"), "y");
+	reading_close(result);
+	free(csv);
+	pound_run_free(run);
+	study_free(study);
+}
+
+static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
+{
+	(void)state;
+	struct problems problems;
+	size_t n_csv, n;
+	const char *document = example_text("sensitivity_small");
+	struct pound_study *study = study_of(document);
+	struct pound_run *run = specimen_run(study);
+	const struct pound_cell *cell = &pound_run_result(run)->cells[0];
+	char *csv = samples_to_csv(study, run, &n_csv);
+	char *json = model_indices(study, csv, n_csv, &problems, &n);
+	assert_non_null(json);
+	struct reading *result = reading_open(json, n);
+	for (int o = 0; o < study->n_outputs; o++) {
+		assert_string_equal(reading_text(result, "/cells/0/outputs/%d/name", o),
+		                    pound_output_name(study->outputs[o]));
+		for (int j = 0; j < study->n_inputs; j++) {
+			check_near(index_of(result, o, j, "S1_raw"), cell->indices[o].index[POUND_S1_RAW][j].value,
+			           1e-12);
+			check_near(index_of(result, o, j, "ST_raw"), cell->indices[o].index[POUND_ST_RAW][j].value,
+			           1e-12);
+		}
+		// its samples share their signals, of which the variances tell too little
+		assert_non_null(strstr(reading_text(result, "/cells/0/outputs/%d/note", o), "share their noise"));
+	}
+	reading_close(result);
+	free(json), free(csv);
+	pound_run_free(run);
+	study_free(study);
+}
+
+static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
+{
+	(void)state;
+	// a place has room for 159 bytes
+	char long_cell[520] = "", long_place[160] = "line 1, ";
+	memset(long_cell, '0', 512);
+	strcat(long_cell, "1\n");
+	memset(long_place + 8, '0', 148);
+	strcpy(long_place + 156, "...");
+	const struct {
+		const char *header, *line, *last; /* of the lines but the last, and the last */
+		const char *pointer, *detail;
+	} refused[] = {
+	    {"y\n", "1\n", "", "", "has 23 lines after its header, the design has 24: 4 for each of 6 rows"},
+	    {"y\n", "1\n", "1\n1\n", "",
+	     "has 25 lines after its header, the design has 24: 4 for each of 6 rows"},
+	    {"y\n", "1\n", "abc\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"abc\""},
+	    {"y\n", "1\n", "inf\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"inf\""},
+	    {"y\n", "1\n", "-1e999\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"-1e999\""},
+	    {"y\n", "1\n", "0x10\n", "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"0x10\""},
+	    // many lines with one fault are one message
+	    {"y\n", "0x1\n", "1\n", "lines 2, 3, 4 and 20 more, y",
+	     "must be a decimal number, or empty or nan for a failed run, got \"0x1\" (line 2)"},
+	    {"y,z\n", "1,2,3\n", "1,2\n", "lines 2, 3, 4 and 20 more", "has 3 cells, the header has 2 (line 2)"},
+	    {"y\n", "1\n", "1,5\n", "line 25", "has 2 cells, the header has 1"},
+	    {"y,z\n", "1,2\n", "1\n", "line 25", "has 1 cells, the header has 2"},
+	    {"y,y.variance\n", "1,2\n", "1,-2\n", "line 25, y.variance", "must be at least 0, got -2"},
+	    {"y,y.variance\n", "1,2\n", "1,1e121\n", "line 25, y.variance", "must be at most 1e+120, got 1e121"},
+	    {"y\n", "1\n", "-1e200\n", "line 25, y", "must be at most 1e+60 in size, got -1e200"},
+	    {"z.variance\n", "1\n", "1\n", "line 1, z.variance", "is the variance of no column here"},
+	    {"p\n", "0.5\n", "0.5\n", "line 1",
+	     "names no output: a column for each, and NAME.variance where it is known"},
+	    {"y;z\n", "1;2\n", "1;2\n", "line 1", "has no comma: columns are parted by commas"},
+	    {"y,y\n", "1,2\n", "1,2\n", "line 1, y", "is the name of column 1 too"},
+	    {"1.25\n", "1\n", "1\n", "line 1", "must be the name of a column, got \"1.25\""},
+	    {"y,\n", "1,2\n", "1,2\n", "line 1",
+	     "column 2 has no name: pandas writes its index so, but for index=False"},
+	    {"pression \xe9lev\xe9"
+	     "e\n",
+	     "1\n", "1\n", "line 1", "is not UTF-8"},
+	    {"y\n", "1\n", "\xb5\n", "line 25", "is not UTF-8"},
+	    // its first 511 digits are another number, and a cut name another name
+	    {"y\n", "1\n", long_cell, "line 25, y",
+	     "must be a decimal number, or empty or nan for a failed run, got "
+	     "\"000000000000000000000000000000000000000000000000000000000000\""},
+	    {long_cell, "1\n", "1\n", long_place, "must be shorter than 512 bytes"},
+	    {"y\n", "nan\n", "\n", "",
+	     "no row of the design has all its outputs: there is nothing to make indexes of"},
+	    {"", "", "\n\n", "", "is empty: a header is expected, and a line for each sample of the design"},
+	};
+	struct pound_study *study = study_of(two_inputs);
+	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+		struct problems problems;
+		char csv[800] = "";
+		size_t n;
+		strcat(csv, refused[i].header);
+		for (int k = 0; k < 23; k++)
+			strcat(csv, refused[i].line);
+		strcat(csv, refused[i].last);
+		assert_null(model_indices(study, csv, strlen(csv), &problems, &n));
+		bool told = false;
+		for (int k = 0; k < problems.n; k++)
+			told |= strcmp(problems.list[k].pointer, refused[i].pointer) == 0 &&
+			        strcmp(problems.list[k].detail, refused[i].detail) == 0;
+		if (!told)
+			fail_msg("%s: %s, not %s: %s", problems.list[0].pointer, problems.list[0].detail,
+			         refused[i].pointer, refused[i].detail);
+	}
+	study_free(study);
+}
+
+static void every_spelling_of_a_decimal_number_is_one(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text;
+		bool number;
+	} cases[] = {{"1", true},      {"-1.", true},       {"+.5", true},  {"1e3", true},    {"1.5E-3", true},
+	             {"1e-999", true}, {".", false},        {"-", false},   {"+-1", false},   {"1e", false},
+	             {"1e+", false},   {"e1", false},       {"1 2", false}, {"1_0", false},   {"nan(1)", false},
+	             {"-nan", false},  {"infinity", false}, {"0b1", false}, {"1.2.3", false}, {"0x1p3", false}};
+	struct pound_study *study = study_of(two_inputs);
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct problems problems;
+		char csv[400] = "y\n";
+		size_t n = 0;
+		for (int k = 0; k < 23; k++)
+			strcat(csv, k % 2 ? "1\n" : "2\n");
+		strcat(strcat(csv, cases[i].text), "\n");
+		char *json = model_indices(study, csv, strlen(csv), &problems, &n);
+		if ((json != NULL) != cases[i].number)
+			fail_msg("'%s' is%s taken", cases[i].text, json ? "" : " not");
+		assert_true(!json || strstr(json, "\"runs_failed\": 0"));
+		free(json);
+	}
+	study_free(study);
+}
+
+/* What `pound design` prints of a design that grows is what `pound indices` reads: the rows of its first look. */
+static void a_design_that_grows_is_that_of_its_first_look(void **state)
+{
+	(void)state;
+	struct problems problems;
+	size_t n, n_csv;
+	char *csv = NULL;
+	struct pound_study *study = study_of(example_text("until"));
+	struct pound_run *run = pound_run_create(study, 1);
+	assert_int_equal(pound_run_rows(run), pound_design_rows(study, 0));
+	FILE *out = open_memstream(&csv, &n_csv);
+	fputs("y\n", out);
+	for (int row = 0; row < pound_run_rows(run); row++)
+		for (int sample = 0; sample < pound_run_samples(run); sample++) {
+			double x[POUND_INPUTS_MAX];
+			pound_run_sample_inputs(run, row, sample, x);
+			fprintf(out, "%.17g\n", x[0]);
+		}
+	fclose(out);
+	char *json = model_indices(study, csv, n_csv, &problems, &n);
+	assert_non_null(json);
+	struct reading *result = reading_open(json, n);
+	assert_false(reading_has(result, "/partial") || reading_has(result, "/stopping"));
+	assert_non_null(strstr(reading_text(result, "/design/note"), "rows of its first look"));
+	// y is the first input
+	check_near(index_of(result, 0, 0, "S1_raw"), 1.0, 0.05);
+	check_near(index_of(result, 0, 1, "ST_raw"), 0.0, 0.0);
+	reading_close(result);
+	free(json), free(csv);
+	pound_run_free(run);
+	study_free(study);
+}
+
+static void lines_in_another_order_are_noticed_by_the_inputs_in_them(void **state)
+{
+	(void)state;
+	struct problems problems;
+	size_t n, n_csv;
+	char *csv = NULL;
+	struct pound_study *study = study_of(two_inputs);
+	FILE *out = open_memstream(&csv, &n_csv);
+	fputs("p,y\n", out);
+	for (int k = 0; k < 24; k++)
+		fputs("0.5,1\n", out);
+	fclose(out);
+	assert_null(model_indices(study, csv, n_csv, &problems, &n));
+	assert_int_equal(problems.n, 1);
+	assert_string_equal(problems.list[0].pointer, "lines 2, 3, 4 and 21 more, p");
+	assert_non_null(strstr(problems.list[0].detail, "is 0.5, but the design has "));
+	free(csv);
+	study_free(study);
+}
+
+static void outputs_of_a_sweep_are_refused(void **state)
+{
+	(void)state;
+	struct problems problems;
+	size_t n;
+	struct pound_study *study = study_of(documents_sensitivity);
+	assert_int_equal(study->n_sweeps, 1);
+	assert_null(model_indices(study, "y\n", 2, &problems, &n));
+	assert_string_equal(problems.list[0].pointer, "/sweep");
+	study_free(study);
+}
+
+CHECK_MAIN(cmocka_unit_test(every_spelling_of_a_decimal_number_is_one),
+           cmocka_unit_test(a_design_that_grows_is_that_of_its_first_look),
+           cmocka_unit_test(a_study_without_a_scene_is_inputs_and_a_design),
+           cmocka_unit_test(rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers),
+           cmocka_unit_test(outputs_computed_elsewhere_give_the_golden_indexes),
+           cmocka_unit_test(a_variance_column_takes_independent_noise_out),
+           cmocka_unit_test(an_inert_input_has_no_total_once_replicates_tell_the_noise),
+           cmocka_unit_test(a_run_without_a_number_takes_its_row_out_of_every_output),
+           cmocka_unit_test(spelling_and_further_columns_do_not_change_the_result),
+           cmocka_unit_test(the_samples_of_a_study_give_its_raw_indexes_again),
+           cmocka_unit_test(a_quote_that_begins_the_text_is_the_first_of_its_cell),
+           cmocka_unit_test(a_column_may_have_the_longest_name_of_an_input),
+           cmocka_unit_test(every_fault_of_the_outputs_is_told_with_its_line),
+           cmocka_unit_test(lines_in_another_order_are_noticed_by_the_inputs_in_them),
+           cmocka_unit_test(outputs_of_a_sweep_are_refused))

@@ -1,0 +1,185 @@
+/* unit_oscillator_bank.c - oscillators on given motions, against closed forms; the same bits at every lane count. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/floor/oscillator_bank.h"
+#include "tests/support/check.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { OSCILLATORS = 16 };
+
+static struct pound_trace_stretch stretch;
+static _Alignas(64) double omega[OSCILLATORS], state_of[2][3][OSCILLATORS];
+static _Alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
+static struct pound_kernel kernel;
+
+/* A bank at rest; oscillators beyond n are the last one once more. */
+static struct pound_bank bank_of(const double *w, int n, double xi)
+{
+	pound_kernel_fill(&kernel);
+	struct pound_bank bank = {.n_groups = OSCILLATORS / POUND_SPECTRUM_GROUP,
+	                          .kernel = &kernel,
+	                          .n_drives = 1,
+	                          .damping = xi,
+	                          .radians = 1.5,
+	                          .omega = omega};
+	memset(state_of, 0, sizeof state_of);
+	for (int k = 0; k < OSCILLATORS; k++)
+		omega[k] = w[k < n ? k : n - 1];
+	for (int d = 0; d < POUND_DRIVES; d++)
+		bank.z[d] = state_of[d][0], bank.v[d] = state_of[d][1], bank.top[d] = state_of[d][2];
+	return bank;
+}
+
+/* Rides over the stretch as it stands. */
+static void ride(const struct pound_bank *bank)
+{
+	const struct pound_ride ride = {.stretch = &stretch, .time_step = 0.01};
+	assert_true(pound_spectrum_lanes(0, bank, &ride, scratch));
+}
+
+/* One more piece of the stretch: a polynomial over its own time. */
+static struct pound_trace_piece *piece_next(double step, int order)
+{
+	struct pound_trace_piece *piece = &stretch.piece[stretch.n++];
+	assert_true(stretch.n <= POUND_TRACE_PIECES);
+	*piece = (struct pound_trace_piece){.step = step, .map = -1, .order = order};
+	return piece;
+}
+
+static void polynomial_bound(struct pound_polynomial *a, int order)
+{
+	for (int n = 0; n <= order; n++) {
+		a->bound[0] += fabs(a->c[n]);
+		a->bound[1] += n * fabs(a->c[n]);
+		a->bound[2] += n * (n - 1) * fabs(a->c[n]);
+	}
+}
+
+/* A pulse sin(pi t/td) in equal pieces of its Taylor series, then rest for `quiet`. */
+static void half_sine(double td, int pieces, double quiet)
+{
+	stretch.n = 0;
+	for (int i = 0; i < pieces; i++) {
+		struct pound_trace_piece *piece = piece_next(td / pieces, POUND_TRACE_ORDER);
+		double turn = pi / pieces, term = 1;
+		for (int n = 0; n <= POUND_TRACE_ORDER; term *= turn / ++n)
+			piece->floor.c[n] = term * sin(turn * i + 0.5 * pi * n);
+		polynomial_bound(&piece->floor, POUND_TRACE_ORDER);
+	}
+	piece_next(quiet, 0);
+}
+
+/* Shock spectrum of a half sine A sin(pi t/td), undamped: td/T and max |w^2 u|/A, computed elsewhere. */
+static const double shocks[][2] = {
+    {.1, .396273548}, {.25, .942809042}, {.5, 1.570796327}, {.75, 1.763355757}, {.80994, 1.768457654},
+    {1, 1.732050808}, {1.5, 1.5},        {2, 1.268075355},  {3, 1.169913495},   {5, 1.099801602},
+};
+
+enum { SHOCKS = sizeof shocks / sizeof shocks[0] };
+
+static void a_half_sine_gives_the_known_shock_spectrum(void **state)
+{
+	(void)state;
+	static const int pieces[] = {4, 7, 100};
+	for (size_t p = 0; p < sizeof pieces / sizeof pieces[0]; p++) {
+		double w[SHOCKS], td = 0.7;
+		for (int k = 0; k < SHOCKS; k++)
+			w[k] = 2 * pi * shocks[k][0] / td;
+		struct pound_bank bank = bank_of(w, SHOCKS, 0);
+		half_sine(td, pieces[p], td / shocks[0][0]);
+		ride(&bank);
+		for (int k = 0; k < SHOCKS; k++) // half a unit of the ninth decimal
+			check_near(w[k] * w[k] * bank.top[0][k], shocks[k][1], 5.1e-10);
+	}
+}
+
+// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed elsewhere to all printed digits
+static const double trains[][3] = {
+    {0.02, 1, 6.962120396}, {0.02, 2, 8.521925099}, {0.02, 4, 9.808148215}, {0.02, 8, 12.229549038},
+    {0.05, 1, 3.402154673}, {0.05, 2, 3.967773484}, {0.05, 4, 5.176797556}, {0.05, 8, 8.063219064},
+};
+
+static void a_train_of_velocity_steps_gives_the_exact_values(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof trains / sizeof trains[0]; i++) {
+		double w0 = 2 * pi, w = 2 * trains[i][1] * w0;
+		struct pound_bank bank = bank_of(&w, 1, trains[i][0]);
+		for (int pulse = 0; pulse < 15; pulse++) {
+			bank.v[0][0] += 1;
+			stretch.n = 0;
+			for (int part = 0; part < 5; part++)
+				piece_next(0.1, 0);
+			ride(&bank);
+		}
+		check_near(w * w * bank.top[0][0] / (2 * w0), trains[i][2], 5.1e-10);
+	}
+}
+
+/* A constant acceleration from rest: twice the static displacement undamped, 1 + exp(-xi pi/s) of it damped. */
+// the fastest takes 5e5 steps, each rounds by 2e-16
+static void a_step_of_acceleration_overshoots_as_it_must(void **state)
+{
+	(void)state;
+	double w[OSCILLATORS];
+	for (int k = 0; k < OSCILLATORS; k++)
+		w[k] = exp(0.7 * k);
+	for (double xi = 0; xi < 1; xi += 0.31) {
+		struct pound_bank bank = bank_of(w, OSCILLATORS, xi);
+		stretch.n = 0;
+		for (int i = 0; i < 9; i++) { // the slowest takes pi/s to its peak
+			struct pound_trace_piece *piece = piece_next(1, 0);
+			piece->floor.c[0] = -3;
+			piece->floor.bound[0] = 3;
+		}
+		ride(&bank);
+		for (int k = 0; k < OSCILLATORS; k++)
+			check_near(w[k] * w[k] * bank.top[0][k], 3 * (1 + exp(-xi * pi / sqrt(1 - xi * xi))), 2e-10);
+	}
+}
+
+/* An impulse of a short polynomial pulse, as the contact gives it, drives the second set alone. */
+static void the_contact_s_part_drives_its_own_oscillators(void **state)
+{
+	(void)state;
+	double w = 10, step = 1e-6;
+	struct pound_bank bank = bank_of(&w, 1, 0);
+	bank.n_drives = 2;
+	stretch.n = 0;
+	struct pound_trace_piece *piece = piece_next(step, 2); // 6 t (1 - t)/step: 1 m/s
+	piece->push.c[1] = 6 / step;
+	piece->push.c[2] = -6 / step;
+	polynomial_bound(&piece->push, 2);
+	piece_next(1, 0);
+	ride(&bank);
+	check_near(w * w * bank.top[POUND_DRIVE_PUSH][0], w, 1e-9); // (w step)^2 w = 1e-9
+	check_near(bank.top[POUND_DRIVE_FLOOR][0], 0, 0);
+}
+
+/* However a piece is cut, it is the same motion. */
+static void shorter_steps_change_nothing(void **state)
+{
+	(void)state;
+	double w[OSCILLATORS], once[OSCILLATORS];
+	for (int k = 0; k < OSCILLATORS; k++)
+		w[k] = exp(0.45 * k);
+	for (int fine = 0; fine < 3; fine++) {
+		struct pound_bank bank = bank_of(w, OSCILLATORS, 0.05);
+		bank.radians = fine ? 0.51 / fine : 1.5;
+		half_sine(0.3, fine == 2 ? 37 : 10, 1);
+		ride(&bank);
+		for (int k = 0; k < OSCILLATORS; k++)
+			if (fine)
+				check_near(w[k] * w[k] * bank.top[0][k], once[k], 1e-12);
+			else
+				once[k] = w[k] * w[k] * bank.top[0][k];
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(a_half_sine_gives_the_known_shock_spectrum),
+           cmocka_unit_test(a_train_of_velocity_steps_gives_the_exact_values),
+           cmocka_unit_test(a_step_of_acceleration_overshoots_as_it_must),
+           cmocka_unit_test(the_contact_s_part_drives_its_own_oscillators),
+           cmocka_unit_test(shorter_steps_change_nothing))

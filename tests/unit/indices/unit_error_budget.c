@@ -1,0 +1,344 @@
+/* unit_error_budget.c - what the indexes may be off by: differences of runs made twice, intervals against rows, and the error
+ * that dominates; first on functions with known indexes, then on runs of the engine. */
+#include "engine/indices/error_budget.h"
+#include "tests/support/check.h"
+#include "tests/support/functions.h"
+#include "tests/support/study_documents.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "schema/study/study_json.h"
+
+enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
+
+struct estimated {
+	struct pound_indices of;
+	struct pound_estimate index[POUND_N_INDEXES][POUND_INPUTS_MAX];
+};
+
+/* All indexes and their accuracy, of outputs over function_design(n_rows, seed). */
+static struct estimated *estimated_of(const struct pound_sample_values *values, struct pound_checks checks,
+                                      uint64_t seed)
+{
+	struct estimated *e = calloc(1, sizeof *e);
+	size_t n = pound_variants_scratch(values, 0);
+	double *scratch = malloc(sizeof *scratch * (n + (size_t)checks.n));
+	double *u = function_design(values->n_rows, seed);
+	const struct pound_sampling sampling = {.u = u, .random = true};
+	for (int k = 0; k < POUND_N_INDEXES; k++)
+		e->of.index[k] = e->index[k];
+	pound_variants_indices(values, &sampling, seed, scratch, &e->of);
+	pound_accuracy_estimate(values, checks, scratch, &e->of);
+	free(scratch), free(u);
+	return e;
+}
+
+static void differences_of_runs_come_out_relative_and_as_a_variance(void **state)
+{
+	(void)state;
+	// two rows, one input, two signals; outputs are means of numerators, as all denominators are 1
+	enum { VALUES = 2 * 3 * 2 };
+	static const double numerator[VALUES] = {1, 3, 5, 7, 2, 4, 8, 8, 1, 1, 6, 2};
+	double denominator[VALUES];
+	for (int k = 0; k < VALUES; k++)
+		denominator[k] = 1;
+	struct pound_sample_values values = {
+	    .n_rows = 2, .n_inputs = 1, .n_signals = 2, .numerator = numerator, .denominator = denominator};
+	struct pound_check check[] = {
+	    {0, 0, {1, 1}, {1, 1}},     // alike
+	    {0, 1, {5, 5.5}, {1, 1}},   // 1/11 apart, e = 1/2
+	    {1, 0, {8, 4}, {1, 1}},     // 1/2 apart, e = -4
+	    {1, 2, {6, 12}, {1, 2}},    // the ratio is alike; e = 6 - 4 1 = 2
+	    {1, 1, {NAN, 1}, {NAN, 1}}, // failed once
+	    {1, 1, {1, 1}, {0, 0}},     // nothing moved
+	};
+	struct estimated *e = estimated_of(&values, (struct pound_checks){6, check}, 1);
+	assert_int_equal(e->of.accuracy.runs_checked, 4);
+	assert_int_equal(e->of.accuracy.runs_unchecked, 2);
+	check_near(e->of.accuracy.difference_median, 1 / 22., 1e-16);
+	check_near(e->of.accuracy.difference_largest, 0.5, 0);
+	// mean of 0, 1/4, 16, 4 over two signals
+	check_near(e->of.accuracy.variance_share * e->of.variance, 20.25 / 4 / 2, 1e-14);
+	free(e);
+}
+
+static void runs_that_agree_move_no_index(void **state)
+{
+	(void)state;
+	struct pound_sample_values values =
+	    function_values(function_named("ishigami"), 100, 3, (struct function_noise){.n_signals = 1});
+	struct pound_check check = {7, 2, {0, 0}, {0, 0}};
+	for (int k = 0; k < 2; k++) {
+		check.numerator[k] = values.numerator[7 * SAMPLES + 2];
+		check.denominator[k] = values.denominator[7 * SAMPLES + 2];
+	}
+	struct estimated *e = estimated_of(&values, (struct pound_checks){1, &check}, 3);
+	for (int j = 0; j < D; j++) {
+		check_near(e->of.accuracy.inputs[j].first_change, 0, 0);
+		check_near(e->of.accuracy.inputs[j].total_change, 0, 0);
+	}
+	check_near(e->of.accuracy.errors[POUND_ERROR_INTEGRATION], 0, 0);
+	free(e);
+	function_values_free(&values);
+}
+
+/* A standard normal number of a stream, near enough: twelve uniform ones. */
+static double normal(uint64_t *stream)
+{
+	double sum = -6;
+	for (int k = 0; k < 12; k++) {
+		*stream = *stream * 6364136223846793005u + 1442695040888963407u;
+		sum += (double)(*stream >> 11) * 0x1p-53;
+	}
+	return sum;
+}
+
+/* Noise on every output; every 20th run is checked by the output without it. */
+static int moved_further(const struct function *f, int n_rows, double share, uint64_t seed)
+{
+	struct pound_sample_values clean =
+	    function_values(f, n_rows, seed, (struct function_noise){.n_signals = 1});
+	int n = n_rows * SAMPLES, n_checks = 0, further = 0;
+	double *noisy = malloc(sizeof *noisy * (size_t)n);
+	struct pound_check *check = malloc(sizeof *check * (size_t)n);
+	uint64_t stream = seed;
+	for (int k = 0; k < n; k++) {
+		double below = clean.denominator[k];
+		noisy[k] = clean.numerator[k] + sqrt(share * f->variance) * normal(&stream) * below;
+		if (k % 20 == 0)
+			check[n_checks++] = (struct pound_check){
+			    k / SAMPLES, k % SAMPLES, {noisy[k], clean.numerator[k]}, {below, below}};
+	}
+	struct pound_sample_values values = clean;
+	values.numerator = noisy;
+	struct estimated *with = estimated_of(&values, (struct pound_checks){n_checks, check}, seed);
+	struct estimated *without = estimated_of(&clean, (struct pound_checks){0, NULL}, seed);
+	for (int j = 0; j < D; j++) {
+		further += fabs(with->index[POUND_S1][j].value - without->index[POUND_S1][j].value) >
+		           with->of.accuracy.inputs[j].first_change;
+		further += fabs(with->index[POUND_ST][j].value - without->index[POUND_ST][j].value) >
+		           with->of.accuracy.inputs[j].total_change;
+	}
+	free(with), free(without), free(noisy), free(check);
+	function_values_free(&clean);
+	return further;
+}
+
+static void indexes_move_no_more_than_stated_when_noise_is_added(void **state)
+{
+	(void)state;
+	enum { SEEDS = 40, N = 100 };
+	static const double shares[] = {1e-8, 1e-3, 0.05};
+	for (int k = 0; k < 3; k++) {
+		int further = 0;
+		for (int seed = 0; seed < SEEDS; seed++)
+			further += moved_further(function_named("ishigami"), N, shares[k], 100 + (uint64_t)seed);
+		// twice the deviation is passed in 4.6 % of cases at most, as the parts' deviations are added
+		assert_in_range(further, 0, (int)(0.046 * SEEDS * 2 * D));
+	}
+}
+
+static void half_widths_fall_with_the_root_of_the_rows(void **state)
+{
+	(void)state;
+	struct pound_sample_values values =
+	    function_values(function_named("ishigami"), 2048, 5, (struct function_noise){.n_signals = 1});
+	struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 5);
+	const struct pound_accuracy *accuracy = &e->of.accuracy;
+	assert_int_equal(accuracy->rows[0], 256);
+	assert_int_equal(accuracy->rows[3], 2048);
+	// half widths of 256 rows scatter by 5 % (more where outputs have heavy tails): the slope by some 0.05
+	check_near(accuracy->slope, -0.5, 0.1);
+	check_near(accuracy->rows_to_halve / 2048, exp2(-1 / accuracy->slope), 1e-12);
+	// nothing was checked, and there is one signal only
+	assert_true(isnan(accuracy->errors[POUND_ERROR_INTEGRATION]));
+	assert_true(isnan(accuracy->errors[POUND_ERROR_EXCITATION]));
+	assert_int_equal(pound_accuracy_dominant(accuracy->errors), POUND_ERROR_SAMPLING);
+	free(e);
+	function_values_free(&values);
+}
+
+static double half(struct pound_estimate estimate)
+{
+	return 0.5 * (estimate.high - estimate.low);
+}
+
+/* Of rows and of groups of rows, in a design with neighbours and in a quasi-random one. */
+static void half_widths_of_all_rows_are_those_of_the_indexes(void **state)
+{
+	(void)state;
+	enum { N = 256 };
+	for (int k = 0; k < 2; k++) {
+		struct pound_sample_values values =
+		    function_values(function_named("ishigami"), N, 5, (struct function_noise){.n_signals = 1});
+		values.grouping = (struct pound_grouping){k ? 16 : 0, 1};
+		double *u = function_design(N, 5),
+		       *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
+		struct pound_rows rows;
+		struct pound_closed_results all, first_rows;
+		struct pound_estimate first[D];
+		double from_all[D], from_half[D];
+		pound_rows_init(&rows, &values, scratch);
+		double *rest = scratch + pound_rows_scratch(&values);
+		pound_chaos_indices(&rows, u, false, NULL, rest, &all, NULL);
+		pound_chaos_first_rows(&rows, N, rest, &first_rows);
+		for (int j = 0; j < D; j++) {
+			check_near(half(first_rows.first[j]), half(all.first[j]), 1e-15);
+			check_near(half(first_rows.total[j]), half(all.total[j]), 1e-15);
+		}
+		pound_local_first(&rows, u, false, rest, first);
+		pound_local_first_rows(&rows, N, rest, from_all);
+		pound_local_first_rows(&rows, N / 2, rest, from_half);
+		for (int j = 0; j < D; j++) {
+			check_near(from_all[j], half(first[j]), 1e-15);
+			// half the rows have intervals wider by sqrt(2), from 16 groups give or take a third
+			assert_true(from_half[j] > from_all[j] && from_half[j] < 2 * from_all[j]);
+		}
+		free(u), free(scratch);
+		function_values_free(&values);
+	}
+}
+
+/* Noise that is taken away from the indexes is still in their intervals: with almost nothing else it is the largest
+ * error, and where the excitation is not random it is none. */
+static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
+{
+	(void)state;
+	static const double shares[] = {1e-4, 4};
+	for (int k = 0; k < 2; k++) {
+		struct pound_sample_values values = function_values(
+		    function_named("ishigami"), 200, 7, (struct function_noise){.n_signals = 4, .share = shares[k]});
+		struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 7);
+		const double *errors = e->of.accuracy.errors;
+		assert_int_equal(pound_accuracy_dominant(errors), k ? POUND_ERROR_EXCITATION : POUND_ERROR_SAMPLING);
+		assert_true(errors[POUND_ERROR_EXCITATION] > 0);
+		free(e);
+		function_values_free(&values);
+	}
+}
+
+static void few_rows_and_constant_outputs_have_no_slope(void **state)
+{
+	(void)state;
+	struct pound_sample_values values =
+	    function_values(function_named("ishigami"), 12, 5, (struct function_noise){.n_signals = 1});
+	struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 5);
+	static const int rows[POUND_LEVELS] = {0, 0, 0, 12};
+	assert_memory_equal(e->of.accuracy.rows, rows, sizeof rows);
+	assert_true(isnan(e->of.accuracy.slope) && isnan(e->of.accuracy.rows_to_halve));
+	free(e);
+	double *constant = calloc(12 * SAMPLES, sizeof *constant);
+	struct pound_sample_values flat = values;
+	flat.numerator = constant;
+	e = estimated_of(&flat, (struct pound_checks){0, NULL}, 5);
+	assert_true(isnan(e->of.accuracy.slope) && isnan(e->of.accuracy.variance_share));
+	assert_true(isnan(e->of.accuracy.errors[POUND_ERROR_SAMPLING]));
+	free(e), free(constant);
+	function_values_free(&values);
+}
+
+static void the_dominant_error_is_larger_than_the_others_together(void **state)
+{
+	(void)state;
+	static const struct {
+		double errors[POUND_ERROR_NONE];
+		enum pound_error wanted;
+	} cases[] = {
+	    {{0.1, 0.02, 1e-9, 0}, POUND_ERROR_SAMPLING},     {{0.01, 0.02, NAN, 0}, POUND_ERROR_EXCITATION},
+	    {{0.01, NAN, 0.2, 0.1}, POUND_ERROR_INTEGRATION}, {{0.01, 0.01, 0.01, 0.04}, POUND_ERROR_FAILED_ROWS},
+	    {{0.05, 0.05, 0, 0}, POUND_ERROR_NONE},           {{NAN, NAN, NAN, 0}, POUND_ERROR_NONE},
+	};
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
+		assert_int_equal(pound_accuracy_dominant(cases[k].errors), cases[k].wanted);
+	assert_string_equal(pound_error_name(POUND_ERROR_FAILED_ROWS), "failed_rows");
+	assert_null(pound_error_name(POUND_ERROR_NONE));
+}
+
+/* ---- runs of the engine ---- */
+
+static struct pound_run *run_of(const struct pound_study *study)
+{
+	struct pound_run *run = pound_run_create(study, 1);
+	for (int b = 0; b < pound_run_blocks(run); b++)
+		assert_int_equal(pound_run_block(run, b, 0), POUND_OK);
+	return run;
+}
+
+static const struct pound_result *reduced(struct pound_run *run)
+{
+	for (int k = 0; k < pound_run_reductions(run); k++)
+		assert_int_equal(pound_run_reduce(run, k, 0), POUND_OK);
+	return pound_run_result(run);
+}
+
+static void checked_runs_agree_and_are_counted_apart(void **state)
+{
+	(void)state;
+	// 50 items of 4 runs in each of 2 cells, so that 8 runs are every 25th item
+	struct pound_study *study = documents_study(documents_sensitivity);
+	struct pound_run *run = run_of(study);
+	const struct pound_result *result = reduced(run);
+	for (int c = 0; c < 2; c++)
+		for (int o = 0; o < 2; o++) {
+			const struct pound_accuracy *accuracy = &result->cells[c].indices[o].accuracy;
+			assert_int_equal(accuracy->runs_checked, 8);
+			// measured 1e-13: the few contacts of a gap multiply rounding little
+			assert_true(accuracy->difference_largest < 1e-9);
+			// and it is not the same run
+			assert_true(accuracy->difference_largest > 0);
+		}
+	assert_int_equal(result->work.pounding_runs.asked, 400);
+	assert_true(result->work.checks.run >= 8);
+	pound_run_free(run);
+	study_free(study);
+}
+
+static void restored_blocks_bring_their_checks(void **state)
+{
+	(void)state;
+	struct pound_study *study = documents_study(documents_sensitivity);
+	struct pound_run *run = run_of(study), *restored = pound_run_create(study, 1);
+	for (int b = 0; b < pound_run_blocks(run); b++)
+		pound_run_block_restore(restored, b, pound_run_block_values(run, b));
+	const struct pound_result *result = reduced(run), *again = reduced(restored);
+	for (int c = 0; c < 2; c++)
+		for (int o = 0; o < 2; o++) {
+			const struct pound_accuracy *p = &result->cells[c].indices[o].accuracy;
+			const struct pound_accuracy *q = &again->cells[c].indices[o].accuracy;
+			assert_memory_equal(p->inputs, q->inputs, sizeof p->inputs);
+			assert_true(p->difference_largest == q->difference_largest);
+		}
+	pound_run_free(run);
+	pound_run_free(restored);
+	study_free(study);
+}
+
+/* The check is exact whatever the solver, so it shows the error of a coarse one. */
+static void a_coarse_solver_shows_its_error(void **state)
+{
+	(void)state;
+	char *document = documents_with(documents_sensitivity, "{\"method\": \"event\", \"tolerance\": 1e-9}",
+	                                "{\"method\": \"newmark\", \"step_s\": 0.001}");
+	struct pound_study *study = documents_study(document);
+	struct pound_run *run = run_of(study);
+	const struct pound_result *result = reduced(run);
+	double median = result->cells[0].indices[1].accuracy.difference_median;
+	// a contact of stiffness ratio 100 lasts about 0.02 s, twenty steps
+	assert_true(median > 1e-5 && median < 1e-1);
+	pound_run_free(run);
+	study_free(study);
+	free(document);
+}
+
+CHECK_MAIN(cmocka_unit_test(differences_of_runs_come_out_relative_and_as_a_variance),
+           cmocka_unit_test(runs_that_agree_move_no_index),
+           cmocka_unit_test(indexes_move_no_more_than_stated_when_noise_is_added),
+           cmocka_unit_test(half_widths_fall_with_the_root_of_the_rows),
+           cmocka_unit_test(half_widths_of_all_rows_are_those_of_the_indexes),
+           cmocka_unit_test(noise_of_few_signals_is_an_error_in_the_intervals),
+           cmocka_unit_test(few_rows_and_constant_outputs_have_no_slope),
+           cmocka_unit_test(the_dominant_error_is_larger_than_the_others_together),
+           cmocka_unit_test(checked_runs_agree_and_are_counted_apart),
+           cmocka_unit_test(restored_blocks_bring_their_checks),
+           cmocka_unit_test(a_coarse_solver_shows_its_error))

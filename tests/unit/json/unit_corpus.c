@@ -1,0 +1,62 @@
+/* What the fuzzers have found worth keeping (tests/corpus/NAME) is replayed through their targets, and the examples
+ * through the readers.  A target that finds something wrong aborts. */
+#include <dirent.h>
+#include <string.h>
+
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+
+#define LLVMFuzzerTestOneInput fuzz_gate
+#include "tests/fuzz/fuzz_gate.c"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_study
+#include "tests/fuzz/fuzz_study.c"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_head
+#include "tests/fuzz/fuzz_head.c"
+#undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_path
+#include "tests/fuzz/fuzz_path.c"
+#undef LLVMFuzzerTestOneInput
+
+/* Every file of a folder through a target; how many there were. */
+static int replayed(const char *folder, int (*target)(const uint8_t *bytes, size_t length))
+{
+	int n = 0;
+	DIR *files = opendir(folder);
+	assert_non_null(files);
+	for (struct dirent *file = readdir(files); file; file = readdir(files)) {
+		char path[512];
+		size_t length;
+		if (file->d_name[0] == '.')
+			continue;
+		snprintf(path, sizeof path, "%s/%s", folder, file->d_name);
+		char *bytes = program_file(path, &length);
+		assert_non_null(bytes);
+		assert_int_equal(target((const uint8_t *)bytes, length), 0);
+		free(bytes);
+		n++;
+	}
+	closedir(files);
+	return n;
+}
+
+static void the_corpora_of_the_fuzzers_pass_their_targets(void **state)
+{
+	static const struct {
+		const char *folder;
+		int (*target)(const uint8_t *bytes, size_t length);
+	} corpora[] = {
+	    {"tests/corpus/gate", fuzz_gate}, {"tests/corpus/study", fuzz_study},
+	    {"tests/corpus/head", fuzz_head}, {"tests/corpus/path", fuzz_path},
+	    {"schema/examples", fuzz_gate},   {"schema/examples", fuzz_study},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof corpora / sizeof corpora[0]; i++) {
+		int n = replayed(corpora[i].folder, corpora[i].target);
+		check_report("%s: %d", corpora[i].folder, n);
+		assert_true(n >= 10);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(the_corpora_of_the_fuzzers_pass_their_targets))

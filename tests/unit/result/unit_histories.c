@@ -1,0 +1,109 @@
+/* unit_histories.c - histories of floors as CSV and as NumPy files. */
+#include <math.h>
+#include <string.h>
+
+#include "schema/result/result_json.h"
+#include "schema/study/study_json.h"
+#include "tests/support/check.h"
+#include "tests/support/study_documents.h"
+
+static struct pound_study *study;
+static struct pound_run *run;
+
+static int set_up(void **state)
+{
+	(void)state;
+	char *document = documents_with(documents_floor, "\"histories\": false", "\"histories\": true");
+	study = documents_study(document);
+	free(document);
+	run = pound_run_create(study, 1);
+	return run ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	pound_run_free(run);
+	study_free(study);
+	return 0;
+}
+
+struct rows {
+	int n;
+	double values[5000][6];
+};
+
+static struct rows rows;
+
+static void row_take(void *into, int signal, const struct pound_instant *instant)
+{
+	struct rows *r = into;
+	const double values[6] = {signal,     instant->time,         instant->u,
+	                          instant->v, instant->acceleration, instant->force};
+	assert_true(r->n < 5000);
+	memcpy(r->values[r->n++], values, sizeof values);
+}
+
+static void rows_take(void)
+{
+	rows.n = 0;
+	for (int signal = 0; signal < 3; signal++)
+		assert_int_equal(pound_run_history(run, signal, row_take, &rows), POUND_OK);
+	assert_true(rows.n > 3 * 201);
+}
+
+static void a_line_for_every_sample_and_both_sides_of_every_event(void **state)
+{
+	(void)state;
+	size_t length;
+	char *csv = histories_to_csv(study, run, &length), *at = csv;
+	assert_int_equal(strlen(csv), length);
+	assert_memory_equal(csv, "signal,time_s,u_m,v_m_s,acceleration_m_s2,contact_force_n\r\n", 59);
+	at = strchr(at, '\n') + 1;
+	rows_take();
+	for (int i = 0; i < rows.n; i++)
+		for (int j = 0; j < 6; j++) {
+			check_near(strtod(at, &at), rows.values[i][j], 0);
+			assert_int_equal(*at, j < 5 ? ',' : '\r');
+			at += j < 5 ? 1 : 2;
+		}
+	assert_int_equal(*at, 0);
+	free(csv);
+}
+
+static void a_numpy_file_holds_the_same_numbers(void **state)
+{
+	(void)state;
+	size_t length;
+	unsigned char *npy = (unsigned char *)histories_to_npy(study, run, &length);
+	assert_memory_equal(npy, "\x93NUMPY\x03\x00", 8);
+	size_t head = 12 + (npy[8] | (size_t)npy[9] << 8);
+	assert_int_equal(head % 64, 0);
+	rows_take();
+	assert_int_equal(length - head, (size_t)rows.n * (4 + 5 * 8));
+	for (int i = 0; i < rows.n; i++) {
+		const unsigned char *at = npy + head + (size_t)i * 44;
+		int32_t signal;
+		double values[5];
+		memcpy(&signal, at, 4);
+		memcpy(values, at + 4, sizeof values);
+		assert_int_equal(signal, (int)rows.values[i][0]);
+		for (int j = 0; j < 5; j++)
+			check_near(values[j], rows.values[i][j + 1], 0);
+	}
+	free(npy);
+}
+
+static void a_run_that_is_stopped_leaves_no_file(void **state)
+{
+	(void)state;
+	size_t length;
+	pound_run_stop(run);
+	assert_null(histories_to_csv(study, run, &length));
+	assert_null(histories_to_npy(study, run, &length));
+}
+
+#define WITH_RUN(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+CHECK_MAIN(WITH_RUN(a_line_for_every_sample_and_both_sides_of_every_event),
+           WITH_RUN(a_numpy_file_holds_the_same_numbers), WITH_RUN(a_run_that_is_stopped_leaves_no_file))

@@ -1,0 +1,426 @@
+/* The store by itself: order, states, and what happens once. */
+#include "server/store.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <sqlite3.h>
+
+#include "tests/support/check.h"
+
+static char path[64];
+
+static int database(void **state)
+{
+	strcpy(path, "/tmp/poundd-store-XXXXXX");
+	close(mkstemp(path)); // an empty file is a new database
+	*state = store_open(path);
+	return *state ? 0 : -1;
+}
+
+static int removal(void **state)
+{
+	static const char *const ends[] = {"", "-wal", "-shm", "-lock", "-ballast", "-v4"};
+	if (*state)
+		store_close(*state);
+	for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+		char name[96];
+		snprintf(name, sizeof name, "%s%s", path, ends[i]);
+		unlink(name);
+	}
+	return 0;
+}
+
+static int64_t submitted(struct store *store, const char *name)
+{
+	const struct store_study study = {.kind = "response", .name = name, .runs = 5, .hash = "hash"};
+	int64_t id = 0;
+	assert_int_equal(store_submit(store, &study, "{}", 2, &id), STORE_OK);
+	return id;
+}
+
+static void name_keep(void *to, const struct study_status *study)
+{
+	snprintf(to, 128, "%s %s", study->name, study->status);
+}
+
+/* The server takes a study, keeps a block of it or none, crashes, and starts again. */
+static void crashed(void **state, int64_t id, const struct store_block *block)
+{
+	int status;
+	store_close(*state);
+	pid_t server = fork();
+	if (server == 0) {
+		int64_t claimed;
+		struct store *store = store_open(path);
+		if (!store || store_claim(store, &claimed) != STORE_OK || claimed != id)
+			_exit(1);
+		if (block && store_keep(store, id, block) != STORE_OK)
+			_exit(1);
+		store_blame(store, id);
+		_exit(0);
+	}
+	assert_int_equal(waitpid(server, &status, 0), server);
+	assert_int_equal(status, 0);
+	*state = store_open(path);
+	assert_non_null(*state);
+}
+
+static void ids_grow_within_one_millisecond(void **state)
+{
+	int64_t last = 0;
+	for (int i = 0; i < 50; i++) {
+		int64_t id = submitted(*state, "a");
+		assert_true(id > last);
+		last = id;
+	}
+}
+
+static void the_oldest_queued_study_is_claimed_first(void **state)
+{
+	int64_t first = submitted(*state, "first"), second = submitted(*state, "second"), id = 0;
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == first);
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == second);
+	assert_int_equal(store_claim(*state, &id), STORE_NONE);
+}
+
+static void a_study_finishes_once(void **state)
+{
+	char *result;
+	size_t length;
+	int64_t id = submitted(*state, "a");
+	assert_int_equal(store_finish(*state, id, "1", 1, NULL), STORE_NONE); // not running yet
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(store_document(*state, id, "result", &result, &length), STORE_NONE);
+	assert_int_equal(store_finish(*state, id, "1", 1, NULL), STORE_OK);
+	assert_int_equal(store_finish(*state, id, "2", 1, NULL), STORE_NONE);
+	assert_int_equal(store_finish(*state, id, NULL, 0, "too late"), STORE_NONE);
+	assert_int_equal(store_cancel(*state, id), STORE_NONE);
+	assert_int_equal(store_document(*state, id, "result", &result, &length), STORE_OK);
+	assert_string_equal(result, "1");
+	free(result);
+}
+
+static void a_block_is_kept_only_while_its_study_runs(void **state)
+{
+	const double values[] = {1, 2, 3};
+	const struct store_block block = {.number = 0, .runs = 5, .cpu_s = 0.5, .n = 3, .values = values};
+	int64_t id = submitted(*state, "a");
+	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(store_keep(*state, id, &block), STORE_OK);
+	assert_int_equal(store_cancel(*state, id), STORE_OK);
+	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+	assert_int_equal(store_delete(*state, id), STORE_OK);
+	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+}
+
+static void a_failed_study_says_why(void **state)
+{
+	char told[128] = "";
+	int64_t id = submitted(*state, "a");
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(store_finish(*state, id, NULL, 0, "out of memory"), STORE_OK);
+	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+	assert_string_equal(told, "a failed");
+}
+
+static void names_are_bytes_and_never_sql(void **state)
+{
+	static const char *const names[] = {"'; DROP TABLE study; --", "\" OR 1=1", "\xc3\xa4\xe2\x82\xac",
+	                                    "%s%n", ""};
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+		char told[128] = "", want[128];
+		int64_t id = submitted(*state, names[i]);
+		assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+		snprintf(want, sizeof want, "%s queued", names[i]);
+		assert_string_equal(told, want);
+	}
+}
+
+static void a_store_in_use_is_not_opened_again(void **state)
+{
+	(void)state;
+	assert_null(store_open(path));
+}
+
+/* Opens a store by another name of the one in use, made by `make`; NULL: refused. */
+static struct store *opened_by(int (*make)(const char *, const char *), const char *name)
+{
+	assert_int_equal(make(path, name), 0);
+	struct store *store = store_open(name);
+	unlink(name);
+	return store;
+}
+
+static void a_store_in_use_is_not_opened_by_another_name(void **state)
+{
+	char name[96], link_of_link[128];
+	snprintf(name, sizeof name, "%s-link", path);
+	snprintf(link_of_link, sizeof link_of_link, "%s-of-link", name);
+	assert_null(opened_by(symlink, name));
+	assert_int_equal(symlink(path, name), 0);
+	assert_int_equal(symlink(strrchr(name, '/') + 1, link_of_link), 0);
+	assert_null(store_open(link_of_link));
+	unlink(link_of_link);
+	unlink(name);
+	// nor by the first name, while there are two
+	assert_null(opened_by(link, name));
+	store_close(*state);
+	*state = NULL;
+	assert_null(opened_by(link, name));
+	*state = store_open(path);
+	assert_non_null(*state);
+}
+
+static void a_link_to_no_database_yet_makes_it_where_it_leads(void **state)
+{
+	char name[96];
+	struct stat about;
+	snprintf(name, sizeof name, "%s-link", path);
+	store_close(*state);
+	unlink(path);
+	assert_int_equal(symlink(path, name), 0);
+	*state = store_open(name);
+	assert_non_null(*state);
+	assert_int_equal(stat(path, &about), 0);
+	assert_null(store_open(path));
+	assert_null(store_open(name));
+	strcat(name, "-lock");
+	assert_int_not_equal(stat(name, &about), 0);
+	name[strlen(name) - strlen("-lock")] = '\0';
+	unlink(name);
+}
+
+/* The lock of a process that was killed lasts until its memory is given back, which takes as long as it is large. */
+static void a_store_whose_server_was_just_killed_is_opened(void **state)
+{
+	enum { LARGE = 256 << 20 };
+	char byte;
+	int told[2];
+	store_close(*state);
+	*state = NULL;
+	assert_int_equal(pipe(told), 0);
+	pid_t server = fork();
+	if (server == 0) {
+		char *memory = malloc(LARGE);
+		bool opened = store_open(path) != NULL;
+		if (memory && opened && write(told[1], memset(memory, 1, LARGE), 1) == 1)
+			pause();
+		_exit(1);
+	}
+	close(told[1]);
+	assert_int_equal(read(told[0], &byte, 1), 1);
+	close(told[0]);
+	kill(server, SIGKILL);
+	*state = store_open(path);
+	assert_non_null(*state);
+	assert_int_equal(waitpid(server, NULL, 0), server);
+}
+
+static void a_running_study_is_queued_again_when_the_store_opens(void **state)
+{
+	char told[128];
+	int64_t id = submitted(*state, "a"), other = 0;
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	store_close(*state);
+	*state = store_open(path);
+	assert_non_null(*state);
+	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+	assert_string_equal(told, "a queued");
+	assert_int_equal(store_claim(*state, &other), STORE_OK);
+	assert_true(other == id);
+}
+
+static void a_file_that_is_no_database_is_refused_and_left_alone(void **state)
+{
+	static const char text[] = "this is a letter, not a database; it is longer than the header of one, "
+	                           "which has a hundred bytes, to the last of them.";
+	char other[96], read[sizeof text] = "";
+	(void)state;
+	snprintf(other, sizeof other, "%s-letter", path);
+	FILE *file = fopen(other, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	fclose(file);
+	assert_null(store_open(other));
+	file = fopen(other, "r");
+	assert_non_null(fgets(read, sizeof read, file));
+	fclose(file);
+	assert_string_equal(read, text);
+	unlink(other);
+	strcat(other, "-lock");
+	unlink(other);
+}
+
+static void a_key_stands_for_one_study(void **state)
+{
+	struct store_study study = {.kind = "response", .runs = 5, .key = "a key", .hash = "hash"};
+	int64_t first = 0, again = 0, other = 0;
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &first), STORE_OK);
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
+	assert_true(again == first);
+	assert_int_equal(store_submit(*state, &study, "{ }", 3, &other), STORE_CLASH);
+	// what is there already is found when there is no room for more
+	study.queue_max = 1;
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
+	study.key = "b key";
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_CROWDED);
+	study.queue_max = 2;
+	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_OK);
+	assert_true(other != first);
+	// when the study has gone, so has its key
+	assert_int_equal(store_delete(*state, first), STORE_OK);
+	study.key = "a key";
+	assert_int_equal(store_submit(*state, &study, "{ }", 3, &again), STORE_OK);
+}
+
+/* Until version 3 keys were stored as they came; since then behind the name of the token, if any, and a space. */
+static void keys_of_every_version_stand_for_their_studies(void **state)
+{
+	static const struct {
+		const char *stored, *client, *asked; /* asked: as it is since version 3 */
+	} keys[] = {{"old", NULL, " old"},
+	            {"old with spaces", NULL, " old with spaces"},
+	            {"0123456789abcdef old", NULL, " 0123456789abcdef old"},
+	            {" new", NULL, " new"},
+	            {"0123456789abcdef new", "0123456789abcdef", "0123456789abcdef new"},
+	            {"again", NULL, NULL}, // and asked for since then:
+	            {" again", NULL, " again"}};
+	enum { KEYS = sizeof keys / sizeof keys[0] };
+	int64_t ids[KEYS], id;
+	sqlite3 *db;
+	struct store_study study = {.kind = "response", .runs = 5, .hash = "hash"};
+	for (int i = 0; i < KEYS; i++) {
+		study.key = keys[i].stored;
+		study.client = keys[i].client;
+		assert_int_equal(store_submit(*state, &study, "{}", 2, &ids[i]), STORE_OK);
+	}
+	store_close(*state);
+	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+	assert_int_equal(sqlite3_exec(db, "PRAGMA user_version = 4", NULL, NULL, NULL), SQLITE_OK);
+	assert_int_equal(sqlite3_close(db), SQLITE_OK);
+	*state = store_open(path);
+	assert_non_null(*state);
+	for (int i = 0; i < KEYS; i++) {
+		if (!keys[i].asked)
+			continue;
+		study.key = keys[i].asked;
+		assert_int_equal(store_submit(*state, &study, "{}", 2, &id), STORE_REPEATED);
+		assert_true(id == ids[i]);
+	}
+}
+
+enum { SUBMITTERS = 8, EACH = 20, QUEUE_MAX = 50, OWN_MAX = 20 };
+
+/* one of those who submit at the same time */
+struct submitter {
+	struct store *store;
+	struct store_study study;
+	int answers[STORE_CLIENT_CROWDED + 1];
+};
+
+static void *submit_each(void *argument)
+{
+	struct submitter *s = argument;
+	for (int i = 0; i < EACH; i++) {
+		int64_t id;
+		s->answers[store_submit(s->store, &s->study, "{}", 2, &id)]++;
+	}
+	return NULL;
+}
+
+/* How often either of two clients, who submit side by side, had an answer. */
+static void submit_all(struct store *store, int64_t own_max, int answers[2][STORE_CLIENT_CROWDED + 1])
+{
+	struct submitter submitters[SUBMITTERS];
+	pthread_t threads[SUBMITTERS];
+	for (int i = 0; i < SUBMITTERS; i++) {
+		submitters[i] = (struct submitter){store,
+		                                   {.kind = "response",
+		                                    .runs = 5,
+		                                    .hash = "hash",
+		                                    .client = i % 2 ? "one" : "another",
+		                                    .queue_max = QUEUE_MAX,
+		                                    .own_max = own_max},
+		                                   {0}};
+		assert_int_equal(pthread_create(&threads[i], NULL, submit_each, &submitters[i]), 0);
+	}
+	memset(answers, 0, sizeof(int[2][STORE_CLIENT_CROWDED + 1]));
+	for (int i = 0; i < SUBMITTERS; i++) {
+		pthread_join(threads[i], NULL);
+		for (int status = 0; status <= STORE_CLIENT_CROWDED; status++)
+			answers[i % 2][status] += submitters[i].answers[status];
+	}
+}
+
+static void no_more_are_queued_than_may_be(void **state)
+{
+	const int tries = SUBMITTERS / 2 * EACH;
+	int answers[2][STORE_CLIENT_CROWDED + 1];
+	submit_all(*state, OWN_MAX, answers);
+	for (int client = 0; client < 2; client++) {
+		assert_int_equal(answers[client][STORE_OK], OWN_MAX);
+		assert_int_equal(answers[client][STORE_CLIENT_CROWDED], tries - OWN_MAX);
+	}
+	submit_all(*state, 0, answers);
+	const int more = QUEUE_MAX - 2 * OWN_MAX;
+	assert_int_equal(answers[0][STORE_OK] + answers[1][STORE_OK], more);
+	assert_int_equal(answers[0][STORE_CROWDED] + answers[1][STORE_CROWDED], 2 * tries - more);
+}
+
+static void a_study_taken_three_times_in_vain_lets_the_others_go_first(void **state)
+{
+	int64_t first = submitted(*state, "first"), second = 0, id = 0;
+	for (int i = 0; i < 3; i++) {
+		assert_int_equal(store_claim(*state, &id), STORE_OK);
+		assert_true(id == first);
+		store_close(*state);
+		*state = store_open(path);
+		assert_non_null(*state);
+	}
+	second = submitted(*state, "second");
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == second);
+	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_true(id == first);
+}
+
+static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(void **state)
+{
+	const double value = 1;
+	const struct store_block block = {.number = 0, .runs = 5, .n = 1, .values = &value};
+	char told[128];
+	int64_t id = submitted(*state, "a");
+	// two crashes, one after a block, two: never three without a block between
+	for (int i = 0; i < 5; i++) {
+		crashed(state, id, i == 2 ? &block : NULL);
+		assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+		assert_string_equal(told, "a queued");
+	}
+	crashed(state, id, NULL);
+	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+	assert_string_equal(told, "a failed");
+}
+
+#define STORED(test) cmocka_unit_test_setup_teardown(test, database, removal)
+
+CHECK_MAIN(STORED(a_key_stands_for_one_study), STORED(keys_of_every_version_stand_for_their_studies),
+           STORED(no_more_are_queued_than_may_be),
+           STORED(a_study_taken_three_times_in_vain_lets_the_others_go_first),
+           STORED(only_crashes_that_follow_each_other_without_a_block_make_a_poison),
+           STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
+           STORED(a_study_finishes_once), STORED(a_block_is_kept_only_while_its_study_runs),
+           STORED(a_failed_study_says_why), STORED(names_are_bytes_and_never_sql),
+           STORED(a_store_in_use_is_not_opened_again), STORED(a_store_in_use_is_not_opened_by_another_name),
+           STORED(a_link_to_no_database_yet_makes_it_where_it_leads),
+           STORED(a_store_whose_server_was_just_killed_is_opened),
+           STORED(a_running_study_is_queued_again_when_the_store_opens),
+           STORED(a_file_that_is_no_database_is_refused_and_left_alone))

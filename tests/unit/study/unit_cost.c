@@ -1,0 +1,113 @@
+/* What a study will take: how it goes with what is asked.  How near it is, is measured by soak_cost. */
+#include "schema/study/cost.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "schema/study/study_json.h"
+#include "tests/support/check.h"
+
+static struct cost cost_of_text(const char *format, ...)
+{
+	static struct problems problems;
+	char text[4096];
+	va_list values;
+	va_start(values, format);
+	int n = vsnprintf(text, sizeof text, format, values);
+	va_end(values);
+	struct pound_study *study = study_from_json(text, (size_t)n, &problems);
+	if (!study)
+		fail_msg("%s %s\n%s", problems.list[0].pointer, problems.list[0].detail, text);
+	struct cost cost = cost_of(study);
+	study_free(study);
+	return cost;
+}
+
+#define OSCILLATORS "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3}]"
+#define DESIGN                                                                                             \
+	"{\"kind\": \"sensitivity\", \"scene\": {" OSCILLATORS                                                 \
+	", \"excitation\": {\"signals\": %d}}, \"inputs\": ["                                                  \
+	"{\"path\": \"/contact/restitution\", \"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": " \
+	"1}}%s], "                                                                                             \
+	"\"design\": {\"rows\": %d}%s}"
+
+static void what_is_asked_twice_costs_twice(void **state)
+{
+	(void)state;
+	struct cost one = cost_of_text(DESIGN, 5, "", 1000, "");
+	// a part of each, the study's own, is there once: less than a part in 20 of it all
+	const struct cost twice[] = {
+	    cost_of_text(DESIGN, 5, "", 2000, ""),
+	    cost_of_text(DESIGN, 10, "", 1000, ""),
+	    cost_of_text(DESIGN, 5, "", 1000,
+	                 ", \"sweep\": [{\"path\": \"/oscillators/0/damping_ratio\", \"values\": [0.02, 0.05]}]"),
+	};
+	for (size_t i = 0; i < sizeof twice / sizeof twice[0]; i++) {
+		assert_int_equal(twice[i].runs, 2 * one.runs);
+		check_near(twice[i].cpu_s / one.cpu_s, 2, 0.1);
+		check_near(twice[i].bytes / one.bytes, 2, 0.1);
+	}
+}
+
+static void a_motion_is_as_long_as_it_is_in_the_mean(void **state)
+{
+	(void)state;
+	// 20 cycles of a frequency uniform in [1, 3] Hz: 20 ln 3 / 2 s in the mean, and not the 20 s of the longest
+	static const char varied[] = ", {\"path\": \"/excitation/frequency_hz\", \"distribution\": {\"type\": "
+	                             "\"uniform\", \"min\": 1, \"max\": 3}}";
+	struct cost fixed = cost_of_text(DESIGN, 5, "", 4000, ""),
+	            mean = cost_of_text(DESIGN, 5, varied, 3000, "");
+	assert_int_equal(fixed.runs, mean.runs);
+	// 2.5 Hz when it is not given
+	check_near(mean.cpu_s / fixed.cpu_s, (20 * log(3) / 2) / (20 / 2.5), 0.02);
+}
+
+static void finer_steps_stiffer_contacts_and_more_trials_cost_more(void **state)
+{
+	(void)state;
+	static const char form[] =
+	    "{\"kind\": \"response\", \"scene\": {" OSCILLATORS ", \"contact\": {\"stiffness_ratio\": %g}, "
+	    "\"excitation\": {\"signals\": 1000}}%s}";
+	double soft = cost_of_text(form, 1e2, "").cpu_s, stiff = cost_of_text(form, 1e8, "").cpu_s;
+	double coarse =
+	    cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"newmark\", \"step_s\": 1e-4}").cpu_s;
+	double fine = cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"newmark\", \"step_s\": 1e-5}").cpu_s;
+	double adaptive = cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"adaptive\"}").cpu_s;
+	double follows = cost_of_text(form, 1e8, ", \"solver\": {\"method\": \"adaptive\"}").cpu_s;
+	// the march goes over the contact's swings at once, the adaptive solver through each of them
+	assert_true(stiff > 1.3 * soft && stiff < 3 * soft);
+	assert_true(follows > 20 * adaptive);
+	check_near(fine / coarse, 10, 0.5);
+	assert_true(adaptive > 20 * soft);
+	static const char trials[] =
+	    "{\"kind\": \"convergence\", \"scene\": {" OSCILLATORS "}, \"convergence\": {"
+	    "\"newmark\": {\"steps_s\": [%s]}, \"central_difference\": {\"steps_s\": []}, "
+	    "\"adaptive\": {\"tolerances\": []}}}";
+	struct cost few = cost_of_text(trials, "1e-3"), many = cost_of_text(trials, "1e-3, 1e-5");
+	assert_true(many.cpu_s > few.cpu_s + 1000 * 1e-8 * 800);
+	assert_int_equal(many.runs, few.runs + few.runs / 3);
+}
+
+/* Above two radians a sample there are steps for each of them: twice as many for twice the frequency. */
+static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void **state)
+{
+	(void)state;
+	static const char form[] =
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+	    "%g}], "
+	    "\"contact\": null, \"excitation\": {\"signals\": 1000}}, \"solver\": {\"method\": \"%s\"}}";
+	static const char *const solvers[] = {"event", "adaptive"};
+	for (int k = 0; k < 2; k++) {
+		double slow = cost_of_text(form, 3.0, solvers[k]).cpu_s,
+		       mapped = cost_of_text(form, 29.0, solvers[k]).cpu_s;
+		double fast = cost_of_text(form, 1e4, solvers[k]).cpu_s,
+		       faster = cost_of_text(form, 2e4, solvers[k]).cpu_s;
+		check_near(mapped / slow, 1, 0);
+		check_near(faster / fast, 2, 0.05);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns),
+           cmocka_unit_test(what_is_asked_twice_costs_twice),
+           cmocka_unit_test(a_motion_is_as_long_as_it_is_in_the_mean),
+           cmocka_unit_test(finer_steps_stiffer_contacts_and_more_trials_cost_more))
