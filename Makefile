@@ -67,6 +67,8 @@ $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 $(B)/tests/service/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create,--wrap=pound_run_block
 # GSL's memory is that of the test
 $(B)/tests/unit/run/unit_status: LDFLAGS += -Wl,--wrap=gsl_odeiv2_driver_alloc_scaled_new
+# a contact model is given another form of force
+$(B)/tests/unit/study/unit_capabilities: LDFLAGS += -Wl,--wrap=pound_contact_force
 # one lane width is asked for
 $(B)/tests/unit/run/unit_golden: LDFLAGS += -Wl,--wrap=pound_dispatch_width
 # between a poundd of the tests and the C library: tests/support/faults.h

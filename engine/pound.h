@@ -66,6 +66,14 @@ enum pound_kind {
 	POUND_KIND_FLOOR_SPECTRUM
 };
 
+/* Forms of contact force, by what a solver has to be able to do with them. */
+enum pound_force {
+	POUND_FORCE_LINEAR, /* K p + C p': piecewise linear, scales with the motion */
+	POUND_FORCE_POWER,  /* a power of p, with or without a factor of p' */
+	POUND_FORCE_IMPACT, /* velocities that jump */
+	POUND_FORCES
+};
+
 struct pound_law {
 	int type;                  /* row of the laws, pound_law_name */
 	double hardening_ratio;    /* second slope over first  [0, 1] */
@@ -217,11 +225,20 @@ struct pound_study {
 	struct pound_spectrum spectrum;
 };
 
+/* Lines of documentation of the tables' rows. */
+const char *pound_law_text(int row);
+const char *pound_contact_text(int row);
+const char *pound_excitation_text(int row);
+const char *pound_solver_text(int row);
+const char *pound_output_text(int row);
+
 double pound_spectrum_frequency(const struct pound_spectrum *spectrum, int k); /* [Hz] */
 
 /* The tables' names, NULL past the last row. */
 const char *pound_law_name(int row);
 const char *pound_contact_name(int row);
+enum pound_force pound_contact_force(int row);
+bool pound_force_scales(enum pound_force force); /* twice the motion, twice the force */
 const char *pound_excitation_name(int row);
 const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
@@ -235,6 +252,8 @@ int pound_estimator_order(int row); /* row of the orders: which samples a row of
 const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
+bool pound_solver_takes_force(int row, enum pound_force force); /* can integrate it */
+bool pound_floor_takes_force(enum pound_force force);           /* a floor can be followed under it */
 const char *pound_output_name(int row);
 const char *pound_output_needs(int row);  /* from the scene, in words */
 bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */

@@ -26,6 +26,7 @@ struct pound_march_task {
 	double time_step;     /* [s] */
 	struct pound_march_body bodies[POUND_OSCILLATORS];
 	bool contact;             /* false: the bodies never meet */
+	enum pound_force force;   /* form of the contact force */
 	double gap;               /* [m] */
 	double contact_stiffness; /* K/m1 [1/s2] */
 	double contact_damping;   /* C/m1 [1/s] */

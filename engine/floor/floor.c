@@ -50,6 +50,12 @@ double pound_spectrum_frequency(const struct pound_spectrum *s, int k)
 	return s->min_hz * pound_elementary_exp(ratio * k / (s->n - 1));
 }
 
+/* Whether the trace of a floor can follow a form of contact force; one that it cannot is refused where studies are read. */
+bool pound_floor_takes_force(enum pound_force force)
+{
+	return force == POUND_FORCE_LINEAR;
+}
+
 /* ---- work space ---- */
 
 static int whole_groups(int n)

@@ -554,6 +554,8 @@ static double rate_touch(const struct pound_march_task *task, double rate)
  */
 void pound_trace_start(struct pound_trace *trace, const struct pound_march_task *task)
 {
+	assert(!task->contact ||
+	       task->force == POUND_FORCE_LINEAR); // its forms of force: pound_floor_takes_force
 	*trace = (struct pound_trace){.task = task, .next = 1, .pace = 1};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *b = &task->bodies[i];

@@ -136,19 +136,27 @@ static void record(const struct pound_signal *signal, int one)
 
 static const struct {
 	const char *name;
-	bool tuned;  /* has a frequency of its own */
-	bool random; /* one signal differs from the next */
-	int at_once; /* signals that are made together */
+	const char *text; /* one line of documentation */
+	bool tuned;       /* has a frequency of its own */
+	bool random;      /* one signal differs from the next */
+	int at_once;      /* signals that are made together */
 	int (*samples)(const struct pound_excitation *e);
 	void (*fill)(const struct pound_signal *signals, int n);
 } excitations[] = {
-    {"kanai_tajimi", true, true, POUND_SIGNALS_MAX, cycles_samples, kanai_tajimi},
-    {"white_noise", false, true, 1, duration_samples, white_noise},
-    {"harmonic", true, false, 1, duration_samples, harmonic},
-    {"record", false, false, 1, record_samples, record},
+    {"kanai_tajimi", "white noise through the Kanai-Tajimi filter and a high pass, a trapezoid in time", true,
+     true, POUND_SIGNALS_MAX, cycles_samples, kanai_tajimi},
+    {"white_noise", "independent normal samples, a trapezoid in time", false, true, 1, duration_samples,
+     white_noise},
+    {"harmonic", "a sine", true, false, 1, duration_samples, harmonic},
+    {"record", "given samples", false, false, 1, record_samples, record},
 };
 
 enum { EXCITATIONS = sizeof excitations / sizeof excitations[0] };
+
+const char *pound_excitation_text(int row)
+{
+	return excitations[row].text;
+}
 
 const char *pound_excitation_name(int row)
 {

@@ -78,23 +78,32 @@ typedef double measure(const struct pound_response *, const struct pound_scene *
 
 static const struct output {
 	const char *name;
+	const char *text;  /* one line of documentation */
 	const char *needs; /* of a scene, or a study, in words */
 	bool (*applies)(const struct pound_scene *);
 	measure *numerator, *denominator;
 	bool ordinates; /* one output for each frequency of the spectrum */
 } outputs[] = {
     // the paper, Eq. (5), (7) and (9)
-    {"force_amplification", "a linear law of the left oscillator", left_is_linear, displacement,
-     displacement_free, false},
-    {"demand_amplification", "a nonlinear law of the left oscillator", left_yields, demand, demand_free,
-     false},
-    {"impulse", "a contact", bodies_meet, impulse, displacement_free, false},
-    {"floor_spectrum", "a sensitivity study", always, absent, one, true},
+    {"force_amplification", "largest displacement of the left body, with over without pounding",
+     "a linear law of the left oscillator", left_is_linear, displacement, displacement_free, false},
+    {"demand_amplification", "ductility demand of the left body, with over without pounding",
+     "a nonlinear law of the left oscillator", left_yields, demand, demand_free, false},
+    {"impulse",
+     "largest impulse of a contact over m_1 omega_1 times the largest displacement without pounding",
+     "a contact", bodies_meet, impulse, displacement_free, false},
+    {"floor_spectrum", "mean ordinate of the left floor's response spectrum, one output for each frequency",
+     "a sensitivity study", always, absent, one, true},
 };
 
 const char *pound_output_name(int row)
 {
 	return row >= 0 && row < (int)(sizeof outputs / sizeof outputs[0]) ? outputs[row].name : NULL;
+}
+
+const char *pound_output_text(int row)
+{
+	return outputs[row].text;
 }
 
 const char *pound_output_needs(int row)

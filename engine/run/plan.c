@@ -210,8 +210,20 @@ static void motion_halve(struct motion *m)
 	m->time_step *= 0.5;
 }
 
-/* Fills the ground motions and scales each by a power of two, which changes no digit of any response. */
-static void motions_fill(struct pound_plan *plan)
+/* Whether every force of the asked scenes scales with the motion: then scaling a ground motion by a power of two changes no digit
+ * of any response. */
+static bool forces_scale(const struct pound_plan *plan)
+{
+	bool scale = true;
+	for (int a = 0; a < plan->n_asks && scale; a++) {
+		const struct pound_contact *contact = &plan->asks[a].scene.contact;
+		scale = !contact->present || pound_force_scales(pound_contact_force(contact->model));
+	}
+	return scale;
+}
+
+/* Fills the ground motions and, if `scaled`, scales each by a power of two. */
+static void motions_fill(struct pound_plan *plan, bool scaled)
 {
 	double *ground = plan->ground;
 	struct pound_signal signals[POUND_SIGNALS_MAX];
@@ -233,7 +245,7 @@ static void motions_fill(struct pound_plan *plan)
 		if (m->halved)
 			motion_halve(m);
 		const double peak = pound_excitation_largest(m->n_samples, m->ground);
-		m->exponent = peak > 0 ? ilogb(peak) : 0;
+		m->exponent = scaled && peak > 0 ? ilogb(peak) : 0;
 		// in two factors, as that of a peak below the normal numbers is beyond the largest one
 		const int first = -m->exponent < DBL_MAX_EXP ? -m->exponent : DBL_MAX_EXP - 1;
 		const double factor = ldexp(1, first), rest = ldexp(1, -m->exponent - first);
@@ -242,19 +254,29 @@ static void motions_fill(struct pound_plan *plan)
 	}
 }
 
-/* Runs the marches asked since the stage before.  The first ones are those of the checks, which are exact whatever the
- * solver. */
+/* Whether the exact solver can check tasks [from, end): else the study's own solver does, on half the sample step. */
+static bool exact_takes(const struct pound_plan *plan, int from, int end)
+{
+	bool takes = true;
+	for (int j = from; j < end && takes; j++)
+		takes = !plan->tasks[j].contact || pound_solver_takes_force(POUND_SOLVER_EVENT, plan->tasks[j].force);
+	return takes;
+}
+
+/* Runs the marches asked since the stage before.  The first ones are those of the checks, which the exact solver runs where
+ * it can, whatever the study's solver. */
 static enum pound_status marches_run(struct pound_plan *plan, const struct pound_solver *solver,
                                      int checks_end, int *done, const atomic_bool *stop)
 {
 	static const struct pound_solver exact = {.method = POUND_SOLVER_EVENT};
 	int from = *done, n = plan->march_keys.n;
 	assert(n <= plan->size.tasks);
+	const struct pound_solver *checks = exact_takes(plan, from, checks_end) ? &exact : solver;
 	// one call for both where it can be, as it fills the lanes better
-	int cut = solver->method == POUND_SOLVER_EVENT ? n : checks_end;
+	int cut = solver->method == checks->method ? n : checks_end;
 	*done = n;
 	enum pound_status status =
-	    pound_solver_run(&exact, &plan->tasks[from], &plan->results[from], cut - from, plan->scratch, stop);
+	    pound_solver_run(checks, &plan->tasks[from], &plan->results[from], cut - from, plan->scratch, stop);
 	return status ? status
 	              : pound_solver_run(solver, &plan->tasks[cut], &plan->results[cut], n - cut, plan->scratch,
 	                                 stop);
@@ -547,7 +569,7 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	assert(n_asks <= plan->size.asks);
 	plan->n_asks = n_asks;
 	plan->n_items = n_items;
-	motions_fill(plan);
+	motions_fill(plan, forces_scale(plan));
 
 	struct pound_work of_checks = {0}; // what they leave out is not told
 	int done = 0, stages = 1;

@@ -68,6 +68,7 @@ void pound_scene_contact(const struct pound_scene *scene, struct pound_march_tas
 	double k1 = task->bodies[0].skeleton.stiffness; // per own mass
 	double k2 = right->rigid_wall ? 0 : task->bodies[1].skeleton.stiffness;
 	task->contact = true;
+	task->force = pound_contact_force(contact->model);
 	task->gap = contact->gap;
 	task->tension = contact->tension;
 	task->mass_ratio = right->rigid_wall ? 0 : left->mass / right->mass;

@@ -1,6 +1,7 @@
 /* contact.c - contact models: what a coefficient of restitution asks of the dashpot beside the contact spring.
  *
- * Adding a model with the same form of force, K p + C p': its function and its row in models[]. */
+ * Adding a model: its function and its row in models[].  The row says what form its force has; a solver that cannot integrate
+ * that form is refused where studies are read, and asserts it (solver.c). */
 #include <assert.h>
 #include <float.h>
 #include <math.h>
@@ -34,14 +35,32 @@ static double kelvin_voigt(double e)
 
 static const struct model {
 	const char *name;
+	const char *text;       /* one line of documentation */
+	enum pound_force force; /* what a solver has to be able to do */
 	double (*damping_ratio)(double restitution);
 } models[] = {
-    {"kelvin_voigt", kelvin_voigt},
+    {"kelvin_voigt", "spring and dashpot in parallel, F = K p + C p' while the bodies touch",
+     POUND_FORCE_LINEAR, kelvin_voigt},
 };
 
 const char *pound_contact_name(int row)
 {
 	return row >= 0 && row < (int)(sizeof models / sizeof models[0]) ? models[row].name : NULL;
+}
+
+const char *pound_contact_text(int row)
+{
+	return models[row].text;
+}
+
+enum pound_force pound_contact_force(int row)
+{
+	return models[row].force;
+}
+
+bool pound_force_scales(enum pound_force force)
+{
+	return force != POUND_FORCE_POWER;
 }
 
 double pound_contact_damping_ratio(int model, double restitution)

@@ -97,15 +97,25 @@ static void origin_oriented(const struct pound_skeleton *s, struct pound_branch 
 
 static const struct law {
 	const char *name;
+	const char *text; /* one line of documentation */
 	bool linear;
 	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
 	void (*leave)(const struct pound_skeleton *, struct pound_branch *, enum pound_edge, double u);
 } laws[] = {
-    {"linear", true, false, linear},
-    {"elastoplastic", false, false, elastoplastic},
-    {"nonlinear_elastic", false, false, nonlinear_elastic},
-    {"origin_oriented", false, true, origin_oriented},
+    {"linear", "a spring", true, false, linear},
+    {"elastoplastic",
+     "bilinear with kinematic hardening: unloads with the first slope, yields again after 2 d_y", false,
+     false, elastoplastic},
+    {"nonlinear_elastic", "bilinear, loads and unloads on the same curve", false, false, nonlinear_elastic},
+    {"origin_oriented",
+     "bilinear, unloads toward the origin and reloads to the farthest point reached on that side", false,
+     true, origin_oriented},
 };
+
+const char *pound_law_text(int row)
+{
+	return laws[row].text;
+}
 
 const char *pound_law_name(int row)
 {

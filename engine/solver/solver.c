@@ -7,15 +7,24 @@
 
 static const struct solver {
 	const char *name;
+	const char *text; /* one line of documentation */
 	void (*run)(const struct pound_solver *, const struct pound_march_task *, struct pound_march_result *,
 	            const atomic_bool *stop);
 	bool tolerance, step; /* the settings it takes */
+	bool forces
+	    [POUND_FORCES]; /* forms of contact force that it can integrate; it takes every law, as branches */
 } solvers[] = {
-    [POUND_SOLVER_EVENT] = {"event", NULL,
-                            .tolerance = true}, // the march: many tasks at once, exact at any tolerance
-    {"newmark", pound_fixed_newmark, .step = true},
-    {"central_difference", pound_fixed_central, .step = true},
-    [POUND_SOLVER_ADAPTIVE] = {"adaptive", pound_adaptive_run, .tolerance = true},
+    // many tasks at once
+    [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
+                            .tolerance = true, .forces = {[POUND_FORCE_LINEAR] = true}},
+    {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true,
+     .forces = {[POUND_FORCE_LINEAR] = true}},
+    {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true,
+     .forces = {[POUND_FORCE_LINEAR] = true}},
+    [POUND_SOLVER_ADAPTIVE] = {"adaptive",
+                               "GSL's Runge-Kutta-Prince-Dormand (8, 9), restarted at every event",
+                               pound_adaptive_run, .tolerance = true,
+                               .forces = {[POUND_FORCE_LINEAR] = true}},
 };
 
 static_assert(sizeof solvers / sizeof solvers[0] == POUND_SOLVERS, "a row for each solver");
@@ -29,6 +38,19 @@ const char *pound_solver_name(int row)
 {
 	const struct solver *solver = solver_at(row);
 	return solver ? solver->name : NULL;
+}
+
+const char *pound_solver_text(int row)
+{
+	return solver_at(row)->text;
+}
+
+/* Whether a solver can integrate a form of contact force.
+ *
+ * A check, a trace or an estimate that runs a solver on a study's scene asserts this: it may not run another model. */
+bool pound_solver_takes_force(int row, enum pound_force force)
+{
+	return solver_at(row)->forces[force];
 }
 
 bool pound_solver_takes_tolerance(int row)
@@ -57,6 +79,8 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
                                    const atomic_bool *stop)
 {
 	const struct solver *row = solver_at(solver->method);
+	for (int j = 0; j < n; j++)
+		assert(!tasks[j].contact || row->forces[tasks[j].force]);
 	if (!row->run)
 		pound_march_lanes(0, tasks, results, n, scratch, stop);
 	for (int j = 0; row->run && j < n && !pound_stopped(stop); j++) {

@@ -355,6 +355,50 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 	}
 }
 
+/* ---- solvers ---- */
+
+/* Whether a study's responses are computed by a solver. */
+static bool uses_solver(const struct pound_study *study, int solver)
+{
+	bool uses = study->kind != POUND_KIND_CONVERGENCE && study->solver.method == solver;
+	for (int j = 0; study->kind == POUND_KIND_CONVERGENCE && j < pound_convergence_trials(study); j++)
+		uses |= pound_convergence_solver(study, j).method == solver;
+	return uses;
+}
+
+static bool follows_floors(const struct pound_study *study)
+{
+	bool follows = study->kind == POUND_KIND_FLOOR_SPECTRUM;
+	for (int o = 0; o < study->n_outputs && !follows; o++)
+		follows = pound_output_has_ordinates(study->outputs[o]);
+	return follows;
+}
+
+/* Every solver of the study must be able to integrate every contact model of its cells; what cannot is refused, as nothing
+ * is computed by another model or solver than the study's. */
+static void check_forces(const struct pound_study *study, struct problems *problems)
+{
+	static const char *const needed[] = {"/contact/model", NULL};
+	static const char pointer[] = "/scene/contact/model";
+	if (!all_known(study, needed, problems) || problems_at(problems, "/solver") ||
+	    problems_at(problems, "/convergence") || problems_at(problems, "/outputs"))
+		return;
+	for (int cell = 0; cell < study_cells(study) && !problems_at(problems, pointer); cell++) {
+		struct pound_scene scene;
+		study_cell(study, cell, &scene);
+		if (!scene.contact.present)
+			continue;
+		enum pound_force force = pound_contact_force(scene.contact.model);
+		for (int row = 0; row < POUND_SOLVERS; row++)
+			if (uses_solver(study, row) && !pound_solver_takes_force(row, force))
+				problems_add(problems, pointer, "the solver \"%s\" cannot integrate the contact model \"%s\"",
+				             pound_solver_name(row), pound_contact_name(scene.contact.model));
+		if (follows_floors(study) && !pound_floor_takes_force(force))
+			problems_add(problems, pointer, "floor spectra cannot be computed with the contact model \"%s\"",
+			             pound_contact_name(scene.contact.model));
+	}
+}
+
 /* ---- design ---- */
 
 static void check_order(const struct pound_study *study, struct problems *problems)
@@ -571,6 +615,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	}
 	if (!problems_at(problems, "/outputs"))
 		check_outputs(study, problems);
+	check_forces(study, problems);
 	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
 		study_spectrum_check(study, problems);
 	if (rows_known(problems) && study_check_known(study, "/excitation/signals", problems) &&

@@ -171,6 +171,32 @@ static void every_distribution_stands_in_the_docs_with_its_parameters_and_rules(
 	free(page);
 }
 
+static void every_row_of_the_engine_s_tables_stands_in_the_docs_with_its_line(void **state)
+{
+	static const struct {
+		const char *(*name)(int row), *(*text)(int row);
+	} tables[] = {{pound_law_name, pound_law_text},
+	              {pound_contact_name, pound_contact_text},
+	              {pound_excitation_name, pound_excitation_text},
+	              {pound_solver_name, pound_solver_text},
+	              {pound_output_name, pound_output_text}};
+	char *page = program_file(STUDY, NULL);
+	int missing = 0;
+	(void)state;
+	assert_non_null(page);
+	for (size_t t = 0; t < sizeof tables / sizeof tables[0]; t++)
+		for (int row = 0; tables[t].name(row); row++) {
+			char line[512];
+			snprintf(line, sizeof line, "| `%s` | %s |\n", tables[t].name(row), tables[t].text(row));
+			if (strstr(page, line))
+				continue;
+			print_error("%s has no line\n%s", STUDY, line);
+			missing++;
+		}
+	assert_int_equal(missing, 0);
+	free(page);
+}
+
 /* The files that a page names; a name that is none fails the test. */
 static int files_named(const char *page)
 {
@@ -298,6 +324,7 @@ CHECK_MAIN(cmocka_unit_test(every_file_that_a_page_names_is_there),
            cmocka_unit_test(every_link_between_the_pages_leads_to_a_heading),
            cmocka_unit_test(every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it),
            cmocka_unit_test(every_distribution_stands_in_the_docs_with_its_parameters_and_rules),
+           cmocka_unit_test(every_row_of_the_engine_s_tables_stands_in_the_docs_with_its_line),
            cmocka_unit_test(the_usage_stands_in_the_readme_as_it_is_printed),
            cmocka_unit_test_setup_teardown(every_command_of_the_readme_and_the_docs_works, program_setup,
                                            service_teardown))

@@ -150,14 +150,14 @@ static void random_law(struct specimen *specimen, uint64_t *stream, int number)
 	struct pound_scene *scene = &specimen->study.scene;
 	// of the size of the displacements: a part of the static one of 1 m/s2 at 1 Hz
 	double given = specimen_uniform(stream, -0.01, 0.01);
-	specimen_law(specimen, specimen_laws[number % 4], fmax(0, given));
+	specimen_law(specimen, specimen_laws[number % SPECIMEN_LAWS], fmax(0, given));
 	scene->law.hardening_ratio = fmax(0, specimen_uniform(stream, -0.05, 0.3));
 	scene->law.target_demand = specimen_uniform(stream, 1.2, 4);
 	scene->law.corrections = (int)specimen_uniform(stream, 0, 3);
 	if (specimen_uniform(stream, 0, 1) > 0.25)
 		return;
 	struct pound_law common = scene->law;
-	specimen_law(specimen, specimen_laws[(int)specimen_uniform(stream, 0, 4)], fmax(0, -given));
+	specimen_law(specimen, specimen_laws[(int)specimen_uniform(stream, 0, SPECIMEN_LAWS)], fmax(0, -given));
 	scene->oscillators[1].law = scene->law;
 	scene->oscillators[1].has_law = true;
 	scene->law = common;
@@ -203,7 +203,8 @@ void specimen_creeping(struct specimen *specimen, int number, int parts)
 	uint64_t stream = 2000 + (uint64_t)number;
 	specimen_init(specimen);
 	struct pound_scene *scene = &specimen->study.scene;
-	specimen_law(specimen, specimen_laws[1 + number % 3], pow(10, specimen_uniform(&stream, -11, -2)));
+	specimen_law(specimen, specimen_laws[1 + number % (SPECIMEN_LAWS - 1)],
+	             pow(10, specimen_uniform(&stream, -11, -2)));
 	scene->law.hardening_ratio = fmax(0, specimen_uniform(&stream, -0.1, 0.3));
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		scene->oscillators[i].frequency_hz = pow(10, specimen_uniform(&stream, -0.3, i ? 1.5 : 1));

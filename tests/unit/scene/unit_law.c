@@ -6,6 +6,7 @@
 
 #include "engine/exact/task.h"
 #include "engine/scene/law.h"
+#include "tests/support/scenes.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -187,7 +188,19 @@ static void the_nonlinear_elastic_period_is_the_known_one(void **state)
 	check_near(period(law_row("linear"), 1, 1), 1, 1e-12);
 }
 
-CHECK_MAIN(cmocka_unit_test(the_kinematic_loop_encloses_the_known_area),
+static void every_law_is_known_to_the_oracle_and_to_the_random_scenes_of_the_tests(void **state)
+{
+	(void)state;
+	for (int row = 0; pound_law_name(row); row++) {
+		oracle_law(pound_law_name(row), 1, 0.05, 1); // asserts that it has the law
+		assert_true(row < SPECIMEN_LAWS);
+		assert_string_equal(specimen_laws[row], pound_law_name(row));
+	}
+	assert_null(pound_law_name(SPECIMEN_LAWS));
+}
+
+CHECK_MAIN(cmocka_unit_test(every_law_is_known_to_the_oracle_and_to_the_random_scenes_of_the_tests),
+           cmocka_unit_test(the_kinematic_loop_encloses_the_known_area),
            cmocka_unit_test(the_origin_oriented_law_loses_work_on_the_first_push_only),
            cmocka_unit_test(each_side_of_the_origin_oriented_law_remembers_its_own_farthest_point),
            cmocka_unit_test(the_nonlinear_elastic_law_encloses_nothing),
