@@ -54,7 +54,8 @@ static void a_study_without_contact_does_not_need_it(void **state)
 	(void)state;
 	pretends = true;
 	pretended = POUND_FORCE_POWER;
-	char *document = documents_with(documents_response, "{\"oscillators\"", "{\"contact\": null, \"oscillators\"");
+	char *document =
+	    documents_with(documents_response, "{\"oscillators\"", "{\"contact\": null, \"oscillators\"");
 	study_free(documents_study(document));
 	pretends = false;
 	free(document);
