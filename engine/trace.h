@@ -70,6 +70,7 @@ struct pound_trace {
 	double pace; /* share of the usual step: shorter where a search was unsure */
 	int next, events;
 	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
+	double counted_time, counts_scale;         /* of contacts that count [s]; counts.h */
 	int64_t contacts;
 };
 

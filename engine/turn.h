@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/counts.h"
 #include "engine/flight.h"
 #include "engine/press.h"
 #include "engine/series.h"
@@ -121,6 +122,33 @@ LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 	return simulation_step(sim);
 }
 
+/* A contact has ended, or the signal has in it.
+ *
+ * Given    speed  at which the bodies approach [m/s]
+ */
+static void contact_over(struct simulation *sim, double speed)
+{
+	struct pound_rows *x = &sim->x;
+	struct pound_counts counts = {.time = (double)sim->next * x->body[0].step_gap,
+	                              .changed = x->both * x->impulse + fabs(speed)};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		counts.body[i] = (struct pound_counts_body){x->u[i],
+		                                            x->v[i],
+		                                            x->body[i].stiffness,
+		                                            x->body[i].offset,
+		                                            x->body[i].damping,
+		                                            x->body[i].drive * x->ground};
+	sim->impulse_max = most(sim->impulse_max, x->impulse);
+	if (pound_contact_counts(&counts, &sim->counts_scale)) {
+		sim->contacts++;
+		sim->counted_time = x->contact_time;
+		sim->counted_cells = x->pressed;
+	} else {
+		x->contact_time = sim->counted_time;
+		x->pressed = sim->counted_cells;
+	}
+}
+
 /* Contact has begun or ended.
  *
  * Given    left   of the interval [s];  speed: of approach [m/s]
@@ -130,8 +158,7 @@ static void contact_turn(struct simulation *sim, double left, double speed)
 	sim->touching = !sim->touching;
 	sim->rung_limit = sim->rungs - 1;
 	if (!sim->touching) {
-		sim->impulse_max = most(sim->impulse_max, sim->x.impulse);
-		sim->contacts++;
+		contact_over(sim, speed);
 	} else if (sim->contacts == 0) {
 		sim->result->first_contact = (double)sim->next * sim->task->time_step - left;
 		sim->result->first_speed = speed;
@@ -474,15 +501,19 @@ static double residual(const struct simulation *sim)
 }
 
 /* Writes a simulation's result. */
-static void result_write(const struct simulation *sim, enum pound_status status)
+static void result_write(struct simulation *sim, enum pound_status status)
 {
 	struct pound_march_result *r = sim->result;
 	const struct pound_rows *x = &sim->x;
 	// a contact still open at the end counts with what it has
+	if (sim->touching)
+		contact_over(sim, x->q);
 	bool finite = isfinite(x->u[0]) && isfinite(x->v[0]) && isfinite(x->u[1]) && isfinite(x->v[1]);
 	r->status = finite ? status : POUND_OVERFLOW;
-	r->contacts = (int64_t)sim->contacts + sim->touching;
-	r->impulse_max = most(sim->impulse_max, sim->touching ? x->impulse : 0);
+	r->contacts = (int64_t)sim->contacts;
+	r->impulse_max = sim->impulse_max;
+	if (r->contacts == 0)
+		r->first_contact = r->first_speed = 0;
 	r->contact_time = x->contact_time + x->cell * x->pressed;
 	r->energy_residual = sim->task->accounted ? residual(sim) : NAN;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
