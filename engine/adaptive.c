@@ -61,6 +61,7 @@ struct course {
 	gsl_odeiv2_system system;
 	gsl_odeiv2_driver *explicit, *implicit;
 	double counted_time, counts_scale; /* of contacts that count [s]; counts.h */
+	double touch_steps;                /* of the contact in hand */
 	int steps;  /* since the interval began, or the last event */
 	int events; /* since the interval began, without turns that change nothing */
 };
@@ -198,6 +199,7 @@ static void contact_over(struct course *c)
 	struct pound_march_result *r = c->result;
 	const double ground = c->ground + c->slope * c->t;
 	struct pound_counts counts = {.time = c->start + c->t,
+	                              .steps = c->touch_steps,
 	                              .changed = (1 + task->mass_ratio) * c->y[IMPULSE] + fabs(c->y[Q])};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		counts.body[i] = (struct pound_counts_body){c->y[U1 + 2 * i],
@@ -225,7 +227,7 @@ static void contact_turn(struct course *c)
 	}
 	if (r->contacts == 0)
 		r->first_contact = c->start + c->t, r->first_speed = c->y[Q];
-	c->y[IMPULSE] = 0;
+	c->y[IMPULSE] = c->touch_steps = 0;
 	c->touching = true;
 	c->parted = false;
 }
@@ -386,6 +388,7 @@ static bool course_step(struct course *c)
 	driver->h = h;
 	c->steps++;
 	c->result->contact_time += c->touching ? t - c->t : 0;
+	c->touch_steps += c->touching;
 	memcpy(c->y, y, sizeof y);
 	c->t = t;
 	bool finite = true;

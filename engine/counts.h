@@ -29,10 +29,11 @@ struct pound_counts {
 	struct pound_counts_body body[POUND_OSCILLATORS];
 	double time;    /* since the start [s] */
 	double blur;    /* of who has the overlap as the difference of two displacements: the speed that its terms would give [m/s] */
+	double steps;   /* that the contact took, each with a rounding of its own; the march's only in the bodies: one a sample */
 	double changed; /* relative speed by the contact's impulse, and that with which the bodies part  [m/s] */
 };
 
-/* Velocity that would be made of the magnitudes of all terms of a body's acceleration, in the time that it takes the body to
+/* Velocity that could be made of the magnitudes of all terms of a body's acceleration, in the time that it takes the body to
  * forget them or in all that has gone by: a velocity has no more than its roundings, and they fade with exp(-c t/2). */
 static inline double pound_counts_speed(const struct pound_counts_body *b, double time)
 {
@@ -46,11 +47,11 @@ static inline double pound_counts_speed(const struct pound_counts_body *b, doubl
  * Given    scale  the largest speed so far that roundings are of; 0 at the start [m/s]
  * Returns  scale  with this contact
  *
- *   (1 + m1/m2) I/m1 + |q| > 16 eps max sum_i (|v_i| + (|k u| + |r0| + c |v| + |a|)_i min(t, 2/c_i))
+ *   (1 + m1/m2) I/m1 + |q| > 16 eps (1 + steps) max sum_i (|v_i| + (|k u| + |r0| + c |v| + |a|)_i min(t, 2/c_i))
  *
- * with the impulse I and the rate q of the overlap at the end, the maximum over the contacts so far.  A contact of rounding depth
- * has little of both.  One that only grazes has a small impulse but parts as fast as it came, and one that is pressed may end at
- * rest but has an impulse.
+ * with the impulse I and the rate q of the overlap at the end, the maximum over the contacts so far.  Bodies that roundings bring
+ * together have little of both.  Those that only graze have a small impulse but part as fast as they came, and those that are
+ * pressed may end at rest but have an impulse, to which every step adds the roundings of the bodies.
  *
  * Valid    Also after the motion has died away: what is left of it is nothing beside what it was.
  * Test     unit_counts
@@ -61,7 +62,7 @@ static inline bool pound_contact_counts(const struct pound_counts *c, double *sc
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		speed += pound_counts_speed(&c->body[i], c->time);
 	*scale = *scale < speed ? speed : *scale;
-	return c->changed > POUND_COUNTS_ROUNDINGS * DBL_EPSILON * *scale;
+	return c->changed > POUND_COUNTS_ROUNDINGS * DBL_EPSILON * (1 + c->steps) * *scale;
 }
 
 #endif

@@ -94,6 +94,7 @@ static void contact_over(struct course *c)
 	struct pound_march_result *r = c->result;
 	const double stiff = (1 + task->mass_ratio) * task->contact_stiffness;
 	struct pound_counts counts = {.time = c->start + c->k * c->step,
+	                              .steps = (r->contact_time - c->counted_time) / c->step,
 	                              .blur = sqrt(stiff) * (fabs(c->u[0]) + fabs(c->u[1]) + task->gap),
 	                              .changed = (1 + task->mass_ratio) * c->impulse + fabs(c->v[0] - c->v[1])};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)

@@ -312,6 +312,7 @@ static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch
 		area[n % 2] += piece->push.c[n] * POUND_SHARE[n];
 	t->impulse -= (area[0] + area[1]) * piece->step;
 	t->contact_time += piece->step;
+	t->touch_steps++;
 }
 
 /* ---- through a step ---- */
@@ -321,6 +322,7 @@ static void contact_over(struct pound_trace *t)
 {
 	const struct pound_march_task *task = t->task;
 	struct pound_counts counts = {.time = t->next * task->time_step,
+	                              .steps = (double)t->touch_steps,
 	                              .changed = (1 + task->mass_ratio) * t->impulse + fabs(t->q)};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		counts.body[i] = (struct pound_counts_body){t->u[i],
@@ -355,6 +357,7 @@ static void contact_turn(struct pound_trace *t, int event)
 		t->fresh = was_parted;
 		t->p = was_parted ? t->p : 0;
 		t->impulse = 0;
+		t->touch_steps = 0;
 	}
 }
 
