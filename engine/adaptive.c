@@ -62,8 +62,8 @@ struct course {
 	gsl_odeiv2_driver *explicit, *implicit;
 	double counted_time, counts_scale; /* of contacts that count [s]; counts.h */
 	double touch_steps;                /* of the contact in hand */
-	int steps;  /* since the interval began, or the last event */
-	int events; /* since the interval began, without turns that change nothing */
+	int steps;                         /* since the interval began, or the last event */
+	int events;                        /* since the interval began, without turns that change nothing */
 };
 
 /* ---- the equations ---- */
@@ -202,12 +202,9 @@ static void contact_over(struct course *c)
 	                              .steps = c->touch_steps,
 	                              .changed = (1 + task->mass_ratio) * c->y[IMPULSE] + fabs(c->y[Q])};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		counts.body[i] = (struct pound_counts_body){c->y[U1 + 2 * i],
-		                                            c->y[V1 + 2 * i],
-		                                            c->at[i].piece.stiffness,
-		                                            c->at[i].piece.offset,
-		                                            task->bodies[i].damping,
-		                                            task->bodies[i].drive * ground};
+		counts.body[i] = (struct pound_counts_body){c->y[U1 + 2 * i],         c->y[V1 + 2 * i],
+		                                            c->at[i].piece.stiffness, c->at[i].piece.offset,
+		                                            task->bodies[i].damping,  task->bodies[i].drive * ground};
 	r->impulse_max = fmax(r->impulse_max, c->y[IMPULSE]);
 	if (pound_contact_counts(&counts, &c->counts_scale)) {
 		r->contacts++;

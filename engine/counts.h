@@ -27,9 +27,11 @@ struct pound_counts_body {
 
 struct pound_counts {
 	struct pound_counts_body body[POUND_OSCILLATORS];
-	double time;    /* since the start [s] */
-	double blur;    /* of who has the overlap as the difference of two displacements: the speed that its terms would give [m/s] */
-	double steps;   /* that the contact took, each with a rounding of its own; the march's only in the bodies: one a sample */
+	double time; /* since the start [s] */
+	double
+	    blur; /* of who has the overlap as the difference of two displacements: the speed that its terms would give [m/s] */
+	double
+	    steps; /* that the contact took, each with a rounding of its own; the march's only in the bodies: one a sample */
 	double changed; /* relative speed by the contact's impulse, and that with which the bodies part  [m/s] */
 };
 
@@ -38,7 +40,8 @@ struct pound_counts {
 static inline double pound_counts_speed(const struct pound_counts_body *b, double time)
 {
 	const double memory = b->damping * time > 2 ? 2 / b->damping : time;
-	const double terms = fabs(b->stiffness * b->u) + fabs(b->offset) + b->damping * fabs(b->v) + fabs(b->pull);
+	const double terms =
+	    fabs(b->stiffness * b->u) + fabs(b->offset) + b->damping * fabs(b->v) + fabs(b->pull);
 	return fabs(b->v) + terms * memory;
 }
 

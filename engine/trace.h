@@ -71,7 +71,7 @@ struct pound_trace {
 	int next, events;
 	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
 	double counted_time, counts_scale;         /* of contacts that count [s]; counts.h */
-	int64_t contacts, touch_steps; /* that count; of the contact in hand */
+	int64_t contacts, touch_steps;             /* that count; of the contact in hand */
 };
 
 /* Coefficients of a flight's acceleration from its state. */

@@ -129,8 +129,7 @@ LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 static void contact_over(struct simulation *sim, double speed)
 {
 	struct pound_rows *x = &sim->x;
-	const double lasted =
-	    x->contact_time - sim->counted_time + x->cell * (x->pressed - sim->counted_cells);
+	const double lasted = x->contact_time - sim->counted_time + x->cell * (x->pressed - sim->counted_cells);
 	struct pound_counts counts = {.time = (double)sim->next * x->body[0].step_gap,
 	                              .steps = lasted * sim->per_step,
 	                              .changed = x->both * x->impulse + fabs(speed)};

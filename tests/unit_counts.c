@@ -91,7 +91,8 @@ static void alike_make(struct specimen *specimen, int number, double sign)
 {
 	specimen_alike(specimen, number, number % SPECIMEN_LAWS);
 	struct pound_scene *scene = &specimen->study.scene;
-	scene->oscillators[1].frequency_hz = scene->oscillators[0].frequency_hz * (1 + number / 4 % 3 * DBL_EPSILON);
+	scene->oscillators[1].frequency_hz =
+	    scene->oscillators[0].frequency_hz * (1 + number / 4 % 3 * DBL_EPSILON);
 	scene->contact.stiffness_ratio = 100;
 	for (int k = 0; k < scene->excitation.n_record; k++)
 		specimen->record[k] *= sign;
@@ -162,7 +163,8 @@ static void a_body_dead_at_rest_on_a_wall_does_not_go_on_counting(void **state)
 			// what is near the limit counts for one and not for another, who took other steps
 			if (who <= EVENT_ONE)
 				assert_int_equal(counted[0].contacts, first);
-			check_near((double)counted[0].contacts, (double)first, who <= TRACE ? 2 : 0.1 * (double)first + 2);
+			check_near((double)counted[0].contacts, (double)first,
+			           who <= TRACE ? 2 : 0.1 * (double)first + 2);
 		}
 	}
 }

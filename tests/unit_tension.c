@@ -14,7 +14,8 @@
 #include "tests/riding.h"
 
 static const double PI = 3.14159265358979323846;
-static const double W_CONTACT = 30, PUSH = 1.5, ZETA = 0.3, AWAY = 0.02; /* [rad/s], [m/s2], 1, [s] before they meet */
+static const double W_CONTACT = 30, PUSH = 1.5, ZETA = 0.3,
+                    AWAY = 0.02; /* [rad/s], [m/s2], 1, [s] before they meet */
 
 enum { SAMPLES = 21 };
 static double ground[SAMPLES];
@@ -157,8 +158,8 @@ static void force_comes_back_when_it_would_push_or_when_parted_bodies_meet_again
 		const struct pound_march_task between = task_of(v, AWAY + ends + 0.9 * away);
 		check_solvers(&between, free_for(parted, 0.9 * away), 1, ends);
 	}
-	check_report("the force stays in %d cases, returns with an overlap in %d and without in %d", stays, returns,
-	             clears);
+	check_report("the force stays in %d cases, returns with an overlap in %d and without in %d", stays,
+	             returns, clears);
 	assert_true(stays > 0 && returns > 0 && clears > 0);
 }
 
