@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/exact/counts.h"
 #include "engine/exact/tolerances.h"
 
 /* Largest rate * time of a series step: of a velocity the first term left out is near 2^-52 of the first kept or below: apart
@@ -117,6 +118,45 @@ LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 	return simulation_step(sim);
 }
 
+/* Whether the contact that has ended did more than roundings do.
+ *
+ * Given    changed  what it did to speeds [m/s]
+ */
+static bool contact_counts(struct simulation *sim, double changed)
+{
+	const struct state_rows *x = &sim->x;
+	const double lasted = x->contact_time - sim->counted_time + x->cell * (x->pressed - sim->counted_cells);
+	struct pound_counts counts = {
+	    .time = (double)sim->next * x->body[0].step_gap, .steps = lasted * sim->per_step, .changed = changed};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		counts.body[i] = (struct pound_counts_body){x->u[i],
+		                                            x->v[i],
+		                                            x->body[i].stiffness,
+		                                            x->body[i].offset,
+		                                            x->body[i].damping,
+		                                            x->body[i].drive * x->ground};
+	return pound_contact_counts(&counts, &sim->counts_scale);
+}
+
+/* A contact has ended, or the signal has in it.
+ *
+ * Given    speed  at which the bodies approach [m/s]
+ */
+static void contact_over(struct simulation *sim, double speed)
+{
+	struct state_rows *x = &sim->x;
+	const double changed = x->both * x->impulse + fabs(speed);
+	sim->impulse_max = most(sim->impulse_max, x->impulse);
+	if (pound_contact_plain(changed, sim->counts_scale) || contact_counts(sim, changed)) {
+		sim->contacts++;
+		sim->counted_time = x->contact_time;
+		sim->counted_cells = x->pressed;
+	} else {
+		x->contact_time = sim->counted_time;
+		x->pressed = sim->counted_cells;
+	}
+}
+
 /* Contact has begun or ended.
  *
  * Given    left   of the interval [s];  speed: of approach [m/s]
@@ -126,8 +166,7 @@ static void contact_turn(struct simulation *sim, double left, double speed)
 	sim->touching = !sim->touching;
 	sim->rung_limit = sim->rungs - 1;
 	if (!sim->touching) {
-		sim->impulse_max = most(sim->impulse_max, sim->x.impulse);
-		sim->contacts++;
+		contact_over(sim, speed);
 	} else if (sim->contacts == 0) {
 		sim->result->first_contact = (double)sim->next * sim->task->time_step - left;
 		sim->result->first_speed = speed;
@@ -470,15 +509,19 @@ static double residual(const struct simulation *sim)
 }
 
 /* Writes a simulation's result. */
-static void result_write(const struct simulation *sim, enum pound_status status)
+static void result_write(struct simulation *sim, enum pound_status status)
 {
 	struct pound_march_result *r = sim->result;
 	const struct state_rows *x = &sim->x;
 	// a contact still open at the end counts with what it has
+	if (sim->touching)
+		contact_over(sim, x->q);
 	bool finite = isfinite(x->u[0]) && isfinite(x->v[0]) && isfinite(x->u[1]) && isfinite(x->v[1]);
 	r->status = finite ? status : POUND_OVERFLOW;
-	r->contacts = (int64_t)sim->contacts + sim->touching;
-	r->impulse_max = most(sim->impulse_max, sim->touching ? x->impulse : 0);
+	r->contacts = (int64_t)sim->contacts;
+	r->impulse_max = sim->impulse_max;
+	if (r->contacts == 0)
+		r->first_contact = r->first_speed = 0;
 	r->contact_time = x->contact_time + x->cell * x->pressed;
 	r->energy_residual = sim->task->accounted ? residual(sim) : NAN;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {

@@ -190,7 +190,9 @@ struct simulation {
 	int64_t next, last;               /* sample at the end of this interval, and the last of the signal */
 	double per_step;
 	double impulse_max, contacts;
-	struct pound_press *press_now;         /* of the pieces that the bodies are on; NULL: to be looked for */
+	double counted_time, counted_cells; /* of contacts that count, as contact_time and pressed in the rows */
+	double counts_scale;                /* counts.h */
+	struct pound_press *press_now;      /* of the pieces that the bodies are on; NULL: to be looked for */
 	const struct pound_press_map *pressed; /* of the next cells */
 	struct pound_common *common;           /* with others; NULL: nothing */
 	unsigned traits;                       /* see enum above */

@@ -9,6 +9,7 @@
  * The march does the same in lanes and keeps nothing; they share no code but the laws, and what both must agree in is under
  * test. */
 #include "engine/floor/trace.h"
+#include "engine/exact/counts.h"
 #include "engine/exact/tolerances.h"
 #include "engine/floor/root.h"
 #include "engine/floor/trace_series.h"
@@ -311,9 +312,32 @@ static void piece_add(struct pound_trace *t, struct pound_trace_stretch *stretch
 		area[n % 2] += piece->push.c[n] * POUND_SHARE[n];
 	t->impulse -= (area[0] + area[1]) * piece->step;
 	t->contact_time += piece->step;
+	t->touch_steps++;
 }
 
 /* ---- through a step ---- */
+
+/* A contact has ended, or the signal has in it. */
+static void contact_over(struct pound_trace *t)
+{
+	const struct pound_march_task *task = t->task;
+	struct pound_counts counts = {.time = t->next * task->time_step,
+	                              .steps = (double)t->touch_steps,
+	                              .changed = (1 + task->mass_ratio) * t->impulse + fabs(t->q)};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		counts.body[i] = (struct pound_counts_body){t->u[i],
+		                                            t->v[i],
+		                                            t->at[i].piece.stiffness,
+		                                            t->at[i].piece.offset,
+		                                            task->bodies[i].damping,
+		                                            task->bodies[i].drive * t->ground};
+	t->impulse_max = fmax(t->impulse_max, t->impulse);
+	if (pound_contact_counts(&counts, &t->counts_scale)) {
+		t->contacts++;
+		t->counted_time = t->contact_time;
+	} else
+		t->contact_time = t->counted_time;
+}
 
 static void contact_turn(struct pound_trace *t, int event)
 {
@@ -323,8 +347,7 @@ static void contact_turn(struct pound_trace *t, int event)
 		t->parted = false;
 		t->p = 0;
 	} else if (event == CONTACT && t->touching) {
-		t->impulse_max = fmax(t->impulse_max, t->impulse);
-		t->contacts++;
+		contact_over(t);
 		t->touching = false;
 		t->parted = t->fresh = !t->task->tension && t->task->contact_damping > 0 && t->p > 0;
 		t->p = t->parted ? t->p : 0;
@@ -334,6 +357,7 @@ static void contact_turn(struct pound_trace *t, int event)
 		t->fresh = was_parted;
 		t->p = was_parted ? t->p : 0;
 		t->impulse = 0;
+		t->touch_steps = 0;
 	}
 }
 
@@ -585,8 +609,6 @@ void pound_trace_next(struct pound_trace *trace, struct pound_trace_stretch *str
 	bool going = trace->next < trace->task->n_samples;
 	while (trace->next < trace->task->n_samples && stretch->n < POUND_TRACE_PIECES && !trace->status)
 		step(trace, stretch);
-	if (going && trace->next == trace->task->n_samples && trace->touching) {
-		trace->contacts++;
-		trace->impulse_max = fmax(trace->impulse_max, trace->impulse);
-	}
+	if (going && trace->next == trace->task->n_samples && trace->touching)
+		contact_over(trace);
 }

@@ -70,7 +70,8 @@ struct pound_trace {
 	double pace; /* share of the usual step: shorter where a search was unsure */
 	int next, events;
 	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
-	int64_t contacts;
+	double counted_time, counts_scale;         /* of contacts that count [s]; counts.h */
+	int64_t contacts, touch_steps;             /* that count; of the contact in hand */
 };
 
 /* Coefficients of a flight's acceleration from its state. */

@@ -17,6 +17,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
+#include "engine/exact/counts.h"
 #include "engine/solver/solver.h"
 
 enum {
@@ -59,8 +60,10 @@ struct course {
 	double way[TURNS]; /* sign of each rate when a step begins; 0: it may turn */
 	gsl_odeiv2_system system;
 	gsl_odeiv2_driver *explicit, *implicit;
-	int steps;  /* since the interval began, or the last event */
-	int events; /* since the interval began, without turns that change nothing */
+	double counted_time, counts_scale; /* of contacts that count [s]; counts.h */
+	double touch_steps;                /* of the contact in hand */
+	int steps;                         /* since the interval began, or the last event */
+	int events;                        /* since the interval began, without turns that change nothing */
 };
 
 /* ---- the equations ---- */
@@ -189,18 +192,39 @@ static void ways_set(struct course *c)
 
 /* ---- events ---- */
 
+/* A contact has ended, or the signal has in it. */
+static void contact_over(struct course *c)
+{
+	const struct pound_march_task *task = c->task;
+	struct pound_march_result *r = c->result;
+	const double ground = c->ground + c->slope * c->t;
+	struct pound_counts counts = {.time = c->start + c->t,
+	                              .steps = c->touch_steps,
+	                              .changed = (1 + task->mass_ratio) * c->y[IMPULSE] + fabs(c->y[Q])};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		counts.body[i] = (struct pound_counts_body){c->y[U1 + 2 * i],         c->y[V1 + 2 * i],
+		                                            c->at[i].piece.stiffness, c->at[i].piece.offset,
+		                                            task->bodies[i].damping,  task->bodies[i].drive * ground};
+	r->impulse_max = fmax(r->impulse_max, c->y[IMPULSE]);
+	if (pound_contact_counts(&counts, &c->counts_scale)) {
+		r->contacts++;
+		c->counted_time = r->contact_time;
+	} else
+		r->contact_time = c->counted_time;
+}
+
 static void contact_turn(struct course *c)
 {
 	struct pound_march_result *r = c->result;
 	if (c->touching) {
-		r->impulse_max = fmax(r->impulse_max, c->y[IMPULSE]);
+		contact_over(c);
 		c->touching = false;
 		c->parted = c->release > 0 && c->y[P] > 0;
 		return;
 	}
-	if (r->contacts++ == 0)
+	if (r->contacts == 0)
 		r->first_contact = c->start + c->t, r->first_speed = c->y[Q];
-	c->y[IMPULSE] = 0;
+	c->y[IMPULSE] = c->touch_steps = 0;
 	c->touching = true;
 	c->parted = false;
 }
@@ -361,6 +385,7 @@ static bool course_step(struct course *c)
 	driver->h = h;
 	c->steps++;
 	c->result->contact_time += c->touching ? t - c->t : 0;
+	c->touch_steps += c->touching;
 	memcpy(c->y, y, sizeof y);
 	c->t = t;
 	bool finite = true;
@@ -437,7 +462,9 @@ static void course_end(struct course *c, enum pound_status status)
 	}
 	// a contact still open at the end counts with what it has
 	if (c->touching)
-		r->impulse_max = fmax(r->impulse_max, c->y[IMPULSE]);
+		contact_over(c);
+	if (r->contacts == 0)
+		r->first_contact = r->first_speed = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		r->u[i] = c->y[U1 + 2 * i];
 		r->v[i] = c->y[V1 + 2 * i];

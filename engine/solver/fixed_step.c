@@ -10,6 +10,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "engine/exact/counts.h"
 #include "engine/solver/solver.h"
 
 enum { ROUNDS = 16 }; /* of a step's iteration; laws alone take two or three */
@@ -30,6 +31,8 @@ struct course {
 	double start;                        /* of the sample interval [s] */
 	int k;                               /* step in it, from 1 */
 	double impulse;                      /* of the contact in hand [m/s] */
+	double ground;                       /* acceleration where the step ends [m/s2] */
+	double counted_time, counts_scale;   /* of contacts that count [s]; counts.h */
 	double speed_max[POUND_OSCILLATORS]; /* [m/s] */
 	bool too_long[2];                    /* the step, for bodies apart and touching */
 };
@@ -84,6 +87,31 @@ static void pair_solve(const double a[2], double s, double r, const double b[2],
 	x[1] = (b[1] * (a[0] + s) + r * s * b[0]) / determinant;
 }
 
+/* A contact has ended, or the signal has in it. */
+static void contact_over(struct course *c)
+{
+	const struct pound_march_task *task = c->task;
+	struct pound_march_result *r = c->result;
+	const double stiff = (1 + task->mass_ratio) * task->contact_stiffness;
+	struct pound_counts counts = {.time = c->start + c->k * c->step,
+	                              .steps = (r->contact_time - c->counted_time) / c->step,
+	                              .blur = sqrt(stiff) * (fabs(c->u[0]) + fabs(c->u[1]) + task->gap),
+	                              .changed = (1 + task->mass_ratio) * c->impulse + fabs(c->v[0] - c->v[1])};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		counts.body[i] = (struct pound_counts_body){c->u[i],
+		                                            c->v[i],
+		                                            c->at[i].piece.stiffness,
+		                                            c->at[i].piece.offset,
+		                                            task->bodies[i].damping,
+		                                            task->bodies[i].drive * c->ground};
+	r->impulse_max = fmax(r->impulse_max, c->impulse);
+	if (pound_contact_counts(&counts, &c->counts_scale)) {
+		r->contacts++;
+		c->counted_time = r->contact_time;
+	} else
+		r->contact_time = c->counted_time;
+}
+
 /* Takes note of the state that a step ended in; force between two such states is a straight line. */
 static void course_note(struct course *c, double force, bool touching, double approach)
 {
@@ -92,7 +120,7 @@ static void course_note(struct course *c, double force, bool touching, double ap
 		if (fabs(c->u[i]) > r->displacement_max[i])
 			r->displacement_max[i] = fabs(c->u[i]);
 	if (touching && !c->touching) {
-		if (r->contacts++ == 0)
+		if (r->contacts == 0)
 			r->first_contact = c->start + c->k * c->step, r->first_speed = approach;
 		c->impulse = 0;
 	}
@@ -100,7 +128,7 @@ static void course_note(struct course *c, double force, bool touching, double ap
 	if (touching)
 		r->contact_time += c->step;
 	else if (c->touching)
-		r->impulse_max = fmax(r->impulse_max, c->impulse);
+		contact_over(c);
 	c->touching = touching;
 	c->force = force;
 }
@@ -246,7 +274,6 @@ static void course_start(struct course *c, int n_steps)
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
 	c->touching = touches(task, p, q);
 	c->force = c->touching ? contact_force(task, p, q) : 0;
-	c->result->contacts = c->touching;
 	c->result->first_speed = c->touching ? q : 0;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_march_body *body = &task->bodies[i];
@@ -281,7 +308,8 @@ static void course_run(struct course *c, int n_steps, advance *step, const atomi
 		c->start = (t - 1) * task->time_step;
 		for (int k = 1; k <= n_steps && !r->status; k++) {
 			c->k = k;
-			bool settled = step(c, from + rise * k);
+			c->ground = from + rise * k;
+			bool settled = step(c, c->ground);
 			// written so that no number is within the limit
 			if (!settled || c->too_long[c->touching] ||
 			    !(fabs(c->v[0]) <= c->speed_max[0] && fabs(c->v[1]) <= c->speed_max[1]))
@@ -291,7 +319,9 @@ static void course_run(struct course *c, int n_steps, advance *step, const atomi
 			r->status = POUND_STOPPED;
 	}
 	if (c->touching)
-		r->impulse_max = fmax(r->impulse_max, c->impulse);
+		contact_over(c);
+	if (r->contacts == 0)
+		r->first_contact = r->first_speed = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		r->u[i] = c->u[i];
 		r->v[i] = c->v[i];

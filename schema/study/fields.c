@@ -101,7 +101,7 @@ const struct field fields[] = {
 	{"/scene/contact/gap_m", FIELD_REAL, AT(scene.contact.gap), 0, 0, INFINITY, FIELD_CLOSED, "m",
 	 .text = "clear distance at rest"},
 	{"/scene/contact/tension", FIELD_BOOL, AT(scene.contact.tension), 1, 0, 1, FIELD_CLOSED, "",
-	 .text = "the dashpot may pull just before separation"},
+	 .text = "the dashpot may pull just before separation; false: contact ends with its force, not with the overlap"},
 
 	{"/scene/excitation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "ground motion; absent: one as below"},
