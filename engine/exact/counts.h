@@ -45,36 +45,43 @@ static inline double pound_counts_speed(const struct pound_counts_body *b, doubl
 	return fabs(b->v) + terms * memory;
 }
 
-/* Whether a contact counts whatever the sum of pound_contact_counts is now: it changed speeds by 2^-12 of the largest one before,
- * and would be rounding only if that had grown by ten thousand times and more since. */
-static inline bool pound_contact_plain(double changed, double scale)
+/* what roundings are measured by, so far; 0, 0 at the start */
+struct pound_counts_scale {
+	double most;  /* largest speed that a sum gave [m/s] */
+	double speed; /* largest sum of the bodies' speeds for which it was taken [m/s] */
+};
+
+/* Whether a contact counts whatever its sum is: the sum was taken for bodies as fast as these, and the contact changed their speeds
+ * by 2^-12 of it, a billion roundings. */
+static inline bool pound_contact_plain(double changed, double speed, const struct pound_counts_scale *scale)
 {
-	return scale > 0 && changed > 0x1p-12 * scale;
+	return speed <= scale->speed && changed > 0x1p-12 * scale->most;
 }
 
 /* Whether a contact that has ended counts.
  *
- * Given    scale  the largest speed so far that roundings are of; 0 at the start [m/s]
  * Returns  scale  with this contact
  *
  *   (1 + m1/m2) I/m1 + |q| > 16 eps (1 + steps) max sum_i (|v_i| + (|k u| + |r0| + c |v| + |a|)_i min(t, 2/c_i))
  *
- * with the impulse I and the rate q of the overlap at the end, the maximum over the contacts so far but plain ones.  Bodies that roundings bring
- * together have little of both.  Those that only graze have a small impulse but part as fast as they came, and those that are
- * pressed may end at rest but have an impulse, to which every step adds the roundings of the bodies.
+ * with the impulse I and the rate q of the overlap at the end, the maximum over the contacts so far that were not plain.  Bodies
+ * that roundings bring together have little of both.  Those that only graze have a small impulse but part as fast as they came,
+ * and those that are pressed may end at rest but have an impulse, to which every step adds the roundings of the bodies.
  *
  * Valid    Also after the motion has died away: what is left of it is nothing beside what it was.
  * Test     unit_counts
  */
-static inline bool pound_contact_counts(const struct pound_counts *c, double *scale)
+static inline bool pound_contact_counts(const struct pound_counts *c, struct pound_counts_scale *scale)
 {
-	double speed = c->blur;
-	if (pound_contact_plain(c->changed, *scale))
+	const double speed = fabs(c->body[0].v) + fabs(c->body[1].v);
+	if (pound_contact_plain(c->changed, speed, scale))
 		return true;
+	double most = c->blur;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		speed += pound_counts_speed(&c->body[i], c->time);
-	*scale = *scale < speed ? speed : *scale;
-	return c->changed > POUND_COUNTS_ROUNDINGS * DBL_EPSILON * (1 + c->steps) * *scale;
+		most += pound_counts_speed(&c->body[i], c->time);
+	scale->most = scale->most < most ? most : scale->most;
+	scale->speed = scale->speed < speed ? speed : scale->speed;
+	return c->changed > POUND_COUNTS_ROUNDINGS * DBL_EPSILON * (1 + c->steps) * scale->most;
 }
 
 #endif

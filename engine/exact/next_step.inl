@@ -147,7 +147,8 @@ static void contact_over(struct simulation *sim, double speed)
 	struct state_rows *x = &sim->x;
 	const double changed = x->both * x->impulse + fabs(speed);
 	sim->impulse_max = most(sim->impulse_max, x->impulse);
-	if (pound_contact_plain(changed, sim->counts_scale) || contact_counts(sim, changed)) {
+	if (pound_contact_plain(changed, fabs(x->v[0]) + fabs(x->v[1]), &sim->counts_scale) ||
+	    contact_counts(sim, changed)) {
 		sim->contacts++;
 		sim->counted_time = x->contact_time;
 		sim->counted_cells = x->pressed;

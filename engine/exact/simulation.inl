@@ -8,6 +8,7 @@
 #include <float.h>
 #include <stdalign.h>
 
+#include "engine/exact/counts.h"
 #include "engine/exact/task.h"
 
 enum {
@@ -191,7 +192,6 @@ struct simulation {
 	double per_step;
 	double impulse_max, contacts;
 	double counted_time, counted_cells; /* of contacts that count, as contact_time and pressed in the rows */
-	double counts_scale;                /* counts.h */
 	struct pound_press *press_now;      /* of the pieces that the bodies are on; NULL: to be looked for */
 	const struct pound_press_map *pressed; /* of the next cells */
 	struct pound_common *common;           /* with others; NULL: nothing */
@@ -208,6 +208,7 @@ struct simulation {
 	// and what is read seldom
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
+	struct pound_counts_scale counts_scale;
 	struct pound_member others[POUND_OTHERS];
 	int n_others;
 	enum pound_stage stage; /* what it does next, while it waits for room */

@@ -6,6 +6,7 @@
 #ifndef TRACE_H
 #define TRACE_H
 
+#include "engine/exact/counts.h"
 #include "engine/exact/task.h"
 
 enum {
@@ -70,8 +71,9 @@ struct pound_trace {
 	double pace; /* share of the usual step: shorter where a search was unsure */
 	int next, events;
 	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
-	double counted_time, counts_scale;         /* of contacts that count [s]; counts.h */
-	int64_t contacts, touch_steps;             /* that count; of the contact in hand */
+	double counted_time;                       /* of contacts that count [s] */
+	struct pound_counts_scale counts_scale;
+	int64_t contacts, touch_steps; /* that count; of the contact in hand */
 };
 
 /* Coefficients of a flight's acceleration from its state. */

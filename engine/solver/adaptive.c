@@ -60,10 +60,11 @@ struct course {
 	double way[TURNS]; /* sign of each rate when a step begins; 0: it may turn */
 	gsl_odeiv2_system system;
 	gsl_odeiv2_driver *explicit, *implicit;
-	double counted_time, counts_scale; /* of contacts that count [s]; counts.h */
-	double touch_steps;                /* of the contact in hand */
-	int steps;                         /* since the interval began, or the last event */
-	int events;                        /* since the interval began, without turns that change nothing */
+	double counted_time; /* of contacts that count [s] */
+	struct pound_counts_scale counts_scale;
+	double touch_steps; /* of the contact in hand */
+	int steps;          /* since the interval began, or the last event */
+	int events;         /* since the interval began, without turns that change nothing */
 };
 
 /* ---- the equations ---- */

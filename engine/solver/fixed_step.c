@@ -28,11 +28,12 @@ struct course {
 	    rate[POUND_OSCILLATORS]; /* newmark: acceleration; central difference: velocity half a step later */
 	double force;                /* of the contact per mass of the left body [m/s2] */
 	bool touching;
-	double start;                        /* of the sample interval [s] */
-	int k;                               /* step in it, from 1 */
-	double impulse;                      /* of the contact in hand [m/s] */
-	double ground;                       /* acceleration where the step ends [m/s2] */
-	double counted_time, counts_scale;   /* of contacts that count [s]; counts.h */
+	double start;        /* of the sample interval [s] */
+	int k;               /* step in it, from 1 */
+	double impulse;      /* of the contact in hand [m/s] */
+	double ground;       /* acceleration where the step ends [m/s2] */
+	double counted_time; /* of contacts that count [s] */
+	struct pound_counts_scale counts_scale;
 	double speed_max[POUND_OSCILLATORS]; /* [m/s] */
 	bool too_long[2];                    /* the step, for bodies apart and touching */
 };
