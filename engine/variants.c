@@ -455,5 +455,7 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	});
 	const int dropped = values->n_rows - rows.n_rows;
 	pound_dropped_changes(&rows, dropped, &indices->accuracy);
+	for (int j = 0; j < d && s.shared; j++)
+		indices->accuracy.inputs[j].total_dropped = NAN;
 	return dropped;
 }
