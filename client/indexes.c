@@ -205,6 +205,19 @@ static void print_note(const char *note)
 	free(sentence);
 }
 
+/* What there is to say about the indices of an input. */
+static void print_input_note(const struct reading *result, const char *output, int j)
+{
+	const char *name = reading_text(result, "%s/inputs/%d/name", output, j);
+	const char *note = reading_text(result, "%s/inputs/%d/note", output, j);
+	if (!note)
+		return;
+	char *of_input =
+	    command_text("%s: %s", name ? name : reading_text(result, "%s/inputs/%d/path", output, j), note);
+	print_note(of_input);
+	free(of_input);
+}
+
 /* How an ordinate of a floor spectrum goes with the largest impulse. */
 static void print_correlation(const struct reading *result, const char *output)
 {
@@ -279,12 +292,9 @@ static void print_accuracy(const struct reading *result, const char *output)
 
 static void print_inputs(const struct reading *result, const char *output)
 {
-	const char *note = NULL;
 	print_quoted(result, output);
-	for (int j = 0; !note && j < reading_count(result, "%s/inputs", output); j++)
-		note = reading_text(result, "%s/inputs/%d/note", output, j);
-	if (note)
-		print_note(note);
+	for (int j = 0; j < reading_count(result, "%s/inputs", output); j++)
+		print_input_note(result, output, j);
 	print_accuracy(result, output);
 }
 

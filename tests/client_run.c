@@ -233,7 +233,7 @@ static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
 	static const char *const words[] = {
 	    "S1 [95 % interval]", "S1_pick_freeze", "ST_raw",   "S1_janon_corrected", "shapley",
 	    "S2_excitation",      "\n  inputs",     "S2",       "S_closed",           "f_e/f_2",
-	    "these explain",      "ratio bias",     "0 lowest", "ST_one_signal",      "note: a value below 0"};
+	    "these explain",      "ratio bias",     "0 lowest", "ST_one_signal",      "note: f_e: S1_"};
 	char *study = with_every_table();
 	struct program_outcome table =
 	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study);
