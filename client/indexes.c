@@ -45,9 +45,13 @@ static void interval(char *text, size_t size, const struct reading *result, cons
 		*text = 0;
 }
 
+/* A bar; nothing where there is no share, as an empty bar is a share of 0. */
 static void chart(char text[CHART + 3], double share)
 {
-	long full = isfinite(share) ? lround(fmin(fmax(share, 0.0), 1.0) * CHART) : 0;
+	*text = 0;
+	if (!isfinite(share))
+		return;
+	long full = lround(fmin(fmax(share, 0.0), 1.0) * CHART);
 	text[0] = '|';
 	memset(text + 1, ' ', CHART);
 	memset(text + 1, '#', (size_t)full);

@@ -457,7 +457,7 @@ struct pound_accuracy {
 	X(POUND_NOTE_FEW_ROWS,                                                                \
 	  "with fewer than 30 rows S1 and ST are S1_pick_freeze and ST_pick_freeze")          \
 	X(POUND_NOTE_NOISE,                                                                   \
-	  "the signals' noise is about as large as the variance, so corrected indexes are missing or far off") \
+	  "the variance left without the noise may be 0, so all indices but the raw ones are missing or may be far off") \
 	X(POUND_NOTE_NO_INTERVAL,                                                             \
 	  "too few rows for the interval of every index: those without one may be far off")    \
 	X(POUND_NOTE_FEW_DECIDE,                                                              \

@@ -63,8 +63,8 @@ static const struct rule {
 	{far,                 false, false, "far from any share, as the rows are too few for the variance it is a share of"},
 	{outside,             true,  false, "outside its own interval, as the variance left without the noise may be 0"},
 	{outside,             false, false, "outside its own interval, as the rows are too few for one"},
-	{without_interval,    false, false, "not in [0, 1], and the rows are too few for an interval"},
-	{interval_impossible, false, true,  "not in [0, 1] with all of its interval, so its error is larger than that"},
+	{without_interval,    false, false, "outside [0, 1], and the rows are too few for an interval"},
+	{interval_impossible, false, true,  "outside [0, 1] with its whole interval, so its error is larger than the interval shows"},
 	{below,               false, true,  "below 0 by sampling error, so the index is between 0 and the upper end of its interval"},
 	{impossible,          false, true,  "above 1 by sampling error, so the index is between the lower end of its interval and 1"},
 };

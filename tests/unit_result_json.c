@@ -261,8 +261,8 @@ static void undefined_indexes_are_null_and_say_why(void **state)
 	                    "the output is the same for every row, so it has no indexes");
 	assert_string_equal(
 	    reading_text(r, "/cells/0/outputs/1/note"),
-	    "no row of the design gave a value, so there are no indexes; the signals' noise is about "
-	    "as large as the variance, so corrected indexes are missing or far off");
+	    "no row of the design gave a value, so there are no indexes; the variance left without the noise may "
+	    "be 0, so all indices but the raw ones are missing or may be far off");
 	reading_close(r);
 }
 

@@ -31,8 +31,8 @@ static void a_sentence_is_said_where_it_is_true_and_nowhere_else(void **state)
 {
 	(void)state;
 	static const char small[] = "ST: below 0 by sampling error", above[] = "ST: above 1 by sampling error",
-	                  whole[] = "ST: not in [0, 1] with all of its interval",
-	                  none[] = "ST: not in [0, 1], and the rows are too few for an interval",
+	                  whole[] = "ST: outside [0, 1] with its whole interval",
+	                  none[] = "ST: outside [0, 1], and the rows are too few for an interval",
 	                  outside[] = "ST: outside its own interval, as the rows are too few",
 	                  outside_lost[] = "ST: outside its own interval, as the variance left without the noise",
 	                  far[] = "ST: far from any share, as the rows are too few",
