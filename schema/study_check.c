@@ -500,9 +500,10 @@ static void check_until(const struct pound_study *study, struct problems *proble
 {
 	if (study->design.until.half_width > 0 && excitation_uses(study, "/scene/excitation/signals") &&
 	    study->scene.excitation.signals == 1 && study->design.common_signals)
-		problems_add(problems, "/design/until",
-		             "needs /scene/excitation/signals of 2 or more, or \"independent\" /design/signals: ST cannot "
-		             "be estimated from one signal that the samples of a row share");
+		problems_add(
+		    problems, "/design/until",
+		    "needs /scene/excitation/signals of 2 or more, or \"independent\" /design/signals: ST cannot "
+		    "be estimated from one signal that the samples of a row share");
 }
 
 static void check_size(const struct pound_study *study, struct problems *problems)
@@ -513,7 +514,8 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
 	if (sampled)
 		check_rows(study, problems);
-	if (sampled && !problems_at(problems, "/scene/excitation/type") && !problems_at(problems, "/design/signals"))
+	if (sampled && !problems_at(problems, "/scene/excitation/type") &&
+	    !problems_at(problems, "/design/signals"))
 		check_until(study, problems);
 	if (runs > most)
 		problems_exceed(problems, pointer, runs, most,

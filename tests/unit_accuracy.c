@@ -279,7 +279,8 @@ static void the_dominant_error_is_larger_than_the_others_together(void **state)
 	} cases[] = {
 	    {{0.1, 0.02, 1e-9, 0}, POUND_ERROR_SAMPLING},     {{0.01, 0.02, NAN, 0}, POUND_ERROR_EXCITATION},
 	    {{0.01, NAN, 0.2, 0.1}, POUND_ERROR_INTEGRATION}, {{0.01, 0.01, 0.01, 0.04}, POUND_ERROR_FAILED_ROWS},
-	    {{0.05, 0.05, 0, 0}, POUND_ERROR_EXCITATION}, {{0.05, 0.03, 0.02, 0}, POUND_ERROR_NONE},           {{NAN, NAN, NAN, 0}, POUND_ERROR_NONE},
+	    {{0.05, 0.05, 0, 0}, POUND_ERROR_EXCITATION},     {{0.05, 0.03, 0.02, 0}, POUND_ERROR_NONE},
+	    {{NAN, NAN, NAN, 0}, POUND_ERROR_NONE},
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
 		assert_int_equal(pound_accuracy_dominant(cases[k].errors), cases[k].wanted);

@@ -253,10 +253,14 @@ static void indices_of_a_noisy_model_are_exact_or_null(void **state)
 	static const struct {
 		bool shared, variance;
 		double first, total;
-	} cases[] = {{true, false, 0.25, NAN}, {true, true, 0.5, NAN}, {false, false, 0.25, 0.75}, {false, true, 0.5, 0.5}};
+	} cases[] = {{true, false, 0.25, NAN},
+	             {true, true, 0.5, NAN},
+	             {false, false, 0.25, 0.75},
+	             {false, true, 0.5, 0.5}};
 	for (int k = 0; k < 4; k++) {
-		char *document = documents_with(two_inputs, "\"rows\": 6",
-		                                cases[k].shared ? "\"rows\": 400, \"signals\": \"common\"" : "\"rows\": 400");
+		char *document =
+		    documents_with(two_inputs, "\"rows\": 6",
+		                   cases[k].shared ? "\"rows\": 400, \"signals\": \"common\"" : "\"rows\": 400");
 		char *csv = noisy_csv(document, cases[k].shared, cases[k].variance);
 		struct reading *result = indices_of(document, csv);
 		for (int j = 0; j < 2; j++) {
@@ -281,7 +285,8 @@ static void a_scene_without_random_signals_has_no_noise_to_share(void **state)
 {
 	(void)state;
 	static const char form[] =
-	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], "
+	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+	    "3}], "
 	    "\"excitation\": %s}, \"inputs\": [{\"path\": \"/oscillators/1/mass_kg\", " UNIFORM
 	    ", {\"path\": \"/contact/restitution\", " UNIFORM "], \"design\": {\"rows\": 100}}";
 	static const char *const excitations[] = {

@@ -280,9 +280,10 @@ static void a_negative_index_is_not_clipped_but_explained(void **state)
 	struct pound_result result = {.n_cells = 2, .cells = cells};
 	struct reading *r = result_of(documents_sensitivity, &result);
 	check_near(reading_number(r, "/cells/0/outputs/0/inputs/0/ST_pick_freeze"), -0.125, 0);
-	assert_string_equal(reading_text(r, "/cells/0/outputs/0/inputs/0/note"),
-	                    "ST_pick_freeze: below 0 by sampling error, so the index is between 0 and the upper end of "
-	                    "its interval");
+	assert_string_equal(
+	    reading_text(r, "/cells/0/outputs/0/inputs/0/note"),
+	    "ST_pick_freeze: below 0 by sampling error, so the index is between 0 and the upper end of "
+	    "its interval");
 	// an index of 0 whose interval reaches below needs no words
 	assert_false(reading_has(r, "/cells/0/outputs/0/inputs/1/note"));
 	reading_close(r);

@@ -71,8 +71,8 @@ static void a_sentence_is_said_where_it_is_true_and_nowhere_else(void **state)
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
 		for (int source = 0; source < 4; source++) {
 			const bool lost = source & 1, large_only = source & 2;
-			struct reading *r =
-			    noted(cases[k].estimate, (struct result_notes_source){.lost = lost, .large_only = large_only});
+			struct reading *r = noted(cases[k].estimate,
+			                          (struct result_notes_source){.lost = lost, .large_only = large_only});
 			const char *wanted = lost ? cases[k].lost : cases[k].plain, *note = reading_text(r, "/note");
 			if (!wanted || (large_only && !cases[k].large))
 				assert_null(note);
@@ -98,10 +98,10 @@ static void estimates_of_which_the_same_is_true_share_a_sentence(void **state)
 	writer_end(&w);
 	char *json = writer_take(&w, &length);
 	struct reading *r = reading_open(json, length);
-	assert_string_equal(
-	    reading_text(r, "/note"),
-	    "ST: far from any share, as the rows are too few for the variance it is a share of; S1, S1_raw: below "
-	    "0 by sampling error, so the index is between 0 and the upper end of its interval");
+	assert_string_equal(reading_text(r, "/note"),
+	                    "ST: far from any share, as the rows are too few for the variance it is a share of; "
+	                    "S1, S1_raw: below "
+	                    "0 by sampling error, so the index is between 0 and the upper end of its interval");
 	reading_close(r);
 	free(json);
 }
@@ -146,7 +146,8 @@ static void no_estimate_is_outside_its_interval_without_a_word(void **state)
 	(void)state;
 	static const char form[] =
 	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 0.5}, "
-	    "{\"frequency_hz\": 2}], \"excitation\": {\"type\": \"kanai_tajimi\", \"cycles\": 5, \"signals\": 2}}, "
+	    "{\"frequency_hz\": 2}], \"excitation\": {\"type\": \"kanai_tajimi\", \"cycles\": 5, \"signals\": "
+	    "2}}, "
 	    "\"inputs\": [{\"path\": \"/oscillators/1/mass_kg\", \"distribution\": {\"type\": "
 	    "\"reciprocal_uniform\", \"max\": 6}}, {\"path\": \"/contact/restitution\", \"distribution\": "
 	    "{\"type\": \"uniform\", \"min\": 0, \"max\": 1}}], \"design\": {\"method\": \"%s\", \"rows\": 16, "

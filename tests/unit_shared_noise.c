@@ -38,11 +38,11 @@ static double product(const double *u, double noise)
 
 static const struct model {
 	double (*y)(const double *u, double noise);
-	double noise;                                /* variance of y given all inputs, on average */
-	double first[D];                             /* V[E(Y|x)] / V(Y) */
-	double total[D];                             /* E[V(Y|all but x)] / V(Y) */
-	double first_given_noise[D];                 /* E_z V[E(Y|x, z)|z] / V(Y): what pick-freeze makes of shared noise */
-	double total_given_noise[D];                 /* E V(Y|all but x, z) / V(Y), likewise */
+	double noise;                /* variance of y given all inputs, on average */
+	double first[D];             /* V[E(Y|x)] / V(Y) */
+	double total[D];             /* E[V(Y|all but x)] / V(Y) */
+	double first_given_noise[D]; /* E_z V[E(Y|x, z)|z] / V(Y): what pick-freeze makes of shared noise */
+	double total_given_noise[D]; /* E V(Y|all but x, z) / V(Y), likewise */
 } models[] = {
     {sum, 2, {.25, .25, 0, 0}, {.75, .75, .5, .5}, {.25, .25, 0, 0}, {.25, .25, 0, 0}},
     {product, 2, {.25, .25, 0, 0}, {.75, .75, .5, .5}, {.5, .25, 0, 0}, {.5, .25, 0, 0}},
@@ -96,7 +96,8 @@ static struct indexes *indexes_of(const struct model *model, struct noise noise,
 	                                        .random = !noise.elsewhere || noise.variance,
 	                                        .fresh_signals = noise.fresh,
 	                                        .quasi_random = noise.quasi_random,
-	                                        .n_resamples = 8}; // few serve where no interval of theirs is looked at
+	                                        .n_resamples =
+	                                            8}; // few serve where no interval of theirs is looked at
 	struct indexes *result = calloc(1, sizeof *result);
 	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, &sampling));
 	for (int k = 0; k < POUND_N_INDEXES; k++)
@@ -173,8 +174,8 @@ static void S1_is_one_of_the_mean_response_where_the_variance_of_the_noise_is_kn
 		for (int j = 0; j < D; j++)
 			exact[j] = models[m].first[j] * 4 / (4 - models[m].noise);
 		for (uint64_t seed = 0; seed < SEEDS; seed++) {
-			struct indexes *got =
-			    indexes_of(&models[m], (struct noise){.elsewhere = true, .variance = true, .rows = ROWS}, seed);
+			struct indexes *got = indexes_of(
+			    &models[m], (struct noise){.elsewhere = true, .variance = true, .rows = ROWS}, seed);
 			score_add(&score, got->estimates[POUND_S1], exact);
 			free(got);
 		}
@@ -234,8 +235,12 @@ static void every_column_estimates_what_its_name_says_or_is_null(void **state)
 static void a_note_says_which_indices_shared_noise_leaves(void **state)
 {
 	(void)state;
-	enum { SIGNAL = 1 << POUND_NOTE_SHARED_SIGNAL, NOISE = 1 << POUND_NOTE_SHARED_NOISE,
-	       INSIDE = 1 << POUND_NOTE_NOISE_INSIDE, NONE = 1 << POUND_NOTE_NO_NEIGHBORS };
+	enum {
+		SIGNAL = 1 << POUND_NOTE_SHARED_SIGNAL,
+		NOISE = 1 << POUND_NOTE_SHARED_NOISE,
+		INSIDE = 1 << POUND_NOTE_NOISE_INSIDE,
+		NONE = 1 << POUND_NOTE_NO_NEIGHBORS
+	};
 	static const struct {
 		struct noise noise;
 		unsigned notes;

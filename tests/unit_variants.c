@@ -439,14 +439,15 @@ static void an_index_without_an_interval_is_noted(void **state)
 	study_free(read);
 }
 
-CHECK_MAIN(cmocka_unit_test(an_index_without_an_interval_is_noted),
-           cmocka_unit_test(every_column_comes_from_its_function),
-           cmocka_unit_test(raw_indexes_are_the_golden_ones_of_the_plain_protocol),
-           cmocka_unit_test(a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_from_no_randomness),
-           cmocka_unit_test(fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_ones),
-           cmocka_unit_test(with_few_rows_the_corrected_indexes_stand_in),
-           cmocka_unit_test(what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left),
-           cmocka_unit_test(nothing_is_defined_where_nothing_varies_or_nothing_is_left),
-           cmocka_unit_test(an_output_that_few_rows_decide_is_noted),
-           cmocka_unit_test(an_input_of_one_value_explains_exactly_nothing),
-           cmocka_unit_test(a_study_s_result_holds_what_its_samples_give))
+CHECK_MAIN(
+    cmocka_unit_test(an_index_without_an_interval_is_noted),
+    cmocka_unit_test(every_column_comes_from_its_function),
+    cmocka_unit_test(raw_indexes_are_the_golden_ones_of_the_plain_protocol),
+    cmocka_unit_test(a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_from_no_randomness),
+    cmocka_unit_test(fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_ones),
+    cmocka_unit_test(with_few_rows_the_corrected_indexes_stand_in),
+    cmocka_unit_test(what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left),
+    cmocka_unit_test(nothing_is_defined_where_nothing_varies_or_nothing_is_left),
+    cmocka_unit_test(an_output_that_few_rows_decide_is_noted),
+    cmocka_unit_test(an_input_of_one_value_explains_exactly_nothing),
+    cmocka_unit_test(a_study_s_result_holds_what_its_samples_give))
