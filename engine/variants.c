@@ -389,7 +389,7 @@ size_t pound_variants_scratch(const struct pound_sample_values *shape, const str
  * Valid    Any design.  With fewer than 30 rows S1 and ST are those of pick-freeze: over six test
  *          functions with noise, n = 16, its totals err by 0.20, those with the polynomial by 0.27; n = 30: 0.14, 0.12.
  * Source   sobol.c, correction.c, local.c, chaos.c
- * Test     unit_variants
+ * Test     unit_variants, unit_shared_noise
  */
 int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices)
