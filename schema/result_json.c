@@ -136,7 +136,8 @@ static bool lost_in_noise(const struct pound_indices *indices)
 
 static void write_excitation(struct writer *w, const struct pound_indices *indices)
 {
-	struct result_notes said = {0};
+	struct result_notes said;
+	result_notes_init(&said);
 	writer_object(w, "excitation", WRITER_LINE);
 	for (int k = 0; k < POUND_N_SHARES; k++) {
 		write_estimate(w, share_names[k], &indices->share[k]);
@@ -165,7 +166,8 @@ static void write_input(struct writer *w, const struct pound_study *study,
                         const struct pound_indices *indices, int j)
 {
 	const struct pound_input *input = &study->inputs[j];
-	struct result_notes said = {0};
+	struct result_notes said;
+	result_notes_init(&said);
 	writer_object(w, NULL, WRITER_LINE);
 	writer_text(w, "name", input->name);
 	writer_text(w, "path", input->path);
@@ -197,7 +199,8 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 	writer_array(w, sets->name, WRITER_LINES);
 	for (int k = 0; k < sets->n; k++) {
 		const struct pound_set_index *set = &sets->set[k];
-		struct result_notes said = {0};
+		struct result_notes said;
+		result_notes_init(&said);
 		writer_object(w, NULL, WRITER_LINE);
 		writer_array(w, "inputs", WRITER_LINE);
 		for (int j = 0; j < study->n_inputs; j++)
@@ -231,7 +234,8 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 	writer_array(w, "variables", WRITER_LINES);
 	for (int k = 0; k < ratios->n; k++) {
 		const struct result_notes_source source = {.large_only = true};
-		struct result_notes said = {0};
+		struct result_notes said;
+		result_notes_init(&said);
 		writer_object(w, NULL, WRITER_LINE);
 		writer_text(w, "name",
 		            k < study->n_ratios ? study->ratios[k].name

@@ -72,6 +72,12 @@ static const struct rule {
 
 static_assert(sizeof rules / sizeof rules[0] == RESULT_NOTES, "a row of names for each rule");
 
+void result_notes_init(struct result_notes *notes)
+{
+	for (int k = 0; k < RESULT_NOTES; k++)
+		*notes->names[k] = 0;
+}
+
 /* Adds what there is to say about an estimate.
  *
  * Test     unit_result_notes

@@ -7,7 +7,7 @@
 
 enum { RESULT_NOTES = 8, RESULT_NOTES_NAMES = 512 };
 
-/* Names of the estimates that each sentence is about; zeros: of none. */
+/* Names of the estimates that each sentence is about. */
 struct result_notes {
 	char names[RESULT_NOTES][RESULT_NOTES_NAMES];
 };
@@ -18,6 +18,7 @@ struct result_notes_source {
 	bool large_only; /* a sampling error that its interval shows needs no words */
 };
 
+void result_notes_init(struct result_notes *notes);
 void result_notes_add(struct result_notes *notes, const char *name, const struct pound_estimate *estimate,
                       struct result_notes_source source);
 void result_notes_write(struct writer *w, const struct result_notes *notes);

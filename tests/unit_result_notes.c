@@ -13,7 +13,8 @@
 /* The note on one estimate; NULL: none.  Free with reading_close. */
 static struct reading *noted(struct pound_estimate estimate, struct result_notes_source source)
 {
-	struct result_notes notes = {0};
+	struct result_notes notes;
+	result_notes_init(&notes);
 	struct writer w;
 	size_t length;
 	writer_init(&w);
@@ -86,7 +87,8 @@ static void estimates_of_which_the_same_is_true_share_a_sentence(void **state)
 {
 	(void)state;
 	static const struct pound_estimate below = {-0.1, -0.3, 0.1}, far = {9, 8, 10};
-	struct result_notes notes = {0};
+	struct result_notes notes;
+	result_notes_init(&notes);
 	struct writer w;
 	size_t length;
 	writer_init(&w);
