@@ -45,9 +45,13 @@ static void interval(char *text, size_t size, const struct reading *result, cons
 		*text = 0;
 }
 
+/* A bar; nothing where there is no share, as an empty bar is a share of 0. */
 static void chart(char text[CHART + 3], double share)
 {
-	long full = isfinite(share) ? lround(fmin(fmax(share, 0.0), 1.0) * CHART) : 0;
+	*text = 0;
+	if (!isfinite(share))
+		return;
+	long full = lround(fmin(fmax(share, 0.0), 1.0) * CHART);
 	text[0] = '|';
 	memset(text + 1, ' ', CHART);
 	memset(text + 1, '#', (size_t)full);
@@ -205,6 +209,19 @@ static void print_note(const char *note)
 	free(sentence);
 }
 
+/* What there is to say about the indices of an input. */
+static void print_input_note(const struct reading *result, const char *output, int j)
+{
+	const char *name = reading_text(result, "%s/inputs/%d/name", output, j);
+	const char *note = reading_text(result, "%s/inputs/%d/note", output, j);
+	if (!note)
+		return;
+	char *of_input =
+	    command_text("%s: %s", name ? name : reading_text(result, "%s/inputs/%d/path", output, j), note);
+	print_note(of_input);
+	free(of_input);
+}
+
 /* How an ordinate of a floor spectrum goes with the largest impulse. */
 static void print_correlation(const struct reading *result, const char *output)
 {
@@ -279,12 +296,9 @@ static void print_accuracy(const struct reading *result, const char *output)
 
 static void print_inputs(const struct reading *result, const char *output)
 {
-	const char *note = NULL;
 	print_quoted(result, output);
-	for (int j = 0; !note && j < reading_count(result, "%s/inputs", output); j++)
-		note = reading_text(result, "%s/inputs/%d/note", output, j);
-	if (note)
-		print_note(note);
+	for (int j = 0; j < reading_count(result, "%s/inputs", output); j++)
+		print_input_note(result, output, j);
 	print_accuracy(result, output);
 }
 

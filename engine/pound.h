@@ -462,16 +462,22 @@ struct pound_accuracy {
 	  "the excitation is not random, so there is no noise to correct for")                \
 	X(POUND_NOTE_ONE_SIGNAL,                                                              \
 	  "with one signal its noise cannot be told apart, so it is in every index")          \
+	X(POUND_NOTE_SHARED_SIGNAL,                                                           \
+	  "the samples of a row share one signal: besides the raw indices only S1 can be estimated; for all others use 2 signals or more") \
 	X(POUND_NOTE_NO_VARIANCE,                                                             \
 	  "no variance of the output is given, so whatever noise the model has is in every index") \
 	X(POUND_NOTE_SHARED_NOISE,                                                            \
-	  "variances do not tell how the samples of a row share their noise, so it is in every index") \
+	  "the samples of a row share their noise, and how is not known: besides the raw indices only S1 can be estimated; for all others give each sample noise of its own") \
+	X(POUND_NOTE_NOISE_INSIDE,                                                            \
+	  "S1 is a share of the variance with the noise in it")                               \
+	X(POUND_NOTE_NO_NEIGHBORS,                                                            \
+	  "S1 is then estimated from neighboring rows, so it needs 30 rows or more of a design other than sobol") \
 	X(POUND_NOTE_FRESH_SIGNALS,                                                           \
 	  "samples that do not share their signals do not show S2_excitation and S1_one_signal") \
 	X(POUND_NOTE_FEW_ROWS,                                                                \
 	  "with fewer than 30 rows S1 and ST are S1_pick_freeze and ST_pick_freeze")          \
 	X(POUND_NOTE_NOISE,                                                                   \
-	  "the signals' noise is about as large as the variance, so corrected indexes are missing or far off") \
+	  "the variance left without the noise may be 0, so all indices but the raw ones are missing or may be far off") \
 	X(POUND_NOTE_NO_INTERVAL,                                                             \
 	  "too few rows for the interval of every index: those without one may be far off")    \
 	X(POUND_NOTE_FEW_DECIDE,                                                              \

@@ -118,6 +118,18 @@ static double total_spread(double q, double n, int d, double total_high)
 	return 4 * sqrt(q / n) * (sqrt(fmax(total_high, 0)) + fmax(total_high, 0) / sqrt(d + 2.0));
 }
 
+/* Whether ST cannot be estimated, because the samples of a row share noise of unknown covariance. */
+static bool noise_shared(const struct pound_indices *indices)
+{
+	return indices->notes & (1u << POUND_NOTE_SHARED_SIGNAL | 1u << POUND_NOTE_SHARED_NOISE);
+}
+
+/* Upper end of the total index that the deviations above need; the raw one is made of the same differences. */
+static double total_high(const struct pound_indices *indices, int input)
+{
+	return indices->index[noise_shared(indices) ? POUND_ST_RAW : POUND_ST][input].high;
+}
+
 /* What the errors of integration may change of S1 and ST: the shift, and the spread. */
 static void changes(struct pound_indices *indices, const struct pound_sample_values *values)
 {
@@ -125,12 +137,12 @@ static void changes(struct pound_indices *indices, const struct pound_sample_val
 	const double q = accuracy->variance_share, n = values->n_rows;
 	for (int j = 0; j < values->n_inputs; j++) {
 		double first = indices->index[POUND_S1][j].value, total = indices->index[POUND_ST][j].value;
-		double high = indices->index[POUND_ST][j].high;
+		double high = total_high(indices, j);
 		double first_change = first_shift(q, first) + first_spread(q, n, first, high);
 		double total_change = total_shift(q, total) + total_spread(q, n, values->n_inputs, high);
 		bool known = isfinite(q) && isfinite(first) && isfinite(high);
 		accuracy->inputs[j].first_change = known ? fmin(1, first_change) : NAN;
-		accuracy->inputs[j].total_change = known ? fmin(1, total_change) : NAN;
+		accuracy->inputs[j].total_change = known && isfinite(total) ? fmin(1, total_change) : NAN;
 	}
 }
 
@@ -159,14 +171,14 @@ static void half_widths(const struct pound_indices *indices, int n_rows, int n_i
 	}
 }
 
-/* Root mean square of all half widths of a level. */
-static double typical(const struct pound_accuracy *accuracy, int n_inputs, int level)
+/* Root mean square of all half widths of a level, with those of ST or without. */
+static double typical(const struct pound_accuracy *accuracy, int n_inputs, int level, bool totals)
 {
 	double squares = 0;
 	for (int j = 0; j < n_inputs; j++)
-		squares +=
-		    pow(accuracy->inputs[j].first_half[level], 2) + pow(accuracy->inputs[j].total_half[level], 2);
-	return sqrt(squares / (2 * n_inputs));
+		squares += pow(accuracy->inputs[j].first_half[level], 2) +
+		           (totals ? pow(accuracy->inputs[j].total_half[level], 2) : 0);
+	return sqrt(squares / ((totals ? 2 : 1) * n_inputs));
 }
 
 /* 2^x for x in [0, 64], by bisection of the logarithm that is the same on every machine; exact to rounding. */
@@ -184,13 +196,13 @@ static double two_to(double x)
  *
  * Test     unit_error_budget: half_widths_fall_with_the_root_of_the_rows
  */
-static void slope(struct pound_accuracy *accuracy, int n_inputs)
+static void slope(struct pound_accuracy *accuracy, int n_inputs, bool totals)
 {
 	// a flatter line is scatter: halving would take more than 32 times the rows
 	const double flattest = -0.2;
 	double n = 0, x = 0, y = 0, xx = 0, xy = 0;
 	for (int k = 0; k < POUND_LEVELS; k++) {
-		double half = typical(accuracy, n_inputs, k);
+		double half = typical(accuracy, n_inputs, k, totals);
 		if (!(half > 0 && isfinite(half)))
 			continue;
 		double p = pound_elementary_log(accuracy->rows[k]), q = pound_elementary_log(half);
@@ -203,28 +215,44 @@ static void slope(struct pound_accuracy *accuracy, int n_inputs)
 
 /* ---- all together ---- */
 
-/* The error that is larger than all others together. */
+/* The error that is larger than all others together.  Noise of few signals is in the intervals: where it may be all of the
+ * widest one, nothing of that is left for too few rows.
+ *
+ * Test     unit_accuracy: the_dominant_error_is_larger_than_the_others_together
+ */
 enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
 {
+	const bool all_noise = errors[POUND_ERROR_EXCITATION] >= errors[POUND_ERROR_SAMPLING];
 	double sum = 0;
 	for (int k = 0; k < POUND_ERROR_NONE; k++)
-		sum += isnan(errors[k]) ? 0 : errors[k];
+		sum += isnan(errors[k]) || (k == POUND_ERROR_SAMPLING && all_noise) ? 0 : errors[k];
 	for (int k = 0; k < POUND_ERROR_NONE; k++)
-		if (errors[k] > 0.5 * sum)
+		if (errors[k] > 0.5 * sum && !(k == POUND_ERROR_SAMPLING && all_noise))
 			return (enum pound_error)k;
 	return POUND_ERROR_NONE;
 }
 
+/* What the noise of few signals adds to an interval: an upper estimate, but no more than the interval, which holds it.
+ *
+ * Test     unit_accuracy: noise_adds_no_more_to_an_interval_than_there_is
+ */
+static double noise_part(double spread, double half)
+{
+	return fmin(1, fmin(spread, half));
+}
+
 /* What the noise of few signals adds to the intervals, at most; it is not in the values, from which it was taken away.
- * An upper estimate where samples share their signals.  NAN: it cannot be told apart. */
+ * An upper estimate where samples share their signals.  NAN: the noise is not known. */
 static double excitation(const struct pound_indices *indices, int n_rows, int n_inputs)
 {
 	const double w = indices->noise_share, q = w < 1 ? w / (1 - w) : INFINITY;
 	double worst = indices->notes >> POUND_NOTE_NOT_RANDOM & 1 ? 0 : NAN;
 	for (int j = 0; j < n_inputs && isfinite(w); j++) {
-		double first = indices->index[POUND_S1][j].value, high = indices->index[POUND_ST][j].high;
-		worst = fmax(worst, fmin(1, first_spread(q, n_rows, first, high)));
-		worst = fmax(worst, fmin(1, total_spread(q, n_rows, n_inputs, high)));
+		const struct pound_estimate first = indices->index[POUND_S1][j], total = indices->index[POUND_ST][j];
+		const double high = total_high(indices, j);
+		worst = fmax(worst, noise_part(first_spread(q, n_rows, first.value, high), half(first)));
+		if (!noise_shared(indices))
+			worst = fmax(worst, noise_part(total_spread(q, n_rows, n_inputs, high), half(total)));
 	}
 	return worst;
 }
@@ -271,6 +299,6 @@ void pound_accuracy_estimate(const struct pound_sample_values *values, struct po
 	accuracy->variance_share = indices->variance > 0 ? variance / indices->variance : NAN;
 	changes(indices, values);
 	half_widths(indices, values->n_rows, values->n_inputs, accuracy);
-	slope(accuracy, values->n_inputs);
+	slope(accuracy, values->n_inputs, !noise_shared(indices));
 	errors_fill(indices, values, accuracy->errors);
 }

@@ -7,7 +7,10 @@
  *    Local regression has a bias where the output changes within its reach; it is refused where it disagrees with the
  *    polynomial, whose estimate has none.
  * 3. Interactions and conditional means are those of chaos_expansion.c.
- * 4. A column that cannot be made is a copy of the next best, and a note says so.  Nothing is clipped. */
+ * 4. A column that cannot be made is a copy of the next best, and a note says so.  Nothing is clipped.
+ * 5. Samples of a row that share their noise are alike in it.  Where the covariance of that noise is unknown, products and
+ *    differences of samples give what an input explains given the noise, which is none of the indices; raw ones are what
+ *    their protocol gives, and neighbors, which are of different rows, still give S1.  The other columns are undefined. */
 #include "engine/indices/indices.h"
 
 #include <assert.h>
@@ -30,7 +33,9 @@ struct sources {
 	const struct pound_sampling *sampling;
 	struct pound_pick_freeze pick_freeze;
 	struct pound_closed_results closed; /* of chaos_expansion.c, given rows enough */
-	bool corrected;                     /* the noise is known */
+	bool corrected;                     /* the covariances of a row's noise are known */
+	bool variance_known;                /* at least the variances are */
+	bool shared;                        /* samples of a row share noise of unknown covariance */
 	double *scratch;
 	struct level level[POUND_LEVELS];
 	struct pound_accuracy *accuracy;
@@ -151,6 +156,12 @@ static void refuse(const struct sources *s, const struct pound_estimate *unbiase
 	}
 }
 
+static void undefined(struct pound_estimate *estimates, int n)
+{
+	for (int k = 0; k < n; k++)
+		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
+}
+
 static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
@@ -158,11 +169,18 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 	struct pound_estimate local[POUND_INPUTS_MAX];
 	// neighbours in one input say nothing where they are arranged in the others
 	const bool neighbours = !s->sampling->quasi_random;
-	if (neighbours) {
-		pound_local_first(s->rows, s->sampling->u, s->corrected, s->scratch, local);
-		refuse(s, s->closed.first, local);
+	if (s->shared && !neighbours) {
+		undefined(into, d);
+		return;
 	}
-	narrower(s, neighbours ? local : s->corrected ? p->first : p->first_raw, s->closed.first, into);
+	if (neighbours)
+		pound_local_first(s->rows, s->sampling->u, s->variance_known, s->scratch, local);
+	if (neighbours && !s->shared)
+		refuse(s, s->closed.first, local);
+	if (s->shared)
+		copy(s, local, into);
+	else
+		narrower(s, neighbours ? local : s->corrected ? p->first : p->first_raw, s->closed.first, into);
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
 		double other[POUND_INPUTS_MAX];
@@ -202,25 +220,20 @@ static const struct column {
 	bool (*possible)(const struct sources *s);
 	void (*make)(const struct sources *s, struct pound_estimate *into);
 	enum pound_index instead; /* the column that stands in, POUND_N_INDEXES: none, undefined */
+	bool shared; /* is what its name says even if the samples of a row share noise of unknown covariance */
 } columns[] = {
-	{POUND_S1_RAW,         always,         first_raw,       POUND_N_INDEXES},
-	{POUND_ST_RAW,         always,         total_raw,       POUND_N_INDEXES},
-	{POUND_S1_PICK_FREEZE, signals_enough, first_corrected, POUND_S1_RAW},
-	{POUND_ST_PICK_FREEZE, signals_enough, total_corrected, POUND_ST_RAW},
-	{POUND_S2_EXCITATION,  signals_shared, with_excitation, POUND_N_INDEXES},
-	{POUND_S1,             rows_enough,    first_sharpest,  POUND_S1_PICK_FREEZE},
-	{POUND_ST,             rows_enough,    total_sharpest,  POUND_ST_PICK_FREEZE},
-	{POUND_SHAPLEY,        rows_enough,    shapley,         POUND_N_INDEXES},
+	{POUND_S1_RAW,         always,         first_raw,       POUND_N_INDEXES,      true},
+	{POUND_ST_RAW,         always,         total_raw,       POUND_N_INDEXES,      true},
+	{POUND_S1_PICK_FREEZE, signals_enough, first_corrected, POUND_S1_RAW,         false},
+	{POUND_ST_PICK_FREEZE, signals_enough, total_corrected, POUND_ST_RAW,         false},
+	{POUND_S2_EXCITATION,  signals_shared, with_excitation, POUND_N_INDEXES,      false},
+	{POUND_S1,             rows_enough,    first_sharpest,  POUND_S1_PICK_FREEZE, true},
+	{POUND_ST,             rows_enough,    total_sharpest,  POUND_ST_PICK_FREEZE, false},
+	{POUND_SHAPLEY,        rows_enough,    shapley,         POUND_N_INDEXES,      false},
 };
 // clang-format on
 
 static_assert(sizeof columns / sizeof columns[0] == POUND_N_INDEXES, "every index has its row");
-
-static void undefined(struct pound_estimate *estimates, int n)
-{
-	for (int k = 0; k < n; k++)
-		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
-}
 
 /* The columns of the estimator that the study names, if it does. */
 static void named_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
@@ -245,14 +258,19 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 	for (int k = 0; k < POUND_N_INDEXES; k++) {
 		const struct column *column = &columns[k];
 		struct pound_estimate *into = indices->index[column->index];
-		if (column->possible(s))
+		const bool told = column->shared || !s->shared;
+		if (told && column->possible(s))
 			column->make(s, into);
-		else if (column->instead == POUND_N_INDEXES)
+		else if (!told || column->instead == POUND_N_INDEXES)
 			undefined(into, d);
 		else
 			copy(s, indices->index[column->instead], into);
 	}
 	named_fill(s, seed, indices);
+	for (int k = 0; k < indices->sets.n_second && s->shared; k++)
+		undefined(&indices->sets.second[k].estimate, 1);
+	for (int k = 0; k < indices->sets.n_closed && s->shared; k++)
+		undefined(&indices->sets.closed[k].estimate, 1);
 	for (int j = 0; j < d; j++)
 		for (int k = 0; k < POUND_N_INDEXES && pound_rows_levels(s->rows, j) == 1; k++)
 			if (k != POUND_S1_RAW && k != POUND_ST_RAW && !isnan(indices->index[k][j].value))
@@ -284,22 +302,24 @@ static void ratios_fill(const struct sources *s, struct pound_indices *indices)
 	if (!s->sampling->ratios || !rows_enough(s))
 		return;
 	double noise = 0.0;
-	if (s->corrected)
+	if (s->variance_known)
 		noise = indices->noise_share * pound_rows_variance(s->rows, s->rows->plain) /
 		        pound_rows_variance(s->rows, s->rows->y);
 	pound_ratio_indices(s->rows, s->sampling->u, s->sampling->ratios, noise, s->scratch, &indices->ratios);
 }
 
-/* Whether taking the noise away has left an index without a variance to be a share of. */
-static bool lost_in_noise(const struct pound_indices *indices, int n_inputs)
+/* Whether the variance left when the noise is taken away, of which indices are shares, may be 0: it is not positive, or the
+ * interval of the noise's share reaches 1. */
+static bool lost_in_noise(const struct sources *s, const struct pound_indices *indices)
 {
 	static const enum pound_index corrected[] = {POUND_S1_PICK_FREEZE, POUND_ST_PICK_FREEZE, POUND_S1,
 	                                             POUND_ST};
-	for (size_t k = 0; k < sizeof corrected / sizeof corrected[0]; k++)
-		for (int j = 0; j < n_inputs; j++)
+	for (size_t k = 0; k < sizeof corrected / sizeof corrected[0] && s->corrected; k++)
+		for (int j = 0; j < s->rows->n_inputs; j++)
 			if (isnan(indices->index[corrected[k]][j].value))
 				return true;
-	return false;
+	const struct pound_estimate *share = &indices->share[POUND_SHARE_TOTAL];
+	return s->variance_known && share->high >= 1.0;
 }
 
 /* Whether an index has a value that nothing says how good it is: in some group of rows there is no variance left for it. */
@@ -369,7 +389,7 @@ size_t pound_variants_scratch(const struct pound_sample_values *shape, const str
  * Valid    Any design.  With fewer than 30 rows S1 and ST are those of pick-freeze: over six test
  *          functions with noise, n = 16, its totals err by 0.20, those with the polynomial by 0.27; n = 30: 0.14, 0.12.
  * Source   plain_indices.c, noise_correction.c, local_regression.c, chaos_expansion.c
- * Test     unit_index_columns
+ * Test     unit_index_columns, unit_shared_noise
  */
 int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices)
@@ -382,10 +402,12 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	                    .corrected = values->n_signals > 1 && sampling->random,
 	                    .scratch = scratch + pound_rows_scratch(values),
 	                    .accuracy = &indices->accuracy};
-	// of outputs computed elsewhere the noise is known by its variances, which are all there is if samples do not share it
-	const bool elsewhere = values->variance;
-	if (elsewhere)
-		s.corrected = sampling->random && sampling->fresh_signals;
+	// of outputs computed elsewhere the noise is known by its variances, which are all there is if samples do not share it;
+	// whether they have noise is not known
+	const bool elsewhere = values->variance, fresh = sampling->fresh_signals;
+	s.variance_known = elsewhere ? sampling->random : s.corrected;
+	s.corrected = s.variance_known && (!elsewhere || fresh);
+	s.shared = !fresh && !s.corrected && (elsewhere || sampling->random);
 	const bool varies = pound_sobol_summary(&rows, indices);
 	for (int j = 0; j < d && indices->curves; j++)
 		undefined(indices->curves[j].mean, POUND_CURVE);
@@ -413,21 +435,27 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 			undefined(indices->named[k], d);
 		undefined(indices->share, POUND_N_SHARES);
 	}
+	const bool few = !rows_enough(&s);
 	indices->notes = notes_of((const bool[POUND_N_NOTES]){
 	    [POUND_NOTE_NO_ROWS] = rows.n_rows == 0,
 	    [POUND_NOTE_ONE_ROW] = rows.n_rows == 1,
 	    [POUND_NOTE_CONSTANT] = rows.n_rows > 1 && !varies,
 	    [POUND_NOTE_NOT_RANDOM] = varies && !elsewhere && !sampling->random,
-	    [POUND_NOTE_ONE_SIGNAL] = varies && !elsewhere && !s.corrected && sampling->random,
-	    [POUND_NOTE_NO_VARIANCE] = varies && elsewhere && !sampling->random,
-	    [POUND_NOTE_SHARED_NOISE] = varies && elsewhere && sampling->random && !sampling->fresh_signals,
-	    [POUND_NOTE_FRESH_SIGNALS] = varies && !elsewhere && s.corrected && sampling->fresh_signals,
-	    [POUND_NOTE_FEW_ROWS] = varies && !rows_enough(&s),
-	    [POUND_NOTE_NOISE] = varies && s.corrected && lost_in_noise(indices, d),
+	    [POUND_NOTE_ONE_SIGNAL] = varies && !elsewhere && !s.corrected && sampling->random && fresh,
+	    [POUND_NOTE_SHARED_SIGNAL] = varies && !elsewhere && s.shared,
+	    [POUND_NOTE_NO_VARIANCE] = varies && elsewhere && !sampling->random && fresh,
+	    [POUND_NOTE_SHARED_NOISE] = varies && elsewhere && s.shared,
+	    [POUND_NOTE_NOISE_INSIDE] = varies && s.shared && !s.variance_known,
+	    [POUND_NOTE_NO_NEIGHBORS] = varies && s.shared && (few || sampling->quasi_random),
+	    [POUND_NOTE_FRESH_SIGNALS] = varies && !elsewhere && s.corrected && fresh,
+	    [POUND_NOTE_FEW_ROWS] = varies && few && !s.shared,
+	    [POUND_NOTE_NOISE] = varies && lost_in_noise(&s, indices),
 	    [POUND_NOTE_NO_INTERVAL] = varies && lacks_interval(indices, d),
-	    [POUND_NOTE_FEW_DECIDE] = varies && rows_enough(&s) && few_decide(&rows),
+	    [POUND_NOTE_FEW_DECIDE] = varies && !few && few_decide(&rows),
 	});
 	const int dropped = values->n_rows - rows.n_rows;
 	pound_dropped_changes(&rows, dropped, &indices->accuracy);
+	for (int j = 0; j < d && s.shared; j++)
+		indices->accuracy.inputs[j].total_dropped = NAN;
 	return dropped;
 }

@@ -480,7 +480,9 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    .u = run->u,
 	    .random =
 	        elsewhere ? any_known(values.variance, n) : pound_excitation_random(&c->study->scene.excitation),
-	    .fresh_signals = !c->study->design.common_signals,
+	    // in a scene without random signals samples of a row have no noise to share, whoever runs them
+	    .fresh_signals = !c->study->design.common_signals ||
+	                     (elsewhere && !pound_excitation_random(&c->study->scene.excitation)),
 	    .n_resamples = c->study->design.resamples,
 	    .quasi_random = pound_design_quasi_random(c->study->design.method),
 	    .estimator = c->study->design.estimator,

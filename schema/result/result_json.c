@@ -9,6 +9,7 @@
 #include "schema/result/result_accuracy.h"
 #include "schema/result/result_design.h"
 #include "schema/result/result_floor.h"
+#include "schema/result/result_notes.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
 
@@ -118,7 +119,7 @@ static void write_estimate(struct writer *w, const char *name, const struct poun
 /* All there is to say about an output's indexes, in one text. */
 static void write_notes(struct writer *w, const struct pound_indices *indices)
 {
-	char text[1024];
+	char text[2048];
 	int n = 0;
 	for (int k = 0; k < POUND_N_NOTES; k++)
 		if (indices->notes >> k & 1)
@@ -127,61 +128,88 @@ static void write_notes(struct writer *w, const struct pound_indices *indices)
 		writer_text(w, "note", text);
 }
 
+/* Whether the variance left without the noise, of which all indices but the raw ones are shares, may be 0. */
+static bool lost_in_noise(const struct pound_indices *indices)
+{
+	return indices->notes >> POUND_NOTE_NOISE & 1;
+}
+
 static void write_excitation(struct writer *w, const struct pound_indices *indices)
 {
+	struct result_notes said;
+	result_notes_init(&said);
 	writer_object(w, "excitation", WRITER_LINE);
-	for (int k = 0; k < POUND_N_SHARES; k++)
+	for (int k = 0; k < POUND_N_SHARES; k++) {
 		write_estimate(w, share_names[k], &indices->share[k]);
+		result_notes_add(&said, share_names[k], &indices->share[k],
+		                 (struct result_notes_source){.large_only = true});
+	}
+	result_notes_write(w, &said);
 	writer_end(w);
 }
 
-/* The columns of an estimator that the study names; says whether one is negative. */
-static bool write_named(struct writer *w, const char *estimator, const struct pound_indices *indices, int j)
+/* The columns of an estimator that the study names. */
+static void write_named(struct writer *w, const char *estimator, const struct pound_indices *indices, int j,
+                        struct result_notes *said)
 {
-	bool negative = false;
 	for (int k = 0; k < POUND_N_NAMED; k++) {
+		const bool corrected = k == POUND_NAMED_S1_CORRECTED || k == POUND_NAMED_ST_CORRECTED;
 		char name[64];
 		snprintf(name, sizeof name, named_forms[k], estimator);
 		write_estimate(w, name, &indices->named[k][j]);
-		negative |= indices->named[k][j].value < 0.0;
+		result_notes_add(said, name, &indices->named[k][j],
+		                 (struct result_notes_source){.lost = corrected && lost_in_noise(indices)});
 	}
-	return negative;
 }
 
 static void write_input(struct writer *w, const struct pound_study *study,
                         const struct pound_indices *indices, int j)
 {
 	const struct pound_input *input = &study->inputs[j];
-	bool negative = false;
+	struct result_notes said;
+	result_notes_init(&said);
 	writer_object(w, NULL, WRITER_LINE);
 	writer_text(w, "name", input->name);
 	writer_text(w, "path", input->path);
 	for (int k = 0; k < POUND_N_INDEXES; k++) {
+		const bool raw = k == POUND_S1_RAW || k == POUND_ST_RAW;
 		write_estimate(w, index_names[k], &indices->index[k][j]);
-		negative |= indices->index[k][j].value < 0.0;
+		result_notes_add(&said, index_names[k], &indices->index[k][j],
+		                 (struct result_notes_source){.lost = !raw && lost_in_noise(indices)});
 	}
 	if (study->design.estimator)
-		negative |= write_named(w, pound_estimator_name(study->design.estimator), indices, j);
-	if (negative)
-		writer_text(w, "note", "a value below 0 is sampling error around a small index");
+		write_named(w, pound_estimator_name(study->design.estimator), indices, j, &said);
+	result_notes_write(w, &said);
 	writer_end(w);
 }
 
-/* Indexes of sets of inputs; nothing where the design tells none. */
-static void write_sets(struct writer *w, const struct pound_study *study, const char *name, const char *index,
-                       const struct pound_set_index *sets, int n)
+/* A list of indices of sets of inputs. */
+struct sets {
+	const char *name, *index; /* of the list, of the index */
+	const struct pound_set_index *set;
+	int n;
+	struct result_notes_source source;
+};
+
+/* Indices of sets of inputs; nothing where the design tells none. */
+static void write_sets(struct writer *w, const struct pound_study *study, const struct sets *sets)
 {
-	if (n == 0)
+	if (sets->n == 0)
 		return;
-	writer_array(w, name, WRITER_LINES);
-	for (int k = 0; k < n; k++) {
+	writer_array(w, sets->name, WRITER_LINES);
+	for (int k = 0; k < sets->n; k++) {
+		const struct pound_set_index *set = &sets->set[k];
+		struct result_notes said;
+		result_notes_init(&said);
 		writer_object(w, NULL, WRITER_LINE);
 		writer_array(w, "inputs", WRITER_LINE);
 		for (int j = 0; j < study->n_inputs; j++)
-			if (sets[k].inputs >> j & 1)
+			if (set->inputs >> j & 1)
 				writer_text(w, NULL, study->inputs[j].name);
 		writer_end(w);
-		write_estimate(w, index, &sets[k].estimate);
+		write_estimate(w, sets->index, &set->estimate);
+		result_notes_add(&said, sets->index, &set->estimate, sets->source);
+		result_notes_write(w, &said);
 		writer_end(w);
 	}
 	writer_end(w);
@@ -205,6 +233,9 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 		    "indexes are those of the output");
 	writer_array(w, "variables", WRITER_LINES);
 	for (int k = 0; k < ratios->n; k++) {
+		const struct result_notes_source source = {.large_only = true};
+		struct result_notes said;
+		result_notes_init(&said);
 		writer_object(w, NULL, WRITER_LINE);
 		writer_text(w, "name",
 		            k < study->n_ratios ? study->ratios[k].name
@@ -212,6 +243,10 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 		write_estimate(w, "shapley", &ratios->shapley[k]);
 		write_estimate(w, "S1", &ratios->first[k]);
 		write_estimate(w, "ST", &ratios->total[k]);
+		result_notes_add(&said, "shapley", &ratios->shapley[k], source);
+		result_notes_add(&said, "S1", &ratios->first[k], source);
+		result_notes_add(&said, "ST", &ratios->total[k], source);
+		result_notes_write(w, &said);
 		writer_end(w);
 	}
 	writer_end(w);
@@ -278,8 +313,10 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	for (int j = 0; j < study->n_inputs; j++)
 		write_input(w, study, indices, j);
 	writer_end(w);
-	write_sets(w, study, "second_order", "S2", indices->sets.second, indices->sets.n_second);
-	write_sets(w, study, "closed", "S_closed", indices->sets.closed, indices->sets.n_closed);
+	const struct pound_set_indices *sets = &indices->sets;
+	const struct result_notes_source source = {.lost = lost_in_noise(indices), .large_only = true};
+	write_sets(w, study, &(struct sets){"second_order", "S2", sets->second, sets->n_second, source});
+	write_sets(w, study, &(struct sets){"closed", "S_closed", sets->closed, sets->n_closed, source});
 	write_ratios(w, study, indices);
 	write_curves(w, study, indices);
 	result_accuracy_output(w, study, indices);

@@ -193,7 +193,7 @@ const struct field fields[] = {
 	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
 	 .text = "same seed, same numbers", NOT_SCENE},
 	{"/design/signals", FIELD_BOOL, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
-	 .text = "whether the samples of a row share their noise", .choice = signals_name, SENSITIVITY,
+	 .text = "whether the samples of a row share their noise; if they do, ST and interactions need 2 signals or more", .choice = signals_name, SENSITIVITY,
 	 NOT_SCENE},
 	{"/design/order", FIELD_CHOICE, AT(design.order), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "how many mixtures of A and B a row has: n_inputs + 2, 2 n_inputs + 2 or all; factorial for at most 5 inputs",

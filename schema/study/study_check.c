@@ -539,6 +539,17 @@ static void check_rows(const struct pound_study *study, struct problems *problem
 		             2 * design->randomisations, design->rows);
 }
 
+/* A design that grows waits for every S1 and ST, and of one random signal that the samples of a row share no ST is known. */
+static void check_until(const struct pound_study *study, struct problems *problems)
+{
+	if (study->design.until.half_width > 0 && excitation_uses(study, "/scene/excitation/signals") &&
+	    study->scene.excitation.signals == 1 && study->design.common_signals)
+		problems_add(
+		    problems, "/design/until",
+		    "needs /scene/excitation/signals of 2 or more, or \"independent\" /design/signals: ST cannot "
+		    "be estimated from one signal that the samples of a row share");
+}
+
 static void check_size(const struct pound_study *study, struct problems *problems)
 {
 	const char *pointer = size_pointer(study);
@@ -547,6 +558,9 @@ static void check_size(const struct pound_study *study, struct problems *problem
 	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
 	if (sampled)
 		check_rows(study, problems);
+	if (sampled && !problems_at(problems, "/scene/excitation/type") &&
+	    !problems_at(problems, "/design/signals"))
+		check_until(study, problems);
 	if (runs > most)
 		problems_exceed(problems, pointer, runs, most,
 		                "asks for %.15g pounding runs, a study may have at most %d", runs, most);

@@ -228,12 +228,31 @@ static char *with_every_table(void)
 	return whole;
 }
 
+/* Of one signal that samples share there is no total index: no column of it, and no bars, which would look like zeros. */
+static void a_table_has_no_column_for_an_index_that_is_null_throughout(void **state)
+{
+	(void)state;
+	struct program_outcome document =
+	    program_run((const char *const[]){"pound", "example", "sensitivity_small", NULL}, NULL);
+	char *several = strstr(document.out, "\"signals\": ");
+	assert_non_null(several);
+	several[strlen("\"signals\": ")] = '1';
+	assert_false(several[strlen("\"signals\": 1")] >= '0' && several[strlen("\"signals\": 1")] <= '9');
+	struct program_outcome table =
+	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
+	program_expect(&table, 0);
+	assert_non_null(strstr(table.out, "S1_raw"));
+	assert_null(strstr(table.out, "ST ["));
+	assert_null(strstr(table.out, "ST from 0 to 1"));
+	program_free(&table), program_free(&document);
+}
+
 static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
 {
 	static const char *const words[] = {
 	    "S1 [95 % interval]", "S1_pick_freeze", "ST_raw",   "S1_janon_corrected", "shapley",
 	    "S2_excitation",      "\n  inputs",     "S2",       "S_closed",           "f_e/f_2",
-	    "these explain",      "ratio bias",     "0 lowest", "ST_one_signal",      "note: a value below 0"};
+	    "these explain",      "ratio bias",     "0 lowest", "ST_one_signal",      "note: f_e: S1_"};
 	char *study = with_every_table();
 	struct program_outcome table =
 	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study);
@@ -481,6 +500,7 @@ CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_
            cmocka_unit_test(a_table_says_how_many_responses_failed_and_why),
            SERVED(a_study_without_any_result_ends_with_3_and_says_why),
            cmocka_unit_test(a_table_fits_in_100_columns),
+           cmocka_unit_test(a_table_has_no_column_for_an_index_that_is_null_throughout),
            cmocka_unit_test(a_table_shows_every_estimate_of_a_result_and_its_notes),
            cmocka_unit_test(one_table_of_a_result_is_shown_by_its_name),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),

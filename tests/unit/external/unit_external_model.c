@@ -4,6 +4,7 @@
 
 #include "engine/design/design.h"
 #include "engine/indices/indices.h"
+#include "engine/numeric/random.h"
 #include "schema/examples/examples.h"
 #include "schema/external/external_model.h"
 #include "schema/json/json_pointer.h"
@@ -209,11 +210,100 @@ static void a_variance_column_takes_independent_noise_out(void **state)
 	// a row whose samples share their noise needs covariances, which are not there
 	char *document = documents_with(two_inputs, "\"rows\": 6", "\"rows\": 6, \"signals\": \"common\"");
 	result = indices_of(document, csv);
-	check_near(index_of(result, 0, 0, "S1_pick_freeze"), 0.572576783750673, 1e-12);
+	check_near(index_of(result, 0, 0, "S1_raw"), 0.572576783750673, 1e-12);
+	assert_true(isnan(index_of(result, 0, 0, "S1_pick_freeze")));
+	assert_true(isnan(index_of(result, 0, 0, "ST")));
 	assert_non_null(strstr(reading_text(result, "/cells/0/outputs/0/note"), "share their noise"));
 	reading_close(result);
 	free(document);
 	free(csv);
+}
+
+/* Outputs p + q + z of a study's design as CSV, z twice as scattered as an input: one for the samples of a row or one for
+ * each; with its variance in a column of its own, or without. */
+static char *noisy_csv(const char *document, bool shared, bool variance)
+{
+	struct pound_study *study = study_of(document);
+	double *x = malloc(sizeof *x * (size_t)study->design.rows * 4);
+	char *csv = NULL;
+	size_t n;
+	FILE *out = open_memstream(&csv, &n);
+	pound_design_fill(study, x);
+	fputs(variance ? "y,y.variance\n" : "y\n", out);
+	for (int row = 0; row < study->design.rows; row++)
+		for (int sample = 0; sample < 4; sample++) {
+			const struct pound_stream stream = {
+			    .seed = 1, .row = (uint32_t)row, .sample = shared ? 0 : (uint32_t)sample};
+			const unsigned from_b = pound_order_mask(2, sample);
+			const double p = x[row * 4 + 2 * (from_b & 1)], q = x[row * 4 + 2 * (from_b >> 1 & 1) + 1];
+			fprintf(out, "%.17g", p + q + M_SQRT2 * pound_random_uniform(stream, 0));
+			fputs(variance ? ",0.16666666666666666\n" : "\n", out);
+		}
+	fclose(out);
+	free(x);
+	study_free(study);
+	return csv;
+}
+
+/* p, q and z have shares 1/4, 1/4 and 1/2 of the variance of y, and p and q halves of that of the mean response; with noise
+ * of its own in every sample all but S1 of the other input is in ST. */
+static void indices_of_a_noisy_model_are_exact_or_null(void **state)
+{
+	(void)state;
+	static const struct {
+		bool shared, variance;
+		double first, total;
+	} cases[] = {{true, false, 0.25, NAN},
+	             {true, true, 0.5, NAN},
+	             {false, false, 0.25, 0.75},
+	             {false, true, 0.5, 0.5}};
+	for (int k = 0; k < 4; k++) {
+		char *document =
+		    documents_with(two_inputs, "\"rows\": 6",
+		                   cases[k].shared ? "\"rows\": 400, \"signals\": \"common\"" : "\"rows\": 400");
+		char *csv = noisy_csv(document, cases[k].shared, cases[k].variance);
+		struct reading *result = indices_of(document, csv);
+		for (int j = 0; j < 2; j++) {
+			const double first = index_of(result, 0, j, "S1"), total = index_of(result, 0, j, "ST");
+			// twice half an interval of 95 %: four standard errors
+			check_near(first, cases[k].first, 2 * (index_of(result, 0, j, "S1_high") - first));
+			assert_int_equal(isnan(total), isnan(cases[k].total));
+			if (!isnan(total))
+				check_near(total, cases[k].total, 2 * (index_of(result, 0, j, "ST_high") - total));
+			assert_true(isfinite(index_of(result, 0, j, "S1_raw")));
+		}
+		const char *note = reading_text(result, "/cells/0/outputs/0/note");
+		assert_int_equal(note && strstr(note, "give each sample noise of its own"), cases[k].shared);
+		assert_int_equal(note && strstr(note, "with the noise in it"), cases[k].shared && !cases[k].variance);
+		reading_close(result);
+		free(csv), free(document);
+	}
+}
+
+/* The samples of a row share their signals unless a study says otherwise; in a scene without random ones that is nothing. */
+static void a_scene_without_random_signals_has_no_noise_to_share(void **state)
+{
+	(void)state;
+	static const char form[] =
+	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+	    "3}], "
+	    "\"excitation\": %s}, \"inputs\": [{\"path\": \"/oscillators/1/mass_kg\", " UNIFORM
+	    ", {\"path\": \"/contact/restitution\", " UNIFORM "], \"design\": {\"rows\": 100}}";
+	static const char *const excitations[] = {
+	    "{\"type\": \"harmonic\", \"frequency_hz\": 2, \"duration_s\": 4, \"time_step_s\": 0.01}",
+	    "{\"type\": \"kanai_tajimi\", \"frequency_hz\": 2}"};
+	for (int random = 0; random < 2; random++) {
+		char document[1024], *positive;
+		snprintf(document, sizeof document, form, excitations[random]);
+		positive = documents_with(document, "\"min\": 0", "\"min\": 0.5"); // of the mass
+		char *csv = noisy_csv(positive, true, false);
+		struct reading *result = indices_of(positive, csv);
+		assert_int_equal(isnan(index_of(result, 0, 0, "ST")), random);
+		assert_int_equal(isnan(index_of(result, 0, 0, "S1_pick_freeze")), random);
+		assert_true(isfinite(index_of(result, 0, 0, "S1")));
+		reading_close(result);
+		free(csv), free(positive);
+	}
 }
 
 static void an_inert_input_has_no_total_once_replicates_tell_the_noise(void **state)
@@ -567,6 +657,8 @@ CHECK_MAIN(cmocka_unit_test(every_spelling_of_a_decimal_number_is_one),
            cmocka_unit_test(rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers),
            cmocka_unit_test(outputs_computed_elsewhere_give_the_golden_indexes),
            cmocka_unit_test(a_variance_column_takes_independent_noise_out),
+           cmocka_unit_test(indices_of_a_noisy_model_are_exact_or_null),
+           cmocka_unit_test(a_scene_without_random_signals_has_no_noise_to_share),
            cmocka_unit_test(an_inert_input_has_no_total_once_replicates_tell_the_noise),
            cmocka_unit_test(a_run_without_a_number_takes_its_row_out_of_every_output),
            cmocka_unit_test(spelling_and_further_columns_do_not_change_the_result),

@@ -25,7 +25,7 @@ static struct estimated *estimated_of(const struct pound_sample_values *values, 
 	size_t n = pound_variants_scratch(values, 0);
 	double *scratch = malloc(sizeof *scratch * (n + (size_t)checks.n));
 	double *u = function_design(values->n_rows, seed);
-	const struct pound_sampling sampling = {.u = u, .random = true};
+	const struct pound_sampling sampling = {.u = u, .random = true, .fresh_signals = values->n_signals == 1};
 	for (int k = 0; k < POUND_N_INDEXES; k++)
 		e->of.index[k] = e->index[k];
 	pound_variants_indices(values, &sampling, seed, scratch, &e->of);
@@ -218,6 +218,38 @@ static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
 	}
 }
 
+/* An index that is exactly 1 has an interval of no width, and the noise of signals that its rows share adds nothing to it. */
+static void noise_adds_no_more_to_an_interval_than_there_is(void **state)
+{
+	(void)state;
+	enum { N = 40, SIGNALS = 2 };
+	double numerator[N * 3 * SIGNALS], one[N * 3 * SIGNALS], u[N * 2];
+	for (int i = 0; i < N; i++) {
+		u[2 * i] = (i + 0.5) / N, u[2 * i + 1] = (7 * i % N + 0.5) / N;
+		// one input: its sample from A and B is B
+		for (int p = 0; p < 3; p++)
+			for (int r = 0; r < SIGNALS; r++) {
+				const double noise = r ? 1 : -1;
+				numerator[(i * 3 + p) * SIGNALS + r] = u[2 * i + (p > 0)] + noise * (1 + i % 3) / 10;
+				one[(i * 3 + p) * SIGNALS + r] = 1;
+			}
+	}
+	const struct pound_sample_values values = {
+	    .n_rows = N, .n_inputs = 1, .n_signals = SIGNALS, .numerator = numerator, .denominator = one};
+	struct estimated *e = calloc(1, sizeof *e);
+	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
+	for (int k = 0; k < POUND_N_INDEXES; k++)
+		e->of.index[k] = e->index[k];
+	pound_variants_indices(&values, &(struct pound_sampling){.u = u, .random = true}, 1, scratch, &e->of);
+	pound_accuracy_estimate(&values, (struct pound_checks){0, NULL}, scratch, &e->of);
+	const double sampling = e->of.accuracy.errors[POUND_ERROR_SAMPLING];
+	assert_true(e->of.noise_share > 0.2);
+	check_near(e->index[POUND_S1][0].low, 1, 0);
+	check_near(sampling, 0, 0);
+	check_near(e->of.accuracy.errors[POUND_ERROR_EXCITATION], 0, 0);
+	free(scratch), free(e);
+}
+
 static void few_rows_and_constant_outputs_have_no_slope(void **state)
 {
 	(void)state;
@@ -247,7 +279,8 @@ static void the_dominant_error_is_larger_than_the_others_together(void **state)
 	} cases[] = {
 	    {{0.1, 0.02, 1e-9, 0}, POUND_ERROR_SAMPLING},     {{0.01, 0.02, NAN, 0}, POUND_ERROR_EXCITATION},
 	    {{0.01, NAN, 0.2, 0.1}, POUND_ERROR_INTEGRATION}, {{0.01, 0.01, 0.01, 0.04}, POUND_ERROR_FAILED_ROWS},
-	    {{0.05, 0.05, 0, 0}, POUND_ERROR_NONE},           {{NAN, NAN, NAN, 0}, POUND_ERROR_NONE},
+	    {{0.05, 0.05, 0, 0}, POUND_ERROR_EXCITATION},     {{0.05, 0.03, 0.02, 0}, POUND_ERROR_NONE},
+	    {{NAN, NAN, NAN, 0}, POUND_ERROR_NONE},
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
 		assert_int_equal(pound_accuracy_dominant(cases[k].errors), cases[k].wanted);
@@ -338,6 +371,7 @@ CHECK_MAIN(cmocka_unit_test(differences_of_runs_come_out_relative_and_as_a_varia
            cmocka_unit_test(half_widths_of_all_rows_are_those_of_the_indexes),
            cmocka_unit_test(noise_of_few_signals_is_an_error_in_the_intervals),
            cmocka_unit_test(few_rows_and_constant_outputs_have_no_slope),
+           cmocka_unit_test(noise_adds_no_more_to_an_interval_than_there_is),
            cmocka_unit_test(the_dominant_error_is_larger_than_the_others_together),
            cmocka_unit_test(checked_runs_agree_and_are_counted_apart),
            cmocka_unit_test(restored_blocks_bring_their_checks),
