@@ -3,7 +3,7 @@
  * 1. every sample of every cell asks for its ground motion, its responses without pounding and its run with pounding;
  * 2. what is asked is written down as a key of numbers, equal keys are one motion or one march;
  * 3. motions are filled, then marches run stage by stage: linear responses, nonlinear ones with the yield
- *    displacement found from the stage before, last the runs with pounding.
+ *    displacement found from the stages before, last the runs with pounding.
  *
  * The check of an item is all this once more on ground motions with a sample between every two: the same signal, as it
  * is linear between samples, in other steps with other maps, series and root searches. */
@@ -14,6 +14,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/bracket.h"
+#include "engine/elementary.h"
 #include "engine/excitation.h"
 #include "engine/hash.h"
 #include "engine/outputs.h"
@@ -21,7 +23,13 @@
 #include "engine/scene.h"
 #include "engine/solver.h"
 
-enum { KEY = 20 }; /* doubles of a key, both of a motion and of a march */
+enum {
+	KEY = 20,       /* doubles of a key, both of a motion and of a march */
+	SEARCH_MIN = 2, /* corrections from which on they are those of a search */
+};
+
+/* Relative difference from the target demand at which a search for it ends. */
+static const double TARGET_REACHED = 1e-6;
 
 /* equal keys have one number, in the order they were first asked */
 struct register_ {
@@ -47,6 +55,12 @@ struct body_ask {
 	enum pound_status status; /* of the marches its yield displacement comes from */
 	bool wanted;   /* its response without pounding is needed, beyond finding its yield displacement */
 	bool finished; /* the last march is that response */
+	bool found;    /* the search for the target demand is over */
+	struct pound_bracket bracket; /* of the logarithm of the demand over its target, by that of the yield displacement */
+	struct {
+		int march; /* the one nearest to the target demand, -1: none yet */
+		double yield, off;
+	} best;
 };
 
 struct ask {
@@ -304,6 +318,66 @@ static double reduction(const struct pound_scene *scene, int i, double demand)
 	return 1 + (demand - 1) * fmin(rise, 1);
 }
 
+static bool searched(const struct pound_law *law)
+{
+	return !pound_pieces_linear(law->type) && !(law->yield_displacement > 0) && law->corrections >= SEARCH_MIN;
+}
+
+/* Ends the search for a target demand with the march that came nearest to it. */
+static void search_end(struct body_ask *body, bool enclosed, struct pound_work *work)
+{
+	body->march = body->best.march;
+	body->yield = body->best.yield;
+	work->yield_searches++;
+	if (body->best.off <= TARGET_REACHED)
+		return;
+	if (enclosed)
+		work->yield_jumps++;
+	else
+		work->yield_missed++;
+}
+
+/* Asks for the next march of a search for the target demand, behind the one with the reduced elastic displacement.
+ *
+ * Returns  value   false: none is needed
+ *          work    of a search that ends, how it does
+ *
+ * Source   model.md 3
+ * Test     unit_yield
+ */
+static bool search_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i,
+                         int stage, struct pound_work *work)
+{
+	const struct pound_law *law = pound_scene_law(&ask->scene, i);
+	const struct pound_march_result *before = &plan->results[body->march];
+	if (body->found)
+		return false;
+	body->status = body->status ? body->status : before->status;
+	const double demand = before->displacement_max[0] / body->yield / law->target_demand;
+	const double off = fabs(demand - 1);
+	if (body->best.march < 0 || off < body->best.off) {
+		body->best.march = body->march;
+		body->best.yield = body->yield;
+		body->best.off = off;
+	}
+	body->found = true;
+	body->finished = body->wanted;
+	if (body->status || !(body->yield > 0))
+		return false; // there is no demand
+	double next = 0;
+	bool goes_on = off > TARGET_REACHED &&
+	               pound_bracket_next(&body->bracket, pound_elementary_log(body->yield),
+	                                  pound_elementary_log(demand), &next);
+	if (!goes_on || stage > 1 + law->corrections) {
+		search_end(body, !goes_on, work);
+		return false;
+	}
+	body->found = body->finished = false;
+	body->yield = pound_elementary_exp(next);
+	body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, body->yield));
+	return true;
+}
+
 /* Asks for a body's march of a stage: stage 0 is linear, stage k >= 1 has the yield displacement found by then.
  *
  * Returns  value   false: none is needed
@@ -316,6 +390,8 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 	bool linear = pound_pieces_linear(law->type);
 	bool given = law->yield_displacement > 0;
 	int last_stage = linear ? 0 : given ? 1 : 1 + law->corrections;
+	if (stage > 1 && searched(law))
+		return search_stage(plan, ask, body, i, stage, work);
 	if (stage > last_stage)
 		return false;
 	if (stage == 0 && !linear && given) {
@@ -355,15 +431,18 @@ static void ask_free(const struct pound_campaign *campaign, struct ask *ask)
 	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
-		ask->bodies[i] = (struct body_ask){.march = -1, .wanted = moves && (i == 0 || response || may_miss)};
+		ask->bodies[i] = (struct body_ask){
+		    .march = -1, .wanted = moves && (i == 0 || response || may_miss), .best.march = -1};
 	}
 }
 
 static int stages_of(const struct ask *ask)
 {
 	int stages = 1;
-	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		stages = (int)fmax(stages, 2 + pound_scene_law(&ask->scene, i)->corrections);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_law *law = pound_scene_law(&ask->scene, i);
+		stages = (int)fmax(stages, 2 + law->corrections + (searched(law) ? 1 : 0)); // one to look at the last march
+	}
 	return stages;
 }
 
@@ -498,16 +577,19 @@ static int item_write(struct pound_plan *plan, const struct pound_campaign *camp
 	return a;
 }
 
-/* Asks for what asks [first, end) need of a stage without pounding. */
-static void stage_ask(struct pound_plan *plan, int first, int end, int stage,
+/* Asks for what asks [first, end) need of a stage without pounding; false: nothing, nor of a later one. */
+static bool stage_ask(struct pound_plan *plan, int first, int end, int stage,
                       struct pound_stage_work *counted, struct pound_work *work)
 {
 	int before = plan->march_keys.n;
+	int64_t asked = 0;
 	for (int a = first; a < end; a++)
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			if (!plan->asks[a].scene.oscillators[i].rigid_wall)
-				counted->asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage, work);
+				asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage, work);
+	counted->asked += asked;
 	counted->run += plan->march_keys.n - before;
+	return asked > 0 || stage == 0; // of a yield displacement that is given, the first is left out
 }
 
 /* Asks for the runs with pounding of asks [first, end). */
@@ -554,11 +636,12 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	for (int a = 0; a < n_asks; a++)
 		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
 	enum pound_status status = POUND_OK;
-	for (int stage = 0; stage < stages && !status; stage++) {
+	bool more = true;
+	for (int stage = 0; stage < stages && more && !status; stage++) {
 		// the checks, which take longer, start first, so that no lane waits for them at the end
-		stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
+		more = stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
 		int checks_end = plan->march_keys.n;
-		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
+		more |= stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
 		status = marches_run(plan, &solver, checks_end, &done, stop);
 	}
 	if (status)
