@@ -14,8 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/bracket.h"
-#include "engine/elementary.h"
+#include "engine/demand.h"
 #include "engine/excitation.h"
 #include "engine/hash.h"
 #include "engine/outputs.h"
@@ -27,9 +26,6 @@ enum {
 	KEY = 20,       /* doubles of a key, both of a motion and of a march */
 	SEARCH_MIN = 2, /* corrections from which on they are those of a search */
 };
-
-/* Relative difference from the target demand at which a search for it ends. */
-static const double TARGET_REACHED = 1e-6;
 
 /* equal keys have one number, in the order they were first asked */
 struct register_ {
@@ -56,11 +52,7 @@ struct body_ask {
 	bool wanted;   /* its response without pounding is needed, beyond finding its yield displacement */
 	bool finished; /* the last march is that response */
 	bool found;    /* the search for the target demand is over */
-	struct pound_bracket bracket; /* of the logarithm of the demand over its target, by that of the yield displacement */
-	struct {
-		int march; /* the one nearest to the target demand, -1: none yet */
-		double yield, off;
-	} best;
+	struct pound_demand demand;
 };
 
 struct ask {
@@ -320,30 +312,14 @@ static double reduction(const struct pound_scene *scene, int i, double demand)
 
 static bool searched(const struct pound_law *law)
 {
-	return !pound_pieces_linear(law->type) && !(law->yield_displacement > 0) && law->corrections >= SEARCH_MIN;
-}
-
-/* Ends the search for a target demand with the march that came nearest to it. */
-static void search_end(struct body_ask *body, bool enclosed, struct pound_work *work)
-{
-	body->march = body->best.march;
-	body->yield = body->best.yield;
-	work->yield_searches++;
-	if (body->best.off <= TARGET_REACHED)
-		return;
-	if (enclosed)
-		work->yield_jumps++;
-	else
-		work->yield_missed++;
+	return !pound_pieces_linear(law->type) && !(law->yield_displacement > 0) &&
+	       law->corrections >= SEARCH_MIN;
 }
 
 /* Asks for the next march of a search for the target demand, behind the one with the reduced elastic displacement.
  *
- * Returns  value   false: none is needed
- *          work    of a search that ends, how it does
- *
- * Source   model.md 3
- * Test     unit_yield
+ * Returns  value   false: none is needed; the march that came nearest to it is the response
+ *          work    how the search ended
  */
 static bool search_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i,
                          int stage, struct pound_work *work)
@@ -353,29 +329,26 @@ static bool search_stage(struct pound_plan *plan, const struct ask *ask, struct 
 	if (body->found)
 		return false;
 	body->status = body->status ? body->status : before->status;
-	const double demand = before->displacement_max[0] / body->yield / law->target_demand;
-	const double off = fabs(demand - 1);
-	if (body->best.march < 0 || off < body->best.off) {
-		body->best.march = body->march;
-		body->best.yield = body->yield;
-		body->best.off = off;
-	}
 	body->found = true;
 	body->finished = body->wanted;
 	if (body->status || !(body->yield > 0))
 		return false; // there is no demand
-	double next = 0;
-	bool goes_on = off > TARGET_REACHED &&
-	               pound_bracket_next(&body->bracket, pound_elementary_log(body->yield),
-	                                  pound_elementary_log(demand), &next);
-	if (!goes_on || stage > 1 + law->corrections) {
-		search_end(body, !goes_on, work);
-		return false;
+	const double share = before->displacement_max[0] / body->yield / law->target_demand;
+	double next;
+	bool more = pound_demand_next(&body->demand, body->march, body->yield, share, &next);
+	if (more && stage <= 1 + law->corrections) {
+		body->found = body->finished = false;
+		body->yield = next;
+		body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, next));
+		return true;
 	}
-	body->found = body->finished = false;
-	body->yield = pound_elementary_exp(next);
-	body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, body->yield));
-	return true;
+	body->march = body->demand.response;
+	body->yield = body->demand.yield;
+	bool reached = pound_demand_reached(&body->demand);
+	work->yield_searches++;
+	work->yield_jumps += !reached && !more;
+	work->yield_missed += !reached && more;
+	return false;
 }
 
 /* Asks for a body's march of a stage: stage 0 is linear, stage k >= 1 has the yield displacement found by then.
@@ -431,8 +404,7 @@ static void ask_free(const struct pound_campaign *campaign, struct ask *ask)
 	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
-		ask->bodies[i] = (struct body_ask){
-		    .march = -1, .wanted = moves && (i == 0 || response || may_miss), .best.march = -1};
+		ask->bodies[i] = (struct body_ask){.march = -1, .wanted = moves && (i == 0 || response || may_miss)};
 	}
 }
 
@@ -441,7 +413,8 @@ static int stages_of(const struct ask *ask)
 	int stages = 1;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_law *law = pound_scene_law(&ask->scene, i);
-		stages = (int)fmax(stages, 2 + law->corrections + (searched(law) ? 1 : 0)); // one to look at the last march
+		stages = (int)fmax(stages,
+		                   2 + law->corrections + (searched(law) ? 1 : 0)); // one to look at the last march
 	}
 	return stages;
 }

@@ -89,7 +89,8 @@ static void a_jump_over_the_root_is_found_between_two_neighbours(void **state)
 		int n = evaluations(leaping, start, 1e-6, &end, &jumps);
 		assert_true(jumps);
 		check_near(end, 1.0 / 3, 4 * DBL_EPSILON);
-		assert_true(n < 3 * 60); // of 60 halvings from 64 to a rounding, each after two steps at most that were not
+		assert_true(
+		    n < 3 * 60); // of 60 halvings from 64 to a rounding, each after two steps at most that were not
 	}
 }
 

@@ -83,8 +83,8 @@ static void a_search_ends_at_the_target_demand(void **state)
 	for (int law = 1; law < SPECIMEN_LAWS; law++)
 		for (int k = 0; k < 5; k++) {
 			const struct seen seen = seen_of(specimen_laws[law], corrections[k]);
-			printf("| %s | %d | %.1f %% | %.1f %% | %lld | %lld | %.1f |\n", specimen_laws[law], corrections[k],
-			       100.0 * seen.near / ALL, 100.0 * seen.percent / ALL, (long long)seen.jumps,
+			printf("| %s | %d | %.1f %% | %.1f %% | %lld | %lld | %.1f |\n", specimen_laws[law],
+			       corrections[k], 100.0 * seen.near / ALL, 100.0 * seen.percent / ALL, (long long)seen.jumps,
 			       (long long)seen.missed, seen.evaluations);
 			assert_int_equal(seen.searches, corrections[k] >= 2 ? ALL : 0);
 			if (corrections[k] >= 50)
@@ -118,10 +118,13 @@ static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void 
 {
 	(void)state;
 	static const char document[] =
-	    "{\"kind\": \"sensitivity\", \"scene\": {\"law\": {\"type\": \"elastoplastic\", \"corrections\": 30}, "
+	    "{\"kind\": \"sensitivity\", \"scene\": {\"law\": {\"type\": \"elastoplastic\", \"corrections\": "
+	    "30}, "
 	    "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}], \"contact\": {\"gap_m\": %s}, "
-	    "\"excitation\": {\"signals\": 3}}, \"outputs\": [\"impulse\"], \"design\": {\"rows\": 2}, \"inputs\": "
-	    "[{\"path\": \"/contact/restitution\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, \"max\": "
+	    "\"excitation\": {\"signals\": 3}}, \"outputs\": [\"impulse\"], \"design\": {\"rows\": 2}, "
+	    "\"inputs\": "
+	    "[{\"path\": \"/contact/restitution\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
+	    "\"max\": "
 	    "0.6}}]}";
 	double mean[2], variance;
 	for (int may_miss = 0; may_miss < 2; may_miss++) {
@@ -143,7 +146,8 @@ static void a_body_that_never_moves_is_not_searched_for(void **state)
 	(void)state;
 	struct pound_study *study = documents_study(
 	    "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"elastoplastic\", \"corrections\": 9}, "
-	    "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], \"excitation\": {\"type\": \"record\", "
+	    "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], \"excitation\": {\"type\": "
+	    "\"record\", "
 	    "\"acceleration_m_s2\": [0, 0]}}}");
 	struct pound_run *run = specimen_run(study);
 	const struct pound_result *result = pound_run_result(run);
