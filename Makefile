@@ -134,6 +134,9 @@ golden: $(B)/tests/unit/run/unit_golden
 # stiff and extreme scenes, a table: what every one of them is checked for by the tests
 extremes: $(B)/tests/unit/exact/unit_extremes
 	@$< | grep '^|'
+# searches for the yield displacement of a target demand, a table: how many end at it, by law and corrections
+yield: $(B)/tests/unit/run/unit_yield
+	@$< | grep '^|'
 # how good the indexes are: errors, coverage and bias over SEEDS designs of functions with exact indexes; minutes
 SEEDS ?= 200
 statistics: $(B)/tests/long/statistics
@@ -177,6 +180,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check soak install bench golden paper extremes statistics asan tsan lint fuzz fmt clean
+.PHONY: all deps run test check soak install bench golden paper extremes yield statistics asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define POUND_VERSION "0.15.0"
+#define POUND_VERSION "0.16.0"
 
 enum {
 	POUND_OSCILLATORS = 2,                        /* left, right */
@@ -79,7 +79,7 @@ struct pound_law {
 	double hardening_ratio;    /* second slope over first  [0, 1] */
 	double target_demand;      /* mu_d, wanted max |u| / yield displacement without pounding  >= 1 */
 	double yield_displacement; /* [m]  > 0 given by the user, 0: found from target_demand for every signal */
-	int corrections;           /* times the yield displacement is corrected  >= 0 */
+	int corrections; /* of the yield displacement  >= 0; from 2 on, at most in a search for target_demand */
 };
 
 struct pound_oscillator {
@@ -556,8 +556,11 @@ struct pound_work {
 	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
 	int64_t yield_given;    /* linear responses not made: the yield displacement they would give is known */
 	int64_t linear_unasked; /* linear responses of the right oscillator not made: no output needs them */
-	int64_t nonlinear_unasked;        /* its nonlinear ones likewise */
-	int64_t contacts;                 /* contacts in the runs made */
+	int64_t nonlinear_unasked; /* its nonlinear ones likewise */
+	int64_t contacts;          /* contacts in the runs made */
+	int64_t yield_searches;    /* for the yield displacement of a target demand, 2 corrections or more */
+	int64_t yield_jumps;       /* of these, ended off it: the demand jumps over it */
+	int64_t yield_missed;      /* likewise: the corrections were used up */
 	int64_t failed[POUND_N_FAILURES]; /* pounding runs asked that have no result */
 };
 

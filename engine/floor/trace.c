@@ -23,7 +23,7 @@ static_assert((int)POUND_TRACE_ORDER <= (int)POUND_ROOT_ORDER, "guards are as lo
 
 enum {
 	N = POUND_TRACE_ORDER,
-	EVENTS_LIMIT = 1 << 17, /* in one sample interval: more is chatter */
+	STEPS_LIMIT = 1 << 19, /* in one sample interval: more is chatter */
 	EDGES = 3,
 };
 
@@ -396,7 +396,7 @@ static void interval_enter(struct pound_trace *t)
 	t->ground = a[-1];
 	t->slope = (a[0] - a[-1]) / t->task->time_step;
 	t->left = t->task->time_step;
-	t->events = 0;
+	t->steps = 0;
 	t->sampled = true;
 	if (t->ground == 0 && t->slope == 0)
 		motion_settle(t);
@@ -549,7 +549,7 @@ static void step(struct pound_trace *t, struct pound_trace_stretch *stretch)
 	if (search.event >= BODY)
 		body_turn(t, (search.event - BODY) / EDGES, (enum pound_edge)((search.event - BODY) % EDGES));
 	bool ends = (s.whole && search.event == NOTHING) || t->left <= 0;
-	if (!ends && ++t->events > EVENTS_LIMIT)
+	if (!ends && ++t->steps > STEPS_LIMIT)
 		t->status = POUND_CHATTER;
 	if (ends)
 		sample_next(t);

@@ -68,8 +68,8 @@ struct pound_trace {
 	int glide_next[POUND_OSCILLATORS];
 	int order_sample; /* of a series over a sample interval */
 	double ground, slope, left;
-	double pace; /* share of the usual step: shorter where a search was unsure */
-	int next, events;
+	double pace;     /* share of the usual step: shorter where a search was unsure */
+	int next, steps; /* the sample in front; since the one behind */
 	double impulse, impulse_max, contact_time; /* F/m1 integrated [m/s]; [s] */
 	double counted_time;                       /* of contacts that count [s] */
 	struct pound_counts_scale counts_scale;

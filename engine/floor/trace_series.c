@@ -20,6 +20,10 @@ enum {
 static const double SETTLED_LEAST = 180;
 enum { SETTLED_ROUNDS = 8 };
 
+/* Largest acceleration of a swing that is left out, over what the bodies' are made of, however stiff the contact; and the
+ * power of e by which losses take a swing from there to POUND_NOTHING_BESIDE, and more. */
+static const double SWING_MOST = 0x1p-24, SWING_LOST = 36;
+
 /* Test     unit_trace: terms_end_in_rounding */
 int pound_trace_terms(double x)
 {
@@ -195,6 +199,19 @@ static double pull_of(const struct pound_trace *t)
 	return sum;
 }
 
+/* How large the acceleration of a contact's own swing may be, over what the bodies' are made of, to be left out: a rounding.
+ *
+ * Where its losses do not end it within a sample, rounding keeps it alive for ever, and more is left out.  A swing adds to
+ * velocities by 1/rate_touch, where the bodies' own accelerations add by 1/rate: what is left out of these is a rounding, and
+ * omega/rate times that of an oscillator of omega on the floor.  Not where the sign of a velocity decides. */
+static double swing_nothing(const struct pound_trace *t)
+{
+	bool decides = t->at[0].piece.direction != 0 || t->at[1].piece.direction != 0;
+	double lost = 0.5 * (1 + t->task->mass_ratio) * t->task->contact_damping * t->task->time_step;
+	return decides || lost > SWING_LOST ? POUND_NOTHING_BESIDE
+	                                    : fmin(POUND_NOTHING_BESIDE * t->rate_touch / t->rate, SWING_MOST);
+}
+
 /* Whether a contact may be settled: its overlap is neither fast nor accelerated, as the swinging one is all the time. */
 static bool may_settle(const struct pound_trace *t, double pull)
 {
@@ -207,11 +224,11 @@ static bool may_settle(const struct pound_trace *t, double pull)
 		apart += i ? force : -force;
 	}
 	double push = task->contact_stiffness * t->p + task->contact_damping * t->q;
-	return fabs(apart - (1 + task->mass_ratio) * push) <= 4 * slow * slow * pull;
+	return fabs(apart - (1 + task->mass_ratio) * push) <= fmax(4 * slow * slow, swing_nothing(t)) * pull;
 }
 
-/* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing has
- * died away to rounding.
+/* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing adds
+ * no more than a rounding.
  *
  * Given    pull    as pull_of has it
  * Returns  value   false: it has not settled; s is not to be used
@@ -270,7 +287,7 @@ static bool series_settle(struct pound_trace_series *s, const struct pound_trace
 	double swing = fabs(t->p - p[0]) * spring, hurry = fabs(t->q * dt - q[0]) * sqrt(spring);
 	double force = p[0] + pound_trace_release(task) / dt * q[0];
 	bool pressed = p[0] > 0 && force > 0; // or they are about to part
-	return pressed && swing + hurry <= POUND_NOTHING_BESIDE * (pull * (dt * dt));
+	return pressed && swing + hurry <= swing_nothing(t) * (pull * (dt * dt));
 }
 
 /* ---- the next step ---- */

@@ -24,10 +24,16 @@ static const double RADIANS = 1.5, RADIANS_CHECK = 0.75;
 /* beside the spectra of a signal */
 enum { IMPULSE, PULSES, MEASURES };
 
+/* what is known of the floor of a task */
+struct traced {
+	int ask; /* that its ordinates were found for, plus one; 0: none yet */
+	enum pound_status status;
+};
+
 struct pound_ordinates {
 	struct pound_floor *floor;
 	double *psa[POUND_DRIVES]; /* (n) */
-	int *known;                /* ask that a task's ordinates were found for, plus one  (n_tasks) */
+	struct traced *traced;     /* of each task  (n_tasks) */
 	int n_tasks;
 };
 
@@ -57,7 +63,8 @@ size_t pound_ordinate_bytes(const struct pound_study *study, int n_tasks)
 	if (n == 0)
 		return 0;
 	return aligned(sizeof(struct pound_ordinates)) + aligned(pound_floor_bytes(n)) +
-	       POUND_DRIVES * aligned(sizeof(double) * (size_t)n) + aligned(sizeof(int) * (size_t)n_tasks);
+	       POUND_DRIVES * aligned(sizeof(double) * (size_t)n) +
+	       aligned(sizeof(struct traced) * (size_t)n_tasks);
 }
 
 struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_study *study, int n_tasks)
@@ -68,7 +75,7 @@ struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_stu
 	at += aligned(pound_floor_bytes(study->spectrum.n));
 	for (int d = 0; d < POUND_DRIVES; d++, at += aligned(sizeof(double) * (size_t)study->spectrum.n))
 		ordinates->psa[d] = (double *)(void *)at;
-	ordinates->known = (int *)(void *)at;
+	ordinates->traced = (struct traced *)(void *)at;
 	ordinates->n_tasks = n_tasks;
 	return ordinates;
 }
@@ -155,7 +162,7 @@ static int measures_of(const struct pound_study *study)
  *          values   (asks x measures)  of a failed run the last is NAN
  *          stop     looked at throughout
  * Returns  values   with spectra or ordinates; all NAN where a floor could not be followed
- *          work     floors asked and traced, those of checks left out
+ *          work     floors asked and traced, and runs failed for want of one; those of checks left out
  * Status   POUND_STOPPED  stop was set
  */
 enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct pound_study *study,
@@ -163,12 +170,13 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
                                        struct pound_work *work)
 {
 	int n_items, n_asks = pound_plan_asks(plan, &n_items), n = measures_of(study);
-	memset(o->known, 0, sizeof(int) * (size_t)o->n_tasks);
+	memset(o->traced, 0, sizeof *o->traced * (size_t)o->n_tasks);
 	for (int a = 0; a < n_asks && !pound_stopped(stop); a++, values += n) {
 		const struct pound_plan_floor floor = pound_plan_floor(plan, a);
 		double radians = a < n_items ? RADIANS : RADIANS_CHECK;
 		assert(floor.march < o->n_tasks);
-		int before = has_spectra(study) ? 0 : o->known[floor.march];
+		struct traced *traced = &o->traced[floor.march];
+		const int before = has_spectra(study) ? 0 : traced->ask;
 		const double *known = before ? values - (size_t)(a + 1 - before) * (size_t)n : NULL;
 		int floors = has_spectra(study) && floor.pounding ? 2 : 1;
 		work->floors.asked += a < n_items ? floors : 0;
@@ -178,10 +186,11 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		                               ? spectra_fill(o, study, &floor, radians, values, stop)
 		                               : ordinates_fill(o, study, &floor, radians, known, values, stop);
 		work->floors.run += a < n_items && !known ? floors : 0;
-		o->known[floor.march] = a + 1;
-		// nobody has the rest of a run whose floor could not be followed, whoever asked for it first
-		const bool failed = status || (known && isnan(known[n - 1]));
-		for (int j = 0; j < n && failed; j++)
+		*traced = (struct traced){a + 1, known ? traced->status : status};
+		// a run whose floor could not be followed has failed, also where another ask traced that floor
+		if (traced->status <= POUND_CHATTER && a < n_items)
+			work->failed[POUND_CHATTER - traced->status]++;
+		for (int j = 0; j < n && traced->status; j++)
 			values[j] = NAN;
 	}
 	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;

@@ -3,7 +3,7 @@
  * 1. every sample of every cell asks for its ground motion, its responses without pounding and its run with pounding;
  * 2. what is asked is written down as a key of numbers, equal keys are one motion or one march;
  * 3. motions are filled, then marches run stage by stage: linear responses, nonlinear ones with the yield
- *    displacement found from the stage before, last the runs with pounding.
+ *    displacement found from the stages before, last the runs with pounding.
  *
  * The check of an item is all this once more on ground motions with a sample between every two: the same signal, as it
  * is linear between samples, in other steps with other maps, series and root searches. */
@@ -17,11 +17,15 @@
 #include "engine/ground/excitation.h"
 #include "engine/numeric/hash.h"
 #include "engine/numeric/random.h"
+#include "engine/run/demand.h"
 #include "engine/run/outputs.h"
 #include "engine/run/scene.h"
 #include "engine/solver/solver.h"
 
-enum { KEY = 20 }; /* doubles of a key, both of a motion and of a march */
+enum {
+	KEY = 20,       /* doubles of a key, both of a motion and of a march */
+	SEARCH_MIN = 2, /* corrections from which on they are those of a search */
+};
 
 /* equal keys have one number, in the order they were first asked */
 struct register_ {
@@ -47,6 +51,8 @@ struct body_ask {
 	enum pound_status status; /* of the marches its yield displacement comes from */
 	bool wanted;   /* its response without pounding is needed, beyond finding its yield displacement */
 	bool finished; /* the last march is that response */
+	bool found;    /* the search for the target demand is over */
+	struct pound_demand demand;
 };
 
 struct ask {
@@ -326,6 +332,47 @@ static double reduction(const struct pound_scene *scene, int i, double demand)
 	return 1 + (demand - 1) * fmin(rise, 1);
 }
 
+static bool searched(const struct pound_law *law)
+{
+	return !pound_pieces_linear(law->type) && !(law->yield_displacement > 0) &&
+	       law->corrections >= SEARCH_MIN;
+}
+
+/* Asks for the next march of a search for the target demand, behind the one with the reduced elastic displacement.
+ *
+ * Returns  value   false: none is needed; the march that came nearest to it is the response
+ *          work    how the search ended
+ */
+static bool search_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i,
+                         int stage, struct pound_work *work)
+{
+	const struct pound_law *law = pound_scene_law(&ask->scene, i);
+	const struct pound_march_result *before = &plan->results[body->march];
+	if (body->found)
+		return false;
+	body->status = body->status ? body->status : before->status;
+	body->found = true;
+	body->finished = body->wanted;
+	if (body->status || !(body->yield > 0))
+		return false; // there is no demand
+	const double share = before->displacement_max[0] / body->yield / law->target_demand;
+	double next;
+	bool more = pound_demand_next(&body->demand, body->march, body->yield, share, &next);
+	if (more && stage <= 1 + law->corrections) {
+		body->found = body->finished = false;
+		body->yield = next;
+		body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, next));
+		return true;
+	}
+	body->march = body->demand.response;
+	body->yield = body->demand.yield;
+	bool reached = pound_demand_reached(&body->demand);
+	work->yield_searches++;
+	work->yield_jumps += !reached && !more;
+	work->yield_missed += !reached && more;
+	return false;
+}
+
 /* Asks for a body's march of a stage: stage 0 is linear, stage k >= 1 has the yield displacement found by then.
  *
  * Returns  value   false: none is needed
@@ -338,6 +385,8 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 	bool linear = pound_pieces_linear(law->type);
 	bool given = law->yield_displacement > 0;
 	int last_stage = linear ? 0 : given ? 1 : 1 + law->corrections;
+	if (stage > 1 && searched(law))
+		return search_stage(plan, ask, body, i, stage, work);
 	if (stage > last_stage)
 		return false;
 	if (stage == 0 && !linear && given) {
@@ -384,8 +433,11 @@ static void ask_free(const struct pound_campaign *campaign, struct ask *ask)
 static int stages_of(const struct ask *ask)
 {
 	int stages = 1;
-	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		stages = (int)fmax(stages, 2 + pound_scene_law(&ask->scene, i)->corrections);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_law *law = pound_scene_law(&ask->scene, i);
+		stages = (int)fmax(stages,
+		                   2 + law->corrections + (searched(law) ? 1 : 0)); // one to look at the last march
+	}
 	return stages;
 }
 
@@ -520,16 +572,19 @@ static int item_write(struct pound_plan *plan, const struct pound_campaign *camp
 	return a;
 }
 
-/* Asks for what asks [first, end) need of a stage without pounding. */
-static void stage_ask(struct pound_plan *plan, int first, int end, int stage,
+/* Asks for what asks [first, end) need of a stage without pounding; false: nothing, nor of a later one. */
+static bool stage_ask(struct pound_plan *plan, int first, int end, int stage,
                       struct pound_stage_work *counted, struct pound_work *work)
 {
 	int before = plan->march_keys.n;
+	int64_t asked = 0;
 	for (int a = first; a < end; a++)
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			if (!plan->asks[a].scene.oscillators[i].rigid_wall)
-				counted->asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage, work);
+				asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage, work);
+	counted->asked += asked;
 	counted->run += plan->march_keys.n - before;
+	return asked > 0 || stage == 0; // of a yield displacement that is given, the first is left out
 }
 
 /* Asks for the runs with pounding of asks [first, end). */
@@ -576,11 +631,12 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	for (int a = 0; a < n_asks; a++)
 		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
 	enum pound_status status = POUND_OK;
-	for (int stage = 0; stage < stages && !status; stage++) {
+	bool more = true;
+	for (int stage = 0; stage < stages && more && !status; stage++) {
 		// the checks, which take longer, start first, so that no lane waits for them at the end
-		stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
+		more = stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
 		int checks_end = plan->march_keys.n;
-		stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
+		more |= stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
 		status = marches_run(plan, &solver, checks_end, &done, stop);
 	}
 	if (status)

@@ -88,6 +88,10 @@ void result_floor_spectra(struct writer *w, const struct pound_study *study,
 	int n = study->spectrum.n;
 	writer_whole(w, "runs", floor->signals);
 	writer_whole(w, "runs_failed", floor->signals_failed);
+	if (floor->signals_failed)
+		writer_text(w, "note",
+		            "runs without a result are left out of the spectra and their histories may end early; "
+		            "work.failures says why");
 	writer_array(w, "frequencies_hz", WRITER_LINE);
 	for (int k = 0; k < n; k++)
 		writer_number(w, NULL, pound_spectrum_frequency(&study->spectrum, k));

@@ -509,6 +509,23 @@ static void write_failures(struct writer *w, const struct pound_work *work)
 	writer_end(w);
 }
 
+/* How the searches for yield displacements ended; nothing where there were none. */
+static void write_searches(struct writer *w, const struct pound_work *work)
+{
+	if (!work->yield_searches)
+		return;
+	writer_object(w, "yield_searches", WRITER_LINE);
+	writer_text(w, "what", "yield displacements searched for the target demand");
+	writer_whole(w, "searches", work->yield_searches);
+	writer_whole(w, "jumps", work->yield_jumps);
+	writer_whole(w, "corrections_used_up", work->yield_missed);
+	if (work->yield_jumps + work->yield_missed)
+		writer_text(w, "note",
+		            "a search that did not end at the target demand takes the nearest one found: where the "
+		            "corrections are used up, allow more of them");
+	writer_end(w);
+}
+
 static void write_work(struct writer *w, const struct pound_study *study, const struct pound_work *work)
 {
 	writer_object(w, "work", WRITER_LINES);
@@ -523,6 +540,7 @@ static void write_work(struct writer *w, const struct pound_study *study, const 
 	writer_whole(w, "never_touching", work->never_touching);
 	writer_whole(w, "moving_alike", work->moving_alike);
 	writer_whole(w, "contacts", work->contacts);
+	write_searches(w, work);
 	write_failures(w, work);
 	write_left_out(w, study, work);
 	writer_end(w);

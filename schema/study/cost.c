@@ -41,11 +41,17 @@ static const struct {
 	int floors, spectra;
 } rides[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
 
-/* how much more a kind computes of a run than the outputs of a sensitivity study: other measures, histories */
-static const double kinds[] = {[POUND_KIND_RESPONSE] = 3,
-                               [POUND_KIND_SENSITIVITY] = 1,
-                               [POUND_KIND_CONVERGENCE] = 6,
-                               [POUND_KIND_FLOOR_SPECTRUM] = 3};
+/* how much more a kind computes of a run than the outputs of a sensitivity study: other measures, histories; and what of a
+ * run's time each further response takes that a search for a target demand makes */
+static const struct {
+	double run, searched;
+} kinds[] = {[POUND_KIND_RESPONSE] = {3, 0.3},
+             [POUND_KIND_SENSITIVITY] = {1, 0.1},
+             [POUND_KIND_CONVERGENCE] = {6, 0.1},
+             [POUND_KIND_FLOOR_SPECTRUM] = {3, 0.1}};
+
+/* Corrections that a search takes where it may, in the mean. */
+static const double SEARCH_MEAN = 6;
 
 /* [bytes] in a result: of an index or of a signal, with its name and all that stands beside it */
 static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, DOCUMENT_BYTES = 3000;
@@ -114,6 +120,34 @@ static double turned(const struct pound_study *study)
 	return fmin(sum, TURNED_MOST);
 }
 
+static bool varies(const struct pound_study *study, size_t offset)
+{
+	for (int j = 0; j < study->n_inputs; j++)
+		if (study->inputs[j].field.offset == offset)
+			return true;
+	for (int s = 0; s < study->n_sweeps; s++)
+		if (study->sweeps[s].field.offset == offset)
+			return true;
+	return false;
+}
+
+/* Corrections of a run beyond those that are no search: of each body whose law may have one. */
+static double searched(const struct pound_study *study)
+{
+	const struct pound_oscillator *o = study->scene.oscillators;
+	double sum = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_law *law = pound_scene_law(&study->scene, i);
+		const size_t at = (size_t)((const char *)law - (const char *)&study->scene);
+		const size_t times = at + offsetof(struct pound_law, corrections);
+		const double corrections = varies(study, times) ? mean(study, times, 1) : law->corrections;
+		bool linear = law->type == 0 && !varies(study, at + offsetof(struct pound_law, type));
+		if (!o[i].rigid_wall && !linear && law->yield_displacement == 0 && corrections > 1)
+			sum += fmin(corrections, SEARCH_MEAN) - 1;
+	}
+	return sum;
+}
+
 /* [s] of one run by a solver. */
 static double run_s(const struct pound_study *study, const struct pound_solver *solver)
 {
@@ -141,10 +175,11 @@ struct cost cost_of(const struct pound_study *study)
 		int n = pound_convergence_trials(study);
 		for (int j = 0; j < n; j++) {
 			const struct pound_solver solver = pound_convergence_solver(study, j);
-			cost.cpu_s += kinds[study->kind] * runs / n * run_s(study, &solver);
+			cost.cpu_s += kinds[study->kind].run * runs / n * run_s(study, &solver);
 		}
 	} else
-		cost.cpu_s += kinds[study->kind] * runs * run_s(study, &study->solver);
+		cost.cpu_s += kinds[study->kind].run * runs * run_s(study, &study->solver);
+	cost.cpu_s *= 1 + kinds[study->kind].searched * searched(study);
 	if (study->spectrum.n)
 		cost.cpu_s += runs * samples_mean(study) *
 		              (rides[study->kind].floors * FLOOR_S +

@@ -51,7 +51,8 @@ static const char *signals_name(int common)
 	{pattern "/yield_displacement_m", FIELD_REAL, law + IN_LAW(yield_displacement), 0, 0, INFINITY,       \
 	 FIELD_OPEN_MIN, "m", .text = "yield displacement, in place of target_demand"},                       \
 	{pattern "/corrections", FIELD_COUNT, law + IN_LAW(corrections), 1, 0, 100, FIELD_CLOSED, "",         \
-	 .text = "times the yield displacement found from target_demand is corrected"}
+	 .text = "times the yield displacement found from target_demand is corrected; from 2 on, at most in a search "    \
+	         "that ends at that demand"}
 
 #define SETTING_ROWS(solver, name, row, most, unit, what)                                                \
 	{"/convergence/" solver, FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",                                  \

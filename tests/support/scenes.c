@@ -153,7 +153,7 @@ static void random_law(struct specimen *specimen, uint64_t *stream, int number)
 	specimen_law(specimen, specimen_laws[number % SPECIMEN_LAWS], fmax(0, given));
 	scene->law.hardening_ratio = fmax(0, specimen_uniform(stream, -0.05, 0.3));
 	scene->law.target_demand = specimen_uniform(stream, 1.2, 4);
-	scene->law.corrections = (int)specimen_uniform(stream, 0, 3);
+	scene->law.corrections = specimen_uniform(stream, 0, 3) >= 1; // those of a search: unit_yield
 	if (specimen_uniform(stream, 0, 1) > 0.25)
 		return;
 	struct pound_law common = scene->law;

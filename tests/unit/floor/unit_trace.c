@@ -119,6 +119,34 @@ static void a_contact_that_has_settled_is_followed_by_whole_samples(void **state
 	}
 }
 
+/* Its own swing never dies away, and is left out where it is a rounding of the bodies' motion. */
+static void a_contact_without_losses_is_followed_however_stiff(void **state)
+{
+	(void)state;
+	enum { SAMPLES = 100 };
+	static const double stiffnesses[] = {1e8, 1e10, 1e12, 1e15, 1e20, 1e30};
+	for (int k = 0; k < 6; k++) {
+		struct specimen specimen;
+		specimen_init(&specimen);
+		specimen.study.scene.contact.stiffness_ratio = stiffnesses[k];
+		specimen.study.scene.contact.restitution = 1;
+		double *ground = specimen_record(&specimen, 0.01, SAMPLES);
+		for (int t = 0; t < SAMPLES; t++)
+			ground[t] = -fmin(1, t / 20.0);
+		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_march_result r = march(&task);
+		const struct ended e = trace_to_end(&task);
+		assert_int_equal(r.status, POUND_OK);
+		assert_int_equal(e.trace.status, POUND_OK);
+		assert_int_equal(e.trace.contacts, r.contacts);
+		check_near(e.trace.contact_time, r.contact_time, 1e-9);
+		check_near(e.trace.impulse_max, r.impulse_max, 1e-9 * r.impulse_max);
+		check_near(e.trace.u[0], r.u[0], 1e-12);
+		check_near(e.trace.v[0], r.v[0], 1e-11);
+		specimen_free(&specimen);
+	}
+}
+
 /* A contact that has settled takes its bodies along, to the last rounding: else they turn where they do not. */
 static void a_body_that_creeps_where_it_yielded_moves_as_in_the_march(void **state)
 {
@@ -366,6 +394,7 @@ static void terms_end_in_rounding(void **state)
 CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impacts_come_out_to_their_digits),
            cmocka_unit_test(any_scene_moves_as_in_the_march),
            cmocka_unit_test(a_contact_that_has_settled_is_followed_by_whole_samples),
+           cmocka_unit_test(a_contact_without_losses_is_followed_however_stiff),
            cmocka_unit_test(a_body_that_creeps_where_it_yielded_moves_as_in_the_march),
            cmocka_unit_test(linear_bodies_alike_but_for_roundings_move_as_in_the_march),
            cmocka_unit_test(a_damped_body_pressed_on_a_wall_moves_as_in_the_march),

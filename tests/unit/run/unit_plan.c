@@ -13,15 +13,17 @@ struct law {
 	const char *text;
 	int nonlinear;
 	bool given;
+	bool searched; /* each response tells how far the demand is off its target, the last too */
 };
 
-// the yield displacement is found in corrections + 1 responses, the last of which is the answer
+// the yield displacement is found in corrections + 1 responses, the last of which is the answer; in fewer by a search that ends
+// sooner, which none does in four
 static const struct law laws[] = {
-    {"{\"type\": \"linear\"}", 0, false},
-    {"{\"type\": \"elastoplastic\"}", 2, false},
-    {"{\"type\": \"origin_oriented\", \"corrections\": 3}", 4, false},
-    {"{\"type\": \"nonlinear_elastic\", \"corrections\": 0}", 1, false},
-    {"{\"type\": \"elastoplastic\", \"yield_displacement_m\": 0.001}", 1, true},
+    {"{\"type\": \"linear\"}", 0, false, false},
+    {"{\"type\": \"elastoplastic\"}", 2, false, false},
+    {"{\"type\": \"origin_oriented\", \"corrections\": 3}", 4, false, true},
+    {"{\"type\": \"nonlinear_elastic\", \"corrections\": 0}", 1, false, false},
+    {"{\"type\": \"elastoplastic\", \"yield_displacement_m\": 0.001}", 1, true, false},
 };
 
 enum { LAWS = sizeof laws / sizeof laws[0] };
@@ -53,7 +55,7 @@ static void expect(const struct pound_work *work, const struct law *left, const 
 	assert_int_equal(work->linear_unasked, right_asked || right->nonlinear ? 0 : runs);
 	assert_int_equal(work->yield_runs.asked + work->nonlinear_unasked,
 	                 runs * (left->nonlinear + right->nonlinear));
-	assert_int_equal(work->nonlinear_unasked, right_asked || !right->nonlinear ? 0 : runs);
+	assert_int_equal(work->nonlinear_unasked, right_asked || !right->nonlinear || right->searched ? 0 : runs);
 	assert_true(work->pounding_runs.run + work->never_touching + work->moving_alike <= runs);
 }
 

@@ -185,6 +185,51 @@ static void a_study_without_a_result_ends_with_the_reason_of_its_runs(void **sta
 	assert_string_equal(pound_status_error(POUND_NOMEM), "out of memory");
 }
 
+/* A body that its ground presses on a wall, in a contact without losses: its own swing never ends, and the stiffer it is, the
+ * more steps follow it. */
+static const char swings[] =
+    "{\"kind\": \"%s\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"rigid_wall\": true}], "
+    "\"contact\": {\"stiffness_ratio\": %s, \"restitution\": 1}, \"excitation\": {\"type\": \"record\", "
+    "\"acceleration_m_s2\": [0, -0.05, -0.1, -0.15, -0.2, -0.25]}}%s}";
+
+static const char swings_varied[] =
+    ", \"inputs\": [{\"path\": \"/oscillators/0/mass_kg\", \"name\": \"m\", \"distribution\": {\"type\": "
+    "\"uniform\", \"min\": 1, \"max\": 2}}, {\"path\": \"/oscillators/0/frequency_hz\", \"name\": \"f\", "
+    "\"distribution\": {\"type\": \"uniform\", \"min\": 1, \"max\": 2}}], \"design\": {\"rows\": 2}, "
+    "\"sweep\": [{\"path\": \"/contact/stiffness_ratio\", \"values\": [%s]}], "
+    "\"outputs\": [\"impulse\", \"floor_spectrum\"]";
+
+static const char swings_spectrum[] = ", \"spectrum\": {\"frequencies_hz\": [1, 5]}";
+
+static void a_run_whose_floor_cannot_be_followed_has_failed_for_a_named_reason(void **state)
+{
+	(void)state;
+	char document[1600], more[900];
+	snprintf(document, sizeof document, swings, "response", "1e20", "");
+	struct reading *r = succeeded(document); // the march can
+	check_near(reading_number(r, "/runs_failed"), 0, 0);
+	reading_close(r);
+	snprintf(document, sizeof document, swings, "floor_spectrum", "1e20", swings_spectrum);
+	assert_int_equal(failed(document), POUND_CHATTER);
+	for (int some = 0; some < 2; some++) {
+		int n = snprintf(more, sizeof more, swings_varied, some ? "100, 1e20" : "1e20");
+		snprintf(more + n, sizeof more - (size_t)n, "%s", swings_spectrum);
+		snprintf(document, sizeof document, swings, "sensitivity", "100", more);
+		if (!some) {
+			assert_int_equal(failed(document), POUND_CHATTER);
+			continue;
+		}
+		r = succeeded(document);
+		check_near(reading_number(r, "/cells/0/runs_failed"), 0, 0);
+		check_near(reading_number(r, "/cells/1/runs_failed"), 2 * 4, 0);
+		assert_int_equal(reading_count(r, "/work/failures"), 1);
+		check_near(reading_number(r, "/work/failures/0/runs"), 2 * 4, 0);
+		assert_string_equal(reading_text(r, "/work/failures/0/reason"),
+		                    "more events in one sample interval than allowed");
+		reading_close(r);
+	}
+}
+
 static void contact_of_more_cells_than_a_double_counts_ends_by_its_name(void **state)
 {
 	(void)state;
@@ -290,6 +335,7 @@ CHECK_MAIN(cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a
            cmocka_unit_test(a_cell_without_a_run_has_no_outputs_and_the_others_have),
            cmocka_unit_test(outputs_in_terms_of_no_motion_have_no_value_and_a_note),
            cmocka_unit_test(a_study_without_a_result_ends_with_the_reason_of_its_runs),
+           cmocka_unit_test(a_run_whose_floor_cannot_be_followed_has_failed_for_a_named_reason),
            cmocka_unit_test(contact_of_more_cells_than_a_double_counts_ends_by_its_name),
            cmocka_unit_test(a_body_that_never_moves_has_no_demand_but_has_not_failed),
            cmocka_unit_test(a_run_that_takes_hours_is_stopped),

@@ -88,6 +88,21 @@ static void finer_steps_stiffer_contacts_and_more_trials_cost_more(void **state)
 	assert_int_equal(many.runs, few.runs + few.runs / 3);
 }
 
+/* A correction is one more response of each body without pounding; a search of many ends after a few. */
+static void a_search_for_a_target_demand_costs_by_its_responses(void **state)
+{
+	(void)state;
+	static const char form[] =
+	    "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"%s\", \"corrections\": %d}, " OSCILLATORS
+	    ", \"excitation\": {\"signals\": 1000}}}";
+	double paper = cost_of_text(form, "elastoplastic", 1).cpu_s;
+	double some = cost_of_text(form, "elastoplastic", 4).cpu_s,
+	       many = cost_of_text(form, "elastoplastic", 50).cpu_s;
+	assert_true(some > 1.5 * paper && many > 1.2 * some && many < 5 * paper);
+	check_near(cost_of_text(form, "elastoplastic", 100).cpu_s / many, 1, 0);
+	check_near(cost_of_text(form, "linear", 50).cpu_s / paper, 1, 0);
+}
+
 /* Above two radians a sample there are steps for each of them: twice as many for twice the frequency. */
 static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void **state)
 {
@@ -107,7 +122,8 @@ static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void *
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns),
+CHECK_MAIN(cmocka_unit_test(a_search_for_a_target_demand_costs_by_its_responses),
+           cmocka_unit_test(an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns),
            cmocka_unit_test(what_is_asked_twice_costs_twice),
            cmocka_unit_test(a_motion_is_as_long_as_it_is_in_the_mean),
            cmocka_unit_test(finer_steps_stiffer_contacts_and_more_trials_cost_more))

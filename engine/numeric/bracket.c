@@ -1,0 +1,68 @@
+/* bracket.c - a root of a function of one variable, one evaluation after the other.
+ *
+ * 1. While all values have one sign: steps to the side where a falling function has its root, by the secant;
+ * 2. once both signs are there: inverse quadratic interpolation where three points allow it, else bisection. */
+#include "engine/numeric/bracket.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Least step towards the other sign over the function's value, and how much longer than the last one it may be: a secant
+ * that falls short of the root would never enclose it. */
+static const double STEP_LEAST = 0.5, STEP_GROWTH = 4;
+
+static double step_open(const struct pound_bracket *b)
+{
+	double f = b->f[0];
+	if (b->n == 1)
+		return f;
+	double last = b->x[0] - b->x[1], slope = (f - b->f[1]) / last;
+	double most = fmax(STEP_GROWTH * fabs(last), fabs(f)), step = slope < 0 ? fabs(f / slope) : most;
+	return copysign(fmin(fmax(step, STEP_LEAST * fabs(f)), most), f);
+}
+
+/* Where between both ends to go on, as a share of the way from the newest to the other.
+ *
+ * Source   Chandrupatla 1997, Advances in Engineering Software 28, 145-149
+ */
+static double share_closed(const struct pound_bracket *b)
+{
+	const double *x = b->x, *f = b->f;
+	if (b->n == 2)
+		return f[0] / (f[0] - f[1]);
+	double xi = (x[0] - x[1]) / (x[2] - x[1]), phi = (f[0] - f[1]) / (f[2] - f[1]);
+	if (!(phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi))
+		return 0.5;
+	double near = f[0] / (f[1] - f[0]) * f[2] / (f[1] - f[2]);
+	double far = (x[2] - x[0]) / (x[1] - x[0]) * f[0] / (f[2] - f[0]) * f[1] / (f[2] - f[1]);
+	return near + far;
+}
+
+/* Takes the function's value at a point.
+ *
+ * Given    f     not 0; > 0 where the root of a falling function lies above x
+ * Returns  next  the point to evaluate next
+ *          value false: both ends are next to each other
+ * Test     unit_bracket
+ */
+bool pound_bracket_next(struct pound_bracket *b, double x, double f, double *next)
+{
+	const bool changes = b->n > 0 && (f > 0) != (b->f[0] > 0);
+	// the newest is left where the one that comes now is an end of its sign, else it is the other end
+	const int left = b->closed && !changes ? 0 : 1;
+	b->x[2] = b->x[left], b->f[2] = b->f[left];
+	if (left)
+		b->x[1] = b->x[0], b->f[1] = b->f[0];
+	b->x[0] = x, b->f[0] = f;
+	b->n++;
+	b->closed |= changes;
+	if (!b->closed) {
+		*next = x + step_open(b);
+		return true;
+	}
+	double way = b->x[1] - x, least = DBL_EPSILON * fmax(1, fabs(x)) / fabs(way);
+	if (!(least < 0.5))
+		return false;
+	*next = x + fmin(fmax(share_closed(b), least), 1 - least) * way;
+	return true;
+}
