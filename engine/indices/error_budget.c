@@ -218,7 +218,7 @@ static void slope(struct pound_accuracy *accuracy, int n_inputs, bool totals)
 /* The error that is larger than all others together.  Noise of few signals is in the intervals: where it may be all of the
  * widest one, nothing of that is left for too few rows.
  *
- * Test     unit_accuracy: the_dominant_error_is_larger_than_the_others_together
+ * Test     unit_error_budget: the_dominant_error_is_larger_than_the_others_together
  */
 enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
 {
@@ -234,7 +234,7 @@ enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
 
 /* What the noise of few signals adds to an interval: an upper estimate, but no more than the interval, which holds it.
  *
- * Test     unit_accuracy: noise_adds_no_more_to_an_interval_than_there_is
+ * Test     unit_error_budget: noise_adds_no_more_to_an_interval_than_there_is
  */
 static double noise_part(double spread, double half)
 {
