@@ -19,29 +19,14 @@
 #include "engine/numeric/random.h"
 #include "engine/run/demand.h"
 #include "engine/run/outputs.h"
+#include "engine/run/request_keys.h"
+#include "engine/run/request_motions.h"
+#include "engine/run/response.h"
 #include "engine/run/scene.h"
 #include "engine/solver/solver.h"
 
 enum {
-	KEY = 20,       /* doubles of a key, both of a motion and of a march */
 	SEARCH_MIN = 2, /* corrections from which on they are those of a search */
-};
-
-/* equal keys have one number, in the order they were first asked */
-struct register_ {
-	int n, n_slots;
-	double *keys; /* (capacity x KEY) */
-	int *slots;   /* (n_slots), -1: empty */
-};
-
-struct motion {
-	struct pound_excitation excitation;
-	struct pound_stream noise;
-	bool halved; /* a sample between every two */
-	int n_samples;
-	double time_step; /* [s] */
-	int exponent;     /* samples are kept times 2^-exponent, so that the largest is in [1, 2) */
-	double *ground;   /* (n_samples) */
 };
 
 /* what is known of one body without pounding */
@@ -65,8 +50,8 @@ struct ask {
 
 struct pound_plan {
 	struct pound_plan_size size;
-	struct register_ motion_keys, march_keys;
-	struct motion *motions;             /* (motions) */
+	struct pound_keys motion_keys, march_keys;
+	struct pound_motion *motions;       /* (motions) */
 	double *ground;                     /* (samples) */
 	struct ask *asks;                   /* (asks) */
 	struct pound_march_task *tasks;     /* (tasks) */
@@ -85,8 +70,8 @@ static size_t plan_carve(char *memory, struct pound_plan *plan, struct pound_pla
 		void *into;
 		size_t bytes;
 	} parts[] = {
-	    {&plan->motion_keys.keys, sizeof(double) * KEY * (size_t)size.motions},
-	    {&plan->march_keys.keys, sizeof(double) * KEY * (size_t)size.tasks},
+	    {&plan->motion_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.motions},
+	    {&plan->march_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.tasks},
 	    {&plan->motion_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.motions)},
 	    {&plan->march_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.tasks)},
 	    {&plan->motions, sizeof *plan->motions * (size_t)size.motions},
@@ -141,57 +126,25 @@ struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, in
 	return size;
 }
 
-/* ---- keys ---- */
-
-static void register_clear(struct register_ *r)
-{
-	r->n = 0;
-	memset(r->slots, -1, sizeof(int) * (size_t)r->n_slots);
-}
-
-/* Number of a key; a new one gets the next number. */
-static int register_key(struct register_ *r, const double key[static KEY])
-{
-	int slot = pound_hash_slot(0, key, KEY, r->n_slots);
-	for (; r->slots[slot] >= 0; slot = (slot + 1) & (r->n_slots - 1))
-		if (memcmp(&r->keys[KEY * r->slots[slot]], key, sizeof(double) * KEY) == 0)
-			return r->slots[slot];
-	memcpy(&r->keys[KEY * r->n], key, sizeof(double) * KEY);
-	return r->slots[slot] = r->n++;
-}
-
 /* The ground motion of a sample: its excitation, and the noise of its row and signal, if it has any. */
 static int motion_ask(struct pound_plan *plan, const struct pound_excitation *e, struct pound_stream noise,
                       bool halved)
 {
 	if (!pound_excitation_random(e))
 		noise = (struct pound_stream){0};
-	const double key[KEY] = {
-	    e->type, e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,    e->duration,  e->rise,
-	    e->fall, e->time_step,    e->peak,          noise.row,          noise.sample, noise.signal, halved};
 	int known = plan->motion_keys.n;
-	int j = register_key(&plan->motion_keys, key);
+	int j = pound_keys_motion(&plan->motion_keys, e, noise, halved);
 	if (j == known)
-		plan->motions[j] = (struct motion){.excitation = *e, .noise = noise, .halved = halved};
+		plan->motions[j] = (struct pound_motion){.excitation = *e, .noise = noise, .halved = halved};
 	return j;
 }
 
 /* A march; bodies and contact are set, the ground motion is added here. */
 static int march_ask(struct pound_plan *plan, int motion, struct pound_march_task *task)
 {
-	const struct motion *m = &plan->motions[motion];
-	double key[KEY] = {
-	    motion,           task->contact, task->gap, task->contact_stiffness, task->contact_damping,
-	    task->mass_ratio, task->tension};
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *b = &task->bodies[i];
-		double *k = &key[7 + 6 * i];
-		k[0] = b->skeleton.law, k[1] = b->skeleton.stiffness, k[2] = b->skeleton.hardening,
-		k[3] = b->skeleton.yield;
-		k[4] = b->damping, k[5] = b->drive;
-	}
+	const struct pound_motion *m = &plan->motions[motion];
 	int known = plan->march_keys.n;
-	int j = register_key(&plan->march_keys, key);
+	int j = pound_keys_run(&plan->march_keys, motion, task);
 	if (j == known) {
 		plan->tasks[j] = *task;
 		plan->tasks[j].ground = m->ground;
@@ -203,19 +156,6 @@ static int march_ask(struct pound_plan *plan, int motion, struct pound_march_tas
 
 /* ---- stages ---- */
 
-/* Puts the mean of every two samples between them. */
-static void motion_halve(struct motion *m)
-{
-	double *g = m->ground;
-	for (int t = m->n_samples - 1; t > 0; t--) {
-		double middle = 0.5 * (g[t - 1] + g[t]);
-		g[2 * t] = g[t];
-		g[2 * t - 1] = middle;
-	}
-	m->n_samples = 2 * m->n_samples - 1;
-	m->time_step *= 0.5;
-}
-
 /* Whether every force of the asked scenes scales with the motion: then scaling a ground motion by a power of two changes no digit
  * of any response. */
 static bool forces_scale(const struct pound_plan *plan)
@@ -226,38 +166,6 @@ static bool forces_scale(const struct pound_plan *plan)
 		scale = !contact->present || pound_force_scales(pound_contact_force(contact->model));
 	}
 	return scale;
-}
-
-/* Fills the ground motions and, if `scaled`, scales each by a power of two. */
-static void motions_fill(struct pound_plan *plan, bool scaled)
-{
-	double *ground = plan->ground;
-	struct pound_signal signals[POUND_SIGNALS_MAX];
-	for (int j = 0, waiting = 0; j < plan->motion_keys.n; j++) {
-		struct motion *m = &plan->motions[j];
-		m->n_samples = pound_excitation_samples(&m->excitation);
-		m->time_step = m->excitation.time_step;
-		m->ground = ground;
-		ground += m->halved ? 2 * m->n_samples - 1 : m->n_samples;
-		assert(ground - plan->ground <= plan->size.samples);
-		signals[waiting++] = (struct pound_signal){&m->excitation, m->noise, m->ground};
-		if (waiting == POUND_SIGNALS_MAX || j == plan->motion_keys.n - 1) {
-			pound_signals_fill(signals, waiting);
-			waiting = 0;
-		}
-	}
-	for (int j = 0; j < plan->motion_keys.n; j++) {
-		struct motion *m = &plan->motions[j];
-		if (m->halved)
-			motion_halve(m);
-		const double peak = pound_excitation_largest(m->n_samples, m->ground);
-		m->exponent = scaled && peak > 0 ? ilogb(peak) : 0;
-		// in two factors, as that of a peak below the normal numbers is beyond the largest one
-		const int first = -m->exponent < DBL_MAX_EXP ? -m->exponent : DBL_MAX_EXP - 1;
-		const double factor = ldexp(1, first), rest = ldexp(1, -m->exponent - first);
-		for (int t = 0; t < m->n_samples && m->exponent != 0; t++)
-			m->ground[t] = m->ground[t] * factor * rest;
-	}
 }
 
 /* Whether the exact solver can check tasks [from, end): else the study's own solver does, on half the sample step. */
@@ -478,74 +386,20 @@ static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_
 	ask->march = march_ask(plan, ask->motion, &task);
 }
 
-/* ---- from marches to a response ---- */
-
-/* The response of a sample in the units of the study.
- *
- * Returns  response  NAN where the scene has no such value
- */
-static enum pound_status ask_response(const struct pound_plan *plan, const struct ask *ask,
-                                      struct pound_response *out)
+/* What was run of an ask. */
+static struct pound_runs_known ask_known(const struct pound_plan *plan, const struct ask *ask)
 {
-	int e = plan->motions[ask->motion].exponent;
-	struct pound_march_result none = {0};
-	const struct pound_march_result *with = ask->march < 0 ? &none : &plan->results[ask->march];
-	enum pound_status status = with->status;
-	double residual = with->energy_residual;
-	double max[2], max_free[2], force[2], yield[2], demand[2], demand_free[2], u[2], v[2];
+	struct pound_runs_known known = {.scene = &ask->scene,
+	                                 .exponent = plan->motions[ask->motion].exponent,
+	                                 .pounding = ask->march < 0 ? NULL : &plan->results[ask->march]};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct body_ask *body = &ask->bodies[i];
-		const struct pound_march_result *free = body->finished ? &plan->results[body->march] : NULL;
-		struct pound_skeleton skeleton = pound_scene_body(&ask->scene, i).skeleton;
-		bool yields = !pound_pieces_linear(skeleton.law) && !ask->scene.oscillators[i].rigid_wall;
-		if (body->status || (free && free->status))
-			status = body->status ? body->status : free->status;
-		skeleton.yield = body->yield;
-		// without a run with pounding the body moves as it does alone; the wall does not
-		bool alone = ask->march < 0;
-		if (alone && free)
-			residual = fmax(residual, free->energy_residual);
-		bool wall = ask->scene.oscillators[i].rigid_wall;
-		double most = wall ? 0 : !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
-		max[i] = ldexp(most, e);
-		max_free[i] = wall ? 0 : free ? ldexp(free->displacement_max[0], e) : NAN;
-		force[i] = ldexp(ask->scene.oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);
-		double given = pound_scene_law(&ask->scene, i)->yield_displacement;
-		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);
-		// a yield displacement that is given may be too small beside the motion to be told in its scale
-		double per_yield = !yields || body->yield == 0 ? NAN : given > 0 ? given : body->yield;
-		demand[i] = ldexp(most / per_yield, given > 0 ? e : 0);
-		demand_free[i] = free ? ldexp(free->displacement_max[0] / per_yield, given > 0 ? e : 0) : NAN;
-		u[i] = ldexp(!alone ? with->u[i] : free ? free->u[0] : 0, e);
-		v[i] = ldexp(!alone ? with->v[i] : free ? free->v[0] : 0, e);
+		known.bodies[i] =
+		    (struct pound_body_known){.free = body->finished ? &plan->results[body->march] : NULL,
+		                              .yield = body->yield,
+		                              .status = body->status};
 	}
-	*out = (struct pound_response){
-	    .displacement_max_1 = max[0],
-	    .displacement_max_2 = max[1],
-	    .displacement_max_free_1 = max_free[0],
-	    .displacement_max_free_2 = max_free[1],
-	    .force_max_1 = force[0],
-	    .force_max_2 = force[1],
-	    .yield_displacement_1 = yield[0],
-	    .yield_displacement_2 = yield[1],
-	    .demand_1 = demand[0],
-	    .demand_2 = demand[1],
-	    .demand_free_1 = demand_free[0],
-	    .demand_free_2 = demand_free[1],
-	    .impulse_max = ldexp(ask->scene.oscillators[0].mass * with->impulse_max, e),
-	    .contact_count = (double)with->contacts,
-	    .contact_time = with->contact_time,
-	    .end_u1 = u[0],
-	    .end_v1 = v[0],
-	    .end_u2 = u[1],
-	    .end_v2 = v[1],
-	    .energy_residual = residual,
-	};
-	bool beyond = false; // the motion in its own scale is finite, but not all that is made of it need be
-#define X(member, name, oscillator) beyond |= isinf(out->member) != 0;
-	POUND_MEASURES(X)
-#undef X
-	return beyond && status == POUND_OK ? POUND_OVERFLOW : status;
+	return known;
 }
 
 /* ---- the block ---- */
@@ -613,8 +467,8 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 {
 	int n_items = n * campaign->n_cells * campaign->n_samples, n_asks = 0;
 	const struct pound_solver solver = pound_campaign_solver(campaign, first / campaign->n_signals);
-	register_clear(&plan->motion_keys);
-	register_clear(&plan->march_keys);
+	pound_keys_clear(&plan->motion_keys);
+	pound_keys_clear(&plan->march_keys);
 	for (int item = first; item < first + n; item++)
 		n_asks = item_write(plan, campaign, n_asks, item, false);
 	work->signals.asked += n_asks;
@@ -624,7 +478,8 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	assert(n_asks <= plan->size.asks);
 	plan->n_asks = n_asks;
 	plan->n_items = n_items;
-	motions_fill(plan, forces_scale(plan));
+	pound_motions_fill(plan->motions, plan->motion_keys.n, forces_scale(plan), plan->ground,
+	                   plan->size.samples);
 
 	struct pound_work of_checks = {0}; // what they leave out is not told
 	int done = 0, stages = 1;
@@ -652,7 +507,8 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	for (int a = 0; a < n_asks; a++) {
 		struct pound_response response;
 		const struct ask *ask = &plan->asks[a];
-		enum pound_status failure = ask_response(plan, ask, &response);
+		const struct pound_runs_known known = ask_known(plan, ask);
+		enum pound_status failure = pound_response_of(&known, &response);
 		assert(!failure || failure <= POUND_CHATTER);
 		if (failure && a < n_items)
 			work->failed[POUND_CHATTER - failure]++;

@@ -1,0 +1,53 @@
+/* request_keys.c - ground motions and runs as keys of numbers: equal keys are one motion or one run. */
+#include "engine/run/request_keys.h"
+
+#include <string.h>
+
+#include "engine/numeric/hash.h"
+
+void pound_keys_clear(struct pound_keys *keys)
+{
+	keys->n = 0;
+	memset(keys->slots, -1, sizeof(int) * (size_t)keys->n_slots);
+}
+
+/* Number of a key; a new one gets the next number. */
+static int number_of(struct pound_keys *r, const double key[static POUND_KEY])
+{
+	int slot = pound_hash_slot(0, key, POUND_KEY, r->n_slots);
+	for (; r->slots[slot] >= 0; slot = (slot + 1) & (r->n_slots - 1))
+		if (memcmp(&r->keys[POUND_KEY * r->slots[slot]], key, sizeof(double) * POUND_KEY) == 0)
+			return r->slots[slot];
+	memcpy(&r->keys[POUND_KEY * r->n], key, sizeof(double) * POUND_KEY);
+	return r->slots[slot] = r->n++;
+}
+
+/* Number of a ground motion: its excitation, and the noise of its row and signal, if it has any. */
+int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e, struct pound_stream noise, bool halved)
+{
+	const double key[POUND_KEY] = {
+	    e->type, e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,    e->duration,  e->rise,
+	    e->fall, e->time_step,    e->peak,          noise.row,          noise.sample, noise.signal, halved};
+	return number_of(keys, key);
+}
+
+/* Number of a run: a task under a motion. */
+int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_march_task *task)
+{
+	double key[POUND_KEY] = {motion,
+	                         task->contact,
+	                         task->gap,
+	                         task->contact_stiffness,
+	                         task->contact_damping,
+	                         task->mass_ratio,
+	                         task->tension,
+	                         task->contact ? task->force : 0};
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_march_body *b = &task->bodies[i];
+		double *k = &key[8 + 6 * i];
+		k[0] = b->skeleton.law, k[1] = b->skeleton.stiffness, k[2] = b->skeleton.hardening,
+		k[3] = b->skeleton.yield;
+		k[4] = b->damping, k[5] = b->drive;
+	}
+	return number_of(keys, key);
+}

@@ -1,0 +1,23 @@
+/* response.h - from the runs of a scene under one ground motion to its response, in the units of the study. */
+#ifndef RESPONSE_H
+#define RESPONSE_H
+
+#include "engine/exact/task.h"
+
+struct pound_body_known {
+	const struct pound_march_result *free; /* without pounding; NULL: not run */
+	double yield;                          /* yield displacement [m], scaled as the ground motion; 0: none */
+	enum pound_status status;              /* of the runs that it comes from */
+};
+
+/* what was run */
+struct pound_runs_known {
+	const struct pound_scene *scene;
+	int exponent; /* motions are times 2^-exponent */
+	const struct pound_march_result *pounding; /* NULL: the responses without pounding are the answer */
+	struct pound_body_known bodies[POUND_OSCILLATORS];
+};
+
+enum pound_status pound_response_of(const struct pound_runs_known *known, struct pound_response *out);
+
+#endif
