@@ -9,7 +9,7 @@
 
 /* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
  * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
- * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (plan.c). */
+ * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (request.c). */
 static const double POUND_AT_REST = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
 
 /* Of what an acceleration is made of: no more than this of it is a rounding, and decides nothing. */

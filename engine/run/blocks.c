@@ -23,7 +23,7 @@ static int block_runs(const struct pound_study *study)
 	return study->kind == POUND_KIND_FLOOR_SPECTRUM ? BLOCK_SPECTRA : BLOCK_FLOORS;
 }
 
-static void size_add(struct pound_plan_size *block, struct pound_plan_size item, bool checked)
+static void size_add(struct pound_request_size *block, struct pound_request_size item, bool checked)
 {
 	int times = checked ? 2 : 1;
 	block->asks += times * item.asks;
@@ -43,16 +43,16 @@ static void size_add(struct pound_plan_size *block, struct pound_plan_size item,
  *
  * Test     unit_growth: a_block_ends_where_the_design_is_looked_at
  */
-int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_plan_size *largest)
+int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_request_size *largest)
 {
 	const struct pound_campaign *c = campaign;
 	const bool sampled = c->study->kind == POUND_KIND_SENSITIVITY;
-	struct pound_plan_size block = {0}, item = {0};
+	struct pound_request_size block = {0}, item = {0};
 	int n_blocks = c->study->elsewhere, n_items = pound_layout_items(c), look = 0;
 	int look_end = sampled ? pound_design_rows(c->study, 0) : c->n_rows;
 	for (int i = 0; i < n_items && !c->study->elsewhere; i++) {
 		if (i % c->n_signals == 0)
-			item = pound_plan_size(c, i / c->n_signals);
+			item = pound_request_size(c, i / c->n_signals);
 		bool full =
 		    block.asks + item.asks > block_runs(c->study) || block.samples + item.samples > BLOCK_SAMPLES;
 		bool solved = c->trials && i % c->n_signals == 0;
@@ -63,7 +63,7 @@ int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct p
 			if (first)
 				first[n_blocks] = i;
 			n_blocks++;
-			block = (struct pound_plan_size){0};
+			block = (struct pound_request_size){0};
 		}
 		size_add(&block, item, pound_campaign_checks(c, i) < pound_campaign_checks(c, i + 1));
 		largest->asks = block.asks > largest->asks ? block.asks : largest->asks;

@@ -5,7 +5,7 @@
 #ifndef LAYOUT_H
 #define LAYOUT_H
 
-#include "engine/run/plan.h"
+#include "engine/run/request.h"
 
 struct pound_layout {
 	const struct pound_campaign *campaign;
@@ -18,7 +18,7 @@ struct pound_layout {
 
 int pound_layout_items(const struct pound_campaign *campaign);
 /* How many blocks; with first NULL they are only counted, and the largest found. */
-int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_plan_size *largest);
+int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_request_size *largest);
 size_t pound_layout_doubles(const struct pound_layout *layout);
 
 int pound_layout_block_of(const struct pound_layout *layout, int item);

@@ -1,6 +1,6 @@
 /* cells.c - the scenes of a study: its cells (product of the sweeps), the rows of its design, a row's samples. */
 #include "engine/design/design.h"
-#include "engine/run/plan.h"
+#include "engine/run/request.h"
 
 /* The solver of a row. */
 struct pound_solver pound_campaign_solver(const struct pound_campaign *campaign, int row)

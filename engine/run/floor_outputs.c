@@ -1,6 +1,6 @@
 /* floor_outputs.c - floor spectra as what a study asks for.
  *
- * 1. After the marches of a block each of its floors is traced once more, under the tasks that the plan found, and its
+ * 1. After the marches of a block each of its floors is traced once more, under the tasks that the request found, and its
  *    spectra are put beside the other measures of the run; equal floors are traced once.
  * 2. A study of spectra reduces them to mean and percentiles over the signals; a sensitivity study has an output for each
  *    frequency, and tells how it goes with the largest impulse.
@@ -103,26 +103,26 @@ static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound
 
 /* All spectra of one signal. */
 static enum pound_status spectra_fill(struct pound_ordinates *o, const struct pound_study *study,
-                                      const struct pound_plan_floor *plan, double radians, double *values,
-                                      const atomic_bool *stop)
+                                      const struct pound_request_floor *request, double radians,
+                                      double *values, const atomic_bool *stop)
 {
 	int n = study->spectrum.n;
 	struct pound_floor_answer answer = {.psa = {o->psa[0], o->psa[1]}};
-	struct pound_floor_ask ask = {.task = plan->free, .n_drives = 1, .radians = radians, .stop = stop};
+	struct pound_floor_ask ask = {.task = request->free, .n_drives = 1, .radians = radians, .stop = stop};
 	enum pound_status status = pound_floor_spectra(o->floor, &ask, &answer);
 	if (status)
 		return status;
-	scaled(o->psa[POUND_DRIVE_FLOOR], n, plan->exponent, values + POUND_SPECTRUM_FREE * n);
+	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_FREE * n);
 	memset(o->psa[POUND_DRIVE_PUSH], 0, sizeof(double) * (size_t)n);
 	ask = (struct pound_floor_ask){
-	    .task = plan->pounding, .n_drives = POUND_DRIVES, .radians = radians, .stop = stop};
-	if (plan->pounding)
+	    .task = request->pounding, .n_drives = POUND_DRIVES, .radians = radians, .stop = stop};
+	if (request->pounding)
 		status = pound_floor_spectra(o->floor, &ask, &answer);
-	scaled(o->psa[POUND_DRIVE_FLOOR], n, plan->exponent, values + POUND_SPECTRUM_POUNDING * n);
-	scaled(o->psa[POUND_DRIVE_PUSH], n, plan->exponent, values + POUND_SPECTRUM_IMPACT_ONLY * n);
-	const struct pound_oscillator *left = &plan->scene->oscillators[0];
+	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_POUNDING * n);
+	scaled(o->psa[POUND_DRIVE_PUSH], n, request->exponent, values + POUND_SPECTRUM_IMPACT_ONLY * n);
+	const struct pound_oscillator *left = &request->scene->oscillators[0];
 	int pulses = study->spectrum.pulses;
-	const struct pound_dirac dirac = {.speed = ldexp(answer.impulse_max, plan->exponent),
+	const struct pound_dirac dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
 	                                  .spacing = 0.5 / left->frequency_hz,
 	                                  .pulses = pulses ? pulses : (double)answer.contacts};
 	dirac_fill(&study->spectrum, &dirac, values);
@@ -133,11 +133,11 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 
 /* The ordinates of one sample and signal, or those of the ask before it that has the same floor. */
 static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct pound_study *study,
-                                        const struct pound_plan_floor *plan, double radians,
+                                        const struct pound_request_floor *request, double radians,
                                         const double *known, double *values, const atomic_bool *stop)
 {
 	struct pound_floor_answer answer = {.psa = {o->psa[0]}};
-	const struct pound_floor_ask ask = {.task = plan->pounding ? plan->pounding : plan->free,
+	const struct pound_floor_ask ask = {.task = request->pounding ? request->pounding : request->free,
 	                                    .n_drives = 1,
 	                                    .radians = radians,
 	                                    .stop = stop};
@@ -146,7 +146,7 @@ static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct 
 		int k = pound_study_ordinate(study, output);
 		if (k >= 0)
 			values[2 * output] =
-			    known ? known[2 * output] : ldexp(o->psa[POUND_DRIVE_FLOOR][k], plan->exponent);
+			    known ? known[2 * output] : ldexp(o->psa[POUND_DRIVE_FLOOR][k], request->exponent);
 	}
 	return status;
 }
@@ -156,9 +156,9 @@ static int measures_of(const struct pound_study *study)
 	return (has_spectra(study) ? 0 : 2 * study->n_outputs) + pound_ordinate_measures(study);
 }
 
-/* Adds to a block that the plan has run what spectra its study asks for.
+/* Adds to a block that the request has run what spectra its study asks for.
  *
- * Given    plan     its asks in the order of their values
+ * Given    request     its asks in the order of their values
  *          values   (asks x measures)  of a failed run the last is NAN
  *          stop     looked at throughout
  * Returns  values   with spectra or ordinates; all NAN where a floor could not be followed
@@ -166,13 +166,13 @@ static int measures_of(const struct pound_study *study)
  * Status   POUND_STOPPED  stop was set
  */
 enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct pound_study *study,
-                                       const struct pound_plan *plan, double *values, const atomic_bool *stop,
-                                       struct pound_work *work)
+                                       const struct pound_request *request, double *values,
+                                       const atomic_bool *stop, struct pound_work *work)
 {
-	int n_items, n_asks = pound_plan_asks(plan, &n_items), n = measures_of(study);
+	int n_items, n_asks = pound_request_count(request, &n_items), n = measures_of(study);
 	memset(o->traced, 0, sizeof *o->traced * (size_t)o->n_tasks);
 	for (int a = 0; a < n_asks && !pound_stopped(stop); a++, values += n) {
-		const struct pound_plan_floor floor = pound_plan_floor(plan, a);
+		const struct pound_request_floor floor = pound_request_floor(request, a);
 		double radians = a < n_items ? RADIANS : RADIANS_CHECK;
 		assert(floor.march < o->n_tasks);
 		struct traced *traced = &o->traced[floor.march];
@@ -408,11 +408,11 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 	struct pound_work work = {0};
 	enum pound_status status = POUND_OK, left = POUND_OK;
 	assert(has_spectra(run->campaign.study));
-	status =
-	    pound_plan_run(run->plans[0], &run->campaign, signal, 1, run->stop, &work, response_leave, &left);
+	status = pound_request_run(run->requests[0], &run->campaign, signal, 1, run->stop, &work, response_leave,
+	                           &left);
 	if (status || left)
 		return status ? status : left;
-	const struct pound_plan_floor floor = pound_plan_floor(run->plans[0], 0);
+	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);
 	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
 	return pound_floor_history(run->floors[0]->floor, floor.pounding ? floor.pounding : floor.free, run->stop,
 	                           instant_tell, &to);

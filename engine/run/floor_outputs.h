@@ -4,7 +4,7 @@
 
 #include "engine/floor/floor.h"
 #include "engine/indices/indices.h"
-#include "engine/run/plan.h"
+#include "engine/run/request.h"
 #include "engine/run/run.h"
 
 struct pound_ordinates; /* work space of one worker */
@@ -15,8 +15,8 @@ size_t pound_ordinate_bytes(const struct pound_study *study, int n_tasks); /* 0:
 struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_study *study, int n_tasks);
 
 enum pound_status pound_ordinate_block(struct pound_ordinates *ordinates, const struct pound_study *study,
-                                       const struct pound_plan *plan, double *values, const atomic_bool *stop,
-                                       struct pound_work *work);
+                                       const struct pound_request *request, double *values,
+                                       const atomic_bool *stop, struct pound_work *work);
 
 /* Lays the spectra of a result out in numbers  (POUND_N_SPECTRA x 4 x frequencies). */
 void pound_ordinate_layout(const struct pound_study *study, double *numbers,

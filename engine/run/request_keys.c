@@ -23,7 +23,8 @@ static int number_of(struct pound_keys *r, const double key[static POUND_KEY])
 }
 
 /* Number of a ground motion: its excitation, and the noise of its row and signal, if it has any. */
-int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e, struct pound_stream noise, bool halved)
+int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e, struct pound_stream noise,
+                      bool halved)
 {
 	const double key[POUND_KEY] = {
 	    e->type, e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,    e->duration,  e->rise,

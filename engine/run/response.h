@@ -13,7 +13,7 @@ struct pound_body_known {
 /* what was run */
 struct pound_runs_known {
 	const struct pound_scene *scene;
-	int exponent; /* motions are times 2^-exponent */
+	int exponent;                              /* motions are times 2^-exponent */
 	const struct pound_march_result *pounding; /* NULL: the responses without pounding are the answer */
 	struct pound_body_known bodies[POUND_OSCILLATORS];
 };

@@ -1,6 +1,6 @@
 /* run.c - a study being computed: its memory, its blocks, its reductions.
  *
- * 1. create lays out everything: the design, the blocks (ranges of items, see blocks.h), a plan for each worker;
+ * 1. create lays out everything: the design, the blocks (ranges of items, see blocks.h), a request for each worker;
  * 2. a block writes the measures of its runs into its own slice of `values`;
  * 3. a reduction turns the measures of one cell and output into its place of the result. */
 #include <assert.h>
@@ -107,22 +107,22 @@ static void *piece(size_t bytes)
 	return memory ? memset(memory, 0, bytes) : NULL;
 }
 
-static bool workers_create(struct pound_run *run, int n_workers, struct pound_plan_size largest)
+static bool workers_create(struct pound_run *run, int n_workers, struct pound_request_size largest)
 {
-	run->plans = piece(sizeof *run->plans * (size_t)(n_workers + 1)); // ends with NULL
+	run->requests = piece(sizeof *run->requests * (size_t)(n_workers + 1)); // ends with NULL
 	run->scratch = piece(sizeof *run->scratch * (size_t)(n_workers + 1));
 	run->floors = piece(sizeof *run->floors * (size_t)(n_workers + 1));
-	if (!run->plans || !run->scratch || !run->floors)
+	if (!run->requests || !run->scratch || !run->floors)
 		return false;
 	size_t spectra = pound_ordinate_bytes(run->campaign.study, largest.tasks);
 	for (int w = 0; w < n_workers; w++) {
-		void *memory = room(pound_plan_bytes(largest));
-		run->plans[w] = memory ? pound_plan_init(memory, largest) : NULL;
+		void *memory = room(pound_request_bytes(largest));
+		run->requests[w] = memory ? pound_request_init(memory, largest) : NULL;
 		// cleared: it begins with what pound_chaos_kept_size() asks zeros for
 		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
 		memory = spectra ? room(spectra) : NULL;
 		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;
-		if (!run->plans[w] || !run->scratch[w] || (spectra && !memory))
+		if (!run->requests[w] || !run->scratch[w] || (spectra && !memory))
 			return false;
 	}
 	return true;
@@ -194,7 +194,7 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 		pound_design_probabilities(study, run->u);
 		pound_design_fill(study, design);
 	}
-	struct pound_plan_size largest = {0};
+	struct pound_request_size largest = {0};
 	run->layout.n_blocks = pound_layout_cut(&run->campaign, NULL, &largest);
 	run->layout.first = piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
 	if (!run->layout.first)
@@ -213,8 +213,8 @@ void pound_run_free(struct pound_run *run)
 {
 	if (!run)
 		return;
-	for (int w = 0; run->plans && run->plans[w]; w++)
-		free(run->plans[w]);
+	for (int w = 0; run->requests && run->requests[w]; w++)
+		free(run->requests[w]);
 	for (int w = 0; run->scratch && run->scratch[w]; w++)
 		free(run->scratch[w]);
 	for (int w = 0; run->floors && run->floors[w]; w++)
@@ -223,7 +223,7 @@ void pound_run_free(struct pound_run *run)
 	                        run->u,
 	                        run->layout.first,
 	                        run->layout.values,
-	                        run->plans,
+	                        run->requests,
 	                        run->scratch,
 	                        run->floors,
 	                        run->spectra,
@@ -335,8 +335,8 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
 		*slice->at++ = status ? NAN : response->impulse_max / scene->oscillators[0].mass;
 }
 
-/* CPU time of a run in the plan's last block, NAN without a clock: as many rounds as can be told from its ticks. */
-static enum pound_status run_time(const struct pound_run *run, struct pound_plan *plan,
+/* CPU time of a run in the request's last block, NAN without a clock: as many rounds as can be told from its ticks. */
+static enum pound_status run_time(const struct pound_run *run, struct pound_request *request,
                                   const struct pound_solver *solver, double *cpu)
 {
 	*cpu = NAN;
@@ -345,7 +345,7 @@ static enum pound_status run_time(const struct pound_run *run, struct pound_plan
 	double start = run->cpu(), now;
 	int n = 0, more;
 	do {
-		enum pound_status status = pound_plan_repeat(plan, solver, run->stop, &more);
+		enum pound_status status = pound_request_repeat(request, solver, run->stop, &more);
 		if (status)
 			return status;
 		n += more;
@@ -357,8 +357,8 @@ static enum pound_status run_time(const struct pound_run *run, struct pound_plan
 }
 
 /* Adds to a block of one trial the histories and the time of a run. */
-static enum pound_status trial_block(const struct pound_run *run, struct pound_plan *plan, int first, int n,
-                                     struct pound_trial_run *runs)
+static enum pound_status trial_block(const struct pound_run *run, struct pound_request *request, int first,
+                                     int n, struct pound_trial_run *runs)
 {
 	const struct pound_campaign *c = &run->campaign;
 	const struct pound_solver solver = pound_campaign_solver(c, first / c->n_signals);
@@ -370,12 +370,13 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_p
 			if (k > 0 && isnan(history[k - 1]))
 				history[k] = NAN; // it came to its end before that
 			else
-				status = pound_plan_displacement(plan, &solver, item, samples[k], run->stop, &history[k]);
+				status =
+				    pound_request_displacement(request, &solver, item, samples[k], run->stop, &history[k]);
 		}
 	}
 	double cpu = NAN;
 	if (!status)
-		status = run_time(run, plan, &solver, &cpu);
+		status = run_time(run, request, &solver, &cpu);
 	for (int item = 0; item < n; item++)
 		runs[item].cpu = cpu;
 	return status;
@@ -391,13 +392,13 @@ enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 	struct slice slice = {.study = run->campaign.study, .at = pound_layout_block(&run->layout, block)};
 	struct pound_work work = {0};
 	int first = run->layout.first[block], n = run->layout.first[block + 1] - first;
-	enum pound_status status =
-	    pound_plan_run(run->plans[worker], &run->campaign, first, n, run->stop, &work, response_keep, &slice);
+	enum pound_status status = pound_request_run(run->requests[worker], &run->campaign, first, n, run->stop,
+	                                             &work, response_keep, &slice);
 	if (!status && run->campaign.trials)
-		status = trial_block(run, run->plans[worker], first, n,
+		status = trial_block(run, run->requests[worker], first, n,
 		                     (struct pound_trial_run *)pound_layout_block(&run->layout, block));
 	if (!status && run->floors[worker])
-		status = pound_ordinate_block(run->floors[worker], run->campaign.study, run->plans[worker],
+		status = pound_ordinate_block(run->floors[worker], run->campaign.study, run->requests[worker],
 		                              pound_layout_block(&run->layout, block), run->stop, &work);
 	if (status)
 		return status;

@@ -10,7 +10,7 @@ struct pound_run {
 	struct pound_campaign campaign;
 	struct pound_layout layout;
 	int rows;                        /* in hand: of the look, or taken for an intermediate result */
-	struct pound_plan **plans;       /* (n_workers) */
+	struct pound_request **requests; /* (n_workers) */
 	double **scratch;                /* of reductions  (n_workers) */
 	struct pound_ordinates **floors; /* (n_workers); NULL each: no spectra are asked */
 	struct pound_result result;

@@ -1,4 +1,4 @@
-/* plan.c - runs the items of a block, each needed thing once.
+/* request.c - runs the items of a block, each needed thing once.
  *
  * 1. every sample of every cell asks for its ground motion, its responses without pounding and its run with pounding;
  * 2. what is asked is written down as a key of numbers, equal keys are one motion or one march;
@@ -7,7 +7,7 @@
  *
  * The check of an item is all this once more on ground motions with a sample between every two: the same signal, as it
  * is linear between samples, in other steps with other maps, series and root searches. */
-#include "engine/run/plan.h"
+#include "engine/run/request.h"
 
 #include <assert.h>
 #include <float.h>
@@ -48,8 +48,8 @@ struct ask {
 	int march; /* with pounding; -1: the responses without pounding are the answer */
 };
 
-struct pound_plan {
-	struct pound_plan_size size;
+struct pound_request {
+	struct pound_request_size size;
 	struct pound_keys motion_keys, march_keys;
 	struct pound_motion *motions;       /* (motions) */
 	double *ground;                     /* (samples) */
@@ -63,25 +63,25 @@ struct pound_plan {
 
 /* ---- work space ---- */
 
-/* Carves a plan out of memory, or with memory NULL only counts the bytes. */
-static size_t plan_carve(char *memory, struct pound_plan *plan, struct pound_plan_size size)
+/* Carves a request out of memory, or with memory NULL only counts the bytes. */
+static size_t request_carve(char *memory, struct pound_request *request, struct pound_request_size size)
 {
 	const struct {
 		void *into;
 		size_t bytes;
 	} parts[] = {
-	    {&plan->motion_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.motions},
-	    {&plan->march_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.tasks},
-	    {&plan->motion_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.motions)},
-	    {&plan->march_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.tasks)},
-	    {&plan->motions, sizeof *plan->motions * (size_t)size.motions},
-	    {&plan->ground, sizeof(double) * (size_t)size.samples},
-	    {&plan->asks, sizeof *plan->asks * (size_t)size.asks},
-	    {&plan->tasks, sizeof *plan->tasks * (size_t)size.tasks},
-	    {&plan->results, sizeof *plan->results * (size_t)size.tasks},
-	    {&plan->scratch, POUND_MARCH_SCRATCH},
+	    {&request->motion_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.motions},
+	    {&request->march_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.tasks},
+	    {&request->motion_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.motions)},
+	    {&request->march_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.tasks)},
+	    {&request->motions, sizeof *request->motions * (size_t)size.motions},
+	    {&request->ground, sizeof(double) * (size_t)size.samples},
+	    {&request->asks, sizeof *request->asks * (size_t)size.asks},
+	    {&request->tasks, sizeof *request->tasks * (size_t)size.tasks},
+	    {&request->results, sizeof *request->results * (size_t)size.tasks},
+	    {&request->scratch, POUND_MARCH_SCRATCH},
 	};
-	size_t at = (sizeof *plan + 63) / 64 * 64;
+	size_t at = (sizeof *request + 63) / 64 * 64;
 	for (size_t j = 0; j < sizeof parts / sizeof parts[0]; j++) {
 		if (memory)
 			*(void **)parts[j].into = memory + at;
@@ -90,28 +90,28 @@ static size_t plan_carve(char *memory, struct pound_plan *plan, struct pound_pla
 	return at;
 }
 
-/* Bytes of a plan's work space, to be 64-byte aligned. */
-size_t pound_plan_bytes(struct pound_plan_size size)
+/* Bytes of a request's work space, to be 64-byte aligned. */
+size_t pound_request_bytes(struct pound_request_size size)
 {
-	struct pound_plan plan;
-	return plan_carve(NULL, &plan, size);
+	struct pound_request request;
+	return request_carve(NULL, &request, size);
 }
 
-struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size)
+struct pound_request *pound_request_init(void *memory, struct pound_request_size size)
 {
-	struct pound_plan *plan = memory;
-	memset(plan, 0, sizeof *plan);
-	plan_carve(memory, plan, size);
-	plan->size = size;
-	plan->motion_keys.n_slots = pound_hash_slots(size.motions);
-	plan->march_keys.n_slots = pound_hash_slots(size.tasks);
-	return plan;
+	struct pound_request *request = memory;
+	memset(request, 0, sizeof *request);
+	request_carve(memory, request, size);
+	request->size = size;
+	request->motion_keys.n_slots = pound_hash_slots(size.motions);
+	request->march_keys.n_slots = pound_hash_slots(size.tasks);
+	return request;
 }
 
 /* Upper bounds for the items of one row: whatever may differ between its samples counts as different. */
-struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, int row)
+struct pound_request_size pound_request_size(const struct pound_campaign *campaign, int row)
 {
-	struct pound_plan_size size = {0};
+	struct pound_request_size size = {0};
 	for (int cell = 0; cell < campaign->n_cells; cell++)
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
 			struct pound_scene scene = pound_campaign_scene(campaign, cell, row, sample);
@@ -127,29 +127,29 @@ struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, in
 }
 
 /* The ground motion of a sample: its excitation, and the noise of its row and signal, if it has any. */
-static int motion_ask(struct pound_plan *plan, const struct pound_excitation *e, struct pound_stream noise,
-                      bool halved)
+static int motion_ask(struct pound_request *request, const struct pound_excitation *e,
+                      struct pound_stream noise, bool halved)
 {
 	if (!pound_excitation_random(e))
 		noise = (struct pound_stream){0};
-	int known = plan->motion_keys.n;
-	int j = pound_keys_motion(&plan->motion_keys, e, noise, halved);
+	int known = request->motion_keys.n;
+	int j = pound_keys_motion(&request->motion_keys, e, noise, halved);
 	if (j == known)
-		plan->motions[j] = (struct pound_motion){.excitation = *e, .noise = noise, .halved = halved};
+		request->motions[j] = (struct pound_motion){.excitation = *e, .noise = noise, .halved = halved};
 	return j;
 }
 
 /* A march; bodies and contact are set, the ground motion is added here. */
-static int march_ask(struct pound_plan *plan, int motion, struct pound_march_task *task)
+static int march_ask(struct pound_request *request, int motion, struct pound_march_task *task)
 {
-	const struct pound_motion *m = &plan->motions[motion];
-	int known = plan->march_keys.n;
-	int j = pound_keys_run(&plan->march_keys, motion, task);
+	const struct pound_motion *m = &request->motions[motion];
+	int known = request->march_keys.n;
+	int j = pound_keys_run(&request->march_keys, motion, task);
 	if (j == known) {
-		plan->tasks[j] = *task;
-		plan->tasks[j].ground = m->ground;
-		plan->tasks[j].n_samples = m->n_samples;
-		plan->tasks[j].time_step = m->time_step;
+		request->tasks[j] = *task;
+		request->tasks[j].ground = m->ground;
+		request->tasks[j].n_samples = m->n_samples;
+		request->tasks[j].time_step = m->time_step;
 	}
 	return j;
 }
@@ -158,42 +158,43 @@ static int march_ask(struct pound_plan *plan, int motion, struct pound_march_tas
 
 /* Whether every force of the asked scenes scales with the motion: then scaling a ground motion by a power of two changes no digit
  * of any response. */
-static bool forces_scale(const struct pound_plan *plan)
+static bool forces_scale(const struct pound_request *request)
 {
 	bool scale = true;
-	for (int a = 0; a < plan->n_asks && scale; a++) {
-		const struct pound_contact *contact = &plan->asks[a].scene.contact;
+	for (int a = 0; a < request->n_asks && scale; a++) {
+		const struct pound_contact *contact = &request->asks[a].scene.contact;
 		scale = !contact->present || pound_force_scales(pound_contact_force(contact->model));
 	}
 	return scale;
 }
 
 /* Whether the exact solver can check tasks [from, end): else the study's own solver does, on half the sample step. */
-static bool exact_takes(const struct pound_plan *plan, int from, int end)
+static bool exact_takes(const struct pound_request *request, int from, int end)
 {
 	bool takes = true;
 	for (int j = from; j < end && takes; j++)
-		takes = !plan->tasks[j].contact || pound_solver_takes_force(POUND_SOLVER_EVENT, plan->tasks[j].force);
+		takes = !request->tasks[j].contact ||
+		        pound_solver_takes_force(POUND_SOLVER_EVENT, request->tasks[j].force);
 	return takes;
 }
 
 /* Runs the marches asked since the stage before.  The first ones are those of the checks, which the exact solver runs where
  * it can, whatever the study's solver. */
-static enum pound_status marches_run(struct pound_plan *plan, const struct pound_solver *solver,
+static enum pound_status marches_run(struct pound_request *request, const struct pound_solver *solver,
                                      int checks_end, int *done, const atomic_bool *stop)
 {
 	static const struct pound_solver exact = {.method = POUND_SOLVER_EVENT};
-	int from = *done, n = plan->march_keys.n;
-	assert(n <= plan->size.tasks);
-	const struct pound_solver *checks = exact_takes(plan, from, checks_end) ? &exact : solver;
+	int from = *done, n = request->march_keys.n;
+	assert(n <= request->size.tasks);
+	const struct pound_solver *checks = exact_takes(request, from, checks_end) ? &exact : solver;
 	// one call for both where it can be, as it fills the lanes better
 	int cut = solver->method == checks->method ? n : checks_end;
 	*done = n;
-	enum pound_status status =
-	    pound_solver_run(checks, &plan->tasks[from], &plan->results[from], cut - from, plan->scratch, stop);
+	enum pound_status status = pound_solver_run(checks, &request->tasks[from], &request->results[from],
+	                                            cut - from, request->scratch, stop);
 	return status ? status
-	              : pound_solver_run(solver, &plan->tasks[cut], &plan->results[cut], n - cut, plan->scratch,
-	                                 stop);
+	              : pound_solver_run(solver, &request->tasks[cut], &request->results[cut], n - cut,
+	                                 request->scratch, stop);
 }
 
 /* Longest length that is nothing beside the motion [m], scaled as the ground motion is.
@@ -201,21 +202,21 @@ static enum pound_status marches_run(struct pound_plan *plan, const struct pound
  * 2^-90 of what a ground acceleration of one moves a body in a sample: it is crossed in 2^-45 of a step or more, which
  * a search for events still resolves; a shorter one would be crossed within a step's rounding.
  */
-static double negligible(const struct pound_plan *plan, const struct ask *ask)
+static double negligible(const struct pound_request *request, const struct ask *ask)
 {
-	double h = plan->motions[ask->motion].excitation.time_step, least = h * h;
+	double h = request->motions[ask->motion].excitation.time_step, least = h * h;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		least = fmin(least, 1 / fmax(pound_scene_body(&ask->scene, i).skeleton.stiffness, DBL_MIN));
 	return 0x1p-90 * least;
 }
 
 /* The yield displacement a march follows; any will do for a body that never moves. */
-static double yield_marched(const struct pound_plan *plan, const struct ask *ask, double yield)
+static double yield_marched(const struct pound_request *request, const struct ask *ask, double yield)
 {
-	return yield > 0 ? fmin(fmax(yield, negligible(plan, ask)), 1 / DBL_EPSILON / DBL_EPSILON) : 1;
+	return yield > 0 ? fmin(fmax(yield, negligible(request, ask)), 1 / DBL_EPSILON / DBL_EPSILON) : 1;
 }
 
-static int body_march(struct pound_plan *plan, const struct ask *ask, int i, int law, double yield)
+static int body_march(struct pound_request *request, const struct ask *ask, int i, int law, double yield)
 {
 	struct pound_march_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
 	task.bodies[0].followed = true;
@@ -224,7 +225,7 @@ static int body_march(struct pound_plan *plan, const struct ask *ask, int i, int
 	task.bodies[0].skeleton.yield = yield;
 	if (pound_pieces_linear(law))
 		task.bodies[0].skeleton.hardening = 0;
-	return march_ask(plan, ask->motion, &task);
+	return march_ask(request, ask->motion, &task);
 }
 
 /* Reduction of the elastic displacement that gives the wanted demand, by the ratio of excitation to own frequency.
@@ -251,11 +252,11 @@ static bool searched(const struct pound_law *law)
  * Returns  value   false: none is needed; the march that came nearest to it is the response
  *          work    how the search ended
  */
-static bool search_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i,
+static bool search_stage(struct pound_request *request, const struct ask *ask, struct body_ask *body, int i,
                          int stage, struct pound_work *work)
 {
 	const struct pound_law *law = pound_scene_law(&ask->scene, i);
-	const struct pound_march_result *before = &plan->results[body->march];
+	const struct pound_march_result *before = &request->results[body->march];
 	if (body->found)
 		return false;
 	body->status = body->status ? body->status : before->status;
@@ -269,7 +270,7 @@ static bool search_stage(struct pound_plan *plan, const struct ask *ask, struct 
 	if (more && stage <= 1 + law->corrections) {
 		body->found = body->finished = false;
 		body->yield = next;
-		body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, next));
+		body->march = body_march(request, ask, i, law->type, yield_marched(request, ask, next));
 		return true;
 	}
 	body->march = body->demand.response;
@@ -286,7 +287,7 @@ static bool search_stage(struct pound_plan *plan, const struct ask *ask, struct 
  * Returns  value   false: none is needed
  *          work    what was left out is counted
  */
-static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct body_ask *body, int i,
+static bool body_stage(struct pound_request *request, const struct ask *ask, struct body_ask *body, int i,
                        int stage, struct pound_work *work)
 {
 	const struct pound_law *law = pound_scene_law(&ask->scene, i);
@@ -294,7 +295,7 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 	bool given = law->yield_displacement > 0;
 	int last_stage = linear ? 0 : given ? 1 : 1 + law->corrections;
 	if (stage > 1 && searched(law))
-		return search_stage(plan, ask, body, i, stage, work);
+		return search_stage(request, ask, body, i, stage, work);
 	if (stage > last_stage)
 		return false;
 	if (stage == 0 && !linear && given) {
@@ -306,11 +307,12 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 		return false;
 	}
 	if (stage == 0)
-		body->march = body_march(plan, ask, i, 0, 0);
+		body->march = body_march(request, ask, i, 0, 0);
 	else {
-		const struct pound_march_result *before = given ? NULL : &plan->results[body->march];
+		const struct pound_march_result *before = given ? NULL : &request->results[body->march];
 		if (given) {
-			body->yield = fmax(ldexp(law->yield_displacement, -plan->motions[ask->motion].exponent), DBL_MIN);
+			body->yield =
+			    fmax(ldexp(law->yield_displacement, -request->motions[ask->motion].exponent), DBL_MIN);
 		} else {
 			body->status = body->status ? body->status : before->status;
 			body->yield = before->displacement_max[0] /
@@ -320,7 +322,7 @@ static bool body_stage(struct pound_plan *plan, const struct ask *ask, struct bo
 			work->nonlinear_unasked++;
 			return false;
 		}
-		body->march = body_march(plan, ask, i, law->type, yield_marched(plan, ask, body->yield));
+		body->march = body_march(request, ask, i, law->type, yield_marched(request, ask, body->yield));
 	}
 	body->finished = stage == last_stage;
 	return true;
@@ -349,13 +351,13 @@ static int stages_of(const struct ask *ask)
 	return stages;
 }
 
-static double free_max(const struct pound_plan *plan, const struct body_ask *body)
+static double free_max(const struct pound_request *request, const struct body_ask *body)
 {
-	return body->finished ? plan->results[body->march].displacement_max[0] : 0;
+	return body->finished ? request->results[body->march].displacement_max[0] : 0;
 }
 
 /* Asks for the run with pounding, unless the responses without it are the answer. */
-static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_work *work)
+static void ask_pounding(struct pound_request *request, struct ask *ask, struct pound_work *work)
 {
 	struct pound_march_task task = {0};
 	ask->march = -1;
@@ -370,32 +372,32 @@ static void ask_pounding(struct pound_plan *plan, struct ask *ask, struct pound_
 		task.bodies[i].followed = ask->bodies[i].wanted;
 		double yield = ask->bodies[i].yield;
 		bool linear = pound_pieces_linear(task.bodies[i].skeleton.law);
-		task.bodies[i].skeleton.yield = linear ? 0 : yield_marched(plan, ask, yield);
+		task.bodies[i].skeleton.yield = linear ? 0 : yield_marched(request, ask, yield);
 		if (linear)
 			task.bodies[i].skeleton.hardening = 0;
 	}
 	pound_scene_contact(&ask->scene, &task);
 	task.accounted = ask->response;
-	task.gap = ldexp(task.gap, -plan->motions[ask->motion].exponent);
-	if (task.gap < negligible(plan, ask))
+	task.gap = ldexp(task.gap, -request->motions[ask->motion].exponent);
+	if (task.gap < negligible(request, ask))
 		task.gap = 0;
-	if (task.gap > 0 && free_max(plan, &ask->bodies[0]) + free_max(plan, &ask->bodies[1]) < task.gap) {
+	if (task.gap > 0 && free_max(request, &ask->bodies[0]) + free_max(request, &ask->bodies[1]) < task.gap) {
 		work->never_touching++;
 		return;
 	}
-	ask->march = march_ask(plan, ask->motion, &task);
+	ask->march = march_ask(request, ask->motion, &task);
 }
 
 /* What was run of an ask. */
-static struct pound_runs_known ask_known(const struct pound_plan *plan, const struct ask *ask)
+static struct pound_runs_known ask_known(const struct pound_request *request, const struct ask *ask)
 {
 	struct pound_runs_known known = {.scene = &ask->scene,
-	                                 .exponent = plan->motions[ask->motion].exponent,
-	                                 .pounding = ask->march < 0 ? NULL : &plan->results[ask->march]};
+	                                 .exponent = request->motions[ask->motion].exponent,
+	                                 .pounding = ask->march < 0 ? NULL : &request->results[ask->march]};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct body_ask *body = &ask->bodies[i];
 		known.bodies[i] =
-		    (struct pound_body_known){.free = body->finished ? &plan->results[body->march] : NULL,
+		    (struct pound_body_known){.free = body->finished ? &request->results[body->march] : NULL,
 		                              .yield = body->yield,
 		                              .status = body->status};
 	}
@@ -405,13 +407,13 @@ static struct pound_runs_known ask_known(const struct pound_plan *plan, const st
 /* ---- the block ---- */
 
 /* Writes down the samples of one item from ask `a` on; returns the one after them. */
-static int item_write(struct pound_plan *plan, const struct pound_campaign *campaign, int a, int item,
+static int item_write(struct pound_request *request, const struct pound_campaign *campaign, int a, int item,
                       bool halved)
 {
 	int row = item / campaign->n_signals, signal = item % campaign->n_signals;
 	for (int cell = 0; cell < campaign->n_cells; cell++)
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
-			struct ask *ask = &plan->asks[a++];
+			struct ask *ask = &request->asks[a++];
 			ask->scene = pound_campaign_scene(campaign, cell, row, sample);
 			// samples of a row share their noise, or have their own
 			struct pound_stream noise = {.seed = campaign->study->design.seed,
@@ -420,36 +422,36 @@ static int item_write(struct pound_plan *plan, const struct pound_campaign *camp
 			                             .sample =
 			                                 campaign->study->design.common_signals ? 0 : (uint32_t)sample,
 			                             .signal = (uint32_t)signal};
-			ask->motion = motion_ask(plan, &ask->scene.excitation, noise, halved);
+			ask->motion = motion_ask(request, &ask->scene.excitation, noise, halved);
 			ask_free(campaign, ask);
 		}
 	return a;
 }
 
 /* Asks for what asks [first, end) need of a stage without pounding; false: nothing, nor of a later one. */
-static bool stage_ask(struct pound_plan *plan, int first, int end, int stage,
+static bool stage_ask(struct pound_request *request, int first, int end, int stage,
                       struct pound_stage_work *counted, struct pound_work *work)
 {
-	int before = plan->march_keys.n;
+	int before = request->march_keys.n;
 	int64_t asked = 0;
 	for (int a = first; a < end; a++)
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			if (!plan->asks[a].scene.oscillators[i].rigid_wall)
-				asked += body_stage(plan, &plan->asks[a], &plan->asks[a].bodies[i], i, stage, work);
+			if (!request->asks[a].scene.oscillators[i].rigid_wall)
+				asked += body_stage(request, &request->asks[a], &request->asks[a].bodies[i], i, stage, work);
 	counted->asked += asked;
-	counted->run += plan->march_keys.n - before;
+	counted->run += request->march_keys.n - before;
 	return asked > 0 || stage == 0; // of a yield displacement that is given, the first is left out
 }
 
 /* Asks for the runs with pounding of asks [first, end). */
-static void pounding_ask(struct pound_plan *plan, int first, int end, struct pound_stage_work *counted,
+static void pounding_ask(struct pound_request *request, int first, int end, struct pound_stage_work *counted,
                          struct pound_work *work)
 {
-	int before = plan->march_keys.n;
+	int before = request->march_keys.n;
 	for (int a = first; a < end; a++)
-		ask_pounding(plan, &plan->asks[a], work);
+		ask_pounding(request, &request->asks[a], work);
 	counted->asked += end - first;
-	counted->run += plan->march_keys.n - before;
+	counted->run += request->march_keys.n - before;
 }
 
 /* Runs items [first, first + n) of a campaign, and the checks among them.
@@ -461,53 +463,54 @@ static void pounding_ask(struct pound_plan *plan, int first, int end, struct pou
  * Status   POUND_STOPPED  stop was set; nothing was handed to take
  *          POUND_NOMEM    there was no memory for a run, so too
  */
-enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,
-                                 int n, const atomic_bool *stop, struct pound_work *work,
-                                 pound_plan_take *take, void *into)
+enum pound_status pound_request_run(struct pound_request *request, const struct pound_campaign *campaign,
+                                    int first, int n, const atomic_bool *stop, struct pound_work *work,
+                                    pound_request_take *take, void *into)
 {
 	int n_items = n * campaign->n_cells * campaign->n_samples, n_asks = 0;
 	const struct pound_solver solver = pound_campaign_solver(campaign, first / campaign->n_signals);
-	pound_keys_clear(&plan->motion_keys);
-	pound_keys_clear(&plan->march_keys);
+	pound_keys_clear(&request->motion_keys);
+	pound_keys_clear(&request->march_keys);
 	for (int item = first; item < first + n; item++)
-		n_asks = item_write(plan, campaign, n_asks, item, false);
+		n_asks = item_write(request, campaign, n_asks, item, false);
 	work->signals.asked += n_asks;
-	work->signals.run += plan->motion_keys.n;
+	work->signals.run += request->motion_keys.n;
 	for (int k = pound_campaign_checks(campaign, first); k < pound_campaign_checks(campaign, first + n); k++)
-		n_asks = item_write(plan, campaign, n_asks, k * campaign->check_every, true);
-	assert(n_asks <= plan->size.asks);
-	plan->n_asks = n_asks;
-	plan->n_items = n_items;
-	pound_motions_fill(plan->motions, plan->motion_keys.n, forces_scale(plan), plan->ground,
-	                   plan->size.samples);
+		n_asks = item_write(request, campaign, n_asks, k * campaign->check_every, true);
+	assert(n_asks <= request->size.asks);
+	request->n_asks = n_asks;
+	request->n_items = n_items;
+	pound_motions_fill(request->motions, request->motion_keys.n, forces_scale(request), request->ground,
+	                   request->size.samples);
 
 	struct pound_work of_checks = {0}; // what they leave out is not told
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++)
-		stages = (int)fmax(stages, stages_of(&plan->asks[a]));
+		stages = (int)fmax(stages, stages_of(&request->asks[a]));
 	enum pound_status status = POUND_OK;
 	bool more = true;
 	for (int stage = 0; stage < stages && more && !status; stage++) {
 		// the checks, which take longer, start first, so that no lane waits for them at the end
-		more = stage_ask(plan, n_items, n_asks, stage, &work->checks, &of_checks);
-		int checks_end = plan->march_keys.n;
-		more |= stage_ask(plan, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
-		status = marches_run(plan, &solver, checks_end, &done, stop);
+		more = stage_ask(request, n_items, n_asks, stage, &work->checks, &of_checks);
+		int checks_end = request->march_keys.n;
+		more |=
+		    stage_ask(request, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
+		status = marches_run(request, &solver, checks_end, &done, stop);
 	}
 	if (status)
 		return status;
-	pounding_ask(plan, n_items, n_asks, &work->checks, &of_checks);
-	int before = plan->n_before = plan->march_keys.n;
-	pounding_ask(plan, 0, n_items, &work->pounding_runs, work);
-	status = marches_run(plan, &solver, before, &done, stop);
+	pounding_ask(request, n_items, n_asks, &work->checks, &of_checks);
+	int before = request->n_before = request->march_keys.n;
+	pounding_ask(request, 0, n_items, &work->pounding_runs, work);
+	status = marches_run(request, &solver, before, &done, stop);
 	if (status)
 		return status;
 	for (int j = before; j < done; j++)
-		work->contacts += plan->results[j].contacts;
+		work->contacts += request->results[j].contacts;
 	for (int a = 0; a < n_asks; a++) {
 		struct pound_response response;
-		const struct ask *ask = &plan->asks[a];
-		const struct pound_runs_known known = ask_known(plan, ask);
+		const struct ask *ask = &request->asks[a];
+		const struct pound_runs_known known = ask_known(request, ask);
 		enum pound_status failure = pound_response_of(&known, &response);
 		assert(!failure || failure <= POUND_CHATTER);
 		if (failure && a < n_items)
@@ -517,42 +520,43 @@ enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_cam
 	return POUND_OK;
 }
 
-enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct pound_solver *solver,
-                                          int item, int sample, const atomic_bool *stop, double *u)
+enum pound_status pound_request_displacement(struct pound_request *request, const struct pound_solver *solver,
+                                             int item, int sample, const atomic_bool *stop, double *u)
 {
-	const struct ask *ask = &plan->asks[item];
-	struct pound_march_task task = plan->tasks[ask->march < 0 ? ask->bodies[0].march : ask->march];
+	const struct ask *ask = &request->asks[item];
+	struct pound_march_task task = request->tasks[ask->march < 0 ? ask->bodies[0].march : ask->march];
 	struct pound_march_result result;
 	assert(sample >= 1 && sample < task.n_samples);
 	task.n_samples = sample + 1;
-	enum pound_status status = pound_solver_run(solver, &task, &result, 1, plan->scratch, stop);
+	enum pound_status status = pound_solver_run(solver, &task, &result, 1, request->scratch, stop);
 	if (status)
 		return status;
-	*u = result.status ? NAN : ldexp(result.u[0], plan->motions[ask->motion].exponent);
+	*u = result.status ? NAN : ldexp(result.u[0], request->motions[ask->motion].exponent);
 	return POUND_OK;
 }
 
-enum pound_status pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver,
-                                    const atomic_bool *stop, int *n)
+enum pound_status pound_request_repeat(struct pound_request *request, const struct pound_solver *solver,
+                                       const atomic_bool *stop, int *n)
 {
-	int from = plan->n_before < plan->march_keys.n ? plan->n_before : 0;
-	*n = plan->march_keys.n - from;
-	return pound_solver_run(solver, &plan->tasks[from], &plan->results[from], *n, plan->scratch, stop);
+	int from = request->n_before < request->march_keys.n ? request->n_before : 0;
+	*n = request->march_keys.n - from;
+	return pound_solver_run(solver, &request->tasks[from], &request->results[from], *n, request->scratch,
+	                        stop);
 }
 
-int pound_plan_asks(const struct pound_plan *plan, int *n_items)
+int pound_request_count(const struct pound_request *request, int *n_items)
 {
-	*n_items = plan->n_items;
-	return plan->n_asks;
+	*n_items = request->n_items;
+	return request->n_asks;
 }
 
-struct pound_plan_floor pound_plan_floor(const struct pound_plan *plan, int ask)
+struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask)
 {
-	const struct ask *a = &plan->asks[ask];
+	const struct ask *a = &request->asks[ask];
 	int march = a->march < 0 ? a->bodies[0].march : a->march;
-	return (struct pound_plan_floor){.scene = &a->scene,
-	                                 .pounding = a->march < 0 ? NULL : &plan->tasks[a->march],
-	                                 .free = &plan->tasks[a->bodies[0].march],
-	                                 .march = march,
-	                                 .exponent = plan->motions[a->motion].exponent};
+	return (struct pound_request_floor){.scene = &a->scene,
+	                                    .pounding = a->march < 0 ? NULL : &request->tasks[a->march],
+	                                    .free = &request->tasks[a->bodies[0].march],
+	                                    .march = march,
+	                                    .exponent = request->motions[a->motion].exponent};
 }

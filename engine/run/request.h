@@ -1,9 +1,9 @@
-/* plan.h - what a block of a study needs, each thing once.
+/* request.h - what a block of a study needs, each thing once.
  *
  * An item is one signal of one row of the design.  Its samples in every cell are asked for together, so whatever they
  * have in common (ground motions, responses without pounding, whole runs) is found and run once. */
-#ifndef PLAN_H
-#define PLAN_H
+#ifndef REQUEST_H
+#define REQUEST_H
 
 #include <stdatomic.h>
 
@@ -30,7 +30,7 @@ size_t pound_campaign_values_size(const struct pound_campaign *c,
 struct pound_sample_values pound_campaign_values(const struct pound_campaign *c, int n_rows,
                                                  const double *columns);
 
-struct pound_plan_size {
+struct pound_request_size {
 	int asks;        /* runs asked for at most */
 	int motions;     /* ground motions at most */
 	int tasks;       /* marches at most */
@@ -38,42 +38,42 @@ struct pound_plan_size {
 };
 
 /* Upper bounds for an item of one row, its check left out. */
-struct pound_plan_size pound_plan_size(const struct pound_campaign *campaign, int row);
+struct pound_request_size pound_request_size(const struct pound_campaign *campaign, int row);
 
-struct pound_plan; /* work space of one worker */
+struct pound_request; /* work space of one worker */
 
-size_t pound_plan_bytes(struct pound_plan_size size);
-struct pound_plan *pound_plan_init(void *memory, struct pound_plan_size size);
+size_t pound_request_bytes(struct pound_request_size size);
+struct pound_request *pound_request_init(void *memory, struct pound_request_size size);
 
 /* Runs items [first, first + n), of one row where rows are trials, and hands every response to `take`, in the order of
  * item, cell, sample, then those of the checks in the same order. */
-typedef void pound_plan_take(void *into, const struct pound_scene *scene,
-                             const struct pound_response *response, enum pound_status status);
-enum pound_status pound_plan_run(struct pound_plan *plan, const struct pound_campaign *campaign, int first,
-                                 int n, const atomic_bool *stop, struct pound_work *work,
-                                 pound_plan_take *take, void *into);
+typedef void pound_request_take(void *into, const struct pound_scene *scene,
+                                const struct pound_response *response, enum pound_status status);
+enum pound_status pound_request_run(struct pound_request *request, const struct pound_campaign *campaign,
+                                    int first, int n, const atomic_bool *stop, struct pound_work *work,
+                                    pound_request_take *take, void *into);
 
-/* After pound_plan_run, for its items in turn where each has one sample: the displacement of the left body at a sample of
+/* After pound_request_run, for its items in turn where each has one sample: the displacement of the left body at a sample of
  * the ground motion, by running its march that far; NAN: it failed. */
-enum pound_status pound_plan_displacement(struct pound_plan *plan, const struct pound_solver *solver,
-                                          int item, int sample, const atomic_bool *stop, double *u);
+enum pound_status pound_request_displacement(struct pound_request *request, const struct pound_solver *solver,
+                                             int item, int sample, const atomic_bool *stop, double *u);
 
-/* After pound_plan_run: its asks, of which the first n_items are those of the items and the others those of checks. */
-int pound_plan_asks(const struct pound_plan *plan, int *n_items);
+/* After pound_request_run: its asks, of which the first n_items are those of the items and the others those of checks. */
+int pound_request_count(const struct pound_request *request, int *n_items);
 
 /* The floor of an ask; its motions are times 2^-exponent. */
-struct pound_plan_floor {
+struct pound_request_floor {
 	const struct pound_scene *scene;
 	const struct pound_march_task *pounding, *free; /* pounding NULL: the response without it is the answer */
 	int march;                                      /* number of the task that is the answer */
 	int exponent;
 };
 
-struct pound_plan_floor pound_plan_floor(const struct pound_plan *plan, int ask);
+struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask);
 
-/* After pound_plan_run, for taking the time: its marches with pounding once more, all its marches if there is none.
+/* After pound_request_run, for taking the time: its marches with pounding once more, all its marches if there is none.
  * n: how many. */
-enum pound_status pound_plan_repeat(struct pound_plan *plan, const struct pound_solver *solver,
-                                    const atomic_bool *stop, int *n);
+enum pound_status pound_request_repeat(struct pound_request *request, const struct pound_solver *solver,
+                                       const atomic_bool *stop, int *n);
 
 #endif

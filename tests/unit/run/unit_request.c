@@ -1,4 +1,4 @@
-/* unit_plan.c - what a study needs: every response of every run is made, found to be one that was made, or left out for a
+/* unit_request.c - what a study needs: every response of every run is made, found to be one that was made, or left out for a
  * reason that is counted. */
 #include <string.h>
 
