@@ -1,0 +1,320 @@
+/* result.h - a result: what the engine gives back.  Units and shapes as in study.h; NAN where there is no value. */
+#ifndef RESULT_H
+#define RESULT_H
+
+#include "engine/study.h"
+
+// one row per quantity of one run of one signal: X(member, name in a result, oscillator or -1)
+// clang-format off
+#define POUND_MEASURES(X)                                                                 \
+	X(displacement_max_1,      "displacement_max_m",      0)                              \
+	X(displacement_max_free_1, "displacement_max_free_m", 0)                              \
+	X(force_max_1,             "force_max_n",             0)                              \
+	X(yield_displacement_1,    "yield_displacement_m",    0)                              \
+	X(demand_1,                "demand",                  0)                              \
+	X(demand_free_1,           "demand_free",             0)                              \
+	X(displacement_max_2,      "displacement_max_m",      1)                              \
+	X(displacement_max_free_2, "displacement_max_free_m", 1)                              \
+	X(force_max_2,             "force_max_n",             1)                              \
+	X(yield_displacement_2,    "yield_displacement_m",    1)                              \
+	X(demand_2,                "demand",                  1)                              \
+	X(demand_free_2,           "demand_free",             1)                              \
+	X(impulse_max,             "impulse_max_n_s",        -1)                              \
+	X(contact_count,           "contact_count",          -1)                              \
+	X(contact_time,            "contact_time_s",         -1)                              \
+	X(end_u1,                  "u1_m",                   -1)                              \
+	X(end_v1,                  "v1_m_s",                 -1)                              \
+	X(end_u2,                  "u2_m",                   -1)                              \
+	X(end_v2,                  "v2_m_s",                 -1)
+// clang-format on
+
+/* One signal's response.  NAN where the scene has no such value (the yield displacement of a linear law). */
+struct pound_response {
+#define X(member, name, oscillator) double member;
+	POUND_MEASURES(X)
+#undef X
+	double energy_residual; /* energy put in and not found again, over the most there was along the way */
+};
+
+struct pound_estimate {
+	double value, low, high; /* low and high: 95 % interval; NAN: undefined */
+};
+
+/* An index of a set of inputs, bit j for input j. */
+struct pound_set_index {
+	unsigned inputs;
+	struct pound_estimate estimate;
+};
+
+enum {
+	POUND_PAIRS_MAX = POUND_INPUTS_MAX * (POUND_INPUTS_MAX - 1) / 2,
+	POUND_CLOSED_MAX = (1 << POUND_FACTORIAL_INPUTS_MAX) - 2, /* sets but none and all */
+};
+
+/* Indexes of the study's ratios and then of the inputs in none, which depend on each other; Shapley effects add up to 1. */
+struct pound_ratio_indices {
+	int n; /* 0: none were asked, or too few rows */
+	struct pound_estimate
+	    explained; /* share of the output's variance, by these variables; NAN: cannot be told */
+	struct pound_estimate first[POUND_FACTORIAL_INPUTS_MAX], total[POUND_FACTORIAL_INPUTS_MAX],
+	    shapley[POUND_FACTORIAL_INPUTS_MAX]; /* (n) each */
+};
+
+/* The mean output given an input: at every value of a discrete one of up to POUND_CURVE, of any other where its
+ * probability is (k + 1/2) / POUND_CURVE; NAN: too few rows. */
+enum { POUND_CURVE = 50 };
+
+struct pound_curve {
+	struct pound_estimate mean[POUND_CURVE];
+};
+
+double pound_conditional_place(int k);                                       /* that probability */
+int pound_conditional_points(const struct pound_distribution *distribution); /* of such a curve */
+double pound_conditional_x(const struct pound_distribution *distribution,
+                           int k); /* the input's value at point k */
+
+/* Those that the design of the study tells, sets in ascending order. */
+struct pound_set_indices {
+	int n_second, n_closed;
+	struct pound_set_index second[POUND_PAIRS_MAX]; /* second-order indexes  (n_second) */
+	struct pound_set_index
+	    closed[POUND_CLOSED_MAX]; /* share of the variance that a set explains  (n_closed) */
+};
+
+/* What the indexes of an output may be off by, and for want of what. */
+// clang-format off
+#define POUND_ERRORS(X)                                                                   \
+	X(SAMPLING,    "sampling")    /* too few rows: the widest half of an interval */      \
+	X(EXCITATION,  "excitation")  /* too few signals: what their randomness adds or takes */ \
+	X(INTEGRATION, "integration") /* runs that are not exact */                           \
+	X(FAILED_ROWS, "failed_rows") /* rows left out, as if like the most extreme other */
+// clang-format on
+
+enum pound_error {
+#define X(row, name) POUND_ERROR_##row,
+	POUND_ERRORS(X)
+#undef X
+	    POUND_ERROR_NONE /* and how many there are */
+};
+
+const char *pound_error_name(int row);
+/* The one larger than all others together; unknown ones (NAN) count as 0. */
+enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE]);
+
+enum { POUND_LEVELS = 4 }; /* n/8, n/4, n/2, n rows */
+
+struct pound_accuracy {
+	int64_t runs_checked;     /* runs compared with the same on half the sample step */
+	int64_t runs_unchecked;   /* without a value in one of the two */
+	double difference_median; /* of the output of one run, relative; NAN: none */
+	double difference_largest;
+	double variance_share; /* of such differences in the output's variance */
+	struct {
+		double first_change, total_change; /* by the differences, at most */
+		double first_dropped,
+		    total_dropped; /* by rows left out, if like the one that moves it most; NAN: unknown */
+		double first_half[POUND_LEVELS], total_half[POUND_LEVELS]; /* half widths of intervals; NAN: none */
+	} inputs[POUND_INPUTS_MAX];                                    /* (n_inputs) */
+	int rows[POUND_LEVELS];                                        /* behind the half widths; 0: too few */
+	double slope;                    /* of log half width over log rows; NAN: undefined */
+	double rows_to_halve;            /* the half widths; NAN: undefined, or out of reach */
+	double errors[POUND_ERROR_NONE]; /* of the worst index, at most 1; NAN: unknown */
+};
+
+/* Columns of indexes, one row each: X(enumerator, name in a result).  The raw ones are the plain protocol's and hold the
+ * noise of few signals; the pick-freeze ones are the same without it; S1 and ST are the sharpest from the same runs.
+ * S2_excitation is the second-order index of the input and one signal; Shapley effects add up to 1. */
+// clang-format off
+#define POUND_INDEXES(X)                                                                  \
+	X(POUND_S1,             "S1")                                                         \
+	X(POUND_ST,             "ST")                                                         \
+	X(POUND_S1_PICK_FREEZE, "S1_pick_freeze")                                             \
+	X(POUND_ST_PICK_FREEZE, "ST_pick_freeze")                                             \
+	X(POUND_S1_RAW,         "S1_raw")                                                     \
+	X(POUND_ST_RAW,         "ST_raw")                                                     \
+	X(POUND_S2_EXCITATION,  "S2_excitation")                                              \
+	X(POUND_SHAPLEY,        "shapley")
+
+/* Columns of the estimator that a study names, as its formula gives them and without the noise of few signals:
+ * X(enumerator, name in a result, with %s for the estimator's). */
+#define POUND_NAMED(X)                                                                    \
+	X(POUND_NAMED_S1,           "S1_%s")                                                  \
+	X(POUND_NAMED_ST,           "ST_%s")                                                  \
+	X(POUND_NAMED_S1_CORRECTED, "S1_%s_corrected")                                        \
+	X(POUND_NAMED_ST_CORRECTED, "ST_%s_corrected")
+
+/* The excitation's randomness as an input of its own: X(enumerator, name in a result).  Of single runs the first-order
+ * and the total index, and the total index, or share, that is left in the means over the study's signals. */
+#define POUND_SHARES(X)                                                                   \
+	X(POUND_SHARE_FIRST_ONE, "S1_one_signal")                                             \
+	X(POUND_SHARE_TOTAL_ONE, "ST_one_signal")                                             \
+	X(POUND_SHARE_TOTAL,     "ST_mean_of_signals")
+
+/* What there is to say about the indexes of an output: X(enumerator, sentence). */
+#define POUND_NOTES(X)                                                                    \
+	X(POUND_NOTE_NO_ROWS,                                                                 \
+	  "no row of the design gave a value, so there are no indexes")                       \
+	X(POUND_NOTE_ONE_ROW,                                                                 \
+	  "one row of the design gave a value, which is too few for indexes")                 \
+	X(POUND_NOTE_CONSTANT,                                                                \
+	  "the output is the same for every row, so it has no indexes")                       \
+	X(POUND_NOTE_NOT_RANDOM,                                                              \
+	  "the excitation is not random, so there is no noise to correct for")                \
+	X(POUND_NOTE_ONE_SIGNAL,                                                              \
+	  "with one signal its noise cannot be told apart, so it is in every index")          \
+	X(POUND_NOTE_SHARED_SIGNAL,                                                           \
+	  "the samples of a row share one signal: besides the raw indices only S1 can be estimated; for all others use 2 signals or more") \
+	X(POUND_NOTE_NO_VARIANCE,                                                             \
+	  "no variance of the output is given, so whatever noise the model has is in every index") \
+	X(POUND_NOTE_SHARED_NOISE,                                                            \
+	  "the samples of a row share their noise, and how is not known: besides the raw indices only S1 can be estimated; for all others give each sample noise of its own") \
+	X(POUND_NOTE_NOISE_INSIDE,                                                            \
+	  "S1 is a share of the variance with the noise in it")                               \
+	X(POUND_NOTE_NO_NEIGHBORS,                                                            \
+	  "S1 is then estimated from neighboring rows, so it needs 30 rows or more of a design other than sobol") \
+	X(POUND_NOTE_FRESH_SIGNALS,                                                           \
+	  "samples that do not share their signals do not show S2_excitation and S1_one_signal") \
+	X(POUND_NOTE_FEW_ROWS,                                                                \
+	  "with fewer than 30 rows S1 and ST are S1_pick_freeze and ST_pick_freeze")          \
+	X(POUND_NOTE_NOISE,                                                                   \
+	  "the variance left without the noise may be 0, so all indices but the raw ones are missing or may be far off") \
+	X(POUND_NOTE_NO_INTERVAL,                                                             \
+	  "too few rows for the interval of every index: those without one may be far off")    \
+	X(POUND_NOTE_FEW_DECIDE,                                                              \
+	  "one row makes a fifth of the variance or more, so intervals may be too narrow")
+// clang-format on
+
+#define X(name, text) name,
+enum pound_index { POUND_INDEXES(X) POUND_N_INDEXES };
+enum pound_share { POUND_SHARES(X) POUND_N_SHARES };
+enum pound_note { POUND_NOTES(X) POUND_N_NOTES };
+enum pound_named { POUND_NAMED(X) POUND_N_NAMED };
+#undef X
+
+struct pound_indices {
+	double mean, variance; /* of the output over the rows of A and B */
+	double noise_share;    /* of the variance over all samples, due to the excitation; NAN: one signal */
+	double ratio_bias;     /* of the outputs as ratios of means of few signals, on average; NAN: one signal */
+	unsigned notes;        /* bits 1 << enum pound_note */
+	struct pound_estimate share[POUND_N_SHARES];
+	struct pound_estimate *index[POUND_N_INDEXES]; /* (n_inputs) each */
+	struct pound_estimate
+	    *named[POUND_N_NAMED]; /* of the study's estimator, if it has one  (n_inputs) each */
+	struct pound_set_indices sets;
+	struct pound_ratio_indices ratios;
+	struct pound_curve *curves;                /* (n_inputs); NULL: not wanted */
+	struct pound_estimate impulse_correlation; /* of an ordinate with the largest impulse; NAN: no ordinate */
+	struct pound_accuracy accuracy;
+};
+
+/* over the signals, relative; NAN: the scene has no such value, or no signal gave one */
+struct pound_deviation {
+	double mean, largest;
+};
+
+/* One setting of one solver against the event solver; an error is that of the left body. */
+struct pound_trial {
+	struct pound_solver solver;                           /* step: the one that was taken */
+	int runs_failed;                                      /* signals without a result */
+	struct pound_deviation displacement, demand, impulse; /* of the largest ones */
+	struct pound_deviation
+	    history;  /* largest difference of displacements in the first seconds over the largest */
+	double order; /* slope of log mean history error over log setting, from the trial before; NAN: none */
+	double cpu;   /* of a run [s]; NAN: there is no clock */
+};
+
+struct pound_cell {
+	double sweep[POUND_SWEEPS_MAX];    /* the value of each sweep, (n_sweeps) used */
+	int64_t runs, runs_failed;         /* pounding runs asked, and those among them without a result */
+	int rows_dropped;                  /* rows of the design left out because one of their runs failed */
+	int n_signals;                     /* response: signals */
+	struct pound_response *signals;    /* response: (n_signals) */
+	double outputs[POUND_OUTPUTS_MAX]; /* response: ratio of means of each asked output */
+	struct pound_indices *indices;     /* sensitivity: (n_outputs) */
+};
+
+/* What was asked by the samples of the design and what was run after nothing is run twice. */
+// clang-format off
+#define POUND_STAGES(X)                                                                   \
+	X(signals,    "ground motions")                                                       \
+	X(free_runs,  "linear responses without pounding")                                    \
+	X(yield_runs, "nonlinear responses without pounding")                                 \
+	X(pounding_runs, "responses with pounding")                                           \
+	X(floors,     "floor histories, for spectra")                                         \
+	X(checks,     "responses again on half the sample step")
+// clang-format on
+
+struct pound_stage_work {
+	int64_t asked, run;
+};
+
+struct pound_work {
+#define X(member, text) struct pound_stage_work member;
+	POUND_STAGES(X)
+#undef X
+	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
+	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
+	int64_t yield_given;    /* linear responses not made: the yield displacement they would give is known */
+	int64_t linear_unasked; /* linear responses of the right oscillator not made: no output needs them */
+	int64_t nonlinear_unasked; /* its nonlinear ones likewise */
+	int64_t contacts;          /* contacts in the runs made */
+	int64_t yield_searches;    /* for the yield displacement of a target demand, 2 corrections or more */
+	int64_t yield_jumps;       /* of these, ended off it: the demand jumps over it */
+	int64_t yield_missed;      /* likewise: the corrections were used up */
+	int64_t failed[POUND_N_FAILURES]; /* pounding runs asked that have no result */
+};
+
+/* One look at the intervals of a design that grows: the widest one of an S1 or ST. */
+struct pound_look {
+	int rows;
+	double half_width; /* infinite: an index has no interval */
+	int cell, output, input;
+	enum pound_index index;
+};
+
+/* Spectra of the left floor, one row each: X(row, name in a result).  The first ones are integrated. */
+// clang-format off
+#define POUND_SPECTRA(X)                                                                  \
+	X(POUNDING,    "pounding")    /* of its absolute acceleration */                      \
+	X(IMPACT_ONLY, "impact_only") /* of the contact force over its mass */                \
+	X(FREE,        "free")        /* without pounding */                                  \
+	X(DIRAC_LINE,  "dirac_line")  /* of one pulse of the largest impulse: Eq. (23) */     \
+	X(DIRAC_TRAIN, "dirac_train") /* of one such pulse every half period */               \
+	X(DIRAC_PEAKS, "dirac_peaks") /* its peaks: Eq. (21) */
+// clang-format on
+
+enum pound_spectrum_row {
+#define X(row, name) POUND_SPECTRUM_##row,
+	POUND_SPECTRA(X)
+#undef X
+	    POUND_N_SPECTRA,
+	POUND_N_INTEGRATED = POUND_SPECTRUM_FREE + 1
+};
+
+/* Pseudo-accelerations over the signals [m/s2], NAN: no signal has one  (n frequencies each) */
+struct pound_floor_spectrum {
+	double *mean, *p16, *p84;
+	double *error; /* largest relative difference from the same on half the sample step, of integrated rows */
+};
+
+struct pound_floor_result {
+	struct pound_floor_spectrum spectra[POUND_N_SPECTRA];
+	int signals, signals_failed, signals_checked;
+	double impulse_mean; /* mean of the largest impulses [N s] */
+	double pulses_mean;  /* mean number of pulses of the idealised train */
+};
+
+struct pound_result {
+	int rows;                 /* of the design, in this result */
+	int n_looks;              /* 0: the design does not grow */
+	struct pound_look *looks; /* (n_looks) */
+	int n_cells;
+	struct pound_cell *cells; /* (n_cells) */
+	int n_trials;
+	struct pound_trial
+	    *trials; /* convergence: the event solver, the second opinion, the settings  (n_trials) */
+	struct pound_floor_result floor; /* floor_spectrum */
+	struct pound_work work;
+};
+
+#endif

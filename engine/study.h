@@ -1,0 +1,301 @@
+/* study.h - a study: what the engine takes.
+ *
+ * Units are SI: m, kg, s, N, rad/s; a name that ends in a unit (_hz) is the exception it states.  Arrays are row-major, the
+ * shape stands behind the field. */
+#ifndef STUDY_H
+#define STUDY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+	POUND_OSCILLATORS = 2,                        /* left, right */
+	POUND_INPUTS_MAX = 16,                        /* inputs of one sensitivity study */
+	POUND_ORDINATES_MAX = 64,                     /* frequencies of a sensitivity study's floor spectrum */
+	POUND_OUTPUTS_ASKED_MAX = 8,                  /* names in the outputs of one study */
+	POUND_OUTPUTS_MAX = 8 + POUND_ORDINATES_MAX,  /* outputs of one study, each ordinate one of its own */
+	POUND_SWEEPS_MAX = 8,                         /* swept fields of one study */
+	POUND_RATIOS_MAX = 3,                         /* ratios of inputs of one study */
+	POUND_SOLVERS = 4,                            /* rows of the solvers */
+	POUND_SETTINGS_MAX = 16,                      /* of one solver that are compared */
+	POUND_ROWS_MAX = 1 << 20,                     /* rows of a design */
+	POUND_FACTORIAL_INPUTS_MAX = 5,               /* inputs whose every mixture of A and B is run */
+	POUND_SAMPLES_MAX = 2 * POUND_INPUTS_MAX + 2, /* of a row of the design */
+};
+
+// why a run has no result
+// clang-format off
+#define POUND_FAILURES(X)                                                                 \
+	X(POUND_CHATTER,   -3, "more events in one sample interval than allowed")             \
+	X(POUND_UNSTABLE,  -4, "the steps of the solver are too long for this scene")         \
+	X(POUND_TOLERANCE, -5, "the tolerance of the solver is out of its reach")             \
+	X(POUND_OVERFLOW,  -6, "the motion left the range of the numbers")
+
+#define POUND_STATUS(X)                                                                   \
+	X(POUND_OK,         0, "ok")                                                          \
+	X(POUND_NOMEM,     -1, "out of memory")                                               \
+	X(POUND_STOPPED,   -2, "stopped by the caller")                                       \
+	POUND_FAILURES(X)
+// clang-format on
+
+enum pound_status {
+#define X(name, value, text) name = value,
+	POUND_STATUS(X)
+#undef X
+};
+
+enum pound_failure {
+#define X(name, value, text) name##_RUNS = POUND_CHATTER - (value),
+	POUND_FAILURES(X)
+#undef X
+	    POUND_N_FAILURES
+};
+
+/* The study: one in-memory form.  `type`, `model`, `method` and `outputs[]` are row numbers of the engine's tables;
+ * pound_*_name(row) is the name in a study document, NULL past the last row. */
+
+enum pound_kind {
+	POUND_KIND_RESPONSE,
+	POUND_KIND_SENSITIVITY,
+	POUND_KIND_CONVERGENCE,
+	POUND_KIND_FLOOR_SPECTRUM
+};
+
+/* Forms of contact force, by what a solver has to be able to do with them. */
+enum pound_force {
+	POUND_FORCE_LINEAR, /* K p + C p': piecewise linear, scales with the motion */
+	POUND_FORCE_POWER,  /* a power of p, with or without a factor of p' */
+	POUND_FORCE_IMPACT, /* velocities that jump */
+	POUND_FORCES
+};
+
+struct pound_law {
+	int type;                  /* row of the laws, pound_law_name */
+	double hardening_ratio;    /* second slope over first  [0, 1] */
+	double target_demand;      /* mu_d, wanted max |u| / yield displacement without pounding  >= 1 */
+	double yield_displacement; /* [m]  > 0 given by the user, 0: found from target_demand for every signal */
+	int corrections; /* of the yield displacement  >= 0; from 2 on, at most in a search for target_demand */
+};
+
+struct pound_oscillator {
+	double mass;          /* [kg]  > 0 */
+	double frequency_hz;  /* undamped, of the initial stiffness  > 0 */
+	double damping_ratio; /* fraction of critical  [0, 1) */
+	bool rigid_wall;      /* follows the ground for ever; only the right one may be */
+	bool has_law;         /* law below instead of the scene's */
+	struct pound_law law;
+};
+
+struct pound_contact {
+	bool present;           /* false: no pounding at all */
+	int model;              /* row of the contact models, pound_contact_name */
+	double stiffness_ratio; /* contact stiffness over the larger oscillator stiffness  > 0 */
+	double restitution;     /* [0, 1] */
+	double gap;             /* clear distance at rest [m]  >= 0 */
+	bool tension;           /* the dashpot may pull just before separation */
+};
+
+struct pound_excitation {
+	int type;               /* row of the excitations, pound_excitation_name */
+	double frequency_hz;    /* filter (Kanai-Tajimi) or sine  > 0 */
+	double damping_ratio;   /* of the filter  > 0 */
+	double high_pass_ratio; /* high-pass corner over filter frequency  > 0 */
+	double cycles;          /* duration times filter frequency  > 0 */
+	double duration;        /* [s]  > 0 (white_noise, harmonic) */
+	double rise, fall;      /* fractions of the duration, rise + fall <= 1 */
+	double time_step;       /* between samples [s]  > 0 */
+	double peak;            /* largest |a_g| of the samples [m/s2]  > 0 */
+	int signals;            /* random signals of each scene  >= 1; 1 for harmonic and record */
+	int n_record;           /* samples of the record, 0 for the other types */
+	const double *record;   /* ground acceleration [m/s2]  (n_record), not owned */
+};
+
+struct pound_scene {
+	struct pound_law law;
+	struct pound_oscillator oscillators[POUND_OSCILLATORS];
+	struct pound_contact contact;
+	struct pound_excitation excitation;
+};
+
+struct pound_distribution {
+	int type;              /* row of the distributions, pound_distribution_name */
+	double p[4];           /* parameters in the order of pound_distribution_parameter(type, k) */
+	int n_values;          /* of a discrete one  >= 1 */
+	const double *values;  /* ascending  (n_values), not owned */
+	const double *weights; /* of the values, > 0; their sum may be any  (n_values), not owned; NULL: alike */
+};
+
+/* what a varied field of the scene holds; a varied value is a double whatever it holds */
+enum pound_field_type { POUND_FIELD_REAL, POUND_FIELD_COUNT, POUND_FIELD_CHOICE, POUND_FIELD_BOOL };
+
+struct pound_field {
+	enum pound_field_type type;
+	size_t offset; /* of the field in struct pound_scene */
+};
+
+struct pound_input {
+	const char *path; /* JSON Pointer into the scene */
+	const char *name; /* for people */
+	struct pound_field field;
+	struct pound_distribution distribution;
+};
+
+/* The quotient of two inputs, as a variable whose indexes are wanted besides. */
+struct pound_ratio {
+	const char *name;  /* for people */
+	const char *of[2]; /* paths of the inputs above and below */
+};
+
+struct pound_sweep {
+	const char *path;
+	struct pound_field field;
+	int n_values;
+	const double *values; /* (n_values) */
+};
+
+/* A design that grows until every interval of S1 and ST is narrow. */
+struct pound_until {
+	double half_width; /* that each is to have at most; 0: the design does not grow */
+	int max_runs;      /* pounding runs at most */
+};
+
+struct pound_design {
+	int method; /* row of the designs, pound_design_name */
+	int rows;   /* n, rows of the matrices A and B  >= 2; of a design that grows, to begin with */
+	uint64_t seed;
+	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
+	int randomisations;  /* of a quasi-random design, independent of each other; 0: as many as is best */
+	int resamples;       /* behind an interval, of a design without groups of rows; 0: 2000 */
+	struct pound_until until;
+	int order;     /* row of the orders, pound_order_name: which samples a row has at least */
+	int estimator; /* row of the estimators, pound_estimator_name; 0: only those of every study */
+};
+
+struct pound_solver {
+	int method;       /* row of the solvers, pound_solver_name */
+	double tolerance; /* relative; the event solver is exact and does not need it */
+	double step;      /* longest [s]  > 0; a sample interval is cut into as few equal steps as that allows */
+};
+
+struct pound_settings {
+	int n;
+	double values[POUND_SETTINGS_MAX]; /* steps [s] or tolerances, each smaller than the one before  (n) */
+};
+
+/* the solvers that a convergence study compares with the event solver */
+struct pound_convergence {
+	struct pound_settings settings[POUND_SOLVERS]; /* by row of the solvers; none for a solver without */
+	double history;                                /* displacements are compared for so long [s]  > 0 */
+};
+
+/* the oscillators on the left floor */
+struct pound_spectrum {
+	int n; /* frequencies; 0: no spectrum is asked */
+	const double
+	    *frequencies_hz; /* (n); NULL: n from min_hz to max_hz, each the same multiple of the one before */
+	double min_hz, max_hz;
+	double damping_ratio; /* [0, 1) */
+	int pulses;           /* of the idealised train; 0: as many as there are contacts */
+	bool histories;       /* the floor's history is wanted too */
+};
+
+struct pound_study {
+	enum pound_kind kind;
+	const char *name; /* NULL: none */
+	bool elsewhere;   /* the design's samples are run by a model of the user's own; there need be no scene */
+	struct pound_scene scene;
+	int n_inputs;
+	struct pound_input *inputs; /* (n_inputs) */
+	int n_ratios;
+	struct pound_ratio ratios[POUND_RATIOS_MAX]; /* (n_ratios) */
+	int n_sweeps;
+	struct pound_sweep *sweeps; /* (n_sweeps); the cells are their product, the last sweep fastest */
+	struct pound_design design;
+	int n_outputs;
+	int outputs
+	    [POUND_OUTPUTS_MAX]; /* rows of the outputs, pound_output_name; floor_spectrum once a frequency */
+	char **output_names;     /* elsewhere, in their place: any number of names  (n_outputs), not owned */
+	struct pound_solver solver;
+	struct pound_convergence convergence;
+	struct pound_spectrum spectrum;
+};
+
+/* Lines of documentation of the tables' rows. */
+const char *pound_law_text(int row);
+const char *pound_contact_text(int row);
+const char *pound_excitation_text(int row);
+const char *pound_solver_text(int row);
+const char *pound_output_text(int row);
+
+double pound_spectrum_frequency(const struct pound_spectrum *spectrum, int k); /* [Hz] */
+
+/* The tables' names, NULL past the last row. */
+const char *pound_law_name(int row);
+const char *pound_contact_name(int row);
+enum pound_force pound_contact_force(int row);
+bool pound_force_scales(enum pound_force force); /* twice the motion, twice the force */
+const char *pound_excitation_name(int row);
+const char *pound_distribution_name(int row);
+const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
+const char *pound_distribution_rule(int row, int k); /* "min must be less than max"; NULL past the last */
+bool pound_distribution_lists_values(int row);       /* its parameters are values and weights instead */
+const char *pound_design_name(int row);
+bool pound_design_quasi_random(int row);
+const char *pound_order_name(int row);
+const char *pound_estimator_name(int row);
+int pound_estimator_order(int row); /* row of the orders: which samples a row of its design has, at least */
+const char *pound_solver_name(int row);
+bool pound_solver_takes_tolerance(int row);
+bool pound_solver_takes_step(int row);
+bool pound_solver_takes_force(int row, enum pound_force force); /* can integrate it */
+bool pound_floor_takes_force(enum pound_force force);           /* a floor can be followed under it */
+const char *pound_output_name(int row);
+const char *pound_output_needs(int row);  /* from the scene, in words */
+bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */
+int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */
+
+/* Rows of a study's design at its look-th look at the intervals, from 0; one that does not grow has all of them always.
+ * 0: max_runs does not allow the first look. */
+int pound_design_rows(const struct pound_study *study, int look);
+int pound_design_rows_least(const struct pound_study *study);   /* at the first, of any that grows */
+int pound_design_rows_most(const struct pound_study *study);    /* at the last look */
+int64_t pound_design_row_runs(const struct pound_study *study); /* pounding runs of a row, in all cells */
+
+/* The trials of a convergence study: the event solver, the second opinion, every setting; and the solver of one. */
+int pound_convergence_trials(const struct pound_study *study);
+struct pound_solver pound_convergence_solver(const struct pound_study *study, int trial);
+/* The observed order of a solver over all its settings, NAN with fewer than two that tell. */
+struct pound_trial;
+double pound_convergence_order(const struct pound_trial *trials, int n_trials, int method);
+
+/* Samples of a row of the study's design: A, B, A with column j from B for every j, ... (engine/design/row_samples.h). */
+int pound_design_samples(const struct pound_study *study);
+int pound_design_order(const struct pound_study *study);
+unsigned pound_order_mask(int n_inputs, int sample); /* bit j: column j of the sample is from B */
+
+/* The input of a path, -1: none; how many variables ratios and the inputs in none are, and which inputs those are
+ * (rest may be NULL); whether an input of this distribution may be in a ratio. */
+int pound_ratio_input(const struct pound_study *study, const char *path);
+int pound_ratio_variables(const struct pound_study *study, int *rest);
+bool pound_ratio_takes(const struct pound_distribution *distribution);
+
+#define POUND_PARAMETER_MAX 1e100 /* of a distribution: products of two stay finite */
+/* Whether its parameters break rule k; one that is NAN, not known, breaks none. */
+bool pound_distribution_breaks(const struct pound_distribution *distribution, int k);
+double pound_distribution_quantile(const struct pound_distribution *distribution, double u); /* u in [0, 1] */
+int pound_distribution_level(const struct pound_distribution *distribution,
+                             double u); /* of its list of values */
+double pound_distribution_below(const struct pound_distribution *distribution, int k); /* that level */
+/* The ends of the interval that holds every value; infinite for a normal. */
+void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high);
+
+/* The law an oscillator follows: its own or the scene's. */
+const struct pound_law *pound_scene_law(const struct pound_scene *scene, int oscillator);
+void pound_scene_assign(struct pound_scene *scene, struct pound_field field, double value);
+double pound_scene_field(const struct pound_scene *scene, struct pound_field field);
+
+/* Whether an output is defined for a scene (force amplification: linear left oscillator, ...). */
+bool pound_output_applies(int row, const struct pound_scene *scene);
+
+#endif
