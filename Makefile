@@ -134,9 +134,11 @@ bench: $(B)/tests/bench
 $(B)/tests/bench: $(patsubst %.c,$(B)/%.o,$(wildcard tests/bench_*.c))
 # what the engine is measured against is to be as fast as a compiler makes it
 $(B)/tests/yardstick.o: CFLAGS += -O3
-# the paper's findings, one by one, for n = 1000: half a minute
+# the paper's findings, one by one, over the duration of the motions: some ten minutes; PAPER_ROWS for trials
+PAPER_ROWS ?= 1000
 paper: $(B)/tests/paper
-	@$<
+	@$< $(PAPER_ROWS)
+$(B)/tests/paper: $(patsubst %.c,$(B)/%.o,$(wildcard tests/paper_*.c))
 # stiff and extreme scenes, a table: what every one of them is checked for by the tests
 extremes: $(B)/tests/unit_extremes
 	@$< | grep '^|'
