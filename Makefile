@@ -125,9 +125,11 @@ bench: $(B)/tests/long/bench
 $(B)/tests/long/bench: $(patsubst %.c,$(B)/%.o,$(wildcard tests/long/bench_*.c))
 # what the engine is measured against is to be as fast as a compiler makes it
 $(B)/tests/support/baseline_loop.o: CFLAGS += -O3
-# the paper's findings, one by one, for n = 1000: half a minute
+# the paper's findings, one by one, over the duration of the motions: some ten minutes; PAPER_ROWS for trials
+PAPER_ROWS ?= 1000
 paper: $(B)/tests/long/paper
-	@$<
+	@$< $(PAPER_ROWS)
+$(B)/tests/long/paper: $(patsubst %.c,$(B)/%.o,$(wildcard tests/long/paper_*.c))
 # the result bytes of every example, whole, at every lane width and by 1, 2 and 4 threads: minutes
 golden: $(B)/tests/unit/run/unit_golden
 	@POUND_GOLDEN=whole $<
