@@ -19,7 +19,6 @@
 #include <sys/param.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -43,9 +42,8 @@ enum {
 	SPOOLED_PART = 64 * 1024, /* [bytes] read of one at a time */
 	FILES_BESIDE = 48,        /* descriptors that are no connections: 33, and what is open for a moment */
 	OF_ADDRESS_MAX = 64,      /* connections of one address, unless it is loopback */
-	HEADERS_MAX = 32 * 1024,  /* [bytes] request line and headers */
+	POOL = 32 * 1024,         /* [bytes] of a connection: twice HEAD_BYTES_MAX, for what is made of a head */
 	BACKLOG = 1024,
-	TURN_NS = 100000,        /* [ns] of a processor, the least that is had */
 	SEND_S = 60,             /* [s] for an answer to arrive, besides */
 	SEND_RATE = 16 * 1024,   /* [bytes/s] that a client takes at least */
 	STOP_S = 5,              /* [s] for requests under way when the server stops */
@@ -180,10 +178,20 @@ static struct MHD_Response *response_of(const struct request *request, struct re
 	return response;
 }
 
+/* Counts and logs a reply of so many bytes.  Who has gone is counted as others count it: it is no failure of the server's. */
+static void answered(const struct request *request, const struct reply *reply, size_t n)
+{
+	const double seconds = connection_now() - request->arrived;
+	const int told = reply->gone ? GONE : reply->status;
+	metrics_answered(&request->server->metrics, request->operation, told, seconds);
+	// a path may be longer than a line
+	log_line("%016llx %.20s %.400s %d %zu bytes %.1f ms", (unsigned long long)request->number,
+	         request->method, request->path, told, n, 1e3 * seconds);
+}
+
 static enum MHD_Result send_reply(const struct request *request, struct reply *reply)
 {
 	struct server *server = request->server;
-	double seconds = connection_now() - request->arrived;
 	char retry_after[16], number[17];
 	snprintf(retry_after, sizeof retry_after, "%d", reply->retry_after);
 	snprintf(number, sizeof number, "%016llx", (unsigned long long)request->number);
@@ -214,12 +222,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 		if (headers[i].value)
 			MHD_add_response_header(response, headers[i].name, headers[i].value);
 	allow(request->connection, SEND_S + (double)sent / SEND_RATE);
-	// who has gone is counted as others count it: it is no failure of the server's
-	const int told = reply->gone ? GONE : reply->status;
-	metrics_answered(&server->metrics, request->operation, told, seconds);
-	// a path may be longer than a line
-	log_line("%s %.20s %.400s %d %zu bytes %.1f ms", number, request->method, request->path, told, sent,
-	         1e3 * seconds);
+	answered(request, reply, sent);
 	enum MHD_Result queued = MHD_queue_response(request->connection, (unsigned)reply->status, response);
 	MHD_destroy_response(response);
 	return queued;
@@ -269,16 +272,16 @@ static void judge(struct request *request, bool needs_host)
 		head_refuse(head, API_NOT_JSON, false, "Content-Type must be application/json");
 	else if (operation->takes_study)
 		head_key(head);
+	if (operation && strcmp(operation->method, "GET") != 0)
+		head_origin(head);
 	if (head->fault == API_NO_FAULT)
 		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, request);
 }
 
-/* Keeps more of the body, or drops it when there is a fault; its pages are had when they are written to. */
+/* Keeps more of the body, or drops it when there is a fault; no more comes than its declared length. */
 static void collect(struct request *request, const char *bytes, size_t n)
 {
-	if (n > HEAD_BODY_MAX - request->length)
-		head_refuse(&request->head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
-	else if (!request->body && !(request->body = malloc(HEAD_BODY_MAX)))
+	if (!request->body && !(request->body = malloc(request->head.length)))
 		head_refuse(&request->head, API_UNAVAILABLE, false, "out of memory");
 	if (request->head.fault != API_NO_FAULT)
 		return;
@@ -295,8 +298,35 @@ static void *begin(void *of, const char *target, struct MHD_Connection *connecti
 		return NULL;
 	*request = (struct request){.server = server, .connection = connection, .operation = -1};
 	request->number = server->number++;
-	head_target(&request->head, target ? target : "");
+	request->target = target ? target : "";
+	request->target_end = request->target + strlen(request->target);
+	size_t n = head_target(&request->head, request->target);
+	// arguments that are not to be taken apart end where they begin; this is libmicrohttpd's memory, and it looks next
+	if (request->target[n] == '?')
+		((char *)request->target)[n + 1] = '\0';
 	return request;
+}
+
+/* Sends a refusal by the socket itself, past libmicrohttpd: for a head that may have left it no room for an answer. */
+static enum MHD_Result refuse_head(struct request *request)
+{
+	char text[512];
+	head_refuse(&request->head, API_HEAD_LARGE, true,
+	            "the request line and the headers have at most %d bytes", HEAD_BYTES_MAX);
+	const enum api_fault fault = request->head.fault;
+	struct reply reply = http_problem(fault, request->head.detail, NULL);
+	int n =
+	    snprintf(text, sizeof text,
+	             "HTTP/1.1 %d %s\r\nContent-Type: %s\r\nContent-Length: %zu\r\nConnection: close\r\n\r\n%.*s",
+	             reply.status, api_faults[fault].title, reply.type, reply.length, (int)reply.length,
+	             reply.body ? reply.body : "");
+	connection_of(request->connection)->lingers = true;
+	// a socket that has just been read from has room for one line; who has gone need not be told
+	if (send(connection_of(request->connection)->fd, text, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
+		reply.gone = true;
+	answered(request, &reply, reply.length);
+	drop_body(&reply);
+	return MHD_NO;
 }
 
 /* The headers are here: judges them. */
@@ -313,6 +343,18 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	request->operation = api_match(method, path, &request->id, request->allow);
 	request->unwanted = &connection_of(request->connection)->unwanted;
 	allow(request->connection, server->options->body_timeout);
+	const size_t n =
+	    MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_REQUEST_HEADER_SIZE)->header_size;
+	if (n > HEAD_BYTES_MAX)
+		return refuse_head(request);
+	// one NUL each ends the method and the target, where they are in the head
+	if (request->target != method + strlen(method) + 1 || version != request->target_end + 1)
+		head_refuse(&request->head, API_BAD_REQUEST, true,
+		            "a request line is a method, a target and a version with one blank between them");
+	else
+		head_bytes(&request->head, version + strlen(version),
+		           n - (size_t)(version + strlen(version) - method),
+		           MHD_get_connection_values(request->connection, MHD_HEADER_KIND, NULL, NULL));
 	judge(request, strcmp(version, "HTTP/1.0") != 0);
 	// without a body, the refusal can wait for the next call, and the connection be kept
 	if (request->head.fault == API_NO_FAULT || !(request->head.has_body || request->head.close))
@@ -550,24 +592,6 @@ static int share_files(struct server *server, int wanted)
 	return all < CONNECTIONS_MIN ? 0 : all;
 }
 
-/* Asks for a short turn soon rather than a long one later, for this thread and those it starts: since Linux 6.12 a thread
- * that wakes goes before those whose turns are longer.  Elsewhere it changes nothing. */
-static void take_short_turns(void)
-{
-	// as sched_setattr(2) has it
-	struct {
-		uint32_t size, policy;
-		uint64_t flags;
-		int32_t nice;
-		uint32_t priority;
-		uint64_t runtime, deadline, period; /* [ns] */
-	} turns = {.size = sizeof turns};
-	long status = syscall(SYS_sched_getattr, 0, &turns, sizeof turns, 0);
-	turns.runtime = TURN_NS;
-	if (status != 0 || syscall(SYS_sched_setattr, 0, &turns, 0) != 0)
-		log_line("cannot ask for short turns: %s", strerror(errno));
-}
-
 /* A socket that listens at an address, -1: none, and errno says why; made here, for libmicrohttpd would log another line
  * about it, without the port. */
 static int listening(const union address *address)
@@ -597,7 +621,7 @@ static struct MHD_Daemon *serving(struct server *server, const union address *ad
 	                        server, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS,
 	                        MHD_OPTION_CONNECTION_LIMIT, (unsigned)n, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
 	                        is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
-	                        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MAX, MHD_OPTION_END);
+	                        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)POOL, MHD_OPTION_END);
 }
 
 /* Starts to answer requests, at the address and the port of the options.
@@ -620,7 +644,6 @@ bool http_start(struct server *server)
 		         options->listen);
 		return false;
 	}
-	take_short_turns();
 	sem_init(&server->turns, 0, TURNS);
 	server->number = (unsigned long long)time(NULL) << 32;
 	server->connections.store = server->store;

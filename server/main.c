@@ -103,6 +103,8 @@ int main(int argc, char **argv)
 	// a client that has gone, and a file that may not grow, are errors of a write and no more
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
+	// there is nothing to read again, and the log is whoever started us's: a terminal that goes does not end studies
+	signal(SIGHUP, SIG_IGN);
 	// blocked before any thread starts, so that only this one sees them
 	sigemptyset(&signals);
 	sigaddset(&signals, SIGTERM);

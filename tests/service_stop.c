@@ -75,6 +75,14 @@ static void a_second_signal_ends_it_at_once_and_nothing_is_lost(void **state)
 	free(study);
 }
 
+static void a_terminal_that_hangs_up_does_not_end_it(void **state)
+{
+	struct service *service = *state;
+	kill(service->pid, SIGHUP);
+	// a process that a signal has ended does not end with 0
+	service_stop(service);
+}
+
 static struct {
 	const struct service *service;
 	pthread_mutex_t lock;
@@ -270,6 +278,7 @@ static void systemd_is_told_when_it_is_ready_alive_and_stopping(void **state)
 
 CHECK_MAIN(cmocka_unit_test(systemd_is_told_when_it_is_ready_alive_and_stopping),
            SERVED(an_idle_server_and_one_at_work_end_when_they_are_told),
+           SERVED(a_terminal_that_hangs_up_does_not_end_it),
            SERVED(a_second_signal_ends_it_at_once_and_nothing_is_lost),
            SERVED(a_server_that_ends_under_load_keeps_all_that_it_accepted),
            SERVED(a_history_that_is_being_computed_ends_with_the_server),
