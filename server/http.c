@@ -300,6 +300,7 @@ static void *begin(void *of, const char *target, struct MHD_Connection *connecti
 	request->number = server->number++;
 	request->target = target ? target : "";
 	request->target_end = request->target + strlen(request->target);
+	snprintf(request->question, sizeof request->question, "%s", request->target);
 	size_t n = head_target(&request->head, request->target);
 	// arguments that are not to be taken apart end where they begin; this is libmicrohttpd's memory, and it looks next
 	if (request->target[n] == '?')
@@ -329,6 +330,15 @@ static enum MHD_Result refuse_head(struct request *request)
 	return MHD_NO;
 }
 
+/* Ends what the answer depends on, begun with the target: by the Accept, or by nothing when both are too long. */
+static void question_end(struct request *request)
+{
+	size_t n = (size_t)(request->target_end - request->target), room = sizeof request->question;
+	const struct head_text *accept = &request->head.accept;
+	if (n >= room || snprintf(request->question + n, room - n, " %s", accept->value) >= (int)(room - n))
+		request->question[0] = '\0';
+}
+
 /* The headers are here: judges them. */
 static enum MHD_Result head_came(struct request *request, const char *method, const char *path,
                                  const char *version)
@@ -356,6 +366,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 		           n - (size_t)(version + strlen(version) - method),
 		           MHD_get_connection_values(request->connection, MHD_HEADER_KIND, NULL, NULL));
 	judge(request, strcmp(version, "HTTP/1.0") != 0);
+	question_end(request);
 	// without a body, the refusal can wait for the next call, and the connection be kept
 	if (request->head.fault == API_NO_FAULT || !(request->head.has_body || request->head.close))
 		return MHD_YES;
@@ -415,7 +426,6 @@ static void *answer_aside(void *of)
 static void put_aside(struct request *request)
 {
 	pthread_t thread;
-	request->aside = true;
 	request->server->aside++;
 	connection_of(request->connection)->answering = true;
 	MHD_suspend_connection(request->connection);
@@ -446,7 +456,9 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	allow(connection, INFINITY);
 	if (server->stopping && !request->replied)
 		head_refuse(&request->head, API_UNAVAILABLE, false, "the server stops");
-	if (request->head.fault == API_NO_FAULT && !request->aside && routes_slow(request)) {
+	if (request->head.fault == API_NO_FAULT && !request->replied)
+		request->replied = routes_kept(request, &request->reply);
+	if (request->head.fault == API_NO_FAULT && !request->replied && routes_slow(request)) {
 		put_aside(request);
 		return MHD_YES;
 	}
@@ -460,6 +472,7 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
 		return send_reply(request, &reply);
 	drop_body(&reply);
+	request->replied = false;
 	MHD_suspend_connection(connection);
 	connection_wait(&server->connections, connection_of(connection), connection, request->id, reply.changes,
 	                wait_until(request));

@@ -11,30 +11,10 @@
 #include "schema/api.h"
 #include "schema/head.h"
 #include "server/connection.h"
+#include "server/kept.h"
 #include "server/metrics.h"
 #include "server/options.h"
-
-struct reply {
-	int status;
-	const char *type; /* media type of the body */
-	char *body;       /* (length) bytes on the heap, http.c frees them unless ...; NULL: none */
-	bool lasts;       /* ... it lasts as long as the server */
-	size_t length;
-	char location[64]; /* "": no such header, likewise below */
-	char etag[64];
-	int retry_after;  /* [s], 0: none */
-	bool gone;        /* the client had gone before it was made */
-	bool waits;       /* who knows it already may wait for another, when the study has changed */
-	unsigned changes; /* of the study, before it was looked at */
-};
-
-enum { HTTP_TOLD = 61 }; /* status objects kept; a prime, so that ids fall everywhere */
-
-struct told {
-	int64_t id;
-	unsigned changes;   /* of the study before it was looked at */
-	struct reply reply; /* body NULL: none */
-};
+#include "server/reply.h"
 
 enum { HTTP_COMPLAINTS = 16 };
 
@@ -53,8 +33,7 @@ struct server {
 	struct tokens *tokens; /* NULL: there are none */
 	char *document; /* (document_length) bytes, the OpenAPI document: made once, it takes milliseconds */
 	size_t document_length;
-	pthread_mutex_t told_lock;
-	struct told told[HTTP_TOLD]; /* each where the remainder of its id is */
+	struct kept kept;
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;
@@ -78,14 +57,14 @@ struct request {
 	const char *target, *target_end; /* as it came; taken apart in its place by libmicrohttpd */
 	const char *method, *path;       /* path without arguments, decoded; NULL: the headers are not all here */
 	struct head head;
-	int operation;     /* row of api_operations, -1: none */
-	long long id;      /* of the study in the path, 0: none */
-	const char *token; /* name of the one it was sent with; NULL: there are none */
-	char allow[64];    /* methods of the path */
-	char *body;        /* (length) bytes */
+	int operation;                     /* row of api_operations, -1: none */
+	long long id;                      /* of the study in the path, 0: none */
+	char question[KEPT_QUESTION_SIZE]; /* target and Accept; "": it does not fit */
+	const char *token;                 /* name of the one it was sent with; NULL: there are none */
+	char allow[64];                    /* methods of the path */
+	char *body;                        /* (length) bytes */
 	size_t length;
-	bool aside;                  /* it was given to a thread of its own ... */
-	bool replied;                /* ... which has made the reply */
+	bool replied;                /* the reply is there, kept or made by a thread of its own */
 	struct reply reply;          /* if so, until it is sent */
 	const atomic_bool *unwanted; /* nobody waits for it any more */
 	double arrived;              /* [s] monotonic */
@@ -106,6 +85,7 @@ void http_stop(struct server *server); /* what is under way is answered, who wai
 
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);
-bool routes_slow(const struct request *request); /* it may take seconds */
+bool routes_kept(const struct request *request, struct reply *reply); /* the answer is there already */
+bool routes_slow(const struct request *request);                      /* it may take seconds */
 
 #endif

@@ -111,7 +111,7 @@ int main(int argc, char **argv)
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.options = &options, .told_lock = PTHREAD_MUTEX_INITIALIZER};
+	struct server server = {.options = &options, .kept.lock = PTHREAD_MUTEX_INITIALIZER};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
@@ -121,8 +121,7 @@ int main(int argc, char **argv)
 	int status = server.store ? serve(&server, &signals) : EXIT_FAILURE;
 	if (server.store)
 		store_close(server.store);
-	for (int i = 0; i < HTTP_TOLD; i++)
-		free(server.told[i].reply.body);
+	kept_free(&server.kept);
 	free(server.document);
 	free(server.tokens);
 	return status;

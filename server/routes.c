@@ -122,36 +122,13 @@ static struct reply look(const struct request *request, struct page *page)
 	return reply;
 }
 
-/* The same reply with a body of its own; NULL: it has none to keep, or no memory. */
-static struct reply copied(struct reply reply)
-{
-	char *body = reply.status == 200 && reply.body ? malloc(reply.length) : NULL;
-	reply.body = body ? memcpy(body, reply.body, reply.length) : NULL;
-	return reply;
-}
-
-/* The status object.  The one told last is kept for those who ask again before anything has changed: to make one takes
- * half of what such an answer takes. */
+/* The status object. */
 static struct reply status(struct request *request)
 {
-	struct server *server = request->server;
-	struct told *told = &server->told[request->id % HTTP_TOLD];
 	// before the look, so that no change is missed by who waits for one
-	unsigned changes = store_changes(server->store, request->id);
-	struct reply reply = {0};
-	pthread_mutex_lock(&server->told_lock);
-	if (told->id == request->id && told->changes == changes)
-		reply = copied(told->reply);
-	pthread_mutex_unlock(&server->told_lock);
-	if (!reply.body) {
-		struct page page;
-		reply = look(request, &page);
-		struct told last = {request->id, changes, copied(reply)};
-		pthread_mutex_lock(&server->told_lock);
-		free(told->reply.body);
-		*told = last;
-		pthread_mutex_unlock(&server->told_lock);
-	}
+	unsigned changes = store_changes(request->server->store, request->id);
+	struct page page;
+	struct reply reply = look(request, &page);
 	reply.waits = true;
 	reply.changes = changes;
 	return reply;
@@ -526,6 +503,20 @@ bool routes_slow(const struct request *request)
 	         asks_second(request, result_formats, http_argument(request, "table"))));
 }
 
+/* Whether an answer depends on what is stored, and on nothing else. */
+static bool is_of_store(const struct request *request)
+{
+	return !strcmp(api_operations[request->operation].method, "GET") &&
+	       (request->id || request->operation == API_list);
+}
+
+bool routes_kept(const struct request *request, struct reply *reply)
+{
+	struct server *server = request->server;
+	return is_of_store(request) &&
+	       kept_take(&server->kept, request->question, store_changes(server->store, request->id), reply);
+}
+
 /* Answers a request.
  *
  * Given    request   whose head and arguments are those of its operation, and whose body is read
@@ -539,5 +530,10 @@ struct reply routes_answer(struct request *request)
 	    API_OPERATIONS(X)
 #undef X
 	};
-	return answers[request->operation](request);
+	struct server *server = request->server;
+	unsigned changes = store_changes(server->store, request->id);
+	struct reply reply = answers[request->operation](request);
+	if (is_of_store(request))
+		kept_give(&server->kept, request->question, changes, &reply);
+	return reply;
 }

@@ -99,6 +99,7 @@ struct store {
 	struct disk disk;
 	struct database writer, readers[READERS]; /* readers have the statements before BEGIN */
 	atomic_uint changes[CHANGES];             /* of the studies whose ids have that remainder */
+	atomic_uint changes_all;                  /* of any */
 };
 
 /* A statement with its values; types: i int64_t, d double, t text (NULL: null), b bytes and their size_t, all of which
@@ -185,20 +186,22 @@ static enum store_status released(struct database *c, enum store_status status)
 static enum store_status changed(struct store *store, int64_t id, enum store_status status)
 {
 	pthread_mutex_unlock(&store->writer.lock);
-	if (status == STORE_OK)
+	if (status == STORE_OK) {
 		atomic_fetch_add(&store->changes[id % CHANGES], 1);
+		atomic_fetch_add(&store->changes_all, 1);
+	}
 	return status;
 }
 
 /* A number that grows after every change of a study: who remembers it from before a look sees that another is due.
  *
- * Given    id      of the study
+ * Given    id      of the study; 0: any
  * Returns  value   shared by about one in a thousand other studies
  * Test     service_wait: who_waits_for_a_change_is_told_of_it
  */
 unsigned store_changes(struct store *store, int64_t id)
 {
-	return atomic_load(&store->changes[id % CHANGES]);
+	return atomic_load(id ? &store->changes[id % CHANGES] : &store->changes_all);
 }
 
 /* The writing connection goes last and leaves no WAL behind. */
@@ -344,7 +347,7 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 		              bound(c, SUBMIT, "ittittt", *id, study->kind, study->name, study->runs, study->hash,
 		                    study->key, study->client),
 		              bound(c, ADD, "itb", *id, "request", request, length));
-	return released(c, status);
+	return changed(store, *id, status);
 }
 
 static const char *text(sqlite3_stmt *row, int column)

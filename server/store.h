@@ -53,7 +53,7 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length); /* on the heap, for the caller to free */
 enum store_status store_count(struct store *store, const char *status, int64_t *n);
-/* grows with every change of a study; studies may share one */
+/* grows with every change of a study (0: of any); studies may share one */
 unsigned store_changes(struct store *store, int64_t id);
 enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */
 enum store_status store_delete(struct store *store, int64_t id);
