@@ -50,6 +50,8 @@ enum {
 	STOP_TICK_NS = 10000000, /* [ns] */
 };
 
+static const double STOP_ASIDE_S = 0.3; /* [s] for answers that are given up */
+
 /* An argument of the request's target, or what stands for an absent or an empty one. */
 const char *http_argument(const struct request *request, const char *name)
 {
@@ -522,37 +524,21 @@ static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen
 	return server->stopping ? MHD_NO : MHD_YES;
 }
 
-/* Whether a line of libmicrohttpd's is told, and how many like it were not since the last. */
-static bool is_told(struct server *server, const char *format, int *n_since)
-{
-	double now = connection_now();
-	pthread_mutex_lock(&server->complaints_lock);
-	struct complaint *place = server->complaints;
-	for (struct complaint *c = place; c < server->complaints + HTTP_COMPLAINTS; c++)
-		if (c->format == format || (place->format != format && c->told < place->told))
-			place = c;
-	if (place->format != format)
-		*place = (struct complaint){.format = format, .told = -INFINITY};
-	bool told = now >= place->told + 1;
-	*n_since = place->n_since;
-	place->n_since = told ? 0 : place->n_since + 1;
-	place->told = told ? now : place->told;
-	pthread_mutex_unlock(&server->complaints_lock);
-	return told;
-}
-
-/* Called by libmicrohttpd for what it has to say, which may be the same a hundred thousand times a second. */
+/* Called by libmicrohttpd for what it has to say, which may be a hundred thousand times a second: told once a second. */
 static void log_library(void *of, const char *format, va_list values)
 {
-	char text[256], more[48] = "";
-	int n_since;
-	if (!is_told(of, format, &n_since))
+	struct server *server = of;
+	const double now = connection_now();
+	double told = server->library_told;
+	char text[256];
+	if (now < told + 1 || !atomic_compare_exchange_strong(&server->library_told, &told, now)) {
+		server->library_untold++;
 		return;
+	}
 	vsnprintf(text, sizeof text, format, values);
 	text[strcspn(text, "\n")] = '\0';
-	if (n_since)
-		snprintf(more, sizeof more, " (and %d like it before)", n_since);
-	log_line("http: %s%s", text, more);
+	log_line("http: %s (and %d lines before that were not told)", text,
+	         atomic_exchange(&server->library_untold, 0));
 }
 
 union address {
@@ -661,7 +647,6 @@ bool http_start(struct server *server)
 	server->number = (unsigned long long)time(NULL) << 32;
 	server->connections.store = server->store;
 	server->connections.resume = resume;
-	pthread_mutex_init(&server->complaints_lock, NULL);
 	const int n = share_files(server, options->connections_max);
 	if (n == 0)
 		return false;
@@ -682,15 +667,24 @@ int http_port(const struct server *server)
 	return MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
-/* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end. */
-void http_stop(struct server *server)
+/* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end, and answers that
+ * take long, which are given up, less.
+ *
+ * Returns  value   false: one of these was not given up in time, and nothing that it may use may be given up but by the end
+ *                  of the program
+ */
+bool http_stop(struct server *server)
 {
-	double until = connection_now() + STOP_S;
+	const double now = connection_now(), until = now + STOP_S, aside_until = now + STOP_ASIDE_S;
 	server->stopping = true;
 	server->connections.released = true;
-	// a suspended connection must not be stopped
-	while (server->aside > 0 || (server->under_way > 0 && connection_now() < until))
+	while ((server->aside > 0 && connection_now() < aside_until) ||
+	       (server->under_way > server->aside && connection_now() < until))
 		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
+	// a suspended connection must not be stopped
+	if (server->aside > 0)
+		return false;
 	MHD_stop_daemon(server->daemon);
 	connections_stop(&server->connections);
+	return true;
 }

@@ -16,15 +16,6 @@
 #include "server/options.h"
 #include "server/reply.h"
 
-enum { HTTP_COMPLAINTS = 16 };
-
-/* What libmicrohttpd logs, by its format: told once a second at most. */
-struct complaint {
-	const char *format;
-	double told; /* [s] monotonic, the last time */
-	int n_since; /* that were not told */
-};
-
 /* What every request can reach. */
 struct server {
 	const struct options *options;
@@ -37,10 +28,10 @@ struct server {
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;
-	pthread_mutex_t complaints_lock;
-	struct complaint complaints[HTTP_COMPLAINTS]; /* the latest */
-	int spooled_most;                             /* answers in files that there may be */
-	atomic_int spooled;                           /* and are */
+	_Atomic double library_told; /* [s] monotonic, when a line of libmicrohttpd's was told last, ... */
+	atomic_int library_untold;   /* ... and how many were not since */
+	int spooled_most;            /* answers in files that there may be */
+	atomic_int spooled;          /* and are */
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
 	atomic_int aside;     /* those in threads of their own, of which ... */
@@ -81,7 +72,8 @@ struct reply http_problem(enum api_fault fault, const char *detail, const struct
 
 bool http_start(struct server *server); /* false: logged */
 int http_port(const struct server *server);
-void http_stop(struct server *server); /* what is under way is answered, who waits is told 503 */
+/* what is under way is answered, who waits is told 503; false: an answer was not given up in time */
+bool http_stop(struct server *server);
 
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);

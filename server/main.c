@@ -71,7 +71,7 @@ static int serve(struct server *server, const sigset_t *signals)
 	server->work = work_start(server->store, server->options->workers, server->options->time_max);
 	if (!server->work)
 		return EXIT_FAILURE;
-	bool listens = http_start(server);
+	bool listens = http_start(server), ended = true;
 	if (listens) {
 		const char *listen = server->options->listen;
 		bool v6 = strchr(listen, ':');
@@ -83,9 +83,12 @@ static int serve(struct server *server, const sigset_t *signals)
 		// the next signal ends the program at once, and so does the clock
 		alarm(STOP_MAX);
 		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
-		http_stop(server);
+		ended = http_stop(server);
 	}
-	work_stop(server->work);
+	ended &= work_stop(server->work);
+	// what is accepted is on the disk: the next start goes on as after a crash
+	if (!ended)
+		_exit(listens ? EXIT_SUCCESS : EXIT_FAILURE);
 	return listens ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -19,14 +19,17 @@ enum { POISON = 666, STUDIES = 11, POISON_AT = 4 };
 static _Atomic(const struct pound_run *) poisoned;
 static int crash_signal; /* 0: none */
 
-struct pound_run *__real_pound_run_create(const struct pound_study *study, int n_workers);
-struct pound_run *__wrap_pound_run_create(const struct pound_study *study, int n_workers);
+struct pound_run *__real_pound_run_create_by(const struct pound_study *study, int n_workers,
+                                             const atomic_bool *stop);
+struct pound_run *__wrap_pound_run_create_by(const struct pound_study *study, int n_workers,
+                                             const atomic_bool *stop);
 enum pound_status __real_pound_run_block(struct pound_run *run, int block, int worker);
 enum pound_status __wrap_pound_run_block(struct pound_run *run, int block, int worker);
 
-struct pound_run *__wrap_pound_run_create(const struct pound_study *study, int n_workers)
+struct pound_run *__wrap_pound_run_create_by(const struct pound_study *study, int n_workers,
+                                             const atomic_bool *stop)
 {
-	struct pound_run *run = __real_pound_run_create(study, n_workers);
+	struct pound_run *run = __real_pound_run_create_by(study, n_workers, stop);
 	if (study->design.seed == POISON)
 		poisoned = run;
 	return run;
