@@ -155,12 +155,12 @@ bool disk_roomy(const struct disk *disk)
 	       spare >= 0;
 }
 
-/* Puts bytes into a file without a name, if there is room to spare for them: it is gone when it is closed.
+/* Makes a file without a name for bytes, if there is room to spare for them: it is gone when it is closed.
  *
  * Returns  value   its descriptor, for the caller to close; -1: none
  * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names
  */
-int disk_spool(const struct disk *disk, const char *bytes, size_t n)
+int disk_spool(const struct disk *disk, size_t n)
 {
 	char folder[PATH_MAX];
 	int64_t size, spare;
@@ -168,14 +168,7 @@ int disk_spool(const struct disk *disk, const char *bytes, size_t n)
 	// a part of what is left each time: however many are written at once, they do not use it up
 	if (!measure(disk, &size, &spare) || (int64_t)n > spare / SPOOL_PART)
 		return -1;
-	int file = open(dirname(folder), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
-	ssize_t written = 1;
-	for (size_t at = 0; file >= 0 && written > 0 && at < n; at += (size_t)written)
-		written = write(file, bytes + at, n - at);
-	if (file < 0 || written > 0)
-		return file;
-	close(file);
-	return -1;
+	return open(dirname(folder), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
 }
 
 /* Gives the ballast up. */

@@ -24,7 +24,7 @@ void disk_blame(const struct disk *disk, int64_t id); /* notes a study, 0: none;
 int64_t disk_blamed(const struct disk *disk);         /* the one noted last */
 bool disk_roomy(const struct disk *disk);             /* room for new studies, and the ballast is there */
 void disk_relieve(const struct disk *disk);           /* gives the ballast up */
-/* descriptor of a file without a name that holds n bytes; -1: there is no room */
-int disk_spool(const struct disk *disk, const char *bytes, size_t n);
+/* descriptor of a file without a name that may hold n bytes; -1: there is no room */
+int disk_spool(const struct disk *disk, size_t n);
 
 #endif

@@ -7,7 +7,8 @@
  * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What
  *    takes long is answered in a thread of its own, while the connection is suspended, or given up when the client has gone
  *    or the server stops.
- * 4. What is long is put into a file without a name, so that no client who reads slowly keeps it in memory. */
+ * 4. What is long is put into a file without a name, by that thread, so that no client who reads slowly keeps it in memory
+ *    and no other client waits for it. */
 #include "server/http.h"
 
 #include <arpa/inet.h>
@@ -38,7 +39,6 @@ enum {
 	CONNECTIONS_MIN = 8,      /* of which each thread has a share */
 	DRAINING_MAX = 256,       /* clients who go on sending after their answer */
 	SPOOLED_MAX = 256,        /* answers in files */
-	SPOOLED_MIN = 256 * 1024, /* [bytes] of one */
 	SPOOLED_PART = 64 * 1024, /* [bytes] read of one at a time */
 	FILES_BESIDE = 48,        /* descriptors that are no connections: 33, and what is open for a moment */
 	OF_ADDRESS_MAX = 64,      /* connections of one address, unless it is loopback */
@@ -97,11 +97,14 @@ static void allow(struct MHD_Connection *connection, double seconds)
 	connection_of(connection)->deadline = connection_now() + seconds;
 }
 
-static void drop_body(struct reply *reply)
+static void drop_body(struct server *server, struct reply *reply)
 {
 	if (!reply->lasts)
 		free(reply->body);
+	if (reply->file)
+		spool_close(&server->spools, reply->file);
 	reply->body = NULL;
+	reply->file = 0;
 	reply->length = 0;
 }
 
@@ -117,8 +120,8 @@ static ssize_t no_bytes(void *of, uint64_t at, char *bytes, size_t n)
 
 /* an answer's body in a file without a name */
 struct spooled {
+	struct spools *spools;
 	int file;
-	atomic_int *n; /* of all of them */
 };
 
 static ssize_t read_spooled(void *of, uint64_t at, char *bytes, size_t n)
@@ -131,29 +134,22 @@ static ssize_t read_spooled(void *of, uint64_t at, char *bytes, size_t n)
 static void close_spooled(void *of)
 {
 	struct spooled *spooled = of;
-	close(spooled->file);
-	--*spooled->n;
+	spool_close(spooled->spools, spooled->file);
 	free(spooled);
 }
 
-/* A response that is read from a file, which is not there any more when it has been sent; NULL: the disk or the number of
- * descriptors does not allow that now.
- *
- * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names
- */
-static struct MHD_Response *response_spooled(struct server *server, const struct reply *reply)
+/* A response that is read from a reply's file, which is not there any more when it has been sent; NULL: no memory. */
+static struct MHD_Response *response_spooled(struct spools *spools, struct reply *reply)
 {
-	struct MHD_Response *response = NULL;
 	struct spooled *spooled = malloc(sizeof *spooled);
-	if (!spooled)
-		return NULL;
-	*spooled = (struct spooled){-1, &server->spooled};
-	if (++*spooled->n <= server->spooled_most)
-		spooled->file = store_spool(server->store, reply->body, reply->length);
-	if (spooled->file >= 0)
+	struct MHD_Response *response = NULL;
+	if (spooled) {
+		*spooled = (struct spooled){spools, reply->file};
+		reply->file = 0;
 		response = MHD_create_response_from_callback(reply->length, SPOOLED_PART, read_spooled, spooled,
 		                                             close_spooled);
-	if (!response)
+	}
+	if (spooled && !response)
 		close_spooled(spooled);
 	return response;
 }
@@ -165,11 +161,14 @@ static struct MHD_Response *response_spooled(struct server *server, const struct
 static struct MHD_Response *response_of(const struct request *request, struct reply *reply)
 {
 	struct MHD_Response *response;
-	if (reply->status != 304 && reply->length >= SPOOLED_MIN && !reply->lasts &&
-	    strcmp(request->method, "HEAD") != 0 && (response = response_spooled(request->server, reply))) {
-		drop_body(reply);
-		return response;
+	if (reply->status == 304 && reply->file) {
+		spool_close(&request->server->spools, reply->file);
+		reply->file = 0;
 	}
+	if (reply->file)
+		return response_spooled(&request->server->spools, reply);
+	if (!reply->body && !reply->file && reply->length)
+		return MHD_create_response_from_callback(reply->length, 1, no_bytes, NULL, NULL);
 	if (reply->status != 304 || reply->body)
 		return MHD_create_response_from_buffer(reply->length, reply->body,
 		                                       reply->body && !reply->lasts ? MHD_RESPMEM_MUST_FREE
@@ -217,7 +216,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	const size_t sent = reply->status == 304 ? 0 : reply->length;
 	struct MHD_Response *response = response_of(request, reply);
 	if (!response) {
-		drop_body(reply);
+		drop_body(server, reply);
 		return MHD_NO;
 	}
 	for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++)
@@ -328,7 +327,7 @@ static enum MHD_Result refuse_head(struct request *request)
 	if (send(connection_of(request->connection)->fd, text, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
 		reply.gone = true;
 	answered(request, &reply, reply.length);
-	drop_body(&reply);
+	drop_body(request->server, &reply);
 	return MHD_NO;
 }
 
@@ -411,10 +410,11 @@ static void *answer_aside(void *of)
 	setpriority(PRIO_PROCESS, (id_t)gettid(), ASIDE_NICENESS);
 	if (take_turn(request)) {
 		*reply = routes_answer(request);
+		spool_reply(&server->spools, reply);
 		sem_post(&server->turns);
 	}
 	if (*request->unwanted && reply->status != 200) {
-		drop_body(reply);
+		drop_body(server, reply);
 		*reply = http_problem(
 		    API_UNAVAILABLE,
 		    server->stopping ? "the server stops" : "the client has closed its side of the connection", NULL);
@@ -468,12 +468,13 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	                         ? http_problem(request->head.fault, request->head.detail, NULL)
 	                     : request->replied ? request->reply
 	                                        : routes_answer(request);
-	request->reply.body = NULL; // it goes with the reply
+	request->reply.body = NULL; // they go with the reply
+	request->reply.file = 0;
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag))
 		reply.status = 304;
 	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
 		return send_reply(request, &reply);
-	drop_body(&reply);
+	drop_body(server, &reply);
 	request->replied = false;
 	MHD_suspend_connection(connection);
 	connection_wait(&server->connections, connection_of(connection), connection, request->id, reply.changes,
@@ -499,7 +500,7 @@ static void completed(void *of, struct MHD_Connection *connection, void **kept,
 	if (request->method)
 		server->under_way--;
 	free(request->body);
-	drop_body(&request->reply);
+	drop_body(server, &request->reply);
 	free(request);
 	*kept = NULL;
 }
@@ -580,8 +581,8 @@ static int share_files(struct server *server, int wanted)
 	}
 	const int left = (int)MIN(files.rlim_cur, most) - FILES_BESIDE;
 	connections->most_draining = MIN(left / 4, DRAINING_MAX);
-	server->spooled_most = MIN(left / 8, SPOOLED_MAX);
-	const int all = MIN(left - connections->most_draining - server->spooled_most, CONNECTIONS_MAX);
+	server->spools.most = MIN(left / 8, SPOOLED_MAX);
+	const int all = MIN(left - connections->most_draining - server->spools.most, CONNECTIONS_MAX);
 	connections->most = MIN(wanted, all - 1 - all / 64);
 	if (all < CONNECTIONS_MIN)
 		log_line("only %d files may be open, which is too few: ulimit -n", (int)files.rlim_cur);
@@ -645,7 +646,7 @@ bool http_start(struct server *server)
 	}
 	sem_init(&server->turns, 0, TURNS);
 	server->number = (unsigned long long)time(NULL) << 32;
-	server->connections.store = server->store;
+	server->connections.store = server->spools.store = server->store;
 	server->connections.resume = resume;
 	const int n = share_files(server, options->connections_max);
 	if (n == 0)

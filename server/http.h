@@ -14,7 +14,7 @@
 #include "server/kept.h"
 #include "server/metrics.h"
 #include "server/options.h"
-#include "server/reply.h"
+#include "server/spool.h"
 
 /* What every request can reach. */
 struct server {
@@ -30,8 +30,7 @@ struct server {
 	struct MHD_Daemon *daemon;
 	_Atomic double library_told; /* [s] monotonic, when a line of libmicrohttpd's was told last, ... */
 	atomic_int library_untold;   /* ... and how many were not since */
-	int spooled_most;            /* answers in files that there may be */
-	atomic_int spooled;          /* and are */
+	struct spools spools;
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
 	atomic_int aside;     /* those in threads of their own, of which ... */

@@ -250,10 +250,40 @@ static struct reply document(struct request *request, const char *name)
 	                             : refusal(found);
 }
 
+/* What is told of a stored document without a look at it. */
+static struct reply document_head(struct request *request, const char *name)
+{
+	size_t length;
+	enum store_status found = store_length(request->server->store, request->id, name, &length);
+	return found == STORE_OK     ? (struct reply){.status = 200, .type = "application/json", .length = length}
+	       : found == STORE_NONE ? not_ready(request)
+	                             : refusal(found);
+}
+
+/* A stored document as it is, a long one in a file, if there may be one; for a HEAD, or a client who has it, its length. */
+static struct reply document_whole(struct request *request, const char *name, bool known)
+{
+	struct server *server = request->server;
+	struct reply reply = document_head(request, name);
+	if (reply.status != 200 || known || !strcmp(request->method, "HEAD"))
+		return reply;
+	const int file = reply.length >= SPOOL_LONG ? spool_open(&server->spools, reply.length) : -1;
+	if (file < 0)
+		return document(request, name);
+	enum store_status copied = store_document_to(server->store, request->id, name, file);
+	if (copied == STORE_OK) {
+		reply.file = file;
+		return reply;
+	}
+	spool_close(&server->spools, file);
+	return copied == STORE_NONE ? not_ready(request) : refusal(copied);
+}
+
 static struct reply posted(struct request *request)
 {
-	struct reply reply = document(request, "request");
-	strcpy(reply.etag, reply.status == 200 ? "\"request\"" : "");
+	static const char etag[] = "\"request\"";
+	struct reply reply = document_whole(request, "request", http_known(request, etag));
+	strcpy(reply.etag, reply.status == 200 ? etag : "");
 	return reply;
 }
 
@@ -357,22 +387,28 @@ static struct reply results(struct request *request)
 	const char *table = http_argument(request, "table"), *format = http_argument(request, "format");
 	if (table && format && strcmp(format, "csv") != 0)
 		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv, or left out");
-	struct reply reply, json = document(request, "result");
+	struct reply reply;
 	int rows = 0;
+	const bool csv = second(request, result_formats, table, rows, &reply);
+	struct reply json = csv ? document(request, "result")
+	                        : document_whole(request, "result", http_known(request, reply.etag));
 	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true")) {
 		free(json.body);
 		json = so_far(request, json.retry_after, &rows);
 	}
 	if (json.status != 200)
 		return json;
-	if (second(request, result_formats, table, rows, &reply)) {
+	if (rows > 0)
+		second(request, result_formats, table, rows, &reply);
+	if (csv) {
 		tabulate(&reply, &json, table);
 		free(json.body);
-	} else {
-		reply.body = json.body;
-		reply.length = json.length;
+		return reply.body ? reply : no_memory();
 	}
-	return reply.body ? reply : no_memory();
+	reply.body = json.body;
+	reply.file = json.file;
+	reply.length = json.length;
+	return reply;
 }
 
 /* Whether a finished study has samples, told without its run, for who has them already. */
@@ -494,13 +530,22 @@ static struct reply openapi(struct request *request)
 	                      .etag = "\"" POUND_VERSION "\""};
 }
 
-/* Whether a request is for what is made of all of a study's blocks, or of a result read again; both may be large. */
+/* Whether a request is for what is made of all of a study's blocks, or of a result read again, or for a long document. */
 bool routes_slow(const struct request *request)
 {
-	return request->operation == API_samples ||
-	       (request->operation == API_results &&
-	        (!strcmp(http_argument(request, "partial"), "true") ||
-	         asks_second(request, result_formats, http_argument(request, "table"))));
+	size_t length = 0;
+	if (request->operation == API_samples)
+		return true;
+	if (request->operation != API_results && request->operation != API_posted)
+		return false;
+	if (request->operation == API_results &&
+	    (!strcmp(http_argument(request, "partial"), "true") ||
+	     asks_second(request, result_formats, http_argument(request, "table"))))
+		return true;
+	const char *name = request->operation == API_results ? "result" : "request";
+	return strcmp(request->method, "HEAD") != 0 &&
+	       store_length(request->server->store, request->id, name, &length) == STORE_OK &&
+	       length >= SPOOL_LONG;
 }
 
 /* Whether an answer depends on what is stored, and on nothing else. */

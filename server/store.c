@@ -13,8 +13,12 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+#include <nettle/sha2.h>
 
 #include "engine/pound.h"
 #include "server/database.h"
@@ -24,12 +28,13 @@
 enum {
 	// four threads that answer, two beside them, a worker and the watchdog may ask at once
 	READERS = 8,
-	CHANGES = 1021, /* a prime, so that ids fall everywhere */
+	CHANGES = 1021,     /* a prime, so that ids fall everywhere */
+	PIECE = 256 * 1024, /* [bytes] of a document that is copied */
 };
 
 // clang-format off
 enum statement {
-	STUDY, LIST, LIST_OF, DOCUMENT, BLOCKS, COUNT,
+	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT,
 	BEGIN, // the first of those that the writer alone has
 	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, FINISH, REQUEUE,
 	POISON,
@@ -59,6 +64,7 @@ static const char *const statement_text[] = {
 	[LIST_OF]  = STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2",
 	[DOCUMENT] = "SELECT content, sha256 = " DOCUMENT_DIGEST("study", "name", "content") " "
 	              "FROM document WHERE study = ?1 AND name = ?2",
+	[LENGTH]   = "SELECT length(content), rowid, sha256 FROM document WHERE study = ?1 AND name = ?2",
 	[BLOCKS]   = "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "
 	              "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number",
 	[COUNT]    = "SELECT count(*) FROM (SELECT 1 FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2) LIMIT ?3)",
@@ -422,6 +428,69 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 	return released(c, status);
 }
 
+/* How long a document is, without a look at its content. */
+enum store_status store_length(struct store *store, int64_t id, const char *name, size_t *length)
+{
+	int64_t n = 0;
+	struct database *c = reader(store);
+	enum store_status status = run(c, bound(c, LENGTH, "it", id, name), &n);
+	*length = (size_t)n;
+	return released(c, status);
+}
+
+/* Copies a blob's bytes to a file, a piece at a time; false: the database does not give them, or the file does not take
+ * them. */
+static bool pieces_copy(sqlite3_blob *blob, struct sha256_ctx *hash, int file)
+{
+	static _Thread_local char piece[PIECE];
+	const int length = sqlite3_blob_bytes(blob);
+	bool ok = true;
+	for (int at = 0, n; ok && at < length; at += n) {
+		n = length - at < PIECE ? length - at : PIECE;
+		ok = sqlite3_blob_read(blob, piece, n, at) == SQLITE_OK && write(file, piece, (size_t)n) == n;
+		sha256_update(hash, (size_t)n, (const uint8_t *)piece);
+	}
+	return ok;
+}
+
+/* Copies a document to a file without having all of it in memory.
+ *
+ * Given    file   empty, open for writing
+ * Status   STORE_NONE      no such study, or no such document yet
+ *          STORE_CORRUPT   these are not the bytes that were stored
+ *          STORE_FAILED    they could not be read or written
+ * Test     service_http: a_long_result_holds_nobody_up
+ */
+enum store_status store_document_to(struct store *store, int64_t id, const char *name, int file)
+{
+	struct database *c = reader(store);
+	sqlite3_stmt *row = bound(c, LENGTH, "it", id, name);
+	sqlite3_blob *blob = NULL;
+	enum store_status status = STORE_NONE;
+	if (sqlite3_step(row) == SQLITE_ROW) {
+		struct sha256_ctx hash;
+		uint8_t sha256[SHA256_DIGEST_SIZE];
+		char place[64];
+		// as DOCUMENT_DIGEST has it
+		const int n_place = snprintf(place, sizeof place, "%s %lld ", name, (long long)id);
+		sha256_init(&hash);
+		sha256_update(&hash, (size_t)n_place, (const uint8_t *)place);
+		bool copied = sqlite3_blob_open(c->db, "main", "document", "content", sqlite3_column_int64(row, 1), 0,
+		                                &blob) == SQLITE_OK &&
+		              pieces_copy(blob, &hash, file);
+		sha256_digest(&hash, sizeof sha256, sha256);
+		bool same = sqlite3_column_bytes(row, 2) == sizeof sha256 &&
+		            !memcmp(sqlite3_column_blob(row, 2), sha256, sizeof sha256);
+		status = !copied ? STORE_FAILED : same ? STORE_OK : STORE_CORRUPT;
+	}
+	sqlite3_blob_close(blob);
+	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
+		status = STORE_FAILED;
+	if (status == STORE_CORRUPT)
+		log_line("study %016llx: its %s is damaged", (unsigned long long)id, name);
+	return released(c, status);
+}
+
 /* Counts the studies of a status. */
 enum store_status store_count(struct store *store, const char *status, int64_t *n)
 {
@@ -441,9 +510,9 @@ enum store_status store_ready(struct store *store)
 }
 
 /* A file for bytes that are not to stay in memory. */
-int store_spool(const struct store *store, const char *bytes, size_t n)
+int store_spool(const struct store *store, size_t n)
 {
-	return disk_spool(&store->disk, bytes, n);
+	return disk_spool(&store->disk, n);
 }
 
 /* A change that frees room: on a full disk it has that of the ballast. */

@@ -41,8 +41,8 @@ struct store *store_open(const char *path); /* NULL: refused or failed, and logg
 void store_close(struct store *store);
 bool store_copy(const char *path, const char *to);  /* of a database that may be in use; false: logged */
 enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
-/* descriptor of a file beside the database that has no name and holds n bytes; -1: there is no room */
-int store_spool(const struct store *store, const char *bytes, size_t n);
+/* descriptor of a file beside the database that has no name and may hold n bytes; -1: there is no room */
+int store_spool(const struct store *store, size_t n);
 
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
                                size_t length, int64_t *id);
@@ -52,6 +52,9 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
                              store_study_reader *reader, void *to);
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length); /* on the heap, for the caller to free */
+enum store_status store_length(struct store *store, int64_t id, const char *name, size_t *length);
+/* copies one by pieces; STORE_FAILED: the file does not take it, or the database does not give it */
+enum store_status store_document_to(struct store *store, int64_t id, const char *name, int file);
 enum store_status store_count(struct store *store, const char *status, int64_t *n);
 /* grows with every change of a study (0: of any); studies may share one */
 unsigned store_changes(struct store *store, int64_t id);

@@ -1,5 +1,7 @@
 /* Requests as no library would send them: framing, targets, headers, methods, slow and many clients. */
 #include <dirent.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +11,7 @@
 
 #include "schema/reading.h"
 #include "tests/faults.h"
+#include "tests/latency.h"
 #include "tests/program.h"
 #include "tests/raw.h"
 
@@ -405,6 +408,84 @@ static void long_answers_wait_for_slow_readers_in_files_without_names(void **sta
 	answer_free(&again);
 }
 
+/* One of the clients who ask for a long result again and again. */
+struct loop {
+	const struct service *service;
+	const char *method, *path;
+	atomic_bool *ends;
+	size_t length;
+	int n;
+	pthread_t thread;
+};
+
+static void *loop_run(void *of)
+{
+	struct loop *loop = of;
+	while (!*loop->ends) {
+		struct answer answer =
+		    service_ask(loop->service, &(struct ask){.method = loop->method, .path = loop->path});
+		assert_int_equal(answer.status, 200);
+		loop->length = answer.length;
+		loop->n++;
+		answer_free(&answer);
+	}
+	return NULL;
+}
+
+static void a_long_result_holds_nobody_up(void **state)
+{
+	enum { CLIENTS = 8, ASKED = 200 };
+	static const char *const methods[] = {"HEAD", "GET"};
+	static const char probe[] = "GET /livez HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n";
+	struct service *service = *state;
+	char document[512], id[17], path[64];
+	snprintf(document, sizeof document,
+	         "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	         "{\"frequency_hz\": 3}], "
+	         "\"excitation\": {\"frequency_hz\": 5, \"cycles\": 2, \"signals\": %d}}}",
+	         check_soaks() ? 95000 : 10000);
+	service_submit(service, document, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	snprintf(path, sizeof path, "/v1/studies/%s/results", id);
+	const int64_t length =
+	    service_number(service, "SELECT length(content) FROM document WHERE name = 'result'");
+	for (int m = 0; m < 2; m++) {
+		struct loop loops[CLIENTS];
+		struct latencies latencies = {0};
+		atomic_bool ends = false;
+		int n = 0;
+		for (int i = 0; i < CLIENTS; i++) {
+			loops[i] = (struct loop){.service = service, .method = methods[m], .path = path, .ends = &ends};
+			assert_int_equal(pthread_create(&loops[i].thread, NULL, loop_run, &loops[i]), 0);
+		}
+		for (int i = 0; i < ASKED; i++) {
+			static struct raw_answer answer;
+			double asked = latency_now();
+			raw_ask(service, probe, strlen(probe), 5, &answer);
+			assert_int_equal(answer.status, 200);
+			latency_add(&latencies, asked, latency_now());
+			nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
+		}
+		ends = true;
+		for (int i = 0; i < CLIENTS; i++) {
+			pthread_join(loops[i].thread, NULL);
+			n += loops[i].n;
+			assert_int_equal(loops[i].length, m ? (size_t)length : 0);
+		}
+		const double p99 = latency_quantile(&latencies, 0.99);
+		check_report("%d clients who loop %s of a result of %.1f MB, %d answers: /livez p99 %.1f ms", CLIENTS,
+		             methods[m], 1e-6 * (double)length, n, p99);
+		if (check_soaks())
+			assert_true(p99 <= 20);
+		free(latencies.answers);
+	}
+	static struct raw_answer answer;
+	snprintf(document, sizeof document, "HEAD %s HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n", path);
+	raw_ask(service, document, strlen(document), 5, &answer);
+	snprintf(path, sizeof path, "Content-Length: %lld\r\n", (long long)length);
+	assert_non_null(strstr(answer.text, path));
+}
+
 static void more_connections_than_the_limit_are_told_503(void **state)
 {
 	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "3"}, {NULL}};
@@ -554,6 +635,7 @@ CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other)
            SERVED(what_is_answered_cannot_be_framed_guessed_or_kept),
            SERVED(an_answer_and_its_line_of_the_log_have_one_number),
            cmocka_unit_test(who_is_slow_is_closed_and_others_are_served_meanwhile),
+           SERVED(a_long_result_holds_nobody_up),
            SERVED(long_answers_wait_for_slow_readers_in_files_without_names),
            cmocka_unit_test(more_connections_than_the_limit_are_told_503),
            cmocka_unit_test(with_few_descriptors_fewer_are_served_and_nothing_spins),
