@@ -101,6 +101,8 @@ int main(int argc, char **argv)
 	umask(077);
 	if (options.backup)
 		return store_copy(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
+	if (options.restore)
+		return store_restore(options.database, options.restore) ? EXIT_SUCCESS : EXIT_FAILURE;
 	// no memory for a solver is the end of a try, not of the server
 	gsl_set_error_handler_off();
 	// a client that has gone, and a file that may not grow, are errors of a write and no more

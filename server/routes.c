@@ -65,6 +65,10 @@ static struct reply refusal(enum store_status status)
 	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
 	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key came with another body before"},
 	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
+	    [STORE_REPLACED] =
+	        {API_UNAVAILABLE,
+	         "the database file was removed or replaced: nothing is accepted until the server is "
+	         "started again"},
 	    [STORE_CROWDED] = {API_UNAVAILABLE, "as many studies are queued as this server takes"},
 	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY,
 	                              "as many studies are queued as this server takes from one token"},
@@ -473,7 +477,7 @@ static struct reply samples(struct request *request)
 static struct reply cancel(struct request *request)
 {
 	enum store_status cancelled = store_cancel(request->server->store, request->id);
-	if (cancelled == STORE_FAILED)
+	if (cancelled == STORE_FAILED || cancelled == STORE_REPLACED)
 		return refusal(cancelled);
 	if (cancelled == STORE_OK)
 		work_drop(request->server->work, request->id);

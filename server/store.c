@@ -34,7 +34,7 @@ enum {
 
 // clang-format off
 enum statement {
-	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT,
+	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE,
 	BEGIN, // the first of those that the writer alone has
 	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, FINISH, REQUEUE,
 	POISON,
@@ -68,6 +68,7 @@ static const char *const statement_text[] = {
 	[BLOCKS]   = "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "
 	              "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number",
 	[COUNT]    = "SELECT count(*) FROM (SELECT 1 FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2) LIMIT ?3)",
+	[REUSABLE] = "SELECT freelist_count * page_size FROM pragma_freelist_count(), pragma_page_size()",
 	[BEGIN]    = "BEGIN IMMEDIATE",
 	[COMMIT]   = "COMMIT",
 	[ROLLBACK] = "ROLLBACK",
@@ -188,10 +189,13 @@ static enum store_status released(struct database *c, enum store_status status)
 	return status;
 }
 
-/* The same after a change of a study: those who wait for one may look. */
+/* The same after a change of a study: those who wait for one may look.  It is not told before it is known that the file it
+ * went into is the one that the next start will find. */
 static enum store_status changed(struct store *store, int64_t id, enum store_status status)
 {
 	pthread_mutex_unlock(&store->writer.lock);
+	if (status == STORE_OK && !disk_intact(&store->disk))
+		return STORE_REPLACED;
 	if (status == STORE_OK) {
 		atomic_fetch_add(&store->changes[id % CHANGES], 1);
 		atomic_fetch_add(&store->changes_all, 1);
@@ -227,6 +231,22 @@ void store_close(struct store *store)
 	let_go(store);
 }
 
+/* Whether there is room for new studies; what deleted ones have left counts, and a WAL that is only long is cut. */
+static bool roomy(struct store *store)
+{
+	int64_t reusable = 0;
+	struct database *c = reader(store);
+	released(c, run(c, bound(c, REUSABLE, ""), &reusable));
+	if (disk_roomy(&store->disk, reusable))
+		return true;
+	if (!disk_has_wal(&store->disk))
+		return false;
+	c = writer(store);
+	database_truncate(c);
+	released(c, STORE_OK);
+	return disk_roomy(&store->disk, reusable);
+}
+
 /* Opens a database, making it if there is none.  Studies that were running are queued again, but one that made the
  * server crash three times has failed.
  *
@@ -242,10 +262,14 @@ struct store *store_open(const char *path)
 		return NULL;
 	}
 	struct database *w = &store->writer;
-	bool ok = disk_take(&store->disk, path);
+	bool ok = disk_take(&store->disk, path) && disk_found(&store->disk);
+	const bool crashed = ok && disk_has_wal(&store->disk);
 	if (ok)
 		disk_relieve(&store->disk);
 	ok = ok && database_open(w, store->disk.database, true, statement_text, N_STATEMENTS);
+	ok = ok && (!crashed || database_checked(w));
+	if (ok)
+		database_limit_wal(w, disk_wal_most(&store->disk));
 	for (int i = 0; ok && i < READERS; i++)
 		ok = database_open(&store->readers[i], store->disk.database, false, statement_text, BEGIN);
 	ok = ok && run(w, bound(w, REQUEUE, "i", disk_blamed(&store->disk)), NULL) != STORE_FAILED &&
@@ -256,7 +280,7 @@ struct store *store_open(const char *path)
 		return NULL;
 	}
 	disk_blame(&store->disk, 0);
-	disk_roomy(&store->disk);
+	roomy(store);
 	return store;
 }
 
@@ -272,6 +296,31 @@ bool store_copy(const char *path, const char *to)
 	bool copied = database_open(&reading, path, false, NULL, 0) && database_copy(&reading, to);
 	database_close(&reading);
 	return copied;
+}
+
+/* Puts a copy in the place of a database that no server uses; the former is kept as PATH-replaced, with its WAL.
+ *
+ * Given    from    a database of poundd, as --backup makes it, which stays as it is
+ * Returns  value   false: nothing has changed, or only PATH-replaced is there; logged
+ * Test     service_backup: a_copy_is_restored_in_the_place_of_a_database_and_its_wal
+ */
+bool store_restore(const char *path, const char *from)
+{
+	struct disk disk = {.lock = -1};
+	struct database reading = {0};
+	char made[PATH_MAX + 16];
+	bool ok = disk_take(&disk, path);
+	snprintf(made, sizeof made, "%s-restored", disk.database);
+	if (ok)
+		unlink(made); // of a restoration that did not come to its end
+	ok = ok && database_open(&reading, from, false, NULL, 0) && database_ours(&reading, from) &&
+	     database_checked(&reading) && database_copy(&reading, made) && disk_replace(&disk, made);
+	if (ok)
+		log_line("%s is a copy of %s now; as it was it is kept as %s-replaced", disk.database, from,
+		         disk.database);
+	database_close(&reading);
+	disk_leave(&disk);
+	return ok;
 }
 
 /* The content of a row that starts with it and with whether it is what was stored: copied, for it may lie unaligned,
@@ -338,13 +387,13 @@ static enum store_status room_of(struct database *c, const struct store_study *s
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
                                size_t length, int64_t *id)
 {
-	bool roomy = disk_roomy(&store->disk);
+	const bool has_room = roomy(store);
 	struct database *c = writer(store);
 	enum store_status status = keyed(c, study->key, request, length, id);
 	if (status != STORE_NONE)
 		return released(c, status);
 	status = room_of(c, study);
-	if (status == STORE_OK && !roomy)
+	if (status == STORE_OK && !has_room)
 		status = STORE_FULL;
 	if (status == STORE_OK)
 		status = run(c, bound(c, NEXT, ""), id);
@@ -506,7 +555,10 @@ enum store_status store_ready(struct store *store)
 {
 	int64_t n;
 	enum store_status status = store_count(store, "queued", &n);
-	return status == STORE_OK && !disk_roomy(&store->disk) ? STORE_FULL : status;
+	return status != STORE_OK           ? status
+	       : !disk_intact(&store->disk) ? STORE_REPLACED
+	       : roomy(store)               ? STORE_OK
+	                                    : STORE_FULL;
 }
 
 /* A file for bytes that are not to stay in memory. */

@@ -18,6 +18,7 @@ enum store_status {
 	STORE_REPEATED,       /* an earlier study has that key, and the same bytes */
 	STORE_CLASH,          /* an earlier study has that key, and other bytes */
 	STORE_FULL,           /* the disk has no room for new studies */
+	STORE_REPLACED,       /* the database file is another: what was changed is lost; logged */
 	STORE_CROWDED,        /* as many studies are queued as there may be */
 	STORE_CLIENT_CROWDED, /* as many of its client are as there may be */
 };
@@ -39,7 +40,9 @@ typedef void store_study_reader(void *to,
 
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
 void store_close(struct store *store);
-bool store_copy(const char *path, const char *to);  /* of a database that may be in use; false: logged */
+bool store_copy(const char *path, const char *to); /* of a database that may be in use; false: logged */
+bool store_restore(const char *path,
+                   const char *from);               /* of one that is not in use, by a copy; false: logged */
 enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
 /* descriptor of a file beside the database that has no name and may hold n bytes; -1: there is no room */
 int store_spool(const struct store *store, size_t n);
