@@ -37,7 +37,7 @@ enum statement {
 	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE,
 	BEGIN, // the first of those that the writer alone has
 	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, FINISH, REQUEUE,
-	POISON,
+	STOPPED, VAIN, POISON,
 	N_STATEMENTS
 };
 
@@ -96,6 +96,11 @@ static const char *const statement_text[] = {
 	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
 	[REQUEUE]  = "UPDATE study SET status = 'queued', "
 	              "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'",
+	// one that was stopped in order has not been tried in vain
+	[STOPPED]  = "UPDATE study SET status = 'queued', attempt = max(attempt_kept, attempt - 1) WHERE status = 'running'",
+	[VAIN]     = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
+	              "error = 'out-of-memory-or-crash: the server ended ten times while it ran this study, and no part of it was done' "
+	              "WHERE status = 'queued' AND attempt - attempt_kept >= 10",
 	[POISON]   = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
 	              "error = 'poison-study: the server crashed three times while it ran this study' "
 	              "WHERE status = 'queued' AND crashes >= 3",
@@ -227,7 +232,7 @@ static void let_go(struct store *store)
 /* Closes a store, when nothing runs any more. */
 void store_close(struct store *store)
 {
-	run(&store->writer, bound(&store->writer, REQUEUE, "i", INT64_C(0)), NULL);
+	run(&store->writer, bound(&store->writer, STOPPED, ""), NULL);
 	let_go(store);
 }
 
@@ -248,7 +253,7 @@ static bool roomy(struct store *store)
 }
 
 /* Opens a database, making it if there is none.  Studies that were running are queued again, but one that made the
- * server crash three times has failed.
+ * server crash three times has failed, and so has one of which ten servers ended without having done a part.
  *
  * Given    path    of the database file, or of a link to it; PATH-lock, PATH-ballast, PATH-wal and PATH-shm stand beside it
  * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
@@ -273,7 +278,8 @@ struct store *store_open(const char *path)
 	for (int i = 0; ok && i < READERS; i++)
 		ok = database_open(&store->readers[i], store->disk.database, false, statement_text, BEGIN);
 	ok = ok && run(w, bound(w, REQUEUE, "i", disk_blamed(&store->disk)), NULL) != STORE_FAILED &&
-	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED;
+	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED &&
+	     run(w, bound(w, VAIN, ""), NULL) != STORE_FAILED;
 	if (!ok) {
 		// what was running is for the next start to queue, which may still have to count a crash
 		let_go(store);
