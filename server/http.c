@@ -25,6 +25,7 @@
 
 #include <microhttpd.h>
 
+#include "server/listen.h"
 #include "server/log.h"
 #include "server/store.h"
 #include "server/token.h"
@@ -38,16 +39,17 @@ enum {
 	CONNECTIONS_MAX = 4096,   /* of libmicrohttpd: beyond it clients hang unanswered */
 	CONNECTIONS_MIN = 8,      /* of which each thread has a share */
 	DRAINING_MAX = 256,       /* clients who go on sending after their answer */
+	PROBES = 64,              /* connections that are answered probes, when no more are served */
+	BODIES_MAX = 64 << 20,    /* [bytes] being received or read at a time */
 	SPOOLED_MAX = 256,        /* answers in files */
 	SPOOLED_PART = 64 * 1024, /* [bytes] read of one at a time */
 	FILES_BESIDE = 48,        /* descriptors that are no connections: 33, and what is open for a moment */
 	OF_ADDRESS_MAX = 64,      /* connections of one address, unless it is loopback */
 	POOL = 32 * 1024,         /* [bytes] of a connection: twice HEAD_BYTES_MAX, for what is made of a head */
-	BACKLOG = 1024,
-	SEND_S = 60,             /* [s] for an answer to arrive, besides */
-	SEND_RATE = 16 * 1024,   /* [bytes/s] that a client takes at least */
-	STOP_S = 5,              /* [s] for requests under way when the server stops */
-	STOP_TICK_NS = 10000000, /* [ns] */
+	SEND_S = 60,              /* [s] for an answer to arrive, besides */
+	SEND_RATE = 16 * 1024,    /* [bytes/s] that a client takes at least */
+	STOP_S = 5,               /* [s] for requests under way when the server stops */
+	STOP_TICK_NS = 10000000,  /* [ns] */
 };
 
 static const double STOP_ASIDE_S = 0.3; /* [s] for answers that are given up */
@@ -249,7 +251,7 @@ static enum MHD_Result take_argument(void *of, enum MHD_ValueKind kind, const ch
 /* Whether there is something to do for a request, by its head: else that has a fault. */
 static void judge(struct request *request, bool needs_host)
 {
-	const struct server *server = request->server;
+	struct server *server = request->server;
 	struct head *head = &request->head;
 	const struct api_operation *operation =
 	    request->operation < 0 ? NULL : &api_operations[request->operation];
@@ -257,7 +259,8 @@ static void judge(struct request *request, bool needs_host)
 	head_end(head, needs_host, server->options->host);
 	if (server->tokens)
 		request->token = tokens_name(server->tokens, head->authorization.value);
-	if (!connection_of(request->connection)->served)
+	const struct connection *connection = connection_of(request->connection);
+	if (!connection->served && !(connection->probed && operation && operation->open))
 		head_refuse(head, API_UNAVAILABLE, true, "the server has as many connections as it takes");
 	if (server->tokens && !request->token && !(operation && operation->open))
 		head_refuse(head, API_UNAUTHORIZED, false,
@@ -277,6 +280,9 @@ static void judge(struct request *request, bool needs_host)
 		head_origin(head);
 	if (head->fault == API_NO_FAULT)
 		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, request);
+	if (head->fault == API_NO_FAULT && head->length > 0 &&
+	    (server->bodies += request->taken = (long long)head->length) > BODIES_MAX)
+		head_refuse(head, API_UNAVAILABLE, true, "as much is being sent as this server takes at a time");
 }
 
 /* Keeps more of the body, or drops it when there is a fault; no more comes than its declared length. */
@@ -340,6 +346,17 @@ static void question_end(struct request *request)
 		request->question[0] = '\0';
 }
 
+/* Whose share a request is of that has no token. */
+static void client_name(struct request *request)
+{
+	const struct sockaddr *address =
+	    MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
+	const void *bytes = address->sa_family == AF_INET6
+	                        ? (const void *)&((const struct sockaddr_in6 *)(const void *)address)->sin6_addr
+	                        : (const void *)&((const struct sockaddr_in *)(const void *)address)->sin_addr;
+	inet_ntop(address->sa_family, bytes, request->client, sizeof request->client);
+}
+
 /* The headers are here: judges them. */
 static enum MHD_Result head_came(struct request *request, const char *method, const char *path,
                                  const char *version)
@@ -348,6 +365,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	if (!connection_of(request->connection))
 		return MHD_NO;
 	server->under_way++;
+	client_name(request);
 	request->method = method;
 	request->path = path;
 	request->arrived = connection_now();
@@ -381,6 +399,7 @@ static void go_on(struct request *request)
 {
 	struct server *server = request->server;
 	request->replied = true;
+	share_give(&server->shares, request->share);
 	connection_of(request->connection)->answering = false;
 	MHD_resume_connection(request->connection); // which may end it
 	server->aside--;
@@ -424,10 +443,18 @@ static void *answer_aside(void *of)
 	return NULL;
 }
 
-/* Gives a request to a thread of its own. */
+/* Gives a request to a thread of its own, if its client has not too many there. */
 static void put_aside(struct request *request)
 {
 	pthread_t thread;
+	request->share = share_take(&request->server->shares, request->token ? request->token : request->client);
+	if (request->share < 0) {
+		request->reply = http_problem(
+		    API_UNAVAILABLE, "as many answers that take long are being made as this client, or all, may have",
+		    NULL);
+		request->replied = true;
+		return;
+	}
 	request->server->aside++;
 	connection_of(request->connection)->answering = true;
 	MHD_suspend_connection(request->connection);
@@ -462,7 +489,8 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 		request->replied = routes_kept(request, &request->reply);
 	if (request->head.fault == API_NO_FAULT && !request->replied && routes_slow(request)) {
 		put_aside(request);
-		return MHD_YES;
+		if (!request->replied)
+			return MHD_YES;
 	}
 	struct reply reply = request->head.fault != API_NO_FAULT
 	                         ? http_problem(request->head.fault, request->head.detail, NULL)
@@ -472,12 +500,16 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	request->reply.file = 0;
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag))
 		reply.status = 304;
-	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
+	// of more who wait than may, the last wait for nothing
+	struct connections *all = &server->connections;
+	reply.gone |= reply.waits && connection_of(connection)->unwanted;
+	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request) ||
+	    connection_of(connection)->unwanted || all->n_waiting >= all->most_waiting)
 		return send_reply(request, &reply);
 	drop_body(server, &reply);
 	request->replied = false;
 	MHD_suspend_connection(connection);
-	connection_wait(&server->connections, connection_of(connection), connection, request->id, reply.changes,
+	connection_wait(all, connection_of(connection), connection, request->id, reply.changes,
 	                wait_until(request));
 	return MHD_YES;
 }
@@ -499,6 +531,7 @@ static void completed(void *of, struct MHD_Connection *connection, void **kept,
 		allow(connection, server->options->idle_timeout);
 	if (request->method)
 		server->under_way--;
+	server->bodies -= request->taken;
 	free(request->body);
 	drop_body(server, &request->reply);
 	free(request);
@@ -542,27 +575,6 @@ static void log_library(void *of, const char *format, va_list values)
 	         atomic_exchange(&server->library_untold, 0));
 }
 
-union address {
-	struct sockaddr any;
-	struct sockaddr_in ip4;
-	struct sockaddr_in6 ip6;
-};
-
-static bool address_of(const char *text, int port, union address *address)
-{
-	*address = (union address){.ip6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)}};
-	if (inet_pton(AF_INET6, text, &address->ip6.sin6_addr) == 1)
-		return true;
-	*address = (union address){.ip4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)}};
-	return inet_pton(AF_INET, text, &address->ip4.sin_addr) == 1;
-}
-
-static bool is_loopback(const union address *address)
-{
-	return address->any.sa_family == AF_INET6 ? IN6_IS_ADDR_LOOPBACK(&address->ip6.sin6_addr)
-	                                          : ntohl(address->ip4.sin_addr.s_addr) >> 24 == 127;
-}
-
 /* Shares out the descriptors there may be, as many as are needed or allowed: a connection without one would keep a thread
  * that accepts it busy.
  *
@@ -584,6 +596,8 @@ static int share_files(struct server *server, int wanted)
 	server->spools.most = MIN(left / 8, SPOOLED_MAX);
 	const int all = MIN(left - connections->most_draining - server->spools.most, CONNECTIONS_MAX);
 	connections->most = MIN(wanted, all - 1 - all / 64);
+	connections->most_probed = MIN(connections->most + PROBES, all - 1 - all / 64);
+	connections->most_waiting = (connections->most + 1) / 2;
 	if (all < CONNECTIONS_MIN)
 		log_line("only %d files may be open, which is too few: ulimit -n", (int)files.rlim_cur);
 	else if (connections->most < wanted)
@@ -592,27 +606,8 @@ static int share_files(struct server *server, int wanted)
 	return all < CONNECTIONS_MIN ? 0 : all;
 }
 
-/* A socket that listens at an address, -1: none, and errno says why; made here, for libmicrohttpd would log another line
- * about it, without the port. */
-static int listening(const union address *address)
-{
-	const int on = 1;
-	const bool v6 = address->any.sa_family == AF_INET6;
-	const socklen_t size = v6 ? sizeof address->ip6 : sizeof address->ip4;
-	int fd = socket(address->any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-	bool ok = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
-	          (!v6 || setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &on, sizeof on) == 0) &&
-	          bind(fd, &address->any, size) == 0 && listen(fd, BACKLOG) == 0;
-	if (fd >= 0 && !ok) {
-		int error = errno;
-		close(fd);
-		errno = error;
-	}
-	return ok ? fd : -1;
-}
-
 /* libmicrohttpd on that socket, with at most n connections. */
-static struct MHD_Daemon *serving(struct server *server, const union address *address, int fd, int n)
+static struct MHD_Daemon *serving(struct server *server, const union listen_address *address, int fd, int n)
 {
 	return MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME, 0,
 	                        welcome, server, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, server,
@@ -620,7 +615,7 @@ static struct MHD_Daemon *serving(struct server *server, const union address *ad
 	                        MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin,
 	                        server, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS,
 	                        MHD_OPTION_CONNECTION_LIMIT, (unsigned)n, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-	                        is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
+	                        listen_is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
 	                        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)POOL, MHD_OPTION_END);
 }
 
@@ -634,17 +629,18 @@ static struct MHD_Daemon *serving(struct server *server, const union address *ad
 bool http_start(struct server *server)
 {
 	const struct options *options = server->options;
-	union address address;
-	if (!address_of(options->listen, options->port, &address)) {
+	union listen_address address;
+	if (!listen_address(options->listen, options->port, &address)) {
 		log_line("cannot listen on %s: not an IP address", options->listen);
 		return false;
 	}
-	if (!is_loopback(&address) && !server->tokens && !options->insecure) {
+	if (!listen_is_loopback(&address) && !server->tokens && !options->insecure) {
 		log_line("cannot listen on %s: others reach it, so it needs --token-file, or --insecure",
 		         options->listen);
 		return false;
 	}
 	sem_init(&server->turns, 0, TURNS);
+	pthread_mutex_init(&server->shares.lock, NULL);
 	server->number = (unsigned long long)time(NULL) << 32;
 	server->connections.store = server->spools.store = server->store;
 	server->connections.resume = resume;
@@ -653,7 +649,7 @@ bool http_start(struct server *server)
 		return false;
 	if (!connections_start(&server->connections))
 		return false;
-	int fd = listening(&address);
+	int fd = listen_open(&address);
 	server->daemon = fd >= 0 ? serving(server, &address, fd, n) : NULL;
 	if (server->daemon)
 		return true;

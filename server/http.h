@@ -14,6 +14,7 @@
 #include "server/kept.h"
 #include "server/metrics.h"
 #include "server/options.h"
+#include "server/share.h"
 #include "server/spool.h"
 
 /* What every request can reach. */
@@ -34,7 +35,9 @@ struct server {
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
 	atomic_int aside;     /* those in threads of their own, of which ... */
-	sem_t turns;          /* ... a few have their turn at a time */
+	sem_t turns;          /* ... a few have their turn at a time, and ... */
+	struct shares shares; /* ... each client a share */
+	atomic_llong bodies;  /* [bytes] of the requests under way */
 	atomic_ullong number; /* of the next request */
 };
 
@@ -50,10 +53,13 @@ struct request {
 	int operation;                     /* row of api_operations, -1: none */
 	long long id;                      /* of the study in the path, 0: none */
 	char question[KEPT_QUESTION_SIZE]; /* target and Accept; "": it does not fit */
+	char client[SHARE_CLIENT_SIZE];    /* its address in digits */
 	const char *token;                 /* name of the one it was sent with; NULL: there are none */
 	char allow[64];                    /* methods of the path */
 	char *body;                        /* (length) bytes */
 	size_t length;
+	long long taken;             /* [bytes] of bodies that its own counts for */
+	int share;                   /* of its client, when it is in a thread of its own */
 	bool replied;                /* the reply is there, kept or made by a thread of its own */
 	struct reply reply;          /* if so, until it is sent */
 	const atomic_bool *unwanted; /* nobody waits for it any more */

@@ -1,6 +1,7 @@
 /* poundd: opens the store, starts the workers, listens, and waits for the signal to stop. */
 #include <errno.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -103,6 +104,9 @@ int main(int argc, char **argv)
 		return store_copy(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options.restore)
 		return store_restore(options.database, options.restore) ? EXIT_SUCCESS : EXIT_FAILURE;
+	// what was taken for one body or result goes back to the system with it
+	mallopt(M_MMAP_THRESHOLD, 256 * 1024);
+	mallopt(M_TRIM_THRESHOLD, 1024 * 1024);
 	// no memory for a solver is the end of a try, not of the server
 	gsl_set_error_handler_off();
 	// a client that has gone, and a file that may not grow, are errors of a write and no more

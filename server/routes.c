@@ -26,6 +26,7 @@ enum {
 	RETRY_AFTER = 1,      /* [s] */
 	RETRY_AFTER_MAX = 60, /* [s] */
 	MIB = 1 << 20,
+	TABLE_LONG = 64 * 1024, /* [bytes] of a result of which a table takes milliseconds */
 };
 
 static struct reply problem(enum api_fault fault, const char *detail)
@@ -542,14 +543,14 @@ bool routes_slow(const struct request *request)
 		return true;
 	if (request->operation != API_results && request->operation != API_posted)
 		return false;
-	if (request->operation == API_results &&
-	    (!strcmp(http_argument(request, "partial"), "true") ||
-	     asks_second(request, result_formats, http_argument(request, "table"))))
-		return true;
-	const char *name = request->operation == API_results ? "result" : "request";
-	return strcmp(request->method, "HEAD") != 0 &&
-	       store_length(request->server->store, request->id, name, &length) == STORE_OK &&
-	       length >= SPOOL_LONG;
+	const bool result = request->operation == API_results;
+	const bool there =
+	    store_length(request->server->store, request->id, result ? "result" : "request", &length) == STORE_OK;
+	if (result && !there)
+		return !strcmp(http_argument(request, "partial"), "true");
+	if (result && asks_second(request, result_formats, http_argument(request, "table")))
+		return length >= TABLE_LONG;
+	return strcmp(request->method, "HEAD") != 0 && length >= SPOOL_LONG;
 }
 
 /* Whether an answer depends on what is stored, and on nothing else. */

@@ -495,7 +495,7 @@ static void more_connections_than_the_limit_are_told_503(void **state)
 	int sockets[N], served = 0, refused = 0;
 	for (int i = 0; i < N; i++) {
 		static struct raw_answer answer;
-		const char *request = i % 2 ? GET "\r\n" : POST "Content-Length: 2\r\n\r\n{}";
+		const char *request = i % 2 ? HIDDEN : POST "Content-Length: 2\r\n\r\n{}";
 		sockets[i] = raw_open(service);
 		raw_send(sockets[i], request, strlen(request));
 		raw_receive(sockets[i], 0.2, &answer);
