@@ -64,7 +64,7 @@ $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.tests) $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
 
 # the test's own blocks crash in their place
-$(B)/tests/service/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create,--wrap=pound_run_block
+$(B)/tests/service/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create_by,--wrap=pound_run_block
 # GSL's memory is that of the test
 $(B)/tests/unit/run/unit_status: LDFLAGS += -Wl,--wrap=gsl_odeiv2_driver_alloc_scaled_new
 # a contact model is given another form of force

@@ -181,7 +181,7 @@ static bool writable(const char *path)
 static enum outcome run_and_print(const struct pound_study *study, const struct options *options)
 {
 	double wall = seconds(CLOCK_MONOTONIC);
-	struct pound_run *run = pound_run_create(study, options->threads);
+	struct pound_run *run = pound_run_create_by(study, options->threads, &interrupted);
 	if (run)
 		pound_run_clock(run, thread_cpu);
 	enum pound_status status = run ? compute(run, options->threads, study_runs(study), wall) : POUND_NOMEM;

@@ -24,6 +24,9 @@
 struct pound_run;
 
 struct pound_run *pound_run_create(const struct pound_study *study, int n_workers); /* NULL: out of memory */
+/* the same, or NULL soon after the flag is set: a design of a million rows takes seconds to draw */
+struct pound_run *pound_run_create_by(const struct pound_study *study, int n_workers,
+                                      const atomic_bool *stop);
 void pound_run_free(struct pound_run *run);
 int pound_run_blocks(const struct pound_run *run);      /* to run before the next reductions */
 int pound_run_blocks_most(const struct pound_run *run); /* of a design that grows: if it grows to the end */
@@ -46,7 +49,7 @@ void pound_run_rows_take(struct pound_run *run, int rows);
 int pound_run_rows(const struct pound_run *run); /* that the reductions are of */
 /* Seconds of CPU time of the calling thread, for the times of a convergence study; before the first block. */
 void pound_run_clock(struct pound_run *run, double (*cpu)(void));
-/* Blocks return POUND_STOPPED soon, and reductions that have not begun at once. */
+/* Blocks and reductions return POUND_STOPPED soon: they look for that every few milliseconds. */
 void pound_run_stop(struct pound_run *run);
 /* A flag of the caller's, which outlives the run, does that when it is set, and pound_run_stop no more. */
 void pound_run_stop_by(struct pound_run *run, const atomic_bool *stop);

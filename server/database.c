@@ -22,6 +22,8 @@ static const char schema_text[] =
 enum {
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
 	USER_VERSION = 5,            /* as in store.sql */
+	PAGE = 4096,                 /* [bytes] */
+	BUSY_MS = 5000,              /* [ms] */
 	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
 };
 
@@ -120,12 +122,39 @@ static bool configured(const struct database *d, bool writes)
 	    {"wal_autocheckpoint", "1000", false},
 	    {"mmap_size", "0", false},
 	    {"secure_delete", "0", false},
-	    {"journal_size_limit", "67108864", false},
+	    {"journal_size_limit", "4194304", false},
 	};
 	for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
 		if ((writes || !settings[i].in_file) && !set(d, settings[i].name, settings[i].value))
 			return false;
 	return true;
+}
+
+/* Whether the pages hold together: where a server was killed, or a file copied by other means than --backup.
+ *
+ * Test     service_backup: a_wal_is_not_applied_to_another_database
+ */
+bool database_checked(const struct database *d)
+{
+	char text[32];
+	bool whole = !strcmp(answer(d, "PRAGMA quick_check(1)", text), "ok");
+	if (!whole)
+		log_line("the database is damaged: %s; poundd --restore puts a copy in its place",
+		         *text ? text : sqlite3_errmsg(d->db));
+	return whole;
+}
+
+void database_limit_wal(const struct database *d, int64_t bytes)
+{
+	sqlite3_wal_autocheckpoint(d->db, (int)(bytes / PAGE));
+}
+
+/* Gives the disk what a WAL takes that was written back; who reads it now is not waited for. */
+void database_truncate(const struct database *d)
+{
+	sqlite3_busy_timeout(d->db, 0);
+	sqlite3_wal_checkpoint_v2(d->db, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
+	sqlite3_busy_timeout(d->db, BUSY_MS);
 }
 
 /* Writes a copy of the database as it stands now, while others go on; it is on the disk when this returns.
@@ -202,6 +231,11 @@ static int version_of(const struct database *d, const char *path)
 	else
 		log_line("cannot read the database %s: %s", path, sqlite3_errmsg(d->db));
 	return -1;
+}
+
+bool database_ours(const struct database *d, const char *path)
+{
+	return version_of(d, path) > 0;
 }
 
 /* Makes a new database, or brings one of ours to this version. */

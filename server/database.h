@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #include <sqlite3.h>
 
@@ -20,6 +21,12 @@ struct database {
 bool database_open(struct database *database, const char *path, bool writes, const char *const statements[],
                    int n);
 void database_close(struct database *database);
+bool database_ours(const struct database *database,
+                   const char *path);                   /* of any version up to this; false: logged */
+bool database_checked(const struct database *database); /* its pages hold together; false: logged */
+void database_limit_wal(const struct database *database,
+                        int64_t bytes);                  /* it is written back when it has so many */
+void database_truncate(const struct database *database); /* its WAL, if nobody reads it now */
 bool database_copy(const struct database *database, const char *path); /* false: logged */
 
 #endif

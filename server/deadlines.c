@@ -21,6 +21,7 @@ enum {
 	TICK_NS = 50000000,    /* [ns] */
 	LINGER_S = 5,          /* [s] a client may go on sending */
 	TICK_BYTES = 16 << 20, /* read of all of them in a tick, while the list is locked */
+	GONE_EVERY = 8,        /* ticks after which one that waits is asked whether it is still there */
 };
 
 double connection_now(void)
@@ -52,7 +53,7 @@ static bool gone(struct connection *connection)
 	return before && connection->gone;
 }
 
-static void look(struct connections *all, struct connection *connection, double now, ssize_t *left)
+static void look(struct connections *all, struct connection *connection, double now, int tick, ssize_t *left)
 {
 	if (connection->draining) {
 		if (drain(connection, left) && now < connection->deadline && !all->stopping)
@@ -62,7 +63,9 @@ static void look(struct connections *all, struct connection *connection, double 
 		free(connection);
 		all->n_draining--;
 	} else if (connection->handle) {
-		if (now < connection->until && !all->released &&
+		if ((connection->fd + tick) % GONE_EVERY == 0)
+			connection->unwanted = gone(connection);
+		if (now < connection->until && !all->released && !connection->unwanted &&
 		    connection->changes == store_changes(all->store, connection->id))
 			return;
 		// before it goes on, for it may wait again at once
@@ -82,7 +85,7 @@ static void *watch(void *of)
 {
 	struct connections *all = of;
 	bool stopping = false;
-	while (!stopping) {
+	for (int tick = 0; !stopping; tick = (tick + 1) % GONE_EVERY) {
 		nanosleep(&(struct timespec){.tv_nsec = TICK_NS}, NULL);
 		double now = connection_now();
 		ssize_t left = TICK_BYTES;
@@ -90,7 +93,7 @@ static void *watch(void *of)
 		stopping = all->stopping;
 		for (struct connection *connection = LIST_FIRST(&all->list), *next; connection; connection = next) {
 			next = LIST_NEXT(connection, others);
-			look(all, connection, now, &left);
+			look(all, connection, now, tick, &left);
 		}
 		pthread_mutex_unlock(&all->lock);
 	}
@@ -132,7 +135,9 @@ struct connection *connection_opened(struct connections *all, int fd, double sec
 		return NULL;
 	connection->fd = fd;
 	connection->deadline = connection_now() + seconds;
-	connection->served = ++all->n <= all->most;
+	const int n = ++all->n;
+	connection->served = n <= all->most;
+	connection->probed = n <= all->most_probed;
 	pthread_mutex_lock(&all->lock);
 	LIST_INSERT_HEAD(&all->list, connection, others);
 	pthread_mutex_unlock(&all->lock);

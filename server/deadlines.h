@@ -17,7 +17,8 @@ struct connection {
 	LIST_ENTRY(connection) others; /* the watch's, as are fd and draining */
 	int fd;
 	bool draining; /* closed by its owner; fd is our own */
-	bool served;   /* false: it came when there were as many as may be */
+	bool served;   /* false: it came when there were as many as may be, ... */
+	bool probed;   /* ... but is answered what needs no token, as a few more are */
 	bool lingers;  /* when it is closed, what its client is still sending is read for a while, so that
 	                            it finds our answer and not a reset connection */
 	_Atomic double deadline; /* [s] monotonic, when it is shut down */
@@ -34,6 +35,8 @@ struct connections {
 	struct store *store;
 	void (*resume)(void *handle);
 	int most;             /* are served */
+	int most_probed;      /* of those that are not, the ones that are answered probes count too */
+	int most_waiting;     /* wait for a study */
 	int most_draining;    /* are read from after their answer */
 	atomic_int n, n_late; /* open; shut down for being late, ever */
 	atomic_int n_waiting; /* suspended requests */

@@ -25,6 +25,8 @@ enum {
 	BALLAST_MAX = 16 << 20,  /* [bytes] */
 	RESERVE_PART = 16,       /* of the whole disk, where that is less */
 	BALLAST_PART = 32,
+	WAL_MAX = 4 << 20, /* [bytes] */
+	WAL_PART = 64,
 	SPOOL_PART = 8,           /* of what is to spare, for one spooled answer */
 	LOCK_TRIES = 50,          /* half a second together */
 	LOCK_PAUSE_NS = 10000000, /* [ns] */
@@ -51,6 +53,82 @@ static const char *identify(struct disk *disk, const char *path)
 	           : NULL;
 }
 
+/* Notes what a file is, by which it is known again. */
+static bool note(const char *path, struct disk_file *file)
+{
+	struct statx about;
+	if (statx(AT_FDCWD, path, 0, STATX_INO | STATX_BTIME, &about) != 0)
+		return false;
+	const uint64_t birth = (uint64_t)about.stx_btime.tv_sec * 1000000000 + about.stx_btime.tv_nsec;
+	*file = (struct disk_file){.device = (uint64_t)about.stx_dev_major << 32 | about.stx_dev_minor,
+	                           .inode = about.stx_ino,
+	                           .birth = about.stx_mask & STATX_BTIME ? birth : 0};
+	return true;
+}
+
+static bool same(const struct disk_file *p, const struct disk_file *q)
+{
+	return p->device == q->device && p->inode == q->inode && p->birth == q->birth;
+}
+
+/* What the lock file holds. */
+struct noted {
+	int64_t blamed;            /* the study with which the server crashed last, 0: none */
+	struct disk_file database; /* that was opened last */
+};
+
+static struct noted noted(const struct disk *disk)
+{
+	struct noted noted = {0};
+	// what a shorter one, of an earlier version, lacks, or cannot be read, is 0
+	ssize_t n = pread(disk->lock, &noted, sizeof noted, 0);
+	(void)n;
+	return noted;
+}
+
+/* Whether the files that were opened are still those of their names: who removes one, or puts another in its place, takes
+ * away what is committed from now on.  Logged once a second.
+ *
+ * Test     service_backup: a_database_that_is_replaced_under_a_server_is_not_written_to
+ */
+bool disk_intact(struct disk *disk)
+{
+	struct disk_file database, lock;
+	const bool there = note(disk->database, &database) && same(&database, &disk->files[0]),
+	           locked = note(disk->lock_name, &lock) && same(&lock, &disk->files[1]);
+	const time_t now = time(NULL);
+	if (!(there && locked) && atomic_exchange(&disk->told, now) != now)
+		log_line("%s was removed or replaced while this server runs: nothing is accepted until it is started "
+		         "again with the right one",
+		         there ? disk->lock_name : disk->database);
+	return there && locked;
+}
+
+bool disk_has_wal(const struct disk *disk)
+{
+	char name[PATH_MAX + 8];
+	struct stat about;
+	snprintf(name, sizeof name, "%s-wal", disk->database);
+	return stat(name, &about) == 0 && about.st_size > 0;
+}
+
+/* Whether a WAL that an earlier server has left is that of another file, so that its pages must not go into this one.
+ *
+ * Test     service_backup: a_wal_is_not_applied_to_another_database
+ */
+static bool strange_wal(const struct disk *disk)
+{
+	static const struct disk_file none = {0};
+	const struct noted before = noted(disk);
+	if (!disk_has_wal(disk) || same(&before.database, &none) || same(&before.database, &disk->files[0]))
+		return false;
+	log_line("%s-wal belongs to another file than %s, which was restored or replaced: poundd --restore puts "
+	         "a copy in "
+	         "place without it; if both were moved here together, remove %s first",
+	         disk->database, disk->database, disk->lock_name);
+	return true;
+}
+
 /* Locks a database for this process.
  *
  * Given    path   of the database; an empty one is made if there is none
@@ -60,14 +138,14 @@ static const char *identify(struct disk *disk, const char *path)
  */
 bool disk_take(struct disk *disk, const char *path)
 {
-	char name[sizeof disk->ballast];
+	char *name = disk->lock_name;
 	const char *fault = identify(disk, path);
 	disk->lock = -1;
 	if (fault) {
 		log_line("cannot open the database %s: %s", path, fault);
 		return false;
 	}
-	snprintf(name, sizeof name, "%s-lock", disk->database);
+	snprintf(name, sizeof disk->lock_name, "%s-lock", disk->database);
 	snprintf(disk->ballast, sizeof disk->ballast, "%s-ballast", disk->database);
 	disk->lock = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 	bool ours = disk->lock >= 0 && flock(disk->lock, LOCK_EX | LOCK_NB) == 0;
@@ -79,7 +157,39 @@ bool disk_take(struct disk *disk, const char *path)
 	if (!ours)
 		log_line("cannot lock %s: %s", name,
 		         errno == EWOULDBLOCK ? "another server uses the database" : strerror(errno));
-	return ours;
+	return ours && note(disk->database, &disk->files[0]) && note(name, &disk->files[1]) && disk_intact(disk);
+}
+
+bool disk_replace(struct disk *disk, const char *by)
+{
+	static const char *const ends[] = {"", "-wal"};
+	static const struct noted nothing = {0};
+	char from[PATH_MAX + 16], to[PATH_MAX + 16];
+	bool ok = pwrite(disk->lock, &nothing, sizeof nothing, 0) == sizeof nothing;
+	for (int i = 0; ok && i < 2; i++) {
+		snprintf(from, sizeof from, "%s%s", disk->database, ends[i]);
+		snprintf(to, sizeof to, "%s-replaced%s", disk->database, ends[i]);
+		unlink(to);
+		ok = rename(from, to) == 0 || errno == ENOENT;
+	}
+	snprintf(from, sizeof from, "%s-shm", disk->database);
+	unlink(from);
+	ok = ok && rename(by, disk->database) == 0;
+	if (!ok)
+		log_line("cannot put %s in the place of %s: %s", by, disk->database, strerror(errno));
+	return ok && disk_sync(disk->database);
+}
+
+/* Makes sure that a WAL beside the database is its own, and notes whose the next one will be; false: it is not, logged. */
+bool disk_found(struct disk *disk)
+{
+	struct noted now = noted(disk);
+	if (strange_wal(disk))
+		return false;
+	now.database = disk->files[0];
+	ssize_t n = pwrite(disk->lock, &now, sizeof now, 0);
+	(void)n; // a disk that is full loses a check, not a study
+	return true;
 }
 
 /* Unlocks it; the ballast goes, if this process has the lock. */
@@ -116,8 +226,7 @@ void disk_blame(const struct disk *disk, int64_t id)
 /* The study that was noted last, 0: none. */
 int64_t disk_blamed(const struct disk *disk)
 {
-	int64_t id;
-	return pread(disk->lock, &id, sizeof id, 0) == sizeof id ? id : 0;
+	return noted(disk).blamed;
 }
 
 /* Puts the ballast there, if it is not. */
@@ -144,23 +253,34 @@ static bool measure(const struct disk *disk, int64_t *size, int64_t *spare)
 	return true;
 }
 
-/* Whether new studies may be taken: there is something to spare, and the ballast is there.
- *
- * Test     service_disk: a_full_disk_refuses_studies_answers_questions_and_is_survived
- */
-bool disk_roomy(const struct disk *disk)
+/* A WAL that is long on a small disk could leave no room for its pages in the database itself. */
+int64_t disk_wal_most(const struct disk *disk)
 {
 	int64_t size, spare;
-	return measure(disk, &size, &spare) && ballasted(disk, MIN(size / BALLAST_PART, BALLAST_MAX)) &&
-	       spare >= 0;
+	return measure(disk, &size, &spare) ? MIN(size / WAL_PART, WAL_MAX) : WAL_MAX;
 }
 
-/* Puts bytes into a file without a name, if there is room to spare for them: it is gone when it is closed.
+/* Whether new studies may be taken: there is something to spare, on the disk or in the database's own free pages, and the
+ * ballast is there.  What goes into free pages passes through the WAL, for which a half of the reserve must be left.
+ *
+ * Given    reusable   [bytes] of free pages
+ * Test     service_disk: a_full_disk_refuses_studies_answers_questions_and_is_survived,
+ *          studies_that_are_deleted_make_room
+ */
+bool disk_roomy(const struct disk *disk, int64_t reusable)
+{
+	int64_t size, spare;
+	if (!measure(disk, &size, &spare) || !ballasted(disk, MIN(size / BALLAST_PART, BALLAST_MAX)))
+		return false;
+	return spare >= 0 || (spare + reusable >= 0 && spare >= -MIN(size / RESERVE_PART, RESERVE_MAX) / 2);
+}
+
+/* Makes a file without a name for bytes, if there is room to spare for them: it is gone when it is closed.
  *
  * Returns  value   its descriptor, for the caller to close; -1: none
  * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names
  */
-int disk_spool(const struct disk *disk, const char *bytes, size_t n)
+int disk_spool(const struct disk *disk, size_t n)
 {
 	char folder[PATH_MAX];
 	int64_t size, spare;
@@ -168,14 +288,7 @@ int disk_spool(const struct disk *disk, const char *bytes, size_t n)
 	// a part of what is left each time: however many are written at once, they do not use it up
 	if (!measure(disk, &size, &spare) || (int64_t)n > spare / SPOOL_PART)
 		return -1;
-	int file = open(dirname(folder), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
-	ssize_t written = 1;
-	for (size_t at = 0; file >= 0 && written > 0 && at < n; at += (size_t)written)
-		written = write(file, bytes + at, n - at);
-	if (file < 0 || written > 0)
-		return file;
-	close(file);
-	return -1;
+	return open(dirname(folder), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
 }
 
 /* Gives the ballast up. */

@@ -7,7 +7,8 @@
  * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What
  *    takes long is answered in a thread of its own, while the connection is suspended, or given up when the client has gone
  *    or the server stops.
- * 4. What is long is put into a file without a name, so that no client who reads slowly keeps it in memory. */
+ * 4. What is long is put into a file without a name, by that thread, so that no client who reads slowly keeps it in memory
+ *    and no other client waits for it. */
 #include "server/http.h"
 
 #include <arpa/inet.h>
@@ -19,12 +20,12 @@
 #include <sys/param.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <microhttpd.h>
 
+#include "server/listen.h"
 #include "server/log.h"
 #include "server/store.h"
 #include "server/token.h"
@@ -38,19 +39,20 @@ enum {
 	CONNECTIONS_MAX = 4096,   /* of libmicrohttpd: beyond it clients hang unanswered */
 	CONNECTIONS_MIN = 8,      /* of which each thread has a share */
 	DRAINING_MAX = 256,       /* clients who go on sending after their answer */
+	PROBES = 64,              /* connections that are answered probes, when no more are served */
+	BODIES_MAX = 64 << 20,    /* [bytes] being received or read at a time */
 	SPOOLED_MAX = 256,        /* answers in files */
-	SPOOLED_MIN = 256 * 1024, /* [bytes] of one */
 	SPOOLED_PART = 64 * 1024, /* [bytes] read of one at a time */
 	FILES_BESIDE = 48,        /* descriptors that are no connections: 33, and what is open for a moment */
 	OF_ADDRESS_MAX = 64,      /* connections of one address, unless it is loopback */
-	HEADERS_MAX = 32 * 1024,  /* [bytes] request line and headers */
-	BACKLOG = 1024,
-	TURN_NS = 100000,        /* [ns] of a processor, the least that is had */
-	SEND_S = 60,             /* [s] for an answer to arrive, besides */
-	SEND_RATE = 16 * 1024,   /* [bytes/s] that a client takes at least */
-	STOP_S = 5,              /* [s] for requests under way when the server stops */
-	STOP_TICK_NS = 10000000, /* [ns] */
+	POOL = 32 * 1024,         /* [bytes] of a connection: twice HEAD_BYTES_MAX, for what is made of a head */
+	SEND_S = 60,              /* [s] for an answer to arrive, besides */
+	SEND_RATE = 16 * 1024,    /* [bytes/s] that a client takes at least */
+	STOP_S = 5,               /* [s] for requests under way when the server stops */
+	STOP_TICK_NS = 10000000,  /* [ns] */
 };
+
+static const double STOP_ASIDE_S = 0.3; /* [s] for answers that are given up */
 
 /* An argument of the request's target, or what stands for an absent or an empty one. */
 const char *http_argument(const struct request *request, const char *name)
@@ -97,11 +99,14 @@ static void allow(struct MHD_Connection *connection, double seconds)
 	connection_of(connection)->deadline = connection_now() + seconds;
 }
 
-static void drop_body(struct reply *reply)
+static void drop_body(struct server *server, struct reply *reply)
 {
 	if (!reply->lasts)
 		free(reply->body);
+	if (reply->file)
+		spool_close(&server->spools, reply->file);
 	reply->body = NULL;
+	reply->file = 0;
 	reply->length = 0;
 }
 
@@ -117,8 +122,8 @@ static ssize_t no_bytes(void *of, uint64_t at, char *bytes, size_t n)
 
 /* an answer's body in a file without a name */
 struct spooled {
+	struct spools *spools;
 	int file;
-	atomic_int *n; /* of all of them */
 };
 
 static ssize_t read_spooled(void *of, uint64_t at, char *bytes, size_t n)
@@ -131,29 +136,22 @@ static ssize_t read_spooled(void *of, uint64_t at, char *bytes, size_t n)
 static void close_spooled(void *of)
 {
 	struct spooled *spooled = of;
-	close(spooled->file);
-	--*spooled->n;
+	spool_close(spooled->spools, spooled->file);
 	free(spooled);
 }
 
-/* A response that is read from a file, which is not there any more when it has been sent; NULL: the disk or the number of
- * descriptors does not allow that now.
- *
- * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names
- */
-static struct MHD_Response *response_spooled(struct server *server, const struct reply *reply)
+/* A response that is read from a reply's file, which is not there any more when it has been sent; NULL: no memory. */
+static struct MHD_Response *response_spooled(struct spools *spools, struct reply *reply)
 {
-	struct MHD_Response *response = NULL;
 	struct spooled *spooled = malloc(sizeof *spooled);
-	if (!spooled)
-		return NULL;
-	*spooled = (struct spooled){-1, &server->spooled};
-	if (++*spooled->n <= server->spooled_most)
-		spooled->file = store_spool(server->store, reply->body, reply->length);
-	if (spooled->file >= 0)
+	struct MHD_Response *response = NULL;
+	if (spooled) {
+		*spooled = (struct spooled){spools, reply->file};
+		reply->file = 0;
 		response = MHD_create_response_from_callback(reply->length, SPOOLED_PART, read_spooled, spooled,
 		                                             close_spooled);
-	if (!response)
+	}
+	if (spooled && !response)
 		close_spooled(spooled);
 	return response;
 }
@@ -165,11 +163,14 @@ static struct MHD_Response *response_spooled(struct server *server, const struct
 static struct MHD_Response *response_of(const struct request *request, struct reply *reply)
 {
 	struct MHD_Response *response;
-	if (reply->status != 304 && reply->length >= SPOOLED_MIN && !reply->lasts &&
-	    strcmp(request->method, "HEAD") != 0 && (response = response_spooled(request->server, reply))) {
-		drop_body(reply);
-		return response;
+	if (reply->status == 304 && reply->file) {
+		spool_close(&request->server->spools, reply->file);
+		reply->file = 0;
 	}
+	if (reply->file)
+		return response_spooled(&request->server->spools, reply);
+	if (!reply->body && !reply->file && reply->length)
+		return MHD_create_response_from_callback(reply->length, 1, no_bytes, NULL, NULL);
 	if (reply->status != 304 || reply->body)
 		return MHD_create_response_from_buffer(reply->length, reply->body,
 		                                       reply->body && !reply->lasts ? MHD_RESPMEM_MUST_FREE
@@ -180,10 +181,20 @@ static struct MHD_Response *response_of(const struct request *request, struct re
 	return response;
 }
 
+/* Counts and logs a reply of so many bytes.  Who has gone is counted as others count it: it is no failure of the server's. */
+static void answered(const struct request *request, const struct reply *reply, size_t n)
+{
+	const double seconds = connection_now() - request->arrived;
+	const int told = reply->gone ? GONE : reply->status;
+	metrics_answered(&request->server->metrics, request->operation, told, seconds);
+	// a path may be longer than a line
+	log_line("%016llx %.20s %.400s %d %zu bytes %.1f ms", (unsigned long long)request->number,
+	         request->method, request->path, told, n, 1e3 * seconds);
+}
+
 static enum MHD_Result send_reply(const struct request *request, struct reply *reply)
 {
 	struct server *server = request->server;
-	double seconds = connection_now() - request->arrived;
 	char retry_after[16], number[17];
 	snprintf(retry_after, sizeof retry_after, "%d", reply->retry_after);
 	snprintf(number, sizeof number, "%016llx", (unsigned long long)request->number);
@@ -207,19 +218,14 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	const size_t sent = reply->status == 304 ? 0 : reply->length;
 	struct MHD_Response *response = response_of(request, reply);
 	if (!response) {
-		drop_body(reply);
+		drop_body(server, reply);
 		return MHD_NO;
 	}
 	for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++)
 		if (headers[i].value)
 			MHD_add_response_header(response, headers[i].name, headers[i].value);
 	allow(request->connection, SEND_S + (double)sent / SEND_RATE);
-	// who has gone is counted as others count it: it is no failure of the server's
-	const int told = reply->gone ? GONE : reply->status;
-	metrics_answered(&server->metrics, request->operation, told, seconds);
-	// a path may be longer than a line
-	log_line("%s %.20s %.400s %d %zu bytes %.1f ms", number, request->method, request->path, told, sent,
-	         1e3 * seconds);
+	answered(request, reply, sent);
 	enum MHD_Result queued = MHD_queue_response(request->connection, (unsigned)reply->status, response);
 	MHD_destroy_response(response);
 	return queued;
@@ -245,7 +251,7 @@ static enum MHD_Result take_argument(void *of, enum MHD_ValueKind kind, const ch
 /* Whether there is something to do for a request, by its head: else that has a fault. */
 static void judge(struct request *request, bool needs_host)
 {
-	const struct server *server = request->server;
+	struct server *server = request->server;
 	struct head *head = &request->head;
 	const struct api_operation *operation =
 	    request->operation < 0 ? NULL : &api_operations[request->operation];
@@ -253,7 +259,8 @@ static void judge(struct request *request, bool needs_host)
 	head_end(head, needs_host, server->options->host);
 	if (server->tokens)
 		request->token = tokens_name(server->tokens, head->authorization.value);
-	if (!connection_of(request->connection)->served)
+	const struct connection *connection = connection_of(request->connection);
+	if (!connection->served && !(connection->probed && operation && operation->open))
 		head_refuse(head, API_UNAVAILABLE, true, "the server has as many connections as it takes");
 	if (server->tokens && !request->token && !(operation && operation->open))
 		head_refuse(head, API_UNAUTHORIZED, false,
@@ -269,16 +276,19 @@ static void judge(struct request *request, bool needs_host)
 		head_refuse(head, API_NOT_JSON, false, "Content-Type must be application/json");
 	else if (operation->takes_study)
 		head_key(head);
+	if (operation && strcmp(operation->method, "GET") != 0)
+		head_origin(head);
 	if (head->fault == API_NO_FAULT)
 		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, request);
+	if (head->fault == API_NO_FAULT && head->length > 0 &&
+	    (server->bodies += request->taken = (long long)head->length) > BODIES_MAX)
+		head_refuse(head, API_UNAVAILABLE, true, "as much is being sent as this server takes at a time");
 }
 
-/* Keeps more of the body, or drops it when there is a fault; its pages are had when they are written to. */
+/* Keeps more of the body, or drops it when there is a fault; no more comes than its declared length. */
 static void collect(struct request *request, const char *bytes, size_t n)
 {
-	if (n > HEAD_BODY_MAX - request->length)
-		head_refuse(&request->head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
-	else if (!request->body && !(request->body = malloc(HEAD_BODY_MAX)))
+	if (!request->body && !(request->body = malloc(request->head.length)))
 		head_refuse(&request->head, API_UNAVAILABLE, false, "out of memory");
 	if (request->head.fault != API_NO_FAULT)
 		return;
@@ -295,8 +305,56 @@ static void *begin(void *of, const char *target, struct MHD_Connection *connecti
 		return NULL;
 	*request = (struct request){.server = server, .connection = connection, .operation = -1};
 	request->number = server->number++;
-	head_target(&request->head, target ? target : "");
+	request->target = target ? target : "";
+	request->target_end = request->target + strlen(request->target);
+	snprintf(request->question, sizeof request->question, "%s", request->target);
+	size_t n = head_target(&request->head, request->target);
+	// arguments that are not to be taken apart end where they begin; this is libmicrohttpd's memory, and it looks next
+	if (request->target[n] == '?')
+		((char *)request->target)[n + 1] = '\0';
 	return request;
+}
+
+/* Sends a refusal by the socket itself, past libmicrohttpd: for a head that may have left it no room for an answer. */
+static enum MHD_Result refuse_head(struct request *request)
+{
+	char text[512];
+	head_refuse(&request->head, API_HEAD_LARGE, true,
+	            "the request line and the headers have at most %d bytes", HEAD_BYTES_MAX);
+	const enum api_fault fault = request->head.fault;
+	struct reply reply = http_problem(fault, request->head.detail, NULL);
+	int n =
+	    snprintf(text, sizeof text,
+	             "HTTP/1.1 %d %s\r\nContent-Type: %s\r\nContent-Length: %zu\r\nConnection: close\r\n\r\n%.*s",
+	             reply.status, api_faults[fault].title, reply.type, reply.length, (int)reply.length,
+	             reply.body ? reply.body : "");
+	connection_of(request->connection)->lingers = true;
+	// a socket that has just been read from has room for one line; who has gone need not be told
+	if (send(connection_of(request->connection)->fd, text, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
+		reply.gone = true;
+	answered(request, &reply, reply.length);
+	drop_body(request->server, &reply);
+	return MHD_NO;
+}
+
+/* Ends what the answer depends on, begun with the target: by the Accept, or by nothing when both are too long. */
+static void question_end(struct request *request)
+{
+	size_t n = (size_t)(request->target_end - request->target), room = sizeof request->question;
+	const struct head_text *accept = &request->head.accept;
+	if (n >= room || snprintf(request->question + n, room - n, " %s", accept->value) >= (int)(room - n))
+		request->question[0] = '\0';
+}
+
+/* Whose share a request is of that has no token. */
+static void client_name(struct request *request)
+{
+	const struct sockaddr *address =
+	    MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
+	const void *bytes = address->sa_family == AF_INET6
+	                        ? (const void *)&((const struct sockaddr_in6 *)(const void *)address)->sin6_addr
+	                        : (const void *)&((const struct sockaddr_in *)(const void *)address)->sin_addr;
+	inet_ntop(address->sa_family, bytes, request->client, sizeof request->client);
 }
 
 /* The headers are here: judges them. */
@@ -307,13 +365,27 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	if (!connection_of(request->connection))
 		return MHD_NO;
 	server->under_way++;
+	client_name(request);
 	request->method = method;
 	request->path = path;
 	request->arrived = connection_now();
 	request->operation = api_match(method, path, &request->id, request->allow);
 	request->unwanted = &connection_of(request->connection)->unwanted;
 	allow(request->connection, server->options->body_timeout);
+	const size_t n =
+	    MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_REQUEST_HEADER_SIZE)->header_size;
+	if (n > HEAD_BYTES_MAX)
+		return refuse_head(request);
+	// one NUL each ends the method and the target, where they are in the head
+	if (request->target != method + strlen(method) + 1 || version != request->target_end + 1)
+		head_refuse(&request->head, API_BAD_REQUEST, true,
+		            "a request line is a method, a target and a version with one blank between them");
+	else
+		head_bytes(&request->head, version + strlen(version),
+		           n - (size_t)(version + strlen(version) - method),
+		           MHD_get_connection_values(request->connection, MHD_HEADER_KIND, NULL, NULL));
 	judge(request, strcmp(version, "HTTP/1.0") != 0);
+	question_end(request);
 	// without a body, the refusal can wait for the next call, and the connection be kept
 	if (request->head.fault == API_NO_FAULT || !(request->head.has_body || request->head.close))
 		return MHD_YES;
@@ -327,6 +399,7 @@ static void go_on(struct request *request)
 {
 	struct server *server = request->server;
 	request->replied = true;
+	share_give(&server->shares, request->share);
 	connection_of(request->connection)->answering = false;
 	MHD_resume_connection(request->connection); // which may end it
 	server->aside--;
@@ -356,10 +429,11 @@ static void *answer_aside(void *of)
 	setpriority(PRIO_PROCESS, (id_t)gettid(), ASIDE_NICENESS);
 	if (take_turn(request)) {
 		*reply = routes_answer(request);
+		spool_reply(&server->spools, reply);
 		sem_post(&server->turns);
 	}
 	if (*request->unwanted && reply->status != 200) {
-		drop_body(reply);
+		drop_body(server, reply);
 		*reply = http_problem(
 		    API_UNAVAILABLE,
 		    server->stopping ? "the server stops" : "the client has closed its side of the connection", NULL);
@@ -369,11 +443,18 @@ static void *answer_aside(void *of)
 	return NULL;
 }
 
-/* Gives a request to a thread of its own. */
+/* Gives a request to a thread of its own, if its client has not too many there. */
 static void put_aside(struct request *request)
 {
 	pthread_t thread;
-	request->aside = true;
+	request->share = share_take(&request->server->shares, request->token ? request->token : request->client);
+	if (request->share < 0) {
+		request->reply = http_problem(
+		    API_UNAVAILABLE, "as many answers that take long are being made as this client, or all, may have",
+		    NULL);
+		request->replied = true;
+		return;
+	}
 	request->server->aside++;
 	connection_of(request->connection)->answering = true;
 	MHD_suspend_connection(request->connection);
@@ -404,22 +485,31 @@ static enum MHD_Result answer(void *of, struct MHD_Connection *connection, const
 	allow(connection, INFINITY);
 	if (server->stopping && !request->replied)
 		head_refuse(&request->head, API_UNAVAILABLE, false, "the server stops");
-	if (request->head.fault == API_NO_FAULT && !request->aside && routes_slow(request)) {
+	if (request->head.fault == API_NO_FAULT && !request->replied)
+		request->replied = routes_kept(request, &request->reply);
+	if (request->head.fault == API_NO_FAULT && !request->replied && routes_slow(request)) {
 		put_aside(request);
-		return MHD_YES;
+		if (!request->replied)
+			return MHD_YES;
 	}
 	struct reply reply = request->head.fault != API_NO_FAULT
 	                         ? http_problem(request->head.fault, request->head.detail, NULL)
 	                     : request->replied ? request->reply
 	                                        : routes_answer(request);
-	request->reply.body = NULL; // it goes with the reply
+	request->reply.body = NULL; // they go with the reply
+	request->reply.file = 0;
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag))
 		reply.status = 304;
-	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request))
+	// of more who wait than may, the last wait for nothing
+	struct connections *all = &server->connections;
+	reply.gone |= reply.waits && connection_of(connection)->unwanted;
+	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request) ||
+	    connection_of(connection)->unwanted || all->n_waiting >= all->most_waiting)
 		return send_reply(request, &reply);
-	drop_body(&reply);
+	drop_body(server, &reply);
+	request->replied = false;
 	MHD_suspend_connection(connection);
-	connection_wait(&server->connections, connection_of(connection), connection, request->id, reply.changes,
+	connection_wait(all, connection_of(connection), connection, request->id, reply.changes,
 	                wait_until(request));
 	return MHD_YES;
 }
@@ -441,8 +531,9 @@ static void completed(void *of, struct MHD_Connection *connection, void **kept,
 		allow(connection, server->options->idle_timeout);
 	if (request->method)
 		server->under_way--;
+	server->bodies -= request->taken;
 	free(request->body);
-	drop_body(&request->reply);
+	drop_body(server, &request->reply);
 	free(request);
 	*kept = NULL;
 }
@@ -467,58 +558,21 @@ static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen
 	return server->stopping ? MHD_NO : MHD_YES;
 }
 
-/* Whether a line of libmicrohttpd's is told, and how many like it were not since the last. */
-static bool is_told(struct server *server, const char *format, int *n_since)
-{
-	double now = connection_now();
-	pthread_mutex_lock(&server->complaints_lock);
-	struct complaint *place = server->complaints;
-	for (struct complaint *c = place; c < server->complaints + HTTP_COMPLAINTS; c++)
-		if (c->format == format || (place->format != format && c->told < place->told))
-			place = c;
-	if (place->format != format)
-		*place = (struct complaint){.format = format, .told = -INFINITY};
-	bool told = now >= place->told + 1;
-	*n_since = place->n_since;
-	place->n_since = told ? 0 : place->n_since + 1;
-	place->told = told ? now : place->told;
-	pthread_mutex_unlock(&server->complaints_lock);
-	return told;
-}
-
-/* Called by libmicrohttpd for what it has to say, which may be the same a hundred thousand times a second. */
+/* Called by libmicrohttpd for what it has to say, which may be a hundred thousand times a second: told once a second. */
 static void log_library(void *of, const char *format, va_list values)
 {
-	char text[256], more[48] = "";
-	int n_since;
-	if (!is_told(of, format, &n_since))
+	struct server *server = of;
+	const double now = connection_now();
+	double told = server->library_told;
+	char text[256];
+	if (now < told + 1 || !atomic_compare_exchange_strong(&server->library_told, &told, now)) {
+		server->library_untold++;
 		return;
+	}
 	vsnprintf(text, sizeof text, format, values);
 	text[strcspn(text, "\n")] = '\0';
-	if (n_since)
-		snprintf(more, sizeof more, " (and %d like it before)", n_since);
-	log_line("http: %s%s", text, more);
-}
-
-union address {
-	struct sockaddr any;
-	struct sockaddr_in ip4;
-	struct sockaddr_in6 ip6;
-};
-
-static bool address_of(const char *text, int port, union address *address)
-{
-	*address = (union address){.ip6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)}};
-	if (inet_pton(AF_INET6, text, &address->ip6.sin6_addr) == 1)
-		return true;
-	*address = (union address){.ip4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)}};
-	return inet_pton(AF_INET, text, &address->ip4.sin_addr) == 1;
-}
-
-static bool is_loopback(const union address *address)
-{
-	return address->any.sa_family == AF_INET6 ? IN6_IS_ADDR_LOOPBACK(&address->ip6.sin6_addr)
-	                                          : ntohl(address->ip4.sin_addr.s_addr) >> 24 == 127;
+	log_line("http: %s (and %d lines before that were not told)", text,
+	         atomic_exchange(&server->library_untold, 0));
 }
 
 /* Shares out the descriptors there may be, as many as are needed or allowed: a connection without one would keep a thread
@@ -539,9 +593,11 @@ static int share_files(struct server *server, int wanted)
 	}
 	const int left = (int)MIN(files.rlim_cur, most) - FILES_BESIDE;
 	connections->most_draining = MIN(left / 4, DRAINING_MAX);
-	server->spooled_most = MIN(left / 8, SPOOLED_MAX);
-	const int all = MIN(left - connections->most_draining - server->spooled_most, CONNECTIONS_MAX);
+	server->spools.most = MIN(left / 8, SPOOLED_MAX);
+	const int all = MIN(left - connections->most_draining - server->spools.most, CONNECTIONS_MAX);
 	connections->most = MIN(wanted, all - 1 - all / 64);
+	connections->most_probed = MIN(connections->most + PROBES, all - 1 - all / 64);
+	connections->most_waiting = (connections->most + 1) / 2;
 	if (all < CONNECTIONS_MIN)
 		log_line("only %d files may be open, which is too few: ulimit -n", (int)files.rlim_cur);
 	else if (connections->most < wanted)
@@ -550,45 +606,8 @@ static int share_files(struct server *server, int wanted)
 	return all < CONNECTIONS_MIN ? 0 : all;
 }
 
-/* Asks for a short turn soon rather than a long one later, for this thread and those it starts: since Linux 6.12 a thread
- * that wakes goes before those whose turns are longer.  Elsewhere it changes nothing. */
-static void take_short_turns(void)
-{
-	// as sched_setattr(2) has it
-	struct {
-		uint32_t size, policy;
-		uint64_t flags;
-		int32_t nice;
-		uint32_t priority;
-		uint64_t runtime, deadline, period; /* [ns] */
-	} turns = {.size = sizeof turns};
-	long status = syscall(SYS_sched_getattr, 0, &turns, sizeof turns, 0);
-	turns.runtime = TURN_NS;
-	if (status != 0 || syscall(SYS_sched_setattr, 0, &turns, 0) != 0)
-		log_line("cannot ask for short turns: %s", strerror(errno));
-}
-
-/* A socket that listens at an address, -1: none, and errno says why; made here, for libmicrohttpd would log another line
- * about it, without the port. */
-static int listening(const union address *address)
-{
-	const int on = 1;
-	const bool v6 = address->any.sa_family == AF_INET6;
-	const socklen_t size = v6 ? sizeof address->ip6 : sizeof address->ip4;
-	int fd = socket(address->any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-	bool ok = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
-	          (!v6 || setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &on, sizeof on) == 0) &&
-	          bind(fd, &address->any, size) == 0 && listen(fd, BACKLOG) == 0;
-	if (fd >= 0 && !ok) {
-		int error = errno;
-		close(fd);
-		errno = error;
-	}
-	return ok ? fd : -1;
-}
-
 /* libmicrohttpd on that socket, with at most n connections. */
-static struct MHD_Daemon *serving(struct server *server, const union address *address, int fd, int n)
+static struct MHD_Daemon *serving(struct server *server, const union listen_address *address, int fd, int n)
 {
 	return MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME, 0,
 	                        welcome, server, answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library, server,
@@ -596,8 +615,8 @@ static struct MHD_Daemon *serving(struct server *server, const union address *ad
 	                        MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK, begin,
 	                        server, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS,
 	                        MHD_OPTION_CONNECTION_LIMIT, (unsigned)n, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-	                        is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
-	                        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MAX, MHD_OPTION_END);
+	                        listen_is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
+	                        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)POOL, MHD_OPTION_END);
 }
 
 /* Starts to answer requests, at the address and the port of the options.
@@ -610,28 +629,27 @@ static struct MHD_Daemon *serving(struct server *server, const union address *ad
 bool http_start(struct server *server)
 {
 	const struct options *options = server->options;
-	union address address;
-	if (!address_of(options->listen, options->port, &address)) {
+	union listen_address address;
+	if (!listen_address(options->listen, options->port, &address)) {
 		log_line("cannot listen on %s: not an IP address", options->listen);
 		return false;
 	}
-	if (!is_loopback(&address) && !server->tokens && !options->insecure) {
+	if (!listen_is_loopback(&address) && !server->tokens && !options->insecure) {
 		log_line("cannot listen on %s: others reach it, so it needs --token-file, or --insecure",
 		         options->listen);
 		return false;
 	}
-	take_short_turns();
 	sem_init(&server->turns, 0, TURNS);
+	pthread_mutex_init(&server->shares.lock, NULL);
 	server->number = (unsigned long long)time(NULL) << 32;
-	server->connections.store = server->store;
+	server->connections.store = server->spools.store = server->store;
 	server->connections.resume = resume;
-	pthread_mutex_init(&server->complaints_lock, NULL);
 	const int n = share_files(server, options->connections_max);
 	if (n == 0)
 		return false;
 	if (!connections_start(&server->connections))
 		return false;
-	int fd = listening(&address);
+	int fd = listen_open(&address);
 	server->daemon = fd >= 0 ? serving(server, &address, fd, n) : NULL;
 	if (server->daemon)
 		return true;
@@ -646,15 +664,24 @@ int http_port(const struct server *server)
 	return MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
-/* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end. */
-void http_stop(struct server *server)
+/* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end, and answers that
+ * take long, which are given up, less.
+ *
+ * Returns  value   false: one of these was not given up in time, and nothing that it may use may be given up but by the end
+ *                  of the program
+ */
+bool http_stop(struct server *server)
 {
-	double until = connection_now() + STOP_S;
+	const double now = connection_now(), until = now + STOP_S, aside_until = now + STOP_ASIDE_S;
 	server->stopping = true;
 	server->connections.released = true;
-	// a suspended connection must not be stopped
-	while (server->aside > 0 || (server->under_way > 0 && connection_now() < until))
+	while ((server->aside > 0 && connection_now() < aside_until) ||
+	       (server->under_way > server->aside && connection_now() < until))
 		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
+	// a suspended connection must not be stopped
+	if (server->aside > 0)
+		return false;
 	MHD_stop_daemon(server->daemon);
 	connections_stop(&server->connections);
+	return true;
 }

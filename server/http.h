@@ -11,39 +11,11 @@
 #include "schema/http/api.h"
 #include "schema/http/http_head.h"
 #include "server/deadlines.h"
+#include "server/kept.h"
 #include "server/metrics.h"
 #include "server/options.h"
-
-struct reply {
-	int status;
-	const char *type; /* media type of the body */
-	char *body;       /* (length) bytes on the heap, http.c frees them unless ...; NULL: none */
-	bool lasts;       /* ... it lasts as long as the server */
-	size_t length;
-	char location[64]; /* "": no such header, likewise below */
-	char etag[64];
-	int retry_after;  /* [s], 0: none */
-	bool gone;        /* the client had gone before it was made */
-	bool waits;       /* who knows it already may wait for another, when the study has changed */
-	unsigned changes; /* of the study, before it was looked at */
-};
-
-enum { HTTP_TOLD = 61 }; /* status objects kept; a prime, so that ids fall everywhere */
-
-struct told {
-	int64_t id;
-	unsigned changes;   /* of the study before it was looked at */
-	struct reply reply; /* body NULL: none */
-};
-
-enum { HTTP_COMPLAINTS = 16 };
-
-/* What libmicrohttpd logs, by its format: told once a second at most. */
-struct complaint {
-	const char *format;
-	double told; /* [s] monotonic, the last time */
-	int n_since; /* that were not told */
-};
+#include "server/share.h"
+#include "server/spool.h"
 
 /* What every request can reach. */
 struct server {
@@ -53,19 +25,19 @@ struct server {
 	struct tokens *tokens; /* NULL: there are none */
 	char *document; /* (document_length) bytes, the OpenAPI document: made once, it takes milliseconds */
 	size_t document_length;
-	pthread_mutex_t told_lock;
-	struct told told[HTTP_TOLD]; /* each where the remainder of its id is */
+	struct kept kept;
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;
-	pthread_mutex_t complaints_lock;
-	struct complaint complaints[HTTP_COMPLAINTS]; /* the latest */
-	int spooled_most;                             /* answers in files that there may be */
-	atomic_int spooled;                           /* and are */
+	_Atomic double library_told; /* [s] monotonic, when a line of libmicrohttpd's was told last, ... */
+	atomic_int library_untold;   /* ... and how many were not since */
+	struct spools spools;
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
 	atomic_int aside;     /* those in threads of their own, of which ... */
-	sem_t turns;          /* ... a few have their turn at a time */
+	sem_t turns;          /* ... a few have their turn at a time, and ... */
+	struct shares shares; /* ... each client a share */
+	atomic_llong bodies;  /* [bytes] of the requests under way */
 	atomic_ullong number; /* of the next request */
 };
 
@@ -75,16 +47,20 @@ struct MHD_Connection;
 struct request {
 	struct server *server;
 	struct MHD_Connection *connection;
-	const char *method, *path; /* path without arguments, decoded; NULL: the headers are not all here */
+	const char *target, *target_end; /* as it came; taken apart in its place by libmicrohttpd */
+	const char *method, *path;       /* path without arguments, decoded; NULL: the headers are not all here */
 	struct head head;
-	int operation;     /* row of api_operations, -1: none */
-	long long id;      /* of the study in the path, 0: none */
-	const char *token; /* name of the one it was sent with; NULL: there are none */
-	char allow[64];    /* methods of the path */
-	char *body;        /* (length) bytes */
+	int operation;                     /* row of api_operations, -1: none */
+	long long id;                      /* of the study in the path, 0: none */
+	char question[KEPT_QUESTION_SIZE]; /* target and Accept; "": it does not fit */
+	char client[SHARE_CLIENT_SIZE];    /* its address in digits */
+	const char *token;                 /* name of the one it was sent with; NULL: there are none */
+	char allow[64];                    /* methods of the path */
+	char *body;                        /* (length) bytes */
 	size_t length;
-	bool aside;                  /* it was given to a thread of its own ... */
-	bool replied;                /* ... which has made the reply */
+	long long taken;             /* [bytes] of bodies that its own counts for */
+	int share;                   /* of its client, when it is in a thread of its own */
+	bool replied;                /* the reply is there, kept or made by a thread of its own */
 	struct reply reply;          /* if so, until it is sent */
 	const atomic_bool *unwanted; /* nobody waits for it any more */
 	double arrived;              /* [s] monotonic */
@@ -101,10 +77,12 @@ struct reply http_problem(enum api_fault fault, const char *detail, const struct
 
 bool http_start(struct server *server); /* false: logged */
 int http_port(const struct server *server);
-void http_stop(struct server *server); /* what is under way is answered, who waits is told 503 */
+/* what is under way is answered, who waits is told 503; false: an answer was not given up in time */
+bool http_stop(struct server *server);
 
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);
-bool routes_slow(const struct request *request); /* it may take seconds */
+bool routes_kept(const struct request *request, struct reply *reply); /* the answer is there already */
+bool routes_slow(const struct request *request);                      /* it may take seconds */
 
 #endif

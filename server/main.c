@@ -1,6 +1,7 @@
 /* poundd: opens the store, starts the workers, listens, and waits for the signal to stop. */
 #include <errno.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +72,7 @@ static int serve(struct server *server, const sigset_t *signals)
 	server->work = work_start(server->store, server->options->workers, server->options->time_max);
 	if (!server->work)
 		return EXIT_FAILURE;
-	bool listens = http_start(server);
+	bool listens = http_start(server), ended = true;
 	if (listens) {
 		const char *listen = server->options->listen;
 		bool v6 = strchr(listen, ':');
@@ -83,9 +84,12 @@ static int serve(struct server *server, const sigset_t *signals)
 		// the next signal ends the program at once, and so does the clock
 		alarm(STOP_MAX);
 		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
-		http_stop(server);
+		ended = http_stop(server);
 	}
-	work_stop(server->work);
+	ended &= work_stop(server->work);
+	// what is accepted is on the disk: the next start goes on as after a crash
+	if (!ended)
+		_exit(listens ? EXIT_SUCCESS : EXIT_FAILURE);
 	return listens ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
@@ -98,18 +102,25 @@ int main(int argc, char **argv)
 	umask(077);
 	if (options.backup)
 		return store_copy(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
+	if (options.restore)
+		return store_restore(options.database, options.restore) ? EXIT_SUCCESS : EXIT_FAILURE;
+	// what was taken for one body or result goes back to the system with it
+	mallopt(M_MMAP_THRESHOLD, 256 * 1024);
+	mallopt(M_TRIM_THRESHOLD, 1024 * 1024);
 	// no memory for a solver is the end of a try, not of the server
 	gsl_set_error_handler_off();
 	// a client that has gone, and a file that may not grow, are errors of a write and no more
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
+	// there is nothing to read again, and the log is whoever started us's: a terminal that goes does not end studies
+	signal(SIGHUP, SIG_IGN);
 	// blocked before any thread starts, so that only this one sees them
 	sigemptyset(&signals);
 	sigaddset(&signals, SIGTERM);
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.options = &options, .told_lock = PTHREAD_MUTEX_INITIALIZER};
+	struct server server = {.options = &options, .kept.lock = PTHREAD_MUTEX_INITIALIZER};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
@@ -119,8 +130,7 @@ int main(int argc, char **argv)
 	int status = server.store ? serve(&server, &signals) : EXIT_FAILURE;
 	if (server.store)
 		store_close(server.store);
-	for (int i = 0; i < HTTP_TOLD; i++)
-		free(server.told[i].reply.body);
+	kept_free(&server.kept);
 	free(server.document);
 	free(server.tokens);
 	return status;

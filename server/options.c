@@ -23,6 +23,8 @@ const struct option_row options_table[] = {
 	{"database",        'd', "FILE",    "file that keeps the studies", "poundd.db", AT(database), 0, 0},
 	{"backup",          0,   "FILE",    "copy the database to FILE, which must not exist, and end; a server may use it meanwhile",
 	 NULL, AT(backup), 0, 0},
+	{"restore",         0,   "FILE",    "put a copy of FILE in the place of the database, which is kept as DATABASE-replaced, and end; no server may use it",
+	 NULL, AT(restore), 0, 0},
 	{"workers",         'w', "N",       "threads that compute; one for each core when absent", NULL, AT(workers), 1, WORKERS_MAX},
 	{"host",            0,   "NAMES",   "names the server is asked by, between commas, besides localhost and addresses",
 	 NULL, AT(host), 0, 0},

@@ -11,6 +11,7 @@ struct options {
 	const char *listen;     /* address in digits */
 	const char *database;   /* file */
 	const char *backup;     /* file to copy it to, and no more; NULL: serve */
+	const char *restore;    /* file to put in its place, and no more; NULL: serve */
 	const char *host;       /* further names the server is asked by, between commas; NULL: none */
 	const char *token_file; /* NULL: whoever reaches the server may use it */
 	int insecure;           /* 1: that holds for any address */

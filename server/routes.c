@@ -26,6 +26,7 @@ enum {
 	RETRY_AFTER = 1,      /* [s] */
 	RETRY_AFTER_MAX = 60, /* [s] */
 	MIB = 1 << 20,
+	TABLE_LONG = 64 * 1024, /* [bytes] of a result of which a table takes milliseconds */
 };
 
 static struct reply problem(enum api_fault fault, const char *detail)
@@ -65,6 +66,10 @@ static struct reply refusal(enum store_status status)
 	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
 	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key came with another body before"},
 	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
+	    [STORE_REPLACED] =
+	        {API_UNAVAILABLE,
+	         "the database file was removed or replaced: nothing is accepted until the server is "
+	         "started again"},
 	    [STORE_CROWDED] = {API_UNAVAILABLE, "as many studies are queued as this server takes"},
 	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY,
 	                              "as many studies are queued as this server takes from one token"},
@@ -122,36 +127,13 @@ static struct reply look(const struct request *request, struct page *page)
 	return reply;
 }
 
-/* The same reply with a body of its own; NULL: it has none to keep, or no memory. */
-static struct reply copied(struct reply reply)
-{
-	char *body = reply.status == 200 && reply.body ? malloc(reply.length) : NULL;
-	reply.body = body ? memcpy(body, reply.body, reply.length) : NULL;
-	return reply;
-}
-
-/* The status object.  The one told last is kept for those who ask again before anything has changed: to make one takes
- * half of what such an answer takes. */
+/* The status object. */
 static struct reply status(struct request *request)
 {
-	struct server *server = request->server;
-	struct told *told = &server->told[request->id % HTTP_TOLD];
 	// before the look, so that no change is missed by who waits for one
-	unsigned changes = store_changes(server->store, request->id);
-	struct reply reply = {0};
-	pthread_mutex_lock(&server->told_lock);
-	if (told->id == request->id && told->changes == changes)
-		reply = copied(told->reply);
-	pthread_mutex_unlock(&server->told_lock);
-	if (!reply.body) {
-		struct page page;
-		reply = look(request, &page);
-		struct told last = {request->id, changes, copied(reply)};
-		pthread_mutex_lock(&server->told_lock);
-		free(told->reply.body);
-		*told = last;
-		pthread_mutex_unlock(&server->told_lock);
-	}
+	unsigned changes = store_changes(request->server->store, request->id);
+	struct page page;
+	struct reply reply = look(request, &page);
 	reply.waits = true;
 	reply.changes = changes;
 	return reply;
@@ -273,10 +255,40 @@ static struct reply document(struct request *request, const char *name)
 	                             : refusal(found);
 }
 
+/* What is told of a stored document without a look at it. */
+static struct reply document_head(struct request *request, const char *name)
+{
+	size_t length;
+	enum store_status found = store_length(request->server->store, request->id, name, &length);
+	return found == STORE_OK     ? (struct reply){.status = 200, .type = "application/json", .length = length}
+	       : found == STORE_NONE ? not_ready(request)
+	                             : refusal(found);
+}
+
+/* A stored document as it is, a long one in a file, if there may be one; for a HEAD, or a client who has it, its length. */
+static struct reply document_whole(struct request *request, const char *name, bool known)
+{
+	struct server *server = request->server;
+	struct reply reply = document_head(request, name);
+	if (reply.status != 200 || known || !strcmp(request->method, "HEAD"))
+		return reply;
+	const int file = reply.length >= SPOOL_LONG ? spool_open(&server->spools, reply.length) : -1;
+	if (file < 0)
+		return document(request, name);
+	enum store_status copied = store_document_to(server->store, request->id, name, file);
+	if (copied == STORE_OK) {
+		reply.file = file;
+		return reply;
+	}
+	spool_close(&server->spools, file);
+	return copied == STORE_NONE ? not_ready(request) : refusal(copied);
+}
+
 static struct reply posted(struct request *request)
 {
-	struct reply reply = document(request, "request");
-	strcpy(reply.etag, reply.status == 200 ? "\"request\"" : "");
+	static const char etag[] = "\"request\"";
+	struct reply reply = document_whole(request, "request", http_known(request, etag));
+	strcpy(reply.etag, reply.status == 200 ? etag : "");
 	return reply;
 }
 
@@ -380,22 +392,28 @@ static struct reply results(struct request *request)
 	const char *table = http_argument(request, "table"), *format = http_argument(request, "format");
 	if (table && format && strcmp(format, "csv") != 0)
 		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv, or left out");
-	struct reply reply, json = document(request, "result");
+	struct reply reply;
 	int rows = 0;
+	const bool csv = second(request, result_formats, table, rows, &reply);
+	struct reply json = csv ? document(request, "result")
+	                        : document_whole(request, "result", http_known(request, reply.etag));
 	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true")) {
 		free(json.body);
 		json = so_far(request, json.retry_after, &rows);
 	}
 	if (json.status != 200)
 		return json;
-	if (second(request, result_formats, table, rows, &reply)) {
+	if (rows > 0)
+		second(request, result_formats, table, rows, &reply);
+	if (csv) {
 		tabulate(&reply, &json, table);
 		free(json.body);
-	} else {
-		reply.body = json.body;
-		reply.length = json.length;
+		return reply.body ? reply : no_memory();
 	}
-	return reply.body ? reply : no_memory();
+	reply.body = json.body;
+	reply.file = json.file;
+	reply.length = json.length;
+	return reply;
 }
 
 /* Whether a finished study has samples, told without its run, for who has them already. */
@@ -460,7 +478,7 @@ static struct reply samples(struct request *request)
 static struct reply cancel(struct request *request)
 {
 	enum store_status cancelled = store_cancel(request->server->store, request->id);
-	if (cancelled == STORE_FAILED)
+	if (cancelled == STORE_FAILED || cancelled == STORE_REPLACED)
 		return refusal(cancelled);
 	if (cancelled == STORE_OK)
 		work_drop(request->server->work, request->id);
@@ -517,13 +535,36 @@ static struct reply openapi(struct request *request)
 	                      .etag = "\"" POUND_VERSION "\""};
 }
 
-/* Whether a request is for what is made of all of a study's blocks, or of a result read again; both may be large. */
+/* Whether a request is for what is made of all of a study's blocks, or of a result read again, or for a long document. */
 bool routes_slow(const struct request *request)
 {
-	return request->operation == API_samples ||
-	       (request->operation == API_results &&
-	        (!strcmp(http_argument(request, "partial"), "true") ||
-	         asks_second(request, result_formats, http_argument(request, "table"))));
+	size_t length = 0;
+	if (request->operation == API_samples)
+		return true;
+	if (request->operation != API_results && request->operation != API_posted)
+		return false;
+	const bool result = request->operation == API_results;
+	const bool there =
+	    store_length(request->server->store, request->id, result ? "result" : "request", &length) == STORE_OK;
+	if (result && !there)
+		return !strcmp(http_argument(request, "partial"), "true");
+	if (result && asks_second(request, result_formats, http_argument(request, "table")))
+		return length >= TABLE_LONG;
+	return strcmp(request->method, "HEAD") != 0 && length >= SPOOL_LONG;
+}
+
+/* Whether an answer depends on what is stored, and on nothing else. */
+static bool is_of_store(const struct request *request)
+{
+	return !strcmp(api_operations[request->operation].method, "GET") &&
+	       (request->id || request->operation == API_list);
+}
+
+bool routes_kept(const struct request *request, struct reply *reply)
+{
+	struct server *server = request->server;
+	return is_of_store(request) &&
+	       kept_take(&server->kept, request->question, store_changes(server->store, request->id), reply);
 }
 
 /* Answers a request.
@@ -539,5 +580,10 @@ struct reply routes_answer(struct request *request)
 	    API_OPERATIONS(X)
 #undef X
 	};
-	return answers[request->operation](request);
+	struct server *server = request->server;
+	unsigned changes = store_changes(server->store, request->id);
+	struct reply reply = answers[request->operation](request);
+	if (is_of_store(request))
+		kept_give(&server->kept, request->question, changes, &reply);
+	return reply;
 }

@@ -13,8 +13,12 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+#include <nettle/sha2.h>
 
 #include "engine/pound.h"
 #include "server/database.h"
@@ -24,15 +28,16 @@
 enum {
 	// four threads that answer, two beside them, a worker and the watchdog may ask at once
 	READERS = 8,
-	CHANGES = 1021, /* a prime, so that ids fall everywhere */
+	CHANGES = 1021,     /* a prime, so that ids fall everywhere */
+	PIECE = 256 * 1024, /* [bytes] of a document that is copied */
 };
 
 // clang-format off
 enum statement {
-	STUDY, LIST, LIST_OF, DOCUMENT, BLOCKS, COUNT,
+	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE,
 	BEGIN, // the first of those that the writer alone has
 	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, FINISH, REQUEUE,
-	POISON,
+	STOPPED, VAIN, POISON,
 	N_STATEMENTS
 };
 
@@ -59,9 +64,11 @@ static const char *const statement_text[] = {
 	[LIST_OF]  = STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2",
 	[DOCUMENT] = "SELECT content, sha256 = " DOCUMENT_DIGEST("study", "name", "content") " "
 	              "FROM document WHERE study = ?1 AND name = ?2",
+	[LENGTH]   = "SELECT length(content), rowid, sha256 FROM document WHERE study = ?1 AND name = ?2",
 	[BLOCKS]   = "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "
 	              "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number",
 	[COUNT]    = "SELECT count(*) FROM (SELECT 1 FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2) LIMIT ?3)",
+	[REUSABLE] = "SELECT freelist_count * page_size FROM pragma_freelist_count(), pragma_page_size()",
 	[BEGIN]    = "BEGIN IMMEDIATE",
 	[COMMIT]   = "COMMIT",
 	[ROLLBACK] = "ROLLBACK",
@@ -89,6 +96,11 @@ static const char *const statement_text[] = {
 	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
 	[REQUEUE]  = "UPDATE study SET status = 'queued', "
 	              "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'",
+	// one that was stopped in order has not been tried in vain
+	[STOPPED]  = "UPDATE study SET status = 'queued', attempt = max(attempt_kept, attempt - 1) WHERE status = 'running'",
+	[VAIN]     = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
+	              "error = 'out-of-memory-or-crash: the server ended ten times while it ran this study, and no part of it was done' "
+	              "WHERE status = 'queued' AND attempt - attempt_kept >= 10",
 	[POISON]   = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
 	              "error = 'poison-study: the server crashed three times while it ran this study' "
 	              "WHERE status = 'queued' AND crashes >= 3",
@@ -99,6 +111,7 @@ struct store {
 	struct disk disk;
 	struct database writer, readers[READERS]; /* readers have the statements before BEGIN */
 	atomic_uint changes[CHANGES];             /* of the studies whose ids have that remainder */
+	atomic_uint changes_all;                  /* of any */
 };
 
 /* A statement with its values; types: i int64_t, d double, t text (NULL: null), b bytes and their size_t, all of which
@@ -181,24 +194,29 @@ static enum store_status released(struct database *c, enum store_status status)
 	return status;
 }
 
-/* The same after a change of a study: those who wait for one may look. */
+/* The same after a change of a study: those who wait for one may look.  It is not told before it is known that the file it
+ * went into is the one that the next start will find. */
 static enum store_status changed(struct store *store, int64_t id, enum store_status status)
 {
 	pthread_mutex_unlock(&store->writer.lock);
-	if (status == STORE_OK)
+	if (status == STORE_OK && !disk_intact(&store->disk))
+		return STORE_REPLACED;
+	if (status == STORE_OK) {
 		atomic_fetch_add(&store->changes[id % CHANGES], 1);
+		atomic_fetch_add(&store->changes_all, 1);
+	}
 	return status;
 }
 
 /* A number that grows after every change of a study: who remembers it from before a look sees that another is due.
  *
- * Given    id      of the study
+ * Given    id      of the study; 0: any
  * Returns  value   shared by about one in a thousand other studies
  * Test     service_wait: who_waits_for_a_change_is_told_of_it
  */
 unsigned store_changes(struct store *store, int64_t id)
 {
-	return atomic_load(&store->changes[id % CHANGES]);
+	return atomic_load(id ? &store->changes[id % CHANGES] : &store->changes_all);
 }
 
 /* The writing connection goes last and leaves no WAL behind. */
@@ -214,12 +232,28 @@ static void let_go(struct store *store)
 /* Closes a store, when nothing runs any more. */
 void store_close(struct store *store)
 {
-	run(&store->writer, bound(&store->writer, REQUEUE, "i", INT64_C(0)), NULL);
+	run(&store->writer, bound(&store->writer, STOPPED, ""), NULL);
 	let_go(store);
 }
 
+/* Whether there is room for new studies; what deleted ones have left counts, and a WAL that is only long is cut. */
+static bool roomy(struct store *store)
+{
+	int64_t reusable = 0;
+	struct database *c = reader(store);
+	released(c, run(c, bound(c, REUSABLE, ""), &reusable));
+	if (disk_roomy(&store->disk, reusable))
+		return true;
+	if (!disk_has_wal(&store->disk))
+		return false;
+	c = writer(store);
+	database_truncate(c);
+	released(c, STORE_OK);
+	return disk_roomy(&store->disk, reusable);
+}
+
 /* Opens a database, making it if there is none.  Studies that were running are queued again, but one that made the
- * server crash three times has failed.
+ * server crash three times has failed, and so has one of which ten servers ended without having done a part.
  *
  * Given    path    of the database file, or of a link to it; PATH-lock, PATH-ballast, PATH-wal and PATH-shm stand beside it
  * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
@@ -233,21 +267,26 @@ struct store *store_open(const char *path)
 		return NULL;
 	}
 	struct database *w = &store->writer;
-	bool ok = disk_take(&store->disk, path);
+	bool ok = disk_take(&store->disk, path) && disk_found(&store->disk);
+	const bool crashed = ok && disk_has_wal(&store->disk);
 	if (ok)
 		disk_relieve(&store->disk);
 	ok = ok && database_open(w, store->disk.database, true, statement_text, N_STATEMENTS);
+	ok = ok && (!crashed || database_checked(w));
+	if (ok)
+		database_limit_wal(w, disk_wal_most(&store->disk));
 	for (int i = 0; ok && i < READERS; i++)
 		ok = database_open(&store->readers[i], store->disk.database, false, statement_text, BEGIN);
 	ok = ok && run(w, bound(w, REQUEUE, "i", disk_blamed(&store->disk)), NULL) != STORE_FAILED &&
-	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED;
+	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED &&
+	     run(w, bound(w, VAIN, ""), NULL) != STORE_FAILED;
 	if (!ok) {
 		// what was running is for the next start to queue, which may still have to count a crash
 		let_go(store);
 		return NULL;
 	}
 	disk_blame(&store->disk, 0);
-	disk_roomy(&store->disk);
+	roomy(store);
 	return store;
 }
 
@@ -263,6 +302,31 @@ bool store_copy(const char *path, const char *to)
 	bool copied = database_open(&reading, path, false, NULL, 0) && database_copy(&reading, to);
 	database_close(&reading);
 	return copied;
+}
+
+/* Puts a copy in the place of a database that no server uses; the former is kept as PATH-replaced, with its WAL.
+ *
+ * Given    from    a database of poundd, as --backup makes it, which stays as it is
+ * Returns  value   false: nothing has changed, or only PATH-replaced is there; logged
+ * Test     service_backup: a_copy_is_restored_in_the_place_of_a_database_and_its_wal
+ */
+bool store_restore(const char *path, const char *from)
+{
+	struct disk disk = {.lock = -1};
+	struct database reading = {0};
+	char made[PATH_MAX + 16];
+	bool ok = disk_take(&disk, path);
+	snprintf(made, sizeof made, "%s-restored", disk.database);
+	if (ok)
+		unlink(made); // of a restoration that did not come to its end
+	ok = ok && database_open(&reading, from, false, NULL, 0) && database_ours(&reading, from) &&
+	     database_checked(&reading) && database_copy(&reading, made) && disk_replace(&disk, made);
+	if (ok)
+		log_line("%s is a copy of %s now; as it was it is kept as %s-replaced", disk.database, from,
+		         disk.database);
+	database_close(&reading);
+	disk_leave(&disk);
+	return ok;
 }
 
 /* The content of a row that starts with it and with whether it is what was stored: copied, for it may lie unaligned,
@@ -329,13 +393,13 @@ static enum store_status room_of(struct database *c, const struct store_study *s
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
                                size_t length, int64_t *id)
 {
-	bool roomy = disk_roomy(&store->disk);
+	const bool has_room = roomy(store);
 	struct database *c = writer(store);
 	enum store_status status = keyed(c, study->key, request, length, id);
 	if (status != STORE_NONE)
 		return released(c, status);
 	status = room_of(c, study);
-	if (status == STORE_OK && !roomy)
+	if (status == STORE_OK && !has_room)
 		status = STORE_FULL;
 	if (status == STORE_OK)
 		status = run(c, bound(c, NEXT, ""), id);
@@ -344,7 +408,7 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 		              bound(c, SUBMIT, "ittittt", *id, study->kind, study->name, study->runs, study->hash,
 		                    study->key, study->client),
 		              bound(c, ADD, "itb", *id, "request", request, length));
-	return released(c, status);
+	return changed(store, *id, status);
 }
 
 static const char *text(sqlite3_stmt *row, int column)
@@ -419,6 +483,69 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 	return released(c, status);
 }
 
+/* How long a document is, without a look at its content. */
+enum store_status store_length(struct store *store, int64_t id, const char *name, size_t *length)
+{
+	int64_t n = 0;
+	struct database *c = reader(store);
+	enum store_status status = run(c, bound(c, LENGTH, "it", id, name), &n);
+	*length = (size_t)n;
+	return released(c, status);
+}
+
+/* Copies a blob's bytes to a file, a piece at a time; false: the database does not give them, or the file does not take
+ * them. */
+static bool pieces_copy(sqlite3_blob *blob, struct sha256_ctx *hash, int file)
+{
+	static _Thread_local char piece[PIECE];
+	const int length = sqlite3_blob_bytes(blob);
+	bool ok = true;
+	for (int at = 0, n; ok && at < length; at += n) {
+		n = length - at < PIECE ? length - at : PIECE;
+		ok = sqlite3_blob_read(blob, piece, n, at) == SQLITE_OK && write(file, piece, (size_t)n) == n;
+		sha256_update(hash, (size_t)n, (const uint8_t *)piece);
+	}
+	return ok;
+}
+
+/* Copies a document to a file without having all of it in memory.
+ *
+ * Given    file   empty, open for writing
+ * Status   STORE_NONE      no such study, or no such document yet
+ *          STORE_CORRUPT   these are not the bytes that were stored
+ *          STORE_FAILED    they could not be read or written
+ * Test     service_http: a_long_result_holds_nobody_up
+ */
+enum store_status store_document_to(struct store *store, int64_t id, const char *name, int file)
+{
+	struct database *c = reader(store);
+	sqlite3_stmt *row = bound(c, LENGTH, "it", id, name);
+	sqlite3_blob *blob = NULL;
+	enum store_status status = STORE_NONE;
+	if (sqlite3_step(row) == SQLITE_ROW) {
+		struct sha256_ctx hash;
+		uint8_t sha256[SHA256_DIGEST_SIZE];
+		char place[64];
+		// as DOCUMENT_DIGEST has it
+		const int n_place = snprintf(place, sizeof place, "%s %lld ", name, (long long)id);
+		sha256_init(&hash);
+		sha256_update(&hash, (size_t)n_place, (const uint8_t *)place);
+		bool copied = sqlite3_blob_open(c->db, "main", "document", "content", sqlite3_column_int64(row, 1), 0,
+		                                &blob) == SQLITE_OK &&
+		              pieces_copy(blob, &hash, file);
+		sha256_digest(&hash, sizeof sha256, sha256);
+		bool same = sqlite3_column_bytes(row, 2) == sizeof sha256 &&
+		            !memcmp(sqlite3_column_blob(row, 2), sha256, sizeof sha256);
+		status = !copied ? STORE_FAILED : same ? STORE_OK : STORE_CORRUPT;
+	}
+	sqlite3_blob_close(blob);
+	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
+		status = STORE_FAILED;
+	if (status == STORE_CORRUPT)
+		log_line("study %016llx: its %s is damaged", (unsigned long long)id, name);
+	return released(c, status);
+}
+
 /* Counts the studies of a status. */
 enum store_status store_count(struct store *store, const char *status, int64_t *n)
 {
@@ -434,13 +561,16 @@ enum store_status store_ready(struct store *store)
 {
 	int64_t n;
 	enum store_status status = store_count(store, "queued", &n);
-	return status == STORE_OK && !disk_roomy(&store->disk) ? STORE_FULL : status;
+	return status != STORE_OK           ? status
+	       : !disk_intact(&store->disk) ? STORE_REPLACED
+	       : roomy(store)               ? STORE_OK
+	                                    : STORE_FULL;
 }
 
 /* A file for bytes that are not to stay in memory. */
-int store_spool(const struct store *store, const char *bytes, size_t n)
+int store_spool(const struct store *store, size_t n)
 {
-	return disk_spool(&store->disk, bytes, n);
+	return disk_spool(&store->disk, n);
 }
 
 /* A change that frees room: on a full disk it has that of the ballast. */

@@ -18,6 +18,7 @@ enum store_status {
 	STORE_REPEATED,       /* an earlier study has that key, and the same bytes */
 	STORE_CLASH,          /* an earlier study has that key, and other bytes */
 	STORE_FULL,           /* the disk has no room for new studies */
+	STORE_REPLACED,       /* the database file is another: what was changed is lost; logged */
 	STORE_CROWDED,        /* as many studies are queued as there may be */
 	STORE_CLIENT_CROWDED, /* as many of its client are as there may be */
 };
@@ -39,10 +40,12 @@ typedef void store_study_reader(void *to,
 
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
 void store_close(struct store *store);
-bool store_copy(const char *path, const char *to);  /* of a database that may be in use; false: logged */
+bool store_copy(const char *path, const char *to); /* of a database that may be in use; false: logged */
+bool store_restore(const char *path,
+                   const char *from);               /* of one that is not in use, by a copy; false: logged */
 enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
-/* descriptor of a file beside the database that has no name and holds n bytes; -1: there is no room */
-int store_spool(const struct store *store, const char *bytes, size_t n);
+/* descriptor of a file beside the database that has no name and may hold n bytes; -1: there is no room */
+int store_spool(const struct store *store, size_t n);
 
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
                                size_t length, int64_t *id);
@@ -52,8 +55,11 @@ enum store_status store_list(struct store *store, const char *status, int64_t be
                              store_study_reader *reader, void *to);
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length); /* on the heap, for the caller to free */
+enum store_status store_length(struct store *store, int64_t id, const char *name, size_t *length);
+/* copies one by pieces; STORE_FAILED: the file does not take it, or the database does not give it */
+enum store_status store_document_to(struct store *store, int64_t id, const char *name, int file);
 enum store_status store_count(struct store *store, const char *status, int64_t *n);
-/* grows with every change of a study; studies may share one */
+/* grows with every change of a study (0: of any); studies may share one */
 unsigned store_changes(struct store *store, int64_t id);
 enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */
 enum store_status store_delete(struct store *store, int64_t id);

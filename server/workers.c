@@ -33,6 +33,7 @@ enum {
 	WORKER_NICENESS = 10, /* requests are answered first */
 	PATIENCE = 1,         /* [s] between two tries to get memory or to store something */
 	MEMORY_TRIES = 30,    /* before a study fails for want of memory */
+	STOP_NS = 300000000,  /* [ns] for what workers are at, which is stopped, to end */
 };
 
 struct job {
@@ -43,7 +44,8 @@ struct job {
 	int block, reduction; /* next to hand out */
 	int n_reductions, reductions_left;
 	int n_inside;      /* workers in one of its steps */
-	bool ended;        /* gives no more steps */
+	bool ended;        /* gives no more steps, ... */
+	atomic_bool stop;  /* ... and those that are taken stop soon */
 	const char *error; /* why it failed, NULL if it did not */
 	double cpu_s;      /* [s] */
 	double started;    /* [s] monotonic, as if all its sessions were this one */
@@ -116,12 +118,11 @@ const char *work_open(struct store *store, int64_t id, int n_workers, const atom
 	if (!opened->study && problems.status != PROBLEMS_NOMEM)
 		return "this version does not accept the study";
 	opened->passing = true;
-	opened->run = opened->study ? pound_run_create(opened->study, n_workers) : NULL;
+	opened->run = opened->study ? pound_run_create_by(opened->study, n_workers, stop) : NULL;
 	if (!opened->run)
 		return "out of memory";
 	pound_run_clock(opened->run, thread_cpu);
-	if (stop)
-		pound_run_stop_by(opened->run, stop);
+	pound_run_stop_by(opened->run, stop);
 	opened->stored = calloc((size_t)pound_run_blocks_most(opened->run), sizeof *opened->stored);
 	if (!opened->stored)
 		return "out of memory";
@@ -155,22 +156,21 @@ static void end(struct job *job, const char *error)
 	if (!job->error && !job->ended)
 		job->error = error;
 	job->ended = true;
-	if (job->opened)
-		pound_run_stop(job->of.run);
+	job->stop = true;
 }
 
-/* Waits when there is no memory, or the disk does not take what there is to store; false: the server stops, so do not
- * try again. */
-static bool patient(struct work *work)
+/* Waits when there is no memory, or the disk does not take what there is to store; false: the study or the server stops,
+ * so do not try again. */
+static bool patient(struct work *work, const struct job *job)
 {
 	struct timespec until;
 	clock_gettime(CLOCK_MONOTONIC, &until);
 	until.tv_sec += PATIENCE;
 	pthread_mutex_lock(&work->lock);
-	while (!work->stopping &&
+	while (!work->stopping && !job->stop &&
 	       pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until) != ETIMEDOUT)
 		;
-	bool stopping = work->stopping;
+	bool stopping = work->stopping || job->stop;
 	pthread_mutex_unlock(&work->lock);
 	return !stopping;
 }
@@ -188,14 +188,14 @@ static void finish(struct work *work, struct job *job)
 		int tries = MEMORY_TRIES;
 		while (!(result = result_to_json(job->of.study, pound_run_result(job->of.run), &timing, &length)) &&
 		       --tries)
-			if (!patient(work))
+			if (!patient(work, job))
 				return; // the next start tries again
 		error = result ? NULL : "out of memory";
 	}
 	enum store_status status;
 	do
 		status = store_finish(work->store, job->id, result, length, error);
-	while (status == STORE_FAILED && patient(work));
+	while (status == STORE_FAILED && patient(work, job));
 	if (status == STORE_OK)
 		log_line("study %016llx %s", (unsigned long long)job->id, error ? error : "succeeded");
 	free(result);
@@ -235,7 +235,7 @@ static bool keep(struct work *work, struct job *job, int block, double cpu_s)
 	enum store_status status;
 	do
 		status = store_keep(work->store, job->id, &done);
-	while (status == STORE_FAILED && patient(work));
+	while (status == STORE_FAILED && patient(work, job));
 	return status == STORE_OK;
 }
 
@@ -299,7 +299,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 	do
 		status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
 		                          : pound_run_reduce(job->of.run, step->reduction, worker);
-	while (status == POUND_NOMEM && --tries && patient(work));
+	while (status == POUND_NOMEM && --tries && patient(work, job));
 	cpu_s = thread_cpu() - cpu_s;
 	bool wanted = status != POUND_OK || step->block < 0 || keep(work, job, step->block, cpu_s);
 	pthread_mutex_lock(&work->lock);
@@ -326,8 +326,8 @@ static void open_run(struct work *work, struct job *job)
 	int tries = MEMORY_TRIES;
 	pthread_mutex_unlock(&work->lock);
 	study_here = job->id;
-	while ((error = work_open(work->store, job->id, work->n_workers, NULL, &opened)) && opened.passing &&
-	       --tries && patient(work))
+	while ((error = work_open(work->store, job->id, work->n_workers, &job->stop, &opened)) &&
+	       opened.passing && --tries && patient(work, job))
 		work_close(&opened);
 	// they would count as done; where that fails they still do, until they are run again
 	if (!error && opened.leftovers)
@@ -352,7 +352,7 @@ static void claim(struct work *work)
 	work->queued = false;
 	pthread_mutex_unlock(&work->lock);
 	enum store_status status = job ? store_claim(work->store, &job->id) : STORE_FAILED;
-	bool again = status == STORE_FAILED && patient(work);
+	bool again = status == STORE_FAILED && (!job || patient(work, job));
 	pthread_mutex_lock(&work->lock);
 	work->queued = work->queued || again || status == STORE_OK;
 	if (status == STORE_OK) {
@@ -484,14 +484,24 @@ void work_drop(struct work *work, int64_t id)
 	if (job->id == id) {
 		end(job, NULL);
 		settle(work, job);
+		pthread_cond_broadcast(&work->changed);
 		break;
 	}
 	pthread_mutex_unlock(&work->lock);
 }
 
-/* Stops the workers; studies that were running are taken up again at the next start. */
-void work_stop(struct work *work)
+/* Stops the workers; studies that were running are taken up again at the next start.
+ *
+ * Returns  value   false: a worker is at something that cannot be stopped, such as bytes on their way to a slow disk, and
+ *                  nothing of work and its store may be given up but by the end of the program
+ * Test     service_stop: it_ends_soon_whatever_runs_and_so_does_a_cancelled_study
+ */
+bool work_stop(struct work *work)
 {
+	struct timespec until;
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_sec += (until.tv_nsec + STOP_NS) / 1000000000;
+	until.tv_nsec = (until.tv_nsec + STOP_NS) % 1000000000;
 	pthread_mutex_lock(&work->lock);
 	work->stopping = true;
 	struct job *job;
@@ -500,7 +510,8 @@ void work_stop(struct work *work)
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);
 	for (int w = 0; w < work->n_workers; w++)
-		pthread_join(work->workers[w], NULL);
+		if (pthread_clockjoin_np(work->workers[w], NULL, CLOCK_MONOTONIC, &until) != 0)
+			return false;
 	if (work->watched)
 		pthread_join(work->watch, NULL);
 	while ((job = TAILQ_FIRST(&work->jobs)))
@@ -508,4 +519,5 @@ void work_stop(struct work *work)
 	pthread_cond_destroy(&work->changed);
 	pthread_mutex_destroy(&work->lock);
 	free(work);
+	return true;
 }

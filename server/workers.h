@@ -20,7 +20,7 @@ struct work_run {
 };
 
 /* NULL, or a sentence why it cannot be opened, and whether that may pass; to be closed in either case.  `stop` is the run's
- * flag to stop by, NULL: it has its own. */
+ * flag to stop by. */
 const char *work_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
                       struct work_run *opened);
 int work_left(const struct work_run *opened); /* blocks of the rows in hand that are not stored */
@@ -32,6 +32,7 @@ struct work *work_start(struct store *store, int n_workers,
                         double time_max);      /* NULL: no memory or no threads */
 void work_wake(struct work *work);             /* a study was queued */
 void work_drop(struct work *work, int64_t id); /* a study was cancelled or deleted */
-void work_stop(struct work *work); /* ends within a block's time; what is unfinished stays in the store */
+bool work_stop(
+    struct work *work); /* what is unfinished stays in the store; false: a worker has not ended in time */
 
 #endif

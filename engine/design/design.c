@@ -22,7 +22,8 @@ enum {
 
 struct design {
 	const char *name;
-	void (*column)(const struct pound_study *study, int matrix, int input, int rows, double *u);
+	void (*column)(const struct pound_study *study, int matrix, int input, int rows, const atomic_bool *stop,
+	               double *u);
 	bool nets; /* grows by doubling, in interleaved nets */
 };
 
@@ -40,10 +41,11 @@ static int stride_of(const struct pound_study *study)
 	return 2 * study->n_inputs;
 }
 
-static void random_column(const struct pound_study *study, int matrix, int input, int rows, double *u)
+static void random_column(const struct pound_study *study, int matrix, int input, int rows,
+                          const atomic_bool *stop, double *u)
 {
 	struct pound_stream stream = stream_of(study, 0, matrix, input);
-	for (int i = 0; i < rows; i++)
+	for (int i = 0; i < rows && !pound_stopped(stop); i++)
 		u[(size_t)i * stride_of(study)] = pound_random_uniform(stream, i);
 }
 
@@ -55,12 +57,12 @@ static void random_column(const struct pound_study *study, int matrix, int input
  * Source   McKay, Beckman, Conover 1979, Technometrics 21(2), 239-245; Fisher-Yates for the order
  * Test     unit_design: a_latin_hypercube_has_one_point_in_every_stratum_of_every_column
  */
-static void latin_fill(struct pound_stream stream, int rows, int stride, double *u)
+static void latin_fill(struct pound_stream stream, int rows, int stride, const atomic_bool *stop, double *u)
 {
 	assert(rows <= POUND_ROWS_MAX);
 	struct pound_stream order = stream;
 	order.signal++;
-	for (int i = 0; i < rows; i++) {
+	for (int i = 0; i < rows && !pound_stopped(stop); i++) {
 		double place = ((double)pound_random_words(stream, i).v[0] + 0.5) * 0x1p-32;
 		double point = (i + place) / rows;
 		// the inside-out shuffle: the new point takes the place of a random earlier one, or its own
@@ -76,11 +78,12 @@ static bool grows(const struct pound_study *study)
 }
 
 /* One Latin hypercube of all rows; of a design that grows one of each batch. */
-static void latin_column(const struct pound_study *study, int matrix, int input, int rows, double *u)
+static void latin_column(const struct pound_study *study, int matrix, int input, int rows,
+                         const atomic_bool *stop, double *u)
 {
 	const int batch = grows(study) ? pound_design_grouping(study).run : rows;
 	for (int first = 0; first < rows; first += batch)
-		latin_fill(stream_of(study, first / batch, matrix, input), batch, stride_of(study),
+		latin_fill(stream_of(study, first / batch, matrix, input), batch, stride_of(study), stop,
 		           u + (size_t)first * stride_of(study));
 }
 
@@ -89,14 +92,15 @@ static void latin_column(const struct pound_study *study, int matrix, int input,
  *
  * Test     unit_design: every_net_of_a_sobol_design_is_a_net_of_its_own
  */
-static void net_column(const struct pound_study *study, int matrix, int input, int rows, double *u)
+static void net_column(const struct pound_study *study, int matrix, int input, int rows,
+                       const atomic_bool *stop, double *u)
 {
 	const int n = pound_design_grouping(study).n;
 	for (int k = 0; k < n; k++) {
 		struct pound_net net;
 		pound_net_init(&net, 2 * input + matrix);
 		pound_net_scramble(&net, stream_of(study, k, matrix, input));
-		for (int i = k; i < rows; i += n)
+		for (int i = k; i < rows && !pound_stopped(stop); i += n)
 			u[(size_t)i * stride_of(study)] = pound_net_point(&net, (uint32_t)(i / n));
 	}
 }
@@ -238,31 +242,33 @@ int pound_design_rows_most(const struct pound_study *study)
 /* The probabilities that a study's two matrices are made of.
  *
  * Given    study         -                        inputs and design
+ *          stop          -                        looked at throughout: when it is set they are not to be used; NULL: never
  * Returns  u             (rows x 2 x n_inputs)    in (0, 1); row i of A, then row i of B
  *
  * Test     unit_design
  */
-void pound_design_probabilities(const struct pound_study *study, double *u)
+void pound_design_probabilities(const struct pound_study *study, const atomic_bool *stop, double *u)
 {
 	const int d = study->n_inputs, rows = pound_design_rows_most(study);
 	for (int matrix = 0; matrix < 2; matrix++)
 		for (int j = 0; j < d; j++)
-			designs[study->design.method].column(study, matrix, j, rows, u + matrix * d + j);
+			designs[study->design.method].column(study, matrix, j, rows, stop, u + matrix * d + j);
 }
 
 /* The input values of a study's two matrices.
  *
  * Given    study         -                        -            inputs and design
+ *          u             (rows x 2 x n_inputs)    -            their probabilities
  * Returns  x             (rows x 2 x n_inputs)    the inputs'  row i of A, then row i of B
  *
  * Test     unit_design: values_are_quantiles_of_the_inputs_distributions
  */
-void pound_design_fill(const struct pound_study *study, double *x)
+void pound_design_values(const struct pound_study *study, const double *u, const atomic_bool *stop, double *x)
 {
 	const int d = study->n_inputs;
-	pound_design_probabilities(study, x);
-	for (size_t k = 0; k < (size_t)pound_design_rows_most(study) * 2 * d; k++)
-		x[k] = pound_distribution_quantile(&study->inputs[k % d].distribution, x[k]);
+	const size_t n = (size_t)pound_design_rows_most(study) * 2 * (size_t)d;
+	for (size_t k = 0; k < n && !pound_stopped(stop); k++)
+		x[k] = pound_distribution_quantile(&study->inputs[k % (size_t)d].distribution, u[k]);
 }
 
 double pound_design_input(const double *x, int n_inputs, int row, int sample, int j)

@@ -6,9 +6,12 @@
 #define DESIGN_H
 
 #include "engine/design/row_samples.h"
+#include "engine/numeric/stop.h"
 
-void pound_design_probabilities(const struct pound_study *study, double *u); /* of the same shape */
-void pound_design_fill(const struct pound_study *study, double *x);
+/* as probabilities, and what they stand for; `stop` is looked at throughout, NULL: never  (rows x 2 x n_inputs) each */
+void pound_design_probabilities(const struct pound_study *study, const atomic_bool *stop, double *u);
+void pound_design_values(const struct pound_study *study, const double *u, const atomic_bool *stop,
+                         double *x);
 
 /* Rows that come in groups, each a design of its own and independent of the others: row i is of group i / run % n.
  * n = 0: there are none, every row is as good as independent of the others. */

@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/numeric/stop.h"
 #include "engine/pound.h"
 #include "engine/scene/law.h"
 
@@ -50,12 +51,6 @@ struct pound_march_result {
 };
 
 enum { POUND_MARCH_SCRATCH = 1 << 23 }; /* bytes of work space, 64-byte aligned */
-
-/* Whether the caller wants no more of it: what follows a motion asks this between batches, stretches or samples. */
-static inline bool pound_stopped(const atomic_bool *stop)
-{
-	return stop && atomic_load_explicit(stop, memory_order_relaxed);
-}
 
 bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
                        int n, void *scratch, const atomic_bool *stop);

@@ -3,7 +3,10 @@
 
 #include <math.h>
 
+#include "engine/exact/task.h"
 #include "engine/numeric/elementary.h"
+
+enum { LOOK_EVERY = 4096 /* pulses between two looks at the flag to stop by */ };
 
 static const double PI = 3.14159265358979323846;
 
@@ -78,7 +81,7 @@ static double extremum(double z, double v, double xi, double s, double limit, do
  * the largest displacement is at the first extremum after a pulse, or where the next pulse finds it.
  *
  * Source   the paper, section 6.1
- * Valid    exact but for rounding
+ * Valid    exact but for rounding; NAN when it was stopped
  * Test     unit_pulse_train: a_train_of_pulses_gives_the_exact_values
  */
 double pound_dirac_train(const struct pound_dirac *dirac, double omega, double xi)
@@ -87,14 +90,17 @@ double pound_dirac_train(const struct pound_dirac *dirac, double omega, double x
 	double decay = pound_elementary_exp(-fmin(xi * omega * dirac->spacing, 700));
 	double jump = dirac->speed / omega, z = 0, v = 0, top = 0; // v over w
 	pound_elementary_sincos(turn / (2 * PI), &sine, &cosine);
-	for (double k = 0; k < dirac->pulses; k++) {
+	const int64_t n = (int64_t)dirac->pulses;
+	for (int64_t k = 0; k < n; k++) {
+		if (k % LOOK_EVERY == 0 && pound_stopped(dirac->stop))
+			return NAN;
 		v += jump;
-		double limit = k + 1 < dirac->pulses ? turn : INFINITY;
+		double limit = k + 1 < n ? turn : INFINITY;
 		top = fmax(top, extremum(z, v, xi, s, limit, top));
 		double z1 = decay * (z * cosine + (v + xi * z) / s * sine);
 		v = decay * (v * cosine - (z + xi * v) / s * sine);
 		z = z1;
-		top = k + 1 < dirac->pulses ? fmax(top, fabs(z)) : top;
+		top = k + 1 < n ? fmax(top, fabs(z)) : top;
 	}
 	return omega * omega * top;
 }

@@ -2,11 +2,14 @@
 #ifndef DIRAC_H
 #define DIRAC_H
 
+#include <stdatomic.h>
+
 /* equal steps of the floor's velocity, one every `spacing` */
 struct pound_dirac {
-	double speed;   /* impulse over the floor's mass [m/s] */
-	double spacing; /* half a period of the floor [s]  > 0 */
-	double pulses;  /* whole number, N */
+	double speed;            /* impulse over the floor's mass [m/s] */
+	double spacing;          /* half a period of the floor [s]  > 0 */
+	double pulses;           /* whole number, N */
+	const atomic_bool *stop; /* looked at throughout; NULL: never */
 };
 
 /* pseudo-accelerations at one frequency omega > 0 and damping xi in [0, 1)  [m/s2] */

@@ -30,8 +30,8 @@ static double *moments_of_row(const struct pound_tiles *moments, int row, int ti
 
 static struct pound_tiles moments_of(const struct pound_statistic *statistic, int n_rows, double *scratch)
 {
-	struct pound_tiles moments = {n_rows, (statistic->n_moments + TILE - 1) / TILE, scratch};
-	for (int i = 0; i < n_rows; i++) {
+	struct pound_tiles moments = {n_rows, (statistic->n_moments + TILE - 1) / TILE, scratch, statistic->stop};
+	for (int i = 0; i < n_rows && !pound_stopped(statistic->stop); i++) {
 		double m[WIDTH_MAX] = {0};
 		statistic->moments(statistic->subject, i, m);
 		for (int t = 0; t < moments.n_tiles; t++)
@@ -42,7 +42,7 @@ static struct pound_tiles moments_of(const struct pound_statistic *statistic, in
 
 static void moments_means(const struct pound_tiles *moments, int n_moments, double *mean)
 {
-	for (int k = 0; k < n_moments; k++) {
+	for (int k = 0; k < n_moments && !pound_stopped(moments->stop); k++) {
 		double sum = 0.0;
 		for (int i = 0; i < moments->n_rows; i++)
 			sum += moments_of_row(moments, i, k / TILE)[k % TILE];
@@ -114,7 +114,7 @@ void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_row
 	statistic->values(statistic->subject, mean, value);
 	for (int v = 0; v < statistic->n_values; v++)
 		estimates[v] = (struct pound_estimate){value[v], NAN, NAN};
-	for (int r = 0; r < n_resamples; r++) {
+	for (int r = 0; r < n_resamples && !pound_stopped(statistic->stop); r++) {
 		if (r % GROUP == 0)
 			pound_resample_sums(pound_dispatch_width(0), &moments, seed, r, sum);
 		for (int k = 0; k < n_moments; k++)

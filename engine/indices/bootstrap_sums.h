@@ -2,6 +2,7 @@
 #ifndef RESAMPLE_H
 #define RESAMPLE_H
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 enum {
@@ -13,7 +14,8 @@ enum {
 /* A table in tiles of columns, so that a resample reads whole cache lines. */
 struct pound_tiles {
 	int n_rows, n_tiles;
-	double *tile; /* (n_tiles x n_rows x POUND_TILE), 64-byte aligned */
+	double *tile;            /* (n_tiles x n_rows x POUND_TILE), 64-byte aligned */
+	const atomic_bool *stop; /* looked at throughout: when it is set sums are not to be used; NULL: never */
 };
 
 /* Sums of the columns over POUND_RESAMPLE_GROUP resamples from number `first`, each of as many rows as there are;

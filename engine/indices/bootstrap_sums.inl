@@ -7,6 +7,7 @@
 
 #include "engine/numeric/lanes.h"
 #include "engine/numeric/random.h"
+#include "engine/numeric/stop.h"
 
 #include <string.h>
 
@@ -128,12 +129,12 @@ void POUND_RESAMPLE(const struct pound_tiles *tiles, uint64_t seed, int first, d
 	const int segments = (tiles->n_rows + SEGMENT - 1) / SEGMENT, width = tiles->n_tiles * POUND_TILE;
 	int share[GROUP][SEGMENTS_MAX];
 	memset(sum, 0, sizeof *sum * GROUP * (size_t)width);
-	for (int g = 0; g < GROUP; g++)
+	for (int g = 0; g < GROUP && !pound_stopped(tiles->stop); g++)
 		if (segments > 1)
 			segment_shares(tiles->n_rows, seed, first + g, share[g]);
 		else
 			share[g][0] = tiles->n_rows;
-	for (int s = 0; s < segments; s++)
+	for (int s = 0; s < segments && !pound_stopped(tiles->stop); s++)
 		for (int g = 0; g < GROUP; g++)
 			segment_add(tiles, s, seed, first + g, share[g][s], sum + (size_t)g * width);
 	lanes_leave();

@@ -140,13 +140,14 @@ static double *sample_of(const struct fits *f, double *values, int fold, int num
 
 static void sums_fill(struct fits *f, bool design_known)
 {
+	const atomic_bool *stop = f->rows->stop;
 	double one[CHUNK];
 	memset(f->sums, 0, sizeof *f->sums * FOLDS * f->squares);
 	memset(f->products, 0, sizeof *f->products * FOLDS * f->terms);
 	for (int i = 0; i < CHUNK; i++)
 		one[i] = 1.0;
 	for (int fold = 0; fold < FOLDS; fold++)
-		for (int first = 0; chunk_enter(f, fold, first) > 0; first += CHUNK) {
+		for (int first = 0; !pound_stopped(stop) && chunk_enter(f, fold, first) > 0; first += CHUNK) {
 			for (int i = 0; i < f->chunk.n; i++)
 				f->value[i] = *sample_of(f, f->rows->y, fold, first + i);
 			if (!design_known)
@@ -205,10 +206,11 @@ size_t pound_chaos_kept_size(const struct pound_sample_values *shape)
 static void fits_fill(struct fits *f)
 {
 	const bool design_known = kept_is_of(f);
+	const atomic_bool *stop = f->rows->stop;
 	f->chunk.degree = design_known ? f->degree : 2 * f->degree;
 	sums_fill(f, design_known);
 	f->chunk.degree = f->degree;
-	for (int fold = 0; fold < FOLDS; fold++) {
+	for (int fold = 0; fold < FOLDS && !pound_stopped(stop); fold++) {
 		double *coefficients = f->coefficients + (size_t)fold * f->terms;
 		double *gram = f->kept ? kept_factor(f, fold) : f->gram;
 		if (!design_known) {
@@ -218,13 +220,13 @@ static void fits_fill(struct fits *f)
 		}
 		sums_others(f->products, f->terms, fold, coefficients);
 		pound_legendre_solve(gram, f->terms, coefficients);
-		for (int first = 0; chunk_enter(f, fold, first) > 0; first += CHUNK) {
+		for (int first = 0; !pound_stopped(stop) && chunk_enter(f, fold, first) > 0; first += CHUNK) {
 			pound_legendre_expand(&f->chunk, f->degree, coefficients, f->value);
 			for (int i = 0; i < f->chunk.n; i++)
 				*sample_of(f, f->fit, fold, first + i) = f->value[i];
 		}
 	}
-	if (f->kept && !design_known)
+	if (f->kept && !design_known && !pound_stopped(stop))
 		kept_fill(f);
 }
 
@@ -239,7 +241,7 @@ static void fits_shrink(struct fits *f)
 {
 	const int n_samples = f->rows->n_samples;
 	double product = 0.0, square = 0.0;
-	for (int fold = 0; fold < FOLDS; fold++) {
+	for (int fold = 0; fold < FOLDS && !pound_stopped(f->rows->stop); fold++) {
 		const double mean = f->coefficients[(size_t)fold * f->terms];
 		for (int k = 0; k < rows_in(f, fold) * n_samples; k++) {
 			const double g = *sample_of(f, f->fit, fold, k) - mean;
@@ -248,7 +250,7 @@ static void fits_shrink(struct fits *f)
 		}
 	}
 	const double share = square > 0.0 ? fmin(fmax(product / square, 0.0), 1.0) : 0.0;
-	for (int fold = 0; fold < FOLDS; fold++) {
+	for (int fold = 0; fold < FOLDS && !pound_stopped(f->rows->stop); fold++) {
 		double *coefficients = f->coefficients + (size_t)fold * f->terms;
 		for (int term = 1; term < f->terms; term++)
 			coefficients[term] *= share;
@@ -282,7 +284,7 @@ static void estimates_fill(const struct fits *f, bool corrected)
 	double part[POUND_CLOSED_COLUMNS_MAX], noise[POUND_SAMPLES_MAX * POUND_SAMPLES_MAX];
 	for (int fold = 0; fold < FOLDS; fold++) {
 		parts_fill(f, fold, part);
-		for (int k = 0; k < rows_in(f, fold); k++) {
+		for (int k = 0; k < rows_in(f, fold) && !pound_stopped(f->rows->stop); k++) {
 			const int row = row_in(f, fold, k);
 			const size_t first = (size_t)row * n_samples;
 			if (corrected)
@@ -353,7 +355,7 @@ static void curves_fill(struct fits *f, struct pound_curve *curves)
 	struct pound_conditional given = {.rows = f->rows, .u = f->u, .y = f->fit};
 	for (size_t k = 0; k < (size_t)f->rows->n_rows * (size_t)f->rows->n_samples; k++)
 		f->fit[k] = f->rows->y[k] - f->fit[k];
-	for (int j = 0; j < f->rows->n_inputs; j++) {
+	for (int j = 0; j < f->rows->n_inputs && !pound_stopped(f->rows->stop); j++) {
 		trend_fill(f, j, given.trend);
 		pound_conditional_mean(&given, j, f->rest, &curves[j]);
 	}

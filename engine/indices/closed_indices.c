@@ -133,7 +133,7 @@ static void means_fill(const struct columns *columns)
 	const int n = columns->closed->n_columns, n_rows = columns->rows->n_rows;
 	for (int k = 0; k < n; k++)
 		columns->mean[k] = 0.0;
-	for (int i = 0; i < n_rows; i++)
+	for (int i = 0; i < n_rows && !pound_stopped(columns->rows->stop); i++)
 		for (int k = 0; k < n; k++)
 			columns->mean[k] += columns->estimate[(size_t)i * n + k] / n_rows;
 }
@@ -190,7 +190,7 @@ static struct pound_estimate ratio_interval(const struct combination *c, const s
 	int used[POUND_CLOSED_COLUMNS_MAX], n_used = 0;
 	for (int k = 0; k < n; k++)
 		above += c->weight[k] * mean[k];
-	if (!(below > floor && mean[n - 1] > floor) || !c->known)
+	if (!(below > floor && mean[n - 1] > floor) || !c->known || pound_stopped(columns->rows->stop))
 		return (struct pound_estimate){NAN, NAN, NAN};
 	const double ratio = above / below;
 	for (int k = 0; k < n; k++) {

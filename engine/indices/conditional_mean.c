@@ -254,7 +254,7 @@ static void curve_fill(const struct pound_conditional *given, const struct work 
 	const struct points *points = &work->points;
 	struct line line[POUND_CURVE];
 	struct sums sums[POUND_CURVE];
-	for (int k = 0; k < POUND_CURVE; k++) {
+	for (int k = 0; k < POUND_CURVE && !pound_stopped(rows->stop); k++) {
 		const struct sums wide = sums_at(points, pound_conditional_place(k), bandwidth);
 		curve->mean[k].value = rows->mean + given->trend[k] + line_of(&wide).level;
 		sums[k] = sums_at(points, pound_conditional_place(k), 0.5 * bandwidth);
@@ -262,7 +262,7 @@ static void curve_fill(const struct pound_conditional *given, const struct work 
 	}
 	for (int k = 0; k < points->n; k++)
 		work->residual[k] = points->sum[k] - points->weight[k % 2] * level_at(line, points->u[k]);
-	for (int k = 0; k < POUND_CURVE; k++) {
+	for (int k = 0; k < POUND_CURVE && !pound_stopped(rows->stop); k++) {
 		influence_fill(points, work->residual, pound_conditional_place(k), 0.5 * bandwidth, &sums[k],
 		               work->influence);
 		const double sampling =
@@ -285,7 +285,7 @@ static void levels_fill(const struct pound_conditional *given, int input, const 
 		points->u[k] = pound_distribution_level(&rows->inputs[input].distribution, points->u[k]);
 	for (int level = levels; level < POUND_CURVE; level++)
 		curve->mean[level] = (struct pound_estimate){NAN, NAN, NAN};
-	for (int level = 0; level < levels; level++) {
+	for (int level = 0; level < levels && !pound_stopped(rows->stop); level++) {
 		double weight = 0.0, sum = 0.0;
 		int behind = 0; // rows
 		for (int i = 0; i < n; i++) {

@@ -33,13 +33,13 @@ void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct po
 	const int n = rows->n_rows, d = rows->n_inputs, n_moments = estimator->n_moments(d);
 	double mean[POUND_MOMENTS_MAX] = {0}, m[POUND_MOMENTS_MAX], value[2 * POUND_INPUTS_MAX];
 	double changed[2 * POUND_INPUTS_MAX], worst[2 * POUND_INPUTS_MAX] = {0};
-	for (int i = 0; i < n && dropped; i++) {
+	for (int i = 0; i < n && dropped && !pound_stopped(rows->stop); i++) {
 		row_moments(rows, i, m);
 		for (int k = 0; k < n_moments; k++)
 			mean[k] += m[k] / n;
 	}
 	estimator->indices(mean, d, rows->variance_floor, value);
-	for (int i = 0; i < n && dropped; i++) {
+	for (int i = 0; i < n && dropped && !pound_stopped(rows->stop); i++) {
 		row_moments(rows, i, m);
 		for (int k = 0; k < n_moments; k++)
 			m[k] = ((double)n * mean[k] + dropped * m[k]) / (n + dropped);

@@ -105,7 +105,7 @@ static void levels_fill(struct sources *s, uint64_t seed)
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		struct level *level = &s->level[k];
 		struct pound_closed_results closed;
-		if (level->kept < POUND_ROWS_MIN)
+		if (level->kept < POUND_ROWS_MIN || pound_stopped(s->rows->stop))
 			continue;
 		pound_chaos_first_rows(s->rows, level->kept, s->scratch, &closed);
 		for (int j = 0; j < d; j++) {
@@ -255,7 +255,7 @@ static void named_fill(const struct sources *s, uint64_t seed, struct pound_indi
 static void columns_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
 {
 	const int d = s->rows->n_inputs;
-	for (int k = 0; k < POUND_N_INDEXES; k++) {
+	for (int k = 0; k < POUND_N_INDEXES && !pound_stopped(s->rows->stop); k++) {
 		const struct column *column = &columns[k];
 		struct pound_estimate *into = indices->index[column->index];
 		const bool told = column->shared || !s->shared;
@@ -409,6 +409,8 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	s.corrected = s.variance_known && (!elsewhere || fresh);
 	s.shared = !fresh && !s.corrected && (elsewhere || sampling->random);
 	const bool varies = pound_sobol_summary(&rows, indices);
+	if (pound_stopped(rows.stop))
+		return 0;
 	for (int j = 0; j < d && indices->curves; j++)
 		undefined(indices->curves[j].mean, POUND_CURVE);
 	levels_init(&s, values->n_rows);
@@ -416,7 +418,7 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 		pound_correction_estimates(&rows, seed,
 		                           sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES, s.scratch,
 		                           &s.pick_freeze);
-		if (rows_enough(&s)) {
+		if (rows_enough(&s) && !pound_stopped(rows.stop)) {
 			pound_chaos_indices(&rows, sampling->u, s.corrected, sampling->kept, s.scratch, &s.closed,
 			                    indices->curves);
 			levels_fill(&s, seed);

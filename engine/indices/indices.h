@@ -4,11 +4,15 @@
  *                 -> their means over all rows or resampled ones (bootstrap.c) -> indexes (pick_freeze.c)
  *
  * A row of the design with all its samples and signals is the unit throughout: it is kept or dropped, and
- * resampled, as a whole.  Nothing here allocates; sums are taken in the order of rows. */
+ * resampled, as a whole.  Nothing here allocates; sums are taken in the order of rows.
+ *
+ * A flag to stop by goes with the values, the rows and a statistic.  It is looked at between rows, chunks, resamples and
+ * indexes, and stays set: what comes after a loop that it has cut short sees it, too, and looks at nothing. */
 #ifndef INDICES_H
 #define INDICES_H
 
 #include "engine/design/design.h"
+#include "engine/numeric/stop.h"
 
 /* One output of one cell: a ratio of means over the signals, of every sample of every row.  NAN in any number of a
  * row: a failed run.  In what follows n_samples is pound_order_samples(order, n_inputs). */
@@ -21,7 +25,8 @@ struct pound_sample_values {
 	struct pound_grouping grouping; /* of the rows */
 	int order;                      /* row of the orders: which samples a row has */
 	const struct pound_input
-	    *inputs; /* how they are distributed  (n_inputs); NULL: without values that come often */
+	    *inputs;             /* how they are distributed  (n_inputs); NULL: without values that come often */
+	const atomic_bool *stop; /* when it is set nothing that comes out is to be used; NULL: never */
 };
 
 /* How they came about. */
@@ -56,7 +61,8 @@ struct pound_rows {
 	double *y, *plain; /* (n_rows x n_samples) */
 	double *deviation; /* (n_rows x n_samples x n_signals); NAN: one signal of unknown variance */
 	bool independent;  /* samples of a row do not share their noise; one signal stands for all */
-	const struct pound_input *inputs; /* of the sample values */
+	const struct pound_input *inputs; /* of the sample values, as is ... */
+	const atomic_bool *stop;
 };
 
 size_t pound_rows_scratch(const struct pound_sample_values *shape); /* doubles */
@@ -94,6 +100,7 @@ struct pound_statistic {
 	void (*moments)(const void *subject, int row, double *m);
 	void (*values)(const void *subject, const double *mean, double *value);
 	const void *subject;
+	const atomic_bool *stop; /* of the subject */
 };
 
 enum {

@@ -281,7 +281,7 @@ static void means_fill(struct fit *f, unsigned given)
 		                   (struct pound_stream){.what = POUND_STREAM_DESIGN, .sample = (uint32_t)c});
 	}
 	memset(mean, 0, sizeof *mean * (size_t)n * n);
-	for (uint32_t i = 0; i < POINTS; i++) {
+	for (uint32_t i = 0; i < POINTS && !pound_stopped(f->rows->stop); i++) {
 		double t[4 * POUND_RATIOS_MAX], ratio[POUND_RATIOS_MAX], anew[POUND_RATIOS_MAX];
 		for (int c = 0; c < n_columns; c++)
 			t[c] = pound_net_point(&net[c], i);
@@ -334,7 +334,7 @@ static void group_fill(struct fit *f, int group)
 	f->chunk.n = 0;
 	for (int k = 0; k < CHUNK; k++)
 		one[k] = 1.0;
-	for (int row = 0; row <= f->rows->n_rows; row++) {
+	for (int row = 0; row <= f->rows->n_rows && !pound_stopped(f->rows->stop); row++) {
 		const bool last = row == f->rows->n_rows;
 		if (last || f->chunk.n + n_samples > CHUNK) {
 			pound_legendre_project(&f->chunk, 2 * f->degree, one, f->sums + (size_t)group * f->squares);
@@ -534,7 +534,7 @@ void pound_ratio_indices(const struct pound_rows *rows, const double *u, const s
 	for (unsigned set = 0; set < 1u << study->n_ratios; set++)
 		means_fill(&f, set);
 	sums_fill(&f);
-	for (int g = 0; g <= GROUPS; g++) {
+	for (int g = 0; g <= GROUPS && !pound_stopped(rows->stop); g++) {
 		coefficients_fill(&f, g);
 		explained_fill(&f, explained);
 		values_fill(&f, explained, value[g]);

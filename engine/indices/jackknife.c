@@ -69,7 +69,7 @@ static void sums_fill(const struct pound_statistic *statistic, const struct poun
 {
 	const int n_moments = statistic->n_moments, width = n_moments + 1;
 	memset(sums, 0, sizeof *sums * (size_t)scatter->grouping.n * (size_t)width);
-	for (int i = 0; i < n_rows; i++) {
+	for (int i = 0; i < n_rows && !pound_stopped(statistic->stop); i++) {
 		double m[POUND_MOMENTS_MAX] = {0},
 		       *sum = sums + (size_t)pound_jackknife_group(scatter, i) * (size_t)width;
 		statistic->moments(statistic->subject, i, m);
@@ -132,7 +132,7 @@ void pound_jackknife_estimates(const struct pound_statistic *statistic, const st
 	for (int k = 0; k < n_moments; k++)
 		mean[k] = sum[k] / n_rows;
 	statistic->values(statistic->subject, mean, all);
-	for (int g = 0; g < n && groups > 1; g++) {
+	for (int g = 0; g < n && groups > 1 && !pound_stopped(statistic->stop); g++) {
 		const double *of = scratch + (size_t)g * (size_t)width;
 		if (!(of[n_moments] > 0))
 			continue;

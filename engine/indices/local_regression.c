@@ -118,6 +118,8 @@ static void block_add(const struct pound_rows *rows, int sample, double grand, i
                       const struct space *at)
 {
 	const int n = rows->n_rows, n_samples = rows->n_samples, reach = reach_of(n);
+	if (pound_stopped(rows->stop))
+		return;
 	for (int k = 0; k < n; k++)
 		at->y[k] = rows->y[at->order[k] * n_samples + sample] - grand;
 	if (levels > 0) {
@@ -184,7 +186,7 @@ static double variances_fill(const struct pound_rows *rows, bool corrected, doub
 	for (size_t k = 0; k < n_all; k++)
 		grand += rows->y[k];
 	grand /= n_all;
-	for (int i = 0; i < rows->n_rows; i++) {
+	for (int i = 0; i < rows->n_rows && !pound_stopped(rows->stop); i++) {
 		const double *y = rows->y + (size_t)i * n_samples,
 		             *deviation = rows->deviation + (size_t)i * n_noises;
 		double squares = 0.0, noise = 0.0;
@@ -232,17 +234,18 @@ void pound_local_first(const struct pound_rows *rows, const double *x, bool corr
 {
 	const int n = rows->n_rows, d = rows->n_inputs;
 	const struct space at = carve(scratch, n, d);
-	const bool enough = n >= POUND_ROWS_MIN;
+	bool enough = n >= POUND_ROWS_MIN;
 	const double grand = enough ? variances_fill(rows, corrected, at.variance) : NAN;
 	for (int j = 0; j < d; j++) {
 		const int levels = pound_rows_levels(rows, j);
 		memset(at.sums.near, 0, 3 * sizeof *at.sums.near * (size_t)n);
-		for (int matrix = 0; matrix < 2 && enough; matrix++) {
+		for (int matrix = 0; matrix < 2 && enough && !pound_stopped(rows->stop); matrix++) {
 			rows_sort(rows, x, matrix, j, levels, &at);
 			for (int p = 0; p < rows->n_samples; p++)
 				if ((pound_order_mask(d, p) >> j & 1) == (unsigned)matrix)
 					block_add(rows, p, grand, levels, &at);
 		}
+		enough &= !pound_stopped(rows->stop);
 		first[j] = enough ? influence_interval(rows, j, &at) : (struct pound_estimate){NAN, NAN, NAN};
 	}
 }
@@ -263,6 +266,6 @@ void pound_local_first_rows(const struct pound_rows *rows, int n, double *scratc
 		of_all += at.variance[i] / rows->n_rows;
 		of_first += i < n ? at.variance[i] / n : 0.0;
 	}
-	for (int j = 0; j < rows->n_inputs; j++)
+	for (int j = 0; j < rows->n_inputs && !pound_stopped(rows->stop); j++)
 		half[j] = half_width(rows, n, &at, j, of_all / of_first);
 }

@@ -141,8 +141,8 @@ void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, in
                                 double *scratch, struct pound_pick_freeze *result)
 {
 	const int d = rows->n_inputs;
-	const struct pound_statistic statistic = {FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill,
-	                                          values_fill, rows};
+	const struct pound_statistic statistic = {
+	    FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill, values_fill, rows, rows->stop};
 	struct pound_estimate estimates[POUND_VALUES_MAX];
 	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
 	for (int j = 0; j < d; j++) {

@@ -47,7 +47,7 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 {
 	const int d = rows->n_inputs, n_signals = rows->n_signals;
 	double mean = 0.0, square = 0.0, noise = 0.0;
-	for (int i = 0; i < rows->n_rows; i++) {
+	for (int i = 0; i < rows->n_rows && !pound_stopped(rows->stop); i++) {
 		const double *y = rows->plain + (size_t)i * rows->n_samples;
 		const double *deviation = rows->deviation + (size_t)i * rows->n_samples * n_signals;
 		mean += 0.5 * (y[0] + y[1]);
@@ -86,8 +86,12 @@ void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_est
                            struct pound_estimate *estimates)
 {
 	const struct subject subject = {estimator, rows, corrected};
-	const struct pound_statistic statistic = {estimator->n_moments(rows->n_inputs), 2 * rows->n_inputs,
-	                                          subject_moments, subject_values, &subject};
+	const struct pound_statistic statistic = {estimator->n_moments(rows->n_inputs),
+	                                          2 * rows->n_inputs,
+	                                          subject_moments,
+	                                          subject_values,
+	                                          &subject,
+	                                          rows->stop};
 	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
 }
 

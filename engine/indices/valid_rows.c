@@ -185,13 +185,14 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 	                            .order = values->order,
 	                            .independent = values->variance,
 	                            .inputs = values->inputs,
+	                            .stop = values->stop,
 	                            .y = scratch};
 	rows->plain = rows->y + (size_t)values->n_rows * n_samples;
 	rows->deviation = rows->plain + (size_t)values->n_rows * n_samples;
 	rows->row = (int64_t *)(rows->deviation + (size_t)values->n_rows * n_samples * values->n_signals);
 	rows->scatter = pound_rows_scatter(values, rows->row);
 	double largest = 0.0, bias = 0.0;
-	for (int i = 0; i < values->n_rows; i++)
+	for (int i = 0; i < values->n_rows && !pound_stopped(values->stop); i++)
 		if (row_fill(rows, values, i, &largest, &bias))
 			rows->row[rows->n_rows++] = i;
 	rows->mean = centre(rows, rows->y);

@@ -96,7 +96,7 @@ static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound
 	    [POUND_SPECTRUM_DIRAC_PEAKS] = pound_dirac_peaks,
 	};
 	for (int row = POUND_N_INTEGRATED; row < POUND_N_SPECTRA; row++)
-		for (int k = 0; k < spectrum->n; k++)
+		for (int k = 0; k < spectrum->n && !pound_stopped(dirac->stop); k++)
 			values[row * spectrum->n + k] =
 			    rows[row](dirac, 2 * PI * pound_spectrum_frequency(spectrum, k), spectrum->damping_ratio);
 }
@@ -124,7 +124,8 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 	int pulses = study->spectrum.pulses;
 	const struct pound_dirac dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
 	                                  .spacing = 0.5 / left->frequency_hz,
-	                                  .pulses = pulses ? pulses : (double)answer.contacts};
+	                                  .pulses = pulses ? pulses : (double)answer.contacts,
+	                                  .stop = stop};
 	dirac_fill(&study->spectrum, &dirac, values);
 	values[POUND_N_SPECTRA * n + IMPULSE] = left->mass * dirac.speed;
 	values[POUND_N_SPECTRA * n + PULSES] = dirac.pulses;
@@ -263,7 +264,7 @@ void pound_ordinate_reduce(const struct pound_run *run, double *scratch, struct 
 	result->signals = c->n_signals;
 	result->signals_checked = pound_campaign_checks(c, c->n_signals);
 	for (int row = 0; row < POUND_N_SPECTRA; row++)
-		for (int k = 0; k < n; k++) {
+		for (int k = 0; k < n && !pound_stopped(run->stop); k++) {
 			struct pound_floor_spectrum *into = &result->spectra[row];
 			int known = measure_sort(run, row * n + k, scratch);
 			into->mean[k] = mean_of(scratch, known);
@@ -342,7 +343,7 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	int n = 0;
 	double *x = scratch, *y = scratch + 2 * run->rows;
 	int64_t *rows = (int64_t *)(y + 2 * run->rows);
-	for (int row = 0; row < run->rows; row++) {
+	for (int row = 0; row < run->rows && !pound_stopped(run->stop); row++) {
 		bool whole = pair_of(run, cell, row, 0, output, &x[2 * n], &y[2 * n]);
 		whole &= pair_of(run, cell, row, 1, output, &x[2 * n + 1], &y[2 * n + 1]);
 		rows[n] = row;
@@ -357,7 +358,8 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	                                          .n_values = 1,
 	                                          .moments = pair_moments,
 	                                          .values = pair_correlation,
-	                                          .subject = &pairs};
+	                                          .subject = &pairs,
+	                                          .stop = run->stop};
 	const struct pound_sample_values values = pound_campaign_values(&run->campaign, run->rows, NULL);
 	const struct pound_scatter scatter = pound_rows_scatter(&values, rows);
 	pound_interval_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,

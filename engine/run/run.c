@@ -166,8 +166,18 @@ static bool result_create(struct pound_run *run)
 	return true;
 }
 
-/* A study laid out to be computed by n_workers threads; allocates all it will ever need. */
 struct pound_run *pound_run_create(const struct pound_study *study, int n_workers)
+{
+	return pound_run_create_by(study, n_workers, NULL);
+}
+
+/* A study laid out to be computed by n_workers threads; allocates all it will ever need.
+ *
+ * Given    stop    looked at while the design is drawn; NULL: never
+ * Returns  value   NULL: out of memory, or stop was set
+ * Test     unit_stop: what_takes_long_ends_soon_when_it_is_told_to
+ */
+struct pound_run *pound_run_create_by(const struct pound_study *study, int n_workers, const atomic_bool *stop)
 {
 	assert(n_workers >= 1);
 	struct pound_run *run = piece(sizeof *run);
@@ -191,13 +201,17 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	if (!design || !run->u)
 		goto fail;
 	if (study->kind == POUND_KIND_SENSITIVITY) {
-		pound_design_probabilities(study, run->u);
-		pound_design_fill(study, design);
+		pound_design_probabilities(study, stop, run->u);
+		pound_design_values(study, run->u, stop, design);
 	}
+	if (pound_stopped(stop))
+		goto fail;
 	struct pound_request_size largest = {0};
 	run->layout.n_blocks = pound_layout_cut(&run->campaign, NULL, &largest);
 	run->layout.first = piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
 	if (!run->layout.first)
+		goto fail;
+	if (pound_stopped(stop))
 		goto fail;
 	pound_layout_cut(&run->campaign, run->layout.first, &largest);
 	run->layout.values = piece(sizeof(double) * pound_layout_doubles(&run->layout));
@@ -429,7 +443,7 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 {
 	const struct pound_campaign *c = &run->campaign;
 	int64_t failed = 0;
-	for (int row = 0; row < run->rows; row++)
+	for (int row = 0; row < run->rows && !pound_stopped(run->stop); row++)
 		for (int signal = 0; signal < c->n_signals; signal++)
 			for (int sample = 0; sample < c->n_samples; sample++) {
 				const double *values =
@@ -472,7 +486,8 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 {
 	const struct pound_campaign *c = &run->campaign;
 	double *scratch = kept + kept_size(c);
-	const struct pound_sample_values values = pound_campaign_values(c, run->rows, scratch);
+	struct pound_sample_values values = pound_campaign_values(c, run->rows, scratch);
+	values.stop = run->stop;
 	const size_t n = pound_campaign_values_size(c, run->rows);
 	const bool elsewhere = c->study->elsewhere;
 	struct pound_cell *into = &run->result.cells[cell];
@@ -492,8 +507,12 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);
 	double *rest = scratch + 2 * n + checks_size(c);
+	if (pound_stopped(run->stop))
+		return;
 	int dropped =
 	    pound_variants_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
+	if (pound_stopped(run->stop))
+		return;
 	pound_accuracy_estimate(&values, checks, rest, &into->indices[output]);
 	into->indices[output].impulse_correlation = pound_ordinate_correlation(run, cell, output, rest);
 	if (output == 0) {
@@ -592,7 +611,7 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 		indices_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
 	else
 		responses_reduce(run, reduction / n_outputs, reduction % n_outputs);
-	return POUND_OK;
+	return pound_stopped(run->stop) ? POUND_STOPPED : POUND_OK;
 }
 
 /* The result, once all reductions are done; owned by run. */

@@ -15,11 +15,11 @@ const struct api_fault_row api_faults[] = {
 };
 
 #define F(name) (1u << API_##name)
-const unsigned api_faults_of_all =
-    F(BAD_REQUEST) | F(UNAUTHORIZED) | F(TOO_LARGE) | F(MISDIRECTED) | F(UNAVAILABLE);
+const unsigned api_faults_of_all = F(BAD_REQUEST) | F(UNAUTHORIZED) | F(NO_LENGTH) | F(TOO_LARGE) |
+                                   F(TARGET_LONG) | F(MISDIRECTED) | F(HEAD_LARGE) | F(UNAVAILABLE);
 
 // clang-format off
-#define BODY   (F(MALFORMED) | F(NOT_JSON) | F(INVALID) | F(TOO_COSTLY) | F(KEY_REUSED) | F(TOO_MANY))
+#define BODY   (F(MALFORMED) | F(NOT_JSON) | F(INVALID) | F(TOO_COSTLY) | F(KEY_REUSED) | F(TOO_MANY) | F(FOREIGN))
 #define STORED (F(NOT_FOUND) | F(CORRUPT))
 #define TABLE(name) " " #name
 #define TABLES RESULT_TABLES(TABLE) " "
@@ -30,7 +30,7 @@ const struct api_operation api_operations[] = {
 	[API_list]    = {"GET", "/v1/studies", "list", "studies, newest first", " 200=Page ", .faults = 0},
 	[API_status]  = {"GET", "/v1/studies/{id}", "status", "how far a study is", " 200=Status 304 ", .faults = F(NOT_FOUND)},
 	[API_erase]   = {"DELETE", "/v1/studies/{id}", "erase",
-	                 "removes a study, which is cancelled first if it has not ended", " 204 ", .faults = F(NOT_FOUND)},
+	                 "removes a study, which is cancelled first if it has not ended", " 204 ", .faults = F(NOT_FOUND) | F(FOREIGN)},
 	[API_posted]  = {"GET", "/v1/studies/{id}/request", "posted",
 	                 "the bytes that were posted", " 200=Study 304 ", .faults = STORED},
 	[API_results] = {"GET", "/v1/studies/{id}/results", "results",
@@ -39,7 +39,7 @@ const struct api_operation api_operations[] = {
 	                 "every input row and its outputs, enough to compute the indexes again", " 200 304 ",
 	                 .media = " text/csv application/octet-stream ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_cancel]  = {"POST", "/v1/studies/{id}/cancel", "cancel",
-	                 "cancels a study that is queued or running", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT)},
+	                 "cancels a study that is queued or running", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT) | F(FOREIGN)},
 	[API_live]    = {"GET", "/livez", "live", "the process answers", " 200=Version ", .open = true},
 	[API_ready]   = {"GET", "/readyz", "ready", "studies are taken", " 200=Version ", .open = true},
 	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges for Prometheus", " 200 ", .media = " text/plain "},

@@ -16,17 +16,21 @@
 	X(BAD_REQUEST,   400, "bad-request",            "Bad Request")                        \
 	X(MALFORMED,     400, "malformed-json",         "Malformed JSON")                     \
 	X(UNAUTHORIZED,  401, "unauthorized",           "Unauthorized")                       \
+	X(FOREIGN,       403, "foreign-origin",         "Forbidden")                          \
 	X(NOT_FOUND,     404, "not-found",              "Not Found")                          \
 	X(NOT_READY,     404, "not-ready",              "Not Ready")                          \
 	X(NOT_ALLOWED,   405, "method-not-allowed",     "Method Not Allowed")                 \
 	X(CONFLICT,      409, "conflict",               "Conflict")                           \
+	X(NO_LENGTH,     411, "length-required",        "Length Required")                    \
 	X(TOO_LARGE,     413, "body-too-large",         "Content Too Large")                  \
+	X(TARGET_LONG,   414, "target-too-long",        "URI Too Long")                       \
 	X(NOT_JSON,      415, "unsupported-media-type", "Unsupported Media Type")             \
 	X(MISDIRECTED,   421, "misdirected-request",    "Misdirected Request")                \
 	X(INVALID,       422, "invalid-study",          "Invalid Study")                      \
 	X(TOO_COSTLY,    422, "study-too-large",        "Study Too Large")                    \
 	X(KEY_REUSED,    422, "idempotency-key-reused", "Idempotency Key Reused")             \
 	X(TOO_MANY,      429, "too-many-requests",      "Too Many Requests")                  \
+	X(HEAD_LARGE,    431, "headers-too-large",      "Request Header Fields Too Large")    \
 	X(CORRUPT,       500, "result-corrupt",         "Stored Data Damaged")                \
 	X(UNAVAILABLE,   503, "unavailable",            "Service Unavailable")
 

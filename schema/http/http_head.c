@@ -1,7 +1,8 @@
 /* The head of a request: target, headers, framing and host.
  *
- * libmicrohttpd takes what RFC 9112 forbids (two lengths, a length and a coding, NUL in a name), and what two servers
- * read differently lets a request hide in another one's body; so the rules are applied here, to what it read. */
+ * libmicrohttpd takes what RFC 9112 forbids (two lengths, a length and a coding, NUL anywhere), and what two servers read
+ * differently lets a request hide in another one's body; so the rules are applied here, to what it read.  A body's length
+ * is told before it: a chunked one is refused, as RFC 9112 section 6.3 lets a server do. */
 #include "schema/http/http_head.h"
 
 #include <arpa/inet.h>
@@ -38,11 +39,17 @@ void head_refuse(struct head *head, enum api_fault fault, bool close, const char
 /* Starts with the request's target as it came.
  *
  * Given    target   path and arguments, not decoded
- * Test     unit_http_head: a_target_is_visible_ascii_and_its_escapes_are_whole
+ * Returns  value    bytes of it that are to be taken apart: without the arguments when these are too many, for which
+ *                   libmicrohttpd has no room
+ * Test     unit_http_head: a_target_is_visible_ascii_and_its_escapes_are_whole; a_target_has_so_many_bytes_and_arguments
  */
-void head_target(struct head *head, const char *target)
+size_t head_target(struct head *head, const char *target)
 {
+	const size_t n = strlen(target), n_path = strcspn(target, "?");
+	int n_arguments = target[n_path] == '?';
 	*head = (struct head){.fault = API_NO_FAULT};
+	if (n > HEAD_TARGET_MAX)
+		head_refuse(head, API_TARGET_LONG, true, "a target has at most %d bytes", HEAD_TARGET_MAX);
 	for (const char *c = target; *c; c++) {
 		if (*c <= ' ' || *c > '~')
 			head_refuse(head, API_BAD_REQUEST, true,
@@ -55,6 +62,31 @@ void head_target(struct head *head, const char *target)
 		else if (c[1] == '0' && c[2] == '0')
 			head_refuse(head, API_BAD_REQUEST, false, "the target must not have %%00");
 	}
+	for (const char *c = target + n_path; *c; c++)
+		n_arguments += *c == '&';
+	if (n_arguments > HEAD_ARGUMENTS_MAX)
+		head_refuse(head, API_BAD_REQUEST, true, "a target has at most %d arguments", HEAD_ARGUMENTS_MAX);
+	return n > HEAD_TARGET_MAX || n_arguments > HEAD_ARGUMENTS_MAX ? n_path : n;
+}
+
+/* Judges the lines behind the target by their bytes.  libmicrohttpd ends each name and each line by NULs in their place,
+ * a CR LF by two; so one more was sent by the client and hides what is behind it, or a line was none: folded into the one
+ * before, without a name (which ends its head), or ended by LF alone.
+ *
+ * Given    bytes     (n)   from the end of the version to the end of the empty line
+ *          n_lines   headers found in it
+ * Test     unit_http_head: a_head_has_no_byte_but_those_of_its_lines
+ */
+void head_bytes(struct head *head, const char *bytes, size_t n, int n_lines)
+{
+	int n_ends = 0;
+	for (size_t i = 0; i < n; i++)
+		n_ends += bytes[i] == '\0';
+	if (n_lines > HEAD_LINES_MAX)
+		head_refuse(head, API_HEAD_LARGE, true, "a request has at most %d headers", HEAD_LINES_MAX);
+	if (n_ends != 3 * n_lines + 4)
+		head_refuse(head, API_BAD_REQUEST, true,
+		            "a header is a line with a name, ended by CR LF, and there is no NUL in it");
 }
 
 static bool is_token(const char *name, size_t n)
@@ -102,6 +134,8 @@ static const struct {
     {"If-None-Match", offsetof(struct head, etags), true},
     {"Prefer", offsetof(struct head, prefer), true},
     {"Accept", offsetof(struct head, accept), true},
+    {"Origin", offsetof(struct head, origin), false},
+    {"Sec-Fetch-Site", offsetof(struct head, site), false},
 };
 
 /* Keeps a value, or those of its elements that there is room for: half of one may mean another thing than the whole. */
@@ -126,8 +160,6 @@ static void keep(struct head_text *text, bool list, const char *value, size_t n_
  */
 void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value)
 {
-	// libmicrohttpd takes a body as chunked by the value as it came, so that "chunked " is no coding it knows
-	const size_t n_coding = n_value;
 	while (n_value > 0 && is_blank(value[n_value - 1]))
 		n_value--;
 	if (!is_token(name, n_name))
@@ -142,11 +174,10 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 		// what is no number was refused before; what does not fit is the largest
 		unsigned long long length = strtoull(value, NULL, 10);
 		head->has_body |= length > 0;
-		head->too_large |= length > HEAD_BODY_MAX;
+		head->length = length;
 	} else if (is(name, n_name, "Transfer-Encoding")) {
 		head->codings++;
 		head->has_body = true;
-		head->chunked = is(value, n_coding, "chunked");
 	} else if (is(name, n_name, "Content-Encoding"))
 		head->encoded |= !is(value, n_value, "identity");
 	else if (is(name, n_name, "Content-Type")) {
@@ -191,8 +222,11 @@ void head_end(struct head *head, bool needs_host, const char *names)
 	if (head->lengths && head->codings)
 		head_refuse(head, API_BAD_REQUEST, true,
 		            "a request has a Content-Length or a Transfer-Encoding, not both");
-	if (head->codings > 1 || (head->codings && !head->chunked))
-		head_refuse(head, API_BAD_REQUEST, true, "the only Transfer-Encoding is chunked");
+	if (head->codings)
+		head_refuse(head, API_NO_LENGTH, true,
+		            "a body comes with its Content-Length; no Transfer-Encoding is taken");
+	if (head->authorization.lines > 1)
+		head_refuse(head, API_BAD_REQUEST, true, "a request has one Authorization");
 	if (head->types > 1)
 		head_refuse(head, API_BAD_REQUEST, true, "a request has one Content-Type");
 	if (head->hosts > 1 || (needs_host && !head->hosts))
@@ -202,8 +236,28 @@ void head_end(struct head *head, bool needs_host, const char *names)
 		            "this server is not asked by that Host; poundd --host adds names");
 	if (head->encoded)
 		head_refuse(head, API_NOT_JSON, false, "the only Content-Encoding is identity");
-	if (head->too_large)
+	if (head->length > HEAD_BODY_MAX)
 		head_refuse(head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+}
+
+/* Judges where a request that changes something comes from: a page of the web names its own origin, and its browser says
+ * whether that is this server's.  Programs say neither.
+ *
+ * Source   RFC 6454 section 7; Fetch Metadata Request Headers section 2.3
+ * Test     unit_http_head: what_a_page_of_another_origin_sends_is_foreign
+ */
+void head_origin(struct head *head)
+{
+	static const char *const schemes[] = {"http://", "https://"};
+	const char *origin = head->origin.value, *site = head->site.value;
+	bool own = head->origin.lines == 0;
+	for (size_t i = 0; i < sizeof schemes / sizeof schemes[0]; i++) {
+		size_t n = strlen(schemes[i]);
+		own |= head->origin.lines == 1 && !strncasecmp(origin, schemes[i], n) && *head->host &&
+		       !strcasecmp(origin + n, head->host);
+	}
+	if (!own || (head->site.lines && strcmp(site, "same-origin") != 0 && strcmp(site, "none") != 0))
+		head_refuse(head, API_FOREIGN, false, "pages of another origin must not change anything here");
 }
 
 /* Judges the Idempotency-Key of a request that may have one: it is of UTF-8, as what is stored is text, and a second one

@@ -13,6 +13,10 @@ enum {
 	HEAD_BODY_MAX = 1 << 20, /* [bytes] */
 	HEAD_TEXT_SIZE = 1024,   /* of a value that is kept [bytes] */
 	HEAD_KEY_MAX = 200,      /* characters of an Idempotency-Key */
+	HEAD_TARGET_MAX = 4096,  /* [bytes] */
+	HEAD_ARGUMENTS_MAX = 16,
+	HEAD_LINES_MAX = 64,      /* headers */
+	HEAD_BYTES_MAX = 1 << 14, /* of the request line and the headers */
 };
 
 /* A header that is read later. */
@@ -24,26 +28,30 @@ struct head_text {
 
 struct head {
 	int hosts, lengths, codings, types; /* headers of that name */
-	bool chunked;                       /* the coding is "chunked" and no other */
 	bool encoded;                       /* the body is compressed or the like */
 	bool json;                          /* the body is declared as JSON */
-	bool too_large;                     /* the length declared is over HEAD_BODY_MAX */
 	bool has_body;
+	size_t length; /* of the body, as it is declared */
 	char host[256];
 	struct head_text authorization, key; /* key: Idempotency-Key */
 	struct head_text etags;              /* If-None-Match */
 	struct head_text prefer, accept;
-	enum api_fault fault; /* the first that was found, API_NO_FAULT: none */
-	char detail[200];     /* a sentence about it */
-	bool close;           /* it leaves in doubt where the request ends */
+	struct head_text origin, site; /* site: Sec-Fetch-Site */
+	enum api_fault fault;          /* the first that was found, API_NO_FAULT: none */
+	char detail[200];              /* a sentence about it */
+	bool close;                    /* it leaves in doubt where the request ends */
 };
 
-void head_target(struct head *head, const char *target); /* the first, with the raw target */
+/* the first, with the raw target; its bytes that are to be taken apart: all, or none of its arguments when they are refused */
+size_t head_target(struct head *head, const char *target);
+/* what follows the target, as libmicrohttpd has left it when it has found so many headers in it */
+void head_bytes(struct head *head, const char *bytes, size_t n, int n_lines);
 void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value);
 /* the last; `names` are hosts, between commas, besides localhost and addresses (NULL: none) */
 void head_end(struct head *head, bool needs_host, const char *names);
 
-void head_key(struct head *head); /* after that, if the request may have an Idempotency-Key */
+void head_origin(struct head *head); /* after that, if the request changes something */
+void head_key(struct head *head);    /* after that, if the request may have an Idempotency-Key */
 void head_argument(struct head *head, int operation, const char *name, const char *value);
 /* a fault that is found later */
 void head_refuse(struct head *head, enum api_fault fault, bool close, const char *format, ...)

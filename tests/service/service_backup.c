@@ -1,4 +1,5 @@
 /* Copies of a database made while studies are submitted and run: each is a whole database, and serves. */
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -7,7 +8,7 @@
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
-enum { COPIES = 20, IDS_MAX = 3 * COPIES + 1 };
+enum { COPIES = 20, IDS_MAX = 3 * COPIES + 60 };
 
 static char ids[IDS_MAX][17];
 static int n_ids;
@@ -106,6 +107,164 @@ static void a_copy_can_be_copied(void **state)
 	                 service_number(service, "SELECT count(*) FROM study"));
 }
 
+/* The status of a POST of a small study, and of all else that changes something. */
+static void nothing_is_accepted(const struct service *service, const char *why)
+{
+	char *study = service_study(2, 1, 99), path[64];
+	struct answer answer = service_post(service, study);
+	assert_int_equal(answer.status, 503);
+	assert_non_null(strstr(answer.body, why));
+	answer_free(&answer);
+	answer = service_get(service, "/readyz");
+	assert_int_equal(answer.status, 503);
+	answer_free(&answer);
+	snprintf(path, sizeof path, "/v1/studies/%s", ids[0]);
+	answer = service_ask(service, &(struct ask){.method = "DELETE", .path = path});
+	// it may have been done in the file that is not there any more, and then have been put back with it
+	assert_true(answer.status == 503 || answer.status == 404);
+	answer_free(&answer);
+	free(study);
+}
+
+static void a_database_that_is_replaced_under_a_server_is_not_written_to(void **state)
+{
+	static const char *const ends[] = {"", "-lock"};
+	struct service *service = *state;
+	char name[128], aside[160];
+	n_ids = 0;
+	submit(service, 2);
+	assert_true(service_wait(service, ids[0], "succeeded", 0));
+	for (int i = 0; i < 2; i++) {
+		snprintf(name, sizeof name, "%s%s", service->database, ends[i]);
+		snprintf(aside, sizeof aside, "%s-aside", name);
+		assert_int_equal(rename(name, aside), 0); // removed
+		nothing_is_accepted(service, "removed or replaced");
+		FILE *other = fopen(name, "w"); // and replaced
+		fclose(other);
+		nothing_is_accepted(service, "removed or replaced");
+		assert_int_equal(rename(aside, name), 0); // and put back
+		submit(service, 2);
+		assert_true(service_wait(service, ids[n_ids - 1], "succeeded", 0));
+	}
+	char *log = program_file(service->log, NULL);
+	assert_non_null(strstr(log, "was removed or replaced while this server runs"));
+	free(log);
+}
+
+static void a_second_server_after_the_lock_is_removed_is_alone(void **state)
+{
+	struct service *service = *state, second = *service;
+	char name[128];
+	n_ids = 0;
+	submit(service, 2);
+	snprintf(name, sizeof name, "%s-lock", service->database);
+	assert_int_equal(unlink(name), 0);
+	snprintf(second.log, sizeof second.log, "%s/second", service->directory);
+	second.pid = 0;
+	service_start(&second, 1);
+	nothing_is_accepted(service, "removed or replaced");
+	submit(&second, 2);
+	service_kill(service);
+	assert_true(service_wait(&second, ids[n_ids - 1], "succeeded", 0));
+	service_stop(&second);
+	unlink(second.log);
+}
+
+/* A file's content put into another. */
+static void overwrite(const char *from, const char *to)
+{
+	size_t n;
+	char *bytes = program_file(from, &n);
+	FILE *file = fopen(to, "w");
+	assert_non_null(bytes);
+	assert_int_equal(fwrite(bytes, 1, n, file), n);
+	fclose(file);
+	free(bytes);
+}
+
+static void restore(const struct service *service, const char *from, int status)
+{
+	struct program_outcome outcome = program_run(
+	    (const char *const[]){"poundd", "--database", service->database, "--restore", from, NULL}, NULL);
+	program_expect(&outcome, status);
+	program_free(&outcome);
+}
+
+static void a_wal_is_not_applied_to_another_database(void **state)
+{
+	struct service *service = *state;
+	char backup[128], line[128], wal[128];
+	n_ids = 0;
+	snprintf(backup, sizeof backup, "%s/backup.db", service->directory);
+	snprintf(wal, sizeof wal, "%s-wal", service->database);
+	copy(service->database, backup, 0);
+	for (int i = 0; i < 20; i++)
+		submit(service, 2);
+	service_kill(service);
+	assert_int_equal(access(wal, F_OK), 0);
+	// as who restores a file by hand does it: another file of that name, the old WAL beside it
+	unlink(service->database);
+	overwrite(backup, service->database);
+	assert_int_not_equal(service_run(service, 1), 0);
+	char *log = program_file(service->log, NULL);
+	snprintf(line, sizeof line, "-wal belongs to another file than");
+	assert_non_null(strstr(log, line));
+	free(log);
+	assert_int_equal(access(wal, F_OK), 0); // and nothing was lost by the try
+	restore(service, backup, 0);
+	service_start(service, 1);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 0);
+	// and pages that do not hold together are found where a server was killed
+	submit(service, 200);
+	assert_true(service_wait(service, ids[n_ids - 1], "succeeded", 0));
+	service_stop(service);
+	service_start(service, 1);
+	submit(service, 2);
+	service_kill(service);
+	FILE *file = fopen(service->database, "r+");
+	assert_non_null(file);
+	fseek(file, 0, SEEK_END);
+	for (long at = ftell(file) - 4096; at >= 2 * 4096; at -= 4096) {
+		fseek(file, at, SEEK_SET);
+		fputs("no page of a database", file);
+	}
+	fclose(file);
+	assert_int_not_equal(service_run(service, 1), 0);
+	log = program_file(service->log, NULL);
+	assert_non_null(strstr(log, "the database is damaged"));
+	free(log);
+}
+
+static void a_copy_is_restored_in_the_place_of_a_database_and_its_wal(void **state)
+{
+	struct service *service = *state;
+	char backup[128], path[128];
+	n_ids = 0;
+	submit(service, 2);
+	assert_true(service_wait(service, ids[0], "succeeded", 0));
+	snprintf(backup, sizeof backup, "%s/backup.db", service->directory);
+	copy(service->database, backup, 0);
+	submit(service, 2);
+	restore(service, backup, 1); // it is in use
+	service_kill(service);
+	restore(service, "/nonexistent", 1);
+	overwrite("/bin/true", (snprintf(path, sizeof path, "%s/true.db", service->directory), path));
+	restore(service, path, 1); // no database
+	unlink(path);
+	restore(service, backup, 0);
+	service_start(service, 1);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 1);
+	assert_true(service_wait(service, ids[0], "succeeded", 0));
+	service_stop(service);
+	// the former is whole, with what was in its WAL
+	strcat(service->database, "-replaced");
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 2);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
-CHECK_MAIN(SERVED(a_copy_made_while_studies_run_is_a_whole_database), SERVED(a_copy_can_be_copied))
+CHECK_MAIN(SERVED(a_copy_made_while_studies_run_is_a_whole_database), SERVED(a_copy_can_be_copied),
+           SERVED(a_database_that_is_replaced_under_a_server_is_not_written_to),
+           SERVED(a_second_server_after_the_lock_is_removed_is_alone),
+           SERVED(a_wal_is_not_applied_to_another_database),
+           SERVED(a_copy_is_restored_in_the_place_of_a_database_and_its_wal))

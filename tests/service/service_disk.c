@@ -175,5 +175,47 @@ static void a_full_disk_refuses_studies_answers_questions_and_is_survived(void *
 	free(large);
 }
 
-CHECK_MAIN(cmocka_unit_test_setup_teardown(a_full_disk_refuses_studies_answers_questions_and_is_survived,
+/* Posts studies of a tenth of a mebibyte until one is refused; how many were taken. */
+static int fill_by_studies(const struct service *service, char (*ids)[17], int most)
+{
+	static const char study[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
+	                            "2}, {\"frequency_hz\": 3}], "
+	                            "\"excitation\": {\"frequency_hz\": 5, \"cycles\": 2, \"signals\": 100}}}";
+	int n = 0;
+	for (int status = 201; status == 201 && n < most;) {
+		struct answer answer = service_post(service, study);
+		status = answer.status;
+		if (status == 201) {
+			memcpy(ids[n], answer.location + strlen("/v1/studies/"), 17);
+			assert_true(service_wait(service, ids[n++], "succeeded", 0));
+		}
+		answer_free(&answer);
+	}
+	return n;
+}
+
+static void studies_that_are_deleted_make_room(void **state)
+{
+	enum { MOST = 300 };
+	static char ids[MOST][17];
+	struct service *service = *state;
+	if (!service) {
+		check_report("needs root, for a disk of its own");
+		skip();
+	}
+	service_start(service, 1);
+	const int first = fill_by_studies(service, ids, MOST);
+	assert_true(first > 2 && first < MOST);
+	assert_int_equal(status_of(service, "GET", "/readyz", ""), 503);
+	for (int i = 0; i < first; i++)
+		assert_int_equal(status_of(service, "DELETE", "/v1/studies/%s", ids[i]), 204);
+	assert_int_equal(status_of(service, "GET", "/readyz", ""), 200);
+	const int second = fill_by_studies(service, ids, MOST);
+	check_report("a disk of 8 MiB: %d studies until 503, and after all were deleted %d more", first, second);
+	assert_true(second >= first - 1);
+	assert_int_equal(status_of(service, "GET", "/v1/studies/%s/results", ids[second - 1]), 200);
+}
+
+CHECK_MAIN(cmocka_unit_test_setup_teardown(studies_that_are_deleted_make_room, small_disk, large_disk),
+           cmocka_unit_test_setup_teardown(a_full_disk_refuses_studies_answers_questions_and_is_survived,
                                            small_disk, large_disk))

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "schema/http/api.h"
+#include "schema/http/http_head.h"
 #include "tests/support/jsonschema.h"
 #include "tests/support/raw_http.h"
 
@@ -28,6 +28,9 @@ static const struct {
     {PLAIN, "POST", "/v1/studies", {"Content-Type: text/plain"}, "study", 415},
     {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json", "Host: evil.example"}, "study", 421},
     {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json"}, "{}", 422},
+    {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json", "Origin: null"}, "study", 403},
+    {PLAIN, "POST", "/v1/studies/{new}/cancel", {"Origin: http://evil.example"}, NULL, 403},
+    {PLAIN, "DELETE", "/v1/studies/{new}", {"Sec-Fetch-Site: cross-site"}, NULL, 403},
     {PLAIN, "GET", "/v1/studies", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/studies?status=queued&limit=1", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/studies?limit=0", {0}, NULL, 400},
@@ -64,6 +67,8 @@ static const struct {
     {DAMAGED, "GET", "/v1/studies/{done}/samples", {0}, NULL, 500},
 };
 
+enum { HELD = 65 /* connections by which not even probes are answered */ };
+
 static const char STUDY_OF_A_TOKEN[] = "Authorization: Bearer 0123456789abcdef0123456789abcdef";
 
 struct world {
@@ -79,7 +84,7 @@ struct world {
 static int ask(struct world *world, const char *method, const char *path, const char *const headers[2],
                const char *body)
 {
-	char target[160], allow[64], pointer[160], schema[200], escaped[96] = "";
+	char target[HEAD_TARGET_MAX + 200], allow[64], pointer[160], schema[200], escaped[96] = "";
 	long long id;
 	struct jsonschema_fault fault = {0};
 	struct ask asked = {.method = method, .path = target, .headers = {headers[0], headers[1]}};
@@ -154,12 +159,16 @@ static void ask_all(struct world *world, enum situation situation)
 /* Every operation by its method and path, with a body if it takes one; all must answer so. */
 static void ask_each(struct world *world, const char *header, int status, bool open_too)
 {
+	static char arguments[HEAD_TARGET_MAX];
+	memset(arguments, '&', status == 414 ? sizeof arguments - 1 : 0);
+	*arguments = '?';
+	arguments[status == 414 ? sizeof arguments - 1 : 0] = '\0';
 	for (int o = 0; o < API_N_OPERATIONS; o++) {
 		const struct api_operation *operation = &api_operations[o];
-		char path[96];
+		char path[HEAD_TARGET_MAX + 96];
 		const char *rest = strstr(operation->path, "{id}");
-		snprintf(path, sizeof path, "%.*s%s%s", (int)strcspn(operation->path, "{"), operation->path,
-		         rest ? "{none}" : "", rest ? rest + 4 : "");
+		snprintf(path, sizeof path, "%.*s%s%s%s", (int)strcspn(operation->path, "{"), operation->path,
+		         rest ? "{none}" : "", rest ? rest + 4 : "", arguments);
 		const char *const headers[] = {"Content-Type: application/json", header};
 		if (operation->open && !open_too)
 			continue;
@@ -204,6 +213,12 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 	ask_each(&world, "Host: evil.example", 421, true);
 	ask_each(&world, "X: \x01", 400, true);
 	ask_each(&world, "Content-Length: 2000000", 413, true);
+	ask_each(&world, "Transfer-Encoding: chunked", 411, true);
+	ask_each(&world, NULL, 414, true);
+	memset(world.large, 'X', HEAD_BYTES_MAX);
+	world.large[1] = ':';
+	world.large[HEAD_BYTES_MAX] = '\0';
+	ask_each(&world, world.large, 431, true);
 	service_stop(world.service);
 
 	service_change(world.service, "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB)");
@@ -213,15 +228,18 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 
 	setenv("POUNDD_CONNECTIONS_MAX", "1", 1);
 	begin(&world);
-	int held = raw_open(world.service);
+	int held[HELD];
+	for (int i = 0; i < HELD; i++)
+		held[i] = raw_open(world.service);
 	// the one that asked whether the server is there may have been counted still, and this one refused
 	const char *const none[2] = {NULL, NULL};
-	for (int i = 0; i < 100 && ask(&world, "GET", "/v1/openapi.json", none, NULL) != 503; i++) {
-		close(held);
-		held = raw_open(world.service);
+	for (int i = 0; i < 100 && ask(&world, "GET", "/livez", none, NULL) != 503; i++) {
+		close(held[0]);
+		held[0] = raw_open(world.service);
 	}
 	ask_each(&world, NULL, 503, true);
-	close(held);
+	for (int i = 0; i < HELD; i++)
+		close(held[i]);
 	service_stop(world.service);
 	unsetenv("POUNDD_CONNECTIONS_MAX");
 

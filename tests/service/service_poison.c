@@ -19,14 +19,17 @@ enum { POISON = 666, STUDIES = 11, POISON_AT = 4 };
 static _Atomic(const struct pound_run *) poisoned;
 static int crash_signal; /* 0: none */
 
-struct pound_run *__real_pound_run_create(const struct pound_study *study, int n_workers);
-struct pound_run *__wrap_pound_run_create(const struct pound_study *study, int n_workers);
+struct pound_run *__real_pound_run_create_by(const struct pound_study *study, int n_workers,
+                                             const atomic_bool *stop);
+struct pound_run *__wrap_pound_run_create_by(const struct pound_study *study, int n_workers,
+                                             const atomic_bool *stop);
 enum pound_status __real_pound_run_block(struct pound_run *run, int block, int worker);
 enum pound_status __wrap_pound_run_block(struct pound_run *run, int block, int worker);
 
-struct pound_run *__wrap_pound_run_create(const struct pound_study *study, int n_workers)
+struct pound_run *__wrap_pound_run_create_by(const struct pound_study *study, int n_workers,
+                                             const atomic_bool *stop)
 {
-	struct pound_run *run = __real_pound_run_create(study, n_workers);
+	struct pound_run *run = __real_pound_run_create_by(study, n_workers, stop);
 	if (study->design.seed == POISON)
 		poisoned = run;
 	return run;
@@ -110,6 +113,36 @@ static void a_study_that_crashes_the_server_three_times_fails_and_the_others_fin
 	service_free(service);
 }
 
+static void a_study_of_which_ten_servers_are_killed_fails_and_the_others_finish(void **state)
+{
+	static const int signals[] = {SIGKILL, SIGKILL, SIGKILL, SIGKILL, SIGKILL, SIGKILL,
+	                              SIGKILL, SIGKILL, SIGKILL, SIGKILL, SIGKILL, SIGKILL};
+	struct service *service = service_new();
+	struct store *store = store_open(service->database);
+	(void)state;
+	assert_non_null(store);
+	for (int i = 0; i < STUDIES; i++)
+		submit(store, i == POISON_AT ? POISON : i);
+	// a server that is stopped in order has not run it in vain
+	int64_t id;
+	for (int i = 0; i < 20; i++) {
+		assert_int_equal(store_claim(store, &id), STORE_OK);
+		store_close(store);
+		store = store_open(service->database);
+		assert_non_null(store);
+	}
+	store_close(store);
+	int kills = crashes_of(service, signals, 12);
+	char *error = service_text(service, "SELECT error FROM study WHERE status = 'failed'");
+	check_report("a study among %d of which servers are killed: %d, failed: %s", STUDIES, kills, error);
+	assert_int_equal(kills, 10);
+	assert_int_equal(strncmp(error, "out-of-memory-or-crash: ", 24), 0);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'"),
+	                 STUDIES - 1);
+	free(error);
+	service_free(service);
+}
+
 static void a_study_that_crashes_the_server_twice_and_then_runs_has_succeeded(void **state)
 {
 	static const int signals[] = {SIGABRT, SIGABRT, 0};
@@ -126,4 +159,5 @@ static void a_study_that_crashes_the_server_twice_and_then_runs_has_succeeded(vo
 }
 
 CHECK_MAIN(cmocka_unit_test(a_study_that_crashes_the_server_three_times_fails_and_the_others_finish),
+           cmocka_unit_test(a_study_of_which_ten_servers_are_killed_fails_and_the_others_finish),
            cmocka_unit_test(a_study_that_crashes_the_server_twice_and_then_runs_has_succeeded))

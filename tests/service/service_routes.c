@@ -5,6 +5,7 @@
 
 #include "schema/http/api.h"
 #include "schema/json/json_pointer.h"
+#include "tests/support/latency.h"
 #include "tests/support/service.h"
 
 static void status_is(struct answer *answer, int status)
@@ -142,18 +143,14 @@ static void a_body_over_one_mebibyte_is_413(void **state)
 	                  .body = body};
 	assert_non_null(body);
 	memset(body, ' ', 3 * limit);
-	for (int chunked = 0; chunked < 2; chunked++) {
-		ask.chunked = chunked;
-		// blanks are no JSON: what is not too large is malformed
-		ask.length = limit;
-		problem_is(service_ask(service, &ask), 400, "");
-		ask.length = limit + 1;
-		problem_is(service_ask(service, &ask), 413, "1 MiB");
-		ask.length = 3 * limit;
-		problem_is(service_ask(service, &ask), 413, "1 MiB");
-	}
+	// blanks are no JSON: what is not too large is malformed
+	ask.length = limit;
+	problem_is(service_ask(service, &ask), 400, "");
+	ask.length = limit + 1;
+	problem_is(service_ask(service, &ask), 413, "1 MiB");
+	ask.length = 3 * limit;
+	problem_is(service_ask(service, &ask), 413, "1 MiB");
 	ask.headers[1] = "Expect: 100-continue";
-	ask.chunked = false;
 	problem_is(service_ask(service, &ask), 413, "1 MiB");
 	stored_studies_are(service, 0);
 	free(body);
@@ -412,6 +409,71 @@ static void results_come_as_json_or_csv(void **state)
 	problem_is(service_get(service, "/v1/studies/%s/results?format=xml", id), 400, "format must be");
 }
 
+/* Asks the same so often, one connection after the other, and prints how many answers a second there are. */
+static void rate(const struct service *service, const char *path)
+{
+	enum { N = 1000 };
+	struct answer first = service_get(service, "%s", path);
+	status_is(&first, 200);
+	double start = latency_now();
+	for (int i = 0; i < N; i++) {
+		struct answer answer = service_get(service, "%s", path);
+		assert_int_equal(answer.length, first.length);
+		assert_memory_equal(answer.body, first.body, first.length);
+		answer_free(&answer);
+	}
+	double a_second = N / (latency_now() - start);
+	check_report("%.*s of %zu bytes: %.0f a second", (int)strcspn(path + 12, "0123456789?") + 12, path,
+	             first.length, a_second);
+	if (check_soaks())
+		assert_true(a_second >= 2000);
+	answer_free(&first);
+}
+
+static void an_answer_is_kept_until_what_it_is_about_changes(void **state)
+{
+	struct service *service = *state;
+	char id[17], other[17], path[80];
+	struct answer csv = finished(service, "results", "text/csv", id);
+	struct answer page = service_get(service, "/v1/studies?limit=100");
+	char *study = service_study(2, 1, 1);
+	assert_null(strstr(page.body, "\"next\": \""));
+	snprintf(path, sizeof path, "/v1/studies/%s/results?format=csv", id);
+	rate(service, path);
+	rate(service, "/v1/studies?limit=100");
+	// the same path is answered as it is asked for
+	struct answer json = service_get(service, "/v1/studies/%s/results", id);
+	struct answer again = service_ask(
+	    service, &(struct ask){.method = "GET", .path = strtok(path, "?"), .headers = {"Accept: text/csv"}});
+	assert_string_equal(json.type, "application/json");
+	assert_string_equal(again.type, "text/csv");
+	assert_string_equal(again.body, csv.body);
+	answer_free(&json);
+	answer_free(&again);
+	// a study more, its end, and a study less
+	service_submit(service, study, other);
+	again = service_get(service, "/v1/studies?limit=100");
+	assert_non_null(strstr(again.body, other));
+	answer_free(&again);
+	assert_true(service_wait(service, other, "succeeded", 0));
+	again = service_get(service, "/v1/studies?limit=100");
+	assert_null(strstr(again.body, "queued"));
+	assert_null(strstr(again.body, "running"));
+	answer_free(&again);
+	*strrchr(path, '/') = '\0';
+	struct answer gone = service_ask(service, &(struct ask){.method = "DELETE", .path = path});
+	assert_int_equal(gone.status, 204);
+	answer_free(&gone);
+	again = service_get(service, "/v1/studies?limit=100");
+	assert_null(strstr(again.body, id));
+	answer_free(&again);
+	problem_is(service_get(service, "/v1/studies/%s/results?format=csv", id), 404, "no such study");
+	problem_is(service_get(service, "/v1/studies/%s", id), 404, "no such study");
+	answer_free(&csv);
+	answer_free(&page);
+	free(study);
+}
+
 static void samples_come_as_csv_or_npy_with_a_row_per_run(void **state)
 {
 	struct service *service = *state;
@@ -627,6 +689,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(list_arguments_that_make_no_sense_are_400),
            SERVED(list_arguments_that_are_empty_are_as_if_they_were_not_there),
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
+           SERVED(an_answer_is_kept_until_what_it_is_about_changes),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),
            SERVED(the_form_that_is_wanted_most_comes_and_the_first_of_equals),
            SERVED(samples_asked_for_by_many_at_once_are_the_same_for_all),

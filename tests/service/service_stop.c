@@ -75,6 +75,50 @@ static void a_second_signal_ends_it_at_once_and_nothing_is_lost(void **state)
 	free(study);
 }
 
+static void a_terminal_that_hangs_up_does_not_end_it(void **state)
+{
+	struct service *service = *state;
+	kill(service->pid, SIGHUP);
+	// a process that a signal has ended does not end with 0
+	service_stop(service);
+}
+
+/* A document of 300 bytes of which one block takes a quarter of a minute. */
+static const char lengthy[] = "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": "
+                              "[{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], "
+                              "\"excitation\": {\"signals\": 1}}, "
+                              "\"spectrum\": {\"frequencies_hz\": {\"count\": 600}, \"pulses\": 1000000}}";
+
+static void it_ends_soon_whatever_runs_and_so_does_a_cancelled_study(void **state)
+{
+	static const char *const settings[][2] = {{NULL}};
+	char *study = service_study(2, 1, 1), id[17], next[17], path[64];
+	(void)state;
+	struct service *service = service_with(settings, 1);
+	service_submit(service, lengthy, id);
+	service_submit(service, study, next);
+	assert_true(service_wait(service, id, "running", 0));
+	snprintf(path, sizeof path, "/v1/studies/%s/cancel", id);
+	double start = now_s();
+	struct answer answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	assert_true(service_wait(service, next, "succeeded", 0));
+	double after = now_s() - start;
+	check_report(
+	    "the study behind a cancelled one of a million pulses and 600 frequencies ended %.2f s later", after);
+	assert_true(after < (check_soaks() ? 0.5 : 5));
+	service_submit(service, lengthy, id);
+	assert_true(service_wait(service, id, "running", 0));
+	double s = stop_s(service);
+	check_report("SIGTERM while one runs: ended with 0 after %.2f s", s);
+	assert_true(s < (check_soaks() ? 0.5 : 5));
+	// it goes on at the next start, and is not held up by it
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'"), 1);
+	service_free(service);
+	free(study);
+}
+
 static struct {
 	const struct service *service;
 	pthread_mutex_t lock;
@@ -270,6 +314,8 @@ static void systemd_is_told_when_it_is_ready_alive_and_stopping(void **state)
 
 CHECK_MAIN(cmocka_unit_test(systemd_is_told_when_it_is_ready_alive_and_stopping),
            SERVED(an_idle_server_and_one_at_work_end_when_they_are_told),
+           cmocka_unit_test(it_ends_soon_whatever_runs_and_so_does_a_cancelled_study),
+           SERVED(a_terminal_that_hangs_up_does_not_end_it),
            SERVED(a_second_signal_ends_it_at_once_and_nothing_is_lost),
            SERVED(a_server_that_ends_under_load_keeps_all_that_it_accepted),
            SERVED(a_history_that_is_being_computed_ends_with_the_server),

@@ -143,7 +143,8 @@ double *function_design_of(const struct pound_design *design)
 {
 	const struct pound_study study = function_study(design);
 	double *x = malloc(sizeof *x * 2 * FUNCTION_INPUTS * (size_t)pound_design_rows_most(&study));
-	pound_design_fill(&study, x);
+	pound_design_probabilities(&study, NULL, x);
+	pound_design_values(&study, x, NULL, x);
 	return x;
 }
 

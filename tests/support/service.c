@@ -187,7 +187,7 @@ struct answer service_ask(const struct service *service, const struct ask *ask)
 {
 	struct answer answer = {0};
 	struct curl_slist *headers = NULL;
-	char url[512];
+	char url[8192];
 	long status;
 	CURL *curl = curl_easy_init();
 	assert_non_null(curl);
@@ -210,8 +210,6 @@ struct answer service_ask(const struct service *service, const struct ask *ask)
 	for (size_t i = 0; i < sizeof ask->headers / sizeof ask->headers[0]; i++)
 		if (ask->headers[i])
 			headers = curl_slist_append(headers, ask->headers[i]);
-	if (ask->chunked)
-		headers = curl_slist_append(headers, "Transfer-Encoding: chunked");
 	curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers);
 	CURLcode code = curl_easy_perform(curl);
 	if (code != CURLE_OK && !ask->may_fail)

@@ -52,7 +52,6 @@ struct ask {
 	const char *headers[3];
 	const char *body;
 	size_t length;
-	bool chunked;
 	bool may_fail; /* no answer is one of status 0 */
 };
 

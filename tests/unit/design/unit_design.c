@@ -25,7 +25,8 @@ static double *unit_design(const char *method, int rows, uint64_t seed)
 	struct pound_study study = {
 	    .n_inputs = D, .inputs = inputs, .design = {.method = row_named(method), .rows = rows, .seed = seed}};
 	double *x = malloc(sizeof *x * 2 * D * (size_t)rows);
-	pound_design_fill(&study, x);
+	pound_design_probabilities(&study, NULL, x);
+	pound_design_values(&study, x, NULL, x);
 	return x;
 }
 
@@ -43,7 +44,7 @@ static double *grown_design(const char *method, int max_rows, int randomisations
 	*grouping = pound_design_grouping(&study);
 	*rows = pound_design_rows_most(&study);
 	double *u = malloc(sizeof *u * 2 * D * (size_t)*rows);
-	pound_design_probabilities(&study, u);
+	pound_design_probabilities(&study, NULL, u);
 	return u;
 }
 
@@ -214,8 +215,9 @@ static void values_are_quantiles_of_the_inputs_distributions(void **state)
 	                                {.distribution = {.type = 2, .p = {6.0}}}};
 	struct pound_study study = {.n_inputs = 2, .inputs = inputs, .design = {.rows = N, .seed = 3}};
 	double x[N * 4], u[N * 4];
-	pound_design_fill(&study, x);
-	pound_design_probabilities(&study, u);
+	pound_design_probabilities(&study, NULL, x);
+	pound_design_values(&study, x, NULL, x);
+	pound_design_probabilities(&study, NULL, u);
 	for (int k = 0; k < N * 4; k++)
 		check_near(x[k], pound_distribution_quantile(&inputs[k % 2].distribution, u[k]), 0.0);
 }

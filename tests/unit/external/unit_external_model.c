@@ -84,7 +84,8 @@ static void rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_num
 	char *head = model_rows(study, run, 0, 2, &n), *rest = model_rows(study, run, 2, 4, &n_rest);
 	assert_memory_equal(head, "p,\"q, r\"\n", 9);
 	double x[6 * 2 * 2];
-	pound_design_fill(study, x);
+	pound_design_probabilities(study, NULL, x);
+	pound_design_values(study, x, NULL, x);
 	char *at = head + 9;
 	for (int row = 0; row < 6; row++)
 		for (int sample = 0; sample < 4; sample++) {
@@ -228,7 +229,8 @@ static char *noisy_csv(const char *document, bool shared, bool variance)
 	char *csv = NULL;
 	size_t n;
 	FILE *out = open_memstream(&csv, &n);
-	pound_design_fill(study, x);
+	pound_design_probabilities(study, NULL, x);
+	pound_design_values(study, x, NULL, x);
 	fputs(variance ? "y,y.variance\n" : "y\n", out);
 	for (int row = 0; row < study->design.rows; row++)
 		for (int sample = 0; sample < 4; sample++) {

@@ -64,7 +64,8 @@ static void check_multinomial(int n_rows, int groups, double (*moment)(int, int)
                               uint64_t seed)
 {
 	struct seen seen = {.n_moments = groups, .resamples = -1, .moment = moment};
-	free(estimates_of((struct pound_statistic){groups, 1, moments_of_seen, watch, &seen}, n_rows, seed));
+	free(
+	    estimates_of((struct pound_statistic){groups, 1, moments_of_seen, watch, &seen, NULL}, n_rows, seed));
 	assert_int_equal(seen.resamples, POUND_RESAMPLES);
 	const double n = n_rows, b = POUND_RESAMPLES;
 	for (int k = 0; k < groups; k++) {
@@ -119,7 +120,7 @@ static void the_interval_ends_at_the_quantiles_of_the_resamples(void **state)
 	// the values are 0, 1, ... 1999 in the order of the resamples
 	struct seen seen = {.n_moments = 1, .resamples = -1, .moment = one_hot};
 	struct pound_estimate *e =
-	    estimates_of((struct pound_statistic){1, 1, moments_of_seen, watch, &seen}, 10, 1);
+	    estimates_of((struct pound_statistic){1, 1, moments_of_seen, watch, &seen, NULL}, 10, 1);
 	check_near(e->value, -1.0, 0.0);
 	check_near(e->low, 0.025 * 1999.0, 1e-12);
 	check_near(e->high, 0.975 * 1999.0, 1e-12);
@@ -146,7 +147,7 @@ static void undefined_resamples_are_left_out_and_undefined_values_have_no_interv
 {
 	(void)state;
 	struct pound_estimate *e =
-	    estimates_of((struct pound_statistic){1, 3, first_row, seven_or_nothing, NULL}, 10, 1);
+	    estimates_of((struct pound_statistic){1, 3, first_row, seven_or_nothing, NULL, NULL}, 10, 1);
 	check_near(e[0].low, 7.0, 0.0);
 	check_near(e[0].high, 7.0, 0.0);
 	assert_true(isnan(e[1].low) && isnan(e[1].high));
@@ -173,7 +174,7 @@ static void both_means(const void *subject, const double *mean, double *value)
 static void intervals_of_a_mean_are_those_of_the_normal_law(void **state)
 {
 	(void)state;
-	const struct pound_statistic statistic = {2, 2, normal_row, both_means, NULL};
+	const struct pound_statistic statistic = {2, 2, normal_row, both_means, NULL, NULL};
 	struct pound_estimate *e = estimates_of(statistic, ROWS, 5);
 	check_near(e[0].value, 0.0, 1e-13);
 	// a 2.5 % quantile of 2000 normal values has deviation sqrt(.025 .975 / 2000) / .0584 = .060
@@ -198,7 +199,7 @@ static void sums_are_the_same_bits_at_any_width(void **state)
 	for (int k = 0; k < TILES * MOST * POUND_TILE; k++)
 		table[k] = sin(k);
 	for (int s = 0; s < 6; s++) {
-		const struct pound_tiles tiles = {sizes[s], TILES, table};
+		const struct pound_tiles tiles = {sizes[s], TILES, table, NULL};
 		pound_resample_sums(POUND_WIDTH_PORTABLE, &tiles, 3, 8, want);
 		for (int lanes = 1; lanes <= 8; lanes++) {
 			if (pound_dispatch_width(lanes) < 0)
@@ -240,7 +241,8 @@ static void however_many_values_there_are_the_ends_are_their_quantiles(void **st
 	static const int wanted[] = {2, 3, 4, 40, 41, 42, 43, 500, POUND_RESAMPLES + 1};
 	for (int k = 0; k < 9; k++) {
 		struct told told = {.wanted = wanted[k]};
-		struct pound_estimate *e = estimates_of((struct pound_statistic){1, 1, uneven, tell, &told}, 100, k);
+		struct pound_estimate *e =
+		    estimates_of((struct pound_statistic){1, 1, uneven, tell, &told, NULL}, 100, k);
 		const int n = wanted[k] - 1;
 		qsort(told.value + 1, n, sizeof(double), ascending);
 		check_near(e->low, gsl_stats_quantile_from_sorted_data(told.value + 1, 1, n, 0.025), 1e-15);

@@ -45,8 +45,9 @@ static struct pound_ratio_indices indices_of(output *y, int rows, int seed)
 	const int n_samples = pound_design_samples(&study), n = rows * n_samples;
 	double *u = malloc(sizeof *u * 2 * D * (size_t)rows), *x = malloc(sizeof *x * 2 * D * (size_t)rows);
 	double *values = malloc(2 * sizeof *values * (size_t)n);
-	pound_design_probabilities(&study, u);
-	pound_design_fill(&study, x);
+	pound_design_probabilities(&study, NULL, u);
+	pound_design_probabilities(&study, NULL, x);
+	pound_design_values(&study, x, NULL, x);
 	for (int k = 0; k < n; k++) {
 		double at[D];
 		for (int j = 0; j < D; j++)

@@ -46,7 +46,7 @@ static void estimate(const double (*row)[2], int n_rows, struct pound_grouping g
                      const int64_t *number, struct pound_estimate estimates[2])
 {
 	const struct pairs pairs = {row};
-	const struct pound_statistic statistic = {2, 2, pairs_moments, pairs_values, &pairs};
+	const struct pound_statistic statistic = {2, 2, pairs_moments, pairs_values, &pairs, NULL};
 	const struct pound_scatter scatter = {grouping, number};
 	double scratch[64];
 	assert_true(pound_jackknife_scratch(&scatter, 2) <= 64);
@@ -131,7 +131,7 @@ static void rows_in_groups_are_never_resampled(void **state)
 {
 	(void)state;
 	const struct pairs pairs = {rows};
-	const struct pound_statistic statistic = {2, 2, pairs_moments, pairs_values, &pairs};
+	const struct pound_statistic statistic = {2, 2, pairs_moments, pairs_values, &pairs, NULL};
 	const struct pound_scatter scatter = {{4, 1}, NULL};
 	struct pound_estimate want[2], got[2];
 	double *scratch = malloc(sizeof *scratch * pound_interval_scratch(8, 2, 2));

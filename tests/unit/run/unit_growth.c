@@ -125,8 +125,8 @@ static void a_grown_design_keeps_its_rows(void **state)
 		assert_true(pound_design_rows_most(&more) > rows);
 		double *u = malloc(sizeof *u * 2 * D * (size_t)rows),
 		       *v = malloc(sizeof *v * 2 * D * (size_t)pound_design_rows_most(&more));
-		pound_design_probabilities(&less, u);
-		pound_design_probabilities(&more, v);
+		pound_design_probabilities(&less, NULL, u);
+		pound_design_probabilities(&more, NULL, v);
 		assert_memory_equal(u, v, sizeof *u * 2 * D * (size_t)rows);
 		free(u), free(v);
 	}

@@ -1,0 +1,206 @@
+/* Shares: what many connections of one client may take, and what is left for others meanwhile. */
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "tests/support/latency.h"
+#include "tests/support/raw_http.h"
+
+#define HOST "Host: localhost\r\n"
+
+static void pause_ms(int ms)
+{
+	nanosleep(&(struct timespec){.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L}, NULL);
+}
+
+static void finished_study(const struct service *service, char id[17])
+{
+	char *study = service_study(4, 2, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	free(study);
+}
+
+static void open_many(const struct service *service, const char *bytes, int *sockets, int n)
+{
+	for (int i = 0; i < n; i++) {
+		sockets[i] = raw_open(service);
+		raw_send(sockets[i], bytes, strlen(bytes));
+	}
+}
+
+static void close_many(const int *sockets, int n)
+{
+	for (int i = 0; i < n; i++)
+		close(sockets[i]);
+}
+
+/* How many of them are answered with a status within so many seconds, the others not at all. */
+static int answered(const int *sockets, int n, int status, double seconds)
+{
+	int told = 0;
+	static struct raw_answer answer;
+	double end = latency_now() + seconds;
+	for (int i = 0; i < n; i++) {
+		double left = end - latency_now();
+		raw_receive(sockets[i], left > 0.02 ? left : 0.02, &answer);
+		if (answer.status == status)
+			told++;
+		else if (answer.status != 0)
+			fail_msg("%d: %s", answer.status, answer.text);
+	}
+	return told;
+}
+
+static void who_asks_for_more_than_a_share_is_refused(void **state)
+{
+	enum { N = 40, SHARE = 16 };
+	struct service *service = *state;
+	int sockets[N];
+	char long_id[17], id[17], get[128];
+	service_histories(service, 900, long_id); // seconds each
+	finished_study(service, id);
+	snprintf(get, sizeof get, "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
+	         long_id);
+	open_many(service, get, sockets, N);
+	int refused = answered(sockets, N, 503, 1);
+	// what is short does not stand in that queue
+	double start = latency_now();
+	struct answer csv = service_get(service, "/v1/studies/%s/results?format=csv", id);
+	assert_int_equal(csv.status, 200);
+	answer_free(&csv);
+	double s = latency_now() - start;
+	close_many(sockets, N);
+	check_report(
+	    "%d at once for samples that take seconds: %d refused with 503; another's table after %.0f ms", N,
+	    refused, 1e3 * s);
+	assert_int_equal(refused, N - SHARE);
+	if (check_soaks())
+		assert_true(s < 0.1);
+}
+
+static void more_than_half_of_the_connections_do_not_wait_and_who_hangs_up_frees_his_place(void **state)
+{
+	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "20"}, {NULL}};
+	enum { N = 16, MOST = 10 };
+	int sockets[N];
+	char id[17], wait[160];
+	(void)state;
+	struct service *service = service_with(settings, 1);
+	finished_study(service, id);
+	snprintf(wait, sizeof wait,
+	         "GET /v1/studies/%s HTTP/1.1\r\n" HOST "If-None-Match: *\r\nPrefer: wait=30\r\n\r\n", id);
+	open_many(service, wait, sockets, N);
+	assert_int_equal(answered(sockets, N, 304, 0.5), N - MOST);
+	close_many(sockets, N);
+	int free_again = 0;
+	// a place is free within a second; each of these that finds one waits, and is let go
+	for (int try = 0; try < 100 && !free_again; try++) {
+		pause_ms(50);
+		open_many(service, wait, sockets, 1);
+		free_again = answered(sockets, 1, 304, 0.05) == 0;
+		close_many(sockets, 1);
+	}
+	assert_true(free_again);
+	service_stop(service);
+	service_free(service);
+}
+
+static void a_probe_is_answered_when_no_more_connections_are_served(void **state)
+{
+	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "4"}, {NULL}};
+	enum { N = 8 };
+	int sockets[N];
+	char id[17];
+	(void)state;
+	struct service *service = service_with(settings, 1);
+	finished_study(service, id);
+	pause_ms(100); // for the connections before to be closed
+	open_many(service, "GET /livez HTTP/1.1\r\n", sockets, N);
+	static const char probe[] = "GET /livez HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
+	                  list[] = "GET /v1/studies HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n";
+	static struct raw_answer answer;
+	raw_ask(service, probe, strlen(probe), 5, &answer);
+	assert_int_equal(answer.status, 200);
+	raw_ask(service, list, strlen(list), 5, &answer);
+	assert_int_equal(answer.status, 503);
+	assert_non_null(strstr(answer.text, "Retry-After: "));
+	close_many(sockets, N);
+	service_stop(service);
+	service_free(service);
+}
+
+static void bodies_have_a_budget_and_their_memory_is_given_back(void **state)
+{
+	enum { N = 100, MOST = 64, HALF = 512 * 1024 };
+	static const char head[] = "POST /v1/studies HTTP/1.1\r\n" HOST
+	                           "Content-Type: application/json\r\nContent-Length: 1048576\r\n\r\n";
+	struct service *service = *state;
+	int sockets[N];
+	char *half = malloc(HALF), id[17];
+	memset(half, ' ', HALF);
+	finished_study(service, id);
+	const double before = service_resident_mb(service);
+	for (int i = 0; i < N; i++) {
+		open_many(service, head, &sockets[i], 1);
+		raw_send(sockets[i], half, HALF);
+	}
+	assert_int_equal(answered(sockets, N, 503, 2), N - MOST);
+	const double during = service_resident_mb(service);
+	close_many(sockets, N);
+	double after = during;
+	for (int i = 0; i < 100 && after > before + 4; i++) {
+		pause_ms(50);
+		after = service_resident_mb(service);
+	}
+	check_report(
+	    "%d bodies of 1 MiB at once: %d refused; resident before, then and after %.0f, %.0f, %.0f MB", N,
+	    N - MOST, before, during, after);
+	assert_true(after <= before + 8);
+	free(half);
+}
+
+/* A thousand connections of one client: bodies that do not end, polls that wait, samples and heads that do not come. */
+static void another_s_status_is_told_whatever_a_thousand_connections_do(void **state)
+{
+	enum { EACH = 250, KINDS = 4, ASKED = 200 };
+	static int sockets[KINDS * EACH];
+	struct service *service = *state;
+	struct latencies latencies = {0};
+	char long_id[17], id[17], bytes[KINDS][256];
+	service_histories(service, 900, long_id);
+	finished_study(service, id);
+	snprintf(bytes[0], sizeof bytes[0], "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "\r\n", long_id);
+	snprintf(bytes[1], sizeof bytes[1],
+	         "GET /v1/studies/%s HTTP/1.1\r\n" HOST "If-None-Match: *\r\nPrefer: wait=30\r\n\r\n", id);
+	snprintf(bytes[2], sizeof bytes[2],
+	         "POST /v1/studies HTTP/1.1\r\n" HOST
+	         "Content-Type: application/json\r\nContent-Length: 1048576\r\n\r\n{");
+	snprintf(bytes[3], sizeof bytes[3], "GET /v1/studies HTTP/1.1\r\n" HOST);
+	for (int k = 0; k < KINDS; k++)
+		open_many(service, bytes[k], sockets + k * EACH, EACH);
+	for (int i = 0; i < ASKED; i++) {
+		double asked = latency_now();
+		struct answer answer = service_get(service, "/v1/studies/%s", id);
+		assert_int_equal(answer.status, 200);
+		answer_free(&answer);
+		latency_add(&latencies, asked, latency_now());
+		// and each of the thousand asks for more
+		for (int k = 0; k < KINDS; k++)
+			raw_send(sockets[k * EACH + i % EACH], k == 2 ? "{" : bytes[k], k == 2 ? 1 : strlen(bytes[k]));
+	}
+	const double p99 = latency_quantile(&latencies, 0.99);
+	check_report("a thousand connections of one client: another's status p99 %.1f ms", p99);
+	if (check_soaks())
+		assert_true(p99 <= 50);
+	close_many(sockets, KINDS * EACH);
+	free(latencies.answers);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(who_asks_for_more_than_a_share_is_refused),
+           cmocka_unit_test(more_than_half_of_the_connections_do_not_wait_and_who_hangs_up_frees_his_place),
+           cmocka_unit_test(a_probe_is_answered_when_no_more_connections_are_served),
+           SERVED(bodies_have_a_budget_and_their_memory_is_given_back),
+           SERVED(another_s_status_is_told_whatever_a_thousand_connections_do))
