@@ -44,7 +44,7 @@ LIBS.tests  := -lcmocka -lcurl
 objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
 ENGINE := $(call objs,engine,$(LANED:%=engine/%.c)) \
           $(foreach file,$(LANED),$(WIDTHS:%=$(B)/engine/$(file)_%.o))
-SCHEMA := $(call objs,schema) $(B)/schema/examples.o
+SCHEMA := $(call objs,schema) $(call objs,schema/figure) $(B)/schema/examples.o
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
 # tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
@@ -164,7 +164,7 @@ fuzz: $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
 	@for target in $^; do mkdir -p $$target.corpus && \
 	  $$target -max_total_time=$(FUZZ) -max_len=8192 -artifact_prefix=$$target- $$target.corpus \
 	    tests/corpus/$${target##*/fuzz_} schema/examples || exit 1; done
-build/fuzz/%: tests/%.c $(wildcard schema/*.c) $(B)/schema/examples.c $(B)/libpound.a
+build/fuzz/%: tests/%.c $(wildcard schema/*.c schema/figure/*.c) $(B)/schema/examples.c $(B)/libpound.a
 	@mkdir -p $(@D)
 	clang -std=c17 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all $(CPPFLAGS) -o $@ $^ \
 	  $(LIBS.schema) $(LIBS.engine)

@@ -31,6 +31,15 @@ struct command {
 #define TABLE(name) " " #name
 #define TABLES      RESULT_TABLES(TABLE)
 
+/* Keys of the options that choose what a figure shows: none is printable, so that none is a short option. */
+enum {
+	FIGURE_KEY_BEFORE,
+#define X(name, values, lowest, highest, text) FIGURE_KEY_##name,
+	FIGURE_ARGUMENTS(X)
+#undef X
+};
+#define FIGURE_KEYS "\1\2\3\4\5\6\7\10\11\12\13"
+
 // clang-format off
 static const struct command COMMANDS[] = {
 	{"run", "STUDY.json", "tfTo", false, {"json", "table", "csv"}, run_study,
@@ -56,6 +65,10 @@ static const struct command COMMANDS[] = {
 	 "the result of a study that has succeeded", ""},
 	{"samples", "ID", "uf", false, {"csv", "npy"}, query_samples,
 	 "every input row of a study and its outputs", ""},
+	{"plot", "FIGURE RESULT.json|ID", "nup" FIGURE_KEYS, false, {0}, plot_figure,
+	 "print a figure of a result as SVG",
+	 "--names lists the figures.  A result is a file, - or the id of a study on the server; for `history' "
+	 "a file of samples as CSV, or an id."},
 	{"list", "", "slcuf", true, {"json", "table", "csv"}, query_list,
 	 "the studies on the server, newest first", ""},
 	{"cancel", "ID", "uf", true, {"json", "table", "csv"}, query_cancel,
@@ -74,11 +87,14 @@ static const struct argp_option OPTIONS[] = {
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
 	{"limit",   'l', "N",      0, "at most N studies", 0},
 	{"cursor",  'c', "CURSOR", 0, "go on where an earlier list ended", 0},
-	{"names",   'n', NULL,     0, "print the names of the examples", 0},
+	{"names",   'n', NULL,     0, "print the names there are", 0},
 	{"url",     'u', "URL",    0, "the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "how the data is printed", 0},
 	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES "; without it, all as a table and inputs as csv", 0},
 	{"partial", 'p', NULL,     0, "of the rows that are complete so far, if the study still runs", 0},
+#define X(name, values, lowest, highest, text) {#name, FIGURE_KEY_##name, "VALUE", 0, text, 0},
+	FIGURE_ARGUMENTS(X)
+#undef X
 };
 // clang-format on
 
@@ -204,11 +220,19 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 	case 'p':
 		options->partial = true;
 		return 0;
+#define X(name, values, lowest, highest, text) \
+	case FIGURE_KEY_##name:                    \
+		options->choice.name = value;          \
+		return 0;
+		FIGURE_ARGUMENTS(X)
+#undef X
 	case ARGP_KEY_ARG:
 		take_argument(state, parsing, value);
 		return 0;
 	case ARGP_KEY_END:
 		check_table(state, options);
+		if (options->names)
+			return 0;
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
 			argp_error(state, "%s is missing", parsing->command->arguments);
 		if (!options->second && strchr(parsing->command->arguments, ' '))
