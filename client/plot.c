@@ -96,6 +96,7 @@ static bool is_id(const char *text)
 /* `pound plot FIGURE RESULT.json|ID` prints SVG; `pound plot --names`.
  *
  * Returns  value   OUTCOME_USAGE: no such figure, or a choice that it does not take
+ * Test     client_figure: a_figure_of_a_file_has_the_bytes_of_the_server
  */
 enum outcome plot_figure(const struct options *options)
 {

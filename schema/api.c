@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schema/fields.h"
+#include "schema/figure/figure.h"
 #include "schema/result_json.h"
 
 const struct api_fault_row api_faults[] = {
@@ -23,6 +24,7 @@ const unsigned api_faults_of_all =
 #define STORED (F(NOT_FOUND) | F(CORRUPT))
 #define TABLE(name) " " #name
 #define TABLES RESULT_TABLES(TABLE) " "
+#define NAMES FIGURES(TABLE) " "
 
 const struct api_operation api_operations[] = {
 	[API_submit]  = {"POST", "/v1/studies", "submit",
@@ -38,6 +40,10 @@ const struct api_operation api_operations[] = {
 	[API_samples] = {"GET", "/v1/studies/{id}/samples", "samples",
 	                 "every input row and its outputs, enough to compute the indexes again", " 200 304 ",
 	                 .media = " text/csv application/octet-stream ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	[API_figures] = {"GET", "/v1/studies/{id}/figures", "figures",
+	                 "the figures that the result has", " 200=Figures 304 ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	[API_figure]  = {"GET", "/v1/studies/{id}/figures/{name}", "figure",
+	                 "a figure of the result", " 200 304 ", .media = " image/svg+xml ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_cancel]  = {"POST", "/v1/studies/{id}/cancel", "cancel",
 	                 "cancels a study that is queued or running", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT)},
 	[API_live]    = {"GET", "/livez", "live", "the process answers", " 200=Version ", .open = true},
@@ -63,6 +69,14 @@ const struct api_argument api_arguments[] = {
 	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, .text = "wins over Accept"},
 	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"figures", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
+	{"figures", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"figure",  "name",            "path",   NAMES, 0, 0, NULL, .text = "of the figure"},
+	{"figure",  "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
+	{"figure",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+#define X(name, values, lowest, highest, meaning) {"figure", #name, "query", values, lowest, highest, NULL, .text = meaning},
+	FIGURE_ARGUMENTS(X)
+#undef X
 	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 };
 // clang-format on
@@ -117,15 +131,21 @@ static long long id_at(const char *text)
 	return id < 0 ? -1 : id;
 }
 
-/* Whether a path is of a form, and the id in it. */
-static bool matches(const char *path, const char *form, long long *id)
+/* Whether a path is that of an operation, and the id in it. */
+static bool matches(const char *path, int operation, long long *id)
 {
+	const char *form = api_operations[operation].path;
 	size_t head = strcspn(form, "{");
 	if (!form[head])
 		return !strcmp(path, form);
 	if (strncmp(path, form, head) != 0 || (*id = id_at(path + head)) < 0)
 		return false;
-	return !strcmp(path + head + 16, form + head + strlen("{id}"));
+	path += head + 16;
+	form += head + strlen("{id}");
+	size_t rest = strcspn(form, "{");
+	return !form[rest] ? !strcmp(path, form)
+	                   : !strncmp(path, form, rest) &&
+	                         api_takes(api_argument(operation, "name", "path"), path + rest);
 }
 
 /* Finds the operation that a request asks for.
@@ -147,7 +167,7 @@ int api_match(const char *method, const char *path, long long *id, char allow[64
 	for (int i = 0; i < API_N_OPERATIONS; i++) {
 		const struct api_operation *operation = &api_operations[i];
 		long long here = 0;
-		if (!matches(path, operation->path, &here))
+		if (!matches(path, i, &here))
 			continue;
 		*id = here;
 		if (!strcmp(method, operation->method))

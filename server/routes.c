@@ -11,6 +11,7 @@
 
 #include "engine/pound.h"
 #include "schema/cost.h"
+#include "schema/figure/figure.h"
 #include "schema/problems.h"
 #include "schema/reading.h"
 #include "schema/result_json.h"
@@ -375,17 +376,25 @@ static void tabulate(struct reply *reply, const struct reply *json, const char *
 	*reply = problem(API_CONFLICT, detail);
 }
 
+/* The result as JSON; of an unfinished study that of the rows so far, if that is asked for, and how many these are. */
+static struct reply result(struct request *request, int *rows)
+{
+	struct reply json = document(request, "result");
+	*rows = 0;
+	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true")) {
+		free(json.body);
+		json = so_far(request, json.retry_after, rows);
+	}
+	return json;
+}
+
 static struct reply results(struct request *request)
 {
 	const char *table = http_argument(request, "table"), *format = http_argument(request, "format");
 	if (table && format && strcmp(format, "csv") != 0)
 		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv, or left out");
-	struct reply reply, json = document(request, "result");
-	int rows = 0;
-	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true")) {
-		free(json.body);
-		json = so_far(request, json.retry_after, &rows);
-	}
+	int rows;
+	struct reply reply, json = result(request, &rows);
 	if (json.status != 200)
 		return json;
 	if (second(request, result_formats, table, rows, &reply)) {
@@ -457,6 +466,75 @@ static struct reply samples(struct request *request)
 	return reply.body ? reply : no_memory();
 }
 
+/* The tag of what is drawn: of a version, and of so many rows while there are not all. */
+static void tag(struct reply *reply, int rows)
+{
+	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%d\"" : "\"%s\"", POUND_VERSION, rows);
+}
+
+static struct reply figures(struct request *request)
+{
+	char base[64];
+	int rows;
+	struct reply json = result(request, &rows);
+	if (json.status != 200)
+		return json;
+	snprintf(base, sizeof base, "/v1/studies/%016" PRIx64, (uint64_t)request->id);
+	const struct figure_source source = {
+	    .json = json.body, .length = json.length, .samples = !rows && sampled(request, true) ? "" : NULL};
+	size_t length;
+	char *body = figure_list(&source, base, &length);
+	free(json.body);
+	struct reply reply = made("application/json", body, length);
+	if (body)
+		tag(&reply, rows);
+	return reply;
+}
+
+/* The histories of a study as CSV, computed again; NULL: it has none, or they cannot be made. */
+static char *histories(const struct request *request, size_t *length)
+{
+	struct work_run opened;
+	const char *error = answer_open(request, &opened);
+	char *csv = !error && opened.study->spectrum.histories
+	                ? histories_to_csv(opened.study, opened.run, length)
+	                : NULL;
+	work_close(&opened);
+	return csv;
+}
+
+static struct reply figure(struct request *request)
+{
+	static const enum api_fault faults[] = {[FIGURE_ABSENT] = API_CONFLICT,
+	                                        [FIGURE_UNKNOWN] = API_NOT_FOUND,
+	                                        [FIGURE_CHOICE] = API_BAD_REQUEST,
+	                                        [FIGURE_RESULT] = API_CORRUPT,
+	                                        [FIGURE_NOMEM] = API_UNAVAILABLE};
+	const struct figure_choice choice = {
+#define X(name, values, lowest, highest, text) .name = http_argument(request, #name),
+	    FIGURE_ARGUMENTS(X)
+#undef X
+	};
+	const char *name = strrchr(request->path, '/') + 1;
+	struct figure drawn;
+	int rows;
+	struct reply json = result(request, &rows);
+	if (json.status != 200)
+		return json;
+	struct figure_source source = {.json = json.body, .length = json.length};
+	char *samples = figure_row(name)->sampled ? histories(request, &source.n_samples) : NULL;
+	source.samples = samples;
+	enum figure_status status = figure_draw(name, &source, &choice, &drawn);
+	free(samples);
+	free(json.body);
+	if (status != FIGURE_DRAWN)
+		return problem(faults[status], status == FIGURE_NOMEM ? "out of memory" : drawn.detail);
+	struct reply reply = made("image/svg+xml", drawn.svg, drawn.length);
+	reply.drawn = true;
+	tag(&reply, rows);
+	return reply;
+}
+
 static struct reply cancel(struct request *request)
 {
 	enum store_status cancelled = store_cancel(request->server->store, request->id);
@@ -517,10 +595,12 @@ static struct reply openapi(struct request *request)
 	                      .etag = "\"" POUND_VERSION "\""};
 }
 
-/* Whether a request is for what is made of all of a study's blocks, or of a result read again; both may be large. */
+/* Whether a request is for what is made of all of a study's blocks, or of a result read again, as figures are; both may be
+ * large. */
 bool routes_slow(const struct request *request)
 {
-	return request->operation == API_samples ||
+	return request->operation == API_samples || request->operation == API_figures ||
+	       request->operation == API_figure ||
 	       (request->operation == API_results &&
 	        (!strcmp(http_argument(request, "partial"), "true") ||
 	         asks_second(request, result_formats, http_argument(request, "table"))));

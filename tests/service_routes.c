@@ -189,6 +189,9 @@ static void every_route_answers_only_its_methods(void **state)
 		long long number;
 		snprintf(path, sizeof path, "%.*s%s%s", (int)strcspn(form, "{"), form, id ? "0123456789abcdef" : "",
 		         id ? id + 4 : "");
+		char *named = strstr(path, "{name}");
+		if (named)
+			strcpy(named, "swept");
 		api_match("GET", path, &number, allow);
 		for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
 			if (strstr(allow, methods[m]))

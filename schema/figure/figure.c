@@ -30,7 +30,7 @@ static const struct {
 	bool (*has)(const cJSON *result);
 } functions[] = {
 #define X(name) {plot_##name, plot_has_##name},
-	PLOT_FIGURES(X)
+	FIGURES(X)
 #undef X
 };
 
@@ -181,7 +181,7 @@ char *figure_list(const struct figure_source *source, const char *base, size_t *
 	writer_object(&w, NULL, WRITER_LINES);
 	writer_array(&w, "figures", WRITER_LINES);
 	for (const struct figure_row *row = figure_rows; row->name; row++)
-		if (has(row, result))
+		if (has(row, result) && (!row->sampled || source->samples))
 			write_row(&w, row, base);
 	writer_end(&w);
 	writer_end(&w);

@@ -15,6 +15,9 @@
 #include <stddef.h>
 
 // clang-format off
+/* The figures: X(name). */
+#define FIGURES(X) X(indices) X(swept) X(given) X(widths) X(pairs) X(spectra) X(history) X(responses) X(errors)
+
 /* What can be chosen of a figure: X(name, values between spaces or NULL, lowest, highest, text). */
 #define FIGURE_ARGUMENTS(X)                                                                                   \
 	X(cell,     NULL,                        0, 1000000, "cell of a swept study, from 0")                      \
@@ -75,7 +78,8 @@ const struct figure_row *figure_row(const char *name); /* NULL: none */
 enum figure_status figure_draw(const char *name, const struct figure_source *source,
                                const struct figure_choice *choice, struct figure *figure);
 
-/* The figures that a result has, as JSON: name, title, arguments, table and a link that begins with `base`.
+/* The figures that a result has, as JSON: name, title, arguments, table and a link that begins with `base`; those of
+ * samples when the source has some.
  * NULL: the bytes are no result, or out of memory. */
 char *figure_list(const struct figure_source *source, const char *base, size_t *length);
 

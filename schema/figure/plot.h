@@ -52,12 +52,10 @@ void plot_head(struct plot *plot, const char *title, const char *more);
 void plot_note(struct plot *plot, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* One function for each row of the table, and whether a result has it. */
-#define PLOT_FIGURES(X) \
-	X(indices) X(swept) X(given) X(widths) X(pairs) X(spectra) X(history) X(responses) X(errors)
 #define X(name)                          \
 	void plot_##name(struct plot *plot); \
 	bool plot_has_##name(const cJSON *result);
-PLOT_FIGURES(X)
+FIGURES(X)
 #undef X
 
 #endif
