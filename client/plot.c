@@ -93,7 +93,7 @@ static bool is_id(const char *text)
 	return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && access(text, F_OK) != 0;
 }
 
-/* `pound plot FIGURE RESULT.json|ID` prints SVG; `pound plot --names`.
+/* `pound plot FIGURE RESULT|ID` prints SVG; `pound plot --names`.
  *
  * Returns  value   OUTCOME_USAGE: no such figure, or a choice that it does not take
  * Test     client_figure: a_figure_of_a_file_has_the_bytes_of_the_server

@@ -65,7 +65,7 @@ static const struct command COMMANDS[] = {
 	 "the result of a study that has succeeded", ""},
 	{"samples", "ID", "uf", false, {"csv", "npy"}, query_samples,
 	 "every input row of a study and its outputs", ""},
-	{"plot", "FIGURE RESULT.json|ID", "nup" FIGURE_KEYS, false, {0}, plot_figure,
+	{"plot", "FIGURE RESULT|ID", "nup" FIGURE_KEYS, false, {0}, plot_figure,
 	 "print a figure of a result as SVG",
 	 "--names lists the figures.  A result is a file, - or the id of a study on the server; for `history' "
 	 "a file of samples as CSV, or an id."},

@@ -168,9 +168,37 @@ static void wrong_choices_end_with_2_and_what_is_not_there_with_1(void **state)
 	program_free(&outcome);
 }
 
+static void the_first_figure_of_the_readme_is_what_its_command_makes(void **state)
+{
+	static const char commands[] =
+	    "build/release/pound example paper | build/release/pound run - >campaign.json\n"
+	    "build/release/pound plot swept campaign.json >campaign.svg\n";
+	(void)state;
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+	skip(); // 720,000 runs
+#endif
+	char *readme = program_file("README.md", NULL), *golden = program_file("docs/campaign.svg", NULL),
+	     result[32];
+	assert_non_null(readme);
+	assert_non_null(strstr(readme, commands));
+	assert_non_null(strstr(readme, "](docs/campaign.svg)"));
+	struct program_outcome study = POUND("example", "paper");
+	struct program_outcome run = program_run((const char *const[]){"pound", "run", "-", NULL}, study.out);
+	keep(&run, result);
+	struct program_outcome figure = POUND("plot", "swept", result);
+	program_expect(&figure, 0);
+	assert_string_equal(figure.out, golden);
+	program_free(&figure);
+	program_free(&study);
+	unlink(result);
+	free(golden);
+	free(readme);
+}
+
 #define SERVED(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
 
 CHECK_MAIN(SERVED(a_figure_of_a_file_has_the_bytes_of_the_server),
            SERVED(a_figure_by_itself_may_style_itself_and_nothing_else),
            SERVED(a_figure_of_a_running_study_is_of_the_rows_so_far),
+           cmocka_unit_test(the_first_figure_of_the_readme_is_what_its_command_makes),
            SERVED(wrong_choices_end_with_2_and_what_is_not_there_with_1))

@@ -362,6 +362,37 @@ static void a_result_lists_the_figures_that_it_has(void **state)
 	source_free(&source);
 }
 
+static void every_figure_and_argument_stands_in_the_docs(void **state)
+{
+	char line[400], *page = program_file("docs/figures.md", NULL);
+	static const struct {
+		const char *name, *text;
+	} arguments[] = {
+#define X(name, values, lowest, highest, text) {#name, text},
+	    FIGURE_ARGUMENTS(X)
+#undef X
+	};
+	(void)state;
+	assert_non_null(page);
+	for (const struct figure_row *row = figure_rows; row->name; row++) {
+		int n = snprintf(line, sizeof line, "| `%s` | %s | %s |", row->name, row->kind, row->text);
+		char takes[120];
+		snprintf(takes, sizeof takes, "%s", row->takes);
+		for (char *rest, *name = strtok_r(takes, " ", &rest), *comma = ""; name;
+		     name = strtok_r(NULL, " ", &rest), comma = ",")
+			n += snprintf(line + n, sizeof line - (size_t)n, "%s `%s`", comma, name);
+		snprintf(line + n, sizeof line - (size_t)n, " |\n");
+		if (!strstr(page, line))
+			fail_msg("docs/figures.md has no line\n%s", line);
+	}
+	for (size_t k = 0; k < sizeof arguments / sizeof arguments[0]; k++) {
+		snprintf(line, sizeof line, "| `%s` | %s |\n", arguments[k].name, arguments[k].text);
+		if (!strstr(page, line))
+			fail_msg("docs/figures.md has no line\n%s", line);
+	}
+	free(page);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -373,6 +404,7 @@ int main(void)
 	    cmocka_unit_test(the_golden_figures_have_not_changed),
 	    cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
 	    cmocka_unit_test(a_result_lists_the_figures_that_it_has),
+	    cmocka_unit_test(every_figure_and_argument_stands_in_the_docs),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
