@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static enum outcome names_print(void)
 {
@@ -87,12 +86,6 @@ static enum outcome plot_fetched(const struct options *options)
 	return outcome;
 }
 
-/* Whether an argument is the id of a study on the server, and no file. */
-static bool is_id(const char *text)
-{
-	return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && access(text, F_OK) != 0;
-}
-
 /* `pound plot FIGURE RESULT|ID` prints SVG; `pound plot --names`.
  *
  * Returns  value   OUTCOME_USAGE: no such figure, or a choice that it does not take
@@ -102,5 +95,5 @@ enum outcome plot_figure(const struct options *options)
 {
 	if (options->names)
 		return names_print();
-	return is_id(options->second) ? plot_fetched(options) : plot_file(options);
+	return command_is_id(options->second) ? plot_fetched(options) : plot_file(options);
 }

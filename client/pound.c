@@ -69,6 +69,10 @@ static const struct command COMMANDS[] = {
 	 "print a figure of a result as SVG",
 	 "--names lists the figures.  A result is a file, - or the id of a study on the server; for `history' "
 	 "a file of samples as CSV, or an id."},
+	{"report", "RESULT|ID [STUDY]", "up", false, {0}, report_print,
+	 "a result as one HTML page, for those without this program",
+	 "A result is a file, - or the id of a study on the server, which then has the study document, too; for a file, "
+	 "STUDY is that."},
 	{"list", "", "slcuf", true, {"json", "table", "csv"}, query_list,
 	 "the studies on the server, newest first", ""},
 	{"cancel", "ID", "uf", true, {"json", "table", "csv"}, query_cancel,
@@ -147,6 +151,11 @@ void command_complain(const char *format, ...)
 	table_tame(line);
 	fprintf(stderr, "pound: %s\n", line);
 	free(line);
+}
+
+bool command_is_id(const char *text)
+{
+	return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && access(text, F_OK) != 0;
 }
 
 static int whole_number(struct argp_state *state, const char *option, const char *text, int max)
@@ -235,7 +244,8 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 			return 0;
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
 			argp_error(state, "%s is missing", parsing->command->arguments);
-		if (!options->second && strchr(parsing->command->arguments, ' '))
+		if (!options->second && strchr(parsing->command->arguments, ' ') &&
+		    strchr(parsing->command->arguments, ' ')[1] != '[')
 			argp_error(state, "%s is missing", strchr(parsing->command->arguments, ' ') + 1);
 		return 0;
 	}

@@ -168,6 +168,39 @@ static void wrong_choices_end_with_2_and_what_is_not_there_with_1(void **state)
 	program_free(&outcome);
 }
 
+static void a_report_is_one_page_that_needs_nothing_else(void **state)
+{
+	char id[32], result[32], study[32];
+	(void)state;
+	submit("floor_spectrum", id);
+	struct program_outcome served = POUND("report", id), printed = POUND("results", id);
+	program_expect(&served, 0);
+	// the study, the spectra and the history, which only the server's samples have
+	assert_non_null(strstr(served.out, "Floor response spectra"));
+	assert_non_null(strstr(served.out, "Motion of the left floor"));
+	assert_non_null(strstr(served.out, "&quot;histories&quot;: true"));
+	keep(&printed, result);
+	printed = POUND("example", "floor_spectrum");
+	keep(&printed, study);
+	struct program_outcome here = POUND("report", result, study), alone = POUND("report", result);
+	program_expect(&here, 0);
+	program_expect(&alone, 0);
+	assert_non_null(strstr(here.out, "&quot;histories&quot;: true"));
+	assert_non_null(strstr(alone.out, "It was not given"));
+	struct program_outcome wrong = POUND("report", study);
+	program_expect(&wrong, 1);
+	assert_non_null(strstr(wrong.err, "no result of a study"));
+	program_free(&wrong);
+	wrong = POUND("report", "0000000000000000");
+	program_expect(&wrong, 1);
+	program_free(&wrong);
+	program_free(&alone);
+	program_free(&here);
+	program_free(&served);
+	unlink(result);
+	unlink(study);
+}
+
 static void the_first_figure_of_the_readme_is_what_its_command_makes(void **state)
 {
 	static const char commands[] =
@@ -200,5 +233,6 @@ static void the_first_figure_of_the_readme_is_what_its_command_makes(void **stat
 CHECK_MAIN(SERVED(a_figure_of_a_file_has_the_bytes_of_the_server),
            SERVED(a_figure_by_itself_may_style_itself_and_nothing_else),
            SERVED(a_figure_of_a_running_study_is_of_the_rows_so_far),
+           SERVED(a_report_is_one_page_that_needs_nothing_else),
            cmocka_unit_test(the_first_figure_of_the_readme_is_what_its_command_makes),
            SERVED(wrong_choices_end_with_2_and_what_is_not_there_with_1))

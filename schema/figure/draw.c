@@ -79,8 +79,11 @@ static bool steers(const char *text, size_t n)
 	       (code >= 0x2066 && code <= 0x2069) || code == 0xFEFF || (n == 3 && code >= 0xFFFE);
 }
 
-/* Text of a document as XML, no more than `most` bytes of it. */
-static void put_text(struct drawing *drawing, const char *text, size_t most)
+/* Text of a document as XML or HTML, up to `most` bytes or its end.
+ *
+ * Test     unit_figure: a_name_stays_text
+ */
+void draw_escaped(struct writer *w, const char *text, size_t most)
 {
 	const char *end = text + most;
 	for (size_t n; text < end && (n = character(text)) > 0; text += n) {
@@ -91,8 +94,13 @@ static void put_text(struct drawing *drawing, const char *text, size_t most)
 		                     : *text == '\''   ? "&#39;"
 		                     : steers(text, n) ? "\xEF\xBF\xBD"
 		                                       : NULL;
-		writer_raw(&drawing->w, entity ? entity : text, entity ? strlen(entity) : n);
+		writer_raw(w, entity ? entity : text, entity ? strlen(entity) : n);
 	}
+}
+
+static void put_text(struct drawing *drawing, const char *text, size_t most)
+{
+	draw_escaped(&drawing->w, text, most);
 }
 
 void draw_init(struct drawing *drawing, double width)

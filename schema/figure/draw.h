@@ -37,6 +37,9 @@ char *draw_take(struct drawing *drawing, const char *title, const char *sentence
 
 /* ---- text ---- */
 
+/* A text made harmless: what is a sign of XML is an entity, what would steer a reader is U+FFFD. */
+void draw_escaped(struct writer *writer, const char *text, size_t most);
+
 struct label {
 	double x, y;   /* of the baseline */
 	double size;   /* 0: DRAW_TEXT_SIZE */

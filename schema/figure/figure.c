@@ -92,7 +92,7 @@ static bool choice_taken(const struct figure_row *row, const struct figure_choic
 	return true;
 }
 
-static bool has(const struct figure_row *row, const cJSON *result)
+bool figure_shows(const struct figure_row *row, const cJSON *result)
 {
 	return strcmp(row->kind, plot_text(result, "kind")) == 0 && functions[row - figure_rows].has(result);
 }
@@ -109,6 +109,24 @@ static enum figure_status draw(const struct figure_row *row, struct plot *plot, 
 	}
 	figure->svg = draw_take(&plot->d, plot->title, plot->sentence, &figure->length);
 	return figure->svg ? FIGURE_DRAWN : FIGURE_NOMEM;
+}
+
+/* Draws a figure of a parsed result, by choices that it takes. */
+enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
+                             const struct figure_source *source, const struct figure_choice *choice,
+                             struct figure *figure)
+{
+	*figure = (struct figure){0};
+	if (row->sampled ? !source->samples : !figure_shows(row, result)) {
+		snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s", row->name,
+		         strcmp(row->kind, plot_text(result, "kind")) == 0 ? "the study did not ask for what it shows"
+		                                                           : "only studies of another kind have it");
+		return FIGURE_ABSENT;
+	}
+	struct plot plot = {.result = result, .source = source, .choice = choice};
+	enum figure_status status = draw(row, &plot, figure);
+	plot_free(&plot);
+	return status;
 }
 
 /* Draws a figure.
@@ -133,22 +151,12 @@ enum figure_status figure_draw(const char *name, const struct figure_source *sou
 	cJSON *result = json_parse(source->json, source->length, &fault);
 	if (!result && fault.line == 0)
 		return FIGURE_NOMEM;
-	enum figure_status status = FIGURE_DRAWN;
+	enum figure_status status = FIGURE_RESULT;
 	// what is drawn from samples alone needs no result
-	bool alone = row->sampled && source->samples;
-	if (!cJSON_IsObject(result) || (!alone && !*plot_text(result, "kind"))) {
+	if (plot_is_result(result) || (cJSON_IsObject(result) && row->sampled && source->samples))
+		status = figure_of(row, result, source, choice, figure);
+	else
 		snprintf(figure->detail, sizeof figure->detail, "this is no result of a study");
-		status = FIGURE_RESULT;
-	} else if (!alone && (row->sampled || !has(row, result))) {
-		snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s", row->name,
-		         strcmp(row->kind, plot_text(result, "kind")) == 0 ? "the study did not ask for what it shows"
-		                                                           : "only studies of another kind have it");
-		status = FIGURE_ABSENT;
-	} else {
-		struct plot plot = {.result = result, .source = source, .choice = choice};
-		status = draw(row, &plot, figure);
-		plot_free(&plot);
-	}
 	cJSON_Delete(result);
 	return status;
 }
@@ -181,7 +189,7 @@ char *figure_list(const struct figure_source *source, const char *base, size_t *
 	writer_object(&w, NULL, WRITER_LINES);
 	writer_array(&w, "figures", WRITER_LINES);
 	for (const struct figure_row *row = figure_rows; row->name; row++)
-		if (has(row, result) && (!row->sampled || source->samples))
+		if (figure_shows(row, result) && (!row->sampled || source->samples))
 			write_row(&w, row, base);
 	writer_end(&w);
 	writer_end(&w);
@@ -193,7 +201,7 @@ bool figure_has(const struct figure_row *row, const struct figure_source *source
 {
 	struct gate_fault fault;
 	cJSON *result = json_parse(source->json, source->length, &fault);
-	bool there = result && has(row, result);
+	bool there = result && figure_shows(row, result);
 	cJSON_Delete(result);
 	return there;
 }

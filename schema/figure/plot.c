@@ -38,6 +38,15 @@ const cJSON *plot_member(const cJSON *object, const char *name)
 	return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
+bool plot_is_result(const cJSON *document)
+{
+	static const char *const lists[] = {"cells", "signals", "spectra", "rows"};
+	bool any = false;
+	for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++)
+		any = any || cJSON_IsArray(plot_member(document, lists[k]));
+	return cJSON_IsObject(document) && *plot_text(document, "kind") && any;
+}
+
 static double number_of(const cJSON *value)
 {
 	return cJSON_IsNumber(value) ? value->valuedouble : NAN;

@@ -24,8 +24,15 @@ struct plot {
 void *plot_memory(struct plot *plot, size_t size);
 void plot_free(struct plot *plot); /* what was kept */
 
+/* Whether a parsed result has a figure, and that drawn; its choices must be those that it takes. */
+bool figure_shows(const struct figure_row *row, const cJSON *result);
+enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
+                             const struct figure_source *source, const struct figure_choice *choice,
+                             struct figure *figure);
+
 /* ---- what a result holds ---- */
 
+bool plot_is_result(const cJSON *document); /* of any kind of study, and no study itself */
 const cJSON *plot_member(const cJSON *object, const char *name);
 double plot_number(const cJSON *object, const char *name);                           /* NAN: none */
 const char *plot_text(const cJSON *object, const char *name);                        /* "": none */
