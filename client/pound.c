@@ -94,7 +94,7 @@ static const struct argp_option OPTIONS[] = {
 	{"names",   'n', NULL,     0, "print the names there are", 0},
 	{"url",     'u', "URL",    0, "the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "how the data is printed", 0},
-	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES "; without it, all as a table and inputs as csv", 0},
+	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES ", or all as a table; without it, a summary as a table and inputs as csv", 0},
 	{"partial", 'p', NULL,     0, "of the rows that are complete so far, if the study still runs", 0},
 #define X(name, values, lowest, highest, text) {#name, FIGURE_KEY_##name, "VALUE", 0, text, 0},
 	FIGURE_ARGUMENTS(X)
@@ -179,8 +179,10 @@ static void take_argument(struct argp_state *state, struct parsing *parsing, con
 static void check_table(struct argp_state *state, const struct options *options)
 {
 	char *padded = command_text(" %s ", options->table ? options->table : "inputs");
-	if (strchr(padded + 1, ' ') != strrchr(padded, ' ') || !strstr(TABLES " ", padded))
-		argp_error(state, "no table '%s' here; there are:%s", options->table, TABLES);
+	bool all = options->table && strcmp(options->table, "all") == 0 && strcmp(options->format, "table") == 0;
+	if (!all && (strchr(padded + 1, ' ') != strrchr(padded, ' ') || !strstr(TABLES " ", padded)))
+		argp_error(state, "no table '%s' here; there are:%s, and all with --format table", options->table,
+		           TABLES);
 	if (options->table && strcmp(options->format, "json") == 0)
 		argp_error(state, "--table takes --format table or --format csv with it");
 	free(padded);
