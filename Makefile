@@ -44,7 +44,7 @@ LIBS.tests  := -lcmocka -lcurl
 objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c)))
 ENGINE := $(call objs,engine,$(LANED:%=engine/%.c)) \
           $(foreach file,$(LANED),$(WIDTHS:%=$(B)/engine/$(file)_%.o))
-SCHEMA := $(call objs,schema) $(call objs,schema/figure) $(B)/schema/examples.o
+SCHEMA := $(call objs,schema) $(call objs,schema/figure) $(B)/schema/examples.o $(B)/schema/page.o
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
 # tests/unit_*.c, tests/service_*.c and tests/client_*.c are programs; the other files of tests/ serve them all
@@ -111,6 +111,15 @@ $(B)/schema/examples.c: $(wildcard schema/examples/*.json)
 	    sed -n 's/^  "name": \(".*"\),$$/\1,/p' $$f; sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $$f; echo '},'; done; \
 	  echo '{0}};'; } >$@
 $(B)/schema/examples.o: $(B)/schema/examples.c
+	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
+
+# and so are the pages for browsers, which are text: name, text
+$(B)/schema/page.c: $(wildcard client/page/*)
+	@mkdir -p $(@D)
+	@{ echo '#include "schema/page.h"'; echo 'const struct page_file page_files[] = {'; \
+	  for f in $^; do echo "{\"$${f##*/}\","; sed 's/[\\"?]/\\&/g; s/.*/"&\\n"/' $$f; echo '},'; done; \
+	  echo '{0}};'; } >$@
+$(B)/schema/page.o: $(B)/schema/page.c
 	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
 
 # install what is missing, and only that

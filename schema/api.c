@@ -50,6 +50,14 @@ const struct api_operation api_operations[] = {
 	[API_ready]   = {"GET", "/readyz", "ready", "studies are taken", " 200=Version ", .open = true},
 	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges for Prometheus", " 200 ", .media = " text/plain "},
 	[API_version] = {"GET", "/version", "version", "the version", " 200=Version ", .faults = 0},
+	[API_example_list] = {"GET", "/v1/examples", "example_list", "names and titles of the example studies", " 200=Examples 304 ", .faults = 0},
+	[API_example] = {"GET", "/v1/examples/{name}", "example", "an example study", " 200=Study 304 ", .faults = F(NOT_FOUND)},
+	[API_home]    = {"GET", "/", "home", "the page that lists studies, for browsers", " 200 304 ", .media = " text/html ", .open = true},
+	[API_new]     = {"GET", "/new", "new", "the page that makes a study", " 200 304 ", .media = " text/html ", .open = true},
+	[API_study]   = {"GET", "/studies/{id}", "study", "the page of a study", " 200 304 ", .media = " text/html ", .open = true},
+	[API_style]   = {"GET", "/page.css", "style", "of the pages", " 200 304 ", .media = " text/css ", .open = true},
+	[API_script]  = {"GET", "/page.js", "script", "of the pages", " 200 304 ", .media = " text/javascript ", .open = true},
+	[API_icon]    = {"GET", "/icon.svg", "icon", "of the pages", " 200 304 ", .media = " image/svg+xml ", .open = true},
 	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 ", .faults = 0},
 };
 
@@ -77,6 +85,15 @@ const struct api_argument api_arguments[] = {
 #define X(name, values, lowest, highest, meaning) {"figure", #name, "query", values, lowest, highest, NULL, .text = meaning},
 	FIGURE_ARGUMENTS(X)
 #undef X
+	{"example", "name",            "path",   NULL, 0, 0, NULL, .text = "of the example"},
+	{"example_list", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"example", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"home", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"new", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"study", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"style", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"script", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"icon", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 };
 // clang-format on
@@ -136,16 +153,16 @@ static bool matches(const char *path, int operation, long long *id)
 {
 	const char *form = api_operations[operation].path;
 	size_t head = strcspn(form, "{");
-	if (!form[head])
-		return !strcmp(path, form);
-	if (strncmp(path, form, head) != 0 || (*id = id_at(path + head)) < 0)
-		return false;
-	path += head + 16;
-	form += head + strlen("{id}");
-	size_t rest = strcspn(form, "{");
-	return !form[rest] ? !strcmp(path, form)
-	                   : !strncmp(path, form, rest) &&
-	                         api_takes(api_argument(operation, "name", "path"), path + rest);
+	if (form[head] && !strncmp(path, form, head) && !strncmp(form + head, "{id}", 4)) {
+		if ((*id = id_at(path + head)) < 0)
+			return false;
+		path += head + 16;
+		form += head + strlen("{id}");
+		head = strcspn(form, "{");
+	}
+	return !form[head] ? !strcmp(path, form)
+	                   : !strncmp(path, form, head) &&
+	                         api_takes(api_argument(operation, "name", "path"), path + head);
 }
 
 /* Finds the operation that a request asks for.

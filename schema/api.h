@@ -34,7 +34,8 @@
 #define API_OPERATIONS(X)                                                                 \
 	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(figures) \
 	X(figure) X(cancel)        \
-	X(live) X(ready) X(metrics) X(version) X(openapi)
+	X(live) X(ready) X(metrics) X(version) X(openapi) \
+	X(example_list) X(example) X(home) X(new) X(study) X(style) X(script) X(icon)
 // clang-format on
 
 enum api_fault {

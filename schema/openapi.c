@@ -48,6 +48,9 @@ static const struct member members[] = {
 	{"Figure",  "arguments",  "[string]", "",    "names of the query arguments that it takes"},
 	{"Figure",  "table",      "string",  "null", "table of the result with its numbers; null: the CSV of the result"},
 	{"Figure",  "link",       "string",  "",     "path of the SVG"},
+	{"Examples", "examples",  "[Example]", "",   "by name"},
+	{"Example", "name",       "string",  "",     "of the example, the end of its path"},
+	{"Example", "title",      "string",  "",     "what it studies"},
 	{"Version", "name",       "string",  "",     "poundd"},
 	{"Version", "version",    "string",  "",     "of the engine and the server"},
 	{"Problem", "type",       "string",  "",     "short name of the kind of problem"},
@@ -369,7 +372,7 @@ static void argument(struct writer *w, const struct api_argument *of)
 		writer_whole(w, "minimum", of->min);
 		writer_whole(w, "maximum", of->max);
 	}
-	if (!strcmp(of->place, "path") && !of->choices)
+	if (!strcmp(of->place, "path") && !strcmp(of->name, "id"))
 		writer_text(w, "pattern", "^[0-9a-f]{16}$");
 	if (of->choices) {
 		writer_array(w, "enum", WRITER_LINE);

@@ -202,8 +202,7 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	    {"X-Request-Id", number},
 	    {"X-Content-Type-Options", "nosniff"},
 	    {"Content-Security-Policy",
-	     reply->drawn ? "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox"
-	                  : "default-src 'none'; frame-ancestors 'none'"},
+	     reply->policy ? reply->policy : "default-src 'none'; frame-ancestors 'none'"},
 	    {"Referrer-Policy", "no-referrer"},
 	};
 	const size_t sent = reply->status == 304 ? 0 : reply->length;

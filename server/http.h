@@ -20,8 +20,8 @@ struct reply {
 	char *body;       /* (length) bytes on the heap, http.c frees them unless ...; NULL: none */
 	bool lasts;       /* ... it lasts as long as the server */
 	size_t length;
-	bool drawn;        /* it is a picture, with a style element of its own */
-	char location[64]; /* "": no such header, likewise below */
+	const char *policy; /* Content-Security-Policy; NULL: nothing may be loaded */
+	char location[64];  /* "": no such header, likewise below */
 	char etag[64];
 	int retry_after;  /* [s], 0: none */
 	bool gone;        /* the client had gone before it was made */

@@ -11,7 +11,9 @@
 
 #include "engine/pound.h"
 #include "schema/cost.h"
+#include "schema/examples.h"
 #include "schema/figure/figure.h"
+#include "schema/page.h"
 #include "schema/problems.h"
 #include "schema/reading.h"
 #include "schema/result_json.h"
@@ -530,7 +532,8 @@ static struct reply figure(struct request *request)
 	if (status != FIGURE_DRAWN)
 		return problem(faults[status], status == FIGURE_NOMEM ? "out of memory" : drawn.detail);
 	struct reply reply = made("image/svg+xml", drawn.svg, drawn.length);
-	reply.drawn = true;
+	// its style is inside; by itself it may do nothing else
+	reply.policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
 	tag(&reply, rows);
 	return reply;
 }
@@ -594,6 +597,71 @@ static struct reply openapi(struct request *request)
 	                      .lasts = true,
 	                      .etag = "\"" POUND_VERSION "\""};
 }
+
+/* What lasts as long as the server: its tag is the bytes' (FNV-1a, 64 bits). */
+static struct reply lasting(const char *type, const char *text)
+{
+	uint64_t hash = 0xcbf29ce484222325;
+	struct reply reply = {
+	    .status = 200, .type = type, .body = (char *)text, .length = strlen(text), .lasts = true};
+	for (const char *c = text; *c; c++)
+		hash = (hash ^ (unsigned char)*c) * 0x100000001b3;
+	snprintf(reply.etag, sizeof reply.etag, "\"%016" PRIx64 "\"", hash);
+	return reply;
+}
+
+static struct reply example_list(struct request *request)
+{
+	struct writer w;
+	(void)request;
+	writer_init(&w);
+	writer_object(&w, NULL, WRITER_LINES);
+	writer_array(&w, "examples", WRITER_LINES);
+	for (int i = 0; example_name(i); i++) {
+		writer_object(&w, NULL, WRITER_LINE);
+		writer_text(&w, "name", example_name(i));
+		writer_text(&w, "title", example_title(i));
+		writer_end(&w);
+	}
+	writer_end(&w);
+	writer_end(&w);
+	struct reply reply = written(&w);
+	snprintf(reply.etag, sizeof reply.etag, "\"%s\"", POUND_VERSION);
+	return reply;
+}
+
+static struct reply example(struct request *request)
+{
+	const char *text = example_text(strrchr(request->path, '/') + 1);
+	return text ? lasting("application/json", text)
+	            : problem(API_NOT_FOUND, "there is no such example; /v1/examples lists them");
+}
+
+/* A file of the pages, which load nothing but each other and ask nobody but this server. */
+static struct reply page_file(const char *type, const char *name)
+{
+	int i = 0;
+	while (strcmp(page_files[i].name, name) != 0)
+		i++;
+	struct reply reply = lasting(type, page_files[i].text);
+	reply.policy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
+	               "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+	return reply;
+}
+
+#define PAGE(operation, type, name)                        \
+	static struct reply operation(struct request *request) \
+	{                                                      \
+		(void)request;                                     \
+		return page_file(type, name);                      \
+	}
+PAGE(home, "text/html; charset=utf-8", "list.html")
+PAGE(new, "text/html; charset=utf-8", "new.html")
+PAGE(study, "text/html; charset=utf-8", "study.html")
+PAGE(style, "text/css; charset=utf-8", "page.css")
+PAGE(script, "text/javascript; charset=utf-8", "page.js")
+PAGE(icon, "image/svg+xml", "icon.svg")
+#undef PAGE
 
 /* Whether a request is for what is made of all of a study's blocks, or of a result read again, as figures are; both may be
  * large. */

@@ -70,6 +70,23 @@ static const struct {
     {PLAIN, "GET", "/version", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/openapi.json", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/openapi.json", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/examples", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/examples", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/examples/response", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/examples/response", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/examples/nothing", {0}, NULL, 404},
+    {PLAIN, "GET", "/", {0}, NULL, 200},
+    {PLAIN, "GET", "/", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/new", {0}, NULL, 200},
+    {PLAIN, "GET", "/new", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/studies/{done}", {0}, NULL, 200},
+    {PLAIN, "GET", "/studies/{done}", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/page.css", {0}, NULL, 200},
+    {PLAIN, "GET", "/page.css", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/page.js", {0}, NULL, 200},
+    {PLAIN, "GET", "/page.js", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/icon.svg", {0}, NULL, 200},
+    {PLAIN, "GET", "/icon.svg", {"If-None-Match: *"}, NULL, 304},
     {DAMAGED, "GET", "/v1/studies/{done}/request", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/results", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/samples", {0}, NULL, 500},
@@ -172,7 +189,8 @@ static void ask_each(struct world *world, const char *header, int status, bool o
 		const struct api_operation *operation = &api_operations[o];
 		char path[96];
 		const char *rest = strstr(operation->path, "{id}");
-		snprintf(path, sizeof path, "%.*s%s%s", (int)strcspn(operation->path, "{"), operation->path,
+		snprintf(path, sizeof path, "%.*s%s%s",
+		         (int)(rest ? rest - operation->path : (long)strlen(operation->path)), operation->path,
 		         rest ? "{none}" : "", rest ? rest + 4 : "");
 		char *named = strstr(path, "{name}");
 		if (named)

@@ -57,7 +57,8 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 		const struct api_operation *operation = &api_operations[o];
 		char target[96];
 		const char *rest = strstr(operation->path, "{id}");
-		snprintf(target, sizeof target, "%.*s%s%s", (int)strcspn(operation->path, "{"), operation->path,
+		snprintf(target, sizeof target, "%.*s%s%s",
+		         (int)(rest ? rest - operation->path : (long)strlen(operation->path)), operation->path,
 		         rest ? "0123456789abcdef" : "", rest ? rest + 4 : "");
 		char *named = strstr(target, "{name}");
 		if (named)
