@@ -220,7 +220,7 @@ async function figures(result, partial) {
 		index: all.length ? [["", "both, or ST"], ["S1", "S1"], ["ST", "ST"]] : [],
 	};
 	$("choices").replaceChildren(...Object.entries(options).filter(([, values]) => values.length).map(([name, values]) => {
-		const select = element("select", { onchange: () => {
+		const select = element("select", { name, onchange: () => {
 			chosen[name] = select.value;
 			const query = new URLSearchParams(Object.entries(chosen).filter(([, value]) => value));
 			history.replaceState(null, "", `${location.pathname}${query.size ? `?${query}` : ""}`);
@@ -269,7 +269,7 @@ function show(study) {
 	$("so-far").hidden = !running || study.kind !== "sensitivity";
 	$("again").href = `/new?from=${id}`;
 	const now = ended(study.status) ? study.status : Math.floor(10 * study.progress);
-	if (now !== tenth) $("live").textContent = ended(study.status) ? `the study has ${study.status}` : `${study.status}, ${10 * now} percent`;
+	if (now !== tenth) $("live").textContent = ended(study.status) ? `the study is ${study.status === "succeeded" ? "finished" : study.status}` : `${study.status}, ${10 * now} percent`;
 	tenth = now;
 	data(study);
 }
@@ -278,7 +278,11 @@ async function finished() {
 	const answer = await ask(`${base}/results`);
 	if (!answer.ok) return;
 	const result = await answer.json(), items = texts => texts.map(text => element("li", {}, text));
-	$("notes").replaceChildren(...items([...notesOf(result)].map(([text, n]) => n > 1 ? `${text} (${n} times)` : text)));
+	const whole = ["partial", "stopping", "design", "accuracy"].map(part => result[part]?.note).filter(Boolean);
+	const others = [...notesOf(result)].filter(([text]) => !whole.includes(text)).map(([text, n]) => n > 1 ? `${text} (${n} times)` : text);
+	$("notes").replaceChildren(...items(whole.length ? whole : others.splice(0, 5)));
+	$("more-notes").replaceChildren(...items(others));
+	$("more").hidden = !others.length;
 	$("left-out").replaceChildren(...items(result.work?.left_out ?? []));
 	$("notes-section").hidden = false;
 	await figures(result, false);
@@ -362,7 +366,7 @@ function lineAt(text, line, column) {
 	return [start, start + 1];
 }
 
-const size = bytes => bytes < 1e6 ? `${Math.ceil(bytes / 1e3)} kB` : `${(bytes / 1e6).toPrecision(2)} MB`;
+const size = bytes => bytes < 1e6 ? `${Math.ceil(bytes / 1e3)} kB` : `${Math.ceil(bytes / 1e6)} MB`;
 
 async function judge(number) {
 	const text = $("text").value;
@@ -372,8 +376,8 @@ async function judge(number) {
 	$("submit").disabled = !answer.ok;
 	$("verdict").className = answer.ok ? "" : "fault";
 	$("verdict").textContent = answer.ok
-		? `valid: ${told.runs_total.toLocaleString("en")} runs, about ${told.estimated_cpu_s.toPrecision(2)} s of one core, ${size(told.estimated_bytes)}`
-		: `${told.detail}${told.errors_not_listed ? `, and ${told.errors_not_listed} more` : ""}`;
+		? `valid: ${told.runs_total.toLocaleString("en")} runs, about ${Number(told.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(told.estimated_bytes)}`
+		: `${told.errors ? "faults, each a button that leads to its place:" : told.detail}${told.errors_not_listed ? `, and ${told.errors_not_listed} more` : ""}`;
 	const problems = told.errors ?? (told.line ? [{ pointer: "", ...told }] : []);
 	$("faults").replaceChildren(...(answer.ok ? [] : problems.map(problem => fault(told.line ? { ...problem, line: told.line, column: told.column } : problem))));
 }

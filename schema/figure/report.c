@@ -134,22 +134,35 @@ static void notes_collect(const cJSON *value, struct notes *notes)
 	}
 }
 
+/* Notes of the whole result, then, closed, those of its outputs and inputs. */
 static void put_notes(struct report *report)
 {
+	static const char *const whole[] = {"partial", "stopping", "design", "accuracy"};
 	struct notes notes = {0};
-	char times[40];
 	notes_collect(report->result, &notes);
 	if (notes.n == 0)
 		return;
 	put(report, "<h2>Notes</h2>\n<ul>\n");
+	for (size_t part = 0; part < sizeof whole / sizeof whole[0]; part++) {
+		const char *note = plot_text(plot_member(report->result, whole[part]), "note");
+		if (*note)
+			put_element(report, "li", note);
+		for (int k = 0; k < notes.n; k++)
+			if (strcmp(notes.text[k], note) == 0)
+				notes.times[k] = 0;
+	}
+	put(report, "</ul>\n<details>\n<summary>notes of single outputs and inputs</summary>\n<ul>\n");
 	for (int k = 0; k < notes.n; k++) {
+		char times[40];
+		if (notes.times[k] == 0)
+			continue;
 		put(report, "<li>");
 		put_text(report, notes.text[k]);
 		snprintf(times, sizeof times, notes.times[k] > 1 ? " (%d times)" : "", notes.times[k]);
 		put(report, times);
 		put(report, "</li>\n");
 	}
-	put(report, "</ul>\n");
+	put(report, "</ul>\n</details>\n");
 }
 
 /* ---- figures ---- */
