@@ -128,6 +128,11 @@ deps:
 	[ -z "$$missing" ] || { as=$$([ $$(id -u) = 0 ] || echo sudo); $$as apt-get update -q && \
 	  $$as env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends $$missing; }
 
+# what the test of the pages needs, which is skipped without it
+browser:
+	@as=$$([ $$(id -u) = 0 ] || echo sudo); $$as apt-get update -q && \
+	  $$as env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends chromium
+
 run: deps
 	@$(MAKE) --no-print-directory -s all
 	@tests/run-paper $(B)
@@ -192,6 +197,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check soak install bench paper extremes statistics asan tsan lint fuzz fmt clean
+.PHONY: all browser deps run test check soak install bench paper extremes statistics asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)

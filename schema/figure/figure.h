@@ -64,7 +64,7 @@ enum figure_status {
 struct figure_source {
 	const char *json; /* (length) a result */
 	size_t length;
-	const char *samples; /* (n_samples) CSV, for the figures that need it; NULL: none */
+	const char *samples; /* (n_samples) CSV and a NUL, for the figures that need it; NULL: none */
 	size_t n_samples;
 };
 
