@@ -10,8 +10,8 @@ enum { OUTPUTS_MOST = 3, WIDTH_OUTPUTS_MOST = 6, PANEL_NARROWEST = 240, METHODS_
 static const cJSON *first_output(const cJSON *result)
 {
 	const cJSON *cells = plot_member(result, "cells");
-	const cJSON *outputs = plot_member(cells ? cells->child : NULL, "outputs");
-	return outputs ? outputs->child : NULL;
+	const cJSON *outputs = plot_member(plot_first(cells), "outputs");
+	return plot_first(outputs);
 }
 
 /* ---- given ---- */

@@ -77,7 +77,7 @@ static const cJSON *spectrum_list(const cJSON *spectrum, const char *name)
 /* Thin lines at 2 n f_1, where a periodic train of pulses has its peaks. */
 static void draw_harmonics(struct plot *plot, const struct panel *panel, bool periods)
 {
-	const cJSON *peaks = plot_member(plot->result, "peaks"), *peak = peaks ? peaks->child : NULL;
+	const cJSON *peaks = plot_member(plot->result, "peaks"), *peak = plot_first(peaks);
 	double frequency = plot_number(peak, "frequency_hz") / plot_number(peak, "frequency_ratio");
 	double last = -INFINITY;
 	char text[32];
@@ -202,7 +202,7 @@ static bool table_read(struct plot *plot, int signal, double from, double to, st
 	size_t lines = 0;
 	*table = (struct table){0};
 	for (const char *c = at; c < end; c++)
-		lines += *c == '\n';
+		lines += *c == '\n' || *c == '\r';
 	while (at < end && *at != '\r' && *at != '\n' && table->n_columns < COLUMNS_MOST) {
 		size_t n = 0;
 		while (at + n < end && !strchr(",\r\n", at[n]))
@@ -222,13 +222,15 @@ static bool table_read(struct plot *plot, int signal, double from, double to, st
 		if (at >= end || !*at)
 			break;
 		for (int c = 0; c < table->n_columns; c++) {
-			char *after;
-			row[c] = strtod(at, &after);
+			// a number does not begin on the next line
+			char *after = (char *)at;
+			row[c] = isspace((unsigned char)*at) ? NAN : strtod(at, &after);
 			row[c] = after == at ? NAN : row[c];
 			at = after + strcspn(after, ",\r\n");
 			at += *at == ',';
 		}
-		if (row[0] == signal && row[1] >= from && row[1] <= to) {
+		at += strcspn(at, "\r\n");
+		if (row[0] == signal && isfinite(row[1]) && row[1] >= from && row[1] <= to) {
 			for (int c = 0; c < table->n_columns; c++)
 				table->values[c][table->n] = row[c];
 			table->n++;
@@ -258,13 +260,17 @@ static void draw_dense(struct plot *plot, const struct pen *pen, const struct pa
 			low = value[last] < value[low] ? last : low;
 			high = value[last] > value[high] ? last : high;
 		}
+		if (last == k) { // it has no place
+			k++;
+			continue;
+		}
 		int kept[] = {k, low < high ? low : high, low < high ? high : low, last - 1};
 		for (int i = 0; i < 4; i++)
 			if (i == 0 || kept[i] != kept[i - 1]) {
 				x[at] = axis_at(&panel->across, time[kept[i]]);
 				y[at++] = axis_at(&panel->up, value[kept[i]]);
 			}
-		k = last > k ? last : k + 1;
+		k = last;
 	}
 	if (x)
 		draw_curve(&plot->d, pen, at, x, y);

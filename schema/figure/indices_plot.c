@@ -25,7 +25,7 @@ static bool drawn(const struct plot *plot, const struct part *part)
 
 bool plot_has_indices(const cJSON *result)
 {
-	return cJSON_GetArraySize(plot_member(plot_member(result, "cells")->child, "outputs")) > 0;
+	return cJSON_GetArraySize(plot_member(plot_first(plot_member(result, "cells")), "outputs")) > 0;
 }
 
 /* "f_2: ST 0.51 [0.42, 0.6]" */
@@ -266,8 +266,9 @@ void plot_indices(struct plot *plot)
 
 bool plot_has_pairs(const cJSON *result)
 {
-	return cJSON_GetArraySize(plot_member(plot_member(plot_member(result, "cells")->child, "outputs")->child,
-	                                      "second_order")) > 0;
+	return cJSON_GetArraySize(
+	           plot_member(plot_first(plot_member(plot_first(plot_member(result, "cells")), "outputs")),
+	                       "second_order")) > 0;
 }
 
 static int place_of(const cJSON *inputs, const char *name)

@@ -38,6 +38,11 @@ const cJSON *plot_member(const cJSON *object, const char *name)
 	return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
+const cJSON *plot_first(const cJSON *list)
+{
+	return list ? list->child : NULL;
+}
+
 bool plot_is_result(const cJSON *document)
 {
 	static const char *const lists[] = {"cells", "signals", "spectra", "rows"};

@@ -34,6 +34,7 @@ enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
 
 bool plot_is_result(const cJSON *document); /* of any kind of study, and no study itself */
 const cJSON *plot_member(const cJSON *object, const char *name);
+const cJSON *plot_first(const cJSON *list);                                          /* NULL: none */
 double plot_number(const cJSON *object, const char *name);                           /* NAN: none */
 const char *plot_text(const cJSON *object, const char *name);                        /* "": none */
 double *plot_numbers(struct plot *plot, const cJSON *list, int *n);                  /* null is NAN */

@@ -158,8 +158,9 @@ static void put_notes(struct report *report)
 			continue;
 		put(report, "<li>");
 		put_text(report, notes.text[k]);
-		snprintf(times, sizeof times, notes.times[k] > 1 ? " (%d times)" : "", notes.times[k]);
-		put(report, times);
+		snprintf(times, sizeof times, " (%d times)", notes.times[k]);
+		if (notes.times[k] > 1)
+			put(report, times);
 		put(report, "</li>\n");
 	}
 	put(report, "</ul>\n</details>\n");

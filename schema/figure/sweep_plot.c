@@ -11,7 +11,7 @@ enum { OUTPUTS_MOST = 4, COLUMNS_MOST = 8, INPUTS_MOST = 16, PATHS_MOST = 8, PAN
 static const cJSON *cells_of(const cJSON *result)
 {
 	const cJSON *cells = plot_member(result, "cells");
-	return cells ? cells->child : NULL;
+	return plot_first(cells);
 }
 
 /* The path of the swept number along the axis: the chosen one, else the last that is a number and has two values. */
@@ -516,6 +516,6 @@ void plot_responses(struct plot *plot)
 		draw_signals(plot, signals);
 	snprintf(plot->sentence, sizeof plot->sentence,
 	         "Left oscillator, first ground motion: %s m with pounding, %s m without.",
-	         draw_number(peak_of(signals->child, 0, false), number[0]),
-	         draw_number(peak_of(signals->child, 0, true), number[1]));
+	         draw_number(peak_of(plot_first(signals), 0, false), number[0]),
+	         draw_number(peak_of(plot_first(signals), 0, true), number[1]));
 }
