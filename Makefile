@@ -42,7 +42,7 @@ LIBS.tests  := -lcmocka -lcurl
 # the objects of a folder and of its rooms, but for some
 objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c $(1)/*/*.c)))
 ENGINE := $(call objs,engine)
-SCHEMA := $(call objs,schema) $(B)/schema/examples.o
+SCHEMA := $(call objs,schema) $(B)/schema/examples.o $(B)/schema/page.o
 SERVER := $(call objs,server,server/main.c)
 CLIENT := $(call objs,client)
 # a program each; the files of tests/support serve them all
@@ -104,11 +104,25 @@ $(B)/schema/examples.c: $(wildcard schema/examples/*.json)
 $(B)/schema/examples.o: $(B)/schema/examples.c
 	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
 
+# and so are the pages for browsers, which are text: name, text
+$(B)/schema/page.c: $(wildcard client/page/*)
+	@mkdir -p $(@D)
+	@{ echo '#include "schema/http/page.h"'; echo 'const struct page_file page_files[] = {'; \
+	  for f in $^; do echo "{\"$${f##*/}\","; sed 's/[\\"?]/\\&/g; s/.*/"&\\n"/' $$f; echo '},'; done; \
+	  echo '{0}};'; } >$@
+$(B)/schema/page.o: $(B)/schema/page.c
+	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
+
 # install what is missing, and only that
 deps:
 	@missing=$$(for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || echo $$p; done); \
 	[ -z "$$missing" ] || { as=$$([ $$(id -u) = 0 ] || echo sudo); $$as apt-get update -q && \
 	  $$as env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends $$missing; }
+
+# what the test of the pages needs, which is skipped without it
+browser:
+	@as=$$([ $$(id -u) = 0 ] || echo sudo); $$as apt-get update -q && \
+	  $$as env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends chromium
 
 run: deps
 	@$(MAKE) --no-print-directory -s all
@@ -182,6 +196,6 @@ fmt:
 clean:
 	$(RM) -r build
 
-.PHONY: all deps run test check soak install bench golden paper extremes yield statistics asan tsan lint fuzz fmt clean
+.PHONY: all browser deps run test check soak install bench golden paper extremes yield statistics asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -name '*.d' 2>/dev/null)

@@ -6,6 +6,8 @@
 
 #include <stdbool.h>
 
+#include "schema/figure/figure.h"
+
 /* exit status of the program */
 enum outcome {
 	OUTCOME_OK,
@@ -17,7 +19,7 @@ enum outcome {
 
 struct options {
 	const char *argument; /* what stands after the subcommand: a file, an id or a name; NULL: none */
-	const char *second;   /* indices: what stands behind that */
+	const char *second;   /* indices, plot, report: what stands behind that */
 	const char *url;      /* of the server */
 	const char *format;   /* one of the names the subcommand offers */
 	const char *table;    /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
@@ -27,8 +29,9 @@ struct options {
 	int limit;            /* list: studies on a page; 0: as the server likes */
 	int threads;          /* run */
 	bool wait;            /* submit */
-	bool names;           /* example */
-	bool partial;         /* results: of the rows so far, while the study runs */
+	bool names;           /* example, plot */
+	bool partial;         /* results, plot: of the rows so far, while the study runs */
+	struct figure_choice choice; /* plot */
 };
 
 enum outcome run_study(const struct options *options);
@@ -42,7 +45,12 @@ enum outcome query_samples(const struct options *options);
 enum outcome query_list(const struct options *options);
 enum outcome query_cancel(const struct options *options);
 enum outcome query_delete(const struct options *options);
+enum outcome report_print(const struct options *options);
+enum outcome plot_figure(const struct options *options);
 enum outcome example_print(const struct options *options);
+
+/* Whether an argument is the id of a study on the server, and no file. */
+bool command_is_id(const char *text);
 
 /* One line on stderr that starts with the program's name. */
 void command_complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

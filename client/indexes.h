@@ -4,10 +4,10 @@
 
 #include "schema/json/json_pointer.h"
 
-/* All of it: what the design came to, and every table of every output of every cell. */
+/* One screen: what the design came to, the indices to quote, and which tables there are besides. */
 void indexes_print(const struct reading *result);
 
-/* One of RESULT_TABLES of every output that has it; false: none has. */
+/* One of RESULT_TABLES of every output that has it, or "all"; false: none has. */
 bool indexes_print_table(const struct reading *result, const char *table);
 
 #endif

@@ -31,6 +31,15 @@ struct command {
 #define TABLE(name) " " #name
 #define TABLES      RESULT_TABLES(TABLE)
 
+/* Keys of the options that choose what a figure shows: none is printable, so that none is a short option. */
+enum {
+	FIGURE_KEY_BEFORE,
+#define X(name, values, lowest, highest, text) FIGURE_KEY_##name,
+	FIGURE_ARGUMENTS(X)
+#undef X
+};
+#define FIGURE_KEYS "\1\2\3\4\5\6\7\10\11\12\13"
+
 // clang-format off
 static const struct command COMMANDS[] = {
 	{"run", "STUDY.json", "tfTo", false, {"json", "table", "csv"}, run_study,
@@ -56,6 +65,14 @@ static const struct command COMMANDS[] = {
 	 "the result of a study that has succeeded", ""},
 	{"samples", "ID", "uf", false, {"csv", "npy"}, query_samples,
 	 "every input row of a study and its outputs", ""},
+	{"plot", "FIGURE RESULT|ID", "nup" FIGURE_KEYS, false, {0}, plot_figure,
+	 "print a figure of a result as SVG",
+	 "--names lists the figures.  A result is a file, - or the id of a study on the server; for `history' "
+	 "a file of samples as CSV, or an id."},
+	{"report", "RESULT|ID [STUDY]", "up", false, {0}, report_print,
+	 "a result as one HTML page, for those without this program",
+	 "A result is a file, - or the id of a study on the server, which then has the study document, too; for a file, "
+	 "STUDY is that."},
 	{"list", "", "slcuf", true, {"json", "table", "csv"}, query_list,
 	 "the studies on the server, newest first", ""},
 	{"cancel", "ID", "uf", true, {"json", "table", "csv"}, query_cancel,
@@ -74,11 +91,14 @@ static const struct argp_option OPTIONS[] = {
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
 	{"limit",   'l', "N",      0, "at most N studies", 0},
 	{"cursor",  'c', "CURSOR", 0, "go on where an earlier list ended", 0},
-	{"names",   'n', NULL,     0, "print the names of the examples", 0},
+	{"names",   'n', NULL,     0, "print the names there are", 0},
 	{"url",     'u', "URL",    0, "the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "how the data is printed", 0},
-	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES "; without it, all as a table and inputs as csv", 0},
+	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES ", or all as a table; without it, a summary as a table and inputs as csv", 0},
 	{"partial", 'p', NULL,     0, "of the rows that are complete so far, if the study still runs", 0},
+#define X(name, values, lowest, highest, text) {#name, FIGURE_KEY_##name, "VALUE", 0, text, 0},
+	FIGURE_ARGUMENTS(X)
+#undef X
 };
 // clang-format on
 
@@ -133,6 +153,11 @@ void command_complain(const char *format, ...)
 	free(line);
 }
 
+bool command_is_id(const char *text)
+{
+	return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && access(text, F_OK) != 0;
+}
+
 static int whole_number(struct argp_state *state, const char *option, const char *text, int max)
 {
 	char *end;
@@ -154,8 +179,10 @@ static void take_argument(struct argp_state *state, struct parsing *parsing, con
 static void check_table(struct argp_state *state, const struct options *options)
 {
 	char *padded = command_text(" %s ", options->table ? options->table : "inputs");
-	if (strchr(padded + 1, ' ') != strrchr(padded, ' ') || !strstr(TABLES " ", padded))
-		argp_error(state, "no table '%s' here; there are:%s", options->table, TABLES);
+	bool all = options->table && strcmp(options->table, "all") == 0 && strcmp(options->format, "table") == 0;
+	if (!all && (strchr(padded + 1, ' ') != strrchr(padded, ' ') || !strstr(TABLES " ", padded)))
+		argp_error(state, "no table '%s' here; there are:%s, and all with --format table", options->table,
+		           TABLES);
 	if (options->table && strcmp(options->format, "json") == 0)
 		argp_error(state, "--table takes --format table or --format csv with it");
 	free(padded);
@@ -204,14 +231,23 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 	case 'p':
 		options->partial = true;
 		return 0;
+#define X(name, values, lowest, highest, text) \
+	case FIGURE_KEY_##name:                    \
+		options->choice.name = value;          \
+		return 0;
+		FIGURE_ARGUMENTS(X)
+#undef X
 	case ARGP_KEY_ARG:
 		take_argument(state, parsing, value);
 		return 0;
 	case ARGP_KEY_END:
 		check_table(state, options);
+		if (options->names)
+			return 0;
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
 			argp_error(state, "%s is missing", parsing->command->arguments);
-		if (!options->second && strchr(parsing->command->arguments, ' '))
+		if (!options->second && strchr(parsing->command->arguments, ' ') &&
+		    strchr(parsing->command->arguments, ' ')[1] != '[')
 			argp_error(state, "%s is missing", strchr(parsing->command->arguments, ' ') + 1);
 		return 0;
 	}

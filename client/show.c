@@ -161,9 +161,9 @@ static void print_work(const struct reading *result)
 		putchar('\n');
 	}
 	for (int i = 0; (what = reading_text(result, "/work/left_out/%d", i)); i++) {
-		fputs("  left out: ", stdout);
-		table_say(what);
-		putchar('\n');
+		char *line = command_text("left out: %s", what);
+		table_prose(2, line);
+		free(line);
 	}
 }
 

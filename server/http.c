@@ -212,7 +212,8 @@ static enum MHD_Result send_reply(const struct request *request, struct reply *r
 	    {"Cache-Control", reply->etag[0] ? "private, no-cache" : "no-store"},
 	    {"X-Request-Id", number},
 	    {"X-Content-Type-Options", "nosniff"},
-	    {"Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'"},
+	    {"Content-Security-Policy",
+	     reply->policy ? reply->policy : "default-src 'none'; frame-ancestors 'none'"},
 	    {"Referrer-Policy", "no-referrer"},
 	};
 	const size_t sent = reply->status == 304 ? 0 : reply->length;

@@ -4,12 +4,12 @@
  * the store as the bytes that go. */
 #include <inttypes.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/pound.h"
+#include "schema/figure/figure.h"
 #include "schema/json/json_pointer.h"
 #include "schema/json/json_writer.h"
 #include "schema/json/problems.h"
@@ -18,6 +18,7 @@
 #include "schema/study/study_json.h"
 #include "schema/study/study_status.h"
 #include "server/http.h"
+#include "server/pages.h"
 #include "server/store.h"
 #include "server/token.h"
 #include "server/workers.h"
@@ -387,6 +388,22 @@ static void tabulate(struct reply *reply, const struct reply *json, const char *
 	*reply = problem(API_CONFLICT, detail);
 }
 
+/* A result that is not there yet as that of the rows so far, if that is asked for, and how many these are. */
+static struct reply or_so_far(struct request *request, struct reply json, int *rows)
+{
+	*rows = 0;
+	if (json.status != 404 || json.retry_after <= 0 || strcmp(http_argument(request, "partial"), "true") != 0)
+		return json;
+	free(json.body);
+	return so_far(request, json.retry_after, rows);
+}
+
+/* The result as JSON. */
+static struct reply result(struct request *request, int *rows)
+{
+	return or_so_far(request, document(request, "result"), rows);
+}
+
 static struct reply results(struct request *request)
 {
 	const char *table = http_argument(request, "table"), *format = http_argument(request, "format");
@@ -395,12 +412,9 @@ static struct reply results(struct request *request)
 	struct reply reply;
 	int rows = 0;
 	const bool csv = second(request, result_formats, table, rows, &reply);
-	struct reply json = csv ? document(request, "result")
-	                        : document_whole(request, "result", http_known(request, reply.etag));
-	if (json.status == 404 && json.retry_after > 0 && !strcmp(http_argument(request, "partial"), "true")) {
-		free(json.body);
-		json = so_far(request, json.retry_after, &rows);
-	}
+	struct reply json =
+	    csv ? result(request, &rows)
+	        : or_so_far(request, document_whole(request, "result", http_known(request, reply.etag)), &rows);
 	if (json.status != 200)
 		return json;
 	if (rows > 0)
@@ -475,6 +489,76 @@ static struct reply samples(struct request *request)
 	return reply.body ? reply : no_memory();
 }
 
+/* The tag of what is drawn: of a version, and of so many rows while there are not all. */
+static void tag(struct reply *reply, int rows)
+{
+	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%d\"" : "\"%s\"", POUND_VERSION, rows);
+}
+
+static struct reply figures(struct request *request)
+{
+	char base[64];
+	int rows;
+	struct reply json = result(request, &rows);
+	if (json.status != 200)
+		return json;
+	snprintf(base, sizeof base, "/v1/studies/%016" PRIx64, (uint64_t)request->id);
+	const struct figure_source source = {
+	    .json = json.body, .length = json.length, .samples = !rows && sampled(request, true) ? "" : NULL};
+	size_t length;
+	char *body = figure_list(&source, base, &length);
+	free(json.body);
+	struct reply reply = made("application/json", body, length);
+	if (body)
+		tag(&reply, rows);
+	return reply;
+}
+
+/* The histories of a study as CSV, computed again; NULL: it has none, or they cannot be made. */
+static char *histories(const struct request *request, size_t *length)
+{
+	struct work_run opened;
+	const char *error = answer_open(request, &opened);
+	char *csv = !error && opened.study->spectrum.histories
+	                ? histories_to_csv(opened.study, opened.run, length)
+	                : NULL;
+	work_close(&opened);
+	return csv;
+}
+
+static struct reply figure(struct request *request)
+{
+	static const enum api_fault faults[] = {[FIGURE_ABSENT] = API_CONFLICT,
+	                                        [FIGURE_UNKNOWN] = API_NOT_FOUND,
+	                                        [FIGURE_CHOICE] = API_BAD_REQUEST,
+	                                        [FIGURE_RESULT] = API_CORRUPT,
+	                                        [FIGURE_NOMEM] = API_UNAVAILABLE};
+	const struct figure_choice choice = {
+#define X(name, values, lowest, highest, text) .name = http_argument(request, #name),
+	    FIGURE_ARGUMENTS(X)
+#undef X
+	};
+	const char *name = strrchr(request->path, '/') + 1;
+	struct figure drawn;
+	int rows;
+	struct reply json = result(request, &rows);
+	if (json.status != 200)
+		return json;
+	struct figure_source source = {.json = json.body, .length = json.length};
+	char *samples = figure_row(name)->sampled ? histories(request, &source.n_samples) : NULL;
+	source.samples = samples;
+	enum figure_status status = figure_draw(name, &source, &choice, &drawn);
+	free(samples);
+	free(json.body);
+	if (status != FIGURE_DRAWN)
+		return problem(faults[status], status == FIGURE_NOMEM ? "out of memory" : drawn.detail);
+	struct reply reply = made("image/svg+xml", drawn.svg, drawn.length);
+	// its style is inside; by itself it may do nothing else
+	reply.policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
+	tag(&reply, rows);
+	return reply;
+}
+
 static struct reply cancel(struct request *request)
 {
 	enum store_status cancelled = store_cancel(request->server->store, request->id);
@@ -535,11 +619,38 @@ static struct reply openapi(struct request *request)
 	                      .etag = "\"" POUND_VERSION "\""};
 }
 
-/* Whether a request is for what is made of all of a study's blocks, or of a result read again, or for a long document. */
+static struct reply example_list(struct request *request)
+{
+	(void)request;
+	struct reply reply = pages_example_list();
+	return reply.body ? reply : no_memory();
+}
+
+static struct reply example(struct request *request)
+{
+	struct reply reply = pages_example(strrchr(request->path, '/') + 1);
+	return reply.body ? reply : problem(API_NOT_FOUND, "there is no such example; /v1/examples lists them");
+}
+
+#define PAGE(name)                                    \
+	static struct reply name(struct request *request) \
+	{                                                 \
+		return pages_file(request->operation);        \
+	}
+PAGE(home)
+PAGE(new)
+PAGE(study)
+PAGE(style)
+PAGE(script)
+PAGE(icon)
+#undef PAGE
+
+/* Whether a request is for what is made of all blocks of a study, of a result read again, or for a long document. */
 bool routes_slow(const struct request *request)
 {
 	size_t length = 0;
-	if (request->operation == API_samples)
+	if (request->operation == API_samples || request->operation == API_figures ||
+	    request->operation == API_figure)
 		return true;
 	if (request->operation != API_results && request->operation != API_posted)
 		return false;

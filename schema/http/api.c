@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schema/figure/figure.h"
 #include "schema/result/result_json.h"
 #include "schema/study/fields.h"
 
@@ -23,6 +24,7 @@ const unsigned api_faults_of_all = F(BAD_REQUEST) | F(UNAUTHORIZED) | F(NO_LENGT
 #define STORED (F(NOT_FOUND) | F(CORRUPT))
 #define TABLE(name) " " #name
 #define TABLES RESULT_TABLES(TABLE) " "
+#define NAMES FIGURES(TABLE) " "
 
 const struct api_operation api_operations[] = {
 	[API_submit]  = {"POST", "/v1/studies", "submit",
@@ -38,12 +40,24 @@ const struct api_operation api_operations[] = {
 	[API_samples] = {"GET", "/v1/studies/{id}/samples", "samples",
 	                 "every input row and its outputs, enough to compute the indexes again", " 200 304 ",
 	                 .media = " text/csv application/octet-stream ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	[API_figures] = {"GET", "/v1/studies/{id}/figures", "figures",
+	                 "the figures that the result has", " 200=Figures 304 ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	[API_figure]  = {"GET", "/v1/studies/{id}/figures/{name}", "figure",
+	                 "a figure of the result", " 200 304 ", .media = " image/svg+xml ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_cancel]  = {"POST", "/v1/studies/{id}/cancel", "cancel",
 	                 "cancels a study that is queued or running", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT) | F(FOREIGN)},
 	[API_live]    = {"GET", "/livez", "live", "the process answers", " 200=Version ", .open = true},
 	[API_ready]   = {"GET", "/readyz", "ready", "studies are taken", " 200=Version ", .open = true},
 	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges for Prometheus", " 200 ", .media = " text/plain "},
 	[API_version] = {"GET", "/version", "version", "the version", " 200=Version ", .faults = 0},
+	[API_example_list] = {"GET", "/v1/examples", "example_list", "names and titles of the example studies", " 200=Examples 304 ", .faults = 0},
+	[API_example] = {"GET", "/v1/examples/{name}", "example", "an example study", " 200=Study 304 ", .faults = F(NOT_FOUND)},
+	[API_home]    = {"GET", "/", "home", "the page that lists studies, for browsers", " 200 304 ", .media = " text/html ", .open = true},
+	[API_new]     = {"GET", "/new", "new", "the page that makes a study", " 200 304 ", .media = " text/html ", .open = true},
+	[API_study]   = {"GET", "/studies/{id}", "study", "the page of a study", " 200 304 ", .media = " text/html ", .open = true},
+	[API_style]   = {"GET", "/page.css", "style", "of the pages", " 200 304 ", .media = " text/css ", .open = true},
+	[API_script]  = {"GET", "/page.js", "script", "of the pages", " 200 304 ", .media = " text/javascript ", .open = true},
+	[API_icon]    = {"GET", "/icon.svg", "icon", "of the pages", " 200 304 ", .media = " image/svg+xml ", .open = true},
 	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 ", .faults = 0},
 };
 
@@ -63,6 +77,23 @@ const struct api_argument api_arguments[] = {
 	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, .text = "wins over Accept"},
 	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"figures", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
+	{"figures", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"figure",  "name",            "path",   NAMES, 0, 0, NULL, .text = "of the figure"},
+	{"figure",  "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
+	{"figure",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+#define X(name, values, lowest, highest, meaning) {"figure", #name, "query", values, lowest, highest, NULL, .text = meaning},
+	FIGURE_ARGUMENTS(X)
+#undef X
+	{"example", "name",            "path",   NULL, 0, 0, NULL, .text = "of the example"},
+	{"example_list", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"example", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"home", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"new", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"study", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"style", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"script", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"icon", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
 };
 // clang-format on
@@ -117,15 +148,21 @@ static long long id_at(const char *text)
 	return id < 0 ? -1 : id;
 }
 
-/* Whether a path is of a form, and the id in it. */
-static bool matches(const char *path, const char *form, long long *id)
+/* Whether a path is that of an operation, and the id in it. */
+static bool matches(const char *path, int operation, long long *id)
 {
+	const char *form = api_operations[operation].path;
 	size_t head = strcspn(form, "{");
-	if (!form[head])
-		return !strcmp(path, form);
-	if (strncmp(path, form, head) != 0 || (*id = id_at(path + head)) < 0)
-		return false;
-	return !strcmp(path + head + 16, form + head + strlen("{id}"));
+	if (form[head] && !strncmp(path, form, head) && !strncmp(form + head, "{id}", 4)) {
+		if ((*id = id_at(path + head)) < 0)
+			return false;
+		path += head + 16;
+		form += head + strlen("{id}");
+		head = strcspn(form, "{");
+	}
+	return !form[head] ? !strcmp(path, form)
+	                   : !strncmp(path, form, head) &&
+	                         api_takes(api_argument(operation, "name", "path"), path + head);
 }
 
 /* Finds the operation that a request asks for.
@@ -147,7 +184,7 @@ int api_match(const char *method, const char *path, long long *id, char allow[64
 	for (int i = 0; i < API_N_OPERATIONS; i++) {
 		const struct api_operation *operation = &api_operations[i];
 		long long here = 0;
-		if (!matches(path, operation->path, &here))
+		if (!matches(path, i, &here))
 			continue;
 		*id = here;
 		if (!strcmp(method, operation->method))

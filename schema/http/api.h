@@ -36,8 +36,10 @@
 
 /* What can be asked for: X(operation, which is a row of api_operations and a function of routes.c). */
 #define API_OPERATIONS(X)                                                                 \
-	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(cancel)        \
-	X(live) X(ready) X(metrics) X(version) X(openapi)
+	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(figures) \
+	X(figure) X(cancel)        \
+	X(live) X(ready) X(metrics) X(version) X(openapi) \
+	X(example_list) X(example) X(home) X(new) X(study) X(style) X(script) X(icon)
 // clang-format on
 
 enum api_fault {
@@ -60,7 +62,8 @@ struct api_fault_row {
 };
 
 struct api_operation {
-	const char *method, *path, *name; /* {id} in a path stands for 16 hexadecimal digits */
+	const char *method, *path, *name; /* {id} in a path stands for 16 hexadecimal digits,
+	                                     {name} at its end for one of the choices of that argument */
 	const char *text;                 /* one line for people */
 	const char *
 	    answers; /* of success, between spaces: "200=Page", its status and its object in the document, "204" */

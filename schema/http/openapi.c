@@ -42,6 +42,15 @@ static const struct member members[] = {
 	{"Estimate", "runs_total",      "integer", "", "pounding runs asked for"},
 	{"Estimate", "estimated_cpu_s", "number",  "", "seconds of one core"},
 	{"Estimate", "estimated_bytes", "number",  "", "in the database"},
+	{"Figures", "figures",    "[Figure]", "",    "in the order of the table of figures"},
+	{"Figure",  "name",       "string",  "",     "of the figure, the end of its path"},
+	{"Figure",  "title",      "string",  "",     "what it shows"},
+	{"Figure",  "arguments",  "[string]", "",    "names of the query arguments that it takes"},
+	{"Figure",  "table",      "string",  "null", "table of the result with its numbers; null: the CSV of the result"},
+	{"Figure",  "link",       "string",  "",     "path of the SVG"},
+	{"Examples", "examples",  "[Example]", "",   "by name"},
+	{"Example", "name",       "string",  "",     "of the example, the end of its path"},
+	{"Example", "title",      "string",  "",     "what it studies"},
 	{"Version", "name",       "string",  "",     "poundd"},
 	{"Version", "version",    "string",  "",     "of the engine and the server"},
 	{"Problem", "type",       "string",  "",     "short name of the kind of problem"},
@@ -363,7 +372,7 @@ static void argument(struct writer *w, const struct api_argument *of)
 		writer_whole(w, "minimum", of->min);
 		writer_whole(w, "maximum", of->max);
 	}
-	if (!strcmp(of->place, "path"))
+	if (!strcmp(of->place, "path") && !strcmp(of->name, "id"))
 		writer_text(w, "pattern", "^[0-9a-f]{16}$");
 	if (of->choices) {
 		writer_array(w, "enum", WRITER_LINE);

@@ -14,6 +14,17 @@ static const cJSON *member(const cJSON *object, const char *name)
 	return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
+/* The first element of a list that may be absent, and the one behind an element. */
+static const cJSON *first(const cJSON *list)
+{
+	return list ? list->child : NULL;
+}
+
+static const cJSON *behind(const cJSON *element)
+{
+	return element ? element->next : NULL;
+}
+
 /* ---- lines ---- */
 
 /* A table in the making: first a line of the names of its cells, then lines of their values. */
@@ -251,12 +262,12 @@ static void put_trial(struct lines *lines, const cJSON *row, const cJSON *time)
 
 static void put_trials(struct lines *lines, const cJSON *rows, const cJSON *times)
 {
-	const cJSON *row, *time = times->child;
-	put_trial(lines, rows->child, time);
+	const cJSON *row, *time = first(times);
+	put_trial(lines, first(rows), time);
 	cJSON_ArrayForEach(row, rows)
 	{
 		put_trial(lines, row, time);
-		time = time->next;
+		time = behind(time);
 	}
 }
 
@@ -284,7 +295,7 @@ static int columns_add(struct column *columns, int n, const cJSON *spectra)
 
 static void put_spectra(struct writer *w, const cJSON *result)
 {
-	struct column columns[COLUMNS_MAX] = {{"frequency_hz", member(result, "frequencies_hz")->child}};
+	struct column columns[COLUMNS_MAX] = {{"frequency_hz", first(member(result, "frequencies_hz"))}};
 	int n = columns_add(columns, 1, member(result, "spectra"));
 	n = columns_add(columns, n, member(member(result, "accuracy"), "spectra"));
 	for (int j = 0; j < n; j++) {
@@ -296,7 +307,7 @@ static void put_spectra(struct writer *w, const cJSON *result)
 		for (int j = 0; j < n; j++) {
 			writer_raw(w, ",", j > 0);
 			put_value(w, columns[j].next);
-			columns[j].next = columns[j].next->next;
+			columns[j].next = behind(columns[j].next);
 		}
 		writer_raw(w, "\r\n", 2);
 	}
@@ -320,7 +331,7 @@ static void put_result(struct lines *lines, const cJSON *result)
 		put_spectra(lines->w, result);
 	else if (cJSON_IsArray(member(result, "signals")))
 		put_signals(lines, result);
-	else if (cells && member(cells->child, "signals"))
+	else if (cells && member(first(cells), "signals"))
 		cJSON_ArrayForEach(cell, cells) put_signals(lines, cell);
 	else
 		put_sensitivity(lines, &tables[0], result);

@@ -9,8 +9,8 @@
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
-static const char *const COMMANDS[] = {"run",     "design",  "indices", "submit", "status", "wait",
-                                       "results", "samples", "list",    "cancel", "delete", "example"};
+static const char *const COMMANDS[] = {"run",     "design", "indices", "submit", "status",  "wait", "results",
+                                       "samples", "list",   "cancel",  "delete", "example", "plot", "report"};
 
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
 

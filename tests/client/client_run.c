@@ -254,8 +254,8 @@ static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
 	    "S2_excitation",      "\n  inputs",     "S2",       "S_closed",           "f_e/f_2",
 	    "these explain",      "ratio bias",     "0 lowest", "ST_one_signal",      "note: f_e: S1_"};
 	char *study = with_every_table();
-	struct program_outcome table =
-	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study);
+	struct program_outcome table = program_run(
+	    (const char *const[]){"pound", "run", "--format", "table", "--table", "all", "-", NULL}, study);
 	(void)state;
 	program_expect(&table, 0);
 	for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
@@ -266,6 +266,54 @@ static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
 			fail_msg("over 100 columns: %s", line);
 	program_free(&table);
 	free(study);
+}
+
+/* Lines of a text of at most 100 columns. */
+static int lines_within_100(char *text)
+{
+	int n = 0;
+	for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), n++)
+		if (strlen(line) > 100)
+			fail_msg("over 100 columns: %s", line);
+	return n;
+}
+
+static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
+{
+	(void)state;
+	struct program_outcome paper = POUND("example", "paper"),
+	                       small = POUND("example", "spectrum_sensitivity");
+	char *few = documents_with(paper.out, "\"rows\": 1000", "\"rows\": 40");
+	const char *const studies[] = {few, small.out};
+	const char *const words[] = {"  impulse               f_2", "floor_spectrum 64 Hz"};
+	for (int i = 0; i < 2; i++) {
+		struct program_outcome table =
+		    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, studies[i]);
+		program_expect(&table, 0);
+		assert_non_null(strstr(table.out, "total indices ST"));
+		assert_non_null(strstr(table.out, "more with --format table and --table all, inputs"));
+		if (i == 0)
+			assert_non_null(strstr(table.out, words[i]));
+		assert_true(lines_within_100(table.out) <= 50);
+		program_free(&table);
+	}
+	free(few);
+	program_free(&paper);
+	program_free(&small);
+}
+
+/* The interval of 1,000 rows of the paper's linear study is wider than that of 250, since few rows make the variance. */
+static void a_summary_says_why_more_rows_have_a_wider_interval(void **state)
+{
+	(void)state;
+	struct program_outcome paper = POUND("example", "paper_linear");
+	struct program_outcome table =
+	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, paper.out);
+	program_expect(&table, 0);
+	assert_non_null(strstr(table.out, "wider at 1000 rows than at 250: rare rows add much to the variance"));
+	assert_true(lines_within_100(table.out) <= 50);
+	program_free(&table);
+	program_free(&paper);
 }
 
 static void one_table_of_a_result_is_shown_by_its_name(void **state)
@@ -502,6 +550,8 @@ CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_
            cmocka_unit_test(a_table_fits_in_100_columns),
            cmocka_unit_test(a_table_has_no_column_for_an_index_that_is_null_throughout),
            cmocka_unit_test(a_table_shows_every_estimate_of_a_result_and_its_notes),
+           cmocka_unit_test(a_table_without_a_name_is_a_summary_of_one_screen),
+           cmocka_unit_test(a_summary_says_why_more_rows_have_a_wider_interval),
            cmocka_unit_test(one_table_of_a_result_is_shown_by_its_name),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),
            cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),

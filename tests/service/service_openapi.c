@@ -49,11 +49,22 @@ static const struct {
     {PLAIN, "GET", "/v1/studies/{done}/samples?format=npy", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/studies/{done}/samples", {"If-None-Match: *"}, NULL, 304},
     {PLAIN, "GET", "/v1/studies/{new}/samples", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{done}/figures", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/figures", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/studies/{new}/figures", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{done}/figures/indices", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/figures/indices?width=320&index=ST", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/figures/indices", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/studies/{done}/figures/indices?width=1", {0}, NULL, 400},
+    {PLAIN, "GET", "/v1/studies/{done}/figures/errors", {0}, NULL, 409},
+    {PLAIN, "GET", "/v1/studies/{new}/figures/indices", {0}, NULL, 404},
     {PLAIN, "POST", "/v1/studies/{done}/cancel", {0}, NULL, 409},
     {PLAIN, "POST", "/v1/studies/{new}/cancel", {0}, NULL, 200},
     {PLAIN, "POST", "/v1/studies/{none}/cancel", {0}, NULL, 404},
     {PLAIN, "GET", "/v1/studies/{new}/results", {0}, NULL, 409},
     {PLAIN, "GET", "/v1/studies/{new}/samples", {0}, NULL, 409},
+    {PLAIN, "GET", "/v1/studies/{new}/figures", {0}, NULL, 409},
+    {PLAIN, "GET", "/v1/studies/{new}/figures/indices", {0}, NULL, 409},
     {PLAIN, "DELETE", "/v1/studies/{new}", {0}, NULL, 204},
     {PLAIN, "DELETE", "/v1/studies/{none}", {0}, NULL, 404},
     {PLAIN, "GET", "/livez", {0}, NULL, 200},
@@ -62,9 +73,28 @@ static const struct {
     {PLAIN, "GET", "/version", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/openapi.json", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/openapi.json", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/examples", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/examples", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/examples/response", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/examples/response", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/examples/nothing", {0}, NULL, 404},
+    {PLAIN, "GET", "/", {0}, NULL, 200},
+    {PLAIN, "GET", "/", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/new", {0}, NULL, 200},
+    {PLAIN, "GET", "/new", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/studies/{done}", {0}, NULL, 200},
+    {PLAIN, "GET", "/studies/{done}", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/page.css", {0}, NULL, 200},
+    {PLAIN, "GET", "/page.css", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/page.js", {0}, NULL, 200},
+    {PLAIN, "GET", "/page.js", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/icon.svg", {0}, NULL, 200},
+    {PLAIN, "GET", "/icon.svg", {"If-None-Match: *"}, NULL, 304},
     {DAMAGED, "GET", "/v1/studies/{done}/request", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/results", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/samples", {0}, NULL, 500},
+    {DAMAGED, "GET", "/v1/studies/{done}/figures", {0}, NULL, 500},
+    {DAMAGED, "GET", "/v1/studies/{done}/figures/indices", {0}, NULL, 500},
 };
 
 enum { HELD = 65 /* connections by which not even probes are answered */ };
@@ -104,7 +134,8 @@ static int ask(struct world *world, const char *method, const char *path, const 
 	char decoded[160];
 	snprintf(decoded, sizeof decoded, "%.*s", (int)strcspn(target, "?"), target);
 	int operation = api_match(method, decoded, &id, allow);
-	assert_true(operation >= 0);
+	if (operation < 0)
+		fail_msg("%s %s is no operation", method, decoded);
 	const char *form = api_operations[operation].path;
 	for (size_t n = 0; *form; form++)
 		n += (size_t)sprintf(escaped + n, *form == '/' ? "~1" : "%c", *form);
@@ -167,8 +198,15 @@ static void ask_each(struct world *world, const char *header, int status, bool o
 		const struct api_operation *operation = &api_operations[o];
 		char path[HEAD_TARGET_MAX + 96];
 		const char *rest = strstr(operation->path, "{id}");
-		snprintf(path, sizeof path, "%.*s%s%s%s", (int)strcspn(operation->path, "{"), operation->path,
+		snprintf(path, sizeof path, "%.*s%s%s%s",
+		         (int)(rest ? rest - operation->path : (long)strlen(operation->path)), operation->path,
 		         rest ? "{none}" : "", rest ? rest + 4 : "", arguments);
+		char *named = strstr(path, "{name}");
+		if (named) {
+			char behind[256];
+			snprintf(behind, sizeof behind, "%s", named + strlen("{name}"));
+			sprintf(named, "swept%s", behind);
+		}
 		const char *const headers[] = {"Content-Type: application/json", header};
 		if (operation->open && !open_too)
 			continue;

@@ -18,11 +18,10 @@ static void status_is(struct answer *answer, int status)
 static void problem_is(struct answer answer, int status, const char *words)
 {
 	status_is(&answer, status);
-	assert_string_equal(answer.type, "application/problem+json");
 	struct reading *problem = answer_read(&answer);
+	assert_string_equal(answer.type, "application/problem+json");
 	assert_int_equal((int)reading_number(problem, "/status"), status);
-	assert_non_null(reading_text(problem, "/type"));
-	assert_non_null(reading_text(problem, "/title"));
+	assert_true(reading_text(problem, "/type") && reading_text(problem, "/title"));
 	const char *detail = reading_text(problem, "/detail");
 	if (!detail || !strstr(detail, words))
 		fail_msg("the detail '%s' does not have '%s'", detail, words);
@@ -42,8 +41,8 @@ static void a_posted_study_is_answered_with_201_its_location_and_its_status(void
 	struct answer created = service_post(service, study);
 	status_is(&created, 201);
 	assert_string_equal(created.type, "application/json");
-	struct reading *status = answer_read(&created);
 	char location[64];
+	struct reading *status = answer_read(&created);
 	snprintf(location, sizeof location, "/v1/studies/%s", reading_text(status, "/id"));
 	assert_string_equal(created.location, location);
 	assert_string_equal(reading_text(status, "/links/self"), location);
@@ -53,8 +52,7 @@ static void a_posted_study_is_answered_with_201_its_location_and_its_status(void
 	assert_int_equal((int)reading_number(status, "/runs_total"), 4 * 5 * 2);
 	assert_int_equal((int)reading_number(status, "/runs_done"), 0);
 	assert_int_equal(strlen(reading_text(status, "/created")), strlen("2026-01-01T00:00:00.000Z"));
-	assert_null(reading_text(status, "/started"));
-	assert_null(reading_text(status, "/error"));
+	assert_true(!reading_text(status, "/started") && !reading_text(status, "/error"));
 	reading_close(status);
 	answer_free(&created);
 	free(study);
@@ -184,8 +182,11 @@ static void every_route_answers_only_its_methods(void **state)
 		char path[96], allow[64];
 		const char *form = api_operations[o].path, *id = strstr(form, "{id}");
 		long long number;
-		snprintf(path, sizeof path, "%.*s%s%s", (int)strcspn(form, "{"), form, id ? "0123456789abcdef" : "",
-		         id ? id + 4 : "");
+		snprintf(path, sizeof path, "%.*s%s%s", (int)(id ? id - form : (long)strlen(form)), form,
+		         id ? "0123456789abcdef" : "", id ? id + 4 : "");
+		char *named = strstr(path, "{name}");
+		if (named)
+			strcpy(named, "swept");
 		api_match("GET", path, &number, allow);
 		for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
 			if (strstr(allow, methods[m]))
@@ -214,7 +215,7 @@ static void head_is_get_without_the_body(void **state)
 static void unknown_paths_and_studies_are_404(void **state)
 {
 	static const char *const paths[] = {
-	    "/",
+	    "/index.html",
 	    "/v1",
 	    "/v1/studies/",
 	    "/v1/studies/1",
@@ -672,8 +673,7 @@ static void a_path_with_a_newline_is_one_line_of_the_log(void **state)
 		cut = cut || (strstr(line, "/long000") && strstr(line, "0 404 "));
 	}
 	fclose(log);
-	assert_true(found);
-	assert_true(cut);
+	assert_true(found && cut);
 }
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)

@@ -57,8 +57,12 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 		const struct api_operation *operation = &api_operations[o];
 		char target[96];
 		const char *rest = strstr(operation->path, "{id}");
-		snprintf(target, sizeof target, "%.*s%s%s", (int)strcspn(operation->path, "{"), operation->path,
+		snprintf(target, sizeof target, "%.*s%s%s",
+		         (int)(rest ? rest - operation->path : (long)strlen(operation->path)), operation->path,
 		         rest ? "0123456789abcdef" : "", rest ? rest + 4 : "");
+		char *named = strstr(target, "{name}");
+		if (named)
+			strcpy(named, "swept");
 		for (size_t w = 0; w < sizeof wrong / sizeof wrong[0]; w++, refused++) {
 			int status = status_of(service, operation->method, target, wrong[w], NULL);
 			if (operation->open ? status != 200 : status != 401)

@@ -43,6 +43,12 @@ static void a_path_is_one_of_the_table_to_the_last_character(void **state)
 	    {"GET", "/v1/studies/00000000000000fff", "", -1, 0},
 	    {"GET", "/v1/studies/80000000000000ff", "", -1, 0},
 	    {"GET", "/v1/studies/00000000000000ff/", "", -1, 0},
+	    {"GET", "/v1/studies/00000000000000ff/figures", "GET, HEAD", API_figures, 255},
+	    {"GET", "/v1/studies/00000000000000ff/figures/swept", "GET, HEAD", API_figure, 255},
+	    {"GET", "/v1/studies/00000000000000ff/figures/", "", -1, 0},
+	    {"GET", "/v1/studies/00000000000000ff/figures/swep", "", -1, 0},
+	    {"GET", "/v1/studies/00000000000000ff/figures/swept/", "", -1, 0},
+	    {"GET", "/v1/studies/00000000000000ff/figures/swept given", "", -1, 0},
 	    {"GET", "/v1/studies/{id}", "", -1, 0},
 	    {"GET", "", "", -1, 0},
 	};

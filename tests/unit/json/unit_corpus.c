@@ -19,6 +19,10 @@
 #include "tests/fuzz/fuzz_path.c"
 #undef LLVMFuzzerTestOneInput
 
+#define LLVMFuzzerTestOneInput fuzz_figure
+#include "tests/fuzz/fuzz_figure.c"
+#undef LLVMFuzzerTestOneInput
+
 /* Every file of a folder through a target; how many there were. */
 static int replayed(const char *folder, int (*target)(const uint8_t *bytes, size_t length))
 {
@@ -47,9 +51,10 @@ static void the_corpora_of_the_fuzzers_pass_their_targets(void **state)
 		const char *folder;
 		int (*target)(const uint8_t *bytes, size_t length);
 	} corpora[] = {
-	    {"tests/corpus/gate", fuzz_gate}, {"tests/corpus/study", fuzz_study},
-	    {"tests/corpus/head", fuzz_head}, {"tests/corpus/path", fuzz_path},
-	    {"schema/examples", fuzz_gate},   {"schema/examples", fuzz_study},
+	    {"tests/corpus/gate", fuzz_gate},     {"tests/corpus/study", fuzz_study},
+	    {"tests/corpus/head", fuzz_head},     {"tests/corpus/path", fuzz_path},
+	    {"tests/corpus/figure", fuzz_figure}, {"schema/examples", fuzz_gate},
+	    {"schema/examples", fuzz_study},
 	};
 	(void)state;
 	for (size_t i = 0; i < sizeof corpora / sizeof corpora[0]; i++) {

@@ -1,0 +1,207 @@
+/* figure.c - the table of figures: from the bytes of a result to those of a picture. */
+#include "schema/figure/figure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/figure/plot.h"
+#include "schema/json/json.h"
+
+enum { WIDTH = 1120 };
+
+// clang-format off
+const struct figure_row figure_rows[] = {
+	{"indices",   "sensitivity",    " cell output index width ",  "inputs",            false, "first-order and total indices with 95 % intervals, a panel for each output"},
+	{"swept",     "sensitivity",    " output index x width ",     "inputs",            false, "indices against a swept number, a line for each input"},
+	{"given",     "sensitivity",    " cell output width ",        "conditional_means", false, "mean output given one input, with its band"},
+	{"widths",    "sensitivity",    " cell output width ",        "stopping",          false, "half widths of the intervals against what they cost"},
+	{"pairs",     "sensitivity",    " cell output width ",        "second_order",      false, "second-order indices of every two inputs"},
+	{"spectra",   "floor_spectrum", " axis spectra width ",         NULL,                false, "floor response spectra with and without pounding"},
+	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion of the left floor in time, and its impacts"},
+	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding"},
+	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time"},
+	{0},
+};
+
+static const struct {
+	void (*draw)(struct plot *plot);
+	bool (*has)(const cJSON *result);
+} functions[] = {
+#define X(name) {plot_##name, plot_has_##name},
+	FIGURES(X)
+#undef X
+};
+
+static const struct {
+	const char *name, *values;
+	int lowest, highest;
+	size_t offset; /* in struct figure_choice */
+} arguments[] = {
+#define X(name, values, lowest, highest, text) {#name, values, lowest, highest, offsetof(struct figure_choice, name)},
+	FIGURE_ARGUMENTS(X)
+#undef X
+};
+// clang-format on
+
+const struct figure_row *figure_row(const char *name)
+{
+	for (const struct figure_row *row = figure_rows; row->name; row++)
+		if (strcmp(row->name, name) == 0)
+			return row;
+	return NULL;
+}
+
+static bool listed(const char *list, const char *word)
+{
+	size_t n = strlen(word);
+	for (const char *at = list; n > 0 && (at = strstr(at, word)); at++)
+		if (at > list && at[-1] == ' ' && at[n] == ' ')
+			return true;
+	return false;
+}
+
+/* Whether every choice is one of the figure and has a value that it takes; what is wrong goes to `detail`. */
+static bool choice_taken(const struct figure_row *row, const struct figure_choice *choice, char *detail,
+                         size_t size)
+{
+	for (size_t k = 0; k < sizeof arguments / sizeof arguments[0]; k++) {
+		const char *value = *(const char *const *)(const void *)((const char *)choice + arguments[k].offset);
+		const char *name = arguments[k].name;
+		char *end = NULL;
+		if (!value)
+			continue;
+		if (!listed(row->takes, name)) {
+			snprintf(detail, size, "figure %s takes no argument \"%s\"; it takes:%s", row->name, name,
+			         row->takes);
+			return false;
+		}
+		if (arguments[k].values && !listed(arguments[k].values, value)) {
+			snprintf(detail, size, "%s must be one of%s", name, arguments[k].values);
+			return false;
+		}
+		long number = arguments[k].highest ? strtol(value, &end, 10) : 0;
+		if (end && (*value < '0' || *value > '9' || *end || number < arguments[k].lowest ||
+		            number > arguments[k].highest)) {
+			snprintf(detail, size, "%s must be a whole number in [%d, %d]", name, arguments[k].lowest,
+			         arguments[k].highest);
+			return false;
+		}
+	}
+	return true;
+}
+
+bool figure_shows(const struct figure_row *row, const cJSON *result)
+{
+	return strcmp(row->kind, plot_text(result, "kind")) == 0 && functions[row - figure_rows].has(result);
+}
+
+static enum figure_status draw(const struct figure_row *row, struct plot *plot, struct figure *figure)
+{
+	const char *width = plot->choice->width;
+	draw_init(&plot->d, width ? strtod(width, NULL) : WIDTH);
+	functions[row - figure_rows].draw(plot);
+	if (*plot->fault) {
+		snprintf(figure->detail, sizeof figure->detail, "%s", plot->fault);
+		free(plot->d.w.text);
+		return FIGURE_CHOICE;
+	}
+	figure->svg = draw_take(&plot->d, plot->title, plot->sentence, &figure->length);
+	return figure->svg ? FIGURE_DRAWN : FIGURE_NOMEM;
+}
+
+/* Draws a figure of a parsed result, by choices that it takes. */
+enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
+                             const struct figure_source *source, const struct figure_choice *choice,
+                             struct figure *figure)
+{
+	*figure = (struct figure){0};
+	if (row->sampled ? !source->samples : !figure_shows(row, result)) {
+		snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s", row->name,
+		         strcmp(row->kind, plot_text(result, "kind")) == 0 ? "the study did not ask for what it shows"
+		                                                           : "only studies of another kind have it");
+		return FIGURE_ABSENT;
+	}
+	struct plot plot = {.result = result, .source = source, .choice = choice};
+	enum figure_status status = draw(row, &plot, figure);
+	plot_free(&plot);
+	return status;
+}
+
+/* Draws a figure.
+ *
+ * Given    name     of a row
+ *          choice   texts of a user
+ * Returns  value    what came of it; figure->svg is for the caller to free
+ * Test     unit_figure: every_figure_of_every_example_is_well_formed_and_within_its_view_box
+ */
+enum figure_status figure_draw(const char *name, const struct figure_source *source,
+                               const struct figure_choice *choice, struct figure *figure)
+{
+	struct gate_fault fault;
+	const struct figure_row *row = figure_row(name);
+	*figure = (struct figure){0};
+	if (!row) {
+		snprintf(figure->detail, sizeof figure->detail, "no figure is called \"%.60s\"", name);
+		return FIGURE_UNKNOWN;
+	}
+	if (!choice_taken(row, choice, figure->detail, sizeof figure->detail))
+		return FIGURE_CHOICE;
+	cJSON *result = json_parse(source->json, source->length, &fault);
+	if (!result && fault.line == 0)
+		return FIGURE_NOMEM;
+	enum figure_status status = FIGURE_RESULT;
+	// what is drawn from samples alone needs no result
+	if (plot_is_result(result) || (cJSON_IsObject(result) && row->sampled && source->samples))
+		status = figure_of(row, result, source, choice, figure);
+	else
+		snprintf(figure->detail, sizeof figure->detail, "this is no result of a study");
+	cJSON_Delete(result);
+	return status;
+}
+
+static void write_row(struct writer *w, const struct figure_row *row, const char *base)
+{
+	char text[160];
+	writer_object(w, NULL, WRITER_LINE);
+	writer_text(w, "name", row->name);
+	writer_text(w, "title", row->text);
+	writer_array(w, "arguments", WRITER_LINE);
+	for (size_t k = 0; k < sizeof arguments / sizeof arguments[0]; k++)
+		if (listed(row->takes, arguments[k].name))
+			writer_text(w, NULL, arguments[k].name);
+	writer_end(w);
+	writer_text(w, "table", row->table);
+	snprintf(text, sizeof text, "%.100s/figures/%s", base, row->name);
+	writer_text(w, "link", text);
+	writer_end(w);
+}
+
+char *figure_list(const struct figure_source *source, const char *base, size_t *length)
+{
+	struct gate_fault fault;
+	struct writer w;
+	cJSON *result = json_parse(source->json, source->length, &fault);
+	if (!result)
+		return NULL;
+	writer_init(&w);
+	writer_object(&w, NULL, WRITER_LINES);
+	writer_array(&w, "figures", WRITER_LINES);
+	for (const struct figure_row *row = figure_rows; row->name; row++)
+		if (figure_shows(row, result) && (!row->sampled || source->samples))
+			write_row(&w, row, base);
+	writer_end(&w);
+	writer_end(&w);
+	cJSON_Delete(result);
+	return writer_take(&w, length);
+}
+
+bool figure_has(const struct figure_row *row, const struct figure_source *source)
+{
+	struct gate_fault fault;
+	cJSON *result = json_parse(source->json, source->length, &fault);
+	bool there = result && figure_shows(row, result);
+	cJSON_Delete(result);
+	return there;
+}

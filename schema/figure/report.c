@@ -1,0 +1,422 @@
+/* report.c - a result as one HTML page.
+ *
+ * 1. what study it is, and the notes of its result;
+ * 2. its figures, those of single cells for each cell;
+ * 3. its tables, read from the CSV that the result has;
+ * 4. accuracy, what was run and what was left out; the study document. */
+#include "schema/figure/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/figure/plot.h"
+#include "schema/json/json.h"
+#include "schema/result/result_json.h"
+
+enum { CELLS_MOST = 32, CELLS_OF_ALL = 4, NOTES_MOST = 64, COLUMNS_MOST = 128 };
+
+struct report {
+	struct writer w;
+	const struct figure_source *source;
+	const cJSON *result;
+	bool failed;
+};
+
+static const char STYLE[] =
+    ":root{color-scheme:light dark}body{font:16px/1.5 Helvetica,Arial,sans-serif;margin:0 "
+    "auto;max-width:1160px;"
+    "padding:1rem;color:#14171b;background:#fff}h1{font-size:1.5rem;line-height:1.25}h2{font-size:1.2rem;"
+    "margin-top:2rem}figure{margin:1rem 0;overflow-x:auto}figure svg{width:100%;min-width:44rem;height:auto;"
+    "display:block}table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}caption{"
+    "text-align:left;padding:.3rem 0}th,td{padding:.15rem .6rem;border-bottom:1px solid "
+    "#dfe3e8;text-align:right}"
+    "th:first-child,td:first-child{text-align:left}.wide{overflow-x:auto}summary{cursor:pointer;padding:."
+    "3rem 0}"
+    "pre{overflow-x:auto;background:#f3f5f7;padding:.8rem;font-size:.85rem}.muted{color:#57606a}"
+    "@media screen and "
+    "(prefers-color-scheme:dark){body{color:#eceff2;background:#14171b}th,td{border-color:#323941}"
+    "pre{background:#1d2228}.muted{color:#9aa4af}}"
+    "@media print{details:not([open])>*{display:revert}figure,tr{break-inside:avoid}}";
+
+static void put(struct report *report, const char *html)
+{
+	writer_raw(&report->w, html, strlen(html));
+}
+
+static void put_text(struct report *report, const char *text)
+{
+	draw_escaped(&report->w, text, strlen(text));
+}
+
+/* <name>text</name> */
+static void put_element(struct report *report, const char *name, const char *text)
+{
+	char tag[64];
+	snprintf(tag, sizeof tag, "<%.30s>", name);
+	put(report, tag);
+	put_text(report, text);
+	snprintf(tag, sizeof tag, "</%.*s>\n", (int)strcspn(name, " "), name);
+	put(report, tag);
+}
+
+static void put_member(struct report *report, const cJSON *object, const char *name, const char *label)
+{
+	char text[80];
+	const cJSON *value = plot_member(object, name);
+	if (!cJSON_IsString(value) && !cJSON_IsNumber(value))
+		return;
+	put(report, "<tr><th scope=\"row\">");
+	put_text(report, label);
+	put(report, "</th><td>");
+	snprintf(text, sizeof text, "%.10g", value->valuedouble);
+	put_text(report, cJSON_IsString(value) ? value->valuestring : text);
+	put(report, "</td></tr>\n");
+}
+
+/* ---- what study it is ---- */
+
+static void put_head(struct report *report)
+{
+	const cJSON *result = report->result, *timing = plot_member(result, "timing");
+	const char *name = *plot_text(result, "name") ? plot_text(result, "name") : plot_text(result, "kind");
+	put(report, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+	            "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+	            "'unsafe-inline'\">\n<meta name=\"viewport\" content=\"width=device-width\">\n");
+	put_element(report, "title", name);
+	put(report, "<style>");
+	put(report, STYLE);
+	put(report, "</style>\n</head>\n<body>\n<main>\n");
+	put_element(report, "h1", name);
+	if (plot_member(result, "partial"))
+		put_element(report, "p", plot_text(plot_member(result, "partial"), "note"));
+	put(report, "<table>\n<caption>What was computed</caption>\n<tbody>\n");
+	put_member(report, result, "kind", "kind of study");
+	put_member(report, plot_member(result, "design"), "method", "design");
+	put_member(report, plot_member(result, "design"), "rows", "rows");
+	put_member(report, plot_member(plot_member(result, "work"), "pounding_runs"), "asked",
+	           "responses with pounding");
+	put_member(report, result, "seed", "seed");
+	put_member(report, timing, "cpu_s", "CPU time, s");
+	put_member(report, result, "engine_version", "version of pound");
+	put_member(report, result, "study_hash", "hash of the study");
+	put(report, "</tbody>\n</table>\n");
+}
+
+/* ---- notes ---- */
+
+struct notes {
+	const char *text[NOTES_MOST];
+	int times[NOTES_MOST], n;
+};
+
+/* Every note of a result, each text once. */
+static void notes_collect(const cJSON *value, struct notes *notes)
+{
+	const cJSON *inside;
+	cJSON_ArrayForEach(inside, value)
+	{
+		if (cJSON_IsObject(inside) || cJSON_IsArray(inside)) {
+			notes_collect(inside, notes);
+			continue;
+		}
+		if (!inside->string || strcmp(inside->string, "note") != 0 || !cJSON_IsString(inside))
+			continue;
+		int k = 0;
+		while (k < notes->n && strcmp(notes->text[k], inside->valuestring) != 0)
+			k++;
+		if (k == NOTES_MOST)
+			continue;
+		notes->times[k]++;
+		notes->text[k] = inside->valuestring;
+		notes->n += k == notes->n;
+	}
+}
+
+/* Notes of the whole result, then, closed, those of its outputs and inputs. */
+static void put_notes(struct report *report)
+{
+	static const char *const whole[] = {"partial", "stopping", "design", "accuracy"};
+	struct notes notes = {0};
+	notes_collect(report->result, &notes);
+	if (notes.n == 0)
+		return;
+	put(report, "<h2>Notes</h2>\n<ul>\n");
+	for (size_t part = 0; part < sizeof whole / sizeof whole[0]; part++) {
+		const char *note = plot_text(plot_member(report->result, whole[part]), "note");
+		if (*note)
+			put_element(report, "li", note);
+		for (int k = 0; k < notes.n; k++)
+			if (strcmp(notes.text[k], note) == 0)
+				notes.times[k] = 0;
+	}
+	put(report, "</ul>\n<details>\n<summary>notes of single outputs and inputs</summary>\n<ul>\n");
+	for (int k = 0; k < notes.n; k++) {
+		char times[40];
+		if (notes.times[k] == 0)
+			continue;
+		put(report, "<li>");
+		put_text(report, notes.text[k]);
+		snprintf(times, sizeof times, " (%d times)", notes.times[k]);
+		if (notes.times[k] > 1)
+			put(report, times);
+		put(report, "</li>\n");
+	}
+	put(report, "</ul>\n</details>\n");
+}
+
+/* ---- figures ---- */
+
+static bool takes_cell(const struct figure_row *row)
+{
+	return strstr(row->takes, " cell ") != NULL;
+}
+
+static void put_figure(struct report *report, const struct figure_row *row, int cell)
+{
+	char number[16];
+	struct figure figure;
+	snprintf(number, sizeof number, "%d", cell);
+	const struct figure_choice choice = {.cell = takes_cell(row) && cell > 0 ? number : NULL};
+	enum figure_status status = figure_of(row, report->result, report->source, &choice, &figure);
+	report->failed = report->failed || status == FIGURE_NOMEM;
+	if (status != FIGURE_DRAWN)
+		return;
+	put(report, "<figure tabindex=\"0\">\n");
+	writer_raw(&report->w, figure.svg, figure.length);
+	put_element(report, "figcaption class=\"muted\"", row->text);
+	put(report, "</figure>\n");
+	free(figure.svg);
+}
+
+/* Figures of the whole result, then those of each cell; of many cells the first figure alone. */
+static void put_figures(struct report *report)
+{
+	char text[PLOT_TEXT], line[PLOT_TEXT + 80];
+	const cJSON *cells = plot_member(report->result, "cells"), *cell;
+	int n = cJSON_GetArraySize(cells), k = 0;
+	bool alone = n <= 1 || strcmp(plot_text(report->result, "kind"), "sensitivity") != 0;
+	put(report, "<h2>Figures</h2>\n");
+	for (const struct figure_row *row = figure_rows; row->name; row++)
+		if (figure_shows(row, report->result) && (alone || !takes_cell(row)))
+			put_figure(report, row, 0);
+	if (alone)
+		return;
+	cJSON_ArrayForEach(cell, cells)
+	{
+		if (k == CELLS_MOST)
+			break;
+		put(report, "<details>\n");
+		snprintf(line, sizeof line, "cell %d: %s", k, plot_sweep_text(cell, 0, NULL, text));
+		put_element(report, "summary", line);
+		for (const struct figure_row *row = figure_rows; row->name; row++)
+			if (takes_cell(row) && figure_shows(row, report->result) &&
+			    (n <= CELLS_OF_ALL || strcmp(row->name, "indices") == 0))
+				put_figure(report, row, k);
+		put(report, "</details>\n");
+		k++;
+	}
+	if (n > CELLS_OF_ALL)
+		put_element(report, "p class=\"muted\"",
+		            "Left out here: further figures of single cells, which pound plot draws of the result.");
+}
+
+/* ---- tables ---- */
+
+/* Columns for specialists stay in the CSV. */
+static bool column_shown(const char *name)
+{
+	static const char *const hidden[] = {"_raw", "_pick_freeze", "_random_forest", "accuracy.", "partial."};
+	for (size_t k = 0; k < sizeof hidden / sizeof hidden[0]; k++)
+		if (strstr(name, hidden[k]))
+			return false;
+	return strncmp(name, "output.", 7) != 0 || strcmp(name, "output.name") == 0 ||
+	       strcmp(name, "output.frequency_hz") == 0;
+}
+
+/* The next cell of CSV, unquoted into `cell`; how many bytes it and the sign behind it take. */
+static size_t cell_of(const char *csv, const char *end, char *cell, size_t size, char *sign)
+{
+	const char *at = csv;
+	size_t n = 0;
+	bool quoted = at < end && *at == '"';
+	for (at += quoted; at < end; at++) {
+		if (quoted && *at == '"' && (at + 1 == end || at[1] != '"')) {
+			quoted = false;
+			continue;
+		}
+		at += quoted && *at == '"';
+		if (!quoted && (*at == ',' || *at == '\r'))
+			break;
+		if (n < size - 1)
+			cell[n++] = *at;
+	}
+	cell[n] = '\0';
+	*sign = at < end ? *at : '\r';
+	at += at < end ? (*at == '\r' ? 2 : 1) : 0;
+	return (size_t)(at - csv);
+}
+
+static void put_cell(struct report *report, const char *text, bool head)
+{
+	char number[32], *end;
+	double value = strtod(text, &end);
+	put(report, head ? "<th scope=\"col\">" : "<td>");
+	if (!head && *text && !*end && isfinite(value)) {
+		snprintf(number, sizeof number, "%.5g", value);
+		put(report, number);
+	} else
+		put_text(report, text);
+	put(report, head ? "</th>" : "</td>");
+}
+
+/* CSV as a table of HTML. */
+static void put_csv(struct report *report, const char *csv, size_t length)
+{
+	const char *at = csv, *end = csv + length;
+	bool shown[COLUMNS_MOST] = {false}, head = true;
+	put(report, "<div class=\"wide\" tabindex=\"0\">\n<table>\n<thead>\n");
+	while (at < end) {
+		char cell[512], sign = ',';
+		put(report, "<tr>");
+		for (int column = 0; sign != '\r' && at < end; column++) {
+			at += cell_of(at, end, cell, sizeof cell, &sign);
+			if (head && column < COLUMNS_MOST)
+				shown[column] = column_shown(cell);
+			if (column < COLUMNS_MOST && shown[column])
+				put_cell(report, cell, head);
+		}
+		put(report, head ? "</tr>\n</thead>\n<tbody>\n" : "</tr>\n");
+		head = false;
+	}
+	put(report, "</tbody>\n</table>\n</div>\n");
+}
+
+static void put_table(struct report *report, const char *table, const char *title)
+{
+	size_t n = 0;
+	char *csv = result_to_csv(report->source->json, report->source->length, table, &n);
+	report->failed = report->failed || !csv;
+	if (csv && n > 0) {
+		put(report, "<details>\n");
+		put_element(report, "summary", title);
+		put_csv(report, csv, n);
+		put(report, "</details>\n");
+	}
+	free(csv);
+}
+
+static void put_tables(struct report *report)
+{
+	put(report,
+	    "<h2>Tables</h2>\n<p class=\"muted\">Five digits of each number; all are in the result.</p>\n");
+	if (strcmp(plot_text(report->result, "kind"), "sensitivity") != 0) {
+		put_table(report, NULL, "result");
+		return;
+	}
+#define X(name) put_table(report, #name, #name);
+	RESULT_TABLES(X)
+#undef X
+}
+
+/* ---- accuracy, work ---- */
+
+static void put_accuracy(struct report *report)
+{
+	const cJSON *accuracy = plot_member(report->result, "accuracy"), *value;
+	if (!accuracy)
+		return;
+	put(report, "<h2>Accuracy</h2>\n<table>\n<tbody>\n");
+	cJSON_ArrayForEach(value, accuracy) if (strcmp(value->string, "note") != 0)
+	    put_member(report, accuracy, value->string, value->string);
+	const cJSON *errors = plot_member(accuracy, "errors");
+	cJSON_ArrayForEach(value, errors)
+	{
+		char label[80];
+		snprintf(label, sizeof label, "error by %.60s", value->string);
+		put_member(report, errors, value->string, label);
+	}
+	put(report, "</tbody>\n</table>\n");
+}
+
+static void put_work(struct report *report)
+{
+	const cJSON *work = plot_member(report->result, "work"), *stage, *line;
+	if (!work)
+		return;
+	put(report,
+	    "<h2>What was run, and what was left out</h2>\n<table>\n<thead><tr><th scope=\"col\">of what</th>"
+	    "<th scope=\"col\">asked for</th><th scope=\"col\">run</th></tr></thead>\n<tbody>\n");
+	cJSON_ArrayForEach(stage, work)
+	{
+		char numbers[96];
+		if (!cJSON_IsObject(stage))
+			continue;
+		put(report, "<tr><td>");
+		put_text(report, plot_text(stage, "what"));
+		snprintf(numbers, sizeof numbers, "</td><td>%.0f</td><td>%.0f</td></tr>\n",
+		         plot_number(stage, "asked"), plot_number(stage, "run"));
+		put(report, numbers);
+	}
+	put(report, "</tbody>\n</table>\n<ul>\n");
+	cJSON_ArrayForEach(line, plot_member(work, "failures"))
+	{
+		char text[200];
+		snprintf(text, sizeof text, "failed: %.0f runs: %.120s", plot_number(line, "runs"),
+		         plot_text(line, "reason"));
+		put_element(report, "li", text);
+	}
+	cJSON_ArrayForEach(line, plot_member(work, "left_out")) if (cJSON_IsString(line))
+	    put_element(report, "li", line->valuestring);
+	put(report, "</ul>\n");
+}
+
+static void put_study(struct report *report, const char *study, size_t n_study)
+{
+	put(report, "<h2>The study document</h2>\n");
+	if (!study) {
+		put_element(report, "p", "It was not given when this report was made.");
+		return;
+	}
+	put(report, "<pre tabindex=\"0\">");
+	for (const char *line = study, *end = study + n_study; line < end;) {
+		size_t n = 0;
+		while (line + n < end && line[n] != '\n' && line[n] != '\t')
+			n++;
+		draw_escaped(&report->w, line, n);
+		// the only control characters of a document that mean something here
+		if (line + n < end)
+			writer_raw(&report->w, line + n, 1);
+		line += n + 1;
+	}
+	put(report, "</pre>\n");
+}
+
+/* The page of a result.
+ *
+ * Memory   allocates; the caller frees
+ * Test     unit_report: a_report_has_every_figure_table_note_and_what_was_left_out
+ */
+char *report_html(const struct figure_source *source, const char *study, size_t n_study, size_t *length)
+{
+	struct gate_fault fault;
+	cJSON *result = json_parse(source->json, source->length, &fault);
+	struct report report = {.source = source, .result = result};
+	if (!plot_is_result(result)) {
+		cJSON_Delete(result);
+		return NULL;
+	}
+	writer_init(&report.w);
+	put_head(&report);
+	put_notes(&report);
+	put_figures(&report);
+	put_tables(&report);
+	put_accuracy(&report);
+	put_work(&report);
+	put_study(&report, study, n_study);
+	put(&report, "</main>\n</body>\n</html>\n");
+	cJSON_Delete(result);
+	report.w.failed = report.w.failed || report.failed;
+	return writer_take(&report.w, length);
+}

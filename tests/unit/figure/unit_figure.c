@@ -1,0 +1,410 @@
+/* unit_figure.c - pictures of results: well formed, within their view box, the same bytes, harmless names; ticks of any
+ * range. */
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#include "schema/examples/examples.h"
+#include "schema/figure/draw.h"
+#include "schema/figure/figure.h"
+#include "schema/json/json_pointer.h"
+#include "schema/result/result_json.h"
+#include "schema/study/study_json.h"
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+#include "tests/support/scenes.h"
+#include "tests/support/study_documents.h"
+
+enum { SVG_MOST = 300000, DEPTH_MOST = 16 };
+
+/* ---- ticks ---- */
+
+static void ticks_of_any_range_are_few_and_inside(void **state)
+{
+	static const struct range ranges[] = {
+	    {0, 1},           {-0.2, 1.3},
+	    {1e-300, 1e-300}, {0, 0},
+	    {5, 5},           {-7, -7},
+	    {1e-300, 3e-300}, {-1.7e308, 1.7e308},
+	    {0, 1.7e308},     {0, 5e-324},
+	    {1, 1 + 1e-15},   {999999, 1000001},
+	    {1e-320, 1},      {INFINITY, -INFINITY},
+	    {0.1, 100},       {1e-14, 1e-1},
+	    {3, 4},           {1e6, 1e6 + 0.001},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++)
+		for (int log = 0; log < 2; log++) {
+			struct ticks ticks;
+			struct axis axis = log ? axis_log(ranges[i]) : axis_linear(ranges[i]);
+			double last = -1;
+			axis.start = 0, axis.end = 500;
+			axis_ticks(&axis, 8, &ticks);
+			if (ticks.n < 1 || ticks.n > 9 + 2 * log)
+				fail_msg("range %zu, log %d: %d ticks", i, log, ticks.n);
+			for (int k = 0; k < ticks.n; k++) {
+				double at = axis_at(&axis, ticks.tick[k].value);
+				if (!(at > last) || at > 500.6 || at < -0.6 || !*ticks.tick[k].text)
+					fail_msg("range %zu, log %d: tick %d '%s' at %g behind %g", i, log, k, ticks.tick[k].text,
+					         at, last);
+				last = at;
+			}
+			// every value has a place between the ends
+			for (int end = 0; end < 2; end++) {
+				double value = end ? ranges[i].high : ranges[i].low, at = axis_at(&axis, value);
+				if (ranges[i].low <= ranges[i].high && (!log || value > 0) && !(at >= -0.6 && at <= 500.6))
+					fail_msg("range %zu, log %d: %g is at %g", i, log, value, at);
+			}
+		}
+}
+
+static void the_text_of_a_tick_has_the_digits_it_needs(void **state)
+{
+	struct ticks ticks;
+	(void)state;
+	struct axis axis = axis_linear((struct range){0, 0.5});
+	axis_ticks(&axis, 5, &ticks);
+	assert_int_equal(ticks.n, 6);
+	assert_string_equal(ticks.tick[3].text, "0.3");
+	axis = axis_linear((struct range){-2e-9, 2e-9});
+	axis_ticks(&axis, 5, &ticks);
+	assert_int_equal(ticks.exponent, -9);
+	assert_string_equal(ticks.tick[0].text, "−2");
+	axis = axis_log((struct range){2e-7, 0.3});
+	axis_ticks(&axis, 9, &ticks);
+	assert_string_equal(ticks.tick[0].text, "10⁻⁶");
+}
+
+/* ---- XML ---- */
+
+/* Fails unless the text is XML of elements, attributes, entities and text, without doubled attributes, scripts, links,
+ * ids or characters that XML forbids; every coordinate of a path lies in the view box. */
+static void check_svg(const char *what, const char *svg, size_t length)
+{
+	char open[DEPTH_MOST][32];
+	double width, height;
+	int depth = 0;
+	if (length != strlen(svg) || length > SVG_MOST)
+		fail_msg("%s: %zu bytes", what, length);
+	const char *box = strstr(svg, "viewBox=\"0 0 ");
+	assert_true(box && sscanf(box, "viewBox=\"0 0 %lf %lf\"", &width, &height) == 2);
+	for (const char *c = svg; *c; c++) {
+		if ((unsigned char)*c < 0x20 && *c != '\n')
+			fail_msg("%s: control character %d", what, *c);
+		if (*c == '&' && strncmp(c, "&amp;", 5) && strncmp(c, "&lt;", 4) && strncmp(c, "&gt;", 4) &&
+		    strncmp(c, "&quot;", 6) && strncmp(c, "&#39;", 5))
+			fail_msg("%s: entity %.20s", what, c);
+		if (*c != '<')
+			continue;
+		bool closes = c[1] == '/';
+		const char *name = c + 1 + closes, *end = strchr(c, '>');
+		size_t n = strcspn(name, " />");
+		assert_non_null(end);
+		if (n == 0 || n > 30 || memchr(c + 1, '<', (size_t)(end - c - 1)))
+			fail_msg("%s: tag %.40s", what, c);
+		if (closes) {
+			if (depth == 0 || strncmp(open[--depth], name, n) != 0 || open[depth][n])
+				fail_msg("%s: %.40s closes '%s'", what, c, open[depth]);
+		} else if (end[-1] != '/') {
+			assert_true(depth < DEPTH_MOST);
+			snprintf(open[depth++], sizeof open[0], "%.*s", (int)n, name);
+		}
+		char tag[64];
+		snprintf(tag, sizeof tag, " %.*s ", (int)n, name);
+		if (!strstr(" svg title desc style rect path circle text ", tag))
+			fail_msg("%s: element %s", what, tag);
+		int quotes = 0;
+		for (const char *a = c; a < end; a++)
+			quotes += *a == '"';
+		if (quotes % 2)
+			fail_msg("%s: quotes of %.60s", what, c);
+		const char *d = strstr(c, " d=\"");
+		if (d && d < end)
+			for (d += 4; *d != '"';) {
+				char command = *d, *after;
+				if (isupper((unsigned char)command))
+					d++;
+				double first = strtod(d, &after), second = first;
+				d = after + (*after == ' ');
+				if (command == 'M' || command == 'L')
+					second = strtod(d, &after);
+				bool across = command != 'V', up = command != 'H';
+				if (command != 'Z' && ((across && (first < -1 || first > width + 1)) ||
+				                       (up && (second < -1 || second > height + 1))))
+					fail_msg("%s: %c%g %g is not in %g x %g", what, command, first, second, width, height);
+				if (command == 'Z' || after == d)
+					d = command == 'Z' ? d : after;
+				else if (command == 'M' || command == 'L')
+					d = after;
+			}
+	}
+	if (depth != 0)
+		fail_msg("%s: '%s' is open", what, open[depth - 1]);
+	if (strstr(svg, "<script") || strstr(svg, "href") || strstr(svg, " id=") || strstr(svg, " style="))
+		fail_msg("%s: script, link, id or style", what);
+	if (!strstr(svg, "role=\"img\"") || strstr(svg, "<title></title>") || strstr(svg, "<desc></desc>"))
+		fail_msg("%s: no role, title or sentence", what);
+}
+
+static struct figure drawn(const char *name, const struct figure_source *source,
+                           const struct figure_choice *choice)
+{
+	struct figure figure;
+	enum figure_status status = figure_draw(name, source, choice, &figure);
+	if (status != FIGURE_DRAWN)
+		fail_msg("%s: %d %s", name, (int)status, figure.detail);
+	return figure;
+}
+
+/* Draws all figures of a result, wide and narrow; how many. */
+static int draw_all(const char *what, const struct figure_source *source)
+{
+	static const char *const widths[] = {"320", "1120", "1400"};
+	int n = 0;
+	for (const struct figure_row *row = figure_rows; row->name; row++) {
+		if (!figure_has(row, source) || (row->sampled && !source->samples))
+			continue;
+		for (int k = 0; k < 3; k++) {
+			char name[160];
+			struct figure figure = drawn(row->name, source, &(struct figure_choice){.width = widths[k]});
+			snprintf(name, sizeof name, "%s of %s at %s", row->name, what, widths[k]);
+			check_svg(name, figure.svg, figure.length);
+			free(figure.svg);
+		}
+		n++;
+	}
+	return n;
+}
+
+/* ---- results ---- */
+
+/* The result of a study document, and the histories if it has them. */
+static struct figure_source result_of(const char *document)
+{
+	struct figure_source source = {0};
+	const struct timing timing = {1, 1, 1};
+	struct pound_study *study = documents_study(document);
+	struct pound_run *run = specimen_run(study);
+	source.json = result_to_json(study, pound_run_result(run), &timing, &source.length);
+	if (study->spectrum.histories)
+		source.samples = histories_to_csv(study, run, &source.n_samples);
+	pound_run_free(run);
+	study_free(study);
+	assert_non_null(source.json);
+	return source;
+}
+
+static void source_free(struct figure_source *source)
+{
+	free((char *)source->json);
+	free((char *)source->samples);
+}
+
+/* A copy with every number that has a point or a power replaced. */
+static char *with_numbers(const char *json, const char *number, size_t *length)
+{
+	size_t n = strlen(json), at = 0;
+	char *copy = malloc(n * 4 + 1);
+	bool inside = false;
+	assert_non_null(copy);
+	for (const char *c = json; *c;) {
+		size_t digits = inside ? 0 : strspn(c, "-+.eE0123456789");
+		if (digits > 0 && (isdigit((unsigned char)*c) || *c == '-') && strcspn(c, ".eE") < digits) {
+			at += (size_t)sprintf(copy + at, "%s", number);
+			c += digits;
+			continue;
+		}
+		if (*c == '"' && (c == json || c[-1] != '\\'))
+			inside = !inside;
+		copy[at++] = *c++;
+	}
+	copy[at] = '\0';
+	*length = at;
+	return copy;
+}
+
+static bool is_quick(const char *name)
+{
+	return strncmp(name, "paper", 5) != 0 && strcmp(name, "design") != 0 && strcmp(name, "extremes") != 0;
+}
+
+static void every_figure_of_every_example_is_well_formed_and_within_its_view_box(void **state)
+{
+	// equal, missing, tiny and huge numbers, too
+	static const char *const numbers[] = {"null", "0", "1e-300", "-1e-300", "1.7e308", "0.25"};
+	int n = 0, n_numbers = 0;
+	(void)state;
+	for (int i = 0; example_name(i); i++) {
+		if (!is_quick(example_name(i)))
+			continue;
+		struct figure_source source = result_of(example_text(example_name(i)));
+		n += draw_all(example_name(i), &source);
+		for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++) {
+			char what[120];
+			struct figure_source other = {.samples = source.samples, .n_samples = source.n_samples};
+			char *json = with_numbers(source.json, numbers[k], &other.length);
+			other.json = json;
+			snprintf(what, sizeof what, "%s with %s", example_name(i), numbers[k]);
+			n_numbers += draw_all(what, &other);
+			free(json);
+		}
+		source_free(&source);
+	}
+	assert_true(n >= 20 && n_numbers >= 100);
+}
+
+static void a_figure_has_a_mark_for_each_index(void **state)
+{
+	struct figure_source source = result_of(example_text("sensitivity_small"));
+	struct figure figure = drawn("indices", &source, &(struct figure_choice){0});
+	int marks = 0;
+	(void)state;
+	for (const char *c = figure.svg; (c = strstr(c, "<title>")); c++)
+		marks++;
+	// two outputs, four inputs, S1 and ST; and the title of the whole
+	assert_int_equal(marks, 2 * 4 * 2 + 1);
+	free(figure.svg);
+	source_free(&source);
+}
+
+static void a_name_stays_text(void **state)
+{
+	static const char hostile[] = "</text><script>alert(1)</script>&\\\"'\\u0007\\u202e\\ufffe";
+	// the door refuses some of these; a result may come from elsewhere
+	struct figure_source asked = result_of(example_text("sensitivity_small")), source = {0};
+	source.json = documents_with(asked.json, "f_2", hostile);
+	source.length = strlen(source.json);
+	(void)state;
+	draw_all("a hostile name", &source);
+	struct figure figure = drawn("indices", &source, &(struct figure_choice){0});
+	assert_non_null(strstr(figure.svg,
+	                       "&lt;/text&gt;&lt;script&gt;alert(1)&lt;/script&gt;&amp;&quot;&#39;\xEF\xBF\xBD"
+	                       "\xEF\xBF\xBD\xEF\xBF\xBD: ST"));
+	free(figure.svg);
+	source_free(&source);
+	source_free(&asked);
+}
+
+static void the_golden_figures_have_not_changed(void **state)
+{
+	// pound plot NAME tests/cases/figures/NAME.json >tests/cases/figures/NAME.svg, then look at it
+	static const char *const names[] = {"indices", "swept", "errors"};
+	(void)state;
+	for (int i = 0; i < 3; i++) {
+		char path[64];
+		size_t n;
+		struct figure_source source = {0};
+		snprintf(path, sizeof path, "tests/cases/figures/%s.json", names[i]);
+		source.json = program_file(path, &source.length);
+		snprintf(path, sizeof path, "tests/cases/figures/%s.svg", names[i]);
+		char *golden = program_file(path, &n);
+		struct figure figure = drawn(names[i], &source, &(struct figure_choice){0});
+		if (figure.length != n || memcmp(figure.svg, golden, n) != 0)
+			fail_msg("%s differs", path);
+		free(figure.svg);
+		free(golden);
+		source_free(&source);
+	}
+}
+
+static void what_is_no_figure_is_refused_with_a_reason(void **state)
+{
+	struct figure_source source = result_of(example_text("response")), none = {.json = "[1]", .length = 3};
+	static const struct {
+		const char *name;
+		struct figure_choice choice;
+		enum figure_status status;
+		const char *detail;
+	} cases[] = {
+	    {"nothing", {0}, FIGURE_UNKNOWN, "no figure is called \"nothing\""},
+	    {"indices", {0}, FIGURE_ABSENT, "only studies of another kind"},
+	    {"history", {0}, FIGURE_ABSENT, "no figure \"history\""},
+	    {"responses", {.width = "319"}, FIGURE_CHOICE, "width must be a whole number in [320, 2400]"},
+	    {"responses", {.width = "-400"}, FIGURE_CHOICE, "width must be"},
+	    {"responses", {.width = "400x"}, FIGURE_CHOICE, "width must be"},
+	    {"responses", {.width = "99999999999999999999"}, FIGURE_CHOICE, "width must be"},
+	    {"responses", {.axis = "hz"}, FIGURE_CHOICE, "takes no argument \"axis\""},
+	    {"responses", {.x = "/scene"}, FIGURE_CHOICE, "x must be the path"},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct figure figure;
+		enum figure_status status = figure_draw(cases[i].name, &source, &cases[i].choice, &figure);
+		if (status != cases[i].status || !strstr(figure.detail, cases[i].detail) || figure.svg)
+			fail_msg("%s: %d %s", cases[i].name, (int)status, figure.detail);
+	}
+	struct figure figure;
+	assert_int_equal(figure_draw("indices", &none, &(struct figure_choice){0}, &figure), FIGURE_RESULT);
+	none = (struct figure_source){.json = "{", .length = 1};
+	assert_int_equal(figure_draw("indices", &none, &(struct figure_choice){0}, &figure), FIGURE_RESULT);
+	source_free(&source);
+	source = result_of(example_text("sensitivity_small"));
+	const struct figure_choice wrong[] = {
+	    {.output = "no"}, {.cell = "1"}, {.index = "S2"}, {.output = ""}, {.cell = ""}};
+	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+		assert_int_equal(figure_draw("indices", &source, &wrong[i], &figure), FIGURE_CHOICE);
+	source_free(&source);
+}
+
+static void a_result_lists_the_figures_that_it_has(void **state)
+{
+	size_t n;
+	struct figure_source source = result_of(example_text("sensitivity_small"));
+	char *list = figure_list(&source, "/v1/studies/00", &n);
+	struct reading *reading = reading_open(list, n);
+	(void)state;
+	assert_int_equal(reading_count(reading, "/figures"), 1);
+	assert_string_equal(reading_text(reading, "/figures/0/name"), "indices");
+	assert_string_equal(reading_text(reading, "/figures/0/link"), "/v1/studies/00/figures/indices");
+	assert_string_equal(reading_text(reading, "/figures/0/arguments/1"), "output");
+	reading_close(reading);
+	free(list);
+	source_free(&source);
+}
+
+static void every_figure_and_argument_stands_in_the_docs(void **state)
+{
+	char line[400], *page = program_file("schema/figure/figures.md", NULL);
+	static const struct {
+		const char *name, *text;
+	} arguments[] = {
+#define X(name, values, lowest, highest, text) {#name, text},
+	    FIGURE_ARGUMENTS(X)
+#undef X
+	};
+	(void)state;
+	assert_non_null(page);
+	for (const struct figure_row *row = figure_rows; row->name; row++) {
+		int n = snprintf(line, sizeof line, "| `%s` | %s | %s |", row->name, row->kind, row->text);
+		char takes[120];
+		snprintf(takes, sizeof takes, "%s", row->takes);
+		for (char *rest, *name = strtok_r(takes, " ", &rest), *comma = ""; name;
+		     name = strtok_r(NULL, " ", &rest), comma = ",")
+			n += snprintf(line + n, sizeof line - (size_t)n, "%s `%s`", comma, name);
+		snprintf(line + n, sizeof line - (size_t)n, " |\n");
+		if (!strstr(page, line))
+			fail_msg("schema/figure/figures.md has no line\n%s", line);
+	}
+	for (size_t k = 0; k < sizeof arguments / sizeof arguments[0]; k++) {
+		snprintf(line, sizeof line, "| `%s` | %s |\n", arguments[k].name, arguments[k].text);
+		if (!strstr(page, line))
+			fail_msg("schema/figure/figures.md has no line\n%s", line);
+	}
+	free(page);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+	    cmocka_unit_test(ticks_of_any_range_are_few_and_inside),
+	    cmocka_unit_test(the_text_of_a_tick_has_the_digits_it_needs),
+	    cmocka_unit_test(every_figure_of_every_example_is_well_formed_and_within_its_view_box),
+	    cmocka_unit_test(a_figure_has_a_mark_for_each_index),
+	    cmocka_unit_test(a_name_stays_text),
+	    cmocka_unit_test(the_golden_figures_have_not_changed),
+	    cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
+	    cmocka_unit_test(a_result_lists_the_figures_that_it_has),
+	    cmocka_unit_test(every_figure_and_argument_stands_in_the_docs),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
