@@ -6,7 +6,7 @@
 #include "server/reply.h"
 
 struct reply pages_file(int operation);       /* one of the operations of pages */
-struct reply pages_example(const char *name);          /* body NULL: there is no such example */
+struct reply pages_example(const char *name); /* body NULL: there is no such example */
 struct reply pages_example_list(void);
 
 #endif
