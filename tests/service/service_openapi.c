@@ -203,9 +203,8 @@ static void ask_each(struct world *world, const char *header, int status, bool o
 		         rest ? "{none}" : "", rest ? rest + 4 : "", arguments);
 		char *named = strstr(path, "{name}");
 		if (named) {
-			char behind[256];
-			snprintf(behind, sizeof behind, "%s", named + strlen("{name}"));
-			sprintf(named, "swept%s", behind);
+			memmove(named + strlen("swept"), named + strlen("{name}"), strlen(named + strlen("{name}")) + 1);
+			memcpy(named, "swept", strlen("swept"));
 		}
 		const char *const headers[] = {"Content-Type: application/json", header};
 		if (operation->open && !open_too)
