@@ -190,7 +190,7 @@ static void ask_all(struct world *world, enum situation situation)
 /* Every operation by its method and path, with a body if it takes one; all must answer so. */
 static void ask_each(struct world *world, const char *header, int status, bool open_too)
 {
-	static char arguments[HEAD_TARGET_MAX];
+	static char arguments[HEAD_TARGET_MAX + 1];
 	memset(arguments, '&', status == 414 ? sizeof arguments - 1 : 0);
 	*arguments = '?';
 	arguments[status == 414 ? sizeof arguments - 1 : 0] = '\0';
