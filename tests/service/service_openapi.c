@@ -190,7 +190,7 @@ static void ask_all(struct world *world, enum situation situation)
 /* Every operation by its method and path, with a body if it takes one; all must answer so. */
 static void ask_each(struct world *world, const char *header, int status, bool open_too)
 {
-	static char arguments[HEAD_TARGET_MAX];
+	static char arguments[HEAD_TARGET_MAX + 1];
 	memset(arguments, '&', status == 414 ? sizeof arguments - 1 : 0);
 	*arguments = '?';
 	arguments[status == 414 ? sizeof arguments - 1 : 0] = '\0';
@@ -203,9 +203,8 @@ static void ask_each(struct world *world, const char *header, int status, bool o
 		         rest ? "{none}" : "", rest ? rest + 4 : "", arguments);
 		char *named = strstr(path, "{name}");
 		if (named) {
-			char behind[256];
-			snprintf(behind, sizeof behind, "%s", named + strlen("{name}"));
-			sprintf(named, "swept%s", behind);
+			memmove(named + strlen("swept"), named + strlen("{name}"), strlen(named + strlen("{name}")) + 1);
+			memcpy(named, "swept", strlen("swept"));
 		}
 		const char *const headers[] = {"Content-Type: application/json", header};
 		if (operation->open && !open_too)
