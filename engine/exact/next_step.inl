@@ -218,12 +218,14 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	sim->parted = sim->fresh = false;
 	x->pace = 1;
 	const bool observed = sim->traits & TRAIT_OBSERVED;
+	double left = x->part + x->cells * x->cell; // of the interval: bodies that press each other settle inside one too
 	if (observed)
-		simulation_observe(sim, sim->next - 1);
+		simulation_observe(sim, sim->unobserved > 0 ? -1 : sim->next - 1);
 	while (sim->ground[sim->next] == 0) {
 		if (observed) {
-			sim->unobserved = sim->task->time_step;
+			sim->unobserved = left;
 			simulation_observe(sim, sim->next);
+			left = x->body[0].step_gap;
 		}
 		if (sim->next++ == sim->last)
 			return STAGE_END;

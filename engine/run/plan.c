@@ -698,5 +698,6 @@ struct pound_plan_floor pound_plan_floor(const struct pound_plan *plan, int ask)
 	                                 .pounding = a->march < 0 ? NULL : &plan->tasks[a->march],
 	                                 .free = &plan->tasks[a->bodies[0].march],
 	                                 .march = march,
-	                                 .exponent = plan->motions[a->motion].exponent};
+	                                 .exponent = plan->motions[a->motion].exponent,
+	                                 .scratch = plan->scratch};
 }

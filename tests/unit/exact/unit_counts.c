@@ -28,7 +28,7 @@ static struct count march_count(const struct pound_march_task *task, int lanes)
 static struct count trace_count(const struct pound_march_task *task)
 {
 	static struct pound_trace trace;
-	static struct pound_trace_stretch stretch;
+	static struct pound_floor_stretch stretch;
 	pound_trace_start(&trace, task);
 	do
 		pound_trace_next(&trace, &stretch);

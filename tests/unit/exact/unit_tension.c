@@ -90,7 +90,7 @@ static void check_solvers(const struct pound_march_task *task, struct motion end
 		check_near(r.contact_time, time, 1e-13);
 	}
 	static struct pound_trace trace;
-	static struct pound_trace_stretch stretch;
+	static struct pound_floor_stretch stretch;
 	pound_trace_start(&trace, task);
 	do
 		pound_trace_next(&trace, &stretch);

@@ -187,16 +187,16 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	const struct pound_march_task task = riding_task(&specimen, true);
 	riding_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
 	struct pound_trace trace;
-	static struct pound_trace_stretch stretch;
+	static struct pound_floor_stretch stretch;
 	double largest = 0;
 	pound_trace_start(&trace, &task);
 	for (pound_trace_next(&trace, &stretch); stretch.n; pound_trace_next(&trace, &stretch))
 		for (int i = 0; i < stretch.n; i++)
 			for (int part = 0; part <= 100; part++) {
-				const struct pound_trace_piece *p = &stretch.piece[i];
-				double a = 0, room[POUND_TRACE_ORDER + 1];
+				const struct pound_floor_piece *p = &stretch.piece[i];
+				double a = 0, room[POUND_FLOOR_ORDER + 1];
 				const double *c, damping = task.bodies[0].damping;
-				for (int n = pound_trace_drive(&stretch, p, POUND_DRIVE_FLOOR, damping, room, &c); n >= 0;
+				for (int n = pound_floor_drive(&stretch, p, POUND_DRIVE_FLOOR, damping, room, &c); n >= 0;
 				     n--)
 					a = a * (part / 100.0) + c[n];
 				largest = fmax(largest, fabs(a));

@@ -11,7 +11,7 @@ struct ended {
 	double time, gap; /* total of the steps; largest break between two pieces */
 };
 
-static struct pound_trace_stretch stretch;
+static struct pound_floor_stretch stretch;
 
 /* A trace followed to its end; what it hands out is looked at for being without holes. */
 static struct ended trace_to_end(const struct pound_march_task *task)
@@ -23,13 +23,13 @@ static struct ended trace_to_end(const struct pound_march_task *task)
 		if (stretch.n == 0)
 			return e;
 		for (int i = 0; i < stretch.n; i++) {
-			const struct pound_trace_piece *p = &stretch.piece[i];
+			const struct pound_floor_piece *p = &stretch.piece[i];
 			e.gap = fmax(e.gap, fabs(p->start - e.time));
 			e.time = p->start + p->step;
 			e.pieces++;
 			e.flights += p->map >= 0;
 			e.turns += p->turned;
-			assert_true(p->map < stretch.n_maps && stretch.n_maps <= POUND_TRACE_MAPS);
+			assert_true(p->map < stretch.n_maps && stretch.n_maps <= POUND_FLOOR_MAPS);
 			assert_true(p->step > 0);
 		}
 	}
@@ -262,10 +262,10 @@ static void the_acceleration_is_that_of_the_motion(void **state)
 		pound_trace_start(&trace, &task);
 		for (pound_trace_next(&trace, &stretch); stretch.n; pound_trace_next(&trace, &stretch))
 			for (int i = 0; i < stretch.n; i++) {
-				const struct pound_trace_piece *p = &stretch.piece[i];
-				double room[POUND_TRACE_ORDER + 1];
+				const struct pound_floor_piece *p = &stretch.piece[i];
+				double room[POUND_FLOOR_ORDER + 1];
 				const double *a, damping = task.bodies[0].damping;
-				const int order = pound_trace_drive(&stretch, p, POUND_DRIVE_FLOOR, damping, room, &a);
+				const int order = pound_floor_drive(&stretch, p, POUND_DRIVE_FLOOR, damping, room, &a);
 				for (int n = 0; n <= order; n++)
 					v += p->step * a[n] / (n + 1);
 				largest = fmax(largest, p->floor.bound[0]);
@@ -384,11 +384,11 @@ static void terms_end_in_rounding(void **state)
 {
 	(void)state;
 	for (double x = 1e-18; x <= 1.5; x *= 1.05) {
-		int n = pound_trace_terms(x);
-		assert_true(pow(x, n) / tgamma(n + 1) < 0x1p-53 && n <= POUND_TRACE_TERMS);
+		int n = pound_floor_terms(x);
+		assert_true(pow(x, n) / tgamma(n + 1) < 0x1p-53 && n <= POUND_FLOOR_TERMS);
 		assert_true(n == 0 || pow(x, n - 1) / tgamma(n) > 0x1p-56);
 	}
-	assert_int_equal(pound_trace_terms(0), 0);
+	assert_int_equal(pound_floor_terms(0), 0);
 }
 
 CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impacts_come_out_to_their_digits),
