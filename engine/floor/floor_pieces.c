@@ -98,7 +98,7 @@ static int polynomial_fill(struct pound_polynomial *into, const double *a, int o
  * Returns  a      [m/s2]  (order + 1)
  *
  *   r' = h k v     v' = -h (c v + r + forcing)     by the share of the sample that is gone
- * Test     unit_floor_pieces: the_acceleration_is_that_of_the_motion
+ * Test     unit_floor_pieces: every_piece_leads_to_the_next
  */
 void pound_floor_flight(const double state[4], double k, double c, double h, int order, double *a)
 {
@@ -118,7 +118,7 @@ void pound_floor_flight(const double state[4], double k, double c, double h, int
  * Given    damping  of the left body, per mass [1/s]
  * Returns  c        [m/s2]  (value + 1): the piece's own, or those of a flight's floor, made into `room`
  *          value    their order; -1: the drive is 0
- * Test     unit_floor_pieces: the_acceleration_is_that_of_the_motion
+ * Test     unit_floor_pieces: every_piece_leads_to_the_next
  */
 int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct pound_floor_piece *piece,
                       enum pound_drive drive, double damping, double room[N + 1], const double **c)
