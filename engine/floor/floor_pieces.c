@@ -350,7 +350,7 @@ static void series_next(struct series *s, const struct pound_floor_motion *motio
 	(at->touching ? series_touch : series_apart)(s, terms_of(motion->task, at, s->step));
 }
 
-/* Moves an instant to the end of a series: terms are added up, the smallest first. */
+/* Moves the state of an instant to the end of a series: terms are added up, the smallest first. */
 static void instant_move(struct pound_march_instant *at, const struct series *s)
 {
 	double *const u[3] = {&at->u[0], &at->u[1], &at->overlap};
@@ -363,7 +363,6 @@ static void instant_move(struct pound_march_instant *at, const struct series *s)
 		*u[j] = sum[0];
 		*v[j] = sum[1] / s->step;
 	}
-	at->time += s->step;
 	at->ground += at->slope * s->step;
 }
 
@@ -462,6 +461,7 @@ static void interval_add(struct pound_floor_motion *motion, double length)
 {
 	struct pound_march_instant at = motion->from;
 	struct series s;
+	double gone = 0; // beside the time it would lose its digits
 	for (int steps = 0; !motion->status && !pound_stopped(motion->stop); steps++) {
 		stretch_room(motion);
 		series_next(&s, motion, &at, length);
@@ -469,7 +469,9 @@ static void interval_add(struct pound_floor_motion *motion, double length)
 		if (s.step == length)
 			return;
 		length -= s.step;
+		gone += s.step;
 		instant_move(&at, &s);
+		at.time = motion->from.time + gone;
 		if (steps == STEPS_LIMIT)
 			motion->status = POUND_CHATTER;
 	}

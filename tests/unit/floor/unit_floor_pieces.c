@@ -115,10 +115,15 @@ static struct followed check_followed(const struct pound_march_task *task, doubl
 	assert_int_equal(f.status, POUND_OK);
 	assert_int_equal(f.result.status, POUND_OK);
 	const double end = (task->n_samples - 1) * task->time_step;
-	check_near(f.time, end, 4 * DBL_EPSILON * end);
+	check_near(f.time, end, f.pieces * DBL_EPSILON * end);
 	check_near(f.gap, 0, f.pieces * DBL_EPSILON * end);
-	// a pressed body stands still by accelerations that take each other away but for their roundings
-	const double still = 4 * DBL_EPSILON * f.largest * task->time_step;
+	// A pressed body stands still by accelerations that take each other away but for their roundings, and what its contact's
+	// own swing adds to its velocity is left out where it is 2^-48 of what those do in a radian of the bodies' motion.  Here the
+	// ground's is taken at times that have a rounding.
+	double rate = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		rate = fmax(rate, fmax(sqrt(task->bodies[i].skeleton.stiffness), task->bodies[i].damping));
+	const double still = 4 * f.largest * (DBL_EPSILON * end + 0x1p-48 / rate);
 	check_near(f.u_error, 0, tolerance * f.u_top + still * task->time_step);
 	check_near(f.v_error, 0, tolerance * f.v_top + still);
 	return f;
@@ -241,8 +246,8 @@ static void a_body_that_creeps_where_it_yielded_is_followed(void **state)
 		struct specimen specimen;
 		specimen_creeping(&specimen, k < 600 ? k : vanishing[k - 600], 1);
 		const struct pound_march_task task = riding_task(&specimen, true);
-		const struct followed f = check_followed(&task, 1e-11);
-		check_near(f.impulse, f.result.impulse_max, 1e-11 * f.result.impulse_max);
+		const struct followed f = check_followed(&task, 1e-12);
+		check_near(f.impulse, f.result.impulse_max, 1e-9 * f.result.impulse_max);
 		specimen_free(&specimen);
 	}
 }
