@@ -218,7 +218,8 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	sim->parted = sim->fresh = false;
 	x->pace = 1;
 	const bool observed = sim->traits & TRAIT_OBSERVED;
-	double left = x->part + x->cells * x->cell; // of the interval: bodies that press each other settle inside one too
+	double left =
+	    x->part + x->cells * x->cell; // of the interval: bodies that press each other settle inside one too
 	if (observed)
 		simulation_observe(sim, sim->unobserved > 0 ? -1 : sim->next - 1);
 	while (sim->ground[sim->next] == 0) {

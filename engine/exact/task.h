@@ -29,10 +29,10 @@ struct pound_march_instant {
 	bool sampled;   /* it is at a sample; false: an event */
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS]; /* [m], [m/s] */
 	// of the interval behind it
-	bool touching;                         /* the contact's force acts */
-	double overlap, overlap_rate;          /* while touching [m], [m/s] */
-	double ground, slope;                  /* acceleration, and its growth [m/s2], [m/s3] */
-	double stiffness[POUND_OSCILLATORS];   /* of the bodies' branches, per mass [1/s2] */
+	bool touching;                           /* the contact's force acts */
+	double overlap, overlap_rate;            /* while touching [m], [m/s] */
+	double ground, slope;                    /* acceleration, and its growth [m/s2], [m/s3] */
+	double stiffness[POUND_OSCILLATORS];     /* of the bodies' branches, per mass [1/s2] */
 	double spring_offset[POUND_OSCILLATORS]; /* spring force at no displacement, per mass [m/s2] */
 };
 
@@ -47,14 +47,14 @@ struct pound_march_task {
 	int n_samples;        /* >= 2 */
 	double time_step;     /* [s] */
 	struct pound_march_body bodies[POUND_OSCILLATORS];
-	bool contact;             /* false: the bodies never meet */
-	enum pound_force force;   /* form of the contact force */
-	double gap;               /* [m] */
-	double contact_stiffness; /* K/m1 [1/s2] */
-	double contact_damping;   /* C/m1 [1/s] */
-	double mass_ratio;        /* m1/m2, 0: the right body is a wall */
-	bool tension;             /* contact ends at zero overlap; false: at zero force */
-	bool accounted;           /* energy_residual is wanted */
+	bool contact;                                /* false: the bodies never meet */
+	enum pound_force force;                      /* form of the contact force */
+	double gap;                                  /* [m] */
+	double contact_stiffness;                    /* K/m1 [1/s2] */
+	double contact_damping;                      /* C/m1 [1/s] */
+	double mass_ratio;                           /* m1/m2, 0: the right body is a wall */
+	bool tension;                                /* contact ends at zero overlap; false: at zero force */
+	bool accounted;                              /* energy_residual is wanted */
 	const struct pound_march_observer *observer; /* NULL: none */
 };
 

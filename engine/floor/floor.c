@@ -111,7 +111,8 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 	observed.observer = &observer;
 	// whoever wants the largest displacements has them
 	observed.bodies[0].followed = observed.bodies[1].followed = false;
-	*motion = (struct pound_floor_motion){.task = task, .stretch = &floor->stretch, .taker = *taker, .stop = stop};
+	*motion =
+	    (struct pound_floor_motion){.task = task, .stretch = &floor->stretch, .taker = *taker, .stop = stop};
 	pound_floor_start(motion);
 	// one task alone is done sooner in one lane than in many
 	bool followed = pound_march_lanes(1, &observed, result, 1, scratch, stop);

@@ -21,7 +21,7 @@ enum {
 	SETTLED_ROUNDS = 8,
 };
 
-static const double REACH = 1.5;             /* largest rate * step of a series */
+static const double REACH = 1.5;              /* largest rate * step of a series */
 static const double NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
 
 /* Least rate_touch * step of a settled contact: its overlap is found from a power on by those above, which count by up to
@@ -260,7 +260,8 @@ static bool may_settle(const struct pound_floor_motion *motion, const struct pou
 		apart += i ? force : -force;
 	}
 	double push = task->contact_stiffness * at->overlap + task->contact_damping * at->overlap_rate;
-	return fabs(apart - (1 + task->mass_ratio) * push) <= fmax(4 * slow * slow, swing_nothing(motion)) * *pull;
+	return fabs(apart - (1 + task->mass_ratio) * push) <=
+	       fmax(4 * slow * slow, swing_nothing(motion)) * *pull;
 }
 
 /* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing adds

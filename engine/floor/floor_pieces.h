@@ -29,7 +29,7 @@ struct pound_floor_piece {
 	int map;            /* a flight, a whole sample apart: number of its stiffness; -1: any other piece */
 	// of a flight: spring force, velocity, forcing and what that grows by  [m/s2], [m/s], [m/s2], [m/s2]
 	double state[4];
-	int order;             /* of floor and push; not of a flight */
+	int order;                 /* of floor and push; not of a flight */
 	bool sampled, after_event; /* begins at a sample, at an event */
 	// of a flight only the bounds are set, those of its push 0; pound_floor_drive() has the coefficients of both
 	struct pound_polynomial floor, push;
@@ -39,8 +39,8 @@ struct pound_floor_stretch {
 	int n, n_maps;
 	int order;                          /* of the series of flights */
 	double stiffness[POUND_FLOOR_MAPS]; /* per mass [1/s2]  (n_maps) */
-	double bound[POUND_FLOOR_MAPS]
-	            [3][4]; /* of a flight's |a|, |a'|, |a''|, by the magnitudes of its state  (n_maps) */
+	double bound[POUND_FLOOR_MAPS][3]
+	            [4]; /* of a flight's |a|, |a'|, |a''|, by the magnitudes of its state  (n_maps) */
 	struct pound_floor_piece piece[POUND_FLOOR_PIECES];
 };
 
@@ -53,13 +53,13 @@ struct pound_floor_taker {
 /* a motion, as far as it was told */
 struct pound_floor_motion {
 	const struct pound_march_task *task;
-	struct pound_floor_stretch *stretch;      /* of the pieces that were not taken yet */
-	struct pound_floor_taker taker;           /* called when it is full; it is empty afterwards */
-	const atomic_bool *stop;                  /* when it is set no more pieces are made; NULL: never */
-	enum pound_status status;                 /* POUND_CHATTER: a piece could not be made, and none behind it was */
-	double rate, rate_touch;                  /* fastest of the bodies, of both in contact [rad/s] */
-	struct pound_march_instant from;          /* where the next piece begins */
-	bool sampled, after_event;                  /* as struct pound_floor_piece has them */
+	struct pound_floor_stretch *stretch; /* of the pieces that were not taken yet */
+	struct pound_floor_taker taker;      /* called when it is full; it is empty afterwards */
+	const atomic_bool *stop;             /* when it is set no more pieces are made; NULL: never */
+	enum pound_status status;        /* POUND_CHATTER: a piece could not be made, and none behind it was */
+	double rate, rate_touch;         /* fastest of the bodies, of both in contact [rad/s] */
+	struct pound_march_instant from; /* where the next piece begins */
+	bool sampled, after_event;       /* as struct pound_floor_piece has them */
 };
 
 /* Coefficients of a flight's acceleration from its state. */

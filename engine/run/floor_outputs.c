@@ -33,7 +33,7 @@ struct followed {
 struct pound_ordinates {
 	struct pound_floor *floor;
 	double *psa[POUND_DRIVES]; /* (n) */
-	struct followed *followed;     /* of each task  (n_tasks) */
+	struct followed *followed; /* of each task  (n_tasks) */
 	int n_tasks;
 };
 
@@ -416,8 +416,7 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 		return status ? status : left;
 	const struct pound_plan_floor floor = pound_plan_floor(run->plans[0], 0);
 	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
-	const struct pound_floor_ask ask = {.task = floor.pounding ? floor.pounding : floor.free,
-	                                    .stop = run->stop,
-	                                    .scratch = floor.scratch};
+	const struct pound_floor_ask ask = {
+	    .task = floor.pounding ? floor.pounding : floor.free, .stop = run->stop, .scratch = floor.scratch};
 	return pound_floor_history(run->floors[0]->floor, &ask, instant_tell, &to);
 }

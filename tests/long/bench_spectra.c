@@ -37,7 +37,8 @@ struct ridden {
 static void ride(void *of)
 {
 	const struct ridden *ridden = of;
-	const struct pound_floor_ask ask = {.task = ridden->task, .n_drives = ridden->n_drives, .radians = 1.5, .scratch = ridden->scratch};
+	const struct pound_floor_ask ask = {
+	    .task = ridden->task, .n_drives = ridden->n_drives, .radians = 1.5, .scratch = ridden->scratch};
 	struct pound_floor_answer answer = {.psa = {ridden->psa[0], ridden->psa[1]}};
 	if (pound_floor_spectra(ridden->floor, &ask, &answer))
 		bench_fail("a floor could not be followed");

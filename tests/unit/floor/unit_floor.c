@@ -211,7 +211,8 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	riding_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
 	static struct largest_drive largest;
 	largest.task = &task;
-	struct pound_floor_motion motion = {.task = &task, .stretch = &largest.stretch, .taker = {drive_take, &largest}};
+	struct pound_floor_motion motion = {
+	    .task = &task, .stretch = &largest.stretch, .taker = {drive_take, &largest}};
 	const struct pound_march_observer observer = {pound_floor_observe, &motion};
 	struct pound_march_task observed = task;
 	observed.observer = &observer;
@@ -318,7 +319,8 @@ static void a_floor_that_takes_hours_is_stopped(void **state)
 	struct pound_floor_answer answer = {.psa = {psa[0], psa[1]}};
 	for (int told = 0; told < 2; told++) {
 		atomic_bool stop = false;
-		const struct pound_floor_ask ask = {.task = &task, .n_drives = 1, .radians = 1.5, .stop = &stop, .scratch = scratch};
+		const struct pound_floor_ask ask = {
+		    .task = &task, .n_drives = 1, .radians = 1.5, .stop = &stop, .scratch = scratch};
 		pthread_t thread = specimen_later(stop_set, &stop);
 		assert_int_equal(told ? pound_floor_history(floor, &ask, nothing_take, NULL)
 		                      : pound_floor_spectra(floor, &ask, &answer),

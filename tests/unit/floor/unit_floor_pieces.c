@@ -13,9 +13,9 @@ struct followed {
 	struct pound_march_result result;
 	enum pound_status status; /* of the pieces */
 	int pieces, flights, events, touching;
-	double time, gap;         /* total of the steps; largest break between two pieces [s] */
-	double impulse, pushed;   /* largest of a contact, and of the one in hand [m/s] */
-	double largest;           /* acceleration [m/s2] */
+	double time, gap;       /* total of the steps; largest break between two pieces [s] */
+	double impulse, pushed; /* largest of a contact, and of the one in hand [m/s] */
+	double largest;         /* acceleration [m/s2] */
 	struct {
 		double u, v; /* by the piece before [m], [m/s] */
 	} next;
