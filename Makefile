@@ -85,7 +85,7 @@ $(B)/%_w4.o: CFLAGS += $(LANES.w4)
 $(B)/%_w8.o: CFLAGS += $(LANES.w8)
 $(B)/engine/exact/exact_%.o: CFLAGS += $(MARCH.$(MODE))
 $(B)/engine/floor/oscillator_bank_%.o: CFLAGS += $(FLOOR.$(MODE))
-$(addprefix $(B)/engine/floor/,trace.o trace_series.o root.o): CFLAGS += $(FLOOR.$(MODE))
+$(B)/engine/floor/floor_pieces.o: CFLAGS += $(FLOOR.$(MODE))
 
 # the database's schema is built into the server, as a C string
 $(B)/server/store.sql.inc: server/store.sql

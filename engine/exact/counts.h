@@ -1,6 +1,6 @@
 /* counts.h - which contacts count: those that did more to the bodies than roundings do.
  *
- * The march, the trace and the other solvers ask this where a contact ends.  What does not count is left out of the
+ * The exact solver and the others ask this where a contact ends.  What does not count is left out of the
  * number of contacts, of their time and of what the first of them was; forces and impulses stay as they are. */
 #ifndef COUNTS_H
 #define COUNTS_H

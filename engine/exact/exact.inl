@@ -26,6 +26,7 @@
 #include "engine/exact/contact_map.inl"
 #include "engine/exact/energy.inl"
 #include "engine/exact/step.inl"
+#include "engine/exact/observer.inl"
 #include "engine/exact/next_step.inl"
 #include "engine/exact/shared_start.inl"
 #include "engine/exact/batch.inl"
@@ -44,6 +45,7 @@ struct ahead {
 	int64_t gone;            /* samples that those who still fly have gone since */
 	vd samples;              /* that are left */
 	unsigned edged;          /* lanes that stopped where an edge may be reached */
+	unsigned observed;       /* lanes of TRAIT_OBSERVED */
 };
 
 /* The next ROW samples of the lanes that fly, as far as there are any.
@@ -94,6 +96,31 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
 	return full;
 }
 
+/* Tells the observers of lanes the samples that these flew to in a stretch.
+ *
+ * Given    flown  how many
+ */
+LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahead, const struct stretch *s,
+                                 vd flown)
+{
+	double samples[W], at[W];
+	lanes_store(samples, flown);
+	for (unsigned lanes = ahead->observed; lanes;) {
+		int l = lane_next(&lanes);
+		struct simulation *sim = b->sim[l];
+		for (int r = 0; r < (int)samples[l]; r++) {
+			for (int i = 0; i < (sim->paired ? 2 : 1); i++) {
+				lanes_store(at, s->at[i][r + 1].u);
+				sim->x.u[i] = at[l];
+				lanes_store(at, s->at[i][r + 1].v);
+				sim->x.v[i] = at[l];
+			}
+			sim->unobserved = sim->task->time_step;
+			simulation_observe(sim, sim->next + ahead->gone + r);
+		}
+	}
+}
+
 /* Flies ROW samples at most, and not beyond the end of any lane: each as far as nothing else happens to it.
  *
  * Given    on  lanes that do;  edged, paired, right: as stretch_fly() has them
@@ -125,6 +152,8 @@ LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahe
 		flown = vselect(vmask(on), flown + one, flown);
 		stretch_keep(g, &s, r + 1, vmask(on), paired, right);
 	}
+	if (ahead->observed)
+		stretch_observe(b, ahead, &s, flown);
 	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - flown;
 	ahead->gone += ROW;
@@ -136,7 +165,7 @@ LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_
                            const struct flyer flyers[2], bool edged)
 {
 	const bool paired = stage == STAGE_FLY_APART, right = b->traits & TRAIT_RIGHT;
-	struct ahead ahead = {.gone = 0};
+	struct ahead ahead = {.observed = b->traits & TRAIT_OBSERVED ? vbits(batch_trait(b, TRAIT_OBSERVED)) : 0};
 	double ground[W], samples[W];
 	lanes_fill(g, b, ROW_STATE);
 	for (int l = 0; l < W; l++) {
@@ -290,7 +319,8 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 }
 
 /* Given    g, s    what does not change meanwhile, and of g the row PRESS
- *          seldom  a lane's energy is accounted for, or nothing presses its bodies on each other */
+ *          seldom  a lane's energy is accounted for, it is observed, or nothing presses its bodies on each
+ *                  other */
 LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum pound_stage stage,
                              struct lanes *g, struct press *s, bool edged, bool seldom)
 {
@@ -299,6 +329,8 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 	lanes_fill(g, b, ROW_STEP);
 	s->alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
 	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
+	const vm observed = seldom ? batch_trait(b, TRAIT_OBSERVED) : vmask(0);
+	const vd before = g->pressed;
 	vd zero = vsplat(0), one = vsplat(1), share = one / g->cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
 	press_load(s, g, (samples.ground - samples.before) * share, behind, edged);
@@ -327,6 +359,8 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 			s->at.rounds = vselect(pressed, s->at.rounds - one, s->at.rounds);
 			gone |= vequal(s->at.rounds, zero) & pressed;
 			pressed &= ~ended & ~gone;
+			if (seldom) // a sample is an instant
+				pressed &= ~(entered & observed);
 			if (stage == STAGE_REST)
 				pressed &= rest_stays(s, entered);
 		}
@@ -336,13 +370,21 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 	lanes_empty(g, b, ROW_STATE);
 	lanes_empty(g, b, ROW_STEP);
 	lanes_empty(g, b, ROW_PRESS);
-	double left[W];
+	double left[W], cells_gone[W];
 	lanes_store(left, s->at.left);
+	if (seldom)
+		lanes_store(cells_gone, g->pressed - before);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		int64_t next = sim->last - (int64_t)left[l];
-		sim->steps = next == sim->next ? sim->steps : 0;
+		const bool entered = next != sim->next;
+		sim->steps = entered ? 0 : sim->steps;
 		interval_set(sim, next);
+		if (!seldom || !(sim->traits & TRAIT_OBSERVED))
+			continue;
+		sim->unobserved += cells_gone[l] * sim->x.cell;
+		if (entered)
+			simulation_observe(sim, next - 1);
 	}
 	unsigned stays = vbits(pressed), ends = vbits(ended), parting = edged ? batch_parting(b, decided) : 0;
 	unsigned turns = batch_lanes(b) & ~stays & ~ends & ~parting;
@@ -395,7 +437,7 @@ static void press_seldom(struct work *work, struct batch *b, enum pound_stage st
 LANE_INLINE void press_any(struct work *work, struct batch *b, enum pound_stage stage, bool edged,
                            bool common)
 {
-	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE))
+	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE | TRAIT_OBSERVED))
 		press_seldom(work, b, stage);
 	else
 		press_on(work, b, stage, edged, common, false);
@@ -433,13 +475,14 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 	vm turns = vmask(0);
 	if (e.paired)
 		turns = event_follow(g, &e, events);
-	double event[W], left[W], speed[W];
+	double event[W], left[W], speed[W], elapsed[W];
+	lanes_store(elapsed, e.elapsed);
 	lanes_store(event, events);
 	lanes_store(left, vfma(g->cells, g->cell, g->part));
 	lanes_store(speed, g->q);
-	// the work done is kept of whole steps only
-	if (accounted)
-		turns &= ~batch_trait(b, TRAIT_ACCOUNTED);
+	// the work done is kept of whole steps only, and an event is an instant
+	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_OBSERVED))
+		turns &= ~batch_trait(b, TRAIT_ACCOUNTED | TRAIT_OBSERVED);
 	if (vany(turns)) {
 		e.touching = !e.touching;
 		event_leap(g, &e, turns);
@@ -458,6 +501,8 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 		}
 		sim->parted = vbits(e.parted) >> l & 1;
 		sim->fresh = vbits(e.fresh) >> l & 1;
+		if (sim->traits & TRAIT_OBSERVED)
+			sim->unobserved += elapsed[l];
 		send(work, sim, simulation_stepped(sim, (int)event[l], left[l], speed[l]));
 	}
 }
@@ -487,17 +532,23 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 	lanes_fill(&g, b, ROW_PAIR);
 	if (paired)
 		lanes_fill(&g, b, ROW_RIGHT);
+	const vd before = g.part;
 	event_leap(&g, &e, vmask(batch_lanes(b)));
+	double elapsed[W];
+	lanes_store(elapsed, before - g.part); // all of it or nothing
 	// nothing is to be taken back: they have not moved
 	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
-		if (parting >> l & 1)
+		if (parting >> l & 1) {
 			part(work, sim, stage);
-		else
-			send(work, sim, simulation_next(sim));
+			continue;
+		}
+		if (sim->traits & TRAIT_OBSERVED)
+			sim->unobserved += elapsed[l];
+		send(work, sim, simulation_next(sim));
 	}
 }
 

@@ -2,7 +2,7 @@
  *
  * Included by exact.inl alone, once per lane count.
  *
- * Included by exact.inl after step.inl. */
+ * Included by exact.inl after observer.inl. */
 
 #include <assert.h>
 #include <float.h>
@@ -78,6 +78,8 @@ static void simulation_interval(struct simulation *sim)
 	x->ground = sim->ground[sim->next - 1];
 	x->part = sim->touching ? 0 : x->body[0].step_gap; // the sample step
 	x->cells = sim->touching ? x->cells_whole : 0;
+	if (sim->traits & TRAIT_OBSERVED)
+		simulation_observe(sim, sim->next - 1);
 }
 
 /* The next step by power series. */
@@ -215,9 +217,20 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 		x->u[i] = x->v[i] = 0;
 	sim->parted = sim->fresh = false;
 	x->pace = 1;
-	while (sim->ground[sim->next] == 0)
+	const bool observed = sim->traits & TRAIT_OBSERVED;
+	double left =
+	    x->part + x->cells * x->cell; // of the interval: bodies that press each other settle inside one too
+	if (observed)
+		simulation_observe(sim, sim->unobserved > 0 ? -1 : sim->next - 1);
+	while (sim->ground[sim->next] == 0) {
+		if (observed) {
+			sim->unobserved = left;
+			simulation_observe(sim, sim->next);
+			left = x->body[0].step_gap;
+		}
 		if (sim->next++ == sim->last)
 			return STAGE_END;
+	}
 	return simulation_from(sim);
 }
 
@@ -298,6 +311,8 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 	if (event >= EVENT_BODY)
 		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
+	if (event > EVENT_CUT && sim->traits & TRAIT_OBSERVED)
+		simulation_observe(sim, -1);
 	if (event >= EVENT_CLEARS && sim->can_fly && !sim->touching && sim->x.part > 0)
 		return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
 	return simulation_next(sim);
@@ -431,6 +446,8 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 		sim->traits |= TRAIT_RIGHT;
 	if (task->accounted)
 		sim->traits |= TRAIT_ACCOUNTED;
+	if (task->observer)
+		sim->traits |= TRAIT_OBSERVED;
 	sim->per_step = 1 / h;
 	x->right_mass = task->mass_ratio > 0 ? 1 / task->mass_ratio : 0;
 	x->gap = task->contact ? task->gap : -NEVER;
@@ -461,6 +478,8 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 		pound_pieces_start(&task->bodies[i].skeleton, &sim->at[i]);
 		piece_enter(sim, i);
 	}
+	if (task->observer)
+		simulation_observe(sim, 0);
 	return simulation_from(sim);
 }
 
@@ -517,6 +536,9 @@ static void result_write(struct simulation *sim, enum pound_status status)
 	// a contact still open at the end counts with what it has
 	if (sim->touching)
 		contact_over(sim, x->q);
+	if (sim->traits & TRAIT_OBSERVED)
+		simulation_observe(sim, status == POUND_OK ? sim->last : -1);
+	sim->traits &= ~(unsigned)TRAIT_OBSERVED; // what follows looks back
 	bool finite = isfinite(x->u[0]) && isfinite(x->v[0]) && isfinite(x->u[1]) && isfinite(x->v[1]);
 	r->status = finite ? status : POUND_OVERFLOW;
 	r->contacts = (int64_t)sim->contacts;

@@ -111,7 +111,7 @@ LANE_INLINE bool batch_again(struct work *work, struct batch *b)
 		return false;
 	for (int l = 1; l <= W; l++)
 		traits |= queue->member[queue->n - l]->traits;
-	if (batch_kind(traits) != KIND_COMMON || traits & TRAIT_ALIKE)
+	if (batch_kind(traits) != KIND_COMMON || traits & (TRAIT_ALIKE | TRAIT_OBSERVED))
 		return false;
 	batch_take(b, work, queue);
 	return true;

@@ -48,7 +48,8 @@ static bool tasks_kin(const struct pound_march_task *a, const struct pound_march
 	       a->contact == b->contact && same(a->gap, b->gap) &&
 	       same(a->contact_stiffness, b->contact_stiffness) && same(a->contact_damping, b->contact_damping) &&
 	       same(a->mass_ratio, b->mass_ratio) && a->tension == b->tension && !a->accounted && !b->accounted &&
-	       bodies_kin(&a->bodies[0], &b->bodies[0]) && bodies_kin(&a->bodies[1], &b->bodies[1]);
+	       !a->observer && !b->observer && bodies_kin(&a->bodies[0], &b->bodies[0]) &&
+	       bodies_kin(&a->bodies[1], &b->bodies[1]);
 }
 
 /* The slot in which the search for those that are kin to a task begins. */

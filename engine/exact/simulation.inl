@@ -167,13 +167,14 @@ enum { EVENT_NONE, EVENT_CUT, EVENT_CONTACT, EVENT_CLEARS, EVENT_BODY, EVENT_EDG
 
 /* what a step must look after for a simulation; otherwise it is left out */
 enum {
-	TRAIT_EDGED = 1,     /* a law has more than one piece */
-	TRAIT_RIGHT = 2,     /* the right body's largest displacement is wanted */
-	TRAIT_FORCED = 4,    /* contact ends when its force does */
-	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
-	TRAIT_ALIKE = 16,    /* touching without overlap the bodies go the same way, on the pieces they are on */
-	TRAIT_OWN = 32,      /* its constants are not those of others */
-	TRAIT_FAMILY = 64,   /* there are others that go along: what an edge decides is not for all of them */
+	TRAIT_EDGED = 1,      /* a law has more than one piece */
+	TRAIT_RIGHT = 2,      /* the right body's largest displacement is wanted */
+	TRAIT_FORCED = 4,     /* contact ends when its force does */
+	TRAIT_ACCOUNTED = 8,  /* the energy balance is kept */
+	TRAIT_ALIKE = 16,     /* touching without overlap the bodies go the same way, on the pieces they are on */
+	TRAIT_OWN = 32,       /* its constants are not those of others */
+	TRAIT_FAMILY = 64,    /* there are others that go along: what an edge decides is not for all of them */
+	TRAIT_OBSERVED = 128, /* someone is told its instants: observer.inl */
 };
 
 /* a task that a simulation is the run of as well */
@@ -209,6 +210,7 @@ struct simulation {
 	const struct pound_march_task *task;
 	struct pound_march_result *result;
 	struct pound_counts_scale counts_scale;
+	double unobserved; /* time since the last instant that its observer was told [s] */
 	struct pound_member others[POUND_OTHERS];
 	int n_others;
 	enum pound_stage stage; /* what it does next, while it waits for room */

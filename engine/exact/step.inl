@@ -16,6 +16,7 @@ struct event_lanes {
 	bool right;         /* a lane's largest displacement of the right body is wanted */
 	bool forced;        /* a lane's contact ends when its force does */
 	vm decided;         /* lanes in which an edge of a piece decided how far they went */
+	vd elapsed;         /* time that the step took [s] */
 };
 
 /* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
@@ -408,6 +409,7 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	// where no time has gone by nothing is to change, not by a rounding
 	vm moved = vless(zero, search.time);
 	step_end(g, &s, e, search.time, moved);
+	e->elapsed = search.time * g->dt;
 	// a body turns with no velocity, but where it had turned before that was noticed
 	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
 		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);

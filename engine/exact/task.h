@@ -21,19 +21,42 @@ struct pound_march_body {
 	bool followed;  /* its largest displacement is wanted */
 };
 
+/* An instant of a motion: where one interval ends and the next begins.  There is one at the start, at every sample of the
+ * ground motion, at every event and at the end, in the order of time.  Between two of them no contact begins or ends, no body
+ * leaves its branch, and the ground motion is a straight line. */
+struct pound_march_instant {
+	double time;    /* [s] */
+	double elapsed; /* since the instant before, 0: it is the same one, and its state has changed [s] */
+	bool sampled;   /* it is at a sample; false: an event */
+	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS]; /* [m], [m/s] */
+	// of the interval behind it
+	bool touching;                           /* the contact's force acts */
+	double overlap, overlap_rate;            /* while touching [m], [m/s] */
+	double ground, slope;                    /* acceleration, and its growth [m/s2], [m/s3] */
+	double stiffness[POUND_OSCILLATORS];     /* of the bodies' branches, per mass [1/s2] */
+	double spring_offset[POUND_OSCILLATORS]; /* spring force at no displacement, per mass [m/s2] */
+};
+
+/* who is told the instants of a task */
+struct pound_march_observer {
+	void (*observe)(void *into, const struct pound_march_instant *instant);
+	void *into;
+};
+
 struct pound_march_task {
 	const double *ground; /* acceleration at the samples, linear between  [m/s2]  (n_samples) */
 	int n_samples;        /* >= 2 */
 	double time_step;     /* [s] */
 	struct pound_march_body bodies[POUND_OSCILLATORS];
-	bool contact;             /* false: the bodies never meet */
-	enum pound_force force;   /* form of the contact force */
-	double gap;               /* [m] */
-	double contact_stiffness; /* K/m1 [1/s2] */
-	double contact_damping;   /* C/m1 [1/s] */
-	double mass_ratio;        /* m1/m2, 0: the right body is a wall */
-	bool tension;             /* contact ends at zero overlap; false: at zero force */
-	bool accounted;           /* energy_residual is wanted */
+	bool contact;                                /* false: the bodies never meet */
+	enum pound_force force;                      /* form of the contact force */
+	double gap;                                  /* [m] */
+	double contact_stiffness;                    /* K/m1 [1/s2] */
+	double contact_damping;                      /* C/m1 [1/s] */
+	double mass_ratio;                           /* m1/m2, 0: the right body is a wall */
+	bool tension;                                /* contact ends at zero overlap; false: at zero force */
+	bool accounted;                              /* energy_residual is wanted */
+	const struct pound_march_observer *observer; /* NULL: none */
 };
 
 struct pound_march_result {

@@ -1,6 +1,6 @@
 /* tolerances.h - what those who follow a motion from step to step have in common.
  *
- * No code, only numbers: the march, the trace and the spectra's oscillators read them. */
+ * No code, only numbers: the exact solver, a floor's pieces and the oscillators on it read them. */
 #ifndef STEPPING_H
 #define STEPPING_H
 

@@ -1,6 +1,6 @@
 /* floor.c - the spectra and the history of one floor under one task.
  *
- * 1. The trace hands out its pieces stretch by stretch;
+ * 1. The exact solver follows the task; the floor is its observer, and makes pieces of its motion, stretch by stretch;
  * 2. every oscillator rides over a stretch before the next one is made, so that memory does not grow with time. */
 #include "engine/floor/floor.h"
 
@@ -16,10 +16,10 @@ struct pound_floor {
 	double *omega; /* [rad/s] */
 	double *z[POUND_DRIVES], *v[POUND_DRIVES], *top[POUND_DRIVES];
 	double damping;
-	struct pound_trace trace;
+	struct pound_floor_motion motion;
 	struct pound_kernel kernel;
 	alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
-	struct pound_trace_stretch stretch;
+	struct pound_floor_stretch stretch;
 };
 
 typedef void width_ride(const struct pound_bank *, const struct pound_ride *, void *scratch);
@@ -50,7 +50,7 @@ double pound_spectrum_frequency(const struct pound_spectrum *s, int k)
 	return s->min_hz * pound_elementary_exp(ratio * k / (s->n - 1));
 }
 
-/* Whether the trace of a floor can follow a form of contact force; one that it cannot is refused where studies are read. */
+/* Whether a floor can be followed under a form of contact force; where it cannot the study is refused where it is read. */
 bool pound_floor_takes_force(enum pound_force force)
 {
 	return force == POUND_FORCE_LINEAR;
@@ -90,7 +90,57 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
 	return floor;
 }
 
+/* ---- the motion ---- */
+
+/* Follows a task to its end.
+ *
+ * Given    take     called for every stretch of pieces, of it
+ *          stop     looked at throughout; NULL: never
+ *          scratch  POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ * Returns  result   of the exact solver
+ * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ *          POUND_STOPPED             stop was set
+ */
+static enum pound_status floor_follow(struct pound_floor *floor, const struct pound_march_task *task,
+                                      const struct pound_floor_taker *taker, const atomic_bool *stop,
+                                      void *scratch, struct pound_march_result *result)
+{
+	struct pound_floor_motion *motion = &floor->motion;
+	const struct pound_march_observer observer = {pound_floor_observe, motion};
+	struct pound_march_task observed = *task;
+	observed.observer = &observer;
+	// whoever wants the largest displacements has them
+	observed.bodies[0].followed = observed.bodies[1].followed = false;
+	*motion =
+	    (struct pound_floor_motion){.task = task, .stretch = &floor->stretch, .taker = *taker, .stop = stop};
+	pound_floor_start(motion);
+	// one task alone is done sooner in one lane than in many
+	bool followed = pound_march_lanes(1, &observed, result, 1, scratch, stop);
+	assert(followed);
+	(void)followed;
+	if (pound_stopped(stop))
+		return POUND_STOPPED;
+	taker->take(taker->into);
+	return motion->status ? motion->status : result->status;
+}
+
 /* ---- spectra ---- */
+
+/* what takes a bank over a stretch */
+struct riders {
+	const struct pound_bank *bank;
+	struct pound_ride ride;
+	int lanes;
+	void *scratch;
+};
+
+static void riders_take(void *of)
+{
+	const struct riders *riders = of;
+	bool ridden = pound_spectrum_lanes(riders->lanes, riders->bank, &riders->ride, riders->scratch);
+	assert(ridden);
+	(void)ridden;
+}
 
 /* Pseudo-acceleration spectra of the floor of a task.
  *
@@ -112,84 +162,90 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 	                          .radians = ask->radians,
 	                          .kernel = &floor->kernel,
 	                          .omega = floor->omega};
-	const struct pound_ride ride = {.stretch = &floor->stretch,
-	                                .time_step = ask->task->time_step,
-	                                .damping = ask->task->bodies[0].damping};
+	struct riders riders = {.bank = &bank,
+	                        .ride = {.stretch = &floor->stretch,
+	                                 .time_step = ask->task->time_step,
+	                                 .damping = ask->task->bodies[0].damping},
+	                        .lanes = ask->lanes,
+	                        .scratch = floor->scratch};
+	struct pound_march_result result;
 	for (int d = 0; d < ask->n_drives; d++) {
 		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
 		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
 	}
-	pound_trace_start(&floor->trace, ask->task);
-	for (;;) {
-		if (pound_stopped(ask->stop))
-			return POUND_STOPPED;
-		pound_trace_next(&floor->trace, &floor->stretch);
-		if (floor->stretch.n == 0)
-			break;
-		bool ridden = pound_spectrum_lanes(ask->lanes, &bank, &ride, floor->scratch);
-		assert(ridden);
-		(void)ridden;
-	}
+	const struct pound_floor_taker taker = {riders_take, &riders};
+	enum pound_status status = floor_follow(floor, ask->task, &taker, ask->stop, ask->scratch, &result);
 	for (int d = 0; d < ask->n_drives; d++)
 		for (int k = 0; k < floor->n; k++)
 			answer->psa[d][k] = floor->omega[k] * floor->omega[k] * floor->top[d][k];
-	answer->impulse_max = floor->trace.impulse_max;
-	answer->contacts = floor->trace.contacts;
-	return floor->trace.status;
+	answer->impulse_max = result.impulse_max;
+	answer->contacts = result.contacts;
+	return status;
 }
 
 /* ---- history ---- */
 
+/* Where the rows of a history go, and the last of them: the end of the piece before. */
+struct chronicle {
+	struct pound_floor *floor;
+	pound_floor_take *take;
+	void *into;
+	struct pound_floor_instant last;
+};
+
 /* A drive at both ends of a piece [m/s2]. */
-static void drive_ends(const struct pound_floor *floor, const struct pound_trace_piece *piece,
+static void drive_ends(const struct pound_floor *floor, const struct pound_floor_piece *piece,
                        enum pound_drive drive, double ends[2])
 {
-	const double *c, damping = floor->trace.task->bodies[0].damping;
-	double room[POUND_TRACE_ORDER + 1];
-	const int order = pound_trace_drive(&floor->stretch, piece, drive, damping, room, &c);
+	const double *c, damping = floor->motion.task->bodies[0].damping;
+	double room[POUND_FLOOR_ORDER + 1];
+	const int order = pound_floor_drive(&floor->stretch, piece, drive, damping, room, &c);
 	ends[0] = order < 0 ? 0 : c[0];
 	ends[1] = 0;
 	for (int n = order; n >= 0; n--)
 		ends[1] += c[n];
 }
 
+static void chronicle_take(void *of)
+{
+	struct chronicle *chronicle = of;
+	struct pound_floor_instant *last = &chronicle->last;
+	const struct pound_floor_stretch *stretch = &chronicle->floor->stretch;
+	for (int i = 0; i < stretch->n; i++) {
+		const struct pound_floor_piece *p = &stretch->piece[i];
+		double whole[2], push[2];
+		drive_ends(chronicle->floor, p, POUND_DRIVE_FLOOR, whole);
+		drive_ends(chronicle->floor, p, POUND_DRIVE_PUSH, push);
+		const struct pound_floor_instant now = {p->start, p->u, p->v, whole[0], push[0]};
+		last->time = now.time, last->u = now.u, last->v = now.v;
+		if (p->after_event)
+			chronicle->take(chronicle->into, last);
+		if (p->sampled || p->after_event)
+			chronicle->take(chronicle->into, &now);
+		last->acceleration = whole[1];
+		last->push = push[1];
+	}
+}
+
 /* The history of a task's floor.
  *
- * Given    stop    looked at throughout; NULL: never
+ * Given    ask     the task; its drives, radians and lanes are not looked at
  * Returns  take    called in the order of time; at an event twice, for what was before and what is after
  * Status   POUND_CHATTER  the motion could not be followed to its end
  *          POUND_STOPPED  stop was set
  * Test     unit_floor: a_history_has_every_sample_and_both_sides_of_every_event, a_floor_that_takes_hours_is_stopped
  */
-enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_march_task *task,
-                                      const atomic_bool *stop, pound_floor_take *take, void *into)
+enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                                      pound_floor_take *take, void *into)
 {
-	struct pound_floor_instant last = {0};
-	pound_trace_start(&floor->trace, task);
-	for (;;) {
-		if (pound_stopped(stop))
-			return POUND_STOPPED;
-		pound_trace_next(&floor->trace, &floor->stretch);
-		if (floor->stretch.n == 0)
-			break;
-		for (int i = 0; i < floor->stretch.n; i++) {
-			const struct pound_trace_piece *p = &floor->stretch.piece[i];
-			double whole[2], push[2];
-			drive_ends(floor, p, POUND_DRIVE_FLOOR, whole);
-			drive_ends(floor, p, POUND_DRIVE_PUSH, push);
-			const struct pound_floor_instant now = {p->start, p->u, p->v, whole[0], push[0]};
-			last.time = now.time, last.u = now.u, last.v = now.v;
-			if (p->turned)
-				take(into, &last);
-			if (p->sampled || p->turned)
-				take(into, &now);
-			last.acceleration = whole[1];
-			last.push = push[1];
-		}
-	}
-	last.time = (task->n_samples - 1) * task->time_step;
-	last.u = floor->trace.u[0], last.v = floor->trace.v[0];
-	if (!floor->trace.status)
-		take(into, &last);
-	return floor->trace.status;
+	const struct pound_march_task *task = ask->task;
+	struct chronicle chronicle = {.floor = floor, .take = take, .into = into};
+	const struct pound_floor_taker taker = {chronicle_take, &chronicle};
+	struct pound_march_result result;
+	enum pound_status status = floor_follow(floor, task, &taker, ask->stop, ask->scratch, &result);
+	chronicle.last.time = (task->n_samples - 1) * task->time_step;
+	chronicle.last.u = result.u[0], chronicle.last.v = result.v[0];
+	if (!status)
+		take(into, &chronicle.last);
+	return status;
 }

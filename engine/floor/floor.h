@@ -1,4 +1,4 @@
-/* floor.h - the spectra of one floor under one task: the trace and the oscillators brought together. */
+/* floor.h - the spectra and the history of one floor under one task. */
 #ifndef FLOOR_H
 #define FLOOR_H
 
@@ -18,6 +18,7 @@ struct pound_floor_ask {
 	double radians;          /* an oscillator's longest step, at most 1.5 */
 	int lanes;               /* 0: the widest there are */
 	const atomic_bool *stop; /* looked at throughout; NULL: never */
+	void *scratch;           /* POUND_MARCH_SCRATCH bytes, 64-byte aligned */
 };
 
 /* what comes out; psa: [m/s2]  (n_frequencies) each */
@@ -35,7 +36,7 @@ struct pound_floor_instant {
 	double time, u, v, acceleration, push; /* [s], [m], [m/s], [m/s2]; push: the contact's part */
 };
 typedef void pound_floor_take(void *into, const struct pound_floor_instant *instant);
-enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_march_task *task,
-                                      const atomic_bool *stop, pound_floor_take *take, void *into);
+enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                                      pound_floor_take *take, void *into);
 
 #endif

@@ -23,7 +23,7 @@ struct pound_bank {
 
 /* What all pieces of a stretch have in common. */
 struct pound_ride {
-	const struct pound_trace_stretch *stretch;
+	const struct pound_floor_stretch *stretch;
 	double time_step; /* of the ground motion [s] */
 	double damping;   /* of the left body, c/m [1/s] */
 };

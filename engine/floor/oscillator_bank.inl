@@ -15,7 +15,7 @@
 #include "engine/numeric/lanes.h"
 
 enum {
-	TERMS = POUND_TRACE_TERMS,
+	TERMS = POUND_FLOOR_TERMS,
 	PARTS_MAX = POUND_KERNEL_PARTS, /* of a sample that has maps */
 	INTEGRALS = POUND_KERNEL_INTEGRALS,
 	PARTS_LIMIT = 1 << 24,
@@ -39,7 +39,7 @@ struct flight {
 
 struct maps {
 	vd zz, zv, vz, vv;
-	struct flight part[POUND_TRACE_MAPS][PARTS_MAX];
+	struct flight part[POUND_FLOOR_MAPS][PARTS_MAX];
 };
 
 struct state {
@@ -54,7 +54,7 @@ struct series {
 
 struct scratch {
 	alignas(64) struct maps maps;
-	double integral[POUND_TRACE_PIECES][POUND_DRIVES][INTEGRALS]; /* of the pieces that have no map */
+	double integral[POUND_FLOOR_PIECES][POUND_DRIVES][INTEGRALS]; /* of the pieces that have no map */
 };
 
 static_assert(sizeof POUND_TERMS_REACH == (TERMS + 1) * sizeof(double) && (TERMS + 1) % W == 0,
@@ -71,7 +71,7 @@ static const double MINUS_SHARE[TERMS + 1] = {
     -1.0 / 9,  -1.0 / 10, -1.0 / 11, -1.0 / 12, -1.0 / 13, -1.0 / 14, -1.0 / 15, -1.0 / 16,
     -1.0 / 17, -1.0 / 18, -1.0 / 19, -1.0 / 20, -1.0 / 21, -1.0 / 22, -1.0 / 23, -1.0 / 24};
 
-/* Terms after which x^n/n! is below rounding, as pound_trace_terms() has them: all are looked at, as no branch foresees where
+/* Terms after which x^n/n! is below rounding, as pound_floor_terms() has them: all are looked at, as no branch foresees where
  * to stop. */
 LANE_INLINE int terms_of(double x)
 {
@@ -235,7 +235,7 @@ static int parts_of(double omega_max, double step, double radians)
 static void integrals_fill(const struct pound_kernel *kernel, const double *a, int order, int j, int n,
                            double integral[INTEGRALS])
 {
-	double room[POUND_TRACE_ORDER + 1];
+	double room[POUND_FLOOR_ORDER + 1];
 	const double *c = n > PARTS_MAX ? part_drive(a, order, j, n, room) : a;
 	const double(*row)[INTEGRALS] = kernel->part[n > PARTS_MAX ? 1 : n + j];
 	vd sum[INTEGRALS / W] = {0};
@@ -288,7 +288,7 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 /* part j of n equal ones of a piece */
 struct place {
 	const struct pound_ride *ride;
-	const struct pound_trace_piece *piece;
+	const struct pound_floor_piece *piece;
 	int j, n;
 };
 
@@ -299,10 +299,10 @@ struct place {
 LANE_SHARED vd part_top(const struct part *p, const struct place *at, enum pound_drive drive, struct state s,
                         vm risk)
 {
-	double flown[POUND_TRACE_ORDER + 1], room[POUND_TRACE_ORDER + 1];
+	double flown[POUND_FLOOR_ORDER + 1], room[POUND_FLOOR_ORDER + 1];
 	const double *a;
 	struct series series;
-	const int order = pound_trace_drive(at->ride->stretch, at->piece, drive, at->ride->damping, flown, &a);
+	const int order = pound_floor_drive(at->ride->stretch, at->piece, drive, at->ride->damping, flown, &a);
 	a = part_drive(a, order, at->j, at->n, room);
 	series_fill(&series, p, s.z, s.v * p->step, a, order, p->step * p->step);
 	return peak_add(&series, risk, s.top);
@@ -343,11 +343,11 @@ LANE_SHARED void parts_ride(const struct pound_bank *bank, const struct part *p,
                             struct state s[])
 {
 	alignas(64) double own[POUND_DRIVES][INTEGRALS];
-	double room[POUND_TRACE_ORDER + 1];
+	double room[POUND_FLOOR_ORDER + 1];
 	const double *c[POUND_DRIVES], *const integral[POUND_DRIVES] = {own[0], own[1]};
 	int order[POUND_DRIVES];
 	for (int d = 0; d < bank->n_drives; d++)
-		order[d] = pound_trace_drive(at->ride->stretch, at->piece, d, at->ride->damping, room, &c[d]);
+		order[d] = pound_floor_drive(at->ride->stretch, at->piece, d, at->ride->damping, room, &c[d]);
 	for (at->j = 0; at->j < at->n; at->j++) {
 		for (int d = 0; d < bank->n_drives; d++)
 			integrals_fill(bank->kernel, c[d], order[d], at->j, at->n, own[d]);
@@ -373,8 +373,8 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 		for (int state = 0; state < 4; state++) {
 			const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
 			const double k = ride->stretch->stiffness[m];
-			double a[POUND_TRACE_ORDER + 1];
-			pound_trace_flight(unit, k, ride->damping, ride->time_step, order, a);
+			double a[POUND_FLOOR_ORDER + 1];
+			pound_floor_flight(unit, k, ride->damping, ride->time_step, order, a);
 			for (int j = 0; j < parts; j++) {
 				integrals_fill(bank->kernel, a, order, j, parts, integrals);
 				passage_fill(&passage, p, integral, 1);
@@ -388,7 +388,7 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, struct place *at,
                              enum pound_drive drive, struct state *s)
 {
-	const struct pound_trace_piece *piece = at->piece;
+	const struct pound_floor_piece *piece = at->piece;
 	const bool driven = drive == POUND_DRIVE_FLOOR;
 	const vd error = driven ? drive_error(p, piece->floor.bound) : vsplat(0);
 	vd state[4];
@@ -427,7 +427,7 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
 	if (mapped)
 		maps_fill(&scratch->maps, bank, &sample, ride, parts);
 	for (int i = 0; i < ride->stretch->n; i++) {
-		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
+		const struct pound_floor_piece *piece = &ride->stretch->piece[i];
 		struct place place = {.ride = ride, .piece = piece, .n = parts};
 		if (piece->map >= 0 && mapped) {
 			flight_ride(&scratch->maps, &sample, &place, POUND_DRIVE_FLOOR, &s[POUND_DRIVE_FLOOR]);
@@ -464,7 +464,7 @@ void POUND_SPECTRUM(const struct pound_bank *bank, const struct pound_ride *ride
 {
 	struct scratch *room = scratch;
 	for (int i = 0; i < ride->stretch->n; i++) {
-		const struct pound_trace_piece *piece = &ride->stretch->piece[i];
+		const struct pound_floor_piece *piece = &ride->stretch->piece[i];
 		if (piece->map >= 0)
 			continue;
 		integrals_fill(bank->kernel, piece->floor.c, piece->order, 0, 1,

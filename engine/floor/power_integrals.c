@@ -33,6 +33,6 @@ void pound_kernel_fill(struct pound_kernel *kernel)
 	memset(kernel, 0, sizeof *kernel);
 	for (int n = 1; n <= POUND_KERNEL_PARTS; n *= 2)
 		for (int j = 0; j < n; j++)
-			for (int k = 0; k <= POUND_TRACE_ORDER; k++)
+			for (int k = 0; k <= POUND_FLOOR_ORDER; k++)
 				power_fill(j, n, k, kernel->part[n + j][k]);
 }

@@ -4,7 +4,7 @@
 
 #include <stdalign.h>
 
-#include "engine/floor/trace.h"
+#include "engine/floor/floor_pieces.h"
 
 enum {
 	POUND_KERNEL_PARTS = 16,     /* of a piece, at most; a power of two */
@@ -14,7 +14,7 @@ enum {
 /* Part j of n: [n + j][k][m] is the (m + 1)-fold integral of t^k over it, t the piece's time and the part's own time
  * that of the integrals. */
 struct pound_kernel {
-	alignas(64) double part[2 * POUND_KERNEL_PARTS][POUND_TRACE_ORDER + 1][POUND_KERNEL_INTEGRALS];
+	alignas(64) double part[2 * POUND_KERNEL_PARTS][POUND_FLOOR_ORDER + 1][POUND_KERNEL_INTEGRALS];
 };
 
 void pound_kernel_fill(struct pound_kernel *kernel);

@@ -1,7 +1,7 @@
 /* floor_outputs.c - floor spectra as what a study asks for.
  *
- * 1. After the marches of a block each of its floors is traced once more, under the tasks that the request found, and its
- *    spectra are put beside the other measures of the run; equal floors are traced once.
+ * 1. After the marches of a block each of its floors is followed once more, under the tasks that the request found, and its
+ *    spectra are put beside the other measures of the run; equal floors are followed once.
  * 2. A study of spectra reduces them to mean and percentiles over the signals; a sensitivity study has an output for each
  *    frequency, and tells how it goes with the largest impulse.
  * 3. A check's floor has half the sample step and oscillators of half the longest step. */
@@ -25,7 +25,7 @@ static const double RADIANS = 1.5, RADIANS_CHECK = 0.75;
 enum { IMPULSE, PULSES, MEASURES };
 
 /* what is known of the floor of a task */
-struct traced {
+struct followed {
 	int ask; /* that its ordinates were found for, plus one; 0: none yet */
 	enum pound_status status;
 };
@@ -33,7 +33,7 @@ struct traced {
 struct pound_ordinates {
 	struct pound_floor *floor;
 	double *psa[POUND_DRIVES]; /* (n) */
-	struct traced *traced;     /* of each task  (n_tasks) */
+	struct followed *followed; /* of each task  (n_tasks) */
 	int n_tasks;
 };
 
@@ -64,7 +64,7 @@ size_t pound_ordinate_bytes(const struct pound_study *study, int n_tasks)
 		return 0;
 	return aligned(sizeof(struct pound_ordinates)) + aligned(pound_floor_bytes(n)) +
 	       POUND_DRIVES * aligned(sizeof(double) * (size_t)n) +
-	       aligned(sizeof(struct traced) * (size_t)n_tasks);
+	       aligned(sizeof(struct followed) * (size_t)n_tasks);
 }
 
 struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_study *study, int n_tasks)
@@ -75,7 +75,7 @@ struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_stu
 	at += aligned(pound_floor_bytes(study->spectrum.n));
 	for (int d = 0; d < POUND_DRIVES; d++, at += aligned(sizeof(double) * (size_t)study->spectrum.n))
 		ordinates->psa[d] = (double *)(void *)at;
-	ordinates->traced = (struct traced *)(void *)at;
+	ordinates->followed = (struct followed *)(void *)at;
 	ordinates->n_tasks = n_tasks;
 	return ordinates;
 }
@@ -108,14 +108,15 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 {
 	int n = study->spectrum.n;
 	struct pound_floor_answer answer = {.psa = {o->psa[0], o->psa[1]}};
-	struct pound_floor_ask ask = {.task = request->free, .n_drives = 1, .radians = radians, .stop = stop};
+	struct pound_floor_ask ask = {
+	    .task = request->free, .n_drives = 1, .radians = radians, .stop = stop, .scratch = request->scratch};
 	enum pound_status status = pound_floor_spectra(o->floor, &ask, &answer);
 	if (status)
 		return status;
 	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_FREE * n);
 	memset(o->psa[POUND_DRIVE_PUSH], 0, sizeof(double) * (size_t)n);
-	ask = (struct pound_floor_ask){
-	    .task = request->pounding, .n_drives = POUND_DRIVES, .radians = radians, .stop = stop};
+	ask.task = request->pounding;
+	ask.n_drives = POUND_DRIVES;
 	if (request->pounding)
 		status = pound_floor_spectra(o->floor, &ask, &answer);
 	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_POUNDING * n);
@@ -141,7 +142,8 @@ static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct 
 	const struct pound_floor_ask ask = {.task = request->pounding ? request->pounding : request->free,
 	                                    .n_drives = 1,
 	                                    .radians = radians,
-	                                    .stop = stop};
+	                                    .stop = stop,
+	                                    .scratch = request->scratch};
 	enum pound_status status = known ? POUND_OK : pound_floor_spectra(o->floor, &ask, &answer);
 	for (int output = 0; output < study->n_outputs; output++) {
 		int k = pound_study_ordinate(study, output);
@@ -163,7 +165,7 @@ static int measures_of(const struct pound_study *study)
  *          values   (asks x measures)  of a failed run the last is NAN
  *          stop     looked at throughout
  * Returns  values   with spectra or ordinates; all NAN where a floor could not be followed
- *          work     floors asked and traced, and runs failed for want of one; those of checks left out
+ *          work     floors asked and followed, and runs failed for want of one; those of checks left out
  * Status   POUND_STOPPED  stop was set
  */
 enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct pound_study *study,
@@ -171,13 +173,13 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
                                        const atomic_bool *stop, struct pound_work *work)
 {
 	int n_items, n_asks = pound_request_count(request, &n_items), n = measures_of(study);
-	memset(o->traced, 0, sizeof *o->traced * (size_t)o->n_tasks);
+	memset(o->followed, 0, sizeof *o->followed * (size_t)o->n_tasks);
 	for (int a = 0; a < n_asks && !pound_stopped(stop); a++, values += n) {
 		const struct pound_request_floor floor = pound_request_floor(request, a);
 		double radians = a < n_items ? RADIANS : RADIANS_CHECK;
 		assert(floor.march < o->n_tasks);
-		struct traced *traced = &o->traced[floor.march];
-		const int before = has_spectra(study) ? 0 : traced->ask;
+		struct followed *followed = &o->followed[floor.march];
+		const int before = has_spectra(study) ? 0 : followed->ask;
 		const double *known = before ? values - (size_t)(a + 1 - before) * (size_t)n : NULL;
 		int floors = has_spectra(study) && floor.pounding ? 2 : 1;
 		work->floors.asked += a < n_items ? floors : 0;
@@ -187,11 +189,11 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		                               ? spectra_fill(o, study, &floor, radians, values, stop)
 		                               : ordinates_fill(o, study, &floor, radians, known, values, stop);
 		work->floors.run += a < n_items && !known ? floors : 0;
-		*traced = (struct traced){a + 1, known ? traced->status : status};
-		// a run whose floor could not be followed has failed, also where another ask traced that floor
-		if (traced->status <= POUND_CHATTER && a < n_items)
-			work->failed[POUND_CHATTER - traced->status]++;
-		for (int j = 0; j < n && traced->status; j++)
+		*followed = (struct followed){a + 1, known ? followed->status : status};
+		// a run whose floor could not be followed has failed, also where another ask followed that floor
+		if (followed->status <= POUND_CHATTER && a < n_items)
+			work->failed[POUND_CHATTER - followed->status]++;
+		for (int j = 0; j < n && followed->status; j++)
 			values[j] = NAN;
 	}
 	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
@@ -416,6 +418,7 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 		return status ? status : left;
 	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);
 	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
-	return pound_floor_history(run->floors[0]->floor, floor.pounding ? floor.pounding : floor.free, run->stop,
-	                           instant_tell, &to);
+	const struct pound_floor_ask ask = {
+	    .task = floor.pounding ? floor.pounding : floor.free, .stop = run->stop, .scratch = floor.scratch};
+	return pound_floor_history(run->floors[0]->floor, &ask, instant_tell, &to);
 }

@@ -558,5 +558,6 @@ struct pound_request_floor pound_request_floor(const struct pound_request *reque
 	                                    .pounding = a->march < 0 ? NULL : &request->tasks[a->march],
 	                                    .free = &request->tasks[a->bodies[0].march],
 	                                    .march = march,
-	                                    .exponent = request->motions[a->motion].exponent};
+	                                    .exponent = request->motions[a->motion].exponent,
+	                                    .scratch = request->scratch};
 }

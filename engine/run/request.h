@@ -67,6 +67,7 @@ struct pound_request_floor {
 	const struct pound_march_task *pounding, *free; /* pounding NULL: the response without it is the answer */
 	int march;                                      /* number of the task that is the answer */
 	int exponent;
+	void *scratch; /* POUND_MARCH_SCRATCH bytes for who follows it */
 };
 
 struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask);

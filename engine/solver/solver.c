@@ -47,7 +47,7 @@ const char *pound_solver_text(int row)
 
 /* Whether a solver can integrate a form of contact force.
  *
- * A check, a trace or an estimate that runs a solver on a study's scene asserts this: it may not run another model. */
+ * A check or an estimate that runs a solver on a study's scene asserts this: it may not run another model. */
 bool pound_solver_takes_force(int row, enum pound_force force)
 {
 	return solver_at(row)->forces[force];

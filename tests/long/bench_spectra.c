@@ -28,6 +28,7 @@ static const char signal[] =
 
 struct ridden {
 	struct pound_floor *floor;
+	void *scratch;
 	const struct pound_march_task *task;
 	int n_drives;
 	double *psa[POUND_DRIVES];
@@ -36,7 +37,8 @@ struct ridden {
 static void ride(void *of)
 {
 	const struct ridden *ridden = of;
-	const struct pound_floor_ask ask = {.task = ridden->task, .n_drives = ridden->n_drives, .radians = 1.5};
+	const struct pound_floor_ask ask = {
+	    .task = ridden->task, .n_drives = ridden->n_drives, .radians = 1.5, .scratch = ridden->scratch};
 	struct pound_floor_answer answer = {.psa = {ridden->psa[0], ridden->psa[1]}};
 	if (pound_floor_spectra(ridden->floor, &ask, &answer))
 		bench_fail("a floor could not be followed");
@@ -56,7 +58,7 @@ static void one_signal(void)
 	if (!run || pound_request_run(run->requests[0], &run->campaign, 0, 1, run->stop, &work, leave, NULL))
 		bench_fail("out of memory");
 	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);
-	struct ridden with = {.task = floor.pounding, .n_drives = 1};
+	struct ridden with = {.task = floor.pounding, .n_drives = 1, .scratch = floor.scratch};
 	with.floor = pound_floor_init(bench_memory(pound_floor_bytes(study->spectrum.n)), &study->spectrum);
 	for (int d = 0; d < POUND_DRIVES; d++)
 		with.psa[d] = bench_memory(sizeof(double) * (size_t)study->spectrum.n);

@@ -28,12 +28,13 @@ struct pound_floor_answer riding_spectra(const struct pound_march_task *task,
                                          const struct pound_spectrum *spectrum, int n_drives, double radians,
                                          int lanes, double *psa[POUND_DRIVES])
 {
+	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
 	size_t bytes = (pound_floor_bytes(spectrum->n) / 64 + 1) * 64;
 	void *memory = aligned_alloc(64, bytes);
 	assert_non_null(memory);
 	struct pound_floor *floor = pound_floor_init(memory, spectrum);
 	const struct pound_floor_ask ask = {
-	    .task = task, .n_drives = n_drives, .radians = radians, .lanes = lanes};
+	    .task = task, .n_drives = n_drives, .radians = radians, .lanes = lanes, .scratch = scratch};
 	struct pound_floor_answer answer = {.psa = {psa[0], psa[1]}};
 	assert_int_equal(pound_floor_spectra(floor, &ask, &answer), POUND_OK);
 	free(memory);

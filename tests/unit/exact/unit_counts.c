@@ -8,8 +8,8 @@
 #include "tests/support/floor_tasks.h"
 
 /* what is counted of the contacts of a task, by each who counts */
-enum { EVENT, EVENT_ONE, TRACE, NEWMARK, CENTRAL, ADAPTIVE, COUNTERS };
-static const char *const names[] = {"event", "event, one lane", "trace", "newmark", "central", "adaptive"};
+enum { EVENT, EVENT_ONE, NEWMARK, CENTRAL, ADAPTIVE, COUNTERS };
+static const char *const names[] = {"event", "event, one lane", "newmark", "central", "adaptive"};
 
 struct count {
 	enum pound_status status;
@@ -25,25 +25,12 @@ static struct count march_count(const struct pound_march_task *task, int lanes)
 	return (struct count){r.status, r.contacts, r.contact_time, r.first_contact, r.first_speed};
 }
 
-static struct count trace_count(const struct pound_march_task *task)
-{
-	static struct pound_trace trace;
-	static struct pound_trace_stretch stretch;
-	pound_trace_start(&trace, task);
-	do
-		pound_trace_next(&trace, &stretch);
-	while (stretch.n > 0);
-	return (struct count){trace.status, trace.contacts, trace.contact_time, 0, 0};
-}
-
 static struct count count_of(const struct pound_march_task *task, int who)
 {
 	const struct pound_solver solver = {.tolerance = 1e-10, .step = 1e-3};
 	struct pound_march_result r;
 	if (who <= EVENT_ONE)
 		return march_count(task, who);
-	if (who == TRACE)
-		return trace_count(task);
 	if (who == ADAPTIVE)
 		pound_adaptive_run(&solver, task, &r, NULL);
 	else if (who == NEWMARK)
@@ -172,7 +159,7 @@ static void a_body_dead_at_rest_on_a_wall_does_not_go_on_counting(void **state)
 			if (who <= EVENT_ONE)
 				assert_int_equal(counted[0].contacts, first);
 			check_near((double)counted[0].contacts, (double)first,
-			           who <= TRACE ? 2 : 0.1 * (double)first + 2);
+			           who <= EVENT_ONE ? 0 : 0.1 * (double)first + 2);
 		}
 	}
 }
@@ -207,7 +194,7 @@ static void forces_of_1e_9_count_as_large_ones_do(void **state)
 			const struct pound_response r = specimen_engine(&specimen);
 			const struct pound_march_task task = riding_task(&specimen, true);
 			assert_true(r.contact_count > 0);
-			assert_int_equal(count_of(&task, TRACE).contacts, r.contact_count);
+			assert_int_equal(count_of(&task, EVENT_ONE).contacts, r.contact_count);
 			if (k > 0) {
 				assert_int_equal(r.contact_count, before.contact_count);
 				check_near(r.impulse_max / before.impulse_max, 0.1, 1e-4);

@@ -9,7 +9,7 @@ static const double pi = 3.14159265358979323846;
 
 enum { OSCILLATORS = 16 };
 
-static struct pound_trace_stretch stretch;
+static struct pound_floor_stretch stretch;
 static _Alignas(64) double omega[OSCILLATORS], state_of[2][3][OSCILLATORS];
 static _Alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
 static struct pound_kernel kernel;
@@ -40,11 +40,11 @@ static void ride(const struct pound_bank *bank)
 }
 
 /* One more piece of the stretch: a polynomial over its own time. */
-static struct pound_trace_piece *piece_next(double step, int order)
+static struct pound_floor_piece *piece_next(double step, int order)
 {
-	struct pound_trace_piece *piece = &stretch.piece[stretch.n++];
-	assert_true(stretch.n <= POUND_TRACE_PIECES);
-	*piece = (struct pound_trace_piece){.step = step, .map = -1, .order = order};
+	struct pound_floor_piece *piece = &stretch.piece[stretch.n++];
+	assert_true(stretch.n <= POUND_FLOOR_PIECES);
+	*piece = (struct pound_floor_piece){.step = step, .map = -1, .order = order};
 	return piece;
 }
 
@@ -62,11 +62,11 @@ static void half_sine(double td, int pieces, double quiet)
 {
 	stretch.n = 0;
 	for (int i = 0; i < pieces; i++) {
-		struct pound_trace_piece *piece = piece_next(td / pieces, POUND_TRACE_ORDER);
+		struct pound_floor_piece *piece = piece_next(td / pieces, POUND_FLOOR_ORDER);
 		double turn = pi / pieces, term = 1;
-		for (int n = 0; n <= POUND_TRACE_ORDER; term *= turn / ++n)
+		for (int n = 0; n <= POUND_FLOOR_ORDER; term *= turn / ++n)
 			piece->floor.c[n] = term * sin(turn * i + 0.5 * pi * n);
-		polynomial_bound(&piece->floor, POUND_TRACE_ORDER);
+		polynomial_bound(&piece->floor, POUND_FLOOR_ORDER);
 	}
 	piece_next(quiet, 0);
 }
@@ -130,7 +130,7 @@ static void a_step_of_acceleration_overshoots_as_it_must(void **state)
 		struct pound_bank bank = bank_of(w, OSCILLATORS, xi);
 		stretch.n = 0;
 		for (int i = 0; i < 9; i++) { // the slowest takes pi/s to its peak
-			struct pound_trace_piece *piece = piece_next(1, 0);
+			struct pound_floor_piece *piece = piece_next(1, 0);
 			piece->floor.c[0] = -3;
 			piece->floor.bound[0] = 3;
 		}
@@ -148,7 +148,7 @@ static void the_contact_s_part_drives_its_own_oscillators(void **state)
 	struct pound_bank bank = bank_of(&w, 1, 0);
 	bank.n_drives = 2;
 	stretch.n = 0;
-	struct pound_trace_piece *piece = piece_next(step, 2); // 6 t (1 - t)/step: 1 m/s
+	struct pound_floor_piece *piece = piece_next(step, 2); // 6 t (1 - t)/step: 1 m/s
 	piece->push.c[1] = 6 / step;
 	piece->push.c[2] = -6 / step;
 	polynomial_bound(&piece->push, 2);

@@ -10,7 +10,7 @@ static void the_whole_piece_gives_factorials(void **state)
 {
 	(void)state;
 	pound_kernel_fill(&kernel);
-	for (int k = 0; k <= POUND_TRACE_ORDER; k++)
+	for (int k = 0; k <= POUND_FLOOR_ORDER; k++)
 		for (int m = 0; m < POUND_KERNEL_INTEGRALS; m++) {
 			double exact = tgamma(k + 1) / tgamma(m + k + 2);
 			check_near(kernel.part[1][k][m] / exact, 1, 1e-14);
@@ -43,7 +43,7 @@ static void parts_add_up(void **state)
 	(void)state;
 	pound_kernel_fill(&kernel);
 	for (int n = 2; n <= POUND_KERNEL_PARTS; n *= 2)
-		for (int k = 0; k <= POUND_TRACE_ORDER; k++) {
+		for (int k = 0; k <= POUND_FLOOR_ORDER; k++) {
 			double sum = 0;
 			for (int j = 0; j < n; j++)
 				sum += kernel.part[n + j][k][0] / n;

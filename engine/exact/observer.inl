@@ -1,0 +1,40 @@
+/* observer.inl - tells the observer of a simulation the instants of its motion (task.h).
+ *
+ * Steps, cells and flights that end elsewhere are not told: between two instants the motion is one linear system, and who
+ * observes it may cut it as needed.
+ *
+ * Included by exact.inl alone, once per lane count.
+ *
+ * Included by exact.inl after step.inl. */
+
+/* A simulation is at an instant.
+ *
+ * Given    sample  that it is at; < 0: at an event, or where it ended early
+ */
+LANE_SHARED void simulation_observe(struct simulation *sim, int64_t sample)
+{
+	const struct state_rows *x = &sim->x;
+	const struct pound_march_observer *observer = sim->task->observer;
+	const double left = x->part + x->cells * x->cell, step = sim->task->time_step;
+	struct pound_march_instant now = {.elapsed = sim->unobserved,
+	                                  .sampled = sample >= 0,
+	                                  .touching = sim->touching,
+	                                  .overlap = x->p,
+	                                  .overlap_rate = x->q,
+	                                  .ground = x->ground,
+	                                  .slope = x->slope};
+	now.time = (double)(now.sampled ? sample : sim->next) * step - (now.sampled ? 0 : left);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		now.u[i] = x->u[i];
+		now.v[i] = x->v[i];
+		now.stiffness[i] = x->body[i].stiffness;
+		now.spring_offset[i] = x->body[i].offset;
+	}
+	if (now.sampled) {
+		const double *a = &sim->ground[sample];
+		now.ground = a[0];
+		now.slope = sample < sim->last ? (a[1] - a[0]) * sim->per_step : 0;
+	}
+	sim->unobserved = 0;
+	observer->observe(observer->into, &now);
+}

@@ -1,0 +1,543 @@
+/* floor_pieces.c - one floor's motion, instant by instant from the exact solver, as pieces.
+ *
+ * 1. Of a flight, a whole sample apart, the state is handed out, of which a polynomial is made where one is asked for.
+ * 2. Any other interval between two instants is a power series in time, or several where one does not reach: the floor's
+ *    absolute acceleration -(c v + r + F)/m1 and its part -F/m1.
+ * 3. A contact whose own swing has died away is a series as long as the bodies' own motion allows, however stiff it is.
+ *
+ * What happens, and when, is the solver's: nothing is decided here. */
+#include "engine/floor/floor_pieces.h"
+#include "engine/exact/tolerances.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+	N = POUND_FLOOR_ORDER,
+	ORDER_LEAST = 5,       /* so that growing forcing has a fourth derivative, which bounds are made of */
+	STEPS_LIMIT = 1 << 19, /* of series in one interval */
+	SETTLED_ROUNDS = 8,
+};
+
+static const double REACH = 1.5;              /* largest rate * step of a series */
+static const double NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
+
+/* Least rate_touch * step of a settled contact: its overlap is found from a power on by those above, which count by up to
+ * N G/(W^2 h) and N^2/(W h)^2.  With the bodies' own damping a contact of no restitution is 1.01 times critical, so that
+ * rate_touch is up to 1.15 W: below 0.3 and 0.02. */
+static const double SETTLED_LEAST = 180;
+
+/* Largest acceleration of a swing that is left out, over what the bodies' are made of, however stiff the contact; and the
+ * power of e by which losses take a swing from there to NOTHING_BESIDE, and more. */
+static const double SWING_MOST = 0x1p-24, SWING_LOST = 36;
+
+/* Derivatives by the share of the step that is gone, times 1/n! the coefficients of powers of it. */
+struct series {
+	int order;
+	double step;
+	// of left, right and overlap; those of their velocities are one further on.  Apart: of left alone
+	double y[3][N + 2];
+	// of the floor's acceleration but for its branch's offset, and of the contact's part of it, times the step squared
+	double floor[N + 1], push[N + 1];
+};
+
+/* ---- polynomials ---- */
+
+/* Order of a polynomial without the terms that are rounding beside the others.
+ *
+ * Given    size  (order + 1) magnitudes of its terms;  sum: of them
+ */
+static int order_kept(const double *size, int order, double sum)
+{
+	double rest = 0;
+	while (order > 0 && rest + size[order] <= NOTHING_BESIDE * sum)
+		rest += size[order--];
+	return order;
+}
+
+/* An acceleration over a step: without the terms that are rounding beside the others, bounded with two
+ * derivatives.
+ *
+ * Given    a  derivatives by the share of the step, times the step squared;  offset: besides
+ * Returns  value  its order
+ */
+static int polynomial_fill(struct pound_polynomial *into, const double *a, int order, double offset,
+                           double step)
+{
+	const double per_step = 1 / step;
+	double *const c = into->c, size[N + 2], bound[3][2] = {{0}};
+	c[0] = a[0] * per_step * per_step - offset;
+	for (int n = 1; n <= order; n++)
+		c[n] = a[n] * POUND_FACTOR[n] * per_step * per_step;
+	for (int n = 0; n <= order; n++)
+		size[n] = fabs(c[n]);
+	size[order + 1] = 0;
+	// the even and the odd terms apart: sums need not wait for each other
+	for (int n = 0; n <= order; n += 2)
+		for (int j = 0; j < 2; j++)
+			bound[0][j] += size[n + j];
+	into->bound[0] = bound[0][0] + bound[0][1];
+	order = order_kept(size, order, into->bound[0]);
+	size[order + 1] = 0;
+	for (int n = 0; n <= order; n += 2)
+		for (int j = 0; j < 2; j++) {
+			bound[1][j] += (n + j) * size[n + j];
+			bound[2][j] += (double)((n + j) * (n + j - 1)) * size[n + j];
+		}
+	into->bound[1] = bound[1][0] + bound[1][1];
+	into->bound[2] = bound[2][0] + bound[2][1];
+	return order;
+}
+
+/* Coefficients of the absolute acceleration -(c v + r) of a body in flight over a sample.
+ *
+ * Given    state  as struct pound_floor_piece has it
+ *          k, c   stiffness [1/s2] and damping [1/s] per mass;  h  the sample step [s]
+ * Returns  a      [m/s2]  (order + 1)
+ *
+ *   r' = h k v     v' = -h (c v + r + forcing)     by the share of the sample that is gone
+ * Test     unit_floor_pieces: every_piece_leads_to_the_next
+ */
+void pound_floor_flight(const double state[4], double k, double c, double h, int order, double *a)
+{
+	const double hk = h * k, hc = h * c;
+	double r = state[0], v = state[1];
+	for (int n = 0; n <= order; n++) {
+		double force = n == 0 ? h * state[2] : n == 1 ? h * state[3] : 0;
+		a[n] = -(c * v + r) * POUND_FACTOR[n];
+		double next = -(hc * v + (h * r + force));
+		r = hk * v;
+		v = next;
+	}
+}
+
+/* Coefficients of a drive over a piece of a stretch.
+ *
+ * Given    damping  of the left body, per mass [1/s]
+ * Returns  c        [m/s2]  (value + 1): the piece's own, or those of a flight's floor, made into `room`
+ *          value    their order; -1: the drive is 0
+ * Test     unit_floor_pieces: every_piece_leads_to_the_next
+ */
+int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct pound_floor_piece *piece,
+                      enum pound_drive drive, double damping, double room[N + 1], const double **c)
+{
+	const struct pound_polynomial *own = drive == POUND_DRIVE_PUSH ? &piece->push : &piece->floor;
+	*c = own->c;
+	if (!(own->bound[0] > 0))
+		return -1;
+	if (piece->map < 0)
+		return piece->order;
+	double size[N + 1], sum = 0;
+	*c = room;
+	pound_floor_flight(piece->state, stretch->stiffness[piece->map], damping, piece->step, stretch->order,
+	                   room);
+	for (int n = 0; n <= stretch->order; n++)
+		sum += size[n] = fabs(room[n]);
+	return order_kept(size, stretch->order, sum);
+}
+
+/* ---- series ---- */
+
+/* Test     unit_floor_pieces: terms_end_in_rounding */
+int pound_floor_terms(double x)
+{
+	int n = 0;
+	while (x > POUND_TERMS_REACH[n])
+		n++;
+	return n;
+}
+
+/* Order of the series of a step by rate * step. */
+static int order_of(double x)
+{
+	int n = pound_floor_terms(x);
+	return n < ORDER_LEAST ? ORDER_LEAST : n > N ? N : n;
+}
+
+/* Derivatives n and n + 1 of left, right and overlap by the share of a step that is gone, and what makes the next: all scaled
+ * to the step. */
+struct terms {
+	double u[3], w[3];
+	double c[2], k[2], force[2], increase[2]; /* of each body */
+	double spring, dash, both, ratio;         /* of the contact, 1 + m1/m2, m1/m2 */
+};
+
+static struct terms terms_of(const struct pound_march_task *task, const struct pound_march_instant *at,
+                             double dt)
+{
+	const double dt2 = dt * dt;
+	struct terms m = {.both = 1 + task->mass_ratio, .ratio = task->mass_ratio};
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_march_body *b = &task->bodies[i];
+		m.c[i] = b->damping * dt;
+		m.k[i] = at->stiffness[i] * dt2;
+		m.force[i] = (b->drive * at->ground + at->spring_offset[i]) * dt2;
+		m.increase[i] = b->drive * at->slope * dt2 * dt;
+		m.u[i] = at->u[i];
+		m.w[i] = at->v[i] * dt;
+	}
+	m.u[2] = at->overlap;
+	m.w[2] = at->overlap_rate * dt;
+	m.spring = task->contact_stiffness * dt2;
+	m.dash = task->contact_damping * dt;
+	return m;
+}
+
+/* Derivative n of what the ground and its branch do to a body. */
+static inline double forcing(const struct terms *m, int i, int n)
+{
+	return n == 0 ? m->force[i] : n == 1 ? m->increase[i] : 0;
+}
+
+static void series_apart(struct series *s, struct terms m)
+{
+	double u = m.u[0], w = m.w[0];
+	for (int n = 0; n <= s->order; n++) {
+		s->y[0][n] = u;
+		s->floor[n] = -(m.c[0] * w + m.k[0] * u);
+		u = w;
+		w = s->floor[n] - forcing(&m, 0, n);
+	}
+	s->y[0][s->order + 1] = u;
+}
+
+static void series_touch(struct series *s, struct terms m)
+{
+	for (int n = 0; n <= s->order; n++) {
+		double free[2], next[3];
+		for (int i = 0; i < 2; i++) {
+			free[i] = -(m.c[i] * m.w[i] + m.k[i] * m.u[i]);
+			next[i] = free[i] - forcing(&m, i, n);
+		}
+		const double push = m.spring * m.u[2] + m.dash * m.w[2];
+		next[2] = next[0] - next[1] - m.both * push;
+		next[0] -= push;
+		next[1] += m.ratio * push;
+		s->floor[n] = free[0] - push;
+		s->push[n] = -push;
+		for (int j = 0; j < 3; j++) {
+			s->y[j][n] = m.u[j];
+			m.u[j] = m.w[j];
+			m.w[j] = next[j];
+		}
+	}
+	for (int j = 0; j < 3; j++)
+		s->y[j][s->order + 1] = m.u[j];
+}
+
+/* ---- contact that has settled ---- */
+
+/* How large the acceleration of a contact's own swing may be, over what the bodies' are made of, to be left out: a rounding.
+ *
+ * Where its losses do not end it within a sample, rounding keeps it alive for ever, and more is left out.  A swing adds to
+ * velocities by 1/rate_touch, where the bodies' own accelerations add by 1/rate: what is left out of these is a rounding, and
+ * omega/rate times that of an oscillator of omega on the floor. */
+static double swing_nothing(const struct pound_floor_motion *motion)
+{
+	const struct pound_march_task *task = motion->task;
+	double lost = 0.5 * (1 + task->mass_ratio) * task->contact_damping * task->time_step;
+	return lost > SWING_LOST ? NOTHING_BESIDE
+	                         : fmin(NOTHING_BESIDE * motion->rate_touch / motion->rate, SWING_MOST);
+}
+
+/* Whether a contact may be settled: its overlap is neither fast nor accelerated, as the swinging one is all the time.
+ *
+ * Returns  pull  what the accelerations of both bodies are made of, but for the contact's, added up [m/s2]
+ */
+static bool may_settle(const struct pound_floor_motion *motion, const struct pound_march_instant *at,
+                       double *pull)
+{
+	const struct pound_march_task *task = motion->task;
+	double apart = 0, slow = motion->rate / motion->rate_touch;
+	*pull = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const double part[4] = {task->bodies[i].damping * at->v[i], at->stiffness[i] * at->u[i],
+		                        at->spring_offset[i], task->bodies[i].drive * at->ground};
+		double force = part[0] + part[1] + part[2] + part[3];
+		*pull += fabs(part[0]) + fabs(part[1]) + fabs(part[2]) + fabs(part[3]);
+		apart += i ? force : -force;
+	}
+	double push = task->contact_stiffness * at->overlap + task->contact_damping * at->overlap_rate;
+	return fabs(apart - (1 + task->mass_ratio) * push) <=
+	       fmax(4 * slow * slow, swing_nothing(motion)) * *pull;
+}
+
+/* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing adds
+ * no more than a rounding.
+ *
+ * Given    pull    as may_settle has it;  s: its order and step
+ * Returns  value   false: it has not settled; s is not to be used
+ *
+ *   w = (m1 u1 + m2 u2)/(m1 + m2)     w'' = (r b1 + b2)/(1 + r)     r = m1/m2
+ *   p'' = b1 - b2 - (1 + r) (K p + C p')
+ *
+ * with the accelerations b1, b2 of the bodies without their contact.  The overlap is that part of the solution which has a
+ * power series as short as that of w: its coefficients follow from those above, down from the last.  What it adds to b1 and
+ * b2 is by (rate/W)^2 less than what they are made of, so that few rounds settle that.
+ */
+static bool series_settle(struct series *s, const struct pound_floor_motion *motion,
+                          const struct pound_march_instant *at, double pull)
+{
+	const double dt = s->step;
+	const struct terms m = terms_of(motion->task, at, dt);
+	const double share[2] = {1 / m.both, -m.ratio / m.both};
+	const double spring = m.both * m.spring, dash = m.both * m.dash;
+	const double w0 = (m.ratio * m.u[0] + m.u[1]) / m.both;
+	const double rate0 = (m.ratio * m.w[0] + m.w[1]) / m.both;
+	const int order = s->order;
+	double u[2][N + 1], w[2][N + 1], p[N + 2] = {m.u[2]}, q[N + 2] = {0}, apart[N + 1], last = 0;
+	// the first round has the bodies go along with an overlap that stays: what it finds takes another to reach them
+	for (int round = 0; round < SETTLED_ROUNDS && (round < 2 || p[0] != last); round++) {
+		double mean = w0, rate = rate0;
+		last = p[0];
+		for (int n = 0; n <= order; n++) {
+			double b[2], off = p[n] + (n == 0 ? motion->task->gap : 0);
+			for (int i = 0; i < 2; i++) {
+				u[i][n] = mean + share[i] * off;
+				w[i][n] = rate + share[i] * q[n];
+				b[i] = -(m.c[i] * w[i][n] + m.k[i] * u[i][n]) - forcing(&m, i, n);
+			}
+			apart[n] = b[0] - b[1];
+			mean = rate * POUND_SHARE[n];
+			rate = (m.ratio * b[0] + b[1]) / m.both * POUND_SHARE[n];
+		}
+		for (int n = order; n >= 0; n--) {
+			q[n] = (n + 1) * p[n + 1];
+			p[n] = (apart[n] - dash * q[n] - (n + 1) * q[n + 1]) / spring;
+		}
+	}
+	double factorial = 1;
+	for (int n = 0; n <= order; n++, factorial *= n) {
+		const double push = m.spring * p[n] + m.dash * q[n];
+		for (int i = 0; i < 2; i++) {
+			s->y[i][n] = u[i][n] * factorial;
+			s->y[i][n + 1] = w[i][n] * factorial;
+		}
+		s->y[2][n] = p[n] * factorial;
+		s->y[2][n + 1] = q[n] * factorial;
+		s->floor[n] = -(m.c[0] * w[0][n] + m.k[0] * u[0][n] + push) * factorial;
+		s->push[n] = -push * factorial;
+	}
+	double swing = fabs(m.u[2] - p[0]) * spring, hurry = fabs(m.w[2] - q[0]) * sqrt(spring);
+	return swing + hurry <= swing_nothing(motion) * (pull * (dt * dt));
+}
+
+/* ---- the next series ---- */
+
+/* How far a series reaches of a time that is left. */
+static double step_length(double left, double rate)
+{
+	double reach = rate > 0 ? REACH / rate : DBL_MAX, steps = left / reach;
+	return steps <= 1 ? left : steps > 2 ? reach : 0.5 * left;
+}
+
+/* The series from an instant on: over all of the time that is left, or as far as it reaches.
+ *
+ * Valid    to rounding: REACH^n/n! is below that at the first term left out
+ */
+static void series_next(struct series *s, const struct pound_floor_motion *motion,
+                        const struct pound_march_instant *at, double left)
+{
+	double pull, rate = at->touching ? motion->rate_touch : motion->rate;
+	s->step = step_length(left, motion->rate);
+	s->order = order_of(motion->rate * s->step);
+	if (at->touching && rate * s->step >= SETTLED_LEAST && may_settle(motion, at, &pull) &&
+	    series_settle(s, motion, at, pull))
+		return;
+	s->step = step_length(left, rate);
+	s->order = order_of(rate * s->step);
+	(at->touching ? series_touch : series_apart)(s, terms_of(motion->task, at, s->step));
+}
+
+/* Moves the state of an instant to the end of a series: terms are added up, the smallest first. */
+static void instant_move(struct pound_march_instant *at, const struct series *s)
+{
+	double *const u[3] = {&at->u[0], &at->u[1], &at->overlap};
+	double *const v[3] = {&at->v[0], &at->v[1], &at->overlap_rate};
+	for (int j = 0; j < (at->touching ? 3 : 1); j++) {
+		double sum[2] = {0};
+		for (int n = s->order; n >= 0; n--)
+			for (int d = 0; d < 2; d++)
+				sum[d] += s->y[j][n + d] * POUND_FACTOR[n];
+		*u[j] = sum[0];
+		*v[j] = sum[1] / s->step;
+	}
+	at->ground += at->slope * s->step;
+}
+
+/* ---- pieces ---- */
+
+/* Number of a stiffness in a stretch; -1: there are too many. */
+static int map_of(struct pound_floor_stretch *stretch, double stiffness, double damping, double step)
+{
+	int m = 0;
+	while (m < stretch->n_maps && stretch->stiffness[m] != stiffness)
+		m++;
+	if (m == POUND_FLOOR_MAPS)
+		return -1;
+	if (m < stretch->n_maps)
+		return m;
+	stretch->n_maps++;
+	stretch->stiffness[m] = stiffness;
+	double(*bound)[4] = memset(stretch->bound[m], 0, sizeof stretch->bound[m]);
+	for (int j = 0; j < 4; j++) {
+		const double unit[4] = {j == 0, j == 1, j == 2, j == 3};
+		double a[N + 1];
+		pound_floor_flight(unit, stiffness, damping, step, stretch->order, a);
+		for (int n = 0; n <= stretch->order; n++) {
+			bound[0][j] += fabs(a[n]);
+			bound[1][j] += n * fabs(a[n]);
+			bound[2][j] += n * (n - 1.0) * fabs(a[n]);
+		}
+	}
+	return m;
+}
+
+/* Makes room for another piece. */
+static void stretch_room(struct pound_floor_motion *motion)
+{
+	struct pound_floor_stretch *stretch = motion->stretch;
+	if (stretch->n < POUND_FLOOR_PIECES)
+		return;
+	motion->taker.take(motion->taker.into);
+	stretch->n = stretch->n_maps = 0;
+}
+
+/* One more piece of the stretch, which has room. */
+static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
+                                            const struct pound_march_instant *at, double step)
+{
+	struct pound_floor_piece *piece = &motion->stretch->piece[motion->stretch->n++];
+	piece->start = at->time;
+	piece->step = step;
+	piece->u = at->u[0];
+	piece->v = at->v[0];
+	piece->sampled = motion->sampled;
+	piece->after_event = motion->after_event;
+	piece->map = -1;
+	motion->sampled = motion->after_event = false;
+	return piece;
+}
+
+/* The floor over a flight.
+ *
+ * Given    map  number of its stiffness
+ */
+static void flight_add(struct pound_floor_motion *motion, int map)
+{
+	const struct pound_march_instant *at = &motion->from;
+	const double h = motion->task->time_step, drive = motion->task->bodies[0].drive;
+	struct pound_floor_piece *piece = piece_next(motion, at, h);
+	piece->map = map;
+	piece->order = -1;
+	piece->state[0] = at->stiffness[0] * at->u[0] + at->spring_offset[0];
+	piece->state[1] = at->v[0];
+	piece->state[2] = drive * at->ground;
+	piece->state[3] = drive * (at->slope * h);
+	for (int d = 0; d < 3; d++) {
+		piece->floor.bound[d] = piece->push.bound[d] = 0;
+		for (int j = 0; j < 4; j++)
+			piece->floor.bound[d] += motion->stretch->bound[map][d][j] * fabs(piece->state[j]);
+	}
+}
+
+/* The floor over a series. */
+static void series_add(struct pound_floor_motion *motion, const struct pound_march_instant *at,
+                       const struct series *s)
+{
+	struct pound_floor_piece *piece = piece_next(motion, at, s->step);
+	piece->order = polynomial_fill(&piece->floor, s->floor, s->order, at->spring_offset[0], s->step);
+	if (!at->touching) {
+		memset(&piece->push, 0, sizeof piece->push);
+		return;
+	}
+	int order = polynomial_fill(&piece->push, s->push, s->order, 0, s->step);
+	piece->order = order > piece->order ? order : piece->order;
+}
+
+/* The floor from the last instant on. */
+static void interval_add(struct pound_floor_motion *motion, double length)
+{
+	struct pound_march_instant at = motion->from;
+	struct series s;
+	double gone = 0; // beside the time it would lose its digits
+	for (int steps = 0; !motion->status && !pound_stopped(motion->stop); steps++) {
+		stretch_room(motion);
+		series_next(&s, motion, &at, length);
+		series_add(motion, &at, &s);
+		if (s.step == length)
+			return;
+		length -= s.step;
+		gone += s.step;
+		instant_move(&at, &s);
+		at.time = motion->from.time + gone;
+		if (steps == STEPS_LIMIT)
+			motion->status = POUND_CHATTER;
+	}
+}
+
+/* Makes the pieces of the interval up to an instant.
+ *
+ * Source   model.md 1, 2 of the project's design pages
+ * Test     unit_floor_pieces
+ */
+void pound_floor_observe(void *of, const struct pound_march_instant *instant)
+{
+	struct pound_floor_motion *motion = of;
+	const double h = motion->task->time_step;
+	if (motion->status || pound_stopped(motion->stop))
+		return;
+	if (instant->elapsed > 0) {
+		const bool whole = motion->sampled && instant->sampled;
+		int map = -1;
+		stretch_room(motion);
+		if (whole && !motion->from.touching && motion->rate * h <= REACH)
+			map = map_of(motion->stretch, motion->from.stiffness[0], motion->task->bodies[0].damping, h);
+		if (map >= 0)
+			flight_add(motion, map);
+		else
+			interval_add(motion, whole ? h : instant->elapsed);
+		motion->sampled = motion->after_event = false;
+	}
+	motion->sampled |= instant->sampled;
+	motion->after_event |= !instant->sampled;
+	motion->from = *instant;
+}
+
+/* Fastest of the motion in contact [rad/s]; past critical damping it is the faster of two roots.
+ *
+ * Given    rate  of the bodies
+ */
+static double rate_touch(const struct pound_march_task *task, double rate)
+{
+	const double both = 1 + task->mass_ratio, stiff = both * task->contact_stiffness;
+	double frequency = 0, damping = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		frequency = fmax(frequency, sqrt(task->bodies[i].skeleton.stiffness));
+		damping = fmax(damping, task->bodies[i].damping);
+	}
+	const double own = sqrt(frequency * frequency + stiff);
+	const double zeta = 0.5 * (damping + both * task->contact_damping) / own;
+	return fmax(sqrt(rate * rate + stiff), zeta > 1 ? own * (zeta + sqrt(zeta * zeta - 1)) : 0);
+}
+
+/* Given    motion  task, stretch, taker and stop are set */
+void pound_floor_start(struct pound_floor_motion *motion)
+{
+	const struct pound_march_task *task = motion->task;
+	assert(!task->contact ||
+	       task->force == POUND_FORCE_LINEAR); // its forms of force: pound_floor_takes_force
+	motion->status = POUND_OK;
+	motion->rate = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_march_body *b = &task->bodies[i];
+		motion->rate = fmax(motion->rate, fmax(sqrt(b->skeleton.stiffness), b->damping));
+	}
+	motion->rate_touch = task->contact ? rate_touch(task, motion->rate) : motion->rate;
+	motion->from = (struct pound_march_instant){0};
+	motion->sampled = motion->after_event = false;
+	motion->stretch->n = motion->stretch->n_maps = 0;
+	motion->stretch->order = order_of(fmin(motion->rate * task->time_step, REACH));
+}
