@@ -1,5 +1,5 @@
-/* The OpenAPI 3.0 document: paths from the rows of api.c, a study from the rows of fields.c. */
-#include <math.h>
+/* The OpenAPI 3.0 document: paths from the rows of api.c, what is answered from the rows here, a study from those of
+ * fields.c (study_schema.c). */
 #include <stdio.h>
 #include <string.h>
 
@@ -8,6 +8,7 @@
 #include "schema/json/json_writer.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
+#include "schema/study/study_schema.h"
 
 /* Members of what is answered.  A type is one of JSON, the name of another object, or [NAME], an array of these. */
 struct member {
@@ -97,184 +98,6 @@ static void reference(struct writer *w, const char *schema)
 	writer_text(w, "$ref", path);
 }
 
-/* ---- a study ---- */
-
-static bool has_end(double end)
-{
-	return isfinite(end);
-}
-
-static void numbers(struct writer *w, const struct field *field)
-{
-	writer_text(w, "type", field->type == FIELD_COUNT ? "integer" : "number");
-	if (has_end(field->min)) {
-		writer_number(w, "minimum", field->min);
-		writer_bool(w, "exclusiveMinimum", field->ends & FIELD_OPEN_MIN);
-	}
-	if (has_end(field->max)) {
-		writer_number(w, "maximum", field->max);
-		writer_bool(w, "exclusiveMaximum", field->ends & FIELD_OPEN_MAX);
-	}
-}
-
-static void choices(struct writer *w, const struct field *field)
-{
-	writer_text(w, "type", "string");
-	writer_array(w, "enum", WRITER_LINE);
-	for (int row = 0; field->choice(row); row++)
-		writer_text(w, NULL, field->choice(row));
-	writer_end(w);
-}
-
-static void value(struct writer *w, const char *name, const struct field *field);
-
-/* The parameters of all distributions: which of them there are depends on its type. */
-static void parameters(struct writer *w)
-{
-	const char *seen[16], *parameter;
-	int n = 0;
-	for (int row = 0; pound_distribution_name(row); row++)
-		for (int k = 0; (parameter = pound_distribution_parameter(row, k)); k++) {
-			int i = 0;
-			while (i < n && strcmp(seen[i], parameter) != 0)
-				i++;
-			if (i < n || n == 16)
-				continue;
-			seen[n++] = parameter;
-			writer_object(w, parameter, WRITER_LINE);
-			writer_text(w, "type", "number");
-			writer_number(w, "minimum", -POUND_PARAMETER_MAX);
-			writer_number(w, "maximum", POUND_PARAMETER_MAX);
-			writer_end(w);
-		}
-}
-
-/* What the parameters of each distribution must be. */
-static void rules(char *text, size_t size)
-{
-	const char *rule;
-	size_t n = 0;
-	for (int row = 0; pound_distribution_name(row); row++)
-		for (int k = 0; (rule = pound_distribution_rule(row, k)) && n < size; k++)
-			n += (size_t)snprintf(text + n, size - n, "; %s: %s", pound_distribution_name(row), rule);
-}
-
-static void members_of(struct writer *w, const char *pattern)
-{
-	bool distribution = !strcmp(pattern, "/inputs/*/distribution");
-	bool oscillator = !strcmp(pattern, "/scene/oscillators/*");
-	int required = 0;
-	writer_text(w, "type", "object");
-	writer_bool(w, "additionalProperties", false);
-	object(w, "properties");
-	for (int i = 0; i < fields_count; i++)
-		if (fields_child(&fields[i], pattern) && *fields_name(&fields[i]) != '*')
-			value(w, fields_name(&fields[i]), &fields[i]);
-	if (distribution)
-		parameters(w);
-	writer_end(w);
-	if (oscillator) {
-		writer_json(w, "anyOf", "[{\"required\": [\"frequency_hz\"]}, {\"required\": [\"rigid_wall\"]}]");
-		return;
-	}
-	for (int i = 0; i < fields_count; i++) {
-		const struct field *field = &fields[i];
-		if (!fields_child(field, pattern) || !isnan(field->absent) ||
-		    field->kinds != fields_find(*pattern ? pattern : "/kind")->kinds || field->types)
-			continue;
-		if (required++ == 0)
-			writer_array(w, "required", WRITER_LINE);
-		writer_text(w, NULL, fields_name(field));
-	}
-	if (required)
-		writer_end(w);
-}
-
-static void elements(struct writer *w, const struct field *field)
-{
-	char pattern[128];
-	snprintf(pattern, sizeof pattern, "%s/*", field->pattern);
-	const struct field *element = fields_find(pattern);
-	writer_text(w, "type", "array");
-	writer_number(w, "minItems", field->min);
-	writer_number(w, "maxItems", field->max);
-	if (element)
-		value(w, "items", element);
-	else
-		writer_json(w, "items", "{}");
-}
-
-/* A list; one that may be a range has the members of a range too. */
-static void list(struct writer *w, const struct field *field)
-{
-	bool range = false;
-	for (int i = 0; i < fields_count; i++)
-		range |= fields_child(&fields[i], field->pattern) && *fields_name(&fields[i]) != '*';
-	if (!range) {
-		elements(w, field);
-		return;
-	}
-	writer_array(w, "oneOf", WRITER_LINES);
-	object(w, NULL);
-	elements(w, field);
-	writer_end(w);
-	object(w, NULL);
-	members_of(w, field->pattern);
-	writer_end(w);
-	writer_end(w);
-}
-
-static void absent(struct writer *w, const struct field *field)
-{
-	bool found_otherwise = field->ends == FIELD_OPEN_MIN && field->absent == field->min;
-	if (isnan(field->absent) || field->type >= FIELD_TEXT || found_otherwise ||
-	    strchr(fields_name(field), '*'))
-		return;
-	if (field->choice)
-		writer_text(w, "default", field->choice((int)field->absent));
-	else if (field->type == FIELD_BOOL)
-		writer_bool(w, "default", field->absent != 0.0);
-	else
-		writer_number(w, "default", field->absent);
-}
-
-/* What stands at a field. */
-static void value(struct writer *w, const char *name, const struct field *field)
-{
-	char text[2048];
-	object(w, name);
-	snprintf(text, sizeof text, "%s%s%s%s%s%s", field->text, *field->unit ? " [" : "", field->unit,
-	         *field->unit ? "]" : "", field->kinds ? "; only of kind" : "", field->kinds ? field->kinds : "");
-	size_t n = strlen(text);
-	snprintf(text + n, sizeof text - n, "%s%s", field->types ? "; only of excitation" : "",
-	         field->types ? field->types : "");
-	if (!strcmp(field->pattern, "/inputs/*/distribution"))
-		rules(text + strlen(text), sizeof text - strlen(text));
-	writer_text(w, "description", text);
-	if (field->choice)
-		choices(w, field);
-	else if (field->type == FIELD_REAL || field->type == FIELD_COUNT)
-		numbers(w, field);
-	else if (field->type == FIELD_BOOL)
-		writer_text(w, "type", "boolean");
-	else if (field->type == FIELD_SEED)
-		writer_json(w, "oneOf",
-		            "[{\"type\": \"integer\", \"minimum\": 0, \"maximum\": 9007199254740991}, "
-		            "{\"type\": \"string\", \"pattern\": \"^[0-9]{1,20}$\"}]");
-	else if (field->type == FIELD_TEXT) {
-		writer_text(w, "type", "string");
-		writer_number(w, "minLength", field->min);
-		writer_number(w, "maxLength", field->max);
-	} else if (field->type == FIELD_LIST)
-		list(w, field);
-	else
-		members_of(w, field->pattern);
-	if (!strcmp(field->pattern, "/scene/contact"))
-		writer_bool(w, "nullable", true);
-	absent(w, field);
-	writer_end(w);
-}
-
 /* ---- what is answered ---- */
 
 static void member(struct writer *w, const struct member *of)
@@ -335,7 +158,7 @@ static void schemas(struct writer *w)
 	    w, "description",
 	    "A study document. Which members it may have depends on its kind, its excitation and its solver; "
 	    "validate_only tells all that is wrong at once.");
-	members_of(w, "");
+	study_schema_members(w, "");
 	writer_end(w);
 	for (const struct member *first = members, *next; first < end; first = next) {
 		for (next = first; next < end && !strcmp(next->object, first->object);)

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "schema/study/field_types.h"
 #include "schema/study/study_json.h"
 
 const char *study_kind_name(int kind)
@@ -193,7 +194,7 @@ const struct field fields[] = {
 	 .text = "pounding runs at most, narrow or not; enough for the first look", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
 	 .text = "same seed, same numbers", NOT_SCENE},
-	{"/design/signals", FIELD_BOOL, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
+	{"/design/signals", FIELD_ALTERNATIVE, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
 	 .text = "whether the samples of a row share their noise; if they do, ST and interactions need 2 signals or more", .choice = signals_name, SENSITIVITY,
 	 NOT_SCENE},
 	{"/design/order", FIELD_CHOICE, AT(design.order), 0, 0, 0, FIELD_CLOSED, "",
@@ -300,21 +301,6 @@ bool fields_in_range(const struct field *field, double value)
 	return above && below && isfinite(value);
 }
 
-static void append(char *text, size_t size, const char *more)
-{
-	size_t length = strlen(text);
-	snprintf(text + length, size - length, "%s", more);
-}
-
-static void expected_choice(const char *(*choice)(int row), char *text, size_t size)
-{
-	for (int row = 0; choice(row); row++) {
-		append(text, size, row ? ", \"" : choice(1) ? "one of \"" : "\"");
-		append(text, size, choice(row));
-		append(text, size, "\"");
-	}
-}
-
 /* The valid range of a number, in words that fit behind "must be"; "a number" when any will do.
  *
  * Test     unit_fields: every_field_says_what_it_takes
@@ -331,66 +317,13 @@ void fields_range(const struct field *field, char *text, size_t size)
 		         open_max ? ')' : ']');
 }
 
-static void expected_number(const struct field *field, char *text, size_t size)
-{
-	char range[80];
-	fields_range(field, range, sizeof range);
-	append(text, size, field->type == FIELD_COUNT ? "a whole number" : "a number");
-	if (!isinf(field->min)) {
-		append(text, size, *range == 'a' ? " of " : " ");
-		append(text, size, range);
-	}
-	if (*field->unit) {
-		append(text, size, " ");
-		append(text, size, field->unit);
-	}
-}
-
-static void expected_length(const struct field *field, const char *what, char *text, size_t size)
-{
-	if (field->min == field->max)
-		snprintf(text, size, "%.0f %s", field->max, what);
-	else
-		snprintf(text, size, "%.0f to %.0f %s", field->min, field->max, what);
-}
-
 /* What a field takes, in words that fit behind "must be".
  *
  * Test     unit_fields: every_field_says_what_it_takes
  */
 void fields_expected(const struct field *field, char *text, size_t size)
 {
-	char length[64];
-	*text = 0;
-	if (field->choice) {
-		expected_choice(field->choice, text, size);
-		return;
-	}
-	switch (field->type) {
-	case FIELD_REAL:
-	case FIELD_COUNT:
-		expected_number(field, text, size);
-		break;
-	case FIELD_CHOICE:
-		break;
-	case FIELD_BOOL:
-		snprintf(text, size, "true or false");
-		break;
-	case FIELD_SEED:
-		snprintf(text, size, "a whole number below 2^53, or one below 2^64 written as text");
-		break;
-	case FIELD_TEXT:
-		expected_length(field, "characters", length, sizeof length);
-		snprintf(text, size, "a text of %s", length);
-		break;
-	case FIELD_OBJECT:
-		snprintf(text, size, "an object");
-		break;
-	case FIELD_LIST:
-		expected_length(field, "elements", length, sizeof length);
-		snprintf(text, size, "an array of %s", length);
-		break;
-	}
+	field_types[field->type].expected(field, text, size);
 }
 
 int fields_choice(const char *(*choice)(int row), const char *name)
@@ -477,7 +410,7 @@ bool fields_nearest_path(const char *path, char *nearest, size_t size)
 		path += strlen("/scene");
 	for (int i = 0; i < fields_count; i++) {
 		if (strncmp(fields[i].pattern, "/scene/", 7) != 0 || fields[i].fixed ||
-		    fields[i].type >= FIELD_OBJECT)
+		    !field_types[fields[i].type].number)
 			continue;
 		char candidate[256];
 		snprintf(candidate, sizeof candidate, "%s", fields[i].pattern + strlen("/scene"));

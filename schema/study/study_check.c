@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "schema/study/fields.h"
+#include "schema/study/field_types.h"
 #include "schema/study/study_json.h"
 #include "schema/study/study_spectrum.h"
 
@@ -17,16 +17,10 @@ enum { POINTER_SIZE = 64 };
 
 struct pound_field study_check_field(const char *path)
 {
-	static const enum pound_field_type types[] = {
-	    [FIELD_REAL] = POUND_FIELD_REAL,
-	    [FIELD_COUNT] = POUND_FIELD_COUNT,
-	    [FIELD_CHOICE] = POUND_FIELD_CHOICE,
-	    [FIELD_BOOL] = POUND_FIELD_BOOL,
-	};
 	int oscillator;
 	const struct field *field = fields_scene(path, &oscillator);
 	size_t shift = oscillator == 1 ? sizeof(struct pound_oscillator) : 0;
-	return (struct pound_field){types[field->type],
+	return (struct pound_field){field_types[field->type].varied,
 	                            field->offset - offsetof(struct pound_study, scene) + shift};
 }
 
@@ -47,7 +41,7 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 		             "must be a JSON Pointer into \"scene\", such as \"/contact/restitution\"");
 	else if (field->fixed)
 		problems_add(problems, pointer, "names a field that may not vary: %s", field->fixed);
-	else if (field->type >= FIELD_SEED)
+	else if (!field_types[field->type].number)
 		problems_add(problems, pointer, "names several fields, not one");
 	else if (input && field->type != FIELD_REAL)
 		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");

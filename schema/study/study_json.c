@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "schema/json/json.h"
-#include "schema/study/fields.h"
+#include "schema/study/field_types.h"
 #include "schema/study/reader.h"
 #include "schema/study/study_check.h"
 #include "schema/study/study_spectrum.h"
@@ -232,7 +232,8 @@ static void read_record(struct reader *r, const struct field *field, const cJSON
 static void read_output(struct reader *r, const cJSON *element, int o)
 {
 	double row;
-	if (reader_choice(r, fields_find("/outputs/*"), element, &row))
+	const struct field *field = fields_find("/outputs/*");
+	if (field_types[field->type].number(r, field, element, &row))
 		for (int k = 0; k < o; k++)
 			if (r->study->outputs[k] == (int)row)
 				problems_add(r->problems, r->pointer, "is asked twice");
@@ -278,17 +279,7 @@ void reader_value(struct reader *r, const struct field *field, const cJSON *node
 			readers[i].read(r, field, node, base);
 			return;
 		}
-	double value;
-	char *at = base + field->offset;
-	if (field->type == FIELD_OBJECT) {
-		reader_object(r, field->pattern, node, base);
-	} else if (field->type == FIELD_TEXT) {
-		reader_text(r, field, node, (const char **)(void *)at);
-	} else if (field->type == FIELD_SEED) {
-		reader_seed(r, field, node, (uint64_t *)(void *)at);
-	} else if (reader_number(r, field, node, &value)) {
-		reader_store(field, at, value);
-	}
+	field_types[field->type].read(r, field, node, base);
 }
 
 /* ---- the document ---- */
@@ -298,15 +289,15 @@ static void defaults(struct pound_study *study, const char *excitation)
 {
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		if (strncmp(field->pattern, "/inputs/", 8) == 0 || strncmp(field->pattern, "/sweep/", 7) == 0 ||
-		    strncmp(field->pattern, "/ratios/", 8) == 0)
+		void (*const store)(void *at, double value) = field_types[field->type].store;
+		if (!store || strncmp(field->pattern, "/inputs/", 8) == 0 ||
+		    strncmp(field->pattern, "/sweep/", 7) == 0 || strncmp(field->pattern, "/ratios/", 8) == 0)
 			continue;
 		bool absent = !isnan(field->absent) && fields_used(field, NULL, excitation, NULL);
 		int copies = strncmp(field->pattern, "/scene/oscillators/*/", 21) == 0 ? POUND_OSCILLATORS : 1;
 		for (int k = 0; k < copies; k++)
-			reader_store(field,
-			             (char *)study + field->offset + (size_t)k * sizeof study->scene.oscillators[0],
-			             absent ? field->absent : 0.0);
+			store((char *)study + field->offset + (size_t)k * sizeof study->scene.oscillators[0],
+			      absent ? field->absent : 0.0);
 	}
 	settings_default(study);
 	study->scene.contact.present = true;

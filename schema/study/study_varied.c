@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "schema/study/field_types.h"
 #include "schema/study/reader.h"
 #include "schema/study/study_check.h"
 #include "schema/study/study_json.h"
@@ -104,7 +105,7 @@ static const struct field *varying(const char *path)
 {
 	int oscillator;
 	const struct field *field = path ? fields_scene(path, &oscillator) : NULL;
-	return field && !field->fixed && field->type < FIELD_SEED ? field : NULL;
+	return field && !field->fixed && field_types[field->type].number ? field : NULL;
 }
 
 static void read_input(struct reader *r, const cJSON *element, int j)
