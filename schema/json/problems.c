@@ -61,7 +61,7 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
  *
  * Given    requested, limit   in the unit that the sentence has;  limit > 0
  *
- * Test     unit_study_check: what_is_too_large_is_told_with_its_limit
+ * Test     unit_study_check: what_is_too_large_is_reported_with_its_limit
  */
 void problems_exceed(struct problems *problems, const char *pointer, double requested, double limit,
                      const char *format, ...)

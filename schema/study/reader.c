@@ -14,7 +14,7 @@ enum { SHOWN_SIZE = 80 };
  *
  * Returns  value     -         bytes   length before, for reader_leave
  *
- * Test     unit_study_json: members_are_known_once_and_used
+ * Test     unit_study_cases
  */
 size_t reader_enter(struct reader *r, const char *name)
 {
@@ -67,7 +67,7 @@ static void shown(const cJSON *node, char text[SHOWN_SIZE])
 
 /* Notes what was expected here and what came instead.
  *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
+ * Test     unit_study_cases
  */
 void reader_mistyped(struct reader *r, const char *expected, const cJSON *node)
 {
@@ -98,7 +98,7 @@ static int characters(const char *text)
 
 /* Reads a text into the study's own memory.
  *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
+ * Test     unit_study_cases
  */
 void reader_text(struct reader *r, const struct field *field, const cJSON *node, const char **at)
 {
@@ -150,7 +150,7 @@ int reader_each(struct reader *r, const struct field *field, const cJSON *node,
  *
  * Returns  numbers   (value)   -       in the study's own memory; NAN: that one is none, which is noted
  *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
+ * Test     unit_study_cases
  */
 int reader_numbers(struct reader *r, const struct field *field, const struct field *element,
                    const cJSON *node, const double **numbers)

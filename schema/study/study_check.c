@@ -595,7 +595,7 @@ static bool rows_known(const struct problems *problems)
  * Given    study     -         -       read, with problems or without
  * Returns  problems  -         -       more of them
  *
- * Test     unit_study_check
+ * Test     unit_study_cases, unit_study_check
  */
 void study_check(const struct pound_study *study, struct problems *problems)
 {

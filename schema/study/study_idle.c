@@ -73,7 +73,7 @@ static const char *law_idle(const struct pound_study *study, const struct field 
  *          oscillator  -   of the field, < 0: of none
  * Returns  value       -   in words; NULL: it may vary
  *
- * Test     unit_study_check: what_a_law_does_not_use_does_not_vary
+ * Test     unit_study_cases
  */
 const char *study_idle(const struct pound_study *study, const struct field *field, int oscillator)
 {

@@ -81,7 +81,7 @@ bool reader_seen(const cJSON *object, const cJSON *member)
 
 /* Notes every member of an object that must be there and is not.
  *
- * Test     unit_study_json: what_is_missing_is_named
+ * Test     unit_study_cases
  */
 void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 {
@@ -111,7 +111,7 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
  *          base      -         -       what the offsets of its members count from
  * Returns  value     -         -       false: it is no object
  *
- * Test     unit_study_json: members_are_known_once_and_used
+ * Test     unit_study_cases
  */
 bool reader_object(struct reader *r, const char *pattern, const cJSON *node, char *base)
 {
@@ -405,7 +405,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
  *          problems  -         -       all that is wrong, in the order of the document, then between members
  * Memory   allocates one block for study_free, about 5 bytes per byte of text
  *
- * Test     unit_study_json
+ * Test     unit_study_cases, unit_study_json
  */
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems)
 {

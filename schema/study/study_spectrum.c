@@ -55,7 +55,7 @@ static bool asks_for_ordinates(const struct pound_study *study)
 /* Whether output and spectrum of a sensitivity study are there both or not at all; which frequencies matter there is for
  * the user to say.
  *
- * Test     unit_study_spectrum: an_output_and_its_spectrum_need_each_other
+ * Test     unit_study_cases
  */
 void reader_ordinates(struct reader *r, const cJSON *document)
 {
@@ -85,7 +85,7 @@ static double highest(const struct pound_spectrum *spectrum)
  * Given    study      -     read; its outputs and its spectrum known to be right
  * Returns  problems   -     more of them
  *
- * Test     unit_study_spectrum: a_spectrum_has_its_limits
+ * Test     unit_study_cases
  */
 void study_spectrum_check(const struct pound_study *study, struct problems *problems)
 {

@@ -80,7 +80,7 @@ static void read_parameters(struct reader *r, struct pound_distribution *distrib
 
 /* Reads a distribution; the engine's table says which members it has.
  *
- * Test     unit_study_json: members_are_known_once_and_used
+ * Test     unit_study_cases
  */
 void reader_distribution(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
@@ -166,7 +166,7 @@ static void read_sweep(struct reader *r, const cJSON *element, int s)
 
 /* Reads the sweeps; their paths come first, as they say what the values are.
  *
- * Test     unit_study_check: a_sweep_takes_values_as_the_field_does
+ * Test     unit_study_cases
  */
 void reader_sweeps(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
@@ -176,7 +176,7 @@ void reader_sweeps(struct reader *r, const struct field *field, const cJSON *nod
 
 /* Reads the values of the sweep in hand, each as the swept field itself is read.
  *
- * Test     unit_study_check: a_sweep_takes_values_as_the_field_does
+ * Test     unit_study_cases
  */
 void reader_values(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {

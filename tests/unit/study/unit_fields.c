@@ -78,21 +78,6 @@ static void every_field_says_what_it_takes(void **state)
 static void a_path_names_one_field_of_the_scene(void **state)
 {
 	(void)state;
-	static const char *const nothing[] = {"",
-	                                      "/",
-	                                      "contact/gap_m",
-	                                      "/contact/",
-	                                      "/contact/gap",
-	                                      "/oscillators/2/mass_kg",
-	                                      "/oscillators/00/mass_kg",
-	                                      "/oscillators/-/mass_kg",
-	                                      "/oscillators/*/mass_kg",
-	                                      "/oscillators//mass_kg",
-	                                      "/oscillators/0x/mass_kg",
-	                                      "/scene/contact/gap_m",
-	                                      "/design/rows",
-	                                      "/../design/rows",
-	                                      "//contact/gap_m"};
 	int oscillator;
 	const struct field *field = fields_scene("/oscillators/1/law/type", &oscillator);
 	assert_string_equal(field->pattern, "/scene/oscillators/*/law/type");
@@ -103,8 +88,6 @@ static void a_path_names_one_field_of_the_scene(void **state)
 	field = fields_scene("/contact/gap_m", &oscillator);
 	assert_string_equal(field->pattern, "/scene/contact/gap_m");
 	assert_int_equal(oscillator, -1);
-	for (size_t i = 0; i < sizeof nothing / sizeof nothing[0]; i++)
-		assert_null(fields_scene(nothing[i], &oscillator));
 }
 
 static void a_slip_of_the_pen_is_near_and_a_stranger_is_not(void **state)
@@ -140,29 +123,6 @@ static void a_slip_of_the_pen_is_near_and_a_stranger_is_not(void **state)
 	memset(lengthy, 'x', sizeof lengthy - 1);
 	lengthy[sizeof lengthy - 1] = 0;
 	assert_false(fields_near(fields_distance(lengthy, "restitution"), lengthy));
-}
-
-static void a_mistyped_path_finds_its_field(void **state)
-{
-	(void)state;
-	static const struct {
-		const char *path, *nearest;
-	} cases[] = {
-	    {"/contact/restituton", "/contact/restitution"},
-	    {"contact/restitution", "/contact/restitution"},
-	    {"/scene/contact/restitution", "/contact/restitution"},
-	    {"/oscillators/1/mass", "/oscillators/1/mass_kg"},
-	    {"/oscilators/1/mass_kg", "/oscillators/1/mass_kg"},
-	    {"/oscillator/0/frequency_hz", "/oscillators/0/frequency_hz"},
-	    {"/excitation/frequency", "/excitation/frequency_hz"},
-	};
-	char nearest[128];
-	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-		assert_true(fields_nearest_path(cases[i].path, nearest, sizeof nearest));
-		assert_string_equal(nearest, cases[i].nearest);
-	}
-	assert_false(fields_nearest_path("/nowhere/at/all", nearest, sizeof nearest));
-	assert_false(fields_nearest_path("", nearest, sizeof nearest));
 }
 
 static void kind_excitation_and_solver_decide_what_is_used(void **state)
@@ -223,5 +183,4 @@ CHECK_MAIN(cmocka_unit_test(every_limit_between_members_stands_in_the_text_of_it
            cmocka_unit_test(every_field_says_what_it_takes),
            cmocka_unit_test(a_path_names_one_field_of_the_scene),
            cmocka_unit_test(a_slip_of_the_pen_is_near_and_a_stranger_is_not),
-           cmocka_unit_test(a_mistyped_path_finds_its_field),
            cmocka_unit_test(kind_excitation_and_solver_decide_what_is_used))
