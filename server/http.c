@@ -277,7 +277,7 @@ static void judge(struct request *request, bool needs_host)
 static void collect(struct request *request, const char *bytes, size_t n)
 {
 	if (n > HEAD_BODY_MAX - request->length)
-		head_refuse(&request->head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+		head_refuse(&request->head, API_TOO_LARGE, false, "a study document may have at most 1 MiB");
 	else if (!request->body && !(request->body = malloc(HEAD_BODY_MAX)))
 		head_refuse(&request->head, API_UNAVAILABLE, false, "out of memory");
 	if (request->head.fault != API_NO_FAULT)

@@ -127,14 +127,15 @@ static void columns_join(struct outputs *outputs, struct csv *csv)
 		int of = column_named(outputs, outputs->n_columns, column->name,
 		                      strlen(column->name) - (sizeof VARIANCE - 1));
 		if (of < 0 || outputs->columns[of].role != ROLE_OUTPUT)
-			csv_complain(csv, column->name, "is the variance of no column here");
+			csv_complain(csv, column->name, "is the variance of an output that has no column");
 		else
 			column->index = outputs->columns[of].index;
 	}
 	outputs->study.n_outputs = n_outputs;
 	outputs->study.output_names = outputs->names;
 	if (n_outputs == 0)
-		csv_complain(csv, NULL, "names no output: a column for each, and NAME.variance where it is known");
+		csv_complain(csv, NULL,
+		             "has no output column; expected one per output, and NAME.variance where that is known");
 }
 
 static void column_read(struct outputs *outputs, struct csv *csv)
@@ -152,7 +153,7 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	outputs->n_columns++;
 	column_role(outputs, column);
 	int same = column_named(outputs, c, column->name, strlen(column->name));
-	snprintf(what, sizeof what, "column %d has no name: pandas writes its index so, but for index=False",
+	snprintf(what, sizeof what, "column %d has no name; pandas writes its index this way unless index=False",
 	         c + 1);
 	if (!*csv->cell)
 		csv_complain(csv, NULL, what);
@@ -162,7 +163,7 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	snprintf(what, sizeof what, "must be shorter than %d bytes", CSV_CELL_SIZE);
 	if (csv->cut)
 		csv_complain(csv, column->name, what);
-	snprintf(what, sizeof what, "is the name of column %d too", same + 1);
+	snprintf(what, sizeof what, "is already the name of column %d", same + 1);
 	if (same >= 0)
 		csv_complain(csv, column->name, what);
 }
@@ -173,14 +174,13 @@ static bool header_read(struct outputs *outputs, struct csv *csv)
 	const char *newline = memchr(csv->at, '\n', (size_t)(csv->end - csv->at));
 	size_t n = (size_t)((newline ? newline : csv->end) - csv->at), n_columns = 1;
 	if (csv_blank(csv->at, csv->end)) {
-		problems_add(csv->problems, "",
-		             "is empty: a header is expected, and a line for each sample of the design");
+		problems_add(csv->problems, "", "is empty; expected a header and one line per sample of the design");
 		return false;
 	}
 	for (size_t i = 0; i < n; i++)
 		n_columns += csv->at[i] == ',';
 	if (n_columns == 1 && (memchr(csv->at, ';', n) || memchr(csv->at, '\t', n))) {
-		csv_complain(csv, NULL, "has no comma: columns are parted by commas");
+		csv_complain(csv, NULL, "has no comma; columns must be separated by commas");
 		return false;
 	}
 	outputs->columns = calloc(n_columns, sizeof *outputs->columns);
@@ -226,7 +226,7 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 	} else if (column->role == ROLE_OUTPUT) {
 		line->value[column->index] = number;
 		if (fabs(number) > OUTPUT_MOST)
-			csv_fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g in size, got %.60s",
+			csv_fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g in magnitude, got %.60s",
 			               OUTPUT_MOST, csv->cell);
 	} else if (column->role == ROLE_VARIANCE) {
 		line->variance[column->index] = isfinite(number) ? number : INFINITY;
@@ -238,8 +238,8 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 	} else if (!line->strange && !alike(number, line->x[column->index])) {
 		csv_fault_note(
 		    &column->faults[FAULT_INPUT], csv,
-		    "is %.15g, but the design has %.15g there: is this its order and its seed, or was it rounded?",
-		    number, line->x[column->index]);
+		    "is %.15g, but the design has %.15g; check the order of the lines, the seed and rounding", number,
+		    line->x[column->index]);
 		line->strange = true;
 	}
 }
@@ -298,7 +298,7 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 		csv->problems->status = PROBLEMS_NOMEM;
 	} else if (there < wanted || !csv_blank(after, csv->end)) {
 		problems_add(csv->problems, "",
-		             "has %lld lines after its header, the design has %lld: %d for each of %d rows",
+		             "has %lld lines after the header, expected %lld: %d samples for each of %d rows",
 		             (long long)there, (long long)wanted, n_samples, rows);
 	} else {
 		for (line.row = 0; line.row < rows; line.row++)
@@ -314,7 +314,7 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 static void check_study(const struct pound_study *study, struct problems *problems)
 {
 	if (study->n_sweeps)
-		problems_add(problems, "/sweep", "outputs computed elsewhere are those of one cell, without a sweep");
+		problems_add(problems, "/sweep", "a study of an external model has one cell, so no sweep");
 }
 
 static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t *length)
@@ -360,8 +360,7 @@ char *model_indices(const struct pound_study *study, const char *csv, size_t csv
 		if (json && pound_run_result(run)->cells[0].rows_dropped == pound_run_rows(run)) {
 			free(json);
 			json = NULL;
-			problems_add(problems, "",
-			             "no row of the design has all its outputs: there is nothing to make indexes of");
+			problems_add(problems, "", "no row of the design has all its outputs, so there are no indices");
 		}
 		pound_run_free(run);
 		if (!json && problems->status == PROBLEMS_NONE)

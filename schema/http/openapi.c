@@ -20,50 +20,50 @@ struct member {
 // clang-format off
 static const struct member members[] = {
 	{"Status", "id",          "string",  "",     "16 hexadecimal digits"},
-	{"Status", "name",        "string",  "null", "of the study document"},
-	{"Status", "kind",        "string",  "",     "of the study document"},
+	{"Status", "name",        "string",  "null", "name in the study document"},
+	{"Status", "kind",        "string",  "",     "kind of study"},
 	{"Status", "status",      "string",  "",     "queued, running, succeeded, failed or cancelled"},
-	{"Status", "progress",    "number",  "",     "0 to 1"},
-	{"Status", "runs_done",   "integer", "",     "pounding runs that are done and stored"},
-	{"Status", "runs_total",  "integer", "",     "pounding runs asked for"},
-	{"Status", "eta_s",       "number",  "null", "seconds to the end, while it runs"},
-	{"Status", "created",     "string",  "",     "RFC 3339, UTC"},
-	{"Status", "started",     "string",  "null", "RFC 3339, UTC"},
-	{"Status", "finished",    "string",  "null", "RFC 3339, UTC"},
-	{"Status", "error",       "string",  "null", "why it failed: poison-study, timeout, or another reason, in a sentence"},
-	{"Status", "links",       "Links",   "",     "where the rest is"},
-	{"Links",  "self",        "string",  "",     "this object"},
-	{"Links",  "request",     "string",  "",     "the bytes that were posted"},
-	{"Links",  "results",     "string",  "",     "the result"},
-	{"Links",  "samples",     "string",  "",     "every input row and its outputs"},
-	{"Links",  "cancel",      "string",  "",     "POST ends the study"},
+	{"Status", "progress",    "number",  "",     "fraction done, 0 to 1"},
+	{"Status", "runs_done",   "integer", "",     "pounding runs computed and stored"},
+	{"Status", "runs_total",  "integer", "",     "pounding runs requested"},
+	{"Status", "eta_s",       "number",  "null", "estimated time to the end of a running study [s]"},
+	{"Status", "created",     "string",  "",     "time of submission, RFC 3339, UTC"},
+	{"Status", "started",     "string",  "null", "time of the start of computation, RFC 3339, UTC"},
+	{"Status", "finished",    "string",  "null", "time of the end, RFC 3339, UTC"},
+	{"Status", "error",       "string",  "null", "why the study failed: poison-study, timeout, or a sentence with another reason"},
+	{"Status", "links",       "Links",   "",     "paths of related resources"},
+	{"Links",  "self",        "string",  "",     "path of this object"},
+	{"Links",  "request",     "string",  "",     "path of the study document as posted"},
+	{"Links",  "results",     "string",  "",     "path of the result"},
+	{"Links",  "samples",     "string",  "",     "path of the samples: every row of inputs with its outputs"},
+	{"Links",  "cancel",      "string",  "",     "path to POST to cancel the study"},
 	{"Page",   "studies",     "[Status]", "",    "newest first"},
-	{"Page",   "next",        "string",  "null", "cursor of the next page"},
-	{"Estimate", "kind",            "string",  "", "of the study document"},
-	{"Estimate", "runs_total",      "integer", "", "pounding runs asked for"},
-	{"Estimate", "estimated_cpu_s", "number",  "", "seconds of one core"},
-	{"Estimate", "estimated_bytes", "number",  "", "in the database"},
-	{"Version", "name",       "string",  "",     "poundd"},
-	{"Version", "version",    "string",  "",     "of the engine and the server"},
-	{"Problem", "type",       "string",  "",     "short name of the kind of problem"},
-	{"Problem", "title",      "string",  "",     "the kind of problem"},
-	{"Problem", "status",     "integer", "",     "the HTTP status"},
-	{"Problem", "detail",     "string",  "",     "a sentence about this request"},
-	{"Problem", "line",       "integer", "absent", "of malformed JSON"},
-	{"Problem", "column",     "integer", "absent", "of malformed JSON"},
-	{"Problem", "errors",     "[Fault]", "absent", "everything that is wrong with a study"},
-	{"Problem", "errors_not_listed", "integer", "absent", "how many more"},
+	{"Page",   "next",        "string",  "null", "cursor of the next page; null on the last"},
+	{"Estimate", "kind",            "string",  "", "kind of study"},
+	{"Estimate", "runs_total",      "integer", "", "pounding runs requested"},
+	{"Estimate", "estimated_cpu_s", "number",  "", "estimated CPU time [s of one core]"},
+	{"Estimate", "estimated_bytes", "number",  "", "estimated size in the database [bytes]"},
+	{"Version", "name",       "string",  "",     "name of the program, poundd"},
+	{"Version", "version",    "string",  "",     "version of engine and server"},
+	{"Problem", "type",       "string",  "",     "identifier of the type of problem"},
+	{"Problem", "title",      "string",  "",     "the type of problem, in words"},
+	{"Problem", "status",     "integer", "",     "HTTP status code"},
+	{"Problem", "detail",     "string",  "",     "what is wrong with this request"},
+	{"Problem", "line",       "integer", "absent", "line of the first error in malformed JSON, from 1"},
+	{"Problem", "column",     "integer", "absent", "column of that error, from 1"},
+	{"Problem", "errors",     "[Fault]", "absent", "all errors in a study document"},
+	{"Problem", "errors_not_listed", "integer", "absent", "number of errors beyond those listed"},
 	{"Fault",  "pointer",     "string",  "",     "JSON Pointer into the study document"},
-	{"Fault",  "detail",      "string",  "",     "what was expected there, and what came"},
-	{"Fault",  "requested",   "number",  "absent", "of a study that is too large: how much of it"},
-	{"Fault",  "limit",       "number",  "absent", "and how much there may be"},
-	{"Result", "kind",           "string", "",   "of the study document"},
-	{"Result", "engine_version", "string", "",   "that computed it"},
-	{"Result", "study_hash",     "string", "",   "SHA-256 of the study's meaning"},
-	{"Result", "timing",         "Timing", "",   "what may differ between two runs of one study"},
-	{"Timing", "wall_s",      "number",  "",     "time it took"},
-	{"Timing", "cpu_s",       "number",  "",     "of all threads"},
-	{"Timing", "threads",     "integer", "",     "that computed it"},
+	{"Fault",  "detail",      "string",  "",     "what was expected there and what was found"},
+	{"Fault",  "requested",   "number",  "absent", "if the study is too large: the amount requested"},
+	{"Fault",  "limit",       "number",  "absent", "and the largest amount allowed"},
+	{"Result", "kind",           "string", "",   "kind of study"},
+	{"Result", "engine_version", "string", "",   "version of the engine that computed the result"},
+	{"Result", "study_hash",     "string", "",   "SHA-256 of the study with all defaults filled in, names left out"},
+	{"Result", "timing",         "Timing", "",   "time taken; the only member that may differ between two runs of the same study"},
+	{"Timing", "wall_s",      "number",  "",     "elapsed time [s]"},
+	{"Timing", "cpu_s",       "number",  "",     "CPU time of all threads [s]"},
+	{"Timing", "threads",     "integer", "",     "number of threads used"},
 	{"OpenAPI", "openapi",    "string",  "",     "version of OpenAPI"},
 };
 
@@ -81,7 +81,7 @@ static const struct {
 	           "\"samples\": \"/v1/studies/0019c5a0b1c2d3e4/samples\", \"cancel\": \"/v1/studies/0019c5a0b1c2d3e4/cancel\"}}"},
 	{"Estimate", "{\"kind\": \"sensitivity\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000}"},
 	{"Problem", "{\"type\": \"invalid-study\", \"title\": \"Invalid Study\", \"status\": 422, "
-	            "\"detail\": \"the study has faults, listed in errors\", \"errors\": "
+	            "\"detail\": \"the study has errors, see the list\", \"errors\": "
 	            "[{\"pointer\": \"/scene/contact/gap_m\", \"detail\": \"must be at least 0, got -0.1\"}]}"},
 };
 // clang-format on
@@ -157,7 +157,7 @@ static void schemas(struct writer *w)
 	writer_text(
 	    w, "description",
 	    "A study document. Which members it may have depends on its kind, its excitation and its solver; "
-	    "validate_only tells all that is wrong at once.");
+	    "validate_only reports all errors at once.");
 	study_schema_members(w, "");
 	writer_end(w);
 	for (const struct member *first = members, *next; first < end; first = next) {
@@ -279,8 +279,8 @@ static void success_headers(struct writer *w, const struct api_operation *operat
 		return;
 	object(w, "headers");
 	if (made)
-		header(w, "Location", true, "the study");
-	header(w, "ETag", true, "for If-None-Match");
+		header(w, "Location", true, "path of the study");
+	header(w, "ETag", true, "entity tag of the body, for If-None-Match");
 	writer_end(w);
 }
 
@@ -291,7 +291,7 @@ static void success(struct writer *w, const struct api_operation *operation, cha
 	if (object_name)
 		*object_name++ = '\0';
 	object(w, answer);
-	writer_text(w, "description", !strcmp(answer, "304") ? "not changed" : operation->text);
+	writer_text(w, "description", !strcmp(answer, "304") ? "not modified" : operation->text);
 	success_headers(w, operation, answer, object_name);
 	if (*answer == '2' && strcmp(answer, "204") != 0) {
 		object(w, "content");
@@ -328,7 +328,7 @@ static void failures(struct writer *w, const struct api_operation *operation)
 			if (first == API_UNAUTHORIZED)
 				header(w, "WWW-Authenticate", true, "Bearer");
 			else
-				header(w, "Retry-After", always, always ? "seconds" : "seconds, of what is not ready yet");
+				header(w, "Retry-After", always, always ? "seconds to wait" : "seconds to wait, if the answer is not ready yet");
 			writer_end(w);
 		}
 		object(w, "content");
@@ -369,7 +369,7 @@ static void operations(struct writer *w)
 	writer_end(w);
 }
 
-/* The document that tells what poundd can be asked.
+/* The document that describes the interface of poundd.
  *
  * Returns  value     (length)  -       JSON, OpenAPI 3.0; NULL: out of memory
  * Memory   allocates; the caller frees
@@ -388,8 +388,8 @@ char *api_document(size_t *length)
 	writer_text(&w, "version", POUND_VERSION);
 	writer_text(
 	    &w, "description",
-	    "Earthquake-induced pounding between two oscillators, and what it is sensitive to. What the HTTP "
-	    "parser itself refuses (400, 414, 431, 505) is answered without a problem object.");
+	    "Earthquake-induced pounding between two oscillators: responses, floor spectra and sensitivity indices. Requests that the HTTP "
+	    "parser itself refuses (400, 414, 431, 505) get an answer without a problem object.");
 	writer_end(&w);
 	operations(&w);
 	object(&w, "components");

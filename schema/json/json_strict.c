@@ -84,7 +84,7 @@ static bool number(struct gate *gate)
 		return false;
 	if (zero && gate->at - start > (gate->text[start] == '-' ? 2u : 1u)) {
 		gate->at = start;
-		return refuse(gate, "a number must not start with 0 and further digits");
+		return refuse(gate, "a number must not have leading zeros");
 	}
 	if (peek(gate) == '.') {
 		gate->at++;
@@ -130,14 +130,14 @@ static bool escape(struct gate *gate)
 	int c = peek(gate);
 	if (c < 0 || !strchr("\"\\/bfnrtu", c) || c == 0) {
 		gate->at = start;
-		return refuse(gate, "an escape that JSON does not know");
+		return refuse(gate, "an unknown escape sequence");
 	}
 	gate->at++;
 	if (c != 'u')
 		return true;
 	int unit = code_unit(gate);
 	const char *detail = unit < 0                           ? "\\u must be followed by four hex digits"
-	                     : unit == 0                        ? "\\u0000 is not allowed in a text"
+	                     : unit == 0                        ? "\\u0000 is not allowed in a string"
 	                     : unit >= 0xDC00 && unit <= 0xDFFF ? "a lone low surrogate"
 	                                                        : NULL;
 	if (!detail && unit >= 0xD800 && unit <= 0xDBFF) {
@@ -216,7 +216,7 @@ static bool member(struct gate *gate, int n)
 static bool list(struct gate *gate, char close)
 {
 	if (gate->depth == GATE_DEPTH_MAX)
-		return refuse(gate, "arrays and objects more than 32 deep");
+		return refuse(gate, "arrays and objects nested more than 32 deep");
 	gate->depth++;
 	gate->at++;
 	space(gate);
@@ -270,7 +270,7 @@ bool gate_check(const char *text, size_t length, struct gate_fault *fault)
 {
 	struct gate gate = {.text = text, .length = length, .fault = fault};
 	if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
-		return refuse(&gate, "a byte order mark; JSON has none");
+		return refuse(&gate, "a byte order mark, which JSON does not allow");
 	if (!value(&gate))
 		return false;
 	space(&gate);

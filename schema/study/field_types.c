@@ -10,8 +10,6 @@
 #include "schema/study/reader.h"
 #include "schema/study/study_schema.h"
 
-enum { SPAN_SIZE = 64 };
-
 /* ---- numbers ---- */
 
 /* Any type that has a number: reads it and stores it. */
@@ -227,7 +225,7 @@ static void bool_openapi(struct writer *w, const struct field *field)
 static void seed_expected(const struct field *field, char *text, size_t size)
 {
 	(void)field;
-	snprintf(text, size, "a whole number below 2^53, or one below 2^64 written as text");
+	snprintf(text, size, "a whole number below 2^53, or the digits of one below 2^64 as a string");
 }
 
 static bool seed_of(const cJSON *node, uint64_t *seed)
@@ -279,19 +277,11 @@ static void seed_openapi(struct writer *w, const struct field *field)
 
 /* ---- texts ---- */
 
-static void span(const struct field *field, char text[SPAN_SIZE])
-{
-	if (field->min == field->max)
-		snprintf(text, SPAN_SIZE, "%.0f", field->max);
-	else
-		snprintf(text, SPAN_SIZE, "%.0f to %.0f", field->min, field->max);
-}
-
 static void text_expected(const struct field *field, char *text, size_t size)
 {
-	char length[SPAN_SIZE];
-	span(field, length);
-	snprintf(text, size, "a text of %s characters", length);
+	char length[64];
+	fields_span(field, length, sizeof length);
+	snprintf(text, size, "a string of %s characters", length);
 }
 
 static void text_read(struct reader *r, const struct field *field, const cJSON *node, char *base)
@@ -332,8 +322,8 @@ static void object_openapi(struct writer *w, const struct field *field)
 
 static void list_expected(const struct field *field, char *text, size_t size)
 {
-	char length[SPAN_SIZE];
-	span(field, length);
+	char length[64];
+	fields_span(field, length, sizeof length);
 	snprintf(text, size, "an array of %s elements", length);
 }
 

@@ -62,6 +62,7 @@ bool fields_used(const struct field *field, const char *kind, const char *excita
 /* "a number in [0, 1]", "a whole number of at least 2", "one of "lhs", "random"": what a field takes. */
 void fields_expected(const struct field *field, char *text, size_t size);
 void fields_range(const struct field *field, char *text, size_t size); /* "in [0, 1]", "at least 2" */
+void fields_span(const struct field *field, char *text, size_t size);  /* of a length: "2", "1 to 200" */
 bool fields_in_range(const struct field *field, double value);
 
 /* The number of the choice of that name, -1 if there is none. */

@@ -108,9 +108,10 @@ void reader_text(struct reader *r, const struct field *field, const cJSON *node,
 	if (!cJSON_IsString(node)) {
 		reader_mistyped(r, expected, node);
 	} else if (n < 0) {
-		problems_add(r->problems, r->pointer, "must not hold control characters");
+		problems_add(r->problems, r->pointer, "must not contain control characters");
 	} else if (n < field->min || n > field->max) {
-		problems_add(r->problems, r->pointer, "must be %s, got %d", expected, n);
+		fields_span(field, expected, sizeof expected);
+		problems_add(r->problems, r->pointer, "must have %s characters, has %d", expected, n);
 	} else {
 		*at = strcpy(r->text, node->valuestring);
 		r->text += strlen(r->text) + 1;
@@ -127,8 +128,9 @@ int reader_elements(struct reader *r, const struct field *field, const cJSON *no
 		return 0;
 	}
 	int n = cJSON_GetArraySize(node);
+	fields_span(field, expected, sizeof expected);
 	if (n < field->min || n > field->max)
-		problems_add(r->problems, r->pointer, "must be %s, got one of %d", expected, n);
+		problems_add(r->problems, r->pointer, "must have %s elements, has %d", expected, n);
 	return n <= field->max ? n : 0;
 }
 

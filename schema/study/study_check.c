@@ -36,21 +36,21 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 	if (strncmp(path, "/excitation/acceleration_m_s2/", 30) == 0)
 		field = fields_find("/scene/excitation/acceleration_m_s2/*");
 	if (!field && fields_nearest_path(path, nearest, sizeof nearest))
-		problems_add(problems, pointer, "names nothing in \"scene\", did you mean \"%s\"?", nearest);
+		problems_add(problems, pointer, "no such field in \"scene\", did you mean \"%s\"?", nearest);
 	else if (!field)
 		problems_add(problems, pointer,
 		             "must be a JSON Pointer into \"scene\", such as \"/contact/restitution\"");
 	else if (field->fixed)
-		problems_add(problems, pointer, "names a field that may not vary: %s", field->fixed);
+		problems_add(problems, pointer, "this field cannot vary: %s", field->fixed);
 	else if (!field_types[field->type].number)
-		problems_add(problems, pointer, "names several fields, not one");
+		problems_add(problems, pointer, "names an object or a list, not a single field");
 	else if (input && field->type != FIELD_REAL)
-		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");
+		problems_add(problems, pointer, "this field is not a real number; only a sweep can vary it");
 	else if (problems_over(problems, "/scene/excitation/type") ||
 	         problems_at(problems, "/scene/excitation/type"))
 		return;
 	else if (!fields_used(field, NULL, excitation, NULL))
-		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
+		problems_add(problems, pointer, "this field is not used by excitation \"%s\"", excitation);
 	else if (problems_at(problems, "/scene/law") || problems_at(problems, "/scene/oscillators") ||
 	         problems_at(problems, "/scene/contact"))
 		return; // whether it has an effect is seen by these
@@ -108,13 +108,13 @@ static void check_name(const struct pound_study *study, const char *list, int n,
 		const struct pound_input *other = &study->inputs[k];
 		// two absent names are alike where two paths are, which is told by itself
 		if (other->name && strcmp(other->name, name) == 0 && !(is_path && other->name == other->path)) {
-			problems_add(problems, pointer, "is the name of /inputs/%d too", k);
+			problems_add(problems, pointer, "is already the name of /inputs/%d", k);
 			return;
 		}
 	}
 	for (int k = 0; name && ratio && k < n; k++)
 		if (study->ratios[k].name && strcmp(study->ratios[k].name, name) == 0) {
-			problems_add(problems, pointer, "is the name of /ratios/%d too", k);
+			problems_add(problems, pointer, "is already the name of /ratios/%d", k);
 			return;
 		}
 }
@@ -137,9 +137,10 @@ static void check_names(const struct pound_study *study, struct problems *proble
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/inputs/%d/name", j);
 		if (taken)
-			problems_add(problems, pointer, "is the name of another column of the samples");
+			problems_add(problems, pointer,
+			             "is already the name of a column of the samples: row, sample or an output");
 		else if (study->elsewhere && !name && !study->inputs[j].path)
-			problems_add(problems, pointer, "is required: a text of 1 to 100 characters");
+			problems_add(problems, pointer, "is required: a string of 1 to 100 characters");
 	}
 }
 
@@ -271,10 +272,11 @@ static void check_harmonic(const struct pound_study *study, struct problems *pro
 	study_check_reach(study, "/excitation/frequency_hz", &low, &frequency);
 	study_check_reach(study, "/excitation/time_step_s", &low, &step);
 	if (!(2 * frequency * step < 1))
-		problems_add(problems, "/scene/excitation/frequency_hz",
-		             "a sine needs more than two samples a cycle: at a time step of %.15g s it must be below "
-		             "%.15g Hz, got %.15g",
-		             step, 0.5 / step, frequency);
+		problems_add(
+		    problems, "/scene/excitation/frequency_hz",
+		    "a sine needs more than two samples per cycle: at a time step of %.15g s it must be below "
+		    "%.15g Hz, got %.15g",
+		    step, 0.5 / step, frequency);
 }
 
 static void check_excitation(const struct pound_study *study, struct problems *problems)
@@ -294,11 +296,12 @@ static void check_excitation(const struct pound_study *study, struct problems *p
 	study_size_steps(study, &least, &most);
 	if (!(least >= 1.0))
 		problems_add(problems, "/scene/excitation/time_step_s",
-		             "the ground motion must last one time step at least, not %.3g of one", least);
+		             "the ground motion must last at least one time step; the shortest lasts %.3g of one",
+		             least);
 	if (!(most < STUDY_SAMPLES_MAX))
 		problems_exceed(problems, "/scene/excitation/time_step_s", most + 1, STUDY_SAMPLES_MAX,
-		                "a ground motion may have at most %d samples, this asks for %.3g", STUDY_SAMPLES_MAX,
-		                most + 1);
+		                "a ground motion may have at most %d samples; the longest has %.3g",
+		                STUDY_SAMPLES_MAX, most + 1);
 }
 
 /* ---- outputs ---- */
@@ -380,9 +383,10 @@ static void check_order(const struct pound_study *study, struct problems *proble
 	const char *order = pound_order_name(study->design.order);
 	if (study->kind == POUND_KIND_SENSITIVITY && strcmp(order, "factorial") == 0 &&
 	    study->n_inputs > POUND_FACTORIAL_INPUTS_MAX)
-		problems_add(problems, "/design/order",
-		             "\"factorial\" runs all 2^n mixtures of n inputs and takes at most %d of them, not %d",
-		             POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
+		problems_add(
+		    problems, "/design/order",
+		    "\"factorial\" runs all 2^n_inputs mixtures of A and B, so it takes at most %d inputs, got %d",
+		    POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
 }
 
 /* ---- ratios ---- */
@@ -419,14 +423,14 @@ static void check_ratio(const struct pound_study *study, int ratio, int side, st
 	snprintf(pointer, sizeof pointer, "/ratios/%d/of/%d", ratio, side);
 	snprintf(distribution, sizeof distribution, "/inputs/%d/distribution", input);
 	if (input < 0 && !unread_input(study))
-		problems_add(problems, pointer, "is the path of no input of this study");
+		problems_add(problems, pointer, "is not the path of an input of this study");
 	else if (input >= 0 && !problems_at(problems, distribution) &&
 	         !pound_ratio_takes(&study->inputs[input].distribution))
 		problems_add(problems, pointer,
-		             "names /inputs/%d, but inputs of a ratio are \"uniform\" or \"log_uniform\" above 0",
+		             "names /inputs/%d, but inputs of a ratio must be \"uniform\" or \"log_uniform\" and > 0",
 		             input);
 	if (above_elsewhere(study, ratio, side))
-		problems_add(problems, pointer, "an input that is above in one ratio may be in no other place");
+		problems_add(problems, pointer, "a numerator may not appear anywhere else in the ratios");
 }
 
 static void check_ratios(const struct pound_study *study, struct problems *problems)
@@ -436,8 +440,7 @@ static void check_ratios(const struct pound_study *study, struct problems *probl
 			check_ratio(study, k, side, problems);
 	if (study->n_ratios && !problems_at(problems, "/ratios") && !problems_at(problems, "/inputs") &&
 	    pound_ratio_variables(study, NULL) > POUND_FACTORIAL_INPUTS_MAX)
-		problems_add(problems, "/ratios",
-		             "ratios and the inputs in none may be at most %d variables, these are %d",
+		problems_add(problems, "/ratios", "ratios plus remaining inputs: at most %d, got %d",
 		             POUND_FACTORIAL_INPUTS_MAX, pound_ratio_variables(study, NULL));
 }
 

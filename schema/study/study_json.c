@@ -210,8 +210,7 @@ static void read_oscillator(struct reader *r, const cJSON *node, int i)
 		else if (member != wall)
 			problems_add(r->problems, r->pointer, "is not used by a rigid wall");
 		else if (i == 0)
-			problems_add(r->problems, r->pointer,
-			             "only the right oscillator, the second, may be a rigid wall");
+			problems_add(r->problems, r->pointer, "only the right oscillator (index 1) may be a rigid wall");
 		reader_leave(r, length);
 	}
 }
@@ -236,7 +235,7 @@ static void read_output(struct reader *r, const cJSON *element, int o)
 	if (field_types[field->type].number(r, field, element, &row))
 		for (int k = 0; k < o; k++)
 			if (r->study->outputs[k] == (int)row)
-				problems_add(r->problems, r->pointer, "is asked twice");
+				problems_add(r->problems, r->pointer, "is listed twice");
 	r->study->outputs[o] = (int)row;
 }
 
@@ -385,7 +384,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 	reader_ordinates(&r, document);
 	cJSON_Delete(document);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
-		problems_add(problems, "/kind", "must be \"%s\", as no other kind has a design",
+		problems_add(problems, "/kind", "must be \"%s\": no other kind has a design",
 		             study_kind_name(POUND_KIND_SENSITIVITY));
 	study_check(study, problems);
 	if (problems->n) {

@@ -71,7 +71,7 @@ static void read_parameters(struct reader *r, struct pound_distribution *distrib
 	if (pound_distribution_lists_values(distribution->type))
 		require_parameter(r, node, "values", "an array of numbers, ascending");
 	if (n_weights && distribution->n_values && n_weights != distribution->n_values)
-		problems_add(r->problems, r->pointer, "there must be as many weights as values, %d, not %d",
+		problems_add(r->problems, r->pointer, "must have as many weights as values: %d, has %d",
 		             distribution->n_values, n_weights);
 	for (int k = 0; (text = pound_distribution_rule(distribution->type, k)); k++)
 		if (pound_distribution_breaks(distribution, k))

@@ -252,7 +252,7 @@ static void the_place_of_a_fault_is_its_line_and_column(void **state)
 		const char *detail;
 	} cases[] = {
 	    {"", 1, 1, "the text ends where a value is expected"},
-	    {"{\"a\": 01}", 1, 7, "a number must not start with 0 and further digits"},
+	    {"{\"a\": 01}", 1, 7, "a number must not have leading zeros"},
 	    {"{\n  \"a\": 1,\n  \"b\": tru\n}", 3, 8, "expected a value, found t"},
 	    {"[1, 2", 1, 6, "the text ends where a comma or ] is expected"},
 	    {"[1 2]", 1, 4, "expected a comma or ], found 2"},
@@ -262,7 +262,7 @@ static void the_place_of_a_fault_is_its_line_and_column(void **state)
 	    // a column is a character, whatever its bytes
 	    {"[\"\xC3\xA9\xF0\x9F\x98\x80\", x]", 1, 8, "expected a value, found x"},
 	    {"[\r\n\r\n  1e999]", 3, 3, "a number beyond the largest double, 1.797e308"},
-	    {"[\"ab\\q\"]", 1, 5, "an escape that JSON does not know"},
+	    {"[\"ab\\q\"]", 1, 5, "an unknown escape sequence"},
 	    {"[\"ab\\uD800\"]", 1, 5, "a high surrogate without its low surrogate"},
 	    {"[\"ab\xFF\"]", 1, 5, "not UTF-8"},
 	    {"[\f]", 1, 2, "expected a value, found the byte 0x0C"},

@@ -166,7 +166,7 @@ static void broken_json_is_told_by_line_and_column(void **state)
 	assert_int_equal(problems.status, PROBLEMS_MALFORMED);
 	assert_int_equal(problems.line, 2);
 	assert_int_equal(problems.column, 39);
-	assert_string_equal(problems.list[0].detail, "a number must not start with 0 and further digits");
+	assert_string_equal(problems.list[0].detail, "a number must not have leading zeros");
 }
 
 static void the_text_need_not_end_with_a_zero(void **state)
