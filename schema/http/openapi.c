@@ -328,7 +328,8 @@ static void failures(struct writer *w, const struct api_operation *operation)
 			if (first == API_UNAUTHORIZED)
 				header(w, "WWW-Authenticate", true, "Bearer");
 			else
-				header(w, "Retry-After", always, always ? "seconds to wait" : "seconds to wait, if the answer is not ready yet");
+				header(w, "Retry-After", always,
+				       always ? "seconds to wait" : "seconds to wait, if the answer is not ready yet");
 			writer_end(w);
 		}
 		object(w, "content");
@@ -386,10 +387,10 @@ char *api_document(size_t *length)
 	object(&w, "info");
 	writer_text(&w, "title", "poundd");
 	writer_text(&w, "version", POUND_VERSION);
-	writer_text(
-	    &w, "description",
-	    "Earthquake-induced pounding between two oscillators: responses, floor spectra and sensitivity indices. Requests that the HTTP "
-	    "parser itself refuses (400, 414, 431, 505) get an answer without a problem object.");
+	writer_text(&w, "description",
+	            "Earthquake-induced pounding between two oscillators: responses, floor spectra and "
+	            "sensitivity indices. Requests that the HTTP "
+	            "parser itself refuses (400, 414, 431, 505) get an answer without a problem object.");
 	writer_end(&w);
 	operations(&w);
 	object(&w, "components");

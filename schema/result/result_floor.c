@@ -90,8 +90,8 @@ void result_floor_spectra(struct writer *w, const struct pound_study *study,
 	writer_whole(w, "runs_failed", floor->signals_failed);
 	if (floor->signals_failed)
 		writer_text(w, "note",
-		            "runs without a result are left out of the spectra and their histories may end early; "
-		            "work.failures says why");
+		            "failed runs are left out of the spectra and their histories may end early; "
+		            "work.failures has the reasons");
 	writer_array(w, "frequencies_hz", WRITER_LINE);
 	for (int k = 0; k < n; k++)
 		writer_number(w, NULL, pound_spectrum_frequency(&study->spectrum, k));

@@ -142,14 +142,14 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 	program_expect(&grown, 0);
 	program_expect(&uneven, 0);
 	program_expect(&run, 2);
-	assert_string_equal(grown.err,
-	                    "pound: note: the design grows; these are the 128 rows of its first look, a run of "
-	                    "it takes up to 2048\n");
+	assert_string_equal(
+	    grown.err, "pound: note: the design grows: these are its first 128 rows; a run takes up to 2048\n");
 	int lines = 0;
 	for (const char *c = grown.out; *c; c++)
 		lines += *c == '\n';
 	assert_int_equal(lines, 1 + 128 * 5);
-	assert_non_null(strstr(uneven.err, "pound: note: 1000 rows are not 2^k for each of 8 randomisations"));
+	assert_non_null(
+	    strstr(uneven.err, "pound: note: 1000 rows are not a power of two for each of 8 randomisations"));
 	// a study that can only be run elsewhere
 	assert_non_null(strstr(run.err, "`pound design'"));
 	assert_non_null(strstr(run.err, "`pound indices'"));

@@ -609,7 +609,7 @@ static void a_design_that_grows_is_that_of_its_first_look(void **state)
 	assert_non_null(json);
 	struct reading *result = reading_open(json, n);
 	assert_false(reading_has(result, "/partial") || reading_has(result, "/stopping"));
-	assert_non_null(strstr(reading_text(result, "/design/note"), "rows of its first look"));
+	assert_non_null(strstr(reading_text(result, "/design/note"), "these are its first"));
 	// y is the first input
 	check_near(index_of(result, 0, 0, "S1_raw"), 1.0, 0.05);
 	check_near(index_of(result, 0, 1, "ST_raw"), 0.0, 0.0);
