@@ -145,7 +145,7 @@ bool csv_number(const struct csv *csv, double *value)
 bool csv_is_text(struct csv *csv)
 {
 	const char *at = csv->at;
-	for (size_t n; at < csv->end && (n = gate_character(at, (size_t)(csv->end - at))) > 0; at += n)
+	for (size_t n; at < csv->end && (n = json_strict_character(at, (size_t)(csv->end - at))) > 0; at += n)
 		csv->line += *at == '\n';
 	if (at < csv->end)
 		csv_complain(csv, NULL, "is not UTF-8");

@@ -218,7 +218,7 @@ void head_key(struct head *head)
 	int characters = 0;
 	if (head->key.lines == 0)
 		return;
-	for (; at < end && (n = gate_character(at, (size_t)(end - at))) > 0; at += n)
+	for (; at < end && (n = json_strict_character(at, (size_t)(end - at))) > 0; at += n)
 		characters++;
 	if (head->key.lines > 1)
 		head_refuse(head, API_BAD_REQUEST, false, "a request must not have more than one Idempotency-Key");

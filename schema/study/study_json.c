@@ -1,6 +1,6 @@
 /* study_json.c - the bytes of a study document -> the study.
  *
- * 1. the gate and the parser: text -> tree, or where it is not JSON;
+ * 1. the strict check and the parser: text -> tree, or where it is not JSON;
  * 2. the tree is walked beside the rows of fields.c: each member known, used, there once, of its type, in range;
  * 3. study_check.c looks at what members mean together.
  *
@@ -358,7 +358,7 @@ static void sceneless(struct reader *r)
 
 static struct pound_study *study_read(const char *text, size_t length, bool design, struct problems *problems)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	problems_init(problems);
 	cJSON *document = json_parse(text, length, &fault);
 	if (!document && fault.line) {

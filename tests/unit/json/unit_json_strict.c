@@ -19,12 +19,12 @@ struct text {
 
 static bool passes(const char *bytes, size_t length)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	// a copy without a zero behind it, so that a sanitizer sees a byte read too many
 	char *copy = malloc(length ? length : 1);
 	assert_non_null(copy);
 	memcpy(copy, bytes, length);
-	bool strict = gate_check(copy, length, &fault);
+	bool strict = json_strict_check(copy, length, &fault);
 	free(copy);
 	if (!strict) {
 		assert_true(fault.line >= 1 && fault.column >= 1);
@@ -268,8 +268,8 @@ static void the_place_of_a_fault_is_its_line_and_column(void **state)
 	    {"[\f]", 1, 2, "expected a value, found the byte 0x0C"},
 	};
 	for (int i = 0; i < COUNT(cases); i++) {
-		struct gate_fault fault = {0};
-		assert_false(gate_check(cases[i].text, strlen(cases[i].text), &fault));
+		struct json_fault fault = {0};
+		assert_false(json_strict_check(cases[i].text, strlen(cases[i].text), &fault));
 		assert_string_equal(fault.detail, cases[i].detail);
 		assert_int_equal(fault.line, cases[i].line);
 		assert_int_equal(fault.column, cases[i].column);
@@ -298,12 +298,12 @@ static void each_limit_is_allowed_and_one_more_is_not(void **state)
 	    repeated_passes("[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[", "", 0, "]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]"));
 	assert_false(
 	    repeated_passes("[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[", "", 0, "]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]"));
-	assert_true(repeated_passes("\"", "x", GATE_STRING_MAX, "\""));
-	assert_false(repeated_passes("\"", "x", GATE_STRING_MAX + 1, "\""));
-	assert_true(repeated_passes("{\"a\":1", ",\"a\":1", GATE_MEMBERS_MAX - 1, "}"));
-	assert_false(repeated_passes("{\"a\":1", ",\"a\":1", GATE_MEMBERS_MAX, "}"));
-	assert_true(repeated_passes("0.", "1", GATE_NUMBER_MAX - 2, ""));
-	assert_false(repeated_passes("0.", "1", GATE_NUMBER_MAX - 1, ""));
+	assert_true(repeated_passes("\"", "x", JSON_STRING_MAX, "\""));
+	assert_false(repeated_passes("\"", "x", JSON_STRING_MAX + 1, "\""));
+	assert_true(repeated_passes("{\"a\":1", ",\"a\":1", JSON_MEMBERS_MAX - 1, "}"));
+	assert_false(repeated_passes("{\"a\":1", ",\"a\":1", JSON_MEMBERS_MAX, "}"));
+	assert_true(repeated_passes("0.", "1", JSON_NUMBER_MAX - 2, ""));
+	assert_false(repeated_passes("0.", "1", JSON_NUMBER_MAX - 1, ""));
 	assert_true(repeated_passes("[0", ",0", 100000, "]"));
 	assert_false(repeated_passes("", "[", 100000, ""));
 	assert_false(repeated_passes("", "{\"a\":", 100000, ""));
