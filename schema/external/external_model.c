@@ -1,4 +1,4 @@
-/* external_model.c - a model that is run elsewhere: the rows of a design as CSV, and the indexes of its outputs from CSV.
+/* external_model.c - a model that is run elsewhere: the rows of a design as CSV, and the indices of its outputs from CSV.
  *
  * 1. The header says what each column is: an output, an output's variance, or an input.
  * 2. The lines after it are the samples of the design, in its order; inputs, where they are, must be those of the design.
@@ -204,7 +204,7 @@ struct line {
 	int row, sample;
 	double x[POUND_INPUTS_MAX];
 	double *value, *variance; /* (n_outputs) each */
-	bool strange;             /* an input that is not the design's was told */
+	bool strange;             /* an input that is not the design's was reported */
 };
 
 /* An input that was written with a few digits only is still the design's. */

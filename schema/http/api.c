@@ -106,7 +106,7 @@ bool api_takes(const struct api_argument *argument, const char *value)
 	return *value >= '0' && *value <= '9' && !*rest && number >= argument->min && number <= argument->max;
 }
 
-/* 16 hexadecimal digits at `text`: the id they stand for, else -1. */
+/* 16 hexadecimal digits at `text`: the id, else -1. */
 static long long id_at(const char *text)
 {
 	char digits[17] = {0};
@@ -130,7 +130,7 @@ static bool matches(const char *path, const char *form, long long *id)
 
 /* Finds the operation of a request.
  *
- * Given    method   as it came; HEAD stands for GET
+ * Given    method   as it came; HEAD is treated as GET
  *          path     decoded, without arguments
  * Returns  id       of the study in the path, 0: none
  *          allow    methods of the path, for the header; "": there is no such path

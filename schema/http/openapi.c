@@ -310,8 +310,8 @@ static void failures(struct writer *w, const struct api_operation *operation)
 	unsigned faults = api_faults_of_all | operation->faults;
 	for (int first = 0; first < API_NO_FAULT; first++) {
 		char status[8], text[256] = "";
-		bool told = first > 0 && api_faults[first - 1].status == api_faults[first].status;
-		for (int i = first; !told && i < API_NO_FAULT && api_faults[i].status == api_faults[first].status;
+		bool listed = first > 0 && api_faults[first - 1].status == api_faults[first].status;
+		for (int i = first; !listed && i < API_NO_FAULT && api_faults[i].status == api_faults[first].status;
 		     i++)
 			if ((faults >> i & 1) && !(operation->open && i == API_UNAUTHORIZED))
 				strcat(strcat(text, *text ? ", or " : ""), api_faults[i].title);

@@ -212,7 +212,7 @@ static bool member(struct scan *scan, int n)
 	return value(scan);
 }
 
-/* What stands between brackets, the current place being on the opening one. */
+/* The members or elements between brackets, from the opening one on. */
 static bool list(struct scan *scan, char close)
 {
 	if (scan->depth == JSON_DEPTH_MAX)

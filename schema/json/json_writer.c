@@ -108,7 +108,7 @@ static void quote(struct writer *writer, const char *text)
 	put(writer, "\"");
 }
 
-/* What stands before a value: the comma, the place, the name. */
+/* Writes what comes before a value: comma, line break, name. */
 static void lead(struct writer *writer, const char *name)
 {
 	if (writer->depth == 0)

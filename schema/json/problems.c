@@ -72,7 +72,7 @@ void problems_exceed(struct problems *problems, const char *pointer, double requ
 	va_end(arguments);
 }
 
-/* Whether a member or something in it was found wrong, so that what stands on it need not be looked at.
+/* Whether a member or something in it was found wrong, so that checks that depend on it can be left out.
  *
  * Test     unit_problems: a_problem_is_at_its_pointer_and_all_above_it
  */

@@ -116,7 +116,7 @@ static void write_estimate(struct writer *w, const char *name, const struct poun
 	writer_number(w, member, estimate->high);
 }
 
-/* All there is to say about an output's indexes, in one text. */
+/* All notes about an output's indices, in one text. */
 static void write_notes(struct writer *w, const struct pound_indices *indices)
 {
 	char text[2048];
@@ -191,7 +191,7 @@ struct sets {
 	struct result_notes_source source;
 };
 
-/* Indices of sets of inputs; nothing where the design tells none. */
+/* Indices of sets of inputs; nothing if the design gives none. */
 static void write_sets(struct writer *w, const struct pound_study *study, const struct sets *sets)
 {
 	if (sets->n == 0)
@@ -215,7 +215,7 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 	writer_end(w);
 }
 
-/* The indexes of ratios and of the inputs in none; nothing where none were asked. */
+/* The indices of ratios and of the remaining inputs; nothing if none were requested. */
 static void write_ratios(struct writer *w, const struct pound_study *study,
                          const struct pound_indices *indices)
 {

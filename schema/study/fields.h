@@ -1,4 +1,4 @@
-/* fields.h - every member of a study document: one row each, to read, check, vary and tell it by.
+/* fields.h - every member of a study document: one row each, by which it is read, checked, varied and described.
  *
  * A row is found by its pattern: the JSON Pointer with * for an index.  Constant; any thread. */
 #ifndef FIELDS_H

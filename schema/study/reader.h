@@ -38,7 +38,7 @@ int reader_each(struct reader *reader, const struct field *field, const cJSON *n
 /* Reads numbers, each as `element` says, into the study's own memory, NAN for one that is wrong; their number. */
 int reader_numbers(struct reader *reader, const struct field *field, const struct field *element,
                    const cJSON *node, const double **numbers);
-/* Notes every number that stands before too, as that of a `what`. */
+/* Reports every number that occurs before, too, as that of a `what`. */
 void reader_distinct(struct reader *reader, const double *numbers, int n, const char *what);
 
 /* Objects: study_json.c. */

@@ -1,6 +1,6 @@
 /* study_check.c - what the members of a study mean together: paths, reaches of varied fields, outputs, solvers.
  *
- * A check is left out when a member it stands on is wrong itself: one mistake, one problem. */
+ * A check is left out when a member it depends on is wrong itself: one mistake, one problem. */
 #include "schema/study/study_check.h"
 
 #include <math.h>
@@ -93,9 +93,9 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 	}
 }
 
-/* Names of inputs and ratios are columns and rows of results: each must stand for one thing.
+/* Names of inputs and ratios are columns and rows of results: each must be unique.
  *
- * Given    list, n   of the name: "inputs" or "ratios", and how many stand before it there
+ * Given    list, n   of the name: "inputs" or "ratios", and its index there
  */
 static void check_name(const struct pound_study *study, const char *list, int n, const char *name,
                        struct problems *problems)
@@ -106,7 +106,7 @@ static void check_name(const struct pound_study *study, const char *list, int n,
 	snprintf(pointer, sizeof pointer, "/%s/%d/name", list, n);
 	for (int k = 0; name && k < (ratio ? study->n_inputs : n); k++) {
 		const struct pound_input *other = &study->inputs[k];
-		// two absent names are alike where two paths are, which is told by itself
+		// two absent names are alike where two paths are, which is reported by itself
 		if (other->name && strcmp(other->name, name) == 0 && !(is_path && other->name == other->path)) {
 			problems_add(problems, pointer, "is already the name of /inputs/%d", k);
 			return;
@@ -119,7 +119,7 @@ static void check_name(const struct pound_study *study, const char *list, int n,
 		}
 }
 
-/* The columns of the samples must be told apart too: no input has the name of another column. */
+/* The columns of the samples must be different, too: no input has the name of another column. */
 static void check_names(const struct pound_study *study, struct problems *problems)
 {
 	for (int k = 0; k < study->n_ratios; k++)
@@ -478,7 +478,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 			study_size_check_rows(study, problems);
 		return;
 	}
-	// each as soon as what it reads is known, so that all is told at once
+	// each as soon as what it reads is known, so that all is reported at once
 	check_supports(study, problems);
 	check_excitation(study, problems);
 	if (problems_at(problems, "/sweep"))

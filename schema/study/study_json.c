@@ -26,7 +26,7 @@ struct block {
 	struct pound_study study;
 	struct pound_input inputs[POUND_INPUTS_MAX];
 	struct pound_sweep sweeps[POUND_SWEEPS_MAX];
-	double numbers[]; /* samples and sweep values; texts stand behind them */
+	double numbers[]; /* samples and sweep values; texts follow them */
 };
 
 /* ---- objects ---- */
@@ -191,7 +191,7 @@ static void read_design(struct reader *r, const struct field *field, const cJSON
 static void read_oscillator(struct reader *r, const cJSON *node, int i)
 {
 	struct pound_oscillator *oscillator = &r->study->scene.oscillators[i];
-	// rows are told for the first oscillator
+	// offsets in fields.c are those of the first oscillator
 	char *base = (char *)r->study + (size_t)i * sizeof *oscillator;
 	const cJSON *wall = cJSON_GetObjectItemCaseSensitive(node, "rigid_wall");
 	if (!cJSON_IsTrue(wall)) {
@@ -270,7 +270,7 @@ static const struct {
     {"/convergence/adaptive/tolerances", reader_settings},
 };
 
-/* Reads whatever stands at a field: by its own function if it has one, else by its type. */
+/* Reads the value of a field: by its own function if it has one, else by its type. */
 void reader_value(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	for (size_t i = 0; i < sizeof readers / sizeof readers[0]; i++)

@@ -46,7 +46,7 @@ static void require_parameter(struct reader *r, const cJSON *node, const char *n
 	reader_leave(r, length);
 }
 
-/* Reads the parameters of a distribution whose type is known, and tells every rule that they break. */
+/* Reads the parameters of a distribution whose type is known, and reports every rule that they break. */
 static void read_parameters(struct reader *r, struct pound_distribution *distribution, const cJSON *node,
                             const cJSON *type)
 {
@@ -182,7 +182,7 @@ void reader_values(struct reader *r, const struct field *field, const cJSON *nod
 {
 	struct pound_sweep *sweep = (struct pound_sweep *)base;
 	if (!r->swept)
-		return; // the path is the problem, told by study_check.c
+		return; // the path is the problem, reported by study_check.c
 	sweep->n_values = reader_numbers(r, field, r->swept, node, &sweep->values);
 	reader_distinct(r, sweep->values, sweep->n_values, "value");
 }
