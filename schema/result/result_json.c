@@ -465,7 +465,7 @@ static void leave_out(struct writer *w, int64_t n, const char *what, const char 
 /* What was not needed, in sentences, from the counts alone. */
 static void write_left_out(struct writer *w, const struct pound_study *study, const struct pound_work *work)
 {
-	static const char repeated[] = "equal to one already made", unasked[] = "not needed by any output";
+	static const char repeated[] = "equal to one already made", unasked[] = "no output needs them";
 	static const char linear[] = "linear responses without pounding",
 	                  nonlinear[] = "nonlinear responses without pounding",
 	                  with[] = "responses with pounding";

@@ -1,5 +1,6 @@
 /* field_types.c - one row for each type of field, behind the functions that it names. */
 #include "schema/study/field_types.h"
+#include "schema/study/near_name.h"
 
 #include <assert.h>
 #include <math.h>
@@ -119,13 +120,13 @@ static const char *nearest_choice(const char *(*choice)(int row), const char *na
 	const char *nearest = NULL;
 	int best = 1000;
 	for (int row = 0; choice(row); row++) {
-		int distance = fields_distance(name, choice(row));
+		int distance = near_name_distance(name, choice(row));
 		if (distance < best) {
 			best = distance;
 			nearest = choice(row);
 		}
 	}
-	return fields_near(best, name) ? nearest : NULL;
+	return near_name(best, name) ? nearest : NULL;
 }
 
 static void choice_expected(const struct field *field, char *text, size_t size)

@@ -71,10 +71,6 @@ int fields_choice(const char *(*choice)(int row), const char *name);
 /* The field that a JSON Pointer into "scene" names, and the oscillator in it (-1: none); NULL: none. */
 const struct field *fields_scene(const char *path, int *oscillator);
 
-/* How unlike two names are: letters to change, or 1 when one is the start of the other. */
-int fields_distance(const char *a, const char *b);
-bool fields_near(int distance, const char *name);
-
 /* The field of the scene nearest to a mistyped path, as a path; false: none is near. */
 bool fields_nearest_path(const char *path, char *nearest, size_t size);
 

@@ -14,6 +14,7 @@
 
 #include "schema/json/json.h"
 #include "schema/study/field_types.h"
+#include "schema/study/near_name.h"
 #include "schema/study/reader.h"
 #include "schema/study/study_check.h"
 #include "schema/study/study_spectrum.h"
@@ -48,13 +49,13 @@ static void unknown(struct reader *r, const char *pattern, const char *name)
 		    !fields_used(&fields[i], r->kind, r->excitation, r->solver) ||
 		    (r->study->elsewhere && fields[i].sceneless == FIELD_UNUSED))
 			continue;
-		int distance = fields_distance(name, fields_name(&fields[i]));
+		int distance = near_name_distance(name, fields_name(&fields[i]));
 		if (distance < best) {
 			best = distance;
 			nearest = &fields[i];
 		}
 	}
-	if (nearest && fields_near(best, name))
+	if (nearest && near_name(best, name))
 		problems_add(r->problems, r->pointer, "unknown member, did you mean \"%s\"?", fields_name(nearest));
 	else
 		problems_add(r->problems, r->pointer, "unknown member");

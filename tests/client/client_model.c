@@ -98,8 +98,8 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 	ishigami(study, outputs);
 	static const struct {
 		const char *input, *words;
-	} bad[] = {{"y\n1\n", "has 1 lines after its header, the design has 5000"},
-	           {"", "is empty: a header is expected"}};
+	} bad[] = {{"y\n1\n", "has 1 lines after the header, expected 5000"},
+	           {"", "is empty; expected a header"}};
 	for (int i = 0; i < 2; i++) {
 		struct program_outcome refused =
 		    program_run((const char *const[]){"pound", "indices", study, "-", NULL}, bad[i].input);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "schema/study/fields.h"
+#include "schema/study/near_name.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
 
@@ -111,18 +112,18 @@ static void a_slip_of_the_pen_is_near_and_a_stranger_is_not(void **state)
 	    {"ca", "abc", 3},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-		assert_int_equal(fields_distance(cases[i].a, cases[i].b), cases[i].distance);
-		assert_int_equal(fields_distance(cases[i].b, cases[i].a), cases[i].distance);
+		assert_int_equal(near_name_distance(cases[i].a, cases[i].b), cases[i].distance);
+		assert_int_equal(near_name_distance(cases[i].b, cases[i].a), cases[i].distance);
 	}
-	assert_true(fields_near(1, "gap"));
-	assert_false(fields_near(2, "gap"));
-	assert_true(fields_near(3, "restitution"));
-	assert_false(fields_near(4, "restitution"));
+	assert_true(near_name(1, "gap"));
+	assert_false(near_name(2, "gap"));
+	assert_true(near_name(3, "restitution"));
+	assert_false(near_name(4, "restitution"));
 	// longer than any table of distances
 	char lengthy[5000];
 	memset(lengthy, 'x', sizeof lengthy - 1);
 	lengthy[sizeof lengthy - 1] = 0;
-	assert_false(fields_near(fields_distance(lengthy, "restitution"), lengthy));
+	assert_false(near_name(near_name_distance(lengthy, "restitution"), lengthy));
 }
 
 static void kind_excitation_and_solver_decide_what_is_used(void **state)
