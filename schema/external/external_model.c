@@ -1,4 +1,4 @@
-/* external_model.c - a model that is run elsewhere: the rows of a design as CSV, and the indexes of its outputs from CSV.
+/* external_model.c - a model that is run elsewhere: the rows of a design as CSV, and the indices of its outputs from CSV.
  *
  * 1. The header says what each column is: an output, an output's variance, or an input.
  * 2. The lines after it are the samples of the design, in its order; inputs, where they are, must be those of the design.
@@ -7,13 +7,11 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-#include "schema/json/json_strict.h"
+#include "schema/external/csv_reader.h"
 #include "schema/json/json_writer.h"
 #include "schema/result/result_json.h"
 
@@ -55,18 +53,7 @@ char *model_rows(const struct pound_study *study, const struct pound_run *run, i
 	return writer_take(&w, length);
 }
 
-/* ---- cells in ---- */
-
-enum {
-	CELL_SIZE = 512, /* room for the longest name of an input, 100 characters of 4 bytes */
-	LINES_TOLD = 3,
-};
-
-/* A fault that many lines may have: it is told once, with the first of them. */
-struct fault {
-	int n, lines[LINES_TOLD]; /* how many lines have it; the first ones */
-	char what[200];           /* of the first of all */
-};
+/* ---- columns ---- */
 
 // squares of outputs, and products of those, are still doubles
 static const double OUTPUT_MOST = 1e60, VARIANCE_MOST = 1e120;
@@ -74,163 +61,13 @@ static const double OUTPUT_MOST = 1e60, VARIANCE_MOST = 1e120;
 /* What can be wrong with a cell, but for its header. */
 enum fault_kind { FAULT_NUMBER, FAULT_RANGE, FAULT_INPUT, N_FAULTS };
 
-struct csv {
-	const char *at, *end;
-	int line;             /* of the cell in hand, from 1 */
-	bool ended;           /* the cell in hand is the last of its line */
-	char cell[CELL_SIZE]; /* without quotes and the spaces around it */
-	bool cut;             /* it was longer */
-	struct fault length;  /* a line has another number of cells than the header */
-	struct problems *problems;
-};
-
-/* Tells a fault of the line in hand. */
-static void complain(const struct csv *csv, const char *column, const char *what)
-{
-	char place[CELL_SIZE + 80]; // problems_add() cuts it where it is too long
-	snprintf(place, sizeof place, column ? "line %d, %s" : "line %d", csv->line, column);
-	problems_add(csv->problems, place, "%s", what);
-}
-
-/* Keeps a fault of the line in hand, to be told with those of the others. */
-static void fault_note(struct fault *fault, const struct csv *csv, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static void fault_note(struct fault *fault, const struct csv *csv, const char *format, ...)
-{
-	if (fault->n < LINES_TOLD)
-		fault->lines[fault->n] = csv->line;
-	if (fault->n++ > 0)
-		return;
-	va_list arguments;
-	va_start(arguments, format);
-	vsnprintf(fault->what, sizeof fault->what, format, arguments);
-	va_end(arguments);
-}
-
-/* Tells a fault of all lines: "line 7, y: ...", or "lines 7, 9, 12 and 30 more, y: ... (line 7)". */
-static void fault_tell(const struct fault *fault, const char *column, struct problems *problems)
-{
-	char place[CELL_SIZE + 80]; // problems_add() cuts it where it is too long
-	int n = 0;
-	if (fault->n == 0)
-		return;
-	for (int k = 0; k < fault->n && k < LINES_TOLD; k++)
-		n += snprintf(place + n, sizeof place - (size_t)n, "%s%d",
-		              k > 0          ? ", "
-		              : fault->n > 1 ? "lines "
-		                             : "line ",
-		              fault->lines[k]);
-	if (fault->n > LINES_TOLD)
-		n += snprintf(place + n, sizeof place - (size_t)n, " and %d more", fault->n - LINES_TOLD);
-	snprintf(place + n, sizeof place - (size_t)n, "%s%s", column ? ", " : "", column ? column : "");
-	if (fault->n > 1)
-		problems_add(problems, place, "%s (line %d)", fault->what, fault->lines[0]);
-	else
-		problems_add(problems, place, "%s", fault->what);
-}
-
-/* Takes spaces off both ends. */
-static void trim(char *text)
-{
-	size_t lead = strspn(text, " \t"), n = strlen(text + lead);
-	memmove(text, text + lead, n + 1);
-	while (n && (text[n - 1] == ' ' || text[n - 1] == '\t'))
-		text[--n] = 0;
-}
-
-/* Reads the next cell of a line: up to a comma, the end of the line or that of the text.
- *
- * Source   RFC 4180; a quoted cell may not hold an end of line here
- */
-static void cell_read(struct csv *csv)
-{
-	size_t n = 0;
-	bool quoted = false, closed = false; // inside quotes, right behind them
-	csv->cut = false;
-	for (; csv->at < csv->end && *csv->at != '\n' && (quoted || *csv->at != ','); csv->at++) {
-		const bool quote = *csv->at == '"', doubled = quote && closed;
-		closed = quote && quoted;
-		quoted ^= quote;
-		if (quote && !doubled)
-			continue;
-		if (n < CELL_SIZE - 1)
-			csv->cell[n++] = *csv->at;
-		else
-			csv->cut = true;
-	}
-	csv->ended = csv->at == csv->end || *csv->at == '\n';
-	csv->at += csv->at < csv->end;
-	if (csv->ended && n && csv->cell[n - 1] == '\r')
-		n--;
-	csv->cell[n] = 0;
-	trim(csv->cell);
-}
-
-/* Lines from here on, blank ones too: the only cell of a line may be empty. */
-static int lines_left(const struct csv *csv)
-{
-	int n = 0;
-	for (const char *at = csv->at; at < csv->end; n++) {
-		const char *newline = memchr(at, '\n', (size_t)(csv->end - at));
-		at = newline ? newline + 1 : csv->end;
-	}
-	return n;
-}
-
-static bool blank(const char *at, const char *end)
-{
-	for (; at < end; at++)
-		if (*at != '\n' && *at != '\r')
-			return false;
-	return true;
-}
-
-/* Whether a text is a decimal number: C's strtod would take 0x10 and inf too. */
-static bool is_decimal(const char *text)
-{
-	size_t n = strspn(text, "+-") <= 1 ? strspn(text, "+-") : 0;
-	size_t whole = strspn(text + n, "0123456789"), part = 0;
-	n += whole;
-	if (text[n] == '.')
-		part = strspn(text + n + 1, "0123456789"), n += 1 + part;
-	if (whole + part == 0)
-		return false;
-	if (text[n] == 'e' || text[n] == 'E') {
-		n += 1 + (text[n + 1] == '+' || text[n + 1] == '-');
-		if (!strspn(text + n, "0123456789"))
-			return false;
-		n += strspn(text + n, "0123456789");
-	}
-	return !text[n];
-}
-
-/* What marks a failed run: an empty cell, "nan", "NA". */
-static bool is_failed(const char *text)
-{
-	return !*text || strcasecmp(text, "nan") == 0 || strcmp(text, "NA") == 0;
-}
-
-/* The number in the cell in hand, NAN for the mark of a failed run; false: it is neither, or no double holds it. */
-static bool cell_number(const struct csv *csv, double *value)
-{
-	*value = NAN;
-	if (is_failed(csv->cell))
-		return true;
-	if (csv->cut || !is_decimal(csv->cell))
-		return false;
-	*value = strtod(csv->cell, NULL);
-	return isfinite(*value);
-}
-
-/* ---- columns ---- */
-
 enum role { ROLE_OUTPUT, ROLE_VARIANCE, ROLE_INPUT, ROLE_OTHER };
 
 struct column {
 	char *name;
 	enum role role;
 	int index; /* of the output or the input */
-	struct fault faults[N_FAULTS];
+	struct csv_fault faults[N_FAULTS];
 };
 
 struct outputs {
@@ -290,14 +127,15 @@ static void columns_join(struct outputs *outputs, struct csv *csv)
 		int of = column_named(outputs, outputs->n_columns, column->name,
 		                      strlen(column->name) - (sizeof VARIANCE - 1));
 		if (of < 0 || outputs->columns[of].role != ROLE_OUTPUT)
-			complain(csv, column->name, "is the variance of no column here");
+			csv_complain(csv, column->name, "is the variance of an output that has no column");
 		else
 			column->index = outputs->columns[of].index;
 	}
 	outputs->study.n_outputs = n_outputs;
 	outputs->study.output_names = outputs->names;
 	if (n_outputs == 0)
-		complain(csv, NULL, "names no output: a column for each, and NAME.variance where it is known");
+		csv_complain(csv, NULL,
+		             "has no output column; expected one per output, and NAME.variance where that is known");
 }
 
 static void column_read(struct outputs *outputs, struct csv *csv)
@@ -305,8 +143,8 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	double number;
 	int c = outputs->n_columns;
 	struct column *column = &outputs->columns[c];
-	char what[CELL_SIZE + 80];
-	cell_read(csv);
+	char what[CSV_CELL_SIZE + 80];
+	csv_read(csv);
 	column->name = strdup(csv->cell);
 	if (!column->name) {
 		csv->problems->status = PROBLEMS_NOMEM;
@@ -315,32 +153,19 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	outputs->n_columns++;
 	column_role(outputs, column);
 	int same = column_named(outputs, c, column->name, strlen(column->name));
-	snprintf(what, sizeof what, "column %d has no name: pandas writes its index so, but for index=False",
+	snprintf(what, sizeof what, "column %d has no name; pandas writes its index this way unless index=False",
 	         c + 1);
 	if (!*csv->cell)
-		complain(csv, NULL, what);
+		csv_complain(csv, NULL, what);
 	snprintf(what, sizeof what, "must be the name of a column, got \"%.40s\"", csv->cell);
-	if (*csv->cell && cell_number(csv, &number) && !isnan(number))
-		complain(csv, NULL, what);
-	snprintf(what, sizeof what, "must be shorter than %d bytes", CELL_SIZE);
+	if (*csv->cell && csv_number(csv, &number) && !isnan(number))
+		csv_complain(csv, NULL, what);
+	snprintf(what, sizeof what, "must be shorter than %d bytes", CSV_CELL_SIZE);
 	if (csv->cut)
-		complain(csv, column->name, what);
-	snprintf(what, sizeof what, "is the name of column %d too", same + 1);
+		csv_complain(csv, column->name, what);
+	snprintf(what, sizeof what, "is already the name of column %d", same + 1);
 	if (same >= 0)
-		complain(csv, column->name, what);
-}
-
-/* Whether the text is UTF-8; the line in hand is the first that is not. */
-static bool is_text(struct csv *csv)
-{
-	const char *at = csv->at;
-	for (size_t n; at < csv->end && (n = gate_character(at, (size_t)(csv->end - at))) > 0; at += n)
-		csv->line += *at == '\n';
-	if (at < csv->end)
-		complain(csv, NULL, "is not UTF-8");
-	else
-		csv->line = 1;
-	return at == csv->end;
+		csv_complain(csv, column->name, what);
 }
 
 /* The first line: what each column is. */
@@ -348,15 +173,14 @@ static bool header_read(struct outputs *outputs, struct csv *csv)
 {
 	const char *newline = memchr(csv->at, '\n', (size_t)(csv->end - csv->at));
 	size_t n = (size_t)((newline ? newline : csv->end) - csv->at), n_columns = 1;
-	if (blank(csv->at, csv->end)) {
-		problems_add(csv->problems, "",
-		             "is empty: a header is expected, and a line for each sample of the design");
+	if (csv_blank(csv->at, csv->end)) {
+		problems_add(csv->problems, "", "is empty; expected a header and one line per sample of the design");
 		return false;
 	}
 	for (size_t i = 0; i < n; i++)
 		n_columns += csv->at[i] == ',';
 	if (n_columns == 1 && (memchr(csv->at, ';', n) || memchr(csv->at, '\t', n))) {
-		complain(csv, NULL, "has no comma: columns are parted by commas");
+		csv_complain(csv, NULL, "has no comma; columns must be separated by commas");
 		return false;
 	}
 	outputs->columns = calloc(n_columns, sizeof *outputs->columns);
@@ -380,7 +204,7 @@ struct line {
 	int row, sample;
 	double x[POUND_INPUTS_MAX];
 	double *value, *variance; /* (n_outputs) each */
-	bool strange;             /* an input that is not the design's was told */
+	bool strange;             /* an input that is not the design's was reported */
 };
 
 /* An input that was written with a few digits only is still the design's. */
@@ -395,26 +219,27 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 	double number;
 	if (column->role == ROLE_OTHER)
 		return;
-	if (!cell_number(csv, &number)) {
-		fault_note(&column->faults[FAULT_NUMBER], csv,
-		           "must be a decimal number, or empty or nan for a failed run, got \"%.60s\"", csv->cell);
+	if (!csv_number(csv, &number)) {
+		csv_fault_note(&column->faults[FAULT_NUMBER], csv,
+		               "must be a decimal number, or empty or nan for a failed run, got \"%.60s\"",
+		               csv->cell);
 	} else if (column->role == ROLE_OUTPUT) {
 		line->value[column->index] = number;
 		if (fabs(number) > OUTPUT_MOST)
-			fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g in size, got %.60s",
-			           OUTPUT_MOST, csv->cell);
+			csv_fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g in magnitude, got %.60s",
+			               OUTPUT_MOST, csv->cell);
 	} else if (column->role == ROLE_VARIANCE) {
 		line->variance[column->index] = isfinite(number) ? number : INFINITY;
 		if (number < 0)
-			fault_note(&column->faults[FAULT_RANGE], csv, "must be at least 0, got %.60s", csv->cell);
+			csv_fault_note(&column->faults[FAULT_RANGE], csv, "must be at least 0, got %.60s", csv->cell);
 		else if (number > VARIANCE_MOST)
-			fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g, got %.60s", VARIANCE_MOST,
-			           csv->cell);
+			csv_fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g, got %.60s", VARIANCE_MOST,
+			               csv->cell);
 	} else if (!line->strange && !alike(number, line->x[column->index])) {
-		fault_note(
+		csv_fault_note(
 		    &column->faults[FAULT_INPUT], csv,
-		    "is %.15g, but the design has %.15g there: is this its order and its seed, or was it rounded?",
-		    number, line->x[column->index]);
+		    "is %.15g, but the design has %.15g; check the order of the lines, the seed and rounding", number,
+		    line->x[column->index]);
 		line->strange = true;
 	}
 }
@@ -439,22 +264,22 @@ static void line_read(const struct outputs *outputs, struct csv *csv, struct lin
 	for (int o = 0; o < outputs->study.n_outputs; o++)
 		line->value[o] = line->variance[o] = NAN;
 	do {
-		cell_read(csv);
+		csv_read(csv);
 		if (n < outputs->n_columns)
 			cell_take(outputs, csv, line, n);
 		n++;
 	} while (!csv->ended);
 	if (n != outputs->n_columns)
-		fault_note(&csv->length, csv, "has %d cells, the header has %d", n, outputs->n_columns);
+		csv_fault_note(&csv->length, csv, "has %d cells, the header has %d", n, outputs->n_columns);
 	line_assign(outputs, line);
 }
 
-static void faults_tell(const struct outputs *outputs, const struct csv *csv)
+static void faults_report(const struct outputs *outputs, const struct csv *csv)
 {
-	fault_tell(&csv->length, NULL, csv->problems);
+	csv_fault_report(&csv->length, NULL, csv->problems);
 	for (int c = 0; c < outputs->n_columns; c++)
 		for (int kind = 0; kind < N_FAULTS; kind++)
-			fault_tell(&outputs->columns[c].faults[kind], outputs->columns[c].name, csv->problems);
+			csv_fault_report(&outputs->columns[c].faults[kind], outputs->columns[c].name, csv->problems);
 }
 
 /* All lines after the header into the run. */
@@ -463,7 +288,7 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 	double *numbers = calloc(2 * (size_t)outputs->study.n_outputs, sizeof *numbers);
 	struct line line = {.run = run, .value = numbers, .variance = numbers + outputs->study.n_outputs};
 	const int n_samples = pound_run_samples(run), rows = pound_run_rows(run);
-	int64_t wanted = (int64_t)rows * n_samples, there = lines_left(csv);
+	int64_t wanted = (int64_t)rows * n_samples, there = csv_lines_left(csv);
 	const char *after = csv->at;
 	for (int64_t k = 0; k < wanted && after < csv->end; k++) {
 		const char *newline = memchr(after, '\n', (size_t)(csv->end - after));
@@ -471,15 +296,15 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 	}
 	if (!numbers) {
 		csv->problems->status = PROBLEMS_NOMEM;
-	} else if (there < wanted || !blank(after, csv->end)) {
+	} else if (there < wanted || !csv_blank(after, csv->end)) {
 		problems_add(csv->problems, "",
-		             "has %lld lines after its header, the design has %lld: %d for each of %d rows",
+		             "has %lld lines after the header, expected %lld: %d samples for each of %d rows",
 		             (long long)there, (long long)wanted, n_samples, rows);
 	} else {
 		for (line.row = 0; line.row < rows; line.row++)
 			for (line.sample = 0; line.sample < n_samples; line.sample++)
 				line_read(outputs, csv, &line);
-		faults_tell(outputs, csv);
+		faults_report(outputs, csv);
 	}
 	free(numbers);
 }
@@ -489,7 +314,7 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 static void check_study(const struct pound_study *study, struct problems *problems)
 {
 	if (study->n_sweeps)
-		problems_add(problems, "/sweep", "outputs computed elsewhere are those of one cell, without a sweep");
+		problems_add(problems, "/sweep", "a study of an external model has one cell, so no sweep");
 }
 
 static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t *length)
@@ -526,7 +351,7 @@ char *model_indices(const struct pound_study *study, const char *csv, size_t csv
 		at.at += 3;
 	outputs.study.elsewhere = true;
 	check_study(study, problems);
-	if (problems->status == PROBLEMS_NONE && is_text(&at) && header_read(&outputs, &at)) {
+	if (problems->status == PROBLEMS_NONE && csv_is_text(&at) && header_read(&outputs, &at)) {
 		struct pound_run *run = pound_run_create(&outputs.study, 1);
 		if (run)
 			lines_read(&outputs, &at, run);
@@ -535,8 +360,7 @@ char *model_indices(const struct pound_study *study, const char *csv, size_t csv
 		if (json && pound_run_result(run)->cells[0].rows_dropped == pound_run_rows(run)) {
 			free(json);
 			json = NULL;
-			problems_add(problems, "",
-			             "no row of the design has all its outputs: there is nothing to make indexes of");
+			problems_add(problems, "", "no row of the design has all its outputs, so there are no indices");
 		}
 		pound_run_free(run);
 		if (!json && problems->status == PROBLEMS_NONE)

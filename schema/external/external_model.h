@@ -1,4 +1,4 @@
-/* external_model.h - sensitivity indexes of a model that is run elsewhere: the rows of a design out, the outputs in.
+/* external_model.h - sensitivity indices of a model that is run elsewhere: the rows of a design out, the outputs in.
  *
  * Every function returns bytes on the heap for the caller to free, zero-terminated too; NULL: out of memory, or what
  * `problems` says.  Any thread. */

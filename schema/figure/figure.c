@@ -139,7 +139,7 @@ enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
 enum figure_status figure_draw(const char *name, const struct figure_source *source,
                                const struct figure_choice *choice, struct figure *figure)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	const struct figure_row *row = figure_row(name);
 	*figure = (struct figure){0};
 	if (!row) {
@@ -180,7 +180,7 @@ static void write_row(struct writer *w, const struct figure_row *row, const char
 
 char *figure_list(const struct figure_source *source, const char *base, size_t *length)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	struct writer w;
 	cJSON *result = json_parse(source->json, source->length, &fault);
 	if (!result)
@@ -199,7 +199,7 @@ char *figure_list(const struct figure_source *source, const char *base, size_t *
 
 bool figure_has(const struct figure_row *row, const struct figure_source *source)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	cJSON *result = json_parse(source->json, source->length, &fault);
 	bool there = result && figure_shows(row, result);
 	cJSON_Delete(result);

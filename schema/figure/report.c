@@ -400,7 +400,7 @@ static void put_study(struct report *report, const char *study, size_t n_study)
  */
 char *report_html(const struct figure_source *source, const char *study, size_t n_study, size_t *length)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	cJSON *result = json_parse(source->json, source->length, &fault);
 	struct report report = {.source = source, .result = result};
 	if (!plot_is_result(result)) {

@@ -1,4 +1,4 @@
-/* What poundd can be asked and what it answers. */
+/* The interface of poundd: operations, their arguments and errors. */
 #include "schema/http/api.h"
 
 #include <stdio.h>
@@ -28,73 +28,73 @@ const unsigned api_faults_of_all = F(BAD_REQUEST) | F(UNAUTHORIZED) | F(NO_LENGT
 
 const struct api_operation api_operations[] = {
 	[API_submit]  = {"POST", "/v1/studies", "submit",
-	                 "hands over a study; answered when it is on disk", " 201=Status 200=Estimate ", .faults = BODY, .takes_study = true},
-	[API_list]    = {"GET", "/v1/studies", "list", "studies, newest first", " 200=Page ", .faults = 0},
-	[API_status]  = {"GET", "/v1/studies/{id}", "status", "how far a study is", " 200=Status 304 ", .faults = F(NOT_FOUND)},
+	                 "submits a study; the answer is sent when the study is on disk", " 201=Status 200=Estimate ", .faults = BODY, .takes_study = true},
+	[API_list]    = {"GET", "/v1/studies", "list", "lists studies, newest first", " 200=Page ", .faults = 0},
+	[API_status]  = {"GET", "/v1/studies/{id}", "status", "status and progress of a study", " 200=Status 304 ", .faults = F(NOT_FOUND)},
 	[API_erase]   = {"DELETE", "/v1/studies/{id}", "erase",
-	                 "removes a study, which is cancelled first if it has not ended", " 204 ", .faults = F(NOT_FOUND) | F(FOREIGN)},
+	                 "deletes a study; one that has not ended is canceled first", " 204 ", .faults = F(NOT_FOUND) | F(FOREIGN)},
 	[API_posted]  = {"GET", "/v1/studies/{id}/request", "posted",
-	                 "the bytes that were posted", " 200=Study 304 ", .faults = STORED},
+	                 "the study document as posted", " 200=Study 304 ", .faults = STORED},
 	[API_results] = {"GET", "/v1/studies/{id}/results", "results",
-	                 "the result", " 200=Result 304 ", .media = " text/csv ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	                 "the result of a study", " 200=Result 304 ", .media = " text/csv ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_samples] = {"GET", "/v1/studies/{id}/samples", "samples",
-	                 "every input row and its outputs, enough to compute the indexes again", " 200 304 ",
+	                 "all rows of inputs with their outputs, enough to recompute the raw indices", " 200 304 ",
 	                 .media = " text/csv application/octet-stream ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_figures] = {"GET", "/v1/studies/{id}/figures", "figures",
 	                 "the figures that the result has", " 200=Figures 304 ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_figure]  = {"GET", "/v1/studies/{id}/figures/{name}", "figure",
 	                 "a figure of the result", " 200 304 ", .media = " image/svg+xml ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_cancel]  = {"POST", "/v1/studies/{id}/cancel", "cancel",
-	                 "cancels a study that is queued or running", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT) | F(FOREIGN)},
-	[API_live]    = {"GET", "/livez", "live", "the process answers", " 200=Version ", .open = true},
-	[API_ready]   = {"GET", "/readyz", "ready", "studies are taken", " 200=Version ", .open = true},
-	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges for Prometheus", " 200 ", .media = " text/plain "},
-	[API_version] = {"GET", "/version", "version", "the version", " 200=Version ", .faults = 0},
+	                 "cancels a queued or running study", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT) | F(FOREIGN)},
+	[API_live]    = {"GET", "/livez", "live", "liveness: the process answers", " 200=Version ", .open = true},
+	[API_ready]   = {"GET", "/readyz", "ready", "readiness: the server accepts studies", " 200=Version ", .open = true},
+	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges in the Prometheus text format", " 200 ", .media = " text/plain "},
+	[API_version] = {"GET", "/version", "version", "name and version of the server", " 200=Version ", .faults = 0},
 	[API_example_list] = {"GET", "/v1/examples", "example_list", "names and titles of the example studies", " 200=Examples 304 ", .faults = 0},
-	[API_example] = {"GET", "/v1/examples/{name}", "example", "an example study", " 200=Study 304 ", .faults = F(NOT_FOUND)},
+	[API_example] = {"GET", "/v1/examples/{name}", "example", "an example study document", " 200=Study 304 ", .faults = F(NOT_FOUND)},
 	[API_home]    = {"GET", "/", "home", "the page that lists studies, for browsers", " 200 304 ", .media = " text/html ", .open = true},
 	[API_new]     = {"GET", "/new", "new", "the page that makes a study", " 200 304 ", .media = " text/html ", .open = true},
 	[API_study]   = {"GET", "/studies/{id}", "study", "the page of a study", " 200 304 ", .media = " text/html ", .open = true},
-	[API_style]   = {"GET", "/page.css", "style", "of the pages", " 200 304 ", .media = " text/css ", .open = true},
-	[API_script]  = {"GET", "/page.js", "script", "of the pages", " 200 304 ", .media = " text/javascript ", .open = true},
-	[API_icon]    = {"GET", "/icon.svg", "icon", "of the pages", " 200 304 ", .media = " image/svg+xml ", .open = true},
+	[API_style]   = {"GET", "/page.css", "style", "style sheet of the pages", " 200 304 ", .media = " text/css ", .open = true},
+	[API_script]  = {"GET", "/page.js", "script", "script of the pages", " 200 304 ", .media = " text/javascript ", .open = true},
+	[API_icon]    = {"GET", "/icon.svg", "icon", "icon of the pages", " 200 304 ", .media = " image/svg+xml ", .open = true},
 	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 ", .faults = 0},
 };
 
 const struct api_argument api_arguments[] = {
-	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "of the study: 16 hexadecimal digits"},
-	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", .text = "true: checks the study, tells its cost and stores nothing"},
-	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, .text = "1 to 200 characters of UTF-8; the same key and body again give the study of the first time"},
-	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies of this status", .blank = true},
-	{"list",    "limit",           "query",  NULL, 1, 100, "20", .text = "studies on a page", .blank = true},
-	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, .text = "the next of an earlier page", .blank = true},
-	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, .text = "wait=N: with If-None-Match, waits up to N seconds for a change, or as long as the server lets it"},
-	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"results", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
-	{"results", "format",          "query",  " json csv ", 0, 0, NULL, .text = "wins over Accept"},
-	{"results", "table",           "query",  TABLES, 0, 0, NULL, .text = "of a sensitivity result, as CSV; inputs when it is CSV and this is absent"},
-	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, .text = "wins over Accept"},
-	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"figures", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
-	{"figures", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"figure",  "name",            "path",   NAMES, 0, 0, NULL, .text = "of the figure"},
-	{"figure",  "partial",         "query",  " true false ", 0, 0, "false", .text = "true: of the rows that are complete so far, if there is no result yet"},
-	{"figure",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "id of the study: 16 hexadecimal digits"},
+	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", .text = "true: checks the study and estimates its cost; nothing is stored"},
+	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, .text = "1 to 200 characters of UTF-8; repeating a request with the same key and body returns the first study"},
+	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies with this status", .blank = true},
+	{"list",    "limit",           "query",  NULL, 1, 100, "20", .text = "number of studies per page", .blank = true},
+	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, .text = "the member next of the previous page", .blank = true},
+	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, .text = "wait=N: with If-None-Match, waits for a change up to N seconds or the limit of the server"},
+	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"results", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: if there is no result yet, that of the rows completed so far"},
+	{"results", "format",          "query",  " json csv ", 0, 0, NULL, .text = "format of the answer; takes precedence over Accept"},
+	{"results", "table",           "query",  TABLES, 0, 0, NULL, .text = "which table of a sensitivity result, as CSV (default: inputs)"},
+	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, .text = "format of the answer; takes precedence over Accept"},
+	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"figures", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: if there is no result yet, that of the rows completed so far"},
+	{"figures", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"figure",  "name",            "path",   NAMES, 0, 0, NULL, .text = "name of the figure"},
+	{"figure",  "partial",         "query",  " true false ", 0, 0, "false", .text = "true: if there is no result yet, that of the rows completed so far"},
+	{"figure",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 #define X(name, values, lowest, highest, meaning) {"figure", #name, "query", values, lowest, highest, NULL, .text = meaning},
 	FIGURE_ARGUMENTS(X)
 #undef X
-	{"example", "name",            "path",   NULL, 0, 0, NULL, .text = "of the example"},
-	{"example_list", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"example", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"home", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"new", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"study", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"style", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"script", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"icon", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
-	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "an ETag of before: 304 if nothing changed"},
+	{"example", "name",            "path",   NULL, 0, 0, NULL, .text = "name of the example"},
+	{"example_list", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"example", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"home", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"new", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"study", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"style", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"script", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"icon", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"openapi", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 };
 // clang-format on
 const int api_arguments_count = sizeof api_arguments / sizeof api_arguments[0];
@@ -137,7 +137,7 @@ bool api_takes(const struct api_argument *argument, const char *value)
 	return *value >= '0' && *value <= '9' && !*rest && number >= argument->min && number <= argument->max;
 }
 
-/* 16 hexadecimal digits at `text`: the id they stand for, else -1. */
+/* 16 hexadecimal digits at `text`: the id, else -1. */
 static long long id_at(const char *text)
 {
 	char digits[17] = {0};
@@ -165,9 +165,9 @@ static bool matches(const char *path, int operation, long long *id)
 	                         api_takes(api_argument(operation, "name", "path"), path + head);
 }
 
-/* Finds the operation that a request asks for.
+/* Finds the operation of a request.
  *
- * Given    method   as it came; HEAD stands for GET
+ * Given    method   as it came; HEAD is treated as GET
  *          path     decoded, without arguments
  * Returns  id       of the study in the path, 0: none
  *          allow    methods of the path, for the header; "": there is no such path

@@ -62,8 +62,8 @@ struct api_fault_row {
 };
 
 struct api_operation {
-	const char *method, *path, *name; /* {id} in a path stands for 16 hexadecimal digits,
-	                                     {name} at its end for one of the choices of that argument */
+	const char *method, *path, *name; /* {id} in a path is 16 hexadecimal digits,
+	                                     {name} at its end one of the choices of that argument */
 	const char *text;                 /* one line for people */
 	const char *
 	    answers; /* of success, between spaces: "200=Page", its status and its object in the document, "204" */
@@ -83,7 +83,7 @@ struct api_argument {
 	const char *place;            /* "query", "header" or "path" */
 	const char *choices;          /* values it takes, between spaces; NULL: any, or a number */
 	int min, max;                 /* a whole number in [min, max], when max > 0 */
-	const char *absent;           /* what stands for it when it is not there; NULL: nothing */
+	const char *absent;           /* its default; NULL: none */
 	const char *text;
 	bool blank; /* it may be empty, which is as if it were not there */
 };

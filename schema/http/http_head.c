@@ -53,14 +53,14 @@ size_t head_target(struct head *head, const char *target)
 	for (const char *c = target; *c; c++) {
 		if (*c <= ' ' || *c > '~')
 			head_refuse(head, API_BAD_REQUEST, true,
-			            "the target has characters that must be percent-encoded");
+			            "the request target contains characters that must be percent-encoded");
 		if (*c != '%')
 			continue;
 		if (!isxdigit((unsigned char)c[1]) || !isxdigit((unsigned char)c[2]))
 			head_refuse(head, API_BAD_REQUEST, false,
 			            "a percent sign must be followed by two hexadecimal digits");
 		else if (c[1] == '0' && c[2] == '0')
-			head_refuse(head, API_BAD_REQUEST, false, "the target must not have %%00");
+			head_refuse(head, API_BAD_REQUEST, false, "the request target must not contain %%00");
 	}
 	for (const char *c = target + n_path; *c; c++)
 		n_arguments += *c == '&';
@@ -163,9 +163,9 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 	while (n_value > 0 && is_blank(value[n_value - 1]))
 		n_value--;
 	if (!is_token(name, n_name))
-		head_refuse(head, API_BAD_REQUEST, true, "a header's name has characters that no name may have");
+		head_refuse(head, API_BAD_REQUEST, true, "a header name contains characters that are not allowed");
 	else if (!is_text(value, n_value))
-		head_refuse(head, API_BAD_REQUEST, true, "a header's value has control characters");
+		head_refuse(head, API_BAD_REQUEST, true, "a header value contains control characters");
 	else if (is(name, n_name, "Host")) {
 		head->hosts++;
 		snprintf(head->host, sizeof head->host, "%.*s", (int)n_value, value);
@@ -200,7 +200,7 @@ void head_argument(struct head *head, int operation, const char *name, const cha
 	const struct api_argument *argument = api_argument(operation, name, "query");
 	char expected[128];
 	if (*name && !argument)
-		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not an argument of %s", name,
+		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not a query parameter of %s", name,
 		            api_operations[operation].path);
 	else if (*name && !api_takes(argument, value)) {
 		api_expected(argument, expected, sizeof expected);
@@ -218,26 +218,27 @@ void head_argument(struct head *head, int operation, const char *name, const cha
 void head_end(struct head *head, bool needs_host, const char *names)
 {
 	if (head->lengths > 1)
-		head_refuse(head, API_BAD_REQUEST, true, "a request has one Content-Length");
+		head_refuse(head, API_BAD_REQUEST, true, "a request must not have more than one Content-Length");
 	if (head->lengths && head->codings)
 		head_refuse(head, API_BAD_REQUEST, true,
-		            "a request has a Content-Length or a Transfer-Encoding, not both");
+		            "a request must not have both Content-Length and Transfer-Encoding");
 	if (head->codings)
 		head_refuse(head, API_NO_LENGTH, true,
-		            "a body comes with its Content-Length; no Transfer-Encoding is taken");
+		            "a body needs a Content-Length; Transfer-Encoding is not supported");
 	if (head->authorization.lines > 1)
-		head_refuse(head, API_BAD_REQUEST, true, "a request has one Authorization");
+		head_refuse(head, API_BAD_REQUEST, true,
+		            "a request must not have more than one Authorization header");
 	if (head->types > 1)
-		head_refuse(head, API_BAD_REQUEST, true, "a request has one Content-Type");
+		head_refuse(head, API_BAD_REQUEST, true, "a request must not have more than one Content-Type");
 	if (head->hosts > 1 || (needs_host && !head->hosts))
-		head_refuse(head, API_BAD_REQUEST, true, "a request has one Host");
+		head_refuse(head, API_BAD_REQUEST, true, "a request must have exactly one Host");
 	if (head->hosts && !head_has_host(head->host, names))
 		head_refuse(head, API_MISDIRECTED, false,
-		            "this server is not asked by that Host; poundd --host adds names");
+		            "this server does not accept that Host; poundd --host adds names");
 	if (head->encoded)
-		head_refuse(head, API_NOT_JSON, false, "the only Content-Encoding is identity");
+		head_refuse(head, API_NOT_JSON, false, "the only supported Content-Encoding is identity");
 	if (head->length > HEAD_BODY_MAX)
-		head_refuse(head, API_TOO_LARGE, false, "a study document has at most 1 MiB");
+		head_refuse(head, API_TOO_LARGE, false, "a study document may have at most 1 MiB");
 }
 
 /* Judges where a request that changes something comes from: a page of the web names its own origin, and its browser says
@@ -272,14 +273,15 @@ void head_key(struct head *head)
 	int characters = 0;
 	if (head->key.lines == 0)
 		return;
-	for (; at < end && (n = gate_character(at, (size_t)(end - at))) > 0; at += n)
+	for (; at < end && (n = json_strict_character(at, (size_t)(end - at))) > 0; at += n)
 		characters++;
 	if (head->key.lines > 1)
-		head_refuse(head, API_BAD_REQUEST, false, "a request has one Idempotency-Key");
+		head_refuse(head, API_BAD_REQUEST, false, "a request must not have more than one Idempotency-Key");
 	else if (n == 0)
 		head_refuse(head, API_BAD_REQUEST, false, "an Idempotency-Key must be UTF-8");
 	else if (characters < 1 || characters > HEAD_KEY_MAX)
-		head_refuse(head, API_BAD_REQUEST, false, "an Idempotency-Key has 1 to %d characters", HEAD_KEY_MAX);
+		head_refuse(head, API_BAD_REQUEST, false, "an Idempotency-Key must have 1 to %d characters",
+		            HEAD_KEY_MAX);
 }
 
 /* Whether a Host header names this server: an address in digits, localhost or one of the names, with any port.  A page

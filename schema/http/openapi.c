@@ -1,5 +1,5 @@
-/* The OpenAPI 3.0 document: paths from the rows of api.c, a study from the rows of fields.c. */
-#include <math.h>
+/* The OpenAPI 3.0 document: paths from the rows of api.c, what is answered from the rows here, a study from those of
+ * fields.c (study_schema.c). */
 #include <stdio.h>
 #include <string.h>
 
@@ -8,6 +8,7 @@
 #include "schema/json/json_writer.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
+#include "schema/study/study_schema.h"
 
 /* Members of what is answered.  A type is one of JSON, the name of another object, or [NAME], an array of these. */
 struct member {
@@ -19,59 +20,59 @@ struct member {
 // clang-format off
 static const struct member members[] = {
 	{"Status", "id",          "string",  "",     "16 hexadecimal digits"},
-	{"Status", "name",        "string",  "null", "of the study document"},
-	{"Status", "kind",        "string",  "",     "of the study document"},
+	{"Status", "name",        "string",  "null", "name in the study document"},
+	{"Status", "kind",        "string",  "",     "kind of study"},
 	{"Status", "status",      "string",  "",     "queued, running, succeeded, failed or cancelled"},
-	{"Status", "progress",    "number",  "",     "0 to 1"},
-	{"Status", "runs_done",   "integer", "",     "pounding runs that are done and stored"},
-	{"Status", "runs_total",  "integer", "",     "pounding runs asked for"},
-	{"Status", "eta_s",       "number",  "null", "seconds to the end, while it runs"},
-	{"Status", "created",     "string",  "",     "RFC 3339, UTC"},
-	{"Status", "started",     "string",  "null", "RFC 3339, UTC"},
-	{"Status", "finished",    "string",  "null", "RFC 3339, UTC"},
-	{"Status", "error",       "string",  "null", "why it failed: poison-study, timeout, or another reason, in a sentence"},
-	{"Status", "links",       "Links",   "",     "where the rest is"},
-	{"Links",  "self",        "string",  "",     "this object"},
-	{"Links",  "request",     "string",  "",     "the bytes that were posted"},
-	{"Links",  "results",     "string",  "",     "the result"},
-	{"Links",  "samples",     "string",  "",     "every input row and its outputs"},
-	{"Links",  "cancel",      "string",  "",     "POST ends the study"},
+	{"Status", "progress",    "number",  "",     "fraction done, 0 to 1"},
+	{"Status", "runs_done",   "integer", "",     "pounding runs computed and stored"},
+	{"Status", "runs_total",  "integer", "",     "pounding runs requested"},
+	{"Status", "eta_s",       "number",  "null", "estimated time to the end of a running study [s]"},
+	{"Status", "created",     "string",  "",     "time of submission, RFC 3339, UTC"},
+	{"Status", "started",     "string",  "null", "time of the start of computation, RFC 3339, UTC"},
+	{"Status", "finished",    "string",  "null", "time of the end, RFC 3339, UTC"},
+	{"Status", "error",       "string",  "null", "why the study failed: poison-study, timeout, or a sentence with another reason"},
+	{"Status", "links",       "Links",   "",     "paths of related resources"},
+	{"Links",  "self",        "string",  "",     "path of this object"},
+	{"Links",  "request",     "string",  "",     "path of the study document as posted"},
+	{"Links",  "results",     "string",  "",     "path of the result"},
+	{"Links",  "samples",     "string",  "",     "path of the samples: every row of inputs with its outputs"},
+	{"Links",  "cancel",      "string",  "",     "path to POST to cancel the study"},
 	{"Page",   "studies",     "[Status]", "",    "newest first"},
-	{"Page",   "next",        "string",  "null", "cursor of the next page"},
-	{"Estimate", "kind",            "string",  "", "of the study document"},
-	{"Estimate", "runs_total",      "integer", "", "pounding runs asked for"},
-	{"Estimate", "estimated_cpu_s", "number",  "", "seconds of one core"},
-	{"Estimate", "estimated_bytes", "number",  "", "in the database"},
+	{"Page",   "next",        "string",  "null", "cursor of the next page; null on the last"},
+	{"Estimate", "kind",            "string",  "", "kind of study"},
+	{"Estimate", "runs_total",      "integer", "", "pounding runs requested"},
+	{"Estimate", "estimated_cpu_s", "number",  "", "estimated CPU time [s of one core]"},
+	{"Estimate", "estimated_bytes", "number",  "", "estimated size in the database [bytes]"},
 	{"Figures", "figures",    "[Figure]", "",    "in the order of the table of figures"},
-	{"Figure",  "name",       "string",  "",     "of the figure, the end of its path"},
+	{"Figure",  "name",       "string",  "",     "name of the figure, the end of its path"},
 	{"Figure",  "title",      "string",  "",     "what it shows"},
 	{"Figure",  "arguments",  "[string]", "",    "names of the query arguments that it takes"},
 	{"Figure",  "table",      "string",  "null", "table of the result with its numbers; null: the CSV of the result"},
 	{"Figure",  "link",       "string",  "",     "path of the SVG"},
 	{"Examples", "examples",  "[Example]", "",   "by name"},
-	{"Example", "name",       "string",  "",     "of the example, the end of its path"},
+	{"Example", "name",       "string",  "",     "name of the example, the end of its path"},
 	{"Example", "title",      "string",  "",     "what it studies"},
-	{"Version", "name",       "string",  "",     "poundd"},
-	{"Version", "version",    "string",  "",     "of the engine and the server"},
-	{"Problem", "type",       "string",  "",     "short name of the kind of problem"},
-	{"Problem", "title",      "string",  "",     "the kind of problem"},
-	{"Problem", "status",     "integer", "",     "the HTTP status"},
-	{"Problem", "detail",     "string",  "",     "a sentence about this request"},
-	{"Problem", "line",       "integer", "absent", "of malformed JSON"},
-	{"Problem", "column",     "integer", "absent", "of malformed JSON"},
-	{"Problem", "errors",     "[Fault]", "absent", "everything that is wrong with a study"},
-	{"Problem", "errors_not_listed", "integer", "absent", "how many more"},
+	{"Version", "name",       "string",  "",     "name of the program, poundd"},
+	{"Version", "version",    "string",  "",     "version of engine and server"},
+	{"Problem", "type",       "string",  "",     "identifier of the type of problem"},
+	{"Problem", "title",      "string",  "",     "the type of problem, in words"},
+	{"Problem", "status",     "integer", "",     "HTTP status code"},
+	{"Problem", "detail",     "string",  "",     "what is wrong with this request"},
+	{"Problem", "line",       "integer", "absent", "line of the first error in malformed JSON, from 1"},
+	{"Problem", "column",     "integer", "absent", "column of that error, from 1"},
+	{"Problem", "errors",     "[Fault]", "absent", "all errors in a study document"},
+	{"Problem", "errors_not_listed", "integer", "absent", "number of errors beyond those listed"},
 	{"Fault",  "pointer",     "string",  "",     "JSON Pointer into the study document"},
-	{"Fault",  "detail",      "string",  "",     "what was expected there, and what came"},
-	{"Fault",  "requested",   "number",  "absent", "of a study that is too large: how much of it"},
-	{"Fault",  "limit",       "number",  "absent", "and how much there may be"},
-	{"Result", "kind",           "string", "",   "of the study document"},
-	{"Result", "engine_version", "string", "",   "that computed it"},
-	{"Result", "study_hash",     "string", "",   "SHA-256 of the study's meaning"},
-	{"Result", "timing",         "Timing", "",   "what may differ between two runs of one study"},
-	{"Timing", "wall_s",      "number",  "",     "time it took"},
-	{"Timing", "cpu_s",       "number",  "",     "of all threads"},
-	{"Timing", "threads",     "integer", "",     "that computed it"},
+	{"Fault",  "detail",      "string",  "",     "what was expected there and what was found"},
+	{"Fault",  "requested",   "number",  "absent", "if the study is too large: the amount requested"},
+	{"Fault",  "limit",       "number",  "absent", "and the largest amount allowed"},
+	{"Result", "kind",           "string", "",   "kind of study"},
+	{"Result", "engine_version", "string", "",   "version of the engine that computed the result"},
+	{"Result", "study_hash",     "string", "",   "SHA-256 of the study with all defaults filled in, names left out"},
+	{"Result", "timing",         "Timing", "",   "time taken; the only member that may differ between two runs of the same study"},
+	{"Timing", "wall_s",      "number",  "",     "elapsed time [s]"},
+	{"Timing", "cpu_s",       "number",  "",     "CPU time of all threads [s]"},
+	{"Timing", "threads",     "integer", "",     "number of threads used"},
 	{"OpenAPI", "openapi",    "string",  "",     "version of OpenAPI"},
 };
 
@@ -89,7 +90,7 @@ static const struct {
 	           "\"samples\": \"/v1/studies/0019c5a0b1c2d3e4/samples\", \"cancel\": \"/v1/studies/0019c5a0b1c2d3e4/cancel\"}}"},
 	{"Estimate", "{\"kind\": \"sensitivity\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000}"},
 	{"Problem", "{\"type\": \"invalid-study\", \"title\": \"Invalid Study\", \"status\": 422, "
-	            "\"detail\": \"the study has faults, listed in errors\", \"errors\": "
+	            "\"detail\": \"the study has errors, see the list\", \"errors\": "
 	            "[{\"pointer\": \"/scene/contact/gap_m\", \"detail\": \"must be at least 0, got -0.1\"}]}"},
 };
 // clang-format on
@@ -104,184 +105,6 @@ static void reference(struct writer *w, const char *schema)
 	char path[64];
 	snprintf(path, sizeof path, "#/components/schemas/%s", schema);
 	writer_text(w, "$ref", path);
-}
-
-/* ---- a study ---- */
-
-static bool has_end(double end)
-{
-	return isfinite(end);
-}
-
-static void numbers(struct writer *w, const struct field *field)
-{
-	writer_text(w, "type", field->type == FIELD_COUNT ? "integer" : "number");
-	if (has_end(field->min)) {
-		writer_number(w, "minimum", field->min);
-		writer_bool(w, "exclusiveMinimum", field->ends & FIELD_OPEN_MIN);
-	}
-	if (has_end(field->max)) {
-		writer_number(w, "maximum", field->max);
-		writer_bool(w, "exclusiveMaximum", field->ends & FIELD_OPEN_MAX);
-	}
-}
-
-static void choices(struct writer *w, const struct field *field)
-{
-	writer_text(w, "type", "string");
-	writer_array(w, "enum", WRITER_LINE);
-	for (int row = 0; field->choice(row); row++)
-		writer_text(w, NULL, field->choice(row));
-	writer_end(w);
-}
-
-static void value(struct writer *w, const char *name, const struct field *field);
-
-/* The parameters of all distributions: which of them there are depends on its type. */
-static void parameters(struct writer *w)
-{
-	const char *seen[16], *parameter;
-	int n = 0;
-	for (int row = 0; pound_distribution_name(row); row++)
-		for (int k = 0; (parameter = pound_distribution_parameter(row, k)); k++) {
-			int i = 0;
-			while (i < n && strcmp(seen[i], parameter) != 0)
-				i++;
-			if (i < n || n == 16)
-				continue;
-			seen[n++] = parameter;
-			writer_object(w, parameter, WRITER_LINE);
-			writer_text(w, "type", "number");
-			writer_number(w, "minimum", -POUND_PARAMETER_MAX);
-			writer_number(w, "maximum", POUND_PARAMETER_MAX);
-			writer_end(w);
-		}
-}
-
-/* What the parameters of each distribution must be. */
-static void rules(char *text, size_t size)
-{
-	const char *rule;
-	size_t n = 0;
-	for (int row = 0; pound_distribution_name(row); row++)
-		for (int k = 0; (rule = pound_distribution_rule(row, k)) && n < size; k++)
-			n += (size_t)snprintf(text + n, size - n, "; %s: %s", pound_distribution_name(row), rule);
-}
-
-static void members_of(struct writer *w, const char *pattern)
-{
-	bool distribution = !strcmp(pattern, "/inputs/*/distribution");
-	bool oscillator = !strcmp(pattern, "/scene/oscillators/*");
-	int required = 0;
-	writer_text(w, "type", "object");
-	writer_bool(w, "additionalProperties", false);
-	object(w, "properties");
-	for (int i = 0; i < fields_count; i++)
-		if (fields_child(&fields[i], pattern) && *fields_name(&fields[i]) != '*')
-			value(w, fields_name(&fields[i]), &fields[i]);
-	if (distribution)
-		parameters(w);
-	writer_end(w);
-	if (oscillator) {
-		writer_json(w, "anyOf", "[{\"required\": [\"frequency_hz\"]}, {\"required\": [\"rigid_wall\"]}]");
-		return;
-	}
-	for (int i = 0; i < fields_count; i++) {
-		const struct field *field = &fields[i];
-		if (!fields_child(field, pattern) || !isnan(field->absent) ||
-		    field->kinds != fields_find(*pattern ? pattern : "/kind")->kinds || field->types)
-			continue;
-		if (required++ == 0)
-			writer_array(w, "required", WRITER_LINE);
-		writer_text(w, NULL, fields_name(field));
-	}
-	if (required)
-		writer_end(w);
-}
-
-static void elements(struct writer *w, const struct field *field)
-{
-	char pattern[128];
-	snprintf(pattern, sizeof pattern, "%s/*", field->pattern);
-	const struct field *element = fields_find(pattern);
-	writer_text(w, "type", "array");
-	writer_number(w, "minItems", field->min);
-	writer_number(w, "maxItems", field->max);
-	if (element)
-		value(w, "items", element);
-	else
-		writer_json(w, "items", "{}");
-}
-
-/* A list; one that may be a range has the members of a range too. */
-static void list(struct writer *w, const struct field *field)
-{
-	bool range = false;
-	for (int i = 0; i < fields_count; i++)
-		range |= fields_child(&fields[i], field->pattern) && *fields_name(&fields[i]) != '*';
-	if (!range) {
-		elements(w, field);
-		return;
-	}
-	writer_array(w, "oneOf", WRITER_LINES);
-	object(w, NULL);
-	elements(w, field);
-	writer_end(w);
-	object(w, NULL);
-	members_of(w, field->pattern);
-	writer_end(w);
-	writer_end(w);
-}
-
-static void absent(struct writer *w, const struct field *field)
-{
-	bool found_otherwise = field->ends == FIELD_OPEN_MIN && field->absent == field->min;
-	if (isnan(field->absent) || field->type >= FIELD_TEXT || found_otherwise ||
-	    strchr(fields_name(field), '*'))
-		return;
-	if (field->choice)
-		writer_text(w, "default", field->choice((int)field->absent));
-	else if (field->type == FIELD_BOOL)
-		writer_bool(w, "default", field->absent != 0.0);
-	else
-		writer_number(w, "default", field->absent);
-}
-
-/* What stands at a field. */
-static void value(struct writer *w, const char *name, const struct field *field)
-{
-	char text[2048];
-	object(w, name);
-	snprintf(text, sizeof text, "%s%s%s%s%s%s", field->text, *field->unit ? " [" : "", field->unit,
-	         *field->unit ? "]" : "", field->kinds ? "; only of kind" : "", field->kinds ? field->kinds : "");
-	size_t n = strlen(text);
-	snprintf(text + n, sizeof text - n, "%s%s", field->types ? "; only of excitation" : "",
-	         field->types ? field->types : "");
-	if (!strcmp(field->pattern, "/inputs/*/distribution"))
-		rules(text + strlen(text), sizeof text - strlen(text));
-	writer_text(w, "description", text);
-	if (field->choice)
-		choices(w, field);
-	else if (field->type == FIELD_REAL || field->type == FIELD_COUNT)
-		numbers(w, field);
-	else if (field->type == FIELD_BOOL)
-		writer_text(w, "type", "boolean");
-	else if (field->type == FIELD_SEED)
-		writer_json(w, "oneOf",
-		            "[{\"type\": \"integer\", \"minimum\": 0, \"maximum\": 9007199254740991}, "
-		            "{\"type\": \"string\", \"pattern\": \"^[0-9]{1,20}$\"}]");
-	else if (field->type == FIELD_TEXT) {
-		writer_text(w, "type", "string");
-		writer_number(w, "minLength", field->min);
-		writer_number(w, "maxLength", field->max);
-	} else if (field->type == FIELD_LIST)
-		list(w, field);
-	else
-		members_of(w, field->pattern);
-	if (!strcmp(field->pattern, "/scene/contact"))
-		writer_bool(w, "nullable", true);
-	absent(w, field);
-	writer_end(w);
 }
 
 /* ---- what is answered ---- */
@@ -343,8 +166,8 @@ static void schemas(struct writer *w)
 	writer_text(
 	    w, "description",
 	    "A study document. Which members it may have depends on its kind, its excitation and its solver; "
-	    "validate_only tells all that is wrong at once.");
-	members_of(w, "");
+	    "validate_only reports all errors at once.");
+	study_schema_members(w, "");
 	writer_end(w);
 	for (const struct member *first = members, *next; first < end; first = next) {
 		for (next = first; next < end && !strcmp(next->object, first->object);)
@@ -465,8 +288,8 @@ static void success_headers(struct writer *w, const struct api_operation *operat
 		return;
 	object(w, "headers");
 	if (made)
-		header(w, "Location", true, "the study");
-	header(w, "ETag", true, "for If-None-Match");
+		header(w, "Location", true, "path of the study");
+	header(w, "ETag", true, "entity tag of the body, for If-None-Match");
 	writer_end(w);
 }
 
@@ -477,7 +300,7 @@ static void success(struct writer *w, const struct api_operation *operation, cha
 	if (object_name)
 		*object_name++ = '\0';
 	object(w, answer);
-	writer_text(w, "description", !strcmp(answer, "304") ? "not changed" : operation->text);
+	writer_text(w, "description", !strcmp(answer, "304") ? "not modified" : operation->text);
 	success_headers(w, operation, answer, object_name);
 	if (*answer == '2' && strcmp(answer, "204") != 0) {
 		object(w, "content");
@@ -496,8 +319,8 @@ static void failures(struct writer *w, const struct api_operation *operation)
 	unsigned faults = api_faults_of_all | operation->faults;
 	for (int first = 0; first < API_NO_FAULT; first++) {
 		char status[8], text[256] = "";
-		bool told = first > 0 && api_faults[first - 1].status == api_faults[first].status;
-		for (int i = first; !told && i < API_NO_FAULT && api_faults[i].status == api_faults[first].status;
+		bool listed = first > 0 && api_faults[first - 1].status == api_faults[first].status;
+		for (int i = first; !listed && i < API_NO_FAULT && api_faults[i].status == api_faults[first].status;
 		     i++)
 			if ((faults >> i & 1) && !(operation->open && i == API_UNAUTHORIZED))
 				strcat(strcat(text, *text ? ", or " : ""), api_faults[i].title);
@@ -514,7 +337,8 @@ static void failures(struct writer *w, const struct api_operation *operation)
 			if (first == API_UNAUTHORIZED)
 				header(w, "WWW-Authenticate", true, "Bearer");
 			else
-				header(w, "Retry-After", always, always ? "seconds" : "seconds, of what is not ready yet");
+				header(w, "Retry-After", always,
+				       always ? "seconds to wait" : "seconds to wait, if the answer is not ready yet");
 			writer_end(w);
 		}
 		object(w, "content");
@@ -555,7 +379,7 @@ static void operations(struct writer *w)
 	writer_end(w);
 }
 
-/* The document that tells what poundd can be asked.
+/* The document that describes the interface of poundd.
  *
  * Returns  value     (length)  -       JSON, OpenAPI 3.0; NULL: out of memory
  * Memory   allocates; the caller frees
@@ -572,10 +396,10 @@ char *api_document(size_t *length)
 	object(&w, "info");
 	writer_text(&w, "title", "poundd");
 	writer_text(&w, "version", POUND_VERSION);
-	writer_text(
-	    &w, "description",
-	    "Earthquake-induced pounding between two oscillators, and what it is sensitive to. What the HTTP "
-	    "parser itself refuses (400, 414, 431, 505) is answered without a problem object.");
+	writer_text(&w, "description",
+	            "Earthquake-induced pounding between two oscillators: responses, floor spectra and "
+	            "sensitivity indices. Requests that the HTTP "
+	            "parser itself refuses (400, 414, 431, 505) get an answer without a problem object.");
 	writer_end(&w);
 	operations(&w);
 	object(&w, "components");

@@ -1,4 +1,4 @@
-/* json.c - JSON text -> cJSON tree, the gate in front. */
+/* json.c - JSON text -> cJSON tree, after the strict check. */
 #include "schema/json/json.h"
 
 #include <stdio.h>
@@ -38,10 +38,10 @@ static void shorten_numbers(char *text)
  *
  * Test     unit_json_pointer: a_number_of_400_characters_keeps_its_value
  */
-cJSON *json_parse(const char *text, size_t length, struct gate_fault *fault)
+cJSON *json_parse(const char *text, size_t length, struct json_fault *fault)
 {
-	*fault = (struct gate_fault){0};
-	if (!gate_check(text, length, fault))
+	*fault = (struct json_fault){0};
+	if (!json_strict_check(text, length, fault))
 		return NULL;
 	char *copy = malloc(length + 1);
 	if (!copy)

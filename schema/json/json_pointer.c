@@ -26,7 +26,7 @@ struct reading {
  */
 struct reading *reading_open(const char *text, size_t length)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	return (struct reading *)json_parse(text, length, &fault);
 }
 

@@ -6,7 +6,7 @@
  *       puts(reading_text(status, "/errors/%d/pointer", i));
  *   reading_close(status);
  *
- * The pointer is a printf format, for indexes.  What is returned lives until reading_close. */
+ * The pointer is a printf format, for array indices.  What is returned lives until reading_close. */
 #ifndef READING_H
 #define READING_H
 

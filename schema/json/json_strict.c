@@ -10,53 +10,53 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct gate {
+struct scan {
 	const char *text;
 	size_t length, at;
 	int depth;
-	struct gate_fault *fault;
+	struct json_fault *fault;
 };
 
 /* Notes what is wrong at the current place and where that is; always false. */
-static bool refuse(struct gate *gate, const char *detail)
+static bool refuse(struct scan *scan, const char *detail)
 {
-	gate->fault->line = 1;
-	gate->fault->column = 1;
-	for (size_t i = 0; i < gate->at; i++) {
-		if (gate->text[i] == '\n') {
-			gate->fault->line++;
-			gate->fault->column = 1;
-		} else if ((gate->text[i] & 0xC0) != 0x80) {
-			gate->fault->column++;
+	scan->fault->line = 1;
+	scan->fault->column = 1;
+	for (size_t i = 0; i < scan->at; i++) {
+		if (scan->text[i] == '\n') {
+			scan->fault->line++;
+			scan->fault->column = 1;
+		} else if ((scan->text[i] & 0xC0) != 0x80) {
+			scan->fault->column++;
 		}
 	}
-	snprintf(gate->fault->detail, sizeof gate->fault->detail, "%s", detail);
+	snprintf(scan->fault->detail, sizeof scan->fault->detail, "%s", detail);
 	return false;
 }
 
 /* The byte at the current place, -1 after the last. */
-static int peek(const struct gate *gate)
+static int peek(const struct scan *scan)
 {
-	return gate->at < gate->length ? (unsigned char)gate->text[gate->at] : -1;
+	return scan->at < scan->length ? (unsigned char)scan->text[scan->at] : -1;
 }
 
-static bool refuse_expected(struct gate *gate, const char *expected)
+static bool refuse_expected(struct scan *scan, const char *expected)
 {
-	char detail[sizeof gate->fault->detail];
-	int c = peek(gate);
+	char detail[sizeof scan->fault->detail];
+	int c = peek(scan);
 	if (c < 0)
 		snprintf(detail, sizeof detail, "the text ends where %s is expected", expected);
 	else if (c > ' ' && c < 0x7F)
 		snprintf(detail, sizeof detail, "expected %s, found %c", expected, c);
 	else
 		snprintf(detail, sizeof detail, "expected %s, found the byte 0x%02X", expected, (unsigned)c);
-	return refuse(gate, detail);
+	return refuse(scan, detail);
 }
 
-static void space(struct gate *gate)
+static void space(struct scan *scan)
 {
-	for (int c = peek(gate); c == ' ' || c == '\t' || c == '\n' || c == '\r'; c = peek(gate))
-		gate->at++;
+	for (int c = peek(scan); c == ' ' || c == '\t' || c == '\n' || c == '\r'; c = peek(scan))
+		scan->at++;
 }
 
 static bool is_digit(int c)
@@ -64,59 +64,59 @@ static bool is_digit(int c)
 	return c >= '0' && c <= '9';
 }
 
-static bool digits(struct gate *gate, const char *expected)
+static bool digits(struct scan *scan, const char *expected)
 {
-	if (!is_digit(peek(gate)))
-		return refuse_expected(gate, expected);
-	while (is_digit(peek(gate)))
-		gate->at++;
+	if (!is_digit(peek(scan)))
+		return refuse_expected(scan, expected);
+	while (is_digit(peek(scan)))
+		scan->at++;
 	return true;
 }
 
-static bool number(struct gate *gate)
+static bool number(struct scan *scan)
 {
-	char copy[GATE_NUMBER_MAX + 1];
-	size_t start = gate->at;
-	if (peek(gate) == '-')
-		gate->at++;
-	bool zero = peek(gate) == '0';
-	if (!digits(gate, "a digit"))
+	char copy[JSON_NUMBER_MAX + 1];
+	size_t start = scan->at;
+	if (peek(scan) == '-')
+		scan->at++;
+	bool zero = peek(scan) == '0';
+	if (!digits(scan, "a digit"))
 		return false;
-	if (zero && gate->at - start > (gate->text[start] == '-' ? 2u : 1u)) {
-		gate->at = start;
-		return refuse(gate, "a number must not start with 0 and further digits");
+	if (zero && scan->at - start > (scan->text[start] == '-' ? 2u : 1u)) {
+		scan->at = start;
+		return refuse(scan, "a number must not have leading zeros");
 	}
-	if (peek(gate) == '.') {
-		gate->at++;
-		if (!digits(gate, "a digit after the decimal point"))
+	if (peek(scan) == '.') {
+		scan->at++;
+		if (!digits(scan, "a digit after the decimal point"))
 			return false;
 	}
-	if (peek(gate) == 'e' || peek(gate) == 'E') {
-		gate->at++;
-		if (peek(gate) == '+' || peek(gate) == '-')
-			gate->at++;
-		if (!digits(gate, "a digit of the exponent"))
+	if (peek(scan) == 'e' || peek(scan) == 'E') {
+		scan->at++;
+		if (peek(scan) == '+' || peek(scan) == '-')
+			scan->at++;
+		if (!digits(scan, "a digit of the exponent"))
 			return false;
 	}
-	size_t length = gate->at - start;
-	size_t end = gate->at;
-	gate->at = start;
-	if (length > GATE_NUMBER_MAX)
-		return refuse(gate, "a number of more than 400 characters");
-	memcpy(copy, gate->text + start, length);
+	size_t length = scan->at - start;
+	size_t end = scan->at;
+	scan->at = start;
+	if (length > JSON_NUMBER_MAX)
+		return refuse(scan, "a number of more than 400 characters");
+	memcpy(copy, scan->text + start, length);
 	copy[length] = 0;
 	if (isinf(strtod(copy, NULL)))
-		return refuse(gate, "a number beyond the largest double, 1.797e308");
-	gate->at = end;
+		return refuse(scan, "a number beyond the largest double, 1.797e308");
+	scan->at = end;
 	return true;
 }
 
 /* The code unit of \uXXXX with the current place on the first X, -1 if these are not four hex digits. */
-static int code_unit(struct gate *gate)
+static int code_unit(struct scan *scan)
 {
 	int unit = 0;
-	for (int i = 0; i < 4; i++, gate->at++) {
-		int c = peek(gate), low = c | 0x20;
+	for (int i = 0; i < 4; i++, scan->at++) {
+		int c = peek(scan), low = c | 0x20;
 		if (!is_digit(c) && !(low >= 'a' && low <= 'f'))
 			return -1;
 		unit = unit * 16 + (is_digit(c) ? c - '0' : low - 'a' + 10);
@@ -124,38 +124,38 @@ static int code_unit(struct gate *gate)
 	return unit;
 }
 
-static bool escape(struct gate *gate)
+static bool escape(struct scan *scan)
 {
-	size_t start = gate->at++;
-	int c = peek(gate);
+	size_t start = scan->at++;
+	int c = peek(scan);
 	if (c < 0 || !strchr("\"\\/bfnrtu", c) || c == 0) {
-		gate->at = start;
-		return refuse(gate, "an escape that JSON does not know");
+		scan->at = start;
+		return refuse(scan, "an unknown escape sequence");
 	}
-	gate->at++;
+	scan->at++;
 	if (c != 'u')
 		return true;
-	int unit = code_unit(gate);
+	int unit = code_unit(scan);
 	const char *detail = unit < 0                           ? "\\u must be followed by four hex digits"
-	                     : unit == 0                        ? "\\u0000 is not allowed in a text"
+	                     : unit == 0                        ? "\\u0000 is not allowed in a string"
 	                     : unit >= 0xDC00 && unit <= 0xDFFF ? "a lone low surrogate"
 	                                                        : NULL;
 	if (!detail && unit >= 0xD800 && unit <= 0xDBFF) {
-		bool pair = peek(gate) == '\\' && gate->at + 1 < gate->length && gate->text[gate->at + 1] == 'u';
-		gate->at += pair ? 2 : 0;
-		int low = pair ? code_unit(gate) : -1;
+		bool pair = peek(scan) == '\\' && scan->at + 1 < scan->length && scan->text[scan->at + 1] == 'u';
+		scan->at += pair ? 2 : 0;
+		int low = pair ? code_unit(scan) : -1;
 		if (low < 0xDC00 || low > 0xDFFF)
 			detail = "a high surrogate without its low surrogate";
 	}
 	if (detail) {
-		gate->at = start;
-		return refuse(gate, detail);
+		scan->at = start;
+		return refuse(scan, detail);
 	}
 	return true;
 }
 
 /* Source   Unicode 15, table 3-7 */
-size_t gate_character(const char *text, size_t length)
+size_t json_strict_character(const char *text, size_t length)
 {
 	const unsigned char *s = (const unsigned char *)text;
 	size_t n = s[0] < 0x80 ? 1 : s[0] >= 0xC2 && s[0] < 0xE0 ? 2 : (s[0] & 0xF0) == 0xE0 ? 3 : 4;
@@ -170,92 +170,92 @@ size_t gate_character(const char *text, size_t length)
 	return n;
 }
 
-static bool string(struct gate *gate)
+static bool string(struct scan *scan)
 {
-	size_t start = ++gate->at;
-	for (int c = peek(gate); c != '"'; c = peek(gate)) {
+	size_t start = ++scan->at;
+	for (int c = peek(scan); c != '"'; c = peek(scan)) {
 		if (c < 0)
-			return refuse(gate, "the text ends inside a string");
-		if (gate->at - start >= GATE_STRING_MAX)
-			return refuse(gate, "a string of more than 65536 bytes");
+			return refuse(scan, "the text ends inside a string");
+		if (scan->at - start >= JSON_STRING_MAX)
+			return refuse(scan, "a string of more than 65536 bytes");
 		if (c < 0x20)
-			return refuse(gate, "a control character in a string must be written as an escape");
+			return refuse(scan, "a control character in a string must be written as an escape");
 		if (c == '\\') {
-			if (!escape(gate))
+			if (!escape(scan))
 				return false;
 		} else {
-			size_t n = gate_character(gate->text + gate->at, gate->length - gate->at);
+			size_t n = json_strict_character(scan->text + scan->at, scan->length - scan->at);
 			if (!n)
-				return refuse(gate, "not UTF-8");
-			gate->at += n;
+				return refuse(scan, "not UTF-8");
+			scan->at += n;
 		}
 	}
-	gate->at++;
+	scan->at++;
 	return true;
 }
 
-static bool value(struct gate *gate);
+static bool value(struct scan *scan);
 
-static bool member(struct gate *gate, int n)
+static bool member(struct scan *scan, int n)
 {
-	space(gate);
-	if (n > GATE_MEMBERS_MAX)
-		return refuse(gate, "an object of more than 256 members");
-	if (peek(gate) != '"')
-		return refuse_expected(gate, "a member name in double quotes");
-	if (!string(gate))
+	space(scan);
+	if (n > JSON_MEMBERS_MAX)
+		return refuse(scan, "an object of more than 256 members");
+	if (peek(scan) != '"')
+		return refuse_expected(scan, "a member name in double quotes");
+	if (!string(scan))
 		return false;
-	space(gate);
-	if (peek(gate) != ':')
-		return refuse_expected(gate, "a colon");
-	gate->at++;
-	return value(gate);
+	space(scan);
+	if (peek(scan) != ':')
+		return refuse_expected(scan, "a colon");
+	scan->at++;
+	return value(scan);
 }
 
-/* What stands between brackets, the current place being on the opening one. */
-static bool list(struct gate *gate, char close)
+/* The members or elements between brackets, from the opening one on. */
+static bool list(struct scan *scan, char close)
 {
-	if (gate->depth == GATE_DEPTH_MAX)
-		return refuse(gate, "arrays and objects more than 32 deep");
-	gate->depth++;
-	gate->at++;
-	space(gate);
-	if (peek(gate) != close) {
-		for (int n = 1;; n++, gate->at++) {
-			if (close == '}' ? !member(gate, n) : !value(gate))
+	if (scan->depth == JSON_DEPTH_MAX)
+		return refuse(scan, "arrays and objects nested more than 32 deep");
+	scan->depth++;
+	scan->at++;
+	space(scan);
+	if (peek(scan) != close) {
+		for (int n = 1;; n++, scan->at++) {
+			if (close == '}' ? !member(scan, n) : !value(scan))
 				return false;
-			space(gate);
-			if (peek(gate) != ',')
+			space(scan);
+			if (peek(scan) != ',')
 				break;
 		}
-		if (peek(gate) != close)
-			return refuse_expected(gate, close == '}' ? "a comma or }" : "a comma or ]");
+		if (peek(scan) != close)
+			return refuse_expected(scan, close == '}' ? "a comma or }" : "a comma or ]");
 	}
-	gate->at++;
-	gate->depth--;
+	scan->at++;
+	scan->depth--;
 	return true;
 }
 
-static bool word(struct gate *gate, const char *expected)
+static bool word(struct scan *scan, const char *expected)
 {
 	size_t length = strlen(expected);
-	if (gate->length - gate->at < length || memcmp(gate->text + gate->at, expected, length) != 0)
-		return refuse_expected(gate, "a value");
-	gate->at += length;
+	if (scan->length - scan->at < length || memcmp(scan->text + scan->at, expected, length) != 0)
+		return refuse_expected(scan, "a value");
+	scan->at += length;
 	return true;
 }
 
-static bool value(struct gate *gate)
+static bool value(struct scan *scan)
 {
-	space(gate);
-	int c = peek(gate);
+	space(scan);
+	int c = peek(scan);
 	if (c == '{' || c == '[')
-		return list(gate, c == '{' ? '}' : ']');
+		return list(scan, c == '{' ? '}' : ']');
 	if (c == '"')
-		return string(gate);
+		return string(scan);
 	if (c == '-' || is_digit(c))
-		return number(gate);
-	return word(gate, c == 't' ? "true" : c == 'f' ? "false" : "null");
+		return number(scan);
+	return word(scan, c == 't' ? "true" : c == 'f' ? "false" : "null");
 }
 
 /* Whether a text is one JSON value within the limits of json_strict.h and nothing else.
@@ -266,13 +266,13 @@ static bool value(struct gate *gate)
  *
  * Test     unit_json_strict: every_kind_of_broken_text_is_refused
  */
-bool gate_check(const char *text, size_t length, struct gate_fault *fault)
+bool json_strict_check(const char *text, size_t length, struct json_fault *fault)
 {
-	struct gate gate = {.text = text, .length = length, .fault = fault};
+	struct scan scan = {.text = text, .length = length, .fault = fault};
 	if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
-		return refuse(&gate, "a byte order mark; JSON has none");
-	if (!value(&gate))
+		return refuse(&scan, "a byte order mark, which JSON does not allow");
+	if (!value(&scan))
 		return false;
-	space(&gate);
-	return gate.at == length || refuse_expected(&gate, "the end of the text");
+	space(&scan);
+	return scan.at == length || refuse_expected(&scan, "the end of the text");
 }

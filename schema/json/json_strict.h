@@ -1,27 +1,27 @@
 /* json_strict.h - a strict check of JSON text, before any parser sees it.
  *
  * RFC 8259 to the letter, UTF-8 only, and the limits below.  Allocates nothing; any thread. */
-#ifndef GATE_H
-#define GATE_H
+#ifndef JSON_STRICT_H
+#define JSON_STRICT_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
 enum {
-	GATE_DEPTH_MAX = 32,         /* arrays and objects inside each other */
-	GATE_STRING_MAX = 64 * 1024, /* bytes of one text as written */
-	GATE_MEMBERS_MAX = 256,      /* members of one object */
-	GATE_NUMBER_MAX = 400,       /* characters of one number */
+	JSON_DEPTH_MAX = 32,         /* arrays and objects inside each other */
+	JSON_STRING_MAX = 64 * 1024, /* bytes of one text as written */
+	JSON_MEMBERS_MAX = 256,      /* members of one object */
+	JSON_NUMBER_MAX = 400,       /* characters of one number */
 };
 
-struct gate_fault {
+struct json_fault {
 	int line, column; /* from 1; the column counts characters, not bytes */
 	char detail[128]; /* a sentence: what was found there and what was expected */
 };
 
-bool gate_check(const char *text, size_t length, struct gate_fault *fault); /* true: strict JSON */
+bool json_strict_check(const char *text, size_t length, struct json_fault *fault); /* true: strict JSON */
 
 /* Bytes of the UTF-8 character at the start of a text of at least one byte; 0: there is none. */
-size_t gate_character(const char *text, size_t length);
+size_t json_strict_character(const char *text, size_t length);
 
 #endif

@@ -81,7 +81,7 @@ static size_t plain(const char *text, size_t length)
 {
 	if ((unsigned char)*text < 0x20 || *text == '"' || *text == '\\')
 		return 0;
-	return gate_character(text, length);
+	return json_strict_character(text, length);
 }
 
 /* A byte that is not UTF-8 becomes the replacement character: what is written is JSON whatever was cut or came in. */
@@ -108,7 +108,7 @@ static void quote(struct writer *writer, const char *text)
 	put(writer, "\"");
 }
 
-/* What stands before a value: the comma, the place, the name. */
+/* Writes what comes before a value: comma, line break, name. */
 static void lead(struct writer *writer, const char *name)
 {
 	if (writer->depth == 0)

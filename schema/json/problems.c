@@ -61,7 +61,7 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
  *
  * Given    requested, limit   in the unit that the sentence has;  limit > 0
  *
- * Test     unit_study_check: what_is_too_large_is_told_with_its_limit
+ * Test     unit_study_check: what_is_too_large_is_reported_with_its_limit
  */
 void problems_exceed(struct problems *problems, const char *pointer, double requested, double limit,
                      const char *format, ...)
@@ -72,7 +72,7 @@ void problems_exceed(struct problems *problems, const char *pointer, double requ
 	va_end(arguments);
 }
 
-/* Whether a member or something in it was found wrong, so that what stands on it need not be looked at.
+/* Whether a member or something in it was found wrong, so that checks that depend on it can be left out.
  *
  * Test     unit_problems: a_problem_is_at_its_pointer_and_all_above_it
  */

@@ -34,7 +34,7 @@ void problems_init(struct problems *problems);
 void problems_add(struct problems *problems, const char *pointer, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* A problem that is told in numbers too: more is requested than the limit, which is above 0. */
+/* A problem that is reported as numbers, too: more is requested than the limit, which is above 0. */
 void problems_exceed(struct problems *problems, const char *pointer, double requested, double limit,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
 

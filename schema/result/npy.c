@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Quotes and backslashes of the name are escaped as Python wants them. */
+/* Quotes and backslashes of the name are escaped as in Python. */
 void npy_field(struct writer *fields, const char *name, const char *suffix, const char *type)
 {
 	writer_raw(fields, "('", 2);

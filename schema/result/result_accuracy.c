@@ -24,16 +24,15 @@ static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE]
 		const char *sentence;
 		bool of_index;
 	} notes[] = {
-	    [POUND_ERROR_SAMPLING] =
-	        {"Too few rows are the largest error: an interval reaches %.2g to either side of ", true},
-	    [POUND_ERROR_EXCITATION] =
-	        {"Too few signals for each row may be the largest error: an upper estimate of what their noise "
-	         "adds to an interval is %.2g to either side",
-	         false},
-	    [POUND_ERROR_INTEGRATION] = {"Inexact runs are the largest error: up to %.2g in ", true},
-	    [POUND_ERROR_FAILED_ROWS] = {"Rows without a result are the largest error: were they all like the "
-	                                 "most extreme of the others, an index "
-	                                 "would be another by up to %.2g",
+	    [POUND_ERROR_SAMPLING] = {"The number of rows is the largest source of error: the largest half-width "
+	                              "of an interval is %.2g, of ",
+	                              true},
+	    [POUND_ERROR_EXCITATION] = {"The number of signals may be the largest source of error: their noise "
+	                                "adds at most %.2g to the half-width of an interval",
+	                                false},
+	    [POUND_ERROR_INTEGRATION] = {"Integration is the largest source of error: up to %.2g in ", true},
+	    [POUND_ERROR_FAILED_ROWS] = {"Failed rows are the largest source of error: if all were like the most "
+	                                 "extreme valid row, an index would change by up to %.2g",
 	                                 false}};
 	char note[400];
 	int n = snprintf(note, sizeof note, notes[dominant].sentence, errors[dominant]);
@@ -140,10 +139,9 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 	}
 	writer_object(w, "accuracy", WRITER_LINES);
 	if (!study->elsewhere)
-		writer_text(
-		    w, "check",
-		    "runs made again on half the sample step; pounding can be chaotic, so single runs may part "
-		    "by rounding alone");
+		writer_text(w, "check",
+		            "runs repeated with half the sample step; pounding can be chaotic, so single runs may "
+		            "differ by rounding alone");
 	writer_whole(w, "runs_checked", checked);
 	writer_number(w, "difference_median", median);
 	writer_number(w, "difference_largest", largest);

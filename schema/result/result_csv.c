@@ -348,7 +348,7 @@ static void put_result(struct lines *lines, const cJSON *result)
  */
 char *result_to_csv(const char *json, size_t json_length, const char *table, size_t *length)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	struct writer w;
 	struct lines lines = {.w = &w, .header = true};
 	*length = 0;

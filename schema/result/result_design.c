@@ -59,12 +59,12 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 	const bool reached = last->half_width <= until->half_width;
 	char note[400], output[STUDY_OUTPUT_SIZE];
 	int n = snprintf(note, sizeof note,
-	                 reached ? "every interval of S1 and ST reaches %.3g or less to either side of its index"
-	                         : "max_runs allows no more rows, and not every interval reaches %.3g or less to "
-	                           "either side of its index",
+	                 reached ? "every interval of S1 and ST has a half-width of at most %.3g"
+	                         : "max_runs allows no more rows, and not every interval of S1 and ST has a "
+	                           "half-width of at most %.3g",
 	                 until->half_width);
 	if (last->half_width >= 0)
-		snprintf(note + n, sizeof note - (size_t)n, "; the widest is that of %s of %s in %s",
+		snprintf(note + n, sizeof note - (size_t)n, "; the widest is that of %s of input %s for output %s",
 		         index_names[last->index], study->inputs[last->input].name,
 		         study_output_name(study, last->output, output));
 	writer_object(w, "stopping", WRITER_LINES);
@@ -92,8 +92,7 @@ bool result_design_note(const struct pound_study *study, char *text, size_t size
 	int full = design->randomisations;
 	*text = 0;
 	if (grows(study) && study->elsewhere)
-		snprintf(text, size,
-		         "the design grows; these are the %d rows of its first look, a run of it takes up to %d",
+		snprintf(text, size, "the design grows: these are its first %d rows; a run takes up to %d",
 		         pound_design_rows(study, 0), pound_design_rows_most(study));
 	if (grows(study) || !pound_design_quasi_random(design->method))
 		return *text;
@@ -101,9 +100,8 @@ bool result_design_note(const struct pound_study *study, char *text, size_t size
 		full *= 2;
 	if (full != design->rows)
 		snprintf(text, size,
-		         "%d rows are not 2^k for each of %d randomisations, so the points are less even and the "
-		         "indexes less "
-		         "sharp than they could be; %d or %d rows are",
+		         "%d rows are not a power of two for each of %d randomisations, so the points are less "
+		         "uniform and the intervals wider than they could be; use %d or %d rows",
 		         design->rows, design->randomisations, full / 2, full);
 	return *text;
 }
@@ -128,7 +126,7 @@ void result_design(struct writer *w, const struct pound_study *study, const stru
 		writer_object(w, "partial", WRITER_LINE);
 		writer_whole(w, "rows", result->rows);
 		writer_whole(w, "rows_most", pound_design_rows_most(study));
-		writer_text(w, "note", "of the rows that are complete so far; the study goes on");
+		writer_text(w, "note", "result of the rows completed so far; the study is still running");
 		writer_end(w);
 	} else if (result->n_looks) {
 		write_stopping(w, study, result);

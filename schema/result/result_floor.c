@@ -90,8 +90,8 @@ void result_floor_spectra(struct writer *w, const struct pound_study *study,
 	writer_whole(w, "runs_failed", floor->signals_failed);
 	if (floor->signals_failed)
 		writer_text(w, "note",
-		            "runs without a result are left out of the spectra and their histories may end early; "
-		            "work.failures says why");
+		            "failed runs are left out of the spectra and their histories may end early; "
+		            "work.failures has the reasons");
 	writer_array(w, "frequencies_hz", WRITER_LINE);
 	for (int k = 0; k < n; k++)
 		writer_number(w, NULL, pound_spectrum_frequency(&study->spectrum, k));
@@ -104,7 +104,7 @@ void result_floor_spectra(struct writer *w, const struct pound_study *study,
 	write_accuracy(w, floor, n);
 }
 
-/* What an output of a sensitivity study tells of its ordinate; all outputs have these members where one of them is an
+/* Members of an output of a sensitivity study about its ordinate; all outputs have these members where one of them is an
  * ordinate, so that they fit into one table.
  *
  * Test     unit_result_floor: an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse

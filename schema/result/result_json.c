@@ -87,13 +87,13 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 	for (int i = 0; i < cell->n_signals; i++)
 		moves |= cell->signals[i].displacement_max_free_1 != 0;
 	if (cell->runs_failed && cell->runs_failed == cell->runs)
-		writer_text(w, "note", "no run gave a result, so there are no outputs; work.failures says why");
+		writer_text(w, "note", "no run has a result, so there are no outputs; work.failures has the reasons");
 	else if (cell->runs_failed)
-		writer_text(w, "note", "runs without a result are left out of the outputs; work.failures says why");
+		writer_text(w, "note", "failed runs are left out of the outputs; work.failures has the reasons");
 	else if (!moves)
 		writer_text(
 		    w, "note",
-		    "the left oscillator does not move without pounding: what is told in terms of that has no value");
+		    "the left oscillator does not move without pounding, so ratios to that response are undefined");
 	write_balance(w, cell, 1);
 }
 
@@ -116,7 +116,7 @@ static void write_estimate(struct writer *w, const char *name, const struct poun
 	writer_number(w, member, estimate->high);
 }
 
-/* All there is to say about an output's indexes, in one text. */
+/* All notes about an output's indices, in one text. */
 static void write_notes(struct writer *w, const struct pound_indices *indices)
 {
 	char text[2048];
@@ -191,7 +191,7 @@ struct sets {
 	struct result_notes_source source;
 };
 
-/* Indices of sets of inputs; nothing where the design tells none. */
+/* Indices of sets of inputs; nothing if the design gives none. */
 static void write_sets(struct writer *w, const struct pound_study *study, const struct sets *sets)
 {
 	if (sets->n == 0)
@@ -215,7 +215,7 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 	writer_end(w);
 }
 
-/* The indexes of ratios and of the inputs in none; nothing where none were asked. */
+/* The indices of ratios and of the remaining inputs; nothing if none were requested. */
 static void write_ratios(struct writer *w, const struct pound_study *study,
                          const struct pound_indices *indices)
 {
@@ -229,8 +229,7 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 	if (isnan(ratios->explained.value))
 		writer_text(
 		    w, "note",
-		    "too few rows to tell which share of the variance these variables explain, and whether their "
-		    "indexes are those of the output");
+		    "too few rows to estimate the share of the variance that these variables explain; use more rows");
 	writer_array(w, "variables", WRITER_LINES);
 	for (int k = 0; k < ratios->n; k++) {
 		const struct result_notes_source source = {.large_only = true};
@@ -366,7 +365,8 @@ static void write_trials(struct writer *w, const struct pound_result *result)
 	writer_whole(w, "runs", result->cells[0].runs);
 	writer_whole(w, "runs_failed", result->cells[0].runs_failed);
 	if (result->trials[0].runs_failed * (int64_t)result->n_trials == result->cells[0].runs)
-		writer_text(w, "note", "the reference has no result, so there are no errors; work.failures says why");
+		writer_text(w, "note",
+		            "the reference run failed, so there are no errors; work.failures has the reasons");
 	writer_array(w, "rows", WRITER_LINES);
 	for (int j = 0; j < result->n_trials; j++)
 		write_trial(w, &result->trials[j]);
@@ -465,7 +465,7 @@ static void leave_out(struct writer *w, int64_t n, const char *what, const char 
 /* What was not needed, in sentences, from the counts alone. */
 static void write_left_out(struct writer *w, const struct pound_study *study, const struct pound_work *work)
 {
-	static const char repeated[] = "equal to one that was made", unasked[] = "no output needs them";
+	static const char repeated[] = "equal to one already made", unasked[] = "no output needs them";
 	static const char linear[] = "linear responses without pounding",
 	                  nonlinear[] = "nonlinear responses without pounding",
 	                  with[] = "responses with pounding";
@@ -476,12 +476,12 @@ static void write_left_out(struct writer *w, const struct pound_study *study, co
 	leave_out(w, work->yield_given, linear, "the yield displacement is given");
 	leave_out(w, work->linear_unasked, "linear responses of the right oscillator without pounding", unasked);
 	if (work->yield_runs.asked + work->nonlinear_unasked == 0)
-		writer_text(w, NULL, "all nonlinear responses without pounding: no law needs one");
+		writer_text(w, NULL, "all nonlinear responses without pounding: no law needs them");
 	leave_out(w, work->yield_runs.asked - work->yield_runs.run, nonlinear, repeated);
 	leave_out(w, work->nonlinear_unasked, "last nonlinear responses of the right oscillator without pounding",
 	          unasked);
-	leave_out(w, work->never_touching, with, "the bodies alone never close the gap");
-	leave_out(w, work->moving_alike, with, "equal oscillators move alike and never touch with force");
+	leave_out(w, work->never_touching, with, "the responses without pounding never close the gap");
+	leave_out(w, work->moving_alike, with, "equal oscillators move together and never touch with force");
 	if (study->scene.contact.present)
 		leave_out(w, work->pounding_runs.asked - made, with, repeated);
 	else
@@ -521,8 +521,8 @@ static void write_searches(struct writer *w, const struct pound_work *work)
 	writer_whole(w, "corrections_used_up", work->yield_missed);
 	if (work->yield_jumps + work->yield_missed)
 		writer_text(w, "note",
-		            "a search that did not end at the target demand takes the nearest one found: where the "
-		            "corrections are used up, allow more of them");
+		            "a search that did not end at the target demand uses the nearest demand found; if "
+		            "corrections are used up, allow more");
 	writer_end(w);
 }
 

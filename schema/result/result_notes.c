@@ -59,12 +59,12 @@ static const struct rule {
 	bool small; /* a sampling error that its interval shows */
 	const char *text;
 } rules[] = {
-	{far,                 true,  false, "far from any share, as the variance left without the noise may be 0"},
-	{far,                 false, false, "far from any share, as the rows are too few for the variance it is a share of"},
-	{outside,             true,  false, "outside its own interval, as the variance left without the noise may be 0"},
-	{outside,             false, false, "outside its own interval, as the rows are too few for one"},
-	{without_interval,    false, false, "outside [0, 1], and the rows are too few for an interval"},
-	{interval_impossible, false, true,  "outside [0, 1] with its whole interval, so its error is larger than the interval shows"},
+	{far,                 true,  false, "far outside [0, 1] as the variance corrected for the signals' noise may be 0 (use more signals)"},
+	{far,                 false, false, "far outside [0, 1] as there are too few rows to estimate the variance (use more rows)"},
+	{outside,             true,  false, "outside its own interval as the variance corrected for the signals' noise may be 0 (use more signals)"},
+	{outside,             false, false, "outside its own interval as there are too few rows for an interval (use more rows)"},
+	{without_interval,    false, false, "outside [0, 1], and too few rows for an interval (use more rows)"},
+	{interval_impossible, false, true,  "outside [0, 1] with its whole interval, so the error is larger than the interval shows"},
 	{below,               false, true,  "below 0 by sampling error, so the index is between 0 and the upper end of its interval"},
 	{impossible,          false, true,  "above 1 by sampling error, so the index is between the lower end of its interval and 1"},
 };
@@ -97,7 +97,7 @@ void result_notes_add(struct result_notes *notes, const char *name, const struct
 /* Writes member "note": the names of estimates, and what holds of them; nothing where there is nothing to say. */
 void result_notes_write(struct writer *w, const struct result_notes *notes)
 {
-	char text[RESULT_NOTES * (RESULT_NOTES_NAMES + 100)];
+	char text[RESULT_NOTES * (RESULT_NOTES_NAMES + 120)];
 	int n = 0;
 	for (int k = 0; k < RESULT_NOTES; k++)
 		if (*notes->names[k])

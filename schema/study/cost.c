@@ -2,7 +2,7 @@
  *
  * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, and
  * of the spectra of its floor.  The unit costs are those of four lanes (README, Speed): there every example of more than
- * 10 ms takes what is told within a factor of two; eight lanes of a newer processor take a half to a quarter of it.  What a
+ * 10 ms takes the estimated time within a factor of two; eight lanes of a newer processor take a half to a quarter of it.  What a
  * design shares between its samples is in them as it is for the examples. */
 #include "schema/study/cost.h"
 
@@ -53,7 +53,7 @@ static const struct {
 /* Corrections that a search takes where it may, in the mean. */
 static const double SEARCH_MEAN = 6;
 
-/* [bytes] in a result: of an index or of a signal, with its name and all that stands beside it */
+/* [bytes] in a result: of an index or of a signal, with its name and all members beside it */
 static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, DOCUMENT_BYTES = 3000;
 
 /* The mean of a power of a field of the scene, over its distribution or its sweep. */
@@ -163,7 +163,7 @@ static double run_s(const struct pound_study *study, const struct pound_solver *
 /* What a study will take.
  *
  * Given    study   valid
- * Returns  value   runs exactly; time and bytes as told above
+ * Returns  value   runs exactly; time and bytes as above
  * Test     unit_cost: what_is_asked_twice_costs_twice; soak_cost: an_estimate_is_near_what_a_study_takes
  */
 struct cost cost_of(const struct pound_study *study)
@@ -215,7 +215,7 @@ bool cost_allowed(const struct cost *cost, const struct cost *most, struct probl
 	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
 		if (limits[i].asked > limits[i].most)
 			problems_exceed(problems, "", limits[i].asked, limits[i].most,
-			                "asks for %.6g %s, this server takes at most %.6g (--%s)", limits[i].asked,
+			                "asks for %.6g %s, this server accepts at most %.6g (--%s)", limits[i].asked,
 			                limits[i].what, limits[i].most, limits[i].option);
 	return problems->n == 0;
 }

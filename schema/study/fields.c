@@ -1,12 +1,13 @@
 /* fields.c - every member of a study document, in the order a person would write them. */
 #include "schema/study/fields.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "schema/study/field_types.h"
+#include "schema/study/near_name.h"
 #include "schema/study/study_json.h"
 
 const char *study_kind_name(int kind)
@@ -38,191 +39,191 @@ static const char *signals_name(int common)
 #define PITCHED        .types = " kanai_tajimi harmonic "
 #define SCALED         .types = " kanai_tajimi white_noise harmonic "
 #define WITH_SCENE     .sceneless = FIELD_UNUSED
-#define NOT_SCENE      .fixed = "only fields of the scene vary"
+#define NOT_SCENE      .fixed = "only fields of the scene can vary"
 
 // clang-format off
 #define LAW_ROWS(pattern, law)                                                                          \
 	{pattern "/type", FIELD_CHOICE, law + IN_LAW(type), 0, 0, 0, FIELD_CLOSED, "",                        \
-	 .text = "force of the spring over its displacement", .choice = pound_law_name},                      \
+	 .text = "constitutive law: spring force over displacement", .choice = pound_law_name},                      \
 	{pattern "/hardening_ratio", FIELD_REAL, law + IN_LAW(hardening_ratio), 0.05, 0, 1, FIELD_CLOSED, "", \
-	 .text = "second slope over first"},                                                                  \
+	 .text = "post-yield stiffness over initial stiffness"},                                                                  \
 	{pattern "/target_demand", FIELD_REAL, law + IN_LAW(target_demand), 2, 1, INFINITY, FIELD_CLOSED, "", \
-	 .text = "wanted largest displacement over yield displacement, without pounding"},                    \
+	 .text = "ductility demand without pounding, from which the yield displacement is found"},                    \
 	{pattern "/yield_displacement_m", FIELD_REAL, law + IN_LAW(yield_displacement), 0, 0, INFINITY,       \
-	 FIELD_OPEN_MIN, "m", .text = "yield displacement, in place of target_demand"},                       \
+	 FIELD_OPEN_MIN, "m", .text = "yield displacement, instead of target_demand"},                       \
 	{pattern "/corrections", FIELD_COUNT, law + IN_LAW(corrections), 1, 0, 100, FIELD_CLOSED, "",         \
 	 .text = "times the yield displacement found from target_demand is corrected; from 2 on, at most in a search "    \
 	         "that ends at that demand"}
 
 #define SETTING_ROWS(solver, name, row, most, unit, what)                                                \
 	{"/convergence/" solver, FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",                                  \
-	 .text = "settings of " solver, CONVERGENCE, NOT_SCENE},                                              \
+	 .text = "settings of solver " solver, CONVERGENCE, NOT_SCENE},                                              \
 	{"/convergence/" solver "/" name, FIELD_LIST, AT(convergence.settings[row]), 0, 0, POUND_SETTINGS_MAX, \
-	 FIELD_CLOSED, "", .text = what ", each smaller than the one before; some when absent", CONVERGENCE,  \
+	 FIELD_CLOSED, "", .text = what " to compare, in descending order; a default list if absent, none if empty", CONVERGENCE,  \
 	 NOT_SCENE},                                                                                          \
 	{"/convergence/" solver "/" name "/*", FIELD_REAL, AT(convergence.settings[row].values), NAN, 0, most,  \
-	 FIELD_OPEN, unit, .text = "one of the " what, CONVERGENCE, NOT_SCENE}
+	 FIELD_OPEN, unit, .text = "one element of " name, CONVERGENCE, NOT_SCENE}
 
 const struct field fields[] = {
 	{"/kind", FIELD_CHOICE, AT(kind), NAN, 0, 0, FIELD_CLOSED, "",
-	 .text = "what is asked", .choice = study_kind_name, .sceneless = FIELD_OPTIONAL, NOT_SCENE},
+	 .text = "kind of study", .choice = study_kind_name, .sceneless = FIELD_OPTIONAL, NOT_SCENE},
 	{"/name", FIELD_TEXT, AT(name), 0, 0, 200, FIELD_CLOSED, "",
-	 .text = "for people", NOT_SCENE},
+	 .text = "display name", NOT_SCENE},
 	{"/scene", FIELD_OBJECT, 0, NAN, 0, 0, FIELD_CLOSED, "",
-	 .text = "two oscillators, what is between them and the ground motion", .sceneless = FIELD_OPTIONAL, NOT_SCENE},
+	 .text = "two oscillators, the contact between them and the ground motion", .sceneless = FIELD_OPTIONAL, NOT_SCENE},
 
 	{"/scene/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "the law of every oscillator without one of its own"},
+	 .text = "constitutive law of every oscillator that has no law of its own"},
 	LAW_ROWS("/scene/law", LAW),
 
 	{"/scene/oscillators", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
-	 .text = "left, right"},
+	 .text = "left oscillator, right oscillator"},
 	{"/scene/oscillators/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one oscillator"},
 	{"/scene/oscillators/*/mass_kg", FIELD_REAL, AT(scene.oscillators[0].mass), 1, 0, INFINITY,
 	 FIELD_OPEN, "kg", .text = "mass"},
 	{"/scene/oscillators/*/frequency_hz", FIELD_REAL, AT(scene.oscillators[0].frequency_hz), NAN, 0, INFINITY,
-	 FIELD_OPEN, "Hz", .text = "undamped frequency of the initial stiffness; not of a rigid wall"},
+	 FIELD_OPEN, "Hz", .text = "undamped natural frequency with the initial stiffness; required unless rigid_wall"},
 	{"/scene/oscillators/*/damping_ratio", FIELD_REAL, AT(scene.oscillators[0].damping_ratio), 0.05, 0, 1,
 	 FIELD_OPEN_MAX, "", .text = "fraction of critical damping"},
 	{"/scene/oscillators/*/rigid_wall", FIELD_BOOL, AT(scene.oscillators[0].rigid_wall), 0, 0, 1, FIELD_CLOSED, "",
-	 .text = "the right one follows the ground for ever", .fixed = "it decides what the other members mean"},
+	 .text = "true: the right body is a rigid wall that moves with the ground; it has no other members", .fixed = "it determines which other members apply"},
 	{"/scene/oscillators/*/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "its own law, in place of the scene's"},
+	 .text = "law of this oscillator, instead of the scene's"},
 	LAW_ROWS("/scene/oscillators/*/law", OWN),
 
 	{"/scene/contact", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "what acts when they touch; absent: a contact as below; null: they never touch"},
+	 .text = "contact between the bodies; absent: all defaults; null: no contact, the bodies pass each other"},
 	{"/scene/contact/model", FIELD_CHOICE, AT(scene.contact.model), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "contact model", .choice = pound_contact_name},
 	{"/scene/contact/stiffness_ratio", FIELD_REAL, AT(scene.contact.stiffness_ratio), 100, 0, INFINITY,
 	 FIELD_OPEN, "", .text = "contact stiffness over the larger oscillator stiffness"},
 	{"/scene/contact/restitution", FIELD_REAL, AT(scene.contact.restitution), 0.6, 0, 1, FIELD_CLOSED, "",
-	 .text = "speed after over speed before an impact"},
+	 .text = "coefficient of restitution: relative speed after over before an isolated impact"},
 	{"/scene/contact/gap_m", FIELD_REAL, AT(scene.contact.gap), 0, 0, INFINITY, FIELD_CLOSED, "m",
-	 .text = "clear distance at rest"},
+	 .text = "clear distance between the bodies at rest"},
 	{"/scene/contact/tension", FIELD_BOOL, AT(scene.contact.tension), 1, 0, 1, FIELD_CLOSED, "",
-	 .text = "the dashpot may pull just before separation; false: contact ends with its force, not with the overlap"},
+	 .text = "true: the dashpot may pull just before separation, and contact ends when the overlap does; false: contact ends when its force falls to 0"},
 
 	{"/scene/excitation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "ground motion; absent: one as below"},
+	 .text = "ground motion; absent: all defaults"},
 	{"/scene/excitation/type", FIELD_CHOICE, AT(scene.excitation.type), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "kind of ground motion", .choice = pound_excitation_name,
-	 .fixed = "it decides what the other members mean"},
+	 .text = "type of ground motion", .choice = pound_excitation_name,
+	 .fixed = "it determines which other members apply"},
 	{"/scene/excitation/frequency_hz", FIELD_REAL, AT(scene.excitation.frequency_hz), 2.5, 0, INFINITY,
-	 FIELD_OPEN, "Hz", .text = "frequency of the filter, or of the sine, which has more than two samples a cycle", PITCHED},
+	 FIELD_OPEN, "Hz", .text = "frequency of the filter, or of the sine (more than two samples per cycle)", PITCHED},
 	{"/scene/excitation/damping_ratio", FIELD_REAL, AT(scene.excitation.damping_ratio), 0.6, 0, INFINITY,
 	 FIELD_OPEN, "", .text = "damping ratio of the filter", FILTERED},
 	{"/scene/excitation/high_pass_ratio", FIELD_REAL, AT(scene.excitation.high_pass_ratio), 0.1, 0, INFINITY,
-	 FIELD_OPEN, "", .text = "high-pass corner over filter frequency", FILTERED},
+	 FIELD_OPEN, "", .text = "corner frequency of the high-pass filter over filter frequency", FILTERED},
 	{"/scene/excitation/cycles", FIELD_REAL, AT(scene.excitation.cycles), 20, 0, INFINITY, FIELD_OPEN, "",
-	 .text = "duration times filter frequency", FILTERED},
+	 .text = "duration times frequency_hz", FILTERED},
 	{"/scene/excitation/duration_s", FIELD_REAL, AT(scene.excitation.duration), NAN, 0, INFINITY, FIELD_OPEN, "s",
 	 .text = "duration, rounded to whole time steps", LASTING},
 	{"/scene/excitation/rise", FIELD_REAL, AT(scene.excitation.rise), 0.15, 0, 1, FIELD_CLOSED, "",
-	 .text = "part of the duration in which the envelope rises", RANDOM},
+	 .text = "fraction of the duration over which the envelope rises", RANDOM},
 	{"/scene/excitation/fall", FIELD_REAL, AT(scene.excitation.fall), 0.25, 0, 1, FIELD_CLOSED, "",
-	 .text = "part of the duration in which the envelope falls; rise + fall is at most 1", RANDOM},
+	 .text = "fraction of the duration over which the envelope falls; rise + fall <= 1", RANDOM},
 	{"/scene/excitation/time_step_s", FIELD_REAL, AT(scene.excitation.time_step), 0.01, 0, INFINITY,
-	 FIELD_OPEN, "s", .text = "time between two samples; a motion has 2 to 10000000 of them"},
+	 FIELD_OPEN, "s", .text = "time between two samples; a ground motion may have 2 to 10000000 samples"},
 	{"/scene/excitation/peak_m_s2", FIELD_REAL, AT(scene.excitation.peak), 1, 0, INFINITY, FIELD_OPEN, "m/s2",
-	 .text = "largest absolute ground acceleration", SCALED},
+	 .text = "peak ground acceleration", SCALED},
 	{"/scene/excitation/signals", FIELD_COUNT, AT(scene.excitation.signals), 5, 1, 100000, FIELD_CLOSED, "",
-	 .text = "random ground motions of each scene", RANDOM,
+	 .text = "number of random ground motions per scene", RANDOM,
 	 .fixed = "every sample has the same number of signals"},
 	{"/scene/excitation/acceleration_m_s2", FIELD_LIST, 0, NAN, 2, STUDY_SAMPLES_MAX, FIELD_CLOSED, "",
-	 .text = "samples of the record", .types = " record ", .fixed = "a record is what it is"},
+	 .text = "ground accelerations of a record, one per time step", .types = " record ", .fixed = "the samples of a record are fixed data"},
 	{"/scene/excitation/acceleration_m_s2/*", FIELD_REAL, 0, NAN, -INFINITY, INFINITY, FIELD_OPEN, "m/s2",
-	 .text = "ground acceleration", .types = " record ", .fixed = "a record is what it is"},
+	 .text = "one ground acceleration", .types = " record ", .fixed = "the samples of a record are fixed data"},
 
 	{"/inputs", FIELD_LIST, 0, NAN, 1, POUND_INPUTS_MAX, FIELD_CLOSED, "",
-	 .text = "what varies, each once", SENSITIVITY, NOT_SCENE},
+	 .text = "random inputs; each varies one field of the scene", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one input", SENSITIVITY, NOT_SCENE},
+	 .text = "one random input", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/path", FIELD_TEXT, offsetof(struct pound_input, path), NAN, 1, 200, FIELD_CLOSED, "",
 	 .text = "JSON Pointer into \"scene\"", SENSITIVITY, .sceneless = FIELD_OPTIONAL, NOT_SCENE},
 	{"/inputs/*/name", FIELD_TEXT, offsetof(struct pound_input, name), 0, 1, 100, FIELD_CLOSED, "",
-	 .text = "for people; the path when absent; each once, and not row, sample or an output", SENSITIVITY, NOT_SCENE},
+	 .text = "display name (default: the path); unique; not `row`, `sample` or an output name", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution", FIELD_OBJECT, 0, NAN, 0, 0, FIELD_CLOSED, "",
-	 .text = "how it varies, within the range of its field", SENSITIVITY, NOT_SCENE},
+	 .text = "probability distribution; its values must be in the range of the field", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/type", FIELD_CHOICE, offsetof(struct pound_input, distribution.type),
-	 NAN, 0, 0, FIELD_CLOSED, "", .text = "distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
+	 NAN, 0, 0, FIELD_CLOSED, "", .text = "type of distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/values", FIELD_LIST, 0, 0, 1, STUDY_VALUES_MAX, FIELD_CLOSED, "",
-	 .text = "of a discrete distribution, ascending", SENSITIVITY, NOT_SCENE},
+	 .text = "values of a discrete distribution, in ascending order", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/values/*", FIELD_REAL, 0, NAN, -POUND_PARAMETER_MAX, POUND_PARAMETER_MAX, FIELD_CLOSED, "",
 	 .text = "one of them", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/weights", FIELD_LIST, 0, 0, 1, STUDY_VALUES_MAX, FIELD_CLOSED, "",
-	 .text = "of its values, one for each; alike when absent", SENSITIVITY, NOT_SCENE},
+	 .text = "weights of the values of a discrete distribution, one per value (default: equal)", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/weights/*", FIELD_REAL, 0, NAN, 0, POUND_PARAMETER_MAX, FIELD_OPEN_MIN, "",
 	 .text = "one of them", SENSITIVITY, NOT_SCENE},
 
 	{"/ratios", FIELD_LIST, 0, 0, 0, POUND_RATIOS_MAX, FIELD_CLOSED, "",
-	 .text = "quotients of inputs, whose indexes are wanted besides; they and the inputs in none are at most 5", SENSITIVITY, NOT_SCENE},
+	 .text = "ratios of inputs to report indices for; ratios plus remaining inputs: at most 5", SENSITIVITY, NOT_SCENE},
 	{"/ratios/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one ratio", SENSITIVITY, NOT_SCENE},
 	{"/ratios/*/name", FIELD_TEXT, offsetof(struct pound_ratio, name), NAN, 1, 100, FIELD_CLOSED, "",
-	 .text = "for people; not that of another ratio or of an input", SENSITIVITY, NOT_SCENE},
+	 .text = "display name; unique among ratios and inputs", SENSITIVITY, NOT_SCENE},
 	{"/ratios/*/of", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
-	 .text = "paths of two inputs: above, below; one that is above is in no other place", SENSITIVITY, NOT_SCENE},
+	 .text = "paths of two inputs: numerator, denominator; a numerator may not appear anywhere else in the ratios", SENSITIVITY, NOT_SCENE},
 	{"/ratios/*/of/*", FIELD_TEXT, offsetof(struct pound_ratio, of), NAN, 1, 200, FIELD_CLOSED, "",
-	 .text = "path of an input that is uniform or log_uniform above 0; its name where there is no scene", SENSITIVITY, NOT_SCENE},
+	 .text = "path of an input that is uniform or log_uniform and > 0; in a study without scene its name", SENSITIVITY, NOT_SCENE},
 
 	{"/sweep", FIELD_LIST, 0, 0, 0, POUND_SWEEPS_MAX, FIELD_CLOSED, "",
-	 .text = "fields that take each of their values; the cells are the product, at most 10000", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "swept fields; a cell is one combination of their values; at most 10000 cells", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one swept field", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*/path", FIELD_TEXT, offsetof(struct pound_sweep, path), NAN, 1, 200, FIELD_CLOSED, "",
 	 .text = "JSON Pointer into \"scene\"", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*/values", FIELD_LIST, 0, NAN, 1, STUDY_CELLS_MAX, FIELD_CLOSED, "",
-	 .text = "values as the field itself takes them, none twice", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "values of the swept field, all different", SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/design", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "which samples are run", NOT_SCENE},
+	 .text = "sampling: which rows are run, and the seed", NOT_SCENE},
 	{"/design/method", FIELD_CHOICE, AT(design.method), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "how the rows are drawn", .choice = pound_design_name, SENSITIVITY, NOT_SCENE},
+	 .text = "sampling method: Latin hypercube, random, or Sobol' points", .choice = pound_design_name, SENSITIVITY, NOT_SCENE},
 	{"/design/rows", FIELD_COUNT, AT(design.rows), 1000, 2, POUND_ROWS_MAX, FIELD_CLOSED, "",
-	 .text = "rows of the matrices A and B; 1024 when absent for sobol, best 2^k times randomisations, at least 2 for each; at most 10000000 pounding runs in all", SENSITIVITY, NOT_SCENE},
+	 .text = "base samples n: rows of the matrices A and B; for sobol the default is 1024, at least 2 per randomisation, best a power of two of them; at most 10000000 pounding runs in all", SENSITIVITY, NOT_SCENE},
 	{"/design/randomisations", FIELD_COUNT, AT(design.randomisations), 8, 4, 32, FIELD_CLOSED, "",
-	 .text = "independent scrambles of sobol points, whose scatter gives the intervals; only design sobol", SENSITIVITY,
+	 .text = "number of independent scrambles of the Sobol' points, from which intervals are estimated; only with method sobol", SENSITIVITY,
 	 NOT_SCENE},
 	{"/design/until", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "more rows are run until every interval is narrow; it begins with rows, or with 1000 (16 for each randomisation of sobol) if that is more", SENSITIVITY, WITH_SCENE, NOT_SCENE},
+	 .text = "adds rows until every interval is narrow enough; starts with `rows`, or 1000 (sobol: 16 per randomisation) if that is more", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/half_width", FIELD_REAL, AT(design.until.half_width), NAN, 0, 1, FIELD_OPEN, "",
-	 .text = "half of the interval of every S1 and ST, at most", SENSITIVITY, WITH_SCENE, NOT_SCENE},
+	 .text = "largest accepted half-width of the 95 % intervals of all S1 and ST", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 200000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
-	 .text = "pounding runs at most, narrow or not; enough for the first look", SENSITIVITY, WITH_SCENE, NOT_SCENE},
+	 .text = "limit of pounding runs; at least those of the first rows", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
-	 .text = "same seed, same numbers", NOT_SCENE},
-	{"/design/signals", FIELD_BOOL, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
-	 .text = "whether the samples of a row share their noise; if they do, ST and interactions need 2 signals or more", .choice = signals_name, SENSITIVITY,
+	 .text = "seed of the random numbers; the same seed gives the same result", NOT_SCENE},
+	{"/design/signals", FIELD_ALTERNATIVE, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
+	 .text = "whether the samples of a row share their random ground motions; if common, ST and interactions need 2 signals or more", .choice = signals_name, SENSITIVITY,
 	 NOT_SCENE},
 	{"/design/order", FIELD_CHOICE, AT(design.order), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "how many mixtures of A and B a row has: n_inputs + 2, 2 n_inputs + 2 or all; factorial for at most 5 inputs",
+	 .text = "samples per row, mixtures of A and B: total n_inputs + 2, second 2 n_inputs + 2, factorial 2^n_inputs (at most 5 inputs)",
 	 .choice = pound_order_name, SENSITIVITY, NOT_SCENE},
 	{"/design/estimator", FIELD_CHOICE, AT(design.estimator), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "whose indexes are wanted besides; azzini_rosati makes the order second at least",
+	 .text = "estimator whose indices are reported in addition; azzini_rosati implies order second",
 	 .choice = pound_estimator_name, SENSITIVITY, NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
-	 .text = "what comes out, each once; when absent the amplifications that apply, and with a contact the impulse", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "outputs to compute, all different (default: the amplifications that apply and, with contact, the impulse)", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one output; force_amplification of a linear law of the left oscillator, demand_amplification of another, floor_spectrum in sensitivity studies", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "one output; force_amplification needs a linear law of the left oscillator, demand_amplification a nonlinear one, floor_spectrum a sensitivity study", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/solver", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "how a response is computed", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "numerical solver of the equations of motion", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/method", FIELD_CHOICE, AT(solver.method), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "solver", .choice = pound_solver_name, SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "solver: exact from event to event, fixed step, or adaptive step", .choice = pound_solver_name, SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/tolerance", FIELD_REAL, AT(solver.tolerance), 1e-9, 0, 1, FIELD_OPEN, "",
-	 .text = "relative error allowed in a step; event is exact at any", .solvers = pound_solver_takes_tolerance,
+	 .text = "relative error allowed per step; no effect on event, which is exact", .solvers = pound_solver_takes_tolerance,
 	 SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/step_s", FIELD_REAL, AT(solver.step), 1e-4, 0, INFINITY, FIELD_OPEN, "s",
-	 .text = "longest step; a sample interval is cut into as few equal ones, at most 1000000", .solvers = pound_solver_takes_step,
+	 .text = "largest time step; each sample interval is divided into equal steps, at most 1000000", .solvers = pound_solver_takes_step,
 	 SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/spectrum", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "oscillators on the left floor; in a sensitivity study those of output floor_spectrum", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	 .text = "floor response spectrum of the left body; in a sensitivity study that of output floor_spectrum", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/frequencies_hz", FIELD_LIST, 0, 0, 1, STUDY_FREQUENCIES_MAX, FIELD_CLOSED, "",
-	 .text = "their frequencies, none twice and at most 100 / time_step_s, or an object: count of them from min to max, each the same multiple of the one before; at most 64 in a sensitivity study, and 5000000 over all signals of another",
+	 .text = "frequencies of the spectrum: a list, or an object {min, max, count} for logarithmic spacing; all different, each at most 100 / time_step_s; at most 64 in a sensitivity study, else at most 5000000 over all signals",
 	 SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/frequencies_hz/*", FIELD_REAL, AT(spectrum.min_hz), 1, 0, INFINITY, FIELD_OPEN, "Hz",
 	 .text = "one frequency", SPECTRAL, WITH_SCENE, NOT_SCENE},
@@ -233,19 +234,19 @@ const struct field fields[] = {
 	{"/spectrum/frequencies_hz/count", FIELD_COUNT, AT(spectrum.n), 200, 2, STUDY_FREQUENCIES_MAX, FIELD_CLOSED, "",
 	 .text = "number of frequencies", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/damping_ratio", FIELD_REAL, AT(spectrum.damping_ratio), 0.05, 0, 1, FIELD_OPEN_MAX, "",
-	 .text = "fraction of critical damping", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	 .text = "damping of the spectrum, as a fraction of critical", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/pulses", FIELD_COUNT, AT(spectrum.pulses), 0, 0, 1000000, FIELD_CLOSED, "",
-	 .text = "pulses of the idealised train; 0: as many as there are contacts", FLOORED, WITH_SCENE, NOT_SCENE},
+	 .text = "number of pulses in the idealized pulse train; 0: the number of contacts of each signal", FLOORED, WITH_SCENE, NOT_SCENE},
 	{"/histories", FIELD_BOOL, AT(spectrum.histories), 0, 0, 1, FIELD_CLOSED, "",
-	 .text = "the motion of the left floor in time is wanted too, as samples; at most 2000000 of all signals", FLOORED, WITH_SCENE, NOT_SCENE},
+	 .text = "true: samples have the time histories of the left floor; at most 2000000 samples over all signals", FLOORED, WITH_SCENE, NOT_SCENE},
 
 	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "what the event solver is compared with; at most 100000 runs in all", CONVERGENCE, NOT_SCENE},
+	 .text = "solver settings to compare with the event solver; at most 100000 runs in all", CONVERGENCE, NOT_SCENE},
 	SETTING_ROWS("newmark", "steps_s", 1, INFINITY, "s", "steps"),
 	SETTING_ROWS("central_difference", "steps_s", 2, INFINITY, "s", "steps"),
 	SETTING_ROWS("adaptive", "tolerances", 3, 1, "", "tolerances"),
 	{"/convergence/history_s", FIELD_REAL, AT(convergence.history), 2, 0, INFINITY, FIELD_OPEN, "s",
-	 .text = "displacements are compared for so long from the start", CONVERGENCE, NOT_SCENE},
+	 .text = "time from the start over which displacements are compared", CONVERGENCE, NOT_SCENE},
 };
 // clang-format on
 
@@ -300,21 +301,6 @@ bool fields_in_range(const struct field *field, double value)
 	return above && below && isfinite(value);
 }
 
-static void append(char *text, size_t size, const char *more)
-{
-	size_t length = strlen(text);
-	snprintf(text + length, size - length, "%s", more);
-}
-
-static void expected_choice(const char *(*choice)(int row), char *text, size_t size)
-{
-	for (int row = 0; choice(row); row++) {
-		append(text, size, row ? ", \"" : choice(1) ? "one of \"" : "\"");
-		append(text, size, choice(row));
-		append(text, size, "\"");
-	}
-}
-
 /* The valid range of a number, in words that fit behind "must be"; "a number" when any will do.
  *
  * Test     unit_fields: every_field_says_what_it_takes
@@ -331,27 +317,13 @@ void fields_range(const struct field *field, char *text, size_t size)
 		         open_max ? ')' : ']');
 }
 
-static void expected_number(const struct field *field, char *text, size_t size)
-{
-	char range[80];
-	fields_range(field, range, sizeof range);
-	append(text, size, field->type == FIELD_COUNT ? "a whole number" : "a number");
-	if (!isinf(field->min)) {
-		append(text, size, *range == 'a' ? " of " : " ");
-		append(text, size, range);
-	}
-	if (*field->unit) {
-		append(text, size, " ");
-		append(text, size, field->unit);
-	}
-}
-
-static void expected_length(const struct field *field, const char *what, char *text, size_t size)
+/* The number of elements or characters of a list or a text: "2", "1 to 200". */
+void fields_span(const struct field *field, char *text, size_t size)
 {
 	if (field->min == field->max)
-		snprintf(text, size, "%.0f %s", field->max, what);
+		snprintf(text, size, "%.0f", field->max);
 	else
-		snprintf(text, size, "%.0f to %.0f %s", field->min, field->max, what);
+		snprintf(text, size, "%.0f to %.0f", field->min, field->max);
 }
 
 /* What a field takes, in words that fit behind "must be".
@@ -360,37 +332,7 @@ static void expected_length(const struct field *field, const char *what, char *t
  */
 void fields_expected(const struct field *field, char *text, size_t size)
 {
-	char length[64];
-	*text = 0;
-	if (field->choice) {
-		expected_choice(field->choice, text, size);
-		return;
-	}
-	switch (field->type) {
-	case FIELD_REAL:
-	case FIELD_COUNT:
-		expected_number(field, text, size);
-		break;
-	case FIELD_CHOICE:
-		break;
-	case FIELD_BOOL:
-		snprintf(text, size, "true or false");
-		break;
-	case FIELD_SEED:
-		snprintf(text, size, "a whole number below 2^53, or one below 2^64 written as text");
-		break;
-	case FIELD_TEXT:
-		expected_length(field, "characters", length, sizeof length);
-		snprintf(text, size, "a text of %s", length);
-		break;
-	case FIELD_OBJECT:
-		snprintf(text, size, "an object");
-		break;
-	case FIELD_LIST:
-		expected_length(field, "elements", length, sizeof length);
-		snprintf(text, size, "an array of %s", length);
-		break;
-	}
+	field_types[field->type].expected(field, text, size);
 }
 
 int fields_choice(const char *(*choice)(int row), const char *name)
@@ -427,49 +369,6 @@ const struct field *fields_scene(const char *path, int *oscillator)
 	return fields_find(pattern);
 }
 
-enum { NAME_MAX_LENGTH = 200 }; // longer names are nothing like ours
-
-/* Distance of two names: insertions, deletions, changes and swaps of neighbours, case aside; 1 when one starts the
- * other.
- *
- * Test     unit_fields: a_slip_of_the_pen_is_near_and_a_stranger_is_not
- */
-int fields_distance(const char *a, const char *b)
-{
-	int n = (int)strnlen(a, NAME_MAX_LENGTH), m = (int)strnlen(b, NAME_MAX_LENGTH);
-	int least = n < m ? n : m;
-	if (least >= 3 && strncasecmp(a, b, (size_t)least) == 0)
-		return n == m ? 0 : 1;
-	int rows[3][NAME_MAX_LENGTH + 1]; // of the table D[i][j], i - 2, i - 1 and i
-	int *before = rows[0], *above = rows[1], *now = rows[2];
-	for (int j = 0; j <= m; j++)
-		above[j] = j;
-	for (int i = 1; i <= n; i++) {
-		now[0] = i;
-		for (int j = 1; j <= m; j++) {
-			int x = tolower((unsigned char)a[i - 1]), y = tolower((unsigned char)b[j - 1]);
-			int d = above[j - 1] + (x != y);
-			d = above[j] + 1 < d ? above[j] + 1 : d;
-			d = now[j - 1] + 1 < d ? now[j - 1] + 1 : d;
-			if (i > 1 && j > 1 && x == tolower((unsigned char)b[j - 2]) &&
-			    y == tolower((unsigned char)a[i - 2]) && before[j - 2] + 1 < d)
-				d = before[j - 2] + 1;
-			now[j] = d;
-		}
-		int *oldest = before;
-		before = above;
-		above = now;
-		now = oldest;
-	}
-	return above[m];
-}
-
-bool fields_near(int distance, const char *name)
-{
-	int third = (int)strnlen(name, NAME_MAX_LENGTH) / 3;
-	return distance <= (third < 3 ? third : 3);
-}
-
 bool fields_nearest_path(const char *path, char *nearest, size_t size)
 {
 	int best = INT32_MAX;
@@ -477,7 +376,7 @@ bool fields_nearest_path(const char *path, char *nearest, size_t size)
 		path += strlen("/scene");
 	for (int i = 0; i < fields_count; i++) {
 		if (strncmp(fields[i].pattern, "/scene/", 7) != 0 || fields[i].fixed ||
-		    fields[i].type >= FIELD_OBJECT)
+		    !field_types[fields[i].type].number)
 			continue;
 		char candidate[256];
 		snprintf(candidate, sizeof candidate, "%s", fields[i].pattern + strlen("/scene"));
@@ -485,12 +384,12 @@ bool fields_nearest_path(const char *path, char *nearest, size_t size)
 		for (char index = '0'; index <= (star ? '1' : '0'); index++) {
 			if (star)
 				*star = index;
-			int distance = fields_distance(path, candidate);
+			int distance = near_name_distance(path, candidate);
 			if (distance < best) {
 				best = distance;
 				snprintf(nearest, size, "%s", candidate);
 			}
 		}
 	}
-	return fields_near(best, path);
+	return near_name(best, path);
 }

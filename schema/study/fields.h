@@ -1,4 +1,4 @@
-/* fields.h - every member of a study document: one row each, to read, check, vary and tell it by.
+/* fields.h - every member of a study document: one row each, by which it is read, checked, varied and described.
  *
  * A row is found by its pattern: the JSON Pointer with * for an index.  Constant; any thread. */
 #ifndef FIELDS_H
@@ -9,15 +9,18 @@
 
 #include "engine/pound.h"
 
+/* What a field can be: a row each in field_types.c. */
 enum field_type {
-	FIELD_REAL,   /* double */
-	FIELD_COUNT,  /* int */
-	FIELD_CHOICE, /* int: row of the table that `choice` names */
-	FIELD_BOOL,   /* bool; with `choice`: written as the name of row 0 or 1 */
-	FIELD_SEED,   /* uint64_t: a number below 2^53 or its decimal digits as text */
-	FIELD_TEXT,   /* const char *; min and max are its length in characters */
-	FIELD_OBJECT, /* its members are rows of their own */
-	FIELD_LIST,   /* its element is a row of its own; min and max are their number */
+	FIELD_REAL,        /* double */
+	FIELD_COUNT,       /* int */
+	FIELD_CHOICE,      /* int: row of the table that `choice` names */
+	FIELD_ALTERNATIVE, /* bool: row 0 or 1 of that table */
+	FIELD_BOOL,        /* bool */
+	FIELD_SEED,        /* uint64_t: a number below 2^53 or its decimal digits as text */
+	FIELD_TEXT,        /* const char *; min and max are its length in characters */
+	FIELD_OBJECT,      /* its members are rows of their own */
+	FIELD_LIST,        /* its element is a row of its own; min and max are their number */
+	FIELD_N_TYPES
 };
 
 /* What a field is in a study without a scene, of a model that is run elsewhere. */
@@ -59,6 +62,7 @@ bool fields_used(const struct field *field, const char *kind, const char *excita
 /* "a number in [0, 1]", "a whole number of at least 2", "one of "lhs", "random"": what a field takes. */
 void fields_expected(const struct field *field, char *text, size_t size);
 void fields_range(const struct field *field, char *text, size_t size); /* "in [0, 1]", "at least 2" */
+void fields_span(const struct field *field, char *text, size_t size);  /* of a length: "2", "1 to 200" */
 bool fields_in_range(const struct field *field, double value);
 
 /* The number of the choice of that name, -1 if there is none. */
@@ -66,10 +70,6 @@ int fields_choice(const char *(*choice)(int row), const char *name);
 
 /* The field that a JSON Pointer into "scene" names, and the oscillator in it (-1: none); NULL: none. */
 const struct field *fields_scene(const char *path, int *oscillator);
-
-/* How unlike two names are: letters to change, or 1 when one is the start of the other. */
-int fields_distance(const char *a, const char *b);
-bool fields_near(int distance, const char *name);
 
 /* The field of the scene nearest to a mistyped path, as a path; false: none is near. */
 bool fields_nearest_path(const char *path, char *nearest, size_t size);

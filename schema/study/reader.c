@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "schema/json/json_writer.h"
+#include "schema/study/field_types.h"
 
 enum { SHOWN_SIZE = 80 };
 
@@ -13,7 +14,7 @@ enum { SHOWN_SIZE = 80 };
  *
  * Returns  value     -         bytes   length before, for reader_leave
  *
- * Test     unit_study_json: members_are_known_once_and_used
+ * Test     unit_study_cases
  */
 size_t reader_enter(struct reader *r, const char *name)
 {
@@ -66,7 +67,7 @@ static void shown(const cJSON *node, char text[SHOWN_SIZE])
 
 /* Notes what was expected here and what came instead.
  *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
+ * Test     unit_study_cases
  */
 void reader_mistyped(struct reader *r, const char *expected, const cJSON *node)
 {
@@ -75,101 +76,12 @@ void reader_mistyped(struct reader *r, const char *expected, const cJSON *node)
 	problems_add(r->problems, r->pointer, "must be %s, got %s", expected, got);
 }
 
-/* The nearest of the names that `choice` gives, NULL when none is near. */
-static const char *nearest_choice(const char *(*choice)(int row), const char *name)
+/* The same, with what was probably meant. */
+void reader_misspelt(struct reader *r, const char *expected, const cJSON *node, const char *nearest)
 {
-	const char *nearest = NULL;
-	int best = 1000;
-	for (int row = 0; choice(row); row++) {
-		int distance = fields_distance(name, choice(row));
-		if (distance < best) {
-			best = distance;
-			nearest = choice(row);
-		}
-	}
-	return fields_near(best, name) ? nearest : NULL;
-}
-
-/* Reads the name of a table's row; a wrong one is told with all names and the nearest.
- *
- * Returns  value     -         -       number of the row, -1: none (function value: whether it is one)
- *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
- */
-bool reader_choice(struct reader *r, const struct field *field, const cJSON *node, double *value)
-{
-	char expected[256];
-	int row = cJSON_IsString(node) ? fields_choice(field->choice, node->valuestring) : -1;
-	*value = row;
-	if (row >= 0)
-		return true;
-	fields_expected(field, expected, sizeof expected);
-	const char *nearest = cJSON_IsString(node) ? nearest_choice(field->choice, node->valuestring) : NULL;
-	if (nearest) {
-		char got[SHOWN_SIZE];
-		shown(node, got);
-		problems_add(r->problems, r->pointer, "must be %s, got %s, did you mean \"%s\"?", expected, got,
-		             nearest);
-	} else {
-		reader_mistyped(r, expected, node);
-	}
-	return false;
-}
-
-/* Reads a real, a count, a choice or a boolean as a number.
- *
- * Returns  value     -         -       in the range of the field (function value: whether it is)
- *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
- */
-bool reader_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
-{
-	char expected[80] = "true or false";
-	if (field->choice)
-		return reader_choice(r, field, node, value);
-	if (field->type == FIELD_BOOL) {
-		*value = cJSON_IsTrue(node);
-		if (cJSON_IsBool(node))
-			return true;
-	} else {
-		*value = node->valuedouble + 0.0; // -0 is 0
-		bool whole = field->type != FIELD_COUNT || floor(*value) == *value;
-		if (cJSON_IsNumber(node) && whole && fields_in_range(field, *value))
-			return true;
-		snprintf(expected, sizeof expected, field->type == FIELD_COUNT ? "a whole number" : "a number");
-		if (cJSON_IsNumber(node) && whole)
-			fields_range(field, expected, sizeof expected);
-	}
-	reader_mistyped(r, expected, node);
-	return false;
-}
-
-static bool seed_of(const cJSON *node, uint64_t *seed)
-{
-	if (cJSON_IsNumber(node)) {
-		double value = node->valuedouble;
-		*seed = value >= 0 && value < 0x1p53 ? (uint64_t)value : 0;
-		return (double)*seed == value;
-	}
-	*seed = 0;
-	if (!cJSON_IsString(node) || !*node->valuestring)
-		return false;
-	for (const char *s = node->valuestring; *s; s++) {
-		uint64_t digit = (uint64_t)(*s - '0');
-		if (*s < '0' || *s > '9' || *seed > (UINT64_MAX - digit) / 10)
-			return false;
-		*seed = *seed * 10 + digit;
-	}
-	return true;
-}
-
-/* A seed: a number that every reader of JSON keeps, or the digits of a larger one as text. */
-void reader_seed(struct reader *r, const struct field *field, const cJSON *node, uint64_t *seed)
-{
-	char expected[80];
-	fields_expected(field, expected, sizeof expected);
-	if (!seed_of(node, seed))
-		reader_mistyped(r, expected, node);
+	char got[SHOWN_SIZE];
+	shown(node, got);
+	problems_add(r->problems, r->pointer, "must be %s, got %s, did you mean \"%s\"?", expected, got, nearest);
 }
 
 /* Characters of a text, -1 when it holds a control character (C0, DEL, C1). */
@@ -186,7 +98,7 @@ static int characters(const char *text)
 
 /* Reads a text into the study's own memory.
  *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
+ * Test     unit_study_cases
  */
 void reader_text(struct reader *r, const struct field *field, const cJSON *node, const char **at)
 {
@@ -196,36 +108,13 @@ void reader_text(struct reader *r, const struct field *field, const cJSON *node,
 	if (!cJSON_IsString(node)) {
 		reader_mistyped(r, expected, node);
 	} else if (n < 0) {
-		problems_add(r->problems, r->pointer, "must not hold control characters");
+		problems_add(r->problems, r->pointer, "must not contain control characters");
 	} else if (n < field->min || n > field->max) {
-		problems_add(r->problems, r->pointer, "must be %s, got %d", expected, n);
+		fields_span(field, expected, sizeof expected);
+		problems_add(r->problems, r->pointer, "must have %s characters, has %d", expected, n);
 	} else {
 		*at = strcpy(r->text, node->valuestring);
 		r->text += strlen(r->text) + 1;
-	}
-}
-
-/* Puts a number where a field lies in memory, as what the field is. */
-void reader_store(const struct field *field, void *at, double value)
-{
-	switch (field->type) {
-	case FIELD_REAL:
-		*(double *)at = value;
-		break;
-	case FIELD_COUNT:
-	case FIELD_CHOICE:
-		*(int *)at = (int)value;
-		break;
-	case FIELD_BOOL:
-		*(bool *)at = value != 0;
-		break;
-	case FIELD_SEED:
-		*(uint64_t *)at = (uint64_t)value;
-		break;
-	case FIELD_TEXT:
-	case FIELD_OBJECT:
-	case FIELD_LIST:
-		break;
 	}
 }
 
@@ -239,8 +128,9 @@ int reader_elements(struct reader *r, const struct field *field, const cJSON *no
 		return 0;
 	}
 	int n = cJSON_GetArraySize(node);
+	fields_span(field, expected, sizeof expected);
 	if (n < field->min || n > field->max)
-		problems_add(r->problems, r->pointer, "must be %s, got one of %d", expected, n);
+		problems_add(r->problems, r->pointer, "must have %s elements, has %d", expected, n);
 	return n <= field->max ? n : 0;
 }
 
@@ -262,7 +152,7 @@ int reader_each(struct reader *r, const struct field *field, const cJSON *node,
  *
  * Returns  numbers   (value)   -       in the study's own memory; NAN: that one is none, which is noted
  *
- * Test     unit_study_json: a_wrong_value_of_any_member_is_told_with_its_pointer
+ * Test     unit_study_cases
  */
 int reader_numbers(struct reader *r, const struct field *field, const struct field *element,
                    const cJSON *node, const double **numbers)
@@ -272,7 +162,7 @@ int reader_numbers(struct reader *r, const struct field *field, const struct fie
 	*numbers = r->number;
 	for (int i = 0; i < n; i++, at = at->next, r->number++) {
 		size_t length = reader_enter_element(r, i);
-		if (!reader_number(r, element, at, r->number))
+		if (!field_types[element->type].number(r, element, at, r->number))
 			*r->number = NAN;
 		reader_leave(r, length);
 	}

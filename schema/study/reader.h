@@ -25,13 +25,10 @@ void reader_leave(struct reader *reader, size_t length);
 
 /* Notes that something else was expected here. */
 void reader_mistyped(struct reader *reader, const char *expected, const cJSON *node);
+void reader_misspelt(struct reader *reader, const char *expected, const cJSON *node, const char *nearest);
 
-/* One value; false: it is none, and the problem is noted.  A real, a count, a choice or a boolean is a number. */
-bool reader_choice(struct reader *reader, const struct field *field, const cJSON *node, double *value);
-bool reader_number(struct reader *reader, const struct field *field, const cJSON *node, double *value);
+/* A text; other values: field_types.c. */
 void reader_text(struct reader *reader, const struct field *field, const cJSON *node, const char **at);
-void reader_seed(struct reader *reader, const struct field *field, const cJSON *node, uint64_t *seed);
-void reader_store(const struct field *field, void *at, double value);
 
 /* Lists.  The elements to read: 0 when it is no list or too long; any wrong number is noted. */
 int reader_elements(struct reader *reader, const struct field *field, const cJSON *node);
@@ -41,7 +38,7 @@ int reader_each(struct reader *reader, const struct field *field, const cJSON *n
 /* Reads numbers, each as `element` says, into the study's own memory, NAN for one that is wrong; their number. */
 int reader_numbers(struct reader *reader, const struct field *field, const struct field *element,
                    const cJSON *node, const double **numbers);
-/* Notes every number that stands before too, as that of a `what`. */
+/* Reports every number that occurs before, too, as that of a `what`. */
 void reader_distinct(struct reader *reader, const double *numbers, int n, const char *what);
 
 /* Objects: study_json.c. */

@@ -1,14 +1,15 @@
-/* study_check.c - what the members of a study mean together: paths, reaches of varied fields, outputs, size.
+/* study_check.c - what the members of a study mean together: paths, reaches of varied fields, outputs, solvers.
  *
- * A check is left out when a member it stands on is wrong itself: one mistake, one problem. */
+ * A check is left out when a member it depends on is wrong itself: one mistake, one problem. */
 #include "schema/study/study_check.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "schema/study/fields.h"
+#include "schema/study/field_types.h"
 #include "schema/study/study_json.h"
+#include "schema/study/study_size.h"
 #include "schema/study/study_spectrum.h"
 
 enum { POINTER_SIZE = 64 };
@@ -17,16 +18,10 @@ enum { POINTER_SIZE = 64 };
 
 struct pound_field study_check_field(const char *path)
 {
-	static const enum pound_field_type types[] = {
-	    [FIELD_REAL] = POUND_FIELD_REAL,
-	    [FIELD_COUNT] = POUND_FIELD_COUNT,
-	    [FIELD_CHOICE] = POUND_FIELD_CHOICE,
-	    [FIELD_BOOL] = POUND_FIELD_BOOL,
-	};
 	int oscillator;
 	const struct field *field = fields_scene(path, &oscillator);
 	size_t shift = oscillator == 1 ? sizeof(struct pound_oscillator) : 0;
-	return (struct pound_field){types[field->type],
+	return (struct pound_field){field_types[field->type].varied,
 	                            field->offset - offsetof(struct pound_study, scene) + shift};
 }
 
@@ -41,21 +36,21 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 	if (strncmp(path, "/excitation/acceleration_m_s2/", 30) == 0)
 		field = fields_find("/scene/excitation/acceleration_m_s2/*");
 	if (!field && fields_nearest_path(path, nearest, sizeof nearest))
-		problems_add(problems, pointer, "names nothing in \"scene\", did you mean \"%s\"?", nearest);
+		problems_add(problems, pointer, "no such field in \"scene\", did you mean \"%s\"?", nearest);
 	else if (!field)
 		problems_add(problems, pointer,
 		             "must be a JSON Pointer into \"scene\", such as \"/contact/restitution\"");
 	else if (field->fixed)
-		problems_add(problems, pointer, "names a field that may not vary: %s", field->fixed);
-	else if (field->type >= FIELD_SEED)
-		problems_add(problems, pointer, "names several fields, not one");
+		problems_add(problems, pointer, "this field cannot vary: %s", field->fixed);
+	else if (!field_types[field->type].number)
+		problems_add(problems, pointer, "names an object or a list, not a single field");
 	else if (input && field->type != FIELD_REAL)
-		problems_add(problems, pointer, "names a field that is not a real number: only a sweep may vary it");
+		problems_add(problems, pointer, "this field is not a real number; only a sweep can vary it");
 	else if (problems_over(problems, "/scene/excitation/type") ||
 	         problems_at(problems, "/scene/excitation/type"))
 		return;
 	else if (!fields_used(field, NULL, excitation, NULL))
-		problems_add(problems, pointer, "names a field that excitation \"%s\" does not use", excitation);
+		problems_add(problems, pointer, "this field is not used by excitation \"%s\"", excitation);
 	else if (problems_at(problems, "/scene/law") || problems_at(problems, "/scene/oscillators") ||
 	         problems_at(problems, "/scene/contact"))
 		return; // whether it has an effect is seen by these
@@ -98,9 +93,9 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 	}
 }
 
-/* Names of inputs and ratios are columns and rows of results: each must stand for one thing.
+/* Names of inputs and ratios are columns and rows of results: each must be unique.
  *
- * Given    list, n   of the name: "inputs" or "ratios", and how many stand before it there
+ * Given    list, n   of the name: "inputs" or "ratios", and its index there
  */
 static void check_name(const struct pound_study *study, const char *list, int n, const char *name,
                        struct problems *problems)
@@ -111,20 +106,20 @@ static void check_name(const struct pound_study *study, const char *list, int n,
 	snprintf(pointer, sizeof pointer, "/%s/%d/name", list, n);
 	for (int k = 0; name && k < (ratio ? study->n_inputs : n); k++) {
 		const struct pound_input *other = &study->inputs[k];
-		// two absent names are alike where two paths are, which is told by itself
+		// two absent names are alike where two paths are, which is reported by itself
 		if (other->name && strcmp(other->name, name) == 0 && !(is_path && other->name == other->path)) {
-			problems_add(problems, pointer, "is the name of /inputs/%d too", k);
+			problems_add(problems, pointer, "is already the name of /inputs/%d", k);
 			return;
 		}
 	}
 	for (int k = 0; name && ratio && k < n; k++)
 		if (study->ratios[k].name && strcmp(study->ratios[k].name, name) == 0) {
-			problems_add(problems, pointer, "is the name of /ratios/%d too", k);
+			problems_add(problems, pointer, "is already the name of /ratios/%d", k);
 			return;
 		}
 }
 
-/* The columns of the samples must be told apart too: no input has the name of another column. */
+/* The columns of the samples must be different, too: no input has the name of another column. */
 static void check_names(const struct pound_study *study, struct problems *problems)
 {
 	for (int k = 0; k < study->n_ratios; k++)
@@ -142,9 +137,10 @@ static void check_names(const struct pound_study *study, struct problems *proble
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/inputs/%d/name", j);
 		if (taken)
-			problems_add(problems, pointer, "is the name of another column of the samples");
+			problems_add(problems, pointer,
+			             "is already the name of a column of the samples: row, sample or an output");
 		else if (study->elsewhere && !name && !study->inputs[j].path)
-			problems_add(problems, pointer, "is required: a text of 1 to 100 characters");
+			problems_add(problems, pointer, "is required: a string of 1 to 100 characters");
 	}
 }
 
@@ -236,30 +232,9 @@ bool study_check_known(const struct pound_study *study, const char *path, const 
 	return !problems_over(problems, "/inputs") && !problems_over(problems, "/sweep");
 }
 
-static bool excitation_uses(const struct pound_study *study, const char *pattern)
+bool study_check_uses(const struct pound_study *study, const char *pattern)
 {
 	return fields_used(fields_find(pattern), NULL, pound_excitation_name(study->scene.excitation.type), NULL);
-}
-
-/* Time steps of the shortest and the longest ground motion. */
-static void steps(const struct pound_study *study, double *least, double *most)
-{
-	double low, high, step_low, step_high, frequency_low, frequency_high;
-	if (study->scene.excitation.n_record) {
-		*least = *most = study->scene.excitation.n_record - 1;
-		return;
-	}
-	study_check_reach(study, "/excitation/time_step_s", &step_low, &step_high);
-	if (excitation_uses(study, "/scene/excitation/cycles")) {
-		study_check_reach(study, "/excitation/cycles", &low, &high);
-		study_check_reach(study, "/excitation/frequency_hz", &frequency_low, &frequency_high);
-		low /= frequency_high;
-		high /= frequency_low;
-	} else {
-		study_check_reach(study, "/excitation/duration_s", &low, &high);
-	}
-	*least = low / step_high;
-	*most = high / step_low;
 }
 
 /* The same of all fields of a list up to NULL. */
@@ -281,7 +256,7 @@ bool study_check_steps_known(const struct pound_study *study, const struct probl
 	if (!all_known(study, all, problems))
 		return false;
 	return study->scene.excitation.n_record ||
-	       all_known(study, excitation_uses(study, "/scene/excitation/cycles") ? by_cycles : by_duration,
+	       all_known(study, study_check_uses(study, "/scene/excitation/cycles") ? by_cycles : by_duration,
 	                 problems);
 }
 
@@ -291,23 +266,24 @@ static void check_harmonic(const struct pound_study *study, struct problems *pro
 	static const char *const wave[] = {"/excitation/type", "/excitation/frequency_hz",
 	                                   "/excitation/time_step_s", NULL};
 	double low, frequency, step;
-	if (!all_known(study, wave, problems) || !excitation_uses(study, "/scene/excitation/frequency_hz") ||
-	    excitation_uses(study, "/scene/excitation/signals"))
+	if (!all_known(study, wave, problems) || !study_check_uses(study, "/scene/excitation/frequency_hz") ||
+	    study_check_uses(study, "/scene/excitation/signals"))
 		return;
 	study_check_reach(study, "/excitation/frequency_hz", &low, &frequency);
 	study_check_reach(study, "/excitation/time_step_s", &low, &step);
 	if (!(2 * frequency * step < 1))
-		problems_add(problems, "/scene/excitation/frequency_hz",
-		             "a sine needs more than two samples a cycle: at a time step of %.15g s it must be below "
-		             "%.15g Hz, got %.15g",
-		             step, 0.5 / step, frequency);
+		problems_add(
+		    problems, "/scene/excitation/frequency_hz",
+		    "a sine needs more than two samples per cycle: at a time step of %.15g s it must be below "
+		    "%.15g Hz, got %.15g",
+		    step, 0.5 / step, frequency);
 }
 
 static void check_excitation(const struct pound_study *study, struct problems *problems)
 {
 	static const char *const envelope[] = {"/excitation/type", "/excitation/rise", "/excitation/fall", NULL};
 	double low, rise, fall, least, most;
-	if (all_known(study, envelope, problems) && excitation_uses(study, "/scene/excitation/rise")) {
+	if (all_known(study, envelope, problems) && study_check_uses(study, "/scene/excitation/rise")) {
 		study_check_reach(study, "/excitation/rise", &low, &rise);
 		study_check_reach(study, "/excitation/fall", &low, &fall);
 		if (rise + fall > 1.0)
@@ -317,14 +293,15 @@ static void check_excitation(const struct pound_study *study, struct problems *p
 	check_harmonic(study, problems);
 	if (!study_check_steps_known(study, problems))
 		return;
-	steps(study, &least, &most);
+	study_size_steps(study, &least, &most);
 	if (!(least >= 1.0))
 		problems_add(problems, "/scene/excitation/time_step_s",
-		             "the ground motion must last one time step at least, not %.3g of one", least);
+		             "the ground motion must last at least one time step; the shortest lasts %.3g of one",
+		             least);
 	if (!(most < STUDY_SAMPLES_MAX))
 		problems_exceed(problems, "/scene/excitation/time_step_s", most + 1, STUDY_SAMPLES_MAX,
-		                "a ground motion may have at most %d samples, this asks for %.3g", STUDY_SAMPLES_MAX,
-		                most + 1);
+		                "a ground motion may have at most %d samples; the longest has %.3g",
+		                STUDY_SAMPLES_MAX, most + 1);
 }
 
 /* ---- outputs ---- */
@@ -406,9 +383,10 @@ static void check_order(const struct pound_study *study, struct problems *proble
 	const char *order = pound_order_name(study->design.order);
 	if (study->kind == POUND_KIND_SENSITIVITY && strcmp(order, "factorial") == 0 &&
 	    study->n_inputs > POUND_FACTORIAL_INPUTS_MAX)
-		problems_add(problems, "/design/order",
-		             "\"factorial\" runs all 2^n mixtures of n inputs and takes at most %d of them, not %d",
-		             POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
+		problems_add(
+		    problems, "/design/order",
+		    "\"factorial\" runs all 2^n_inputs mixtures of A and B, so it takes at most %d inputs, got %d",
+		    POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
 }
 
 /* ---- ratios ---- */
@@ -445,14 +423,14 @@ static void check_ratio(const struct pound_study *study, int ratio, int side, st
 	snprintf(pointer, sizeof pointer, "/ratios/%d/of/%d", ratio, side);
 	snprintf(distribution, sizeof distribution, "/inputs/%d/distribution", input);
 	if (input < 0 && !unread_input(study))
-		problems_add(problems, pointer, "is the path of no input of this study");
+		problems_add(problems, pointer, "is not the path of an input of this study");
 	else if (input >= 0 && !problems_at(problems, distribution) &&
 	         !pound_ratio_takes(&study->inputs[input].distribution))
 		problems_add(problems, pointer,
-		             "names /inputs/%d, but inputs of a ratio are \"uniform\" or \"log_uniform\" above 0",
+		             "names /inputs/%d, but inputs of a ratio must be \"uniform\" or \"log_uniform\" and > 0",
 		             input);
 	if (above_elsewhere(study, ratio, side))
-		problems_add(problems, pointer, "an input that is above in one ratio may be in no other place");
+		problems_add(problems, pointer, "a numerator may not appear anywhere else in the ratios");
 }
 
 static void check_ratios(const struct pound_study *study, struct problems *problems)
@@ -462,128 +440,11 @@ static void check_ratios(const struct pound_study *study, struct problems *probl
 			check_ratio(study, k, side, problems);
 	if (study->n_ratios && !problems_at(problems, "/ratios") && !problems_at(problems, "/inputs") &&
 	    pound_ratio_variables(study, NULL) > POUND_FACTORIAL_INPUTS_MAX)
-		problems_add(problems, "/ratios",
-		             "ratios and the inputs in none may be at most %d variables, these are %d",
+		problems_add(problems, "/ratios", "ratios plus remaining inputs: at most %d, got %d",
 		             POUND_FACTORIAL_INPUTS_MAX, pound_ratio_variables(study, NULL));
 }
 
-/* ---- size ---- */
-
-static double cells(const struct pound_study *study)
-{
-	double product = 1.0;
-	for (int s = 0; s < study->n_sweeps; s++)
-		product *= study->sweeps[s].n_values;
-	return product;
-}
-
-static const char *size_pointer(const struct pound_study *study)
-{
-	return study->kind == POUND_KIND_SENSITIVITY ? "/design/rows" : "/scene/excitation/signals";
-}
-
-/* Runs of one cell for one signal. */
-static double design_runs(const struct pound_study *study)
-{
-	if (study->kind == POUND_KIND_CONVERGENCE)
-		return pound_convergence_trials(study);
-	return study->kind != POUND_KIND_SENSITIVITY
-	           ? 1
-	           : (double)pound_design_rows_most(study) * pound_design_samples(study);
-}
-
-/* Steps of the longest sample interval; those of an adaptive solver are not known, its samples count as one each. */
-static double interval_steps(const struct pound_study *study, const struct pound_solver *solver)
-{
-	double low, high;
-	if (!pound_solver_takes_step(solver->method))
-		return 1;
-	study_check_reach(study, "/excitation/time_step_s", &low, &high);
-	return fmax(1, ceil(high / solver->step));
-}
-
-static void check_step(const struct pound_study *study, const struct pound_solver *solver,
-                       const char *pointer, struct problems *problems)
-{
-	double n = interval_steps(study, solver);
-	if (n > STUDY_STEPS_MAX)
-		problems_exceed(problems, pointer, n, STUDY_STEPS_MAX,
-		                "asks for %.3g steps in one sample interval, at most %d", n, STUDY_STEPS_MAX);
-}
-
-static void check_steps(const struct pound_study *study, struct problems *problems)
-{
-	char pointer[POINTER_SIZE];
-	if (study->kind != POUND_KIND_CONVERGENCE)
-		check_step(study, &study->solver, "/solver/step_s", problems);
-	for (int row = 0; row < POUND_SOLVERS && study->kind == POUND_KIND_CONVERGENCE; row++)
-		for (int k = 0; k < study->convergence.settings[row].n; k++) {
-			const struct pound_solver solver = {.method = row,
-			                                    .step = study->convergence.settings[row].values[k]};
-			snprintf(pointer, sizeof pointer, "/convergence/%s/steps_s/%d", pound_solver_name(row), k);
-			check_step(study, &solver, pointer, problems);
-		}
-}
-
-/* Rows enough for intervals, from the start. */
-static void check_rows(const struct pound_study *study, struct problems *problems)
-{
-	const struct pound_design *design = &study->design;
-	bool nets = pound_design_quasi_random(design->method), grows = design->until.half_width > 0;
-	if (grows && pound_design_rows(study, 0) == 0)
-		problems_add(problems, "/design/until/max_runs", "must be at least %lld: %d rows of %lld runs",
-		             (long long)(pound_design_rows_least(study) * pound_design_row_runs(study)),
-		             pound_design_rows_least(study), (long long)pound_design_row_runs(study));
-	if (nets && !grows && design->rows < 2 * design->randomisations)
-		problems_add(problems, "/design/rows", "must be at least %d, two for each randomisation, got %d",
-		             2 * design->randomisations, design->rows);
-}
-
-/* A design that grows waits for every S1 and ST, and of one random signal that the samples of a row share no ST is known. */
-static void check_until(const struct pound_study *study, struct problems *problems)
-{
-	if (study->design.until.half_width > 0 && excitation_uses(study, "/scene/excitation/signals") &&
-	    study->scene.excitation.signals == 1 && study->design.common_signals)
-		problems_add(
-		    problems, "/design/until",
-		    "needs /scene/excitation/signals of 2 or more, or \"independent\" /design/signals: ST cannot "
-		    "be estimated from one signal that the samples of a row share");
-}
-
-static void check_size(const struct pound_study *study, struct problems *problems)
-{
-	const char *pointer = size_pointer(study);
-	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
-	int most = study->kind == POUND_KIND_CONVERGENCE ? STUDY_TRIALS_MAX : STUDY_RUNS_MAX;
-	double runs = cells(study) * design_runs(study) * study->scene.excitation.signals;
-	if (sampled)
-		check_rows(study, problems);
-	if (sampled && !problems_at(problems, "/scene/excitation/type") &&
-	    !problems_at(problems, "/design/signals"))
-		check_until(study, problems);
-	if (runs > most)
-		problems_exceed(problems, pointer, runs, most,
-		                "asks for %.15g pounding runs, a study may have at most %d", runs, most);
-	if (!study_check_steps_known(study, problems) || problems_at(problems, "/solver"))
-		return;
-	double at_once = cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
-	bool few = runs <= most; // more have been told
-	if (few && runs * study_samples(study) > STUDY_WORK_MAX)
-		problems_exceed(problems, pointer, runs * study_samples(study), STUDY_WORK_MAX,
-		                "asks for %.3g samples of ground motion in all runs, at most %.0e",
-		                runs * study_samples(study), STUDY_WORK_MAX);
-	else if (few && runs * study_steps(study) > STUDY_WORK_MAX)
-		problems_exceed(problems, pointer, runs * study_steps(study), STUDY_WORK_MAX,
-		                "asks for %.3g steps of the solver in all runs, at most %.0e",
-		                runs * study_steps(study), STUDY_WORK_MAX);
-	if (at_once > STUDY_AT_ONCE_MAX)
-		problems_exceed(
-		    problems, "/sweep", at_once, STUDY_AT_ONCE_MAX,
-		    "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
-		    "a motion), at most %d",
-		    at_once, STUDY_AT_ONCE_MAX);
-	check_steps(study, problems);
-}
+/* ---- all of it ---- */
 
 /* Whether the number of rows is known: what is wrong with the seed does not matter to it. */
 static bool rows_known(const struct problems *problems)
@@ -601,7 +462,7 @@ static bool rows_known(const struct problems *problems)
  * Given    study     -         -       read, with problems or without
  * Returns  problems  -         -       more of them
  *
- * Test     unit_study_check
+ * Test     unit_study_cases, unit_study_check
  */
 void study_check(const struct pound_study *study, struct problems *problems)
 {
@@ -614,17 +475,18 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	check_ratios(study, problems);
 	if (study->elsewhere) {
 		if (rows_known(problems))
-			check_rows(study, problems);
+			study_size_check_rows(study, problems);
 		return;
 	}
-	// each as soon as what it reads is known, so that all is told at once
+	// each as soon as what it reads is known, so that all is reported at once
 	check_supports(study, problems);
 	check_excitation(study, problems);
 	if (problems_at(problems, "/sweep"))
 		return;
-	if (cells(study) > STUDY_CELLS_MAX) {
-		problems_exceed(problems, "/sweep", cells(study), STUDY_CELLS_MAX,
-		                "asks for %.15g cells, a study may have at most %d", cells(study), STUDY_CELLS_MAX);
+	if (study_size_cells(study) > STUDY_CELLS_MAX) {
+		problems_exceed(problems, "/sweep", study_size_cells(study), STUDY_CELLS_MAX,
+		                "asks for %.15g cells, a study may have at most %d", study_size_cells(study),
+		                STUDY_CELLS_MAX);
 		return;
 	}
 	if (!problems_at(problems, "/outputs"))
@@ -634,50 +496,5 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		study_spectrum_check(study, problems);
 	if (rows_known(problems) && study_check_known(study, "/excitation/signals", problems) &&
 	    !problems_at(problems, "/convergence"))
-		check_size(study, problems);
-}
-
-/* ---- what a study asks for ---- */
-
-int study_cells(const struct pound_study *study)
-{
-	return (int)cells(study);
-}
-
-int64_t study_runs(const struct pound_study *study)
-{
-	return (int64_t)(cells(study) * design_runs(study) * study->scene.excitation.signals);
-}
-
-double study_samples(const struct pound_study *study)
-{
-	double least, most;
-	steps(study, &least, &most);
-	return floor(most + 0.5) + 1;
-}
-
-double study_steps(const struct pound_study *study)
-{
-	int n = study->kind == POUND_KIND_CONVERGENCE ? pound_convergence_trials(study) : 1;
-	double sum = 0;
-	for (int j = 0; j < n; j++) {
-		const struct pound_solver solver =
-		    study->kind == POUND_KIND_CONVERGENCE ? pound_convergence_solver(study, j) : study->solver;
-		sum += interval_steps(study, &solver);
-	}
-	return study_samples(study) * sum / n;
-}
-
-/* The scene of a cell; the last sweep runs fastest.
- *
- * Test     unit_study_check: cells_are_the_product_of_the_sweeps_the_last_one_fastest
- */
-void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene)
-{
-	*scene = study->scene;
-	for (int s = study->n_sweeps - 1; s >= 0; s--) {
-		const struct pound_sweep *sweep = &study->sweeps[s];
-		pound_scene_assign(scene, sweep->field, sweep->values[cell % sweep->n_values]);
-		cell /= sweep->n_values;
-	}
+		study_size_check(study, problems);
 }

@@ -18,6 +18,9 @@ void study_check_reach(const struct pound_study *study, const char *path, double
 bool study_check_known(const struct pound_study *study, const char *path, const struct problems *problems);
 bool study_check_steps_known(const struct pound_study *study, const struct problems *problems);
 
+/* Whether the study's excitation uses a field. */
+bool study_check_uses(const struct pound_study *study, const char *pattern);
+
 /* The varied field that a path names, for pound_scene_assign; the path names one. */
 struct pound_field study_check_field(const char *path);
 

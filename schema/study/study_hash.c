@@ -9,7 +9,7 @@
 #include <nettle/sha2.h>
 
 #include "schema/json/json_writer.h"
-#include "schema/study/fields.h"
+#include "schema/study/field_types.h"
 #include "schema/study/study_json.h"
 
 struct canon {
@@ -17,37 +17,6 @@ struct canon {
 	const struct pound_study *study;
 	const char *kind, *excitation, *solver;
 };
-
-/* A field's value as it lies in memory, written as a document has it. */
-static void write_scalar(struct writer *w, const struct field *field, const char *name, const void *at)
-{
-	switch (field->type) {
-	case FIELD_REAL:
-		writer_number(w, name, *(const double *)at);
-		break;
-	case FIELD_COUNT:
-		writer_whole(w, name, *(const int *)at);
-		break;
-	case FIELD_CHOICE:
-		writer_text(w, name, field->choice(*(const int *)at));
-		break;
-	case FIELD_BOOL:
-		if (field->choice)
-			writer_text(w, name, field->choice(*(const bool *)at));
-		else
-			writer_bool(w, name, *(const bool *)at);
-		break;
-	case FIELD_SEED:
-		writer_seed(w, name, *(const uint64_t *)at);
-		break;
-	case FIELD_TEXT:
-		writer_text(w, name, *(const char *const *)at);
-		break;
-	case FIELD_OBJECT:
-	case FIELD_LIST:
-		break;
-	}
-}
 
 static bool is_name(const struct field *field)
 {
@@ -61,8 +30,9 @@ static void write_members(struct canon *c, const char *pattern, const void *base
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		if (fields_child(field, pattern) && fields_used(field, c->kind, c->excitation, c->solver) &&
-		    !is_name(field))
-			write_scalar(&c->w, field, fields_name(field), (const char *)base + field->offset);
+		    !is_name(field) && field_types[field->type].write)
+			field_types[field->type].write(&c->w, field, fields_name(field),
+			                               (const char *)base + field->offset);
 	}
 }
 
@@ -183,34 +153,19 @@ static void write_spectrum(struct canon *c)
 	writer_end(&c->w);
 }
 
-/* A varied value as a document has it: a number, the name of a choice, true or false.
- *
- * Given    path      -         -       of the field
- *          value     -         -       as pound_scene_assign takes it
- *
- * Test     unit_result_json: a_swept_law_stands_by_its_name
- */
+/* A varied value as a document has it. */
 void study_value(struct writer *writer, const char *name, const char *path, double value)
 {
 	int oscillator;
-	const struct field *field = fields_scene(path, &oscillator);
-	if (field->type == FIELD_REAL) {
-		writer_number(writer, name, value);
-		return;
-	}
-	const bool truth = value != 0.0;
-	const int row = (int)value;
-	write_scalar(writer, field, name, field->type == FIELD_BOOL ? (const void *)&truth : (const void *)&row);
+	field_write(writer, fields_scene(path, &oscillator), name, value);
 }
 
-/* The name of a swept choice, "true" or "false"; NULL when the field is a number. */
+/* The word that a varied value is written as; NULL: it is written as a number. */
 const char *study_choice(const char *path, double value)
 {
 	int oscillator;
 	const struct field *field = fields_scene(path, &oscillator);
-	if (field->choice)
-		return field->choice((int)value);
-	return field->type != FIELD_BOOL ? NULL : value != 0.0 ? "true" : "false";
+	return field_types[field->type].word ? field_types[field->type].word(field, value) : NULL;
 }
 
 /* The hash of a study's meaning.

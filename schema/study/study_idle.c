@@ -54,9 +54,9 @@ static const char *law_idle(const struct pound_study *study, const struct field 
 	const struct pound_law *law = oscillator < 0 ? &scene->law : &o[oscillator].law;
 	const char *name = fields_name(field);
 	if (oscillator >= 0 && !o[oscillator].has_law)
-		return "names the law of an oscillator that has none of its own";
+		return "this oscillator has no law of its own";
 	if (oscillator < 0 && o[0].has_law && (o[1].has_law || o[1].rigid_wall))
-		return "has no effect: no oscillator follows the scene's law";
+		return "has no effect: no oscillator uses the scene's law";
 	if (strcmp(name, "type") == 0)
 		return NULL;
 	if (always_linear(study, law, oscillator))
@@ -73,13 +73,13 @@ static const char *law_idle(const struct pound_study *study, const struct field 
  *          oscillator  -   of the field, < 0: of none
  * Returns  value       -   in words; NULL: it may vary
  *
- * Test     unit_study_check: what_a_law_does_not_use_does_not_vary
+ * Test     unit_study_cases
  */
 const char *study_idle(const struct pound_study *study, const struct field *field, int oscillator)
 {
 	const struct pound_scene *scene = &study->scene;
 	if (oscillator == 1 && scene->oscillators[1].rigid_wall)
-		return "names a field of a rigid wall, which has none";
+		return "a rigid wall has no such field";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
 		return "has no effect: there is no contact in this scene";
 	if (strstr(field->pattern, "/law/"))

@@ -1,6 +1,6 @@
 /* study_json.c - the bytes of a study document -> the study.
  *
- * 1. the gate and the parser: text -> tree, or where it is not JSON;
+ * 1. the strict check and the parser: text -> tree, or where it is not JSON;
  * 2. the tree is walked beside the rows of fields.c: each member known, used, there once, of its type, in range;
  * 3. study_check.c looks at what members mean together.
  *
@@ -13,7 +13,8 @@
 #include <string.h>
 
 #include "schema/json/json.h"
-#include "schema/study/fields.h"
+#include "schema/study/field_types.h"
+#include "schema/study/near_name.h"
 #include "schema/study/reader.h"
 #include "schema/study/study_check.h"
 #include "schema/study/study_spectrum.h"
@@ -26,7 +27,7 @@ struct block {
 	struct pound_study study;
 	struct pound_input inputs[POUND_INPUTS_MAX];
 	struct pound_sweep sweeps[POUND_SWEEPS_MAX];
-	double numbers[]; /* samples and sweep values; texts stand behind them */
+	double numbers[]; /* samples and sweep values; texts follow them */
 };
 
 /* ---- objects ---- */
@@ -48,13 +49,13 @@ static void unknown(struct reader *r, const char *pattern, const char *name)
 		    !fields_used(&fields[i], r->kind, r->excitation, r->solver) ||
 		    (r->study->elsewhere && fields[i].sceneless == FIELD_UNUSED))
 			continue;
-		int distance = fields_distance(name, fields_name(&fields[i]));
+		int distance = near_name_distance(name, fields_name(&fields[i]));
 		if (distance < best) {
 			best = distance;
 			nearest = &fields[i];
 		}
 	}
-	if (nearest && fields_near(best, name))
+	if (nearest && near_name(best, name))
 		problems_add(r->problems, r->pointer, "unknown member, did you mean \"%s\"?", fields_name(nearest));
 	else
 		problems_add(r->problems, r->pointer, "unknown member");
@@ -81,7 +82,7 @@ bool reader_seen(const cJSON *object, const cJSON *member)
 
 /* Notes every member of an object that must be there and is not.
  *
- * Test     unit_study_json: what_is_missing_is_named
+ * Test     unit_study_cases
  */
 void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 {
@@ -111,7 +112,7 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
  *          base      -         -       what the offsets of its members count from
  * Returns  value     -         -       false: it is no object
  *
- * Test     unit_study_json: members_are_known_once_and_used
+ * Test     unit_study_cases
  */
 bool reader_object(struct reader *r, const char *pattern, const cJSON *node, char *base)
 {
@@ -191,7 +192,7 @@ static void read_design(struct reader *r, const struct field *field, const cJSON
 static void read_oscillator(struct reader *r, const cJSON *node, int i)
 {
 	struct pound_oscillator *oscillator = &r->study->scene.oscillators[i];
-	// rows are told for the first oscillator
+	// offsets in fields.c are those of the first oscillator
 	char *base = (char *)r->study + (size_t)i * sizeof *oscillator;
 	const cJSON *wall = cJSON_GetObjectItemCaseSensitive(node, "rigid_wall");
 	if (!cJSON_IsTrue(wall)) {
@@ -210,8 +211,7 @@ static void read_oscillator(struct reader *r, const cJSON *node, int i)
 		else if (member != wall)
 			problems_add(r->problems, r->pointer, "is not used by a rigid wall");
 		else if (i == 0)
-			problems_add(r->problems, r->pointer,
-			             "only the right oscillator, the second, may be a rigid wall");
+			problems_add(r->problems, r->pointer, "only the right oscillator (index 1) may be a rigid wall");
 		reader_leave(r, length);
 	}
 }
@@ -232,10 +232,11 @@ static void read_record(struct reader *r, const struct field *field, const cJSON
 static void read_output(struct reader *r, const cJSON *element, int o)
 {
 	double row;
-	if (reader_choice(r, fields_find("/outputs/*"), element, &row))
+	const struct field *field = fields_find("/outputs/*");
+	if (field_types[field->type].number(r, field, element, &row))
 		for (int k = 0; k < o; k++)
 			if (r->study->outputs[k] == (int)row)
-				problems_add(r->problems, r->pointer, "is asked twice");
+				problems_add(r->problems, r->pointer, "is listed twice");
 	r->study->outputs[o] = (int)row;
 }
 
@@ -270,7 +271,7 @@ static const struct {
     {"/convergence/adaptive/tolerances", reader_settings},
 };
 
-/* Reads whatever stands at a field: by its own function if it has one, else by its type. */
+/* Reads the value of a field: by its own function if it has one, else by its type. */
 void reader_value(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	for (size_t i = 0; i < sizeof readers / sizeof readers[0]; i++)
@@ -278,17 +279,7 @@ void reader_value(struct reader *r, const struct field *field, const cJSON *node
 			readers[i].read(r, field, node, base);
 			return;
 		}
-	double value;
-	char *at = base + field->offset;
-	if (field->type == FIELD_OBJECT) {
-		reader_object(r, field->pattern, node, base);
-	} else if (field->type == FIELD_TEXT) {
-		reader_text(r, field, node, (const char **)(void *)at);
-	} else if (field->type == FIELD_SEED) {
-		reader_seed(r, field, node, (uint64_t *)(void *)at);
-	} else if (reader_number(r, field, node, &value)) {
-		reader_store(field, at, value);
-	}
+	field_types[field->type].read(r, field, node, base);
 }
 
 /* ---- the document ---- */
@@ -298,15 +289,15 @@ static void defaults(struct pound_study *study, const char *excitation)
 {
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		if (strncmp(field->pattern, "/inputs/", 8) == 0 || strncmp(field->pattern, "/sweep/", 7) == 0 ||
-		    strncmp(field->pattern, "/ratios/", 8) == 0)
+		void (*const store)(void *at, double value) = field_types[field->type].store;
+		if (!store || strncmp(field->pattern, "/inputs/", 8) == 0 ||
+		    strncmp(field->pattern, "/sweep/", 7) == 0 || strncmp(field->pattern, "/ratios/", 8) == 0)
 			continue;
 		bool absent = !isnan(field->absent) && fields_used(field, NULL, excitation, NULL);
 		int copies = strncmp(field->pattern, "/scene/oscillators/*/", 21) == 0 ? POUND_OSCILLATORS : 1;
 		for (int k = 0; k < copies; k++)
-			reader_store(field,
-			             (char *)study + field->offset + (size_t)k * sizeof study->scene.oscillators[0],
-			             absent ? field->absent : 0.0);
+			store((char *)study + field->offset + (size_t)k * sizeof study->scene.oscillators[0],
+			      absent ? field->absent : 0.0);
 	}
 	settings_default(study);
 	study->scene.contact.present = true;
@@ -368,7 +359,7 @@ static void sceneless(struct reader *r)
 
 static struct pound_study *study_read(const char *text, size_t length, bool design, struct problems *problems)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	problems_init(problems);
 	cJSON *document = json_parse(text, length, &fault);
 	if (!document && fault.line) {
@@ -394,7 +385,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 	reader_ordinates(&r, document);
 	cJSON_Delete(document);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
-		problems_add(problems, "/kind", "must be \"%s\", as no other kind has a design",
+		problems_add(problems, "/kind", "must be \"%s\": no other kind has a design",
 		             study_kind_name(POUND_KIND_SENSITIVITY));
 	study_check(study, problems);
 	if (problems->n) {
@@ -414,7 +405,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
  *          problems  -         -       all that is wrong, in the order of the document, then between members
  * Memory   allocates one block for study_free, about 5 bytes per byte of text
  *
- * Test     unit_study_json
+ * Test     unit_study_cases, unit_study_json
  */
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems)
 {

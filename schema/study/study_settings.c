@@ -4,7 +4,7 @@
 static const struct pound_settings steps = {6, {5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4}};
 static const struct pound_settings tolerances = {5, {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}};
 
-/* Gives every solver that has a setting the values that stand for an absent list. */
+/* Gives every solver that has a setting the values of an absent list. */
 void settings_default(struct pound_study *study)
 {
 	for (int row = 1; row < POUND_SOLVERS; row++)

@@ -55,7 +55,7 @@ static bool asks_for_ordinates(const struct pound_study *study)
 /* Whether output and spectrum of a sensitivity study are there both or not at all; which frequencies matter there is for
  * the user to say.
  *
- * Test     unit_study_spectrum: an_output_and_its_spectrum_need_each_other
+ * Test     unit_study_cases
  */
 void reader_ordinates(struct reader *r, const cJSON *document)
 {
@@ -67,7 +67,7 @@ void reader_ordinates(struct reader *r, const cJSON *document)
 		problems_add(r->problems, "/spectrum", "is not used without output \"floor_spectrum\"");
 	if (asked && !cJSON_GetObjectItemCaseSensitive(spectrum, "frequencies_hz"))
 		problems_add(r->problems, "/spectrum/frequencies_hz",
-		             "is required: at most %d frequencies of the floor spectrum", POUND_ORDINATES_MAX);
+		             "is required: 1 to %d frequencies of the floor spectrum", POUND_ORDINATES_MAX);
 }
 
 /* ---- what must hold ---- */
@@ -85,7 +85,7 @@ static double highest(const struct pound_spectrum *spectrum)
  * Given    study      -     read; its outputs and its spectrum known to be right
  * Returns  problems   -     more of them
  *
- * Test     unit_study_spectrum: a_spectrum_has_its_limits
+ * Test     unit_study_cases
  */
 void study_spectrum_check(const struct pound_study *study, struct problems *problems)
 {
@@ -103,11 +103,12 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 		study_check_reach(study, "/excitation/time_step_s", &least, &step);
 	if (most * step > PITCH_MAX)
 		problems_add(problems, "/spectrum/frequencies_hz",
-		             "must be at most %.15g over the sample step, %.15g Hz, got %.15g", PITCH_MAX,
-		             PITCH_MAX / step, most);
+		             "must be at most %.15g / time_step_s = %.15g Hz, got %.15g", PITCH_MAX, PITCH_MAX / step,
+		             most);
 	if (asked && spectrum->n > POUND_ORDINATES_MAX)
 		problems_add(problems, "/spectrum/frequencies_hz",
-		             "must be at most %d in a sensitivity study, got %d", POUND_ORDINATES_MAX, spectrum->n);
+		             "must have at most %d frequencies in a sensitivity study, has %d", POUND_ORDINATES_MAX,
+		             spectrum->n);
 	if (whole && spectrum->histories && signals && study_check_steps_known(study, problems) &&
 	    study_samples(study) * study->scene.excitation.signals > STUDY_HISTORIES_MAX)
 		problems_exceed(problems, "/histories", study_samples(study) * study->scene.excitation.signals,

@@ -1,4 +1,4 @@
-/* study_status.h - how far a study is: as the store has it, and as a client is told. */
+/* study_status.h - how far a study is: as the store has it, and as it is reported to a client. */
 #ifndef STUDY_STATUS_H
 #define STUDY_STATUS_H
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "schema/study/field_types.h"
 #include "schema/study/reader.h"
 #include "schema/study/study_check.h"
 #include "schema/study/study_json.h"
@@ -45,7 +46,7 @@ static void require_parameter(struct reader *r, const cJSON *node, const char *n
 	reader_leave(r, length);
 }
 
-/* Reads the parameters of a distribution whose type is known, and tells every rule that they break. */
+/* Reads the parameters of a distribution whose type is known, and reports every rule that they break. */
 static void read_parameters(struct reader *r, struct pound_distribution *distribution, const cJSON *node,
                             const cJSON *type)
 {
@@ -70,7 +71,7 @@ static void read_parameters(struct reader *r, struct pound_distribution *distrib
 	if (pound_distribution_lists_values(distribution->type))
 		require_parameter(r, node, "values", "an array of numbers, ascending");
 	if (n_weights && distribution->n_values && n_weights != distribution->n_values)
-		problems_add(r->problems, r->pointer, "there must be as many weights as values, %d, not %d",
+		problems_add(r->problems, r->pointer, "must have as many weights as values: %d, has %d",
 		             distribution->n_values, n_weights);
 	for (int k = 0; (text = pound_distribution_rule(distribution->type, k)); k++)
 		if (pound_distribution_breaks(distribution, k))
@@ -79,7 +80,7 @@ static void read_parameters(struct reader *r, struct pound_distribution *distrib
 
 /* Reads a distribution; the engine's table says which members it has.
  *
- * Test     unit_study_json: members_are_known_once_and_used
+ * Test     unit_study_cases
  */
 void reader_distribution(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
@@ -104,7 +105,7 @@ static const struct field *varying(const char *path)
 {
 	int oscillator;
 	const struct field *field = path ? fields_scene(path, &oscillator) : NULL;
-	return field && !field->fixed && field->type < FIELD_SEED ? field : NULL;
+	return field && !field->fixed && field_types[field->type].number ? field : NULL;
 }
 
 static void read_input(struct reader *r, const cJSON *element, int j)
@@ -165,7 +166,7 @@ static void read_sweep(struct reader *r, const cJSON *element, int s)
 
 /* Reads the sweeps; their paths come first, as they say what the values are.
  *
- * Test     unit_study_check: a_sweep_takes_values_as_the_field_does
+ * Test     unit_study_cases
  */
 void reader_sweeps(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
@@ -175,13 +176,13 @@ void reader_sweeps(struct reader *r, const struct field *field, const cJSON *nod
 
 /* Reads the values of the sweep in hand, each as the swept field itself is read.
  *
- * Test     unit_study_check: a_sweep_takes_values_as_the_field_does
+ * Test     unit_study_cases
  */
 void reader_values(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	struct pound_sweep *sweep = (struct pound_sweep *)base;
 	if (!r->swept)
-		return; // the path is the problem, told by study_check.c
+		return; // the path is the problem, reported by study_check.c
 	sweep->n_values = reader_numbers(r, field, r->swept, node, &sweep->values);
 	reader_distinct(r, sweep->values, sweep->n_values, "value");
 }

@@ -98,8 +98,8 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 	ishigami(study, outputs);
 	static const struct {
 		const char *input, *words;
-	} bad[] = {{"y\n1\n", "has 1 lines after its header, the design has 5000"},
-	           {"", "is empty: a header is expected"}};
+	} bad[] = {{"y\n1\n", "has 1 lines after the header, expected 5000"},
+	           {"", "is empty; expected a header"}};
 	for (int i = 0; i < 2; i++) {
 		struct program_outcome refused =
 		    program_run((const char *const[]){"pound", "indices", study, "-", NULL}, bad[i].input);
@@ -142,14 +142,14 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 	program_expect(&grown, 0);
 	program_expect(&uneven, 0);
 	program_expect(&run, 2);
-	assert_string_equal(grown.err,
-	                    "pound: note: the design grows; these are the 128 rows of its first look, a run of "
-	                    "it takes up to 2048\n");
+	assert_string_equal(
+	    grown.err, "pound: note: the design grows: these are its first 128 rows; a run takes up to 2048\n");
 	int lines = 0;
 	for (const char *c = grown.out; *c; c++)
 		lines += *c == '\n';
 	assert_int_equal(lines, 1 + 128 * 5);
-	assert_non_null(strstr(uneven.err, "pound: note: 1000 rows are not 2^k for each of 8 randomisations"));
+	assert_non_null(
+	    strstr(uneven.err, "pound: note: 1000 rows are not a power of two for each of 8 randomisations"));
 	// a study that can only be run elsewhere
 	assert_non_null(strstr(run.err, "`pound design'"));
 	assert_non_null(strstr(run.err, "`pound indices'"));

@@ -12,8 +12,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
 {
-	struct gate_fault fault = {0};
-	bool strict = gate_check((const char *)bytes, length, &fault);
+	struct json_fault fault = {0};
+	bool strict = json_strict_check((const char *)bytes, length, &fault);
 	if (strict ? fault.line != 0 : fault.line < 1 || fault.column < 1 || !fault.detail[0])
 		abort();
 	struct reading *reading = reading_open((const char *)bytes, length);

@@ -50,6 +50,21 @@ const char documents_floor[] =
     "\"pulses\": 15},\n"
     " \"histories\": false, \"design\": {\"seed\": 7}}\n";
 
+const char *documents_named(const char *name)
+{
+	static const struct {
+		const char *name, *document;
+	} all[] = {{"sensitivity", documents_sensitivity},
+	           {"response", documents_response},
+	           {"convergence", documents_convergence},
+	           {"floor", documents_floor}};
+	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+		if (strcmp(all[i].name, name) == 0)
+			return all[i].document;
+	fail_msg("no document has the name %s", name);
+	return NULL;
+}
+
 char *documents_with(const char *document, const char *from, const char *to)
 {
 	const char *at = strstr(document, from);

@@ -13,6 +13,9 @@ extern const char documents_convergence[]; /* a short convergence study, every m
 
 extern const char documents_floor[]; /* a floor spectrum study, every member of it written out */
 
+/* One of these by its name: "sensitivity", "response", "convergence", "floor". */
+const char *documents_named(const char *name);
+
 /* A copy with the first `from` replaced, which must be there; the caller frees it. */
 char *documents_with(const char *document, const char *from, const char *to);
 

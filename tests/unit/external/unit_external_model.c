@@ -37,9 +37,9 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 		const char *document, *pointer, *detail;
 	} refused[] = {
 	    {"{}", "/inputs", "is required: an array of 1 to 16 elements"},
-	    {"{\"inputs\": [{" UNIFORM "]}", "/inputs/0/name", "is required: a text of 1 to 100 characters"},
+	    {"{\"inputs\": [{" UNIFORM "]}", "/inputs/0/name", "is required: a string of 1 to 100 characters"},
 	    {"{\"inputs\": [{\"name\": \"row\", " UNIFORM "]}", "/inputs/0/name",
-	     "is the name of another column of the samples"},
+	     "is already the name of a column of the samples: row, sample or an output"},
 	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"sweep\": []}", "/sweep",
 	     "is not used without a scene"},
 	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"solver\": {}}", "/solver",
@@ -53,7 +53,7 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 	     "/design/rows", "must be at least 16, two for each randomisation, got 8"},
 	    {"{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": "
 	     "2}]}}",
-	     "/kind", "must be \"sensitivity\", as no other kind has a design"},
+	     "/kind", "must be \"sensitivity\": no other kind has a design"},
 	};
 	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
 		struct problems problems;
@@ -499,9 +499,9 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 		const char *header, *line, *last; /* of the lines but the last, and the last */
 		const char *pointer, *detail;
 	} refused[] = {
-	    {"y\n", "1\n", "", "", "has 23 lines after its header, the design has 24: 4 for each of 6 rows"},
+	    {"y\n", "1\n", "", "", "has 23 lines after the header, expected 24: 4 samples for each of 6 rows"},
 	    {"y\n", "1\n", "1\n1\n", "",
-	     "has 25 lines after its header, the design has 24: 4 for each of 6 rows"},
+	     "has 25 lines after the header, expected 24: 4 samples for each of 6 rows"},
 	    {"y\n", "1\n", "abc\n", "line 25, y",
 	     "must be a decimal number, or empty or nan for a failed run, got \"abc\""},
 	    {"y\n", "1\n", "inf\n", "line 25, y",
@@ -518,15 +518,16 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	    {"y,z\n", "1,2\n", "1\n", "line 25", "has 1 cells, the header has 2"},
 	    {"y,y.variance\n", "1,2\n", "1,-2\n", "line 25, y.variance", "must be at least 0, got -2"},
 	    {"y,y.variance\n", "1,2\n", "1,1e121\n", "line 25, y.variance", "must be at most 1e+120, got 1e121"},
-	    {"y\n", "1\n", "-1e200\n", "line 25, y", "must be at most 1e+60 in size, got -1e200"},
-	    {"z.variance\n", "1\n", "1\n", "line 1, z.variance", "is the variance of no column here"},
+	    {"y\n", "1\n", "-1e200\n", "line 25, y", "must be at most 1e+60 in magnitude, got -1e200"},
+	    {"z.variance\n", "1\n", "1\n", "line 1, z.variance",
+	     "is the variance of an output that has no column"},
 	    {"p\n", "0.5\n", "0.5\n", "line 1",
-	     "names no output: a column for each, and NAME.variance where it is known"},
-	    {"y;z\n", "1;2\n", "1;2\n", "line 1", "has no comma: columns are parted by commas"},
-	    {"y,y\n", "1,2\n", "1,2\n", "line 1, y", "is the name of column 1 too"},
+	     "has no output column; expected one per output, and NAME.variance where that is known"},
+	    {"y;z\n", "1;2\n", "1;2\n", "line 1", "has no comma; columns must be separated by commas"},
+	    {"y,y\n", "1,2\n", "1,2\n", "line 1, y", "is already the name of column 1"},
 	    {"1.25\n", "1\n", "1\n", "line 1", "must be the name of a column, got \"1.25\""},
 	    {"y,\n", "1,2\n", "1,2\n", "line 1",
-	     "column 2 has no name: pandas writes its index so, but for index=False"},
+	     "column 2 has no name; pandas writes its index this way unless index=False"},
 	    {"pression \xe9lev\xe9"
 	     "e\n",
 	     "1\n", "1\n", "line 1", "is not UTF-8"},
@@ -536,9 +537,8 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	     "must be a decimal number, or empty or nan for a failed run, got "
 	     "\"000000000000000000000000000000000000000000000000000000000000\""},
 	    {long_cell, "1\n", "1\n", long_place, "must be shorter than 512 bytes"},
-	    {"y\n", "nan\n", "\n", "",
-	     "no row of the design has all its outputs: there is nothing to make indexes of"},
-	    {"", "", "\n\n", "", "is empty: a header is expected, and a line for each sample of the design"},
+	    {"y\n", "nan\n", "\n", "", "no row of the design has all its outputs, so there are no indices"},
+	    {"", "", "\n\n", "", "is empty; expected a header and one line per sample of the design"},
 	};
 	struct pound_study *study = study_of(two_inputs);
 	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
@@ -611,7 +611,7 @@ static void a_design_that_grows_is_that_of_its_first_look(void **state)
 	assert_non_null(json);
 	struct reading *result = reading_open(json, n);
 	assert_false(reading_has(result, "/partial") || reading_has(result, "/stopping"));
-	assert_non_null(strstr(reading_text(result, "/design/note"), "rows of its first look"));
+	assert_non_null(strstr(reading_text(result, "/design/note"), "these are its first"));
 	// y is the first input
 	check_near(index_of(result, 0, 0, "S1_raw"), 1.0, 0.05);
 	check_near(index_of(result, 0, 1, "ST_raw"), 0.0, 0.0);

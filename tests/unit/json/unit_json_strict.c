@@ -19,12 +19,12 @@ struct text {
 
 static bool passes(const char *bytes, size_t length)
 {
-	struct gate_fault fault;
+	struct json_fault fault;
 	// a copy without a zero behind it, so that a sanitizer sees a byte read too many
 	char *copy = malloc(length ? length : 1);
 	assert_non_null(copy);
 	memcpy(copy, bytes, length);
-	bool strict = gate_check(copy, length, &fault);
+	bool strict = json_strict_check(copy, length, &fault);
 	free(copy);
 	if (!strict) {
 		assert_true(fault.line >= 1 && fault.column >= 1);
@@ -252,7 +252,7 @@ static void the_place_of_a_fault_is_its_line_and_column(void **state)
 		const char *detail;
 	} cases[] = {
 	    {"", 1, 1, "the text ends where a value is expected"},
-	    {"{\"a\": 01}", 1, 7, "a number must not start with 0 and further digits"},
+	    {"{\"a\": 01}", 1, 7, "a number must not have leading zeros"},
 	    {"{\n  \"a\": 1,\n  \"b\": tru\n}", 3, 8, "expected a value, found t"},
 	    {"[1, 2", 1, 6, "the text ends where a comma or ] is expected"},
 	    {"[1 2]", 1, 4, "expected a comma or ], found 2"},
@@ -262,14 +262,14 @@ static void the_place_of_a_fault_is_its_line_and_column(void **state)
 	    // a column is a character, whatever its bytes
 	    {"[\"\xC3\xA9\xF0\x9F\x98\x80\", x]", 1, 8, "expected a value, found x"},
 	    {"[\r\n\r\n  1e999]", 3, 3, "a number beyond the largest double, 1.797e308"},
-	    {"[\"ab\\q\"]", 1, 5, "an escape that JSON does not know"},
+	    {"[\"ab\\q\"]", 1, 5, "an unknown escape sequence"},
 	    {"[\"ab\\uD800\"]", 1, 5, "a high surrogate without its low surrogate"},
 	    {"[\"ab\xFF\"]", 1, 5, "not UTF-8"},
 	    {"[\f]", 1, 2, "expected a value, found the byte 0x0C"},
 	};
 	for (int i = 0; i < COUNT(cases); i++) {
-		struct gate_fault fault = {0};
-		assert_false(gate_check(cases[i].text, strlen(cases[i].text), &fault));
+		struct json_fault fault = {0};
+		assert_false(json_strict_check(cases[i].text, strlen(cases[i].text), &fault));
 		assert_string_equal(fault.detail, cases[i].detail);
 		assert_int_equal(fault.line, cases[i].line);
 		assert_int_equal(fault.column, cases[i].column);
@@ -298,12 +298,12 @@ static void each_limit_is_allowed_and_one_more_is_not(void **state)
 	    repeated_passes("[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[", "", 0, "]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]"));
 	assert_false(
 	    repeated_passes("[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[", "", 0, "]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]"));
-	assert_true(repeated_passes("\"", "x", GATE_STRING_MAX, "\""));
-	assert_false(repeated_passes("\"", "x", GATE_STRING_MAX + 1, "\""));
-	assert_true(repeated_passes("{\"a\":1", ",\"a\":1", GATE_MEMBERS_MAX - 1, "}"));
-	assert_false(repeated_passes("{\"a\":1", ",\"a\":1", GATE_MEMBERS_MAX, "}"));
-	assert_true(repeated_passes("0.", "1", GATE_NUMBER_MAX - 2, ""));
-	assert_false(repeated_passes("0.", "1", GATE_NUMBER_MAX - 1, ""));
+	assert_true(repeated_passes("\"", "x", JSON_STRING_MAX, "\""));
+	assert_false(repeated_passes("\"", "x", JSON_STRING_MAX + 1, "\""));
+	assert_true(repeated_passes("{\"a\":1", ",\"a\":1", JSON_MEMBERS_MAX - 1, "}"));
+	assert_false(repeated_passes("{\"a\":1", ",\"a\":1", JSON_MEMBERS_MAX, "}"));
+	assert_true(repeated_passes("0.", "1", JSON_NUMBER_MAX - 2, ""));
+	assert_false(repeated_passes("0.", "1", JSON_NUMBER_MAX - 1, ""));
 	assert_true(repeated_passes("[0", ",0", 100000, "]"));
 	assert_false(repeated_passes("", "[", 100000, ""));
 	assert_false(repeated_passes("", "{\"a\":", 100000, ""));

@@ -50,10 +50,8 @@ static void every_spectrum_has_a_number_for_every_frequency(void **state)
 	check_near(reading_number(r, "/damping_ratio"), 0.02, 0);
 	check_near(reading_number(r, "/runs"), 3, 0);
 	check_near(reading_number(r, "/runs_failed"), 1, 0);
-	assert_string_equal(
-	    reading_text(r, "/note"),
-	    "runs without a result are left out of the spectra and their histories may end early; "
-	    "work.failures says why");
+	assert_string_equal(reading_text(r, "/note"), "failed runs are left out of the spectra and their "
+	                                              "histories may end early; work.failures has the reasons");
 	assert_int_equal(reading_count(r, "/spectra"), POUND_N_SPECTRA);
 	for (int row = 0; row < POUND_N_SPECTRA; row++) {
 		assert_string_equal(reading_text(r, "/spectra/%d/name", row), names[row]);

@@ -67,7 +67,7 @@ static void a_response_is_written_whole(void **state)
 	    "    \"checks\": {\"what\": \"responses again on half the sample step\", \"asked\": 0, \"run\": 0},\n"
 	    "    \"never_touching\": 0,\n    \"moving_alike\": 0,\n    \"contacts\": 14,\n    \"failures\": [],\n"
 	    "    \"left_out\": [\n"
-	    "      \"all nonlinear responses without pounding: no law needs one\"\n    ]\n  },\n"
+	    "      \"all nonlinear responses without pounding: no law needs them\"\n    ]\n  },\n"
 	    "  \"timing\": {\"wall_s\": 1.5, \"cpu_s\": 2.75, \"threads\": 2}\n}\n";
 	struct pound_response response = numbered(0);
 	struct pound_cell cell = {.runs = 1, .n_signals = 1, .signals = &response, .outputs = {1.25, NAN}};
@@ -230,7 +230,8 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 	assert_true(isnan(reading_number(r, "%s/errors/excitation", accuracy)));
 	assert_string_equal(reading_text(r, "%s/dominant", accuracy), "sampling");
 	assert_string_equal(reading_text(r, "%s/note", accuracy),
-	                    "Too few rows are the largest error: an interval reaches 0.38 to either side of S1 "
+	                    "The number of rows is the largest source of error: the largest half-width of an "
+	                    "interval is 0.38, of S1 "
 	                    "of /oscillators/1/mass_kg.");
 	// the worst of all outputs of all cells; runs are those of the cells
 	check_near(reading_number(r, "/accuracy/runs_checked"), 31 + 33, 0);
@@ -334,7 +335,7 @@ static void errors_against_a_reference_without_a_result_are_null_and_say_why(voi
 	struct pound_result result = {.n_cells = 1, .cells = &cell, .n_trials = TRIALS, .trials = trials};
 	struct reading *r = result_of(documents_convergence, &result);
 	assert_string_equal(reading_text(r, "/note"),
-	                    "the reference has no result, so there are no errors; work.failures says why");
+	                    "the reference run failed, so there are no errors; work.failures has the reasons");
 	assert_true(isnan(reading_number(r, "/orders/newmark")));
 	reading_close(r);
 	trials[0].runs_failed = 1;
@@ -366,15 +367,15 @@ static void left_out_work_adds_up(void **state)
 	                                       .nonlinear_unasked = 2}};
 	struct reading *r = result_of(documents_response, &result);
 	static const char *const sentences[] = {
-	    "60 ground motions: equal to one that was made",
-	    "90 linear responses without pounding: equal to one that was made",
+	    "60 ground motions: equal to one already made",
+	    "90 linear responses without pounding: equal to one already made",
 	    "4 linear responses without pounding: the yield displacement is given",
 	    "3 linear responses of the right oscillator without pounding: no output needs them",
-	    "10 nonlinear responses without pounding: equal to one that was made",
+	    "10 nonlinear responses without pounding: equal to one already made",
 	    "2 last nonlinear responses of the right oscillator without pounding: no output needs them",
-	    "20 responses with pounding: the bodies alone never close the gap",
-	    "10 responses with pounding: equal oscillators move alike and never touch with force",
-	    "20 responses with pounding: equal to one that was made",
+	    "20 responses with pounding: the responses without pounding never close the gap",
+	    "10 responses with pounding: equal oscillators move together and never touch with force",
+	    "20 responses with pounding: equal to one already made",
 	};
 	assert_int_equal(reading_count(r, "/work/left_out"), 9);
 	for (int i = 0; i < 9; i++)
@@ -398,12 +399,12 @@ static void points_that_do_not_fill_their_nets_are_noted(void **state)
 	(void)state;
 	static const struct {
 		const char *design, *note; /* "": none */
-	} cases[] = {
-	    {"\"method\": \"sobol\", \"rows\": 1000", "512 or 1024 rows are"},
-	    {"\"method\": \"sobol\", \"rows\": 17, \"randomisations\": 4", "17 rows are not 2^k for each of 4"},
-	    {"\"method\": \"sobol\", \"rows\": 96, \"randomisations\": 6", ""},
-	    {"\"method\": \"sobol\", \"rows\": 16", ""},
-	    {"\"method\": \"lhs\", \"rows\": 10", ""}};
+	} cases[] = {{"\"method\": \"sobol\", \"rows\": 1000", "use 512 or 1024 rows"},
+	             {"\"method\": \"sobol\", \"rows\": 17, \"randomisations\": 4",
+	              "17 rows are not a power of two for each of 4"},
+	             {"\"method\": \"sobol\", \"rows\": 96, \"randomisations\": 6", ""},
+	             {"\"method\": \"sobol\", \"rows\": 16", ""},
+	             {"\"method\": \"lhs\", \"rows\": 10", ""}};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		char *document =
 		    documents_with(documents_sensitivity, "\"method\": \"lhs\", \"rows\": 10", cases[k].design);

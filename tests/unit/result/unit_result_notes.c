@@ -33,11 +33,12 @@ static void a_sentence_is_said_where_it_is_true_and_nowhere_else(void **state)
 	(void)state;
 	static const char small[] = "ST: below 0 by sampling error", above[] = "ST: above 1 by sampling error",
 	                  whole[] = "ST: outside [0, 1] with its whole interval",
-	                  none[] = "ST: outside [0, 1], and the rows are too few for an interval",
-	                  outside[] = "ST: outside its own interval, as the rows are too few",
-	                  outside_lost[] = "ST: outside its own interval, as the variance left without the noise",
-	                  far[] = "ST: far from any share, as the rows are too few",
-	                  far_lost[] = "ST: far from any share, as the variance left without the noise";
+	                  none[] = "ST: outside [0, 1], and too few rows for an interval (use more rows)",
+	                  outside[] = "ST: outside its own interval as there are too few rows",
+	                  outside_lost[] =
+	                      "ST: outside its own interval as the variance corrected for the signals' noise",
+	                  far[] = "ST: far outside [0, 1] as there are too few rows",
+	                  far_lost[] = "ST: far outside [0, 1] as the variance corrected for the signals' noise";
 	static const struct {
 		struct pound_estimate estimate;
 		const char *plain, *lost; /* how the note begins; NULL: there is none */
@@ -100,10 +101,11 @@ static void estimates_of_which_the_same_is_true_share_a_sentence(void **state)
 	writer_end(&w);
 	char *json = writer_take(&w, &length);
 	struct reading *r = reading_open(json, length);
-	assert_string_equal(reading_text(r, "/note"),
-	                    "ST: far from any share, as the rows are too few for the variance it is a share of; "
-	                    "S1, S1_raw: below "
-	                    "0 by sampling error, so the index is between 0 and the upper end of its interval");
+	assert_string_equal(
+	    reading_text(r, "/note"),
+	    "ST: far outside [0, 1] as there are too few rows to estimate the variance (use more rows); "
+	    "S1, S1_raw: below "
+	    "0 by sampling error, so the index is between 0 and the upper end of its interval");
 	reading_close(r);
 	free(json);
 }
@@ -133,7 +135,7 @@ static void check_sentence(const char *note, const char *name, double value, dou
 {
 	const char *said = sentence_about(note, name);
 	const bool far = value < -1 || value > 2, outside = value < low - 1e-9 || value > high + 1e-9;
-	assert_int_equal(strstr(said, "far from any share") != NULL, far);
+	assert_int_equal(strstr(said, "far outside") != NULL, far);
 	assert_int_equal(strstr(said, "outside its own interval") != NULL, outside && !far);
 	if (strstr(said, "by sampling error"))
 		assert_true((value < 0 && high >= 0) || (value > 1 && low <= 1));

@@ -100,7 +100,7 @@ static void outputs_of_a_response_are_of_the_signals_that_have_a_result(void **s
 	check_near(reading_number(r, "/outputs/force_amplification"), 1, 0);
 	check_near(reading_number(r, "/outputs/impulse"), 0, 0);
 	assert_string_equal(reading_text(r, "/note"),
-	                    "runs without a result are left out of the outputs; work.failures says why");
+	                    "failed runs are left out of the outputs; work.failures has the reasons");
 	reading_close(r);
 }
 
@@ -144,7 +144,7 @@ static void a_cell_without_a_run_has_no_outputs_and_the_others_have(void **state
 	assert_true(reading_has(r, "/cells/1/outputs/force_amplification"));
 	assert_true(isnan(reading_number(r, "/cells/1/outputs/force_amplification")));
 	assert_string_equal(reading_text(r, "/cells/1/note"),
-	                    "no run gave a result, so there are no outputs; work.failures says why");
+	                    "no run has a result, so there are no outputs; work.failures has the reasons");
 	check_near(reading_number(r, "/work/failures/0/runs"), 3 + 5, 0);
 	assert_true(reading_has(r, "/accuracy/energy_residual"));
 	reading_close(r);

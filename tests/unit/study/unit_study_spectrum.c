@@ -70,69 +70,6 @@ static void every_frequency_is_an_output(void **state)
 	free(document);
 }
 
-static void an_output_and_its_spectrum_need_each_other(void **state)
-{
-	(void)state;
-	char *document = document_with("");
-	documents_problem(document, "/spectrum/frequencies_hz",
-	                  "is required: at most 64 frequencies of the floor spectrum");
-	free(document);
-	document = documents_with(documents_sensitivity, "\"outputs\": [",
-	                          "\"spectrum\": {\"frequencies_hz\": [1]}, \"outputs\": [");
-	documents_problem(document, "/spectrum", "is not used without output \"floor_spectrum\"");
-	free(document);
-	document =
-	    documents_with(documents_response, "\"scene\"", "\"outputs\": [\"floor_spectrum\"], \"scene\"");
-	documents_problem(
-	    document, "/outputs",
-	    "\"floor_spectrum\" is an output of sensitivity studies; kind \"floor_spectrum\" has whole spectra");
-	free(document);
-}
-
-static void a_spectrum_has_its_limits(void **state)
-{
-	(void)state;
-	char *document = document_with("{\"min\": 1, \"max\": 10, \"count\": 65}");
-	documents_problem(document, "/spectrum/frequencies_hz",
-	                  "must be at most 64 in a sensitivity study, got 65");
-	free(document);
-	document = document_with("[1, 20000]");
-	documents_problem(document, "/spectrum/frequencies_hz",
-	                  "must be at most 100 over the sample step, 10000 Hz, got 20000");
-	// the longest step of all cells, whatever else is wrong
-	char *swept = documents_with(document, "\"/contact/restitution\", \"values\": [0.2, 0.9]",
-	                             "\"/excitation/time_step_s\", \"values\": [0.001, 0.02]");
-	documents_problem(swept, "/spectrum/frequencies_hz",
-	                  "must be at most 100 over the sample step, 5000 Hz, got 20000");
-	free(swept);
-	struct problems problems;
-	char *both = documents_with(document, "\"stiffness_ratio\": 100", "\"stiffness_ratio\": -1");
-	documents_refused(both, &problems);
-	assert_int_equal(problems.n, 2);
-	assert_true(problems_at(&problems, "/spectrum/frequencies_hz"));
-	free(both);
-	free(document);
-	document = documents_with(documents_floor, "\"signals\": 3", "\"signals\": 10000");
-	char *many = documents_with(document, "\"count\": 9", "\"count\": 501");
-	documents_problem(many, "/spectrum/frequencies_hz",
-	                  "asks for 5010000 frequencies of all signals, at most 5000000");
-	free(many);
-	char *told = documents_with(document, "\"histories\": false", "\"histories\": true");
-	documents_problem(told, "/histories", "asks for 2010000 samples of all signals, at most 2000000");
-	free(told);
-	free(document);
-}
-
-static void an_input_does_not_take_the_name_of_an_ordinate(void **state)
-{
-	(void)state;
-	char *document = document_with("[0.5]");
-	char *named = documents_with(document, "\"f_e\"", "\"floor_spectrum.0.5_hz\"");
-	documents_problem(named, "/inputs/0/name", "is the name of another column of the samples");
-	free(named);
-	free(document);
-}
-
 static void only_what_is_asked_counts_for_the_hash(void **state)
 {
 	(void)state;
@@ -154,7 +91,4 @@ static void only_what_is_asked_counts_for_the_hash(void **state)
 CHECK_MAIN(cmocka_unit_test(frequencies_are_a_list_or_a_range),
            cmocka_unit_test(absent_frequencies_are_two_hundred),
            cmocka_unit_test(every_frequency_is_an_output),
-           cmocka_unit_test(an_output_and_its_spectrum_need_each_other),
-           cmocka_unit_test(a_spectrum_has_its_limits),
-           cmocka_unit_test(an_input_does_not_take_the_name_of_an_ordinate),
            cmocka_unit_test(only_what_is_asked_counts_for_the_hash))

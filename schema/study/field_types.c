@@ -1,0 +1,366 @@
+/* field_types.c - one row for each type of field, behind the functions that it names. */
+#include "schema/study/field_types.h"
+#include "schema/study/near_name.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/study/reader.h"
+#include "schema/study/study_schema.h"
+
+/* ---- numbers ---- */
+
+/* Any type that has a number: reads it and stores it. */
+static void read_number(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	double value;
+	if (field_types[field->type].number(r, field, node, &value))
+		field_types[field->type].store(base + field->offset, value);
+}
+
+/* A number in the range of its field; misfit: what was expected of a value that is of another type, NULL if it is not. */
+static bool number_in_range(struct reader *r, const struct field *field, const cJSON *node,
+                            const char *misfit, double *value)
+{
+	char range[80];
+	*value = node->valuedouble + 0.0; // -0 is 0
+	if (!misfit && fields_in_range(field, *value))
+		return true;
+	fields_range(field, range, sizeof range);
+	reader_mistyped(r, misfit ? misfit : range, node);
+	return false;
+}
+
+static bool real_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
+{
+	return number_in_range(r, field, node, cJSON_IsNumber(node) ? NULL : "a number", value);
+}
+
+static bool count_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
+{
+	const bool whole = cJSON_IsNumber(node) && floor(node->valuedouble) == node->valuedouble;
+	return number_in_range(r, field, node, whole ? NULL : "a whole number", value);
+}
+
+static void real_store(void *at, double value)
+{
+	*(double *)at = value;
+}
+
+static void int_store(void *at, double value)
+{
+	*(int *)at = (int)value;
+}
+
+static void real_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	(void)field;
+	writer_number(w, name, *(const double *)at);
+}
+
+static void count_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	(void)field;
+	writer_whole(w, name, *(const int *)at);
+}
+
+static void number_expected(const struct field *field, const char *what, char *text, size_t size)
+{
+	char range[80] = "";
+	if (!isinf(field->min))
+		fields_range(field, range, sizeof range);
+	snprintf(text, size, "%s%s%s%s%s", what,
+	         *range == 'a' ? " of "
+	         : *range      ? " "
+	                       : "",
+	         range, *field->unit ? " " : "", field->unit);
+}
+
+static void real_expected(const struct field *field, char *text, size_t size)
+{
+	number_expected(field, "a number", text, size);
+}
+
+static void count_expected(const struct field *field, char *text, size_t size)
+{
+	number_expected(field, "a whole number", text, size);
+}
+
+static void number_openapi(struct writer *w, const struct field *field, const char *type)
+{
+	writer_text(w, "type", type);
+	if (isfinite(field->min)) {
+		writer_number(w, "minimum", field->min);
+		writer_bool(w, "exclusiveMinimum", field->ends & FIELD_OPEN_MIN);
+	}
+	if (isfinite(field->max)) {
+		writer_number(w, "maximum", field->max);
+		writer_bool(w, "exclusiveMaximum", field->ends & FIELD_OPEN_MAX);
+	}
+}
+
+static void real_openapi(struct writer *w, const struct field *field)
+{
+	number_openapi(w, field, "number");
+}
+
+static void count_openapi(struct writer *w, const struct field *field)
+{
+	number_openapi(w, field, "integer");
+}
+
+/* ---- names of a table's rows ---- */
+
+/* The nearest of the names that `choice` gives, NULL when none is near. */
+static const char *nearest_choice(const char *(*choice)(int row), const char *name)
+{
+	const char *nearest = NULL;
+	int best = 1000;
+	for (int row = 0; choice(row); row++) {
+		int distance = near_name_distance(name, choice(row));
+		if (distance < best) {
+			best = distance;
+			nearest = choice(row);
+		}
+	}
+	return near_name(best, name) ? nearest : NULL;
+}
+
+static void choice_expected(const struct field *field, char *text, size_t size)
+{
+	size_t n = 0;
+	for (int row = 0; field->choice(row) && n < size; row++)
+		n += (size_t)snprintf(text + n, size - n, "%s\"%s\"",
+		                      row                ? ", "
+		                      : field->choice(1) ? "one of "
+		                                         : "",
+		                      field->choice(row));
+}
+
+/* The row of a name, -1: none; a wrong one is noted with all names and the nearest. */
+static bool choice_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
+{
+	char expected[256];
+	int row = cJSON_IsString(node) ? fields_choice(field->choice, node->valuestring) : -1;
+	*value = row;
+	if (row >= 0)
+		return true;
+	choice_expected(field, expected, sizeof expected);
+	const char *nearest = cJSON_IsString(node) ? nearest_choice(field->choice, node->valuestring) : NULL;
+	if (nearest)
+		reader_misspelt(r, expected, node, nearest);
+	else
+		reader_mistyped(r, expected, node);
+	return false;
+}
+
+static const char *choice_word(const struct field *field, double value)
+{
+	return field->choice((int)value);
+}
+
+static void choice_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	writer_text(w, name, field->choice(*(const int *)at));
+}
+
+static void alternative_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	writer_text(w, name, field->choice(*(const bool *)at));
+}
+
+static void choice_openapi(struct writer *w, const struct field *field)
+{
+	writer_text(w, "type", "string");
+	writer_array(w, "enum", WRITER_LINE);
+	for (int row = 0; field->choice(row); row++)
+		writer_text(w, NULL, field->choice(row));
+	writer_end(w);
+}
+
+/* ---- true or false ---- */
+
+static void bool_expected(const struct field *field, char *text, size_t size)
+{
+	(void)field;
+	snprintf(text, size, "true or false");
+}
+
+static bool bool_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
+{
+	(void)field;
+	*value = cJSON_IsTrue(node);
+	if (!cJSON_IsBool(node))
+		reader_mistyped(r, "true or false", node);
+	return cJSON_IsBool(node);
+}
+
+static void bool_store(void *at, double value)
+{
+	*(bool *)at = value != 0;
+}
+
+static void bool_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	(void)field;
+	writer_bool(w, name, *(const bool *)at);
+}
+
+static const char *bool_word(const struct field *field, double value)
+{
+	(void)field;
+	return value != 0.0 ? "true" : "false";
+}
+
+static void bool_openapi(struct writer *w, const struct field *field)
+{
+	(void)field;
+	writer_text(w, "type", "boolean");
+}
+
+/* ---- seeds ---- */
+
+static void seed_expected(const struct field *field, char *text, size_t size)
+{
+	(void)field;
+	snprintf(text, size, "a whole number below 2^53, or the digits of one below 2^64 as a string");
+}
+
+static bool seed_of(const cJSON *node, uint64_t *seed)
+{
+	if (cJSON_IsNumber(node)) {
+		double value = node->valuedouble;
+		*seed = value >= 0 && value < 0x1p53 ? (uint64_t)value : 0;
+		return (double)*seed == value;
+	}
+	*seed = 0;
+	if (!cJSON_IsString(node) || !*node->valuestring)
+		return false;
+	for (const char *s = node->valuestring; *s; s++) {
+		uint64_t digit = (uint64_t)(*s - '0');
+		if (*s < '0' || *s > '9' || *seed > (UINT64_MAX - digit) / 10)
+			return false;
+		*seed = *seed * 10 + digit;
+	}
+	return true;
+}
+
+/* A seed: a number that every reader of JSON keeps, or the digits of a larger one as text. */
+static void seed_read(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	char expected[80];
+	seed_expected(field, expected, sizeof expected);
+	if (!seed_of(node, (uint64_t *)(void *)(base + field->offset)))
+		reader_mistyped(r, expected, node);
+}
+
+static void seed_store(void *at, double value)
+{
+	*(uint64_t *)at = (uint64_t)value;
+}
+
+static void seed_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	(void)field;
+	writer_seed(w, name, *(const uint64_t *)at);
+}
+
+static void seed_openapi(struct writer *w, const struct field *field)
+{
+	(void)field;
+	writer_json(w, "oneOf",
+	            "[{\"type\": \"integer\", \"minimum\": 0, \"maximum\": 9007199254740991}, "
+	            "{\"type\": \"string\", \"pattern\": \"^[0-9]{1,20}$\"}]");
+}
+
+/* ---- texts ---- */
+
+static void text_expected(const struct field *field, char *text, size_t size)
+{
+	char length[64];
+	fields_span(field, length, sizeof length);
+	snprintf(text, size, "a string of %s characters", length);
+}
+
+static void text_read(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	reader_text(r, field, node, (const char **)(void *)(base + field->offset));
+}
+
+static void text_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	(void)field;
+	writer_text(w, name, *(const char *const *)at);
+}
+
+static void text_openapi(struct writer *w, const struct field *field)
+{
+	writer_text(w, "type", "string");
+	writer_number(w, "minLength", field->min);
+	writer_number(w, "maxLength", field->max);
+}
+
+/* ---- objects and lists ---- */
+
+static void object_read(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	reader_object(r, field->pattern, node, base);
+}
+
+static void object_expected(const struct field *field, char *text, size_t size)
+{
+	(void)field;
+	snprintf(text, size, "an object");
+}
+
+static void object_openapi(struct writer *w, const struct field *field)
+{
+	study_schema_members(w, field->pattern);
+}
+
+static void list_expected(const struct field *field, char *text, size_t size)
+{
+	char length[64];
+	fields_span(field, length, sizeof length);
+	snprintf(text, size, "an array of %s elements", length);
+}
+
+// clang-format off
+const struct field_type_row field_types[] = {
+	[FIELD_REAL]   = {read_number, real_number, real_store, real_write, NULL, real_expected, real_openapi,
+	                  POUND_FIELD_REAL},
+	[FIELD_COUNT]  = {read_number, count_number, int_store, count_write, NULL, count_expected, count_openapi,
+	                  POUND_FIELD_COUNT},
+	[FIELD_CHOICE] = {read_number, choice_number, int_store, choice_write, choice_word, choice_expected, choice_openapi,
+	                  POUND_FIELD_CHOICE},
+	[FIELD_ALTERNATIVE] = {read_number, choice_number, bool_store, alternative_write, choice_word, choice_expected,
+	                  choice_openapi, POUND_FIELD_BOOL},
+	[FIELD_BOOL]   = {read_number, bool_number, bool_store, bool_write, bool_word, bool_expected, bool_openapi,
+	                  POUND_FIELD_BOOL},
+	[FIELD_SEED]   = {seed_read, NULL, seed_store, seed_write, NULL, seed_expected, seed_openapi, 0},
+	[FIELD_TEXT]   = {text_read, NULL, NULL, text_write, NULL, text_expected, text_openapi, 0},
+	[FIELD_OBJECT] = {object_read, NULL, NULL, NULL, NULL, object_expected, object_openapi, 0},
+	[FIELD_LIST]   = {NULL, NULL, NULL, NULL, NULL, list_expected, study_schema_list, 0},
+};
+// clang-format on
+
+static_assert(sizeof field_types / sizeof field_types[0] == FIELD_N_TYPES, "a row for each type");
+
+/* Writes a number as a document has a value of the field.
+ *
+ * Test     unit_result_json: a_swept_law_stands_by_its_name
+ */
+void field_write(struct writer *w, const struct field *field, const char *name, double value)
+{
+	union {
+		double real;
+		uint64_t seed;
+		int row;
+		bool truth;
+	} memory;
+	field_types[field->type].store(&memory, value);
+	field_types[field->type].write(w, field, name, &memory);
+}
