@@ -153,7 +153,7 @@ extremes: $(B)/tests/unit/exact/unit_extremes
 # searches for the yield displacement of a target demand, a table: how many end at it, by law and corrections
 yield: $(B)/tests/unit/run/unit_yield
 	@$< | grep '^|'
-# how good the indexes are: errors, coverage and bias over SEEDS designs of functions with exact indexes; minutes
+# how good the indices are: errors, coverage and bias over SEEDS designs of functions with exact indices; minutes
 SEEDS ?= 200
 statistics: $(B)/tests/long/statistics
 	@$< $(SEEDS)

@@ -1,4 +1,4 @@
-/* indexes.c - a sensitivity result has one block for each cell and output:
+/* indices.c - a sensitivity result has one block for each cell and output:
  *
  *   /oscillators/0/frequency_hz = 2
  *
@@ -10,7 +10,7 @@
  *     300 runs checked, apart by 1e-14 (median) to 2e-13: no index moves by over 3e-15
  *
  * and then a table for each other list of estimates, which have the names there that they have in the JSON. */
-#include "client/indexes.h"
+#include "client/indices.h"
 
 #include "client/cell.h"
 #include "client/command.h"
@@ -23,7 +23,7 @@
 #include <string.h>
 
 enum { PATH_SIZE = 128 };     /* of where a value stands in a result */
-enum { CHART = 20 };          /* columns of the chart of total indexes */
+enum { CHART = 20 };          /* columns of the chart of total indices */
 enum { ESTIMATE_WIDTH = 20 }; /* columns of "-0.123 [-0.12,-0.12]" */
 enum { ESTIMATES_MAX = 32 };  /* of one list */
 enum { INDENT = 2 };
@@ -60,7 +60,7 @@ static void chart(char text[CHART + 3], double share)
 	strcpy(text + 1 + CHART, "|");
 }
 
-/* The indexes to quote. */
+/* The indices to quote. */
 static void print_quoted(const struct reading *result, const char *output)
 {
 	static const char *const columns[] = {"input", " S1 [95 % interval]", " ST [95 % interval]",
@@ -262,7 +262,7 @@ static double widest(const struct reading *result, const char *accuracy, int lev
 	return most;
 }
 
-/* How far the indexes of an output may be off. */
+/* How far the indices of an output may be off. */
 static void print_accuracy(const struct reading *result, const char *output)
 {
 	char accuracy[PATH_SIZE];

@@ -1,4 +1,4 @@
-/* indexes.h - a sensitivity result as tables for people. */
+/* indices.h - a sensitivity result as tables for people. */
 #ifndef INDEXES_H
 #define INDEXES_H
 

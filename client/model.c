@@ -66,7 +66,7 @@ enum outcome model_design(const struct options *options)
 	return outcome;
 }
 
-/* `pound indices STUDY.json Y.csv`: the indexes of outputs computed elsewhere.
+/* `pound indices STUDY.json Y.csv`: the indices of outputs computed elsewhere.
  *
  * Test     client_model: indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv
  */

@@ -51,7 +51,7 @@ static const struct command COMMANDS[] = {
 	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
 	 "column j from B_i for every j.  The study may be without \"scene\": a model of your own."},
 	{"indices", "STUDY.json Y.csv", "fT", false, {"json", "table", "csv"}, model_indexes,
-	 "the indexes of outputs computed elsewhere",
+	 "the indices of outputs computed elsewhere",
 	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
 	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number."},
 	{"submit", "STUDY.json", "wu", false, {0}, submit_study,

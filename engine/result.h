@@ -51,7 +51,7 @@ enum {
 	POUND_CLOSED_MAX = (1 << POUND_FACTORIAL_INPUTS_MAX) - 2, /* sets but none and all */
 };
 
-/* Indexes of the study's ratios and then of the inputs in none, which depend on each other; Shapley effects add up to 1. */
+/* Indices of the study's ratios and then of the inputs in none, which depend on each other; Shapley effects add up to 1. */
 struct pound_ratio_indices {
 	int n; /* 0: none were asked, or too few rows */
 	struct pound_estimate
@@ -76,12 +76,12 @@ double pound_conditional_x(const struct pound_distribution *distribution,
 /* Those that the design of the study tells, sets in ascending order. */
 struct pound_set_indices {
 	int n_second, n_closed;
-	struct pound_set_index second[POUND_PAIRS_MAX]; /* second-order indexes  (n_second) */
+	struct pound_set_index second[POUND_PAIRS_MAX]; /* second-order indices  (n_second) */
 	struct pound_set_index
 	    closed[POUND_CLOSED_MAX]; /* share of the variance that a set explains  (n_closed) */
 };
 
-/* What the indexes of an output may be off by, and for want of what. */
+/* What the indices of an output may be off by, and for want of what. */
 // clang-format off
 #define POUND_ERRORS(X)                                                                   \
 	X(SAMPLING,    "sampling")    /* too few rows: the widest half of an interval */      \
@@ -121,11 +121,11 @@ struct pound_accuracy {
 	double errors[POUND_ERROR_NONE]; /* of the worst index, at most 1; NAN: unknown */
 };
 
-/* Columns of indexes, one row each: X(enumerator, name in a result).  The raw ones are the plain protocol's and hold the
+/* Columns of indices, one row each: X(enumerator, name in a result).  The raw ones are the plain protocol's and hold the
  * noise of few signals; the pick-freeze ones are the same without it; S1 and ST are the sharpest from the same runs.
  * S2_excitation is the second-order index of the input and one signal; Shapley effects add up to 1. */
 // clang-format off
-#define POUND_INDEXES(X)                                                                  \
+#define POUND_INDICES(X)                                                                  \
 	X(POUND_S1,             "S1")                                                         \
 	X(POUND_ST,             "ST")                                                         \
 	X(POUND_S1_PICK_FREEZE, "S1_pick_freeze")                                             \
@@ -150,14 +150,14 @@ struct pound_accuracy {
 	X(POUND_SHARE_TOTAL_ONE, "ST_one_signal")                                             \
 	X(POUND_SHARE_TOTAL,     "ST_mean_of_signals")
 
-/* What there is to say about the indexes of an output: X(enumerator, sentence). */
+/* What there is to say about the indices of an output: X(enumerator, sentence). */
 #define POUND_NOTES(X)                                                                    \
 	X(POUND_NOTE_NO_ROWS,                                                                 \
-	  "no row of the design gave a value, so there are no indexes")                       \
+	  "no row of the design gave a value, so there are no indices")                       \
 	X(POUND_NOTE_ONE_ROW,                                                                 \
-	  "one row of the design gave a value, which is too few for indexes")                 \
+	  "one row of the design gave a value, which is too few for indices")                 \
 	X(POUND_NOTE_CONSTANT,                                                                \
-	  "the output is the same for every row, so it has no indexes")                       \
+	  "the output is the same for every row, so it has no indices")                       \
 	X(POUND_NOTE_NOT_RANDOM,                                                              \
 	  "the excitation is not random, so there is no noise to correct for")                \
 	X(POUND_NOTE_ONE_SIGNAL,                                                              \
@@ -185,7 +185,7 @@ struct pound_accuracy {
 // clang-format on
 
 #define X(name, text) name,
-enum pound_index { POUND_INDEXES(X) POUND_N_INDEXES };
+enum pound_index { POUND_INDICES(X) POUND_N_INDICES };
 enum pound_share { POUND_SHARES(X) POUND_N_SHARES };
 enum pound_note { POUND_NOTES(X) POUND_N_NOTES };
 enum pound_named { POUND_NAMED(X) POUND_N_NAMED };
@@ -197,7 +197,7 @@ struct pound_indices {
 	double ratio_bias;     /* of the outputs as ratios of means of few signals, on average; NAN: one signal */
 	unsigned notes;        /* bits 1 << enum pound_note */
 	struct pound_estimate share[POUND_N_SHARES];
-	struct pound_estimate *index[POUND_N_INDEXES]; /* (n_inputs) each */
+	struct pound_estimate *index[POUND_N_INDICES]; /* (n_inputs) each */
 	struct pound_estimate
 	    *named[POUND_N_NAMED]; /* of the study's estimator, if it has one  (n_inputs) each */
 	struct pound_set_indices sets;

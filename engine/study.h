@@ -141,7 +141,7 @@ struct pound_input {
 	struct pound_distribution distribution;
 };
 
-/* The quotient of two inputs, as a variable whose indexes are wanted besides. */
+/* The quotient of two inputs, as a variable whose indices are wanted besides. */
 struct pound_ratio {
 	const char *name;  /* for people */
 	const char *of[2]; /* paths of the inputs above and below */

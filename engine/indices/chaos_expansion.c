@@ -1,4 +1,4 @@
-/* chaos_expansion.c - closed indexes with a polynomial of the inputs as control variate.
+/* chaos_expansion.c - closed indices with a polynomial of the inputs as control variate.
  *
  * 1. The rows, or their groups, fall into five folds; for each, a polynomial g of the inputs is fitted to the outputs of all samples of
  *    the rows outside it (least squares, orthonormal Legendre terms, "polynomial chaos").
@@ -231,7 +231,7 @@ static void fits_fill(struct fits *f)
 }
 
 /* Takes each fit to its mean by the share of it that the outputs it has not seen bear out, so that the noise of a fit with
- * few samples for its terms does not make the indexes worse than without it.
+ * few samples for its terms does not make the indices worse than without it.
  *
  *   share = sum (y - b_0) (g - b_0) / sum (g - b_0)^2,  b_0: the fit's own mean
  *
@@ -367,7 +367,7 @@ size_t pound_chaos_scratch(const struct pound_sample_values *shape)
 	return carve(&fits, NULL, shape->n_rows, shape->n_inputs, shape->order);
 }
 
-/* All indexes and conditional means with a cross-fitted polynomial as control variate.
+/* All indices and conditional means with a cross-fitted polynomial as control variate.
  *
  * Given    rows       -                      outputs and their noise
  *          u          (n x 2 x n_inputs)     the design as probabilities in (0, 1), rows of A and B
@@ -382,7 +382,7 @@ size_t pound_chaos_scratch(const struct pound_sample_values *shape)
  *
  * Valid    Latin hypercube, random and quasi-random designs
  * Source   control variates with estimated coefficients, cross-fitted: Chernozhukov et al. 2018, Econom. J. 21, C1-C68;
- *          Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indexes of the polynomial
+ *          Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indices of the polynomial
  * Test     unit_chaos_expansion
  */
 void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,

@@ -1,4 +1,4 @@
-/* closed_indices.c - closed indexes of sets of inputs, and what follows from them: first-order, total, second-order indexes and
+/* closed_indices.c - closed indices of sets of inputs, and what follows from them: first-order, total, second-order indices and
  * Shapley effects.
  *
  * 1. Two samples of a row whose columns agree in the set u, and in no other, give an estimate of the closed part C_u of
@@ -116,7 +116,7 @@ void pound_closed_row(const struct pound_closed *closed, const double *y, const 
 			estimate[k] += missed;
 }
 
-/* ---- indexes ---- */
+/* ---- indices ---- */
 
 /* The rows' estimates and their means. */
 struct columns {
@@ -173,7 +173,7 @@ static void add(struct combination *c, double weight, unsigned set)
 }
 
 /* Adds the closed part of a set less that of no input.  The latter is 0, but its estimate errs with the others: over
- * three test functions, n = 1000, first-order indexes err by 0.8 of what they do without, by half under noise. */
+ * three test functions, n = 1000, first-order indices err by 0.8 of what they do without, by half under noise. */
 static void add_closed(struct combination *c, double weight, unsigned set)
 {
 	add(c, weight, set);
@@ -234,7 +234,7 @@ static struct combination shapley(const struct columns *columns, int j)
 	return c;
 }
 
-/* Closed indexes of the proper sets, and what a set of two explains beyond its inputs alone. */
+/* Closed indices of the proper sets, and what a set of two explains beyond its inputs alone. */
 static void sets_fill(const struct columns *columns, struct pound_set_indices *sets)
 {
 	const struct pound_closed *closed = columns->closed;
@@ -259,12 +259,12 @@ size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows)
 	return (size_t)closed->n_columns + 2 * (size_t)n_rows;
 }
 
-/* All indexes from the rows' estimates of closed parts, with 95 % intervals.
+/* All indices from the rows' estimates of closed parts, with 95 % intervals.
  *
  * Given    estimates  (n_rows x n_columns)       of pound_closed_row
  *          rows       -                          how many, their groups, what is rounding
  * Returns  first, total, shapley   (n_inputs)    NAN where the design lacks a set of inputs
- *          sets       -                          second-order and closed indexes of the sets that the design has
+ *          sets       -                          second-order and closed indices of the sets that the design has
  * Memory   scratch    (pound_closed_scratch)
  *
  *   first S_j = C_j / C     total T_j = 1 - C_(all but j) / C     second order S_jk = (C_jk - C_j - C_k) / C

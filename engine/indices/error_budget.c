@@ -80,7 +80,7 @@ static double differences(const struct pound_sample_values *values, struct pound
 	return n ? squares / n / values->n_signals : NAN;
 }
 
-/* Change of the indexes when an independent error with the share q of the variance is taken out of all outputs.
+/* Change of the indices when an independent error with the share q of the variance is taken out of all outputs.
  *
  *   S: q S / (1 - q)          T: q |1 - T| / (1 - q)
  *
@@ -153,7 +153,7 @@ static double half(struct pound_estimate estimate)
 	return 0.5 * (estimate.high - estimate.low);
 }
 
-/* The half widths of all rows, which are those of the indexes, and the numbers of rows that have any. */
+/* The half widths of all rows, which are those of the indices, and the numbers of rows that have any. */
 static void half_widths(const struct pound_indices *indices, int n_rows, int n_inputs,
                         struct pound_accuracy *accuracy)
 {
@@ -277,7 +277,7 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
 	errors[POUND_ERROR_FAILED_ROWS] = dropped;
 }
 
-/* How far the indexes of an output may be off, and for want of what.
+/* How far the indices of an output may be off, and for want of what.
  *
  * Given    values        the output's runs
  *          checks        those that were made again
@@ -287,7 +287,7 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
  *
  * Valid    Pounding is chaotic: after many contacts rounding alone parts two runs of one scene, and neither is the
  *          better one.  Large differences of single runs then say that the scene does not determine the run; what it
- *          does to the indexes stays small as long as such runs are few or alike in the mean.
+ *          does to the indices stays small as long as such runs are few or alike in the mean.
  * Test     unit_error_budget
  */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
@@ -295,7 +295,7 @@ void pound_accuracy_estimate(const struct pound_sample_values *values, struct po
 {
 	struct pound_accuracy *accuracy = &indices->accuracy;
 	double variance = differences(values, checks, scratch, accuracy);
-	// an output that does not vary has no indexes to be off
+	// an output that does not vary has no indices to be off
 	accuracy->variance_share = indices->variance > 0 ? variance / indices->variance : NAN;
 	changes(indices, values);
 	half_widths(indices, values->n_rows, values->n_inputs, accuracy);

@@ -1,4 +1,4 @@
-/* error_budget.h - how far the indexes of an output may be off, and for want of what. */
+/* error_budget.h - how far the indices of an output may be off, and for want of what. */
 #ifndef ACCURACY_H
 #define ACCURACY_H
 

@@ -1,4 +1,4 @@
-/* failed_rows.c - what rows that were left out, for a failed run, may have done to the indexes.
+/* failed_rows.c - what rows that were left out, for a failed run, may have done to the indices.
  *
  * Nothing is known of such a row but that it failed, and rows may fail for what makes their outputs large.  So the worst is
  * taken: that every one of them is like the row among the others that moves the index most. */
@@ -14,7 +14,7 @@ static void row_moments(const struct pound_rows *rows, int row, double *m)
 	pound_estimator_row(0)->moments(&outputs, m);
 }
 
-/* Largest changes of the indexes that rows left out can have made.
+/* Largest changes of the indices that rows left out can have made.
  *
  * Given    rows       n         those that are left
  *          dropped    m         how many were left out

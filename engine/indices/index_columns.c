@@ -1,8 +1,8 @@
-/* index_columns.c - every column of indexes of one output from the same runs: what each is made by, what it takes, and which
+/* index_columns.c - every column of indices of one output from the same runs: what each is made by, what it takes, and which
  * column stands in where that is missing.
  *
- * 1. Raw and corrected pick-freeze indexes and the excitation's shares come from one bootstrap (noise_correction.c).
- * 2. The sharper first-order indexes are those of chaos_expansion.c or local_regression.c, the sharper totals those of chaos_expansion.c or pick-freeze,
+ * 1. Raw and corrected pick-freeze indices and the excitation's shares come from one bootstrap (noise_correction.c).
+ * 2. The sharper first-order indices are those of chaos_expansion.c or local_regression.c, the sharper totals those of chaos_expansion.c or pick-freeze,
  *    of each input the one with the narrower interval: polynomials are best for smooth outputs, the others elsewhere.
  *    Local regression has a bias where the output changes within its reach; it is refused where it disagrees with the
  *    polynomial, whose estimate has none.
@@ -98,7 +98,7 @@ static double half(struct pound_estimate estimate)
 }
 
 /* The half widths that the first n/8, n/4 and n/2 rows give by chaos_expansion.c, as it has left its scratch, and by pick-freeze;
- * those of all rows are the indexes' own. */
+ * those of all rows are the indices' own. */
 static void levels_fill(struct sources *s, uint64_t seed)
 {
 	const int d = s->rows->n_inputs;
@@ -219,21 +219,21 @@ static const struct column {
 	enum pound_index index;
 	bool (*possible)(const struct sources *s);
 	void (*make)(const struct sources *s, struct pound_estimate *into);
-	enum pound_index instead; /* the column that stands in, POUND_N_INDEXES: none, undefined */
+	enum pound_index instead; /* the column that stands in, POUND_N_INDICES: none, undefined */
 	bool shared; /* is what its name says even if the samples of a row share noise of unknown covariance */
 } columns[] = {
-	{POUND_S1_RAW,         always,         first_raw,       POUND_N_INDEXES,      true},
-	{POUND_ST_RAW,         always,         total_raw,       POUND_N_INDEXES,      true},
+	{POUND_S1_RAW,         always,         first_raw,       POUND_N_INDICES,      true},
+	{POUND_ST_RAW,         always,         total_raw,       POUND_N_INDICES,      true},
 	{POUND_S1_PICK_FREEZE, signals_enough, first_corrected, POUND_S1_RAW,         false},
 	{POUND_ST_PICK_FREEZE, signals_enough, total_corrected, POUND_ST_RAW,         false},
-	{POUND_S2_EXCITATION,  signals_shared, with_excitation, POUND_N_INDEXES,      false},
+	{POUND_S2_EXCITATION,  signals_shared, with_excitation, POUND_N_INDICES,      false},
 	{POUND_S1,             rows_enough,    first_sharpest,  POUND_S1_PICK_FREEZE, true},
 	{POUND_ST,             rows_enough,    total_sharpest,  POUND_ST_PICK_FREEZE, false},
-	{POUND_SHAPLEY,        rows_enough,    shapley,         POUND_N_INDEXES,      false},
+	{POUND_SHAPLEY,        rows_enough,    shapley,         POUND_N_INDICES,      false},
 };
 // clang-format on
 
-static_assert(sizeof columns / sizeof columns[0] == POUND_N_INDEXES, "every index has its row");
+static_assert(sizeof columns / sizeof columns[0] == POUND_N_INDICES, "every index has its row");
 
 /* The columns of the estimator that the study names, if it does. */
 static void named_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
@@ -255,13 +255,13 @@ static void named_fill(const struct sources *s, uint64_t seed, struct pound_indi
 static void columns_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
 {
 	const int d = s->rows->n_inputs;
-	for (int k = 0; k < POUND_N_INDEXES && !pound_stopped(s->rows->stop); k++) {
+	for (int k = 0; k < POUND_N_INDICES && !pound_stopped(s->rows->stop); k++) {
 		const struct column *column = &columns[k];
 		struct pound_estimate *into = indices->index[column->index];
 		const bool told = column->shared || !s->shared;
 		if (told && column->possible(s))
 			column->make(s, into);
-		else if (!told || column->instead == POUND_N_INDEXES)
+		else if (!told || column->instead == POUND_N_INDICES)
 			undefined(into, d);
 		else
 			copy(s, indices->index[column->instead], into);
@@ -272,7 +272,7 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 	for (int k = 0; k < indices->sets.n_closed && s->shared; k++)
 		undefined(&indices->sets.closed[k].estimate, 1);
 	for (int j = 0; j < d; j++)
-		for (int k = 0; k < POUND_N_INDEXES && pound_rows_levels(s->rows, j) == 1; k++)
+		for (int k = 0; k < POUND_N_INDICES && pound_rows_levels(s->rows, j) == 1; k++)
 			if (k != POUND_S1_RAW && k != POUND_ST_RAW && !isnan(indices->index[k][j].value))
 				indices->index[k][j] = (struct pound_estimate){0.0, 0.0, 0.0};
 	indices->share[POUND_SHARE_FIRST_ONE] = s->pick_freeze.signal_first;
@@ -294,7 +294,7 @@ static void levels_init(struct sources *s, int n_rows)
 	}
 }
 
-/* The indexes of ratios; what they explain is a share of the variance without the noise of few signals if that is known: here
+/* The indices of ratios; what they explain is a share of the variance without the noise of few signals if that is known: here
  * of that of the outputs without bias. */
 static void ratios_fill(const struct sources *s, struct pound_indices *indices)
 {
@@ -335,7 +335,7 @@ static bool lacks_interval(const struct pound_indices *indices, int n_inputs)
 	return false;
 }
 
-/* Whether a few rows hold so much of the variance that their scatter does not show how indexes err: of an output that is
+/* Whether a few rows hold so much of the variance that their scatter does not show how indices err: of an output that is
  * 0 but for one sample, say, an interval has no width.  They count for (sum v)^2 / sum v^2 rows, v the squares of each:
  * of fewer than five, one has a fifth of the sum. */
 static bool few_decide(const struct pound_rows *rows)
@@ -376,13 +376,13 @@ size_t pound_variants_scratch(const struct pound_sample_values *shape, const str
 	return pound_rows_scratch(shape) + largest;
 }
 
-/* All sensitivity indexes of one output, with 95 % intervals, and what there is to say about them.
+/* All sensitivity indices of one output, with 95 % intervals, and what there is to say about them.
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
  *          sampling  -                                       the design, and whether noise can be told apart
  *          seed      -                                       of the resamples
  * Returns  value     rows dropped: one of their runs has no output
- *          indices   all, and of the accuracy the half widths from the first rows; indexes (n_inputs) each, NAN with a note
+ *          indices   all, and of the accuracy the half widths from the first rows; indices (n_inputs) each, NAN with a note
  *                    where undefined
  * Memory   scratch   (pound_variants_scratch)
  *
@@ -431,7 +431,7 @@ int pound_variants_indices(const struct pound_sample_values *values, const struc
 	} else {
 		indices->sets = (struct pound_set_indices){0};
 		indices->ratios.n = 0;
-		for (int k = 0; k < POUND_N_INDEXES; k++)
+		for (int k = 0; k < POUND_N_INDICES; k++)
 			undefined(indices->index[k], d);
 		for (int k = 0; k < POUND_N_NAMED && sampling->estimator; k++)
 			undefined(indices->named[k], d);

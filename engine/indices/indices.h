@@ -1,13 +1,13 @@
-/* indices.h - from the outputs of a design's runs to sensitivity indexes and their intervals.
+/* indices.h - from the outputs of a design's runs to sensitivity indices and their intervals.
  *
  *   sample values -> one number for each sample of a row (valid_rows.c) -> moments of a row (pick_freeze.c)
- *                 -> their means over all rows or resampled ones (bootstrap.c) -> indexes (pick_freeze.c)
+ *                 -> their means over all rows or resampled ones (bootstrap.c) -> indices (pick_freeze.c)
  *
  * A row of the design with all its samples and signals is the unit throughout: it is kept or dropped, and
  * resampled, as a whole.  Nothing here allocates; sums are taken in the order of rows.
  *
  * A flag to stop by goes with the values, the rows and a statistic.  It is looked at between rows, chunks, resamples and
- * indexes, and stays set: what comes after a loop that it has cut short sees it, too, and looks at nothing. */
+ * indices, and stays set: what comes after a loop that it has cut short sees it, too, and looks at nothing. */
 #ifndef INDICES_H
 #define INDICES_H
 
@@ -36,8 +36,8 @@ struct pound_sampling {
 	bool fresh_signals; /* each sample of a row has its own */
 	int n_resamples;    /* behind an interval, at most POUND_RESAMPLES; 0: as many */
 	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
-	const struct pound_study *ratios; /* study with ratios whose indexes are wanted; NULL: none */
-	int estimator; /* row of the estimators whose indexes are wanted besides; 0: none but the plain protocol's */
+	const struct pound_study *ratios; /* study with ratios whose indices are wanted; NULL: none */
+	int estimator; /* row of the estimators whose indices are wanted besides; 0: none but the plain protocol's */
 	double
 	    *kept; /* of the fits, from one output of the design to the next: chaos_expansion.c; NULL: nothing */
 };
@@ -82,7 +82,7 @@ struct pound_outputs {
 	const double *noise; /* covariances to take off products  (n_samples x n_samples); NULL: none */
 };
 
-/* An estimator: what it adds up over the rows, and the indexes as a function of the means of that.
+/* An estimator: what it adds up over the rows, and the indices as a function of the means of that.
  * m: moments;  value: first then total  (2 x n_inputs) */
 struct pound_estimator {
 	const char *name;
@@ -125,7 +125,7 @@ double pound_jackknife_student(int freedom); /* 97.5 % quantile of Student's law
 double pound_jackknife_half_width(const double *value, int n_rows, const struct pound_scatter *scatter,
                                   double *sums);
 
-/* Pick-freeze indexes of a model with random signals. */
+/* Pick-freeze indices of a model with random signals. */
 struct pound_pick_freeze {
 	struct pound_estimate first_raw[POUND_INPUTS_MAX],
 	    total_raw[POUND_INPUTS_MAX]; /* noise of few signals included */
@@ -215,7 +215,7 @@ size_t pound_ratio_scratch(const struct pound_sample_values *shape,
 void pound_ratio_indices(const struct pound_rows *rows, const double *u, const struct pound_study *study,
                          double noise, double *scratch, struct pound_ratio_indices *results);
 
-/* The plain protocol: mean, variance, noise share and the raw indexes. */
+/* The plain protocol: mean, variance, noise share and the raw indices. */
 size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */
 int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
                         double *scratch, struct pound_indices *indices); /* rows dropped */
@@ -230,7 +230,7 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 /* Fills first_dropped and total_dropped. */
 void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy);
 
-/* All indexes, shares and notes, and of the accuracy the half widths and what dropped rows may change.  Sampling as it
+/* All indices, shares and notes, and of the accuracy the half widths and what dropped rows may change.  Sampling as it
  * will be; NULL: nothing but the columns of every study. */
 size_t pound_variants_scratch(const struct pound_sample_values *shape,
                               const struct pound_sampling *sampling); /* doubles */

@@ -1,4 +1,4 @@
-/* input_ratios.c - indexes of ratios of inputs, which depend on each other where they share an input.
+/* input_ratios.c - indices of ratios of inputs, which depend on each other where they share an input.
  *
  * 1. The output is taken as a function of the ratios and of the inputs in no ratio; a polynomial of these is fitted to it,
  *    a ratio placed by its probability.
@@ -7,7 +7,7 @@
  * 3. Eight groups of rows, each left out in turn, give the bias, that of fitting noise above all, and the interval.
  * 4. What all variables explain is what the fits without a group foretell of its outputs.
  *
- * With dependent variables Shapley effects add up to 1 and first-order indexes do not; one may be above its total. */
+ * With dependent variables Shapley effects add up to 1 and first-order indices do not; one may be above its total. */
 #include "engine/design/design.h"
 #include "engine/design/sobol_sequence.h"
 #include "engine/indices/indices.h"
@@ -122,7 +122,7 @@ static bool in_ratio(const struct pound_study *study, int input)
 	return false;
 }
 
-/* Ratios and the inputs in none: what the indexes are of.
+/* Ratios and the inputs in none: what the indices are of.
  *
  * Returns  rest     (n)    numbers of those inputs; NULL: not wanted
  *          value    -      how many variables there are
@@ -377,7 +377,7 @@ static void coefficients_fill(struct fit *f, int without)
 	pound_legendre_solve(f->gram, f->terms, f->coefficients);
 }
 
-/* ---- indexes ---- */
+/* ---- indices ---- */
 
 /* Adds what a part of the polynomial, with one and the same term in the inputs in no ratio, explains by each set of
  * ratios.  Its terms are those in the ratios of the degree that is left, in the same order as all of them. */
@@ -451,7 +451,7 @@ static double foretold(struct fit *f, int group)
 
 enum { FIRST, TOTAL, SHAPLEY, KINDS };
 
-/* The indexes of every variable from what sets explain. */
+/* The indices of every variable from what sets explain. */
 static void values_fill(const struct fit *f, const double explained[SETS], double *value)
 {
 	const int n = f->variables.n;
@@ -508,7 +508,7 @@ size_t pound_ratio_scratch(const struct pound_sample_values *shape, const struct
 	return study->n_ratios ? carve(&fit, NULL, shape, study) : 0;
 }
 
-/* Indexes of ratios of inputs and of the inputs in none, of the output as a function of these.
+/* Indices of ratios of inputs and of the inputs in none, of the output as a function of these.
  *
  * Given    rows       -                          outputs
  *          u          (n x 2 x n_inputs)         the design as probabilities in (0, 1), rows of A and B

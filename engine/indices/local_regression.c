@@ -1,4 +1,4 @@
-/* local_regression.c - first-order indexes by local-linear regression, each row predicted from its neighbours.
+/* local_regression.c - first-order indices by local-linear regression, each row predicted from its neighbours.
  *
  * 1. In every sample of the design the rows are sorted by the input's value, and each is predicted from the K and from the
  *    2 K nearest ranks on either side, itself left out.
@@ -211,7 +211,7 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
 		at->level[k] = pound_distribution_level(&rows->inputs[input].distribution, at->y[at->order[k]]);
 }
 
-/* First-order indexes by leave-one-out local-linear regression in every sample block.
+/* First-order indices by leave-one-out local-linear regression in every sample block.
  *
  * Given    rows       -                            outputs and their noise
  *          x          (n x 2 x n_inputs)           the design, rows of A and B, or its probabilities; only the

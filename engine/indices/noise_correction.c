@@ -1,11 +1,11 @@
-/* noise_correction.c - indexes of a model with random signals: as they come out, corrected to infinitely many signals, and
+/* noise_correction.c - indices of a model with random signals: as they come out, corrected to infinitely many signals, and
  * the signals' own share.
  *
  * An output is a mean over R signals.  A product of two outputs p, q of a row has the expectation of the product of
  * their means over all signals plus the covariance that they owe to their R signals; an unbiased estimate of that,
  * noise_pq, is known within the row.  Every product p q is therefore replaced by p q - noise_pq.  This holds whether
  * the samples of a row share their signals (noise_pq counts) or not (its mean is 0).  Where an output is a ratio of two such
- * means, p and q are without its bias (valid_rows.c); raw indexes are of the outputs as they come out. */
+ * means, p and q are without its bias (valid_rows.c); raw indices are of the outputs as they come out. */
 #include "engine/indices/indices.h"
 
 #include <math.h>
@@ -116,7 +116,7 @@ size_t pound_correction_scratch(const struct pound_sample_values *shape)
 	                              BLOCKS * n_inputs + SINGLES);
 }
 
-/* Pick-freeze indexes raw and corrected for the noise of few signals, and the shares of the signals.
+/* Pick-freeze indices raw and corrected for the noise of few signals, and the shares of the signals.
  *
  * Given    rows       -      outputs and their noise
  *          seed       -      of the resamples, n_resamples in number

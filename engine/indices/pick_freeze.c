@@ -1,10 +1,10 @@
-/* pick_freeze.c - estimators of first-order and total indexes by name, each a function of means over the rows.
+/* pick_freeze.c - estimators of first-order and total indices by name, each a function of means over the rows.
  *
  * In the formulas a, b, c, e are the outputs of a row at A, B, A with column j from B, and B with column j from A, centred
  * by the grand mean of all rows (so that cancellation costs nothing); a capital is a mean over rows; mu = (A + B) / 2;
  * v = mean((a^2 + b^2) / 2) - mu^2; w is the variance over the samples A, B, C of all rows.  From every product of two
  * outputs the covariance of their noise is taken off if it is given, which makes of any of them an estimator of the
- * indexes for infinitely many signals.
+ * indices for infinitely many signals.
  *
  * A value is NAN where its variance is not above variance_floor.  Nothing is clipped to [0, 1]. */
 #include "engine/indices/indices.h"
@@ -137,7 +137,7 @@ static double variance_of_both(const double *m)
 	return 0.5 * (m[AA] + m[BB]) - mean_of_both(m) * mean_of_both(m);
 }
 
-/* Both indexes from squared differences.
+/* Both indices from squared differences.
  *
  *   S_j = 1 - mean((b - c)^2) / (2 v)          T_j = mean((a - c)^2) / (2 v)
  *
@@ -154,7 +154,7 @@ static void jansen(const double *m, int n_inputs, double variance_floor, double 
 	}
 }
 
-/* Both indexes as covariance over variance, mean and variance from the two samples compared.
+/* Both indices as covariance over variance, mean and variance from the two samples compared.
  *
  *   S_j = (mean(b c) - q^2) / (mean((b^2 + c^2) / 2) - q^2),  q = mean((b + c) / 2)          T_j = 1 - same of a, c
  *
@@ -171,7 +171,7 @@ static void janon(const double *m, int n_inputs, double variance_floor, double *
 	}
 }
 
-/* Both indexes as correlation coefficients:  S_j = corr(b, c)          T_j = 1 - corr(a, c)
+/* Both indices as correlation coefficients:  S_j = corr(b, c)          T_j = 1 - corr(a, c)
  *
  * Source   Martinez 2011, as in Baudin, Boumhaout, Delage, Iooss, Martinez 2016, SAMO 2016
  * Test     unit_pick_freeze: every_estimator_gives_its_golden_values
@@ -187,7 +187,7 @@ static void martinez(const double *m, int n_inputs, double variance_floor, doubl
 	}
 }
 
-/* Both indexes as covariances of differences.
+/* Both indices as covariances of differences.
  *
  *   S_j = mean((b - mu) (c - a)) / v          T_j = mean((a - mu) (a - c)) / v
  *
@@ -204,7 +204,7 @@ static void sobol_2007(const double *m, int n_inputs, double variance_floor, dou
 	}
 }
 
-/* Both indexes from products alone: with the mean of a b and the squared mean in place of the product of means.
+/* Both indices from products alone: with the mean of a b and the squared mean in place of the product of means.
  *
  *   S_j = (mean(b c) - mean(a b)) / v          T_j = 1 - (mean(a c) - mu^2) / v
  *
@@ -221,7 +221,7 @@ static void saltelli_2002(const double *m, int n_inputs, double variance_floor, 
 	}
 }
 
-/* Both indexes from the four samples A, B, C, E, of which any may stand for any other.
+/* Both indices from the four samples A, B, C, E, of which any may stand for any other.
  *
  *   S_j = 2 mean((e - b) (a - c)) / V          T_j = mean((b - e)^2 + (a - c)^2) / V          V = mean((a - b)^2 + (e - c)^2)
  *

@@ -1,4 +1,4 @@
-/* plain_indices.c - the variance-based sensitivity indexes of one output of one cell, by the plain protocol: pick-freeze
+/* plain_indices.c - the variance-based sensitivity indices of one output of one cell, by the plain protocol: pick-freeze
  * estimators, intervals by resampling rows. */
 #include "engine/indices/indices.h"
 
@@ -32,7 +32,7 @@ static void subject_values(const void *given, const double *mean, double *value)
 	s->estimator->indices(mean, s->rows->n_inputs, s->rows->variance_floor, value);
 }
 
-/* Mean, variance and noise share of the outputs; says whether there are indexes to estimate.
+/* Mean, variance and noise share of the outputs; says whether there are indices to estimate.
  *
  * Given    rows      -      outputs and their noise
  * Returns  indices   -      mean, variance, noise share
@@ -71,7 +71,7 @@ size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
 	return pound_interval_scratch(shape->n_rows, estimator->n_moments(shape->n_inputs), 2 * shape->n_inputs);
 }
 
-/* First-order and total indexes by an estimator, with 95 % intervals.
+/* First-order and total indices by an estimator, with 95 % intervals.
  *
  * Given    rows       -      outputs and their noise; of the estimator's order at least
  *          corrected  -      for the noise of few signals
@@ -100,15 +100,15 @@ size_t pound_sobol_scratch(const struct pound_sample_values *shape)
 	return pound_rows_scratch(shape) + pound_sobol_estimates_scratch(shape, pound_estimator_row(0));
 }
 
-/* First-order and total sensitivity indexes of one output, with 95 % intervals.
+/* First-order and total sensitivity indices of one output, with 95 % intervals.
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
  *          seed      -                                       of the resamples, n_resamples in number
  * Returns  value     rows dropped: one of their runs has no output
- *          indices   mean, variance (of A and B, divided by their number), noise share, raw indexes (n_inputs)
+ *          indices   mean, variance (of A and B, divided by their number), noise share, raw indices (n_inputs)
  * Memory   scratch   (pound_sobol_scratch)
  *
- * A constant output (its deviation within the rounding of the ratio of means) has undefined indexes: NAN.
+ * A constant output (its deviation within the rounding of the ratio of means) has undefined indices: NAN.
  *
  * Source   pick_freeze.c, bootstrap.c
  * Test     unit_plain_indices

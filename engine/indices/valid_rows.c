@@ -15,7 +15,7 @@
  *
  * Y lies near the signals that have much weight in it: their residuals are too small by (1 - h)^1/2.  Of responses with pounding
  * the noise would without that be found too small, and by the jackknife's pseudo-values, over 1 - h, too large: of two signals by
- * so much that total indexes are off by a third.  With equal denominators all of these are one, and nothing is biased.
+ * so much that total indices are off by a third.  With equal denominators all of these are one, and nothing is biased.
  *
  * Source   model.md 5: a ratio of means, with the same signals above and below; Quenouille 1956, Biometrika 43, 353-360, for
  *          the jackknife; MacKinnon and White 1985, J. Econometrics 29, 305-325 (HC2), of the regression through 0 that Y is

@@ -23,7 +23,7 @@ enum {
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
 	CHECK_EVERY = 100, /* items between two checked ones */
 	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
-	COLUMNS = POUND_N_INDEXES + POUND_N_NAMED + POUND_CURVE, /* of estimates for each input */
+	COLUMNS = POUND_N_INDICES + POUND_N_NAMED + POUND_CURVE, /* of estimates for each input */
 	TRIAL_MEASURES = sizeof(struct pound_trial_run) / sizeof(double),
 };
 
@@ -70,7 +70,7 @@ static size_t kept_size(const struct pound_campaign *c)
 	return pound_chaos_kept_size(&shape);
 }
 
-/* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indexes and then their
+/* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indices and then their
  * accuracy need. */
 static size_t reduction_size(const struct pound_campaign *c)
 {
@@ -156,7 +156,7 @@ static bool result_create(struct pound_run *run)
 		for (int o = 0; o < study->n_outputs; o++) {
 			size_t first = ((size_t)cell * n_outputs + (size_t)o) * COLUMNS;
 			struct pound_estimate *column = &run->estimates[first * (size_t)study->n_inputs];
-			for (int k = 0; k < POUND_N_INDEXES; k++, column += study->n_inputs)
+			for (int k = 0; k < POUND_N_INDICES; k++, column += study->n_inputs)
 				into->indices[o].index[k] = column;
 			for (int k = 0; k < POUND_N_NAMED; k++, column += study->n_inputs)
 				into->indices[o].named[k] = column;

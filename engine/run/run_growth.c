@@ -40,7 +40,7 @@ static void widen(struct pound_look *widest, int cell, int output, const struct 
  * Given    cells       (of the study)    reduced
  * Returns  value       -                 all but the rows; of several as wide the first
  *
- * An output that is the same for every row has no indexes, and none is waited for; an index without an interval for any
+ * An output that is the same for every row has no indices, and none is waited for; an index without an interval for any
  * other reason is as wide as can be.  -1: there is none to wait for.
  *
  * Test     unit_growth: a_design_stops_at_the_first_look_that_finds_every_interval_narrow

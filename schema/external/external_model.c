@@ -327,7 +327,7 @@ static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t
 	return result_to_json(&outputs->study, pound_run_result(run), NULL, length);
 }
 
-/* Indexes of outputs computed elsewhere.
+/* Indices of outputs computed elsewhere.
  *
  * Given    study     -             -   read by study_design_from_json
  *          csv       (csv_length)  -   header; a line for every sample of the design, in the order of model_rows

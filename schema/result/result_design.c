@@ -8,7 +8,7 @@
 #include "schema/study/study_spectrum.h"
 
 #define X(name, text) text,
-static const char *const index_names[] = {POUND_INDEXES(X)};
+static const char *const index_names[] = {POUND_INDICES(X)};
 #undef X
 
 static bool grows(const struct pound_study *study)

@@ -100,7 +100,7 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 /* ---- sensitivity ---- */
 
 #define X(name, text) text,
-static const char *const index_names[] = {POUND_INDEXES(X)};
+static const char *const index_names[] = {POUND_INDICES(X)};
 static const char *const share_names[] = {POUND_SHARES(X)};
 static const char *const notes[] = {POUND_NOTES(X)};
 static const char *const named_forms[] = {POUND_NAMED(X)};
@@ -171,7 +171,7 @@ static void write_input(struct writer *w, const struct pound_study *study,
 	writer_object(w, NULL, WRITER_LINE);
 	writer_text(w, "name", input->name);
 	writer_text(w, "path", input->path);
-	for (int k = 0; k < POUND_N_INDEXES; k++) {
+	for (int k = 0; k < POUND_N_INDICES; k++) {
 		const bool raw = k == POUND_S1_RAW || k == POUND_ST_RAW;
 		write_estimate(w, index_names[k], &indices->index[k][j]);
 		result_notes_add(&said, index_names[k], &indices->index[k][j],

@@ -1,4 +1,4 @@
-/* `pound design` and `pound indices`: a model of the user's own from its design to its indexes. */
+/* `pound design` and `pound indices`: a model of the user's own from its design to its indices. */
 #include <math.h>
 #include <string.h>
 #include <unistd.h>

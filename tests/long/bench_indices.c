@@ -1,4 +1,4 @@
-/* bench_indices.c - rows about the statistics: what the indexes of one output take. */
+/* bench_indices.c - rows about the statistics: what the indices of one output take. */
 #include "tests/long/bench.h"
 
 #include <stdlib.h>
@@ -11,7 +11,7 @@ struct reduction {
 	struct pound_sample_values values;
 	double *u, *scratch;
 	struct pound_indices indices;
-	struct pound_estimate columns[POUND_N_INDEXES][D], named[POUND_N_NAMED][D];
+	struct pound_estimate columns[POUND_N_INDICES][D], named[POUND_N_NAMED][D];
 	struct pound_curve curves[D];
 };
 
@@ -21,7 +21,7 @@ static void reduction_init(struct reduction *r, int rows, struct function_noise 
 	r->u = function_design(rows, 1);
 	size_t all = pound_variants_scratch(&r->values, NULL), plain = pound_sobol_scratch(&r->values);
 	r->scratch = bench_memory(sizeof *r->scratch * (rows > 100000 ? plain : all));
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		r->indices.index[k] = r->columns[k];
 	for (int k = 0; k < POUND_N_NAMED; k++)
 		r->indices.named[k] = r->named[k];
@@ -57,7 +57,7 @@ void bench_indices(void)
 	struct bench_job jobs[] = {{.run = everything, .of = &few}, {.run = plain, .of = &one}};
 	bench_jobs(jobs, 2, 4 * REPEATS);
 	bench_print(
-	    (struct bench_row){.what = "indexes of an output, 4 inputs, n = 1000, 2000 resamples, everything",
+	    (struct bench_row){.what = "indices of an output, 4 inputs, n = 1000, 2000 resamples, everything",
 	                       .value = 1e3 * jobs[0].seconds,
 	                       .unit = "ms",
 	                       .goal = "at most 50 ms",

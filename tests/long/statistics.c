@@ -1,4 +1,4 @@
-/* statistics.c - how good the indexes are: errors, coverage and bias over many designs of functions with exact indexes.
+/* statistics.c - how good the indices are: errors, coverage and bias over many designs of functions with exact indices.
  *
  *   statistics [SEEDS [TABLE]]      TABLE: designs, named, noise or growth; all of them when absent
  *

@@ -1,4 +1,4 @@
-/* statistics.h - what `make statistics` is made of: functions with exact indexes, other packages' formulas, jobs for all
+/* statistics.h - what `make statistics` is made of: functions with exact indices, other packages' formulas, jobs for all
  * cores, and the tables, each of which prints itself as Markdown. */
 #ifndef STATISTICS_H
 #define STATISTICS_H
@@ -11,7 +11,7 @@ enum { STATISTICS_INDEXES = 2 * FUNCTION_INPUTS }; /* first-order, then total */
 extern const struct function statistics_functions[]; /* ends with a row of NULLs */
 const struct function *statistics_function(int k);
 
-/* First-order indexes, then totals, from the outputs of n rows of n_samples samples: A, B, A with column j from B, ... */
+/* First-order indices, then totals, from the outputs of n rows of n_samples samples: A, B, A with column j from B, ... */
 struct statistics_package {
 	const char *name;
 	void (*indices)(const double *y, int n, int d, int n_samples, double *value); /* value  (2 x d) */
@@ -19,18 +19,18 @@ struct statistics_package {
 
 extern const struct statistics_package statistics_packages[]; /* ends with a row of NULLs */
 
-/* Errors of one estimator's indexes over the seeds, and how often its intervals cover the exact ones. */
+/* Errors of one estimator's indices over the seeds, and how often its intervals cover the exact ones. */
 struct statistics_score {
 	int n;
 	double bias[STATISTICS_INDEXES], square[STATISTICS_INDEXES], covered[STATISTICS_INDEXES]; /* sums */
 };
 
 void statistics_score_values(struct statistics_score *score, const struct function *f, const double *value);
-/* of two columns of the indexes of an output */
+/* of two columns of the indices of an output */
 void statistics_score_indices(struct statistics_score *score, const struct function *f,
                               const struct pound_indices *indices, enum pound_index first,
                               enum pound_index total);
-/* Of the first-order indexes (0), the totals (1) or both (-1): root mean square error, share covered, largest bias. */
+/* Of the first-order indices (0), the totals (1) or both (-1): root mean square error, share covered, largest bias. */
 double statistics_error(const struct statistics_score *score, int total);
 double statistics_coverage(const struct statistics_score *score, int total);
 double statistics_bias(const struct statistics_score *score, int total);

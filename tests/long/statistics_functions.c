@@ -1,5 +1,5 @@
 /* statistics_functions.c - functions of four uniform variables for `make statistics`, beside those of functions.c, with
- * indexes in closed form.
+ * indices in closed form.
  *
  * Terms without a variable in common add their variances; in a product of independent factors g_j with mean m_j and
  * mean square q_j a set u of factors explains prod_u (q_j - m_j^2) prod_others m_j^2, so that the products below follow

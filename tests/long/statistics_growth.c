@@ -108,7 +108,7 @@ static void all_print(const struct campaign *c, int design)
 }
 
 /* Prints, of designs that grow to a half width of 0.05 within 20,000 runs: mean runs, root mean square error of all eight
- * indexes, coverage of the intervals at the stop (of one index the least), of the widest of them, which decided, and how
+ * indices, coverage of the intervals at the stop (of one index the least), of the widest of them, which decided, and how
  * often they were narrow enough. */
 void statistics_growth(int n_seeds)
 {

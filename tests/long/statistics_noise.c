@@ -1,4 +1,4 @@
-/* statistics_noise.c - bias, error and coverage of the indexes of a random model, with its noise and without it: five
+/* statistics_noise.c - bias, error and coverage of the indices of a random model, with its noise and without it: five
  * signals in every sample, each with noise as large as the variance of the mean response, 1000 rows. */
 #include "tests/long/statistics.h"
 
@@ -33,9 +33,9 @@ static void seed_run(struct campaign *c, int k, uint64_t seed)
 	double *u = function_design(ROWS, seed);
 	double *scratch = statistics_sure(malloc(sizeof *scratch * pound_variants_scratch(&values, 0)));
 	const struct pound_sampling sampling = {.u = u, .random = true, .fresh_signals = !cases[k].common};
-	struct pound_estimate estimates[POUND_N_INDEXES][D];
+	struct pound_estimate estimates[POUND_N_INDICES][D];
 	struct pound_indices indices = {0};
-	for (int i = 0; i < POUND_N_INDEXES; i++)
+	for (int i = 0; i < POUND_N_INDICES; i++)
 		indices.index[i] = estimates[i];
 	pound_variants_indices(&values, &sampling, seed, scratch, &indices);
 	for (int i = 0; i < COLUMNS; i++)

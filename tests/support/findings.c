@@ -240,7 +240,7 @@ static enum outcome grows_much_less(const struct evidence *e, const struct findi
 /* ---- the table ---- */
 
 static const char INTERACTIONS[] = "significant difference is noticed between first order sensitivity "
-                                   "indexes and total sensitivity indexes of all "
+                                   "indices and total sensitivity indices of all "
                                    "input variables. Interactions between variables have an important "
                                    "contribution to the output variability";
 static const char LEADERS[] =
@@ -249,7 +249,7 @@ static const char LEADERS[] =
     "total sensitivity index for all constitutive laws, the mass ratio coming in second position";
 static const char COMPARABLE[] =
     "In the case oscillator 1 has a low frequency (in particular when f_1 = 0.5 Hz) all input variables have "
-    "comparable total sensitivity indexes";
+    "comparable total sensitivity indices";
 static const char MOST_INFLUENTIAL[] =
     "the mass and frequency ratios are, in general, the most influential parameters";
 static const char PREDOMINANT[] =
@@ -302,7 +302,7 @@ const struct finding findings[] = {
     {"mass and frequency ratio are the first two", MOST_INFLUENTIAL,
      6, IMPULSE, TOTAL, mass_and_frequency_lead, EVERY_LAW, EVERY_F1, GENERAL},
     {"the same by first-order indices",
-     "The above trends hold for both first order and total sensitivity indexes",
+     "The above trends hold for both first order and total sensitivity indices",
      6, IMPULSE, FIRST, mass_and_frequency_lead, EVERY_LAW, EVERY_F1, GENERAL},
     {"the mass ratio is first below 2 Hz", PREDOMINANT,
      6, IMPULSE, TOTAL, mass_leads, EVERY_LAW, {0, 1}, ALL},

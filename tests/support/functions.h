@@ -1,4 +1,4 @@
-/* functions.h - functions of four independent uniform variables whose mean, variance and sensitivity indexes are known,
+/* functions.h - functions of four independent uniform variables whose mean, variance and sensitivity indices are known,
  * and the sample values that running them over a Latin hypercube gives. */
 #ifndef FUNCTIONS_H
 #define FUNCTIONS_H

@@ -1,4 +1,4 @@
-/* unit_external_model.c - a model that is run elsewhere: its design out, its outputs in, and the indexes they give. */
+/* unit_external_model.c - a model that is run elsewhere: its design out, its outputs in, and the indices they give. */
 #include <math.h>
 #include <string.h>
 
@@ -107,7 +107,7 @@ static void rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_num
 	study_free(study);
 }
 
-/* ---- indexes ---- */
+/* ---- indices ---- */
 
 // statistics_golden.json, estimators_d2_n6: A, B, AB1, AB2 of each row
 static const double golden[6][4] = {{3.3, 3.13, 3.25, 3.65},  {1.96, 2.68, 2.88, 2.3},
@@ -167,7 +167,7 @@ static void outputs_computed_elsewhere_give_the_golden_indexes(void **state)
 	free(csv);
 }
 
-/* Corrected indexes by their definition, of independent noise of variance v (1 + p) in sample p of every row:
+/* Corrected indices by their definition, of independent noise of variance v (1 + p) in sample p of every row:
  * S = (P_BC - P_AB) / ((P_AA + P_BB) / 2), T = (P_AA + P_CC - 2 P_AC) / (2 w), about the mean of all samples. */
 static void corrected(double v, double value[4])
 {

@@ -1,4 +1,4 @@
-/* unit_closed_indices.c - second-order and closed indexes, Shapley effects: golden contrasts, identities, known functions. */
+/* unit_closed_indices.c - second-order and closed indices, Shapley effects: golden contrasts, identities, known functions. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -8,7 +8,7 @@
 
 enum { D = FUNCTION_INPUTS };
 
-/* Indexes of outputs alone, without a control variate. */
+/* Indices of outputs alone, without a control variate. */
 static struct pound_closed_results *plain(const double *y, int n_rows, int n_inputs, int order)
 {
 	static const double none[POUND_CLOSED_COLUMNS_MAX];
@@ -149,7 +149,7 @@ static void second_order_indexes_and_shapley_effects_follow_from_the_closed_ones
 
 enum { SEEDS = 12 };
 
-/* Root mean square errors and coverages over designs; [0] second-order indexes, [1] Shapley effects. */
+/* Root mean square errors and coverages over designs; [0] second-order indices, [1] Shapley effects. */
 static void errors_of(const struct function *f, int n_rows, int order, struct function_noise noise,
                       double *rms, double *coverage)
 {

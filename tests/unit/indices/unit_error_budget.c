@@ -1,5 +1,5 @@
-/* unit_error_budget.c - what the indexes may be off by: differences of runs made twice, intervals against rows, and the error
- * that dominates; first on functions with known indexes, then on runs of the engine. */
+/* unit_error_budget.c - what the indices may be off by: differences of runs made twice, intervals against rows, and the error
+ * that dominates; first on functions with known indices, then on runs of the engine. */
 #include "engine/indices/error_budget.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -14,10 +14,10 @@ enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
 
 struct estimated {
 	struct pound_indices of;
-	struct pound_estimate index[POUND_N_INDEXES][POUND_INPUTS_MAX];
+	struct pound_estimate index[POUND_N_INDICES][POUND_INPUTS_MAX];
 };
 
-/* All indexes and their accuracy, of outputs over function_design(n_rows, seed). */
+/* All indices and their accuracy, of outputs over function_design(n_rows, seed). */
 static struct estimated *estimated_of(const struct pound_sample_values *values, struct pound_checks checks,
                                       uint64_t seed)
 {
@@ -26,7 +26,7 @@ static struct estimated *estimated_of(const struct pound_sample_values *values, 
 	double *scratch = malloc(sizeof *scratch * (n + (size_t)checks.n));
 	double *u = function_design(values->n_rows, seed);
 	const struct pound_sampling sampling = {.u = u, .random = true, .fresh_signals = values->n_signals == 1};
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		e->of.index[k] = e->index[k];
 	pound_variants_indices(values, &sampling, seed, scratch, &e->of);
 	pound_accuracy_estimate(values, checks, scratch, &e->of);
@@ -200,7 +200,7 @@ static void half_widths_of_all_rows_are_those_of_the_indexes(void **state)
 	}
 }
 
-/* Noise that is taken away from the indexes is still in their intervals: with almost nothing else it is the largest
+/* Noise that is taken away from the indices is still in their intervals: with almost nothing else it is the largest
  * error, and where the excitation is not random it is none. */
 static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
 {
@@ -238,7 +238,7 @@ static void noise_adds_no_more_to_an_interval_than_there_is(void **state)
 	    .n_rows = N, .n_inputs = 1, .n_signals = SIGNALS, .numerator = numerator, .denominator = one};
 	struct estimated *e = calloc(1, sizeof *e);
 	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		e->of.index[k] = e->index[k];
 	pound_variants_indices(&values, &(struct pound_sampling){.u = u, .random = true}, 1, scratch, &e->of);
 	pound_accuracy_estimate(&values, (struct pound_checks){0, NULL}, scratch, &e->of);

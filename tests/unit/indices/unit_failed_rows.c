@@ -1,4 +1,4 @@
-/* unit_failed_rows.c - what rows left out may change of the indexes, against rows that are really put in. */
+/* unit_failed_rows.c - what rows left out may change of the indices, against rows that are really put in. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -8,7 +8,7 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2, N = 60, SEED = 3 };
 
-/* Raw indexes and bounds, of values some of whose rows may be missing. */
+/* Raw indices and bounds, of values some of whose rows may be missing. */
 struct bounded {
 	struct pound_indices of;
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];

@@ -1,4 +1,4 @@
-/* unit_index_columns.c - every column of indexes of one output: which function it comes from, what stands in for it, what is
+/* unit_index_columns.c - every column of indices of one output: which function it comes from, what stands in for it, what is
  * said about it; from sample values, and through a whole study into its result. */
 #include "engine/indices/indices.h"
 #include "schema/json/json_pointer.h"
@@ -14,20 +14,20 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2, SEED = 3 };
 
-struct indexes {
+struct indices {
 	struct pound_indices of;
-	struct pound_estimate estimates[POUND_N_INDEXES][POUND_INPUTS_MAX];
+	struct pound_estimate estimates[POUND_N_INDICES][POUND_INPUTS_MAX];
 	struct pound_estimate named[POUND_N_NAMED][POUND_INPUTS_MAX];
 	struct pound_curve curves[POUND_INPUTS_MAX];
 	int dropped;
 };
 
-static struct indexes *indexes_of(const struct pound_sample_values *values, struct pound_sampling sampling)
+static struct indices *indexes_of(const struct pound_sample_values *values, struct pound_sampling sampling)
 {
-	struct indexes *result = calloc(1, sizeof *result);
+	struct indices *result = calloc(1, sizeof *result);
 	size_t n = pound_variants_scratch(values, &sampling);
 	double *scratch = malloc(sizeof *scratch * n);
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		result->of.index[k] = result->estimates[k];
 	result->of.curves = result->curves;
 	for (int k = 0; k < POUND_N_NAMED; k++)
@@ -37,19 +37,19 @@ static struct indexes *indexes_of(const struct pound_sample_values *values, stru
 	return result;
 }
 
-static struct indexes *function_indexes(const char *name, int n_rows, struct function_noise noise,
+static struct indices *function_indexes(const char *name, int n_rows, struct function_noise noise,
                                         bool random)
 {
 	struct pound_sample_values values = function_values(function_named(name), n_rows, 7, noise);
 	double *u = function_design(n_rows, 7);
-	struct indexes *got = indexes_of(
+	struct indices *got = indexes_of(
 	    &values, (struct pound_sampling){.u = u, .random = random, .fresh_signals = !noise.common});
 	free(u);
 	function_values_free(&values);
 	return got;
 }
 
-static void check_same(const struct indexes *got, enum pound_index p, enum pound_index q)
+static void check_same(const struct indices *got, enum pound_index p, enum pound_index q)
 {
 	assert_memory_equal(got->estimates[p], got->estimates[q], sizeof(struct pound_estimate) * D);
 }
@@ -66,7 +66,7 @@ static void every_column_comes_from_its_function(void **state)
 	struct pound_sample_values values =
 	    function_values(function_named("cusp"), N, 7, (struct function_noise){5, 1.0, true});
 	double *u = function_design(N, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+	struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 	struct pound_rows rows;
 	struct pound_pick_freeze pick_freeze;
 	struct pound_estimate local[D], first[D], total[D];
@@ -86,7 +86,7 @@ static void every_column_comes_from_its_function(void **state)
 	const struct {
 		enum pound_index index;
 		const struct pound_estimate *want;
-	} columns[POUND_N_INDEXES] = {{POUND_S1, first},
+	} columns[POUND_N_INDICES] = {{POUND_S1, first},
 	                              {POUND_ST, total},
 	                              {POUND_S1_PICK_FREEZE, pick_freeze.first},
 	                              {POUND_ST_PICK_FREEZE, pick_freeze.total},
@@ -94,7 +94,7 @@ static void every_column_comes_from_its_function(void **state)
 	                              {POUND_ST_RAW, pick_freeze.total_raw},
 	                              {POUND_S2_EXCITATION, pick_freeze.with_signal},
 	                              {POUND_SHAPLEY, closed.shapley}};
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		assert_memory_equal(got->estimates[columns[k].index], columns[k].want, sizeof local);
 	assert_memory_equal(&got->of.share[POUND_SHARE_TOTAL], &pick_freeze.signal_total, sizeof local[0]);
 	assert_memory_equal(&got->of.share[POUND_SHARE_TOTAL_ONE], &pick_freeze.signal_total_one,
@@ -120,7 +120,7 @@ static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
 		one[k] = 1;
 	struct pound_sample_values values = {
 	    .n_rows = 6, .n_inputs = 2, .n_signals = 1, .numerator = y, .denominator = one};
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+	struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 	check_near(got->estimates[POUND_S1_RAW][0].value, 0.572576783750673, 1e-12);
 	check_near(got->estimates[POUND_S1_RAW][1].value, 0.755503894911683, 1e-12);
 	check_near(got->estimates[POUND_ST_RAW][0].value, 0.880662387875659, 1e-12);
@@ -134,7 +134,7 @@ static void a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_fro
 {
 	(void)state;
 	for (int random = 0; random < 2; random++) {
-		struct indexes *got = function_indexes("cusp", 100, (struct function_noise){1, 0.0, !random}, random);
+		struct indices *got = function_indexes("cusp", 100, (struct function_noise){1, 0.0, !random}, random);
 		check_same(got, POUND_S1_PICK_FREEZE, POUND_S1_RAW);
 		check_same(got, POUND_ST_PICK_FREEZE, POUND_ST_RAW);
 		for (int j = 0; j < D; j++) {
@@ -151,7 +151,7 @@ static void a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_fro
 static void fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_ones(void **state)
 {
 	(void)state;
-	struct indexes *got = function_indexes("cusp", 100, (struct function_noise){5, 1.0, false}, true);
+	struct indices *got = function_indexes("cusp", 100, (struct function_noise){5, 1.0, false}, true);
 	assert_true(isnan(got->estimates[POUND_S2_EXCITATION][0].value));
 	assert_true(isnan(got->of.share[POUND_SHARE_FIRST_ONE].high));
 	// half of the variance of single runs, known to some 10 % of it by 100 rows
@@ -165,7 +165,7 @@ static void with_few_rows_the_corrected_indexes_stand_in(void **state)
 	(void)state;
 	static const int rows[] = {4, POUND_ROWS_MIN - 1, POUND_ROWS_MIN};
 	for (int k = 0; k < 3; k++) {
-		struct indexes *got = function_indexes("cusp", rows[k], (struct function_noise){5, 0.1, true}, true);
+		struct indices *got = function_indexes("cusp", rows[k], (struct function_noise){5, 0.1, true}, true);
 		bool few = rows[k] < POUND_ROWS_MIN;
 		assert_int_equal(got->of.notes, few ? 1 << POUND_NOTE_FEW_ROWS : 0);
 		bool first = true, total = true;
@@ -193,7 +193,7 @@ static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left
 	struct pound_sample_values values = {
 	    .n_rows = N, .n_inputs = D, .n_signals = 2, .numerator = numerator, .denominator = one};
 	double *u = function_design(N, 7);
-	struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+	struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 	assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOISE);
 	for (int j = 0; j < D; j++) {
 		assert_true(isfinite(got->estimates[POUND_ST_RAW][j].value));
@@ -217,10 +217,10 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 		}
 		struct pound_sample_values values = {
 		    .n_rows = N, .n_inputs = D, .n_signals = 3, .numerator = numerator, .denominator = denominator};
-		struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+		struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
 		assert_int_equal(got->of.notes, 1 << notes[k]);
 		assert_int_equal(got->dropped, N - kept[k]);
-		for (int c = 0; c < POUND_N_INDEXES; c++)
+		for (int c = 0; c < POUND_N_INDICES; c++)
 			for (int j = 0; j < D; j++)
 				assert_true(isnan(got->estimates[c][j].value) && isnan(got->estimates[c][j].low));
 		for (int c = 0; c < POUND_N_SHARES; c++)
@@ -244,7 +244,7 @@ static void an_output_that_few_rows_decide_is_noted(void **state)
 		}
 		struct pound_sample_values values = {
 		    .n_rows = N, .n_inputs = D, .n_signals = 1, .numerator = numerator, .denominator = denominator};
-		struct indexes *got = indexes_of(&values, (struct pound_sampling){.u = u});
+		struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u});
 		const int few = rare == 1 ? 1 << POUND_NOTE_FEW_DECIDE : 0;
 		assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOT_RANDOM | few);
 		free(got);
@@ -285,7 +285,7 @@ static struct pound_sample_values means_of(const struct pound_study *study, cons
 }
 
 static void check_column(const struct reading *r, const char *at, enum pound_index index, const char *name,
-                         const struct indexes *want, int n_inputs)
+                         const struct indices *want, int n_inputs)
 {
 	static const char *const ends[] = {"", "_low", "_high"};
 	for (int j = 0; j < n_inputs; j++) {
@@ -327,9 +327,9 @@ static void a_study_s_result_holds_what_its_samples_give(void **state)
 			pound_run_sample_inputs(run, i / 2, i % 2, x);
 			u[2 * i] = (x[0] - 1) / 4, u[2 * i + 1] = (x[1] - 0.1) / 0.9;
 		}
-		struct indexes *want =
+		struct indices *want =
 		    indexes_of(&values, (struct pound_sampling){.u = u, .random = random, .fresh_signals = true});
-		for (int c = 0; c < POUND_N_INDEXES; c++)
+		for (int c = 0; c < POUND_N_INDICES; c++)
 			for (int j = 0; j < 2; j++)
 				assert_true(c == POUND_S2_EXCITATION || isfinite(want->estimates[c][j].value));
 		check_column(r, at, POUND_S1_RAW, "S1_raw", want, 2);
@@ -386,7 +386,7 @@ static void an_input_of_one_value_explains_exactly_nothing(void **state)
 			    function_values(function_named("ishigami"), n, 7, (struct function_noise){5, 0.5, common});
 			values.inputs = inputs;
 			double *u = function_design(n, 7);
-			struct indexes *got = indexes_of(
+			struct indices *got = indexes_of(
 			    &values, (struct pound_sampling){.u = u, .random = true, .fresh_signals = !common});
 			check_zero(got->estimates[POUND_S1][3]);
 			check_zero(got->estimates[POUND_ST][3]);

@@ -1,4 +1,4 @@
-/* unit_input_ratios.c - indexes of ratios of inputs that depend on each other: a case known exactly, a function known by
+/* unit_input_ratios.c - indices of ratios of inputs that depend on each other: a case known exactly, a function known by
  * quadrature, identities. */
 #include "engine/design/design.h"
 #include "engine/indices/indices.h"

@@ -1,4 +1,4 @@
-/* unit_local_regression.c - local-linear first-order indexes: golden predictions, exact lines, errors over a hundred designs. */
+/* unit_local_regression.c - local-linear first-order indices: golden predictions, exact lines, errors over a hundred designs. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -46,7 +46,7 @@ static void a_straight_line_is_predicted_exactly(void **state)
 	}
 }
 
-/* First-order indexes of the rows of sample values over their design. */
+/* First-order indices of the rows of sample values over their design. */
 static void first_of(const struct pound_sample_values *values, const double *x, bool corrected,
                      struct pound_estimate *first)
 {

@@ -120,7 +120,7 @@ static void an_input_without_effect_keeps_a_total_of_zero_under_common_signals(v
 
 enum { SEEDS = 100, N = 1000 };
 
-/* Errors of the indexes of one kind over SEEDS designs: first-order, then total. */
+/* Errors of the indices of one kind over SEEDS designs: first-order, then total. */
 struct errors {
 	double bias[2 * D], square[2 * D];
 	int covered;

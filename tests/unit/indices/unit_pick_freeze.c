@@ -14,7 +14,7 @@ static const struct pound_estimator *estimator_named(const char *name)
 	return pound_estimator_row(row);
 }
 
-/* Indexes from the outputs of n rows, centred by the mean of A and B; value is first, total  (2 x d). */
+/* Indices from the outputs of n rows, centred by the mean of A and B; value is first, total  (2 x d). */
 static void indices_of(const struct pound_estimator *e, const double *y, int n, int d, double *value)
 {
 	const int n_samples = pound_order_samples(e->order, d);
@@ -234,7 +234,7 @@ static void a_name_is_told_for_every_row_and_none_beyond(void **state)
 	assert_string_equal(pound_estimator_name(0), "saltelli_2010");
 }
 
-/* Root mean square and mean errors of an estimator's 8 indexes over designs of n rows. */
+/* Root mean square and mean errors of an estimator's 8 indices over designs of n rows. */
 static void errors_of(const char *estimator, const struct function *f, int n, int designs, double *rms,
                       double *bias)
 {

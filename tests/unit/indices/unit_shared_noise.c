@@ -59,9 +59,9 @@ struct noise {
 	int rows;
 };
 
-struct indexes {
+struct indices {
 	struct pound_indices of;
-	struct pound_estimate estimates[POUND_N_INDEXES][POUND_INPUTS_MAX];
+	struct pound_estimate estimates[POUND_N_INDICES][POUND_INPUTS_MAX];
 };
 
 /* Noise of a sample, uniform with the mean 0 and the variance 1. */
@@ -72,7 +72,7 @@ static double noise_of(uint64_t seed, int row, int sample)
 	return standard(pound_random_uniform(stream, 0));
 }
 
-static struct indexes *indexes_of(const struct model *model, struct noise noise, uint64_t seed)
+static struct indices *indexes_of(const struct model *model, struct noise noise, uint64_t seed)
 {
 	const int n = noise.rows * SAMPLES;
 	double *numerator = malloc(3 * sizeof *numerator * (size_t)n), *one = numerator + n, *variance = one + n;
@@ -98,9 +98,9 @@ static struct indexes *indexes_of(const struct model *model, struct noise noise,
 	                                        .quasi_random = noise.quasi_random,
 	                                        .n_resamples =
 	                                            8}; // few serve where no interval of theirs is looked at
-	struct indexes *result = calloc(1, sizeof *result);
+	struct indices *result = calloc(1, sizeof *result);
 	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, &sampling));
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		result->of.index[k] = result->estimates[k];
 	pound_variants_indices(&values, &sampling, seed, scratch, &result->of);
 	free(scratch), free(numerator), free(u);
@@ -156,7 +156,7 @@ static void S1_is_a_share_of_the_variance_with_the_noise_in_it(void **state)
 		struct score score = {0};
 		for (uint64_t seed = 0; seed < SEEDS; seed++) {
 			// outputs of the engine, and of a program of the user's
-			struct indexes *got = indexes_of(&models[m], (struct noise){.elsewhere = m, .rows = ROWS}, seed);
+			struct indices *got = indexes_of(&models[m], (struct noise){.elsewhere = m, .rows = ROWS}, seed);
 			score_add(&score, got->estimates[POUND_S1], models[m].first);
 			free(got);
 		}
@@ -174,7 +174,7 @@ static void S1_is_one_of_the_mean_response_where_the_variance_of_the_noise_is_kn
 		for (int j = 0; j < D; j++)
 			exact[j] = models[m].first[j] * 4 / (4 - models[m].noise);
 		for (uint64_t seed = 0; seed < SEEDS; seed++) {
-			struct indexes *got = indexes_of(
+			struct indices *got = indexes_of(
 			    &models[m], (struct noise){.elsewhere = true, .variance = true, .rows = ROWS}, seed);
 			score_add(&score, got->estimates[POUND_S1], exact);
 			free(got);
@@ -204,7 +204,7 @@ static void every_column_estimates_what_its_name_says_or_is_null(void **state)
 		for (int fresh = 0; fresh < 2; fresh++) {
 			struct score scores[sizeof columns / sizeof columns[0]] = {{0}};
 			for (uint64_t seed = 0; seed < SEEDS; seed++) {
-				struct indexes *got =
+				struct indices *got =
 				    indexes_of(&models[m], (struct noise){.fresh = fresh, .rows = ROWS}, seed);
 				for (int k = 0; k < 7; k++) {
 					const bool first = k < 3, raw = columns[k] == POUND_S1_RAW || columns[k] == POUND_ST_RAW;
@@ -257,7 +257,7 @@ static void a_note_says_which_indices_shared_noise_leaves(void **state)
 	    {{.elsewhere = true, .fresh = true, .variance = true, .rows = ROWS}, 0, true, true},
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-		struct indexes *got = indexes_of(&models[0], cases[k].noise, 1);
+		struct indices *got = indexes_of(&models[0], cases[k].noise, 1);
 		assert_int_equal(got->of.notes, cases[k].notes);
 		for (int j = 0; j < D; j++) {
 			assert_int_equal(!isnan(got->estimates[POUND_S1][j].value), cases[k].first);

@@ -141,15 +141,15 @@ static void a_swept_law_stands_by_its_name(void **state)
 	free(document);
 }
 
-enum { ESTIMATES = 2 * POUND_N_INDEXES }; /* of two inputs */
+enum { ESTIMATES = 2 * POUND_N_INDICES }; /* of two inputs */
 
-/* Indexes that tell their own places. */
+/* Indices that tell their own places. */
 static void indices_fill(struct pound_indices *indices, struct pound_estimate *estimates, double first)
 {
 	*indices = (struct pound_indices){.mean = first - 1, .variance = first - 2, .noise_share = first - 3};
 	for (int k = 0; k < ESTIMATES; k++)
 		estimates[k] = (struct pound_estimate){first + k, first + k - 0.25, first + k + 0.25};
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		indices->index[k] = estimates + 2 * k;
 	for (int k = 0; k < POUND_N_SHARES; k++)
 		indices->share[k] = (struct pound_estimate){k, k - 0.25, k + 0.25};
@@ -179,7 +179,7 @@ static void indexes_stand_by_output_and_input(void **state)
 	check_near(reading_number(r, "/cells/1/outputs/1/mean"), 19, 0);
 	check_near(reading_number(r, "/cells/1/outputs/1/variance"), 18, 0);
 	check_near(reading_number(r, "/cells/1/outputs/1/noise_share"), 17, 0);
-	static const char *const names[POUND_N_INDEXES] = {"S1",     "ST",     "S1_pick_freeze", "ST_pick_freeze",
+	static const char *const names[POUND_N_INDICES] = {"S1",     "ST",     "S1_pick_freeze", "ST_pick_freeze",
 	                                                   "S1_raw", "ST_raw", "S2_excitation",  "shapley"};
 	for (int k = 0; k < ESTIMATES; k++) {
 		char member[80];
@@ -251,7 +251,7 @@ static void undefined_indexes_are_null_and_say_why(void **state)
 	struct pound_indices indices[2] = {{.notes = 1 << POUND_NOTE_CONSTANT},
 	                                   {.notes = 1 << POUND_NOTE_NO_ROWS | 1 << POUND_NOTE_NOISE}};
 	for (int o = 0; o < 2; o++)
-		for (int k = 0; k < POUND_N_INDEXES; k++)
+		for (int k = 0; k < POUND_N_INDICES; k++)
 			indices[o].index[k] = none;
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
@@ -259,10 +259,10 @@ static void undefined_indexes_are_null_and_say_why(void **state)
 	assert_true(reading_has(r, "/cells/0/outputs/0/inputs/0/S1"));
 	assert_true(isnan(reading_number(r, "/cells/0/outputs/0/inputs/0/S1")));
 	assert_string_equal(reading_text(r, "/cells/0/outputs/0/note"),
-	                    "the output is the same for every row, so it has no indexes");
+	                    "the output is the same for every row, so it has no indices");
 	assert_string_equal(
 	    reading_text(r, "/cells/0/outputs/1/note"),
-	    "no row of the design gave a value, so there are no indexes; the variance left without the noise may "
+	    "no row of the design gave a value, so there are no indices; the variance left without the noise may "
 	    "be 0, so all indices but the raw ones are missing or may be far off");
 	reading_close(r);
 }

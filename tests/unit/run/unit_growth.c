@@ -199,12 +199,12 @@ static void a_grown_sobol_design_has_the_indexes_of_one_of_that_size_from_the_st
 	struct pound_run *other = run_of(&whole, "g_a");
 	const struct pound_indices *p = pound_run_result(run)->cells[0].indices,
 	                           *q = pound_run_result(other)->cells[0].indices;
-	for (int k = 0; k < POUND_N_INDEXES; k++)
+	for (int k = 0; k < POUND_N_INDICES; k++)
 		assert_memory_equal(p->index[k], q->index[k], sizeof *p->index[k] * D);
 	pound_run_free(run), pound_run_free(other);
 }
 
-/* Share of the 8 indexes that lie in their intervals where a design has stopped, over seeds. */
+/* Share of the 8 indices that lie in their intervals where a design has stopped, over seeds. */
 static double coverage_at_stop(const char *method, const char *function, double half_width, int seeds)
 {
 	const struct function *f = function_named(function);
@@ -225,7 +225,7 @@ static double coverage_at_stop(const char *method, const char *function, double 
 static void intervals_cover_where_a_design_has_stopped(void **state)
 {
 	(void)state;
-	// of 8 indexes a design of nominal 95 %, as if two of them were independent: 3.5 standard deviations
+	// of 8 indices a design of nominal 95 %, as if two of them were independent: 3.5 standard deviations
 	const double allowed = 3.5 * sqrt(0.95 * 0.05 / (2 * SEEDS));
 	check_near(coverage_at_stop("sobol", "cusp", 0.03, SEEDS), 0.95, allowed);
 	check_near(coverage_at_stop("sobol", "steps", 0.08, SEEDS), 0.95, allowed);
@@ -281,7 +281,7 @@ static void check_same_indexes(const struct pound_study *study, const struct pou
 {
 	for (int cell = 0; cell < p->n_cells; cell++)
 		for (int o = 0; o < study->n_outputs; o++)
-			for (int k = 0; k < POUND_N_INDEXES; k++)
+			for (int k = 0; k < POUND_N_INDICES; k++)
 				assert_memory_equal(p->cells[cell].indices[o].index[k], q->cells[cell].indices[o].index[k],
 				                    sizeof(struct pound_estimate) * (size_t)study->n_inputs);
 }
@@ -329,13 +329,13 @@ static void a_study_finds_nothing_of_the_one_before_it_in_memory(void **state)
 	(void)state;
 	enum { ROWS = 330, SIZE = sizeof(struct pound_estimate) * D };
 	const struct pound_study study = study_of("lhs", ROWS, 2, 0, 0), other = study_of("lhs", ROWS, 1, 0, 0);
-	char before[POUND_N_INDEXES][SIZE];
+	char before[POUND_N_INDICES][SIZE];
 	// nothing goes back to the system; the sanitizers' allocators do not listen
 	mallopt(M_MMAP_MAX, 0);
 	mallopt(M_TRIM_THRESHOLD, 1 << 30);
 	for (int round = 0; round < 3; round++) {
 		struct pound_run *run = run_of(round == 1 ? &other : &study, "g_a");
-		for (int k = 0; k < POUND_N_INDEXES; k++) {
+		for (int k = 0; k < POUND_N_INDICES; k++) {
 			const struct pound_estimate *index = pound_run_result(run)->cells[0].indices[0].index[k];
 			if (round == 0)
 				memcpy(before[k], index, SIZE);
