@@ -353,7 +353,7 @@ static void press_rungs(struct simulation *sim)
 	     cells *= cells == 1 ? first : ratio) {
 		double h = cells * x->cell;
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			if (h * (x->body[i].damping + sim->task->bodies[i].skeleton.stiffness * h) > 0.5)
+			if (h * (x->body[i].damping + sim->task->bodies[i].backbone.stiffness * h) > 0.5)
 				return;
 		sim->rung_cells[sim->rungs++] = cells;
 	}

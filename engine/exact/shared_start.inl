@@ -37,7 +37,7 @@ static bool same(double a, double b)
 
 static bool bodies_kin(const struct pound_march_body *a, const struct pound_march_body *b)
 {
-	return same(a->skeleton.stiffness, b->skeleton.stiffness) && same(a->damping, b->damping) &&
+	return same(a->backbone.stiffness, b->backbone.stiffness) && same(a->damping, b->damping) &&
 	       same(a->drive, b->drive) && same(a->u, b->u) && same(a->v, b->v) && a->followed == b->followed;
 }
 
@@ -56,9 +56,9 @@ static bool tasks_kin(const struct pound_march_task *a, const struct pound_march
 static int task_slot(const struct pound_march_task *task, int slots)
 {
 	const struct pound_march_body *body = task->bodies;
-	const double numbers[] = {body[0].skeleton.stiffness,
+	const double numbers[] = {body[0].backbone.stiffness,
 	                          body[0].damping,
-	                          body[1].skeleton.stiffness,
+	                          body[1].backbone.stiffness,
 	                          body[1].damping,
 	                          task->gap,
 	                          task->mass_ratio,
@@ -116,7 +116,7 @@ static bool family_edged(const struct families *f, const struct pound_march_task
 static struct pound_piece first_piece(const struct pound_march_task *task, int i)
 {
 	struct pound_branch at;
-	pound_pieces_start(&task->bodies[i].skeleton, &at);
+	pound_pieces_start(&task->bodies[i].backbone, &at);
 	return at.piece;
 }
 
@@ -195,8 +195,8 @@ static void family_part(struct simulation *sim, struct simulation *own, enum pou
 	own->task = leaver.task;
 	own->result = leaver.result;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		pound_pieces_start(&sim->task->bodies[i].skeleton, &sim->at[i]);
-		pound_pieces_start(&own->task->bodies[i].skeleton, &own->at[i]);
+		pound_pieces_start(&sim->task->bodies[i].backbone, &sim->at[i]);
+		pound_pieces_start(&own->task->bodies[i].backbone, &own->at[i]);
 	}
 	family_edges(sim);
 	family_edges(own);

@@ -14,7 +14,7 @@
 #include "engine/scene/law.h"
 
 struct pound_march_body {
-	struct pound_skeleton skeleton;
+	struct pound_backbone backbone;
 	double damping; /* c/m [1/s] */
 	double drive;   /* 1: rides on the ground motion, 0: stays where the ground is (a rigid wall) */
 	double u, v;    /* at the start [m], [m/s] */

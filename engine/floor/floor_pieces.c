@@ -515,7 +515,7 @@ static double rate_touch(const struct pound_march_task *task, double rate)
 	const double both = 1 + task->mass_ratio, stiff = both * task->contact_stiffness;
 	double frequency = 0, damping = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		frequency = fmax(frequency, sqrt(task->bodies[i].skeleton.stiffness));
+		frequency = fmax(frequency, sqrt(task->bodies[i].backbone.stiffness));
 		damping = fmax(damping, task->bodies[i].damping);
 	}
 	const double own = sqrt(frequency * frequency + stiff);
@@ -533,7 +533,7 @@ void pound_floor_start(struct pound_floor_motion *motion)
 	motion->rate = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *b = &task->bodies[i];
-		motion->rate = fmax(motion->rate, fmax(sqrt(b->skeleton.stiffness), b->damping));
+		motion->rate = fmax(motion->rate, fmax(sqrt(b->backbone.stiffness), b->damping));
 	}
 	motion->rate_touch = task->contact ? rate_touch(task, motion->rate) : motion->rate;
 	motion->from = (struct pound_march_instant){0};

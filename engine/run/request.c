@@ -206,7 +206,7 @@ static double negligible(const struct pound_request *request, const struct ask *
 {
 	double h = request->motions[ask->motion].excitation.time_step, least = h * h;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		least = fmin(least, 1 / fmax(pound_scene_body(&ask->scene, i).skeleton.stiffness, DBL_MIN));
+		least = fmin(least, 1 / fmax(pound_scene_body(&ask->scene, i).backbone.stiffness, DBL_MIN));
 	return 0x1p-90 * least;
 }
 
@@ -221,10 +221,10 @@ static int body_march(struct pound_request *request, const struct ask *ask, int 
 	struct pound_march_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
 	task.bodies[0].followed = true;
 	task.accounted = ask->response;
-	task.bodies[0].skeleton.law = law;
-	task.bodies[0].skeleton.yield = yield;
+	task.bodies[0].backbone.law = law;
+	task.bodies[0].backbone.yield = yield;
 	if (pound_pieces_linear(law))
-		task.bodies[0].skeleton.hardening = 0;
+		task.bodies[0].backbone.hardening = 0;
 	return march_ask(request, ask->motion, &task);
 }
 
@@ -371,10 +371,10 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		task.bodies[i] = pound_scene_body(&ask->scene, i);
 		task.bodies[i].followed = ask->bodies[i].wanted;
 		double yield = ask->bodies[i].yield;
-		bool linear = pound_pieces_linear(task.bodies[i].skeleton.law);
-		task.bodies[i].skeleton.yield = linear ? 0 : yield_marched(request, ask, yield);
+		bool linear = pound_pieces_linear(task.bodies[i].backbone.law);
+		task.bodies[i].backbone.yield = linear ? 0 : yield_marched(request, ask, yield);
 		if (linear)
-			task.bodies[i].skeleton.hardening = 0;
+			task.bodies[i].backbone.hardening = 0;
 	}
 	pound_scene_contact(&ask->scene, &task);
 	task.accounted = ask->response;

@@ -46,8 +46,8 @@ int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_march
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_march_body *b = &task->bodies[i];
 		double *k = &key[8 + 6 * i];
-		k[0] = b->skeleton.law, k[1] = b->skeleton.stiffness, k[2] = b->skeleton.hardening,
-		k[3] = b->skeleton.yield;
+		k[0] = b->backbone.law, k[1] = b->backbone.stiffness, k[2] = b->backbone.hardening,
+		k[3] = b->backbone.yield;
 		k[4] = b->damping, k[5] = b->drive;
 	}
 	return number_of(keys, key);

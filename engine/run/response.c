@@ -22,11 +22,11 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_body_known *body = &known->bodies[i];
 		const struct pound_march_result *free = body->free;
-		struct pound_skeleton skeleton = pound_scene_body(scene, i).skeleton;
-		bool yields = !pound_pieces_linear(skeleton.law) && !scene->oscillators[i].rigid_wall;
+		struct pound_backbone backbone = pound_scene_body(scene, i).backbone;
+		bool yields = !pound_pieces_linear(backbone.law) && !scene->oscillators[i].rigid_wall;
 		if (body->status || (free && free->status))
 			status = body->status ? body->status : free->status;
-		skeleton.yield = body->yield;
+		backbone.yield = body->yield;
 		// without a run with pounding the body moves as it does alone; the wall does not
 		bool alone = !known->pounding;
 		if (alone && free)
@@ -35,7 +35,7 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		double most = wall ? 0 : !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
 		max[i] = ldexp(most, e);
 		max_free[i] = wall ? 0 : free ? ldexp(free->displacement_max[0], e) : NAN;
-		force[i] = ldexp(scene->oscillators[i].mass * pound_pieces_envelope(&skeleton, most), e);
+		force[i] = ldexp(scene->oscillators[i].mass * pound_pieces_envelope(&backbone, most), e);
 		double given = pound_scene_law(scene, i)->yield_displacement;
 		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);
 		// a yield displacement that is given may be too small beside the motion to be told in its scale

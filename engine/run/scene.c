@@ -46,7 +46,7 @@ struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i)
 		return (struct pound_march_body){.drive = 0};
 	double w = 2 * PI * o->frequency_hz;
 	return (struct pound_march_body){
-	    .skeleton = {.law = law->type, .stiffness = w * w, .hardening = law->hardening_ratio},
+	    .backbone = {.law = law->type, .stiffness = w * w, .hardening = law->hardening_ratio},
 	    .damping = 2 * o->damping_ratio * w,
 	    .drive = 1,
 	};
@@ -65,8 +65,8 @@ void pound_scene_contact(const struct pound_scene *scene, struct pound_march_tas
 	const struct pound_contact *contact = &scene->contact;
 	const struct pound_oscillator *left = &scene->oscillators[0];
 	const struct pound_oscillator *right = &scene->oscillators[1];
-	double k1 = task->bodies[0].skeleton.stiffness; // per own mass
-	double k2 = right->rigid_wall ? 0 : task->bodies[1].skeleton.stiffness;
+	double k1 = task->bodies[0].backbone.stiffness; // per own mass
+	double k2 = right->rigid_wall ? 0 : task->bodies[1].backbone.stiffness;
 	task->contact = true;
 	task->force = pound_contact_force(contact->model);
 	task->gap = contact->gap;

@@ -12,8 +12,8 @@
 
 enum { CENTRE, RIGHT, LEFT, RIGHT_SECANT, LEFT_SECANT };
 
-/* The piece of the skeleton curve beyond the yield point on one side (+1 right, -1 left). */
-static struct pound_piece hardened(const struct pound_skeleton *s, double side)
+/* The piece of the backbone curve beyond the yield point on one side (+1 right, -1 left). */
+static struct pound_piece hardened(const struct pound_backbone *s, double side)
 {
 	return (struct pound_piece){.stiffness = s->hardening * s->stiffness,
 	                            .offset = side * (1 - s->hardening) * s->stiffness * s->yield,
@@ -21,14 +21,14 @@ static struct pound_piece hardened(const struct pound_skeleton *s, double side)
 	                            .high = DBL_MAX};
 }
 
-static void linear(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge, double u)
+static void linear(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge, double u)
 {
 	(void)edge, (void)u;
 	at->piece = (struct pound_piece){.stiffness = s->stiffness, .low = -DBL_MAX, .high = DBL_MAX};
 }
 
 /* Kinematic hardening: an elastic range of width 2 yield whose centre, memory[0], plastic flow drags along. */
-static void elastoplastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+static void elastoplastic(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge,
                           double u)
 {
 	if (at->branch == CENTRE && edge != POUND_EDGE_TURN) {
@@ -51,8 +51,8 @@ static void elastoplastic(const struct pound_skeleton *s, struct pound_branch *a
 	                                 .high = high};
 }
 
-/* Loads and unloads on the skeleton curve. */
-static void nonlinear_elastic(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+/* Loads and unloads on the backbone curve. */
+static void nonlinear_elastic(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge,
                               double u)
 {
 	(void)u;
@@ -71,10 +71,10 @@ static void nonlinear_elastic(const struct pound_skeleton *s, struct pound_branc
 }
 
 /* Straight between the origin and the farthest point of each side: memory[0] right, memory[1] left (both > 0). */
-static void origin_oriented(const struct pound_skeleton *s, struct pound_branch *at, enum pound_edge edge,
+static void origin_oriented(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge,
                             double u)
 {
-	if (at->branch == RIGHT || at->branch == LEFT) { // turned on the skeleton: this is the farthest point now
+	if (at->branch == RIGHT || at->branch == LEFT) { // turned on the backbone: this is the farthest point now
 		int side = at->branch == LEFT;
 		at->memory[side] = fabs(u);
 		at->branch = side ? LEFT_SECANT : RIGHT_SECANT;
@@ -100,7 +100,7 @@ static const struct law {
 	const char *text; /* one line of documentation */
 	bool linear;
 	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
-	void (*leave)(const struct pound_skeleton *, struct pound_branch *, enum pound_edge, double u);
+	void (*leave)(const struct pound_backbone *, struct pound_branch *, enum pound_edge, double u);
 } laws[] = {
     {"linear", "a spring", true, false, linear},
     {"elastoplastic",
@@ -130,40 +130,40 @@ bool pound_pieces_linear(int law)
 
 /* Puts an oscillator at rest on the first piece of its law.
  *
- * Given    skeleton  the law and its numbers
+ * Given    backbone  the law and its numbers
  * Returns  at        branch at u = 0, nothing remembered: elastic up to the yield displacement on either side
  * Source   model.md 2 of the project's design pages; the paper, Figure 2
  * Test     unit_law
  */
-void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_branch *at)
+void pound_pieces_start(const struct pound_backbone *backbone, struct pound_branch *at)
 {
 	*at = (struct pound_branch){.branch = CENTRE};
-	if (laws[skeleton->law].linear) {
-		linear(skeleton, at, POUND_EDGE_TURN, 0);
+	if (laws[backbone->law].linear) {
+		linear(backbone, at, POUND_EDGE_TURN, 0);
 		return;
 	}
 	at->memory[0] = at->memory[1] = 0;
 	at->piece = (struct pound_piece){
-	    .stiffness = skeleton->stiffness, .low = -skeleton->yield, .high = skeleton->yield};
-	if (laws[skeleton->law].peaks)
-		at->memory[0] = at->memory[1] = skeleton->yield;
+	    .stiffness = backbone->stiffness, .low = -backbone->yield, .high = backbone->yield};
+	if (laws[backbone->law].peaks)
+		at->memory[0] = at->memory[1] = backbone->yield;
 }
 
 /* Moves on to the piece behind an edge.
  *
- * Given    skeleton  the law and its numbers
+ * Given    backbone  the law and its numbers
  *          edge      which end of the piece was reached
  *          u         displacement there [m]
  * Returns  at        the next piece, continuous in force with the last
  */
-void pound_pieces_leave(const struct pound_skeleton *skeleton, struct pound_branch *at, enum pound_edge edge,
+void pound_pieces_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
                         double u)
 {
-	laws[skeleton->law].leave(skeleton, at, edge, u);
+	laws[backbone->law].leave(backbone, at, edge, u);
 }
 
-/* Force per mass on the skeleton curve [m/s2], which is the largest force of a motion that went as far as u >= 0. */
-double pound_pieces_envelope(const struct pound_skeleton *s, double u)
+/* Force per mass on the backbone curve [m/s2], which is the largest force of a motion that went as far as u >= 0. */
+double pound_pieces_envelope(const struct pound_backbone *s, double u)
 {
 	if (laws[s->law].linear || u <= s->yield)
 		return s->stiffness * u;

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-struct pound_skeleton {
+struct pound_backbone {
 	int law;          /* row of the laws */
 	double stiffness; /* initial, per mass [1/s2]  > 0 */
 	double hardening; /* second slope over first */
@@ -31,9 +31,9 @@ struct pound_branch {
 };
 
 bool pound_pieces_linear(int law);
-void pound_pieces_start(const struct pound_skeleton *skeleton, struct pound_branch *at);
-void pound_pieces_leave(const struct pound_skeleton *skeleton, struct pound_branch *at, enum pound_edge edge,
+void pound_pieces_start(const struct pound_backbone *backbone, struct pound_branch *at);
+void pound_pieces_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
                         double u);
-double pound_pieces_envelope(const struct pound_skeleton *skeleton, double u);
+double pound_pieces_envelope(const struct pound_backbone *backbone, double u);
 
 #endif

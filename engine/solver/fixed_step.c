@@ -41,15 +41,15 @@ struct course {
 /* ---- laws and contact at the end of a step ---- */
 
 /* Takes a law along the straight way from one displacement to another. */
-static void law_follow(const struct pound_skeleton *skeleton, struct pound_branch *at, double from, double to)
+static void law_follow(const struct pound_backbone *backbone, struct pound_branch *at, double from, double to)
 {
 	if (at->piece.direction * (to - from) < 0)
-		pound_pieces_leave(skeleton, at, POUND_EDGE_TURN, from);
+		pound_pieces_leave(backbone, at, POUND_EDGE_TURN, from);
 	for (;;)
 		if (to > at->piece.high)
-			pound_pieces_leave(skeleton, at, POUND_EDGE_HIGH, at->piece.high);
+			pound_pieces_leave(backbone, at, POUND_EDGE_HIGH, at->piece.high);
 		else if (to < at->piece.low)
-			pound_pieces_leave(skeleton, at, POUND_EDGE_LOW, at->piece.low);
+			pound_pieces_leave(backbone, at, POUND_EDGE_LOW, at->piece.low);
 		else
 			return;
 }
@@ -165,7 +165,7 @@ static bool newmark_advance(struct course *c, double ground)
 		settled = true;
 		for (int i = 0; i < 2; i++) {
 			struct pound_branch next = c->at[i];
-			law_follow(&task->bodies[i].skeleton, &next, c->u[i], c->u[i] + d[i]);
+			law_follow(&task->bodies[i].backbone, &next, c->u[i], c->u[i] + d[i]);
 			settled &= same_piece(&next, &at[i]);
 			at[i] = next;
 		}
@@ -201,7 +201,7 @@ static bool central_advance(struct course *c, double ground)
 	for (int i = 0; i < 2; i++) {
 		const struct pound_march_body *body = &task->bodies[i];
 		double u = c->u[i] + h * c->rate[i];
-		law_follow(&body->skeleton, &c->at[i], c->u[i], u);
+		law_follow(&body->backbone, &c->at[i], c->u[i], u);
 		c->u[i] = u;
 		a[i] = c->frequency + body->damping / 2;
 		b[i] =
@@ -242,7 +242,7 @@ static void speed_limits(struct course *c)
 		push += fabs(task->ground[t]) * task->time_step;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_march_body *body = &task->bodies[i];
-		energy += mass[i] * (body->v * body->v + body->skeleton.stiffness * body->u * body->u);
+		energy += mass[i] * (body->v * body->v + body->backbone.stiffness * body->u * body->u);
 		riding += mass[i] * body->drive;
 	}
 	for (int i = 0; i < 2; i++)
@@ -253,7 +253,7 @@ static void speed_limits(struct course *c)
  * [1/s2]. */
 static double stiffest(const struct pound_march_task *task, bool touching)
 {
-	const double left = task->bodies[0].skeleton.stiffness, right = task->bodies[1].skeleton.stiffness;
+	const double left = task->bodies[0].backbone.stiffness, right = task->bodies[1].backbone.stiffness;
 	const double contact = touching ? task->contact_stiffness : 0;
 	const double mean = 0.5 * (left + contact + right + task->mass_ratio * contact);
 	const double half = 0.5 * (left + contact - right - task->mass_ratio * contact);
@@ -267,10 +267,10 @@ static void course_start(struct course *c, int n_steps)
 	c->step = task->time_step / n_steps;
 	c->frequency = n_steps / task->time_step;
 	for (int i = 0; i < 2; i++) {
-		pound_pieces_start(&task->bodies[i].skeleton, &c->at[i]);
+		pound_pieces_start(&task->bodies[i].backbone, &c->at[i]);
 		c->u[i] = task->bodies[i].u;
 		c->v[i] = task->bodies[i].v;
-		law_follow(&task->bodies[i].skeleton, &c->at[i], 0, c->u[i]);
+		law_follow(&task->bodies[i].backbone, &c->at[i], 0, c->u[i]);
 	}
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
 	c->touching = touches(task, p, q);

@@ -292,9 +292,9 @@ static void law_rows(const struct batch *linear, const struct batch *apart)
 		jobs[law] = (struct bench_job){.run = batch_run, .of = &batches[law]};
 		for (int j = 0; j < linear->n; j++)
 			for (int i = 0; i < POUND_OSCILLATORS; i++) {
-				struct pound_skeleton *skeleton = &batches[law].tasks[j].bodies[i].skeleton;
-				skeleton->law = law;
-				skeleton->yield = 0.5 * apart->results[j].displacement_max[i];
+				struct pound_backbone *backbone = &batches[law].tasks[j].bodies[i].backbone;
+				backbone->law = law;
+				backbone->yield = 0.5 * apart->results[j].displacement_max[i];
 			}
 	}
 	bench_jobs(jobs, LAWS, REPEATS);

@@ -28,7 +28,7 @@ struct yardstick_result yardstick_plain(const struct pound_march_task *task, int
 {
 	assert(task->contact && task->tension);
 	double h = task->time_step / steps, K = task->contact_stiffness, C = task->contact_damping;
-	double k1 = task->bodies[0].skeleton.stiffness, k2 = task->bodies[1].skeleton.stiffness;
+	double k1 = task->bodies[0].backbone.stiffness, k2 = task->bodies[1].backbone.stiffness;
 	double drive1 = task->bodies[0].drive, drive2 = task->bodies[1].drive;
 	double half1 = 0.5 * h * task->bodies[0].damping, half2 = 0.5 * h * task->bodies[1].damping;
 	double share1 = 1 / (1 + half1), share2 = 1 / (1 + half2);
@@ -82,7 +82,7 @@ struct recurrence {
 static struct recurrence recurrence(const struct pound_march_task *task, double h, double K, double C)
 {
 	const struct pound_march_body *b = task->bodies;
-	double r = task->mass_ratio, k1 = b[0].skeleton.stiffness, k2 = b[1].skeleton.stiffness;
+	double r = task->mass_ratio, k1 = b[0].backbone.stiffness, k2 = b[1].backbone.stiffness;
 	const double stiffness[2][2] = {{k1 + K, -K}, {-r * K, k2 + r * K}};
 	const double damping[2][2] = {{b[0].damping + C, -C}, {-r * C, b[1].damping + r * C}};
 	const double load[2] = {K * task->gap, -r * K * task->gap};

@@ -30,7 +30,7 @@ static int sign_of(real x)
 	return (x > 0) - (x < 0);
 }
 
-static real skeleton(const struct oracle_law *law, real u)
+static real backbone(const struct oracle_law *law, real u)
 {
 	return law->k2 * u + (law->k - law->k2) * clipped(u, law->yield);
 }
@@ -94,7 +94,7 @@ static void origin_oriented_start(struct oracle_law *law)
 static real origin_oriented_force(const struct oracle_law *law, real u)
 {
 	real farthest = law->memory[u < 0];
-	return fabsl(u) >= farthest ? skeleton(law, u) : u * (skeleton(law, farthest) / farthest);
+	return fabsl(u) >= farthest ? backbone(law, u) : u * (backbone(law, farthest) / farthest);
 }
 
 static void origin_oriented_settle(struct oracle_law *law, real u)
@@ -111,7 +111,7 @@ static int origin_oriented_branch(const struct oracle_law *law, real u, real v)
 static const struct definition definitions[] = {
     {"linear", nothing_remembered, linear_force, nothing_settled, linear_branch},
     {"elastoplastic", nothing_remembered, elastoplastic_force, elastoplastic_settle, elastoplastic_branch},
-    {"nonlinear_elastic", nothing_remembered, skeleton, nothing_settled, nonlinear_elastic_branch},
+    {"nonlinear_elastic", nothing_remembered, backbone, nothing_settled, nonlinear_elastic_branch},
     {"origin_oriented", origin_oriented_start, origin_oriented_force, origin_oriented_settle,
      origin_oriented_branch},
 };

@@ -386,7 +386,7 @@ struct pound_march_task specimen_pressed(uint64_t *seed)
 	const double k = 100, xi = specimen_uniform(seed, 0.01, 1);
 	struct pound_march_task task = {.ground = push, .n_samples = 4, .contact = true, .tension = true};
 	task.bodies[0] = (struct pound_march_body){
-	    .skeleton = {.stiffness = k}, .damping = 2 * xi * sqrt(k), .drive = 1, .followed = true};
+	    .backbone = {.stiffness = k}, .damping = 2 * xi * sqrt(k), .drive = 1, .followed = true};
 	task.contact_stiffness = k * pow(10, specimen_uniform(seed, -1, 2));
 	task.contact_damping = 2 * specimen_uniform(seed, 0, 1) * sqrt(task.contact_stiffness);
 	task.time_step = specimen_uniform(seed, 0.3, 1) / sqrt(k + task.contact_stiffness);

@@ -117,7 +117,7 @@ static struct pound_march_task pounding(double *ground, int t, int n)
 	                                .mass_ratio = ratio};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		task.bodies[i] = (struct pound_march_body){
-		    .skeleton = {.law = t % 5 % 4, .stiffness = w[i] * w[i], .hardening = 0.05, .yield = 1e-3},
+		    .backbone = {.law = t % 5 % 4, .stiffness = w[i] * w[i], .hardening = 0.05, .yield = 1e-3},
 		    .damping = 0.1 * w[i],
 		    .drive = 1,
 		    .followed = true};
@@ -164,9 +164,9 @@ static void bodies_pressed_for_long_rest_where_their_springs_hold_them(void **st
 		const double w1 = 4 * M_PI, w2 = 4000 * M_PI, k1 = w1 * w1, k2 = w2 * w2, ratio = 1e-3;
 		const double stiffness = 1e4 * k2 / ratio;
 		struct pound_march_task task = pressed(ground, 0, stiffness, 0.5);
-		task.bodies[0].skeleton.stiffness = k1;
+		task.bodies[0].backbone.stiffness = k1;
 		task.bodies[1] = (struct pound_march_body){
-		    .skeleton = {.stiffness = k2}, .damping = 1.998 * w2, .drive = 1, .followed = true};
+		    .backbone = {.stiffness = k2}, .damping = 1.998 * w2, .drive = 1, .followed = true};
 		task.mass_ratio = ratio;
 		task.tension = tension;
 		const struct pound_march_result r = march(&task);
@@ -194,11 +194,11 @@ static void a_yielded_body_creeps_to_rest_however_stiff_the_contact(void **state
 		const double w1 = 8 * M_PI, w2 = 40 * M_PI, light = 1e-6, zeta[] = {0.7, 0.999};
 		const double stiffness = pow(10, 6 + t / 2) * w1 * w1;
 		struct pound_march_task task = pressed(ground, 0, stiffness, 0);
-		task.bodies[0].skeleton =
-		    (struct pound_skeleton){.law = 1, .stiffness = w1 * w1, .hardening = 1, .yield = 1e-5};
+		task.bodies[0].backbone =
+		    (struct pound_backbone){.law = 1, .stiffness = w1 * w1, .hardening = 1, .yield = 1e-5};
 		task.bodies[0].damping = 2 * zeta[t % 2] * w1;
 		task.bodies[1] = task.bodies[0];
-		task.bodies[1].skeleton.stiffness = w2 * w2;
+		task.bodies[1].backbone.stiffness = w2 * w2;
 		task.bodies[1].damping = 0.1 * w2;
 		task.contact_damping = 2 * sqrt(stiffness * light);
 		task.mass_ratio = 1 / light;
@@ -253,7 +253,7 @@ static void bodies_alike_go_on_as_one_after_a_plastic_impact(void **state)
 		memset(ground, 0, sizeof ground);
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			task.bodies[i] = (struct pound_march_body){
-			    .skeleton = {.stiffness = w * w}, .damping = 2 * zeta * w, .drive = 1, .followed = true};
+			    .backbone = {.stiffness = w * w}, .damping = 2 * zeta * w, .drive = 1, .followed = true};
 		task.bodies[0].v = 1;
 		task.mass_ratio = ratio;
 		task.contact_damping = 2 * sqrt(stiffness / (1 + ratio));

@@ -80,7 +80,7 @@ static struct pound_march_task wall(double gap, double damping_ratio, double res
 	return (struct pound_march_task){.ground = still,
 	                                 .n_samples = STILL,
 	                                 .time_step = 0.005,
-	                                 .bodies = {{.skeleton = {.stiffness = k},
+	                                 .bodies = {{.backbone = {.stiffness = k},
 	                                             .damping = 4 * PI * damping_ratio,
 	                                             .drive = 1,
 	                                             .followed = true,
@@ -156,7 +156,7 @@ static void a_body_pressed_on_a_wall_yields_as_its_own_and_the_contacts_damping_
 	for (int n = 0; n < 2000; n++) {
 		const struct pound_march_task task = specimen_pressed(&seed);
 		const struct pound_march_body *body = &task.bodies[0];
-		const double omega = sqrt(body->skeleton.stiffness + task.contact_stiffness);
+		const double omega = sqrt(body->backbone.stiffness + task.contact_stiffness);
 		const double zeta = (body->damping + task.contact_damping) / (2 * omega);
 		const double end = (task.n_samples - 1) * task.time_step, settled = 1 / (omega * omega);
 		const struct pound_march_result r = march(&task);
@@ -196,7 +196,7 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 		for (int i = 0; i < 2; i++) {
 			double w = 2 * PI * specimen_uniform(&seed, 0.5, 5.5);
 			tasks[t].bodies[i] = (struct pound_march_body){
-			    .skeleton = {.law = t % 4, .stiffness = w * w, .hardening = 0.05, .yield = 0.3 / (w * w)},
+			    .backbone = {.law = t % 4, .stiffness = w * w, .hardening = 0.05, .yield = 0.3 / (w * w)},
 			    .damping = 0.1 * w,
 			    .drive = 1,
 			    .followed = i == 0 || t % 3 == 0};
@@ -247,8 +247,8 @@ static void a_largest_displacement_between_samples_is_that_of_the_motion(void **
 			    .n_samples = cases[k].length,
 			    .time_step = cases[k].step,
 			    .bodies =
-			        {{.skeleton = {.stiffness = 3600}, .drive = 1, .v = 1, .followed = true},
-			         {.skeleton = {.stiffness = 2500}, .drive = paired, .v = -paired, .followed = true}},
+			        {{.backbone = {.stiffness = 3600}, .drive = 1, .v = 1, .followed = true},
+			         {.backbone = {.stiffness = 2500}, .drive = paired, .v = -paired, .followed = true}},
 			    .contact = paired,
 			    .gap = 1,
 			    .contact_stiffness = 3.6e5,
@@ -274,7 +274,7 @@ static void more_swings_than_can_be_noted_have_their_largest_displacement(void *
 	struct pound_march_task task = {.ground = ground,
 	                                .n_samples = SWINGS,
 	                                .time_step = h,
-	                                .bodies = {{.skeleton = {.stiffness = w * w},
+	                                .bodies = {{.backbone = {.stiffness = w * w},
 	                                            .drive = 1,
 	                                            .u = cos(PI / 12),
 	                                            .v = w * sin(PI / 12),
@@ -366,7 +366,7 @@ static void a_motion_that_dies_away_does_not_depend_on_its_neighbours(void **sta
 		tasks[t].n_samples = LONG - 40 * t;
 		tasks[t].gap = 1e3;
 		for (int i = 0; i < 2; i++) {
-			tasks[t].bodies[i].skeleton.law = 0;
+			tasks[t].bodies[i].backbone.law = 0;
 			tasks[t].bodies[i].damping = 10 + 0.2 * t; // 1e-277 after 20 to 120 s
 		}
 	}
@@ -422,11 +422,11 @@ static void a_run_does_not_depend_on_bodies_alike_beside_it(void **state)
 		struct pound_march_body *body = tasks[t].bodies;
 		if (t % 3 == 0)
 			continue;
-		body[0].skeleton.law = 0;
-		body[1].skeleton = body[0].skeleton;
+		body[0].backbone.law = 0;
+		body[1].backbone = body[0].backbone;
 		body[1].damping = body[0].damping;
 		for (int i = 0; i < 2 && t % 3 == 1; i++)
-			body[i].skeleton = (struct pound_skeleton){.stiffness = 1e-321 + i * 2e-321};
+			body[i].backbone = (struct pound_backbone){.stiffness = 1e-321 + i * 2e-321};
 		tasks[t].contact = true;
 		tasks[t].gap = 0;
 		tasks[t].tension = true;
@@ -455,7 +455,7 @@ static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **st
 			tasks[t].time_step = seed < 6 ? 0.01 : 0.3; // too long for maps
 			tasks[t].accounted = t % 16 == 9;
 			for (int i = 0; i < 2 && t % 16 != 10; i++)
-				tasks[t].bodies[i].skeleton.law = 0;
+				tasks[t].bodies[i].backbone.law = 0;
 		}
 		check_alone_as_together(tasks);
 	}
@@ -466,7 +466,7 @@ static void kin_spoil(struct pound_march_task *task, int which)
 {
 	double *const numbers[] = {&task->time_step,         &task->gap,
 	                           &task->contact_stiffness, &task->contact_damping,
-	                           &task->mass_ratio,        &task->bodies[0].skeleton.stiffness,
+	                           &task->mass_ratio,        &task->bodies[0].backbone.stiffness,
 	                           &task->bodies[1].damping, &task->bodies[0].drive,
 	                           &task->bodies[0].u,       &task->bodies[0].v};
 	enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
@@ -508,7 +508,7 @@ static void a_run_does_not_depend_on_those_that_differ_in_their_laws_alone(void 
 			if (member == 0 && seed % 2)
 				memset(ground + scene * SAMPLES + 100, 0, sizeof(double) * 400);
 			for (int i = 0; i < 2; i++) {
-				struct pound_skeleton *law = &tasks[t].bodies[i].skeleton;
+				struct pound_backbone *law = &tasks[t].bodies[i].backbone;
 				if (law->stiffness == 0)
 					continue;
 				law->law = (member + scene) % 5 == 4 ? (member + scene) % 3 : (member + (int)seed) % 4;
@@ -518,7 +518,7 @@ static void a_run_does_not_depend_on_those_that_differ_in_their_laws_alone(void 
 				law->hardening = 0.01 * member;
 			}
 			if (member == 2)
-				tasks[t].bodies[0].skeleton.yield = tasks[scene].bodies[0].skeleton.yield;
+				tasks[t].bodies[0].backbone.yield = tasks[scene].bodies[0].backbone.yield;
 			if (member == 1 && seed % 4 < 2)
 				kin_spoil(&tasks[t], (scene + (int)seed) % 16);
 		}

@@ -70,11 +70,11 @@ static void plain_rates(const struct pound_march_task *task, double ground, cons
 	const struct pound_march_body *b = task->bodies;
 	double p = y[0] - y[2] - task->gap;
 	double force = p > 0 ? task->contact_stiffness * p + task->contact_damping * (y[1] - y[3]) : 0;
-	double floor = -(b[0].damping * y[1] + b[0].skeleton.stiffness * y[0]) - force;
+	double floor = -(b[0].damping * y[1] + b[0].backbone.stiffness * y[0]) - force;
 	dy[0] = y[1];
 	dy[1] = floor - ground;
 	dy[2] = y[3];
-	dy[3] = -(b[1].damping * y[3] + b[1].skeleton.stiffness * y[2]) + task->mass_ratio * force - ground;
+	dy[3] = -(b[1].damping * y[3] + b[1].backbone.stiffness * y[2]) + task->mass_ratio * force - ground;
 	for (int k = 0; k < CHASED; k++) {
 		const double *z = y + 4 + 2 * k;
 		dy[4 + 2 * k] = z[1];
@@ -310,7 +310,7 @@ static void a_floor_that_takes_hours_is_stopped(void **state)
 	    .ground = specimen.record,
 	    .n_samples = specimen.study.scene.excitation.n_record,
 	    .time_step = 0.01,
-	    .bodies = {{.skeleton.stiffness = stiffness, .drive = 1, .followed = true}},
+	    .bodies = {{.backbone.stiffness = stiffness, .drive = 1, .followed = true}},
 	    .contact = true,
 	    .contact_stiffness = specimen.study.scene.contact.stiffness_ratio * stiffness,
 	    .tension = true};

@@ -122,7 +122,7 @@ static struct followed check_followed(const struct pound_march_task *task, doubl
 	// ground's is taken at times that have a rounding.
 	double rate = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		rate = fmax(rate, fmax(sqrt(task->bodies[i].skeleton.stiffness), task->bodies[i].damping));
+		rate = fmax(rate, fmax(sqrt(task->bodies[i].backbone.stiffness), task->bodies[i].damping));
 	const double still = 4 * f.largest * (DBL_EPSILON * end + 0x1p-48 / rate);
 	check_near(f.u_error, 0, tolerance * f.u_top + still * task->time_step);
 	check_near(f.v_error, 0, tolerance * f.v_top + still);
@@ -224,7 +224,7 @@ static void a_swing_that_takes_too_many_pieces_ends_as_chatter(void **state)
 		    .ground = ground,
 		    .n_samples = 4,
 		    .time_step = 0.1,
-		    .bodies = {{.skeleton = {.stiffness = k}, .damping = 0.6, .drive = 1}},
+		    .bodies = {{.backbone = {.stiffness = k}, .damping = 0.6, .drive = 1}},
 		    .contact = true,
 		    .contact_stiffness = (stiff ? 1e14 : 1e8) * k,
 		    .tension = true};
@@ -309,7 +309,7 @@ static void a_floor_without_contact_is_all_flight(void **state)
 	const struct pound_march_task task = {.ground = ground,
 	                                      .n_samples = SAMPLES,
 	                                      .time_step = h,
-	                                      .bodies = {{.skeleton = {.stiffness = w * w}, .drive = 1}}};
+	                                      .bodies = {{.backbone = {.stiffness = w * w}, .drive = 1}}};
 	const struct followed f = check_followed(&task, 1e-14);
 	assert_int_equal(f.flights, 400);
 	assert_int_equal(f.pieces, 400);
@@ -346,7 +346,7 @@ static void a_body_that_turns_between_two_samples_is_followed(void **state)
 			ground[i] = specimen_uniform(&seed, -10, 10);
 		struct pound_march_task task = {.ground = ground, .n_samples = SAMPLES, .time_step = 0.05};
 		task.bodies[0] =
-		    (struct pound_march_body){.skeleton = {.law = n % LAWS,
+		    (struct pound_march_body){.backbone = {.law = n % LAWS,
 		                                           .stiffness = specimen_uniform(&seed, 10, 100),
 		                                           .hardening = 0.1,
 		                                           .yield = specimen_uniform(&seed, 0.001, 0.03)},

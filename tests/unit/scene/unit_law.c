@@ -12,7 +12,7 @@ static const double PI = 3.14159265358979323846;
 
 /* A displacement-driven test: follows a list of turning points and returns the work done, piece by piece exactly. */
 struct push {
-	struct pound_skeleton skeleton;
+	struct pound_backbone backbone;
 	struct pound_branch at;
 	double u, force, force_max, work;
 	int pieces;
@@ -26,9 +26,9 @@ static double force_at(const struct push *push, double u)
 static void push_start(struct push *push, int law, double yield, double hardening)
 {
 	memset(push, 0, sizeof *push);
-	push->skeleton =
-	    (struct pound_skeleton){.law = law, .stiffness = 1, .hardening = hardening, .yield = yield};
-	pound_pieces_start(&push->skeleton, &push->at);
+	push->backbone =
+	    (struct pound_backbone){.law = law, .stiffness = 1, .hardening = hardening, .yield = yield};
+	pound_pieces_start(&push->backbone, &push->at);
 }
 
 static void push_along(struct push *push, double to)
@@ -43,7 +43,7 @@ static void push_along(struct push *push, double to)
 static void push_edge(struct push *push, enum pound_edge edge)
 {
 	double before = push->force;
-	pound_pieces_leave(&push->skeleton, &push->at, edge, push->u);
+	pound_pieces_leave(&push->backbone, &push->at, edge, push->u);
 	push->pieces++;
 	check_near(force_at(push, push->u), before, 4e-16 * (1 + fabs(before)));
 }
@@ -84,7 +84,7 @@ static void the_kinematic_loop_encloses_the_known_area(void **state)
 			push_to(&push, mu);
 			check_near(push.work - before, 4 * 0.95 * (mu - 1), 1e-13 * mu);
 		}
-		check_near(push.force_max, pound_pieces_envelope(&push.skeleton, mu), 1e-14);
+		check_near(push.force_max, pound_pieces_envelope(&push.backbone, mu), 1e-14);
 	}
 }
 
@@ -164,7 +164,7 @@ static double period(int law, double mu, double about)
 		    .ground = still,
 		    .n_samples = SAMPLES,
 		    .time_step = middle / (SAMPLES - 1),
-		    .bodies = {{.skeleton = {.law = law, .stiffness = 4 * PI * PI, .hardening = 0.05, .yield = 1},
+		    .bodies = {{.backbone = {.law = law, .stiffness = 4 * PI * PI, .hardening = 0.05, .yield = 1},
 		                .followed = true}}};
 		// start in the middle of the elastic range with the energy of the amplitude mu
 		double energy = 2 * PI * sqrt(1 + 2 * (mu - 1) + 0.05 * (mu - 1) * (mu - 1));

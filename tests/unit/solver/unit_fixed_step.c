@@ -30,7 +30,7 @@ static struct pound_march_task vibration(double damping_ratio, double speed)
 	return (struct pound_march_task){.ground = still,
 	                                 .n_samples = STILL,
 	                                 .time_step = 0.01,
-	                                 .bodies = {{.skeleton = {.stiffness = w * w},
+	                                 .bodies = {{.backbone = {.stiffness = w * w},
 	                                             .damping = 2 * damping_ratio * w,
 	                                             .drive = 1,
 	                                             .u = 1,
@@ -73,7 +73,7 @@ static void newmark_keeps_the_energy_of_free_vibration_at_any_step(void **state)
 	struct pound_march_task task = vibration(0, 2);
 	for (int k = 0; k < 12; k++) {
 		double w = 2 * PI * pow(2, k);
-		task.bodies[0].skeleton.stiffness = w * w;
+		task.bodies[0].backbone.stiffness = w * w;
 		const struct pound_march_result r = integrate(NEWMARK, 1, &task);
 		assert_int_equal(r.status, POUND_OK);
 		// a rounding of 400 steps, each of some ten operations
@@ -97,14 +97,14 @@ static void an_explicit_step_beyond_its_limit_ends_with_a_status(void **state)
 {
 	(void)state;
 	struct pound_march_task task = vibration(0, 0);
-	task.bodies[0].skeleton.stiffness = pow(1.99 / 0.01, 2);
+	task.bodies[0].backbone.stiffness = pow(1.99 / 0.01, 2);
 	assert_int_equal(integrate(CENTRAL_DIFFERENCE, 0.01, &task).status, POUND_OK);
-	task.bodies[0].skeleton.stiffness = pow(2.1 / 0.01, 2);
+	task.bodies[0].backbone.stiffness = pow(2.1 / 0.01, 2);
 	const struct pound_march_result r = integrate(CENTRAL_DIFFERENCE, 0.01, &task);
 	assert_int_equal(r.status, POUND_UNSTABLE);
 	check_near(r.displacement_max[0] + r.u[0] + r.impulse_max, 0, 0);
 	// and so when it overflows before the next look, or is no number at all
-	task.bodies[0].skeleton.stiffness = 1e300;
+	task.bodies[0].backbone.stiffness = 1e300;
 	assert_int_equal(integrate(CENTRAL_DIFFERENCE, 0.01, &task).status, POUND_UNSTABLE);
 }
 
