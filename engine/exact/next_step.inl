@@ -296,7 +296,7 @@ static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
 		x->u[i] = edge == POUND_EDGE_HIGH ? x->body[i].high : x->body[i].low;
 	if (edge == POUND_EDGE_TURN && x->body[i].direction == 0)
 		return; // a turn that was only looked for as a largest displacement
-	pound_pieces_leave(&sim->task->bodies[i].backbone, &sim->at[i], edge, x->u[i]);
+	pound_law_leave(&sim->task->bodies[i].backbone, &sim->at[i], edge, x->u[i]);
 	piece_enter(sim, i);
 }
 
@@ -380,8 +380,8 @@ static enum pound_stage peaks_look(struct simulation *sim)
 /* Whether a law of a task has more than one piece. */
 static bool simulation_edged(const struct pound_march_task *task)
 {
-	return !pound_pieces_linear(task->bodies[0].backbone.law) ||
-	       !pound_pieces_linear(task->bodies[1].backbone.law);
+	return !pound_law_linear(task->bodies[0].backbone.law) ||
+	       !pound_law_linear(task->bodies[1].backbone.law);
 }
 
 /* Longest step in contact.
@@ -475,7 +475,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->base_drive = task->bodies[sim->base].drive;
 	x->gap_drive = task->bodies[1].drive - task->bodies[0].drive;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		pound_pieces_start(&task->bodies[i].backbone, &sim->at[i]);
+		pound_law_start(&task->bodies[i].backbone, &sim->at[i]);
 		piece_enter(sim, i);
 	}
 	if (task->observer)

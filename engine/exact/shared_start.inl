@@ -116,7 +116,7 @@ static bool family_edged(const struct families *f, const struct pound_march_task
 static struct pound_piece first_piece(const struct pound_march_task *task, int i)
 {
 	struct pound_branch at;
-	pound_pieces_start(&task->bodies[i].backbone, &at);
+	pound_law_start(&task->bodies[i].backbone, &at);
 	return at.piece;
 }
 
@@ -195,8 +195,8 @@ static void family_part(struct simulation *sim, struct simulation *own, enum pou
 	own->task = leaver.task;
 	own->result = leaver.result;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		pound_pieces_start(&sim->task->bodies[i].backbone, &sim->at[i]);
-		pound_pieces_start(&own->task->bodies[i].backbone, &own->at[i]);
+		pound_law_start(&sim->task->bodies[i].backbone, &sim->at[i]);
+		pound_law_start(&own->task->bodies[i].backbone, &own->at[i]);
 	}
 	family_edges(sim);
 	family_edges(own);

@@ -10,7 +10,7 @@
 
 static bool left_is_linear(const struct pound_scene *scene)
 {
-	return pound_pieces_linear(pound_scene_law(scene, 0)->type);
+	return pound_law_linear(pound_scene_law(scene, 0)->type);
 }
 
 static bool left_yields(const struct pound_scene *scene)

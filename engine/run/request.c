@@ -223,7 +223,7 @@ static int body_march(struct pound_request *request, const struct ask *ask, int 
 	task.accounted = ask->response;
 	task.bodies[0].backbone.law = law;
 	task.bodies[0].backbone.yield = yield;
-	if (pound_pieces_linear(law))
+	if (pound_law_linear(law))
 		task.bodies[0].backbone.hardening = 0;
 	return march_ask(request, ask->motion, &task);
 }
@@ -243,7 +243,7 @@ static double reduction(const struct pound_scene *scene, int i, double demand)
 
 static bool searched(const struct pound_law *law)
 {
-	return !pound_pieces_linear(law->type) && !(law->yield_displacement > 0) &&
+	return !pound_law_linear(law->type) && !(law->yield_displacement > 0) &&
 	       law->corrections >= SEARCH_MIN;
 }
 
@@ -291,7 +291,7 @@ static bool body_stage(struct pound_request *request, const struct ask *ask, str
                        int stage, struct pound_work *work)
 {
 	const struct pound_law *law = pound_scene_law(&ask->scene, i);
-	bool linear = pound_pieces_linear(law->type);
+	bool linear = pound_law_linear(law->type);
 	bool given = law->yield_displacement > 0;
 	int last_stage = linear ? 0 : given ? 1 : 1 + law->corrections;
 	if (stage > 1 && searched(law))
@@ -371,7 +371,7 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		task.bodies[i] = pound_scene_body(&ask->scene, i);
 		task.bodies[i].followed = ask->bodies[i].wanted;
 		double yield = ask->bodies[i].yield;
-		bool linear = pound_pieces_linear(task.bodies[i].backbone.law);
+		bool linear = pound_law_linear(task.bodies[i].backbone.law);
 		task.bodies[i].backbone.yield = linear ? 0 : yield_marched(request, ask, yield);
 		if (linear)
 			task.bodies[i].backbone.hardening = 0;

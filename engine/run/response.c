@@ -23,7 +23,7 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		const struct pound_body_known *body = &known->bodies[i];
 		const struct pound_march_result *free = body->free;
 		struct pound_backbone backbone = pound_scene_body(scene, i).backbone;
-		bool yields = !pound_pieces_linear(backbone.law) && !scene->oscillators[i].rigid_wall;
+		bool yields = !pound_law_linear(backbone.law) && !scene->oscillators[i].rigid_wall;
 		if (body->status || (free && free->status))
 			status = body->status ? body->status : free->status;
 		backbone.yield = body->yield;
@@ -35,7 +35,7 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		double most = wall ? 0 : !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
 		max[i] = ldexp(most, e);
 		max_free[i] = wall ? 0 : free ? ldexp(free->displacement_max[0], e) : NAN;
-		force[i] = ldexp(scene->oscillators[i].mass * pound_pieces_envelope(&backbone, most), e);
+		force[i] = ldexp(scene->oscillators[i].mass * pound_law_envelope(&backbone, most), e);
 		double given = pound_scene_law(scene, i)->yield_displacement;
 		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);
 		// a yield displacement that is given may be too small beside the motion to be told in its scale

@@ -85,7 +85,7 @@ static bool laws_alike(const struct pound_law *a, const struct pound_law *b)
 {
 	if (a->type != b->type)
 		return false;
-	return pound_pieces_linear(a->type) ||
+	return pound_law_linear(a->type) ||
 	       (a->hardening_ratio == b->hardening_ratio && a->target_demand == b->target_demand &&
 	        a->yield_displacement == b->yield_displacement && a->corrections == b->corrections);
 }

@@ -90,7 +90,7 @@ static void origin_oriented(const struct pound_backbone *s, struct pound_branch 
 		return;
 	}
 	double far = at->memory[at->branch == LEFT_SECANT];
-	at->piece = (struct pound_piece){.stiffness = pound_pieces_envelope(s, far) / far,
+	at->piece = (struct pound_piece){.stiffness = pound_law_envelope(s, far) / far,
 	                                 .low = at->branch == LEFT_SECANT ? -far : 0,
 	                                 .high = at->branch == LEFT_SECANT ? 0 : far};
 }
@@ -123,7 +123,7 @@ const char *pound_law_name(int row)
 }
 
 /* Whether a law has one piece for ever, so that no yield displacement is needed. */
-bool pound_pieces_linear(int law)
+bool pound_law_linear(int law)
 {
 	return laws[law].linear;
 }
@@ -135,7 +135,7 @@ bool pound_pieces_linear(int law)
  * Source   model.md 2 of the project's design pages; the paper, Figure 2
  * Test     unit_law
  */
-void pound_pieces_start(const struct pound_backbone *backbone, struct pound_branch *at)
+void pound_law_start(const struct pound_backbone *backbone, struct pound_branch *at)
 {
 	*at = (struct pound_branch){.branch = CENTRE};
 	if (laws[backbone->law].linear) {
@@ -156,14 +156,14 @@ void pound_pieces_start(const struct pound_backbone *backbone, struct pound_bran
  *          u         displacement there [m]
  * Returns  at        the next piece, continuous in force with the last
  */
-void pound_pieces_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
+void pound_law_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
                         double u)
 {
 	laws[backbone->law].leave(backbone, at, edge, u);
 }
 
 /* Force per mass on the backbone curve [m/s2], which is the largest force of a motion that went as far as u >= 0. */
-double pound_pieces_envelope(const struct pound_backbone *s, double u)
+double pound_law_envelope(const struct pound_backbone *s, double u)
 {
 	if (laws[s->law].linear || u <= s->yield)
 		return s->stiffness * u;

@@ -30,10 +30,10 @@ struct pound_branch {
 	struct pound_piece piece;
 };
 
-bool pound_pieces_linear(int law);
-void pound_pieces_start(const struct pound_backbone *backbone, struct pound_branch *at);
-void pound_pieces_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
+bool pound_law_linear(int law);
+void pound_law_start(const struct pound_backbone *backbone, struct pound_branch *at);
+void pound_law_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
                         double u);
-double pound_pieces_envelope(const struct pound_backbone *backbone, double u);
+double pound_law_envelope(const struct pound_backbone *backbone, double u);
 
 #endif

@@ -237,7 +237,7 @@ static void body_turn(struct course *c, int i, enum pound_edge edge)
 	           : edge == POUND_EDGE_HIGH ? at->piece.high
 	                                     : c->y[U1 + 2 * i];
 	if (edge != POUND_EDGE_TURN || at->piece.direction != 0)
-		pound_pieces_leave(&c->task->bodies[i].backbone, at, edge, u);
+		pound_law_leave(&c->task->bodies[i].backbone, at, edge, u);
 }
 
 static void event_pass(struct course *c, enum guard j)
@@ -444,7 +444,7 @@ static void course_start(struct course *c)
 {
 	const struct pound_march_task *task = c->task;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		pound_pieces_start(&task->bodies[i].backbone, &c->at[i]);
+		pound_law_start(&task->bodies[i].backbone, &c->at[i]);
 		c->y[U1 + 2 * i] = task->bodies[i].u;
 		c->y[V1 + 2 * i] = task->bodies[i].v;
 		c->result->displacement_max[i] = fabs(task->bodies[i].u);

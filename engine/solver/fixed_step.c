@@ -44,12 +44,12 @@ struct course {
 static void law_follow(const struct pound_backbone *backbone, struct pound_branch *at, double from, double to)
 {
 	if (at->piece.direction * (to - from) < 0)
-		pound_pieces_leave(backbone, at, POUND_EDGE_TURN, from);
+		pound_law_leave(backbone, at, POUND_EDGE_TURN, from);
 	for (;;)
 		if (to > at->piece.high)
-			pound_pieces_leave(backbone, at, POUND_EDGE_HIGH, at->piece.high);
+			pound_law_leave(backbone, at, POUND_EDGE_HIGH, at->piece.high);
 		else if (to < at->piece.low)
-			pound_pieces_leave(backbone, at, POUND_EDGE_LOW, at->piece.low);
+			pound_law_leave(backbone, at, POUND_EDGE_LOW, at->piece.low);
 		else
 			return;
 }
@@ -267,7 +267,7 @@ static void course_start(struct course *c, int n_steps)
 	c->step = task->time_step / n_steps;
 	c->frequency = n_steps / task->time_step;
 	for (int i = 0; i < 2; i++) {
-		pound_pieces_start(&task->bodies[i].backbone, &c->at[i]);
+		pound_law_start(&task->bodies[i].backbone, &c->at[i]);
 		c->u[i] = task->bodies[i].u;
 		c->v[i] = task->bodies[i].v;
 		law_follow(&task->bodies[i].backbone, &c->at[i], 0, c->u[i]);

@@ -16,7 +16,7 @@ struct pound_march_task riding_task(const struct specimen *specimen, bool contac
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		task.bodies[i] = pound_scene_body(scene, i);
 		task.bodies[i].followed = true;
-		task.bodies[i].backbone.yield = pound_pieces_linear(task.bodies[i].backbone.law) ? 0 : yield[i];
+		task.bodies[i].backbone.yield = pound_law_linear(task.bodies[i].backbone.law) ? 0 : yield[i];
 	}
 	if (contact)
 		pound_scene_contact(scene, &task);

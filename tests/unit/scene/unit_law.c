@@ -28,7 +28,7 @@ static void push_start(struct push *push, int law, double yield, double hardenin
 	memset(push, 0, sizeof *push);
 	push->backbone =
 	    (struct pound_backbone){.law = law, .stiffness = 1, .hardening = hardening, .yield = yield};
-	pound_pieces_start(&push->backbone, &push->at);
+	pound_law_start(&push->backbone, &push->at);
 }
 
 static void push_along(struct push *push, double to)
@@ -43,7 +43,7 @@ static void push_along(struct push *push, double to)
 static void push_edge(struct push *push, enum pound_edge edge)
 {
 	double before = push->force;
-	pound_pieces_leave(&push->backbone, &push->at, edge, push->u);
+	pound_law_leave(&push->backbone, &push->at, edge, push->u);
 	push->pieces++;
 	check_near(force_at(push, push->u), before, 4e-16 * (1 + fabs(before)));
 }
@@ -84,7 +84,7 @@ static void the_kinematic_loop_encloses_the_known_area(void **state)
 			push_to(&push, mu);
 			check_near(push.work - before, 4 * 0.95 * (mu - 1), 1e-13 * mu);
 		}
-		check_near(push.force_max, pound_pieces_envelope(&push.backbone, mu), 1e-14);
+		check_near(push.force_max, pound_law_envelope(&push.backbone, mu), 1e-14);
 	}
 }
 
