@@ -281,7 +281,7 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
  *
  * Given    values        the output's runs
  *          checks        those that were made again
- *          indices       of values, by pound_variants_indices
+ *          indices       of values, by pound_index_columns_indices
  * Returns  indices       accuracy
  * Memory   scratch       (checks.n)
  *

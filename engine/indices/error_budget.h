@@ -15,7 +15,7 @@ struct pound_checks {
 	struct pound_check *check; /* (n) */
 };
 
-/* Fills indices->accuracy; the rest of the indices is known, by pound_variants_indices.  scratch: (checks.n) */
+/* Fills indices->accuracy; the rest of the indices is known, by pound_index_columns_indices.  scratch: (checks.n) */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
                              double *scratch, struct pound_indices *indices);
 

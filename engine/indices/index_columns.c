@@ -361,7 +361,7 @@ static unsigned notes_of(const bool said[POUND_N_NOTES])
 	return notes;
 }
 
-size_t pound_variants_scratch(const struct pound_sample_values *shape, const struct pound_sampling *sampling)
+size_t pound_index_columns_scratch(const struct pound_sample_values *shape, const struct pound_sampling *sampling)
 {
 	const size_t sizes[] = {
 	    pound_sobol_estimates_scratch(shape, pound_estimator_row(sampling ? sampling->estimator : 0)),
@@ -384,14 +384,14 @@ size_t pound_variants_scratch(const struct pound_sample_values *shape, const str
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   all, and of the accuracy the half widths from the first rows; indices (n_inputs) each, NAN with a note
  *                    where undefined
- * Memory   scratch   (pound_variants_scratch)
+ * Memory   scratch   (pound_index_columns_scratch)
  *
  * Valid    Any design.  With fewer than 30 rows S1 and ST are those of pick-freeze: over six test
  *          functions with noise, n = 16, its totals err by 0.20, those with the polynomial by 0.27; n = 30: 0.14, 0.12.
  * Source   plain_indices.c, noise_correction.c, local_regression.c, chaos_expansion.c
  * Test     unit_index_columns, unit_shared_noise
  */
-int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
+int pound_index_columns_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices)
 {
 	const int d = values->n_inputs;

@@ -232,9 +232,9 @@ void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct po
 
 /* All indices, shares and notes, and of the accuracy the half widths and what dropped rows may change.  Sampling as it
  * will be; NULL: nothing but the columns of every study. */
-size_t pound_variants_scratch(const struct pound_sample_values *shape,
+size_t pound_index_columns_scratch(const struct pound_sample_values *shape,
                               const struct pound_sampling *sampling); /* doubles */
-int pound_variants_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
+int pound_index_columns_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                            uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */
 
 #endif

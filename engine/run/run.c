@@ -85,7 +85,7 @@ static size_t reduction_size(const struct pound_campaign *c)
 	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
 	const struct pound_sampling wanted = {.estimator = c->study->design.estimator,
 	                                      .ratios = c->study->n_ratios ? c->study : NULL};
-	size_t variants = pound_variants_scratch(&shape, &wanted);
+	size_t variants = pound_index_columns_scratch(&shape, &wanted);
 	size_t accuracy = (size_t)checks_of(c);
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
@@ -510,7 +510,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	if (pound_stopped(run->stop))
 		return;
 	int dropped =
-	    pound_variants_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
+	    pound_index_columns_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
 	if (pound_stopped(run->stop))
 		return;
 	pound_accuracy_estimate(&values, checks, rest, &into->indices[output]);

@@ -19,7 +19,7 @@ static void reduction_init(struct reduction *r, int rows, struct function_noise 
 {
 	r->values = function_values(function_named("cusp"), rows, 1, noise);
 	r->u = function_design(rows, 1);
-	size_t all = pound_variants_scratch(&r->values, NULL), plain = pound_sobol_scratch(&r->values);
+	size_t all = pound_index_columns_scratch(&r->values, NULL), plain = pound_sobol_scratch(&r->values);
 	r->scratch = bench_memory(sizeof *r->scratch * (rows > 100000 ? plain : all));
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		r->indices.index[k] = r->columns[k];
@@ -37,7 +37,7 @@ static void reduction_free(struct reduction *r)
 static void everything(void *of)
 {
 	struct reduction *r = of;
-	pound_variants_indices(&r->values, &(struct pound_sampling){.u = r->u, .random = true}, 1, r->scratch,
+	pound_index_columns_indices(&r->values, &(struct pound_sampling){.u = r->u, .random = true}, 1, r->scratch,
 	                       &r->indices);
 }
 

@@ -31,13 +31,13 @@ static void seed_run(struct campaign *c, int k, uint64_t seed)
 	struct pound_sample_values values =
 	    function_values(f, ROWS, seed, (struct function_noise){5, 1.0, cases[k].common});
 	double *u = function_design(ROWS, seed);
-	double *scratch = statistics_sure(malloc(sizeof *scratch * pound_variants_scratch(&values, 0)));
+	double *scratch = statistics_sure(malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0)));
 	const struct pound_sampling sampling = {.u = u, .random = true, .fresh_signals = !cases[k].common};
 	struct pound_estimate estimates[POUND_N_INDICES][D];
 	struct pound_indices indices = {0};
 	for (int i = 0; i < POUND_N_INDICES; i++)
 		indices.index[i] = estimates[i];
-	pound_variants_indices(&values, &sampling, seed, scratch, &indices);
+	pound_index_columns_indices(&values, &sampling, seed, scratch, &indices);
 	for (int i = 0; i < COLUMNS; i++)
 		statistics_score_indices(&c->scores[k][i], f, &indices, columns[i].index[0], columns[i].index[1]);
 	free(scratch);

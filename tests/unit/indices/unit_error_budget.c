@@ -22,13 +22,13 @@ static struct estimated *estimated_of(const struct pound_sample_values *values, 
                                       uint64_t seed)
 {
 	struct estimated *e = calloc(1, sizeof *e);
-	size_t n = pound_variants_scratch(values, 0);
+	size_t n = pound_index_columns_scratch(values, 0);
 	double *scratch = malloc(sizeof *scratch * (n + (size_t)checks.n));
 	double *u = function_design(values->n_rows, seed);
 	const struct pound_sampling sampling = {.u = u, .random = true, .fresh_signals = values->n_signals == 1};
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		e->of.index[k] = e->index[k];
-	pound_variants_indices(values, &sampling, seed, scratch, &e->of);
+	pound_index_columns_indices(values, &sampling, seed, scratch, &e->of);
 	pound_accuracy_estimate(values, checks, scratch, &e->of);
 	free(scratch), free(u);
 	return e;
@@ -174,7 +174,7 @@ static void half_widths_of_all_rows_are_those_of_the_indexes(void **state)
 		    function_values(function_named("ishigami"), N, 5, (struct function_noise){.n_signals = 1});
 		values.grouping = (struct pound_grouping){k ? 16 : 0, 1};
 		double *u = function_design(N, 5),
-		       *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
+		       *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0));
 		struct pound_rows rows;
 		struct pound_closed_results all, first_rows;
 		struct pound_estimate first[D];
@@ -237,10 +237,10 @@ static void noise_adds_no_more_to_an_interval_than_there_is(void **state)
 	const struct pound_sample_values values = {
 	    .n_rows = N, .n_inputs = 1, .n_signals = SIGNALS, .numerator = numerator, .denominator = one};
 	struct estimated *e = calloc(1, sizeof *e);
-	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
+	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0));
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		e->of.index[k] = e->index[k];
-	pound_variants_indices(&values, &(struct pound_sampling){.u = u, .random = true}, 1, scratch, &e->of);
+	pound_index_columns_indices(&values, &(struct pound_sampling){.u = u, .random = true}, 1, scratch, &e->of);
 	pound_accuracy_estimate(&values, (struct pound_checks){0, NULL}, scratch, &e->of);
 	const double sampling = e->of.accuracy.errors[POUND_ERROR_SAMPLING];
 	assert_true(e->of.noise_share > 0.2);

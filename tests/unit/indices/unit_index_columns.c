@@ -25,14 +25,14 @@ struct indices {
 static struct indices *indexes_of(const struct pound_sample_values *values, struct pound_sampling sampling)
 {
 	struct indices *result = calloc(1, sizeof *result);
-	size_t n = pound_variants_scratch(values, &sampling);
+	size_t n = pound_index_columns_scratch(values, &sampling);
 	double *scratch = malloc(sizeof *scratch * n);
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		result->of.index[k] = result->estimates[k];
 	result->of.curves = result->curves;
 	for (int k = 0; k < POUND_N_NAMED; k++)
 		result->of.named[k] = result->named[k];
-	result->dropped = pound_variants_indices(values, &sampling, SEED, scratch, &result->of);
+	result->dropped = pound_index_columns_indices(values, &sampling, SEED, scratch, &result->of);
 	free(scratch);
 	return result;
 }
@@ -73,7 +73,7 @@ static void every_column_comes_from_its_function(void **state)
 	struct pound_closed_results closed;
 	struct pound_curve curves[D];
 	double *held = malloc(sizeof *held * pound_rows_scratch(&values));
-	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, 0));
+	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0));
 	pound_rows_init(&rows, &values, held);
 	pound_correction_estimates(&rows, SEED, POUND_RESAMPLES, scratch, &pick_freeze);
 	pound_local_first(&rows, u, true, scratch, local);

@@ -99,10 +99,10 @@ static struct indices *indexes_of(const struct model *model, struct noise noise,
 	                                        .n_resamples =
 	                                            8}; // few serve where no interval of theirs is looked at
 	struct indices *result = calloc(1, sizeof *result);
-	double *scratch = malloc(sizeof *scratch * pound_variants_scratch(&values, &sampling));
+	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, &sampling));
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		result->of.index[k] = result->estimates[k];
-	pound_variants_indices(&values, &sampling, seed, scratch, &result->of);
+	pound_index_columns_indices(&values, &sampling, seed, scratch, &result->of);
 	free(scratch), free(numerator), free(u);
 	return result;
 }
