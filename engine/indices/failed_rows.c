@@ -27,7 +27,7 @@ static void row_moments(const struct pound_rows *rows, int row, double *m)
  * Valid    A bound if no row that is left out goes beyond the others in what it adds to the moments
  * Test     unit_failed_rows
  */
-void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy)
+void pound_failed_rows_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy)
 {
 	const struct pound_estimator *estimator = pound_estimator_row(0);
 	const int n = rows->n_rows, d = rows->n_inputs, n_moments = estimator->n_moments(d);

@@ -456,7 +456,7 @@ int pound_index_columns_indices(const struct pound_sample_values *values, const 
 	    [POUND_NOTE_FEW_DECIDE] = varies && !few && few_decide(&rows),
 	});
 	const int dropped = values->n_rows - rows.n_rows;
-	pound_dropped_changes(&rows, dropped, &indices->accuracy);
+	pound_failed_rows_changes(&rows, dropped, &indices->accuracy);
 	for (int j = 0; j < d && s.shared; j++)
 		indices->accuracy.inputs[j].total_dropped = NAN;
 	return dropped;

@@ -228,7 +228,7 @@ void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_est
 bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
 
 /* Fills first_dropped and total_dropped. */
-void pound_dropped_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy);
+void pound_failed_rows_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy);
 
 /* All indices, shares and notes, and of the accuracy the half widths and what dropped rows may change.  Sampling as it
  * will be; NULL: nothing but the columns of every study. */

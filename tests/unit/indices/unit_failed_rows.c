@@ -23,7 +23,7 @@ static struct bounded *bounded_of(const struct pound_sample_values *values, int 
 	b->of.index[POUND_ST_RAW] = b->total;
 	pound_sobol_indices(values, SEED, 8, scratch, &b->of);
 	pound_rows_init(&rows, values, scratch);
-	pound_dropped_changes(&rows, dropped < 0 ? values->n_rows - rows.n_rows : dropped, &b->of.accuracy);
+	pound_failed_rows_changes(&rows, dropped < 0 ? values->n_rows - rows.n_rows : dropped, &b->of.accuracy);
 	free(scratch);
 	return b;
 }
