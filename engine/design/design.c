@@ -97,11 +97,11 @@ static void net_column(const struct pound_study *study, int matrix, int input, i
 {
 	const int n = pound_design_grouping(study).n;
 	for (int k = 0; k < n; k++) {
-		struct pound_net net;
-		pound_net_init(&net, 2 * input + matrix);
-		pound_net_scramble(&net, stream_of(study, k, matrix, input));
+		struct pound_sequence net;
+		pound_sequence_init(&net, 2 * input + matrix);
+		pound_sequence_scramble(&net, stream_of(study, k, matrix, input));
 		for (int i = k; i < rows && !pound_stopped(stop); i += n)
-			u[(size_t)i * stride_of(study)] = pound_net_point(&net, (uint32_t)(i / n));
+			u[(size_t)i * stride_of(study)] = pound_sequence_point(&net, (uint32_t)(i / n));
 	}
 }
 
@@ -111,7 +111,7 @@ static const struct design designs[] = {
     {"sobol", net_column, true},
 };
 
-static_assert(POUND_NET_COLUMNS >= 2 * POUND_INPUTS_MAX, "every column of A and B has its own");
+static_assert(POUND_SEQUENCE_COLUMNS >= 2 * POUND_INPUTS_MAX, "every column of A and B has its own");
 
 enum { DESIGNS = sizeof designs / sizeof designs[0] };
 

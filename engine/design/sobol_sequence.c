@@ -19,7 +19,7 @@ enum { DEGREE_MAX = 7 };
 // clang-format off
 static const struct polynomial {
 	int degree, a, m[DEGREE_MAX];
-} polynomials[POUND_NET_COLUMNS - 1] = {
+} polynomials[POUND_SEQUENCE_COLUMNS - 1] = {
 	{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}},
 	{4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}},
 	{5, 2, {1, 1, 5, 5, 17}}, {5, 4, {1, 1, 5, 5, 5}}, {5, 7, {1, 1, 7, 11, 19}},
@@ -36,7 +36,7 @@ static const struct polynomial {
 
 /* Direction numbers of a column, not scrambled.
  *
- * Given    column   -      -      [0, POUND_NET_COLUMNS)
+ * Given    column   -      -      [0, POUND_SEQUENCE_COLUMNS)
  * Returns  net      -      -      v_k = m_k / 2^k as digits, the first one highest; no shift
  *
  *   v_k = a_1 v_(k-1) + ... + a_(s-1) v_(k-s+1) + v_(k-s) + v_(k-s) / 2^s        (sums without carry)
@@ -44,15 +44,15 @@ static const struct polynomial {
  * Source   Bratley, Fox 1988, ACM Trans. Math. Softw. 14, 88-100
  * Test     unit_sobol_sequence: elementary_intervals_hold_equally_many_points
  */
-void pound_net_init(struct pound_net *net, int column)
+void pound_sequence_init(struct pound_sequence *net, int column)
 {
-	assert(column >= 0 && column < POUND_NET_COLUMNS);
+	assert(column >= 0 && column < POUND_SEQUENCE_COLUMNS);
 	const struct polynomial *p = column ? &polynomials[column - 1] : NULL;
 	const int s = p ? p->degree : 0;
 	uint32_t *v = net->direction;
 	net->shift = 0;
-	for (int k = 0; k < POUND_NET_DIGITS; k++) {
-		const uint32_t first = UINT32_C(1) << (POUND_NET_DIGITS - 1 - k);
+	for (int k = 0; k < POUND_SEQUENCE_DIGITS; k++) {
+		const uint32_t first = UINT32_C(1) << (POUND_SEQUENCE_DIGITS - 1 - k);
 		if (k < s || !p) {
 			v[k] = p ? (uint32_t)p->m[k] * first : first;
 			continue;
@@ -72,24 +72,24 @@ void pound_net_init(struct pound_net *net, int column)
  *          over the points has the variance that nested uniform scrambling (Owen 1995) gives it
  * Test     unit_sobol_sequence: a_scramble_keeps_elementary_intervals
  */
-void pound_net_scramble(struct pound_net *net, struct pound_stream stream)
+void pound_sequence_scramble(struct pound_sequence *net, struct pound_stream stream)
 {
-	uint32_t digits[POUND_NET_DIGITS] = {0};
-	for (int k = 0; k < POUND_NET_DIGITS; k++) {
-		const int place = POUND_NET_DIGITS - 1 - k;
+	uint32_t digits[POUND_SEQUENCE_DIGITS] = {0};
+	for (int k = 0; k < POUND_SEQUENCE_DIGITS; k++) {
+		const int place = POUND_SEQUENCE_DIGITS - 1 - k;
 		// the digit itself and random ones of those before it
 		const uint32_t random = pound_random_words(stream, (uint32_t)k / 4).v[k % 4];
 		const uint32_t taken = (random & -(UINT32_C(2) << place)) | UINT32_C(1) << place;
-		for (int i = 0; i < POUND_NET_DIGITS; i++)
+		for (int i = 0; i < POUND_SEQUENCE_DIGITS; i++)
 			digits[i] |= (uint32_t)__builtin_parity(net->direction[i] & taken) << place;
 	}
-	for (int i = 0; i < POUND_NET_DIGITS; i++)
+	for (int i = 0; i < POUND_SEQUENCE_DIGITS; i++)
 		net->direction[i] = digits[i];
-	net->shift = pound_random_words(stream, POUND_NET_DIGITS / 4).v[0];
+	net->shift = pound_random_words(stream, POUND_SEQUENCE_DIGITS / 4).v[0];
 }
 
 /* A point of a column: the middle of the interval that its 32 digits name. */
-double pound_net_point(const struct pound_net *net, uint32_t number)
+double pound_sequence_point(const struct pound_sequence *net, uint32_t number)
 {
 	uint32_t digits = net->shift;
 	for (int k = 0; number; k++, number >>= 1)

@@ -5,18 +5,18 @@
 #include "engine/numeric/random.h"
 
 enum {
-	POUND_NET_COLUMNS = 32,
-	POUND_NET_DIGITS = 32, /* binary digits of a point, and of its number */
+	POUND_SEQUENCE_COLUMNS = 32,
+	POUND_SEQUENCE_DIGITS = 32, /* binary digits of a point, and of its number */
 };
 
-struct pound_net {
+struct pound_sequence {
 	uint32_t direction
-	    [POUND_NET_DIGITS]; /* what bit k of a point's number adds to its digits, first digit highest */
+	    [POUND_SEQUENCE_DIGITS]; /* what bit k of a point's number adds to its digits, first digit highest */
 	uint32_t shift;         /* added to every point */
 };
 
-void pound_net_init(struct pound_net *net, int column);
-void pound_net_scramble(struct pound_net *net, struct pound_stream stream);
-double pound_net_point(const struct pound_net *net, uint32_t number); /* in (0, 1) */
+void pound_sequence_init(struct pound_sequence *net, int column);
+void pound_sequence_scramble(struct pound_sequence *net, struct pound_stream stream);
+double pound_sequence_point(const struct pound_sequence *net, uint32_t number); /* in (0, 1) */
 
 #endif

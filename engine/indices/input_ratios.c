@@ -273,18 +273,18 @@ static void means_fill(struct fit *f, unsigned given)
 {
 	const int n = f->block, n_columns = 4 * f->variables.n_ratios;
 	double *mean = f->means + (size_t)given * n * n;
-	struct pound_net net[4 * POUND_RATIOS_MAX];
+	struct pound_sequence net[4 * POUND_RATIOS_MAX];
 	for (int c = 0; c < n_columns; c++) {
-		pound_net_init(&net[c], c);
+		pound_sequence_init(&net[c], c);
 		// the same for every study: the points are a rule, not a sample
-		pound_net_scramble(&net[c],
+		pound_sequence_scramble(&net[c],
 		                   (struct pound_stream){.what = POUND_STREAM_DESIGN, .sample = (uint32_t)c});
 	}
 	memset(mean, 0, sizeof *mean * (size_t)n * n);
 	for (uint32_t i = 0; i < POINTS && !pound_stopped(f->rows->stop); i++) {
 		double t[4 * POUND_RATIOS_MAX], ratio[POUND_RATIOS_MAX], anew[POUND_RATIOS_MAX];
 		for (int c = 0; c < n_columns; c++)
-			t[c] = pound_net_point(&net[c], i);
+			t[c] = pound_sequence_point(&net[c], i);
 		ratios_draw(&f->variables, t, ratio);
 		ratios_redraw(&f->variables, given, t, ratio, anew);
 		terms_at(f, ratio, f->point);

@@ -6,15 +6,15 @@
 #include <math.h>
 #include <string.h>
 
-static const int degrees[POUND_NET_COLUMNS] = {0, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6,
+static const int degrees[POUND_SEQUENCE_COLUMNS] = {0, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6,
                                                6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
 
-static struct pound_net net_of(int column, int scramble)
+static struct pound_sequence net_of(int column, int scramble)
 {
-	struct pound_net net;
-	pound_net_init(&net, column);
+	struct pound_sequence net;
+	pound_sequence_init(&net, column);
 	if (scramble)
-		pound_net_scramble(&net, (struct pound_stream){.seed = 42, .sample = column, .row = scramble});
+		pound_sequence_scramble(&net, (struct pound_stream){.seed = 42, .sample = column, .row = scramble});
 	return net;
 }
 
@@ -22,7 +22,7 @@ static struct pound_net net_of(int column, int scramble)
  * sum of the s before it, by Gauss elimination over 24 of them. */
 static unsigned polynomial_of(int column)
 {
-	const struct pound_net net = net_of(column, 0);
+	const struct pound_sequence net = net_of(column, 0);
 	const uint32_t *v = net.direction;
 	const int s = degrees[column];
 	for (unsigned inner = 0; inner < 1u << (s - 1); inner++) {
@@ -56,7 +56,7 @@ static void polynomials_are_primitive_and_each_is_used_once(void **state)
 {
 	(void)state;
 	bool used[256] = {false};
-	for (int c = 1; c < POUND_NET_COLUMNS; c++) {
+	for (int c = 1; c < POUND_SEQUENCE_COLUMNS; c++) {
 		unsigned p = polynomial_of(c);
 		assert_true(p > 0 && !used[p]);
 		used[p] = true;
@@ -74,9 +74,9 @@ static void the_first_points_are_those_of_the_literature(void **state)
 	                                  {0, 1 / 2., 3 / 4., 1 / 4., 3 / 8., 7 / 8., 5 / 8., 1 / 8.},
 	                                  {0, 1 / 2., 3 / 4., 1 / 4., 1 / 8., 5 / 8., 7 / 8., 3 / 8.}};
 	for (int c = 0; c < 4; c++) {
-		const struct pound_net net = net_of(c, 0);
+		const struct pound_sequence net = net_of(c, 0);
 		for (uint32_t i = 0; i < 8; i++)
-			check_near(pound_net_point(&net, i), want[c][i] + 0x1p-33, 0);
+			check_near(pound_sequence_point(&net, i), want[c][i] + 0x1p-33, 0);
 	}
 }
 
@@ -89,23 +89,23 @@ static void the_first_columns_are_those_of_another_generator(void **state)
 		double x[2];
 		gsl_qrng_get(other, x);
 		for (int c = 0; c < 2; c++) {
-			const struct pound_net net = net_of(c, 0);
+			const struct pound_sequence net = net_of(c, 0);
 			// its points come in the order of a Gray code
-			check_near(pound_net_point(&net, n ^ n >> 1), x[c], 0x1p-29);
+			check_near(pound_sequence_point(&net, n ^ n >> 1), x[c], 0x1p-29);
 		}
 	}
 	gsl_qrng_free(other);
 }
 
 /* Counts of 2^m points in the boxes of 2^a by 2^b intervals of two columns: all 2^(m - a - b). */
-static void check_boxes(const struct pound_net *p, const struct pound_net *q, uint32_t first, int m, int a,
+static void check_boxes(const struct pound_sequence *p, const struct pound_sequence *q, uint32_t first, int m, int a,
                         int b)
 {
 	static int count[1 << 12];
 	memset(count, 0, sizeof count);
 	for (uint32_t i = 0; i < UINT32_C(1) << m; i++) {
-		int x = (int)(pound_net_point(p, first + i) * (1 << a)),
-		    y = (int)(pound_net_point(q, first + i) * (1 << b));
+		int x = (int)(pound_sequence_point(p, first + i) * (1 << a)),
+		    y = (int)(pound_sequence_point(q, first + i) * (1 << b));
 		count[x << b | y]++;
 	}
 	for (int box = 0; box < 1 << (a + b); box++)
@@ -120,7 +120,7 @@ static void check_columns(int scramble, int m, int columns)
 {
 	for (int c = 0; c < columns; c++)
 		for (int e = 0; e < c; e++) {
-			const struct pound_net p = net_of(c, scramble), q = net_of(e, scramble);
+			const struct pound_sequence p = net_of(c, scramble), q = net_of(e, scramble);
 			int digits = m - (degrees[c] - 1) - (degrees[e] ? degrees[e] - 1 : 0);
 			for (int a = 0; a <= digits; a++) {
 				check_boxes(&p, &q, 0, m, a, digits - a);
@@ -134,8 +134,8 @@ static void elementary_intervals_hold_equally_many_points(void **state)
 	(void)state;
 	check_columns(0, 10, 8);
 	// one column by itself: every interval of 2^-m once, to the last column
-	for (int c = 0; c < POUND_NET_COLUMNS; c++) {
-		const struct pound_net net = net_of(c, 0);
+	for (int c = 0; c < POUND_SEQUENCE_COLUMNS; c++) {
+		const struct pound_sequence net = net_of(c, 0);
 		check_boxes(&net, &net, 0, 12, 12, 0);
 	}
 }
@@ -147,11 +147,11 @@ static void a_scramble_keeps_elementary_intervals(void **state)
 		check_columns(scramble, 10, 6);
 		// the first two columns: every box of 2^-m exactly once
 		for (int a = 0; a <= 8; a++) {
-			const struct pound_net p = net_of(0, scramble), q = net_of(1, scramble);
+			const struct pound_sequence p = net_of(0, scramble), q = net_of(1, scramble);
 			check_boxes(&p, &q, 0, 8, a, 8 - a);
 		}
-		for (int c = 0; c < POUND_NET_COLUMNS; c++) {
-			const struct pound_net net = net_of(c, scramble);
+		for (int c = 0; c < POUND_SEQUENCE_COLUMNS; c++) {
+			const struct pound_sequence net = net_of(c, scramble);
 			check_boxes(&net, &net, UINT32_C(1) << 12, 12, 12, 0);
 		}
 	}
@@ -164,8 +164,8 @@ static void a_scrambled_point_is_uniform_and_another_scramble_is_unrelated(void 
 	for (uint32_t number = 0; number < 40; number += 13) {
 		double sum = 0, square = 0, product = 0, pair = 0, before = 0;
 		for (int s = 1; s <= N; s++) {
-			const struct pound_net net = net_of(5, s);
-			double x = pound_net_point(&net, number) - 0.5, y = pound_net_point(&net, number + 1) - 0.5;
+			const struct pound_sequence net = net_of(5, s);
+			double x = pound_sequence_point(&net, number) - 0.5, y = pound_sequence_point(&net, number + 1) - 0.5;
 			sum += x;
 			square += x * x;
 			product += x * before;
