@@ -11,7 +11,7 @@ enum {
 };
 
 /* Items of all rows. */
-int pound_layout_items(const struct pound_campaign *campaign)
+int pound_blocks_items(const struct pound_cells *campaign)
 {
 	return campaign->n_rows * campaign->n_signals;
 }
@@ -43,12 +43,12 @@ static void size_add(struct pound_request_size *block, struct pound_request_size
  *
  * Test     unit_growth: a_block_ends_where_the_design_is_looked_at
  */
-int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_request_size *largest)
+int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct pound_request_size *largest)
 {
-	const struct pound_campaign *c = campaign;
+	const struct pound_cells *c = campaign;
 	const bool sampled = c->study->kind == POUND_KIND_SENSITIVITY;
 	struct pound_request_size block = {0}, item = {0};
-	int n_blocks = c->study->elsewhere, n_items = pound_layout_items(c), look = 0;
+	int n_blocks = c->study->elsewhere, n_items = pound_blocks_items(c), look = 0;
 	int look_end = sampled ? pound_design_rows(c->study, 0) : c->n_rows;
 	for (int i = 0; i < n_items && !c->study->elsewhere; i++) {
 		if (i % c->n_signals == 0)
@@ -65,7 +65,7 @@ int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct p
 			n_blocks++;
 			block = (struct pound_request_size){0};
 		}
-		size_add(&block, item, pound_campaign_checks(c, i) < pound_campaign_checks(c, i + 1));
+		size_add(&block, item, pound_cells_checks(c, i) < pound_cells_checks(c, i + 1));
 		largest->asks = block.asks > largest->asks ? block.asks : largest->asks;
 		largest->motions = block.motions > largest->motions ? block.motions : largest->motions;
 		largest->tasks = block.tasks > largest->tasks ? block.tasks : largest->tasks;
@@ -77,27 +77,27 @@ int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct p
 }
 
 /* Doubles of an item's measures. */
-static size_t item_doubles(const struct pound_layout *layout)
+static size_t item_doubles(const struct pound_blocks *layout)
 {
 	return (size_t)layout->campaign->n_cells * (size_t)layout->campaign->n_samples *
 	       (size_t)layout->n_measures;
 }
 
 /* How many items before this one are kept, checks counted as items. */
-static size_t kept_before(const struct pound_layout *layout, int item)
+static size_t kept_before(const struct pound_blocks *layout, int item)
 {
-	return (size_t)item + (size_t)pound_campaign_checks(layout->campaign, item);
+	return (size_t)item + (size_t)pound_cells_checks(layout->campaign, item);
 }
 
 /* Doubles of all blocks. */
-size_t pound_layout_doubles(const struct pound_layout *layout)
+size_t pound_blocks_doubles(const struct pound_blocks *layout)
 {
-	return kept_before(layout, pound_layout_items(layout->campaign)) * item_doubles(layout) +
+	return kept_before(layout, pound_blocks_items(layout->campaign)) * item_doubles(layout) +
 	       (size_t)layout->n_blocks * (size_t)layout->n_counts;
 }
 
 /* The block that holds an item; of the end the number of blocks. */
-int pound_layout_block_of(const struct pound_layout *layout, int item)
+int pound_blocks_block_of(const struct pound_blocks *layout, int item)
 {
 	int low = 0, high = layout->n_blocks + 1;
 	while (high - low > 1) {
@@ -111,51 +111,51 @@ int pound_layout_block_of(const struct pound_layout *layout, int item)
 }
 
 /* Pounding runs asked in a block. */
-int64_t pound_layout_block_runs(const struct pound_layout *layout, int block)
+int64_t pound_blocks_block_runs(const struct pound_blocks *layout, int block)
 {
 	return (int64_t)(layout->first[block + 1] - layout->first[block]) * layout->campaign->n_cells *
 	       layout->campaign->n_samples;
 }
 
-size_t pound_layout_block_doubles(const struct pound_layout *layout, int block)
+size_t pound_blocks_block_doubles(const struct pound_blocks *layout, int block)
 {
 	size_t n = kept_before(layout, layout->first[block + 1]) - kept_before(layout, layout->first[block]);
 	return n * item_doubles(layout) + (size_t)layout->n_counts;
 }
 
 /* Where a block's values begin. */
-double *pound_layout_block(const struct pound_layout *layout, int block)
+double *pound_blocks_block(const struct pound_blocks *layout, int block)
 {
 	return layout->values + kept_before(layout, layout->first[block]) * item_doubles(layout) +
 	       (size_t)block * (size_t)layout->n_counts;
 }
 
 /* Where its counts of work begin. */
-const double *pound_layout_counts(const struct pound_layout *layout, int block)
+const double *pound_blocks_counts(const struct pound_blocks *layout, int block)
 {
-	return pound_layout_block(layout, block) + pound_layout_block_doubles(layout, block) - layout->n_counts;
+	return pound_blocks_block(layout, block) + pound_blocks_block_doubles(layout, block) - layout->n_counts;
 }
 
 /* The measures of one run of the place-th item of a block. */
-static double *place_values(const struct pound_layout *layout, int block, int place, int cell, int sample)
+static double *place_values(const struct pound_blocks *layout, int block, int place, int cell, int sample)
 {
-	return pound_layout_block(layout, block) + (size_t)place * item_doubles(layout) +
+	return pound_blocks_block(layout, block) + (size_t)place * item_doubles(layout) +
 	       (size_t)(cell * layout->campaign->n_samples + sample) * (size_t)layout->n_measures;
 }
 
 /* The measures of one run. */
-double *pound_layout_run(const struct pound_layout *layout, int item, int cell, int sample)
+double *pound_blocks_run(const struct pound_blocks *layout, int item, int cell, int sample)
 {
-	int block = pound_layout_block_of(layout, item);
+	int block = pound_blocks_block_of(layout, item);
 	return place_values(layout, block, item - layout->first[block], cell, sample);
 }
 
 /* The measures of the run that checks it. */
-const double *pound_layout_check(const struct pound_layout *layout, int item, int cell, int sample)
+const double *pound_blocks_check(const struct pound_blocks *layout, int item, int cell, int sample)
 {
-	const struct pound_campaign *c = layout->campaign;
-	int block = pound_layout_block_of(layout, item);
+	const struct pound_cells *c = layout->campaign;
+	int block = pound_blocks_block_of(layout, item);
 	int first = layout->first[block], n = layout->first[block + 1] - first;
-	int place = n + pound_campaign_checks(c, item) - pound_campaign_checks(c, first);
+	int place = n + pound_cells_checks(c, item) - pound_cells_checks(c, first);
 	return place_values(layout, block, place, cell, sample);
 }

@@ -7,28 +7,28 @@
 
 #include "engine/run/request.h"
 
-struct pound_layout {
-	const struct pound_campaign *campaign;
+struct pound_blocks {
+	const struct pound_cells *campaign;
 	int n_measures; /* doubles kept of a run */
 	int n_counts;   /* at the end of a block */
 	int n_blocks;
 	int *first;     /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
-	double *values; /* of all blocks  (pound_layout_doubles) */
+	double *values; /* of all blocks  (pound_blocks_doubles) */
 };
 
-int pound_layout_items(const struct pound_campaign *campaign);
+int pound_blocks_items(const struct pound_cells *campaign);
 /* How many blocks; with first NULL they are only counted, and the largest found. */
-int pound_layout_cut(const struct pound_campaign *campaign, int *first, struct pound_request_size *largest);
-size_t pound_layout_doubles(const struct pound_layout *layout);
+int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct pound_request_size *largest);
+size_t pound_blocks_doubles(const struct pound_blocks *layout);
 
-int pound_layout_block_of(const struct pound_layout *layout, int item);
-int64_t pound_layout_block_runs(const struct pound_layout *layout, int block);
-size_t pound_layout_block_doubles(const struct pound_layout *layout, int block);
-double *pound_layout_block(const struct pound_layout *layout, int block);
-const double *pound_layout_counts(const struct pound_layout *layout, int block);
+int pound_blocks_block_of(const struct pound_blocks *layout, int item);
+int64_t pound_blocks_block_runs(const struct pound_blocks *layout, int block);
+size_t pound_blocks_block_doubles(const struct pound_blocks *layout, int block);
+double *pound_blocks_block(const struct pound_blocks *layout, int block);
+const double *pound_blocks_counts(const struct pound_blocks *layout, int block);
 
 /* The measures of one run, and of the run that checks it. */
-double *pound_layout_run(const struct pound_layout *layout, int item, int cell, int sample);
-const double *pound_layout_check(const struct pound_layout *layout, int item, int cell, int sample);
+double *pound_blocks_run(const struct pound_blocks *layout, int item, int cell, int sample);
+const double *pound_blocks_check(const struct pound_blocks *layout, int item, int cell, int sample);
 
 #endif

@@ -3,13 +3,13 @@
 #include "engine/run/request.h"
 
 /* The solver of a row. */
-struct pound_solver pound_campaign_solver(const struct pound_campaign *campaign, int row)
+struct pound_solver pound_cells_solver(const struct pound_cells *campaign, int row)
 {
 	return campaign->trials ? pound_convergence_solver(campaign->study, row) : campaign->study->solver;
 }
 
 /* Value of a sweep in a cell; the last sweep runs fastest. */
-double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep)
+double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep)
 {
 	const struct pound_study *study = campaign->study;
 	for (int s = study->n_sweeps - 1; s > sweep; s--)
@@ -18,19 +18,19 @@ double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int
 }
 
 /* How many items before this one are checked. */
-int pound_campaign_checks(const struct pound_campaign *campaign, int item)
+int pound_cells_checks(const struct pound_cells *campaign, int item)
 {
 	int every = campaign->check_every;
 	return every ? (item + every - 1) / every : 0;
 }
 
 /* The scene of one sample: the study's, with the cell's sweep values and the sample's inputs put in. */
-struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample)
+struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample)
 {
 	const struct pound_study *study = campaign->study;
 	struct pound_scene scene = study->scene;
 	for (int s = 0; s < study->n_sweeps; s++)
-		pound_scene_assign(&scene, study->sweeps[s].field, pound_campaign_sweep(campaign, cell, s));
+		pound_scene_assign(&scene, study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
 	for (int j = 0; j < study->n_inputs; j++)
 		pound_scene_assign(&scene, study->inputs[j].field,
 		                   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
@@ -38,7 +38,7 @@ struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, i
 }
 
 /* Numerators of an output in a cell; there are as many denominators, or variances of outputs computed elsewhere. */
-size_t pound_campaign_values_size(const struct pound_campaign *c, int n_rows)
+size_t pound_cells_values_size(const struct pound_cells *c, int n_rows)
 {
 	return (size_t)n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
 }
@@ -47,10 +47,10 @@ size_t pound_campaign_values_size(const struct pound_campaign *c, int n_rows)
  *
  * Test     unit_index_columns: a_study_s_result_holds_what_its_samples_give
  */
-struct pound_sample_values pound_campaign_values(const struct pound_campaign *c, int n_rows,
+struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows,
                                                  const double *columns)
 {
-	const double *second = columns ? columns + pound_campaign_values_size(c, n_rows) : NULL;
+	const double *second = columns ? columns + pound_cells_values_size(c, n_rows) : NULL;
 	const bool elsewhere = c->study->elsewhere;
 	return (struct pound_sample_values){.n_rows = n_rows,
 	                                    .n_inputs = c->study->n_inputs,

@@ -224,7 +224,7 @@ static int measure_sort(const struct pound_run *run, int measure, double *sorted
 {
 	int n = 0;
 	for (int signal = 0; signal < run->campaign.n_signals; signal++) {
-		double value = pound_layout_run(&run->layout, signal, 0, 0)[measure];
+		double value = pound_blocks_run(&run->layout, signal, 0, 0)[measure];
 		if (!isnan(value))
 			sorted[n++] = value;
 	}
@@ -236,10 +236,10 @@ static int measure_sort(const struct pound_run *run, int measure, double *sorted
 static double measure_error(const struct pound_run *run, int measure)
 {
 	double largest = NAN;
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	for (int signal = 0; signal < c->n_signals && c->check_every; signal += c->check_every) {
-		double once = pound_layout_run(&run->layout, signal, 0, 0)[measure];
-		double again = pound_layout_check(&run->layout, signal, 0, 0)[measure];
+		double once = pound_blocks_run(&run->layout, signal, 0, 0)[measure];
+		double again = pound_blocks_check(&run->layout, signal, 0, 0)[measure];
 		largest = fmax(largest, once == again ? 0 : fabs(again - once) / fabs(once));
 	}
 	return largest;
@@ -261,10 +261,10 @@ static double mean_of(const double *value, int n)
  */
 void pound_ordinate_reduce(const struct pound_run *run, double *scratch, struct pound_floor_result *result)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	int n = c->study->spectrum.n;
 	result->signals = c->n_signals;
-	result->signals_checked = pound_campaign_checks(c, c->n_signals);
+	result->signals_checked = pound_cells_checks(c, c->n_signals);
 	for (int row = 0; row < POUND_N_SPECTRA; row++)
 		for (int k = 0; k < n && !pound_stopped(run->stop); k++) {
 			struct pound_floor_spectrum *into = &result->spectra[row];
@@ -315,7 +315,7 @@ static bool pair_of(const struct pound_run *run, int cell, int row, int sample, 
 	int n_signals = run->campaign.n_signals;
 	*x = *y = 0;
 	for (int r = 0; r < n_signals; r++) {
-		const double *values = pound_layout_run(&run->layout, row * n_signals + r, cell, sample);
+		const double *values = pound_blocks_run(&run->layout, row * n_signals + r, cell, sample);
 		*x += values[2 * output] / n_signals;
 		*y += values[2 * run->campaign.study->n_outputs] / n_signals;
 	}
@@ -362,7 +362,7 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	                                          .values = pair_correlation,
 	                                          .subject = &pairs,
 	                                          .stop = run->stop};
-	const struct pound_sample_values values = pound_campaign_values(&run->campaign, run->rows, NULL);
+	const struct pound_sample_values values = pound_cells_values(&run->campaign, run->rows, NULL);
 	const struct pound_scatter scatter = pound_rows_scatter(&values, rows);
 	pound_interval_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,
 	                         scratch + 5 * run->rows, &correlation);

@@ -109,12 +109,12 @@ struct pound_request *pound_request_init(void *memory, struct pound_request_size
 }
 
 /* Upper bounds for the items of one row: whatever may differ between its samples counts as different. */
-struct pound_request_size pound_request_size(const struct pound_campaign *campaign, int row)
+struct pound_request_size pound_request_size(const struct pound_cells *campaign, int row)
 {
 	struct pound_request_size size = {0};
 	for (int cell = 0; cell < campaign->n_cells; cell++)
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
-			struct pound_scene scene = pound_campaign_scene(campaign, cell, row, sample);
+			struct pound_scene scene = pound_cells_scene(campaign, cell, row, sample);
 			int marches = 1;
 			for (int i = 0; i < POUND_OSCILLATORS; i++)
 				marches += 2 + pound_scene_law(&scene, i)->corrections;
@@ -329,7 +329,7 @@ static bool body_stage(struct pound_request *request, const struct ask *ask, str
 }
 
 /* What the sample needs without pounding. */
-static void ask_free(const struct pound_campaign *campaign, struct ask *ask)
+static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 {
 	const struct pound_scene *scene = &ask->scene;
 	bool response = ask->response = campaign->study->kind == POUND_KIND_RESPONSE;
@@ -407,14 +407,14 @@ static struct pound_runs_known ask_known(const struct pound_request *request, co
 /* ---- the block ---- */
 
 /* Writes down the samples of one item from ask `a` on; returns the one after them. */
-static int item_write(struct pound_request *request, const struct pound_campaign *campaign, int a, int item,
+static int item_write(struct pound_request *request, const struct pound_cells *campaign, int a, int item,
                       bool halved)
 {
 	int row = item / campaign->n_signals, signal = item % campaign->n_signals;
 	for (int cell = 0; cell < campaign->n_cells; cell++)
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
 			struct ask *ask = &request->asks[a++];
-			ask->scene = pound_campaign_scene(campaign, cell, row, sample);
+			ask->scene = pound_cells_scene(campaign, cell, row, sample);
 			// samples of a row share their noise, or have their own
 			struct pound_stream noise = {.seed = campaign->study->design.seed,
 			                             .what = POUND_STREAM_NOISE,
@@ -463,19 +463,19 @@ static void pounding_ask(struct pound_request *request, int first, int end, stru
  * Status   POUND_STOPPED  stop was set; nothing was handed to take
  *          POUND_NOMEM    there was no memory for a run, so too
  */
-enum pound_status pound_request_run(struct pound_request *request, const struct pound_campaign *campaign,
+enum pound_status pound_request_run(struct pound_request *request, const struct pound_cells *campaign,
                                     int first, int n, const atomic_bool *stop, struct pound_work *work,
                                     pound_request_take *take, void *into)
 {
 	int n_items = n * campaign->n_cells * campaign->n_samples, n_asks = 0;
-	const struct pound_solver solver = pound_campaign_solver(campaign, first / campaign->n_signals);
+	const struct pound_solver solver = pound_cells_solver(campaign, first / campaign->n_signals);
 	pound_keys_clear(&request->motion_keys);
 	pound_keys_clear(&request->march_keys);
 	for (int item = first; item < first + n; item++)
 		n_asks = item_write(request, campaign, n_asks, item, false);
 	work->signals.asked += n_asks;
 	work->signals.run += request->motion_keys.n;
-	for (int k = pound_campaign_checks(campaign, first); k < pound_campaign_checks(campaign, first + n); k++)
+	for (int k = pound_cells_checks(campaign, first); k < pound_cells_checks(campaign, first + n); k++)
 		n_asks = item_write(request, campaign, n_asks, k * campaign->check_every, true);
 	assert(n_asks <= request->size.asks);
 	request->n_asks = n_asks;

@@ -12,7 +12,7 @@
 #include "engine/pound.h"
 
 /* the scenes of a study by cell, row of the design and sample of the row */
-struct pound_campaign {
+struct pound_cells {
 	const struct pound_study *study;
 	const double *design; /* inputs of A and B  (rows x 2 x n_inputs) */
 	int n_cells, n_rows, n_samples, n_signals;
@@ -20,14 +20,14 @@ struct pound_campaign {
 	bool trials;     /* the rows are one scene under the same signals, each with a solver of its own */
 };
 
-int pound_campaign_checks(const struct pound_campaign *campaign, int item); /* among the items before this */
+int pound_cells_checks(const struct pound_cells *campaign, int item); /* among the items before this */
 
-struct pound_scene pound_campaign_scene(const struct pound_campaign *campaign, int cell, int row, int sample);
-struct pound_solver pound_campaign_solver(const struct pound_campaign *campaign, int row);
-double pound_campaign_sweep(const struct pound_campaign *campaign, int cell, int sweep);
-size_t pound_campaign_values_size(const struct pound_campaign *c,
+struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample);
+struct pound_solver pound_cells_solver(const struct pound_cells *campaign, int row);
+double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep);
+size_t pound_cells_values_size(const struct pound_cells *c,
                                   int n_rows); /* numerators of an output in a cell */
-struct pound_sample_values pound_campaign_values(const struct pound_campaign *c, int n_rows,
+struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows,
                                                  const double *columns);
 
 struct pound_request_size {
@@ -38,7 +38,7 @@ struct pound_request_size {
 };
 
 /* Upper bounds for an item of one row, its check left out. */
-struct pound_request_size pound_request_size(const struct pound_campaign *campaign, int row);
+struct pound_request_size pound_request_size(const struct pound_cells *campaign, int row);
 
 struct pound_request; /* work space of one worker */
 
@@ -49,7 +49,7 @@ struct pound_request *pound_request_init(void *memory, struct pound_request_size
  * item, cell, sample, then those of the checks in the same order. */
 typedef void pound_request_take(void *into, const struct pound_scene *scene,
                                 const struct pound_response *response, enum pound_status status);
-enum pound_status pound_request_run(struct pound_request *request, const struct pound_campaign *campaign,
+enum pound_status pound_request_run(struct pound_request *request, const struct pound_cells *campaign,
                                     int first, int n, const atomic_bool *stop, struct pound_work *work,
                                     pound_request_take *take, void *into);
 

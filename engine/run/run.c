@@ -32,10 +32,10 @@ static const double CLOCK_LEAST = 0.02;
 
 /* ---- life ---- */
 
-static struct pound_campaign campaign_of(const struct pound_study *study)
+static struct pound_cells campaign_of(const struct pound_study *study)
 {
 	bool sampled = study->kind == POUND_KIND_SENSITIVITY, trials = study->kind == POUND_KIND_CONVERGENCE;
-	struct pound_campaign c = {.study = study,
+	struct pound_cells c = {.study = study,
 	                           .n_cells = 1,
 	                           .n_rows = sampled  ? pound_design_rows_most(study)
 	                                     : trials ? pound_convergence_trials(study)
@@ -46,50 +46,50 @@ static struct pound_campaign campaign_of(const struct pound_study *study)
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
 	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples,
-	    every = pound_layout_items(&c) / checked_min;
+	    every = pound_blocks_items(&c) / checked_min;
 	if ((sampled && !study->elsewhere) || study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		c.check_every = every > CHECK_EVERY ? CHECK_EVERY : every > 1 ? every : 1;
 	return c;
 }
 
 /* Runs of a cell that are checked. */
-static int checks_of(const struct pound_campaign *c)
+static int checks_of(const struct pound_cells *c)
 {
-	return pound_campaign_checks(c, pound_layout_items(c)) * c->n_samples;
+	return pound_cells_checks(c, pound_blocks_items(c)) * c->n_samples;
 }
 
-static size_t checks_size(const struct pound_campaign *c)
+static size_t checks_size(const struct pound_cells *c)
 {
 	return (size_t)checks_of(c) * (sizeof(struct pound_check) / sizeof(double));
 }
 
 /* Doubles that a worker keeps from one reduction to the next, at the start of its scratch. */
-static size_t kept_size(const struct pound_campaign *c)
+static size_t kept_size(const struct pound_cells *c)
 {
-	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
+	const struct pound_sample_values shape = pound_cells_values(c, c->n_rows, NULL);
 	return pound_chaos_kept_size(&shape);
 }
 
 /* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indices and then their
  * accuracy need. */
-static size_t reduction_size(const struct pound_campaign *c)
+static size_t reduction_size(const struct pound_cells *c)
 {
 	if (c->study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		return pound_ordinate_scratch(c->study, c->n_rows);
 	if (c->study->n_outputs == 0)
 		return 0;
 	if (c->trials)
-		return (size_t)pound_layout_items(c) * TRIAL_MEASURES;
+		return (size_t)pound_blocks_items(c) * TRIAL_MEASURES;
 	if (c->study->kind != POUND_KIND_SENSITIVITY)
 		return 0;
-	const struct pound_sample_values shape = pound_campaign_values(c, c->n_rows, NULL);
+	const struct pound_sample_values shape = pound_cells_values(c, c->n_rows, NULL);
 	const struct pound_sampling wanted = {.estimator = c->study->design.estimator,
 	                                      .ratios = c->study->n_ratios ? c->study : NULL};
 	size_t variants = pound_index_columns_scratch(&shape, &wanted);
 	size_t accuracy = (size_t)checks_of(c);
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
-	return kept_size(c) + 2 * pound_campaign_values_size(c, c->n_rows) + checks_size(c) +
+	return kept_size(c) + 2 * pound_cells_values_size(c, c->n_rows) + checks_size(c) +
 	       (most > ordinates ? most : ordinates);
 }
 
@@ -130,7 +130,7 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_re
 
 static bool result_create(struct pound_run *run)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	const struct pound_study *study = c->study;
 	size_t n_cells = (size_t)c->n_cells, n_outputs = (size_t)study->n_outputs;
 	run->result.n_cells = c->n_cells;
@@ -149,7 +149,7 @@ static bool result_create(struct pound_run *run)
 	for (int cell = 0; cell < c->n_cells; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
 		for (int s = 0; s < study->n_sweeps; s++)
-			into->sweep[s] = pound_campaign_sweep(c, cell, s);
+			into->sweep[s] = pound_cells_sweep(c, cell, s);
 		into->n_signals = c->n_signals;
 		into->signals = &run->responses[cell * c->n_signals];
 		into->indices = &run->indices[cell * study->n_outputs];
@@ -187,7 +187,7 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 	run->campaign = campaign_of(study);
 	run->rows = study->kind == POUND_KIND_SENSITIVITY ? pound_design_rows(study, 0) : run->campaign.n_rows;
 	run->layout =
-	    (struct pound_layout){.campaign = &run->campaign,
+	    (struct pound_blocks){.campaign = &run->campaign,
 	                          .n_measures = study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
 	                                        : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
 	                                        : study->kind == POUND_KIND_RESPONSE    ? (int)MEASURES
@@ -207,14 +207,14 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 	if (pound_stopped(stop))
 		goto fail;
 	struct pound_request_size largest = {0};
-	run->layout.n_blocks = pound_layout_cut(&run->campaign, NULL, &largest);
+	run->layout.n_blocks = pound_blocks_cut(&run->campaign, NULL, &largest);
 	run->layout.first = piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
 	if (!run->layout.first)
 		goto fail;
 	if (pound_stopped(stop))
 		goto fail;
-	pound_layout_cut(&run->campaign, run->layout.first, &largest);
-	run->layout.values = piece(sizeof(double) * pound_layout_doubles(&run->layout));
+	pound_blocks_cut(&run->campaign, run->layout.first, &largest);
+	run->layout.values = piece(sizeof(double) * pound_blocks_doubles(&run->layout));
 	if (!run->layout.values || !workers_create(run, n_workers, largest) || !result_create(run))
 		goto fail;
 	return run;
@@ -277,7 +277,7 @@ void pound_run_clock(struct pound_run *run, double (*cpu)(void))
 /* Blocks of the rows in hand. */
 static int blocks_in_hand(const struct pound_run *run)
 {
-	return run->rows ? pound_layout_block_of(&run->layout, run->rows * run->campaign.n_signals - 1) + 1 : 0;
+	return run->rows ? pound_blocks_block_of(&run->layout, run->rows * run->campaign.n_signals - 1) + 1 : 0;
 }
 
 int pound_run_blocks(const struct pound_run *run)
@@ -292,22 +292,22 @@ int pound_run_blocks_most(const struct pound_run *run)
 
 int64_t pound_run_block_runs(const struct pound_run *run, int block)
 {
-	return pound_layout_block_runs(&run->layout, block);
+	return pound_blocks_block_runs(&run->layout, block);
 }
 
 size_t pound_run_block_size(const struct pound_run *run, int block)
 {
-	return pound_layout_block_doubles(&run->layout, block);
+	return pound_blocks_block_doubles(&run->layout, block);
 }
 
 const double *pound_run_block_values(const struct pound_run *run, int block)
 {
-	return pound_layout_block(&run->layout, block);
+	return pound_blocks_block(&run->layout, block);
 }
 
 void pound_run_block_restore(struct pound_run *run, int block, const double *values)
 {
-	memcpy(pound_layout_block(&run->layout, block), values,
+	memcpy(pound_blocks_block(&run->layout, block), values,
 	       sizeof(double) * pound_run_block_size(run, block));
 }
 
@@ -374,8 +374,8 @@ static enum pound_status run_time(const struct pound_run *run, struct pound_requ
 static enum pound_status trial_block(const struct pound_run *run, struct pound_request *request, int first,
                                      int n, struct pound_trial_run *runs)
 {
-	const struct pound_campaign *c = &run->campaign;
-	const struct pound_solver solver = pound_campaign_solver(c, first / c->n_signals);
+	const struct pound_cells *c = &run->campaign;
+	const struct pound_solver solver = pound_cells_solver(c, first / c->n_signals);
 	int samples[POUND_HISTORY], n_times = pound_convergence_times(c->study, samples);
 	enum pound_status status = POUND_OK;
 	for (int item = 0; item < n; item++) {
@@ -403,17 +403,17 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_r
  */
 enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 {
-	struct slice slice = {.study = run->campaign.study, .at = pound_layout_block(&run->layout, block)};
+	struct slice slice = {.study = run->campaign.study, .at = pound_blocks_block(&run->layout, block)};
 	struct pound_work work = {0};
 	int first = run->layout.first[block], n = run->layout.first[block + 1] - first;
 	enum pound_status status = pound_request_run(run->requests[worker], &run->campaign, first, n, run->stop,
 	                                             &work, response_keep, &slice);
 	if (!status && run->campaign.trials)
 		status = trial_block(run, run->requests[worker], first, n,
-		                     (struct pound_trial_run *)pound_layout_block(&run->layout, block));
+		                     (struct pound_trial_run *)pound_blocks_block(&run->layout, block));
 	if (!status && run->floors[worker])
 		status = pound_ordinate_block(run->floors[worker], run->campaign.study, run->requests[worker],
-		                              pound_layout_block(&run->layout, block), run->stop, &work);
+		                              pound_blocks_block(&run->layout, block), run->stop, &work);
 	if (status)
 		return status;
 	const int64_t *counts = (const int64_t *)&work;
@@ -441,13 +441,13 @@ int pound_run_reductions(const struct pound_run *run)
 static int64_t columns_fill(const struct pound_run *run, int cell, int output, double *numerator,
                             double *denominator)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	int64_t failed = 0;
 	for (int row = 0; row < run->rows && !pound_stopped(run->stop); row++)
 		for (int signal = 0; signal < c->n_signals; signal++)
 			for (int sample = 0; sample < c->n_samples; sample++) {
 				const double *values =
-				    pound_layout_run(&run->layout, row * c->n_signals + signal, cell, sample) + 2 * output;
+				    pound_blocks_run(&run->layout, row * c->n_signals + signal, cell, sample) + 2 * output;
 				size_t at = ((size_t)row * (size_t)c->n_samples + (size_t)sample) * (size_t)c->n_signals +
 				            (size_t)signal;
 				numerator[at] = values[0];
@@ -460,12 +460,12 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 /* The runs of an output in a cell that were made twice; returns how many. */
 static int checks_fill(const struct pound_run *run, int cell, int output, struct pound_check *checks)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	int n = 0;
 	for (int item = 0; item < run->rows * c->n_signals && c->check_every; item += c->check_every)
 		for (int sample = 0; sample < c->n_samples; sample++) {
-			const double *run_once = pound_layout_run(&run->layout, item, cell, sample) + 2 * output;
-			const double *again = pound_layout_check(&run->layout, item, cell, sample) + 2 * output;
+			const double *run_once = pound_blocks_run(&run->layout, item, cell, sample) + 2 * output;
+			const double *again = pound_blocks_check(&run->layout, item, cell, sample) + 2 * output;
 			checks[n++] = (struct pound_check){.row = item / c->n_signals,
 			                                   .sample = sample,
 			                                   .numerator = {run_once[0], again[0]},
@@ -484,11 +484,11 @@ static bool any_known(const double *variance, size_t n)
 
 static void indices_reduce(struct pound_run *run, int cell, int output, double *kept)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	double *scratch = kept + kept_size(c);
-	struct pound_sample_values values = pound_campaign_values(c, run->rows, scratch);
+	struct pound_sample_values values = pound_cells_values(c, run->rows, scratch);
 	values.stop = run->stop;
-	const size_t n = pound_campaign_values_size(c, run->rows);
+	const size_t n = pound_cells_values_size(c, run->rows);
 	const bool elsewhere = c->study->elsewhere;
 	struct pound_cell *into = &run->result.cells[cell];
 	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
@@ -529,14 +529,14 @@ static bool failed(const struct pound_response *response)
 /* Ratio of means over the signals whose run has a result. */
 static void responses_reduce(struct pound_run *run, int cell, int output)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	struct pound_cell *into = &run->result.cells[cell];
-	struct pound_scene scene = pound_campaign_scene(c, cell, 0, 0);
+	struct pound_scene scene = pound_cells_scene(c, cell, 0, 0);
 	int row = c->study->outputs[output];
 	double above = 0, below = 0;
 	for (int signal = 0; signal < c->n_signals; signal++) {
 		struct pound_response response;
-		memcpy(&response, pound_layout_run(&run->layout, signal, cell, 0), sizeof response);
+		memcpy(&response, pound_blocks_run(&run->layout, signal, cell, 0), sizeof response);
 		if (failed(&response))
 			continue;
 		double numerator = NAN, denominator = NAN;
@@ -550,9 +550,9 @@ static void responses_reduce(struct pound_run *run, int cell, int output)
 
 static void trials_reduce(struct pound_run *run, double *scratch)
 {
-	int n = pound_layout_items(&run->campaign);
+	int n = pound_blocks_items(&run->campaign);
 	for (int item = 0; item < n; item++)
-		memcpy(scratch + (size_t)item * TRIAL_MEASURES, pound_layout_run(&run->layout, item, 0, 0),
+		memcpy(scratch + (size_t)item * TRIAL_MEASURES, pound_blocks_run(&run->layout, item, 0, 0),
 		       sizeof(double) * TRIAL_MEASURES);
 	pound_convergence_reduce(run->campaign.study, (const struct pound_trial_run *)scratch,
 	                         run->result.trials);
@@ -567,7 +567,7 @@ static struct pound_work work_of(const struct pound_run *run)
 	struct pound_work work = {0};
 	int64_t *counts = (int64_t *)&work;
 	for (int b = 0; b < blocks_in_hand(run); b++) {
-		const double *counted = pound_layout_counts(&run->layout, b);
+		const double *counted = pound_blocks_counts(&run->layout, b);
 		for (int j = 0; j < (int)COUNTS; j++)
 			counts[j] += (int64_t)counted[j];
 	}
@@ -617,7 +617,7 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 /* The result, once all reductions are done; owned by run. */
 const struct pound_result *pound_run_result(struct pound_run *run)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	run->result.work = work_of(run);
 	run->result.rows = run->rows;
 	for (int cell = 0; cell < c->n_cells; cell++)
@@ -626,7 +626,7 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 		struct pound_cell *into = &run->result.cells[cell];
 		into->runs_failed = 0;
 		for (int signal = 0; signal < c->n_signals; signal++) {
-			memcpy(&into->signals[signal], pound_layout_run(&run->layout, signal, cell, 0),
+			memcpy(&into->signals[signal], pound_blocks_run(&run->layout, signal, cell, 0),
 			       sizeof into->signals[signal]);
 			into->runs_failed += failed(&into->signals[signal]);
 		}

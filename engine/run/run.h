@@ -7,8 +7,8 @@
 #include "engine/run/blocks.h"
 
 struct pound_run {
-	struct pound_campaign campaign;
-	struct pound_layout layout;
+	struct pound_cells campaign;
+	struct pound_blocks layout;
 	int rows;                        /* in hand: of the look, or taken for an intermediate result */
 	struct pound_request **requests; /* (n_workers) */
 	double **scratch;                /* of reductions  (n_workers) */

@@ -45,12 +45,12 @@ static void widen(struct pound_look *widest, int cell, int output, const struct 
  *
  * Test     unit_growth: a_design_stops_at_the_first_look_that_finds_every_interval_narrow
  */
-static struct pound_look widest_of(const struct pound_campaign *campaign, const struct pound_cell *cells)
+static struct pound_look widest_of(const struct pound_cells *campaign, const struct pound_cell *cells)
 {
 	const struct pound_study *study = campaign->study;
 	struct pound_look widest = {.half_width = -1};
 	for (int cell = 0; cell < campaign->n_cells; cell++) {
-		const struct pound_scene scene = pound_campaign_scene(campaign, cell, 0, 0);
+		const struct pound_scene scene = pound_cells_scene(campaign, cell, 0, 0);
 		for (int output = 0; output < study->n_outputs; output++) {
 			const struct pound_indices *indices = &cells[cell].indices[output];
 			bool constant = indices->notes >> POUND_NOTE_CONSTANT & 1;

@@ -19,10 +19,10 @@ void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, d
 void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
                              double *mean, double *variance)
 {
-	const struct pound_campaign *c = &run->campaign;
+	const struct pound_cells *c = &run->campaign;
 	assert(c->study->kind == POUND_KIND_SENSITIVITY);
 	if (c->study->elsewhere) {
-		const double *values = pound_layout_run(&run->layout, row, cell, sample) + 2 * output;
+		const double *values = pound_blocks_run(&run->layout, row, cell, sample) + 2 * output;
 		*mean = values[0];
 		*variance = values[1];
 		return;
@@ -31,7 +31,7 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 	double above = 0, below = 0;
 	for (int r = 0; r < c->n_signals; r++) {
 		const double *values =
-		    pound_layout_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
+		    pound_blocks_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
 		above += values[0];
 		below += values[1];
 	}
@@ -39,7 +39,7 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 	double sum = 0;
 	for (int r = 0; r < c->n_signals; r++) {
 		const double *values =
-		    pound_layout_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
+		    pound_blocks_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
 		double deviation = (values[0] - *mean * values[1]) * c->n_signals / below;
 		sum += deviation * deviation;
 	}
@@ -50,7 +50,7 @@ void pound_run_sample_assign(struct pound_run *run, int row, int sample, int out
                              double variance)
 {
 	assert(run->campaign.study->elsewhere);
-	double *values = pound_layout_run(&run->layout, row, 0, sample) + 2 * output;
+	double *values = pound_blocks_run(&run->layout, row, 0, sample) + 2 * output;
 	values[0] = isfinite(value) ? value : NAN;
 	values[1] = variance;
 }

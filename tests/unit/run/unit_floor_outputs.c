@@ -192,7 +192,7 @@ static void the_correlation_is_that_of_the_samples(void **state)
 			// one f_1, one excitation: the ratio to the free displacement is that of the impulses for each row's signals
 			double sum = 0;
 			for (int r = 0; r < 2; r++)
-				sum += pound_layout_run(&run->layout, i / 2 * 2 + r, 0, i % 2)[2 * study->n_outputs];
+				sum += pound_blocks_run(&run->layout, i / 2 * 2 + r, 0, i % 2)[2 * study->n_outputs];
 			y[i] = sum / 2;
 			mx += x[i] / (2 * ROWS), my += y[i] / (2 * ROWS);
 		}
@@ -232,7 +232,7 @@ static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
 				continue;
 			pound_run_sample_output(run, 0, i / 2, i % 2, 1, &x, &unused);
 			for (int s = 0; s < 2; s++)
-				y += pound_layout_run(&run->layout, i / 2 * 2 + s, 0, i % 2)[2 * study->n_outputs] / 2;
+				y += pound_blocks_run(&run->layout, i / 2 * 2 + s, 0, i % 2)[2 * study->n_outputs] / 2;
 			n++, mx += x, my += y, xx += x * x, yy += y * y, xy += x * y;
 		}
 		double value =
