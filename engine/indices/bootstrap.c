@@ -74,7 +74,7 @@ static double quantile(const double *value, int n, double p)
 	return up * (kept[at] + ((n - 1) * p - below) * (kept[next] - kept[at]));
 }
 
-size_t pound_interval_scratch(int n_rows, int n_moments, int n_values)
+size_t pound_bootstrap_scratch(int n_rows, int n_moments, int n_values)
 {
 	size_t tiles = (n_moments + TILE - 1) / TILE;
 	return tiles * n_rows * TILE + (size_t)n_values * POUND_RESAMPLES + TILE;
@@ -87,7 +87,7 @@ size_t pound_interval_scratch(int n_rows, int n_moments, int n_values)
  *          seed       -               same seed, same resamples
  *          n_resamples                a multiple of 8, at most POUND_RESAMPLES
  * Returns  estimates  (n_values)      low and high are NAN where no resample defines the value
- * Memory   scratch    (pound_interval_scratch)
+ * Memory   scratch    (pound_bootstrap_scratch)
  *
  * Resamples for which a value is not defined (all rows alike) are left out of its quantiles; a value that is not defined
  * has no interval.
@@ -96,7 +96,7 @@ size_t pound_interval_scratch(int n_rows, int n_moments, int n_values)
  * Source   percentile interval, Efron, Tibshirani 1993, section 13.3
  * Test     unit_bootstrap: intervals_of_a_mean_are_those_of_the_normal_law
  */
-void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
+void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
                               int n_resamples, double *scratch, struct pound_estimate *estimates)
 {
 	assert(statistic->n_moments <= POUND_MOMENTS_MAX && statistic->n_values <= POUND_VALUES_MAX);
@@ -134,20 +134,20 @@ void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_row
 /* A statistic's values, with 95 % intervals by what its rows are.
  *
  * Given    scatter    -               groups: by leaving each out (jackknife.c); none: by resampling rows
- *          the rest                   as pound_interval_bootstrap has it
+ *          the rest                   as pound_bootstrap_interval has it
  * Returns  estimates  (n_values)
- * Memory   scratch    (pound_interval_scratch)
+ * Memory   scratch    (pound_bootstrap_scratch)
  *
  * Test     unit_jackknife: rows_in_groups_are_never_resampled
  */
-void pound_interval_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+void pound_bootstrap_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
                               int n_rows, uint64_t seed, int n_resamples, double *scratch,
                               struct pound_estimate *estimates)
 {
 	assert(pound_jackknife_scratch(scatter, statistic->n_moments) <=
-	       pound_interval_scratch(n_rows, statistic->n_moments, statistic->n_values));
+	       pound_bootstrap_scratch(n_rows, statistic->n_moments, statistic->n_values));
 	if (scatter->grouping.n)
 		pound_jackknife_estimates(statistic, scatter, n_rows, scratch, estimates);
 	else
-		pound_interval_bootstrap(statistic, n_rows, seed, n_resamples, scratch, estimates);
+		pound_bootstrap_interval(statistic, n_rows, seed, n_resamples, scratch, estimates);
 }

@@ -110,11 +110,11 @@ enum {
 };
 
 /* A statistic's values with 95 % intervals: by resampling rows, or by leaving out groups where there are some. */
-size_t pound_interval_scratch(int n_rows, int n_moments, int n_values); /* doubles */
-void pound_interval_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+size_t pound_bootstrap_scratch(int n_rows, int n_moments, int n_values); /* doubles */
+void pound_bootstrap_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
                               int n_rows, uint64_t seed, int n_resamples, double *scratch,
                               struct pound_estimate *estimates);
-void pound_interval_bootstrap(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
+void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
                               int n_resamples, double *scratch, struct pound_estimate *estimates);
 size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments); /* doubles */
 void pound_jackknife_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,

@@ -79,7 +79,7 @@ static void sums_fill(const struct pound_statistic *statistic, const struct poun
 	}
 }
 
-/* No more than pound_interval_scratch for as many rows. */
+/* No more than pound_bootstrap_scratch for as many rows. */
 size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments)
 {
 	return (size_t)scatter->grouping.n * (size_t)(n_moments + 1);

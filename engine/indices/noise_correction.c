@@ -112,7 +112,7 @@ static void values_fill(const void *subject, const double *m, double *value)
 size_t pound_correction_scratch(const struct pound_sample_values *shape)
 {
 	const int n_inputs = shape->n_inputs;
-	return pound_interval_scratch(shape->n_rows, FIRST_INPUT + PER_INPUT * n_inputs,
+	return pound_bootstrap_scratch(shape->n_rows, FIRST_INPUT + PER_INPUT * n_inputs,
 	                              BLOCKS * n_inputs + SINGLES);
 }
 
@@ -144,7 +144,7 @@ void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, in
 	const struct pound_statistic statistic = {
 	    FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill, values_fill, rows, rows->stop};
 	struct pound_estimate estimates[POUND_VALUES_MAX];
-	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
+	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
 	for (int j = 0; j < d; j++) {
 		result->first_raw[j] = estimates[FIRST_RAW * d + j];
 		result->total_raw[j] = estimates[TOTAL_RAW * d + j];

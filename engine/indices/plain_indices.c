@@ -68,7 +68,7 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
                                      const struct pound_estimator *estimator)
 {
-	return pound_interval_scratch(shape->n_rows, estimator->n_moments(shape->n_inputs), 2 * shape->n_inputs);
+	return pound_bootstrap_scratch(shape->n_rows, estimator->n_moments(shape->n_inputs), 2 * shape->n_inputs);
 }
 
 /* First-order and total indices by an estimator, with 95 % intervals.
@@ -92,7 +92,7 @@ void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_est
 	                                          subject_values,
 	                                          &subject,
 	                                          rows->stop};
-	pound_interval_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
+	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
 }
 
 size_t pound_sobol_scratch(const struct pound_sample_values *shape)

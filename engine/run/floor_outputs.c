@@ -216,7 +216,7 @@ size_t pound_ordinate_scratch(const struct pound_study *study, int n_rows)
 		return 0;
 	if (has_spectra(study))
 		return (size_t)study->scene.excitation.signals;
-	return 5 * (size_t)n_rows + pound_interval_scratch(n_rows, 5, 1);
+	return 5 * (size_t)n_rows + pound_bootstrap_scratch(n_rows, 5, 1);
 }
 
 /* A measure of all signals that have it, sorted; returns how many. */
@@ -364,7 +364,7 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	                                          .stop = run->stop};
 	const struct pound_sample_values values = pound_cells_values(&run->campaign, run->rows, NULL);
 	const struct pound_scatter scatter = pound_rows_scatter(&values, rows);
-	pound_interval_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,
+	pound_bootstrap_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,
 	                         scratch + 5 * run->rows, &correlation);
 	return correlation;
 }

@@ -134,10 +134,10 @@ static void rows_in_groups_are_never_resampled(void **state)
 	const struct pound_statistic statistic = {2, 2, pairs_moments, pairs_values, &pairs, NULL};
 	const struct pound_scatter scatter = {{4, 1}, NULL};
 	struct pound_estimate want[2], got[2];
-	double *scratch = malloc(sizeof *scratch * pound_interval_scratch(8, 2, 2));
+	double *scratch = malloc(sizeof *scratch * pound_bootstrap_scratch(8, 2, 2));
 	estimate(rows, 8, scatter.grouping, NULL, want);
 	for (uint64_t seed = 0; seed < 2; seed++) {
-		pound_interval_estimates(&statistic, &scatter, 8, seed, POUND_RESAMPLES, scratch, got);
+		pound_bootstrap_estimates(&statistic, &scatter, 8, seed, POUND_RESAMPLES, scratch, got);
 		assert_memory_equal(got, want, sizeof got);
 	}
 	free(scratch);
