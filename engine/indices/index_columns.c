@@ -120,7 +120,7 @@ static void levels_fill(struct sources *s, uint64_t seed)
 		part.n_rows = level->kept;
 		if (level->kept < POUND_ROWS_MIN)
 			continue;
-		pound_sobol_estimates(&part, pound_estimator_row(0), s->corrected, seed, RESAMPLES_FEW, s->scratch,
+		pound_plain_estimates(&part, pound_estimator_row(0), s->corrected, seed, RESAMPLES_FEW, s->scratch,
 		                      estimates);
 		for (int j = 0; j < d; j++) {
 			level->pick_freeze.first[j] = half(estimates[j]);
@@ -245,7 +245,7 @@ static void named_fill(const struct sources *s, uint64_t seed, struct pound_indi
 		for (int k = 0; k < 2 * POUND_INPUTS_MAX; k++)
 			undefined(&estimates[k], 1);
 		if (s->corrected || !corrected)
-			pound_sobol_estimates(s->rows, estimator, corrected, seed, POUND_RESAMPLES, s->scratch,
+			pound_plain_estimates(s->rows, estimator, corrected, seed, POUND_RESAMPLES, s->scratch,
 			                      estimates);
 		copy(s, estimates, into[POUND_NAMED_S1]);
 		copy(s, estimates + s->rows->n_inputs, into[POUND_NAMED_ST]);
@@ -364,9 +364,9 @@ static unsigned notes_of(const bool said[POUND_N_NOTES])
 size_t pound_index_columns_scratch(const struct pound_sample_values *shape, const struct pound_sampling *sampling)
 {
 	const size_t sizes[] = {
-	    pound_sobol_estimates_scratch(shape, pound_estimator_row(sampling ? sampling->estimator : 0)),
+	    pound_plain_estimates_scratch(shape, pound_estimator_row(sampling ? sampling->estimator : 0)),
 	    sampling && sampling->ratios ? pound_ratio_scratch(shape, sampling->ratios) : 0,
-	    pound_sobol_estimates_scratch(shape, pound_estimator_row(0)),
+	    pound_plain_estimates_scratch(shape, pound_estimator_row(0)),
 	    pound_correction_scratch(shape),
 	    pound_local_scratch(shape),
 	    pound_chaos_scratch(shape)};
@@ -408,7 +408,7 @@ int pound_index_columns_indices(const struct pound_sample_values *values, const 
 	s.variance_known = elsewhere ? sampling->random : s.corrected;
 	s.corrected = s.variance_known && (!elsewhere || fresh);
 	s.shared = !fresh && !s.corrected && (elsewhere || sampling->random);
-	const bool varies = pound_sobol_summary(&rows, indices);
+	const bool varies = pound_plain_summary(&rows, indices);
 	if (pound_stopped(rows.stop))
 		return 0;
 	for (int j = 0; j < d && indices->curves; j++)

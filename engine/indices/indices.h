@@ -216,16 +216,16 @@ void pound_ratio_indices(const struct pound_rows *rows, const double *u, const s
                          double noise, double *scratch, struct pound_ratio_indices *results);
 
 /* The plain protocol: mean, variance, noise share and the raw indices. */
-size_t pound_sobol_scratch(const struct pound_sample_values *shape); /* doubles */
-int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
+size_t pound_plain_scratch(const struct pound_sample_values *shape); /* doubles */
+int pound_plain_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
                         double *scratch, struct pound_indices *indices); /* rows dropped */
-/* first then total  (2 x n_inputs);  scratch: (pound_sobol_estimates_scratch) */
-size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
+/* first then total  (2 x n_inputs);  scratch: (pound_plain_estimates_scratch) */
+size_t pound_plain_estimates_scratch(const struct pound_sample_values *shape,
                                      const struct pound_estimator *estimator); /* doubles */
-void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
+void pound_plain_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
                            bool corrected, uint64_t seed, int n_resamples, double *scratch,
                            struct pound_estimate *estimates);
-bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices);
+bool pound_plain_summary(const struct pound_rows *rows, struct pound_indices *indices);
 
 /* Fills first_dropped and total_dropped. */
 void pound_failed_rows_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy);

@@ -43,7 +43,7 @@ static void subject_values(const void *given, const double *mean, double *value)
  *
  * Test     unit_plain_indices: the_noise_share_is_that_of_the_signals_mean
  */
-bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *indices)
+bool pound_plain_summary(const struct pound_rows *rows, struct pound_indices *indices)
 {
 	const int d = rows->n_inputs, n_signals = rows->n_signals;
 	double mean = 0.0, square = 0.0, noise = 0.0;
@@ -65,7 +65,7 @@ bool pound_sobol_summary(const struct pound_rows *rows, struct pound_indices *in
 	return varies;
 }
 
-size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
+size_t pound_plain_estimates_scratch(const struct pound_sample_values *shape,
                                      const struct pound_estimator *estimator)
 {
 	return pound_bootstrap_scratch(shape->n_rows, estimator->n_moments(shape->n_inputs), 2 * shape->n_inputs);
@@ -77,11 +77,11 @@ size_t pound_sobol_estimates_scratch(const struct pound_sample_values *shape,
  *          corrected  -      for the noise of few signals
  *          seed       -      of the resamples, n_resamples in number
  * Returns  estimates  (2 x n_inputs)                   first, then total
- * Memory   scratch    (pound_sobol_estimates_scratch)
+ * Memory   scratch    (pound_plain_estimates_scratch)
  *
  * Test     unit_plain_indices: golden_values_come_out_of_sample_values
  */
-void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
+void pound_plain_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
                            bool corrected, uint64_t seed, int n_resamples, double *scratch,
                            struct pound_estimate *estimates)
 {
@@ -95,9 +95,9 @@ void pound_sobol_estimates(const struct pound_rows *rows, const struct pound_est
 	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
 }
 
-size_t pound_sobol_scratch(const struct pound_sample_values *shape)
+size_t pound_plain_scratch(const struct pound_sample_values *shape)
 {
-	return pound_rows_scratch(shape) + pound_sobol_estimates_scratch(shape, pound_estimator_row(0));
+	return pound_rows_scratch(shape) + pound_plain_estimates_scratch(shape, pound_estimator_row(0));
 }
 
 /* First-order and total sensitivity indices of one output, with 95 % intervals.
@@ -106,14 +106,14 @@ size_t pound_sobol_scratch(const struct pound_sample_values *shape)
  *          seed      -                                       of the resamples, n_resamples in number
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   mean, variance (of A and B, divided by their number), noise share, raw indices (n_inputs)
- * Memory   scratch   (pound_sobol_scratch)
+ * Memory   scratch   (pound_plain_scratch)
  *
  * A constant output (its deviation within the rounding of the ratio of means) has undefined indices: NAN.
  *
  * Source   pick_freeze.c, bootstrap.c
  * Test     unit_plain_indices
  */
-int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
+int pound_plain_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
                         double *scratch, struct pound_indices *indices)
 {
 	const int d = values->n_inputs;
@@ -122,8 +122,8 @@ int pound_sobol_indices(const struct pound_sample_values *values, uint64_t seed,
 	pound_rows_init(&rows, values, scratch);
 	for (int k = 0; k < 2 * d; k++)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
-	if (pound_sobol_summary(&rows, indices))
-		pound_sobol_estimates(&rows, pound_estimator_row(0), false, seed, n_resamples,
+	if (pound_plain_summary(&rows, indices))
+		pound_plain_estimates(&rows, pound_estimator_row(0), false, seed, n_resamples,
 		                      scratch + pound_rows_scratch(values), estimates);
 	for (int j = 0; j < d; j++) {
 		indices->index[POUND_S1_RAW][j] = estimates[j];

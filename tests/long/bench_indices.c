@@ -19,7 +19,7 @@ static void reduction_init(struct reduction *r, int rows, struct function_noise 
 {
 	r->values = function_values(function_named("cusp"), rows, 1, noise);
 	r->u = function_design(rows, 1);
-	size_t all = pound_index_columns_scratch(&r->values, NULL), plain = pound_sobol_scratch(&r->values);
+	size_t all = pound_index_columns_scratch(&r->values, NULL), plain = pound_plain_scratch(&r->values);
 	r->scratch = bench_memory(sizeof *r->scratch * (rows > 100000 ? plain : all));
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		r->indices.index[k] = r->columns[k];
@@ -44,7 +44,7 @@ static void everything(void *of)
 static void plain(void *of)
 {
 	struct reduction *r = of;
-	pound_sobol_indices(&r->values, 1, 1000, r->scratch, &r->indices);
+	pound_plain_indices(&r->values, 1, 1000, r->scratch, &r->indices);
 }
 
 /* Four inputs: every column, set and curve; the plain protocol alone; the same of a large design. */

@@ -17,11 +17,11 @@ struct indices {
 static struct indices *indexes_of(const struct pound_sample_values *values, uint64_t seed)
 {
 	struct indices *result = calloc(1, sizeof *result);
-	size_t n = pound_sobol_scratch(values);
+	size_t n = pound_plain_scratch(values);
 	double *scratch = malloc(sizeof *scratch * n);
 	result->of.index[POUND_S1_RAW] = result->first;
 	result->of.index[POUND_ST_RAW] = result->total;
-	result->dropped = pound_sobol_indices(values, seed, POUND_RESAMPLES, scratch, &result->of);
+	result->dropped = pound_plain_indices(values, seed, POUND_RESAMPLES, scratch, &result->of);
 	free(scratch);
 	return result;
 }
