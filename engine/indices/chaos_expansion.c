@@ -21,7 +21,7 @@ enum {
 };
 
 /* Degree of the polynomial for a number of samples: 6 for 4 inputs and 1000 rows of 6 samples. */
-int pound_chaos_degree(int n_rows, int n_inputs, int n_samples)
+int pound_chaos_expansion_degree(int n_rows, int n_inputs, int n_samples)
 {
 	double samples = (double)n_rows * n_samples * (FOLDS - 1) / FOLDS;
 	int degree = 0;
@@ -46,7 +46,7 @@ struct fits {
 	double *products;     /* of term and output, of each fold  (FOLDS x terms) */
 	double *others;       /* sums of all folds but one  (squares) */
 	double *gram;         /* and then its factor  (terms x terms) */
-	double *kept;         /* pound_chaos_kept_size; NULL: nothing is kept */
+	double *kept;         /* pound_chaos_expansion_kept_size; NULL: nothing is kept */
 	double *coefficients; /* of each fold's fit to the other folds  (FOLDS x terms) */
 	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
 	struct pound_closed closed;
@@ -59,7 +59,7 @@ struct fits {
 static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, int order)
 {
 	pound_closed_init(&f->closed, n_inputs, order);
-	f->degree = pound_chaos_degree(n_rows, n_inputs, f->closed.n_samples);
+	f->degree = pound_chaos_expansion_degree(n_rows, n_inputs, f->closed.n_samples);
 	f->terms = pound_legendre_terms(n_inputs, f->degree);
 	f->squares = pound_legendre_terms(n_inputs, 2 * f->degree);
 	pound_legendre_init(&f->chunk, n_inputs, 2 * f->degree);
@@ -193,10 +193,10 @@ static void kept_fill(const struct fits *f)
 		kept_factor(f, FOLDS)[i] = f->rows->row[(int)f->sorted[i]];
 }
 
-size_t pound_chaos_kept_size(const struct pound_sample_values *shape)
+size_t pound_chaos_expansion_kept_size(const struct pound_sample_values *shape)
 {
 	const int n_samples = pound_order_samples(shape->order, shape->n_inputs);
-	const int degree = pound_chaos_degree(shape->n_rows, shape->n_inputs, n_samples);
+	const int degree = pound_chaos_expansion_degree(shape->n_rows, shape->n_inputs, n_samples);
 	const size_t terms = (size_t)pound_legendre_terms(shape->n_inputs, degree);
 	return FOLDS + FOLDS * terms * terms + (size_t)shape->n_rows;
 }
@@ -361,7 +361,7 @@ static void curves_fill(struct fits *f, struct pound_curve *curves)
 	}
 }
 
-size_t pound_chaos_scratch(const struct pound_sample_values *shape)
+size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape)
 {
 	struct fits fits;
 	return carve(&fits, NULL, shape->n_rows, shape->n_inputs, shape->order);
@@ -372,11 +372,11 @@ size_t pound_chaos_scratch(const struct pound_sample_values *shape)
  * Given    rows       -                      outputs and their noise
  *          u          (n x 2 x n_inputs)     the design as probabilities in (0, 1), rows of A and B
  *          corrected  -                      for the noise of few signals (NAN for one signal)
- *          kept       (pound_chaos_kept_size)    zeros, or as a call for another output of the design left it, maybe with
+ *          kept       (pound_chaos_expansion_kept_size)    zeros, or as a call for another output of the design left it, maybe with
  *                                            other rows; NULL: nothing is kept
  * Returns  results    -                      with 95 % intervals from the scatter of the rows, or of their groups
  *          curves     (n_inputs)             mean outputs given each input; NULL: not wanted
- * Memory   scratch    (pound_chaos_scratch)  for all rows of the design
+ * Memory   scratch    (pound_chaos_expansion_scratch)  for all rows of the design
  *
  * An input without effect has a total near 0, not exactly 0 as without the control variate.
  *
@@ -385,7 +385,7 @@ size_t pound_chaos_scratch(const struct pound_sample_values *shape)
  *          Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indices of the polynomial
  * Test     unit_chaos_expansion
  */
-void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
+void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
                          double *scratch, struct pound_closed_results *results, struct pound_curve *curves)
 {
 	struct fits fits = {.rows = rows, .u = u, .kept = kept};
@@ -404,12 +404,12 @@ void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool co
 /* What the first rows' estimates alone give, with the polynomials of all rows.
  *
  * Given    n          rows of them
- *          scratch    as pound_chaos_indices left it
+ *          scratch    as pound_chaos_expansion_indices left it
  * Returns  results    -
  *
  * Test     unit_error_budget: half_widths_of_all_rows_are_those_of_the_indexes
  */
-void pound_chaos_first_rows(const struct pound_rows *rows, int n, double *scratch,
+void pound_chaos_expansion_first_rows(const struct pound_rows *rows, int n, double *scratch,
                             struct pound_closed_results *results)
 {
 	struct fits fits = {.rows = rows};

@@ -107,7 +107,7 @@ static void levels_fill(struct sources *s, uint64_t seed)
 		struct pound_closed_results closed;
 		if (level->kept < POUND_ROWS_MIN || pound_stopped(s->rows->stop))
 			continue;
-		pound_chaos_first_rows(s->rows, level->kept, s->scratch, &closed);
+		pound_chaos_expansion_first_rows(s->rows, level->kept, s->scratch, &closed);
 		for (int j = 0; j < d; j++) {
 			level->closed.first[j] = half(closed.first[j]);
 			level->closed.total[j] = half(closed.total[j]);
@@ -174,7 +174,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		return;
 	}
 	if (neighbours)
-		pound_local_first(s->rows, s->sampling->u, s->variance_known, s->scratch, local);
+		pound_local_regression_first(s->rows, s->sampling->u, s->variance_known, s->scratch, local);
 	if (neighbours && !s->shared)
 		refuse(s, s->closed.first, local);
 	if (s->shared)
@@ -187,7 +187,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		if (level->kept < POUND_ROWS_MIN)
 			continue;
 		if (neighbours)
-			pound_local_first_rows(s->rows, level->kept, s->scratch, other);
+			pound_local_regression_first_rows(s->rows, level->kept, s->scratch, other);
 		else
 			memcpy(other, level->pick_freeze.first, sizeof other);
 		for (int j = 0; j < d; j++)
@@ -367,9 +367,9 @@ size_t pound_index_columns_scratch(const struct pound_sample_values *shape, cons
 	    pound_plain_estimates_scratch(shape, pound_estimator_row(sampling ? sampling->estimator : 0)),
 	    sampling && sampling->ratios ? pound_ratio_scratch(shape, sampling->ratios) : 0,
 	    pound_plain_estimates_scratch(shape, pound_estimator_row(0)),
-	    pound_correction_scratch(shape),
-	    pound_local_scratch(shape),
-	    pound_chaos_scratch(shape)};
+	    pound_noise_correction_scratch(shape),
+	    pound_local_regression_scratch(shape),
+	    pound_chaos_expansion_scratch(shape)};
 	size_t largest = 0;
 	for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
 		largest = sizes[k] > largest ? sizes[k] : largest;
@@ -415,11 +415,11 @@ int pound_index_columns_indices(const struct pound_sample_values *values, const 
 		undefined(indices->curves[j].mean, POUND_CURVE);
 	levels_init(&s, values->n_rows);
 	if (varies) {
-		pound_correction_estimates(&rows, seed,
+		pound_noise_correction_estimates(&rows, seed,
 		                           sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES, s.scratch,
 		                           &s.pick_freeze);
 		if (rows_enough(&s) && !pound_stopped(rows.stop)) {
-			pound_chaos_indices(&rows, sampling->u, s.corrected, sampling->kept, s.scratch, &s.closed,
+			pound_chaos_expansion_indices(&rows, sampling->u, s.corrected, sampling->kept, s.scratch, &s.closed,
 			                    indices->curves);
 			levels_fill(&s, seed);
 		}

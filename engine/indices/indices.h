@@ -136,21 +136,21 @@ struct pound_pick_freeze {
 	struct pound_estimate signal_first; /* first-order index of the signal in single runs */
 };
 
-size_t pound_correction_scratch(const struct pound_sample_values *shape); /* doubles */
-void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
+size_t pound_noise_correction_scratch(const struct pound_sample_values *shape); /* doubles */
+void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
                                 double *scratch, struct pound_pick_freeze *result);
 
 #define POUND_NORMAL_95 1.959963984540054 /* 97.5 % quantile of the normal law */
 
 /* rows for local_regression.c and chaos_expansion.c; with fewer, pick-freeze alone has the smaller error */
 enum { POUND_ROWS_MIN = 30 };
-size_t pound_local_scratch(const struct pound_sample_values *shape); /* doubles */
-void pound_local_fit(const double *y, int n, int reach, double *fit);
-void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
+size_t pound_local_regression_scratch(const struct pound_sample_values *shape); /* doubles */
+void pound_local_regression_fit(const double *y, int n, int reach, double *fit);
+void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
                        struct pound_estimate *first);
 /* Half widths of the intervals from the first n of those rows alone, with the neighbours of all; the scratch as it was left.
  * half: (n_inputs) */
-void pound_local_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half);
+void pound_local_regression_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half);
 
 /* Closed parts of the variance: those that sets of inputs explain. */
 enum {
@@ -187,13 +187,13 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
                           const struct pound_rows *rows, double *scratch,
                           struct pound_closed_results *results);
 
-int pound_chaos_degree(int n_rows, int n_inputs, int n_samples);
-size_t pound_chaos_scratch(const struct pound_sample_values *shape);   /* doubles */
-size_t pound_chaos_kept_size(const struct pound_sample_values *shape); /* doubles */
-void pound_chaos_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
+int pound_chaos_expansion_degree(int n_rows, int n_inputs, int n_samples);
+size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape);   /* doubles */
+size_t pound_chaos_expansion_kept_size(const struct pound_sample_values *shape); /* doubles */
+void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
                          double *scratch, struct pound_closed_results *results, struct pound_curve *curves);
 /* From the first n of those rows alone, with the polynomials of all; the scratch as it was left. */
-void pound_chaos_first_rows(const struct pound_rows *rows, int n, double *scratch,
+void pound_chaos_expansion_first_rows(const struct pound_rows *rows, int n, double *scratch,
                             struct pound_closed_results *results);
 
 /* What the mean output given an input is found from. */

@@ -224,7 +224,7 @@ static size_t carve(struct fit *f, double *scratch, const struct pound_sample_va
                     const struct pound_study *study)
 {
 	const int n_samples = pound_order_samples(shape->order, shape->n_inputs), n = f->variables.n;
-	f->degree = pound_chaos_degree(shape->n_rows, n, n_samples);
+	f->degree = pound_chaos_expansion_degree(shape->n_rows, n, n_samples);
 	f->terms = pound_legendre_terms(n, f->degree);
 	f->squares = pound_legendre_terms(n, 2 * f->degree);
 	f->block = pound_legendre_terms(study->n_ratios, f->degree);

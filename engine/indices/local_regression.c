@@ -39,7 +39,7 @@ static double line_without(const double *y, int n, int left_out)
  *
  * Test     unit_local_regression: the_golden_predictions_are_met
  */
-void pound_local_fit(const double *y, int n, int reach, double *fit)
+void pound_local_regression_fit(const double *y, int n, int reach, double *fit)
 {
 	const int width = 2 * reach + 1;
 	for (int i = 0; i < n; i++) {
@@ -108,7 +108,7 @@ static struct space carve(double *scratch, int n_rows, int n_inputs)
 	                      .step = scratch + (10 + (size_t)n_inputs) * n};
 }
 
-size_t pound_local_scratch(const struct pound_sample_values *shape)
+size_t pound_local_regression_scratch(const struct pound_sample_values *shape)
 {
 	return (size_t)(10 + shape->n_inputs) * shape->n_rows + shape->n_inputs;
 }
@@ -126,8 +126,8 @@ static void block_add(const struct pound_rows *rows, int sample, double grand, i
 		levels_fit(at->y, at->level, n, at->fit);
 		memcpy(at->fit_wide, at->fit, sizeof *at->fit * (size_t)n);
 	} else {
-		pound_local_fit(at->y, n, reach, at->fit);
-		pound_local_fit(at->y, n, 2 * reach, at->fit_wide);
+		pound_local_regression_fit(at->y, n, reach, at->fit);
+		pound_local_regression_fit(at->y, n, 2 * reach, at->fit_wide);
 	}
 	for (int k = 0; k < n; k++) {
 		at->sums.near[at->order[k]] += at->y[k] * at->fit[k] / n_samples;
@@ -219,7 +219,7 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
  *          corrected  -                            the variance without the noise of few signals (NAN for one signal)
  * Returns  first      (n_inputs)                   with 95 % intervals from the influence of the rows; NAN for
  *                                                  fewer than POUND_ROWS_MIN
- * Memory   scratch    (pound_local_scratch)
+ * Memory   scratch    (pound_local_regression_scratch)
  *
  * Noise needs no correction above: a row and its neighbours have different signals.  Of an input of few values (a discrete
  * one, pound_rows_levels) the means at its values take the place of the lines: exact, and of no reach.
@@ -229,7 +229,7 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
  * Source   lag averaging attains the efficiency bound: Klein, Rochet 2023, arXiv 2306.05842; extrapolation: Richardson
  * Test     unit_local_regression
  */
-void pound_local_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
+void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
                        struct pound_estimate *first)
 {
 	const int n = rows->n_rows, d = rows->n_inputs;
@@ -253,12 +253,12 @@ void pound_local_first(const struct pound_rows *rows, const double *x, bool corr
 /* Half widths of the intervals that the first rows' influences give.
  *
  * Given    n          at most those of rows
- *          scratch    as pound_local_first left it
+ *          scratch    as pound_local_regression_first left it
  * Returns  half       (n_inputs)
  *
  * Test     unit_error_budget: half_widths_of_all_rows_are_those_of_the_indexes
  */
-void pound_local_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half)
+void pound_local_regression_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half)
 {
 	const struct space at = carve(scratch, rows->n_rows, rows->n_inputs);
 	double of_all = 0.0, of_first = 0.0; // variances; an influence is a share of that of all rows

@@ -109,7 +109,7 @@ static void values_fill(const void *subject, const double *m, double *value)
 	single[SIGNAL_FIRST] = ratio(r * m[NOISE_AB], one_signal, floor);
 }
 
-size_t pound_correction_scratch(const struct pound_sample_values *shape)
+size_t pound_noise_correction_scratch(const struct pound_sample_values *shape)
 {
 	const int n_inputs = shape->n_inputs;
 	return pound_bootstrap_scratch(shape->n_rows, FIRST_INPUT + PER_INPUT * n_inputs,
@@ -121,7 +121,7 @@ size_t pound_correction_scratch(const struct pound_sample_values *shape)
  * Given    rows       -      outputs and their noise
  *          seed       -      of the resamples, n_resamples in number
  * Returns  result     -      each with its 95 % interval; corrected ones and shares are NAN for one signal
- * Memory   scratch    (pound_correction_scratch)
+ * Memory   scratch    (pound_noise_correction_scratch)
  *
  *   raw         S_j = mean((b - mu) (c - a)) / v                  T_j = mean((a - c)^2) / (2 w)
  *   corrected   S_j = (P_BC - P_AB) / v',  v' = (P_AA + P_BB) / 2     T_j = (P_AA + P_CC - 2 P_AC) / (2 w')
@@ -137,7 +137,7 @@ size_t pound_correction_scratch(const struct pound_sample_values *shape)
  *          signals
  * Test     unit_noise_correction: the_golden_row_set_is_met
  */
-void pound_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
+void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
                                 double *scratch, struct pound_pick_freeze *result)
 {
 	const int d = rows->n_inputs;

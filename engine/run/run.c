@@ -67,7 +67,7 @@ static size_t checks_size(const struct pound_cells *c)
 static size_t kept_size(const struct pound_cells *c)
 {
 	const struct pound_sample_values shape = pound_cells_values(c, c->n_rows, NULL);
-	return pound_chaos_kept_size(&shape);
+	return pound_chaos_expansion_kept_size(&shape);
 }
 
 /* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indices and then their
@@ -118,7 +118,7 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_re
 	for (int w = 0; w < n_workers; w++) {
 		void *memory = room(pound_request_bytes(largest));
 		run->requests[w] = memory ? pound_request_init(memory, largest) : NULL;
-		// cleared: it begins with what pound_chaos_kept_size() asks zeros for
+		// cleared: it begins with what pound_chaos_expansion_kept_size() asks zeros for
 		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
 		memory = spectra ? room(spectra) : NULL;
 		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;

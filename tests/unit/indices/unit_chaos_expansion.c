@@ -13,9 +13,9 @@ static struct pound_closed_results indexes_kept(const struct pound_sample_values
 	struct pound_closed_results result;
 	struct pound_rows rows;
 	size_t rows_size = pound_rows_scratch(values);
-	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_scratch(values)));
+	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_expansion_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_chaos_indices(&rows, u, corrected, kept, scratch + rows_size, &result, NULL);
+	pound_chaos_expansion_indices(&rows, u, corrected, kept, scratch + rows_size, &result, NULL);
 	free(scratch);
 	return result;
 }
@@ -60,12 +60,12 @@ static void a_polynomial_within_the_degree_is_met_exactly(void **state)
 static void the_degree_grows_with_the_rows_and_falls_with_the_inputs(void **state)
 {
 	(void)state;
-	assert_int_equal(pound_chaos_degree(1000, 4, 6), 6);
-	assert_int_equal(pound_chaos_degree(250, 4, 6), 6);
-	assert_int_equal(pound_chaos_degree(100, 4, 6), 4);
-	assert_int_equal(pound_chaos_degree(2, 4, 6), 0);
-	assert_int_equal(pound_chaos_degree(1000, 16, 18), 2);
-	assert_int_equal(pound_chaos_degree(1000, 1, 3), 6);
+	assert_int_equal(pound_chaos_expansion_degree(1000, 4, 6), 6);
+	assert_int_equal(pound_chaos_expansion_degree(250, 4, 6), 6);
+	assert_int_equal(pound_chaos_expansion_degree(100, 4, 6), 4);
+	assert_int_equal(pound_chaos_expansion_degree(2, 4, 6), 0);
+	assert_int_equal(pound_chaos_expansion_degree(1000, 16, 18), 2);
+	assert_int_equal(pound_chaos_expansion_degree(1000, 1, 3), 6);
 }
 
 static void shift_and_scale_change_no_index(void **state)
@@ -237,7 +237,7 @@ static void what_is_kept_of_a_design_changes_no_bit(void **state)
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		struct pound_sample_values values = function_values(function_named(cases[k].of), ROWS, 1, noiseless);
 		if (!kept)
-			kept = calloc(pound_chaos_kept_size(&values), sizeof *kept);
+			kept = calloc(pound_chaos_expansion_kept_size(&values), sizeof *kept);
 		values.n_rows = cases[k].n_rows;
 		values.grouping = (struct pound_grouping){cases[k].groups, 1};
 		if (cases[k].failed >= 0)

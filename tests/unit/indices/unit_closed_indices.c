@@ -89,9 +89,9 @@ static struct pound_closed_results *indexes_of(const struct function *f, int n_r
 	struct pound_sample_values values = function_values_of(f, &design, noise);
 	double *u = function_design(n_rows, (uint64_t)seed);
 	size_t rows_size = pound_rows_scratch(&values);
-	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_scratch(&values)));
+	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_expansion_scratch(&values)));
 	pound_rows_init(&rows, &values, scratch);
-	pound_chaos_indices(&rows, u, noise.n_signals > 1, NULL, scratch + rows_size, results, NULL);
+	pound_chaos_expansion_indices(&rows, u, noise.n_signals > 1, NULL, scratch + rows_size, results, NULL);
 	free(scratch), free(u);
 	function_values_free(&values);
 	return results;

@@ -16,7 +16,7 @@ static void curves_of(const struct function *f, const struct pound_design *desig
 	struct pound_rows rows;
 	double *u = function_design_of(design);
 	struct pound_closed_results results;
-	double *scratch = malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_scratch(&values) +
+	double *scratch = malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_expansion_scratch(&values) +
 	                                            pound_conditional_scratch(values.n_rows)));
 	pound_rows_init(&rows, &values, scratch);
 	double *rest = scratch + pound_rows_scratch(&values);
@@ -24,7 +24,7 @@ static void curves_of(const struct function *f, const struct pound_design *desig
 	for (int j = 0; j < D && !trend; j++)
 		pound_conditional_mean(&plain, j, rest, &curves[j]);
 	if (trend)
-		pound_chaos_indices(&rows, u, noise.n_signals > 1, NULL, rest, &results, curves);
+		pound_chaos_expansion_indices(&rows, u, noise.n_signals > 1, NULL, rest, &results, curves);
 	free(scratch), free(u);
 	function_values_free(&values);
 }
@@ -216,9 +216,9 @@ static void a_discrete_input_has_one_exact_mean_for_each_of_its_values(void **st
 		struct pound_closed_results results;
 		double *u = function_design_of(&design);
 		double *scratch =
-		    malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_scratch(&values)));
+		    malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_expansion_scratch(&values)));
 		pound_rows_init(&rows, &values, scratch);
-		pound_chaos_indices(&rows, u, false, NULL, scratch + pound_rows_scratch(&values), &results, curves);
+		pound_chaos_expansion_indices(&rows, u, false, NULL, scratch + pound_rows_scratch(&values), &results, curves);
 		for (int k = 0; k < 3; k++) {
 			const struct pound_estimate *mean = &curves[1].mean[k];
 			check_near(pound_conditional_x(discrete, k), numbers[k], 0.0);

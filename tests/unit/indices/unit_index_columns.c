@@ -75,9 +75,9 @@ static void every_column_comes_from_its_function(void **state)
 	double *held = malloc(sizeof *held * pound_rows_scratch(&values));
 	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0));
 	pound_rows_init(&rows, &values, held);
-	pound_correction_estimates(&rows, SEED, POUND_RESAMPLES, scratch, &pick_freeze);
-	pound_local_first(&rows, u, true, scratch, local);
-	pound_chaos_indices(&rows, u, true, NULL, scratch, &closed, curves);
+	pound_noise_correction_estimates(&rows, SEED, POUND_RESAMPLES, scratch, &pick_freeze);
+	pound_local_regression_first(&rows, u, true, scratch, local);
+	pound_chaos_expansion_indices(&rows, u, true, NULL, scratch, &closed, curves);
 	for (int j = 0; j < D; j++) {
 		first[j] = width(local[j]) < width(closed.first[j]) ? local[j] : closed.first[j];
 		total[j] =

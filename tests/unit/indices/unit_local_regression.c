@@ -25,7 +25,7 @@ static void the_golden_predictions_are_met(void **state)
 	                                -0.0185714285714285,
 	                                -0.405};
 	double fit[12], product = 0.0;
-	pound_local_fit(y, 12, 2, fit);
+	pound_local_regression_fit(y, 12, 2, fit);
 	for (int k = 0; k < 12; k++) {
 		check_near(fit[k], want[k], 1e-15);
 		product += y[k] * fit[k] / 12.0;
@@ -40,7 +40,7 @@ static void a_straight_line_is_predicted_exactly(void **state)
 	for (int reach = 1; reach <= 19; reach++) {
 		for (int k = 0; k < 40; k++)
 			y[k] = 3.0 - 0.25 * k;
-		pound_local_fit(y, 40, reach, fit);
+		pound_local_regression_fit(y, 40, reach, fit);
 		for (int k = 0; k < 40; k++)
 			check_near(fit[k], y[k], 1e-13);
 	}
@@ -51,9 +51,9 @@ static void first_of(const struct pound_sample_values *values, const double *x, 
                      struct pound_estimate *first)
 {
 	struct pound_rows rows;
-	double *scratch = malloc(sizeof *scratch * (pound_rows_scratch(values) + pound_local_scratch(values)));
+	double *scratch = malloc(sizeof *scratch * (pound_rows_scratch(values) + pound_local_regression_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_local_first(&rows, x, corrected, scratch + pound_rows_scratch(values), first);
+	pound_local_regression_first(&rows, x, corrected, scratch + pound_rows_scratch(values), first);
 	free(scratch);
 }
 
