@@ -82,7 +82,7 @@ static void finish(const struct pound_excitation *e, int n, double *a)
 
 static void kanai_tajimi(const struct pound_signal *signals, int n)
 {
-	struct pound_coloured coloured[POUND_SIGNALS_MAX];
+	struct pound_filtered coloured[POUND_SIGNALS_MAX];
 	for (int j = 0; j < n; j++) {
 		const struct pound_excitation *e = signals[j].excitation;
 		const int samples = cycles_samples(e);
@@ -90,11 +90,11 @@ static void kanai_tajimi(const struct pound_signal *signals, int n)
 		int at = j;
 		for (; at > 0 && coloured[at - 1].n > samples; at--)
 			coloured[at] = coloured[at - 1];
-		coloured[at] = (struct pound_coloured){.noise = signals[j].noise, .n = samples, .a = signals[j].a};
+		coloured[at] = (struct pound_filtered){.noise = signals[j].noise, .n = samples, .a = signals[j].a};
 		pound_filter_init(&coloured[at].filter, 2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
 		                  e->high_pass_ratio);
 	}
-	pound_filters_run(pound_dispatch_width(0), coloured, n);
+	pound_filtered_noise_fill(pound_dispatch_width(0), coloured, n);
 	for (int j = 0; j < n; j++)
 		finish(signals[j].excitation, cycles_samples(signals[j].excitation), signals[j].a);
 }
@@ -109,7 +109,7 @@ static void white_noise(const struct pound_signal *signal, int one)
 	for (int i = 0; i < n; i++) {
 		const int l = i / NOISE_WORDS % NOISE_CHUNK, w = i % NOISE_WORDS;
 		if (l == 0 && w == 0)
-			pound_noise_normals(pound_dispatch_width(0), signal->noise, (uint32_t)(i / NOISE_WORDS), z);
+			pound_normals_fill(pound_dispatch_width(0), signal->noise, (uint32_t)(i / NOISE_WORDS), z);
 		a[i] = z[w][l];
 	}
 	finish(e, n, a);

@@ -2,11 +2,11 @@
 #include "engine/ground/kanai_tajimi.h"
 #include "engine/numeric/cpu_width.h"
 
-typedef void colour(const struct pound_coloured *, int n);
+typedef void colour(const struct pound_filtered *, int n);
 
-void pound_filters_run(int width, const struct pound_coloured *signals, int n)
+void pound_filtered_noise_fill(int width, const struct pound_filtered *signals, int n)
 {
-	static colour *const run[POUND_WIDTHS] = {pound_colour_w8, pound_colour_w4, pound_colour_w1,
-	                                          pound_colour_portable};
+	static colour *const run[POUND_WIDTHS] = {pound_filtered_noise_w8, pound_filtered_noise_w4, pound_filtered_noise_w1,
+	                                          pound_filtered_noise_portable};
 	run[width](signals, n);
 }

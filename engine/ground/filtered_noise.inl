@@ -36,7 +36,7 @@ LANE_INLINE vd sample_next(const struct filters *f, const vd added[N][N], const 
 }
 
 /* Up to W signals, as far as the longest goes. */
-static void group_run(const struct pound_coloured *signals, int n_signals)
+static void group_run(const struct pound_filtered *signals, int n_signals)
 {
 	struct filters f;
 	for (size_t k = 0; k < sizeof(struct pound_filter) / sizeof(double); k++) {
@@ -54,7 +54,7 @@ static void group_run(const struct pound_coloured *signals, int n_signals)
 	for (int first = 0; first < longest; first += NOISE_CHUNK) {
 		for (int l = 0; l < n_signals; l++)
 			if (first < signals[l].n)
-				POUND_NOISE(signals[l].noise, (uint32_t)first, z[l]);
+				POUND_NORMALS(signals[l].noise, (uint32_t)first, z[l]);
 		for (int k = 0; k < NOISE_CHUNK; k += ROW) {
 			vd noise[NOISE_WORDS][ROW], out[ROW];
 			for (int w = 0; w < NOISE_WORDS; w++) {
@@ -87,7 +87,7 @@ static void group_run(const struct pound_coloured *signals, int n_signals)
  *
  * Test     unit_kanai_tajimi
  */
-void POUND_COLOUR(const struct pound_coloured *signals, int n)
+void POUND_FILTERED_NOISE(const struct pound_filtered *signals, int n)
 {
 	for (int first = 0; first < n; first += W)
 		group_run(&signals[first], n - first < W ? n - first : W);

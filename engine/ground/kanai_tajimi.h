@@ -18,7 +18,7 @@ struct pound_filter {
 void pound_filter_init(struct pound_filter *f, double theta, double damping_ratio, double high_pass_ratio);
 
 /* a signal to be made: the stationary output of a filter of its own */
-struct pound_coloured {
+struct pound_filtered {
 	struct pound_filter filter;
 	struct pound_stream noise;
 	int n;
@@ -26,12 +26,12 @@ struct pound_coloured {
 };
 
 /* The same bits for any width of cpu_width.h, and whichever signals are beside.  (n) */
-void pound_filters_run(int width, const struct pound_coloured *signals, int n);
+void pound_filtered_noise_fill(int width, const struct pound_filtered *signals, int n);
 
 /* filtered_noise.inl, compiled once for each */
-void pound_colour_w8(const struct pound_coloured *signals, int n);
-void pound_colour_w4(const struct pound_coloured *signals, int n);
-void pound_colour_w1(const struct pound_coloured *signals, int n);
-void pound_colour_portable(const struct pound_coloured *signals, int n);
+void pound_filtered_noise_w8(const struct pound_filtered *signals, int n);
+void pound_filtered_noise_w4(const struct pound_filtered *signals, int n);
+void pound_filtered_noise_w1(const struct pound_filtered *signals, int n);
+void pound_filtered_noise_portable(const struct pound_filtered *signals, int n);
 
 #endif

@@ -4,10 +4,10 @@
 
 typedef void normals(struct pound_stream, uint32_t, double z[NOISE_WORDS][NOISE_CHUNK]);
 
-void pound_noise_normals(int width, struct pound_stream stream, uint32_t first,
+void pound_normals_fill(int width, struct pound_stream stream, uint32_t first,
                          double z[NOISE_WORDS][NOISE_CHUNK])
 {
-	static normals *const run[POUND_WIDTHS] = {pound_noise_w8, pound_noise_w4, pound_noise_w1,
-	                                           pound_noise_portable};
+	static normals *const run[POUND_WIDTHS] = {pound_normals_w8, pound_normals_w4, pound_normals_w1,
+	                                           pound_normals_portable};
 	run[width](stream, first, z);
 }

@@ -10,13 +10,13 @@ enum {
 };
 
 /* z[w][l]: normal w of draw first + l, the same bits for any width of cpu_width.h  (NOISE_WORDS x NOISE_CHUNK) */
-void pound_noise_normals(int width, struct pound_stream stream, uint32_t first,
+void pound_normals_fill(int width, struct pound_stream stream, uint32_t first,
                          double z[NOISE_WORDS][NOISE_CHUNK]);
 
 /* normals.inl, compiled once for each */
-void pound_noise_w8(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
-void pound_noise_w4(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
-void pound_noise_w1(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
-void pound_noise_portable(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_normals_w8(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_normals_w4(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_normals_w1(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
+void pound_normals_portable(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
 
 #endif

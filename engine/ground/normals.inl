@@ -61,7 +61,7 @@ static inline double fraction(uint64_t word)
  *
  * Valid    |z| <= 6.77, as u >= 2^-33: a true normal number goes beyond that once in 8e10.
  * Test     unit_normals */
-void POUND_NOISE(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK])
+void POUND_NORMALS(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK])
 {
 	alignas(sizeof(vu)) uint64_t word[NOISE_WORDS][NOISE_CHUNK];
 	words(stream, first, word);

@@ -33,7 +33,7 @@ static struct pound_filter filter_of(int i)
 
 static void filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
 {
-	pound_filters_run(pound_dispatch_width(0), &(struct pound_coloured){*f, noise, n, a}, 1);
+	pound_filtered_noise_fill(pound_dispatch_width(0), &(struct pound_filtered){*f, noise, n, a}, 1);
 }
 
 /* the spectrum's numerator alpha s + beta and the denominator's four coefficients, from the two factors */
@@ -354,18 +354,18 @@ static void a_signal_has_the_same_bits_whatever_is_beside_it(void **state)
 	(void)state;
 	enum { MOST = 19, LONGEST = 200 };
 	static double alone[MOST][LONGEST], together[MOST][LONGEST + 1];
-	struct pound_coloured signals[MOST];
+	struct pound_filtered signals[MOST];
 	for (int n = 1; n <= MOST; n++)
 		for (int width = pound_dispatch_width(0); width < POUND_WIDTHS; width++) {
 			for (int j = 0; j < n; j++) {
-				signals[j] = (struct pound_coloured){filter_of(j % CASES), stream_of(j),
+				signals[j] = (struct pound_filtered){filter_of(j % CASES), stream_of(j),
 				                                     1 + 37 * j * j % LONGEST, together[j]};
 				together[j][signals[j].n] = 12345;
-				struct pound_coloured one = signals[j];
+				struct pound_filtered one = signals[j];
 				one.a = alone[j];
-				pound_filters_run(POUND_WIDTH_PORTABLE, &one, 1);
+				pound_filtered_noise_fill(POUND_WIDTH_PORTABLE, &one, 1);
 			}
-			pound_filters_run(width, signals, n);
+			pound_filtered_noise_fill(width, signals, n);
 			for (int j = 0; j < n; j++) {
 				assert_memory_equal(together[j], alone[j], sizeof(double) * (size_t)signals[j].n);
 				assert_true(together[j][signals[j].n] == 12345);
