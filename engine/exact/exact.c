@@ -22,7 +22,7 @@
 #include "engine/exact/task.h"
 #include "engine/numeric/cpu_width.h"
 
-typedef void march(const struct pound_march_task *, struct pound_march_result *, int n, void *scratch,
+typedef void march(const struct pound_task *, struct pound_task_result *, int n, void *scratch,
                    const atomic_bool *stop);
 
 /* Runs tasks at a lane count; 0: the widest there is.
@@ -31,11 +31,11 @@ typedef void march(const struct pound_march_task *, struct pound_march_result *,
  * Returns  value    false: this machine has no such lanes, nothing was run
  *          results  one for each task  (n)
  */
-bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
+bool pound_exact_lanes(int lanes, const struct pound_task *tasks, struct pound_task_result *results,
                        int n, void *scratch, const atomic_bool *stop)
 {
-	static march *const run[POUND_WIDTHS] = {pound_march_w8, pound_march_w4, pound_march_w1,
-	                                         pound_march_portable};
+	static march *const run[POUND_WIDTHS] = {pound_exact_w8, pound_exact_w4, pound_exact_w1,
+	                                         pound_exact_portable};
 	int width = pound_dispatch_width(lanes);
 	if (width >= 0)
 		run[width](tasks, results, n, scratch, stop);

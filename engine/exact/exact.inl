@@ -597,14 +597,14 @@ static_assert(sizeof(struct lanes) == W * sizeof(struct state_rows), "rows are d
 /* Runs every task to its end.
  *
  * Given    tasks    (n)
- *          scratch  POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ *          scratch  POUND_EXACT_SCRATCH bytes, 64-byte aligned
  *          stop     looked at between batches: when it is set the results are not to be used; NULL: never
  * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
  *
  * Source   model.md 1
  * Test     unit_march, unit_response; unit_status: a_run_that_takes_hours_is_stopped
  */
-void POUND_MARCH(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+void POUND_EXACT(const struct pound_task *tasks, struct pound_task_result *results, int n,
                  void *scratch, const atomic_bool *stop)
 {
 	struct work *work = scratch;

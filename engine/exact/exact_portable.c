@@ -1,4 +1,4 @@
 /* exact_portable.c - the exact solver: one lane, any processor of this architecture. */
 #define POUND_LANES 1
-#define POUND_MARCH pound_march_portable
+#define POUND_EXACT pound_exact_portable
 #include "engine/exact/exact.inl"

@@ -378,7 +378,7 @@ static enum pound_stage peaks_look(struct simulation *sim)
 /* ---- the start ---- */
 
 /* Whether a law of a task has more than one piece. */
-static bool simulation_edged(const struct pound_march_task *task)
+static bool simulation_edged(const struct pound_task *task)
 {
 	return !pound_law_linear(task->bodies[0].backbone.law) ||
 	       !pound_law_linear(task->bodies[1].backbone.law);
@@ -403,8 +403,8 @@ static double touch_reach(const struct state_rows *x, double omega, double dampi
 }
 
 /* A simulation at the start of its task; what it does first. */
-static enum pound_stage simulation_start(struct simulation *sim, const struct pound_march_task *task,
-                                         struct pound_march_result *result)
+static enum pound_stage simulation_start(struct simulation *sim, const struct pound_task *task,
+                                         struct pound_task_result *result)
 {
 	memset(sim, 0, offsetof(struct simulation, peak));
 	memset(result, 0, sizeof *result);
@@ -421,7 +421,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	double rate = 0, fastest = 0, damping = 0;
 	bool can_fly = !task->accounted; // the work in a step is that of its series
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *body = &task->bodies[i];
+		const struct pound_task_body *body = &task->bodies[i];
 		double k = body->backbone.stiffness;
 		double omega = sqrt(k);
 		rate = most(rate, most(omega, body->damping));
@@ -531,7 +531,7 @@ static double residual(const struct simulation *sim)
 /* Writes a simulation's result. */
 static void result_write(struct simulation *sim, enum pound_status status)
 {
-	struct pound_march_result *r = sim->result;
+	struct pound_task_result *r = sim->result;
 	const struct state_rows *x = &sim->x;
 	// a contact still open at the end counts with what it has
 	if (sim->touching)

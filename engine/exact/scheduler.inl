@@ -25,8 +25,8 @@ enum kind {
 
 struct work {
 	struct queue idle, queues[STAGES];
-	const struct pound_march_task *tasks;
-	struct pound_march_result *results;
+	const struct pound_task *tasks;
+	struct pound_task_result *results;
 	int n, started;          /* tasks, and those gone through in this pass */
 	int passed;              /* 0: laws of one piece are started, 1: the others */
 	int parted;              /* simulations that wait */
@@ -36,13 +36,13 @@ struct work {
 	// from here on nothing is cleared: a simulation's start does, and what finds the families
 	struct families families;
 	struct simulation filler;       /* of the lanes that a batch leaves empty, and ... */
-	struct pound_march_result none; /* ... what comes of it */
+	struct pound_task_result none; /* ... what comes of it */
 	struct simulation pool[POOL];
 	struct simulation waiting[POOL * POUND_OTHERS]; /* for room, out of a family: no task starts meanwhile */
 	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
 };
 
-static_assert(sizeof(struct work) <= POUND_MARCH_SCRATCH, "the work space is too small");
+static_assert(sizeof(struct work) <= POUND_EXACT_SCRATCH, "the work space is too small");
 
 static void push(struct queue *queue, struct simulation *sim)
 {
@@ -149,12 +149,12 @@ static void tasks_start(struct work *work)
 }
 
 /* Where a march begins: no task is started. */
-static void work_init(struct work *work, const struct pound_march_task *tasks,
-                      struct pound_march_result *results, int n, const atomic_bool *stop)
+static void work_init(struct work *work, const struct pound_task *tasks,
+                      struct pound_task_result *results, int n, const atomic_bool *stop)
 {
 	static const double still[2];
 	static const struct pound_press_map loose;
-	static const struct pound_march_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
+	static const struct pound_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
 	memset(work, 0, offsetof(struct work, families));
 	work->tasks = tasks;
 	work->results = results;

@@ -35,14 +35,14 @@ static bool same(double a, double b)
 	return memcmp(&a, &b, sizeof a) == 0;
 }
 
-static bool bodies_kin(const struct pound_march_body *a, const struct pound_march_body *b)
+static bool bodies_kin(const struct pound_task_body *a, const struct pound_task_body *b)
 {
 	return same(a->backbone.stiffness, b->backbone.stiffness) && same(a->damping, b->damping) &&
 	       same(a->drive, b->drive) && same(a->u, b->u) && same(a->v, b->v) && a->followed == b->followed;
 }
 
 /* Whether tasks differ in nothing but their laws. */
-static bool tasks_kin(const struct pound_march_task *a, const struct pound_march_task *b)
+static bool tasks_kin(const struct pound_task *a, const struct pound_task *b)
 {
 	return a->ground == b->ground && a->n_samples == b->n_samples && same(a->time_step, b->time_step) &&
 	       a->contact == b->contact && same(a->gap, b->gap) &&
@@ -53,9 +53,9 @@ static bool tasks_kin(const struct pound_march_task *a, const struct pound_march
 }
 
 /* The slot in which the search for those that are kin to a task begins. */
-static int task_slot(const struct pound_march_task *task, int slots)
+static int task_slot(const struct pound_task *task, int slots)
 {
-	const struct pound_march_body *body = task->bodies;
+	const struct pound_task_body *body = task->bodies;
 	const double numbers[] = {body[0].backbone.stiffness,
 	                          body[0].damping,
 	                          body[1].backbone.stiffness,
@@ -81,7 +81,7 @@ static void family_add(struct families *f, int first, int j)
 }
 
 /* Finds the families of n tasks. */
-static void families_find(struct families *f, const struct pound_march_task *tasks, int n)
+static void families_find(struct families *f, const struct pound_task *tasks, int n)
 {
 	const int looked = n < FAMILY_TASKS ? n : FAMILY_TASKS;
 	const int slots = pound_hash_slots(looked);
@@ -107,13 +107,13 @@ static bool family_leads(const struct families *f, int j)
 }
 
 /* Whether a law of a task, or of one that goes along with it, has more than one piece. */
-static bool family_edged(const struct families *f, const struct pound_march_task *tasks, int j)
+static bool family_edged(const struct families *f, const struct pound_task *tasks, int j)
 {
 	return j < FAMILY_TASKS ? f->edged[j] : simulation_edged(&tasks[j]);
 }
 
 /* The first piece of a body's law. */
-static struct pound_piece first_piece(const struct pound_march_task *task, int i)
+static struct pound_piece first_piece(const struct pound_task *task, int i)
 {
 	struct pound_branch at;
 	pound_law_start(&task->bodies[i].backbone, &at);
@@ -141,8 +141,8 @@ static void family_edges(struct simulation *sim)
 }
 
 /* Takes the others of its family along with the simulation of the first, which is at its start. */
-static void family_gather(const struct families *f, const struct pound_march_task *tasks,
-                          struct pound_march_result *results, int first, struct simulation *sim)
+static void family_gather(const struct families *f, const struct pound_task *tasks,
+                          struct pound_task_result *results, int first, struct simulation *sim)
 {
 	if (first >= FAMILY_TASKS || f->next[first] == 0)
 		return;
@@ -153,7 +153,7 @@ static void family_gather(const struct families *f, const struct pound_march_tas
 
 /* How near bodies are to the ends of the first pieces of a task's laws: roughly, in which order members will leave.  From
  * rest it is the narrower piece that is nearer to its end. */
-static double family_share(const struct simulation *sim, const struct pound_march_task *task)
+static double family_share(const struct simulation *sim, const struct pound_task *task)
 {
 	double share = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)

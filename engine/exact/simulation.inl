@@ -179,8 +179,8 @@ enum {
 
 /* a task that a simulation is the run of as well */
 struct pound_member {
-	const struct pound_march_task *task;
-	struct pound_march_result *result;
+	const struct pound_task *task;
+	struct pound_task_result *result;
 };
 
 enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
@@ -207,8 +207,8 @@ struct simulation {
 	bool can_fly;  /* samples are short enough for maps, and no balance is kept */
 	bool can_press;
 	// and what is read seldom
-	const struct pound_march_task *task;
-	struct pound_march_result *result;
+	const struct pound_task *task;
+	struct pound_task_result *result;
 	struct pound_counts_scale counts_scale;
 	double unobserved; /* time since the last instant that its observer was told [s] */
 	struct pound_member others[POUND_OTHERS];

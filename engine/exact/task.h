@@ -1,8 +1,8 @@
 /* task.h - the response of many pairs of oscillators, event by event, to rounding.
  *
  * A task is one scene under one ground motion, divided by masses; tasks do not touch each other. */
-#ifndef MARCH_H
-#define MARCH_H
+#ifndef TASK_H
+#define TASK_H
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -13,7 +13,7 @@
 #include "engine/pound.h"
 #include "engine/scene/law.h"
 
-struct pound_march_body {
+struct pound_task_body {
 	struct pound_backbone backbone;
 	double damping; /* c/m [1/s] */
 	double drive;   /* 1: rides on the ground motion, 0: stays where the ground is (a rigid wall) */
@@ -43,11 +43,11 @@ struct pound_march_observer {
 	void *into;
 };
 
-struct pound_march_task {
+struct pound_task {
 	const double *ground; /* acceleration at the samples, linear between  [m/s2]  (n_samples) */
 	int n_samples;        /* >= 2 */
 	double time_step;     /* [s] */
-	struct pound_march_body bodies[POUND_OSCILLATORS];
+	struct pound_task_body bodies[POUND_OSCILLATORS];
 	bool contact;                                /* false: the bodies never meet */
 	enum pound_force force;                      /* form of the contact force */
 	double gap;                                  /* [m] */
@@ -59,7 +59,7 @@ struct pound_march_task {
 	const struct pound_march_observer *observer; /* NULL: none */
 };
 
-struct pound_march_result {
+struct pound_task_result {
 	enum pound_status status;
 	double displacement_max[POUND_OSCILLATORS]; /* [m]; NAN where it was not followed */
 	double u[POUND_OSCILLATORS];                /* at the end [m] */
@@ -73,19 +73,19 @@ struct pound_march_result {
 	    first_speed; /* time [s] and approach speed [m/s] of the first contact; 0, 0: none */
 };
 
-enum { POUND_MARCH_SCRATCH = 1 << 23 }; /* bytes of work space, 64-byte aligned */
+enum { POUND_EXACT_SCRATCH = 1 << 23 }; /* bytes of work space, 64-byte aligned */
 
-bool pound_march_lanes(int lanes, const struct pound_march_task *tasks, struct pound_march_result *results,
+bool pound_exact_lanes(int lanes, const struct pound_task *tasks, struct pound_task_result *results,
                        int n, void *scratch, const atomic_bool *stop);
 
 /* exact.inl, compiled once for each */
-void pound_march_w8(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+void pound_exact_w8(const struct pound_task *tasks, struct pound_task_result *results, int n,
                     void *scratch, const atomic_bool *stop);
-void pound_march_w4(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+void pound_exact_w4(const struct pound_task *tasks, struct pound_task_result *results, int n,
                     void *scratch, const atomic_bool *stop);
-void pound_march_w1(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+void pound_exact_w1(const struct pound_task *tasks, struct pound_task_result *results, int n,
                     void *scratch, const atomic_bool *stop);
-void pound_march_portable(const struct pound_march_task *tasks, struct pound_march_result *results, int n,
+void pound_exact_portable(const struct pound_task *tasks, struct pound_task_result *results, int n,
                           void *scratch, const atomic_bool *stop);
 
 #endif

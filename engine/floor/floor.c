@@ -96,18 +96,18 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
  *
  * Given    take     called for every stretch of pieces, of it
  *          stop     looked at throughout; NULL: never
- *          scratch  POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ *          scratch  POUND_EXACT_SCRATCH bytes, 64-byte aligned
  * Returns  result   of the exact solver
  * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
  *          POUND_STOPPED             stop was set
  */
-static enum pound_status floor_follow(struct pound_floor *floor, const struct pound_march_task *task,
+static enum pound_status floor_follow(struct pound_floor *floor, const struct pound_task *task,
                                       const struct pound_floor_taker *taker, const atomic_bool *stop,
-                                      void *scratch, struct pound_march_result *result)
+                                      void *scratch, struct pound_task_result *result)
 {
 	struct pound_floor_motion *motion = &floor->motion;
 	const struct pound_march_observer observer = {pound_floor_observe, motion};
-	struct pound_march_task observed = *task;
+	struct pound_task observed = *task;
 	observed.observer = &observer;
 	// whoever wants the largest displacements has them
 	observed.bodies[0].followed = observed.bodies[1].followed = false;
@@ -115,7 +115,7 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 	    (struct pound_floor_motion){.task = task, .stretch = &floor->stretch, .taker = *taker, .stop = stop};
 	pound_floor_start(motion);
 	// one task alone is done sooner in one lane than in many
-	bool followed = pound_march_lanes(1, &observed, result, 1, scratch, stop);
+	bool followed = pound_exact_lanes(1, &observed, result, 1, scratch, stop);
 	assert(followed);
 	(void)followed;
 	if (pound_stopped(stop))
@@ -168,7 +168,7 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 	                                 .damping = ask->task->bodies[0].damping},
 	                        .lanes = ask->lanes,
 	                        .scratch = floor->scratch};
-	struct pound_march_result result;
+	struct pound_task_result result;
 	for (int d = 0; d < ask->n_drives; d++) {
 		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
 		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
@@ -238,10 +238,10 @@ static void chronicle_take(void *of)
 enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       pound_floor_take *take, void *into)
 {
-	const struct pound_march_task *task = ask->task;
+	const struct pound_task *task = ask->task;
 	struct chronicle chronicle = {.floor = floor, .take = take, .into = into};
 	const struct pound_floor_taker taker = {chronicle_take, &chronicle};
-	struct pound_march_result result;
+	struct pound_task_result result;
 	enum pound_status status = floor_follow(floor, task, &taker, ask->stop, ask->scratch, &result);
 	chronicle.last.time = (task->n_samples - 1) * task->time_step;
 	chronicle.last.u = result.u[0], chronicle.last.v = result.v[0];

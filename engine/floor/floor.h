@@ -13,12 +13,12 @@ struct pound_floor *pound_floor_init(void *memory,
 
 /* what is asked of one task */
 struct pound_floor_ask {
-	const struct pound_march_task *task;
+	const struct pound_task *task;
 	int n_drives;            /* 1: the whole acceleration; 2: the contact's part of it too */
 	double radians;          /* an oscillator's longest step, at most 1.5 */
 	int lanes;               /* 0: the widest there are */
 	const atomic_bool *stop; /* looked at throughout; NULL: never */
-	void *scratch;           /* POUND_MARCH_SCRATCH bytes, 64-byte aligned */
+	void *scratch;           /* POUND_EXACT_SCRATCH bytes, 64-byte aligned */
 };
 
 /* what comes out; psa: [m/s2]  (n_frequencies) each */

@@ -164,13 +164,13 @@ struct terms {
 	double spring, dash, both, ratio;         /* of the contact, 1 + m1/m2, m1/m2 */
 };
 
-static struct terms terms_of(const struct pound_march_task *task, const struct pound_march_instant *at,
+static struct terms terms_of(const struct pound_task *task, const struct pound_march_instant *at,
                              double dt)
 {
 	const double dt2 = dt * dt;
 	struct terms m = {.both = 1 + task->mass_ratio, .ratio = task->mass_ratio};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *b = &task->bodies[i];
+		const struct pound_task_body *b = &task->bodies[i];
 		m.c[i] = b->damping * dt;
 		m.k[i] = at->stiffness[i] * dt2;
 		m.force[i] = (b->drive * at->ground + at->spring_offset[i]) * dt2;
@@ -236,7 +236,7 @@ static void series_touch(struct series *s, struct terms m)
  * omega/rate times that of an oscillator of omega on the floor. */
 static double swing_nothing(const struct pound_floor_motion *motion)
 {
-	const struct pound_march_task *task = motion->task;
+	const struct pound_task *task = motion->task;
 	double lost = 0.5 * (1 + task->mass_ratio) * task->contact_damping * task->time_step;
 	return lost > SWING_LOST ? NOTHING_BESIDE
 	                         : fmin(NOTHING_BESIDE * motion->rate_touch / motion->rate, SWING_MOST);
@@ -249,7 +249,7 @@ static double swing_nothing(const struct pound_floor_motion *motion)
 static bool may_settle(const struct pound_floor_motion *motion, const struct pound_march_instant *at,
                        double *pull)
 {
-	const struct pound_march_task *task = motion->task;
+	const struct pound_task *task = motion->task;
 	double apart = 0, slow = motion->rate / motion->rate_touch;
 	*pull = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -510,7 +510,7 @@ void pound_floor_observe(void *of, const struct pound_march_instant *instant)
  *
  * Given    rate  of the bodies
  */
-static double rate_touch(const struct pound_march_task *task, double rate)
+static double rate_touch(const struct pound_task *task, double rate)
 {
 	const double both = 1 + task->mass_ratio, stiff = both * task->contact_stiffness;
 	double frequency = 0, damping = 0;
@@ -526,13 +526,13 @@ static double rate_touch(const struct pound_march_task *task, double rate)
 /* Given    motion  task, stretch, taker and stop are set */
 void pound_floor_start(struct pound_floor_motion *motion)
 {
-	const struct pound_march_task *task = motion->task;
+	const struct pound_task *task = motion->task;
 	assert(!task->contact ||
 	       task->force == POUND_FORCE_LINEAR); // its forms of force: pound_floor_takes_force
 	motion->status = POUND_OK;
 	motion->rate = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *b = &task->bodies[i];
+		const struct pound_task_body *b = &task->bodies[i];
 		motion->rate = fmax(motion->rate, fmax(sqrt(b->backbone.stiffness), b->damping));
 	}
 	motion->rate_touch = task->contact ? rate_touch(task, motion->rate) : motion->rate;

@@ -52,7 +52,7 @@ struct pound_floor_taker {
 
 /* a motion, as far as it was told */
 struct pound_floor_motion {
-	const struct pound_march_task *task;
+	const struct pound_task *task;
 	struct pound_floor_stretch *stretch; /* of the pieces that were not taken yet */
 	struct pound_floor_taker taker;      /* called when it is full; it is empty afterwards */
 	const atomic_bool *stop;             /* when it is set no more pieces are made; NULL: never */

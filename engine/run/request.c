@@ -54,8 +54,8 @@ struct pound_request {
 	struct pound_motion *motions;       /* (motions) */
 	double *ground;                     /* (samples) */
 	struct ask *asks;                   /* (asks) */
-	struct pound_march_task *tasks;     /* (tasks) */
-	struct pound_march_result *results; /* (tasks) */
+	struct pound_task *tasks;     /* (tasks) */
+	struct pound_task_result *results; /* (tasks) */
 	void *scratch;                      /* of the march */
 	int n_before;                       /* marches without pounding, they are the first */
 	int n_asks, n_items;                /* of the last run; n_items without those of checks */
@@ -79,7 +79,7 @@ static size_t request_carve(char *memory, struct pound_request *request, struct 
 	    {&request->asks, sizeof *request->asks * (size_t)size.asks},
 	    {&request->tasks, sizeof *request->tasks * (size_t)size.tasks},
 	    {&request->results, sizeof *request->results * (size_t)size.tasks},
-	    {&request->scratch, POUND_MARCH_SCRATCH},
+	    {&request->scratch, POUND_EXACT_SCRATCH},
 	};
 	size_t at = (sizeof *request + 63) / 64 * 64;
 	for (size_t j = 0; j < sizeof parts / sizeof parts[0]; j++) {
@@ -140,7 +140,7 @@ static int motion_ask(struct pound_request *request, const struct pound_excitati
 }
 
 /* A march; bodies and contact are set, the ground motion is added here. */
-static int march_ask(struct pound_request *request, int motion, struct pound_march_task *task)
+static int march_ask(struct pound_request *request, int motion, struct pound_task *task)
 {
 	const struct pound_motion *m = &request->motions[motion];
 	int known = request->march_keys.n;
@@ -218,7 +218,7 @@ static double yield_marched(const struct pound_request *request, const struct as
 
 static int body_march(struct pound_request *request, const struct ask *ask, int i, int law, double yield)
 {
-	struct pound_march_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
+	struct pound_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
 	task.bodies[0].followed = true;
 	task.accounted = ask->response;
 	task.bodies[0].backbone.law = law;
@@ -256,7 +256,7 @@ static bool search_stage(struct pound_request *request, const struct ask *ask, s
                          int stage, struct pound_work *work)
 {
 	const struct pound_law *law = pound_scene_law(&ask->scene, i);
-	const struct pound_march_result *before = &request->results[body->march];
+	const struct pound_task_result *before = &request->results[body->march];
 	if (body->found)
 		return false;
 	body->status = body->status ? body->status : before->status;
@@ -309,7 +309,7 @@ static bool body_stage(struct pound_request *request, const struct ask *ask, str
 	if (stage == 0)
 		body->march = body_march(request, ask, i, 0, 0);
 	else {
-		const struct pound_march_result *before = given ? NULL : &request->results[body->march];
+		const struct pound_task_result *before = given ? NULL : &request->results[body->march];
 		if (given) {
 			body->yield =
 			    fmax(ldexp(law->yield_displacement, -request->motions[ask->motion].exponent), DBL_MIN);
@@ -359,7 +359,7 @@ static double free_max(const struct pound_request *request, const struct body_as
 /* Asks for the run with pounding, unless the responses without it are the answer. */
 static void ask_pounding(struct pound_request *request, struct ask *ask, struct pound_work *work)
 {
-	struct pound_march_task task = {0};
+	struct pound_task task = {0};
 	ask->march = -1;
 	if (!ask->scene.contact.present)
 		return;
@@ -524,8 +524,8 @@ enum pound_status pound_request_displacement(struct pound_request *request, cons
                                              int item, int sample, const atomic_bool *stop, double *u)
 {
 	const struct ask *ask = &request->asks[item];
-	struct pound_march_task task = request->tasks[ask->march < 0 ? ask->bodies[0].march : ask->march];
-	struct pound_march_result result;
+	struct pound_task task = request->tasks[ask->march < 0 ? ask->bodies[0].march : ask->march];
+	struct pound_task_result result;
 	assert(sample >= 1 && sample < task.n_samples);
 	task.n_samples = sample + 1;
 	enum pound_status status = pound_solver_run(solver, &task, &result, 1, request->scratch, stop);

@@ -64,10 +64,10 @@ int pound_request_count(const struct pound_request *request, int *n_items);
 /* The floor of an ask; its motions are times 2^-exponent. */
 struct pound_request_floor {
 	const struct pound_scene *scene;
-	const struct pound_march_task *pounding, *free; /* pounding NULL: the response without it is the answer */
+	const struct pound_task *pounding, *free; /* pounding NULL: the response without it is the answer */
 	int march;                                      /* number of the task that is the answer */
 	int exponent;
-	void *scratch; /* POUND_MARCH_SCRATCH bytes for who follows it */
+	void *scratch; /* POUND_EXACT_SCRATCH bytes for who follows it */
 };
 
 struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask);

@@ -33,7 +33,7 @@ int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e,
 }
 
 /* Number of a run: a task under a motion. */
-int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_march_task *task)
+int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_task *task)
 {
 	double key[POUND_KEY] = {motion,
 	                         task->contact,
@@ -44,7 +44,7 @@ int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_march
 	                         task->tension,
 	                         task->contact ? task->force : 0};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *b = &task->bodies[i];
+		const struct pound_task_body *b = &task->bodies[i];
 		double *k = &key[8 + 6 * i];
 		k[0] = b->backbone.law, k[1] = b->backbone.stiffness, k[2] = b->backbone.hardening,
 		k[3] = b->backbone.yield;

@@ -17,6 +17,6 @@ struct pound_keys {
 void pound_keys_clear(struct pound_keys *keys);
 int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e, struct pound_stream noise,
                       bool halved);
-int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_march_task *task);
+int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_task *task);
 
 #endif

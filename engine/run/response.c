@@ -14,14 +14,14 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 {
 	const struct pound_scene *scene = known->scene;
 	int e = known->exponent;
-	struct pound_march_result none = {0};
-	const struct pound_march_result *with = known->pounding ? known->pounding : &none;
+	struct pound_task_result none = {0};
+	const struct pound_task_result *with = known->pounding ? known->pounding : &none;
 	enum pound_status status = with->status;
 	double residual = with->energy_residual;
 	double max[2], max_free[2], force[2], yield[2], demand[2], demand_free[2], u[2], v[2];
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_body_known *body = &known->bodies[i];
-		const struct pound_march_result *free = body->free;
+		const struct pound_task_result *free = body->free;
 		struct pound_backbone backbone = pound_scene_body(scene, i).backbone;
 		bool yields = !pound_law_linear(backbone.law) && !scene->oscillators[i].rigid_wall;
 		if (body->status || (free && free->status))

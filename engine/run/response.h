@@ -5,7 +5,7 @@
 #include "engine/exact/task.h"
 
 struct pound_body_known {
-	const struct pound_march_result *free; /* without pounding; NULL: not run */
+	const struct pound_task_result *free; /* without pounding; NULL: not run */
 	double yield;                          /* yield displacement [m], scaled as the ground motion; 0: none */
 	enum pound_status status;              /* of the runs that it comes from */
 };
@@ -14,7 +14,7 @@ struct pound_body_known {
 struct pound_runs_known {
 	const struct pound_scene *scene;
 	int exponent;                              /* motions are times 2^-exponent */
-	const struct pound_march_result *pounding; /* NULL: the responses without pounding are the answer */
+	const struct pound_task_result *pounding; /* NULL: the responses without pounding are the answer */
 	struct pound_body_known bodies[POUND_OSCILLATORS];
 };
 

@@ -38,14 +38,14 @@ double pound_scene_field(const struct pound_scene *scene, struct pound_field fie
  * Returns  body      stiffness w^2 [1/s2], damping 2 xi w [1/s]; a rigid wall stays where the ground is
  * Source   model.md 1
  */
-struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i)
+struct pound_task_body pound_scene_body(const struct pound_scene *scene, int i)
 {
 	const struct pound_oscillator *o = &scene->oscillators[i];
 	const struct pound_law *law = pound_scene_law(scene, i);
 	if (o->rigid_wall)
-		return (struct pound_march_body){.drive = 0};
+		return (struct pound_task_body){.drive = 0};
 	double w = 2 * PI * o->frequency_hz;
-	return (struct pound_march_body){
+	return (struct pound_task_body){
 	    .backbone = {.law = law->type, .stiffness = w * w, .hardening = law->hardening_ratio},
 	    .damping = 2 * o->damping_ratio * w,
 	    .drive = 1,
@@ -60,7 +60,7 @@ struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i)
  *
  * Source   model.md 1; the paper, Eq. (1)
  */
-void pound_scene_contact(const struct pound_scene *scene, struct pound_march_task *task)
+void pound_scene_contact(const struct pound_scene *scene, struct pound_task *task)
 {
 	const struct pound_contact *contact = &scene->contact;
 	const struct pound_oscillator *left = &scene->oscillators[0];

@@ -5,8 +5,8 @@
 #include "engine/exact/task.h"
 #include "engine/pound.h"
 
-struct pound_march_body pound_scene_body(const struct pound_scene *scene, int i);
-void pound_scene_contact(const struct pound_scene *scene, struct pound_march_task *task);
+struct pound_task_body pound_scene_body(const struct pound_scene *scene, int i);
+void pound_scene_contact(const struct pound_scene *scene, struct pound_task *task);
 bool pound_scene_alike(const struct pound_scene *scene);
 
 #endif

@@ -49,8 +49,8 @@ enum guard {
 };
 
 struct course {
-	const struct pound_march_task *task;
-	struct pound_march_result *result;
+	const struct pound_task *task;
+	struct pound_task_result *result;
 	struct pound_branch at[POUND_OSCILLATORS];
 	bool touching, parted; /* parted: overlapping without force */
 	double release;        /* C/K where contact ends at zero force [s], 0: it ends at zero overlap */
@@ -79,7 +79,7 @@ static int derivative(double t, const double y[], double dydt[], void *of)
 	const struct course *c = of;
 	double a = c->ground + c->slope * t, force = contact_force(c, y), own[POUND_OSCILLATORS];
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *body = &c->task->bodies[i];
+		const struct pound_task_body *body = &c->task->bodies[i];
 		const struct pound_piece *piece = &c->at[i].piece;
 		double u = y[U1 + 2 * i], v = y[V1 + 2 * i];
 		own[i] = -body->damping * v - piece->stiffness * u - piece->offset;
@@ -104,7 +104,7 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
 	row[IMPULSE][P] = c->touching ? c->task->contact_stiffness : 0;
 	row[IMPULSE][Q] = c->touching ? c->task->contact_damping : 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_march_body *body = &c->task->bodies[i];
+		const struct pound_task_body *body = &c->task->bodies[i];
 		double share = i == 0 ? -1 : c->task->mass_ratio;
 		int u = U1 + 2 * i, v = V1 + 2 * i;
 		row[u][v] = 1;
@@ -148,7 +148,7 @@ static struct rate rate_at(const struct course *c, enum guard j, double t, const
 /* A guard above 0 is an event that has come to pass. */
 static double guard(const struct course *c, enum guard j, double t, const double y[])
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	double force = y[P] + c->release * y[Q]; // per stiffness
 	switch (j) {
 	case TURN:
@@ -196,8 +196,8 @@ static void ways_set(struct course *c)
 /* A contact has ended, or the signal has in it. */
 static void contact_over(struct course *c)
 {
-	const struct pound_march_task *task = c->task;
-	struct pound_march_result *r = c->result;
+	const struct pound_task *task = c->task;
+	struct pound_task_result *r = c->result;
 	const double ground = c->ground + c->slope * c->t;
 	struct pound_counts counts = {.time = c->start + c->t,
 	                              .steps = c->touch_steps,
@@ -216,7 +216,7 @@ static void contact_over(struct course *c)
 
 static void contact_turn(struct course *c)
 {
-	struct pound_march_result *r = c->result;
+	struct pound_task_result *r = c->result;
 	if (c->touching) {
 		contact_over(c);
 		c->touching = false;
@@ -401,7 +401,7 @@ static bool course_step(struct course *c)
 
 static enum pound_status interval_run(struct course *c, int sample)
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	c->start = (sample - 1) * task->time_step;
 	c->ground = task->ground[sample - 1];
 	c->slope = (task->ground[sample] - c->ground) / task->time_step;
@@ -427,7 +427,7 @@ static enum pound_status interval_run(struct course *c, int sample)
 /* Sizes that components have at least where they matter: of the response to be expected. */
 static void scales_fill(const struct course *c, double scale[STATES])
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	double w = 1 / (task->n_samples * task->time_step), a = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		w = fmax(w, sqrt(task->bodies[i].backbone.stiffness));
@@ -442,7 +442,7 @@ static void scales_fill(const struct course *c, double scale[STATES])
 
 static void course_start(struct course *c)
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		pound_law_start(&task->bodies[i].backbone, &c->at[i]);
 		c->y[U1 + 2 * i] = task->bodies[i].u;
@@ -456,9 +456,9 @@ static void course_start(struct course *c)
 
 static void course_end(struct course *c, enum pound_status status)
 {
-	struct pound_march_result *r = c->result;
+	struct pound_task_result *r = c->result;
 	if (status) {
-		*r = (struct pound_march_result){.status = status};
+		*r = (struct pound_task_result){.status = status};
 		return;
 	}
 	// a contact still open at the end counts with what it has
@@ -491,10 +491,10 @@ static void course_end(struct course *c, enum pound_status status)
  *          67-75 (rk8pd)
  * Test     unit_adaptive
  */
-void pound_adaptive_run(const struct pound_solver *solver, const struct pound_march_task *task,
-                        struct pound_march_result *result, const atomic_bool *stop)
+void pound_adaptive_run(const struct pound_solver *solver, const struct pound_task *task,
+                        struct pound_task_result *result, const atomic_bool *stop)
 {
-	*result = (struct pound_march_result){0};
+	*result = (struct pound_task_result){0};
 	struct course c = {.task = task, .result = result};
 	// at rest no velocity has a way yet, so the first steps are short and grow
 	double scale[STATES], h = task->time_step * 0x1p-20;

@@ -19,8 +19,8 @@ enum { ROUNDS = 16 }; /* of a step's iteration; laws alone take two or three */
 static const double UNSTABLE = 10;
 
 struct course {
-	const struct pound_march_task *task;
-	struct pound_march_result *result;
+	const struct pound_task *task;
+	struct pound_task_result *result;
 	double step, frequency; /* [s], [1/s] */
 	struct pound_branch at[POUND_OSCILLATORS];
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS];
@@ -64,18 +64,18 @@ static bool same_piece(const struct pound_branch *a, const struct pound_branch *
 	return a->piece.stiffness == b->piece.stiffness && a->piece.offset == b->piece.offset;
 }
 
-static double contact_force(const struct pound_march_task *task, double overlap, double rate)
+static double contact_force(const struct pound_task *task, double overlap, double rate)
 {
 	return task->contact_stiffness * overlap + task->contact_damping * rate;
 }
 
-static bool touches(const struct pound_march_task *task, double overlap, double rate)
+static bool touches(const struct pound_task *task, double overlap, double rate)
 {
 	return task->contact && overlap > 0 && (task->tension || contact_force(task, overlap, rate) > 0);
 }
 
 /* Share of the contact force per left mass that a body feels. */
-static double share(const struct pound_march_task *task, int i)
+static double share(const struct pound_task *task, int i)
 {
 	return i == 0 ? 1 : -task->mass_ratio;
 }
@@ -91,8 +91,8 @@ static void pair_solve(const double a[2], double s, double r, const double b[2],
 /* A contact has ended, or the signal has in it. */
 static void contact_over(struct course *c)
 {
-	const struct pound_march_task *task = c->task;
-	struct pound_march_result *r = c->result;
+	const struct pound_task *task = c->task;
+	struct pound_task_result *r = c->result;
 	const double stiff = (1 + task->mass_ratio) * task->contact_stiffness;
 	struct pound_counts counts = {.time = c->start + c->k * c->step,
 	                              .steps = (r->contact_time - c->counted_time) / c->step,
@@ -116,7 +116,7 @@ static void contact_over(struct course *c)
 /* Takes note of the state that a step ended in; force between two such states is a straight line. */
 static void course_note(struct course *c, double force, bool touching, double approach)
 {
-	struct pound_march_result *r = c->result;
+	struct pound_task_result *r = c->result;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		if (fabs(c->u[i]) > r->displacement_max[i])
 			r->displacement_max[i] = fabs(c->u[i]);
@@ -146,7 +146,7 @@ static void course_note(struct course *c, double force, bool touching, double ap
  */
 static bool newmark_advance(struct course *c, double ground)
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	double h = c->step;
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
 	struct pound_branch at[2] = {c->at[0], c->at[1]};
@@ -156,7 +156,7 @@ static bool newmark_advance(struct course *c, double ground)
 		double stiff = touching ? contact_force(task, 1, 2 / h) : 0;
 		double still = touching ? contact_force(task, p, -q) : 0;
 		for (int i = 0; i < 2; i++) {
-			const struct pound_march_body *body = &task->bodies[i];
+			const struct pound_task_body *body = &task->bodies[i];
 			a[i] = 4 / (h * h) + 2 * body->damping / h + at[i].piece.stiffness;
 			b[i] = 4 / h * c->v[i] + c->rate[i] + body->damping * c->v[i] - body->drive * ground -
 			       restoring(&at[i], c->u[i]) - share(task, i) * still;
@@ -195,11 +195,11 @@ static bool newmark_advance(struct course *c, double ground)
  */
 static bool central_advance(struct course *c, double ground)
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	double h = c->step, a[2], b[2], w[2];
 	double approach = c->v[0] - c->v[1];
 	for (int i = 0; i < 2; i++) {
-		const struct pound_march_body *body = &task->bodies[i];
+		const struct pound_task_body *body = &task->bodies[i];
 		double u = c->u[i] + h * c->rate[i];
 		law_follow(&body->backbone, &c->at[i], c->u[i], u);
 		c->u[i] = u;
@@ -235,13 +235,13 @@ static bool central_advance(struct course *c, double ground)
  */
 static void speed_limits(struct course *c)
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	double push = 0, mass[2] = {1, task->mass_ratio > 0 ? 1 / task->mass_ratio : 1};
 	double energy = 0, riding = 0;
 	for (int t = 0; t < task->n_samples; t++)
 		push += fabs(task->ground[t]) * task->time_step;
 	for (int i = 0; i < 2; i++) {
-		const struct pound_march_body *body = &task->bodies[i];
+		const struct pound_task_body *body = &task->bodies[i];
 		energy += mass[i] * (body->v * body->v + body->backbone.stiffness * body->u * body->u);
 		riding += mass[i] * body->drive;
 	}
@@ -251,7 +251,7 @@ static void speed_limits(struct course *c)
 
 /* Square of the highest angular frequency of bodies apart, or touching, on the first pieces of their laws: the stiffest ones
  * [1/s2]. */
-static double stiffest(const struct pound_march_task *task, bool touching)
+static double stiffest(const struct pound_task *task, bool touching)
 {
 	const double left = task->bodies[0].backbone.stiffness, right = task->bodies[1].backbone.stiffness;
 	const double contact = touching ? task->contact_stiffness : 0;
@@ -263,7 +263,7 @@ static double stiffest(const struct pound_march_task *task, bool touching)
 /* The state at the start, and the accelerations there in `rate`. */
 static void course_start(struct course *c, int n_steps)
 {
-	const struct pound_march_task *task = c->task;
+	const struct pound_task *task = c->task;
 	c->step = task->time_step / n_steps;
 	c->frequency = n_steps / task->time_step;
 	for (int i = 0; i < 2; i++) {
@@ -277,7 +277,7 @@ static void course_start(struct course *c, int n_steps)
 	c->force = c->touching ? contact_force(task, p, q) : 0;
 	c->result->first_speed = c->touching ? q : 0;
 	for (int i = 0; i < 2; i++) {
-		const struct pound_march_body *body = &task->bodies[i];
+		const struct pound_task_body *body = &task->bodies[i];
 		c->result->displacement_max[i] = fabs(c->u[i]);
 		c->rate[i] = -body->drive * task->ground[0] - body->damping * c->v[i] -
 		             restoring(&c->at[i], c->u[i]) - share(task, i) * c->force;
@@ -302,8 +302,8 @@ typedef bool advance(struct course *c, double ground);
 
 static void course_run(struct course *c, int n_steps, advance *step, const atomic_bool *stop)
 {
-	const struct pound_march_task *task = c->task;
-	struct pound_march_result *r = c->result;
+	const struct pound_task *task = c->task;
+	struct pound_task_result *r = c->result;
 	for (int t = 1; t < task->n_samples && !r->status; t++) {
 		double from = task->ground[t - 1], rise = (task->ground[t] - from) / n_steps;
 		c->start = (t - 1) * task->time_step;
@@ -330,7 +330,7 @@ static void course_run(struct course *c, int n_steps, advance *step, const atomi
 			r->displacement_max[i] = NAN;
 	}
 	if (r->status)
-		*r = (struct pound_march_result){.status = r->status};
+		*r = (struct pound_task_result){.status = r->status};
 }
 
 /* The response of a task by Newmark's average acceleration.
@@ -345,10 +345,10 @@ static void course_run(struct course *c, int n_steps, advance *step, const atomi
  * Valid    Any step where nothing switches; a contact needs some 20 steps.
  * Test     unit_fixed_step: the_error_of_free_vibration_falls_with_the_square_of_the_step
  */
-void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result, const atomic_bool *stop)
+void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_task *task,
+                         struct pound_task_result *result, const atomic_bool *stop)
 {
-	*result = (struct pound_march_result){0};
+	*result = (struct pound_task_result){0};
 	struct course c = {.task = task, .result = result};
 	int n_steps = steps_of(task->time_step, solver->step);
 	course_start(&c, n_steps);
@@ -367,10 +367,10 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_m
  *
  * Test     unit_fixed_step: an_explicit_step_beyond_its_limit_ends_with_a_status
  */
-void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result, const atomic_bool *stop)
+void pound_fixed_central(const struct pound_solver *solver, const struct pound_task *task,
+                         struct pound_task_result *result, const atomic_bool *stop)
 {
-	*result = (struct pound_march_result){0};
+	*result = (struct pound_task_result){0};
 	struct course c = {.task = task, .result = result};
 	int n_steps = steps_of(task->time_step, solver->step);
 	course_start(&c, n_steps);

@@ -8,7 +8,7 @@
 static const struct solver {
 	const char *name;
 	const char *text; /* one line of documentation */
-	void (*run)(const struct pound_solver *, const struct pound_march_task *, struct pound_march_result *,
+	void (*run)(const struct pound_solver *, const struct pound_task *, struct pound_task_result *,
 	            const atomic_bool *stop);
 	bool tolerance, step; /* the settings it takes */
 	bool forces
@@ -71,18 +71,18 @@ bool pound_solver_takes_step(int row)
  * Returns  results   (n)     -       each with a status of its own
  * Status   POUND_STOPPED  stop was set: the results are not to be used
  *          POUND_NOMEM    there was no memory for one of them, so too
- * Memory   scratch: POUND_MARCH_SCRATCH bytes, 64-byte aligned
+ * Memory   scratch: POUND_EXACT_SCRATCH bytes, 64-byte aligned
  * Test     unit_fixed_step
  */
-enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
-                                   struct pound_march_result *results, int n, void *scratch,
+enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_task *tasks,
+                                   struct pound_task_result *results, int n, void *scratch,
                                    const atomic_bool *stop)
 {
 	const struct solver *row = solver_at(solver->method);
 	for (int j = 0; j < n; j++)
 		assert(!tasks[j].contact || row->forces[tasks[j].force]);
 	if (!row->run)
-		pound_march_lanes(0, tasks, results, n, scratch, stop);
+		pound_exact_lanes(0, tasks, results, n, scratch, stop);
 	for (int j = 0; row->run && j < n && !pound_stopped(stop); j++) {
 		row->run(solver, &tasks[j], &results[j], stop);
 		results[j].energy_residual = NAN; // only the march keeps the balance

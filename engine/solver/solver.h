@@ -12,19 +12,19 @@
 /* rows of the exact one, and of the independent one that is as exact as its tolerance */
 enum { POUND_SOLVER_EVENT = 0, POUND_SOLVER_ADAPTIVE = 3 };
 
-enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_march_task *tasks,
-                                   struct pound_march_result *results, int n, void *scratch,
+enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_task *tasks,
+                                   struct pound_task_result *results, int n, void *scratch,
                                    const atomic_bool *stop);
 
 /* fixed_step.c */
 double pound_fixed_step(double time_step, double step);
-void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result, const atomic_bool *stop);
-void pound_fixed_central(const struct pound_solver *solver, const struct pound_march_task *task,
-                         struct pound_march_result *result, const atomic_bool *stop);
+void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_task *task,
+                         struct pound_task_result *result, const atomic_bool *stop);
+void pound_fixed_central(const struct pound_solver *solver, const struct pound_task *task,
+                         struct pound_task_result *result, const atomic_bool *stop);
 
 /* adaptive.c */
-void pound_adaptive_run(const struct pound_solver *solver, const struct pound_march_task *task,
-                        struct pound_march_result *result, const atomic_bool *stop);
+void pound_adaptive_run(const struct pound_solver *solver, const struct pound_task *task,
+                        struct pound_task_result *result, const atomic_bool *stop);
 
 #endif

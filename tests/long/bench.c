@@ -95,10 +95,10 @@ void bench_print(struct bench_row row)
 static int lanes_widest(void)
 {
 	static const int widths[] = {8, 4, 1};
-	void *scratch = bench_memory(POUND_MARCH_SCRATCH);
+	void *scratch = bench_memory(POUND_EXACT_SCRATCH);
 	int widest = 0;
 	for (int w = 0; w < 3 && widest == 0; w++)
-		widest = pound_march_lanes(widths[w], NULL, NULL, 0, scratch, NULL) ? widths[w] : 0;
+		widest = pound_exact_lanes(widths[w], NULL, NULL, 0, scratch, NULL) ? widths[w] : 0;
 	free(scratch);
 	return widest;
 }

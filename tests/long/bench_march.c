@@ -31,15 +31,15 @@ static const char reference[] =
 
 struct batch {
 	int n, lanes; /* lanes 0: the widest there are */
-	struct pound_march_task *tasks;
-	struct pound_march_result *results;
+	struct pound_task *tasks;
+	struct pound_task_result *results;
 };
 
 static struct batch batch_create(int n)
 {
 	return (struct batch){.n = n,
-	                      .tasks = bench_memory(sizeof(struct pound_march_task) * (size_t)n),
-	                      .results = bench_memory(sizeof(struct pound_march_result) * (size_t)n)};
+	                      .tasks = bench_memory(sizeof(struct pound_task) * (size_t)n),
+	                      .results = bench_memory(sizeof(struct pound_task_result) * (size_t)n)};
 }
 
 static void batch_free(struct batch *batch)
@@ -55,12 +55,12 @@ static struct batch batch_copy(const struct batch *from, int n)
 	return batch;
 }
 
-static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 
 static void batch_run(void *of)
 {
 	const struct batch *batch = of;
-	pound_march_lanes(batch->lanes, batch->tasks, batch->results, batch->n, scratch, NULL);
+	pound_exact_lanes(batch->lanes, batch->tasks, batch->results, batch->n, scratch, NULL);
 }
 
 static double batch_contacts(const struct batch *batch)
@@ -102,7 +102,7 @@ static struct batch scene_batch(const struct pound_scene *scene, double **ground
 	int n = pound_excitation_samples(e);
 	struct batch batch = batch_create(e->signals);
 	*ground = bench_memory(sizeof **ground * (size_t)n * (size_t)e->signals);
-	struct pound_march_task task = {.n_samples = n, .time_step = e->time_step};
+	struct pound_task task = {.n_samples = n, .time_step = e->time_step};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		task.bodies[i] = pound_scene_body(scene, i);
 	task.bodies[0].followed = true;
@@ -119,7 +119,7 @@ static struct batch scene_batch(const struct pound_scene *scene, double **ground
 
 struct loop {
 	const char *name;
-	struct yardstick_result (*run)(const struct pound_march_task *task, int steps);
+	struct yardstick_result (*run)(const struct pound_task *task, int steps);
 	int steps; /* from a sample to the next */
 	const struct batch *batch;
 	double impulse[LOOPED];
@@ -270,7 +270,7 @@ static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 		    {"more for a contact", (with->seconds - without->seconds) / contacts,
 		     (jobs[0].seconds - jobs[1].seconds) / contacts},
 		};
-		bool runs = pound_march_lanes(widths[w], NULL, NULL, 0, scratch, NULL);
+		bool runs = pound_exact_lanes(widths[w], NULL, NULL, 0, scratch, NULL);
 		for (size_t r = 0; r < sizeof rows / sizeof rows[0] && runs; r++)
 			bench_print(
 			    (struct bench_row){.what = bench_text("%d lane%s: %s", widths[w], w ? "s" : "", rows[r].what),

@@ -29,7 +29,7 @@ static const char signal[] =
 struct ridden {
 	struct pound_floor *floor;
 	void *scratch;
-	const struct pound_march_task *task;
+	const struct pound_task *task;
 	int n_drives;
 	double *psa[POUND_DRIVES];
 };

@@ -9,7 +9,7 @@
 #include <math.h>
 
 /* Where the bodies are one step before they start at rest: u - h v + h2/2 u", of a body without force [m]. */
-static double step_before(const struct pound_march_task *task, int i, double h)
+static double step_before(const struct pound_task *task, int i, double h)
 {
 	return -0.5 * h * h * task->bodies[i].drive * task->ground[0];
 }
@@ -24,7 +24,7 @@ static double step_before(const struct pound_march_task *task, int i, double h)
  *
  * Source   Chopra, Dynamics of Structures, 5.3
  */
-struct yardstick_result yardstick_plain(const struct pound_march_task *task, int steps)
+struct yardstick_result yardstick_plain(const struct pound_task *task, int steps)
 {
 	assert(task->contact && task->tension);
 	double h = task->time_step / steps, K = task->contact_stiffness, C = task->contact_damping;
@@ -79,9 +79,9 @@ struct recurrence {
  *
  * Source   Chopra, Dynamics of Structures, 5.3 and 16.2
  */
-static struct recurrence recurrence(const struct pound_march_task *task, double h, double K, double C)
+static struct recurrence recurrence(const struct pound_task *task, double h, double K, double C)
 {
-	const struct pound_march_body *b = task->bodies;
+	const struct pound_task_body *b = task->bodies;
 	double r = task->mass_ratio, k1 = b[0].backbone.stiffness, k2 = b[1].backbone.stiffness;
 	const double stiffness[2][2] = {{k1 + K, -K}, {-r * K, k2 + r * K}};
 	const double damping[2][2] = {{b[0].damping + C, -C}, {-r * C, b[1].damping + r * C}};
@@ -116,7 +116,7 @@ static struct recurrence recurrence(const struct pound_march_task *task, double 
  *
  * Test     bench: within the errors of the plain loop
  */
-struct yardstick_result yardstick_tuned(const struct pound_march_task *task, int steps)
+struct yardstick_result yardstick_tuned(const struct pound_task *task, int steps)
 {
 	assert(task->contact && task->tension);
 	double h = task->time_step / steps, K = task->contact_stiffness, C = task->contact_damping;

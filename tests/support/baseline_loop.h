@@ -15,7 +15,7 @@ struct yardstick_result {
 
 /* `steps` steps of equal length from each sample to the next; the task's laws are linear, its contact ends at no
  * overlap. */
-struct yardstick_result yardstick_plain(const struct pound_march_task *task, int steps);
-struct yardstick_result yardstick_tuned(const struct pound_march_task *task, int steps);
+struct yardstick_result yardstick_plain(const struct pound_task *task, int steps);
+struct yardstick_result yardstick_tuned(const struct pound_task *task, int steps);
 
 #endif

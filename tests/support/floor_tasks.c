@@ -5,12 +5,12 @@
 #include "tests/support/check.h"
 
 /* The task as the plan makes it, but not scaled. */
-struct pound_march_task riding_task(const struct specimen *specimen, bool contact)
+struct pound_task riding_task(const struct specimen *specimen, bool contact)
 {
 	const struct pound_scene *scene = &specimen->study.scene;
 	const struct pound_response response = specimen_engine(specimen);
 	const double yield[] = {response.yield_displacement_1, response.yield_displacement_2};
-	struct pound_march_task task = {.ground = specimen->record,
+	struct pound_task task = {.ground = specimen->record,
 	                                .n_samples = scene->excitation.n_record,
 	                                .time_step = scene->excitation.time_step};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -24,11 +24,11 @@ struct pound_march_task riding_task(const struct specimen *specimen, bool contac
 }
 
 /* Spectra of a task in work space of their own. */
-struct pound_floor_answer riding_spectra(const struct pound_march_task *task,
+struct pound_floor_answer riding_spectra(const struct pound_task *task,
                                          const struct pound_spectrum *spectrum, int n_drives, double radians,
                                          int lanes, double *psa[POUND_DRIVES])
 {
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	size_t bytes = (pound_floor_bytes(spectrum->n) / 64 + 1) * 64;
 	void *memory = aligned_alloc(64, bytes);
 	assert_non_null(memory);

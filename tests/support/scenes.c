@@ -289,12 +289,12 @@ void specimen_bouncing(struct specimen *specimen)
 		a[t] = -1;
 }
 
-struct pound_march_task specimen_impact(double restitution, bool tension, int n_samples)
+struct pound_task specimen_impact(double restitution, bool tension, int n_samples)
 {
 	static const double still[1000];
 	double stiffness = 7.9e3, ratio = 0.5; // contact, N/m; m1/m2
 	double zeta = pound_contact_damping_ratio(0, restitution);
-	return (struct pound_march_task){.ground = still,
+	return (struct pound_task){.ground = still,
 	                                 .n_samples = n_samples,
 	                                 .time_step = 0.01,
 	                                 .bodies = {{.v = 1}, {.v = -0.5}},
@@ -380,12 +380,12 @@ struct pound_response specimen_oracle(const struct specimen *specimen, double ra
 	return oracle_response(&specimen->study.scene, &motion, &method, NULL, NULL);
 }
 
-struct pound_march_task specimen_pressed(uint64_t *seed)
+struct pound_task specimen_pressed(uint64_t *seed)
 {
 	static const double push[] = {-1, -1, -1, -1};
 	const double k = 100, xi = specimen_uniform(seed, 0.01, 1);
-	struct pound_march_task task = {.ground = push, .n_samples = 4, .contact = true, .tension = true};
-	task.bodies[0] = (struct pound_march_body){
+	struct pound_task task = {.ground = push, .n_samples = 4, .contact = true, .tension = true};
+	task.bodies[0] = (struct pound_task_body){
 	    .backbone = {.stiffness = k}, .damping = 2 * xi * sqrt(k), .drive = 1, .followed = true};
 	task.contact_stiffness = k * pow(10, specimen_uniform(seed, -1, 2));
 	task.contact_damping = 2 * specimen_uniform(seed, 0, 1) * sqrt(task.contact_stiffness);

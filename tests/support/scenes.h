@@ -77,7 +77,7 @@ void specimen_bouncing(struct specimen *specimen);
 
 /* Two free masses, m1 = 1 kg and m2 = 2 kg, that meet at 1.5 m/s after 10 cm, above a ground that rests for that many samples,
  * 0.01 s apart and 1000 at most. */
-struct pound_march_task specimen_impact(double restitution, bool tension, int n_samples);
+struct pound_task specimen_impact(double restitution, bool tension, int n_samples);
 
 /* Two oscillators under a half sine of 0.5 s, 3 s in all, computed elsewhere: a 128-bit Taylor solution. */
 struct specimen_reference {
@@ -103,6 +103,6 @@ struct pound_response specimen_engine(const struct specimen *specimen);
 struct pound_response specimen_oracle(const struct specimen *specimen, double radians);
 
 /* A body damped as may be, pressed from rest on a wall without a gap by an acceleration of 1, for about three steps. */
-struct pound_march_task specimen_pressed(uint64_t *seed);
+struct pound_task specimen_pressed(uint64_t *seed);
 
 #endif

@@ -13,11 +13,11 @@ enum { SAMPLES = 201 };
 
 static const double step = 0.01; // [s]
 
-static struct pound_march_result march(const struct pound_march_task *task)
+static struct pound_task_result march(const struct pound_task *task)
 {
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
-	struct pound_march_result result;
-	assert_true(pound_march_lanes(0, task, &result, 1, scratch, NULL));
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
+	struct pound_task_result result;
+	assert_true(pound_exact_lanes(0, task, &result, 1, scratch, NULL));
 	assert_int_equal(result.status, POUND_OK);
 	return result;
 }
@@ -26,12 +26,12 @@ static struct pound_march_result march(const struct pound_march_task *task)
  *
  *   p'' + C p' + K p = 1 + rate t     long after the start p = (1 + rate t)/K - C rate/K^2
  */
-static struct pound_march_task pressed(double ground[SAMPLES], double rate, double stiffness,
+static struct pound_task pressed(double ground[SAMPLES], double rate, double stiffness,
                                        double restitution)
 {
 	for (int i = 0; i < SAMPLES; i++)
 		ground[i] = -(1 + rate * (i * step));
-	return (struct pound_march_task){.ground = ground,
+	return (struct pound_task){.ground = ground,
 	                                 .n_samples = SAMPLES,
 	                                 .time_step = step,
 	                                 .bodies = {{.drive = 1, .followed = true}},
@@ -48,10 +48,10 @@ static void a_long_press_ends_where_its_ground_pushes_it(void **state)
 	double ground[SAMPLES], end = (SAMPLES - 1) * step;
 	for (int t = 0; t < 24; t++) {
 		double stiffness = pow(10, 4 + t / 2), damping; // up to 5e6 radians a sample
-		struct pound_march_task task = pressed(ground, -0.25, stiffness, t % 3 * 0.3);
+		struct pound_task task = pressed(ground, -0.25, stiffness, t % 3 * 0.3);
 		damping = task.contact_damping;
 		task.tension = t % 2;
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		assert_int_equal(r.contacts, 1);
 		check_near(r.contact_time, end, 1e-12);
 		check_near(r.u[0] * stiffness, 1 - 0.25 * end + 0.25 * damping / stiffness, 1e-12);
@@ -67,11 +67,11 @@ static void a_press_that_grows_for_long_goes_by_more_than_cells(void **state)
 	double ground[SAMPLES], end = (SAMPLES - 1) * step;
 	for (int t = 0; t < 44; t++) {
 		double stiffness = pow(10, 4 + t / 2); // up to 3e10 radians a sample
-		struct pound_march_task task = pressed(ground, 0.25, stiffness, 0);
+		struct pound_task task = pressed(ground, 0.25, stiffness, 0);
 		for (int i = 0; i < SAMPLES; i++)
 			ground[i] += 1; // from nothing
 		task.tension = t % 2;
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		double pressed_by = 0.25 * end - 0.25 * task.contact_damping / stiffness;
 		assert_int_equal(r.contacts, 1);
 		check_near(r.contact_time, end, 1e-12);
@@ -87,9 +87,9 @@ static void a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone(void *
 	double ground[SAMPLES];
 	for (int t = 0; t < 24; t++) {
 		double stiffness = pow(10, 4 + t / 2);
-		struct pound_march_task task = pressed(ground, -1, stiffness, t % 3 * 0.3);
+		struct pound_task task = pressed(ground, -1, stiffness, t % 3 * 0.3);
 		task.tension = t % 2;
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		double left = task.tension ? 1 + task.contact_damping / stiffness : 1;
 		assert_int_equal(r.contacts, 1);
 		check_near(r.contact_time, left, 1e-12);
@@ -99,14 +99,14 @@ static void a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone(void *
 }
 
 /* Two bodies of unlike frequency that swing, touch, bounce and stick over ground motion of two sines. */
-static struct pound_march_task pounding(double *ground, int t, int n)
+static struct pound_task pounding(double *ground, int t, int n)
 {
 	double ratio = t % 2 ? 0.6 : 3, w[2] = {2 * M_PI * 2, 2 * M_PI * 3.1}, stiffness = pow(10, 4 + t % 7);
 	for (int i = 0; i < n; i++) {
 		double time = i * step;
 		ground[i] = sin(9 * time) + 0.5 * cos(23 * time);
 	}
-	struct pound_march_task task = {.ground = ground,
+	struct pound_task task = {.ground = ground,
 	                                .n_samples = n,
 	                                .time_step = step,
 	                                .contact = true,
@@ -116,7 +116,7 @@ static struct pound_march_task pounding(double *ground, int t, int n)
 	                                                   sqrt(stiffness / (1 + ratio)),
 	                                .mass_ratio = ratio};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		task.bodies[i] = (struct pound_march_body){
+		task.bodies[i] = (struct pound_task_body){
 		    .backbone = {.law = t % 5 % 4, .stiffness = w[i] * w[i], .hardening = 0.05, .yield = 1e-3},
 		    .damping = 0.1 * w[i],
 		    .drive = 1,
@@ -131,15 +131,15 @@ static void samples_twice_as_dense_change_no_contact_however_stiff(void **state)
 	double ground[N], dense[DENSE];
 	int64_t contacts = 0;
 	for (int t = 0; t < 140; t++) {
-		struct pound_march_task task = pounding(ground, t, N);
-		const struct pound_march_result once = march(&task);
+		struct pound_task task = pounding(ground, t, N);
+		const struct pound_task_result once = march(&task);
 		for (int i = 0; i < DENSE; i++)
 			dense[i] = 0.5 * (ground[i / 2] + ground[(i + 1) / 2]);
 		task.ground = dense;
 		task.n_samples = DENSE;
 		task.time_step = 0.5 * step;
 		task.accounted = true;
-		const struct pound_march_result twice = march(&task);
+		const struct pound_task_result twice = march(&task);
 		contacts += once.contacts;
 		assert_int_equal(twice.contacts, once.contacts);
 		// the roundings of each contact are magnified by the next ones
@@ -163,13 +163,13 @@ static void bodies_pressed_for_long_rest_where_their_springs_hold_them(void **st
 	for (int tension = 0; tension < 2; tension++) {
 		const double w1 = 4 * M_PI, w2 = 4000 * M_PI, k1 = w1 * w1, k2 = w2 * w2, ratio = 1e-3;
 		const double stiffness = 1e4 * k2 / ratio;
-		struct pound_march_task task = pressed(ground, 0, stiffness, 0.5);
+		struct pound_task task = pressed(ground, 0, stiffness, 0.5);
 		task.bodies[0].backbone.stiffness = k1;
-		task.bodies[1] = (struct pound_march_body){
+		task.bodies[1] = (struct pound_task_body){
 		    .backbone = {.stiffness = k2}, .damping = 1.998 * w2, .drive = 1, .followed = true};
 		task.mass_ratio = ratio;
 		task.tension = tension;
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		const double p = (1 - k1 / k2) / (stiffness + k1 + k1 * ratio * stiffness / k2);
 		const double u2 = (1 + ratio * stiffness * p) / k2;
 		assert_int_equal(r.contacts, 1);
@@ -193,7 +193,7 @@ static void a_yielded_body_creeps_to_rest_however_stiff_the_contact(void **state
 	for (int t = 0; t < 8; t++) {
 		const double w1 = 8 * M_PI, w2 = 40 * M_PI, light = 1e-6, zeta[] = {0.7, 0.999};
 		const double stiffness = pow(10, 6 + t / 2) * w1 * w1;
-		struct pound_march_task task = pressed(ground, 0, stiffness, 0);
+		struct pound_task task = pressed(ground, 0, stiffness, 0);
 		task.bodies[0].backbone =
 		    (struct pound_backbone){.law = 1, .stiffness = w1 * w1, .hardening = 1, .yield = 1e-5};
 		task.bodies[0].damping = 2 * zeta[t % 2] * w1;
@@ -203,7 +203,7 @@ static void a_yielded_body_creeps_to_rest_however_stiff_the_contact(void **state
 		task.contact_damping = 2 * sqrt(stiffness * light);
 		task.mass_ratio = 1 / light;
 		task.tension = true;
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		assert_int_equal(r.contacts, 1);
 		check_near(r.u[0] * (w1 * w1 + w2 * w2 * light) / (1 + light), 1, 1e-13);
 		check_near(r.energy_residual, 0, 1e-13);
@@ -218,16 +218,16 @@ static void a_touch_shorter_than_a_cell_ends_with_its_force(void **state)
 	const double rest = 0.5 * step; // of the sample that it begins in
 	double ground[SAMPLES];
 	for (int t = 1; t < 20; t++) {
-		struct pound_march_task task = pressed(ground, 0, 6400, 0); // a cell is a sample
+		struct pound_task task = pressed(ground, 0, 6400, 0); // a cell is a sample
 		const double speed = (0.5 + 0.025 * t) * rest;
 		for (int i = 0; i < SAMPLES; i++)
 			ground[i] = 1;
 		task.bodies[0].u = -(speed * rest + 0.5 * rest * rest);
 		task.bodies[0].v = speed + rest;
 		task.tension = false;
-		const struct pound_march_result accounted = march(&task);
+		const struct pound_task_result accounted = march(&task);
 		task.accounted = false;
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		assert_int_equal(r.contacts, 1);
 		check_near(r.impulse_max / accounted.impulse_max, 1, 1e-12);
 		check_near(r.contact_time / accounted.contact_time, 1, 1e-12);
@@ -249,17 +249,17 @@ static void bodies_alike_go_on_as_one_after_a_plastic_impact(void **state)
 	double ground[SAMPLES];
 	for (int t = 0; t < 12; t++) {
 		const double stiffness = pow(10, 4 + t / 2 * 2) * w * w;
-		struct pound_march_task task = pressed(ground, 0, stiffness, 0);
+		struct pound_task task = pressed(ground, 0, stiffness, 0);
 		memset(ground, 0, sizeof ground);
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			task.bodies[i] = (struct pound_march_body){
+			task.bodies[i] = (struct pound_task_body){
 			    .backbone = {.stiffness = w * w}, .damping = 2 * zeta * w, .drive = 1, .followed = true};
 		task.bodies[0].v = 1;
 		task.mass_ratio = ratio;
 		task.contact_damping = 2 * sqrt(stiffness / (1 + ratio));
 		task.tension = true;
 		task.accounted = t % 2;
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		assert_int_equal(r.contacts, 1);
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			check_near(r.u[i] / u, 1, 1e-12);

@@ -16,15 +16,15 @@ static const double PI = 3.14159265358979323846;
 enum { STILL = 4001 };
 static double still[STILL]; // ground at rest
 
-static struct pound_march_result march(const struct pound_march_task *task)
+static struct pound_task_result march(const struct pound_task *task)
 {
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
-	struct pound_march_result result;
-	assert_true(pound_march_lanes(0, task, &result, 1, scratch, NULL));
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
+	struct pound_task_result result;
+	assert_true(pound_exact_lanes(0, task, &result, 1, scratch, NULL));
 	return result;
 }
 
-static double rebound(const struct pound_march_result *r)
+static double rebound(const struct pound_task_result *r)
 {
 	return (r->v[1] - r->v[0]) / 1.5;
 }
@@ -33,8 +33,8 @@ static void an_isolated_impact_leaves_with_the_restitution(void **state)
 {
 	(void)state;
 	for (int e = 1; e <= 100; e++) {
-		const struct pound_march_task task = specimen_impact(e / 100.0, true, 1000);
-		const struct pound_march_result r = march(&task);
+		const struct pound_task task = specimen_impact(e / 100.0, true, 1000);
+		const struct pound_task_result r = march(&task);
 		check_near(rebound(&r), e / 100.0, 1e-12);
 		assert_int_equal(r.contacts, 1);
 		// the left mass takes the whole change of relative momentum: impulse = (1 + e) m v, m/m1 = 1/(1 + ratio)
@@ -49,9 +49,9 @@ static void an_isolated_impact_leaves_with_the_restitution(void **state)
 static void a_plastic_impact_ends_with_one_velocity(void **state)
 {
 	(void)state;
-	struct pound_march_task task = specimen_impact(0, true, 1000);
+	struct pound_task task = specimen_impact(0, true, 1000);
 	task.n_samples = 101; // the overlap dies away as t exp(-w t), to 1e-47 of its height in this second
-	const struct pound_march_result r = march(&task);
+	const struct pound_task_result r = march(&task);
 	check_near(rebound(&r), 0, 1e-15);
 	assert_int_equal(r.contacts, 1);
 }
@@ -61,23 +61,23 @@ static void without_tension_the_rebound_is_that_of_release_at_zero_force(void **
 	(void)state;
 	// known_answers 5.1: e^(1 - 2 asin(zeta)/pi)
 	for (int e = 1; e <= 100; e++) {
-		const struct pound_march_task task = specimen_impact(e / 100.0, false, 1000);
-		const struct pound_march_result r = march(&task);
+		const struct pound_task task = specimen_impact(e / 100.0, false, 1000);
+		const struct pound_task_result r = march(&task);
 		double zeta = pound_contact_damping_ratio(0, e / 100.0);
 		check_near(rebound(&r), pow(e / 100.0, 1 - 2 * asin(zeta) / PI), 1e-12);
 		assert_int_equal(r.contacts, 1);
 	}
-	const struct pound_march_task plastic = specimen_impact(0, false, 1000);
-	const struct pound_march_result r = march(&plastic);
+	const struct pound_task plastic = specimen_impact(0, false, 1000);
+	const struct pound_task_result r = march(&plastic);
 	check_near(rebound(&r), 0.135335283236612691894, 1e-12); // exp(-2)
 }
 
 /* Oscillator of 1 Hz on a wall, released at rest from -amplitude. */
-static struct pound_march_task wall(double gap, double damping_ratio, double restitution,
+static struct pound_task wall(double gap, double damping_ratio, double restitution,
                                     double stiffness_ratio)
 {
 	double k = 4 * PI * PI, stiffness = stiffness_ratio * k;
-	return (struct pound_march_task){.ground = still,
+	return (struct pound_task){.ground = still,
 	                                 .n_samples = STILL,
 	                                 .time_step = 0.005,
 	                                 .bodies = {{.backbone = {.stiffness = k},
@@ -97,8 +97,8 @@ static void a_wall_is_met_every_half_period(void **state)
 {
 	(void)state;
 	// undamped and elastic: half a period free, then half a period of the contact's own oscillation, for ever
-	const struct pound_march_task task = wall(0, 0, 1, 1000);
-	const struct pound_march_result r = march(&task);
+	const struct pound_task task = wall(0, 0, 1, 1000);
+	const struct pound_task_result r = march(&task);
 	double touch = 0.5 / sqrt(1001), period = 0.5 + touch;
 	// the motion starts a quarter period before the first contact
 	int contacts = (int)floor((20 - 0.25) / period) + 1;
@@ -116,8 +116,8 @@ static void wall_impacts_lose_speed_by_restitution_and_damping(void **state)
 	(void)state;
 	// a damped contact oscillation and a damped free one in turn: the end state follows in closed form
 	const double xi = 0.02, e = 0.8, ratio = 500;
-	struct pound_march_task task = wall(0, xi, e, ratio);
-	const struct pound_march_result r = march(&task);
+	struct pound_task task = wall(0, xi, e, ratio);
+	const struct pound_task_result r = march(&task);
 	double w = 2 * PI, wd = w * sqrt(1 - xi * xi);
 	double c = task.bodies[0].damping + task.contact_damping, k = w * w * (1 + ratio);
 	double wc = sqrt(k - c * c / 4);
@@ -154,12 +154,12 @@ static void a_body_pressed_on_a_wall_yields_as_its_own_and_the_contacts_damping_
 	(void)state;
 	uint64_t seed = 1;
 	for (int n = 0; n < 2000; n++) {
-		const struct pound_march_task task = specimen_pressed(&seed);
-		const struct pound_march_body *body = &task.bodies[0];
+		const struct pound_task task = specimen_pressed(&seed);
+		const struct pound_task_body *body = &task.bodies[0];
 		const double omega = sqrt(body->backbone.stiffness + task.contact_stiffness);
 		const double zeta = (body->damping + task.contact_damping) / (2 * omega);
 		const double end = (task.n_samples - 1) * task.time_step, settled = 1 / (omega * omega);
-		const struct pound_march_result r = march(&task);
+		const struct pound_task_result r = march(&task);
 		check_near((r.u[0] - pressed_closed(omega, zeta, end)) / settled, 0, 32 * DBL_EPSILON);
 	}
 }
@@ -167,9 +167,9 @@ static void a_body_pressed_on_a_wall_yields_as_its_own_and_the_contacts_damping_
 static void bodies_at_rest_without_ground_motion_stay_at_rest(void **state)
 {
 	(void)state;
-	struct pound_march_task task = wall(0, 0.05, 0.5, 100);
+	struct pound_task task = wall(0, 0.05, 0.5, 100);
 	task.bodies[0].u = 0;
-	const struct pound_march_result r = march(&task);
+	const struct pound_task_result r = march(&task);
 	assert_int_equal(r.contacts, 0);
 	assert_true(r.displacement_max[0] == 0 && r.impulse_max == 0);
 }
@@ -178,7 +178,7 @@ static void bodies_at_rest_without_ground_motion_stay_at_rest(void **state)
 
 enum { TASKS = 149, SAMPLES = 700 }; // more tasks than are in flight at once, at any lane count
 
-static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t seed)
+static void tasks_fill(struct pound_task *tasks, double *ground, uint64_t seed)
 {
 	for (int t = 0; t < TASKS; t++) {
 		double *a = ground + t * SAMPLES, slow = 0;
@@ -186,7 +186,7 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 			a[s] = slow = 0.9 * slow + specimen_uniform(&seed, -0.5, 0.5);
 		double ratio = exp(specimen_uniform(&seed, -2, 2));
 		double stiffness = 0, contact = pow(10, 2 + t % 9 % 4 * 2);
-		tasks[t] = (struct pound_march_task){.ground = a,
+		tasks[t] = (struct pound_task){.ground = a,
 		                                     .n_samples = SAMPLES - t, // so that lanes end at different times
 		                                     .time_step = 0.01,
 		                                     .contact = t % 7 != 0,
@@ -195,7 +195,7 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 		                                     .tension = t % 2};
 		for (int i = 0; i < 2; i++) {
 			double w = 2 * PI * specimen_uniform(&seed, 0.5, 5.5);
-			tasks[t].bodies[i] = (struct pound_march_body){
+			tasks[t].bodies[i] = (struct pound_task_body){
 			    .backbone = {.law = t % 4, .stiffness = w * w, .hardening = 0.05, .yield = 0.3 / (w * w)},
 			    .damping = 0.1 * w,
 			    .drive = 1,
@@ -211,21 +211,21 @@ static void tasks_fill(struct pound_march_task *tasks, double *ground, uint64_t 
 static void every_lane_count_gives_the_same_bits(void **state)
 {
 	(void)state;
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
-	struct pound_march_result one[TASKS], many[TASKS];
+	struct pound_task tasks[TASKS];
+	struct pound_task_result one[TASKS], many[TASKS];
 	memset(one, 0, sizeof one);
 	memset(many, 0, sizeof many);
 	for (uint64_t seed = 1; seed <= 4; seed++) {
 		tasks_fill(tasks, ground, seed);
-		pound_march_portable(tasks, one, TASKS, scratch, NULL);
+		pound_exact_portable(tasks, one, TASKS, scratch, NULL);
 		int64_t contacts = 0;
 		for (int t = 0; t < TASKS; t++)
 			contacts += one[t].contacts;
 		assert_true(contacts > 5 * TASKS); // or the comparison would not say much
 		for (int lanes = 1; lanes <= 8; lanes++)
-			if (pound_march_lanes(lanes, tasks, many, TASKS, scratch, NULL))
+			if (pound_exact_lanes(lanes, tasks, many, TASKS, scratch, NULL))
 				assert_memory_equal(one, many, sizeof one);
 	}
 }
@@ -242,7 +242,7 @@ static void a_largest_displacement_between_samples_is_that_of_the_motion(void **
 	} cases[] = {{5, 0.01}, {9, 0.01}, {401, 0.01}, {5, 0.0325}, {401, 0.0325}};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
 		for (int paired = 0; paired < 2; paired++) {
-			const struct pound_march_task task = {
+			const struct pound_task task = {
 			    .ground = still,
 			    .n_samples = cases[k].length,
 			    .time_step = cases[k].step,
@@ -254,7 +254,7 @@ static void a_largest_displacement_between_samples_is_that_of_the_motion(void **
 			    .contact_stiffness = 3.6e5,
 			    .mass_ratio = 1,
 			    .tension = true};
-			const struct pound_march_result r = march(&task);
+			const struct pound_task_result r = march(&task);
 			const double roundings = 16 * 2.2e-16 * cases[k].length;
 			check_near(60 * r.displacement_max[0], 1, roundings);
 			check_near(50 * r.displacement_max[1], paired, roundings);
@@ -271,7 +271,7 @@ static void more_swings_than_can_be_noted_have_their_largest_displacement(void *
 	const double h = 0.01, w = PI / 6 / h;
 	// its area is h times its height, and the velocity there, after whole periods, that of the start
 	ground[PULSE] = -0.01 * w / h / sin(PI / 12);
-	struct pound_march_task task = {.ground = ground,
+	struct pound_task task = {.ground = ground,
 	                                .n_samples = SWINGS,
 	                                .time_step = h,
 	                                .bodies = {{.backbone = {.stiffness = w * w},
@@ -290,10 +290,10 @@ static void more_swings_than_can_be_noted_have_their_largest_displacement(void *
 static void whole_samples_find_the_largest_displacements_of_single_steps(void **state)
 {
 	(void)state;
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
-	struct pound_march_result flown[TASKS], stepped[TASKS];
+	struct pound_task tasks[TASKS];
+	struct pound_task_result flown[TASKS], stepped[TASKS];
 	static const double samples[] = {0.017, 0.052}; // up to 0.6 and 1.8 rad
 	for (int k = 0; k < 2; k++) {
 		tasks_fill(tasks, ground, 4);
@@ -302,10 +302,10 @@ static void whole_samples_find_the_largest_displacements_of_single_steps(void **
 			tasks[t].gap = 1e3;
 			tasks[t].bodies[1].followed = true;
 		}
-		pound_march_lanes(0, tasks, flown, TASKS, scratch, NULL);
+		pound_exact_lanes(0, tasks, flown, TASKS, scratch, NULL);
 		for (int t = 0; t < TASKS; t++)
 			tasks[t].accounted = true;
-		pound_march_lanes(0, tasks, stepped, TASKS, scratch, NULL);
+		pound_exact_lanes(0, tasks, stepped, TASKS, scratch, NULL);
 		for (int t = 0; t < TASKS; t++)
 			for (int i = 0; i < 2; i++)
 				check_near(flown[t].displacement_max[i] / stepped[t].displacement_max[i], 1,
@@ -316,30 +316,30 @@ static void whole_samples_find_the_largest_displacements_of_single_steps(void **
 static void the_energy_put_in_is_found_again(void **state)
 {
 	(void)state;
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
-	struct pound_march_result results[TASKS];
+	struct pound_task tasks[TASKS];
+	struct pound_task_result results[TASKS];
 	tasks_fill(tasks, ground, 3);
 	for (int t = 0; t < TASKS; t++)
 		tasks[t].accounted = true;
-	pound_march_lanes(0, tasks, results, TASKS, scratch, NULL);
+	pound_exact_lanes(0, tasks, results, TASKS, scratch, NULL);
 	// about 2e4 steps, each with a rounding error of the energy it moves
 	for (int t = 0; t < TASKS; t++)
 		check_near(results[t].energy_residual, 0, 2e4 * 2.2e-16);
 }
 
 /* Runs tasks together, at any lane count, and each alone. */
-static void check_alone_as_together(const struct pound_march_task *tasks)
+static void check_alone_as_together(const struct pound_task *tasks)
 {
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
-	struct pound_march_result together[TASKS], alone[TASKS];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
+	struct pound_task_result together[TASKS], alone[TASKS];
 	memset(together, 0, sizeof together);
 	memset(alone, 0, sizeof alone);
 	for (int t = 0; t < TASKS; t++)
-		pound_march_lanes(0, &tasks[t], &alone[t], 1, scratch, NULL);
+		pound_exact_lanes(0, &tasks[t], &alone[t], 1, scratch, NULL);
 	for (int lanes = 1; lanes <= 8; lanes++)
-		if (pound_march_lanes(lanes, tasks, together, TASKS, scratch, NULL))
+		if (pound_exact_lanes(lanes, tasks, together, TASKS, scratch, NULL))
 			assert_memory_equal(together, alone, sizeof alone);
 }
 
@@ -347,7 +347,7 @@ static void a_run_does_not_depend_on_its_neighbours(void **state)
 {
 	(void)state;
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
+	struct pound_task tasks[TASKS];
 	tasks_fill(tasks, ground, 2);
 	check_alone_as_together(tasks);
 }
@@ -358,7 +358,7 @@ static void a_motion_that_dies_away_does_not_depend_on_its_neighbours(void **sta
 	(void)state;
 	enum { LONG = 9001 };
 	static double ground[TASKS * SAMPLES], shaken[LONG];
-	struct pound_march_task tasks[TASKS];
+	struct pound_task tasks[TASKS];
 	tasks_fill(tasks, ground, 2);
 	memcpy(shaken, ground, 200 * sizeof(double));
 	for (int t = 0; t < TASKS; t++) {
@@ -378,7 +378,7 @@ static void a_run_does_not_depend_on_whose_energy_is_accounted_for(void **state)
 {
 	(void)state;
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
+	struct pound_task tasks[TASKS];
 	for (uint64_t seed = 1; seed <= 4; seed++) {
 		tasks_fill(tasks, ground, seed);
 		for (int t = 0; t < TASKS; t++)
@@ -393,7 +393,7 @@ static void a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours(v
 {
 	(void)state;
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
+	struct pound_task tasks[TASKS];
 	for (int round = 1; round <= 20; round++) {
 		uint64_t seed = (uint64_t)round;
 		tasks_fill(tasks, ground, seed);
@@ -416,10 +416,10 @@ static void a_run_does_not_depend_on_bodies_alike_beside_it(void **state)
 {
 	(void)state;
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS];
+	struct pound_task tasks[TASKS];
 	tasks_fill(tasks, ground, 5);
 	for (int t = 0; t < TASKS; t++) {
-		struct pound_march_body *body = tasks[t].bodies;
+		struct pound_task_body *body = tasks[t].bodies;
 		if (t % 3 == 0)
 			continue;
 		body[0].backbone.law = 0;
@@ -443,7 +443,7 @@ static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **st
 {
 	(void)state;
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS], scenes[TASKS];
+	struct pound_task tasks[TASKS], scenes[TASKS];
 	for (uint64_t seed = 1; seed <= 6; seed++) {
 		tasks_fill(scenes, ground, seed);
 		for (int t = 0; t < TASKS; t++) {
@@ -462,7 +462,7 @@ static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **st
 }
 
 /* Makes a task differ in one more number from those that differ in their laws alone. */
-static void kin_spoil(struct pound_march_task *task, int which)
+static void kin_spoil(struct pound_task *task, int which)
 {
 	double *const numbers[] = {&task->time_step,         &task->gap,
 	                           &task->contact_stiffness, &task->contact_damping,
@@ -495,7 +495,7 @@ static void a_run_does_not_depend_on_those_that_differ_in_their_laws_alone(void 
 	uint64_t yields = 1;
 	enum { FAMILY = 6, FAMILIES = (TASKS + FAMILY - 1) / FAMILY };
 	static double ground[TASKS * SAMPLES];
-	struct pound_march_task tasks[TASKS], scenes[TASKS];
+	struct pound_task tasks[TASKS], scenes[TASKS];
 	for (uint64_t seed = 1; seed <= 20; seed++) {
 		tasks_fill(scenes, ground, seed);
 		for (int t = 0; t < TASKS; t++) {
@@ -504,7 +504,7 @@ static void a_run_does_not_depend_on_those_that_differ_in_their_laws_alone(void 
 			tasks[t].n_samples = SAMPLES - scene;
 			tasks[t].time_step = seed < 11 ? 0.01 : 0.1;
 			if (!tasks[t].contact)
-				tasks[t].bodies[1] = (struct pound_march_body){0}; // the left one alone
+				tasks[t].bodies[1] = (struct pound_task_body){0}; // the left one alone
 			if (member == 0 && seed % 2)
 				memset(ground + scene * SAMPLES + 100, 0, sizeof(double) * 400);
 			for (int i = 0; i < 2; i++) {
@@ -530,7 +530,7 @@ static void pressed_contact_of_more_swings_than_numbers_can_count_ends_as_chatte
 {
 	(void)state;
 	static const double pushes[3] = {-1, -1, -1};
-	struct pound_march_task task = wall(0, 0.05, 0, 1e40);
+	struct pound_task task = wall(0, 0.05, 0, 1e40);
 	task.ground = pushes;
 	task.n_samples = 3;
 	task.bodies[0].u = 0;

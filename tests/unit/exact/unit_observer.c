@@ -25,23 +25,23 @@ static void story_add(void *of, const struct pound_march_instant *instant)
 	story->at[story->n++] = *instant;
 }
 
-static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 static struct story story, again;
 
-static struct pound_march_result observe(struct pound_march_task task, int lanes, struct story *into)
+static struct pound_task_result observe(struct pound_task task, int lanes, struct story *into)
 {
 	const struct pound_march_observer observer = {story_add, into};
-	struct pound_march_result result;
+	struct pound_task_result result;
 	into->n = 0;
 	task.observer = &observer;
-	assert_true(pound_march_lanes(lanes, &task, &result, 1, scratch, NULL));
+	assert_true(pound_exact_lanes(lanes, &task, &result, 1, scratch, NULL));
 	return result;
 }
 
-static struct pound_march_result march(const struct pound_march_task *task)
+static struct pound_task_result march(const struct pound_task *task)
 {
-	struct pound_march_result result;
-	assert_true(pound_march_lanes(0, task, &result, 1, scratch, NULL));
+	struct pound_task_result result;
+	assert_true(pound_exact_lanes(0, task, &result, 1, scratch, NULL));
 	return result;
 }
 
@@ -49,7 +49,7 @@ static void an_isolated_impact_is_two_events(void **state)
 {
 	(void)state;
 	for (int e = 1; e <= 100; e++) {
-		const struct pound_march_task task = specimen_impact(e / 100.0, true, 100);
+		const struct pound_task task = specimen_impact(e / 100.0, true, 100);
 		observe(task, 0, &story);
 		const double zeta = pound_contact_damping_ratio(0, e / 100.0);
 		const double lasts = PI / sqrt(7.9e3 * 1.5 * (1 - zeta * zeta));
@@ -73,7 +73,7 @@ static void an_isolated_impact_is_two_events(void **state)
 }
 
 /* Every sample is told, in the order of time, and between two of them what elapses is the sample step. */
-static void check_whole(const struct pound_march_task *task)
+static void check_whole(const struct pound_task *task)
 {
 	const double h = task->time_step;
 	int samples = 0;
@@ -106,7 +106,7 @@ static void instants_leave_no_hole(void **state)
 			specimen_creeping(&specimen, number, 1);
 		else
 			specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_march_task task = riding_task(&specimen, number % 10 != 8);
+		const struct pound_task task = riding_task(&specimen, number % 10 != 8);
 		assert_int_equal(observe(task, 0, &story).status, POUND_OK);
 		check_whole(&task);
 		specimen_free(&specimen);
@@ -124,8 +124,8 @@ static void instants_go_on_in_silence(void **state)
 		specimen.study.scene.contact.stiffness_ratio = 1e8;
 		specimen.study.scene.contact.restitution = 0;
 		specimen_record(&specimen, 0.1, 12001)[50] = -1;
-		const struct pound_march_task task = riding_task(&specimen, true);
-		const struct pound_march_result r = observe(task, 0, &story);
+		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task_result r = observe(task, 0, &story);
 		assert_int_equal(r.status, POUND_OK);
 		check_near(r.u[0], 0, 0);
 		check_whole(&task);
@@ -141,8 +141,8 @@ static void an_observed_motion_is_that_of_the_unobserved(void **state)
 	for (int number = 0; number < 64; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_march_task task = riding_task(&specimen, true);
-		const struct pound_march_result r = march(&task), o = observe(task, 0, &story);
+		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task_result r = march(&task), o = observe(task, 0, &story);
 		assert_int_equal(o.status, r.status);
 		assert_int_equal(o.contacts, r.contacts);
 		// 4 s of impacts: roundings of 1e-16 grow by orders of magnitude, not to this
@@ -173,8 +173,8 @@ static void an_observed_motion_is_that_of_the_adaptive_solver(void **state)
 	for (int number = 0; number < check_count(24, 240); number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 101);
-		const struct pound_march_task task = riding_task(&specimen, true);
-		struct pound_march_result a;
+		const struct pound_task task = riding_task(&specimen, true);
+		struct pound_task_result a;
 		pound_adaptive_run(&solver, &task, &a, NULL);
 		assert_int_equal(a.status, POUND_OK);
 		observe(task, 0, &story);
@@ -209,11 +209,11 @@ static void every_lane_count_tells_the_same_bits(void **state)
 	for (int number = 0; number < 40; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		observe(task, 0, &story);
 		for (int lanes = 1; lanes <= 8; lanes++) {
-			struct pound_march_result none;
-			if (!pound_march_lanes(lanes, &task, &none, 0, scratch, NULL))
+			struct pound_task_result none;
+			if (!pound_exact_lanes(lanes, &task, &none, 0, scratch, NULL))
 				continue;
 			observe(task, lanes, &again);
 			check_same(&story, &again);
@@ -229,8 +229,8 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 	enum { TASKS = 40, OBSERVED = 4 };
 	static struct story stories[OBSERVED];
 	static struct specimen specimens[TASKS / 2];
-	struct pound_march_task tasks[TASKS];
-	struct pound_march_result with[TASKS], without[TASKS];
+	struct pound_task tasks[TASKS];
+	struct pound_task_result with[TASKS], without[TASKS];
 	struct pound_march_observer observers[OBSERVED];
 	memset(with, 0, sizeof with);
 	memset(without, 0, sizeof without);
@@ -239,13 +239,13 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 			specimen_random(&specimens[t / 2], t, 0.01, 401);
 		tasks[t] = riding_task(&specimens[t / 2], t % 8 > 1);
 	}
-	assert_true(pound_march_lanes(0, tasks, without, TASKS, scratch, NULL));
+	assert_true(pound_exact_lanes(0, tasks, without, TASKS, scratch, NULL));
 	for (int k = 0; k < OBSERVED; k++) {
 		stories[k].n = 0;
 		observers[k] = (struct pound_march_observer){story_add, &stories[k]};
 		tasks[9 * k].observer = &observers[k];
 	}
-	assert_true(pound_march_lanes(0, tasks, with, TASKS, scratch, NULL));
+	assert_true(pound_exact_lanes(0, tasks, with, TASKS, scratch, NULL));
 	for (int t = 0; t < TASKS; t++)
 		if (!tasks[t].observer)
 			assert_memory_equal(&with[t], &without[t], sizeof with[t]);

@@ -62,12 +62,12 @@ static double release(double v)
 }
 
 /* The body as it meets the wall with speed v, followed until T. */
-static struct pound_march_task task_of(double v, double until)
+static struct pound_task task_of(double v, double until)
 {
 	for (int k = 0; k < SAMPLES; k++)
 		ground[k] = -PUSH;
 	const struct motion start = free_for((struct motion){0, v}, -AWAY);
-	return (struct pound_march_task){.ground = ground,
+	return (struct pound_task){.ground = ground,
 	                                 .n_samples = SAMPLES,
 	                                 .time_step = until / (SAMPLES - 1),
 	                                 .bodies = {{.drive = 1, .followed = true, .u = start.p, .v = start.q}},
@@ -77,13 +77,13 @@ static struct pound_march_task task_of(double v, double until)
 }
 
 /* The exact and the adaptive solver have the motion, the contacts and their time. */
-static void check_solvers(const struct pound_march_task *task, struct motion end, int contacts, double time)
+static void check_solvers(const struct pound_task *task, struct motion end, int contacts, double time)
 {
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	static const int lanes[] = {0, 1};
-	struct pound_march_result r;
+	struct pound_task_result r;
 	for (int k = 0; k < 2; k++) {
-		assert_true(pound_march_lanes(lanes[k], task, &r, 1, scratch, NULL));
+		assert_true(pound_exact_lanes(lanes[k], task, &r, 1, scratch, NULL));
 		assert_int_equal(r.contacts, contacts);
 		check_near(r.u[0], end.p, 1e-14);
 		check_near(r.v[0], end.q, 1e-13);
@@ -100,13 +100,13 @@ static void contact_ends_when_its_force_falls_to_zero_with_an_overlap(void **sta
 {
 	(void)state;
 	// an isolated impact: wd t = pi - 2 asin(zeta), where the overlap is v exp(-zeta W t) 2 zeta/W
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	for (int e = 1; e <= 100; e++) {
-		const struct pound_march_task task = specimen_impact(e / 100.0, false, 1000);
+		const struct pound_task task = specimen_impact(e / 100.0, false, 1000);
 		const double zeta = pound_contact_damping_ratio(0, e / 100.0);
 		const double w = sqrt(task.contact_stiffness * (1 + task.mass_ratio)), wd = w * sqrt(1 - zeta * zeta);
-		struct pound_march_result r;
-		assert_true(pound_march_lanes(0, &task, &r, 1, scratch, NULL));
+		struct pound_task_result r;
+		assert_true(pound_exact_lanes(0, &task, &r, 1, scratch, NULL));
 		assert_int_equal(r.contacts, 1);
 		check_near(r.contact_time, (PI - 2 * asin(zeta)) / wd, 1e-12);
 	}
@@ -121,7 +121,7 @@ static void force_comes_back_when_it_would_push_or_when_parted_bodies_meet_again
 		const double w = W_CONTACT, v = speed * PUSH / w, ends = release(v);
 		if (isnan(ends)) {
 			const double time = 3 / w;
-			const struct pound_march_task task = task_of(v, AWAY + time);
+			const struct pound_task task = task_of(v, AWAY + time);
 			check_solvers(&task, touching((struct motion){0, v}, time), 1, time);
 			stays++;
 			continue;
@@ -143,10 +143,10 @@ static void force_comes_back_when_it_would_push_or_when_parted_bodies_meet_again
 		const double more = 0.1 / w;
 		const struct motion end = touching(again, more);
 		assert_true(force(end) > 0);
-		const struct pound_march_task task = task_of(v, AWAY + ends + away + more);
+		const struct pound_task task = task_of(v, AWAY + ends + away + more);
 		check_solvers(&task, end, 2, ends + more);
 		// until then there is no force, though at first there is an overlap
-		const struct pound_march_task between = task_of(v, AWAY + ends + 0.9 * away);
+		const struct pound_task between = task_of(v, AWAY + ends + 0.9 * away);
 		check_solvers(&between, free_for(parted, 0.9 * away), 1, ends);
 	}
 	check_report("the force stays in %d cases, returns with an overlap in %d and without in %d", stays,

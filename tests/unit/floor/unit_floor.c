@@ -10,7 +10,7 @@ static const double pi = 3.14159265358979323846;
 
 enum { MOST = 64 };
 
-static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 
 static double psa[2][MOST], again[2][MOST];
 static double *const into[] = {psa[0], psa[1]}, *const into_again[] = {again[0], again[1]};
@@ -51,7 +51,7 @@ static void a_floor_that_is_stiff_gives_the_shock_spectrum_of_the_ground(void **
 	specimen.study.scene.contact.present = false;
 	specimen_half_sine(&specimen, 1, 1, 6.2,
 	                   0.005); // the slowest has its peak half its 10 s after the pulse at the latest
-	const struct pound_march_task task = riding_task(&specimen, false);
+	const struct pound_task task = riding_task(&specimen, false);
 	riding_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
 	// the record is the half sine to (pi 0.005)^4/100 = 6e-10
 	for (int k = 0; k < SHOCKS; k++)
@@ -64,10 +64,10 @@ static void a_floor_that_is_stiff_gives_the_shock_spectrum_of_the_ground(void **
 enum { CHASED = 6 };
 
 /* Floor and oscillators of case A's kind together by classical Runge-Kutta steps, contact looked at in every stage. */
-static void plain_rates(const struct pound_march_task *task, double ground, const double *w, double xi,
+static void plain_rates(const struct pound_task *task, double ground, const double *w, double xi,
                         const double *y, double *dy)
 {
-	const struct pound_march_body *b = task->bodies;
+	const struct pound_task_body *b = task->bodies;
 	double p = y[0] - y[2] - task->gap;
 	double force = p > 0 ? task->contact_stiffness * p + task->contact_damping * (y[1] - y[3]) : 0;
 	double floor = -(b[0].damping * y[1] + b[0].backbone.stiffness * y[0]) - force;
@@ -82,7 +82,7 @@ static void plain_rates(const struct pound_march_task *task, double ground, cons
 	}
 }
 
-static void plain_spectra(const struct pound_march_task *task, const double *w, double xi, int steps,
+static void plain_spectra(const struct pound_task *task, const double *w, double xi, int steps,
                           double *out)
 {
 	enum { STATES = 4 + 2 * CHASED };
@@ -116,7 +116,7 @@ static void a_plain_integrator_finds_the_same_spectrum(void **state)
 		specimen_reference(&specimen, &specimen_references[0], 0.005);
 		if (elastic)
 			specimen.study.scene.contact.restitution = 1;
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		for (int k = 0; k < CHASED; k++)
 			w[k] = 2 * pi * frequency[k];
 		plain_spectra(&task, w, 0.05, 100, plain);
@@ -138,7 +138,7 @@ static void half_the_steps_give_the_same_spectra(void **state)
 	for (int number = 0; number < 24; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		struct pound_march_task task = riding_task(&specimen, true);
+		struct pound_task task = riding_task(&specimen, true);
 		riding_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
 		double twice[801];
 		for (int t = 0; t < 801; t++)
@@ -162,7 +162,7 @@ static void every_lane_count_gives_the_same_bits(void **state)
 	for (int number = 0; number < 4; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		struct pound_march_task task = riding_task(&specimen, true);
+		struct pound_task task = riding_task(&specimen, true);
 		riding_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
 		for (int i = 0; i < 3; i++) {
 			if ((lanes[i] == 8 && !__builtin_cpu_supports("avx512dq")) ||
@@ -177,7 +177,7 @@ static void every_lane_count_gives_the_same_bits(void **state)
 }
 
 struct largest_drive {
-	const struct pound_march_task *task;
+	const struct pound_task *task;
 	struct pound_floor_stretch stretch;
 	double value;
 };
@@ -207,18 +207,18 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	specimen_init(&specimen);
 	specimen.study.scene.contact.restitution = 1; // no jump of the force
 	specimen_half_sine(&specimen, 1, 0.5, 2, 0.01);
-	const struct pound_march_task task = riding_task(&specimen, true);
+	const struct pound_task task = riding_task(&specimen, true);
 	riding_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
 	static struct largest_drive largest;
 	largest.task = &task;
 	struct pound_floor_motion motion = {
 	    .task = &task, .stretch = &largest.stretch, .taker = {drive_take, &largest}};
 	const struct pound_march_observer observer = {pound_floor_observe, &motion};
-	struct pound_march_task observed = task;
+	struct pound_task observed = task;
 	observed.observer = &observer;
-	struct pound_march_result result;
+	struct pound_task_result result;
 	pound_floor_start(&motion);
-	assert_true(pound_march_lanes(0, &observed, &result, 1, scratch, NULL));
+	assert_true(pound_exact_lanes(0, &observed, &result, 1, scratch, NULL));
 	drive_take(&largest);
 	// what the kinks where contacts begin leave behind is (contact frequency / own) of it, 25 Hz to 20 kHz
 	check_near(psa[0][0] / largest.value, 1, 2e-3);
@@ -232,7 +232,7 @@ static void without_contact_there_is_no_push(void **state)
 	struct specimen specimen;
 	specimen_init(&specimen);
 	specimen_noise(&specimen, 7, 1, 0.01, 401);
-	const struct pound_march_task task = riding_task(&specimen, false);
+	const struct pound_task task = riding_task(&specimen, false);
 	const struct pound_floor_answer answer = riding_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
 	check_near(answer.impulse_max, 0, 0);
 	for (int k = 0; k < spectrum.n; k++) {
@@ -270,7 +270,7 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	struct specimen specimen;
 	specimen_init(&specimen);
 	specimen_reference(&specimen, &specimen_references[0], 0.0025);
-	const struct pound_march_task task = riding_task(&specimen, true);
+	const struct pound_task task = riding_task(&specimen, true);
 	_Alignas(64) static char memory[1 << 20];
 	assert_true(pound_floor_bytes(1) <= sizeof memory);
 	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
@@ -306,7 +306,7 @@ static void a_floor_that_takes_hours_is_stopped(void **state)
 	struct specimen specimen;
 	specimen_bouncing(&specimen);
 	const double stiffness = 4 * pi * pi;
-	const struct pound_march_task task = {
+	const struct pound_task task = {
 	    .ground = specimen.record,
 	    .n_samples = specimen.study.scene.excitation.n_record,
 	    .time_step = 0.01,

@@ -9,8 +9,8 @@ static struct pound_floor_stretch stretch;
 
 /* a task followed to its end, and what its pieces add up to */
 struct followed {
-	const struct pound_march_task *task;
-	struct pound_march_result result;
+	const struct pound_task *task;
+	struct pound_task_result result;
 	enum pound_status status; /* of the pieces */
 	int pieces, flights, events, touching;
 	double time, gap;       /* total of the steps; largest break between two pieces [s] */
@@ -24,7 +24,7 @@ struct followed {
 };
 
 /* The ground's acceleration at a time, inside the sample interval of another one. */
-static double ground_at(const struct pound_march_task *task, double time, double within)
+static double ground_at(const struct pound_task *task, double time, double within)
 {
 	int k = (int)fmin(within / task->time_step, task->n_samples - 2);
 	const double *a = &task->ground[k];
@@ -55,7 +55,7 @@ static void contact_end(struct followed *f)
 static void pieces_take(void *of)
 {
 	struct followed *f = of;
-	const struct pound_march_task *task = f->task;
+	const struct pound_task *task = f->task;
 	assert_true(stretch.n_maps <= POUND_FLOOR_MAPS);
 	for (int i = 0; i < stretch.n; i++) {
 		const struct pound_floor_piece *p = &stretch.piece[i];
@@ -88,16 +88,16 @@ static void pieces_take(void *of)
 	}
 }
 
-static void follow(struct followed *f, const struct pound_march_task *task)
+static void follow(struct followed *f, const struct pound_task *task)
 {
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	*f = (struct followed){.task = task};
 	struct pound_floor_motion motion = {.task = task, .stretch = &stretch, .taker = {pieces_take, f}};
 	const struct pound_march_observer observer = {pound_floor_observe, &motion};
-	struct pound_march_task observed = *task;
+	struct pound_task observed = *task;
 	observed.observer = &observer;
 	pound_floor_start(&motion);
-	assert_true(pound_march_lanes(0, &observed, &f->result, 1, scratch, NULL));
+	assert_true(pound_exact_lanes(0, &observed, &f->result, 1, scratch, NULL));
 	pieces_take(f);
 	contact_end(f);
 	piece_follow(f, f->time, f->result.u[0], f->result.v[0]);
@@ -108,7 +108,7 @@ static void follow(struct followed *f, const struct pound_march_task *task)
  *
  * Given    tolerance  of displacement and velocity there, over the largest of either
  */
-static struct followed check_followed(const struct pound_march_task *task, double tolerance)
+static struct followed check_followed(const struct pound_task *task, double tolerance)
 {
 	struct followed f;
 	follow(&f, task);
@@ -137,7 +137,7 @@ static void known_impacts_come_out_to_their_digits(void **state)
 		struct specimen specimen;
 		specimen_init(&specimen);
 		specimen_reference(&specimen, reference, 0.0025);
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-13);
 		assert_int_equal(f.result.contacts, (int)reference->contacts);
 		// the record is the half sine to (pi 0.005)^4/100 = 6e-10 of it
@@ -154,7 +154,7 @@ static void every_piece_leads_to_the_next(void **state)
 	for (int number = 0; number < check_count(200, 2000); number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		check_near(f.impulse, f.result.impulse_max, 1e-12 * f.result.impulse_max);
 		assert_true(f.pieces >= 400);
@@ -180,7 +180,7 @@ static void a_contact_that_has_settled_is_followed_by_whole_samples(void **state
 		double *ground = specimen_record(&specimen, 0.01, SAMPLES);
 		for (int t = 0; t < SAMPLES; t++)
 			ground[t] = -1;
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		assert_true(f.result.contact_time > 0.1);
 		assert_true(f.pieces < 10 * SAMPLES);
@@ -203,7 +203,7 @@ static void a_contact_without_losses_is_followed_however_stiff(void **state)
 		double *ground = specimen_record(&specimen, 0.01, SAMPLES);
 		for (int t = 0; t < SAMPLES; t++)
 			ground[t] = -fmin(1, t / 20.0);
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		check_near(f.impulse, f.result.impulse_max, 1e-12 * f.result.impulse_max);
 		specimen_free(&specimen);
@@ -220,7 +220,7 @@ static void a_swing_that_takes_too_many_pieces_ends_as_chatter(void **state)
 	for (int stiff = 0; stiff < 2; stiff++) {
 		// a thousand and a million swings in a sample, each of four pieces and more
 		const double k = 40;
-		const struct pound_march_task task = {
+		const struct pound_task task = {
 		    .ground = ground,
 		    .n_samples = 4,
 		    .time_step = 0.1,
@@ -245,7 +245,7 @@ static void a_body_that_creeps_where_it_yielded_is_followed(void **state)
 	for (int k = 0; k < 602; k++) {
 		struct specimen specimen;
 		specimen_creeping(&specimen, k < 600 ? k : vanishing[k - 600], 1);
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		check_near(f.impulse, f.result.impulse_max, 1e-9 * f.result.impulse_max);
 		specimen_free(&specimen);
@@ -259,7 +259,7 @@ static void bodies_alike_but_for_roundings_are_followed(void **state)
 	for (int number = 0; number < 200; number++) {
 		struct specimen specimen;
 		specimen_alike(&specimen, number, number % SPECIMEN_LAWS);
-		const struct pound_march_task task = riding_task(&specimen, true);
+		const struct pound_task task = riding_task(&specimen, true);
 		check_followed(&task, 1e-12);
 		specimen_free(&specimen);
 	}
@@ -271,7 +271,7 @@ static void a_damped_body_pressed_on_a_wall_is_followed(void **state)
 	(void)state;
 	uint64_t seed = 3;
 	for (int n = 0; n < 4000; n++) {
-		struct pound_march_task task = specimen_pressed(&seed);
+		struct pound_task task = specimen_pressed(&seed);
 		if (n >= 2000)
 			task.contact_damping *= specimen_uniform(&seed, 1, 30);
 		check_followed(&task, 1e-13);
@@ -290,7 +290,7 @@ static void a_motion_that_dies_away_in_silence_is_over(void **state)
 	specimen.study.scene.contact.stiffness_ratio = 1e8;
 	specimen.study.scene.contact.restitution = 0;
 	specimen_record(&specimen, 0.01, SAMPLES)[10] = -1;
-	const struct pound_march_task task = riding_task(&specimen, true);
+	const struct pound_task task = riding_task(&specimen, true);
 	const struct followed f = check_followed(&task, 1e-11);
 	check_near(f.next.u, 0, 0);
 	check_near(f.next.v, 0, 0);
@@ -306,7 +306,7 @@ static void a_floor_without_contact_is_all_flight(void **state)
 	for (int t = 0; t < SAMPLES; t++)
 		ground[t] = -1;
 	const double w = 10, h = 0.01;
-	const struct pound_march_task task = {.ground = ground,
+	const struct pound_task task = {.ground = ground,
 	                                      .n_samples = SAMPLES,
 	                                      .time_step = h,
 	                                      .bodies = {{.backbone = {.stiffness = w * w}, .drive = 1}}};
@@ -325,7 +325,7 @@ static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 	specimen_init(&specimen);
 	specimen.study.scene.oscillators[0].frequency_hz = 900;
 	specimen_half_sine(&specimen, 1, 0.5, 1, 0.01);
-	const struct pound_march_task task = riding_task(&specimen, false);
+	const struct pound_task task = riding_task(&specimen, false);
 	const struct followed f = check_followed(&task, 1e-12);
 	assert_true(f.flights == 0 && f.pieces >= 3770);
 	specimen_free(&specimen);
@@ -344,9 +344,9 @@ static void a_body_that_turns_between_two_samples_is_followed(void **state)
 		double ground[SAMPLES];
 		for (int i = 0; i < SAMPLES; i++)
 			ground[i] = specimen_uniform(&seed, -10, 10);
-		struct pound_march_task task = {.ground = ground, .n_samples = SAMPLES, .time_step = 0.05};
+		struct pound_task task = {.ground = ground, .n_samples = SAMPLES, .time_step = 0.05};
 		task.bodies[0] =
-		    (struct pound_march_body){.backbone = {.law = n % LAWS,
+		    (struct pound_task_body){.backbone = {.law = n % LAWS,
 		                                           .stiffness = specimen_uniform(&seed, 10, 100),
 		                                           .hardening = 0.1,
 		                                           .yield = specimen_uniform(&seed, 0.001, 0.03)},

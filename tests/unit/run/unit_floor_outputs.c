@@ -53,7 +53,7 @@ static void a_study_of_one_signal_is_its_floor(void **state)
 	double psa[2][6], *into[] = {psa[0], psa[1]};
 	specimen.study.kind = POUND_KIND_RESPONSE; // to find the task
 	specimen.study.n_outputs = 1;
-	struct pound_march_task task = riding_task(&specimen, true);
+	struct pound_task task = riding_task(&specimen, true);
 	const struct pound_floor_answer answer = riding_spectra(&task, &specimen.study.spectrum, 2, 1, 0, into);
 	for (int k = 0; k < 6; k++) {
 		// the study scales the motion by a power of two

@@ -153,14 +153,14 @@ static void hardening_one_is_linear_whatever_the_law(void **state)
 /* Period of a free vibration of amplitude mu, in linear periods; `about` is right to a third. */
 static double period(int law, double mu, double about)
 {
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	enum { SAMPLES = 1001 };
 	static const double still[SAMPLES];
 	// bisect on the end of the motion: from the middle, the displacement rises through 0 after one period
 	double low = 0.7 * about, high = 1.3 * about;
 	while (high - low > 1e-13) {
 		double middle = 0.5 * (low + high);
-		struct pound_march_task task = {
+		struct pound_task task = {
 		    .ground = still,
 		    .n_samples = SAMPLES,
 		    .time_step = middle / (SAMPLES - 1),
@@ -169,8 +169,8 @@ static double period(int law, double mu, double about)
 		// start in the middle of the elastic range with the energy of the amplitude mu
 		double energy = 2 * PI * sqrt(1 + 2 * (mu - 1) + 0.05 * (mu - 1) * (mu - 1));
 		task.bodies[0].v = mu <= 1 ? 2 * PI * mu : energy;
-		struct pound_march_result r;
-		pound_march_lanes(0, &task, &r, 1, scratch, NULL);
+		struct pound_task_result r;
+		pound_exact_lanes(0, &task, &r, 1, scratch, NULL);
 		check_near(r.displacement_max[0], mu, 1e-12);
 		*(r.u[0] < 0 ? &low : &high) = middle;
 	}

@@ -19,10 +19,10 @@ static int row_of(const char *name)
 	return row;
 }
 
-static struct pound_march_result integrate(double tolerance, const struct pound_march_task *task)
+static struct pound_task_result integrate(double tolerance, const struct pound_task *task)
 {
 	const struct pound_solver solver = {.tolerance = tolerance};
-	struct pound_march_result result;
+	struct pound_task_result result;
 	pound_adaptive_run(&solver, task, &result, NULL);
 	return result;
 }
@@ -31,8 +31,8 @@ static void an_isolated_impact_leaves_with_the_restitution(void **state)
 {
 	(void)state;
 	for (int e = 1; e <= 20; e++) {
-		const struct pound_march_task task = specimen_impact(e / 20.0, true, STILL);
-		const struct pound_march_result r = integrate(1e-12, &task);
+		const struct pound_task task = specimen_impact(e / 20.0, true, STILL);
+		const struct pound_task_result r = integrate(1e-12, &task);
 		// some 20 steps, each to 1e-12
 		check_near((r.v[1] - r.v[0]) / 1.5, e / 20.0, 1e-11);
 		check_near(r.impulse_max, (1 + e / 20.0) * 1.5 / 1.5, 1e-11);
@@ -47,8 +47,8 @@ static void without_tension_the_rebound_is_that_of_release_at_zero_force(void **
 	(void)state;
 	// known_answers 5.1: e^(1 - 2 asin(zeta)/pi)
 	for (int e = 1; e <= 20; e++) {
-		const struct pound_march_task task = specimen_impact(e / 20.0, false, STILL);
-		const struct pound_march_result r = integrate(1e-12, &task);
+		const struct pound_task task = specimen_impact(e / 20.0, false, STILL);
+		const struct pound_task_result r = integrate(1e-12, &task);
 		double zeta = pound_contact_damping_ratio(0, e / 20.0);
 		check_near((r.v[1] - r.v[0]) / 1.5, pow(e / 20.0, 1 - 2 * asin(zeta) / acos(-1)), 1e-11);
 	}
@@ -186,8 +186,8 @@ static void a_stiff_contact_is_followed_by_the_implicit_stepper(void **state)
 static void a_tolerance_out_of_reach_is_a_status(void **state)
 {
 	(void)state;
-	const struct pound_march_task task = specimen_impact(0.6, true, STILL);
-	const struct pound_march_result r = integrate(1e-300, &task);
+	const struct pound_task task = specimen_impact(0.6, true, STILL);
+	const struct pound_task_result r = integrate(1e-300, &task);
 	assert_int_equal(r.status, POUND_TOLERANCE);
 	check_near(r.u[0] + r.v[0] + r.impulse_max + r.displacement_max[0], 0, 0);
 }
@@ -195,11 +195,11 @@ static void a_tolerance_out_of_reach_is_a_status(void **state)
 static void bodies_at_rest_stay_at_rest(void **state)
 {
 	(void)state;
-	struct pound_march_task task = specimen_impact(0.6, true, STILL);
+	struct pound_task task = specimen_impact(0.6, true, STILL);
 	task.gap = 0;
 	task.bodies[0].v = task.bodies[1].v = 0;
 	task.bodies[0].followed = true;
-	const struct pound_march_result r = integrate(1e-9, &task);
+	const struct pound_task_result r = integrate(1e-9, &task);
 	assert_int_equal(r.status, POUND_OK);
 	assert_int_equal(r.contacts, 0);
 	check_near(r.displacement_max[0], 0, 0);

@@ -13,21 +13,21 @@ static const double PI = 3.14159265358979323846;
 enum { NEWMARK = 1, CENTRAL_DIFFERENCE = 2, STILL = 401 };
 static const double still[STILL]; // ground at rest
 
-static struct pound_march_result integrate(int method, double step, const struct pound_march_task *task)
+static struct pound_task_result integrate(int method, double step, const struct pound_task *task)
 {
 	static const atomic_bool stop;
-	static _Alignas(64) char scratch[POUND_MARCH_SCRATCH];
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	const struct pound_solver solver = {.method = method, .step = step};
-	struct pound_march_result result;
+	struct pound_task_result result;
 	pound_solver_run(&solver, task, &result, 1, scratch, &stop);
 	return result;
 }
 
 /* One oscillator of 1 Hz let go from 1 m at `speed`, for 4 s. */
-static struct pound_march_task vibration(double damping_ratio, double speed)
+static struct pound_task vibration(double damping_ratio, double speed)
 {
 	double w = 2 * PI;
-	return (struct pound_march_task){.ground = still,
+	return (struct pound_task){.ground = still,
 	                                 .n_samples = STILL,
 	                                 .time_step = 0.01,
 	                                 .bodies = {{.backbone = {.stiffness = w * w},
@@ -52,7 +52,7 @@ static void the_error_of_free_vibration_falls_with_the_square_of_the_step(void *
 {
 	(void)state;
 	const double xi = 0.05, speed = 3, w = 2 * PI, t = 4, wd = w * sqrt(1 - xi * xi);
-	const struct pound_march_task task = vibration(xi, speed);
+	const struct pound_task task = vibration(xi, speed);
 	double u = exp(-xi * w * t) * (cos(wd * t) + (speed + xi * w) / wd * sin(wd * t));
 	for (int method = NEWMARK; method <= CENTRAL_DIFFERENCE; method++) {
 		double before = 0;
@@ -70,11 +70,11 @@ static void the_error_of_free_vibration_falls_with_the_square_of_the_step(void *
 static void newmark_keeps_the_energy_of_free_vibration_at_any_step(void **state)
 {
 	(void)state;
-	struct pound_march_task task = vibration(0, 2);
+	struct pound_task task = vibration(0, 2);
 	for (int k = 0; k < 12; k++) {
 		double w = 2 * PI * pow(2, k);
 		task.bodies[0].backbone.stiffness = w * w;
-		const struct pound_march_result r = integrate(NEWMARK, 1, &task);
+		const struct pound_task_result r = integrate(NEWMARK, 1, &task);
 		assert_int_equal(r.status, POUND_OK);
 		// a rounding of 400 steps, each of some ten operations
 		double energy = w * w + 2 * 2;
@@ -86,7 +86,7 @@ static void central_differences_vibrate_with_their_known_period(void **state)
 {
 	(void)state;
 	// u_n = cos(n theta) with sin(theta/2) = w h/2
-	const struct pound_march_task task = vibration(0, 0);
+	const struct pound_task task = vibration(0, 0);
 	for (int n = 1; n <= 8; n *= 2) {
 		double h = 0.01 / n, theta = 2 * asin(2 * PI * h / 2);
 		check_near(integrate(CENTRAL_DIFFERENCE, h, &task).u[0], cos(400 * n * theta), 1e-10);
@@ -96,11 +96,11 @@ static void central_differences_vibrate_with_their_known_period(void **state)
 static void an_explicit_step_beyond_its_limit_ends_with_a_status(void **state)
 {
 	(void)state;
-	struct pound_march_task task = vibration(0, 0);
+	struct pound_task task = vibration(0, 0);
 	task.bodies[0].backbone.stiffness = pow(1.99 / 0.01, 2);
 	assert_int_equal(integrate(CENTRAL_DIFFERENCE, 0.01, &task).status, POUND_OK);
 	task.bodies[0].backbone.stiffness = pow(2.1 / 0.01, 2);
-	const struct pound_march_result r = integrate(CENTRAL_DIFFERENCE, 0.01, &task);
+	const struct pound_task_result r = integrate(CENTRAL_DIFFERENCE, 0.01, &task);
 	assert_int_equal(r.status, POUND_UNSTABLE);
 	check_near(r.displacement_max[0] + r.u[0] + r.impulse_max, 0, 0);
 	// and so when it overflows before the next look, or is no number at all
@@ -112,7 +112,7 @@ static void an_explicit_step_beyond_its_limit_ends_with_a_status(void **state)
 static void nor_is_one_beyond_that_of_a_touching_pair_passed_in_silence(void **state)
 {
 	(void)state;
-	struct pound_march_task task = specimen_impact(0.5, true, 21);
+	struct pound_task task = specimen_impact(0.5, true, 21);
 	const double limit = 2 / sqrt(task.contact_stiffness * (1 + task.mass_ratio));
 	task.time_step = 0.99 * limit;
 	assert_int_equal(integrate(CENTRAL_DIFFERENCE, task.time_step, &task).status, POUND_OK);
@@ -127,7 +127,7 @@ static void a_step_is_cut_to_fit_the_sample_interval(void **state)
 {
 	(void)state;
 	static const double same[][2] = {{0.003, 0.0025}, {7, 0.01}, {0.00100001, 0.001}, {0.01 / 3, 0.0034}};
-	const struct pound_march_task task = vibration(0.02, 1);
+	const struct pound_task task = vibration(0.02, 1);
 	for (int method = NEWMARK; method <= CENTRAL_DIFFERENCE; method++)
 		for (size_t k = 0; k < sizeof same / sizeof same[0]; k++)
 			check_near(integrate(method, same[k][0], &task).u[0], integrate(method, same[k][1], &task).u[0],
@@ -140,8 +140,8 @@ static void an_impact_leaves_with_the_restitution_to_the_first_power_of_the_step
 	for (int method = NEWMARK; method <= CENTRAL_DIFFERENCE; method++)
 		for (int e = 0; e <= 10; e++)
 			for (double step = 1e-4; step > 1e-6; step /= 10) {
-				const struct pound_march_task task = specimen_impact(e / 10.0, true, 21);
-				const struct pound_march_result r = integrate(method, step, &task);
+				const struct pound_task task = specimen_impact(e / 10.0, true, 21);
+				const struct pound_task_result r = integrate(method, step, &task);
 				// the overlap begins and ends up to a step late, each with a force up to C v: 2 w h in all
 				double w = sqrt(task.contact_stiffness * 1.5);
 				check_near((r.v[1] - r.v[0]) / 1.5, e / 10.0, 2 * w * step);
