@@ -25,11 +25,11 @@ struct pound_floor {
 typedef void width_ride(const struct pound_bank *, const struct pound_ride *, void *scratch);
 
 /* Takes a bank over a stretch at a lane count; 0: the widest there is; false: this machine has no such lanes. */
-bool pound_spectrum_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *stretch,
+bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *stretch,
                           void *scratch)
 {
-	static width_ride *const run[POUND_WIDTHS] = {pound_spectrum_w8, pound_spectrum_w4, pound_spectrum_w1,
-	                                              pound_spectrum_portable};
+	static width_ride *const run[POUND_WIDTHS] = {pound_oscillator_bank_w8, pound_oscillator_bank_w4, pound_oscillator_bank_w1,
+	                                              pound_oscillator_bank_portable};
 	int width = pound_dispatch_width(lanes);
 	if (width >= 0)
 		run[width](bank, stretch, scratch);
@@ -137,7 +137,7 @@ struct riders {
 static void riders_take(void *of)
 {
 	const struct riders *riders = of;
-	bool ridden = pound_spectrum_lanes(riders->lanes, riders->bank, &riders->ride, riders->scratch);
+	bool ridden = pound_oscillator_bank_lanes(riders->lanes, riders->bank, &riders->ride, riders->scratch);
 	assert(ridden);
 	(void)ridden;
 }

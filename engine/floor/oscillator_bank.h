@@ -28,13 +28,13 @@ struct pound_ride {
 	double damping;   /* of the left body, c/m [1/s] */
 };
 
-bool pound_spectrum_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *ride,
+bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *ride,
                           void *scratch);
 
 /* oscillator_bank.inl, compiled once for each */
-void pound_spectrum_w8(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
-void pound_spectrum_w4(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
-void pound_spectrum_w1(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
-void pound_spectrum_portable(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_oscillator_bank_w8(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_oscillator_bank_w4(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_oscillator_bank_w1(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_oscillator_bank_portable(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
 
 #endif

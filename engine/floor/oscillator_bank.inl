@@ -460,7 +460,7 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
  * Valid    exact but for rounding; bits of an oscillator depend on its group, not on the lane count
  * Test     unit_oscillator_bank
  */
-void POUND_SPECTRUM(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch)
+void POUND_OSCILLATOR_BANK(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch)
 {
 	struct scratch *room = scratch;
 	for (int i = 0; i < ride->stretch->n; i++) {

@@ -17,7 +17,7 @@ static const double PI = 3.14159265358979323846;
  * Source   the paper, Eq. (23)
  * Test     unit_pulse_train
  */
-double pound_dirac_line(const struct pound_dirac *dirac, double omega, double xi)
+double pound_pulse_train_line(const struct pound_pulse_train *dirac, double omega, double xi)
 {
 	return dirac->speed * omega * pound_elementary_exp(-0.5 * PI * xi);
 }
@@ -31,12 +31,12 @@ double pound_dirac_line(const struct pound_dirac *dirac, double omega, double xi
  * Valid    xi << 1: low by 0.03 % at xi = 0.02, 0.2 % at 0.05
  * Test     unit_pulse_train
  */
-double pound_dirac_peaks(const struct pound_dirac *dirac, double omega, double xi)
+double pound_pulse_train_peaks(const struct pound_pulse_train *dirac, double omega, double xi)
 {
 	double turn = fmin(xi * omega * dirac->spacing, 700), all = fmin(turn * dirac->pulses, 700);
 	double decay = 1 - pound_elementary_exp(-turn);
 	double sum = decay > 0 ? (1 - pound_elementary_exp(-all)) / decay : dirac->pulses;
-	return pound_dirac_line(dirac, omega, xi) * sum;
+	return pound_pulse_train_line(dirac, omega, xi) * sum;
 }
 
 /* Angle in [0, pi] of a sine >= 0 and a cosine.
@@ -84,7 +84,7 @@ static double extremum(double z, double v, double xi, double s, double limit, do
  * Valid    exact but for rounding; NAN when it was stopped
  * Test     unit_pulse_train: a_train_of_pulses_gives_the_exact_values
  */
-double pound_dirac_train(const struct pound_dirac *dirac, double omega, double xi)
+double pound_pulse_train_train(const struct pound_pulse_train *dirac, double omega, double xi)
 {
 	double s = sqrt(1 - xi * xi), turn = omega * s * dirac->spacing, sine, cosine;
 	double decay = pound_elementary_exp(-fmin(xi * omega * dirac->spacing, 700));

@@ -5,7 +5,7 @@
 #include <stdatomic.h>
 
 /* equal steps of the floor's velocity, one every `spacing` */
-struct pound_dirac {
+struct pound_pulse_train {
 	double speed;            /* impulse over the floor's mass [m/s] */
 	double spacing;          /* half a period of the floor [s]  > 0 */
 	double pulses;           /* whole number, N */
@@ -13,8 +13,8 @@ struct pound_dirac {
 };
 
 /* pseudo-accelerations at one frequency omega > 0 and damping xi in [0, 1)  [m/s2] */
-double pound_dirac_line(const struct pound_dirac *dirac, double omega, double xi);
-double pound_dirac_train(const struct pound_dirac *dirac, double omega, double xi);
-double pound_dirac_peaks(const struct pound_dirac *dirac, double omega, double xi);
+double pound_pulse_train_line(const struct pound_pulse_train *dirac, double omega, double xi);
+double pound_pulse_train_train(const struct pound_pulse_train *dirac, double omega, double xi);
+double pound_pulse_train_peaks(const struct pound_pulse_train *dirac, double omega, double xi);
 
 #endif

@@ -88,12 +88,12 @@ static void scaled(const double *psa, int n, int exponent, double *into)
 		into[k] = ldexp(psa[k], exponent);
 }
 
-static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound_dirac *dirac, double *values)
+static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound_pulse_train *dirac, double *values)
 {
-	static double (*const rows[])(const struct pound_dirac *, double, double) = {
-	    [POUND_SPECTRUM_DIRAC_LINE] = pound_dirac_line,
-	    [POUND_SPECTRUM_DIRAC_TRAIN] = pound_dirac_train,
-	    [POUND_SPECTRUM_DIRAC_PEAKS] = pound_dirac_peaks,
+	static double (*const rows[])(const struct pound_pulse_train *, double, double) = {
+	    [POUND_SPECTRUM_DIRAC_LINE] = pound_pulse_train_line,
+	    [POUND_SPECTRUM_DIRAC_TRAIN] = pound_pulse_train_train,
+	    [POUND_SPECTRUM_DIRAC_PEAKS] = pound_pulse_train_peaks,
 	};
 	for (int row = POUND_N_INTEGRATED; row < POUND_N_SPECTRA; row++)
 		for (int k = 0; k < spectrum->n && !pound_stopped(dirac->stop); k++)
@@ -123,7 +123,7 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 	scaled(o->psa[POUND_DRIVE_PUSH], n, request->exponent, values + POUND_SPECTRUM_IMPACT_ONLY * n);
 	const struct pound_oscillator *left = &request->scene->oscillators[0];
 	int pulses = study->spectrum.pulses;
-	const struct pound_dirac dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
+	const struct pound_pulse_train dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
 	                                  .spacing = 0.5 / left->frequency_hz,
 	                                  .pulses = pulses ? pulses : (double)answer.contacts,
 	                                  .stop = stop};

@@ -36,7 +36,7 @@ static struct pound_bank bank_of(const double *w, int n, double xi)
 static void ride(const struct pound_bank *bank)
 {
 	const struct pound_ride ride = {.stretch = &stretch, .time_step = 0.01};
-	assert_true(pound_spectrum_lanes(0, bank, &ride, scratch));
+	assert_true(pound_oscillator_bank_lanes(0, bank, &ride, scratch));
 }
 
 /* One more piece of the stretch: a polynomial over its own time. */
