@@ -116,7 +116,7 @@ void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_row
 		estimates[v] = (struct pound_estimate){value[v], NAN, NAN};
 	for (int r = 0; r < n_resamples && !pound_stopped(statistic->stop); r++) {
 		if (r % GROUP == 0)
-			pound_resample_sums(pound_dispatch_width(0), &moments, seed, r, sum);
+			pound_bootstrap_sums(pound_dispatch_width(0), &moments, seed, r, sum);
 		for (int k = 0; k < n_moments; k++)
 			mean[k] = sum[r % GROUP * width + k] / n_rows;
 		statistic->values(statistic->subject, mean, value);

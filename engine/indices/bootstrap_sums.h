@@ -20,12 +20,12 @@ struct pound_tiles {
 
 /* Sums of the columns over POUND_RESAMPLE_GROUP resamples from number `first`, each of as many rows as there are;
  * 64-byte aligned.  sum: (POUND_RESAMPLE_GROUP x n_tiles x POUND_TILE), the same bits for any width of cpu_width.h */
-void pound_resample_sums(int width, const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_bootstrap_sums(int width, const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
 
 /* resample.inl, compiled once for each */
-void pound_resample_w8(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
-void pound_resample_w4(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
-void pound_resample_w1(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
-void pound_resample_portable(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_bootstrap_sums_w8(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_bootstrap_sums_w4(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_bootstrap_sums_w1(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
+void pound_bootstrap_sums_portable(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
 
 #endif

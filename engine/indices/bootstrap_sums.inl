@@ -124,7 +124,7 @@ static void segment_add(const struct pound_tiles *tiles, int segment, uint64_t s
  *
  * Test     unit_bootstrap: sums_are_the_same_bits_at_any_width
  */
-void POUND_RESAMPLE(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum)
+void POUND_BOOTSTRAP_SUMS(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum)
 {
 	const int segments = (tiles->n_rows + SEGMENT - 1) / SEGMENT, width = tiles->n_tiles * POUND_TILE;
 	int share[GROUP][SEGMENTS_MAX];
