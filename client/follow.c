@@ -85,16 +85,16 @@ enum outcome follow_study(struct wire *wire, const char *id, struct wire_reply *
 	const struct wire_request request = {.method = "GET", .path = path};
 	enum outcome outcome = OUTCOME_OK;
 	// a server that has never answered gets no patience
-	int wait_ms = PAUSE_MS_MIN, away_ms = PATIENCE_MS;
+	int wait_ms = PAUSE_MS_MIN, host_pauses_ms = PATIENCE_MS;
 	*last = (struct wire_reply){0};
 	for (bool over = false; !over;) {
 		wire_reply_free(last);
 		enum outcome sent = wire_send(wire, &request, last);
 		bool away = sent == OUTCOME_UNREACHED || last->status == HTTP_UNAVAILABLE;
-		if (away && away_ms < PATIENCE_MS)
-			away_ms += wait_ms;
+		if (away && host_pauses_ms < PATIENCE_MS)
+			host_pauses_ms += wait_ms;
 		else {
-			away_ms = 0;
+			host_pauses_ms = 0;
 			over = look(wire, sent, id, last, &outcome);
 		}
 		if (!over)

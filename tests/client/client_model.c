@@ -134,7 +134,7 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 {
 	(void)state;
 	struct program_outcome until = POUND("example", "until"), design = POUND("example", "design");
-	char *points = documents_with(design.out, "\"lhs\"", "\"sobol\"");
+	char *points = study_documents_with(design.out, "\"lhs\"", "\"sobol\"");
 	struct program_outcome grown =
 	    program_run((const char *const[]){"pound", "design", "-", NULL}, until.out);
 	struct program_outcome uneven = program_run((const char *const[]){"pound", "design", "-", NULL}, points);

@@ -217,10 +217,10 @@ static void a_table_fits_in_100_columns(void **state)
 static char *with_every_table(void)
 {
 	struct program_outcome document = POUND("example", "paper_linear");
-	char *study = documents_with(document.out, "\"rows\": 1000", "\"rows\": 100, \"estimator\": \"janon\"");
-	char *common = documents_with(study, "\"independent\"", "\"common\"");
+	char *study = study_documents_with(document.out, "\"rows\": 1000", "\"rows\": 100, \"estimator\": \"janon\"");
+	char *common = study_documents_with(study, "\"independent\"", "\"common\"");
 	char *whole =
-	    documents_with(common, "\"design\":",
+	    study_documents_with(common, "\"design\":",
 	                   "\"ratios\": [{\"name\": \"f_e/f_2\", \"of\": [\"/excitation/frequency_hz\", "
 	                   "\"/oscillators/1/frequency_hz\"]}], \"design\":");
 	program_free(&document);
@@ -283,7 +283,7 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 	(void)state;
 	struct program_outcome paper = POUND("example", "paper"),
 	                       small = POUND("example", "spectrum_sensitivity");
-	char *few = documents_with(paper.out, "\"rows\": 1000", "\"rows\": 40");
+	char *few = study_documents_with(paper.out, "\"rows\": 1000", "\"rows\": 40");
 	const char *const studies[] = {few, small.out};
 	const char *const words[] = {"  impulse               f_2", "floor_spectrum 64 Hz"};
 	for (int i = 0; i < 2; i++) {

@@ -119,7 +119,7 @@ static struct batch scene_batch(const struct pound_scene *scene, double **ground
 
 struct loop {
 	const char *name;
-	struct yardstick_result (*run)(const struct pound_task *task, int steps);
+	struct baseline_result (*run)(const struct pound_task *task, int steps);
 	int steps; /* from a sample to the next */
 	const struct batch *batch;
 	double impulse[LOOPED];
@@ -211,10 +211,10 @@ void bench_reference(void)
 	double *ground;
 	struct batch exact = scene_batch(&study->scene, &ground);
 	struct loop loops[] = {
-	    {.name = "plain", .run = yardstick_plain, .steps = 10},
-	    {.name = "plain", .run = yardstick_plain, .steps = 100},
-	    {.name = "plain", .run = yardstick_plain, .steps = 1000},
-	    {.name = "tuned", .run = yardstick_tuned, .steps = 100},
+	    {.name = "plain", .run = baseline_plain, .steps = 10},
+	    {.name = "plain", .run = baseline_plain, .steps = 100},
+	    {.name = "plain", .run = baseline_plain, .steps = 1000},
+	    {.name = "tuned", .run = baseline_tuned, .steps = 100},
 	};
 	enum { LOOPS = sizeof loops / sizeof loops[0] };
 	struct bench_job jobs[LOOPS + 1] = {{.run = batch_run, .of = &exact}};

@@ -61,7 +61,7 @@ static void attacked(struct service *service, const char *what, const char *firs
 	struct latencies latencies = {0};
 	int asked = 0, answered = 0, opened = 0, before = open_files(service);
 	double start = latency_now(), seconds = latency_soak_s(), settled = start + fmin(10, seconds / 2);
-	away_start();
+	host_pauses_start();
 	for (int i = 0; i < SLOW; i++)
 		sockets[i] = -1;
 	for (double due = settled; latency_now() < start + seconds;) {
@@ -80,7 +80,7 @@ static void attacked(struct service *service, const char *what, const char *firs
 	}
 	for (int i = 0; i < SLOW; i++)
 		close(sockets[i]);
-	away_stop();
+	host_pauses_stop();
 	double closed = latency_now();
 	while (open_files(service) > before + 5 && latency_now() < closed + 30)
 		usleep(100000);
@@ -88,7 +88,7 @@ static void attacked(struct service *service, const char *what, const char *firs
 	    "%s: %d slow clients, %d connections in %.0f s; %d of %d fresh requests answered; files back "
 	    "after %.0f "
 	    "s; the machine was away for %.2f %%",
-	    what, SLOW, opened, seconds, answered, asked, latency_now() - closed, 100 * away_share());
+	    what, SLOW, opened, seconds, answered, asked, latency_now() - closed, 100 * host_pauses_share());
 	latency_told("  fresh requests", &latencies);
 	latency_there(&latencies);
 	latency_told("  of them while the machine was there", &latencies);

@@ -170,7 +170,7 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "running", 1));
 	int epoll = pollers_open(service);
-	away_start();
+	host_pauses_start();
 	for (int round = 0; round < ROUNDS; round++) {
 		struct cost start = cost_now(service);
 		usleep((useconds_t)(1e6 * seconds));
@@ -183,15 +183,15 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 		wall_s += with.wall_s;
 	}
 	pollers_close(epoll);
-	away_stop();
+	host_pauses_stop();
 	qsort(dearer, ROUNDS, sizeof(double), ascending);
-	double there_s = wall_s * (1 - away_share()) * (double)sysconf(_SC_NPROCESSORS_ONLN);
+	double there_s = wall_s * (1 - host_pauses_share()) * (double)sysconf(_SC_NPROCESSORS_ONLN);
 	double share = answers_s / there_s, slowed = 1 - (1 - share) / dearer[ROUNDS / 2];
 	latency_told("answers", &polls.answers);
 	latency_there(&polls.answers);
 	latency_told("of them while the machine was there", &polls.answers);
 	check_report("late %d, wrong %d; the machine was away for %.2f %% of %.0f s", polls.late, polls.wrong,
-	             100 * away_share(), 2 * wall_s);
+	             100 * host_pauses_share(), 2 * wall_s);
 	// half of the rounds lie between the quartiles: the median's standard error from them
 	double error = 1.25 * (dearer[3 * ROUNDS / 4] - dearer[ROUNDS / 4]) / 1.35 / sqrt(ROUNDS);
 	check_report(

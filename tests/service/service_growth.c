@@ -12,7 +12,7 @@ static char *growing_study(void)
 {
 	char *plain = service_study(SERVICE_ROWS, SIGNALS, SEED), rows[32];
 	snprintf(rows, sizeof rows, "\"rows\": %d, ", SERVICE_ROWS);
-	char *study = documents_with(
+	char *study = study_documents_with(
 	    plain, rows, "\"method\": \"sobol\", \"until\": {\"half_width\": 0.15, \"max_runs\": 80000}, ");
 	free(plain);
 	return study;

@@ -124,8 +124,8 @@ static const char HOSTILE[] = "<img src=x onerror=document.title=1>";
 /* A finished study with every figure of its kind and a hostile name; the id is 16 characters. */
 static void finished(const struct service *service, char id[17])
 {
-	char *document = documents_with(example_text("sensitivity_small"), "A quick look", HOSTILE);
-	char *study = documents_with(document, "\"name\": \"f_2\"", "\"name\": \"<b>f_2</b>\"");
+	char *document = study_documents_with(example_text("sensitivity_small"), "A quick look", HOSTILE);
+	char *study = study_documents_with(document, "\"name\": \"f_2\"", "\"name\": \"<b>f_2</b>\"");
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	free(study);
@@ -178,7 +178,7 @@ static void a_campaign_is_shown_in_a_second_and_2000_nodes(void **state)
 	struct timespec before, after;
 	if (!browser_there())
 		skip();
-	char *study = documents_with(example_text("paper"), "\"rows\": 1000", "\"rows\": 40");
+	char *study = study_documents_with(example_text("paper"), "\"rows\": 1000", "\"rows\": 40");
 	service_submit(service, study, id);
 	free(study);
 	assert_true(service_wait(service, id, "succeeded", 0));

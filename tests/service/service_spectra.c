@@ -9,7 +9,7 @@
 
 static char *told(void)
 {
-	return documents_with(documents_floor, "\"histories\": false", "\"histories\": true");
+	return study_documents_with(study_documents_floor, "\"histories\": false", "\"histories\": true");
 }
 
 /* What `pound run` makes of a document: its result without timing, or with `samples` the file it writes. */
@@ -35,11 +35,11 @@ static void spectra_come_as_json_and_csv(void **state)
 {
 	struct service *service = *state;
 	char id[17];
-	service_submit(service, documents_floor, id);
+	service_submit(service, study_documents_floor, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	struct answer json = service_get(service, "/v1/studies/%s/results", id);
 	assert_int_equal(json.status, 200);
-	struct program_outcome local = run(documents_floor, NULL);
+	struct program_outcome local = run(study_documents_floor, NULL);
 	struct reading *r = reading_open(json.body, strlen(json.body));
 	assert_int_equal(reading_count(r, "/spectra/0/mean_m_s2"), 9);
 	reading_close(r);
@@ -90,7 +90,7 @@ static void a_run_without_samples_says_so_before_it_begins(void **state)
 {
 	(void)state;
 	struct program_outcome outcome = program_run(
-	    (const char *const[]){"pound", "run", "-", "--samples", "/nowhere/x.csv", NULL}, documents_floor);
+	    (const char *const[]){"pound", "run", "-", "--samples", "/nowhere/x.csv", NULL}, study_documents_floor);
 	program_expect(&outcome, 2);
 	assert_string_equal(outcome.out, "");
 	assert_non_null(strstr(outcome.err, "\"histories\": true"));
@@ -101,7 +101,7 @@ static void the_table_of_spectra_has_its_peaks(void **state)
 {
 	(void)state;
 	struct program_outcome outcome =
-	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, documents_floor);
+	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study_documents_floor);
 	program_expect(&outcome, 0);
 	assert_non_null(strstr(outcome.out, "dirac_train"));
 	assert_non_null(strstr(outcome.out, "peaks of the spectrum"));

@@ -24,7 +24,7 @@ static double step_before(const struct pound_task *task, int i, double h)
  *
  * Source   Chopra, Dynamics of Structures, 5.3
  */
-struct yardstick_result yardstick_plain(const struct pound_task *task, int steps)
+struct baseline_result baseline_plain(const struct pound_task *task, int steps)
 {
 	assert(task->contact && task->tension);
 	double h = task->time_step / steps, K = task->contact_stiffness, C = task->contact_damping;
@@ -61,7 +61,7 @@ struct yardstick_result yardstick_plain(const struct pound_task *task, int steps
 	}
 	// a contact still open at the end counts with what it has
 	impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
-	return (struct yardstick_result){
+	return (struct baseline_result){
 	    .displacement_max = u_max, .impulse_max = impulse_max, .contacts = contacts};
 }
 
@@ -116,7 +116,7 @@ static struct recurrence recurrence(const struct pound_task *task, double h, dou
  *
  * Test     bench: within the errors of the plain loop
  */
-struct yardstick_result yardstick_tuned(const struct pound_task *task, int steps)
+struct baseline_result baseline_tuned(const struct pound_task *task, int steps)
 {
 	assert(task->contact && task->tension);
 	double h = task->time_step / steps, K = task->contact_stiffness, C = task->contact_damping;
@@ -152,6 +152,6 @@ struct yardstick_result yardstick_tuned(const struct pound_task *task, int steps
 	}
 	// a contact still open at the end counts with what it has
 	impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
-	return (struct yardstick_result){
+	return (struct baseline_result){
 	    .displacement_max = u_max, .impulse_max = impulse_max, .contacts = contacts};
 }

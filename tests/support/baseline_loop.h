@@ -7,7 +7,7 @@
 
 #include "engine/exact/task.h"
 
-struct yardstick_result {
+struct baseline_result {
 	double displacement_max; /* of the left body [m] */
 	double impulse_max;      /* largest integral of F/m1 over one contact [m/s] */
 	int contacts;
@@ -15,7 +15,7 @@ struct yardstick_result {
 
 /* `steps` steps of equal length from each sample to the next; the task's laws are linear, its contact ends at no
  * overlap. */
-struct yardstick_result yardstick_plain(const struct pound_task *task, int steps);
-struct yardstick_result yardstick_tuned(const struct pound_task *task, int steps);
+struct baseline_result baseline_plain(const struct pound_task *task, int steps);
+struct baseline_result baseline_tuned(const struct pound_task *task, int steps);
 
 #endif

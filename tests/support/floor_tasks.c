@@ -5,7 +5,7 @@
 #include "tests/support/check.h"
 
 /* The task as the plan makes it, but not scaled. */
-struct pound_task riding_task(const struct specimen *specimen, bool contact)
+struct pound_task floor_task_task(const struct specimen *specimen, bool contact)
 {
 	const struct pound_scene *scene = &specimen->study.scene;
 	const struct pound_response response = specimen_engine(specimen);
@@ -24,7 +24,7 @@ struct pound_task riding_task(const struct specimen *specimen, bool contact)
 }
 
 /* Spectra of a task in work space of their own. */
-struct pound_floor_answer riding_spectra(const struct pound_task *task,
+struct pound_floor_answer floor_task_spectra(const struct pound_task *task,
                                          const struct pound_spectrum *spectrum, int n_drives, double radians,
                                          int lanes, double *psa[POUND_DRIVES])
 {

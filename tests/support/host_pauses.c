@@ -52,7 +52,7 @@ static void *watch(void *of)
 	return NULL;
 }
 
-void away_start(void)
+void host_pauses_start(void)
 {
 	cpu_set_t allowed;
 	assert_int_equal(sched_getaffinity(0, sizeof allowed, &allowed), 0);
@@ -68,7 +68,7 @@ void away_start(void)
 		}
 }
 
-void away_stop(void)
+void host_pauses_stop(void)
 {
 	stopping = true;
 	for (int s = 0; s < n_sentinels; s++)
@@ -76,7 +76,7 @@ void away_stop(void)
 	stopped = latency_now();
 }
 
-bool away_between(double from, double to)
+bool host_pauses_between(double from, double to)
 {
 	for (int s = 0; s < n_sentinels; s++) {
 		const struct sentinel *sentinel = &sentinels[s];
@@ -96,7 +96,7 @@ bool away_between(double from, double to)
 	return false;
 }
 
-double away_share(void)
+double host_pauses_share(void)
 {
 	double sum = 0;
 	for (int s = 0; s < n_sentinels; s++)

@@ -7,13 +7,13 @@
 
 #include <stdbool.h>
 
-void away_start(void);
-void away_stop(void);
+void host_pauses_start(void);
+void host_pauses_stop(void);
 
 /* Whether a processor was away at some time from `from` to `to` [s of the wall clock], or shortly before: as much later as
  * it was away, what had piled up meanwhile is counted to it. */
-bool away_between(double from, double to);
+bool host_pauses_between(double from, double to);
 
-double away_share(void); /* part of the time for which a processor was away, after away_stop */
+double host_pauses_share(void); /* part of the time for which a processor was away, after host_pauses_stop */
 
 #endif

@@ -54,7 +54,7 @@ void latency_there(struct latencies *l)
 {
 	int n = 0;
 	for (int i = 0; i < l->n; i++)
-		if (!away_between(l->answers[i].asked, l->answers[i].came))
+		if (!host_pauses_between(l->answers[i].asked, l->answers[i].came))
 			l->answers[n++] = l->answers[i];
 	l->n = n;
 }

@@ -15,7 +15,7 @@ double latency_quantile(struct latencies *l,
                         double part); /* what a part of them is below [ms]; 0: there are none */
 void latency_told(const char *what, struct latencies *l); /* prints their number, p50, p99 and maximum */
 
-/* Leaves those out that came while the machine was away (tests/support/host_pauses.h), after away_stop. */
+/* Leaves those out that came while the machine was away (tests/support/host_pauses.h), after host_pauses_stop. */
 void latency_there(struct latencies *l);
 
 /* How long each test of make soak is to last: SOAK, 60 when it is not set [s]. */

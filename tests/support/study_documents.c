@@ -6,7 +6,7 @@
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
 
-const char documents_sensitivity[] =
+const char study_documents_sensitivity[] =
     "{\"kind\": \"sensitivity\", \"name\": \"a study\",\n"
     " \"scene\": {\n"
     "  \"law\": {\"type\": \"elastoplastic\", \"hardening_ratio\": 0.05, \"target_demand\": 2, "
@@ -32,17 +32,17 @@ const char documents_sensitivity[] =
     " \"outputs\": [\"demand_amplification\", \"impulse\"],\n"
     " \"solver\": {\"method\": \"event\", \"tolerance\": 1e-9}}\n";
 
-const char documents_response[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
+const char study_documents_response[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
                                   "2}, {\"frequency_hz\": 3.1}]}}";
 
-const char documents_convergence[] = "{\"kind\": \"convergence\", \"scene\": {\"oscillators\": "
+const char study_documents_convergence[] = "{\"kind\": \"convergence\", \"scene\": {\"oscillators\": "
                                      "[{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],\n"
                                      "  \"excitation\": {\"signals\": 2}},\n"
                                      " \"convergence\": {\"newmark\": {\"steps_s\": [0.01, 0.001]}, "
                                      "\"central_difference\": {\"steps_s\": [0.005]},\n"
                                      "  \"adaptive\": {\"tolerances\": [1e-4]}, \"history_s\": 2}}\n";
 
-const char documents_floor[] =
+const char study_documents_floor[] =
     "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
     "3.1}],\n"
     "  \"excitation\": {\"cycles\": 5, \"signals\": 3}},\n"
@@ -54,10 +54,10 @@ const char *documents_named(const char *name)
 {
 	static const struct {
 		const char *name, *document;
-	} all[] = {{"sensitivity", documents_sensitivity},
-	           {"response", documents_response},
-	           {"convergence", documents_convergence},
-	           {"floor", documents_floor}};
+	} all[] = {{"sensitivity", study_documents_sensitivity},
+	           {"response", study_documents_response},
+	           {"convergence", study_documents_convergence},
+	           {"floor", study_documents_floor}};
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
 		if (strcmp(all[i].name, name) == 0)
 			return all[i].document;
@@ -65,7 +65,7 @@ const char *documents_named(const char *name)
 	return NULL;
 }
 
-char *documents_with(const char *document, const char *from, const char *to)
+char *study_documents_with(const char *document, const char *from, const char *to)
 {
 	const char *at = strstr(document, from);
 	if (!at)
@@ -77,7 +77,7 @@ char *documents_with(const char *document, const char *from, const char *to)
 	return copy;
 }
 
-struct pound_study *documents_study(const char *document)
+struct pound_study *study_documents_study(const char *document)
 {
 	static struct problems problems;
 	struct pound_study *study = study_from_json(document, strlen(document), &problems);
@@ -89,7 +89,7 @@ struct pound_study *documents_study(const char *document)
 	return study;
 }
 
-void documents_refused(const char *document, struct problems *problems)
+void study_documents_refused(const char *document, struct problems *problems)
 {
 	struct pound_study *study = study_from_json(document, strlen(document), problems);
 	if (study)
@@ -98,10 +98,10 @@ void documents_refused(const char *document, struct problems *problems)
 	assert_true(problems->n > 0);
 }
 
-void documents_problem(const char *document, const char *pointer, const char *detail)
+void study_documents_problem(const char *document, const char *pointer, const char *detail)
 {
 	static struct problems problems;
-	documents_refused(document, &problems);
+	study_documents_refused(document, &problems);
 	if (problems.n != 1 || strcmp(problems.list[0].pointer, pointer) ||
 	    strcmp(problems.list[0].detail, detail)) {
 		for (int i = 0; i < problems.n; i++)

@@ -102,7 +102,7 @@ static void bodies_that_move_alike_have_no_contacts_in_any_motion_or_its_mirror_
 			for (int who = EVENT; who <= CENTRAL; who++) {
 				struct specimen specimen;
 				alike_make(&specimen, number, sign);
-				const struct pound_task task = riding_task(&specimen, true);
+				const struct pound_task task = floor_task_task(&specimen, true);
 				const struct count c = count_of(&task, who);
 				if (c.contacts != 0 || c.time != 0)
 					print_message("%d, %d: %s\n", number, sign, names[who]);
@@ -141,7 +141,7 @@ static void a_body_dead_at_rest_on_a_wall_does_not_go_on_counting(void **state)
 			for (int k = 0; k < 2; k++) {
 				struct specimen specimen;
 				dead_make(&specimen, number, 60 << k);
-				const struct pound_task task = riding_task(&specimen, true);
+				const struct pound_task task = floor_task_task(&specimen, true);
 				counted[k] = count_of(&task, who);
 				assert_int_equal(counted[k].status, POUND_OK);
 				specimen_free(&specimen);
@@ -171,7 +171,7 @@ static void a_body_that_has_never_moved_has_no_contact(void **state)
 	dead_make(&specimen, 0, 1);
 	for (int k = 0; k < 601; k++)
 		specimen.record[k] = 0;
-	const struct pound_task task = riding_task(&specimen, true);
+	const struct pound_task task = floor_task_task(&specimen, true);
 	for (int who = EVENT; who < COUNTERS; who++)
 		assert_int_equal(count_of(&task, who).contacts, 0);
 	specimen_free(&specimen);
@@ -192,7 +192,7 @@ static void forces_of_1e_9_count_as_large_ones_do(void **state)
 			struct pound_scene *scene = &specimen.study.scene;
 			scene->oscillators[1].frequency_hz = scene->oscillators[0].frequency_hz * (1 + parts[k]);
 			const struct pound_response r = specimen_engine(&specimen);
-			const struct pound_task task = riding_task(&specimen, true);
+			const struct pound_task task = floor_task_task(&specimen, true);
 			assert_true(r.contact_count > 0);
 			assert_int_equal(count_of(&task, EVENT_ONE).contacts, r.contact_count);
 			if (k > 0) {

@@ -106,7 +106,7 @@ static void instants_leave_no_hole(void **state)
 			specimen_creeping(&specimen, number, 1);
 		else
 			specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_task task = riding_task(&specimen, number % 10 != 8);
+		const struct pound_task task = floor_task_task(&specimen, number % 10 != 8);
 		assert_int_equal(observe(task, 0, &story).status, POUND_OK);
 		check_whole(&task);
 		specimen_free(&specimen);
@@ -124,7 +124,7 @@ static void instants_go_on_in_silence(void **state)
 		specimen.study.scene.contact.stiffness_ratio = 1e8;
 		specimen.study.scene.contact.restitution = 0;
 		specimen_record(&specimen, 0.1, 12001)[50] = -1;
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct pound_task_result r = observe(task, 0, &story);
 		assert_int_equal(r.status, POUND_OK);
 		check_near(r.u[0], 0, 0);
@@ -141,7 +141,7 @@ static void an_observed_motion_is_that_of_the_unobserved(void **state)
 	for (int number = 0; number < 64; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct pound_task_result r = march(&task), o = observe(task, 0, &story);
 		assert_int_equal(o.status, r.status);
 		assert_int_equal(o.contacts, r.contacts);
@@ -173,7 +173,7 @@ static void an_observed_motion_is_that_of_the_adaptive_solver(void **state)
 	for (int number = 0; number < check_count(24, 240); number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 101);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		struct pound_task_result a;
 		pound_adaptive_run(&solver, &task, &a, NULL);
 		assert_int_equal(a.status, POUND_OK);
@@ -209,7 +209,7 @@ static void every_lane_count_tells_the_same_bits(void **state)
 	for (int number = 0; number < 40; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		observe(task, 0, &story);
 		for (int lanes = 1; lanes <= 8; lanes++) {
 			struct pound_task_result none;
@@ -237,7 +237,7 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 	for (int t = 0; t < TASKS; t++) {
 		if (t % 2 == 0)
 			specimen_random(&specimens[t / 2], t, 0.01, 401);
-		tasks[t] = riding_task(&specimens[t / 2], t % 8 > 1);
+		tasks[t] = floor_task_task(&specimens[t / 2], t % 8 > 1);
 	}
 	assert_true(pound_exact_lanes(0, tasks, without, TASKS, scratch, NULL));
 	for (int k = 0; k < OBSERVED; k++) {

@@ -16,7 +16,7 @@ static void every_example_is_a_valid_study(void **state)
 		const char *text = example_text(example_name(n));
 		struct problems problems;
 		struct pound_study *study = strstr(text, "\"scene\"")
-		                                ? documents_study(text)
+		                                ? study_documents_study(text)
 		                                : study_design_from_json(text, strlen(text), &problems);
 		assert_non_null(study);
 		assert_non_null(study->name);
@@ -41,14 +41,14 @@ static void the_title_of_an_example_is_its_name_in_the_document(void **state)
 static void the_paper_s_study_asks_for_what_the_paper_ran(void **state)
 {
 	(void)state;
-	struct pound_study *study = documents_study(example_text("paper_linear"));
+	struct pound_study *study = study_documents_study(example_text("paper_linear"));
 	assert_int_equal(study_runs(study), 30000);
 	assert_int_equal(study->design.rows, 1000);
 	assert_int_equal(study->scene.excitation.signals, 5);
 	assert_false(study->design.common_signals);
 	check_near(study->scene.oscillators[0].frequency_hz, 2, 0);
 	study_free(study);
-	study = documents_study(example_text("paper"));
+	study = study_documents_study(example_text("paper"));
 	assert_int_equal(study_cells(study), 24);
 	assert_int_equal(study_runs(study), 24 * 30000);
 	study_free(study);
@@ -57,7 +57,7 @@ static void the_paper_s_study_asks_for_what_the_paper_ran(void **state)
 static void every_extreme_of_the_example_has_a_result_that_balances(void **state)
 {
 	(void)state;
-	struct pound_study *study = documents_study(example_text("extremes"));
+	struct pound_study *study = study_documents_study(example_text("extremes"));
 	struct pound_run *run = specimen_run(study);
 	const struct pound_result *result = pound_run_result(run);
 	for (int c = 0; c < result->n_cells; c++) {

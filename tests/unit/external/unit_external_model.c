@@ -68,9 +68,9 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 	study_free(study);
 	// to be run here it needs its scene
 	struct problems problems;
-	documents_refused(two_inputs, &problems);
+	study_documents_refused(two_inputs, &problems);
 	// a study with a scene has a design too
-	study = study_of(documents_sensitivity);
+	study = study_of(study_documents_sensitivity);
 	assert_false(study->elsewhere);
 	study_free(study);
 }
@@ -209,7 +209,7 @@ static void a_variance_column_takes_independent_noise_out(void **state)
 	assert_true(isnan(reading_number(result, "/cells/0/outputs/0/excitation/ST_one_signal")));
 	reading_close(result);
 	// a row whose samples share their noise needs covariances, which are not there
-	char *document = documents_with(two_inputs, "\"rows\": 6", "\"rows\": 6, \"signals\": \"common\"");
+	char *document = study_documents_with(two_inputs, "\"rows\": 6", "\"rows\": 6, \"signals\": \"common\"");
 	result = indices_of(document, csv);
 	check_near(index_of(result, 0, 0, "S1_raw"), 0.572576783750673, 1e-12);
 	assert_true(isnan(index_of(result, 0, 0, "S1_pick_freeze")));
@@ -261,7 +261,7 @@ static void indices_of_a_noisy_model_are_exact_or_null(void **state)
 	             {false, true, 0.5, 0.5}};
 	for (int k = 0; k < 4; k++) {
 		char *document =
-		    documents_with(two_inputs, "\"rows\": 6",
+		    study_documents_with(two_inputs, "\"rows\": 6",
 		                   cases[k].shared ? "\"rows\": 400, \"signals\": \"common\"" : "\"rows\": 400");
 		char *csv = noisy_csv(document, cases[k].shared, cases[k].variance);
 		struct reading *result = indices_of(document, csv);
@@ -297,7 +297,7 @@ static void a_scene_without_random_signals_has_no_noise_to_share(void **state)
 	for (int random = 0; random < 2; random++) {
 		char document[1024], *positive;
 		snprintf(document, sizeof document, form, excitations[random]);
-		positive = documents_with(document, "\"min\": 0", "\"min\": 0.5"); // of the mass
+		positive = study_documents_with(document, "\"min\": 0", "\"min\": 0.5"); // of the mass
 		char *csv = noisy_csv(positive, true, false);
 		struct reading *result = indices_of(positive, csv);
 		assert_int_equal(isnan(index_of(result, 0, 0, "ST")), random);
@@ -646,7 +646,7 @@ static void outputs_of_a_sweep_are_refused(void **state)
 	(void)state;
 	struct problems problems;
 	size_t n;
-	struct pound_study *study = study_of(documents_sensitivity);
+	struct pound_study *study = study_of(study_documents_sensitivity);
 	assert_int_equal(study->n_sweeps, 1);
 	assert_null(model_indices(study, "y\n", 2, &problems, &n));
 	assert_string_equal(problems.list[0].pointer, "/sweep");

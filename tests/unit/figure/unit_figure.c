@@ -183,7 +183,7 @@ static struct figure_source result_of(const char *document)
 {
 	struct figure_source source = {0};
 	const struct timing timing = {1, 1, 1};
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	source.json = result_to_json(study, pound_run_result(run), &timing, &source.length);
 	if (study->spectrum.histories)
@@ -272,7 +272,7 @@ static void a_name_stays_text(void **state)
 	static const char hostile[] = "</text><script>alert(1)</script>&\\\"'\\u0007\\u202e\\ufffe";
 	// the door refuses some of these; a result may come from elsewhere
 	struct figure_source asked = result_of(example_text("sensitivity_small")), source = {0};
-	source.json = documents_with(asked.json, "f_2", hostile);
+	source.json = study_documents_with(asked.json, "f_2", hostile);
 	source.length = strlen(source.json);
 	(void)state;
 	draw_all("a hostile name", &source);

@@ -15,7 +15,7 @@ static struct figure_source result_of(const char *document)
 {
 	struct figure_source source = {0};
 	const struct timing timing = {1, 1, 1};
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	source.json = result_to_json(study, pound_run_result(run), &timing, &source.length);
 	if (study->spectrum.histories)
@@ -93,7 +93,7 @@ static void a_report_has_every_figure_table_note_and_what_was_left_out(void **st
 static void a_report_of_a_swept_study_has_the_indices_of_each_cell(void **state)
 {
 	size_t n;
-	char *document = documents_with(
+	char *document = study_documents_with(
 	    example_text("sensitivity_small"), "\"design\"",
 	    "\"sweep\": [{\"path\": \"/oscillators/0/frequency_hz\", \"values\": [1, 2, 4]}], \"design\"");
 	struct figure_source source = result_of(document);
@@ -112,7 +112,7 @@ static void a_hostile_name_stays_text(void **state)
 {
 	size_t n;
 	char *document =
-	    documents_with(example_text("sensitivity_small"), "f_2", "</td><script>alert(1)</script>\\\"&");
+	    study_documents_with(example_text("sensitivity_small"), "f_2", "</td><script>alert(1)</script>\\\"&");
 	struct figure_source source = result_of(document);
 	char *page = report_html(&source, document, strlen(document), &n);
 	(void)state;

@@ -51,8 +51,8 @@ static void a_floor_that_is_stiff_gives_the_shock_spectrum_of_the_ground(void **
 	specimen.study.scene.contact.present = false;
 	specimen_half_sine(&specimen, 1, 1, 6.2,
 	                   0.005); // the slowest has its peak half its 10 s after the pulse at the latest
-	const struct pound_task task = riding_task(&specimen, false);
-	riding_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
+	const struct pound_task task = floor_task_task(&specimen, false);
+	floor_task_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
 	// the record is the half sine to (pi 0.005)^4/100 = 6e-10
 	for (int k = 0; k < SHOCKS; k++)
 		check_near(psa[0][k], shocks[k][1], 2.5e-9 + 2 * pow(fmax(frequency[k], 0.5) / 5000, 2));
@@ -116,11 +116,11 @@ static void a_plain_integrator_finds_the_same_spectrum(void **state)
 		specimen_reference(&specimen, &specimen_references[0], 0.005);
 		if (elastic)
 			specimen.study.scene.contact.restitution = 1;
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		for (int k = 0; k < CHASED; k++)
 			w[k] = 2 * pi * frequency[k];
 		plain_spectra(&task, w, 0.05, 100, plain);
-		riding_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
+		floor_task_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
 		// steps of 5e-5 s: where the dashpot makes the force jump a contact of 12 ms begins up to one late, else the error
 		// is a jump of the force's slope, (contact frequency times step)^2/10 = 2e-5 of the force
 		for (int k = 0; k < CHASED; k++)
@@ -138,15 +138,15 @@ static void half_the_steps_give_the_same_spectra(void **state)
 	for (int number = 0; number < 24; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		struct pound_task task = riding_task(&specimen, true);
-		riding_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
+		struct pound_task task = floor_task_task(&specimen, true);
+		floor_task_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
 		double twice[801];
 		for (int t = 0; t < 801; t++)
 			twice[t] = 0.5 * (task.ground[t / 2] + task.ground[(t + 1) / 2]);
 		task.ground = twice;
 		task.n_samples = 801;
 		task.time_step = 0.005;
-		riding_spectra(&task, &spectrum, 2, 0.4, 0, (double **)into_again);
+		floor_task_spectra(&task, &spectrum, 2, 0.4, 0, (double **)into_again);
 		for (int d = 0; d < 2; d++)
 			for (int k = 0; k < spectrum.n; k++) // 4 s of impacts
 				check_near(again[d][k], psa[d][k], 1e-9 * fmax(psa[d][k], 1));
@@ -162,13 +162,13 @@ static void every_lane_count_gives_the_same_bits(void **state)
 	for (int number = 0; number < 4; number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		struct pound_task task = riding_task(&specimen, true);
-		riding_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
+		struct pound_task task = floor_task_task(&specimen, true);
+		floor_task_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
 		for (int i = 0; i < 3; i++) {
 			if ((lanes[i] == 8 && !__builtin_cpu_supports("avx512dq")) ||
 			    (lanes[i] == 4 && !__builtin_cpu_supports("avx2")))
 				continue;
-			riding_spectra(&task, &spectrum, 2, 1.5, lanes[i], (double **)into_again);
+			floor_task_spectra(&task, &spectrum, 2, 1.5, lanes[i], (double **)into_again);
 			for (int d = 0; d < 2; d++)
 				assert_memory_equal(psa[d], again[d], sizeof(double) * (size_t)spectrum.n);
 		}
@@ -207,8 +207,8 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	specimen_init(&specimen);
 	specimen.study.scene.contact.restitution = 1; // no jump of the force
 	specimen_half_sine(&specimen, 1, 0.5, 2, 0.01);
-	const struct pound_task task = riding_task(&specimen, true);
-	riding_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
+	const struct pound_task task = floor_task_task(&specimen, true);
+	floor_task_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
 	static struct largest_drive largest;
 	largest.task = &task;
 	struct pound_floor_motion motion = {
@@ -232,8 +232,8 @@ static void without_contact_there_is_no_push(void **state)
 	struct specimen specimen;
 	specimen_init(&specimen);
 	specimen_noise(&specimen, 7, 1, 0.01, 401);
-	const struct pound_task task = riding_task(&specimen, false);
-	const struct pound_floor_answer answer = riding_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
+	const struct pound_task task = floor_task_task(&specimen, false);
+	const struct pound_floor_answer answer = floor_task_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
 	check_near(answer.impulse_max, 0, 0);
 	for (int k = 0; k < spectrum.n; k++) {
 		check_near(psa[POUND_DRIVE_PUSH][k], 0, 0);
@@ -270,7 +270,7 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	struct specimen specimen;
 	specimen_init(&specimen);
 	specimen_reference(&specimen, &specimen_references[0], 0.0025);
-	const struct pound_task task = riding_task(&specimen, true);
+	const struct pound_task task = floor_task_task(&specimen, true);
 	_Alignas(64) static char memory[1 << 20];
 	assert_true(pound_floor_bytes(1) <= sizeof memory);
 	struct pound_floor *floor = pound_floor_init(memory, &spectrum);

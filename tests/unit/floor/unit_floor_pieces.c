@@ -137,7 +137,7 @@ static void known_impacts_come_out_to_their_digits(void **state)
 		struct specimen specimen;
 		specimen_init(&specimen);
 		specimen_reference(&specimen, reference, 0.0025);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-13);
 		assert_int_equal(f.result.contacts, (int)reference->contacts);
 		// the record is the half sine to (pi 0.005)^4/100 = 6e-10 of it
@@ -154,7 +154,7 @@ static void every_piece_leads_to_the_next(void **state)
 	for (int number = 0; number < check_count(200, 2000); number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		check_near(f.impulse, f.result.impulse_max, 1e-12 * f.result.impulse_max);
 		assert_true(f.pieces >= 400);
@@ -180,7 +180,7 @@ static void a_contact_that_has_settled_is_followed_by_whole_samples(void **state
 		double *ground = specimen_record(&specimen, 0.01, SAMPLES);
 		for (int t = 0; t < SAMPLES; t++)
 			ground[t] = -1;
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		assert_true(f.result.contact_time > 0.1);
 		assert_true(f.pieces < 10 * SAMPLES);
@@ -203,7 +203,7 @@ static void a_contact_without_losses_is_followed_however_stiff(void **state)
 		double *ground = specimen_record(&specimen, 0.01, SAMPLES);
 		for (int t = 0; t < SAMPLES; t++)
 			ground[t] = -fmin(1, t / 20.0);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		check_near(f.impulse, f.result.impulse_max, 1e-12 * f.result.impulse_max);
 		specimen_free(&specimen);
@@ -245,7 +245,7 @@ static void a_body_that_creeps_where_it_yielded_is_followed(void **state)
 	for (int k = 0; k < 602; k++) {
 		struct specimen specimen;
 		specimen_creeping(&specimen, k < 600 ? k : vanishing[k - 600], 1);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-12);
 		check_near(f.impulse, f.result.impulse_max, 1e-9 * f.result.impulse_max);
 		specimen_free(&specimen);
@@ -259,7 +259,7 @@ static void bodies_alike_but_for_roundings_are_followed(void **state)
 	for (int number = 0; number < 200; number++) {
 		struct specimen specimen;
 		specimen_alike(&specimen, number, number % SPECIMEN_LAWS);
-		const struct pound_task task = riding_task(&specimen, true);
+		const struct pound_task task = floor_task_task(&specimen, true);
 		check_followed(&task, 1e-12);
 		specimen_free(&specimen);
 	}
@@ -290,7 +290,7 @@ static void a_motion_that_dies_away_in_silence_is_over(void **state)
 	specimen.study.scene.contact.stiffness_ratio = 1e8;
 	specimen.study.scene.contact.restitution = 0;
 	specimen_record(&specimen, 0.01, SAMPLES)[10] = -1;
-	const struct pound_task task = riding_task(&specimen, true);
+	const struct pound_task task = floor_task_task(&specimen, true);
 	const struct followed f = check_followed(&task, 1e-11);
 	check_near(f.next.u, 0, 0);
 	check_near(f.next.v, 0, 0);
@@ -325,7 +325,7 @@ static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 	specimen_init(&specimen);
 	specimen.study.scene.oscillators[0].frequency_hz = 900;
 	specimen_half_sine(&specimen, 1, 0.5, 1, 0.01);
-	const struct pound_task task = riding_task(&specimen, false);
+	const struct pound_task task = floor_task_task(&specimen, false);
 	const struct followed f = check_followed(&task, 1e-12);
 	assert_true(f.flights == 0 && f.pieces >= 3770);
 	specimen_free(&specimen);

@@ -309,7 +309,7 @@ static void checked_runs_agree_and_are_counted_apart(void **state)
 {
 	(void)state;
 	// 50 items of 4 runs in each of 2 cells, so that 8 runs are every 25th item
-	struct pound_study *study = documents_study(documents_sensitivity);
+	struct pound_study *study = study_documents_study(study_documents_sensitivity);
 	struct pound_run *run = run_of(study);
 	const struct pound_result *result = reduced(run);
 	for (int c = 0; c < 2; c++)
@@ -330,7 +330,7 @@ static void checked_runs_agree_and_are_counted_apart(void **state)
 static void restored_blocks_bring_their_checks(void **state)
 {
 	(void)state;
-	struct pound_study *study = documents_study(documents_sensitivity);
+	struct pound_study *study = study_documents_study(study_documents_sensitivity);
 	struct pound_run *run = run_of(study), *restored = pound_run_create(study, 1);
 	for (int b = 0; b < pound_run_blocks(run); b++)
 		pound_run_block_restore(restored, b, pound_run_block_values(run, b));
@@ -351,9 +351,9 @@ static void restored_blocks_bring_their_checks(void **state)
 static void a_coarse_solver_shows_its_error(void **state)
 {
 	(void)state;
-	char *document = documents_with(documents_sensitivity, "{\"method\": \"event\", \"tolerance\": 1e-9}",
+	char *document = study_documents_with(study_documents_sensitivity, "{\"method\": \"event\", \"tolerance\": 1e-9}",
 	                                "{\"method\": \"newmark\", \"step_s\": 0.001}");
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = run_of(study);
 	const struct pound_result *result = reduced(run);
 	double median = result->cells[0].indices[1].accuracy.difference_median;

@@ -316,7 +316,7 @@ static void a_study_s_result_holds_what_its_samples_give(void **state)
 	for (int random = 0; random < 2; random++) {
 		char document[1024];
 		snprintf(document, sizeof document, form, random ? noise : record);
-		struct pound_study *study = documents_study(document);
+		struct pound_study *study = study_documents_study(document);
 		struct pound_run *run, *other;
 		char *json = result_of(study, 1, &run);
 		struct reading *r = reading_open(json, strlen(json));
@@ -422,7 +422,7 @@ static void an_index_without_an_interval_is_noted(void **state)
 	    "{\"type\": \"uniform\", \"min\": 0, \"max\": 1}}], \"design\": {\"method\": \"sobol\", \"rows\": "
 	    "128, "
 	    "\"signals\": \"common\", \"seed\": 2}, \"outputs\": [\"force_amplification\", \"impulse\"]}";
-	struct pound_study *read = documents_study(study);
+	struct pound_study *read = study_documents_study(study);
 	struct pound_run *run = specimen_run(read);
 	for (int o = 0; o < 2; o++) {
 		const struct pound_indices *indices = &pound_run_result(run)->cells[0].indices[o];

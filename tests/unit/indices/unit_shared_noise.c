@@ -283,7 +283,7 @@ static struct reading *study_with(const char *signals, int n_signals)
 	    "[\"force_amplification\"]}";
 	char document[1024];
 	snprintf(document, sizeof document, form, n_signals, signals);
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	static const struct timing timing = {0, 0, 1};
 	size_t length;
@@ -327,15 +327,15 @@ static void a_design_does_not_grow_for_a_total_index_that_cannot_be_estimated(vo
 		char signals[32], design[128];
 		snprintf(signals, sizeof signals, "\"signals\": %s}", cases[k].signals);
 		snprintf(design, sizeof design, "%s, \"signals\": \"%s\"", until, cases[k].design);
-		char *one = documents_with(documents_sensitivity, "\"signals\": 5}", signals);
-		char *two = documents_with(one, "\"rows\": 10", until);
-		char *document = documents_with(two, "\"seed\": 42, \"signals\": \"common\"",
+		char *one = study_documents_with(study_documents_sensitivity, "\"signals\": 5}", signals);
+		char *two = study_documents_with(one, "\"rows\": 10", until);
+		char *document = study_documents_with(two, "\"seed\": 42, \"signals\": \"common\"",
 		                                cases[k].design[0] == 'c' ? "\"signals\": \"common\""
 		                                                          : "\"signals\": \"independent\"");
 		if (cases[k].accepted)
-			study_free(documents_study(document));
+			study_free(study_documents_study(document));
 		else
-			documents_problem(document, "/design/until",
+			study_documents_problem(document, "/design/until",
 			                  "needs /scene/excitation/signals of 2 or more, or \"independent\" "
 			                  "/design/signals: ST cannot be estimated from one signal that the samples of a "
 			                  "row share");

@@ -14,7 +14,7 @@ enum { N = 9 };
 static const char *const names[] = {"pounding",   "impact_only", "free",
                                     "dirac_line", "dirac_train", "dirac_peaks"};
 
-/* The result of documents_floor, made up: row r, frequency k has the mean 100 r + k, a peak at k = 4. */
+/* The result of study_documents_floor, made up: row r, frequency k has the mean 100 r + k, a peak at k = 4. */
 static char *made_up(struct pound_study *study, size_t *length)
 {
 	static double numbers[POUND_N_SPECTRA][4][N];
@@ -41,7 +41,7 @@ static void every_spectrum_has_a_number_for_every_frequency(void **state)
 {
 	(void)state;
 	size_t length;
-	struct pound_study *study = documents_study(documents_floor);
+	struct pound_study *study = study_documents_study(study_documents_floor);
 	char *json = made_up(study, &length);
 	struct reading *r = reading_open(json, length);
 	assert_string_equal(reading_text(r, "/kind"), "floor_spectrum");
@@ -76,7 +76,7 @@ static void a_csv_row_for_every_frequency(void **state)
 {
 	(void)state;
 	size_t length, csv_length;
-	struct pound_study *study = documents_study(documents_floor);
+	struct pound_study *study = study_documents_study(study_documents_floor);
 	char *json = made_up(study, &length), *csv = result_to_csv(json, length, NULL, &csv_length), *at = csv;
 	assert_memory_equal(
 	    csv, "frequency_hz,pounding.mean_m_s2,pounding.p16_m_s2,pounding.p84_m_s2,impact_only.mean", 80);
@@ -100,10 +100,10 @@ static void an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse(voi
 {
 	(void)state;
 	char *document =
-	    documents_with(documents_sensitivity, "\"outputs\": [\"demand_amplification\", \"impulse\"]",
+	    study_documents_with(study_documents_sensitivity, "\"outputs\": [\"demand_amplification\", \"impulse\"]",
 	                   "\"outputs\": [\"impulse\", \"floor_spectrum\"], \"spectrum\": "
 	                   "{\"frequencies_hz\": [2.5, 40]}");
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	size_t length, csv_length;
 	const struct timing timing = {1, 1, 1};

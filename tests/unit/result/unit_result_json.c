@@ -23,7 +23,7 @@ static struct pound_response numbered(double first)
 
 static char *json_of(const char *document, const struct pound_result *result, size_t *length)
 {
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	char *json = result_to_json(study, result, &timing, length);
 	assert_non_null(json);
 	assert_int_equal(strlen(json), *length);
@@ -76,7 +76,7 @@ static void a_response_is_written_whole(void **state)
 	    .cells = &cell,
 	    .work = {.signals = {1, 1}, .free_runs = {2, 2}, .pounding_runs = {1, 1}, .contacts = 14}};
 	size_t length;
-	char *json = json_of(documents_response, &result, &length);
+	char *json = json_of(study_documents_response, &result, &length);
 	assert_string_equal(json, wanted);
 	free(json);
 }
@@ -88,7 +88,7 @@ static void timing_is_the_last_line_but_one_and_all_that_differs(void **state)
 	struct pound_cell cell = {.n_signals = 1, .signals = &response};
 	struct pound_result result = {.n_cells = 1, .cells = &cell};
 	static const struct timing other = {0.1, 1e9, 128};
-	struct pound_study *study = documents_study(documents_response);
+	struct pound_study *study = study_documents_study(study_documents_response);
 	size_t length, length_other;
 	char *json = result_to_json(study, &result, &timing, &length);
 	char *json_other = result_to_json(study, &result, &other, &length_other);
@@ -105,8 +105,8 @@ static void timing_is_the_last_line_but_one_and_all_that_differs(void **state)
 static void a_swept_law_stands_by_its_name(void **state)
 {
 	(void)state;
-	char *document = documents_with(
-	    documents_response, "\"scene\"",
+	char *document = study_documents_with(
+	    study_documents_response, "\"scene\"",
 	    "\"sweep\": [{\"path\": \"/law/type\", \"values\": [\"linear\", \"elastoplastic\"]}, "
 	    "{\"path\": \"/contact/tension\", \"values\": [true]}, {\"path\": \"/law/corrections\", "
 	    "\"values\": [3]}, {\"path\": \"/contact/gap_m\", \"values\": [0.1]}], \"scene\"");
@@ -167,7 +167,7 @@ static void indexes_stand_by_output_and_input(void **state)
 	    {.sweep = {0.2}, .runs = 200, .indices = indices},
 	    {.sweep = {0.9}, .runs = 200, .runs_failed = 3, .rows_dropped = 1, .indices = indices + 2}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
-	struct reading *r = result_of(documents_sensitivity, &result);
+	struct reading *r = result_of(study_documents_sensitivity, &result);
 	assert_string_equal(reading_text(r, "/name"), "a study");
 	check_near(reading_number(r, "/cells/1/sweep/~1contact~1restitution"), 0.9, 0);
 	check_near(reading_number(r, "/cells/0/runs_failed"), 0, 0);
@@ -218,7 +218,7 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 	}
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
-	struct reading *r = result_of(documents_sensitivity, &result);
+	struct reading *r = result_of(study_documents_sensitivity, &result);
 	static const char accuracy[] = "/cells/1/outputs/0/accuracy";
 	check_near(reading_number(r, "%s/runs_checked", accuracy), 32, 0);
 	check_near(reading_number(r, "%s/rows_to_halve", accuracy), 400, 0);
@@ -255,7 +255,7 @@ static void undefined_indexes_are_null_and_say_why(void **state)
 			indices[o].index[k] = none;
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
-	struct reading *r = result_of(documents_sensitivity, &result);
+	struct reading *r = result_of(study_documents_sensitivity, &result);
 	assert_true(reading_has(r, "/cells/0/outputs/0/inputs/0/S1"));
 	assert_true(isnan(reading_number(r, "/cells/0/outputs/0/inputs/0/S1")));
 	assert_string_equal(reading_text(r, "/cells/0/outputs/0/note"),
@@ -279,7 +279,7 @@ static void a_negative_index_is_not_clipped_but_explained(void **state)
 	estimates[2 * POUND_ST_PICK_FREEZE] = (struct pound_estimate){-0.125, -0.25, 0.125};
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
-	struct reading *r = result_of(documents_sensitivity, &result);
+	struct reading *r = result_of(study_documents_sensitivity, &result);
 	check_near(reading_number(r, "/cells/0/outputs/0/inputs/0/ST_pick_freeze"), -0.125, 0);
 	assert_string_equal(
 	    reading_text(r, "/cells/0/outputs/0/inputs/0/note"),
@@ -301,7 +301,7 @@ static void all_there_is_to_say_has_room(void **state)
 	}
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
-	struct reading *r = result_of(documents_sensitivity, &result);
+	struct reading *r = result_of(study_documents_sensitivity, &result);
 	const char *note = reading_text(r, "/cells/0/outputs/0/note");
 	assert_string_equal(strrchr(note, ';'),
 	                    "; one row makes a fifth of the variance or more, so intervals may be too narrow");
@@ -315,7 +315,7 @@ static void failed_runs_are_counted_by_reason(void **state)
 	struct pound_cell cell = {.runs = 9, .runs_failed = 7, .n_signals = 1, .signals = &response};
 	struct pound_result result = {
 	    .n_cells = 1, .cells = &cell, .work.failed = {[POUND_CHATTER_RUNS] = 4, [POUND_TOLERANCE_RUNS] = 3}};
-	struct reading *r = result_of(documents_response, &result);
+	struct reading *r = result_of(study_documents_response, &result);
 	assert_int_equal(reading_count(r, "/work/failures"), 2);
 	assert_string_equal(reading_text(r, "/work/failures/0/reason"),
 	                    "more events in one sample interval than allowed");
@@ -333,7 +333,7 @@ static void errors_against_a_reference_without_a_result_are_null_and_say_why(voi
 	struct pound_trial trials[TRIALS] = {{.runs_failed = 2}};
 	struct pound_cell cell = {.runs = 2 * TRIALS, .runs_failed = 2};
 	struct pound_result result = {.n_cells = 1, .cells = &cell, .n_trials = TRIALS, .trials = trials};
-	struct reading *r = result_of(documents_convergence, &result);
+	struct reading *r = result_of(study_documents_convergence, &result);
 	assert_string_equal(reading_text(r, "/note"),
 	                    "the reference run failed, so there are no errors; work.failures has the reasons");
 	assert_true(isnan(reading_number(r, "/orders/newmark")));
@@ -342,7 +342,7 @@ static void errors_against_a_reference_without_a_result_are_null_and_say_why(voi
 	for (int j = 2; j < 4; j++)
 		trials[j] = (struct pound_trial){.solver = {.method = 1, .step = pow(10, -j)},
 		                                 .history.mean = pow(10, -3 * j)};
-	r = result_of(documents_convergence, &result);
+	r = result_of(study_documents_convergence, &result);
 	assert_false(reading_has(r, "/note"));
 	check_near(reading_number(r, "/orders/newmark"), 3, 1e-12);
 	assert_true(isnan(reading_number(r, "/orders/adaptive")));
@@ -365,7 +365,7 @@ static void left_out_work_adds_up(void **state)
 	                                       .yield_given = 4,
 	                                       .linear_unasked = 3,
 	                                       .nonlinear_unasked = 2}};
-	struct reading *r = result_of(documents_response, &result);
+	struct reading *r = result_of(study_documents_response, &result);
 	static const char *const sentences[] = {
 	    "60 ground motions: equal to one already made",
 	    "90 linear responses without pounding: equal to one already made",
@@ -384,7 +384,7 @@ static void left_out_work_adds_up(void **state)
 	check_near(reading_number(r, "/work/pounding_runs/run"), 50, 0);
 	reading_close(r);
 	char *document =
-	    documents_with(documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\"");
+	    study_documents_with(study_documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\"");
 	result.work = (struct pound_work){.signals = {5, 5}, .free_runs = {10, 10}, .pounding_runs = {5, 0}};
 	r = result_of(document, &result);
 	assert_int_equal(reading_count(r, "/work/left_out"), 2);
@@ -407,8 +407,8 @@ static void points_that_do_not_fill_their_nets_are_noted(void **state)
 	             {"\"method\": \"lhs\", \"rows\": 10", ""}};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		char *document =
-		    documents_with(documents_sensitivity, "\"method\": \"lhs\", \"rows\": 10", cases[k].design);
-		struct pound_study *study = documents_study(document);
+		    study_documents_with(study_documents_sensitivity, "\"method\": \"lhs\", \"rows\": 10", cases[k].design);
+		struct pound_study *study = study_documents_study(document);
 		struct pound_run *run = pound_run_create(study, 1);
 		struct reading *r = result_of(document, pound_run_result(run));
 		const char *note = reading_text(r, "/design/note");
@@ -426,9 +426,9 @@ static void points_that_do_not_fill_their_nets_are_noted(void **state)
 static void a_result_says_why_its_design_grew_no_further(void **state)
 {
 	(void)state;
-	char *document = documents_with(documents_sensitivity, "\"rows\": 10",
+	char *document = study_documents_with(study_documents_sensitivity, "\"rows\": 10",
 	                                "\"until\": {\"half_width\": 0.05, \"max_runs\": 60000}");
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = pound_run_create(study, 1);
 	struct pound_result result = *pound_run_result(run);
 	struct pound_look looks[] = {{1000, INFINITY, 0, 0, 0, POUND_S1}, {1200, 0.04, 1, 1, 0, POUND_ST}};

@@ -162,7 +162,7 @@ static void no_estimate_is_outside_its_interval_without_a_word(void **state)
 	for (int seed = 0; seed < 40; seed++) {
 		char document[1024];
 		snprintf(document, sizeof document, form, seed % 2 ? "lhs" : "random", seed);
-		struct pound_study *study = documents_study(document);
+		struct pound_study *study = study_documents_study(document);
 		struct pound_run *run = specimen_run(study);
 		static const struct timing timing = {0, 0, 1};
 		size_t length;

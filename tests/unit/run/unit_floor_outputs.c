@@ -31,7 +31,7 @@ static struct pound_study *study_of(const char *kind, int signals, const char *m
 	char filled[400], document[1600];
 	snprintf(filled, sizeof filled, scene, signals);
 	snprintf(document, sizeof document, "{\"kind\": \"%s\", %s, %s}", kind, filled, more);
-	return documents_study(document);
+	return study_documents_study(document);
 }
 
 static const char few[] = "\"spectrum\": {\"frequencies_hz\": [0.5, 2, 7, 40], \"damping_ratio\": 0.03}";
@@ -53,8 +53,8 @@ static void a_study_of_one_signal_is_its_floor(void **state)
 	double psa[2][6], *into[] = {psa[0], psa[1]};
 	specimen.study.kind = POUND_KIND_RESPONSE; // to find the task
 	specimen.study.n_outputs = 1;
-	struct pound_task task = riding_task(&specimen, true);
-	const struct pound_floor_answer answer = riding_spectra(&task, &specimen.study.spectrum, 2, 1, 0, into);
+	struct pound_task task = floor_task_task(&specimen, true);
+	const struct pound_floor_answer answer = floor_task_spectra(&task, &specimen.study.spectrum, 2, 1, 0, into);
 	for (int k = 0; k < 6; k++) {
 		// the study scales the motion by a power of two
 		check_near(floor->spectra[POUND_SPECTRUM_POUNDING].mean[k], psa[0][k], 1e-9 * psa[0][k]);
@@ -71,8 +71,8 @@ static void a_study_of_one_signal_is_its_floor(void **state)
 	check_near(floor->impulse_mean, 2.5 * answer.impulse_max, 1e-9);
 	check_near(floor->pulses_mean, (double)answer.contacts, 0);
 	assert_int_equal(floor->signals_checked, 1);
-	task = riding_task(&specimen, false);
-	riding_spectra(&task, &specimen.study.spectrum, 1, 1, 0, into);
+	task = floor_task_task(&specimen, false);
+	floor_task_spectra(&task, &specimen.study.spectrum, 1, 1, 0, into);
 	for (int k = 0; k < 6; k++)
 		check_near(floor->spectra[POUND_SPECTRUM_FREE].mean[k], psa[0][k], 1e-12 * psa[0][k]);
 	pound_run_free(run);

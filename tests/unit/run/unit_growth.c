@@ -247,8 +247,8 @@ static const char document[] =
 
 static struct pound_study *study_with(const char *design)
 {
-	char *text = documents_with(document, "\"method\": \"random\", \"rows\": 150", design);
-	struct pound_study *study = documents_study(text);
+	char *text = study_documents_with(document, "\"method\": \"random\", \"rows\": 150", design);
+	struct pound_study *study = study_documents_study(text);
 	free(text);
 	return study;
 }

@@ -38,7 +38,7 @@ enum { CONTACTS = sizeof contacts / sizeof contacts[0] };
 
 static struct pound_work work_of(const char *document)
 {
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	struct pound_work work = pound_run_result(run)->work;
 	pound_run_free(run);
@@ -113,7 +113,7 @@ static void rows_of_one_ground_motion_share_it_and_the_responses_without_poundin
 		    "{\"path\": \"/contact/stiffness_ratio\", \"distribution\": {\"type\": \"uniform\", \"min\": 50, "
 		    "\"max\": 200}}]}",
 		    ROWS, excitations[k]);
-		struct pound_study *study = documents_study(document);
+		struct pound_study *study = study_documents_study(document);
 		struct pound_run *run = specimen_run(study);
 		const int blocks = pound_run_blocks(run);
 		const struct pound_work *work = &pound_run_result(run)->work;

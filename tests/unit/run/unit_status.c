@@ -46,7 +46,7 @@ static const char chatters[] =
  */
 static struct reading *computed(const char *document, char **json, enum pound_status *status)
 {
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = pound_run_create(study, 1);
 	assert_non_null(run);
 	*status = specimen_compute(run);
@@ -136,7 +136,7 @@ static void rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says
 static void a_cell_without_a_run_has_no_outputs_and_the_others_have(void **state)
 {
 	(void)state;
-	char *document = documents_with(
+	char *document = study_documents_with(
 	    some_signals, "\"scene\"",
 	    "\"sweep\": [{\"path\": \"/oscillators/0/frequency_hz\", \"values\": [2, 50]}], \"scene\"");
 	struct reading *r = succeeded(document);
@@ -170,9 +170,9 @@ static void outputs_in_terms_of_no_motion_have_no_value_and_a_note(void **state)
 static void a_study_without_a_result_ends_with_the_reason_of_its_runs(void **state)
 {
 	(void)state;
-	char *all_rows = documents_with(some_rows, "[3, 100]", "[99, 100]");
-	char *all_signals = documents_with(some_signals, "0.016", "0.001");
-	char *tolerance = documents_with(chatters, "1e-4}", "1e-300}");
+	char *all_rows = study_documents_with(some_rows, "[3, 100]", "[99, 100]");
+	char *all_signals = study_documents_with(some_signals, "0.016", "0.001");
+	char *tolerance = study_documents_with(chatters, "1e-4}", "1e-300}");
 	assert_int_equal(failed(all_rows), POUND_UNSTABLE);
 	assert_int_equal(failed(all_signals), POUND_UNSTABLE);
 	assert_int_equal(failed(tolerance), POUND_TOLERANCE);
@@ -302,7 +302,7 @@ gsl_odeiv2_driver *__wrap_gsl_odeiv2_driver_alloc_scaled_new(const gsl_odeiv2_sy
 static void want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again(void **state)
 {
 	(void)state;
-	struct pound_study *study = documents_study(
+	struct pound_study *study = study_documents_study(
 	    "{\"kind\": \"convergence\", \"convergence\": {\"adaptive\": {\"tolerances\": [1e-4]}}, \"scene\": {"
 	    "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}], \"excitation\": {"
 	    "\"type\": \"record\", \"time_step_s\": 0.01, \"acceleration_m_s2\": [1, -1, 2, -2, 1, 0, 0, 0]}}}");

@@ -111,7 +111,7 @@ static void what_takes_long_ends_soon_when_it_is_told_to(void **state)
 		double longest = 0, start;
 		int stopped = 0;
 		snprintf(document, sizeof document, CASES[i].document, CASES[i].n[check_soaks()]);
-		struct pound_study *study = documents_study(document);
+		struct pound_study *study = study_documents_study(document);
 		study->design.resamples = study->n_inputs ? 400 : 0; // so that other loops have their share
 		struct trial trial = {.study = study, .step = CASES[i].step};
 		if (trial.step != CREATE) {

@@ -36,7 +36,7 @@ static struct pound_study *study_of(const char *law, int corrections, double fre
 	         "\"target_demand\": %g}, \"oscillators\": [{\"frequency_hz\": %g}, {\"rigid_wall\": true}], "
 	         "\"contact\": null, \"excitation\": {\"frequency_hz\": 2.5, \"signals\": %d}}}",
 	         law, corrections, target, frequency, SIGNALS);
-	return documents_study(document);
+	return study_documents_study(document);
 }
 
 static void scene_add(struct seen *seen, const char *law, int corrections, double frequency, double target)
@@ -131,7 +131,7 @@ static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void 
 		char filled[700];
 		// a gap is nothing beside the motion, but whether the bodies meet is to be found out
 		snprintf(filled, sizeof filled, document, may_miss ? "1e-300" : "0");
-		struct pound_study *study = documents_study(filled);
+		struct pound_study *study = study_documents_study(filled);
 		struct pound_run *run = specimen_run(study);
 		pound_run_sample_output(run, 0, 0, 0, 0, &mean[may_miss], &variance);
 		assert_int_equal(pound_run_result(run)->work.yield_missed, 0);
@@ -144,7 +144,7 @@ static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void 
 static void a_body_that_never_moves_is_not_searched_for(void **state)
 {
 	(void)state;
-	struct pound_study *study = documents_study(
+	struct pound_study *study = study_documents_study(
 	    "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"elastoplastic\", \"corrections\": 9}, "
 	    "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], \"excitation\": {\"type\": "
 	    "\"record\", "

@@ -42,9 +42,9 @@ static void a_contact_model_that_the_solver_cannot_integrate_is_refused_with_bot
 			         pound_solver_name(row));
 			pretends = true;
 			if (pound_solver_takes_force(row, pretended))
-				study_free(documents_study(document));
+				study_free(study_documents_study(document));
 			else
-				documents_problem(document, "/scene/contact/model", detail);
+				study_documents_problem(document, "/scene/contact/model", detail);
 			pretends = false;
 		}
 }
@@ -55,8 +55,8 @@ static void a_study_without_contact_does_not_need_it(void **state)
 	pretends = true;
 	pretended = POUND_FORCE_POWER;
 	char *document =
-	    documents_with(documents_response, "{\"oscillators\"", "{\"contact\": null, \"oscillators\"");
-	study_free(documents_study(document));
+	    study_documents_with(study_documents_response, "{\"oscillators\"", "{\"contact\": null, \"oscillators\"");
+	study_free(study_documents_study(document));
 	pretends = false;
 	free(document);
 }
@@ -67,12 +67,12 @@ static void every_solver_of_a_convergence_study_must_take_it_and_so_must_floors(
 	static struct problems problems;
 	pretends = true;
 	pretended = POUND_FORCE_POWER;
-	documents_refused(documents_convergence, &problems);
+	study_documents_refused(study_documents_convergence, &problems);
 	int n_expected = 0;
 	for (int row = 0; row < POUND_SOLVERS; row++)
 		n_expected += !pound_solver_takes_force(row, pretended);
 	assert_int_equal(problems.n, n_expected);
-	documents_refused(documents_floor, &problems);
+	study_documents_refused(study_documents_floor, &problems);
 	bool floors = false;
 	for (int i = 0; i < problems.n; i++)
 		floors |= strstr(problems.list[i].detail, "floor spectra") != NULL;

@@ -77,7 +77,7 @@ static char *replaced(const struct cases *cases, const char *text)
 		return strdup(text);
 	if (!document || !strstr(document, cases->from))
 		fail_msg("%s:%d: the base has no %s", cases->file, cases->line, cases->from);
-	return documents_with(document, cases->from, text);
+	return study_documents_with(document, cases->from, text);
 }
 
 static void paragraph_end(struct cases *cases)

@@ -14,10 +14,10 @@
 static void absent_outputs_are_all_that_apply_in_a_cell(void **state)
 {
 	(void)state;
-	char *swept = documents_with(documents_sensitivity, EPS,
+	char *swept = study_documents_with(study_documents_sensitivity, EPS,
 	                             "\"/law/type\", \"values\": [\"linear\", \"origin_oriented\"]");
-	char *both = documents_with(swept, ",\n \"outputs\": [\"demand_amplification\", \"impulse\"]", "");
-	struct pound_study *study = documents_study(both);
+	char *both = study_documents_with(swept, ",\n \"outputs\": [\"demand_amplification\", \"impulse\"]", "");
+	struct pound_study *study = study_documents_study(both);
 	assert_int_equal(study->n_outputs, 3); // all that apply somewhere
 	study_free(study);
 	free(both);
@@ -27,9 +27,9 @@ static void absent_outputs_are_all_that_apply_in_a_cell(void **state)
 static void what_is_too_large_is_reported_with_its_limit(void **state)
 {
 	(void)state;
-	char *many = documents_with(documents_sensitivity, "\"rows\": 10", "\"rows\": 200000");
+	char *many = study_documents_with(study_documents_sensitivity, "\"rows\": 10", "\"rows\": 200000");
 	char *document =
-	    documents_with(many, "\"time_step_s\": 0.01", "\"time_step_s\": 3e-4"); // 133,334 samples
+	    study_documents_with(many, "\"time_step_s\": 0.01", "\"time_step_s\": 3e-4"); // 133,334 samples
 	struct problems problems;
 	assert_null(study_from_json(document, strlen(document), &problems));
 	check_near(problems.list[0].limit, 1e12, 0);
@@ -42,10 +42,10 @@ static void cells_are_the_product_of_the_sweeps_the_last_one_fastest(void **stat
 {
 	(void)state;
 	char *document =
-	    documents_with(documents_sensitivity, EPS "}",
+	    study_documents_with(study_documents_sensitivity, EPS "}",
 	                   "\"/contact/gap_m\", \"values\": [0, 1, 2]}, {\"path\": \"/law/type\", \"values\": "
 	                   "[\"elastoplastic\", \"origin_oriented\"]}");
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	assert_int_equal(study_cells(study), 6);
 	assert_int_equal(study_runs(study), 6 * 10 * 4 * 5);
 	check_near(study_samples(study), 4001, 0); // 20 cycles at 0.5 Hz, 0.01 s
@@ -79,8 +79,8 @@ static void too_many_cells_are_refused_before_they_are_counted_out(void **state)
 	for (int s = 0; s < 8; s++)
 		at += sprintf(at, "%s{\"path\": \"%s\", \"values\": [%s]}", s ? "," : "", paths[s], list);
 	strcpy(at, "]");
-	char *document = documents_with(documents_response, "{\"frequency_hz\": 3.1}]}", swept);
-	documents_problem(document, "/sweep",
+	char *document = study_documents_with(study_documents_response, "{\"frequency_hz\": 3.1}]}", swept);
+	study_documents_problem(document, "/sweep",
 	                  "asks for 1.00802805607006e+24 cells, a study may have at most 10000");
 	free(document);
 	free(swept);
@@ -119,14 +119,14 @@ static void every_fault_is_told_whatever_else_is_wrong(void **state)
 	    {"[0.05, 0.1]", "[0.05, 3]", "/sweep/0/values/1"},
 	    {"\"event\"", "\"best\"", "/solver/method"},
 	};
-	study_free(documents_study(whole));
+	study_free(study_documents_study(whole));
 	for (int i = 0; i < COUNT(faults); i++)
 		for (int j = 0; j < COUNT(faults); j++) {
 			struct problems problems;
-			char *one = documents_with(whole, faults[i].from, faults[i].to),
-			     *both = j == i ? documents_with(one, "\"kind\"", "\"kind\"")
-			                    : documents_with(one, faults[j].from, faults[j].to);
-			documents_refused(both, &problems);
+			char *one = study_documents_with(whole, faults[i].from, faults[i].to),
+			     *both = j == i ? study_documents_with(one, "\"kind\"", "\"kind\"")
+			                    : study_documents_with(one, faults[j].from, faults[j].to);
+			study_documents_refused(both, &problems);
 			// cells of a sweep that is not known are not looked at
 			const bool swept = (i == 10 || j == 10) && (i == 4 || j == 4 || i == 5 || j == 5);
 			if (!swept &&

@@ -9,7 +9,7 @@
 
 static void hash_of(const char *document, char hex[STUDY_HASH_SIZE])
 {
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	assert_true(study_hash(study, hex));
 	assert_int_equal(strlen(hex), STUDY_HASH_SIZE - 1);
 	study_free(study);
@@ -18,7 +18,7 @@ static void hash_of(const char *document, char hex[STUDY_HASH_SIZE])
 static bool same(const char *document, const char *from, const char *to)
 {
 	char one[STUDY_HASH_SIZE], other[STUDY_HASH_SIZE];
-	char *changed = documents_with(document, from, to);
+	char *changed = study_documents_with(document, from, to);
 	hash_of(document, one);
 	hash_of(changed, other);
 	free(changed);
@@ -50,7 +50,7 @@ static void spelling_order_and_names_do_not_change_it(void **state)
 	    {"\"min\": 0.5, \"max\": 5", "\"max\": 5, \"min\": 0.5"},
 	};
 	for (int i = 0; i < COUNT(changes); i++)
-		if (!same(documents_sensitivity, changes[i].from, changes[i].to))
+		if (!same(study_documents_sensitivity, changes[i].from, changes[i].to))
 			fail_msg("%s for %s changes the hash", changes[i].to, changes[i].from);
 }
 
@@ -88,20 +88,20 @@ static void any_other_change_changes_it(void **state)
 	    {"\"tolerance\": 1e-9", "\"tolerance\": 1e-8"},
 	};
 	for (int i = 0; i < COUNT(changes); i++)
-		if (same(documents_sensitivity, changes[i].from, changes[i].to))
+		if (same(study_documents_sensitivity, changes[i].from, changes[i].to))
 			fail_msg("%s for %s does not change the hash", changes[i].to, changes[i].from);
-	assert_false(same(documents_convergence, "[0.01, 0.001]", "[0.01]"));
-	assert_false(same(documents_convergence, "\"history_s\": 2", "\"history_s\": 3"));
-	assert_true(same(documents_convergence, ", \"history_s\": 2", ""));
-	assert_false(same(documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\""));
-	assert_false(same(documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}"));
+	assert_false(same(study_documents_convergence, "[0.01, 0.001]", "[0.01]"));
+	assert_false(same(study_documents_convergence, "\"history_s\": 2", "\"history_s\": 3"));
+	assert_true(same(study_documents_convergence, ", \"history_s\": 2", ""));
+	assert_false(same(study_documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\""));
+	assert_false(same(study_documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}"));
 }
 
 static void every_sample_of_a_record_counts(void **state)
 {
 	(void)state;
-	char *record = documents_with(
-	    documents_response, "\"oscillators\"",
+	char *record = study_documents_with(
+	    study_documents_response, "\"oscillators\"",
 	    "\"excitation\": {\"type\": \"record\", \"acceleration_m_s2\": [0, 1, 2]}, \"oscillators\"");
 	assert_true(same(record, "[0, 1, 2]", "[0,1e0,0.2e1]"));
 	assert_false(same(record, "[0, 1, 2]", "[0, 1, 2, 0]"));
@@ -114,7 +114,7 @@ static void a_hash_stays_what_it_is(void **state)
 {
 	(void)state;
 	char hex[STUDY_HASH_SIZE];
-	hash_of(documents_response, hex);
+	hash_of(study_documents_response, hex);
 	assert_string_equal(hex, "96e2d140f562cc85f018e269b3c41d47c3298d0557221069d9b6687291bc7a86");
 }
 

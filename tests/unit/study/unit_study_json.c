@@ -12,21 +12,21 @@
 static void absent_settings_are_some_and_empty_ones_none(void **state)
 {
 	(void)state;
-	struct pound_study *s = documents_study(documents_convergence);
+	struct pound_study *s = study_documents_study(study_documents_convergence);
 	assert_int_equal(pound_convergence_trials(s), 2 + 2 + 1 + 1);
 	assert_int_equal(s->convergence.settings[1].n, 2);
 	check_near(s->convergence.settings[1].values[1], 0.001, 0);
 	assert_int_equal(study_runs(s), 12);
 	study_free(s);
-	char *document = documents_with(documents_response, "response", "convergence");
-	s = documents_study(document);
+	char *document = study_documents_with(study_documents_response, "response", "convergence");
+	s = study_documents_study(document);
 	free(document);
 	for (int row = 0; row < POUND_SOLVERS; row++)
 		assert_true(row ? s->convergence.settings[row].n >= 4 : s->convergence.settings[row].n == 0);
 	check_near(s->convergence.history, 2, 0);
 	study_free(s);
-	document = documents_with(documents_convergence, "[0.01, 0.001]", "[]");
-	s = documents_study(document);
+	document = study_documents_with(study_documents_convergence, "[0.01, 0.001]", "[]");
+	s = study_documents_study(document);
 	assert_int_equal(s->convergence.settings[1].n, 0);
 	study_free(s);
 	free(document);
@@ -35,7 +35,7 @@ static void absent_settings_are_some_and_empty_ones_none(void **state)
 static void what_a_document_says_is_in_the_study(void **state)
 {
 	(void)state;
-	struct pound_study *s = documents_study(documents_sensitivity);
+	struct pound_study *s = study_documents_study(study_documents_sensitivity);
 	const struct pound_scene *scene = &s->scene;
 	assert_int_equal(s->kind, POUND_KIND_SENSITIVITY);
 	assert_string_equal(s->name, "a study");
@@ -78,7 +78,7 @@ static void what_a_document_says_is_in_the_study(void **state)
 static void absent_members_have_the_defaults_of_the_contract(void **state)
 {
 	(void)state;
-	struct pound_study *s = documents_study(documents_response);
+	struct pound_study *s = study_documents_study(study_documents_response);
 	const struct pound_excitation *e = &s->scene.excitation;
 	assert_null(s->name);
 	assert_string_equal(pound_law_name(s->scene.law.type), "linear");
@@ -121,12 +121,12 @@ static void what_an_excitation_does_not_use_is_zero(void **state)
 {
 	(void)state;
 	struct pound_study *s =
-	    documents_study(SCENE("{\"type\": \"record\", \"acceleration_m_s2\": [0, 1e0, -0.5]}"));
+	    study_documents_study(SCENE("{\"type\": \"record\", \"acceleration_m_s2\": [0, 1e0, -0.5]}"));
 	assert_int_equal(s->scene.excitation.n_record, 3);
 	assert_int_equal(s->scene.excitation.signals, 1);
 	check_near(s->scene.excitation.record[2], -0.5, 0);
 	study_free(s);
-	s = documents_study(SCENE("{\"type\": \"harmonic\", \"duration_s\": 3}"));
+	s = study_documents_study(SCENE("{\"type\": \"harmonic\", \"duration_s\": 3}"));
 	assert_int_equal(s->scene.excitation.signals, 1);
 	check_near(s->scene.excitation.duration, 3, 0);
 	check_near(s->scene.excitation.rise, 0, 0);
@@ -136,8 +136,8 @@ static void what_an_excitation_does_not_use_is_zero(void **state)
 static void a_rigid_wall_has_no_frequency(void **state)
 {
 	(void)state;
-	char *wall = documents_with(documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}");
-	struct pound_study *study = documents_study(wall);
+	char *wall = study_documents_with(study_documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}");
+	struct pound_study *study = study_documents_study(wall);
 	assert_true(study->scene.oscillators[1].rigid_wall);
 	check_near(study->scene.oscillators[1].frequency_hz, 0, 0);
 	study_free(study);
@@ -148,8 +148,8 @@ static void no_contact_is_null(void **state)
 {
 	(void)state;
 	char *document =
-	    documents_with(documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\"");
-	struct pound_study *study = documents_study(document);
+	    study_documents_with(study_documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\"");
+	struct pound_study *study = study_documents_study(document);
 	assert_false(study->scene.contact.present);
 	assert_int_equal(study->n_outputs, 1);
 	assert_string_equal(pound_output_name(study->outputs[0]), "force_amplification");
@@ -161,7 +161,7 @@ static void broken_json_is_told_by_line_and_column(void **state)
 {
 	(void)state;
 	struct problems problems;
-	documents_refused("{\"kind\": \"response\",\n \"scene\": {\"law\": {\"hardening_ratio\": 01}}}",
+	study_documents_refused("{\"kind\": \"response\",\n \"scene\": {\"law\": {\"hardening_ratio\": 01}}}",
 	                  &problems);
 	assert_int_equal(problems.status, PROBLEMS_MALFORMED);
 	assert_int_equal(problems.line, 2);
@@ -173,10 +173,10 @@ static void the_text_need_not_end_with_a_zero(void **state)
 {
 	(void)state;
 	struct problems problems;
-	size_t length = strlen(documents_response);
+	size_t length = strlen(study_documents_response);
 	char *exact = malloc(length);
 	assert_non_null(exact);
-	memcpy(exact, documents_response, length);
+	memcpy(exact, study_documents_response, length);
 	struct pound_study *study = study_from_json(exact, length, &problems);
 	free(exact);
 	assert_non_null(study);

@@ -16,14 +16,14 @@ static char *document_with(const char *frequencies)
 	snprintf(outputs, sizeof outputs, ORDINATES "%s%s%s",
 	         *frequencies ? ", \"spectrum\": {\"frequencies_hz\": " : "", frequencies,
 	         *frequencies ? "}" : "");
-	return documents_with(documents_sensitivity, "\"outputs\": [\"demand_amplification\", \"impulse\"]",
+	return study_documents_with(study_documents_sensitivity, "\"outputs\": [\"demand_amplification\", \"impulse\"]",
 	                      outputs);
 }
 
 static void frequencies_are_a_list_or_a_range(void **state)
 {
 	(void)state;
-	struct pound_study *study = documents_study(documents_floor);
+	struct pound_study *study = study_documents_study(study_documents_floor);
 	assert_int_equal(study->spectrum.n, 9);
 	check_near(pound_spectrum_frequency(&study->spectrum, 4), 5, 1e-14);
 	check_near(study->spectrum.damping_ratio, 0.02, 0);
@@ -31,8 +31,8 @@ static void frequencies_are_a_list_or_a_range(void **state)
 	assert_int_equal(study->n_outputs, 0);
 	study_free(study);
 	char *listed =
-	    documents_with(documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[7.5, 3, 1e1]");
-	study = documents_study(listed);
+	    study_documents_with(study_documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[7.5, 3, 1e1]");
+	study = study_documents_study(listed);
 	assert_int_equal(study->spectrum.n, 3);
 	check_near(pound_spectrum_frequency(&study->spectrum, 0), 7.5, 0);
 	check_near(pound_spectrum_frequency(&study->spectrum, 2), 10, 0);
@@ -43,7 +43,7 @@ static void frequencies_are_a_list_or_a_range(void **state)
 static void absent_frequencies_are_two_hundred(void **state)
 {
 	(void)state;
-	struct pound_study *study = documents_study("{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": "
+	struct pound_study *study = study_documents_study("{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": "
 	                                            "[{\"frequency_hz\": 2}, {\"rigid_wall\": true}]}}");
 	assert_int_equal(study->spectrum.n, 200);
 	check_near(pound_spectrum_frequency(&study->spectrum, 0), 0.1, 0);
@@ -58,7 +58,7 @@ static void every_frequency_is_an_output(void **state)
 {
 	(void)state;
 	char name[STUDY_OUTPUT_SIZE], *document = document_with("[0.5, 2.25, 16]");
-	struct pound_study *study = documents_study(document);
+	struct pound_study *study = study_documents_study(document);
 	assert_int_equal(study->n_outputs, 4);
 	assert_string_equal(study_output_name(study, 0, name), "impulse");
 	assert_string_equal(study_output_name(study, 1, name), "floor_spectrum.0.5_hz");
@@ -74,10 +74,10 @@ static void only_what_is_asked_counts_for_the_hash(void **state)
 {
 	(void)state;
 	char range[STUDY_HASH_SIZE], list[STUDY_HASH_SIZE], other[STUDY_HASH_SIZE];
-	char *listed = documents_with(documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[0.5, 50]");
-	char *ranged = documents_with(documents_floor, "\"count\": 9", "\"count\": 2");
-	struct pound_study *studies[] = {documents_study(listed), documents_study(ranged),
-	                                 documents_study(documents_floor)};
+	char *listed = study_documents_with(study_documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[0.5, 50]");
+	char *ranged = study_documents_with(study_documents_floor, "\"count\": 9", "\"count\": 2");
+	struct pound_study *studies[] = {study_documents_study(listed), study_documents_study(ranged),
+	                                 study_documents_study(study_documents_floor)};
 	assert_true(study_hash(studies[0], list) && study_hash(studies[1], range) &&
 	            study_hash(studies[2], other));
 	assert_string_equal(list, range);
