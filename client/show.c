@@ -2,7 +2,7 @@
 #include "client/show.h"
 
 #include "client/cell.h"
-#include "client/indices.h"
+#include "client/indices_table.h"
 #include "client/table.h"
 #include "schema/json/json_pointer.h"
 #include "schema/result/result_json.h"

@@ -12,7 +12,7 @@ enum {
 struct pound_sequence {
 	uint32_t direction
 	    [POUND_SEQUENCE_DIGITS]; /* what bit k of a point's number adds to its digits, first digit highest */
-	uint32_t shift;         /* added to every point */
+	uint32_t shift;              /* added to every point */
 };
 
 void pound_sequence_init(struct pound_sequence *net, int column);

@@ -31,8 +31,8 @@ typedef void march(const struct pound_task *, struct pound_task_result *, int n,
  * Returns  value    false: this machine has no such lanes, nothing was run
  *          results  one for each task  (n)
  */
-bool pound_exact_lanes(int lanes, const struct pound_task *tasks, struct pound_task_result *results,
-                       int n, void *scratch, const atomic_bool *stop)
+bool pound_exact_lanes(int lanes, const struct pound_task *tasks, struct pound_task_result *results, int n,
+                       void *scratch, const atomic_bool *stop)
 {
 	static march *const run[POUND_WIDTHS] = {pound_exact_w8, pound_exact_w4, pound_exact_w1,
 	                                         pound_exact_portable};

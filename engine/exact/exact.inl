@@ -604,8 +604,8 @@ static_assert(sizeof(struct lanes) == W * sizeof(struct state_rows), "rows are d
  * Source   model.md 1
  * Test     unit_march, unit_response; unit_status: a_run_that_takes_hours_is_stopped
  */
-void POUND_EXACT(const struct pound_task *tasks, struct pound_task_result *results, int n,
-                 void *scratch, const atomic_bool *stop)
+void POUND_EXACT(const struct pound_task *tasks, struct pound_task_result *results, int n, void *scratch,
+                 const atomic_bool *stop)
 {
 	struct work *work = scratch;
 	work_init(work, tasks, results, n, stop);

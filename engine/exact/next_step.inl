@@ -380,8 +380,7 @@ static enum pound_stage peaks_look(struct simulation *sim)
 /* Whether a law of a task has more than one piece. */
 static bool simulation_edged(const struct pound_task *task)
 {
-	return !pound_law_linear(task->bodies[0].backbone.law) ||
-	       !pound_law_linear(task->bodies[1].backbone.law);
+	return !pound_law_linear(task->bodies[0].backbone.law) || !pound_law_linear(task->bodies[1].backbone.law);
 }
 
 /* Longest step in contact.

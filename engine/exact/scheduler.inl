@@ -35,7 +35,7 @@ struct work {
 	struct pound_common common;
 	// from here on nothing is cleared: a simulation's start does, and what finds the families
 	struct families families;
-	struct simulation filler;       /* of the lanes that a batch leaves empty, and ... */
+	struct simulation filler;      /* of the lanes that a batch leaves empty, and ... */
 	struct pound_task_result none; /* ... what comes of it */
 	struct simulation pool[POOL];
 	struct simulation waiting[POOL * POUND_OTHERS]; /* for room, out of a family: no task starts meanwhile */
@@ -149,8 +149,8 @@ static void tasks_start(struct work *work)
 }
 
 /* Where a march begins: no task is started. */
-static void work_init(struct work *work, const struct pound_task *tasks,
-                      struct pound_task_result *results, int n, const atomic_bool *stop)
+static void work_init(struct work *work, const struct pound_task *tasks, struct pound_task_result *results,
+                      int n, const atomic_bool *stop)
 {
 	static const double still[2];
 	static const struct pound_press_map loose;

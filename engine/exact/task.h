@@ -75,16 +75,16 @@ struct pound_task_result {
 
 enum { POUND_EXACT_SCRATCH = 1 << 23 }; /* bytes of work space, 64-byte aligned */
 
-bool pound_exact_lanes(int lanes, const struct pound_task *tasks, struct pound_task_result *results,
-                       int n, void *scratch, const atomic_bool *stop);
+bool pound_exact_lanes(int lanes, const struct pound_task *tasks, struct pound_task_result *results, int n,
+                       void *scratch, const atomic_bool *stop);
 
 /* exact.inl, compiled once for each */
-void pound_exact_w8(const struct pound_task *tasks, struct pound_task_result *results, int n,
-                    void *scratch, const atomic_bool *stop);
-void pound_exact_w4(const struct pound_task *tasks, struct pound_task_result *results, int n,
-                    void *scratch, const atomic_bool *stop);
-void pound_exact_w1(const struct pound_task *tasks, struct pound_task_result *results, int n,
-                    void *scratch, const atomic_bool *stop);
+void pound_exact_w8(const struct pound_task *tasks, struct pound_task_result *results, int n, void *scratch,
+                    const atomic_bool *stop);
+void pound_exact_w4(const struct pound_task *tasks, struct pound_task_result *results, int n, void *scratch,
+                    const atomic_bool *stop);
+void pound_exact_w1(const struct pound_task *tasks, struct pound_task_result *results, int n, void *scratch,
+                    const atomic_bool *stop);
 void pound_exact_portable(const struct pound_task *tasks, struct pound_task_result *results, int n,
                           void *scratch, const atomic_bool *stop);
 

@@ -26,10 +26,10 @@ typedef void width_ride(const struct pound_bank *, const struct pound_ride *, vo
 
 /* Takes a bank over a stretch at a lane count; 0: the widest there is; false: this machine has no such lanes. */
 bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *stretch,
-                          void *scratch)
+                                 void *scratch)
 {
-	static width_ride *const run[POUND_WIDTHS] = {pound_oscillator_bank_w8, pound_oscillator_bank_w4, pound_oscillator_bank_w1,
-	                                              pound_oscillator_bank_portable};
+	static width_ride *const run[POUND_WIDTHS] = {pound_oscillator_bank_w8, pound_oscillator_bank_w4,
+	                                              pound_oscillator_bank_w1, pound_oscillator_bank_portable};
 	int width = pound_dispatch_width(lanes);
 	if (width >= 0)
 		run[width](bank, stretch, scratch);

@@ -164,8 +164,7 @@ struct terms {
 	double spring, dash, both, ratio;         /* of the contact, 1 + m1/m2, m1/m2 */
 };
 
-static struct terms terms_of(const struct pound_task *task, const struct pound_march_instant *at,
-                             double dt)
+static struct terms terms_of(const struct pound_task *task, const struct pound_march_instant *at, double dt)
 {
 	const double dt2 = dt * dt;
 	struct terms m = {.both = 1 + task->mass_ratio, .ratio = task->mass_ratio};

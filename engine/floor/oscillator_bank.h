@@ -29,12 +29,13 @@ struct pound_ride {
 };
 
 bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *ride,
-                          void *scratch);
+                                 void *scratch);
 
 /* oscillator_bank.inl, compiled once for each */
 void pound_oscillator_bank_w8(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
 void pound_oscillator_bank_w4(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
 void pound_oscillator_bank_w1(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
-void pound_oscillator_bank_portable(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
+void pound_oscillator_bank_portable(const struct pound_bank *bank, const struct pound_ride *ride,
+                                    void *scratch);
 
 #endif

@@ -11,7 +11,7 @@ enum {
 
 /* z[w][l]: normal w of draw first + l, the same bits for any width of cpu_width.h  (NOISE_WORDS x NOISE_CHUNK) */
 void pound_normals_fill(int width, struct pound_stream stream, uint32_t first,
-                         double z[NOISE_WORDS][NOISE_CHUNK]);
+                        double z[NOISE_WORDS][NOISE_CHUNK]);
 
 /* normals.inl, compiled once for each */
 void pound_normals_w8(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);

@@ -141,8 +141,8 @@ void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_row
  * Test     unit_jackknife: rows_in_groups_are_never_resampled
  */
 void pound_bootstrap_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
-                              int n_rows, uint64_t seed, int n_resamples, double *scratch,
-                              struct pound_estimate *estimates)
+                               int n_rows, uint64_t seed, int n_resamples, double *scratch,
+                               struct pound_estimate *estimates)
 {
 	assert(pound_jackknife_scratch(scatter, statistic->n_moments) <=
 	       pound_bootstrap_scratch(n_rows, statistic->n_moments, statistic->n_values));

@@ -385,8 +385,9 @@ size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape)
  *          Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indices of the polynomial
  * Test     unit_chaos_expansion
  */
-void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
-                         double *scratch, struct pound_closed_results *results, struct pound_curve *curves)
+void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected,
+                                   double *kept, double *scratch, struct pound_closed_results *results,
+                                   struct pound_curve *curves)
 {
 	struct fits fits = {.rows = rows, .u = u, .kept = kept};
 	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
@@ -410,7 +411,7 @@ void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *
  * Test     unit_error_budget: half_widths_of_all_rows_are_those_of_the_indexes
  */
 void pound_chaos_expansion_first_rows(const struct pound_rows *rows, int n, double *scratch,
-                            struct pound_closed_results *results)
+                                      struct pound_closed_results *results)
 {
 	struct fits fits = {.rows = rows};
 	struct pound_rows part = *rows;

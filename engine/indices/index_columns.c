@@ -361,7 +361,8 @@ static unsigned notes_of(const bool said[POUND_N_NOTES])
 	return notes;
 }
 
-size_t pound_index_columns_scratch(const struct pound_sample_values *shape, const struct pound_sampling *sampling)
+size_t pound_index_columns_scratch(const struct pound_sample_values *shape,
+                                   const struct pound_sampling *sampling)
 {
 	const size_t sizes[] = {
 	    pound_plain_estimates_scratch(shape, pound_estimator_row(sampling ? sampling->estimator : 0)),
@@ -391,8 +392,9 @@ size_t pound_index_columns_scratch(const struct pound_sample_values *shape, cons
  * Source   plain_indices.c, noise_correction.c, local_regression.c, chaos_expansion.c
  * Test     unit_index_columns, unit_shared_noise
  */
-int pound_index_columns_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
-                           uint64_t seed, double *scratch, struct pound_indices *indices)
+int pound_index_columns_indices(const struct pound_sample_values *values,
+                                const struct pound_sampling *sampling, uint64_t seed, double *scratch,
+                                struct pound_indices *indices)
 {
 	const int d = values->n_inputs;
 	struct pound_rows rows;
@@ -416,11 +418,11 @@ int pound_index_columns_indices(const struct pound_sample_values *values, const 
 	levels_init(&s, values->n_rows);
 	if (varies) {
 		pound_noise_correction_estimates(&rows, seed,
-		                           sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES, s.scratch,
-		                           &s.pick_freeze);
+		                                 sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES,
+		                                 s.scratch, &s.pick_freeze);
 		if (rows_enough(&s) && !pound_stopped(rows.stop)) {
-			pound_chaos_expansion_indices(&rows, sampling->u, s.corrected, sampling->kept, s.scratch, &s.closed,
-			                    indices->curves);
+			pound_chaos_expansion_indices(&rows, sampling->u, s.corrected, sampling->kept, s.scratch,
+			                              &s.closed, indices->curves);
 			levels_fill(&s, seed);
 		}
 		indices->sets = s.closed.sets;

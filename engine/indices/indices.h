@@ -112,8 +112,8 @@ enum {
 /* A statistic's values with 95 % intervals: by resampling rows, or by leaving out groups where there are some. */
 size_t pound_bootstrap_scratch(int n_rows, int n_moments, int n_values); /* doubles */
 void pound_bootstrap_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
-                              int n_rows, uint64_t seed, int n_resamples, double *scratch,
-                              struct pound_estimate *estimates);
+                               int n_rows, uint64_t seed, int n_resamples, double *scratch,
+                               struct pound_estimate *estimates);
 void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
                               int n_resamples, double *scratch, struct pound_estimate *estimates);
 size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments); /* doubles */
@@ -138,7 +138,7 @@ struct pound_pick_freeze {
 
 size_t pound_noise_correction_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
-                                double *scratch, struct pound_pick_freeze *result);
+                                      double *scratch, struct pound_pick_freeze *result);
 
 #define POUND_NORMAL_95 1.959963984540054 /* 97.5 % quantile of the normal law */
 
@@ -146,8 +146,8 @@ void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t se
 enum { POUND_ROWS_MIN = 30 };
 size_t pound_local_regression_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_local_regression_fit(const double *y, int n, int reach, double *fit);
-void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
-                       struct pound_estimate *first);
+void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected,
+                                  double *scratch, struct pound_estimate *first);
 /* Half widths of the intervals from the first n of those rows alone, with the neighbours of all; the scratch as it was left.
  * half: (n_inputs) */
 void pound_local_regression_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half);
@@ -190,11 +190,12 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 int pound_chaos_expansion_degree(int n_rows, int n_inputs, int n_samples);
 size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape);   /* doubles */
 size_t pound_chaos_expansion_kept_size(const struct pound_sample_values *shape); /* doubles */
-void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected, double *kept,
-                         double *scratch, struct pound_closed_results *results, struct pound_curve *curves);
+void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected,
+                                   double *kept, double *scratch, struct pound_closed_results *results,
+                                   struct pound_curve *curves);
 /* From the first n of those rows alone, with the polynomials of all; the scratch as it was left. */
 void pound_chaos_expansion_first_rows(const struct pound_rows *rows, int n, double *scratch,
-                            struct pound_closed_results *results);
+                                      struct pound_closed_results *results);
 
 /* What the mean output given an input is found from. */
 struct pound_conditional {
@@ -233,8 +234,9 @@ void pound_failed_rows_changes(const struct pound_rows *rows, int dropped, struc
 /* All indices, shares and notes, and of the accuracy the half widths and what dropped rows may change.  Sampling as it
  * will be; NULL: nothing but the columns of every study. */
 size_t pound_index_columns_scratch(const struct pound_sample_values *shape,
-                              const struct pound_sampling *sampling); /* doubles */
-int pound_index_columns_indices(const struct pound_sample_values *values, const struct pound_sampling *sampling,
-                           uint64_t seed, double *scratch, struct pound_indices *indices); /* rows dropped */
+                                   const struct pound_sampling *sampling); /* doubles */
+int pound_index_columns_indices(const struct pound_sample_values *values,
+                                const struct pound_sampling *sampling, uint64_t seed, double *scratch,
+                                struct pound_indices *indices); /* rows dropped */
 
 #endif

@@ -278,7 +278,7 @@ static void means_fill(struct fit *f, unsigned given)
 		pound_sequence_init(&net[c], c);
 		// the same for every study: the points are a rule, not a sample
 		pound_sequence_scramble(&net[c],
-		                   (struct pound_stream){.what = POUND_STREAM_DESIGN, .sample = (uint32_t)c});
+		                        (struct pound_stream){.what = POUND_STREAM_DESIGN, .sample = (uint32_t)c});
 	}
 	memset(mean, 0, sizeof *mean * (size_t)n * n);
 	for (uint32_t i = 0; i < POINTS && !pound_stopped(f->rows->stop); i++) {

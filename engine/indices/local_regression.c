@@ -229,8 +229,8 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
  * Source   lag averaging attains the efficiency bound: Klein, Rochet 2023, arXiv 2306.05842; extrapolation: Richardson
  * Test     unit_local_regression
  */
-void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected, double *scratch,
-                       struct pound_estimate *first)
+void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected,
+                                  double *scratch, struct pound_estimate *first)
 {
 	const int n = rows->n_rows, d = rows->n_inputs;
 	const struct space at = carve(scratch, n, d);

@@ -113,7 +113,7 @@ size_t pound_noise_correction_scratch(const struct pound_sample_values *shape)
 {
 	const int n_inputs = shape->n_inputs;
 	return pound_bootstrap_scratch(shape->n_rows, FIRST_INPUT + PER_INPUT * n_inputs,
-	                              BLOCKS * n_inputs + SINGLES);
+	                               BLOCKS * n_inputs + SINGLES);
 }
 
 /* Pick-freeze indices raw and corrected for the noise of few signals, and the shares of the signals.
@@ -138,13 +138,14 @@ size_t pound_noise_correction_scratch(const struct pound_sample_values *shape)
  * Test     unit_noise_correction: the_golden_row_set_is_met
  */
 void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
-                                double *scratch, struct pound_pick_freeze *result)
+                                      double *scratch, struct pound_pick_freeze *result)
 {
 	const int d = rows->n_inputs;
 	const struct pound_statistic statistic = {
 	    FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill, values_fill, rows, rows->stop};
 	struct pound_estimate estimates[POUND_VALUES_MAX];
-	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
+	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch,
+	                          estimates);
 	for (int j = 0; j < d; j++) {
 		result->first_raw[j] = estimates[FIRST_RAW * d + j];
 		result->total_raw[j] = estimates[TOTAL_RAW * d + j];

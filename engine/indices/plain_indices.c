@@ -92,7 +92,8 @@ void pound_plain_estimates(const struct pound_rows *rows, const struct pound_est
 	                                          subject_values,
 	                                          &subject,
 	                                          rows->stop};
-	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch, estimates);
+	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch,
+	                          estimates);
 }
 
 size_t pound_plain_scratch(const struct pound_sample_values *shape)

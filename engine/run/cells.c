@@ -47,8 +47,7 @@ size_t pound_cells_values_size(const struct pound_cells *c, int n_rows)
  *
  * Test     unit_index_columns: a_study_s_result_holds_what_its_samples_give
  */
-struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows,
-                                                 const double *columns)
+struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows, const double *columns)
 {
 	const double *second = columns ? columns + pound_cells_values_size(c, n_rows) : NULL;
 	const bool elsewhere = c->study->elsewhere;

@@ -88,7 +88,8 @@ static void scaled(const double *psa, int n, int exponent, double *into)
 		into[k] = ldexp(psa[k], exponent);
 }
 
-static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound_pulse_train *dirac, double *values)
+static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound_pulse_train *dirac,
+                       double *values)
 {
 	static double (*const rows[])(const struct pound_pulse_train *, double, double) = {
 	    [POUND_SPECTRUM_DIRAC_LINE] = pound_pulse_train_line,
@@ -124,9 +125,9 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 	const struct pound_oscillator *left = &request->scene->oscillators[0];
 	int pulses = study->spectrum.pulses;
 	const struct pound_pulse_train dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
-	                                  .spacing = 0.5 / left->frequency_hz,
-	                                  .pulses = pulses ? pulses : (double)answer.contacts,
-	                                  .stop = stop};
+	                                        .spacing = 0.5 / left->frequency_hz,
+	                                        .pulses = pulses ? pulses : (double)answer.contacts,
+	                                        .stop = stop};
 	dirac_fill(&study->spectrum, &dirac, values);
 	values[POUND_N_SPECTRA * n + IMPULSE] = left->mass * dirac.speed;
 	values[POUND_N_SPECTRA * n + PULSES] = dirac.pulses;
@@ -365,7 +366,7 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	const struct pound_sample_values values = pound_cells_values(&run->campaign, run->rows, NULL);
 	const struct pound_scatter scatter = pound_rows_scatter(&values, rows);
 	pound_bootstrap_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,
-	                         scratch + 5 * run->rows, &correlation);
+	                          scratch + 5 * run->rows, &correlation);
 	return correlation;
 }
 

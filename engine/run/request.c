@@ -51,14 +51,14 @@ struct ask {
 struct pound_request {
 	struct pound_request_size size;
 	struct pound_keys motion_keys, march_keys;
-	struct pound_motion *motions;       /* (motions) */
-	double *ground;                     /* (samples) */
-	struct ask *asks;                   /* (asks) */
-	struct pound_task *tasks;     /* (tasks) */
+	struct pound_motion *motions;      /* (motions) */
+	double *ground;                    /* (samples) */
+	struct ask *asks;                  /* (asks) */
+	struct pound_task *tasks;          /* (tasks) */
 	struct pound_task_result *results; /* (tasks) */
-	void *scratch;                      /* of the march */
-	int n_before;                       /* marches without pounding, they are the first */
-	int n_asks, n_items;                /* of the last run; n_items without those of checks */
+	void *scratch;                     /* of the march */
+	int n_before;                      /* marches without pounding, they are the first */
+	int n_asks, n_items;               /* of the last run; n_items without those of checks */
 };
 
 /* ---- work space ---- */
@@ -243,8 +243,7 @@ static double reduction(const struct pound_scene *scene, int i, double demand)
 
 static bool searched(const struct pound_law *law)
 {
-	return !pound_law_linear(law->type) && !(law->yield_displacement > 0) &&
-	       law->corrections >= SEARCH_MIN;
+	return !pound_law_linear(law->type) && !(law->yield_displacement > 0) && law->corrections >= SEARCH_MIN;
 }
 
 /* Asks for the next march of a search for the target demand, behind the one with the reduced elastic displacement.

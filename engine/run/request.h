@@ -26,9 +26,8 @@ struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cel
 struct pound_solver pound_cells_solver(const struct pound_cells *campaign, int row);
 double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep);
 size_t pound_cells_values_size(const struct pound_cells *c,
-                                  int n_rows); /* numerators of an output in a cell */
-struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows,
-                                                 const double *columns);
+                               int n_rows); /* numerators of an output in a cell */
+struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows, const double *columns);
 
 struct pound_request_size {
 	int asks;        /* runs asked for at most */
@@ -65,7 +64,7 @@ int pound_request_count(const struct pound_request *request, int *n_items);
 struct pound_request_floor {
 	const struct pound_scene *scene;
 	const struct pound_task *pounding, *free; /* pounding NULL: the response without it is the answer */
-	int march;                                      /* number of the task that is the answer */
+	int march;                                /* number of the task that is the answer */
 	int exponent;
 	void *scratch; /* POUND_EXACT_SCRATCH bytes for who follows it */
 };

@@ -6,14 +6,14 @@
 
 struct pound_body_known {
 	const struct pound_task_result *free; /* without pounding; NULL: not run */
-	double yield;                          /* yield displacement [m], scaled as the ground motion; 0: none */
-	enum pound_status status;              /* of the runs that it comes from */
+	double yield;                         /* yield displacement [m], scaled as the ground motion; 0: none */
+	enum pound_status status;             /* of the runs that it comes from */
 };
 
 /* what was run */
 struct pound_runs_known {
 	const struct pound_scene *scene;
-	int exponent;                              /* motions are times 2^-exponent */
+	int exponent;                             /* motions are times 2^-exponent */
 	const struct pound_task_result *pounding; /* NULL: the responses without pounding are the answer */
 	struct pound_body_known bodies[POUND_OSCILLATORS];
 };

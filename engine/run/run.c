@@ -36,13 +36,13 @@ static struct pound_cells campaign_of(const struct pound_study *study)
 {
 	bool sampled = study->kind == POUND_KIND_SENSITIVITY, trials = study->kind == POUND_KIND_CONVERGENCE;
 	struct pound_cells c = {.study = study,
-	                           .n_cells = 1,
-	                           .n_rows = sampled  ? pound_design_rows_most(study)
-	                                     : trials ? pound_convergence_trials(study)
-	                                              : 1,
-	                           .n_samples = sampled ? pound_design_samples(study) : 1,
-	                           .n_signals = study->elsewhere ? 1 : study->scene.excitation.signals,
-	                           .trials = trials};
+	                        .n_cells = 1,
+	                        .n_rows = sampled  ? pound_design_rows_most(study)
+	                                  : trials ? pound_convergence_trials(study)
+	                                           : 1,
+	                        .n_samples = sampled ? pound_design_samples(study) : 1,
+	                        .n_signals = study->elsewhere ? 1 : study->scene.excitation.signals,
+	                        .trials = trials};
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
 	int checked_min = (CHECKED_MIN + c.n_samples - 1) / c.n_samples,

@@ -157,7 +157,7 @@ void pound_law_start(const struct pound_backbone *backbone, struct pound_branch 
  * Returns  at        the next piece, continuous in force with the last
  */
 void pound_law_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
-                        double u)
+                     double u)
 {
 	laws[backbone->law].leave(backbone, at, edge, u);
 }

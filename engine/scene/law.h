@@ -33,7 +33,7 @@ struct pound_branch {
 bool pound_law_linear(int law);
 void pound_law_start(const struct pound_backbone *backbone, struct pound_branch *at);
 void pound_law_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
-                        double u);
+                     double u);
 double pound_law_envelope(const struct pound_backbone *backbone, double u);
 
 #endif

@@ -217,12 +217,13 @@ static void a_table_fits_in_100_columns(void **state)
 static char *with_every_table(void)
 {
 	struct program_outcome document = POUND("example", "paper_linear");
-	char *study = study_documents_with(document.out, "\"rows\": 1000", "\"rows\": 100, \"estimator\": \"janon\"");
+	char *study =
+	    study_documents_with(document.out, "\"rows\": 1000", "\"rows\": 100, \"estimator\": \"janon\"");
 	char *common = study_documents_with(study, "\"independent\"", "\"common\"");
 	char *whole =
 	    study_documents_with(common, "\"design\":",
-	                   "\"ratios\": [{\"name\": \"f_e/f_2\", \"of\": [\"/excitation/frequency_hz\", "
-	                   "\"/oscillators/1/frequency_hz\"]}], \"design\":");
+	                         "\"ratios\": [{\"name\": \"f_e/f_2\", \"of\": [\"/excitation/frequency_hz\", "
+	                         "\"/oscillators/1/frequency_hz\"]}], \"design\":");
 	program_free(&document);
 	free(study), free(common);
 	return whole;

@@ -37,8 +37,8 @@ static void reduction_free(struct reduction *r)
 static void everything(void *of)
 {
 	struct reduction *r = of;
-	pound_index_columns_indices(&r->values, &(struct pound_sampling){.u = r->u, .random = true}, 1, r->scratch,
-	                       &r->indices);
+	pound_index_columns_indices(&r->values, &(struct pound_sampling){.u = r->u, .random = true}, 1,
+	                            r->scratch, &r->indices);
 }
 
 static void plain(void *of)

@@ -89,8 +89,9 @@ static void histories_are_those_of_a_run_without_a_server(void **state)
 static void a_run_without_samples_says_so_before_it_begins(void **state)
 {
 	(void)state;
-	struct program_outcome outcome = program_run(
-	    (const char *const[]){"pound", "run", "-", "--samples", "/nowhere/x.csv", NULL}, study_documents_floor);
+	struct program_outcome outcome =
+	    program_run((const char *const[]){"pound", "run", "-", "--samples", "/nowhere/x.csv", NULL},
+	                study_documents_floor);
 	program_expect(&outcome, 2);
 	assert_string_equal(outcome.out, "");
 	assert_non_null(strstr(outcome.err, "\"histories\": true"));
@@ -100,8 +101,8 @@ static void a_run_without_samples_says_so_before_it_begins(void **state)
 static void the_table_of_spectra_has_its_peaks(void **state)
 {
 	(void)state;
-	struct program_outcome outcome =
-	    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study_documents_floor);
+	struct program_outcome outcome = program_run(
+	    (const char *const[]){"pound", "run", "--format", "table", "-", NULL}, study_documents_floor);
 	program_expect(&outcome, 0);
 	assert_non_null(strstr(outcome.out, "dirac_train"));
 	assert_non_null(strstr(outcome.out, "peaks of the spectrum"));

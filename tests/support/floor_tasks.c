@@ -11,8 +11,8 @@ struct pound_task floor_task_task(const struct specimen *specimen, bool contact)
 	const struct pound_response response = specimen_engine(specimen);
 	const double yield[] = {response.yield_displacement_1, response.yield_displacement_2};
 	struct pound_task task = {.ground = specimen->record,
-	                                .n_samples = scene->excitation.n_record,
-	                                .time_step = scene->excitation.time_step};
+	                          .n_samples = scene->excitation.n_record,
+	                          .time_step = scene->excitation.time_step};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		task.bodies[i] = pound_scene_body(scene, i);
 		task.bodies[i].followed = true;
@@ -25,8 +25,8 @@ struct pound_task floor_task_task(const struct specimen *specimen, bool contact)
 
 /* Spectra of a task in work space of their own. */
 struct pound_floor_answer floor_task_spectra(const struct pound_task *task,
-                                         const struct pound_spectrum *spectrum, int n_drives, double radians,
-                                         int lanes, double *psa[POUND_DRIVES])
+                                             const struct pound_spectrum *spectrum, int n_drives,
+                                             double radians, int lanes, double *psa[POUND_DRIVES])
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	size_t bytes = (pound_floor_bytes(spectrum->n) / 64 + 1) * 64;

@@ -10,7 +10,7 @@ struct pound_task floor_task_task(const struct specimen *specimen, bool contact)
 
 /* Spectra of a task, as many drives as asked; fails the test when the motion cannot be followed. */
 struct pound_floor_answer floor_task_spectra(const struct pound_task *task,
-                                         const struct pound_spectrum *spectrum, int n_drives, double radians,
-                                         int lanes, double *psa[POUND_DRIVES]);
+                                             const struct pound_spectrum *spectrum, int n_drives,
+                                             double radians, int lanes, double *psa[POUND_DRIVES]);
 
 #endif

@@ -295,15 +295,15 @@ struct pound_task specimen_impact(double restitution, bool tension, int n_sample
 	double stiffness = 7.9e3, ratio = 0.5; // contact, N/m; m1/m2
 	double zeta = pound_contact_damping_ratio(0, restitution);
 	return (struct pound_task){.ground = still,
-	                                 .n_samples = n_samples,
-	                                 .time_step = 0.01,
-	                                 .bodies = {{.v = 1}, {.v = -0.5}},
-	                                 .contact = true,
-	                                 .gap = 0.1,
-	                                 .contact_stiffness = stiffness,
-	                                 .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
-	                                 .mass_ratio = ratio,
-	                                 .tension = tension};
+	                           .n_samples = n_samples,
+	                           .time_step = 0.01,
+	                           .bodies = {{.v = 1}, {.v = -0.5}},
+	                           .contact = true,
+	                           .gap = 0.1,
+	                           .contact_stiffness = stiffness,
+	                           .contact_damping = 2 * zeta * sqrt(stiffness / (1 + ratio)),
+	                           .mass_ratio = ratio,
+	                           .tension = tension};
 }
 
 static struct {

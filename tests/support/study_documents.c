@@ -32,15 +32,16 @@ const char study_documents_sensitivity[] =
     " \"outputs\": [\"demand_amplification\", \"impulse\"],\n"
     " \"solver\": {\"method\": \"event\", \"tolerance\": 1e-9}}\n";
 
-const char study_documents_response[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
-                                  "2}, {\"frequency_hz\": 3.1}]}}";
+const char study_documents_response[] =
+    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
+    "2}, {\"frequency_hz\": 3.1}]}}";
 
 const char study_documents_convergence[] = "{\"kind\": \"convergence\", \"scene\": {\"oscillators\": "
-                                     "[{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],\n"
-                                     "  \"excitation\": {\"signals\": 2}},\n"
-                                     " \"convergence\": {\"newmark\": {\"steps_s\": [0.01, 0.001]}, "
-                                     "\"central_difference\": {\"steps_s\": [0.005]},\n"
-                                     "  \"adaptive\": {\"tolerances\": [1e-4]}, \"history_s\": 2}}\n";
+                                           "[{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],\n"
+                                           "  \"excitation\": {\"signals\": 2}},\n"
+                                           " \"convergence\": {\"newmark\": {\"steps_s\": [0.01, 0.001]}, "
+                                           "\"central_difference\": {\"steps_s\": [0.005]},\n"
+                                           "  \"adaptive\": {\"tolerances\": [1e-4]}, \"history_s\": 2}}\n";
 
 const char study_documents_floor[] =
     "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "

@@ -9,7 +9,8 @@ extern const char
     study_documents_sensitivity[]; /* every member of a sensitivity study but its sweep, all written out */
 extern const char study_documents_response[]; /* the least response: two frequencies */
 
-extern const char study_documents_convergence[]; /* a short convergence study, every member of it written out */
+extern const char
+    study_documents_convergence[]; /* a short convergence study, every member of it written out */
 
 extern const char study_documents_floor[]; /* a floor spectrum study, every member of it written out */
 

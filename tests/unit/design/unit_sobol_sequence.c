@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const int degrees[POUND_SEQUENCE_COLUMNS] = {0, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6,
-                                               6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
+                                                    6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
 
 static struct pound_sequence net_of(int column, int scramble)
 {
@@ -98,8 +98,8 @@ static void the_first_columns_are_those_of_another_generator(void **state)
 }
 
 /* Counts of 2^m points in the boxes of 2^a by 2^b intervals of two columns: all 2^(m - a - b). */
-static void check_boxes(const struct pound_sequence *p, const struct pound_sequence *q, uint32_t first, int m, int a,
-                        int b)
+static void check_boxes(const struct pound_sequence *p, const struct pound_sequence *q, uint32_t first, int m,
+                        int a, int b)
 {
 	static int count[1 << 12];
 	memset(count, 0, sizeof count);
@@ -165,7 +165,8 @@ static void a_scrambled_point_is_uniform_and_another_scramble_is_unrelated(void 
 		double sum = 0, square = 0, product = 0, pair = 0, before = 0;
 		for (int s = 1; s <= N; s++) {
 			const struct pound_sequence net = net_of(5, s);
-			double x = pound_sequence_point(&net, number) - 0.5, y = pound_sequence_point(&net, number + 1) - 0.5;
+			double x = pound_sequence_point(&net, number) - 0.5,
+			       y = pound_sequence_point(&net, number + 1) - 0.5;
 			sum += x;
 			square += x * x;
 			product += x * before;

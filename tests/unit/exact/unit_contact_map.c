@@ -26,20 +26,19 @@ static struct pound_task_result march(const struct pound_task *task)
  *
  *   p'' + C p' + K p = 1 + rate t     long after the start p = (1 + rate t)/K - C rate/K^2
  */
-static struct pound_task pressed(double ground[SAMPLES], double rate, double stiffness,
-                                       double restitution)
+static struct pound_task pressed(double ground[SAMPLES], double rate, double stiffness, double restitution)
 {
 	for (int i = 0; i < SAMPLES; i++)
 		ground[i] = -(1 + rate * (i * step));
 	return (struct pound_task){.ground = ground,
-	                                 .n_samples = SAMPLES,
-	                                 .time_step = step,
-	                                 .bodies = {{.drive = 1, .followed = true}},
-	                                 .contact = true,
-	                                 .contact_stiffness = stiffness,
-	                                 .contact_damping =
-	                                     2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
-	                                 .accounted = true};
+	                           .n_samples = SAMPLES,
+	                           .time_step = step,
+	                           .bodies = {{.drive = 1, .followed = true}},
+	                           .contact = true,
+	                           .contact_stiffness = stiffness,
+	                           .contact_damping =
+	                               2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
+	                           .accounted = true};
 }
 
 static void a_long_press_ends_where_its_ground_pushes_it(void **state)
@@ -107,14 +106,14 @@ static struct pound_task pounding(double *ground, int t, int n)
 		ground[i] = sin(9 * time) + 0.5 * cos(23 * time);
 	}
 	struct pound_task task = {.ground = ground,
-	                                .n_samples = n,
-	                                .time_step = step,
-	                                .contact = true,
-	                                .tension = t % 3,
-	                                .contact_stiffness = stiffness,
-	                                .contact_damping = 2 * pound_contact_damping_ratio(0, t % 4 * 0.3) *
-	                                                   sqrt(stiffness / (1 + ratio)),
-	                                .mass_ratio = ratio};
+	                          .n_samples = n,
+	                          .time_step = step,
+	                          .contact = true,
+	                          .tension = t % 3,
+	                          .contact_stiffness = stiffness,
+	                          .contact_damping = 2 * pound_contact_damping_ratio(0, t % 4 * 0.3) *
+	                                             sqrt(stiffness / (1 + ratio)),
+	                          .mass_ratio = ratio};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		task.bodies[i] = (struct pound_task_body){
 		    .backbone = {.law = t % 5 % 4, .stiffness = w[i] * w[i], .hardening = 0.05, .yield = 1e-3},

@@ -73,24 +73,23 @@ static void without_tension_the_rebound_is_that_of_release_at_zero_force(void **
 }
 
 /* Oscillator of 1 Hz on a wall, released at rest from -amplitude. */
-static struct pound_task wall(double gap, double damping_ratio, double restitution,
-                                    double stiffness_ratio)
+static struct pound_task wall(double gap, double damping_ratio, double restitution, double stiffness_ratio)
 {
 	double k = 4 * PI * PI, stiffness = stiffness_ratio * k;
 	return (struct pound_task){.ground = still,
-	                                 .n_samples = STILL,
-	                                 .time_step = 0.005,
-	                                 .bodies = {{.backbone = {.stiffness = k},
-	                                             .damping = 4 * PI * damping_ratio,
-	                                             .drive = 1,
-	                                             .followed = true,
-	                                             .u = -1}},
-	                                 .contact = true,
-	                                 .gap = gap,
-	                                 .contact_stiffness = stiffness,
-	                                 .contact_damping =
-	                                     2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
-	                                 .tension = true};
+	                           .n_samples = STILL,
+	                           .time_step = 0.005,
+	                           .bodies = {{.backbone = {.stiffness = k},
+	                                       .damping = 4 * PI * damping_ratio,
+	                                       .drive = 1,
+	                                       .followed = true,
+	                                       .u = -1}},
+	                           .contact = true,
+	                           .gap = gap,
+	                           .contact_stiffness = stiffness,
+	                           .contact_damping =
+	                               2 * pound_contact_damping_ratio(0, restitution) * sqrt(stiffness),
+	                           .tension = true};
 }
 
 static void a_wall_is_met_every_half_period(void **state)
@@ -187,12 +186,12 @@ static void tasks_fill(struct pound_task *tasks, double *ground, uint64_t seed)
 		double ratio = exp(specimen_uniform(&seed, -2, 2));
 		double stiffness = 0, contact = pow(10, 2 + t % 9 % 4 * 2);
 		tasks[t] = (struct pound_task){.ground = a,
-		                                     .n_samples = SAMPLES - t, // so that lanes end at different times
-		                                     .time_step = 0.01,
-		                                     .contact = t % 7 != 0,
-		                                     .gap = t % 3 ? 0 : 1e-3,
-		                                     .mass_ratio = ratio,
-		                                     .tension = t % 2};
+		                               .n_samples = SAMPLES - t, // so that lanes end at different times
+		                               .time_step = 0.01,
+		                               .contact = t % 7 != 0,
+		                               .gap = t % 3 ? 0 : 1e-3,
+		                               .mass_ratio = ratio,
+		                               .tension = t % 2};
 		for (int i = 0; i < 2; i++) {
 			double w = 2 * PI * specimen_uniform(&seed, 0.5, 5.5);
 			tasks[t].bodies[i] = (struct pound_task_body){
@@ -272,13 +271,13 @@ static void more_swings_than_can_be_noted_have_their_largest_displacement(void *
 	// its area is h times its height, and the velocity there, after whole periods, that of the start
 	ground[PULSE] = -0.01 * w / h / sin(PI / 12);
 	struct pound_task task = {.ground = ground,
-	                                .n_samples = SWINGS,
-	                                .time_step = h,
-	                                .bodies = {{.backbone = {.stiffness = w * w},
-	                                            .drive = 1,
-	                                            .u = cos(PI / 12),
-	                                            .v = w * sin(PI / 12),
-	                                            .followed = true}}};
+	                          .n_samples = SWINGS,
+	                          .time_step = h,
+	                          .bodies = {{.backbone = {.stiffness = w * w},
+	                                      .drive = 1,
+	                                      .u = cos(PI / 12),
+	                                      .v = w * sin(PI / 12),
+	                                      .followed = true}}};
 	const double flown = march(&task).displacement_max[0];
 	task.accounted = true;
 	const double stepped = march(&task).displacement_max[0];

@@ -68,12 +68,12 @@ static struct pound_task task_of(double v, double until)
 		ground[k] = -PUSH;
 	const struct motion start = free_for((struct motion){0, v}, -AWAY);
 	return (struct pound_task){.ground = ground,
-	                                 .n_samples = SAMPLES,
-	                                 .time_step = until / (SAMPLES - 1),
-	                                 .bodies = {{.drive = 1, .followed = true, .u = start.p, .v = start.q}},
-	                                 .contact = true,
-	                                 .contact_stiffness = W_CONTACT * W_CONTACT,
-	                                 .contact_damping = 2 * ZETA * W_CONTACT};
+	                           .n_samples = SAMPLES,
+	                           .time_step = until / (SAMPLES - 1),
+	                           .bodies = {{.drive = 1, .followed = true, .u = start.p, .v = start.q}},
+	                           .contact = true,
+	                           .contact_stiffness = W_CONTACT * W_CONTACT,
+	                           .contact_damping = 2 * ZETA * W_CONTACT};
 }
 
 /* The exact and the adaptive solver have the motion, the contacts and their time. */

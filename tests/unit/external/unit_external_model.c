@@ -260,9 +260,9 @@ static void indices_of_a_noisy_model_are_exact_or_null(void **state)
 	             {false, false, 0.25, 0.75},
 	             {false, true, 0.5, 0.5}};
 	for (int k = 0; k < 4; k++) {
-		char *document =
-		    study_documents_with(two_inputs, "\"rows\": 6",
-		                   cases[k].shared ? "\"rows\": 400, \"signals\": \"common\"" : "\"rows\": 400");
+		char *document = study_documents_with(two_inputs, "\"rows\": 6",
+		                                      cases[k].shared ? "\"rows\": 400, \"signals\": \"common\""
+		                                                      : "\"rows\": 400");
 		char *csv = noisy_csv(document, cases[k].shared, cases[k].variance);
 		struct reading *result = indices_of(document, csv);
 		for (int j = 0; j < 2; j++) {

@@ -82,8 +82,7 @@ static void plain_rates(const struct pound_task *task, double ground, const doub
 	}
 }
 
-static void plain_spectra(const struct pound_task *task, const double *w, double xi, int steps,
-                          double *out)
+static void plain_spectra(const struct pound_task *task, const double *w, double xi, int steps, double *out)
 {
 	enum { STATES = 4 + 2 * CHASED };
 	double y[STATES] = {0}, h = task->time_step / steps;

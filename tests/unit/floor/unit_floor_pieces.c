@@ -307,9 +307,9 @@ static void a_floor_without_contact_is_all_flight(void **state)
 		ground[t] = -1;
 	const double w = 10, h = 0.01;
 	const struct pound_task task = {.ground = ground,
-	                                      .n_samples = SAMPLES,
-	                                      .time_step = h,
-	                                      .bodies = {{.backbone = {.stiffness = w * w}, .drive = 1}}};
+	                                .n_samples = SAMPLES,
+	                                .time_step = h,
+	                                .bodies = {{.backbone = {.stiffness = w * w}, .drive = 1}}};
 	const struct followed f = check_followed(&task, 1e-14);
 	assert_int_equal(f.flights, 400);
 	assert_int_equal(f.pieces, 400);
@@ -345,14 +345,13 @@ static void a_body_that_turns_between_two_samples_is_followed(void **state)
 		for (int i = 0; i < SAMPLES; i++)
 			ground[i] = specimen_uniform(&seed, -10, 10);
 		struct pound_task task = {.ground = ground, .n_samples = SAMPLES, .time_step = 0.05};
-		task.bodies[0] =
-		    (struct pound_task_body){.backbone = {.law = n % LAWS,
-		                                           .stiffness = specimen_uniform(&seed, 10, 100),
-		                                           .hardening = 0.1,
-		                                           .yield = specimen_uniform(&seed, 0.001, 0.03)},
-		                              .damping = specimen_uniform(&seed, 0, 1),
-		                              .drive = 1,
-		                              .followed = true};
+		task.bodies[0] = (struct pound_task_body){.backbone = {.law = n % LAWS,
+		                                                       .stiffness = specimen_uniform(&seed, 10, 100),
+		                                                       .hardening = 0.1,
+		                                                       .yield = specimen_uniform(&seed, 0.001, 0.03)},
+		                                          .damping = specimen_uniform(&seed, 0, 1),
+		                                          .drive = 1,
+		                                          .followed = true};
 		check_followed(&task, 1e-13);
 	}
 }

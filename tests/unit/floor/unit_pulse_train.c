@@ -76,7 +76,8 @@ static void a_slow_oscillator_sees_all_pulses_as_one(void **state)
 static void no_pulse_gives_nothing(void **state)
 {
 	(void)state;
-	struct pound_pulse_train none = {.speed = 0, .spacing = 0.5, .pulses = 3}, never = {.speed = 1, .spacing = 0.5};
+	struct pound_pulse_train none = {.speed = 0, .spacing = 0.5, .pulses = 3},
+	                         never = {.speed = 1, .spacing = 0.5};
 	check_near(pound_pulse_train_train(&none, 5, 0.05), 0, 0);
 	check_near(pound_pulse_train_train(&never, 5, 0.05), 0, 0);
 	check_near(pound_pulse_train_peaks(&never, 5, 0), 0, 0);

@@ -16,8 +16,9 @@ static void curves_of(const struct function *f, const struct pound_design *desig
 	struct pound_rows rows;
 	double *u = function_design_of(design);
 	struct pound_closed_results results;
-	double *scratch = malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_expansion_scratch(&values) +
-	                                            pound_conditional_scratch(values.n_rows)));
+	double *scratch =
+	    malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_expansion_scratch(&values) +
+	                              pound_conditional_scratch(values.n_rows)));
 	pound_rows_init(&rows, &values, scratch);
 	double *rest = scratch + pound_rows_scratch(&values);
 	const struct pound_conditional plain = {.rows = &rows, .u = u, .y = rows.y};
@@ -218,7 +219,8 @@ static void a_discrete_input_has_one_exact_mean_for_each_of_its_values(void **st
 		double *scratch =
 		    malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_expansion_scratch(&values)));
 		pound_rows_init(&rows, &values, scratch);
-		pound_chaos_expansion_indices(&rows, u, false, NULL, scratch + pound_rows_scratch(&values), &results, curves);
+		pound_chaos_expansion_indices(&rows, u, false, NULL, scratch + pound_rows_scratch(&values), &results,
+		                              curves);
 		for (int k = 0; k < 3; k++) {
 			const struct pound_estimate *mean = &curves[1].mean[k];
 			check_near(pound_conditional_x(discrete, k), numbers[k], 0.0);

@@ -240,7 +240,8 @@ static void noise_adds_no_more_to_an_interval_than_there_is(void **state)
 	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0));
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		e->of.index[k] = e->index[k];
-	pound_index_columns_indices(&values, &(struct pound_sampling){.u = u, .random = true}, 1, scratch, &e->of);
+	pound_index_columns_indices(&values, &(struct pound_sampling){.u = u, .random = true}, 1, scratch,
+	                            &e->of);
 	pound_accuracy_estimate(&values, (struct pound_checks){0, NULL}, scratch, &e->of);
 	const double sampling = e->of.accuracy.errors[POUND_ERROR_SAMPLING];
 	assert_true(e->of.noise_share > 0.2);
@@ -351,8 +352,9 @@ static void restored_blocks_bring_their_checks(void **state)
 static void a_coarse_solver_shows_its_error(void **state)
 {
 	(void)state;
-	char *document = study_documents_with(study_documents_sensitivity, "{\"method\": \"event\", \"tolerance\": 1e-9}",
-	                                "{\"method\": \"newmark\", \"step_s\": 0.001}");
+	char *document =
+	    study_documents_with(study_documents_sensitivity, "{\"method\": \"event\", \"tolerance\": 1e-9}",
+	                         "{\"method\": \"newmark\", \"step_s\": 0.001}");
 	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = run_of(study);
 	const struct pound_result *result = reduced(run);

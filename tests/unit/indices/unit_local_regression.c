@@ -51,7 +51,8 @@ static void first_of(const struct pound_sample_values *values, const double *x, 
                      struct pound_estimate *first)
 {
 	struct pound_rows rows;
-	double *scratch = malloc(sizeof *scratch * (pound_rows_scratch(values) + pound_local_regression_scratch(values)));
+	double *scratch =
+	    malloc(sizeof *scratch * (pound_rows_scratch(values) + pound_local_regression_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
 	pound_local_regression_first(&rows, x, corrected, scratch + pound_rows_scratch(values), first);
 	free(scratch);

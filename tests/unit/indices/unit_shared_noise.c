@@ -330,15 +330,16 @@ static void a_design_does_not_grow_for_a_total_index_that_cannot_be_estimated(vo
 		char *one = study_documents_with(study_documents_sensitivity, "\"signals\": 5}", signals);
 		char *two = study_documents_with(one, "\"rows\": 10", until);
 		char *document = study_documents_with(two, "\"seed\": 42, \"signals\": \"common\"",
-		                                cases[k].design[0] == 'c' ? "\"signals\": \"common\""
-		                                                          : "\"signals\": \"independent\"");
+		                                      cases[k].design[0] == 'c' ? "\"signals\": \"common\""
+		                                                                : "\"signals\": \"independent\"");
 		if (cases[k].accepted)
 			study_free(study_documents_study(document));
 		else
-			study_documents_problem(document, "/design/until",
-			                  "needs /scene/excitation/signals of 2 or more, or \"independent\" "
-			                  "/design/signals: ST cannot be estimated from one signal that the samples of a "
-			                  "row share");
+			study_documents_problem(
+			    document, "/design/until",
+			    "needs /scene/excitation/signals of 2 or more, or \"independent\" "
+			    "/design/signals: ST cannot be estimated from one signal that the samples of a "
+			    "row share");
 		free(one), free(two), free(document);
 	}
 }

@@ -13,7 +13,8 @@ static struct pound_run *run;
 static int set_up(void **state)
 {
 	(void)state;
-	char *document = study_documents_with(study_documents_floor, "\"histories\": false", "\"histories\": true");
+	char *document =
+	    study_documents_with(study_documents_floor, "\"histories\": false", "\"histories\": true");
 	study = study_documents_study(document);
 	free(document);
 	run = pound_run_create(study, 1);

@@ -99,10 +99,10 @@ static void a_csv_row_for_every_frequency(void **state)
 static void an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse(void **state)
 {
 	(void)state;
-	char *document =
-	    study_documents_with(study_documents_sensitivity, "\"outputs\": [\"demand_amplification\", \"impulse\"]",
-	                   "\"outputs\": [\"impulse\", \"floor_spectrum\"], \"spectrum\": "
-	                   "{\"frequencies_hz\": [2.5, 40]}");
+	char *document = study_documents_with(study_documents_sensitivity,
+	                                      "\"outputs\": [\"demand_amplification\", \"impulse\"]",
+	                                      "\"outputs\": [\"impulse\", \"floor_spectrum\"], \"spectrum\": "
+	                                      "{\"frequencies_hz\": [2.5, 40]}");
 	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	size_t length, csv_length;

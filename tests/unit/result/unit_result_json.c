@@ -383,8 +383,8 @@ static void left_out_work_adds_up(void **state)
 	check_near(reading_number(r, "/work/pounding_runs/asked"), 100, 0);
 	check_near(reading_number(r, "/work/pounding_runs/run"), 50, 0);
 	reading_close(r);
-	char *document =
-	    study_documents_with(study_documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\"");
+	char *document = study_documents_with(study_documents_response, "\"oscillators\"",
+	                                      "\"contact\": null, \"oscillators\"");
 	result.work = (struct pound_work){.signals = {5, 5}, .free_runs = {10, 10}, .pounding_runs = {5, 0}};
 	r = result_of(document, &result);
 	assert_int_equal(reading_count(r, "/work/left_out"), 2);
@@ -406,8 +406,8 @@ static void points_that_do_not_fill_their_nets_are_noted(void **state)
 	             {"\"method\": \"sobol\", \"rows\": 16", ""},
 	             {"\"method\": \"lhs\", \"rows\": 10", ""}};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-		char *document =
-		    study_documents_with(study_documents_sensitivity, "\"method\": \"lhs\", \"rows\": 10", cases[k].design);
+		char *document = study_documents_with(study_documents_sensitivity,
+		                                      "\"method\": \"lhs\", \"rows\": 10", cases[k].design);
 		struct pound_study *study = study_documents_study(document);
 		struct pound_run *run = pound_run_create(study, 1);
 		struct reading *r = result_of(document, pound_run_result(run));
@@ -427,7 +427,7 @@ static void a_result_says_why_its_design_grew_no_further(void **state)
 {
 	(void)state;
 	char *document = study_documents_with(study_documents_sensitivity, "\"rows\": 10",
-	                                "\"until\": {\"half_width\": 0.05, \"max_runs\": 60000}");
+	                                      "\"until\": {\"half_width\": 0.05, \"max_runs\": 60000}");
 	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = pound_run_create(study, 1);
 	struct pound_result result = *pound_run_result(run);

@@ -17,10 +17,10 @@ static struct finished finished(void)
 {
 	char *few = study_documents_with(study_documents_sensitivity, "\"rows\": 10", "\"rows\": 2");
 	char *named = study_documents_with(few, "\"f_e\"", "\"=f'e\\\\\\u03c9,\"");
-	char *document =
-	    study_documents_with(named, "\"/contact/restitution\", \"values\": [0.2, 0.9]}",
-	                   "\"/contact/gap_m\", \"values\": [0, 0.001]}, {\"path\": \"/law/type\", \"values\": "
-	                   "[\"linear\", \"elastoplastic\"]}");
+	char *document = study_documents_with(
+	    named, "\"/contact/restitution\", \"values\": [0.2, 0.9]}",
+	    "\"/contact/gap_m\", \"values\": [0, 0.001]}, {\"path\": \"/law/type\", \"values\": "
+	    "[\"linear\", \"elastoplastic\"]}");
 	struct finished f = {.study = study_documents_study(document)};
 	f.run = pound_run_create(f.study, 1);
 	assert_non_null(f.run);

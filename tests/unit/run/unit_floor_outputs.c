@@ -54,7 +54,8 @@ static void a_study_of_one_signal_is_its_floor(void **state)
 	specimen.study.kind = POUND_KIND_RESPONSE; // to find the task
 	specimen.study.n_outputs = 1;
 	struct pound_task task = floor_task_task(&specimen, true);
-	const struct pound_floor_answer answer = floor_task_spectra(&task, &specimen.study.spectrum, 2, 1, 0, into);
+	const struct pound_floor_answer answer =
+	    floor_task_spectra(&task, &specimen.study.spectrum, 2, 1, 0, into);
 	for (int k = 0; k < 6; k++) {
 		// the study scales the motion by a power of two
 		check_near(floor->spectra[POUND_SPECTRUM_POUNDING].mean[k], psa[0][k], 1e-9 * psa[0][k]);

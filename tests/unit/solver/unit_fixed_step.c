@@ -28,14 +28,14 @@ static struct pound_task vibration(double damping_ratio, double speed)
 {
 	double w = 2 * PI;
 	return (struct pound_task){.ground = still,
-	                                 .n_samples = STILL,
-	                                 .time_step = 0.01,
-	                                 .bodies = {{.backbone = {.stiffness = w * w},
-	                                             .damping = 2 * damping_ratio * w,
-	                                             .drive = 1,
-	                                             .u = 1,
-	                                             .v = speed,
-	                                             .followed = true}}};
+	                           .n_samples = STILL,
+	                           .time_step = 0.01,
+	                           .bodies = {{.backbone = {.stiffness = w * w},
+	                                       .damping = 2 * damping_ratio * w,
+	                                       .drive = 1,
+	                                       .u = 1,
+	                                       .v = speed,
+	                                       .followed = true}}};
 }
 
 static void the_solvers_have_their_names_in_these_rows(void **state)

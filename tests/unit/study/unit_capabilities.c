@@ -54,8 +54,8 @@ static void a_study_without_contact_does_not_need_it(void **state)
 	(void)state;
 	pretends = true;
 	pretended = POUND_FORCE_POWER;
-	char *document =
-	    study_documents_with(study_documents_response, "{\"oscillators\"", "{\"contact\": null, \"oscillators\"");
+	char *document = study_documents_with(study_documents_response, "{\"oscillators\"",
+	                                      "{\"contact\": null, \"oscillators\"");
 	study_free(study_documents_study(document));
 	pretends = false;
 	free(document);

@@ -15,7 +15,7 @@ static void absent_outputs_are_all_that_apply_in_a_cell(void **state)
 {
 	(void)state;
 	char *swept = study_documents_with(study_documents_sensitivity, EPS,
-	                             "\"/law/type\", \"values\": [\"linear\", \"origin_oriented\"]");
+	                                   "\"/law/type\", \"values\": [\"linear\", \"origin_oriented\"]");
 	char *both = study_documents_with(swept, ",\n \"outputs\": [\"demand_amplification\", \"impulse\"]", "");
 	struct pound_study *study = study_documents_study(both);
 	assert_int_equal(study->n_outputs, 3); // all that apply somewhere
@@ -41,10 +41,10 @@ static void what_is_too_large_is_reported_with_its_limit(void **state)
 static void cells_are_the_product_of_the_sweeps_the_last_one_fastest(void **state)
 {
 	(void)state;
-	char *document =
-	    study_documents_with(study_documents_sensitivity, EPS "}",
-	                   "\"/contact/gap_m\", \"values\": [0, 1, 2]}, {\"path\": \"/law/type\", \"values\": "
-	                   "[\"elastoplastic\", \"origin_oriented\"]}");
+	char *document = study_documents_with(
+	    study_documents_sensitivity, EPS "}",
+	    "\"/contact/gap_m\", \"values\": [0, 1, 2]}, {\"path\": \"/law/type\", \"values\": "
+	    "[\"elastoplastic\", \"origin_oriented\"]}");
 	struct pound_study *study = study_documents_study(document);
 	assert_int_equal(study_cells(study), 6);
 	assert_int_equal(study_runs(study), 6 * 10 * 4 * 5);
@@ -81,7 +81,7 @@ static void too_many_cells_are_refused_before_they_are_counted_out(void **state)
 	strcpy(at, "]");
 	char *document = study_documents_with(study_documents_response, "{\"frequency_hz\": 3.1}]}", swept);
 	study_documents_problem(document, "/sweep",
-	                  "asks for 1.00802805607006e+24 cells, a study may have at most 10000");
+	                        "asks for 1.00802805607006e+24 cells, a study may have at most 10000");
 	free(document);
 	free(swept);
 }

@@ -136,7 +136,8 @@ static void what_an_excitation_does_not_use_is_zero(void **state)
 static void a_rigid_wall_has_no_frequency(void **state)
 {
 	(void)state;
-	char *wall = study_documents_with(study_documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}");
+	char *wall =
+	    study_documents_with(study_documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}");
 	struct pound_study *study = study_documents_study(wall);
 	assert_true(study->scene.oscillators[1].rigid_wall);
 	check_near(study->scene.oscillators[1].frequency_hz, 0, 0);
@@ -147,8 +148,8 @@ static void a_rigid_wall_has_no_frequency(void **state)
 static void no_contact_is_null(void **state)
 {
 	(void)state;
-	char *document =
-	    study_documents_with(study_documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\"");
+	char *document = study_documents_with(study_documents_response, "\"oscillators\"",
+	                                      "\"contact\": null, \"oscillators\"");
 	struct pound_study *study = study_documents_study(document);
 	assert_false(study->scene.contact.present);
 	assert_int_equal(study->n_outputs, 1);
@@ -162,7 +163,7 @@ static void broken_json_is_told_by_line_and_column(void **state)
 	(void)state;
 	struct problems problems;
 	study_documents_refused("{\"kind\": \"response\",\n \"scene\": {\"law\": {\"hardening_ratio\": 01}}}",
-	                  &problems);
+	                        &problems);
 	assert_int_equal(problems.status, PROBLEMS_MALFORMED);
 	assert_int_equal(problems.line, 2);
 	assert_int_equal(problems.column, 39);

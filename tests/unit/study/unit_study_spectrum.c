@@ -16,8 +16,8 @@ static char *document_with(const char *frequencies)
 	snprintf(outputs, sizeof outputs, ORDINATES "%s%s%s",
 	         *frequencies ? ", \"spectrum\": {\"frequencies_hz\": " : "", frequencies,
 	         *frequencies ? "}" : "");
-	return study_documents_with(study_documents_sensitivity, "\"outputs\": [\"demand_amplification\", \"impulse\"]",
-	                      outputs);
+	return study_documents_with(study_documents_sensitivity,
+	                            "\"outputs\": [\"demand_amplification\", \"impulse\"]", outputs);
 }
 
 static void frequencies_are_a_list_or_a_range(void **state)
@@ -30,8 +30,8 @@ static void frequencies_are_a_list_or_a_range(void **state)
 	assert_int_equal(study->spectrum.pulses, 15);
 	assert_int_equal(study->n_outputs, 0);
 	study_free(study);
-	char *listed =
-	    study_documents_with(study_documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[7.5, 3, 1e1]");
+	char *listed = study_documents_with(study_documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}",
+	                                    "[7.5, 3, 1e1]");
 	study = study_documents_study(listed);
 	assert_int_equal(study->spectrum.n, 3);
 	check_near(pound_spectrum_frequency(&study->spectrum, 0), 7.5, 0);
@@ -43,8 +43,9 @@ static void frequencies_are_a_list_or_a_range(void **state)
 static void absent_frequencies_are_two_hundred(void **state)
 {
 	(void)state;
-	struct pound_study *study = study_documents_study("{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": "
-	                                            "[{\"frequency_hz\": 2}, {\"rigid_wall\": true}]}}");
+	struct pound_study *study =
+	    study_documents_study("{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": "
+	                          "[{\"frequency_hz\": 2}, {\"rigid_wall\": true}]}}");
 	assert_int_equal(study->spectrum.n, 200);
 	check_near(pound_spectrum_frequency(&study->spectrum, 0), 0.1, 0);
 	check_near(pound_spectrum_frequency(&study->spectrum, 199), 100, 0);
@@ -74,7 +75,8 @@ static void only_what_is_asked_counts_for_the_hash(void **state)
 {
 	(void)state;
 	char range[STUDY_HASH_SIZE], list[STUDY_HASH_SIZE], other[STUDY_HASH_SIZE];
-	char *listed = study_documents_with(study_documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[0.5, 50]");
+	char *listed =
+	    study_documents_with(study_documents_floor, "{\"min\": 0.5, \"max\": 50, \"count\": 9}", "[0.5, 50]");
 	char *ranged = study_documents_with(study_documents_floor, "\"count\": 9", "\"count\": 2");
 	struct pound_study *studies[] = {study_documents_study(listed), study_documents_study(ranged),
 	                                 study_documents_study(study_documents_floor)};

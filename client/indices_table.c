@@ -1,4 +1,4 @@
-/* indices.c - a sensitivity result has one block for each cell and output:
+/* indices_table.c - a sensitivity result has one block for each cell and output:
  *
  *   /oscillators/0/frequency_hz = 2
  *
@@ -10,7 +10,7 @@
  *     300 runs checked, apart by 1e-14 (median) to 2e-13: no index moves by over 3e-15
  *
  * and then a table for each other list of estimates, which have the names there that they have in the JSON. */
-#include "client/indices.h"
+#include "client/indices_table.h"
 
 #include "client/cell.h"
 #include "client/command.h"

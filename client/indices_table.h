@@ -1,6 +1,6 @@
-/* indices.h - a sensitivity result as tables for people. */
-#ifndef INDEXES_H
-#define INDEXES_H
+/* indices_table.h - a sensitivity result as tables for people. */
+#ifndef INDICES_TABLE_H
+#define INDICES_TABLE_H
 
 #include "schema/json/json_pointer.h"
 
