@@ -1,4 +1,4 @@
-/* answer.h - requests whose failures are told to the user in one way. */
+/* answer.h - requests, with one way to report their failures. */
 #ifndef ANSWER_H
 #define ANSWER_H
 

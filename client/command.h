@@ -1,4 +1,4 @@
-/* command.h - what a subcommand is given and what it tells the shell.
+/* command.h - what a subcommand takes and what it returns to the shell.
  *
  * A subcommand is one row of the table in pound.c and one function with this shape. */
 #ifndef COMMAND_H

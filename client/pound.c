@@ -44,58 +44,58 @@ enum {
 static const struct command COMMANDS[] = {
 	{"run", "STUDY.json", "tfTo", false, {"json", "table", "csv"}, run_study,
 	 "compute a study here, without a server",
-	 "Prints the result on standard output: the same bytes as the server gives, `timing' aside.  "
+	 "Prints the result on standard output: the same bytes as from a server, except `timing'.  "
 	 "Ctrl-C stops the study."},
 	{"design", "STUDY.json", "", false, {0}, model_design,
-	 "print the rows of a study's design, to run elsewhere",
+	 "print the rows of a study's design, to evaluate with a model of your own",
 	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
-	 "column j from B_i for every j.  The study may be without \"scene\": a model of your own."},
+	 "column j from B_i for every j.  A study without \"scene\" describes the inputs of your own model."},
 	{"indices", "STUDY.json Y.csv", "fT", false, {"json", "table", "csv"}, model_indexes,
-	 "the indices of outputs computed elsewhere",
+	 "sensitivity indices of the outputs of a model of your own",
 	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
 	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number."},
 	{"submit", "STUDY.json", "wu", false, {0}, submit_study,
-	 "hand a study to the server and print its id",
+	 "submit a study to the server and print its id",
 	 "With --wait, follows the study until it has ended."},
 	{"status", "ID", "uf", true, {"json", "table", "csv"}, query_status,
-	 "how far a study is", ""},
+	 "progress of a study", ""},
 	{"wait", "ID", "uf", true, {"json", "table", "csv"}, query_wait,
-	 "follow a study until it has ended, then print its status", ""},
+	 "wait until a study has ended, then print its status", ""},
 	{"results", "ID", "ufTp", false, {"json", "table", "csv"}, query_results,
-	 "the result of a study that has succeeded", ""},
+	 "result of a study", ""},
 	{"samples", "ID", "uf", false, {"csv", "npy"}, query_samples,
-	 "every input row of a study and its outputs", ""},
+	 "inputs and outputs of every sample of a study", ""},
 	{"plot", "FIGURE RESULT|ID", "nup" FIGURE_KEYS, false, {0}, plot_figure,
 	 "print a figure of a result as SVG",
 	 "--names lists the figures.  A result is a file, - or the id of a study on the server; for `history' "
 	 "a file of samples as CSV, or an id."},
 	{"report", "RESULT|ID [STUDY]", "up", false, {0}, report_print,
-	 "a result as one HTML page, for those without this program",
-	 "A result is a file, - or the id of a study on the server, which then has the study document, too; for a file, "
-	 "STUDY is that."},
+	 "a result as one self-contained HTML page",
+	 "A result is a file, - or the id of a study on the server, which also has the study document; for a file, "
+	 "give it as STUDY."},
 	{"list", "", "slcuf", true, {"json", "table", "csv"}, query_list,
-	 "the studies on the server, newest first", ""},
+	 "studies on the server, newest first", ""},
 	{"cancel", "ID", "uf", true, {"json", "table", "csv"}, query_cancel,
-	 "stop a study that is queued or running", ""},
+	 "cancel a queued or running study", ""},
 	{"delete", "ID", "u", false, {0}, query_delete,
-	 "remove a study and its result from the server", ""},
+	 "delete a study and its result from the server", ""},
 	{"example", "[NAME]", "n", false, {0}, example_print,
 	 "print a complete study document to start from",
 	 "Without NAME, the paper's study.  --names lists the examples."},
 };
 
 static const struct argp_option OPTIONS[] = {
-	{"threads", 't', "N",      0, "compute with N threads (default: the cores there are)", 0},
+	{"threads", 't', "N",      0, "compute with N threads (default: number of cores)", 0},
 	{"samples", 'o', "FILE",   0, "also write every sample, or the floor's history, to FILE (NumPy if it ends in .npy, else CSV)", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
 	{"limit",   'l', "N",      0, "at most N studies", 0},
-	{"cursor",  'c', "CURSOR", 0, "go on where an earlier list ended", 0},
-	{"names",   'n', NULL,     0, "print the names there are", 0},
-	{"url",     'u', "URL",    0, "the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
-	{"format",  'f', "FORMAT", 0, "how the data is printed", 0},
+	{"cursor",  'c', "CURSOR", 0, "continue an earlier list", 0},
+	{"names",   'n', NULL,     0, "print the available names", 0},
+	{"url",     'u', "URL",    0, "URL of the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
+	{"format",  'f', "FORMAT", 0, "format of the output", 0},
 	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES ", or all as a table; without it, a summary as a table and inputs as csv", 0},
-	{"partial", 'p', NULL,     0, "of the rows that are complete so far, if the study still runs", 0},
+	{"partial", 'p', NULL,     0, "intermediate result of the completed rows, if the study is still running", 0},
 #define X(name, values, lowest, highest, text) {#name, FIGURE_KEY_##name, "VALUE", 0, text, 0},
 	FIGURE_ARGUMENTS(X)
 #undef X
@@ -172,7 +172,7 @@ static void take_argument(struct argp_state *state, struct parsing *parsing, con
 {
 	const char *takes = parsing->command->arguments, *second = strchr(takes, ' ');
 	if (!*takes || (parsing->options.argument && !second) || parsing->options.second)
-		argp_error(state, "'%s' is one argument too many", argument);
+		argp_error(state, "'%s' is an unexpected argument", argument);
 	*(parsing->options.argument ? &parsing->options.second : &parsing->options.argument) = argument;
 }
 
@@ -307,16 +307,16 @@ static enum outcome command_run(const struct command *command, int argc, char **
 static void usage(FILE *out)
 {
 	fputs("Usage: pound COMMAND [OPTION...] [ARGUMENT]\n"
-	      "Earthquake-induced pounding between two oscillators, and what it is sensitive to.\n\n",
+	      "Earthquake-induced pounding of two buildings and its sensitivity to their properties.\n\n",
 	      out);
 	for (int i = 0; i < N_COMMANDS; i++) {
 		char call[32];
 		snprintf(call, sizeof call, "%s %s", COMMANDS[i].name, COMMANDS[i].arguments);
 		fprintf(out, "  %-24s  %s\n", call, COMMANDS[i].help);
 	}
-	fputs("\nSTUDY.json may be -, standard input.  `pound COMMAND --help' says more; `pound --version'.\n"
+	fputs("\nSTUDY.json may be - for standard input.  More: `pound COMMAND --help', `pound --version'.\n"
 	      "Exit status: 0 done, 1 failed, 2 wrong usage or an invalid study, 3 the study failed or was\n"
-	      "cancelled, 4 the server was not reached.\n",
+	      "canceled, 4 the server cannot be reached.\n",
 	      out);
 }
 
@@ -346,6 +346,6 @@ int main(int argc, char **argv)
 		}
 		return outcome;
 	}
-	command_complain("no command is called '%s'; see pound --help", argv[1]);
+	command_complain("unknown command '%s'; see pound --help", argv[1]);
 	return OUTCOME_USAGE;
 }

@@ -165,7 +165,7 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	return written ? OUTCOME_OK : OUTCOME_FAILED;
 }
 
-/* Whether a file can be written, as far as can be told without making it: a study may take hours before it is. */
+/* Whether a file can be written, as far as can be known without creating it: a study may take hours before it is. */
 static bool writable(const char *path)
 {
 	char folder[PATH_MAX];

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Follows a study that was just accepted, its id already told. */
+/* Follows a study that was just accepted, its id already printed. */
 static enum outcome follow(struct wire *wire, const char *id)
 {
 	struct wire_reply last;

@@ -24,14 +24,14 @@ struct wire_reply {
 	char *body;  /* (n_body), and a NUL behind it that is not counted */
 	size_t n_body;
 	char *type;         /* media type of the body without its parameters; "": none */
-	long retry_after_s; /* 0: not told */
+	long retry_after_s; /* 0: unknown */
 };
 
 /* Connects when the first request is sent; `url` is kept, not copied. */
 struct wire *wire_open(const char *url);
 void wire_close(struct wire *wire);
 
-/* OUTCOME_OK when the server answered, whatever it said; otherwise wire_failure tells why. */
+/* OUTCOME_OK when the server answered, whatever the answer; otherwise wire_failure has the reason. */
 enum outcome wire_send(struct wire *wire, const struct wire_request *request, struct wire_reply *reply);
 const char *wire_url(const struct wire *wire);
 const char *wire_failure(const struct wire *wire);

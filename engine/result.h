@@ -55,7 +55,7 @@ enum {
 struct pound_ratio_indices {
 	int n; /* 0: none were asked, or too few rows */
 	struct pound_estimate
-	    explained; /* share of the output's variance, by these variables; NAN: cannot be told */
+	    explained; /* share of the output's variance explained by these variables; NAN: unknown */
 	struct pound_estimate first[POUND_FACTORIAL_INPUTS_MAX], total[POUND_FACTORIAL_INPUTS_MAX],
 	    shapley[POUND_FACTORIAL_INPUTS_MAX]; /* (n) each */
 };
@@ -73,7 +73,7 @@ int pound_conditional_points(const struct pound_distribution *distribution); /* 
 double pound_conditional_x(const struct pound_distribution *distribution,
                            int k); /* the input's value at point k */
 
-/* Those that the design of the study tells, sets in ascending order. */
+/* Those that the design of the study can give, sets in ascending order. */
 struct pound_set_indices {
 	int n_second, n_closed;
 	struct pound_set_index second[POUND_PAIRS_MAX]; /* second-order indices  (n_second) */
@@ -153,35 +153,35 @@ struct pound_accuracy {
 /* What there is to say about the indices of an output: X(enumerator, sentence). */
 #define POUND_NOTES(X)                                                                    \
 	X(POUND_NOTE_NO_ROWS,                                                                 \
-	  "no row of the design gave a value, so there are no indices")                       \
+	  "all rows of the design failed, so there are no indices")                       \
 	X(POUND_NOTE_ONE_ROW,                                                                 \
-	  "one row of the design gave a value, which is too few for indices")                 \
+	  "only one row of the design has a value; indices need at least two")                 \
 	X(POUND_NOTE_CONSTANT,                                                                \
 	  "the output is the same for every row, so it has no indices")                       \
 	X(POUND_NOTE_NOT_RANDOM,                                                              \
 	  "the excitation is not random, so there is no noise to correct for")                \
 	X(POUND_NOTE_ONE_SIGNAL,                                                              \
-	  "with one signal its noise cannot be told apart, so it is in every index")          \
+	  "with one signal its noise cannot be estimated, so all indices include it")          \
 	X(POUND_NOTE_SHARED_SIGNAL,                                                           \
 	  "the samples of a row share one signal: besides the raw indices only S1 can be estimated; for all others use 2 signals or more") \
 	X(POUND_NOTE_NO_VARIANCE,                                                             \
-	  "no variance of the output is given, so whatever noise the model has is in every index") \
+	  "no variance of the output is given, so all indices include the noise of the model") \
 	X(POUND_NOTE_SHARED_NOISE,                                                            \
-	  "the samples of a row share their noise, and how is not known: besides the raw indices only S1 can be estimated; for all others give each sample noise of its own") \
+	  "the samples of a row share their noise in an unknown way: besides the raw indices only S1 can be estimated; for the others use independent noise for each sample") \
 	X(POUND_NOTE_NOISE_INSIDE,                                                            \
-	  "S1 is a share of the variance with the noise in it")                               \
+	  "S1 is a share of the variance including the noise")                               \
 	X(POUND_NOTE_NO_NEIGHBORS,                                                            \
-	  "S1 is then estimated from neighboring rows, so it needs 30 rows or more of a design other than sobol") \
+	  "S1 is then estimated from neighboring rows, which needs at least 30 rows and a design other than sobol") \
 	X(POUND_NOTE_FRESH_SIGNALS,                                                           \
-	  "samples that do not share their signals do not show S2_excitation and S1_one_signal") \
+	  "S2_excitation and S1_one_signal need samples that share their signals (design.signals = common)") \
 	X(POUND_NOTE_FEW_ROWS,                                                                \
-	  "with fewer than 30 rows S1 and ST are S1_pick_freeze and ST_pick_freeze")          \
+	  "with fewer than 30 rows S1 and ST equal S1_pick_freeze and ST_pick_freeze")          \
 	X(POUND_NOTE_NOISE,                                                                   \
-	  "the variance left without the noise may be 0, so all indices but the raw ones are missing or may be far off") \
+	  "without the noise the variance may be 0, so all indices except the raw ones are missing or unreliable") \
 	X(POUND_NOTE_NO_INTERVAL,                                                             \
-	  "too few rows for the interval of every index: those without one may be far off")    \
+	  "too few rows for an interval of every index; indices without one are unreliable")    \
 	X(POUND_NOTE_FEW_DECIDE,                                                              \
-	  "one row makes a fifth of the variance or more, so intervals may be too narrow")
+	  "one row contributes at least a fifth of the variance, so intervals may be too narrow; use more rows")
 // clang-format on
 
 #define X(name, text) name,

@@ -559,7 +559,7 @@ static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen
 	return server->stopping ? MHD_NO : MHD_YES;
 }
 
-/* Called by libmicrohttpd for what it has to say, which may be a hundred thousand times a second: told once a second. */
+/* Called by libmicrohttpd for what it has to say, which may be a hundred thousand times a second: reported once a second. */
 static void log_library(void *of, const char *format, va_list values)
 {
 	struct server *server = of;
@@ -572,7 +572,7 @@ static void log_library(void *of, const char *format, va_list values)
 	}
 	vsnprintf(text, sizeof text, format, values);
 	text[strcspn(text, "\n")] = '\0';
-	log_line("http: %s (and %d lines before that were not told)", text,
+	log_line("http: %s (and %d lines before that were not reported)", text,
 	         atomic_exchange(&server->library_untold, 0));
 }
 

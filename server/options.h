@@ -1,4 +1,4 @@
-/* options.h - what poundd is told at its start, by flags and by the environment: one row each.
+/* options.h - options of poundd, from flags and the environment: one row each.
  *
  * --port 0 and POUNDD_PORT=0 are the same; a flag wins, an empty variable is none.  Constant after options_read; any thread. */
 #ifndef OPTIONS_H
@@ -13,7 +13,7 @@ struct options {
 	const char *backup;     /* file to copy it to, and no more; NULL: serve */
 	const char *restore;    /* file to put in its place, and no more; NULL: serve */
 	const char *host;       /* further names the server is asked by, between commas; NULL: none */
-	const char *token_file; /* NULL: whoever reaches the server may use it */
+	const char *token_file; /* NULL: anyone who reaches the server may use it */
 	int insecure;           /* 1: that holds for any address */
 	int port, workers;
 	int connections_max, queue_max, queue_token_max;

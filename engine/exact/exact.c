@@ -12,7 +12,7 @@
  *   contact_map.inl   maps over many contact substeps at once
  *   energy.inl        the work done in a step
  *   step.inl          one step up to an event
- *   observer.inl      tells an observer where its simulation is
+ *   observer.inl      reports the instants of a simulation to its observer
  *   next_step.inl     what is decided for one simulation: its start, what follows a step, its next branch, its end
  *   shared_start.inl  tasks that differ in their laws alone, run as one until a first of them may yield
  *   batch.inl         simulations into lanes and out

@@ -174,7 +174,7 @@ enum {
 	TRAIT_ALIKE = 16,     /* touching without overlap the bodies go the same way, on the pieces they are on */
 	TRAIT_OWN = 32,       /* its constants are not those of others */
 	TRAIT_FAMILY = 64,    /* there are others that go along: what an edge decides is not for all of them */
-	TRAIT_OBSERVED = 128, /* someone is told its instants: observer.inl */
+	TRAIT_OBSERVED = 128, /* it has an observer: observer.inl */
 };
 
 /* a task that a simulation is the run of as well */
@@ -210,7 +210,7 @@ struct simulation {
 	const struct pound_task *task;
 	struct pound_task_result *result;
 	struct pound_counts_scale counts_scale;
-	double unobserved; /* time since the last instant that its observer was told [s] */
+	double unobserved; /* time since the last instant that that its observer got [s] */
 	struct pound_member others[POUND_OTHERS];
 	int n_others;
 	enum pound_stage stage; /* what it does next, while it waits for room */

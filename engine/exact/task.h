@@ -37,7 +37,7 @@ struct pound_march_instant {
 	double spring_offset[POUND_OSCILLATORS]; /* spring force at no displacement, per mass [m/s2] */
 };
 
-/* who is told the instants of a task */
+/* the observer of a task */
 struct pound_march_observer {
 	void (*observe)(void *into, const struct pound_march_instant *instant);
 	void *into;

@@ -42,7 +42,7 @@ struct pound_sampling {
 	    *kept; /* of the fits, from one output of the design to the next: chaos_expansion.c; NULL: nothing */
 };
 
-/* What the scatter of rows is told from: their groups if they have some, else the rows themselves. */
+/* What the scatter of rows is estimated from: their groups if they have some, else the rows themselves. */
 struct pound_scatter {
 	struct pound_grouping grouping;
 	const int64_t *row; /* number in the design of each row that counts; NULL: its own */

@@ -3,7 +3,7 @@
  * 1. After the marches of a block each of its floors is followed once more, under the tasks that the request found, and its
  *    spectra are put beside the other measures of the run; equal floors are followed once.
  * 2. A study of spectra reduces them to mean and percentiles over the signals; a sensitivity study has an output for each
- *    frequency, and tells how it goes with the largest impulse.
+ *    frequency, and its correlation with the largest impulse.
  * 3. A check's floor has half the sample step and oscillators of half the longest step. */
 #include "engine/run/floor_outputs.h"
 

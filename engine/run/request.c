@@ -482,7 +482,7 @@ enum pound_status pound_request_run(struct pound_request *request, const struct 
 	pound_motions_fill(request->motions, request->motion_keys.n, forces_scale(request), request->ground,
 	                   request->size.samples);
 
-	struct pound_work of_checks = {0}; // what they leave out is not told
+	struct pound_work of_checks = {0}; // what they leave out is not reported
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++)
 		stages = (int)fmax(stages, stages_of(&request->asks[a]));

@@ -17,7 +17,7 @@ const char *pound_status_text(enum pound_status status)
 const char *pound_status_error(enum pound_status status)
 {
 	static const char *const none[] = {
-#define X(name, value, text) [name##_RUNS] = "no run gave a result: " text,
+#define X(name, value, text) [name##_RUNS] = "all runs failed: " text,
 	    POUND_FAILURES(X)
 #undef X
 	};

@@ -112,7 +112,7 @@ static double setting_of(const struct pound_solver *solver)
 	return pound_solver_takes_step(solver->method) ? solver->step : solver->tolerance;
 }
 
-/* Slope between two trials; NAN where an error or the ratio of settings tells nothing. */
+/* Slope between two trials; NAN where an error or the ratio of settings says nothing. */
 static double order_between(const struct pound_trial *coarse, const struct pound_trial *fine)
 {
 	double ratio = setting_of(&coarse->solver) / setting_of(&fine->solver);

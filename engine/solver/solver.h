@@ -1,6 +1,6 @@
 /* solver.h - the ways to integrate tasks, all with the same task and the same result.
  *
- * Each solver is told in its own file; task.h has the exact one, which the others are compared with. */
+ * Each solver is described in its own file; task.h has the exact one, which the others are compared with. */
 #ifndef SOLVER_H
 #define SOLVER_H
 

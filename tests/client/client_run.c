@@ -175,7 +175,7 @@ static void a_study_without_any_result_ends_with_3_and_says_why(void **state)
 	    program_run((const char *const[]){"pound", "run", "-", NULL}, UNSTABLE("[1, 2]"));
 	program_expect(&run, 3);
 	assert_string_equal(run.out, "");
-	assert_string_equal(run.err, "pound: the study failed: no run gave a result: "
+	assert_string_equal(run.err, "pound: the study failed: all runs failed: "
 	                             "the steps of the solver are too long for this scene\n");
 	program_free(&run);
 	struct program_outcome submit =
@@ -185,7 +185,7 @@ static void a_study_without_any_result_ends_with_3_and_says_why(void **state)
 	struct program_outcome ended = POUND("status", submit.out);
 	program_expect(&ended, 0);
 	assert_non_null(strstr(ended.out, "\"status\": \"failed\""));
-	assert_non_null(strstr(ended.out, "no run gave a result: the steps of the solver are too long"));
+	assert_non_null(strstr(ended.out, "all runs failed: the steps of the solver are too long"));
 	program_free(&ended);
 	program_free(&submit);
 }

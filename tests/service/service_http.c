@@ -623,7 +623,7 @@ static void what_the_library_says_again_and_again_is_told_once_a_second(void **s
 		close(sockets[i]);
 	// the seconds that were begun, and one more
 	assert_true(lines >= 1 && lines <= end.tv_sec - start.tv_sec + 2);
-	assert_true(told(service, " lines before that were not told") >= 1);
+	assert_true(told(service, " lines before that were not reported") >= 1);
 }
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)

@@ -179,9 +179,9 @@ static void a_study_without_a_result_ends_with_the_reason_of_its_runs(void **sta
 	assert_int_equal(failed(chatters), POUND_CHATTER);
 	free(all_rows), free(all_signals), free(tolerance);
 	assert_string_equal(pound_status_error(POUND_UNSTABLE),
-	                    "no run gave a result: the steps of the solver are too long for this scene");
+	                    "all runs failed: the steps of the solver are too long for this scene");
 	assert_string_equal(pound_status_error(POUND_CHATTER),
-	                    "no run gave a result: more events in one sample interval than allowed");
+	                    "all runs failed: more events in one sample interval than allowed");
 	assert_string_equal(pound_status_error(POUND_NOMEM), "out of memory");
 }
 
