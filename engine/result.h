@@ -181,7 +181,7 @@ struct pound_accuracy {
 	X(POUND_NOTE_NO_INTERVAL,                                                             \
 	  "too few rows for an interval of every index; indices without one are unreliable")    \
 	X(POUND_NOTE_FEW_DECIDE,                                                              \
-	  "one row contributes at least a fifth of the variance, so intervals may be too narrow; use more rows")
+	  "one row contributes at least a fifth of the variance, so intervals may be too narrow: use more rows")
 // clang-format on
 
 #define X(name, text) name,

@@ -275,8 +275,8 @@ static void indices_of_a_noisy_model_are_exact_or_null(void **state)
 			assert_true(isfinite(index_of(result, 0, j, "S1_raw")));
 		}
 		const char *note = reading_text(result, "/cells/0/outputs/0/note");
-		assert_int_equal(note && strstr(note, "give each sample noise of its own"), cases[k].shared);
-		assert_int_equal(note && strstr(note, "with the noise in it"), cases[k].shared && !cases[k].variance);
+		assert_int_equal(note && strstr(note, "use independent noise for each sample"), cases[k].shared);
+		assert_int_equal(note && strstr(note, "including the noise"), cases[k].shared && !cases[k].variance);
 		reading_close(result);
 		free(csv), free(document);
 	}

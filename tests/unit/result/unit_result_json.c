@@ -262,8 +262,8 @@ static void undefined_indexes_are_null_and_say_why(void **state)
 	                    "the output is the same for every row, so it has no indices");
 	assert_string_equal(
 	    reading_text(r, "/cells/0/outputs/1/note"),
-	    "no row of the design gave a value, so there are no indices; the variance left without the noise may "
-	    "be 0, so all indices but the raw ones are missing or may be far off");
+	    "all rows of the design failed, so there are no indices; without the noise the variance may be 0, "
+	    "so all indices except the raw ones are missing or unreliable");
 	reading_close(r);
 }
 
@@ -303,8 +303,8 @@ static void all_there_is_to_say_has_room(void **state)
 	struct pound_result result = {.n_cells = 2, .cells = cells};
 	struct reading *r = result_of(study_documents_sensitivity, &result);
 	const char *note = reading_text(r, "/cells/0/outputs/0/note");
-	assert_string_equal(strrchr(note, ';'),
-	                    "; one row makes a fifth of the variance or more, so intervals may be too narrow");
+	assert_string_equal(strrchr(note, ';'), "; one row contributes at least a fifth of the variance, so "
+	                                        "intervals may be too narrow: use more rows");
 	reading_close(r);
 }
 

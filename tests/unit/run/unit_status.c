@@ -127,7 +127,7 @@ static void rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says
 	assert_true(isnan(reading_number(r, "/cells/1/outputs/0/mean")));
 	assert_true(isnan(reading_number(r, "/cells/1/outputs/0/inputs/1/ST")));
 	assert_string_equal(reading_text(r, "/cells/1/outputs/0/note"),
-	                    "no row of the design gave a value, so there are no indices");
+	                    "all rows of the design failed, so there are no indices");
 	check_near(reading_number(r, "/work/failures/0/runs"), first + runs, 0);
 	assert_string_equal(reading_text(r, "/work/failures/0/reason"), too_long);
 	reading_close(r);
