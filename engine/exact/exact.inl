@@ -12,7 +12,8 @@
  *    costs more than what it decides;
  * 6. simulations of one scene, of laws of one piece, make their maps once, and their constants stay in lanes from batch to
  *    batch;
- * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (shared_start.inl).
+ * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (shared_start.inl);
+ * 8. one that is observed goes through the same steps, and stops at every event and, in pressed contact, at every sample.
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/exact/task.h"
 
@@ -152,7 +153,7 @@ LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahe
 		flown = vselect(vmask(on), flown + one, flown);
 		stretch_keep(g, &s, r + 1, vmask(on), paired, right);
 	}
-	if (ahead->observed)
+	if (__builtin_expect(ahead->observed, 0))
 		stretch_observe(b, ahead, &s, flown);
 	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - flown;
@@ -329,7 +330,7 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 	lanes_fill(g, b, ROW_STEP);
 	s->alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
 	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
-	const vm observed = seldom ? batch_trait(b, TRAIT_OBSERVED) : vmask(0);
+	const vm watched = seldom ? batch_trait(b, TRAIT_OBSERVED) : vmask(0);
 	const vd before = g->pressed;
 	vd zero = vsplat(0), one = vsplat(1), share = one / g->cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
@@ -360,7 +361,7 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 			gone |= vequal(s->at.rounds, zero) & pressed;
 			pressed &= ~ended & ~gone;
 			if (seldom) // a sample is an instant
-				pressed &= ~(entered & observed);
+				pressed &= ~(entered & watched);
 			if (stage == STAGE_REST)
 				pressed &= rest_stays(s, entered);
 		}
@@ -380,7 +381,7 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 		const bool entered = next != sim->next;
 		sim->steps = entered ? 0 : sim->steps;
 		interval_set(sim, next);
-		if (!seldom || !(sim->traits & TRAIT_OBSERVED))
+		if (!seldom || !observed(sim))
 			continue;
 		sim->unobserved += cells_gone[l] * sim->x.cell;
 		if (entered)
@@ -475,8 +476,7 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 	vm turns = vmask(0);
 	if (e.paired)
 		turns = event_follow(g, &e, events);
-	double event[W], left[W], speed[W], elapsed[W];
-	lanes_store(elapsed, e.elapsed);
+	double event[W], left[W], speed[W];
 	lanes_store(event, events);
 	lanes_store(left, vfma(g->cells, g->cell, g->part));
 	lanes_store(speed, g->q);
@@ -501,8 +501,8 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 		}
 		sim->parted = vbits(e.parted) >> l & 1;
 		sim->fresh = vbits(e.fresh) >> l & 1;
-		if (sim->traits & TRAIT_OBSERVED)
-			sim->unobserved += elapsed[l];
+		if (observed(sim))
+			sim->unobserved += sim->x.dt;
 		send(work, sim, simulation_stepped(sim, (int)event[l], left[l], speed[l]));
 	}
 }
@@ -532,10 +532,7 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 	lanes_fill(&g, b, ROW_PAIR);
 	if (paired)
 		lanes_fill(&g, b, ROW_RIGHT);
-	const vd before = g.part;
 	event_leap(&g, &e, vmask(batch_lanes(b)));
-	double elapsed[W];
-	lanes_store(elapsed, before - g.part); // all of it or nothing
 	// nothing is to be taken back: they have not moved
 	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
 	lanes_empty(&g, b, ROW_STATE);
@@ -546,8 +543,8 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 			part(work, sim, stage);
 			continue;
 		}
-		if (sim->traits & TRAIT_OBSERVED)
-			sim->unobserved += elapsed[l];
+		if (observed(sim) && sim->x.part == 0) // else it has stayed
+			sim->unobserved += sim->x.dt;
 		send(work, sim, simulation_next(sim));
 	}
 }

@@ -78,7 +78,7 @@ static void simulation_interval(struct simulation *sim)
 	x->ground = sim->ground[sim->next - 1];
 	x->part = sim->touching ? 0 : x->body[0].step_gap; // the sample step
 	x->cells = sim->touching ? x->cells_whole : 0;
-	if (sim->traits & TRAIT_OBSERVED)
+	if (observed(sim))
 		simulation_observe(sim, sim->next - 1);
 }
 
@@ -217,13 +217,12 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 		x->u[i] = x->v[i] = 0;
 	sim->parted = sim->fresh = false;
 	x->pace = 1;
-	const bool observed = sim->traits & TRAIT_OBSERVED;
 	double left =
 	    x->part + x->cells * x->cell; // of the interval: bodies that press each other settle inside one too
-	if (observed)
+	if (observed(sim))
 		simulation_observe(sim, sim->unobserved > 0 ? -1 : sim->next - 1);
 	while (sim->ground[sim->next] == 0) {
-		if (observed) {
+		if (observed(sim)) {
 			sim->unobserved = left;
 			simulation_observe(sim, sim->next);
 			left = x->body[0].step_gap;
@@ -311,7 +310,7 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 	if (event >= EVENT_BODY)
 		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
-	if (event > EVENT_CUT && sim->traits & TRAIT_OBSERVED)
+	if (observed(sim) && event > EVENT_CUT)
 		simulation_observe(sim, -1);
 	if (event >= EVENT_CLEARS && sim->can_fly && !sim->touching && sim->x.part > 0)
 		return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
@@ -535,7 +534,7 @@ static void result_write(struct simulation *sim, enum pound_status status)
 	// a contact still open at the end counts with what it has
 	if (sim->touching)
 		contact_over(sim, x->q);
-	if (sim->traits & TRAIT_OBSERVED)
+	if (observed(sim))
 		simulation_observe(sim, status == POUND_OK ? sim->last : -1);
 	sim->traits &= ~(unsigned)TRAIT_OBSERVED; // what follows looks back
 	bool finite = isfinite(x->u[0]) && isfinite(x->v[0]) && isfinite(x->u[1]) && isfinite(x->v[1]);

@@ -7,6 +7,12 @@
  *
  * Included by exact.inl after step.inl. */
 
+/* Few are. */
+LANE_INLINE bool observed(const struct simulation *sim)
+{
+	return __builtin_expect(sim->traits & TRAIT_OBSERVED, 0);
+}
+
 /* A simulation is at an instant.
  *
  * Given    sample  that it is at; < 0: at an event, or where it ended early

@@ -16,7 +16,6 @@ struct event_lanes {
 	bool right;         /* a lane's largest displacement of the right body is wanted */
 	bool forced;        /* a lane's contact ends when its force does */
 	vm decided;         /* lanes in which an edge of a piece decided how far they went */
-	vd elapsed;         /* time that the step took [s] */
 };
 
 /* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
@@ -375,7 +374,7 @@ LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct 
 /* One step: every lane goes on to its next event, or as far as it meant to.
  *
  * Given    accounted  a lane's energy balance is kept
- * Returns  value      the events;  e: decided
+ * Returns  value      the events;  e: decided;  g: at the end of the step, dt what it took
  */
 LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted)
 {
@@ -409,7 +408,7 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	// where no time has gone by nothing is to change, not by a rounding
 	vm moved = vless(zero, search.time);
 	step_end(g, &s, e, search.time, moved);
-	e->elapsed = search.time * g->dt;
+	g->dt = search.time * g->dt;
 	// a body turns with no velocity, but where it had turned before that was noticed
 	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
 		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);

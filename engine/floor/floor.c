@@ -94,7 +94,7 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
 
 /* Follows a task to its end.
  *
- * Given    take     called for every stretch of pieces, of it
+ * Given    taker    called for every stretch of pieces: floor->stretch
  *          stop     looked at throughout; NULL: never
  *          scratch  POUND_EXACT_SCRATCH bytes, 64-byte aligned
  * Returns  result   of the exact solver
@@ -168,7 +168,7 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 	                                 .damping = ask->task->bodies[0].damping},
 	                        .lanes = ask->lanes,
 	                        .scratch = floor->scratch};
-	struct pound_task_result result;
+	struct pound_task_result result = {0}; // stopped before it began it is not written
 	for (int d = 0; d < ask->n_drives; d++) {
 		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
 		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
@@ -241,7 +241,7 @@ enum pound_status pound_floor_history(struct pound_floor *floor, const struct po
 	const struct pound_task *task = ask->task;
 	struct chronicle chronicle = {.floor = floor, .take = take, .into = into};
 	const struct pound_floor_taker taker = {chronicle_take, &chronicle};
-	struct pound_task_result result;
+	struct pound_task_result result = {0};
 	enum pound_status status = floor_follow(floor, task, &taker, ask->stop, ask->scratch, &result);
 	chronicle.last.time = (task->n_samples - 1) * task->time_step;
 	chronicle.last.u = result.u[0], chronicle.last.v = result.v[0];
