@@ -20,15 +20,15 @@ LANE_INLINE bool observed(const struct simulation *sim)
 LANE_SHARED void simulation_observe(struct simulation *sim, int64_t sample)
 {
 	const struct state_rows *x = &sim->x;
-	const struct pound_march_observer *observer = sim->task->observer;
+	const struct pound_task_observer *observer = sim->task->observer;
 	const double left = x->part + x->cells * x->cell, step = sim->task->time_step;
-	struct pound_march_instant now = {.elapsed = sim->unobserved,
-	                                  .sampled = sample >= 0,
-	                                  .touching = sim->touching,
-	                                  .overlap = x->p,
-	                                  .overlap_rate = x->q,
-	                                  .ground = x->ground,
-	                                  .slope = x->slope};
+	struct pound_instant_of_task now = {.elapsed = sim->unobserved,
+	                                    .sampled = sample >= 0,
+	                                    .touching = sim->touching,
+	                                    .overlap = x->p,
+	                                    .overlap_rate = x->q,
+	                                    .ground = x->ground,
+	                                    .slope = x->slope};
 	now.time = (double)(now.sampled ? sample : sim->next) * step - (now.sampled ? 0 : left);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		now.u[i] = x->u[i];

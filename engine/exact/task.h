@@ -24,7 +24,7 @@ struct pound_task_body {
 /* An instant of a motion: where one interval ends and the next begins.  There is one at the start, at every sample of the
  * ground motion, at every event and at the end, in the order of time.  Between two of them no contact begins or ends, no body
  * leaves its branch, and the ground motion is a straight line. */
-struct pound_march_instant {
+struct pound_instant_of_task {
 	double time;    /* [s] */
 	double elapsed; /* since the instant before, 0: it is the same one, and its state has changed [s] */
 	bool sampled;   /* it is at a sample; false: an event */
@@ -38,8 +38,8 @@ struct pound_march_instant {
 };
 
 /* the observer of a task */
-struct pound_march_observer {
-	void (*observe)(void *into, const struct pound_march_instant *instant);
+struct pound_task_observer {
+	void (*observe)(void *into, const struct pound_instant_of_task *instant);
 	void *into;
 };
 
@@ -48,15 +48,15 @@ struct pound_task {
 	int n_samples;        /* >= 2 */
 	double time_step;     /* [s] */
 	struct pound_task_body bodies[POUND_OSCILLATORS];
-	bool contact;                                /* false: the bodies never meet */
-	enum pound_force force;                      /* form of the contact force */
-	double gap;                                  /* [m] */
-	double contact_stiffness;                    /* K/m1 [1/s2] */
-	double contact_damping;                      /* C/m1 [1/s] */
-	double mass_ratio;                           /* m1/m2, 0: the right body is a wall */
-	bool tension;                                /* contact ends at zero overlap; false: at zero force */
-	bool accounted;                              /* energy_residual is wanted */
-	const struct pound_march_observer *observer; /* NULL: none */
+	bool contact;                               /* false: the bodies never meet */
+	enum pound_force force;                     /* form of the contact force */
+	double gap;                                 /* [m] */
+	double contact_stiffness;                   /* K/m1 [1/s2] */
+	double contact_damping;                     /* C/m1 [1/s] */
+	double mass_ratio;                          /* m1/m2, 0: the right body is a wall */
+	bool tension;                               /* contact ends at zero overlap; false: at zero force */
+	bool accounted;                             /* energy_residual is wanted */
+	const struct pound_task_observer *observer; /* NULL: none */
 };
 
 struct pound_task_result {

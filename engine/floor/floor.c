@@ -106,7 +106,7 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
                                       void *scratch, struct pound_task_result *result)
 {
 	struct pound_floor_motion *motion = &floor->motion;
-	const struct pound_march_observer observer = {pound_floor_observe, motion};
+	const struct pound_task_observer observer = {pound_floor_observe, motion};
 	struct pound_task observed = *task;
 	observed.observer = &observer;
 	// whoever wants the largest displacements has them

@@ -164,7 +164,7 @@ struct terms {
 	double spring, dash, both, ratio;         /* of the contact, 1 + m1/m2, m1/m2 */
 };
 
-static struct terms terms_of(const struct pound_task *task, const struct pound_march_instant *at, double dt)
+static struct terms terms_of(const struct pound_task *task, const struct pound_instant_of_task *at, double dt)
 {
 	const double dt2 = dt * dt;
 	struct terms m = {.both = 1 + task->mass_ratio, .ratio = task->mass_ratio};
@@ -245,7 +245,7 @@ static double swing_nothing(const struct pound_floor_motion *motion)
  *
  * Returns  pull  what the accelerations of both bodies are made of, but for the contact's, added up [m/s2]
  */
-static bool may_settle(const struct pound_floor_motion *motion, const struct pound_march_instant *at,
+static bool may_settle(const struct pound_floor_motion *motion, const struct pound_instant_of_task *at,
                        double *pull)
 {
 	const struct pound_task *task = motion->task;
@@ -277,7 +277,7 @@ static bool may_settle(const struct pound_floor_motion *motion, const struct pou
  * b2 is by (rate/W)^2 less than what they are made of, so that few rounds settle that.
  */
 static bool series_settle(struct series *s, const struct pound_floor_motion *motion,
-                          const struct pound_march_instant *at, double pull)
+                          const struct pound_instant_of_task *at, double pull)
 {
 	const double dt = s->step;
 	const struct terms m = terms_of(motion->task, at, dt);
@@ -337,7 +337,7 @@ static double step_length(double left, double rate)
  * Valid    to rounding: REACH^n/n! is below that at the first term left out
  */
 static void series_next(struct series *s, const struct pound_floor_motion *motion,
-                        const struct pound_march_instant *at, double left)
+                        const struct pound_instant_of_task *at, double left)
 {
 	double pull, rate = at->touching ? motion->rate_touch : motion->rate;
 	s->step = step_length(left, motion->rate);
@@ -351,7 +351,7 @@ static void series_next(struct series *s, const struct pound_floor_motion *motio
 }
 
 /* Moves the state of an instant to the end of a series: terms are added up, the smallest first. */
-static void instant_move(struct pound_march_instant *at, const struct series *s)
+static void instant_move(struct pound_instant_of_task *at, const struct series *s)
 {
 	double *const u[3] = {&at->u[0], &at->u[1], &at->overlap};
 	double *const v[3] = {&at->v[0], &at->v[1], &at->overlap_rate};
@@ -406,7 +406,7 @@ static void stretch_room(struct pound_floor_motion *motion)
 
 /* One more piece of the stretch, which has room. */
 static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
-                                            const struct pound_march_instant *at, double step)
+                                            const struct pound_instant_of_task *at, double step)
 {
 	struct pound_floor_piece *piece = &motion->stretch->piece[motion->stretch->n++];
 	piece->start = at->time;
@@ -426,7 +426,7 @@ static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
  */
 static void flight_add(struct pound_floor_motion *motion, int map)
 {
-	const struct pound_march_instant *at = &motion->from;
+	const struct pound_instant_of_task *at = &motion->from;
 	const double h = motion->task->time_step, drive = motion->task->bodies[0].drive;
 	struct pound_floor_piece *piece = piece_next(motion, at, h);
 	piece->map = map;
@@ -443,7 +443,7 @@ static void flight_add(struct pound_floor_motion *motion, int map)
 }
 
 /* The floor over a series. */
-static void series_add(struct pound_floor_motion *motion, const struct pound_march_instant *at,
+static void series_add(struct pound_floor_motion *motion, const struct pound_instant_of_task *at,
                        const struct series *s)
 {
 	struct pound_floor_piece *piece = piece_next(motion, at, s->step);
@@ -459,7 +459,7 @@ static void series_add(struct pound_floor_motion *motion, const struct pound_mar
 /* The floor from the last instant on. */
 static void interval_add(struct pound_floor_motion *motion, double length)
 {
-	struct pound_march_instant at = motion->from;
+	struct pound_instant_of_task at = motion->from;
 	struct series s;
 	double gone = 0; // beside the time it would lose its digits
 	for (int steps = 0; !motion->status && !pound_stopped(motion->stop); steps++) {
@@ -482,7 +482,7 @@ static void interval_add(struct pound_floor_motion *motion, double length)
  * Source   model.md 1, 2 of the project's design pages
  * Test     unit_floor_pieces
  */
-void pound_floor_observe(void *of, const struct pound_march_instant *instant)
+void pound_floor_observe(void *of, const struct pound_instant_of_task *instant)
 {
 	struct pound_floor_motion *motion = of;
 	const double h = motion->task->time_step;
@@ -535,7 +535,7 @@ void pound_floor_start(struct pound_floor_motion *motion)
 		motion->rate = fmax(motion->rate, fmax(sqrt(b->backbone.stiffness), b->damping));
 	}
 	motion->rate_touch = task->contact ? rate_touch(task, motion->rate) : motion->rate;
-	motion->from = (struct pound_march_instant){0};
+	motion->from = (struct pound_instant_of_task){0};
 	motion->sampled = motion->after_event = false;
 	motion->stretch->n = motion->stretch->n_maps = 0;
 	motion->stretch->order = order_of(fmin(motion->rate * task->time_step, REACH));

@@ -56,10 +56,10 @@ struct pound_floor_motion {
 	struct pound_floor_stretch *stretch; /* of the pieces that were not taken yet */
 	struct pound_floor_taker taker;      /* called when it is full; it is empty afterwards */
 	const atomic_bool *stop;             /* when it is set no more pieces are made; NULL: never */
-	enum pound_status status;        /* POUND_CHATTER: a piece could not be made, and none behind it was */
-	double rate, rate_touch;         /* fastest of the bodies, of both in contact [rad/s] */
-	struct pound_march_instant from; /* where the next piece begins */
-	bool sampled, after_event;       /* as struct pound_floor_piece has them */
+	enum pound_status status;          /* POUND_CHATTER: a piece could not be made, and none behind it was */
+	double rate, rate_touch;           /* fastest of the bodies, of both in contact [rad/s] */
+	struct pound_instant_of_task from; /* where the next piece begins */
+	bool sampled, after_event;         /* as struct pound_floor_piece has them */
 };
 
 /* Coefficients of a flight's acceleration from its state. */
@@ -75,6 +75,6 @@ int pound_floor_terms(double x);
 /* A motion that no instant was told of yet; task, stretch, taker and stop are set. */
 void pound_floor_start(struct pound_floor_motion *motion);
 /* Makes the pieces up to an instant; an observer of the exact solver. */
-void pound_floor_observe(void *motion, const struct pound_march_instant *instant);
+void pound_floor_observe(void *motion, const struct pound_instant_of_task *instant);
 
 #endif

@@ -1,13 +1,14 @@
 /* What a study will take, before any of it is run.
  *
- * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, and
- * of the spectra of its floor.  The unit costs are those of four lanes (README, Speed): there every example of more than
- * 10 ms takes the estimated time within a factor of two; eight lanes of a newer processor take a half to a quarter of it.  What a
- * design shares between its samples is in them as it is for the examples. */
+ * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, of the
+ * spectra of its floor and of the reductions.  What a design shares between its samples is in the unit costs as it is for
+ * the examples, which take the estimated time within three (soak_cost); so do four of five studies drawn at random, and none
+ * takes more than eight times as long (soak_valid): how often bodies touch, and how much is shared, nobody knows before. */
 #include "schema/study/cost.h"
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "engine/solver/solver.h"
 #include "schema/json/json_writer.h"
@@ -27,7 +28,7 @@ static const struct {
     {5e-8, 0, 3e-7},
     {1.0e-7, 6e-8, 0},
     {1.0e-7, 4e-8, 0},
-    {8e-6, 0, 6e-7},
+    {2e-6, 0, 6e-7},
 };
 /* radians of a sample that go by maps, and with more than which a run ends as chatter */
 static const double MAPPED = 2, TURNED_MOST = 5e5;
@@ -41,13 +42,27 @@ static const struct {
 	int floors, spectra;
 } rides[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
 
+/* part of the time in which bodies are taken to ride on each other, and the radians of a step of a floor */
+static const double RIDING = 0.02, FLOOR_RADIANS = 1.5;
+
+/* [s] for a pulse of an idealised train, at each frequency */
+static const double PULSE_S = 6e-8;
+
+/* [s] of an output's indices: for a drawn row of a resample and each tile of its moments, and for a sample that polynomials
+ * are fitted to; and how many moments there are, for all and for each input */
+static const double DRAW_S = 5e-9, TILE_S = 5e-9, FIT_S = 1.5e-6;
+enum { RESAMPLES = 2000, MOMENTS = 10, MOMENTS_INPUT = 7, TILE = 16 };
+
+/* marches by which a yield displacement is found, over those of the scene */
+static const double YIELDING = 0.7;
+
 /* how much more a kind computes of a run than the outputs of a sensitivity study: other measures, histories; and what of a
  * run's time each further response takes that a search for a target demand makes */
 static const struct {
 	double run, searched;
 } kinds[] = {[POUND_KIND_RESPONSE] = {3, 0.3},
              [POUND_KIND_SENSITIVITY] = {1, 0.1},
-             [POUND_KIND_CONVERGENCE] = {6, 0.1},
+             [POUND_KIND_CONVERGENCE] = {12, 0.1},
              [POUND_KIND_FLOOR_SPECTRUM] = {3, 0.1}};
 
 /* Corrections that a search takes where it may, in the mean. */
@@ -103,7 +118,7 @@ static double swings(const struct pound_study *study)
 	double light = wall ? 1 : MEAN(study, oscillators[0].mass, 0.5) * MEAN(study, oscillators[1].mass, -0.5);
 	double heavy = wall ? 1 : MEAN(study, oscillators[0].mass, -0.5) * MEAN(study, oscillators[1].mass, 0.5);
 	return study->scene.contact.present
-	           ? 0.008 * MEAN(study, contact.stiffness_ratio, 0.5) * fmax(light, heavy)
+	           ? 0.002 * MEAN(study, contact.stiffness_ratio, 0.5) * fmax(light, heavy)
 	           : 0;
 }
 
@@ -148,6 +163,50 @@ static double searched(const struct pound_study *study)
 	return sum;
 }
 
+/* [s] of the reductions of a sensitivity study. */
+static double reductions_s(const struct pound_study *study)
+{
+	const double outputs = (double)study_cells(study) * study->n_outputs;
+	const int tiles = (MOMENTS + MOMENTS_INPUT * study->n_inputs + TILE - 1) / TILE;
+	// where rows come in groups, these are left out one by one instead
+	const bool grouped =
+	    study->design.until.half_width > 0 || !strcmp(pound_design_name(study->design.method), "sobol");
+	const double estimators = study->design.estimator ? 3 : 1; // the one named twice
+	return outputs * pound_design_rows_most(study) *
+	       ((grouped ? 0 : estimators * RESAMPLES * (DRAW_S + TILE_S * tiles)) +
+	        pound_design_samples(study) * FIT_S);
+}
+
+/* How many times the marches of a linear scene a run takes: the yield displacement of a body is found, and corrected once,
+ * first; searched() counts the rest.
+ * In the units of a sensitivity study it is there once. */
+static double marches(const struct pound_study *study)
+{
+	double most = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_law *law = pound_scene_law(&study->scene, i);
+		if (strcmp(pound_law_name(law->type), "linear") != 0 && !(law->yield_displacement > 0))
+			most = fmax(most, YIELDING * (1 + fmin(law->corrections, 1)));
+	}
+	return study->kind == POUND_KIND_RESPONSE ? 1 + most : fmax(1, most / (2 * YIELDING));
+}
+
+/* Steps of a floor within a sample, besides one: while bodies touch the contact's own frequency sets them. */
+static double steps_riding(const struct pound_study *study)
+{
+	const bool wall = study->scene.oscillators[1].rigid_wall;
+	const double masses =
+	    wall ? 1
+	         : 1 + fmax(MEAN(study, oscillators[0].mass, 1) * MEAN(study, oscillators[1].mass, -1),
+	                    MEAN(study, oscillators[0].mass, -1) * MEAN(study, oscillators[1].mass, 1));
+	const double hz = fmax(MEAN(study, oscillators[0].frequency_hz, 1),
+	                       wall ? 0 : MEAN(study, oscillators[1].frequency_hz, 1));
+	if (!study->scene.contact.present)
+		return 0;
+	return RIDING * 2 * 3.14159265358979323846 * hz * MEAN(study, excitation.time_step, 1) *
+	       sqrt(MEAN(study, contact.stiffness_ratio, 1) * masses) / FLOOR_RADIANS;
+}
+
 /* [s] of one run by a solver. */
 static double run_s(const struct pound_study *study, const struct pound_solver *solver)
 {
@@ -156,8 +215,8 @@ static double run_s(const struct pound_study *study, const struct pound_solver *
 	double steps = fixed ? fmax(1, MEAN(study, excitation.time_step, 1) / solver->step) : 0;
 	// the march takes few more for more contacts
 	double more = fixed ? 0 : row == POUND_SOLVER_EVENT ? 0.2 * log1p(swings(study)) : swings(study);
-	return samples_mean(study) *
-	       (units[row].sample * (1 + more) + units[row].step * steps + units[row].radian * turned(study));
+	return samples_mean(study) * (units[row].sample * (1 + more) * (fixed ? 1 : marches(study)) +
+	                              units[row].step * steps + units[row].radian * turned(study));
 }
 
 /* What a study will take.
@@ -181,10 +240,13 @@ struct cost cost_of(const struct pound_study *study)
 		cost.cpu_s += kinds[study->kind].run * runs * run_s(study, &study->solver);
 	cost.cpu_s *= 1 + kinds[study->kind].searched * searched(study);
 	if (study->spectrum.n)
-		cost.cpu_s += runs * samples_mean(study) *
+		cost.cpu_s += runs * samples_mean(study) * (1 + steps_riding(study)) *
 		              (rides[study->kind].floors * FLOOR_S +
 		               rides[study->kind].spectra * study->spectrum.n * ORDINATE_S);
+	if (study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		cost.cpu_s += runs * study->spectrum.n * study->spectrum.pulses * PULSE_S;
 	if (study->kind == POUND_KIND_SENSITIVITY) {
+		cost.cpu_s += reductions_s(study);
 		numbers = 2 * study->n_outputs;
 		cost.bytes += cells * study->n_outputs * (study->n_inputs + 1) * INDEX_BYTES;
 	} else {

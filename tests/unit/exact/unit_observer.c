@@ -15,10 +15,10 @@ enum { INSTANTS_MAX = 1 << 15 };
 /* the instants of a task, in the order in which they were told */
 struct story {
 	int n;
-	struct pound_march_instant at[INSTANTS_MAX];
+	struct pound_instant_of_task at[INSTANTS_MAX];
 };
 
-static void story_add(void *of, const struct pound_march_instant *instant)
+static void story_add(void *of, const struct pound_instant_of_task *instant)
 {
 	struct story *story = of;
 	assert_true(story->n < INSTANTS_MAX);
@@ -30,7 +30,7 @@ static struct story story, again;
 
 static struct pound_task_result observe(struct pound_task task, int lanes, struct story *into)
 {
-	const struct pound_march_observer observer = {story_add, into};
+	const struct pound_task_observer observer = {story_add, into};
 	struct pound_task_result result;
 	into->n = 0;
 	task.observer = &observer;
@@ -56,7 +56,7 @@ static void an_isolated_impact_is_two_events(void **state)
 		int events = 0;
 		double touching = 0;
 		for (int i = 0; i < story.n; i++) {
-			const struct pound_march_instant *now = &story.at[i];
+			const struct pound_instant_of_task *now = &story.at[i];
 			touching += i > 0 && story.at[i - 1].touching ? now->elapsed : 0;
 			if (now->sampled)
 				continue;
@@ -79,7 +79,7 @@ static void check_whole(const struct pound_task *task)
 	int samples = 0;
 	double elapsed = 0;
 	for (int i = 0; i < story.n; i++) {
-		const struct pound_march_instant *now = &story.at[i];
+		const struct pound_instant_of_task *now = &story.at[i];
 		assert_true(now->elapsed >= 0);
 		elapsed += now->elapsed;
 		// steps, a few hundred at the most, each with a rounding of what was left of the interval
@@ -178,7 +178,7 @@ static void an_observed_motion_is_that_of_the_adaptive_solver(void **state)
 		pound_adaptive_run(&solver, &task, &a, NULL);
 		assert_int_equal(a.status, POUND_OK);
 		observe(task, 0, &story);
-		const struct pound_march_instant *end = &story.at[story.n - 1];
+		const struct pound_instant_of_task *end = &story.at[story.n - 1];
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			check_near(end->u[i], a.u[i], 1e-9 * fmax(a.displacement_max[0], 1e-3));
 		specimen_free(&specimen);
@@ -191,7 +191,7 @@ static void check_same(const struct story *a, const struct story *b)
 {
 	assert_int_equal(a->n, b->n);
 	for (int i = 0; i < a->n; i++) {
-		const struct pound_march_instant *x = &a->at[i], *y = &b->at[i];
+		const struct pound_instant_of_task *x = &a->at[i], *y = &b->at[i];
 		assert_true(x->time == y->time && x->elapsed == y->elapsed && x->sampled == y->sampled);
 		assert_true(x->touching == y->touching && x->ground == y->ground && x->slope == y->slope);
 		assert_memory_equal(x->u, y->u, sizeof x->u);
@@ -231,7 +231,7 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 	static struct specimen specimens[TASKS / 2];
 	struct pound_task tasks[TASKS];
 	struct pound_task_result with[TASKS], without[TASKS];
-	struct pound_march_observer observers[OBSERVED];
+	struct pound_task_observer observers[OBSERVED];
 	memset(with, 0, sizeof with);
 	memset(without, 0, sizeof without);
 	for (int t = 0; t < TASKS; t++) {
@@ -242,7 +242,7 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 	assert_true(pound_exact_lanes(0, tasks, without, TASKS, scratch, NULL));
 	for (int k = 0; k < OBSERVED; k++) {
 		stories[k].n = 0;
-		observers[k] = (struct pound_march_observer){story_add, &stories[k]};
+		observers[k] = (struct pound_task_observer){story_add, &stories[k]};
 		tasks[9 * k].observer = &observers[k];
 	}
 	assert_true(pound_exact_lanes(0, tasks, with, TASKS, scratch, NULL));

@@ -29,7 +29,7 @@ static struct cost cost_of_text(const char *format, ...)
 	", \"excitation\": {\"signals\": %d}}, \"inputs\": ["                                                  \
 	"{\"path\": \"/contact/restitution\", \"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": " \
 	"1}}%s], "                                                                                             \
-	"\"design\": {\"rows\": %d}%s}"
+	"\"design\": {\"method\": \"sobol\", \"rows\": %d}%s}"
 
 static void what_is_asked_twice_costs_twice(void **state)
 {
@@ -122,7 +122,34 @@ static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void *
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(a_search_for_a_target_demand_costs_by_its_responses),
+/* Short documents that take long: what they came to when they were run on one core, within three. */
+static void what_is_not_a_run_is_counted_too(void **state)
+{
+	(void)state;
+	static const char pulses[] =
+	    "{\"kind\": \"floor_spectrum\", \"scene\": {" OSCILLATORS ", \"excitation\": {\"signals\": 500}}, "
+	    "\"spectrum\": {\"frequencies_hz\": {\"count\": 10000}, \"pulses\": %d}}";
+	static const char rows[] = "{\"kind\": \"sensitivity\", \"scene\": {" OSCILLATORS
+	                           ", \"excitation\": {\"signals\": 1, \"cycles\": "
+	                           "0.1}}, \"inputs\": ["
+	                           "{\"path\": \"/contact/restitution\", \"distribution\": {\"type\": "
+	                           "\"uniform\", \"min\": 0, \"max\": 1}},"
+	                           "{\"path\": \"/contact/stiffness_ratio\", \"distribution\": {\"type\": "
+	                           "\"uniform\", \"min\": 50, \"max\": "
+	                           "100}},"
+	                           "{\"path\": \"/oscillators/0/damping_ratio\", \"distribution\": {\"type\": "
+	                           "\"uniform\", \"min\": 0.01, "
+	                           "\"max\": 0.1}},"
+	                           "{\"path\": \"/oscillators/1/damping_ratio\", \"distribution\": {\"type\": "
+	                           "\"uniform\", \"min\": 0.01, "
+	                           "\"max\": 0.1}}], \"design\": {\"rows\": %d}}";
+	const double train = cost_of_text(pulses, 1000000).cpu_s, design = cost_of_text(rows, 1000000).cpu_s;
+	assert_true(train > 160000 / 3.0 && train < 160000 * 3.0);
+	assert_true(design > 112 / 3.0 && design < 112 * 3.0);
+}
+
+CHECK_MAIN(cmocka_unit_test(what_is_not_a_run_is_counted_too),
+           cmocka_unit_test(a_search_for_a_target_demand_costs_by_its_responses),
            cmocka_unit_test(an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns),
            cmocka_unit_test(what_is_asked_twice_costs_twice),
            cmocka_unit_test(a_motion_is_as_long_as_it_is_in_the_mean),
