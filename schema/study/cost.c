@@ -8,7 +8,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #include "engine/solver/solver.h"
 #include "schema/json/json_writer.h"
@@ -170,7 +169,7 @@ static double reductions_s(const struct pound_study *study)
 	const int tiles = (MOMENTS + MOMENTS_INPUT * study->n_inputs + TILE - 1) / TILE;
 	// where rows come in groups, these are left out one by one instead
 	const bool grouped =
-	    study->design.until.half_width > 0 || !strcmp(pound_design_name(study->design.method), "sobol");
+	    study->design.until.half_width > 0 || pound_design_quasi_random(study->design.method);
 	const double estimators = study->design.estimator ? 3 : 1; // the one named twice
 	return outputs * pound_design_rows_most(study) *
 	       ((grouped ? 0 : estimators * RESAMPLES * (DRAW_S + TILE_S * tiles)) +
@@ -185,7 +184,7 @@ static double marches(const struct pound_study *study)
 	double most = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_law *law = pound_scene_law(&study->scene, i);
-		if (strcmp(pound_law_name(law->type), "linear") != 0 && !(law->yield_displacement > 0))
+		if (law->type != 0 && !(law->yield_displacement > 0))
 			most = fmax(most, YIELDING * (1 + fmin(law->corrections, 1)));
 	}
 	return study->kind == POUND_KIND_RESPONSE ? 1 + most : fmax(1, most / (2 * YIELDING));

@@ -100,7 +100,8 @@ static void a_search_for_a_target_demand_costs_by_its_responses(void **state)
 	       many = cost_of_text(form, "elastoplastic", 50).cpu_s;
 	assert_true(some > 1.5 * paper && many > 1.2 * some && many < 5 * paper);
 	check_near(cost_of_text(form, "elastoplastic", 100).cpu_s / many, 1, 0);
-	check_near(cost_of_text(form, "linear", 50).cpu_s / paper, 1, 0);
+	// without a yield displacement there is nothing to correct
+	check_near(cost_of_text(form, "linear", 50).cpu_s / cost_of_text(form, "linear", 1).cpu_s, 1, 0);
 }
 
 /* Above two radians a sample there are steps for each of them: twice as many for twice the frequency. */
