@@ -267,12 +267,10 @@ static void judge(struct request *request, bool needs_host)
 		head_refuse(head, API_UNAUTHORIZED, false,
 		            "this needs the header Authorization: Bearer, and a token of this server");
 	if (!request->allow[0])
-		head_refuse(
-		    head, API_NOT_FOUND, false,
-		    "there is no such path: those there are stand in /v1/openapi.json; an id is 16 digits, 0 to 9 "
-		    "and a to f");
+		head_refuse(head, API_NOT_FOUND, false,
+		            "no such path; see /v1/openapi.json (study ids are 16 hexadecimal digits)");
 	if (!operation)
-		head_refuse(head, API_NOT_ALLOWED, false, "this path does not take that method");
+		head_refuse(head, API_NOT_ALLOWED, false, "this path does not support this method");
 	else if (operation->takes_study && !head->json)
 		head_refuse(head, API_NOT_JSON, false, "Content-Type must be application/json");
 	else if (operation->takes_study)
@@ -281,9 +279,11 @@ static void judge(struct request *request, bool needs_host)
 		head_origin(head);
 	if (head->fault == API_NO_FAULT)
 		MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, take_argument, request);
-	if (head->fault == API_NO_FAULT && head->length > 0 &&
-	    (server->bodies += request->taken = (long long)head->length) > BODIES_MAX)
-		head_refuse(head, API_UNAVAILABLE, true, "as much is being sent as this server takes at a time");
+	if (head->fault != API_NO_FAULT || head->length == 0)
+		return;
+	request->taken = (long long)head->length;
+	if (atomic_fetch_add(&server->bodies, request->taken) + request->taken > BODIES_MAX)
+		head_refuse(head, API_UNAVAILABLE, true, "too many request bodies are being sent");
 }
 
 /* Keeps more of the body, or drops it when there is a fault; no more comes than its declared length. */

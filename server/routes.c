@@ -71,9 +71,8 @@ static struct reply refusal(enum store_status status)
 	        {API_UNAVAILABLE,
 	         "the database file was removed or replaced: nothing is accepted until the server is "
 	         "started again"},
-	    [STORE_CROWDED] = {API_UNAVAILABLE, "as many studies are queued as this server takes"},
-	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY,
-	                              "as many studies are queued as this server takes from one token"},
+	    [STORE_CROWDED] = {API_UNAVAILABLE, "the queue is full"},
+	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY, "the share of this token in the queue is full"},
 	};
 	return problem(refusals[status].fault, refusals[status].detail);
 }
