@@ -268,7 +268,7 @@ static void judge(struct request *request, bool needs_host)
 		            "this needs the header Authorization: Bearer, and a token of this server");
 	if (!request->allow[0])
 		head_refuse(head, API_NOT_FOUND, false,
-		            "no such path; see /v1/openapi.json (study ids are 16 hexadecimal digits)");
+		            "there is no such path; see /v1/openapi.json (study ids are 16 hexadecimal digits)");
 	if (!operation)
 		head_refuse(head, API_NOT_ALLOWED, false, "this path does not support this method");
 	else if (operation->takes_study && !head->json)
