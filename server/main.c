@@ -21,7 +21,10 @@
 #include "server/token.h"
 #include "server/workers.h"
 
-enum { STOP_MAX = 25 /* [s] from the signal to the end, come what may: what is accepted is on the disk */ };
+enum {
+	STOP_MAX = 25,       /* [s] from the signal to the end, come what may: what is accepted is on the disk */
+	STORE_WAIT_MS = 100, /* for the connection to the database, when workers do not end soon */
+};
 
 /* A standard stream that is closed leads to nowhere: else a file opened later would take its number, and what is printed. */
 static void hold_streams(void)
@@ -88,6 +91,8 @@ static int serve(struct server *server, const sigset_t *signals)
 	}
 	ended &= work_stop(server->work);
 	// what is accepted is on the disk: the next start goes on as after a crash
+	if (!ended)
+		store_stop(server->store, STORE_WAIT_MS);
 	if (!ended)
 		_exit(listens ? EXIT_SUCCESS : EXIT_FAILURE);
 	return listens ? EXIT_SUCCESS : EXIT_FAILURE;

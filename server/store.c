@@ -230,6 +230,15 @@ static void let_go(struct store *store)
 }
 
 /* Closes a store, when nothing runs any more. */
+/* Queues what is running again, as store_close does, unless the connection is in use for longer. */
+void store_stop(struct store *store, int wait_ms)
+{
+	for (; pthread_mutex_trylock(&store->writer.lock) != 0; wait_ms--)
+		if (wait_ms == 0 || usleep(1000) != 0)
+			return;
+	released(&store->writer, run(&store->writer, bound(&store->writer, STOPPED, ""), NULL));
+}
+
 void store_close(struct store *store)
 {
 	run(&store->writer, bound(&store->writer, STOPPED, ""), NULL);
@@ -242,10 +251,8 @@ static bool roomy(struct store *store)
 	int64_t reusable = 0;
 	struct database *c = reader(store);
 	released(c, run(c, bound(c, REUSABLE, ""), &reusable));
-	if (disk_roomy(&store->disk, reusable))
-		return true;
-	if (!disk_has_wal(&store->disk))
-		return false;
+	if (disk_roomy(&store->disk, reusable) || !disk_has_wal(&store->disk))
+		return disk_roomy(&store->disk, reusable);
 	c = writer(store);
 	database_truncate(c);
 	released(c, STORE_OK);
@@ -597,8 +604,7 @@ enum store_status store_delete(struct store *store, int64_t id)
 	return relieved(store, DELETE, id);
 }
 
-/* Takes the oldest queued study, last those that were taken three times in vain: when this returns it is running, and
- * the attempt counted.
+/* Takes the oldest queued study, last those that were taken three times in vain; it is then running, the attempt counted.
  *
  * Returns  id      of the study
  * Status   STORE_NONE   nothing is queued
@@ -632,8 +638,7 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 	return changed(store, id, status);
 }
 
-/* Hands over the blocks that were kept, by number, as long as they are wanted; a damaged one, or one of another version, is
- * left out.
+/* Hands over the kept blocks, by number, as long as they are wanted, without damaged ones and those of another version.
  *
  * Status   STORE_CORRUPT  one was, or more
  *          STORE_FAILED   the disk, or no memory: some may be missing
@@ -668,9 +673,8 @@ enum store_status store_blocks(struct store *store, int64_t id, store_block_read
 	return released(c, starved ? STORE_FAILED : corrupt && status == STORE_OK ? STORE_CORRUPT : status);
 }
 
-/* Deletes the blocks that store_blocks leaves out, with what they count for in the study's progress.
+/* Deletes the blocks that store_blocks leaves out, with their progress; STORE_NONE: there are none.
  *
- * Status   STORE_NONE   there are none
  * Test     service_resume: blocks_of_another_version_are_not_counted
  */
 enum store_status store_prune(struct store *store, int64_t id)

@@ -39,6 +39,7 @@ typedef void store_study_reader(void *to,
                                 const struct study_status *study); /* of texts that end with the call */
 
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
+void store_stop(struct store *store, int wait_ms);
 void store_close(struct store *store);
 bool store_copy(const char *path, const char *to); /* of a database that may be in use; false: logged */
 bool store_restore(const char *path,
