@@ -622,9 +622,8 @@ void store_blame(const struct store *store, int64_t id)
 	disk_blame(&store->disk, id);
 }
 
-/* Keeps a finished block of a running study.
+/* Keeps a finished block of a running study; STORE_NONE: it was canceled or deleted.
  *
- * Status   STORE_NONE   the study is not running any more: cancelled or deleted
  * Test     unit_store: a_block_is_kept_only_while_its_study_runs
  */
 enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block)
