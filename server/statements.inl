@@ -1,0 +1,75 @@
+/* The statements of the database, a name and a text each.  Included by server/store.c, before all else of it. */
+// clang-format off
+enum statement {
+	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE,
+	BEGIN, // the first of those that the writer alone has
+	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, FINISH, REQUEUE,
+	STOPPED, VAIN, POISON,
+	N_STATEMENTS
+};
+
+_Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement has its place");
+
+#define NOW "CAST(round((julianday('now') - 2440587.5) * 86400000) AS INTEGER)"
+#define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
+#define STUDY_ROW                                                                                         \
+	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
+	"error, runs, iif(status = 'succeeded', runs, runs_done), cpu_s FROM study "
+#define QUEUED "SELECT id FROM study WHERE status = 'queued' "
+// what bytes are checked with: where they belong, and themselves; a block belongs to the version that made it, too
+#define DOCUMENT_DIGEST(study, name, content) "digest(" name " || ' ' || " study " || ' ', " content ")"
+#define BLOCK_DIGEST(study, number, content) \
+	"digest('" POUND_VERSION " ' || " study " || ' ' || " number " || ' ', " content ")"
+
+// what its blocks come to, as columns of their study
+#define BLOCK_SUMS \
+	"(runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), total(cpu_s) FROM block WHERE study = ?1)"
+
+static const char *const statement_text[] = {
+	[STUDY]    = STUDY_ROW "WHERE id = ?1",
+	[LIST]     = STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2",
+	[LIST_OF]  = STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2",
+	[DOCUMENT] = "SELECT content, sha256 = " DOCUMENT_DIGEST("study", "name", "content") " "
+	              "FROM document WHERE study = ?1 AND name = ?2",
+	[LENGTH]   = "SELECT length(content), rowid, sha256 FROM document WHERE study = ?1 AND name = ?2",
+	[BLOCKS]   = "SELECT content, sha256 = " BLOCK_DIGEST("study", "number", "content") ", "
+	              "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number",
+	[COUNT]    = "SELECT count(*) FROM (SELECT 1 FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2) LIMIT ?3)",
+	[REUSABLE] = "SELECT freelist_count * page_size FROM pragma_freelist_count(), pragma_page_size()",
+	[BEGIN]    = "BEGIN IMMEDIATE",
+	[COMMIT]   = "COMMIT",
+	[ROLLBACK] = "ROLLBACK",
+	[KEYED]    = "SELECT id FROM study WHERE idempotency_key = ?1",
+	[SAME]     = "SELECT study FROM document WHERE study = ?1 AND name = 'request' AND content = ?2",
+	[NEXT]     = "SELECT max((" NOW " << 20) + (random() & 0xfffff), (SELECT coalesce(max(id), 0) + 1 FROM study))",
+	[SUBMIT]   = "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key, client) "
+	              "VALUES (?1, 'queued', " NOW ", ?2, ?3, ?4, ?5, ?6, ?7)",
+	[ADD]      = "INSERT INTO document (study, name, content, sha256) "
+	              "VALUES (?1, ?2, ?3, " DOCUMENT_DIGEST("?1", "?2", "?3") ")",
+	[CANCEL]   = "UPDATE study SET status = 'cancelled', finished = max(" NOW ", coalesce(started, created)) "
+	              "WHERE id = ?1 AND status IN ('queued', 'running')",
+	[DELETE]   = "DELETE FROM study WHERE id = ?1",
+	[CLAIM]    = "UPDATE study SET status = 'running', attempt = attempt + 1, "
+	              "started = coalesce(started, max(" NOW ", created)) WHERE id = "
+	              "coalesce((" QUEUED "AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "
+	              "(" QUEUED "ORDER BY id LIMIT 1)) RETURNING id",
+	[KEEP]     = "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) "
+	              "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, " BLOCK_DIGEST("?1", "?2", "?6") " "
+	              "FROM study WHERE id = ?1 AND status = 'running'",
+	[PROGRESS] = "UPDATE study SET " BLOCK_SUMS ", attempt_kept = attempt WHERE id = ?1",
+	[PRUNE]    = "DELETE FROM block WHERE study = ?1 AND sha256 IS NOT " BLOCK_DIGEST("study", "number", "content"),
+	[RECOUNT]  = "UPDATE study SET " BLOCK_SUMS " WHERE id = ?1",
+	[FINISH]   = "UPDATE study SET status = ?2, finished = max(" NOW ", started), error = ?3, "
+	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
+	[REQUEUE]  = "UPDATE study SET status = 'queued', "
+	              "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'",
+	// one that was stopped in order has not been tried in vain
+	[STOPPED]  = "UPDATE study SET status = 'queued', attempt = max(attempt_kept, attempt - 1) WHERE status = 'running'",
+	[VAIN]     = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
+	              "error = 'out-of-memory-or-crash: the server ended ten times while it ran this study, and no part of it was done' "
+	              "WHERE status = 'queued' AND attempt - attempt_kept >= 10",
+	[POISON]   = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
+	              "error = 'poison-study: the server crashed three times while it ran this study' "
+	              "WHERE status = 'queued' AND crashes >= 3",
+};
+// clang-format on
