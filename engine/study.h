@@ -164,6 +164,7 @@ struct pound_design {
 	int method; /* row of the designs, pound_design_name */
 	int rows;   /* n, rows of the matrices A and B  >= 2; of a design that grows, to begin with */
 	uint64_t seed;
+	int row; /* whose noise the first row has: a run of a later row can be made by itself; 0: its own */
 	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
 	int randomisations;  /* of a quasi-random design, independent of each other; 0: as many as is best */
 	int resamples;       /* behind an interval, of a design without groups of rows; 0: 2000 */

@@ -17,6 +17,7 @@
 #include "schema/study/cost.h"
 #include "schema/study/study_json.h"
 #include "schema/study/study_status.h"
+#include "server/bridge.h"
 #include "server/http.h"
 #include "server/pages.h"
 #include "server/store.h"
@@ -649,7 +650,7 @@ bool routes_slow(const struct request *request)
 {
 	size_t length = 0;
 	if (request->operation == API_samples || request->operation == API_figures ||
-	    request->operation == API_figure)
+	    request->operation == API_figure || request->operation == API_bridge_evaluate)
 		return true;
 	if (request->operation != API_results && request->operation != API_posted)
 		return false;

@@ -22,6 +22,7 @@ const unsigned api_faults_of_all = F(BAD_REQUEST) | F(UNAUTHORIZED) | F(NO_LENGT
 // clang-format off
 #define BODY   (F(MALFORMED) | F(NOT_JSON) | F(INVALID) | F(TOO_COSTLY) | F(KEY_REUSED) | F(TOO_MANY) | F(FOREIGN))
 #define STORED (F(NOT_FOUND) | F(CORRUPT))
+#define BRIDGED (F(FOREIGN) | F(CORRUPT))
 #define TABLE(name) " " #name
 #define TABLES RESULT_TABLES(TABLE) " "
 #define NAMES FIGURES(TABLE) " "
@@ -50,6 +51,14 @@ const struct api_operation api_operations[] = {
 	[API_ready]   = {"GET", "/readyz", "ready", "readiness: the server accepts studies", " 200=Version ", .open = true},
 	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges in the Prometheus text format", " 200 ", .media = " text/plain "},
 	[API_version] = {"GET", "/version", "version", "name and version of the server", " 200=Version ", .faults = 0},
+	[API_bridge_info]    = {"GET", "/Info", "bridge_info", "UM-Bridge: protocol and models", " 200=BridgeInfo ", .faults = 0},
+	[API_bridge_model]   = {"POST", "/ModelInfo", "bridge_model", "UM-Bridge: what a model supports", " 200=BridgeModel 400=BridgeFault ", .faults = BRIDGED},
+	[API_bridge_inputs]  = {"POST", "/InputSizes", "bridge_inputs", "UM-Bridge: sizes of a model's input vectors", " 200=BridgeInputs 400=BridgeFault ", .faults = BRIDGED},
+	[API_bridge_outputs] = {"POST", "/OutputSizes", "bridge_outputs", "UM-Bridge: sizes of a model's output vectors", " 200=BridgeOutputs 400=BridgeFault ", .faults = BRIDGED},
+	[API_bridge_evaluate]  = {"POST", "/Evaluate", "bridge_evaluate", "UM-Bridge: outputs of a model", " 200=BridgeOutput 400=BridgeFault 500=BridgeFault ", .faults = BRIDGED},
+	[API_bridge_gradient]  = {"POST", "/Gradient", "bridge_gradient", "UM-Bridge: not supported", " 400=BridgeFault ", .faults = BRIDGED},
+	[API_bridge_jacobian]  = {"POST", "/ApplyJacobian", "bridge_jacobian", "UM-Bridge: not supported", " 400=BridgeFault ", .faults = BRIDGED},
+	[API_bridge_hessian]   = {"POST", "/ApplyHessian", "bridge_hessian", "UM-Bridge: not supported", " 400=BridgeFault ", .faults = BRIDGED},
 	[API_example_list] = {"GET", "/v1/examples", "example_list", "names and titles of the example studies", " 200=Examples 304 ", .faults = 0},
 	[API_example] = {"GET", "/v1/examples/{name}", "example", "an example study document", " 200=Study 304 ", .faults = F(NOT_FOUND)},
 	[API_home]    = {"GET", "/", "home", "the page that lists studies, for browsers", " 200 304 ", .media = " text/html ", .open = true},

@@ -39,6 +39,8 @@
 	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(figures) \
 	X(figure) X(cancel)        \
 	X(live) X(ready) X(metrics) X(version) X(openapi) \
+	X(bridge_info) X(bridge_model) X(bridge_inputs) X(bridge_outputs) \
+	X(bridge_evaluate) X(bridge_gradient) X(bridge_jacobian) X(bridge_hessian) \
 	X(example_list) X(example) X(home) X(new) X(study) X(style) X(script) X(icon)
 // clang-format on
 

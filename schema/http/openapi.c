@@ -73,6 +73,19 @@ static const struct member members[] = {
 	{"Timing", "wall_s",      "number",  "",     "elapsed time [s]"},
 	{"Timing", "cpu_s",       "number",  "",     "CPU time of all threads [s]"},
 	{"Timing", "threads",     "integer", "",     "number of threads used"},
+	{"BridgeInfo",    "protocolVersion", "number", "", "version of the protocol, 1.0"},
+	{"BridgeInfo",    "models",      "[string]", "", "names of models; a sensitivity study is a model by its id, too"},
+	{"BridgeModel",   "support",     "BridgeSupport", "", "which calls it answers"},
+	{"BridgeSupport", "Evaluate",    "boolean", "", "true"},
+	{"BridgeSupport", "Gradient",    "boolean", "", "false"},
+	{"BridgeSupport", "ApplyJacobian", "boolean", "", "false"},
+	{"BridgeSupport", "ApplyHessian", "boolean", "", "false"},
+	{"BridgeInputs",  "inputSizes",  "[integer]", "", "one vector: the inputs of the study, in its order and units"},
+	{"BridgeOutputs", "outputSizes", "[integer]", "", "one vector: every output of every cell, cells in order"},
+	{"BridgeOutput",  "output",      "[array]", "", "that vector; means over the signals"},
+	{"BridgeFault",   "error",       "BridgeError", "", "what is wrong with the call"},
+	{"BridgeError",   "type",        "string", "", "InvalidInput, ModelNotFound, UnsupportedFeature or InvalidOutput"},
+	{"BridgeError",   "message",     "string", "", "all errors, each with its place"},
 	{"OpenAPI", "openapi",    "string",  "",     "version of OpenAPI"},
 };
 
@@ -131,6 +144,8 @@ static void member(struct writer *w, const struct member *of)
 		reference(w, type);
 	else
 		writer_text(w, "type", type);
+	if (!strcmp(type, "array"))
+		writer_json(w, "items", "{\"type\": \"number\"}");
 	if (array)
 		writer_end(w);
 	if (!strcmp(of->note, "null"))
@@ -314,6 +329,16 @@ static void success(struct writer *w, const struct api_operation *operation, cha
 	writer_end(w);
 }
 
+/* The object that an operation answers with a status of failure, in its own form, if it has one. */
+static void failed_as(struct writer *w, const struct api_operation *operation, const char *status)
+{
+	char answer[12], schema[32] = "";
+	snprintf(answer, sizeof answer, " %s=", status);
+	const char *found = strstr(operation->answers, answer);
+	if (found && sscanf(found + strlen(answer), "%31[A-Za-z]", schema) == 1)
+		media(w, "application/json", schema);
+}
+
 static void failures(struct writer *w, const struct api_operation *operation)
 {
 	unsigned faults = api_faults_of_all | operation->faults;
@@ -343,6 +368,7 @@ static void failures(struct writer *w, const struct api_operation *operation)
 		}
 		object(w, "content");
 		media(w, "application/problem+json", "Problem");
+		failed_as(w, operation, status);
 		writer_end(w);
 		writer_end(w);
 	}
@@ -369,7 +395,8 @@ static void operations(struct writer *w)
 		object(w, "responses");
 		snprintf(answers, sizeof answers, "%s", operation->answers);
 		for (char *rest, *one = strtok_r(answers, " ", &rest); one; one = strtok_r(NULL, " ", &rest))
-			success(w, operation, one);
+			if (*one < '4')
+				success(w, operation, one);
 		failures(w, operation);
 		writer_end(w);
 		writer_end(w);

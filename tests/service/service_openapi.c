@@ -17,7 +17,7 @@ static const struct {
 	enum situation situation;
 	const char *method, *path;
 	const char *headers[2];
-	const char *body; /* NULL: none; "study": a small one */
+	const char *body; /* NULL: none; "study": a small one; "stored": {done} as a model of UM-Bridge */
 	int status;
 } ASKED[] = {
     {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json"}, "study", 201},
@@ -73,6 +73,29 @@ static const struct {
     {PLAIN, "GET", "/version", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/openapi.json", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/openapi.json", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/Info", {0}, NULL, 200},
+    {PLAIN, "POST", "/ModelInfo", {0}, "stored", 200},
+    {PLAIN, "POST", "/ModelInfo", {"Origin: null"}, "stored", 403},
+    {PLAIN, "POST", "/InputSizes", {0}, "stored", 200},
+    {PLAIN, "POST", "/InputSizes", {"Origin: null"}, "stored", 403},
+    {PLAIN, "POST", "/OutputSizes", {0}, "stored", 200},
+    {PLAIN, "POST", "/OutputSizes", {"Origin: null"}, "stored", 403},
+    {PLAIN, "POST", "/Evaluate", {0}, "stored", 200},
+    {PLAIN, "POST", "/Evaluate", {0}, "{\"name\": \"pound\"}", 400},
+    {PLAIN, "POST", "/Evaluate", {"Origin: null"}, "stored", 403},
+    {PLAIN, "POST", "/Gradient", {0}, "stored", 400},
+    {PLAIN, "POST", "/Gradient", {"Origin: null"}, "stored", 403},
+    {PLAIN, "POST", "/ApplyJacobian", {0}, "stored", 400},
+    {PLAIN, "POST", "/ApplyJacobian", {"Origin: null"}, "stored", 403},
+    {PLAIN, "POST", "/ApplyHessian", {0}, "stored", 400},
+    {PLAIN, "POST", "/ApplyHessian", {"Origin: null"}, "stored", 403},
+    {DAMAGED, "POST", "/ModelInfo", {0}, "stored", 500},
+    {DAMAGED, "POST", "/InputSizes", {0}, "stored", 500},
+    {DAMAGED, "POST", "/OutputSizes", {0}, "stored", 500},
+    {DAMAGED, "POST", "/Evaluate", {0}, "stored", 500},
+    {DAMAGED, "POST", "/Gradient", {0}, "stored", 500},
+    {DAMAGED, "POST", "/ApplyJacobian", {0}, "stored", 500},
+    {DAMAGED, "POST", "/ApplyHessian", {0}, "stored", 500},
     {PLAIN, "GET", "/v1/examples", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/examples", {"If-None-Match: *"}, NULL, 304},
     {PLAIN, "GET", "/v1/examples/response", {0}, NULL, 200},
@@ -114,12 +137,16 @@ struct world {
 static int ask(struct world *world, const char *method, const char *path, const char *const headers[2],
                const char *body)
 {
-	char target[HEAD_TARGET_MAX + 200], allow[64], pointer[160], schema[200], escaped[96] = "";
+	char target[HEAD_TARGET_MAX + 200], allow[64], pointer[160], schema[200], escaped[96] = "", stored[80];
 	long long id;
 	struct jsonschema_fault fault = {0};
 	struct ask asked = {.method = method, .path = target, .headers = {headers[0], headers[1]}};
 	if (body) {
-		asked.body = !strcmp(body, "study") ? world->study : !strcmp(body, "large") ? world->large : body;
+		snprintf(stored, sizeof stored, "{\"name\": \"%s\", \"input\": [[3.1, 1, 0.6]]}", world->done);
+		asked.body = !strcmp(body, "study")    ? world->study
+		             : !strcmp(body, "large")  ? world->large
+		             : !strcmp(body, "stored") ? stored
+		                                       : body;
 		asked.length = strlen(asked.body);
 	}
 	const char *open = strchr(path, '{'), *close = open ? strchr(open, '}') : NULL;
