@@ -20,17 +20,23 @@ enum outcome {
 struct options {
 	const char *argument; /* what stands after the subcommand: a file, an id or a name; NULL: none */
 	const char *second;   /* indices, plot, report: what stands behind that */
-	const char *url;      /* of the server */
-	const char *format;   /* one of the names the subcommand offers */
-	const char *table;    /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
-	const char *status;   /* list: only studies in this state; NULL: all */
-	const char *cursor;   /* list: where the previous page ended; NULL: the newest */
-	const char *samples;  /* run: file for every sample, or for the floor's history; NULL: none */
-	int limit;            /* list: studies on a page; 0: as the server likes */
-	int threads;          /* run */
-	bool wait;            /* submit */
-	bool names;           /* example, plot */
-	bool partial;         /* results, plot: of the rows so far, while the study runs */
+	const char **files;   /* of a subcommand that takes any number of them  (n_files) */
+	int n_files;
+	const char *unit;    /* record: of a file that names none; NULL: not known */
+	double step;         /* record: of a file without times [s]; 0: not known */
+	int channel;         /* record: of a file with several, from 1; 0: not chosen */
+	const char *periods; /* record: of the response spectrum, between commas; NULL: none */
+	const char *url;     /* of the server */
+	const char *format;  /* one of the names the subcommand offers */
+	const char *table;   /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
+	const char *status;  /* list: only studies in this state; NULL: all */
+	const char *cursor;  /* list: where the previous page ended; NULL: the newest */
+	const char *samples; /* run: file for every sample, or for the floor's history; NULL: none */
+	int limit;           /* list: studies on a page; 0: as the server likes */
+	int threads;         /* run */
+	bool wait;           /* submit */
+	bool names;          /* example, plot */
+	bool partial;        /* results, plot: of the rows so far, while the study runs */
 	struct figure_choice choice; /* plot */
 };
 
@@ -48,6 +54,7 @@ enum outcome query_delete(const struct options *options);
 enum outcome report_print(const struct options *options);
 enum outcome plot_figure(const struct options *options);
 enum outcome example_print(const struct options *options);
+enum outcome record_show(const struct options *options);
 
 /* Whether an argument is the id of a study on the server, and no file. */
 bool command_is_id(const char *text);

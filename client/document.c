@@ -2,6 +2,7 @@
 #include "client/document.h"
 
 #include "client/table.h"
+#include "schema/record/record.h"
 #include "schema/result/result_design.h"
 #include "schema/study/study_json.h"
 
@@ -106,6 +107,8 @@ void document_advise(const struct pound_study *study)
 
 void document_hint(const char *text, size_t length)
 {
+	if (record_recognized(text, length))
+		command_complain("this is a recorded ground motion: `pound record' shows it");
 	struct problems problems;
 	struct pound_study *study = study_design_from_json(text, length, &problems);
 	if (study && study->elsewhere)

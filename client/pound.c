@@ -15,7 +15,7 @@
 
 static const char URL_DEFAULT[] = "http://127.0.0.1:8437";
 
-enum { THREADS_MAX = 1024, LIMIT_MAX = 100, FORMATS_MAX = 4 };
+enum { THREADS_MAX = 1024, LIMIT_MAX = 100, CHANNEL_MAX = 1000, FORMATS_MAX = 4 };
 
 struct command {
 	const char *name;
@@ -82,6 +82,11 @@ static const struct command COMMANDS[] = {
 	{"example", "[NAME]", "n", false, {0}, example_print,
 	 "print a complete study document to start from",
 	 "Without NAME, the paper's study.  --names lists the examples."},
+	{"record", "FILE...", "UdCPf", true, {"json", "table", "csv"}, record_show,
+	 "what is in files of recorded ground motions",
+	 "Reads PEER NGA (.AT2), COSMOS (.V1, .V2), ESM and ITACA (.ASC), and columns: time and acceleration, or "
+	 "accelerations with --step.  Shows samples, step, PGA, PGV, PGD, Arias intensity, 5-95 % duration, and with "
+	 "--periods pseudo-accelerations at 5 % damping.  Nothing is filtered or corrected."},
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -95,6 +100,10 @@ static const struct argp_option OPTIONS[] = {
 	{"url",     'u', "URL",    0, "URL of the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "format of the output", 0},
 	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES ", or all as a table; without it, a summary as a table and inputs as csv", 0},
+	{"unit",    'U', "UNIT",   0, "unit of files that name none: g, cm/s2 or m/s2", 0},
+	{"step",    'd', "S",      0, "time step of files with accelerations alone, in s", 0},
+	{"channel", 'C', "N",      0, "channel of files that have several", 0},
+	{"periods", 'P', "LIST",   0, "periods of a response spectrum, in s, between commas", 0},
 	{"partial", 'p', NULL,     0, "intermediate result of the completed rows, if the study is still running", 0},
 #define X(name, values, lowest, highest, text) {#name, FIGURE_KEY_##name, "VALUE", 0, text, 0},
 	FIGURE_ARGUMENTS(X)
@@ -168,9 +177,21 @@ static int whole_number(struct argp_state *state, const char *option, const char
 	return (int)value;
 }
 
+static double positive_number(struct argp_state *state, const char *option, const char *text)
+{
+	char *end;
+	const double value = strtod(text, &end);
+	if (*end || end == text || !(value > 0 && value <= 1e6))
+		argp_error(state, "%s must be a number in (0, 1e6], got '%s'", option, text);
+	return value;
+}
+
 static void take_argument(struct argp_state *state, struct parsing *parsing, const char *argument)
 {
 	const char *takes = parsing->command->arguments, *second = strchr(takes, ' ');
+	parsing->options.files[parsing->options.n_files++] = argument;
+	if (strstr(takes, "...") && parsing->options.argument)
+		return;
 	if (!*takes || (parsing->options.argument && !second) || parsing->options.second)
 		argp_error(state, "'%s' is an unexpected argument", argument);
 	*(parsing->options.argument ? &parsing->options.second : &parsing->options.argument) = argument;
@@ -224,6 +245,18 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 				return 0;
 			}
 		argp_error(state, "no format '%s' here; see pound %s --help", value, parsing->command->name);
+		return 0;
+	case 'U':
+		options->unit = value;
+		return 0;
+	case 'd':
+		options->step = positive_number(state, "--step", value);
+		return 0;
+	case 'C':
+		options->channel = whole_number(state, "--channel", value, CHANNEL_MAX);
+		return 0;
+	case 'P':
+		options->periods = value;
 		return 0;
 	case 'T':
 		options->table = value;
@@ -290,7 +323,8 @@ static enum outcome command_run(const struct command *command, int argc, char **
 	const char *url = getenv("POUND_URL");
 	struct parsing parsing = {
 	    .command = command,
-	    .options = {.url = url && *url ? url : URL_DEFAULT,
+	    .options = {.files = command_sure(calloc((size_t)argc, sizeof(const char *))),
+	                .url = url && *url ? url : URL_DEFAULT,
 	                .format =
 	                    command->terminal_table && isatty(STDOUT_FILENO) ? "table" : command->formats[0],
 	                .threads = cores()},
@@ -301,7 +335,9 @@ static enum outcome command_run(const struct command *command, int argc, char **
 	                    .args_doc = command->arguments,
 	                    .doc = text};
 	argp_parse(&argp, argc, argv, 0, NULL, &parsing);
-	return command->run(&parsing.options);
+	enum outcome outcome = command->run(&parsing.options);
+	free(parsing.options.files);
+	return outcome;
 }
 
 static void usage(FILE *out)

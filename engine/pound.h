@@ -80,6 +80,17 @@ struct pound_instant {
 typedef void pound_run_take(void *into, int signal, const struct pound_instant *instant);
 enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into);
 
+/* What engineers quote of a ground motion: motion_measures.c. */
+struct pound_motion_measures {
+	double pga;      /* peak ground acceleration [m/s2] */
+	double pgv;      /* velocity [m/s] */
+	double pgd;      /* displacement [m] */
+	double arias;    /* Arias intensity [m/s] */
+	double duration; /* significant duration, 5 to 95 % of the Arias intensity [s] */
+};
+
+void pound_motion_measure(int n, const double *a, double step, struct pound_motion_measures *measures);
+
 const char *pound_status_text(enum pound_status status);
 const char *pound_status_error(enum pound_status status); /* why a study has no result */
 

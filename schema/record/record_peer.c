@@ -1,0 +1,90 @@
+/* record_peer.c - PEER strong motion and NGA-West2 files.
+ *
+ *   PEER NGA STRONG MOTION DATABASE RECORD
+ *   Imperial Valley-06, 10/15/1979, El Centro Array #6, 230
+ *   ACCELERATION TIME SERIES IN UNITS OF G
+ *   NPTS=   7807, DT=   .0050 SEC,              or    7807    0.0050    NPTS, DT
+ *     -.2309213E-03   ...                       any number of samples per line
+ *
+ * Source   headers of NGA-West2 and of the older PEER database, as files of both show them */
+#include "schema/record/record_text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { HEADER_LINES = 8 }; /* in which the four lines are, blank ones included */
+
+/* The line that says what the series is; false: there is none among the first lines. */
+static bool series_line(struct record_text *text)
+{
+	for (int i = 0; i < HEADER_LINES && record_text_next(text); i++)
+		if (record_text_find(text, "TIME SERIES IN UNITS OF") >= 0 ||
+		    record_text_find(text, "TIME HISTORY IN UNITS OF") >= 0)
+			return true;
+	return false;
+}
+
+bool record_peer_recognized(struct record_text *text)
+{
+	return series_line(text);
+}
+
+/* The step and the number of samples from the line that has both. */
+static bool read_size(struct record_text *text, double *n, double *step)
+{
+	for (int i = 0; i < HEADER_LINES && record_text_next(text); i++) {
+		const int npts = record_text_find(text, "NPTS"), dt = record_text_find(text, "DT");
+		if (npts < 0 || dt < 0)
+			continue;
+		if (record_text_value(text, npts + 4, n) && record_text_value(text, dt + 2, step))
+			return true;
+		// the older form has the numbers in front of the names
+		const char *end = text->line.text + text->line.length, *c = text->line.text;
+		while (c < end && *c == ' ')
+			c++;
+		const int length = record_number(c, end, n);
+		if (length > 0 && record_number(c + length, end, step) > 0)
+			return true;
+		record_text_complain(text, 0, "expected `NPTS= 7807, DT= .0050 SEC' or `7807 0.0050 NPTS, DT'");
+		return false;
+	}
+	record_text_complain(text, -1, "the header of a PEER file needs a line with NPTS and DT");
+	return false;
+}
+
+bool record_peer_read(struct record_text *text, struct record *record)
+{
+	struct record_text head = *text;
+	series_line(text);
+	for (int i = 1; record_text_next(&head) && head.line.number < text->line.number; i++)
+		if (record_text_find(&head, "DATABASE RECORD") < 0)
+			record_text_title(&head, 0, record->title);
+	static const char *const others[] = {"VELOCITY", "DISPLACEMENT"};
+	for (int k = 0; k < 2; k++)
+		if (record_text_begins(text, others[k])) {
+			record_text_complain(
+			    text, 1, "this is a %s series (%s); needed is the acceleration of the same record (.AT2)",
+			    k ? "displacement" : "velocity", k ? ".DT2" : ".VT2");
+			return false;
+		}
+	const int units = record_text_find(text, "UNITS OF") + 8;
+	char unit[32];
+	snprintf(unit, sizeof unit, "%.*s", text->line.length - units, text->line.text + units);
+	const double factor = record_unit(unit + strspn(unit, " "), &record->unit);
+	if (factor == 0) {
+		record_text_complain(text, units + 1, "the unit must be G, CM/S2 or M/S2, got `%s'", unit);
+		return false;
+	}
+	double n, step;
+	if (!read_size(text, &n, &step) || !record_sized(text, n, step, record))
+		return false;
+	if (!record_text_samples(text, 0, (int)n, record))
+		return false;
+	while (record_text_next(text))
+		if (!record_text_blank(text)) {
+			record_text_complain(text, 1, "there are more samples than the %d of the header", (int)n);
+			return false;
+		}
+	record_scale(record, factor);
+	return true;
+}

@@ -1,0 +1,74 @@
+/* `pound record`: files of recorded ground motions, as a user meets them. */
+#include <math.h>
+#include <string.h>
+
+#include "schema/json/json_pointer.h"
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+
+#define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
+#define FILES      "tests/cases/records/"
+
+static void files_are_shown_with_their_measures(void **state)
+{
+	(void)state;
+	struct program_outcome shown =
+	    POUND("record", "--format", "json", "--periods", "0.1,1", FILES "nga_west2.AT2", FILES "esm.ASC");
+	program_expect(&shown, 0);
+	assert_string_equal(shown.err, "");
+	struct reading *records = reading_open(shown.out, strlen(shown.out));
+	assert_int_equal(reading_count(records, "/records"), 2);
+	assert_string_equal(reading_text(records, "/records/0/format"), "peer");
+	assert_string_equal(reading_text(records, "/records/1/unit"), "cm/s2");
+	// the files hold the same numbers, in g and in cm/s2: all that is linear has the ratio of the units
+	for (int k = 0; k < 2; k++) {
+		const double psa = reading_number(records, "/records/0/spectrum/%d/psa_m_s2", k);
+		check_near(reading_number(records, "/records/1/spectrum/%d/psa_m_s2", k) * 980.665, psa, 1e-12 * psa);
+	}
+	check_near(reading_number(records, "/records/0/pga_m_s2"), 0.05 * 9.80665, 0);
+	reading_close(records);
+	program_free(&shown);
+}
+
+/* The file begins with its largest acceleration: an oscillator far stiffer than the motion overshoots that jump by
+ * exp(-pi xi/sqrt(1 - xi^2)). */
+static void a_short_period_has_the_peak_of_a_jump(void **state)
+{
+	(void)state;
+	const double pi = 3.14159265358979323846, period = 1e-4, slope = 0.087 / 0.005;
+	struct program_outcome shown =
+	    POUND("record", "--format", "csv", "--periods", "0.0001", FILES "two_columns.csv");
+	program_expect(&shown, 0);
+	const char *row = strrchr(strchr(shown.out, '\n'), ',');
+	assert_non_null(row);
+	// meanwhile the acceleration changes by its slope times half a period
+	check_near(strtod(row + 1, NULL), 0.05 * (1 + exp(-pi * 0.05 / sqrt(1 - 0.05 * 0.05))),
+	           slope * period / 2);
+	program_free(&shown);
+}
+
+static void what_is_no_record_is_refused(void **state)
+{
+	(void)state;
+	struct program_outcome refused = POUND("record", FILES "uneven.csv", FILES "esm.ASC");
+	program_expect(&refused, 2);
+	assert_non_null(strstr(refused.err, "uneven.csv"));
+	assert_non_null(strstr(refused.err, "line 9, column 1"));
+	assert_string_equal(refused.out, "");
+	program_free(&refused);
+	refused = POUND("record", FILES "nothing.AT2");
+	program_expect(&refused, 1);
+	program_free(&refused);
+	refused = POUND("record", "--periods", "0", FILES "esm.ASC");
+	program_expect(&refused, 2);
+	program_free(&refused);
+	// a record where a study is expected
+	refused = POUND("run", FILES "esm.ASC");
+	program_expect(&refused, 2);
+	assert_non_null(strstr(refused.err, "`pound record' shows it"));
+	program_free(&refused);
+}
+
+CHECK_MAIN(cmocka_unit_test(files_are_shown_with_their_measures),
+           cmocka_unit_test(a_short_period_has_the_peak_of_a_jump),
+           cmocka_unit_test(what_is_no_record_is_refused))
