@@ -16,10 +16,11 @@ enum { HTTP_CONFLICT = 409 };
 // one column of the list of studies: its head, and the member of the status object
 static const struct {
 	const char *member;
-	bool is_number;
+	enum { TEXT, NUMBER, YES } type; // YES: "yes" where it is true
 } COLUMNS[] = {
-    {"id", false},        {"status", false},  {"progress", true}, {"runs_done", true},
-    {"runs_total", true}, {"created", false}, {"kind", false},    {"name", false},
+    {"id", TEXT},          {"status", TEXT},       {"progress", NUMBER},
+    {"runs_done", NUMBER}, {"runs_total", NUMBER}, {"over_estimate", YES},
+    {"created", TEXT},     {"kind", TEXT},         {"name", TEXT},
 };
 
 enum { N_COLUMNS = sizeof COLUMNS / sizeof COLUMNS[0] };
@@ -42,8 +43,10 @@ static enum outcome print_studies(const struct wire_reply *reply, const char *fo
 		if (list)
 			snprintf(study, sizeof study, "/studies/%d", i);
 		for (int c = 0; c < N_COLUMNS; c++)
-			if (COLUMNS[c].is_number)
+			if (COLUMNS[c].type == NUMBER)
 				table_number(table, reading_number(answer, "%s/%s", study, COLUMNS[c].member));
+			else if (COLUMNS[c].type == YES)
+				table_text(table, reading_true(answer, "%s/%s", study, COLUMNS[c].member) ? "yes" : "");
 			else
 				table_text(table, reading_text(answer, "%s/%s", study, COLUMNS[c].member));
 	}

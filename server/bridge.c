@@ -31,7 +31,7 @@ static bool look_up(struct request *request, struct um_bridge *bridge, struct re
 static bool allowed(const struct request *request, struct um_bridge *bridge, const struct pound_study *study)
 {
 	const int most = request->server->options->cpu_max;
-	const double cpu_s = cost_of(study).cpu_s, limit = most < CALL_MAX ? most : CALL_MAX;
+	const double cpu_s = cost_of(study, 1).cpu_s, limit = most < CALL_MAX ? most : CALL_MAX;
 	struct problems problems;
 	problems_init(&problems);
 	if (cpu_s > limit) {

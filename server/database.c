@@ -21,7 +21,7 @@ static const char schema_text[] =
 
 enum {
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
-	USER_VERSION = 5,            /* as in store.sql */
+	USER_VERSION = 6,            /* as in store.sql */
 	PAGE = 4096,                 /* [bytes] */
 	BUSY_MS = 5000,              /* [ms] */
 	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
@@ -46,6 +46,8 @@ static const char *const steps[USER_VERSION] = {
     // before version 3 a key stood alone; one that came a second time since then has gone to the second study
     [4] = "UPDATE OR IGNORE study SET idempotency_key = ' ' || idempotency_key "
           "WHERE client IS NULL AND idempotency_key NOT GLOB ' *'",
+    [5] = "ALTER TABLE study ADD COLUMN cpu_s_estimated REAL NOT NULL DEFAULT 0;"
+          "ALTER TABLE study ADD COLUMN memory INTEGER NOT NULL DEFAULT 0",
 };
 
 static bool done(const struct database *d, const char *sql)

@@ -14,6 +14,7 @@
 
 #include <gsl/gsl_errno.h>
 
+#include "server/backup.h"
 #include "server/http.h"
 #include "server/log.h"
 #include "server/options.h"
@@ -72,7 +73,8 @@ static int await(struct store *store, const sigset_t *signals)
 
 static int serve(struct server *server, const sigset_t *signals)
 {
-	server->work = work_start(server->store, server->options->workers, server->options->time_max);
+	server->work = work_start(server->store, server->options->workers, server->options->time_max,
+	                          (int64_t)server->options->memory_max << 20);
 	if (!server->work)
 		return EXIT_FAILURE;
 	bool listens = http_start(server), ended = true;
@@ -106,9 +108,9 @@ int main(int argc, char **argv)
 	options_read(&options, argc, argv);
 	umask(077);
 	if (options.backup)
-		return store_copy(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
+		return backup_make(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options.restore)
-		return store_restore(options.database, options.restore) ? EXIT_SUCCESS : EXIT_FAILURE;
+		return backup_restore(options.database, options.restore) ? EXIT_SUCCESS : EXIT_FAILURE;
 	// what was taken for one body or result goes back to the system with it
 	mallopt(M_MMAP_THRESHOLD, 256 * 1024);
 	mallopt(M_TRIM_THRESHOLD, 1024 * 1024);

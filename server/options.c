@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "engine/pound.h"
+#include "server/memory.h"
 
 enum { WORKERS_MAX = 1024, FIRST_KEY = 256 /* above all letters */ };
 
@@ -41,6 +42,7 @@ const struct option_row options_table[] = {
 	{"time-max",        0,   "S",       "seconds that one study may run; then it has failed as `timeout`", "172800", AT(time_max), 1, 100000000},
 	{"cpu-max",         0,   "S",       "estimated seconds of one core for one study", "86400", AT(cpu_max), 1, 100000000},
 	{"result-max",      0,   "MIB",     "estimated MiB of one study in the database", "1024", AT(result_max), 1, 1000000},
+	{"memory-max",      0,   "MIB",     "estimated MiB of memory of the studies that run; half of what the machine or the control group has when absent", NULL, AT(memory_max), 1, 1000000000},
 };
 // clang-format on
 const int options_count = sizeof options_table / sizeof options_table[0];
@@ -131,7 +133,10 @@ void options_read(struct options *options, int argc, char **argv)
 	                                 "environment as well: --port as "
 	                                 "POUNDD_PORT, --token-file as POUNDD_TOKEN_FILE.  A flag wins."};
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
-	*options = (struct options){.workers = cores < 1 ? 1 : cores > WORKERS_MAX ? WORKERS_MAX : (int)cores};
+	*options = (struct options){.workers = cores < 1             ? 1
+	                                       : cores > WORKERS_MAX ? WORKERS_MAX
+	                                                             : (int)cores,
+	                            .memory_max = memory_share("")};
 	for (int i = 0; i < options_count; i++) {
 		const struct option_row *row = &options_table[i];
 		snprintf(texts[i], sizeof texts[i], row->absent && row->argument ? "%s (%s)" : "%s", row->text,

@@ -19,6 +19,7 @@ struct options {
 	int connections_max, queue_max, queue_token_max;
 	int header_timeout, body_timeout, idle_timeout, wait_max; /* [s] */
 	int runs_max, time_max, cpu_max, result_max;              /* of one study: number, [s], [s], [MiB] */
+	int memory_max;                                           /* of all that run [MiB] */
 };
 
 struct option_row {

@@ -25,11 +25,12 @@
 #include "server/workers.h"
 
 enum {
-	RETRY_AFTER = 1,      /* [s] */
-	RETRY_AFTER_MAX = 60, /* [s] */
-	MIB = 1 << 20,
+	RETRY_AFTER = 1,        /* [s] */
+	RETRY_AFTER_MAX = 60,   /* [s] */
 	TABLE_LONG = 64 * 1024, /* [bytes] of a result of which a table takes milliseconds */
 };
+
+static const double MIB = 1 << 20;
 
 static struct reply problem(enum api_fault fault, const char *detail)
 {
@@ -44,9 +45,7 @@ static struct reply no_memory(void)
 /* 200 and what was made, if there was memory for it. */
 static struct reply made(const char *type, char *body, size_t length)
 {
-	if (!body)
-		return no_memory();
-	return (struct reply){.status = 200, .type = type, .body = body, .length = length};
+	return body ? (struct reply){.status = 200, .type = type, .body = body, .length = length} : no_memory();
 }
 
 static struct reply written(struct writer *writer)
@@ -99,7 +98,8 @@ static void write_status(void *to, const struct study_status *study)
 	page->id = study->id;
 	page->eta_s = study_status_eta(study, page->n_workers);
 	snprintf(page->status, sizeof page->status, "%s", study->status);
-	snprintf(page->etag, sizeof page->etag, "\"%s-%" PRId64 "\"", study->status, study->runs_done);
+	snprintf(page->etag, sizeof page->etag, "\"%s-%" PRId64 "%s\"", study->status, study->runs_done,
+	         study_status_over(study->cpu_s, study->cpu_s_estimated) ? "-over" : "");
 	study_status_write(&page->writer, study, page->eta_s);
 }
 
@@ -128,7 +128,6 @@ static struct reply look(const struct request *request, struct page *page)
 	return reply;
 }
 
-/* The status object. */
 static struct reply status(struct request *request)
 {
 	// before the look, so that no change is missed by who waits for one
@@ -151,7 +150,7 @@ static struct reply invalid(const struct problems *problems)
 }
 
 /* Queues a study for a client, if there is room for one more. */
-static struct reply queue(struct request *request, const struct pound_study *study)
+static struct reply queue(struct request *request, const struct pound_study *study, const struct cost *cost)
 {
 	struct store *store = request->server->store;
 	const struct options *options = request->server->options;
@@ -164,7 +163,9 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 		return no_memory();
 	const struct store_study row = {.kind = study_kind_name(study->kind),
 	                                .name = study->name,
-	                                .runs = study_runs(study),
+	                                .runs = cost->runs,
+	                                .cpu_s = cost->cpu_s,
+	                                .memory = (int64_t)cost->memory,
 	                                .hash = hash,
 	                                .key = key ? own_key : NULL,
 	                                .client = client,
@@ -189,8 +190,9 @@ static struct reply submit(struct request *request)
 	if (!study)
 		return invalid(&problems);
 	const struct options *options = request->server->options;
-	const struct cost cost = cost_of(study),
-	                  most = {options->runs_max, options->cpu_max, (double)options->result_max * MIB};
+	const struct cost cost = cost_of(study, options->workers),
+	                  most = {options->runs_max, options->cpu_max, MIB * options->result_max,
+	                          MIB * options->memory_max};
 	struct reply reply;
 	size_t length;
 	if (!cost_allowed(&cost, &most, &problems))
@@ -200,7 +202,7 @@ static struct reply submit(struct request *request)
 		char *body = cost_to_json(&cost, study, &length);
 		reply = made("application/json", body, length);
 	} else
-		reply = queue(request, study);
+		reply = queue(request, study, &cost);
 	study_free(study);
 	return reply;
 }
@@ -293,11 +295,9 @@ static struct reply posted(struct request *request)
 	return reply;
 }
 
-struct format {
+static const struct format {
 	const char *name, *type;
-};
-
-static const struct format result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
+} result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
 
 /* Whether the second of two formats is asked for, by a table that only that has, by ?format=, or by Accept, which must want
  * it more: the first is for who wants none of them, too. */

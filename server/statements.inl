@@ -3,7 +3,7 @@
 enum statement {
 	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE,
 	BEGIN, // the first of those that the writer alone has
-	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, FINISH, REQUEUE,
+	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, SPENT, FINISH, REQUEUE,
 	STOPPED, VAIN, POISON,
 	N_STATEMENTS
 };
@@ -14,7 +14,7 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 #define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
 #define STUDY_ROW                                                                                         \
 	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
-	"error, runs, iif(status = 'succeeded', runs, runs_done), cpu_s FROM study "
+	"error, runs, iif(status = 'succeeded', runs, runs_done), cpu_s, cpu_s_estimated FROM study "
 #define QUEUED "SELECT id FROM study WHERE status = 'queued' "
 // what bytes are checked with: where they belong, and themselves; a block belongs to the version that made it, too
 #define DOCUMENT_DIGEST(study, name, content) "digest(" name " || ' ' || " study " || ' ', " content ")"
@@ -22,8 +22,8 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 	"digest('" POUND_VERSION " ' || " study " || ' ' || " number " || ' ', " content ")"
 
 // what its blocks come to, as columns of their study
-#define BLOCK_SUMS \
-	"(runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), total(cpu_s) FROM block WHERE study = ?1)"
+#define BLOCK_SUMS(cpu_s) \
+	"(runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), " cpu_s " FROM block WHERE study = ?1)"
 
 static const char *const statement_text[] = {
 	[STUDY]    = STUDY_ROW "WHERE id = ?1",
@@ -42,8 +42,8 @@ static const char *const statement_text[] = {
 	[KEYED]    = "SELECT id FROM study WHERE idempotency_key = ?1",
 	[SAME]     = "SELECT study FROM document WHERE study = ?1 AND name = 'request' AND content = ?2",
 	[NEXT]     = "SELECT max((" NOW " << 20) + (random() & 0xfffff), (SELECT coalesce(max(id), 0) + 1 FROM study))",
-	[SUBMIT]   = "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key, client) "
-	              "VALUES (?1, 'queued', " NOW ", ?2, ?3, ?4, ?5, ?6, ?7)",
+	[SUBMIT]   = "INSERT INTO study (id, status, created, kind, name, runs, hash, idempotency_key, client, cpu_s_estimated, memory) "
+	              "VALUES (?1, 'queued', " NOW ", ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
 	[ADD]      = "INSERT INTO document (study, name, content, sha256) "
 	              "VALUES (?1, ?2, ?3, " DOCUMENT_DIGEST("?1", "?2", "?3") ")",
 	[CANCEL]   = "UPDATE study SET status = 'cancelled', finished = max(" NOW ", coalesce(started, created)) "
@@ -52,14 +52,15 @@ static const char *const statement_text[] = {
 	[CLAIM]    = "UPDATE study SET status = 'running', attempt = attempt + 1, "
 	              "started = coalesce(started, max(" NOW ", created)) WHERE id = "
 	              "coalesce((" QUEUED "AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "
-	              "(" QUEUED "ORDER BY id LIMIT 1)) RETURNING id",
+	              "(" QUEUED "ORDER BY id LIMIT 1)) AND memory <= ?1 RETURNING id, memory, cpu_s_estimated",
 	[KEEP]     = "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) "
 	              "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, " BLOCK_DIGEST("?1", "?2", "?6") " "
 	              "FROM study WHERE id = ?1 AND status = 'running'",
-	[PROGRESS] = "UPDATE study SET " BLOCK_SUMS ", attempt_kept = attempt WHERE id = ?1",
+	[PROGRESS] = "UPDATE study SET " BLOCK_SUMS("max(study.cpu_s, total(block.cpu_s))") ", attempt_kept = attempt WHERE id = ?1",
 	[PRUNE]    = "DELETE FROM block WHERE study = ?1 AND sha256 IS NOT " BLOCK_DIGEST("study", "number", "content"),
-	[RECOUNT]  = "UPDATE study SET " BLOCK_SUMS " WHERE id = ?1",
-	[FINISH]   = "UPDATE study SET status = ?2, finished = max(" NOW ", started), error = ?3, "
+	[RECOUNT]  = "UPDATE study SET " BLOCK_SUMS("total(cpu_s)") " WHERE id = ?1",
+	[SPENT]    = "UPDATE study SET cpu_s = max(cpu_s, ?2) WHERE id = ?1 AND status = 'running'",
+	[FINISH]   = "UPDATE study SET cpu_s = max(cpu_s, ?4), status = ?2, finished = max(" NOW ", started), error = ?3, "
 	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
 	[REQUEUE]  = "UPDATE study SET status = 'queued', "
 	              "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'",

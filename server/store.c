@@ -224,45 +224,6 @@ struct store *store_open(const char *path)
 	return store;
 }
 
-/* Copies a database; a server may use it meanwhile.
- *
- * Given    path    of the database
- *          to      of the copy, which must not exist
- * Test     service_backup: a_copy_made_while_studies_run_is_a_whole_database
- */
-bool store_copy(const char *path, const char *to)
-{
-	struct database reading = {0};
-	bool copied = database_open(&reading, path, false, NULL, 0) && database_copy(&reading, to);
-	database_close(&reading);
-	return copied;
-}
-
-/* Puts a copy in the place of a database that no server uses; the former is kept as PATH-replaced, with its WAL.
- *
- * Given    from    a database of poundd, as --backup makes it, which stays as it is
- * Returns  value   false: nothing has changed, or only PATH-replaced is there; logged
- * Test     service_backup: a_copy_is_restored_in_the_place_of_a_database_and_its_wal
- */
-bool store_restore(const char *path, const char *from)
-{
-	struct disk disk = {.lock = -1};
-	struct database reading = {0};
-	char made[PATH_MAX + 16];
-	bool ok = disk_take(&disk, path);
-	snprintf(made, sizeof made, "%s-restored", disk.database);
-	if (ok)
-		unlink(made); // of a restoration that did not come to its end
-	ok = ok && database_open(&reading, from, false, NULL, 0) && database_ours(&reading, from) &&
-	     database_checked(&reading) && database_copy(&reading, made) && disk_replace(&disk, made);
-	if (ok)
-		log_line("%s is a copy of %s now; as it was it is kept as %s-replaced", disk.database, from,
-		         disk.database);
-	database_close(&reading);
-	disk_leave(&disk);
-	return ok;
-}
-
 /* The content of a row that starts with it and with whether it is what was stored: copied, for it may lie unaligned,
  * and a zero added. */
 static enum store_status checked(sqlite3_stmt *row, char **content, size_t *length)
@@ -339,8 +300,8 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 		status = run(c, bound(c, NEXT, ""), id);
 	if (status == STORE_OK)
 		status = both(c,
-		              bound(c, SUBMIT, "ittittt", *id, study->kind, study->name, study->runs, study->hash,
-		                    study->key, study->client),
+		              bound(c, SUBMIT, "ittitttdi", *id, study->kind, study->name, study->runs, study->hash,
+		                    study->key, study->client, study->cpu_s, study->memory),
 		              bound(c, ADD, "itb", *id, "request", request, length));
 	return changed(store, *id, status);
 }
@@ -366,6 +327,7 @@ static enum store_status studies(struct database *c, sqlite3_stmt *rows, store_s
 		    .runs = sqlite3_column_int64(rows, 8),
 		    .runs_done = sqlite3_column_int64(rows, 9),
 		    .cpu_s = sqlite3_column_double(rows, 10),
+		    .cpu_s_estimated = sqlite3_column_double(rows, 11),
 		};
 		each(to, &study);
 	}
@@ -533,14 +495,29 @@ enum store_status store_delete(struct store *store, int64_t id)
 
 /* Takes the oldest queued study, last those that were taken three times in vain; it is then running, the attempt counted.
  *
- * Returns  id      of the study
- * Status   STORE_NONE   nothing is queued
+ * Given    memory_most   bytes   that it may take; no later one is taken in its place, so that it has its turn
+ * Returns  claimed       the study
+ * Status   STORE_NONE    nothing is queued, or that takes more
+ * Test     service_estimates: two_studies_that_do_not_fit_together_run_one_after_the_other
  */
-enum store_status store_claim(struct store *store, int64_t *id)
+enum store_status store_claim(struct store *store, int64_t memory_most, struct store_claimed *claimed)
+{
+	int n = 0;
+	struct database *c = writer(store);
+	sqlite3_stmt *row = bound(c, CLAIM, "i", memory_most);
+	for (; sqlite3_step(row) == SQLITE_ROW; n++)
+		*claimed = (struct store_claimed){.id = sqlite3_column_int64(row, 0),
+		                                  .memory = sqlite3_column_int64(row, 1),
+		                                  .cpu_s = sqlite3_column_double(row, 2)};
+	enum store_status status = ended(c, row, n);
+	return changed(store, status == STORE_OK ? claimed->id : 0, status);
+}
+
+/* Notes the time that a running study has taken, when reductions made it more than that of its blocks. */
+enum store_status store_spent(struct store *store, int64_t id, double cpu_s)
 {
 	struct database *c = writer(store);
-	enum store_status status = run(c, bound(c, CLAIM, ""), id);
-	return changed(store, status == STORE_OK ? *id : 0, status);
+	return changed(store, id, run(c, bound(c, SPENT, "id", id, cpu_s), NULL));
 }
 
 /* Remembers, in a signal handler of a server that is about to crash, with which study it did. */
@@ -613,15 +590,17 @@ enum store_status store_prune(struct store *store, int64_t id)
  *
  * Given    result   (length) bytes   what the client gets; NULL: it failed
  *          error    why it failed, a sentence; NULL: it did not
+ *          cpu_s    that it took in all [s]
  * Status   STORE_NONE   it is not running any more; nothing is stored
  * Test     unit_store: a_study_finishes_once
  */
 enum store_status store_finish(struct store *store, int64_t id, const char *result, size_t length,
-                               const char *error)
+                               const char *error, double cpu_s)
 {
 	assert(!result != !error);
 	struct database *c = writer(store);
-	enum store_status status = both(c, bound(c, FINISH, "itt", id, result ? "succeeded" : "failed", error),
-	                                result ? bound(c, ADD, "itb", id, "result", result, length) : NULL);
+	enum store_status status =
+	    both(c, bound(c, FINISH, "ittd", id, result ? "succeeded" : "failed", error, cpu_s),
+	         result ? bound(c, ADD, "itb", id, "result", result, length) : NULL);
 	return changed(store, id, status);
 }

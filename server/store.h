@@ -29,6 +29,8 @@ struct store;
 struct store_study {
 	const char *kind, *name; /* name: NULL if none */
 	int64_t runs;
+	double cpu_s;       /* estimated [s] */
+	int64_t memory;     /* estimated, while it runs [bytes] */
 	const char *hash;   /* of its meaning, hex */
 	const char *key;    /* Idempotency-Key it was submitted with, NULL: none */
 	const char *client; /* name of the token it was submitted with, NULL: there are none */
@@ -41,9 +43,6 @@ typedef void store_study_reader(void *to,
 struct store *store_open(const char *path); /* NULL: refused or failed, and logged */
 void store_stop(struct store *store, int wait_ms);
 void store_close(struct store *store);
-bool store_copy(const char *path, const char *to); /* of a database that may be in use; false: logged */
-bool store_restore(const char *path,
-                   const char *from);               /* of one that is not in use, by a copy; false: logged */
 enum store_status store_ready(struct store *store); /* FULL, FAILED: it takes no study now */
 /* descriptor of a file beside the database that has no name and may hold n bytes; -1: there is no room */
 int store_spool(const struct store *store, size_t n);
@@ -65,8 +64,13 @@ unsigned store_changes(struct store *store, int64_t id);
 enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */
 enum store_status store_delete(struct store *store, int64_t id);
 
-/* The oldest queued study becomes running; STORE_NONE when there is none. */
-enum store_status store_claim(struct store *store, int64_t *id);
+struct store_claimed {
+	int64_t id, memory; /* estimated [bytes] */
+	double cpu_s;       /* estimated [s] 0: not known */
+};
+
+/* The oldest queued study becomes running; STORE_NONE when there is none, or it takes more memory [bytes] than that. */
+enum store_status store_claim(struct store *store, int64_t memory_most, struct store_claimed *claimed);
 void store_blame(const struct store *store, int64_t id); /* the server crashes with it; signal-safe */
 
 struct store_block {
@@ -85,8 +89,10 @@ enum store_status store_keep(struct store *store, int64_t id, const struct store
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *reader, void *to);
 enum store_status store_prune(struct store *store, int64_t id); /* deletes what is left out */
 
+enum store_status store_spent(struct store *store, int64_t id,
+                              double cpu_s); /* more than its blocks took; NONE: it is not running any more */
 /* A running study ends, once: with a result, or with the reason why it failed (the other is NULL). */
 enum store_status store_finish(struct store *store, int64_t id, const char *result, size_t length,
-                               const char *error);
+                               const char *error, double cpu_s);
 
 #endif

@@ -2,7 +2,7 @@
 -- (PRAGMA user_version counts the steps, server/database.c has them).  Times are milliseconds since 1970, UTC.
 
 PRAGMA application_id = 0x706f756e; -- "poun"
-PRAGMA user_version = 5;
+PRAGMA user_version = 6;
 
 CREATE TABLE study (
 	id              INTEGER PRIMARY KEY, -- milliseconds << 20 | random bits: a newer study has a larger id
@@ -20,8 +20,10 @@ CREATE TABLE study (
 	crashes         INTEGER NOT NULL DEFAULT 0, -- of the server by this study, since a block of it was kept
 	client          TEXT,                       -- name of the token it was submitted with
 	runs_done       INTEGER NOT NULL DEFAULT 0, -- pounding runs in its blocks
-	cpu_s           REAL    NOT NULL DEFAULT 0, -- of its blocks
+	cpu_s           REAL    NOT NULL DEFAULT 0, -- of its blocks, and of its reductions when they are known to be long or done
 	attempt_kept    INTEGER NOT NULL DEFAULT 0, -- that kept a block last
+	cpu_s_estimated REAL    NOT NULL DEFAULT 0, -- when it was submitted; 0: not known
+	memory          INTEGER NOT NULL DEFAULT 0, -- [bytes] estimated then, while it runs
 	CHECK ((finished IS NULL) = (status IN ('queued', 'running'))),
 	CHECK ((error IS NULL) = (status <> 'failed'))
 ) STRICT;

@@ -27,6 +27,7 @@
 #include "schema/json/problems.h"
 #include "schema/result/result_json.h"
 #include "schema/study/study_json.h"
+#include "schema/study/study_status.h"
 #include "server/log.h"
 
 enum {
@@ -43,12 +44,14 @@ struct job {
 	struct work_run of;
 	int block, reduction; /* next to hand out */
 	int n_reductions, reductions_left;
-	int n_inside;      /* workers in one of its steps */
-	bool ended;        /* gives no more steps, ... */
-	atomic_bool stop;  /* ... and those that are taken stop soon */
-	const char *error; /* why it failed, NULL if it did not */
-	double cpu_s;      /* [s] */
-	double started;    /* [s] monotonic, as if all its sessions were this one */
+	int n_inside;                  /* workers in one of its steps */
+	bool ended;                    /* gives no more steps, ... */
+	atomic_bool stop;              /* ... and those that are taken stop soon */
+	const char *error;             /* why it failed, NULL if it did not */
+	double cpu_s, cpu_s_estimated; /* [s] */
+	bool over;                     /* it is known to have taken much longer than estimated */
+	int64_t memory;                /* estimated [bytes] */
+	double started;                /* [s] monotonic, as if all its sessions were this one */
 };
 
 struct work {
@@ -59,9 +62,10 @@ struct work {
 	bool queued;            /* the store may hold a queued study */
 	bool claiming;          /* a worker is about to bring the next study */
 	bool stopping;
-	double time_max; /* that a study may run [s] */
-	bool watched;    /* there is ... */
-	pthread_t watch; /* ... a thread that sees to that */
+	double time_max;     /* that a study may run [s] */
+	int64_t memory_left; /* of what studies may take at a time [bytes] */
+	bool watched;        /* there is ... */
+	pthread_t watch;     /* ... a thread that sees to that */
 	int n_started;
 	int n_workers;
 	pthread_t workers[]; /* (n_workers) */
@@ -194,7 +198,7 @@ static void finish(struct work *work, struct job *job)
 	}
 	enum store_status status;
 	do
-		status = store_finish(work->store, job->id, result, length, error);
+		status = store_finish(work->store, job->id, result, length, error, job->cpu_s);
 	while (status == STORE_FAILED && patient(work, job));
 	if (status == STORE_OK)
 		log_line("study %016llx %s", (unsigned long long)job->id, error ? error : "succeeded");
@@ -205,6 +209,9 @@ static void drop(struct work *work, struct job *job)
 {
 	TAILQ_REMOVE(&work->jobs, job, others);
 	work_close(&job->of);
+	work->memory_left += job->memory;
+	work->queued = true; // the next may have waited for that
+	pthread_cond_broadcast(&work->changed);
 	free(job);
 }
 
@@ -287,6 +294,19 @@ static bool take(struct work *work, struct step *step)
 	return false;
 }
 
+/* Lets the store know when a study has taken much longer than estimated: blocks do by themselves, reductions do not.  Under the
+ * lock, which is free meanwhile. */
+static void note_over(struct work *work, struct job *job)
+{
+	if (job->over || !study_status_over(job->cpu_s, job->cpu_s_estimated))
+		return;
+	job->over = true;
+	const double cpu_s = job->cpu_s;
+	pthread_mutex_unlock(&work->lock);
+	store_spent(work->store, job->id, cpu_s);
+	pthread_mutex_lock(&work->lock);
+}
+
 /* Runs a step; the lock is free meanwhile. */
 static void perform(struct work *work, const struct step *step, int worker)
 {
@@ -303,8 +323,9 @@ static void perform(struct work *work, const struct step *step, int worker)
 	cpu_s = thread_cpu() - cpu_s;
 	bool wanted = status != POUND_OK || step->block < 0 || keep(work, job, step->block, cpu_s);
 	pthread_mutex_lock(&work->lock);
-	job->n_inside--;
 	job->cpu_s += cpu_s;
+	note_over(work, job);
+	job->n_inside--;
 	if (status != POUND_OK || !wanted)
 		end(job, wanted ? pound_status_error(status) : NULL);
 	else if (step->block >= 0)
@@ -350,13 +371,20 @@ static void claim(struct work *work)
 	work->claiming = true;
 	// before the question, so that a study queued during it is not missed
 	work->queued = false;
+	// one that alone takes more was accepted under another limit, and has it all
+	const int64_t memory = TAILQ_EMPTY(&work->jobs) ? INT64_MAX : work->memory_left;
+	struct store_claimed claimed = {0};
 	pthread_mutex_unlock(&work->lock);
-	enum store_status status = job ? store_claim(work->store, &job->id) : STORE_FAILED;
+	enum store_status status = job ? store_claim(work->store, memory, &claimed) : STORE_FAILED;
 	bool again = status == STORE_FAILED && (!job || patient(work, job));
 	pthread_mutex_lock(&work->lock);
 	work->queued = work->queued || again || status == STORE_OK;
 	if (status == STORE_OK) {
+		job->id = claimed.id;
+		job->cpu_s_estimated = claimed.cpu_s;
+		job->memory = claimed.memory;
 		job->n_inside = 1;
+		work->memory_left -= job->memory;
 		TAILQ_INSERT_TAIL(&work->jobs, job, others);
 		open_run(work, job);
 		job->n_inside = 0;
@@ -432,9 +460,10 @@ static void *watch(void *of)
  *
  * Given    n_workers   >= 1
  *          time_max    that a study may run [s]
+ *          memory_max  that the studies which run at a time may take by their estimates [bytes]
  * Returns  value       for work_stop; NULL: no memory, or no threads
  */
-struct work *work_start(struct store *store, int n_workers, double time_max)
+struct work *work_start(struct store *store, int n_workers, double time_max, int64_t memory_max)
 {
 	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
 	if (!work) {
@@ -444,6 +473,7 @@ struct work *work_start(struct store *store, int n_workers, double time_max)
 	watch_crashes(store);
 	work->store = store;
 	work->time_max = time_max;
+	work->memory_left = memory_max;
 	work->n_workers = n_workers;
 	work->queued = true;
 	TAILQ_INIT(&work->jobs);

@@ -28,8 +28,8 @@ void work_close(struct work_run *opened);
 
 struct work;
 
-struct work *work_start(struct store *store, int n_workers,
-                        double time_max);      /* NULL: no memory or no threads */
+/* the studies that run at a time take no more memory [bytes] by their estimates; NULL: no memory or no threads */
+struct work *work_start(struct store *store, int n_workers, double time_max, int64_t memory_max);
 void work_wake(struct work *work);             /* a study was queued */
 void work_drop(struct work *work, int64_t id); /* a study was cancelled or deleted */
 bool work_stop(

@@ -263,6 +263,8 @@ function show(study) {
 	$("progress").hidden = ended(study.status);
 	$("progress").value = study.progress;
 	$("left").textContent = running ? `${percent(study)}${study.eta_s === null ? "" : `, ${duration(study.eta_s)} left`}` : "";
+	$("late").hidden = !study.over_estimate;
+	$("late").textContent = study.over_estimate ? `${Math.round(study.cpu_s / study.estimated_cpu_s)} times the estimated CPU time: ${study.cpu_s.toPrecision(2)} s` : "";
 	$("error").hidden = !study.error;
 	$("error").textContent = study.error ?? "";
 	$("cancel").hidden = ended(study.status);
@@ -376,7 +378,7 @@ async function judge(number) {
 	$("submit").disabled = !answer.ok;
 	$("verdict").className = answer.ok ? "" : "fault";
 	$("verdict").textContent = answer.ok
-		? `valid: ${told.runs_total.toLocaleString("en")} runs, about ${Number(told.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(told.estimated_bytes)}`
+		? `valid: ${told.runs_total.toLocaleString("en")} runs, about ${Number(told.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(told.estimated_bytes)} stored, ${size(told.estimated_memory_bytes)} of memory`
 		: `${told.errors ? "faults, each a button that leads to its place:" : told.detail}${told.errors_not_listed ? `, and ${told.errors_not_listed} more` : ""}`;
 	const problems = told.errors ?? (told.line ? [{ pointer: "", ...told }] : []);
 	$("faults").replaceChildren(...(answer.ok ? [] : problems.map(problem => fault(told.line ? { ...problem, line: told.line, column: told.column } : problem))));

@@ -1,6 +1,8 @@
 /* blocks.c - a study's items cut into blocks, and where the values of a run lie in them. */
 #include "engine/run/blocks.h"
 
+#include <math.h>
+
 #include "engine/design/design.h"
 
 enum {
@@ -74,6 +76,25 @@ int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct poun
 	if (first)
 		first[n_blocks] = n_items;
 	return n_blocks;
+}
+
+/* How many blocks there are when all items are of one size.
+ *
+ * Returns  largest   with its checks
+ * Test     service_estimates: the_memory_of_a_study_is_estimated
+ */
+int pound_blocks_alike(const struct pound_cells *campaign, struct pound_request_size item,
+                       struct pound_request_size *largest)
+{
+	const struct pound_cells *c = campaign;
+	const int n_items = pound_blocks_items(c);
+	int n = block_runs(c->study) / item.asks;
+	n = (int)fmin(fmax(1, fmin(n, (double)BLOCK_SAMPLES / (double)item.samples)),
+	              c->trials ? c->n_signals : n_items);
+	*largest = (struct pound_request_size){0};
+	for (int i = 0; i < n; i++)
+		size_add(largest, item, pound_cells_checks(c, i) < pound_cells_checks(c, i + 1));
+	return (n_items + n - 1) / n;
 }
 
 /* Doubles of an item's measures. */

@@ -19,6 +19,9 @@ struct pound_blocks {
 int pound_blocks_items(const struct pound_cells *campaign);
 /* How many blocks; with first NULL they are only counted, and the largest found. */
 int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct pound_request_size *largest);
+/* The same without a look at any item: when each is of that size. */
+int pound_blocks_alike(const struct pound_cells *campaign, struct pound_request_size item,
+                       struct pound_request_size *largest);
 size_t pound_blocks_doubles(const struct pound_blocks *layout);
 
 int pound_blocks_block_of(const struct pound_blocks *layout, int item);

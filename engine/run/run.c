@@ -32,7 +32,8 @@ static const double CLOCK_LEAST = 0.02;
 
 /* ---- life ---- */
 
-static struct pound_cells campaign_of(const struct pound_study *study)
+/* The scenes of a study; its design is not drawn yet. */
+struct pound_cells pound_run_campaign(const struct pound_study *study)
 {
 	bool sampled = study->kind == POUND_KIND_SENSITIVITY, trials = study->kind == POUND_KIND_CONVERGENCE;
 	struct pound_cells c = {.study = study,
@@ -50,6 +51,19 @@ static struct pound_cells campaign_of(const struct pound_study *study)
 	if ((sampled && !study->elsewhere) || study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		c.check_every = every > CHECK_EVERY ? CHECK_EVERY : every > 1 ? every : 1;
 	return c;
+}
+
+/* What its blocks hold; they are not cut yet. */
+struct pound_blocks pound_run_layout(const struct pound_cells *campaign)
+{
+	const struct pound_study *study = campaign->study;
+	return (struct pound_blocks){.campaign = campaign,
+	                             .n_measures = pound_ordinate_measures(study) +
+	                                           (study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
+	                                            : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
+	                                            : study->kind == POUND_KIND_RESPONSE    ? (int)MEASURES
+	                                                                                    : 0),
+	                             .n_counts = COUNTS};
 }
 
 /* Runs of a cell that are checked. */
@@ -72,7 +86,7 @@ static size_t kept_size(const struct pound_cells *c)
 
 /* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indices and then their
  * accuracy need. */
-static size_t reduction_size(const struct pound_cells *c)
+size_t pound_run_reduction_size(const struct pound_cells *c)
 {
 	if (c->study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		return pound_ordinate_scratch(c->study, c->n_rows);
@@ -119,7 +133,7 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_re
 		void *memory = room(pound_request_bytes(largest));
 		run->requests[w] = memory ? pound_request_init(memory, largest) : NULL;
 		// cleared: it begins with what pound_chaos_expansion_kept_size() asks zeros for
-		run->scratch[w] = piece(sizeof(double) * reduction_size(&run->campaign));
+		run->scratch[w] = piece(sizeof(double) * pound_run_reduction_size(&run->campaign));
 		memory = spectra ? room(spectra) : NULL;
 		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;
 		if (!run->requests[w] || !run->scratch[w] || (spectra && !memory))
@@ -128,23 +142,36 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_re
 	return true;
 }
 
+/* The memory of the result, piece by piece. */
+void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[POUND_RUN_PARTS])
+{
+	const struct pound_cells *c = &run->campaign;
+	const struct pound_study *study = c->study;
+	const size_t n_cells = (size_t)c->n_cells, n_indices = n_cells * (size_t)study->n_outputs;
+	run->result.n_trials = c->trials ? c->n_rows : 0;
+	const struct pound_run_part all[POUND_RUN_PARTS] = {
+	    {&run->result.cells, sizeof *run->result.cells * n_cells},
+	    {&run->responses, sizeof *run->responses * n_cells * (size_t)c->n_signals},
+	    {&run->indices, sizeof *run->indices * n_indices},
+	    {&run->estimates, sizeof *run->estimates * n_indices * COLUMNS * (size_t)study->n_inputs},
+	    {&run->result.trials, sizeof *run->result.trials * (size_t)run->result.n_trials},
+	    {&run->spectra, sizeof *run->spectra * POUND_N_SPECTRA * 4 * (size_t)study->spectrum.n},
+	    {&run->result.looks, sizeof *run->result.looks * (size_t)pound_run_looks_most(study)},
+	};
+	memcpy(parts, all, sizeof all);
+}
+
 static bool result_create(struct pound_run *run)
 {
 	const struct pound_cells *c = &run->campaign;
 	const struct pound_study *study = c->study;
-	size_t n_cells = (size_t)c->n_cells, n_outputs = (size_t)study->n_outputs;
+	const size_t n_outputs = (size_t)study->n_outputs;
+	struct pound_run_part parts[POUND_RUN_PARTS];
 	run->result.n_cells = c->n_cells;
-	run->result.cells = piece(sizeof *run->result.cells * n_cells);
-	run->responses = piece(sizeof *run->responses * n_cells * (size_t)c->n_signals);
-	run->indices = piece(sizeof *run->indices * n_cells * n_outputs);
-	run->estimates = piece(sizeof *run->estimates * n_cells * n_outputs * COLUMNS * (size_t)study->n_inputs);
-	run->result.n_trials = c->trials ? c->n_rows : 0;
-	run->result.trials = piece(sizeof *run->result.trials * (size_t)run->result.n_trials);
-	run->spectra = piece(sizeof *run->spectra * POUND_N_SPECTRA * 4 * (size_t)study->spectrum.n);
-	run->result.looks = piece(sizeof *run->result.looks * (size_t)pound_run_looks_most(study));
-	if (!run->result.cells || !run->spectra || !run->responses || !run->indices || !run->estimates ||
-	    !run->result.trials || !run->result.looks)
-		return false;
+	pound_run_result_parts(run, parts);
+	for (int j = 0; j < POUND_RUN_PARTS; j++)
+		if (!(*(void **)parts[j].into = piece(parts[j].bytes)))
+			return false;
 	pound_ordinate_layout(study, run->spectra, &run->result.floor);
 	for (int cell = 0; cell < c->n_cells; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
@@ -184,16 +211,9 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 	if (!run)
 		return NULL;
 	run->stop = &run->stopped;
-	run->campaign = campaign_of(study);
+	run->campaign = pound_run_campaign(study);
 	run->rows = study->kind == POUND_KIND_SENSITIVITY ? pound_design_rows(study, 0) : run->campaign.n_rows;
-	run->layout =
-	    (struct pound_blocks){.campaign = &run->campaign,
-	                          .n_measures = study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
-	                                        : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
-	                                        : study->kind == POUND_KIND_RESPONSE    ? (int)MEASURES
-	                                                                                : 0,
-	                          .n_counts = COUNTS};
-	run->layout.n_measures += pound_ordinate_measures(study);
+	run->layout = pound_run_layout(&run->campaign);
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
 	double *design = piece(sizeof(double) * n_design);
 	run->campaign.design = design;

@@ -24,6 +24,18 @@ struct pound_run {
 	const atomic_bool *stop;          /* ... which this is, or what the caller has */
 };
 
+/* How it is laid out, before anything is allocated. */
+struct pound_cells pound_run_campaign(const struct pound_study *study);
+struct pound_blocks pound_run_layout(const struct pound_cells *campaign);
+size_t pound_run_reduction_size(const struct pound_cells *campaign); /* doubles of a worker's scratch */
+
+enum { POUND_RUN_PARTS = 7 };
+struct pound_run_part {
+	void *into; /* the pointer to it */
+	size_t bytes;
+};
+void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[POUND_RUN_PARTS]);
+
 int pound_run_looks_most(const struct pound_study *study); /* 0: the design does not grow */
 
 #endif

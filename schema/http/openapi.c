@@ -27,6 +27,9 @@ static const struct member members[] = {
 	{"Status", "runs_done",   "integer", "",     "pounding runs computed and stored"},
 	{"Status", "runs_total",  "integer", "",     "pounding runs requested"},
 	{"Status", "eta_s",       "number",  "null", "estimated time to the end of a running study [s]"},
+	{"Status", "cpu_s",       "number",  "",     "CPU time taken so far, by its stored runs [s of one core]"},
+	{"Status", "estimated_cpu_s", "number", "null", "CPU time estimated at submission [s of one core]; null: by a version that did not store it"},
+	{"Status", "over_estimate", "boolean", "",   "whether cpu_s is three times estimated_cpu_s or more"},
 	{"Status", "created",     "string",  "",     "time of submission, RFC 3339, UTC"},
 	{"Status", "started",     "string",  "null", "time of the start of computation, RFC 3339, UTC"},
 	{"Status", "finished",    "string",  "null", "time of the end, RFC 3339, UTC"},
@@ -43,6 +46,7 @@ static const struct member members[] = {
 	{"Estimate", "runs_total",      "integer", "", "pounding runs requested"},
 	{"Estimate", "estimated_cpu_s", "number",  "", "estimated CPU time [s of one core]"},
 	{"Estimate", "estimated_bytes", "number",  "", "estimated size in the database [bytes]"},
+	{"Estimate", "estimated_memory_bytes", "number", "", "estimated memory while it runs [bytes]"},
 	{"Figures", "figures",    "[Figure]", "",    "in the order of the table of figures"},
 	{"Figure",  "name",       "string",  "",     "name of the figure, the end of its path"},
 	{"Figure",  "title",      "string",  "",     "what it shows"},
@@ -97,11 +101,12 @@ static const struct {
 } samples[] = {
 	{"Status", "{\"id\": \"0019c5a0b1c2d3e4\", \"name\": \"two towers\", \"kind\": \"sensitivity\", \"status\": \"running\", "
 	           "\"progress\": 0.25, \"runs_done\": 7500, \"runs_total\": 30000, \"eta_s\": 2.5, "
+	           "\"cpu_s\": 0.9, \"estimated_cpu_s\": 3.5, \"over_estimate\": false, "
 	           "\"created\": \"2026-01-01T00:00:00.000Z\", \"started\": \"2026-01-01T00:00:00.010Z\", \"finished\": null, "
 	           "\"error\": null, \"links\": {\"self\": \"/v1/studies/0019c5a0b1c2d3e4\", "
 	           "\"request\": \"/v1/studies/0019c5a0b1c2d3e4/request\", \"results\": \"/v1/studies/0019c5a0b1c2d3e4/results\", "
 	           "\"samples\": \"/v1/studies/0019c5a0b1c2d3e4/samples\", \"cancel\": \"/v1/studies/0019c5a0b1c2d3e4/cancel\"}}"},
-	{"Estimate", "{\"kind\": \"sensitivity\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000}"},
+	{"Estimate", "{\"kind\": \"sensitivity\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000, \"estimated_memory_bytes\": 24000000}"},
 	{"Problem", "{\"type\": \"invalid-study\", \"title\": \"Invalid Study\", \"status\": 422, "
 	            "\"detail\": \"the study has errors, see the list\", \"errors\": "
 	            "[{\"pointer\": \"/scene/contact/gap_m\", \"detail\": \"must be at least 0, got -0.1\"}]}"},

@@ -70,6 +70,10 @@ static const double SEARCH_MEAN = 6;
 /* [bytes] in a result: of an index or of a signal, with its name and all members beside it */
 static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, DOCUMENT_BYTES = 3000;
 
+/* [bytes] of memory for a study, for a number of its document, and for a byte of its result, which is text that grows by doubling
+ * and is then put into the database */
+static const double STUDY_MEMORY = 1.5 * MIB, NUMBER_MEMORY = 100, RESULT_MEMORY = 2;
+
 /* The mean of a power of a field of the scene, over its distribution or its sweep. */
 static double mean(const struct pound_study *study, size_t offset, double power)
 {
@@ -220,11 +224,12 @@ static double run_s(const struct pound_study *study, const struct pound_solver *
 
 /* What a study will take.
  *
- * Given    study   valid
- * Returns  value   runs exactly; time and bytes as above
+ * Given    study       valid
+ *          n_workers   that run its blocks, each in work space of its own
+ * Returns  value       runs exactly; time, bytes and memory as above
  * Test     unit_cost: what_is_asked_twice_costs_twice; soak_cost: an_estimate_is_near_what_a_study_takes
  */
-struct cost cost_of(const struct pound_study *study)
+struct cost cost_of(const struct pound_study *study, int n_workers)
 {
 	struct cost cost = {.runs = study_runs(study), .cpu_s = STUDY_S, .bytes = DOCUMENT_BYTES};
 	double cells = study_cells(study), runs = (double)cost.runs;
@@ -252,6 +257,8 @@ struct cost cost_of(const struct pound_study *study)
 		numbers = sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
 		cost.bytes += runs * SIGNAL_BYTES + cells * 20 * study->spectrum.n * NUMBER_BYTES;
 	}
+	cost.memory = STUDY_MEMORY + NUMBER_MEMORY * study->scene.excitation.n_record +
+	              RESULT_MEMORY * cost.bytes + pound_run_bytes(study, n_workers, samples_mean(study));
 	cost.bytes += runs * numbers * sizeof(double);
 	return cost;
 }
@@ -271,6 +278,7 @@ bool cost_allowed(const struct cost *cost, const struct cost *most, struct probl
 	    {(double)cost->runs, (double)most->runs, "pounding runs", "runs-max"},
 	    {cost->cpu_s, most->cpu_s, "estimated seconds of one core", "cpu-max"},
 	    {cost->bytes / MIB, most->bytes / MIB, "estimated MiB in the database", "result-max"},
+	    {cost->memory / MIB, most->memory / MIB, "estimated MiB of memory", "memory-max"},
 	};
 	problems_init(problems);
 	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
@@ -291,6 +299,7 @@ char *cost_to_json(const struct cost *cost, const struct pound_study *study, siz
 	writer_whole(&w, "runs_total", cost->runs);
 	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
 	writer_number(&w, "estimated_bytes", ceil(cost->bytes));
+	writer_number(&w, "estimated_memory_bytes", ceil(cost->memory));
 	writer_end(&w);
 	return writer_take(&w, length);
 }

@@ -10,12 +10,13 @@
 #include "schema/json/problems.h"
 
 struct cost {
-	int64_t runs; /* pounding runs asked for, before anything is shared */
-	double cpu_s; /* of one core, all in all [s] */
-	double bytes; /* in the database: blocks and result */
+	int64_t runs;  /* pounding runs asked for, before anything is shared */
+	double cpu_s;  /* of one core, all in all [s] */
+	double bytes;  /* in the database: blocks and result */
+	double memory; /* while it runs [bytes] */
 };
 
-struct cost cost_of(const struct pound_study *study);
+struct cost cost_of(const struct pound_study *study, int n_workers); /* that run its blocks */
 bool cost_allowed(const struct cost *cost, const struct cost *most, struct problems *problems);
 char *cost_to_json(const struct cost *cost, const struct pound_study *study,
                    size_t *length); /* NULL: no memory */

@@ -13,6 +13,14 @@ static double rounded(double value)
 	return floor(1e4 * value) / 1e4;
 }
 
+/* How much longer than estimated a study may take before its status says so. */
+static const double OVER = 3;
+
+bool study_status_over(double cpu_s, double cpu_s_estimated)
+{
+	return cpu_s_estimated > 0 && cpu_s >= OVER * cpu_s_estimated;
+}
+
 /* Time left, when what is left takes as long as what was done. */
 double study_status_eta(const struct study_status *study, int n_workers)
 {
@@ -44,6 +52,9 @@ void study_status_write(struct writer *w, const struct study_status *study, doub
 	writer_whole(w, "runs_done", study->runs_done);
 	writer_whole(w, "runs_total", study->runs);
 	writer_number(w, "eta_s", rounded(eta_s));
+	writer_number(w, "cpu_s", rounded(study->cpu_s));
+	writer_number(w, "estimated_cpu_s", study->cpu_s_estimated > 0 ? rounded(study->cpu_s_estimated) : NAN);
+	writer_bool(w, "over_estimate", study_status_over(study->cpu_s, study->cpu_s_estimated));
 	writer_text(w, "created", study->created);
 	writer_text(w, "started", study->started);
 	writer_text(w, "finished", study->finished);

@@ -13,9 +13,11 @@ struct study_status {
 	const char *created, *started, *finished; /* RFC 3339 UTC, NULL: not yet */
 	const char *error;                        /* NULL unless failed */
 	int64_t runs, runs_done;
-	double cpu_s; /* of the blocks done [s] */
+	double cpu_s, cpu_s_estimated; /* taken; estimated when it was submitted, 0: not known [s] */
 };
 
+/* whether it has taken three times as long as estimated */
+bool study_status_over(double cpu_s, double cpu_s_estimated);
 double study_status_eta(const struct study_status *study, int n_workers); /* [s] to its end, NAN: unknown */
 void study_status_write(struct writer *writer, const struct study_status *study, double eta_s);
 

@@ -49,12 +49,14 @@ static void say(struct text *text, const char *format, ...)
 
 static void say_scene(struct text *text, int signals_most)
 {
-	static const char *const laws[] = {"{\"type\": \"linear\"}",
-	                                   "{\"type\": \"elastoplastic\", \"hardening_ratio\": 0.05}",
-	                                   "{\"type\": \"elastoplastic\", \"hardening_ratio\": 0}"};
-	say(text,
-	    "\"scene\": {\"law\": %s, \"oscillators\": [{\"frequency_hz\": %.3g, \"damping_ratio\": %.3g}, ",
-	    laws[below(3)], between(0.3, 20), between(0.01, 0.2));
+	say(text, "\"scene\": {\"law\": ");
+	if (below(3) == 0)
+		say(text, "{\"type\": \"linear\"}");
+	else
+		say(text, "{\"type\": \"elastoplastic\", \"hardening_ratio\": %.3g, \"corrections\": %d}",
+		    below(2) * between(0.01, 0.2), below(2) ? 1 : below(11));
+	say(text, ", \"oscillators\": [{\"frequency_hz\": %.3g, \"damping_ratio\": %.3g}, ", between(0.3, 20),
+	    between(0.01, 0.2));
 	if (below(10) == 0)
 		say(text, "{\"rigid_wall\": true}], ");
 	else
@@ -90,6 +92,16 @@ static void say_solver(struct text *text)
 	}
 }
 
+static void say_sweep(struct text *text)
+{
+	static const char *const sweeps[] = {
+	    "{\"path\": \"/contact/restitution\", \"values\": [0.1, 0.4, 0.7, 0.95]}",
+	    "{\"path\": \"/oscillators/0/frequency_hz\", \"values\": [0.5, 2, 5, 12]}",
+	    "{\"path\": \"/excitation/time_step_s\", \"values\": [0.004, 0.01]}"};
+	if (below(4) == 0)
+		say(text, ", \"sweep\": [%s]", sweeps[below(3)]);
+}
+
 static void say_sensitivity(struct text *text)
 {
 	static const char *const inputs[] = {
@@ -123,10 +135,12 @@ static void draw(struct text *text)
 		say(text, "{\"kind\": \"response\", ");
 		say_scene(text, 500);
 		say_solver(text);
+		say_sweep(text);
 	} else if (kind < 6) {
 		say(text, "{\"kind\": \"sensitivity\", ");
 		say_sensitivity(text);
 		say_solver(text);
+		say_sweep(text);
 	} else if (kind < 7) {
 		say(text, "{\"kind\": \"floor_spectrum\", ");
 		say_scene(text, 50);
@@ -182,6 +196,8 @@ static double taken(const struct pound_study *study)
 	enum pound_status status = POUND_OK;
 	if (run)
 		pound_run_stop_by(run, &watch.stop);
+	if (run)
+		pound_run_clock(run, cpu_now);
 	for (int block = 0, done = 0; run && !status && !done;) {
 		for (; block < pound_run_blocks(run) && !status; block++)
 			status = pound_run_block(run, block, 0);
@@ -208,7 +224,7 @@ static void valid_studies_take_what_is_told_before(void **state)
 		struct pound_study *study = study_from_json(text.bytes, text.n, &problems);
 		if (!study)
 			continue;
-		const struct cost cost = cost_of(study);
+		const struct cost cost = cost_of(study, 1);
 		if (cost.cpu_s <= CPU_MOST) {
 			// what takes less than the clock and the start of a study tells is nothing
 			const double s = fmax(taken(study), 0.003), told = fmax(cost.cpu_s, 0.003), ratio = s / told;

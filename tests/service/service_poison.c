@@ -60,7 +60,7 @@ static void serve(const char *path)
 	for (int i = 1; i < SIGRTMIN; i++)
 		signal(i, SIG_DFL);
 	struct store *store = store_open(path);
-	struct work *work = store ? work_start(store, 2, 3600) : NULL;
+	struct work *work = store ? work_start(store, 2, 3600, INT64_MAX) : NULL;
 	int64_t queued = 1, running = 1;
 	while (work && queued + running > 0) {
 		store_count(store, "queued", &queued);
@@ -124,9 +124,9 @@ static void a_study_of_which_ten_servers_are_killed_fails_and_the_others_finish(
 	for (int i = 0; i < STUDIES; i++)
 		submit(store, i == POISON_AT ? POISON : i);
 	// a server that is stopped in order has not run it in vain
-	int64_t id;
+	struct store_claimed claimed;
 	for (int i = 0; i < 20; i++) {
-		assert_int_equal(store_claim(store, &id), STORE_OK);
+		assert_int_equal(store_claim(store, INT64_MAX, &claimed), STORE_OK);
 		store_close(store);
 		store = store_open(service->database);
 		assert_non_null(store);

@@ -152,6 +152,7 @@ static void a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked(vo
 	    {"POUNDD_RUNS_MAX", "39", {"40 pounding runs", "at most 39", "--runs-max"}},
 	    {"POUNDD_CPU_MAX", "1", {"seconds of one core", "at most 1", "--cpu-max"}},
 	    {"POUNDD_RESULT_MAX", "1", {"MiB", "at most 1", "--result-max"}},
+	    {"POUNDD_MEMORY_MAX", "16", {"MiB of memory", "at most 16", "--memory-max"}},
 	};
 	(void)state;
 	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {

@@ -13,6 +13,14 @@
 
 #include "tests/support/check.h"
 
+static enum store_status claim(struct store *store, int64_t *id)
+{
+	struct store_claimed claimed = {0};
+	enum store_status status = store_claim(store, INT64_MAX, &claimed);
+	*id = status == STORE_OK ? claimed.id : *id;
+	return status;
+}
+
 static char path[64];
 
 static int database(void **state)
@@ -58,7 +66,7 @@ static void crashed(void **state, int64_t id, const struct store_block *block)
 	if (server == 0) {
 		int64_t claimed;
 		struct store *store = store_open(path);
-		if (!store || store_claim(store, &claimed) != STORE_OK || claimed != id)
+		if (!store || claim(store, &claimed) != STORE_OK || claimed != id)
 			_exit(1);
 		if (block && store_keep(store, id, block) != STORE_OK)
 			_exit(1);
@@ -84,11 +92,11 @@ static void ids_grow_within_one_millisecond(void **state)
 static void the_oldest_queued_study_is_claimed_first(void **state)
 {
 	int64_t first = submitted(*state, "first"), second = submitted(*state, "second"), id = 0;
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_true(id == first);
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_true(id == second);
-	assert_int_equal(store_claim(*state, &id), STORE_NONE);
+	assert_int_equal(claim(*state, &id), STORE_NONE);
 }
 
 static void a_study_finishes_once(void **state)
@@ -96,12 +104,12 @@ static void a_study_finishes_once(void **state)
 	char *result;
 	size_t length;
 	int64_t id = submitted(*state, "a");
-	assert_int_equal(store_finish(*state, id, "1", 1, NULL), STORE_NONE); // not running yet
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(store_finish(*state, id, "1", 1, NULL, 0), STORE_NONE); // not running yet
+	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_int_equal(store_document(*state, id, "result", &result, &length), STORE_NONE);
-	assert_int_equal(store_finish(*state, id, "1", 1, NULL), STORE_OK);
-	assert_int_equal(store_finish(*state, id, "2", 1, NULL), STORE_NONE);
-	assert_int_equal(store_finish(*state, id, NULL, 0, "too late"), STORE_NONE);
+	assert_int_equal(store_finish(*state, id, "1", 1, NULL, 0), STORE_OK);
+	assert_int_equal(store_finish(*state, id, "2", 1, NULL, 0), STORE_NONE);
+	assert_int_equal(store_finish(*state, id, NULL, 0, "too late", 0), STORE_NONE);
 	assert_int_equal(store_cancel(*state, id), STORE_NONE);
 	assert_int_equal(store_document(*state, id, "result", &result, &length), STORE_OK);
 	assert_string_equal(result, "1");
@@ -114,7 +122,7 @@ static void a_block_is_kept_only_while_its_study_runs(void **state)
 	const struct store_block block = {.number = 0, .runs = 5, .cpu_s = 0.5, .n = 3, .values = values};
 	int64_t id = submitted(*state, "a");
 	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_int_equal(store_keep(*state, id, &block), STORE_OK);
 	assert_int_equal(store_cancel(*state, id), STORE_OK);
 	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
@@ -126,8 +134,8 @@ static void a_failed_study_says_why(void **state)
 {
 	char told[128] = "";
 	int64_t id = submitted(*state, "a");
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
-	assert_int_equal(store_finish(*state, id, NULL, 0, "out of memory"), STORE_OK);
+	assert_int_equal(claim(*state, &id), STORE_OK);
+	assert_int_equal(store_finish(*state, id, NULL, 0, "out of memory", 0), STORE_OK);
 	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
 	assert_string_equal(told, "a failed");
 }
@@ -229,13 +237,13 @@ static void a_running_study_is_queued_again_when_the_store_opens(void **state)
 {
 	char told[128];
 	int64_t id = submitted(*state, "a"), other = 0;
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(claim(*state, &id), STORE_OK);
 	store_close(*state);
 	*state = store_open(path);
 	assert_non_null(*state);
 	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
 	assert_string_equal(told, "a queued");
-	assert_int_equal(store_claim(*state, &other), STORE_OK);
+	assert_int_equal(claim(*state, &other), STORE_OK);
 	assert_true(other == id);
 }
 
@@ -305,7 +313,11 @@ static void keys_of_every_version_stand_for_their_studies(void **state)
 	}
 	store_close(*state);
 	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-	assert_int_equal(sqlite3_exec(db, "PRAGMA user_version = 4", NULL, NULL, NULL), SQLITE_OK);
+	assert_int_equal(sqlite3_exec(db,
+	                              "PRAGMA user_version = 4; ALTER TABLE study DROP COLUMN cpu_s_estimated; "
+	                              "ALTER TABLE study DROP COLUMN memory",
+	                              NULL, NULL, NULL),
+	                 SQLITE_OK);
 	assert_int_equal(sqlite3_close(db), SQLITE_OK);
 	*state = store_open(path);
 	assert_non_null(*state);
@@ -385,7 +397,7 @@ static void a_study_taken_three_times_in_vain_lets_the_others_go_first(void **st
 		if (pid == 0) {
 			// a server that is killed
 			struct store *store = store_open(path);
-			_exit(store && store_claim(store, &id) == STORE_OK && id == first ? 0 : 1);
+			_exit(store && claim(store, &id) == STORE_OK && id == first ? 0 : 1);
 		}
 		int status;
 		assert_int_equal(waitpid(pid, &status, 0), pid);
@@ -394,9 +406,9 @@ static void a_study_taken_three_times_in_vain_lets_the_others_go_first(void **st
 		assert_non_null(*state);
 	}
 	second = submitted(*state, "second");
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_true(id == second);
-	assert_int_equal(store_claim(*state, &id), STORE_OK);
+	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_true(id == first);
 }
 

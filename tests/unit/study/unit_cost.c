@@ -18,7 +18,7 @@ static struct cost cost_of_text(const char *format, ...)
 	struct pound_study *study = study_from_json(text, (size_t)n, &problems);
 	if (!study)
 		fail_msg("%s %s\n%s", problems.list[0].pointer, problems.list[0].detail, text);
-	struct cost cost = cost_of(study);
+	struct cost cost = cost_of(study, 1);
 	study_free(study);
 	return cost;
 }
