@@ -18,6 +18,7 @@ enum {
 	POUND_SWEEPS_MAX = 8,                         /* swept fields of one study */
 	POUND_RATIOS_MAX = 3,                         /* ratios of inputs of one study */
 	POUND_SOLVERS = 4,                            /* rows of the solvers */
+	POUND_CONTACT_MODELS = 10,                    /* rows of the contact models */
 	POUND_SETTINGS_MAX = 16,                      /* of one solver that are compared */
 	POUND_ROWS_MAX = 1 << 20,                     /* rows of a design */
 	POUND_FACTORIAL_INPUTS_MAX = 5,               /* inputs whose every mixture of A and B is run */
@@ -64,9 +65,11 @@ enum pound_kind {
 
 /* Forms of contact force, by what a solver has to be able to do with them. */
 enum pound_force {
-	POUND_FORCE_LINEAR, /* K p + C p': piecewise linear, scales with the motion */
-	POUND_FORCE_POWER,  /* a power of p, with or without a factor of p' */
-	POUND_FORCE_IMPACT, /* velocities that jump */
+	POUND_FORCE_LINEAR,   /* K p + C p' throughout a contact: scales with the motion */
+	POUND_FORCE_STRAIGHT, /* such lines with edges between them */
+	POUND_FORCE_PRODUCT,  /* p times a line of p' */
+	POUND_FORCE_POWER,    /* p^1.5, with or without a factor of p' */
+	POUND_FORCE_IMPACT,   /* velocities that jump */
 	POUND_FORCES
 };
 
@@ -94,6 +97,14 @@ struct pound_contact {
 	double restitution;     /* [0, 1] */
 	double gap;             /* clear distance at rest [m]  >= 0 */
 	bool tension;           /* the dashpot may pull just before separation */
+	// of some models each, pound_contact_reads
+	int calibration;               /* of the dashpot to the restitution: row of the calibrations, pound_calibration_name */
+	double stiffness;              /* [N/m]  > 0; 0: by stiffness_ratio */
+	double hertz_stiffness;        /* [N/m^1.5]  > 0; 0: from the linear one and reference_speed */
+	double reference_speed;        /* at which both springs have the same largest overlap [m/s]  > 0 */
+	double second_stiffness_ratio; /* stiffness beyond the yield overlap over the first one  [0, 1] */
+	double yield_overlap;          /* [m]  > 0 */
+	double speed_floor;            /* least approach speed that a dashpot is divided by, or an impact counts with [m/s]  > 0 */
 };
 
 struct pound_excitation {
@@ -236,6 +247,9 @@ const char *pound_law_name(int row);
 const char *pound_contact_name(int row);
 enum pound_force pound_contact_force(int row);
 bool pound_force_scales(enum pound_force force); /* twice the motion, twice the force */
+const char *pound_calibration_name(int row);
+bool pound_contact_reads(int row, const char *member);             /* of /scene/contact */
+bool pound_contact_takes_zero(const struct pound_contact *contact); /* restitution 0 has a dashpot */
 const char *pound_excitation_name(int row);
 const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */

@@ -11,6 +11,7 @@
 
 #include "engine/numeric/stop.h"
 #include "engine/pound.h"
+#include "engine/scene/contact.h"
 #include "engine/scene/law.h"
 
 struct pound_task_body {
@@ -55,6 +56,7 @@ struct pound_task {
 	double contact_damping;                     /* C/m1 [1/s] */
 	double mass_ratio;                          /* m1/m2, 0: the right body is a wall */
 	bool tension;                               /* contact ends at zero overlap; false: at zero force */
+	struct pound_contact_law law;               /* over m1; read where the force is not linear */
 	bool accounted;                             /* energy_residual is wanted */
 	const struct pound_task_observer *observer; /* NULL: none */
 };

@@ -32,6 +32,8 @@ int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e,
 	return number_of(keys, key);
 }
 
+enum { LAW_KEY = 15 }; /* numbers of a contact */
+
 /* Number of a run: a task under a motion. */
 int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_task *task)
 {
@@ -42,10 +44,17 @@ int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_task 
 	                         task->contact_damping,
 	                         task->mass_ratio,
 	                         task->tension,
-	                         task->contact ? task->force : 0};
+	                         task->contact ? task->force : 0,
+	                         task->law.model,
+	                         task->law.stiffness,
+	                         task->law.dashpot,
+	                         task->law.second_stiffness,
+	                         task->law.yield_overlap,
+	                         task->force == POUND_FORCE_IMPACT ? task->law.restitution : 0,
+	                         task->law.speed_floor};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &task->bodies[i];
-		double *k = &key[8 + 6 * i];
+		double *k = &key[LAW_KEY + 6 * i];
 		k[0] = b->backbone.law, k[1] = b->backbone.stiffness, k[2] = b->backbone.hardening,
 		k[3] = b->backbone.yield;
 		k[4] = b->damping, k[5] = b->drive;

@@ -5,7 +5,7 @@
 #include "engine/exact/task.h"
 #include "engine/numeric/random.h"
 
-enum { POUND_KEY = 20 }; /* doubles of a key, both of a motion and of a run */
+enum { POUND_KEY = 27 }; /* doubles of a key, both of a motion and of a run */
 
 /* equal keys have one number, in the order they were first registered */
 struct pound_keys {

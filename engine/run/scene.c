@@ -54,9 +54,9 @@ struct pound_task_body pound_scene_body(const struct pound_scene *scene, int i)
 
 /* Contact of a scene, divided by the left mass, in a task whose bodies are set.
  *
- * Returns  task  gap [m], K/m1 [1/s2], C/m1 [1/s], m1/m2 (0: wall)
+ * Returns  task  gap [m], the law over m1, m1/m2 (0: wall)
  *
- *   K = ratio max(k1, k2)     C = 2 zeta sqrt(K m),  m = m1 m2/(m1 + m2), a wall counting as infinite
+ *   m = m1 m2/(m1 + m2), a wall counting as infinite; the larger stiffness beside the contact is max(k1, k2)
  *
  * Source   model.md 1; the paper, Eq. (1)
  */
@@ -70,14 +70,17 @@ void pound_scene_contact(const struct pound_scene *scene, struct pound_task *tas
 	task->contact = true;
 	task->force = pound_contact_force(contact->model);
 	task->gap = contact->gap;
-	task->tension = contact->tension;
+	task->tension = contact->tension || !pound_contact_reads(contact->model, "tension");
 	task->mass_ratio = right->rigid_wall ? 0 : left->mass / right->mass;
 	// k2 m2/m1 = k2/mass_ratio
-	task->contact_stiffness =
-	    contact->stiffness_ratio * (right->rigid_wall ? k1 : fmax(k1, k2 / task->mass_ratio));
-	double zeta = pound_contact_damping_ratio(contact->model, contact->restitution);
-	// C/m1 = 2 zeta sqrt(K/m1 m/m1), m/m1 = 1/(1 + m1/m2)
-	task->contact_damping = 2 * zeta * sqrt(task->contact_stiffness / (1 + task->mass_ratio));
+	const struct pound_contact_place place = {
+	    .stiffness = right->rigid_wall ? k1 : fmax(k1, k2 / task->mass_ratio),
+	    .inverse_mass = 1 + task->mass_ratio, // m/m1 = 1/(1 + m1/m2)
+	    .mass = left->mass,
+	};
+	task->law = pound_contact_law(contact, &place);
+	task->contact_stiffness = task->law.stiffness;
+	task->contact_damping = task->law.dashpot;
 }
 
 /* Whether two laws are the same law with the same numbers; a linear law has none. */

@@ -15,6 +15,9 @@
 
 enum { ROUNDS = 16 }; /* of a step's iteration; laws alone take two or three */
 
+/* Change of an overlap in a round, over the overlap, that ends the iteration of a power's force: Newton's rounds double the digits. */
+static const double SETTLED = 1e-10;
+
 /* No response has a velocity above what the ground motion can give; one this many times larger is the integrator's. */
 static const double UNSTABLE = 10;
 
@@ -25,8 +28,10 @@ struct course {
 	struct pound_branch at[POUND_OSCILLATORS];
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS];
 	double
-	    rate[POUND_OSCILLATORS]; /* newmark: acceleration; central difference: velocity half a step later */
-	double force;                /* of the contact per mass of the left body [m/s2] */
+	    rate[POUND_OSCILLATORS];  /* newmark: acceleration; central difference: velocity half a step later */
+	struct pound_contact_law law; /* of the contact */
+	struct pound_touch touch;     /* while touching: its branch */
+	double force;                 /* of the contact per mass of the left body [m/s2] */
 	bool touching;
 	double start;        /* of the sample interval [s] */
 	int k;               /* step in it, from 1 */
@@ -64,14 +69,31 @@ static bool same_piece(const struct pound_branch *a, const struct pound_branch *
 	return a->piece.stiffness == b->piece.stiffness && a->piece.offset == b->piece.offset;
 }
 
-static double contact_force(const struct pound_task *task, double overlap, double rate)
+static bool same_branch(const struct pound_touch *a, const struct pound_touch *b)
 {
-	return task->contact_stiffness * overlap + task->contact_damping * rate;
+	return a->branch == b->branch && a->on.offset == b->on.offset;
 }
 
-static bool touches(const struct pound_task *task, double overlap, double rate)
+/* The branch of the contact where a step ends that led from one overlap to another.
+ *
+ * Given    rate   of the overlap before [m/s]
+ */
+static struct pound_touch touch_at(const struct course *c, double from, double to, double rate)
 {
-	return task->contact && overlap > 0 && (task->tension || contact_force(task, overlap, rate) > 0);
+	struct pound_touch touch = c->touch;
+	if (!c->touching) {
+		pound_contact_begin(&c->law, &touch, rate);
+		from = 0;
+	}
+	if (to > 0)
+		pound_contact_follow(&c->law, &touch, from, to);
+	return touch;
+}
+
+static bool touches(const struct course *c, const struct pound_touch *touch, double overlap, double rate)
+{
+	return c->task->contact && overlap > 0 &&
+	       (c->law.tension || pound_contact_force_on(&touch->on, overlap, rate) > 0);
 }
 
 /* Share of the contact force per left mass that a body feels. */
@@ -88,15 +110,24 @@ static void pair_solve(const double a[2], double s, double r, const double b[2],
 	x[1] = (b[1] * (a[0] + s) + r * s * b[0]) / determinant;
 }
 
+/* Largest growth of the contact's force with the overlap, over overlaps up to p, per left mass [1/s2]. */
+static double touch_stiffness(const struct course *c, double p)
+{
+	const bool power = c->task->force == POUND_FORCE_POWER;
+	return c->law.stiffness * (power ? 1.5 * sqrt(p) : 1);
+}
+
 /* A contact has ended, or the signal has in it. */
 static void contact_over(struct course *c)
 {
 	const struct pound_task *task = c->task;
 	struct pound_task_result *r = c->result;
-	const double stiff = (1 + task->mass_ratio) * task->contact_stiffness;
+	// of a power the force grows fastest with the overlap where that is as large as it may be
+	const double reach = fabs(c->u[0]) + fabs(c->u[1]) + task->gap;
+	const double stiff = (1 + task->mass_ratio) * touch_stiffness(c, reach);
 	struct pound_counts counts = {.time = c->start + c->k * c->step,
 	                              .steps = (r->contact_time - c->counted_time) / c->step,
-	                              .blur = sqrt(stiff) * (fabs(c->u[0]) + fabs(c->u[1]) + task->gap),
+	                              .blur = sqrt(stiff) * reach,
 	                              .changed = (1 + task->mass_ratio) * c->impulse + fabs(c->v[0] - c->v[1])};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		counts.body[i] = (struct pound_counts_body){c->u[i],
@@ -136,25 +167,42 @@ static void course_note(struct course *c, double force, bool touching, double ap
 
 /* ---- Newmark ---- */
 
+/* The contact's force over the change d of the overlap p: still + slope d + rate q1 */
+struct newmark_force {
+	double still, slope, rate;
+};
+
+/* The line or the tangent, at an overlap p1, of the force of a branch. */
+static struct newmark_force newmark_force(const struct pound_touch_branch *on, double p, double p1)
+{
+	if (on->form == POUND_TOUCH_STRAIGHT) {
+		const struct pound_touch_line line = pound_contact_line(on, p);
+		return (struct newmark_force){line.still, line.slope, line.rate};
+	}
+	const struct pound_touch_line line = pound_contact_line(on, p1);
+	return (struct newmark_force){line.still + line.slope * (p - p1), line.slope, line.rate};
+}
+
 /* One step of average acceleration; false: no equilibrium was found.
  *
  *   d = u1 - u,  v1 = 2 d/h - v,  a1 = 4 d/h^2 - 4 v/h - a,  a1 + c v1 + r(u + d) + share F(d) = -a_g
  *
- * r and F are straight on the pieces assumed, so a round of Newton's method is one linear solution.  Where bodies are
- * apart if they touch and touch if they are apart, because the dashpot's force begins with a jump, they stay as they
- * were until the next step.
+ * r and F are straight on the pieces assumed, so a round of Newton's method is one linear solution; powers are replaced by
+ * their tangent.  Where bodies are apart if they touch and touch if they are apart, because the dashpot's force begins with a
+ * jump, they stay as they were until the next step.
  */
 static bool newmark_advance(struct course *c, double ground)
 {
 	const struct pound_task *task = c->task;
 	double h = c->step;
-	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
+	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1], p1 = p;
 	struct pound_branch at[2] = {c->at[0], c->at[1]};
+	struct pound_touch touch = c->touch;
 	bool touching = c->touching, settled = false;
 	double d[2], a[2], b[2];
 	for (int round = 0; round < 2 * ROUNDS && !settled; round++) {
-		double stiff = touching ? contact_force(task, 1, 2 / h) : 0;
-		double still = touching ? contact_force(task, p, -q) : 0;
+		struct newmark_force force = touching ? newmark_force(&touch.on, p, p1) : (struct newmark_force){0};
+		double stiff = force.slope + force.rate * (2 / h), still = force.still + force.rate * -q;
 		for (int i = 0; i < 2; i++) {
 			const struct pound_task_body *body = &task->bodies[i];
 			a[i] = 4 / (h * h) + 2 * body->damping / h + at[i].piece.stiffness;
@@ -169,11 +217,17 @@ static bool newmark_advance(struct course *c, double ground)
 			settled &= same_piece(&next, &at[i]);
 			at[i] = next;
 		}
-		bool touch = touches(task, p + d[0] - d[1], 2 / h * (d[0] - d[1]) - q);
+		const double before = p1;
+		p1 = p + d[0] - d[1];
+		struct pound_touch next = touch_at(c, p, p1, q);
+		bool touch_now = touches(c, &next, p1, 2 / h * (d[0] - d[1]) - q);
 		if (round >= ROUNDS)
-			touch = c->touching;
-		settled &= touch == touching;
-		touching = touch;
+			touch_now = c->touching;
+		settled &=
+		    touch_now == touching && (!touching || same_branch(&next, &touch)) &&
+		    (!touching || touch.on.form == POUND_TOUCH_STRAIGHT || fabs(p1 - before) <= SETTLED * fabs(p1));
+		touching = touch_now;
+		touch = next;
 	}
 	for (int i = 0; i < 2; i++) {
 		double v = 2 / h * d[i] - c->v[i];
@@ -182,12 +236,23 @@ static bool newmark_advance(struct course *c, double ground)
 		c->u[i] += d[i];
 		c->at[i] = at[i];
 	}
+	c->touch = touch;
 	double overlap = c->u[0] - c->u[1] - task->gap;
-	course_note(c, touching ? contact_force(task, overlap, c->v[0] - c->v[1]) : 0, touching, q);
+	course_note(c, touching ? pound_contact_force_on(&touch.on, overlap, c->v[0] - c->v[1]) : 0, touching, q);
 	return settled;
 }
 
 /* ---- central differences ---- */
+
+/* Square of the highest angular frequency of bodies on the first pieces of their laws, the stiffest ones, with a contact of some
+ * stiffness between them [1/s2]. */
+static double stiffest(const struct pound_task *task, double contact)
+{
+	const double left = task->bodies[0].backbone.stiffness, right = task->bodies[1].backbone.stiffness;
+	const double mean = 0.5 * (left + contact + right + task->mass_ratio * contact);
+	const double half = 0.5 * (left + contact - right - task->mass_ratio * contact);
+	return mean + sqrt(half * half + task->mass_ratio * contact * contact);
+}
 
 /* One step of central differences, written with the velocities w half a step before and after:
  *
@@ -197,7 +262,7 @@ static bool central_advance(struct course *c, double ground)
 {
 	const struct pound_task *task = c->task;
 	double h = c->step, a[2], b[2], w[2];
-	double approach = c->v[0] - c->v[1];
+	double approach = c->v[0] - c->v[1], before = c->u[0] - c->u[1] - task->gap;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
 		double u = c->u[i] + h * c->rate[i];
@@ -210,12 +275,17 @@ static bool central_advance(struct course *c, double ground)
 	double p = c->u[0] - c->u[1] - task->gap, q = c->rate[0] - c->rate[1], force = 0;
 	bool touching = task->contact && p > 0;
 	if (touching) {
-		double still = contact_force(task, p, q / 2);
+		const struct pound_touch touch = touch_at(c, before, p, approach);
+		const struct pound_touch_line line = pound_contact_line(&touch.on, p);
+		double still = line.still + line.rate * (q / 2);
 		const double pushed[2] = {b[0] - share(task, 0) * still, b[1] - share(task, 1) * still};
-		pair_solve(a, task->contact_damping / 2, task->mass_ratio, pushed, w);
+		pair_solve(a, line.rate / 2, task->mass_ratio, pushed, w);
 		double rate = (q + w[0] - w[1]) / 2;
-		touching = touches(task, p, rate);
-		force = touching ? contact_force(task, p, rate) : 0;
+		touching = touches(c, &touch, p, rate);
+		force = touching ? line.still + line.rate * rate : 0;
+		c->touch = touch;
+		if (task->force == POUND_FORCE_POWER)
+			c->too_long[1] |= h * sqrt(stiffest(task, line.slope)) > 2;
 	}
 	for (int i = 0; i < 2 && !touching; i++)
 		w[i] = b[i] / a[i];
@@ -249,17 +319,6 @@ static void speed_limits(struct course *c)
 		c->speed_max[i] = UNSTABLE * (sqrt(energy / mass[i]) + sqrt(riding / mass[i]) * push);
 }
 
-/* Square of the highest angular frequency of bodies apart, or touching, on the first pieces of their laws: the stiffest ones
- * [1/s2]. */
-static double stiffest(const struct pound_task *task, bool touching)
-{
-	const double left = task->bodies[0].backbone.stiffness, right = task->bodies[1].backbone.stiffness;
-	const double contact = touching ? task->contact_stiffness : 0;
-	const double mean = 0.5 * (left + contact + right + task->mass_ratio * contact);
-	const double half = 0.5 * (left + contact - right - task->mass_ratio * contact);
-	return mean + sqrt(half * half + task->mass_ratio * contact * contact);
-}
-
 /* The state at the start, and the accelerations there in `rate`. */
 static void course_start(struct course *c, int n_steps)
 {
@@ -273,8 +332,15 @@ static void course_start(struct course *c, int n_steps)
 		law_follow(&task->bodies[i].backbone, &c->at[i], 0, c->u[i]);
 	}
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
-	c->touching = touches(task, p, q);
-	c->force = c->touching ? contact_force(task, p, q) : 0;
+	c->law = task->force == POUND_FORCE_LINEAR // Kelvin-Voigt, row 0
+	             ? (struct pound_contact_law){.stiffness = task->contact_stiffness,
+	                                          .dashpot = task->contact_damping,
+	                                          .tension = task->tension}
+	             : task->law;
+	if (task->contact)
+		c->touch = touch_at(c, 0, p, q);
+	c->touching = touches(c, &c->touch, p, q);
+	c->force = c->touching ? pound_contact_force_on(&c->touch.on, p, q) : 0;
 	c->result->first_speed = c->touching ? q : 0;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
@@ -374,9 +440,10 @@ void pound_fixed_central(const struct pound_solver *solver, const struct pound_t
 	struct course c = {.task = task, .result = result};
 	int n_steps = steps_of(task->time_step, solver->step);
 	course_start(&c, n_steps);
+	const bool power = task->force == POUND_FORCE_POWER; // as stiff as its overlap is large
 	for (int i = 0; i < 2; i++) {
 		c.rate[i] = c.v[i] + c.step / 2 * c.rate[i];
-		c.too_long[i] = c.step * sqrt(stiffest(task, i == 1)) > 2;
+		c.too_long[i] = c.step * sqrt(stiffest(task, i == 1 && !power ? c.law.stiffness : 0)) > 2;
 	}
 	course_run(&c, n_steps, central_advance, stop);
 }

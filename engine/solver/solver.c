@@ -5,6 +5,13 @@
 #include <math.h>
 #include <stddef.h>
 
+// forms of contact force that have branches: all but velocities that jump
+#define BRANCHES                                                                                  \
+	{                                                                                             \
+		[POUND_FORCE_LINEAR] = true, [POUND_FORCE_STRAIGHT] = true, [POUND_FORCE_PRODUCT] = true, \
+		[POUND_FORCE_POWER] = true                                                                \
+	}
+
 static const struct solver {
 	const char *name;
 	const char *text; /* one line of documentation */
@@ -18,9 +25,9 @@ static const struct solver {
     [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
                             .tolerance = true, .forces = {[POUND_FORCE_LINEAR] = true}},
     {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true,
-     .forces = {[POUND_FORCE_LINEAR] = true}},
+     .forces = BRANCHES},
     {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true,
-     .forces = {[POUND_FORCE_LINEAR] = true}},
+     .forces = BRANCHES},
     [POUND_SOLVER_ADAPTIVE] = {"adaptive",
                                "GSL's Runge-Kutta-Prince-Dormand (8, 9), restarted at every event",
                                pound_adaptive_run, .tolerance = true,

@@ -28,6 +28,7 @@ static const char *signals_name(int common)
 #define LAW            AT(scene.law)
 #define OWN            AT(scene.oscillators[0].law)
 #define IN_LAW(member) offsetof(struct pound_law, member)
+#define CONTACT(member) AT(scene.contact.member)
 #define SENSITIVITY    .kinds = " sensitivity "
 #define CONVERGENCE    .kinds = " convergence "
 #define SPECTRAL       .kinds = " floor_spectrum sensitivity "
@@ -39,6 +40,7 @@ static const char *signals_name(int common)
 #define PITCHED        .types = " kanai_tajimi harmonic "
 #define SCALED         .types = " kanai_tajimi white_noise harmonic "
 #define WITH_SCENE     .sceneless = FIELD_UNUSED
+#define LATER          .unwritten = true
 #define NOT_SCENE      .fixed = "only fields of the scene can vary"
 
 // clang-format off
@@ -54,6 +56,33 @@ static const char *signals_name(int common)
 	{pattern "/corrections", FIELD_COUNT, law + IN_LAW(corrections), 1, 0, 100, FIELD_CLOSED, "",         \
 	 .text = "times the yield displacement found from target_demand is corrected; from 2 on, at most in a search "    \
 	         "that ends at that demand"}
+
+#define CONTACT_ROWS(pattern, at)                                                                        \
+	{pattern "/model", FIELD_CHOICE, at(model), 0, 0, 0, FIELD_CLOSED, "",                                \
+	 .text = "contact model", .choice = pound_contact_name},                                              \
+	{pattern "/stiffness_ratio", FIELD_REAL, at(stiffness_ratio), 100, 0, INFINITY,                       \
+	 FIELD_OPEN, "", .text = "contact stiffness K over the larger stiffness beside it"},                  \
+	{pattern "/stiffness_n_m", FIELD_REAL, at(stiffness), 0, 0, INFINITY, FIELD_OPEN_MIN, "N/m",              \
+	 .text = "K, instead of stiffness_ratio", LATER},                                                     \
+	{pattern "/hertz_stiffness_n_m1_5", FIELD_REAL, at(hertz_stiffness), 0, 0, INFINITY, FIELD_OPEN_MIN,    \
+	 "N/m^1.5", .text = "K of p^1.5; absent: that whose largest overlap at reference_speed_m_s is that of the linear K", LATER}, \
+	{pattern "/reference_speed_m_s", FIELD_REAL, at(reference_speed), 0.1, 0, INFINITY, FIELD_OPEN, "m/s", \
+	 .text = "approach speed at which K p^1.5 and K p have the same largest overlap", LATER},              \
+	{pattern "/restitution", FIELD_REAL, at(restitution), 0.6, 0, 1, FIELD_CLOSED, "",                    \
+	 .text = "coefficient of restitution: relative speed after over before an isolated impact"},          \
+	{pattern "/calibration", FIELD_CHOICE, at(calibration), 0, 0, 0, FIELD_CLOSED, "",                    \
+	 .text = "dashpot from restitution: by the papers' formulas, or such that an isolated impact has it exactly", \
+	 .choice = pound_calibration_name, LATER},                                                            \
+	{pattern "/gap_m", FIELD_REAL, at(gap), 0, 0, INFINITY, FIELD_CLOSED, "m",                            \
+	 .text = "clear distance between the bodies at rest"},                                                \
+	{pattern "/tension", FIELD_BOOL, at(tension), 1, 0, 1, FIELD_CLOSED, "",                              \
+	 .text = "true: the dashpot may pull just before separation, and contact ends when the overlap does; false: contact ends when its force falls to 0"}, \
+	{pattern "/second_stiffness_ratio", FIELD_REAL, at(second_stiffness_ratio), 0.3, 0, 1, FIELD_CLOSED, "", \
+	 .text = "stiffness of the bilinear model beyond its yield overlap over K", LATER},                   \
+	{pattern "/yield_overlap_m", FIELD_REAL, at(yield_overlap), 0, 0, INFINITY, FIELD_OPEN_MIN, "m",         \
+	 .text = "yield overlap of the bilinear model, which needs it", LATER},                               \
+	{pattern "/speed_floor_m_s", FIELD_REAL, at(speed_floor), 0.001, 0, INFINITY, FIELD_OPEN, "m/s",      \
+	 .text = "least approach speed that a dashpot of D p'/v is divided by, or that a rigid impact counts with", LATER}
 
 #define SETTING_ROWS(solver, name, row, most, unit, what)                                                \
 	{"/convergence/" solver, FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",                                  \
@@ -94,16 +123,7 @@ const struct field fields[] = {
 
 	{"/scene/contact", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "contact between the bodies; absent: all defaults; null: no contact, the bodies pass each other"},
-	{"/scene/contact/model", FIELD_CHOICE, AT(scene.contact.model), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "contact model", .choice = pound_contact_name},
-	{"/scene/contact/stiffness_ratio", FIELD_REAL, AT(scene.contact.stiffness_ratio), 100, 0, INFINITY,
-	 FIELD_OPEN, "", .text = "contact stiffness over the larger oscillator stiffness"},
-	{"/scene/contact/restitution", FIELD_REAL, AT(scene.contact.restitution), 0.6, 0, 1, FIELD_CLOSED, "",
-	 .text = "coefficient of restitution: relative speed after over before an isolated impact"},
-	{"/scene/contact/gap_m", FIELD_REAL, AT(scene.contact.gap), 0, 0, INFINITY, FIELD_CLOSED, "m",
-	 .text = "clear distance between the bodies at rest"},
-	{"/scene/contact/tension", FIELD_BOOL, AT(scene.contact.tension), 1, 0, 1, FIELD_CLOSED, "",
-	 .text = "true: the dashpot may pull just before separation, and contact ends when the overlap does; false: contact ends when its force falls to 0"},
+	CONTACT_ROWS("/scene/contact", CONTACT),
 
 	{"/scene/excitation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "ground motion; absent: all defaults"},

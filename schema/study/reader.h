@@ -12,6 +12,7 @@ struct reader {
 	struct problems *problems;
 	struct pound_study *study;
 	const char *kind, *excitation, *solver; /* names; NULL: not known */
+	const cJSON *sweeps;                    /* of the document; NULL: none */
 	double *number;                         /* next free place for a sample or a sweep value */
 	char *text;                             /* next free place for a text */
 	const struct field *swept; /* by the sweep in hand; NULL: its path names no field that varies */
@@ -58,6 +59,9 @@ void reader_values(struct reader *reader, const struct field *field, const cJSON
 /* Floor spectra: study_spectrum.c. */
 void reader_frequencies(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_ordinates(struct reader *reader, const cJSON *document);
+
+/* Members of a contact that its models do not read: study_contact.c. */
+void reader_contact(struct reader *reader, const cJSON *node, int model);
 
 /* Settings of solvers: study_settings.c. */
 void settings_default(struct pound_study *study);

@@ -492,6 +492,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	if (!problems_at(problems, "/outputs"))
 		check_outputs(study, problems);
 	check_forces(study, problems);
+	study_contact_check(study, problems);
 	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
 		study_spectrum_check(study, problems);
 	if (rows_known(problems) && study_check_known(study, "/excitation/signals", problems) &&

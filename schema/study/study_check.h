@@ -18,6 +18,11 @@ void study_check_reach(const struct pound_study *study, const char *path, double
 bool study_check_known(const struct pound_study *study, const char *path, const struct problems *problems);
 bool study_check_steps_known(const struct pound_study *study, const struct problems *problems);
 
+/* What contact models do not take: study_contact.c. */
+void study_contact_check(const struct pound_study *study, struct problems *problems);
+/* Why varying a member of the contact would change nothing, NULL when it may vary. */
+const char *study_contact_idle(const struct pound_study *study, const char *member);
+
 /* Whether the study's excitation uses a field. */
 bool study_check_uses(const struct pound_study *study, const char *pattern);
 

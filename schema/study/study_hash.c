@@ -24,13 +24,20 @@ static bool is_name(const struct field *field)
 	       strcmp(field->pattern, "/inputs/*/name") == 0;
 }
 
+/* Whether a member of the scene has its default value and came after hashes had been stored. */
+static bool is_unwritten(const struct field *field, const void *base)
+{
+	const struct pound_field at = {.type = field_types[field->type].varied, .offset = field->offset};
+	return field->unwritten && pound_scene_field(base, at) == field->absent;
+}
+
 /* The members at a pattern that hold one value each. */
 static void write_members(struct canon *c, const char *pattern, const void *base)
 {
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		if (fields_child(field, pattern) && fields_used(field, c->kind, c->excitation, c->solver) &&
-		    !is_name(field) && field_types[field->type].write)
+		    !is_name(field) && !is_unwritten(field, base) && field_types[field->type].write)
 			field_types[field->type].write(&c->w, field, fields_name(field),
 			                               (const char *)base + field->offset);
 	}

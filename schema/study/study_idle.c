@@ -82,6 +82,8 @@ const char *study_idle(const struct pound_study *study, const struct field *fiel
 		return "a rigid wall has no such field";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
 		return "has no effect: there is no contact in this scene";
+	if (strncmp(field->pattern, "/scene/contact/", 15) == 0)
+		return study_contact_idle(study, fields_name(field));
 	if (strstr(field->pattern, "/law/"))
 		return law_idle(study, field, oscillator);
 	return NULL;

@@ -162,8 +162,8 @@ static void read_own_law(struct reader *r, const struct field *field, const cJSO
 static void read_contact(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	r->study->scene.contact.present = !cJSON_IsNull(node);
-	if (!cJSON_IsNull(node))
-		reader_object(r, field->pattern, node, base);
+	if (!cJSON_IsNull(node) && reader_object(r, field->pattern, node, base))
+		reader_contact(r, node, r->study->scene.contact.model);
 }
 
 /* Notes a member that is there for nothing. */
@@ -315,12 +315,13 @@ static const char *chosen(const cJSON *object, const char *pattern)
 	return name || isnan(field->absent) ? NULL : field->choice((int)field->absent);
 }
 
-/* Kind, excitation and solver decide which members there are, so they are looked up before anything is read. */
+/* Kind, excitation, solver and swept contact models decide which members there are, so they are looked up before anything is read. */
 static void foresee(struct reader *r, const cJSON *document)
 {
 	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(document, "scene");
 	const cJSON *excitation = cJSON_GetObjectItemCaseSensitive(scene, "excitation");
 	const cJSON *solver = cJSON_GetObjectItemCaseSensitive(document, "solver");
+	r->sweeps = cJSON_GetObjectItemCaseSensitive(document, "sweep");
 	r->kind = chosen(document, "/kind");
 	r->excitation = chosen(excitation, "/scene/excitation/type");
 	r->solver = chosen(solver, "/solver/method");

@@ -94,19 +94,23 @@ static void default_of(const struct field *field, char *text, size_t size)
 		snprintf(text, size, "%.15g", field->absent);
 }
 
-/* " (only a, b)" of names between spaces. */
-static void only(const char *names, char *text, size_t size)
+/* "; only a, b" of names between spaces. */
+static void list_names(const char *word, const char *names, char *text, size_t size)
 {
 	size_t n = strlen(text);
-	if (!names)
-		return;
-	n += (size_t)snprintf(text + n, size - n, "; only");
+	n += (size_t)snprintf(text + n, size - n, "; %s", word);
 	for (const char *c = names; c[1] && n < size - 2; c++) {
 		if (*c == ' ' && c > names)
 			text[n++] = ',';
 		text[n++] = *c;
 	}
 	text[n] = '\0';
+}
+
+static void only(const char *names, char *text, size_t size)
+{
+	if (names)
+		list_names("only", names, text, size);
 }
 
 /* Names of the solvers that use a field, between spaces. */
@@ -117,6 +121,24 @@ static const char *solvers_of(const struct field *field, char *text, size_t size
 		if (field->solvers(row))
 			n += (size_t)snprintf(text + n, size - n, "%s ", pound_solver_name(row));
 	return field->solvers ? text : NULL;
+}
+
+/* "; only a, b" of the contact models that read a member, or "; not c" if more do than do not. */
+static void models_of(const struct field *field, char *text, size_t size)
+{
+	static const char contact[] = "/scene/contact";
+	char names[2][256] = {" ", " "};
+	int n[2] = {0};
+	if (strncmp(field->pattern, contact, strlen(contact)) != 0 || field->type == FIELD_OBJECT)
+		return;
+	for (int row = 0; pound_contact_name(row); row++) {
+		const bool reads = pound_contact_reads(row, fields_name(field));
+		const size_t length = strlen(names[reads]);
+		snprintf(names[reads] + length, sizeof names[0] - length, "%s ", pound_contact_name(row));
+		n[reads]++;
+	}
+	if (n[0] > 0)
+		list_names(n[0] < n[1] ? "not" : "only", names[n[0] >= n[1]], text, size);
 }
 
 static const char STUDY[] = "schema/study.md";
@@ -139,6 +161,7 @@ static void every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it(vo
 		only(field->kinds, meaning, sizeof meaning);
 		only(field->types, meaning, sizeof meaning);
 		only(solvers_of(field, solvers, sizeof solvers), meaning, sizeof meaning);
+		models_of(field, meaning, sizeof meaning);
 		snprintf(line, sizeof line, "| `%s` | %s | %s | %s |\n", field->pattern, absent, takes, meaning);
 		if (strstr(page, line))
 			continue;

@@ -11,7 +11,7 @@ static const struct addition {
 	const char *newest; /* as grep -w finds it in sources */
 } additions[] = {
     {"a law", "\"origin_oriented\""},
-    {"a contact model", "\"kelvin_voigt\""},
+    {"a contact model", "\"rigid\""},
     {"an excitation", "\"white_noise\""},
     {"an output", "\"demand_amplification\""},
     {"a floor spectrum", "\"dirac_peaks\""},

@@ -73,6 +73,8 @@ static void any_other_change_changes_it(void **state)
 	    {"\"restitution\": 0.6", "\"restitution\": 0.5"},
 	    {"\"gap_m\": 0.01", "\"gap_m\": 0"},
 	    {"\"tension\": true", "\"tension\": false"},
+	    {"\"tension\": true", "\"tension\": true, \"calibration\": \"exact\""},
+	    {"\"stiffness_ratio\": 100", "\"stiffness_n_m\": 100"},
 	    {"\"high_pass_ratio\": 0.1", "\"high_pass_ratio\": 0.2"},
 	    {"\"signals\": 5", "\"signals\": 6"},
 	    {"\"time_step_s\": 0.01", "\"time_step_s\": 0.02"},
@@ -92,6 +94,7 @@ static void any_other_change_changes_it(void **state)
 			fail_msg("%s for %s does not change the hash", changes[i].to, changes[i].from);
 	assert_false(same(study_documents_convergence, "[0.01, 0.001]", "[0.01]"));
 	assert_false(same(study_documents_convergence, "\"history_s\": 2", "\"history_s\": 3"));
+	assert_true(same(study_documents_sensitivity, "\"tension\": true", "\"calibration\": \"classic\""));
 	assert_true(same(study_documents_convergence, ", \"history_s\": 2", ""));
 	assert_false(same(study_documents_response, "\"oscillators\"", "\"contact\": null, \"oscillators\""));
 	assert_false(same(study_documents_response, "{\"frequency_hz\": 3.1}", "{\"rigid_wall\": true}"));
