@@ -24,24 +24,24 @@ static const char *signals_name(int common)
 	return common == 0 ? "independent" : common == 1 ? "common" : NULL;
 }
 
-#define AT(member)     offsetof(struct pound_study, member)
-#define LAW            AT(scene.law)
-#define OWN            AT(scene.oscillators[0].law)
-#define IN_LAW(member) offsetof(struct pound_law, member)
+#define AT(member)      offsetof(struct pound_study, member)
+#define LAW             AT(scene.law)
+#define OWN             AT(scene.oscillators[0].law)
+#define IN_LAW(member)  offsetof(struct pound_law, member)
 #define CONTACT(member) AT(scene.contact.member)
-#define SENSITIVITY    .kinds = " sensitivity "
-#define CONVERGENCE    .kinds = " convergence "
-#define SPECTRAL       .kinds = " floor_spectrum sensitivity "
-#define FLOORED        .kinds = " floor_spectrum "
-#define SOLVED         .kinds = " response sensitivity "
-#define FILTERED       .types = " kanai_tajimi "
-#define RANDOM         .types = " kanai_tajimi white_noise "
-#define LASTING        .types = " white_noise harmonic "
-#define PITCHED        .types = " kanai_tajimi harmonic "
-#define SCALED         .types = " kanai_tajimi white_noise harmonic "
-#define WITH_SCENE     .sceneless = FIELD_UNUSED
-#define LATER          .unwritten = true
-#define NOT_SCENE      .fixed = "only fields of the scene can vary"
+#define SENSITIVITY     .kinds = " sensitivity "
+#define CONVERGENCE     .kinds = " convergence "
+#define SPECTRAL        .kinds = " floor_spectrum sensitivity "
+#define FLOORED         .kinds = " floor_spectrum "
+#define SOLVED          .kinds = " response sensitivity "
+#define FILTERED        .types = " kanai_tajimi "
+#define RANDOM          .types = " kanai_tajimi white_noise "
+#define LASTING         .types = " white_noise harmonic "
+#define PITCHED         .types = " kanai_tajimi harmonic "
+#define SCALED          .types = " kanai_tajimi white_noise harmonic "
+#define WITH_SCENE      .sceneless = FIELD_UNUSED
+#define LATER           .unwritten = true
+#define NOT_SCENE       .fixed = "only fields of the scene can vary"
 
 // clang-format off
 #define LAW_ROWS(pattern, law)                                                                          \

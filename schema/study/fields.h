@@ -42,7 +42,8 @@ struct field {
 	const char *types;        /* names of the excitations that use it, likewise */
 	bool (*solvers)(int row); /* whether the solver of that row uses it; NULL: all */
 	enum field_sceneless sceneless;
-	bool unwritten; /* left out of a study's hash with its default value: it came after hashes had been stored */
+	bool
+	    unwritten; /* left out of a study's hash with its default value: it came after hashes had been stored */
 	const char *fixed; /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
 };
 
