@@ -1,68 +1,134 @@
 /* What a study will take, before any of it is run.
  *
- * Time is that of the runs, each of the mean number of samples of its ground motion, or of the steps of its solver, of the
- * spectra of its floor and of the reductions.  What a design shares between its samples is in the unit costs as it is for
- * the examples, which take the estimated time within three (soak_cost); so do four of five studies drawn at random, and none
- * takes more than eight times as long (soak_valid): how often bodies touch, and how much is shared, nobody knows before. */
+ * Operations are counted as the engine shares them, and each has its seconds.  How often bodies touch, yield and stay together
+ * is not known before: it is taken from their frequencies, masses, gap and the peak ground acceleration, as it is in the mean of
+ * many scenes.  soak_valid says how near this is, and unit_cost for a part of its studies.  Two things are bounded and not
+ * predicted: a design that grows counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
 #include "schema/study/cost.h"
 
 #include <assert.h>
 #include <math.h>
 
+#include "engine/ground/excitation.h"
 #include "engine/solver/solver.h"
 #include "schema/json/json_writer.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
 
-enum { MIB = 1 << 20 };
-enum { QUANTILES = 64 /* of a distribution, for a mean */ };
-
-/* [s] of one core: for a study, for a sample of a ground motion by each solver, for a step within it, and for a radian that
- * an oscillator turns by within it, where that is too many for maps */
-static const double STUDY_S = 0.001;
-static const struct {
-	double sample, step, radian;
-} units[] = {
-    // in the order of the solvers: event, newmark, central_difference, adaptive
-    {5e-8, 0, 3e-7},
-    {1.0e-7, 6e-8, 0},
-    {1.0e-7, 4e-8, 0},
-    {2e-6, 0, 6e-7},
+enum {
+	MIB = 1 << 20,
+	QUANTILES = 64,    /* of a distribution, for a mean */
+	HISTORIES = 32,    /* times at which a convergence study compares displacements */
+	CHECK_EVERY = 100, /* items between two that are run again to check them, ... */
+	CHECKS_LEAST = 8,  /* ... but at least so many runs */
 };
+
+static const double PI = 3.14159265358979323846;
+
+/* What is counted.  Whatever may be shared is counted once: a ground motion, a response without pounding, a run. */
+enum operation {
+	STUDY,    /* the study itself */
+	BEGIN,    /* ground motion, response without pounding, or run */
+	GROUND,   /* sample of a ground motion */
+	FREE,     /* sample of a response without pounding, */
+	YIELD,    /* ... of a body that may yield, */
+	FLOW,     /* ... and radian that this turns by, in which it yields and returns */
+	MARCH,    /* sample of a run with pounding, */
+	TOUCH,    /* ... radian in which the bodies are near each other, */
+	SWING,    /* ... times the logarithm of the contact's own frequency, */
+	POUNDED,  /* ... and radian that a body turns by which may yield */
+	TURN,     /* radian of a sample beyond those that go by maps */
+	START,    /* sample of a march by another solver, */
+	NEWMARK,  /* ... step of one, */
+	CENTRAL,  /* ... of the other, */
+	ADAPT,    /* ... radian of the adaptive one, by its tolerance, */
+	FOLLOW,   /* ... and radian in which the bodies are near each other, by the contact's frequency */
+	FLOOR,    /* step of a floor, */
+	PART,     /* ... radian in which the bodies are near each other, */
+	RIDE,     /* ... and of the contact while they may stay together */
+	ORDINATE, /* the same of an oscillator on it, */
+	BOUNCE,
+	SHAKE,
+	PULSE, /* ... and pulse of an idealized train that it gets */
+	DRAW,  /* drawn row of a resample, */
+	TILE,  /* ... of a tile of its moments, */
+	FIT,   /* and sample that polynomials are fitted to */
+	CLOCK, /* trial of a convergence study, which is timed */
+	OPERATIONS
+};
+
+enum { KINDS = 4 };
+
+/* Seconds of one core for each, by the kind of study: a response study records all of a run, the others what they need of it.
+ * Fitted to 2,500 valid studies (soak_valid has their distribution) with eight lanes. */
+static const double seconds_of[OPERATIONS][KINDS] = {
+    // response, sensitivity, convergence, floor_spectrum
+    [STUDY] = {1e-3, 1e-3, 1e-3, 1e-3},
+    [BEGIN] = {2.2e-6, 1.6e-6, 2.2e-5, 1.6e-5},
+    [GROUND] = {2.0e-8, 9e-9, 9.8e-8, 2.5e-8},
+    [FREE] = {4.2e-8, 9e-10, 2.8e-8, 3.4e-9},
+    [YIELD] = {3.6e-8, 2.5e-9, 2.8e-9, 3.4e-10},
+    [FLOW] = {1.02e-7, 9.6e-9, 4.2e-8, 1.7e-9},
+    [MARCH] = {5.0e-8, 1.7e-9, 5.6e-8, 1.8e-7},
+    [TOUCH] = {3.9e-7, 8.4e-8, 2.1e-6, 8e-8},
+    [SWING] = {3.4e-8, 2.3e-8, 4.2e-8, 1.5e-7},
+    [POUNDED] = {9.4e-8, 5e-9, 6.4e-7, 5.2e-9},
+    [TURN] = {3e-7, 3e-7, 3e-7, 3e-7},
+    [START] = {8e-8, 8e-8, 1.4e-9, 0},
+    [NEWMARK] = {2.3e-8, 2.3e-8, 6.3e-10, 0},
+    [CENTRAL] = {1.5e-8, 1.5e-8, 6.3e-10, 0},
+    [ADAPT] = {8.5e-7, 8.5e-7, 4.5e-8, 0},
+    [FOLLOW] = {1.0e-6, 1.0e-6, 4.2e-7, 0},
+    [FLOOR] = {0, 3.9e-8, 0, 3.9e-8},
+    [PART] = {0, 1.8e-6, 0, 1.8e-6},
+    [RIDE] = {0, 2.1e-8, 0, 2.1e-8},
+    [ORDINATE] = {0, 5.6e-9, 0, 5.6e-9},
+    [BOUNCE] = {0, 9e-8, 0, 9e-8},
+    [SHAKE] = {0, 2.6e-10, 0, 2.6e-10},
+    [PULSE] = {0, 0, 0, 6.2e-8},
+    [DRAW] = {0, 5e-9, 0, 0},
+    [TILE] = {0, 5e-9, 0, 0},
+    [FIT] = {0, 1.5e-6, 0, 0},
+    [CLOCK] = {0, 0, 0.029, 0},
+};
+
+// the step of a solver, in the order of the solvers: event, newmark, central_difference, adaptive
+static const enum operation step_of[] = {MARCH, NEWMARK, CENTRAL, ADAPT};
+
+static_assert(sizeof step_of / sizeof step_of[0] == POUND_SOLVERS, "a row for each solver");
+
+struct counts {
+	double of[OPERATIONS];
+};
+
 /* radians of a sample that go by maps, and with more than which a run ends as chatter */
 static const double MAPPED = 2, TURNED_MOST = 5e5;
 
-static_assert(sizeof units / sizeof units[0] == POUND_SOLVERS, "a row for each solver");
+/* The logarithm of a contact's frequency counts from here: square of it over that of the stiffer body. */
+static const double SWINGS = 0.003;
 
-/* [s] for a sample of a floor that spectra ride on, and for each frequency of these; and how many there are of both for a run:
- * a study of spectra has the floor with pounding and without, and the contact's own part */
-static const double FLOOR_S = 3e-7, ORDINATE_S = 1.1e-8;
+/* runs more whose time the lanes take that are not all filled to the end */
+static const double TAIL = 2.7;
+
+/* how much finer checks are than the runs that they check */
+static const double CHECKED = 2;
+
+/* How far bodies come towards each other, over the peak ground acceleration and the square of the softer one's frequency; and
+ * with what gap they do not stay together any more. */
+static const double NEAR = 0.4, RIDING = 0.01;
+
+/* radians of the adaptive solver that take as long as to start again at a sample */
+static const double ADAPT_START = 0.55;
+
+/* [rad] of a step of a floor */
+static const double FLOOR_RADIANS = 1.5;
+
+/* how many floors and spectra a run has: with pounding and without, and the contact's own part */
 static const struct {
 	int floors, spectra;
-} rides[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
+} ridden[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
 
-/* part of the time in which bodies are taken to ride on each other, and the radians of a step of a floor */
-static const double RIDING = 0.02, FLOOR_RADIANS = 1.5;
-
-/* [s] for a pulse of an idealised train, at each frequency */
-static const double PULSE_S = 6e-8;
-
-/* [s] of an output's indices: for a drawn row of a resample and each tile of its moments, and for a sample that polynomials
- * are fitted to; and how many moments there are, for all and for each input */
-static const double DRAW_S = 5e-9, TILE_S = 5e-9, FIT_S = 1.5e-6;
-enum { RESAMPLES = 2000, MOMENTS = 10, MOMENTS_INPUT = 7, TILE = 16 };
-
-/* marches by which a yield displacement is found, over those of the scene */
-static const double YIELDING = 0.7;
-
-/* how much more a kind computes of a run than the outputs of a sensitivity study: other measures, histories; and what of a
- * run's time each further response takes that a search for a target demand makes */
-static const struct {
-	double run, searched;
-} kinds[] = {[POUND_KIND_RESPONSE] = {3, 0.3},
-             [POUND_KIND_SENSITIVITY] = {1, 0.1},
-             [POUND_KIND_CONVERGENCE] = {12, 0.1},
-             [POUND_KIND_FLOOR_SPECTRUM] = {3, 0.1}};
+enum { RESAMPLES = 2000, MOMENTS = 10, MOMENTS_INPUT = 7, TILE_COLUMNS = 16 };
 
 /* Corrections that a search takes where it may, in the mean. */
 static const double SEARCH_MEAN = 6;
@@ -100,42 +166,68 @@ static double mean(const struct pound_study *study, size_t offset, double power)
 
 #define MEAN(study, member, power) mean((study), offsetof(struct pound_scene, member), (power))
 
-/* Samples of a ground motion, in the mean. */
-static double samples_mean(const struct pound_study *study)
+/* Seconds of a ground motion, in the mean. */
+static double duration_mean(const struct pound_study *study)
 {
 	const struct pound_excitation *excitation = &study->scene.excitation;
 	if (excitation->n_record)
-		return excitation->n_record;
-	bool cycles = fields_used(fields_find("/scene/excitation/cycles"), NULL,
-	                          pound_excitation_name(excitation->type), NULL);
-	double duration = cycles ? MEAN(study, excitation.cycles, 1) * MEAN(study, excitation.frequency_hz, -1)
-	                         : MEAN(study, excitation.duration, 1);
-	return duration * MEAN(study, excitation.time_step, -1) + 1;
+		return excitation->n_record * MEAN(study, excitation.time_step, 1);
+	return fields_used(fields_find("/scene/excitation/cycles"), NULL, pound_excitation_name(excitation->type),
+	                   NULL)
+	           ? MEAN(study, excitation.cycles, 1) * MEAN(study, excitation.frequency_hz, -1)
+	           : MEAN(study, excitation.duration, 1);
 }
 
-/* What the contact's own frequency, over those of the oscillators, adds to the steps of a solver that follows each swing
- * of it: it goes with the root of the stiffness and of the masses' ratio. */
-static double swings(const struct pound_study *study)
+/* Samples of a ground motion, in the mean. */
+static double samples_mean(const struct pound_study *study)
 {
-	bool wall = study->scene.oscillators[1].rigid_wall;
-	double light = wall ? 1 : MEAN(study, oscillators[0].mass, 0.5) * MEAN(study, oscillators[1].mass, -0.5);
-	double heavy = wall ? 1 : MEAN(study, oscillators[0].mass, -0.5) * MEAN(study, oscillators[1].mass, 0.5);
-	return study->scene.contact.present
-	           ? 0.002 * MEAN(study, contact.stiffness_ratio, 0.5) * fmax(light, heavy)
-	           : 0;
+	return duration_mean(study) * MEAN(study, excitation.time_step, -1) + 1;
 }
 
-/* Radians of a sample that oscillators turn by, beyond those that go by maps. */
-static double turned(const struct pound_study *study)
+/* What a part of the scene's members may be part of. */
+static bool of_motion(size_t offset)
 {
-	const double step = 2 * 3.14159265358979323846 * MEAN(study, excitation.time_step, 1);
-	const double frequency[] = {
-	    MEAN(study, oscillators[0].frequency_hz, 1),
-	    study->scene.oscillators[1].rigid_wall ? 0 : MEAN(study, oscillators[1].frequency_hz, 1)};
-	double sum = 0;
-	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		sum += fmax(0, step * frequency[i] - MAPPED);
-	return fmin(sum, TURNED_MOST);
+	const size_t first = offsetof(struct pound_scene, excitation);
+	return offset >= first && offset < first + sizeof(struct pound_excitation);
+}
+
+static size_t law_offset(const struct pound_study *study, int body)
+{
+	return (size_t)((const char *)pound_scene_law(&study->scene, body) - (const char *)&study->scene);
+}
+
+/* Whether a response without pounding depends on a member: all of its body but the mass. */
+static bool of_body(const struct pound_study *study, int body, size_t offset)
+{
+	const size_t first = offsetof(struct pound_scene, oscillators) +
+	                     (size_t)body * sizeof(struct pound_oscillator),
+	             law = law_offset(study, body);
+	return of_motion(offset) || (offset >= law && offset < law + sizeof(struct pound_law)) ||
+	       (offset >= first && offset < first + sizeof(struct pound_oscillator) &&
+	        offset != first + offsetof(struct pound_oscillator, mass));
+}
+
+enum { ALL = -2, MOTION = -1 /* or a body */ };
+
+/* How many of an item's ground motions, or responses of a body, differ from each other: it has samples in all cells. */
+static double distinct(const struct pound_study *study, int what)
+{
+	const int samples = study->kind == POUND_KIND_SENSITIVITY ? pound_design_samples(study) : 1;
+	int n_inputs = 0;
+	double cells = 1;
+	for (int j = 0; j < study->n_inputs; j++) {
+		const size_t at = study->inputs[j].field.offset;
+		n_inputs += what == ALL || (what == MOTION ? of_motion(at) : of_body(study, what, at));
+	}
+	for (int s = 0; s < study->n_sweeps; s++) {
+		const size_t at = study->sweeps[s].field.offset;
+		if (what == ALL || (what == MOTION ? of_motion(at) : of_body(study, what, at)))
+			cells *= study->sweeps[s].n_values;
+	}
+	const bool common = study->design.common_signals || !pound_excitation_random(&study->scene.excitation);
+	// A, B, and A with each column of B that matters, which is B where there is one alone
+	const int some = n_inputs > 1 ? (int)fmin(2 + n_inputs, samples) : n_inputs ? (int)fmin(2, samples) : 1;
+	return cells * (common ? some : samples);
 }
 
 static bool varies(const struct pound_study *study, size_t offset)
@@ -149,77 +241,185 @@ static bool varies(const struct pound_study *study, size_t offset)
 	return false;
 }
 
-/* Corrections of a run beyond those that are no search: of each body whose law may have one. */
-static double searched(const struct pound_study *study)
+/* What is known of the bodies in the mean. */
+struct bodies {
+	double hz[POUND_OSCILLATORS];      /* 0: a wall */
+	double marches[POUND_OSCILLATORS]; /* of one that may yield, for its demand, 0: of one that does not */
+	double near;                       /* part of the time in which they may touch */
+	double riding;                     /* ... and in which they may stay together */
+	double ratio;                      /* largest square of the contact's frequency over the faster one's */
+	double
+	    touching; /* [Hz] how fast they may come back to each other: by the faster, and by the lighter one */
+};
+
+static struct bodies bodies_of(const struct pound_study *study)
 {
-	const struct pound_oscillator *o = study->scene.oscillators;
-	double sum = 0;
+	const bool wall = study->scene.oscillators[1].rigid_wall;
+	struct bodies b = {.hz = {MEAN(study, oscillators[0].frequency_hz, 1),
+	                          wall ? 0 : MEAN(study, oscillators[1].frequency_hz, 1)}};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_law *law = pound_scene_law(&study->scene, i);
-		const size_t at = (size_t)((const char *)law - (const char *)&study->scene);
-		const size_t times = at + offsetof(struct pound_law, corrections);
+		const size_t at = law_offset(study, i), times = at + offsetof(struct pound_law, corrections);
 		const double corrections = varies(study, times) ? mean(study, times, 1) : law->corrections;
-		bool linear = law->type == 0 && !varies(study, at + offsetof(struct pound_law, type));
-		if (!o[i].rigid_wall && !linear && law->yield_displacement == 0 && corrections > 1)
-			sum += fmin(corrections, SEARCH_MEAN) - 1;
+		const bool linear = law->type == 0 && !varies(study, at + offsetof(struct pound_law, type));
+		if (b.hz[i] > 0 && !linear)
+			b.marches[i] = 1 + (law->yield_displacement > 0 ? 0 : fmin(corrections, SEARCH_MEAN));
 	}
-	return sum;
+	const double soft = 2 * PI * (wall ? b.hz[0] : fmin(b.hz[0], b.hz[1]));
+	const double masses =
+	    wall ? 1
+	         : fmax(MEAN(study, oscillators[0].mass, 1) * MEAN(study, oscillators[1].mass, -1),
+	                MEAN(study, oscillators[0].mass, -1) * MEAN(study, oscillators[1].mass, 1));
+	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
+	const double mass = wall ? 1 : MEAN(study, oscillators[1].mass, 1) * MEAN(study, oscillators[0].mass, -1);
+	b.touching =
+	    wall ? b.hz[0] : 0.5 * fmax(b.hz[0], b.hz[1]) + 0.5 * (b.hz[0] * mass + b.hz[1]) / (1 + mass);
+	const double gap = MEAN(study, contact.gap, 1) * soft * soft / peak;
+	b.near = 1 / (1 + gap / NEAR);
+	b.riding = 1 / (1 + gap / RIDING);
+	b.ratio = MEAN(study, contact.stiffness_ratio, 1) * fmax(1, masses);
+	return b;
 }
 
-/* [s] of the reductions of a sensitivity study. */
-static double reductions_s(const struct pound_study *study)
+/* Radians of a sample that oscillators turn by, beyond those that go by maps. */
+static double turned(const struct bodies *b, double time_step)
 {
-	const double outputs = (double)study_cells(study) * study->n_outputs;
-	const int tiles = (MOMENTS + MOMENTS_INPUT * study->n_inputs + TILE - 1) / TILE;
+	double sum = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		sum += fmax(0, 2 * PI * b->hz[i] * time_step - MAPPED);
+	return fmin(sum, TURNED_MOST);
+}
+
+/* Adds what so many items take by the event-driven solver. */
+static void count_event(const struct pound_study *study, double items, struct counts *c)
+{
+	const struct bodies b = bodies_of(study);
+	const double samples = samples_mean(study), radians = 2 * PI * duration_mean(study);
+	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		if (b.hz[i] == 0)
+			continue;
+		const double free = items * distinct(study, i);
+		c->of[BEGIN] += free * (1 + b.marches[i]);
+		c->of[FREE] += free * samples;
+		c->of[YIELD] += free * b.marches[i] * samples;
+		c->of[FLOW] += free * b.marches[i] * radians * b.hz[i];
+		c->of[POUNDED] += b.marches[i] > 0 ? pounded * radians * b.hz[i] : 0;
+	}
+	const double touches = pounded * b.near * radians * b.touching;
+	c->of[BEGIN] += pounded + items * distinct(study, MOTION);
+	c->of[MARCH] += pounded * samples;
+	c->of[TOUCH] += touches;
+	c->of[SWING] += touches * log1p(SWINGS * b.ratio);
+	c->of[TURN] +=
+	    (pounded > 0 ? pounded : items) * samples * turned(&b, MEAN(study, excitation.time_step, 1));
+}
+
+/* The same by a solver of a fixed step, or the adaptive one, which run one thing at a time. */
+static void count_steps(const struct pound_study *study, const struct pound_solver *solver, double items,
+                        struct counts *c)
+{
+	const struct bodies b = bodies_of(study);
+	const double samples = samples_mean(study), radians = 2 * PI * duration_mean(study);
+	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	double marches = pounded, turns = pounded * radians * fmax(b.hz[0], b.hz[1]);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const double free = b.hz[i] > 0 ? items * distinct(study, i) * (1 + b.marches[i]) : 0;
+		marches += free;
+		turns += free * radians * b.hz[i];
+	}
+	c->of[BEGIN] += marches + items * distinct(study, MOTION);
+	if (pound_solver_takes_step(solver->method)) {
+		c->of[START] += marches * samples;
+		c->of[step_of[solver->method]] +=
+		    marches * samples * fmax(1, MEAN(study, excitation.time_step, 1) / solver->step);
+	} else {
+		// a sample starts a step as half a radian does
+		c->of[ADAPT] += turns * pow(solver->tolerance, -1. / 12) + ADAPT_START * marches * samples;
+		c->of[FOLLOW] += pounded * b.near * radians * b.touching * pow(b.ratio, 0.25);
+		c->of[TURN] += pounded * samples * turned(&b, MEAN(study, excitation.time_step, 1));
+	}
+}
+
+static void count_runs(const struct pound_study *study, const struct pound_solver *solver, double items,
+                       struct counts *c)
+{
+	if (solver->method == POUND_SOLVER_EVENT)
+		count_event(study, items, c);
+	else
+		count_steps(study, solver, items, c);
+}
+
+/* Adds what spectra of floors take. */
+static void count_floors(const struct pound_study *study, double runs, struct counts *c)
+{
+	const struct bodies b = bodies_of(study);
+	const double radians = 2 * PI * duration_mean(study), fast = fmax(b.hz[0], b.hz[1]);
+	const double steps = samples_mean(study) + radians * fast / FLOOR_RADIANS;
+	const double touches = study->scene.contact.present ? runs * radians * b.touching * b.near : 0,
+	             rides = study->scene.contact.present
+	                         ? runs * radians * fast * b.riding * sqrt(b.ratio) / FLOOR_RADIANS
+	                         : 0;
+	const int floors = ridden[study->kind].floors, spectra = ridden[study->kind].spectra,
+	          n = study->spectrum.n;
+	c->of[FLOOR] += runs * floors * steps;
+	c->of[PART] += touches;
+	c->of[RIDE] += rides;
+	c->of[ORDINATE] += runs * n * spectra * steps;
+	c->of[BOUNCE] += n * touches;
+	c->of[SHAKE] += n * rides;
+	if (study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		c->of[PULSE] += runs * n * study->spectrum.pulses;
+}
+
+/* Adds the reductions of a sensitivity study. */
+static void count_reductions(const struct pound_study *study, struct counts *c)
+{
+	const double outputs = (double)study_cells(study) * study->n_outputs,
+	             rows = pound_design_rows_most(study);
+	const int tiles = (MOMENTS + MOMENTS_INPUT * study->n_inputs + TILE_COLUMNS - 1) / TILE_COLUMNS;
 	// where rows come in groups, these are left out one by one instead
 	const bool grouped =
 	    study->design.until.half_width > 0 || pound_design_quasi_random(study->design.method);
-	const double estimators = study->design.estimator ? 3 : 1; // the one named twice
-	return outputs * pound_design_rows_most(study) *
-	       ((grouped ? 0 : estimators * RESAMPLES * (DRAW_S + TILE_S * tiles)) +
-	        pound_design_samples(study) * FIT_S);
+	const double draws =
+	    grouped ? 0 : outputs * rows * RESAMPLES * (study->design.estimator ? 3 : 1); // the one named twice
+	c->of[DRAW] += draws;
+	c->of[TILE] += draws * tiles;
+	c->of[FIT] += outputs * rows * pound_design_samples(study);
 }
 
-/* How many times the marches of a linear scene a run takes: the yield displacement of a body is found, and corrected once,
- * first; searched() counts the rest.
- * In the units of a sensitivity study it is there once. */
-static double marches(const struct pound_study *study)
+/* Items and, counted as such, those that are run again to check them and what lanes leave unfilled. */
+static double items_of(const struct pound_study *study)
 {
-	double most = 0;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_law *law = pound_scene_law(&study->scene, i);
-		if (law->type != 0 && !(law->yield_displacement > 0))
-			most = fmax(most, YIELDING * (1 + fmin(law->corrections, 1)));
-	}
-	return study->kind == POUND_KIND_RESPONSE ? 1 + most : fmax(1, most / (2 * YIELDING));
+	const bool sampled = study->kind == POUND_KIND_SENSITIVITY;
+	const double items =
+	                 (sampled ? pound_design_rows_most(study) : 1) * (double)study->scene.excitation.signals,
+	             asks = distinct(study, ALL);
+	double checks = 0;
+	if (sampled || study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		checks = fmax(items / CHECK_EVERY, fmin(items, ceil(CHECKS_LEAST / asks)));
+	return items + CHECKED * checks + TAIL / asks;
 }
 
-/* Steps of a floor within a sample, besides one: while bodies touch the contact's own frequency sets them. */
-static double steps_riding(const struct pound_study *study)
+static void count(const struct pound_study *study, struct counts *c)
 {
-	const bool wall = study->scene.oscillators[1].rigid_wall;
-	const double masses =
-	    wall ? 1
-	         : 1 + fmax(MEAN(study, oscillators[0].mass, 1) * MEAN(study, oscillators[1].mass, -1),
-	                    MEAN(study, oscillators[0].mass, -1) * MEAN(study, oscillators[1].mass, 1));
-	const double hz = fmax(MEAN(study, oscillators[0].frequency_hz, 1),
-	                       wall ? 0 : MEAN(study, oscillators[1].frequency_hz, 1));
-	if (!study->scene.contact.present)
-		return 0;
-	return RIDING * 2 * 3.14159265358979323846 * hz * MEAN(study, excitation.time_step, 1) *
-	       sqrt(MEAN(study, contact.stiffness_ratio, 1) * masses) / FLOOR_RADIANS;
-}
-
-/* [s] of one run by a solver. */
-static double run_s(const struct pound_study *study, const struct pound_solver *solver)
-{
-	const int row = solver->method;
-	bool fixed = pound_solver_takes_step(solver->method);
-	double steps = fixed ? fmax(1, MEAN(study, excitation.time_step, 1) / solver->step) : 0;
-	// the march takes few more for more contacts
-	double more = fixed ? 0 : row == POUND_SOLVER_EVENT ? 0.2 * log1p(swings(study)) : swings(study);
-	return samples_mean(study) * (units[row].sample * (1 + more) * (fixed ? 1 : marches(study)) +
-	                              units[row].step * steps + units[row].radian * turned(study));
+	const double items = items_of(study);
+	c->of[STUDY] = 1;
+	if (study->kind != POUND_KIND_CONVERGENCE)
+		count_runs(study, &study->solver, items, c);
+	else
+		for (int j = 0; j < pound_convergence_trials(study); j++) {
+			const struct pound_solver solver = pound_convergence_solver(study, j);
+			// twice, to be timed, and for each point of a history up to that
+			count_runs(study, &solver, items * (2 + HISTORIES / 2), c);
+			c->of[CLOCK]++;
+		}
+	if (study->spectrum.n)
+		count_floors(study, (double)study_runs(study), c);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		count_reductions(study, c);
 }
 
 /* What a study will take.
@@ -231,26 +431,14 @@ static double run_s(const struct pound_study *study, const struct pound_solver *
  */
 struct cost cost_of(const struct pound_study *study, int n_workers)
 {
-	struct cost cost = {.runs = study_runs(study), .cpu_s = STUDY_S, .bytes = DOCUMENT_BYTES};
+	struct cost cost = {.runs = study_runs(study), .bytes = DOCUMENT_BYTES};
+	struct counts counts = {0};
 	double cells = study_cells(study), runs = (double)cost.runs;
 	double numbers; // doubles that are stored of a run
-	if (study->kind == POUND_KIND_CONVERGENCE) {
-		int n = pound_convergence_trials(study);
-		for (int j = 0; j < n; j++) {
-			const struct pound_solver solver = pound_convergence_solver(study, j);
-			cost.cpu_s += kinds[study->kind].run * runs / n * run_s(study, &solver);
-		}
-	} else
-		cost.cpu_s += kinds[study->kind].run * runs * run_s(study, &study->solver);
-	cost.cpu_s *= 1 + kinds[study->kind].searched * searched(study);
-	if (study->spectrum.n)
-		cost.cpu_s += runs * samples_mean(study) * (1 + steps_riding(study)) *
-		              (rides[study->kind].floors * FLOOR_S +
-		               rides[study->kind].spectra * study->spectrum.n * ORDINATE_S);
-	if (study->kind == POUND_KIND_FLOOR_SPECTRUM)
-		cost.cpu_s += runs * study->spectrum.n * study->spectrum.pulses * PULSE_S;
+	count(study, &counts);
+	for (int k = 0; k < OPERATIONS; k++)
+		cost.cpu_s += counts.of[k] * seconds_of[k][study->kind];
 	if (study->kind == POUND_KIND_SENSITIVITY) {
-		cost.cpu_s += reductions_s(study);
 		numbers = 2 * study->n_outputs;
 		cost.bytes += cells * study->n_outputs * (study->n_inputs + 1) * INDEX_BYTES;
 	} else {

@@ -1,0 +1,240 @@
+/* Valid studies drawn at random.
+ *
+ * Kinds: response and sensitivity 3 of 8 each, floor_spectrum and convergence 1 of 8 each.  Drawn with equal chances in the
+ * logarithm: frequencies 0.3 to 20 Hz, damping 0.01 to 0.2, mass 0.01 to 100, stiffness ratio 1 to 10^6, gap 10^-4 to 0.1 m (half: 0),
+ * duration 1 to 40 s or 2 to 40 cycles of 0.5 to 10 Hz, sample step 0.002 to 0.02 s, signals 1 to 500 (sensitivity: 20, floor
+ * spectrum: 50, convergence: 10), rows 16 to 32,000, frequencies of spectra 2 to 1,000, pulses (half: 0) 1 to 10^6, steps of solvers
+ * 10^-5 to 10^-3 s, tolerances 10^-10 to 10^-4.  Restitution 0 to 1, corrections 0 to 10 (half: 1).  A tenth has a wall, a tenth no
+ * contact, a third a linear law, 3 of 8 another solver, a quarter a sweep, where the kind allows it. */
+#include "tests/support/valid_studies.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "schema/study/study_json.h"
+#include "tests/support/check.h"
+
+static uint64_t state_of;
+
+static double uniform(void)
+{
+	state_of = state_of * 6364136223846793005u + 1442695040888963407u;
+	return (double)(state_of >> 11) * 0x1p-53;
+}
+
+static double between(double low, double high)
+{
+	return low * pow(high / low, uniform());
+}
+
+static int below(int n)
+{
+	return (int)(n * uniform());
+}
+
+struct text {
+	char *bytes; // (VALID_STUDY_SIZE)
+	size_t n;
+};
+
+static void say(struct text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void say(struct text *text, const char *format, ...)
+{
+	va_list values;
+	va_start(values, format);
+	text->n += (size_t)vsnprintf(text->bytes + text->n, VALID_STUDY_SIZE - text->n, format, values);
+	va_end(values);
+}
+
+static void say_scene(struct text *text, int signals_most)
+{
+	say(text, "\"scene\": {\"law\": ");
+	if (below(3) == 0)
+		say(text, "{\"type\": \"linear\"}");
+	else
+		say(text, "{\"type\": \"elastoplastic\", \"hardening_ratio\": %.3g, \"corrections\": %d}",
+		    below(2) * between(0.01, 0.2), below(2) ? 1 : below(11));
+	say(text, ", \"oscillators\": [{\"frequency_hz\": %.3g, \"damping_ratio\": %.3g}, ", between(0.3, 20),
+	    between(0.01, 0.2));
+	if (below(10) == 0)
+		say(text, "{\"rigid_wall\": true}], ");
+	else
+		say(text, "{\"mass_kg\": %.3g, \"frequency_hz\": %.3g, \"damping_ratio\": %.3g}], ",
+		    between(0.01, 100), between(0.3, 20), between(0.01, 0.2));
+	if (below(10) == 0)
+		say(text, "\"contact\": null, ");
+	else
+		say(text, "\"contact\": {\"stiffness_ratio\": %.3g, \"restitution\": %.3g, \"gap_m\": %.3g}, ",
+		    between(1, 1e6), uniform(), below(2) ? between(1e-4, 0.1) : 0);
+	if (below(3) == 0)
+		say(text, "\"excitation\": {\"type\": \"white_noise\", \"duration_s\": %.3g, ", between(1, 40));
+	else
+		say(text, "\"excitation\": {\"frequency_hz\": %.3g, \"cycles\": %.3g, ", between(0.5, 10),
+		    between(2, 40));
+	say(text, "\"time_step_s\": %.3g, \"signals\": %d}}", between(0.002, 0.02),
+	    1 + (int)between(1, signals_most));
+}
+
+static void say_solver(struct text *text)
+{
+	switch (below(8)) {
+	case 0:
+		say(text, ", \"solver\": {\"method\": \"newmark\", \"step_s\": %.3g}", between(1e-5, 1e-3));
+		break;
+	case 1:
+		say(text, ", \"solver\": {\"method\": \"central_difference\", \"step_s\": %.3g}",
+		    between(1e-5, 1e-4));
+		break;
+	case 2:
+		say(text, ", \"solver\": {\"method\": \"adaptive\", \"tolerance\": %.3g}", between(1e-10, 1e-4));
+		break;
+	}
+}
+
+static void say_sweep(struct text *text)
+{
+	static const char *const sweeps[] = {
+	    "{\"path\": \"/contact/restitution\", \"values\": [0.1, 0.4, 0.7, 0.95]}",
+	    "{\"path\": \"/oscillators/0/frequency_hz\", \"values\": [0.5, 2, 5, 12]}",
+	    "{\"path\": \"/excitation/time_step_s\", \"values\": [0.004, 0.01]}"};
+	if (below(4) == 0)
+		say(text, ", \"sweep\": [%s]", sweeps[below(3)]);
+}
+
+static void say_sensitivity(struct text *text)
+{
+	static const char *const inputs[] = {
+	    "{\"path\": \"/oscillators/0/frequency_hz\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
+	    "\"max\": 5}}",
+	    "{\"path\": \"/oscillators/0/damping_ratio\", \"distribution\": {\"type\": \"uniform\", \"min\": "
+	    "0.01, \"max\": 0.1}}",
+	    "{\"path\": \"/excitation/time_step_s\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.005, "
+	    "\"max\": 0.01}}",
+	    "{\"path\": \"/excitation/peak_m_s2\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
+	    "\"max\": 5}}",
+	    "{\"path\": \"/excitation/rise\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.1, \"max\": "
+	    "0.3}}",
+	};
+	static const char *const methods[] = {"lhs", "random", "sobol"}, *const orders[] = {"total", "second"};
+	const int n = 1 + below(5);
+	say_scene(text, 20);
+	say(text, ", \"inputs\": [");
+	for (int j = 0; j < n; j++)
+		say(text, "%s%s", j ? ", " : "", inputs[j]);
+	say(text, "], \"design\": {\"method\": \"%s\", \"order\": \"%s\", \"rows\": %d}", methods[below(3)],
+	    orders[below(2)], 16 * (int)between(1, 2000));
+}
+
+static void draw(struct text *text)
+{
+	const int kind = below(8);
+	text->n = 0;
+	if (kind < 3) {
+		say(text, "{\"kind\": \"response\", ");
+		say_scene(text, 500);
+		say_solver(text);
+		say_sweep(text);
+	} else if (kind < 6) {
+		say(text, "{\"kind\": \"sensitivity\", ");
+		say_sensitivity(text);
+		say_solver(text);
+		say_sweep(text);
+	} else if (kind < 7) {
+		say(text, "{\"kind\": \"floor_spectrum\", ");
+		say_scene(text, 50);
+		say(text, ", \"spectrum\": {\"frequencies_hz\": {\"count\": %d}, \"pulses\": %d}",
+		    2 + (int)between(1, 1000), below(2) ? 0 : (int)between(1, 1e6));
+	} else {
+		say(text, "{\"kind\": \"convergence\", ");
+		say_scene(text, 10);
+		say(text,
+		    ", \"convergence\": {\"newmark\": {\"steps_s\": [%.3g]}, \"central_difference\": {\"steps_s\": "
+		    "[]}, "
+		    "\"adaptive\": {\"tolerances\": [%.3g]}}",
+		    between(1e-4, 1e-3), between(1e-8, 1e-4));
+	}
+	say(text, "}");
+}
+
+/* Draws studies until one is valid.
+ *
+ * Given    seed     of the first; 0: the next one of the same sequence
+ * Returns  text     (VALID_STUDY_SIZE)
+ *          drawn    counts those that were not valid, too
+ *          value    for study_free
+ */
+struct pound_study *valid_study(uint64_t seed, char *text, int *drawn)
+{
+	static struct problems problems;
+	struct text into = {.bytes = text};
+	struct pound_study *study;
+	state_of = seed ? seed : state_of;
+	do {
+		draw(&into);
+		++*drawn;
+	} while (!(study = study_from_json(text, into.n, &problems)));
+	return study;
+}
+
+static double cpu_now(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Ends what takes too long. */
+struct watch {
+	clockid_t clock;
+	double until;
+	atomic_bool stop, over;
+};
+
+static void *watch_run(void *of)
+{
+	struct watch *watch = of;
+	while (!watch->over && !watch->stop) {
+		struct timespec now;
+		clock_gettime(watch->clock, &now);
+		watch->stop = (double)now.tv_sec + 1e-9 * (double)now.tv_nsec > watch->until;
+		nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+	}
+	return NULL;
+}
+
+/* Seconds of CPU time that a study takes, or those after which it was stopped.
+ *
+ * Given    most   s   after which it is
+ */
+double valid_study_taken(const struct pound_study *study, double most)
+{
+	pthread_t thread;
+	const double start = cpu_now();
+	struct watch watch = {.until = start + most};
+	pthread_getcpuclockid(pthread_self(), &watch.clock);
+	assert_int_equal(pthread_create(&thread, NULL, watch_run, &watch), 0);
+	struct pound_run *run = pound_run_create_by(study, 1, &watch.stop);
+	enum pound_status status = POUND_OK;
+	if (run)
+		pound_run_stop_by(run, &watch.stop);
+	if (run)
+		pound_run_clock(run, cpu_now);
+	for (int block = 0, done = 0; run && !status && !done;) {
+		for (; block < pound_run_blocks(run) && !status; block++)
+			status = pound_run_block(run, block, 0);
+		for (int k = 0; k < pound_run_reductions(run) && !status; k++)
+			status = pound_run_reduce(run, k, 0);
+		done = !status && !pound_run_grow(run);
+	}
+	const double s = cpu_now() - start;
+	pound_run_free(run);
+	watch.over = true;
+	pthread_join(thread, NULL);
+	return s;
+}
