@@ -75,11 +75,6 @@ bool http_known(const struct request *request,
 /* an application/problem+json reply; `problems` may be NULL */
 struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);
 
-bool http_start(struct server *server); /* false: logged */
-int http_port(const struct server *server);
-/* what is under way is answered, who waits is told 503; false: an answer was not given up in time */
-bool http_stop(struct server *server);
-
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);
 bool routes_kept(const struct request *request, struct reply *reply); /* the answer is there already */

@@ -15,7 +15,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "server/backup.h"
-#include "server/http.h"
+#include "server/daemon.h"
 #include "server/log.h"
 #include "server/options.h"
 #include "server/store.h"
@@ -77,11 +77,11 @@ static int serve(struct server *server, const sigset_t *signals)
 	                          (int64_t)server->options->memory_max << 20);
 	if (!server->work)
 		return EXIT_FAILURE;
-	bool listens = http_start(server), ended = true;
+	bool listens = daemon_start(server), ended = true;
 	if (listens) {
 		const char *listen = server->options->listen;
 		bool v6 = strchr(listen, ':');
-		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", http_port(server));
+		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", daemon_port(server));
 		fflush(stdout);
 		tell("READY=1");
 		log_line("stopping: %s", strsignal(await(server->store, signals)));
@@ -89,7 +89,7 @@ static int serve(struct server *server, const sigset_t *signals)
 		// the next signal ends the program at once, and so does the clock
 		alarm(STOP_MAX);
 		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
-		ended = http_stop(server);
+		ended = daemon_stop(server);
 	}
 	ended &= work_stop(server->work);
 	// what is accepted is on the disk: the next start goes on as after a crash

@@ -1,0 +1,179 @@
+/* libmicrohttpd, started on a socket and stopped: a few threads, each with its connections.  server/http.c has what it calls. */
+#include "server/daemon.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/param.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include "server/http_calls.h"
+#include "server/listen.h"
+#include "server/log.h"
+
+enum {
+	THREADS = 4,
+	TURNS = 2,               /* of them that take long, at a time */
+	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
+	CONNECTIONS_MIN = 8,     /* of which each thread has a share */
+	DRAINING_MAX = 256,      /* clients who go on sending after their answer */
+	PROBES = 64,             /* connections that are answered probes, when no more are served */
+	SPOOLED_MAX = 256,       /* answers in files */
+	FILES_BESIDE = 48,       /* descriptors that are no connections: 33, and what is open for a moment */
+	OF_ADDRESS_MAX = 64,     /* connections of one address, unless it is loopback */
+	POOL = 32 * 1024,        /* [bytes] of a connection: twice HEAD_BYTES_MAX, for what is made of a head */
+	STOP_S = 5,              /* [s] for requests under way when the server stops */
+	STOP_TICK_NS = 10000000, /* [ns] */
+};
+
+static const double STOP_ASIDE_S = 0.3; /* [s] for answers that are given up */
+
+static void notice(void *of, struct MHD_Connection *connection, void **context,
+                   enum MHD_ConnectionNotificationCode code)
+{
+	struct server *server = of;
+	int fd = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+	if (code == MHD_CONNECTION_NOTIFY_STARTED)
+		*context = connection_opened(&server->connections, fd, server->options->header_timeout);
+	else if (*context)
+		connection_closed(&server->connections, *context);
+}
+
+/* Who comes while the server stops is hung up on: else the clients who keep coming would keep it up. */
+static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen_t n)
+{
+	const struct server *server = of;
+	(void)address;
+	(void)n;
+	return server->stopping ? MHD_NO : MHD_YES;
+}
+
+/* Called by libmicrohttpd for what it has to say, which may be a hundred thousand times a second: reported once a second. */
+static void log_library(void *of, const char *format, va_list values)
+{
+	struct server *server = of;
+	const double now = connection_now();
+	double told = server->library_told;
+	char text[256];
+	if (now < told + 1 || !atomic_compare_exchange_strong(&server->library_told, &told, now)) {
+		server->library_untold++;
+		return;
+	}
+	vsnprintf(text, sizeof text, format, values);
+	text[strcspn(text, "\n")] = '\0';
+	log_line("http: %s (and %d lines before that were not reported)", text,
+	         atomic_exchange(&server->library_untold, 0));
+}
+
+/* Shares out the descriptors there may be, as many as are needed or allowed: a connection without one would keep a thread
+ * that accepts it busy.
+ *
+ * Returns  value   connections that libmicrohttpd may have, 0: too few, logged; of them all but a few are served, and the
+ *                  others told so
+ */
+static int share_files(struct server *server, int wanted)
+{
+	struct connections *connections = &server->connections;
+	struct rlimit files = {RLIM_INFINITY, RLIM_INFINITY};
+	const rlim_t most = CONNECTIONS_MAX + DRAINING_MAX + SPOOLED_MAX + FILES_BESIDE;
+	if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < most) {
+		struct rlimit more = {MIN(files.rlim_max, most), files.rlim_max};
+		if (setrlimit(RLIMIT_NOFILE, &more) == 0)
+			files = more;
+	}
+	const int left = (int)MIN(files.rlim_cur, most) - FILES_BESIDE;
+	connections->most_draining = MIN(left / 4, DRAINING_MAX);
+	server->spools.most = MIN(left / 8, SPOOLED_MAX);
+	const int all = MIN(left - connections->most_draining - server->spools.most, CONNECTIONS_MAX);
+	connections->most = MIN(wanted, all - 1 - all / 64);
+	connections->most_probed = MIN(connections->most + PROBES, all - 1 - all / 64);
+	connections->most_waiting = (connections->most + 1) / 2;
+	if (all < CONNECTIONS_MIN)
+		log_line("only %d files may be open, which is too few: ulimit -n", (int)files.rlim_cur);
+	else if (connections->most < wanted)
+		log_line("only %d files may be open (ulimit -n): %d connections are served at a time, not %d",
+		         (int)files.rlim_cur, connections->most, wanted);
+	return all < CONNECTIONS_MIN ? 0 : all;
+}
+
+/* libmicrohttpd on that socket, with at most n connections. */
+static struct MHD_Daemon *serving(struct server *server, const union listen_address *address, int fd, int n)
+{
+	return MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ERROR_LOG | MHD_ALLOW_SUSPEND_RESUME, 0,
+	                        welcome, server, http_answer, server, MHD_OPTION_EXTERNAL_LOGGER, log_library,
+	                        server, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_NOTIFY_COMPLETED, http_completed,
+	                        server, MHD_OPTION_NOTIFY_CONNECTION, notice, server, MHD_OPTION_URI_LOG_CALLBACK,
+	                        http_begin, server, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS,
+	                        MHD_OPTION_CONNECTION_LIMIT, (unsigned)n, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+	                        listen_is_loopback(address) ? 0u : (unsigned)OF_ADDRESS_MAX,
+	                        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)POOL, MHD_OPTION_END);
+}
+
+/* Starts to answer requests, at the address and the port of the options.
+ *
+ * Given    server   whose options, store, work and tokens are set; it must outlive the service
+ * Returns  value    for daemon_stop; false when it cannot or must not listen there, logged
+ * Test     service_security: an_address_that_is_not_loopback_needs_tokens_or_insecure
+ *          service_http: with_few_descriptors_fewer_are_served_and_nothing_spins
+ */
+bool daemon_start(struct server *server)
+{
+	const struct options *options = server->options;
+	union listen_address address;
+	if (!listen_address(options->listen, options->port, &address)) {
+		log_line("cannot listen on %s: not an IP address", options->listen);
+		return false;
+	}
+	if (!listen_is_loopback(&address) && !server->tokens && !options->insecure) {
+		log_line("cannot listen on %s: others reach it, so it needs --token-file, or --insecure",
+		         options->listen);
+		return false;
+	}
+	sem_init(&server->turns, 0, TURNS);
+	pthread_mutex_init(&server->shares.lock, NULL);
+	server->number = (unsigned long long)time(NULL) << 32;
+	server->connections.store = server->spools.store = server->store;
+	server->connections.resume = http_resume;
+	const int n = share_files(server, options->connections_max);
+	if (n == 0)
+		return false;
+	if (!connections_start(&server->connections))
+		return false;
+	int fd = listen_open(&address);
+	server->daemon = fd >= 0 ? serving(server, &address, fd, n) : NULL;
+	if (server->daemon)
+		return true;
+	log_line("cannot listen on %s port %d: %s", options->listen, options->port, strerror(errno));
+	connections_stop(&server->connections);
+	return false;
+}
+
+/* The port listened on. */
+int daemon_port(const struct server *server)
+{
+	return MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+}
+
+/* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end, and answers that
+ * take long, which are given up, less.
+ *
+ * Returns  value   false: one of these was not given up in time, and nothing that it may use may be given up but by the end
+ *                  of the program
+ */
+bool daemon_stop(struct server *server)
+{
+	const double now = connection_now(), until = now + STOP_S, aside_until = now + STOP_ASIDE_S;
+	server->stopping = true;
+	server->connections.released = true;
+	while ((server->aside > 0 && connection_now() < aside_until) ||
+	       (server->under_way > server->aside && connection_now() < until))
+		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
+	// a suspended connection must not be stopped
+	if (server->aside > 0)
+		return false;
+	MHD_stop_daemon(server->daemon);
+	connections_stop(&server->connections);
+	return true;
+}
