@@ -299,14 +299,14 @@ static const struct format {
 	const char *name, *type;
 } result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
 
-/* Whether the second of two formats is asked for, by a table that only that has, by ?format=, or by Accept, which must want
- * it more: the first is for who wants none of them, too. */
+/* Whether the second of two formats is asked for: by a table that only that has, by ?format=, or by an Accept that names it
+ * and not the first. */
 static bool asks_second(const struct request *request, const struct format formats[2], const char *table)
 {
 	const char *name = http_argument(request, "format"), *accept = request->head.accept.value;
 	return table  ? true
 	       : name ? !strcmp(name, formats[1].name)
-	              : head_quality(accept, formats[1].type) > head_quality(accept, formats[0].type);
+	              : head_names(accept, formats[1].type) && !head_names(accept, formats[0].type);
 }
 
 /* The same, and the reply that a body of it will be.  A result never changes, so that format and version are its tag; one

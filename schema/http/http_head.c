@@ -353,81 +353,19 @@ static size_t part(const char *at, const char *ends)
 	return n;
 }
 
-/* How well a range of media types says which it means: 0 when it is not this type. */
-static int fits(const char *range, size_t n, const char *type)
-{
-	size_t main = strcspn(type, "/") + 1;
-	bool any = n == main + 1 && !strncasecmp(range, type, main) && range[main] == '*';
-	return is(range, n, type) ? 3 : any ? 2 : is(range, n, "*/*") ? 1 : 0;
-}
-
-/* A weight in thousandths; -1: it is none. */
-static int thousandths(const char *value, size_t n)
-{
-	int sum = 0, unit = 1000;
-	if (n == 0 || value[0] > '1' || (n > 1 && value[1] != '.'))
-		return -1;
-	for (size_t i = 0; i < n; i++) {
-		if (i == 1)
-			continue;
-		if (!isdigit((unsigned char)value[i]))
-			return -1;
-		sum += (value[i] - '0') * unit;
-		unit /= 10;
-	}
-	return sum <= 1000 ? sum : -1;
-}
-
-/* The parameters behind a range.
+/* Whether an Accept names a media type; weights and other parameters are not looked at, nor ranges with a star.
  *
- * Returns  quality   the weight in thousandths, -1: it makes no sense
- *          named     there is another parameter before it
- *          value     their end
+ * Given    accept   "": there is none
+ * Test     unit_http_head: an_accept_names_the_types_in_its_list
  */
-static const char *parameters(const char *at, int *quality, bool *named)
+bool head_names(const char *accept, const char *type)
 {
-	bool weighed = false;
-	*quality = 1000;
-	*named = false;
-	for (at += strspn(at, " \t"); *at == ';'; at += part(at, ";,")) {
-		at += 1 + strspn(at + 1, " \t");
-		size_t n = part(at, ";,");
-		while (n > 0 && is_blank(at[n - 1]))
-			n--;
-		bool weight = !weighed && n > 1 && (*at == 'q' || *at == 'Q') && at[1] == '=';
-		if (weight)
-			*quality = thousandths(at + 2, n - 2);
-		*named |= !weight && !weighed && n > 0;
-		weighed |= weight;
-	}
-	return at;
-}
-
-/* How much a media type is wanted: the weight of the range that names it most closely, 0 when none does.  A range with
- * parameters, such as text/csv; header=present, is taken for the type too, where none without them is there.
- *
- * Given    accept   an Accept, "": there is none
- * Returns  value    weight in thousandths
- * Source   RFC 9110 sections 12.4.2 and 12.5.1
- * Test     unit_http_head: a_type_is_wanted_as_much_as_the_closest_range_says
- */
-int head_quality(const char *accept, const char *type)
-{
-	int closest = 0, found = 0;
 	for (const char *at = accept; *at; at += part(at, ","), at += *at == ',') {
-		int quality;
-		bool named;
 		at += strspn(at, " \t");
-		size_t n = strcspn(at, " \t;,");
-		int close = 2 * fits(at, n, type);
-		at = parameters(at + n, &quality, &named);
-		close -= named;
-		if (quality < 0 || close <= closest)
-			continue;
-		closest = close;
-		found = quality;
+		if (is(at, strcspn(at, " \t;,"), type))
+			return true;
 	}
-	return found;
+	return false;
 }
 
 /* The seconds that a Prefer header is ready to wait (RFC 7240): 0 when it has no wait=N, or one that makes no sense; the

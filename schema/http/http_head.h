@@ -58,7 +58,7 @@ void head_refuse(struct head *head, enum api_fault fault, bool close, const char
     __attribute__((format(printf, 4, 5)));
 
 bool head_has_host(const char *host, const char *names);
-int head_quality(const char *accept, const char *type); /* of a media type by an Accept, 0 to 1000 */
+bool head_names(const char *accept, const char *type);  /* an Accept names a media type */
 bool head_has_etag(const char *list, const char *etag); /* an If-None-Match has a tag */
 int head_wait(const char *prefer);                      /* N of a Prefer with wait=N [s], else 0 */
 
