@@ -1,0 +1,94 @@
+/* The limits of a server, each with the status and the words that server/server.md lists. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/json/json_pointer.h"
+#include "tests/support/program.h"
+#include "tests/support/raw_http.h"
+
+enum { LONG = 20000 };
+
+#define HOST "Host: localhost\r\n"
+#define JSON "Content-Type: application/json\r\n"
+#define POST "POST /v1/studies HTTP/1.1\r\n" HOST JSON
+
+/* requests that are over one limit; what stands between the halves comes so many times */
+static const struct {
+	const char *first, *again, *rest;
+	int times;
+	int status;
+	const char *detail;
+} heads[] = {
+    {"GET /v1/studies?status=", "a", " HTTP/1.1\r\n" HOST "\r\n", 4096, 414,
+     "a target has at most 4096 bytes"},
+    {"GET /v1/studies?limit=1", "&a=1", " HTTP/1.1\r\n" HOST "\r\n", 16, 400,
+     "a target has at most 16 arguments"},
+    {"GET /livez HTTP/1.1\r\n" HOST, "X-A: 1\r\n", "\r\n", 64, 431, "a request has at most 64 headers"},
+    {"GET /livez HTTP/1.1\r\n" HOST "X-A: ", "a", "\r\n\r\n", 17000, 431,
+     "the request line and the headers have at most 16384 bytes"},
+    {POST "Transfer-Encoding: chunked\r\n", "", "\r\n2\r\n{}\r\n0\r\n\r\n", 0, 411,
+     "a body needs a Content-Length; Transfer-Encoding is not supported"},
+    {POST "Content-Length: 1048577\r\n", "", "\r\n", 0, 413, "a study document may have at most 1 MiB"},
+    {POST "Content-Length: 2\r\nIdempotency-Key: ", "k", "\r\n\r\n{}", 201, 400,
+     "an Idempotency-Key must have 1 to 200 characters"},
+    {POST "Content-Length: 2\r\nOrigin: http://", "e", ".example\r\n\r\n{}", 1, 403,
+     "pages of another origin must not change anything here"},
+};
+
+/* A row of the table of limits of the page that has a status and words. */
+static void is_listed(const char *page, int status, const char *detail)
+{
+	char cells[256];
+	snprintf(cells, sizeof cells, "| %d | %s |\n", status, detail);
+	if (!strstr(page, cells))
+		fail_msg("server/server.md has no row with %s", cells);
+}
+
+static void each_limit_is_answered_with_its_status_and_the_words_of_the_page(void **state)
+{
+	static struct raw_answer answer;
+	static char bytes[LONG];
+	char *page = program_file("server/server.md", NULL);
+	assert_non_null(page);
+	for (size_t i = 0; i < sizeof heads / sizeof heads[0]; i++) {
+		size_t n = (size_t)snprintf(bytes, sizeof bytes, "%s", heads[i].first);
+		for (int k = 0; k < heads[i].times; k++)
+			n += (size_t)snprintf(bytes + n, sizeof bytes - n, "%s", heads[i].again);
+		n += (size_t)snprintf(bytes + n, sizeof bytes - n, "%s", heads[i].rest);
+		assert_true(n < sizeof bytes);
+		raw_ask(*state, bytes, n, 2, &answer);
+		if (answer.status != heads[i].status || !strstr(answer.text, heads[i].detail))
+			fail_msg("%.40s ...: %d, not %d: %s\n%s", heads[i].first, answer.status, heads[i].status,
+			         heads[i].detail, answer.text);
+		assert_int_equal(answer.n, 1);
+		is_listed(page, heads[i].status, heads[i].detail);
+	}
+	check_report("%zu limits of a request, each with its status and words", sizeof heads / sizeof heads[0]);
+	free(page);
+}
+
+static void a_full_queue_is_answered_with_its_status_and_the_words_of_the_page(void **state)
+{
+	struct service *service = service_with((const char *const[][2]){{"POUNDD_QUEUE_MAX", "1"}, {NULL}}, 1);
+	char *study = service_study(SERVICE_ROWS, 10, 1), *page = program_file("server/server.md", NULL);
+	struct answer answer = {0};
+	(void)state;
+	for (int i = 0; i < 4 && answer.status != 503; i++) {
+		answer_free(&answer);
+		answer = service_post(service, study);
+	}
+	assert_int_equal(answer.status, 503);
+	assert_true(atoi(answer.retry_after) > 0);
+	assert_non_null(strstr(answer.body, "the queue is full"));
+	is_listed(page, 503, "the queue is full");
+	answer_free(&answer);
+	free(study);
+	free(page);
+	service_free(service);
+}
+
+#define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
+
+CHECK_MAIN(SERVED(each_limit_is_answered_with_its_status_and_the_words_of_the_page),
+           cmocka_unit_test(a_full_queue_is_answered_with_its_status_and_the_words_of_the_page))
