@@ -26,6 +26,7 @@ struct options {
 	double step;         /* record: of a file without times [s]; 0: not known */
 	int channel;         /* record: of a file with several, from 1; 0: not chosen */
 	const char *periods; /* record: of the response spectrum, between commas; NULL: none */
+	int row;             /* motion: of the design, from 0 */
 	const char *url;     /* of the server */
 	const char *format;  /* one of the names the subcommand offers */
 	const char *table;   /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
@@ -55,6 +56,7 @@ enum outcome report_print(const struct options *options);
 enum outcome plot_figure(const struct options *options);
 enum outcome example_print(const struct options *options);
 enum outcome record_show(const struct options *options);
+enum outcome motion_show(const struct options *options);
 
 /* Whether an argument is the id of a study on the server, and no file. */
 bool command_is_id(const char *text);

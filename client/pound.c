@@ -38,6 +38,8 @@ enum {
 	FIGURE_ARGUMENTS(X)
 #undef X
 };
+/* cell and signal among them */
+#define MOTION_KEYS "\1\10"
 #define FIGURE_KEYS "\1\2\3\4\5\6\7\10\11\12\13"
 
 // clang-format off
@@ -87,6 +89,10 @@ static const struct command COMMANDS[] = {
 	 "Reads PEER NGA (.AT2), COSMOS (.V1, .V2), ESM and ITACA (.ASC), and columns: time and acceleration, or "
 	 "accelerations with --step.  Shows samples, step, PGA, PGV, PGD, Arias intensity, 5-95 % duration, and with "
 	 "--periods pseudo-accelerations at 5 % damping.  Nothing is filtered or corrected."},
+	{"motion", "STUDY.json", "PRf" MOTION_KEYS, false, {"csv", "npy", "at2"}, motion_show,
+	 "the ground motions of a study",
+	 "Prints every signal of the first sample, or the signal chosen by --signal; as at2 (PEER) one signal.  With "
+	 "--periods pseudo-accelerations at 5 % damping in their place."},
 };
 
 static const struct argp_option OPTIONS[] = {
@@ -102,6 +108,7 @@ static const struct argp_option OPTIONS[] = {
 	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES ", or all as a table; without it, a summary as a table and inputs as csv", 0},
 	{"unit",    'U', "UNIT",   0, "unit of files that name none: g, cm/s2 or m/s2", 0},
 	{"step",    'd', "S",      0, "time step of files with accelerations alone, in s", 0},
+	{"row",     'R', "N",      0, "row of the design, from 1 (default: 1)", 0},
 	{"channel", 'C', "N",      0, "channel of files that have several", 0},
 	{"periods", 'P', "LIST",   0, "periods of a response spectrum, in s, between commas", 0},
 	{"partial", 'p', NULL,     0, "intermediate result of the completed rows, if the study is still running", 0},
@@ -251,6 +258,9 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 		return 0;
 	case 'd':
 		options->step = positive_number(state, "--step", value);
+		return 0;
+	case 'R':
+		options->row = whole_number(state, "--row", value, POUND_ROWS_MAX) - 1;
 		return 0;
 	case 'C':
 		options->channel = whole_number(state, "--channel", value, CHANNEL_MAX);

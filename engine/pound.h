@@ -65,6 +65,15 @@ void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, d
 void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
                              double *mean, double *variance);
 
+/* The ground motion of a signal of that sample, which need not have been run: its samples in number, and their
+ * accelerations [m/s2] at times 0, step, ...  (value of pound_run_motion_samples) */
+struct pound_place {
+	int cell, row, sample, signal;
+};
+
+int pound_run_motion_samples(const struct pound_run *run, const struct pound_place *place, double *step);
+void pound_run_motion(const struct pound_run *run, const struct pound_place *place, double *a);
+
 /* Gives an output of a sample that was computed elsewhere, before the reductions: its value, and the variance of that
  * value over the model's randomness (NAN: not known).  A value that is not finite: a failed run. */
 void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,

@@ -37,6 +37,17 @@ struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cel
 	return scene;
 }
 
+/* The random numbers of a ground motion: samples of a row share theirs, or have their own. */
+struct pound_stream pound_cells_noise(const struct pound_cells *campaign, int row, int sample, int signal)
+{
+	const struct pound_design *design = &campaign->study->design;
+	return (struct pound_stream){.seed = design->seed,
+	                             .what = POUND_STREAM_NOISE,
+	                             .row = (uint32_t)(design->row + (campaign->trials ? 0 : row)),
+	                             .sample = design->common_signals ? 0 : (uint32_t)sample,
+	                             .signal = (uint32_t)signal};
+}
+
 /* Numerators of an output in a cell; there are as many denominators, or variances of outputs computed elsewhere. */
 size_t pound_cells_values_size(const struct pound_cells *c, int n_rows)
 {

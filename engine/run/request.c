@@ -414,14 +414,8 @@ static int item_write(struct pound_request *request, const struct pound_cells *c
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
 			struct ask *ask = &request->asks[a++];
 			ask->scene = pound_cells_scene(campaign, cell, row, sample);
-			// samples of a row share their noise, or have their own
-			struct pound_stream noise = {
-			    .seed = campaign->study->design.seed,
-			    .what = POUND_STREAM_NOISE,
-			    .row = (uint32_t)(campaign->study->design.row + (campaign->trials ? 0 : row)),
-			    .sample = campaign->study->design.common_signals ? 0 : (uint32_t)sample,
-			    .signal = (uint32_t)signal};
-			ask->motion = motion_ask(request, &ask->scene.excitation, noise, halved);
+			ask->motion = motion_ask(request, &ask->scene.excitation,
+			                         pound_cells_noise(campaign, row, sample, signal), halved);
 			ask_free(campaign, ask);
 		}
 	return a;

@@ -9,6 +9,7 @@
 
 #include "engine/exact/task.h"
 #include "engine/indices/indices.h"
+#include "engine/numeric/random.h"
 #include "engine/pound.h"
 
 /* the scenes of a study by cell, row of the design and sample of the row */
@@ -23,6 +24,7 @@ struct pound_cells {
 int pound_cells_checks(const struct pound_cells *campaign, int item); /* among the items before this */
 
 struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample);
+struct pound_stream pound_cells_noise(const struct pound_cells *campaign, int row, int sample, int signal);
 struct pound_solver pound_cells_solver(const struct pound_cells *campaign, int row);
 double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep);
 size_t pound_cells_values_size(const struct pound_cells *c,

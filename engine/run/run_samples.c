@@ -1,8 +1,9 @@
-/* run_samples.c - the samples of a study's design: what goes in, what came out. */
+/* run_samples.c - the samples of a study's design: what goes in, their ground motions, what came out. */
 #include <assert.h>
 #include <math.h>
 
 #include "engine/design/design.h"
+#include "engine/ground/excitation.h"
 #include "engine/run/run.h"
 
 int pound_run_samples(const struct pound_run *run)
@@ -14,6 +15,33 @@ void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, d
 {
 	for (int j = 0; j < run->campaign.study->n_inputs; j++)
 		x[j] = pound_design_input(run->campaign.design, run->campaign.study->n_inputs, row, sample, j);
+}
+
+static struct pound_excitation excitation_of(const struct pound_run *run, const struct pound_place *place)
+{
+	assert(!run->campaign.study->elsewhere && place->signal < run->campaign.n_signals);
+	return pound_cells_scene(&run->campaign, place->cell, place->row, place->sample).excitation;
+}
+
+int pound_run_motion_samples(const struct pound_run *run, const struct pound_place *place, double *step)
+{
+	const struct pound_excitation excitation = excitation_of(run, place);
+	*step = excitation.time_step;
+	return pound_excitation_samples(&excitation);
+}
+
+/* The ground motion of a signal, made as for its runs.
+ *
+ * Test     unit_motions: motions_are_those_of_the_runs
+ */
+void pound_run_motion(const struct pound_run *run, const struct pound_place *place, double *a)
+{
+	const struct pound_excitation excitation = excitation_of(run, place);
+	const struct pound_signal signal = {
+	    .excitation = &excitation,
+	    .noise = pound_cells_noise(&run->campaign, place->row, place->sample, place->signal),
+	    .a = a};
+	pound_signals_fill(&signal, 1);
 }
 
 void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,

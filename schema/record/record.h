@@ -40,4 +40,7 @@ bool record_read(const char *text, size_t length, const struct record_choice *ch
                  struct problems *problems);
 void record_free(struct record *record);
 
+/* A record as a PEER file, in g with all digits; on the heap and ended by 0, NULL: out of memory. */
+char *record_to_peer(const struct record *record, size_t *length);
+
 #endif

@@ -7,6 +7,7 @@
  *     -.2309213E-03   ...                       any number of samples per line
  *
  * Source   headers of NGA-West2 and of the older PEER database, as files of both show them */
+#include "schema/json/json_writer.h"
 #include "schema/record/record_text.h"
 
 #include <stdio.h>
@@ -87,4 +88,33 @@ bool record_peer_read(struct record_text *text, struct record *record)
 		}
 	record_scale(record, factor);
 	return true;
+}
+
+/* A record as a PEER file.
+ *
+ * Returns  value   (length)   NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Valid    Read again, a sample differs by no more than the rounding of its division by g.
+ * Test     unit_motions: a_peer_file_is_read_back
+ */
+char *record_to_peer(const struct record *record, size_t *length)
+{
+	enum { PER_LINE = 3 };
+	const char *unit;
+	const double g = record_unit("g", &unit);
+	struct writer w;
+	char text[RECORD_TITLE + 160];
+	writer_init(&w);
+	int n = snprintf(text, sizeof text,
+	                 "PEER STRONG MOTION DATABASE RECORD\n%s\nACCELERATION TIME SERIES IN UNITS OF G\n"
+	                 "NPTS= %d, DT= %.17g SEC,\n",
+	                 record->title, record->n, record->step);
+	writer_raw(&w, text, (size_t)n);
+	for (int i = 0; i < record->n; i++) {
+		n = snprintf(text, sizeof text, "%25.16E%s", record->acceleration[i] / g,
+		             i % PER_LINE == PER_LINE - 1 || i == record->n - 1 ? "\n" : "");
+		writer_raw(&w, text, (size_t)n);
+	}
+	return writer_take(&w, length);
 }

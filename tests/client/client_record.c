@@ -69,6 +69,34 @@ static void what_is_no_record_is_refused(void **state)
 	program_free(&refused);
 }
 
+static void motions_of_a_study_are_written_in_every_form(void **state)
+{
+	(void)state;
+	struct program_outcome example = POUND("example", "response"), motion;
+	motion = program_run(
+	    (const char *const[]){"pound", "motion", "--signal", "0", "--format", "at2", "-", NULL}, example.out);
+	program_expect(&motion, 0);
+	assert_non_null(strstr(motion.out, "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS="));
+	program_free(&motion);
+	motion = program_run((const char *const[]){"pound", "motion", "-", NULL}, example.out);
+	program_expect(&motion, 0);
+	assert_memory_equal(motion.out, "signal,time_s,acceleration_m_s2\r\n0,0,", 37);
+	program_free(&motion);
+	motion = program_run(
+	    (const char *const[]){"pound", "motion", "--periods", "0.5,1", "--signal", "0", "-", NULL},
+	    example.out);
+	program_expect(&motion, 0);
+	assert_memory_equal(motion.out, "signal,period_s,psa_m_s2\r\n0,0.5,", 31);
+	program_free(&motion);
+	motion =
+	    program_run((const char *const[]){"pound", "motion", "--signal", "100000", "-", NULL}, example.out);
+	program_expect(&motion, 2);
+	assert_non_null(strstr(motion.err, "--signal must be a whole number from 0 to"));
+	program_free(&motion);
+	program_free(&example);
+}
+
 CHECK_MAIN(cmocka_unit_test(files_are_shown_with_their_measures),
            cmocka_unit_test(a_short_period_has_the_peak_of_a_jump),
-           cmocka_unit_test(what_is_no_record_is_refused))
+           cmocka_unit_test(what_is_no_record_is_refused),
+           cmocka_unit_test(motions_of_a_study_are_written_in_every_form))
