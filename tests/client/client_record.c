@@ -86,7 +86,7 @@ static void motions_of_a_study_are_written_in_every_form(void **state)
 	    (const char *const[]){"pound", "motion", "--periods", "0.5,1", "--signal", "0", "-", NULL},
 	    example.out);
 	program_expect(&motion, 0);
-	assert_memory_equal(motion.out, "signal,period_s,psa_m_s2\r\n0,0.5,", 31);
+	assert_memory_equal(motion.out, "signal,period_s,psa_m_s2\n0,0.5,", 31);
 	program_free(&motion);
 	motion =
 	    program_run((const char *const[]){"pound", "motion", "--signal", "100000", "-", NULL}, example.out);
