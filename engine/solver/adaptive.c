@@ -45,6 +45,8 @@ enum guard {
 	HIGH_2,
 	CONTACT,
 	CLEARS,
+	TOUCH_LOW,
+	TOUCH_HIGH,
 	GUARDS
 };
 
@@ -52,10 +54,13 @@ struct course {
 	const struct pound_task *task;
 	struct pound_task_result *result;
 	struct pound_branch at[POUND_OSCILLATORS];
-	bool touching, parted; /* parted: overlapping without force */
-	double release;        /* C/K where contact ends at zero force [s], 0: it ends at zero overlap */
-	double ground, slope;  /* acceleration in the interval: ground + slope t */
-	double start, t;       /* of the interval; since then [s] */
+	struct pound_contact_law law;
+	struct pound_touch touch; /* while touching: branch of the contact's force */
+	bool touching, parted;    /* parted: overlapping without force */
+	bool held;                /* touching, rigid: both velocities stay the same */
+	double release;           /* C/K where contact ends at zero force [s], 0: it ends at zero overlap */
+	double ground, slope;     /* acceleration in the interval: ground + slope t */
+	double start, t;          /* of the interval; since then [s] */
 	double y[STATES];
 	double way[TURNS]; /* sign of each rate when a step begins; 0: it may turn */
 	gsl_odeiv2_system system;
@@ -71,25 +76,39 @@ struct course {
 
 static double contact_force(const struct course *c, const double y[])
 {
-	return c->touching ? c->task->contact_stiffness * y[P] + c->task->contact_damping * y[Q] : 0;
+	return c->touching && !c->held ? pound_contact_force_on(&c->touch.on, y[P], y[Q]) : 0;
+}
+
+/* Acceleration of a body by its own spring and dashpot [m/s2]. */
+static double own_acceleration(const struct course *c, int i, const double y[])
+{
+	const struct pound_piece *piece = &c->at[i].piece;
+	return -c->task->bodies[i].damping * y[V1 + 2 * i] - piece->stiffness * y[U1 + 2 * i] - piece->offset;
+}
+
+/* Relative acceleration of the bodies without contact [m/s2].
+ *
+ * Not the difference of two accelerations: when the ground begins to move its rounding would decide who meets.
+ */
+static double relative_acceleration(const struct course *c, double t, const double y[])
+{
+	const double a = c->ground + c->slope * t;
+	return (c->task->bodies[1].drive - c->task->bodies[0].drive) * a +
+	       (own_acceleration(c, 0, y) - own_acceleration(c, 1, y));
 }
 
 static int derivative(double t, const double y[], double dydt[], void *of)
 {
 	const struct course *c = of;
-	double a = c->ground + c->slope * t, force = contact_force(c, y), own[POUND_OSCILLATORS];
+	const double a = c->ground + c->slope * t, apart = relative_acceleration(c, t, y);
+	const double force = c->held ? apart / (1 + c->task->mass_ratio) : contact_force(c, y);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const struct pound_task_body *body = &c->task->bodies[i];
-		const struct pound_piece *piece = &c->at[i].piece;
-		double u = y[U1 + 2 * i], v = y[V1 + 2 * i];
-		own[i] = -body->damping * v - piece->stiffness * u - piece->offset;
-		dydt[U1 + 2 * i] = v;
-		dydt[V1 + 2 * i] = -body->drive * a + own[i] + (i == 0 ? -force : c->task->mass_ratio * force);
+		dydt[U1 + 2 * i] = y[V1 + 2 * i];
+		dydt[V1 + 2 * i] = -c->task->bodies[i].drive * a + own_acceleration(c, i, y) +
+		                   (i == 0 ? -force : c->task->mass_ratio * force);
 	}
 	dydt[P] = y[Q];
-	// not the difference of two accelerations: when the ground begins to move its rounding would decide who meets
-	dydt[Q] = (c->task->bodies[1].drive - c->task->bodies[0].drive) * a + (own[0] - own[1]) -
-	          (1 + c->task->mass_ratio) * force;
+	dydt[Q] = c->held ? 0 : apart - (1 + c->task->mass_ratio) * force;
 	dydt[IMPULSE] = force;
 	return GSL_SUCCESS;
 }
@@ -97,12 +116,15 @@ static int derivative(double t, const double y[], double dydt[], void *of)
 static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *of)
 {
 	const struct course *c = of;
-	(void)t, (void)y;
+	(void)t;
 	double(*row)[STATES] = (double(*)[STATES])dfdy;
 	memset(dfdy, 0, sizeof(double) * STATES * STATES);
 	memset(dfdt, 0, sizeof(double) * STATES);
-	row[IMPULSE][P] = c->touching ? c->task->contact_stiffness : 0;
-	row[IMPULSE][Q] = c->touching ? c->task->contact_damping : 0;
+	if (c->touching && !c->held) { // of powers but for the growth of their dashpot with the overlap
+		const struct pound_touch_line line = pound_contact_line(&c->touch.on, y[P]);
+		row[IMPULSE][P] = line.slope;
+		row[IMPULSE][Q] = line.rate;
+	}
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *body = &c->task->bodies[i];
 		double share = i == 0 ? -1 : c->task->mass_ratio;
@@ -150,6 +172,10 @@ static double guard(const struct course *c, enum guard j, double t, const double
 {
 	const struct pound_task *task = c->task;
 	double force = y[P] + c->release * y[Q]; // per stiffness
+	if (c->law.stiffness > 0 && !c->law.tension && c->touch.on.form == POUND_TOUCH_ROOT)
+		force = pound_contact_force_on(&c->touch.on, y[P], y[Q]) / c->law.stiffness;
+	if (c->held)
+		force = relative_acceleration(c, t, y);
 	switch (j) {
 	case TURN:
 	case TURN_2:
@@ -167,6 +193,10 @@ static double guard(const struct course *c, enum guard j, double t, const double
 		return !task->contact ? -1 : c->touching ? -force : c->parted ? force : y[P];
 	case CLEARS:
 		return c->parted ? -y[P] : -1;
+	case TOUCH_LOW:
+		return c->touching && c->touch.on.low > 0 ? c->touch.on.low - y[P] : -1;
+	case TOUCH_HIGH:
+		return c->touching && c->touch.on.high < DBL_MAX ? y[P] - c->touch.on.high : -1;
 	case GUARDS:
 		break;
 	}
@@ -187,7 +217,8 @@ static void ways_set(struct course *c)
 	}
 	// a contact ends with its force, or with the overlap
 	bool forced = c->release > 0 && (c->touching || c->parted);
-	c->way[TURN_OVERLAP] = c->task->contact ? sign(c->y[Q]) : 0;
+	const double direction = c->touching ? c->touch.on.direction : 0;
+	c->way[TURN_OVERLAP] = !c->task->contact || c->held ? 0 : direction != 0 ? direction : sign(c->y[Q]);
 	c->way[TURN_FORCE] = forced ? sign(rate_at(c, TURN_FORCE, c->t, c->y).value) : 0;
 }
 
@@ -214,15 +245,51 @@ static void contact_over(struct course *c)
 		r->contact_time = c->counted_time;
 }
 
+/* Velocities jump; where the hops that follow are over in next to no time, bodies stay together.
+ *
+ *   v_1 -= J, v_2 += r J,  J = (1 + e) q/(1 + r)       hops that are left: 2 e q/(a (1 - e)), a their relative acceleration
+ */
+static void contact_impact(struct course *c)
+{
+	static const double HOPS_END = 1e-12; // of a sample
+	struct pound_task_result *r = c->result;
+	const double q = fmax(c->y[Q], 0), a = relative_acceleration(c, c->t, c->y);
+	double e = c->law.restitution;
+	c->held = a > 0 && e < 1 && 2 * e * q < a * (1 - e) * HOPS_END * c->task->time_step;
+	if (c->held)
+		e = 0;
+	const double impulse = (1 + e) * q / (1 + c->task->mass_ratio);
+	c->y[V1] -= impulse;
+	c->y[V2] += c->task->mass_ratio * impulse;
+	c->y[P] = 0;
+	c->y[Q] = -e * q;
+	c->y[IMPULSE] = c->touch_steps = 0;
+	c->touching = c->held;
+	r->impulse_max = fmax(r->impulse_max, impulse);
+	if (q >= c->law.speed_floor && r->contacts++ == 0)
+		r->first_contact = c->start + c->t, r->first_speed = q;
+}
+
 static void contact_turn(struct course *c)
 {
 	struct pound_task_result *r = c->result;
+	if (c->held) {
+		r->impulse_max = fmax(r->impulse_max, c->y[IMPULSE]);
+		c->held = c->touching = false;
+		return;
+	}
+	if (c->task->force == POUND_FORCE_IMPACT) {
+		contact_impact(c);
+		return;
+	}
 	if (c->touching) {
 		contact_over(c);
 		c->touching = false;
-		c->parted = c->release > 0 && c->y[P] > 0;
+		c->parted = !c->law.tension && c->law.dashpot > 0 && c->y[P] > 0;
 		return;
 	}
+	if (!c->parted)
+		pound_contact_begin(&c->law, &c->touch, c->y[Q]);
 	if (r->contacts == 0)
 		r->first_contact = c->start + c->t, r->first_speed = c->y[Q];
 	c->y[IMPULSE] = c->touch_steps = 0;
@@ -243,11 +310,17 @@ static void body_turn(struct course *c, int i, enum pound_edge edge)
 static void event_pass(struct course *c, enum guard j)
 {
 	// bodies that are pressed to rest turn by every rounding: turns count where a branch of a law ends with them
-	c->events += j >= TURNS || (j < TURN_OVERLAP && c->at[j - TURN].piece.direction != 0);
+	c->events += j >= TURNS || (j == TURN_OVERLAP && c->touching && c->touch.on.direction != 0) ||
+	             (j < TURN_OVERLAP && c->at[j - TURN].piece.direction != 0);
 	if (j == CONTACT)
 		contact_turn(c);
 	else if (j == CLEARS)
 		c->parted = false;
+	else if (j == TOUCH_LOW || j == TOUCH_HIGH)
+		pound_contact_leave(&c->law, &c->touch, j == TOUCH_LOW ? POUND_EDGE_LOW : POUND_EDGE_HIGH,
+		                    j == TOUCH_LOW ? c->touch.on.low : c->touch.on.high);
+	else if (j == TURN_OVERLAP && c->touching && c->touch.on.direction != 0)
+		pound_contact_leave(&c->law, &c->touch, POUND_EDGE_TURN, c->y[P]);
 	else if (j >= HIGH)
 		body_turn(c, j - HIGH, POUND_EDGE_HIGH);
 	else if (j >= LOW)
@@ -451,7 +524,10 @@ static void course_start(struct course *c)
 	}
 	c->y[P] = c->y[U1] - c->y[U2] - task->gap;
 	c->y[Q] = c->y[V1] - c->y[V2];
-	c->release = task->contact && !task->tension ? task->contact_damping / task->contact_stiffness : 0;
+	c->law = pound_task_law(task);
+	// of powers the force has no rate where their overlap ends
+	const bool line = task->contact && !c->law.tension && task->force == POUND_FORCE_LINEAR;
+	c->release = line ? c->law.dashpot / c->law.stiffness : 0;
 }
 
 static void course_end(struct course *c, enum pound_status status)
@@ -462,7 +538,9 @@ static void course_end(struct course *c, enum pound_status status)
 		return;
 	}
 	// a contact still open at the end counts with what it has
-	if (c->touching)
+	if (c->held)
+		r->impulse_max = fmax(r->impulse_max, c->y[IMPULSE]);
+	else if (c->touching)
 		contact_over(c);
 	if (r->contacts == 0)
 		r->first_contact = r->first_speed = 0;

@@ -332,11 +332,7 @@ static void course_start(struct course *c, int n_steps)
 		law_follow(&task->bodies[i].backbone, &c->at[i], 0, c->u[i]);
 	}
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
-	c->law = task->force == POUND_FORCE_LINEAR // Kelvin-Voigt, row 0
-	             ? (struct pound_contact_law){.stiffness = task->contact_stiffness,
-	                                          .dashpot = task->contact_damping,
-	                                          .tension = task->tension}
-	             : task->law;
+	c->law = pound_task_law(task);
 	if (task->contact)
 		c->touch = touch_at(c, 0, p, q);
 	c->touching = touches(c, &c->touch, p, q);

@@ -12,6 +12,12 @@
 		[POUND_FORCE_POWER] = true                                                                \
 	}
 
+#define EVERY                                                                                     \
+	{                                                                                             \
+		[POUND_FORCE_LINEAR] = true, [POUND_FORCE_STRAIGHT] = true, [POUND_FORCE_PRODUCT] = true, \
+		[POUND_FORCE_POWER] = true, [POUND_FORCE_IMPACT] = true                                   \
+	}
+
 static const struct solver {
 	const char *name;
 	const char *text; /* one line of documentation */
@@ -30,8 +36,7 @@ static const struct solver {
      .forces = BRANCHES},
     [POUND_SOLVER_ADAPTIVE] = {"adaptive",
                                "GSL's Runge-Kutta-Prince-Dormand (8, 9), restarted at every event",
-                               pound_adaptive_run, .tolerance = true,
-                               .forces = {[POUND_FORCE_LINEAR] = true}},
+                               pound_adaptive_run, .tolerance = true, .forces = EVERY},
 };
 
 static_assert(sizeof solvers / sizeof solvers[0] == POUND_SOLVERS, "a row for each solver");
@@ -68,6 +73,15 @@ bool pound_solver_takes_tolerance(int row)
 bool pound_solver_takes_step(int row)
 {
 	return solver_at(row)->step;
+}
+
+/* The contact of a task: a linear one is Kelvin-Voigt's, which is row 0. */
+struct pound_contact_law pound_task_law(const struct pound_task *task)
+{
+	if (task->force != POUND_FORCE_LINEAR)
+		return task->law;
+	return (struct pound_contact_law){
+	    .stiffness = task->contact_stiffness, .dashpot = task->contact_damping, .tension = task->tension};
 }
 
 /* Runs tasks, with the method and the setting of a solver.

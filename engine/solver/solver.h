@@ -16,6 +16,8 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
                                    struct pound_task_result *results, int n, void *scratch,
                                    const atomic_bool *stop);
 
+struct pound_contact_law pound_task_law(const struct pound_task *task); /* of its contact */
+
 /* fixed_step.c */
 double pound_fixed_step(double time_step, double step);
 void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_task *task,
