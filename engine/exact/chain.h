@@ -1,0 +1,129 @@
+/* chain.h - the response of rows of shear buildings, event by event, to rounding.
+ *
+ * A chain is all floors of a row of buildings, side by side from left to right and from the ground up, under one ground motion.
+ * Between events every story and every contact is on a branch of its law and the ground motion is a straight line. */
+#ifndef CHAIN_H
+#define CHAIN_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "engine/numeric/stop.h"
+#include "engine/pound.h"
+#include "engine/scene/contact.h"
+#include "engine/scene/law.h"
+
+enum {
+	POUND_CHAIN_FLOORS = 400,      /* of a chain, at most */
+	POUND_CHAIN_LINKS = 400,       /* of a chain, at most */
+	POUND_CHAIN_GROUND = -1,       /* in place of a floor */
+	POUND_CHAIN_SCRATCH = 1 << 20, /* bytes of work space, 64-byte aligned */
+	POUND_CHAIN_ORDER = 21,        /* of the longest series of a piece */
+};
+
+/* a floor and the story below it; u is its displacement relative to the ground, d = u - u of the floor below its drift */
+struct pound_floor {
+	double mass;    /* [kg]  > 0 */
+	double dashpot; /* of the story, per rate of its drift [N s/m] */
+	double drag;    /* a0, times mass and velocity; the same for all floors of a building [1/s] */
+	struct pound_backbone story; /* in forces: stiffness [N/m], yield displacement: a drift [m] */
+	const double *modal; /* force on this floor, against the rates of the drifts of its building's stories
+	                                 * [N s/m]  (stories of the building); NULL: none */
+	bool base;           /* the story stands on the ground: a building begins */
+};
+
+/* A contact between a level of a building and one of its right neighbor.
+ *
+ * A level's displacement is the sum of the weights times the displacements of two floors, and a force on it acts on these with
+ * the same weights.  The weights of a side add up to 1; a floor POUND_CHAIN_GROUND does not move: a wall has it twice.
+ * A weight 0 goes with any floor of that building. */
+struct pound_link {
+	int floor[2][2];              /* of the left and the right side */
+	double weight[2][2];          /* [0, 1] */
+	struct pound_contact_law law; /* in forces [N] */
+	double gap;                   /* [m] */
+};
+
+/* What of a chain is wanted beside impulses, counts, times and the end: what is not is NAN in the result. */
+enum pound_chain_asked {
+	POUND_CHAIN_DRIFTS = 1,
+	POUND_CHAIN_DISPLACEMENTS = 2,
+	POUND_CHAIN_ACCELERATIONS = 4,
+	POUND_CHAIN_FORCES = 8,
+	POUND_CHAIN_ENERGY = 16, /* no whole samples are passed at once: such a run takes longer */
+};
+
+/* The motion of an observed floor between two instants: nothing happens to the chain between them.
+ *
+ *   u(time + s length) = sum_n u[n] s^n,  0 <= s <= 1 */
+struct pound_chain_piece {
+	double time, length;  /* [s]  length 0: only a velocity or a force has changed */
+	double ground, slope; /* acceleration of the ground at the start and its growth [m/s2], [m/s3] */
+	double force;         /* of all contacts on the floor at the start, positive to the left [N] */
+	const double *u;      /* displacement relative to the ground [m]  (order + 1) */
+	int order;
+	bool sampled; /* it starts at a sample of the ground motion */
+};
+
+struct pound_chain_observer {
+	void (*observe)(void *into, const struct pound_chain_piece *piece);
+	void *into;
+	int floor;
+};
+
+struct pound_chain_task {
+	const double *ground; /* acceleration at the samples, linear between  [m/s2]  (n_samples) */
+	int n_samples;        /* >= 2 */
+	double time_step;     /* [s] */
+	int n_floors, n_links;
+	const struct pound_floor *floors;            /* (n_floors) */
+	const struct pound_link *links;              /* (n_links); NULL: none */
+	unsigned asked;                              /* of enum pound_chain_asked */
+	const struct pound_chain_observer *observer; /* NULL: none */
+};
+
+enum pound_floor_measure {
+	POUND_FLOOR_DRIFT_MAX,        /* largest |d| [m] */
+	POUND_FLOOR_DISPLACEMENT_MAX, /* largest |u| [m] */
+	POUND_FLOOR_ACCELERATION_MAX, /* largest |u'' + ground|, on both sides of events [m/s2] */
+	POUND_FLOOR_SHEAR_MAX,        /* largest spring force of the story below [N]; goes with the drift */
+	POUND_FLOOR_CENTER, /* of the story's elastic range at the end, of an elastoplastic law; else 0 [m] */
+	POUND_FLOOR_END_U,  /* [m] */
+	POUND_FLOOR_END_V,  /* [m/s] */
+	POUND_FLOOR_MEASURES
+};
+
+enum pound_link_measure {
+	POUND_LINK_IMPULSE_MAX, /* largest integral of the force over one contact [N s] */
+	POUND_LINK_FORCE_MAX,   /* largest force that pushes [N] */
+	POUND_LINK_CONTACTS,    /* a whole number */
+	POUND_LINK_TIME,        /* in contact [s] */
+	POUND_LINK_FIRST_TIME,  /* of the first contact; 0: none [s] */
+	POUND_LINK_FIRST_SPEED, /* of approach there; 0: none [m/s] */
+	POUND_LINK_MEASURES
+};
+
+/* Rows of measures; the memory is the caller's. */
+struct pound_chain_result {
+	enum pound_status status;
+	double *floors; /* (n_floors x POUND_FLOOR_MEASURES) */
+	double *links;  /* (n_links x POUND_LINK_MEASURES) */
+	// |kinetic + absorbed - put in| over the most along the way of what was put in and of kinetic energy; NAN: not asked
+	double energy_residual;
+};
+
+bool pound_chain_lanes(int lanes, const struct pound_chain_task *tasks, struct pound_chain_result *results,
+                       int n, void *scratch, const atomic_bool *stop);
+
+/* chain.inl, compiled once for each */
+void pound_chain_w8(const struct pound_chain_task *tasks, struct pound_chain_result *results, int n,
+                    void *scratch, const atomic_bool *stop);
+void pound_chain_w4(const struct pound_chain_task *tasks, struct pound_chain_result *results, int n,
+                    void *scratch, const atomic_bool *stop);
+void pound_chain_w1(const struct pound_chain_task *tasks, struct pound_chain_result *results, int n,
+                    void *scratch, const atomic_bool *stop);
+void pound_chain_portable(const struct pound_chain_task *tasks, struct pound_chain_result *results, int n,
+                          void *scratch, const atomic_bool *stop);
+
+#endif
