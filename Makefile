@@ -84,6 +84,7 @@ $(B)/%_w1.o: CFLAGS += $(LANES.w1)
 $(B)/%_w4.o: CFLAGS += $(LANES.w4)
 $(B)/%_w8.o: CFLAGS += $(LANES.w8)
 $(B)/engine/exact/exact_%.o: CFLAGS += $(MARCH.$(MODE))
+$(B)/engine/exact/chain_%.o: CFLAGS += $(MARCH.$(MODE))
 $(B)/engine/floor/oscillator_bank_%.o: CFLAGS += $(FLOOR.$(MODE))
 $(B)/engine/floor/floor_pieces.o: CFLAGS += $(FLOOR.$(MODE))
 

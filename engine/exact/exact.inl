@@ -20,6 +20,11 @@
 #include <assert.h>
 #include <string.h>
 
+enum {
+	ORDER_APART = 13, /* of the series of a displacement while apart */
+	ORDER_TOUCH = 17, /* while touching */
+};
+
 // clang-format off
 #include "engine/exact/simulation.inl"
 #include "engine/exact/free_motion.inl"

@@ -10,6 +10,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "engine/exact/place.h"
 #include "engine/exact/tolerances.h"
 #include "engine/numeric/lanes.h"
 
@@ -72,11 +73,6 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 	map->ev = quartic * s.bend_v + 2 * rounding * h;
 	map->ef = quartic * h * fmax(s.bend_a, s.bend_d) + rounding * h * h;
 }
-
-/* displacement and velocity of a body */
-struct place {
-	vd u, v;
-};
 
 /* a body's motion over a sample or cell: its end, the inner control points of the cubic, and the bound of its error */
 struct flight {

@@ -1,17 +1,15 @@
 /* series.inl - motion between two events as power series in time, and the first root of a guard on it.
  *
- * Included by exact.inl alone, once per lane count.
- *
- * Included by exact.inl after free_motion.inl. */
+ * Included by exact.inl, after free_motion.inl, and by chain.inl, once per lane count.  Who includes it says of which orders the
+ * series are: ORDER_APART and ORDER_TOUCH, odd, as terms are taken in pairs. */
 
 #include <float.h>
 
+#include "engine/exact/place.h"
 #include "engine/exact/tolerances.h"
 #include "engine/numeric/lanes.h"
 
 enum {
-	ORDER_APART = 13, /* of the series of a displacement while apart: odd, as terms are taken in pairs */
-	ORDER_TOUCH = 17, /* while touching */
 	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
 	QUICK_ROUNDS = 5, /* of Halley's method from the parabola through both ends */
 	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */

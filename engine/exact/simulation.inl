@@ -183,7 +183,6 @@ struct pound_member {
 	struct pound_task_result *result;
 };
 
-enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
 
 struct simulation {
 	alignas(64) struct state_rows x;

@@ -31,6 +31,8 @@ static const double POUND_TERMS_REACH[] = {0,        5.548e-17, 1.053e-08, 6.928
  * may be far below the rounding of a whole step. */
 static const double POUND_STEP_SHORTER = 0x1p-8, POUND_STEP_SHORTEST = 0x1p-400, POUND_STEP_LONGER = 0x1p4;
 
+enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
+
 /* Gauss-Legendre nodes and weights on [0, 1], exact to degree 23: a step's powers are products of series whose terms
  * have died away to rounding there.  Abramowitz and Stegun 1964, Table 25.4. */
 enum { POUND_GAUSS = 12 };

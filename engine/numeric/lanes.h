@@ -44,6 +44,8 @@ typedef uint64_t vm;
 #define LANE_BITS(m)         ((unsigned)(m)&1)
 #define LANE_MASK(bits)      (-(vm)((bits)&1))
 #define LANE_PRODUCT(a, b)   (((a)&UINT32_MAX) * ((b)&UINT32_MAX))
+#define LANE_ABOVE(a, b)     ((void)(a), (b))
+#define LANE_BELOW(a, b)     ((void)(b), (a))
 
 #else
 
@@ -72,6 +74,8 @@ typedef lane_bits vm;
 #define LANE_BITS(m)         ((unsigned)_mm256_movemask_pd((vd)(m)))
 #define LANE_MASK(bits)      (((vm)_mm256_set1_epi64x(bits) & (vm){1, 2, 4, 8}) == (vm){1, 2, 4, 8})
 #define LANE_PRODUCT(a, b)   ((vu)_mm256_mul_epu32((__m256i)(a), (__m256i)(b)))
+#define LANE_ABOVE(a, b)     _mm256_shuffle_pd(a, _mm256_permute2f128_pd(a, b, 0x21), 0x5)
+#define LANE_BELOW(a, b)     _mm256_shuffle_pd(_mm256_permute2f128_pd(a, b, 0x21), b, 0x5)
 #else
 typedef __mmask8 vm;
 #define LANE_SPLAT(x)        _mm512_set1_pd(x)
@@ -92,6 +96,8 @@ typedef __mmask8 vm;
 #define LANE_BITS(m)       ((unsigned)(m))
 #define LANE_MASK(bits)    ((vm)(bits))
 #define LANE_PRODUCT(a, b) ((vu)_mm512_mul_epu32((__m512i)(a), (__m512i)(b)))
+#define LANE_ABOVE(a, b)   ((vd)_mm512_alignr_epi64((__m512i)(b), (__m512i)(a), 1))
+#define LANE_BELOW(a, b)   ((vd)_mm512_alignr_epi64((__m512i)(b), (__m512i)(a), 7))
 #endif
 
 #endif
@@ -156,6 +162,19 @@ LANE_INLINE vu vproduct(vu a, vu b)
 {
 	return LANE_PRODUCT(a, b);
 } /* of the lower halves */
+
+/* ---- neighbors: a and b follow each other in memory ---- */
+
+/* Each lane has what is one further on, the last one the first of b. */
+LANE_INLINE vd vabove(vd a, vd b)
+{
+	return LANE_ABOVE(a, b);
+}
+/* Each lane of b has what is one before, the first one the last of a. */
+LANE_INLINE vd vbelow(vd a, vd b)
+{
+	return LANE_BELOW(a, b);
+}
 
 /* ---- one double of memory for each lane ---- */
 

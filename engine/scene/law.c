@@ -99,17 +99,19 @@ static const struct law {
 	const char *name;
 	const char *text; /* one line of documentation */
 	bool linear;
+	bool drags; /* yields for good: memory[0] is the centre of its elastic range */
 	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
 	void (*leave)(const struct pound_backbone *, struct pound_branch *, enum pound_edge, double u);
 } laws[] = {
-    {"linear", "a spring", true, false, linear},
+    {"linear", "a spring", true, false, false, linear},
     {"elastoplastic",
-     "bilinear with kinematic hardening: unloads with the first slope, yields again after 2 d_y", false,
+     "bilinear with kinematic hardening: unloads with the first slope, yields again after 2 d_y", false, true,
      false, elastoplastic},
-    {"nonlinear_elastic", "bilinear, loads and unloads on the same curve", false, false, nonlinear_elastic},
+    {"nonlinear_elastic", "bilinear, loads and unloads on the same curve", false, false, false,
+     nonlinear_elastic},
     {"origin_oriented",
      "bilinear, unloads toward the origin and reloads to the farthest point reached on that side", false,
-     true, origin_oriented},
+     false, true, origin_oriented},
 };
 
 const char *pound_law_text(int row)
@@ -168,4 +170,12 @@ double pound_law_envelope(const struct pound_backbone *s, double u)
 	if (laws[s->law].linear || u <= s->yield)
 		return s->stiffness * u;
 	return s->stiffness * (s->hardening * u + (1 - s->hardening) * s->yield);
+}
+
+/* Centre of the elastic range, were the oscillator to turn at u [m]; 0 for laws whose range stays. */
+double pound_law_center(const struct pound_backbone *s, const struct pound_branch *at, double u)
+{
+	if (!laws[s->law].drags)
+		return 0;
+	return at->branch == CENTRE ? at->memory[0] : at->branch == RIGHT ? u - s->yield : u + s->yield;
 }

@@ -35,5 +35,6 @@ void pound_law_start(const struct pound_backbone *backbone, struct pound_branch 
 void pound_law_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
                      double u);
 double pound_law_envelope(const struct pound_backbone *backbone, double u);
+double pound_law_center(const struct pound_backbone *backbone, const struct pound_branch *at, double u);
 
 #endif

@@ -1,0 +1,40 @@
+/* chain.c - rows of buildings at the widest lanes of this machine.
+ *
+ *   task ──> drifts of all stories in lanes ──> series ──> first event ──> next branch ──┐
+ *                  ^                                                                     │
+ *                  └─────────────────────────────────────────────────────────────────────┘   until the last sample
+ *
+ * chain.inl runs one chain after the other and includes, in this order:
+ *
+ *   chain_state.inl   columns of floors, links, the start and the end
+ *   series.inl        roots of guards on power series: the pair's
+ *   chain_series.inl  the series of a step
+ *   chain_events.inl  its first event
+ *   chain_peaks.inl   largest values inside it
+ *   chain_energy.inl  the work done in it
+ *   chain_step.inl    one step up to an event, and what follows
+ *
+ * It is compiled once for each lane count: chain_w8.c, chain_w4.c, chain_w1.c, chain_portable.c. */
+#include "engine/exact/chain.h"
+#include "engine/numeric/cpu_width.h"
+
+typedef void chain_run(const struct pound_chain_task *, struct pound_chain_result *, int n, void *scratch,
+                       const atomic_bool *stop);
+
+/* Runs chains at a lane count; 0: the widest there is.
+ *
+ * Given    scratch  POUND_CHAIN_SCRATCH bytes, 64-byte aligned
+ *          stop     looked at throughout: when it is set the results are not to be used; NULL: never
+ * Returns  value    false: this machine has no such lanes, nothing was run
+ *          results  one for each task  (n)
+ */
+bool pound_chain_lanes(int lanes, const struct pound_chain_task *tasks, struct pound_chain_result *results,
+                       int n, void *scratch, const atomic_bool *stop)
+{
+	static chain_run *const run[POUND_WIDTHS] = {pound_chain_w8, pound_chain_w4, pound_chain_w1,
+	                                             pound_chain_portable};
+	int width = pound_dispatch_width(lanes);
+	if (width >= 0)
+		run[width](tasks, results, n, scratch, stop);
+	return width >= 0;
+}

@@ -1,0 +1,119 @@
+/* chain.inl - the exact march of a chain of floors, one at a time, its floors side by side in lanes.
+ *
+ * Between events every story and contact is on a straight branch and the ground motion is a straight line, so a step is a power
+ * series in time.  It ends at the first root of a guard, found to rounding, or at the next sample.  A chain's bits do not
+ * depend on the lane count: lanes meet by shifts between neighbors, and sums go by index.
+ *
+ * Laws, contacts, root searches and tolerances are those of the pair (exact.inl). */
+
+enum {
+	ORDER_APART = 15, /* of the series of short steps */
+	ORDER_TOUCH = 21, /* of long ones */
+};
+
+// clang-format off
+#include "engine/exact/chain_state.inl"
+#include "engine/exact/series.inl"
+#include "engine/exact/chain_series.inl"
+#include "engine/exact/chain_events.inl"
+#include "engine/exact/chain_peaks.inl"
+#include "engine/exact/chain_energy.inl"
+#include "engine/exact/chain_step.inl"
+// clang-format on
+
+enum { STOP_STEPS = 1024 }; /* between two looks at the flag */
+
+/* Whether a link's overlap can be had from its floors again: it is far beyond the rounding of their displacements. */
+static bool link_far(const struct chain *c, const struct link *l)
+{
+	double terms = l->link->gap;
+	for (int k = 0; k < l->n_ends; k++)
+		terms += fabs(l->weight[k] * c->u.at[l->floor[k]]);
+	return !l->touching && !l->parted && l->p < -0x1p-20 * terms && l->p + c->part * l->q < 0;
+}
+
+/* Brings to rest what is left of next to nothing of a building that touches none, where nothing comes from the ground. */
+static void building_settle(struct chain *c, int first, int stories)
+{
+	for (int i = first; i < first + stories; i++)
+		if (fabs(c->d.at[i]) >= POUND_AT_REST || fabs(c->v.at[i]) * c->task->time_step >= POUND_AT_REST ||
+		    c->offset.at[i] != 0 || c->low.at[i] > 0 || c->high.at[i] < 0)
+			return;
+	for (int i = first; i < first + stories; i++)
+		c->d.at[i] = c->v.at[i] = 0;
+}
+
+static void chain_settle(struct chain *c)
+{
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].touching || c->link[j].parted)
+			return;
+	for (int first = 0, stories; first < c->n; first += stories) {
+		stories = building_stories(c->task, first);
+		building_settle(c, first, stories);
+	}
+}
+
+/* Enters the interval that ends at c->next. */
+static void chain_interval(struct chain *c)
+{
+	const double *a = &c->task->ground[c->next];
+	c->ground = a[-1];
+	c->slope = (a[0] - a[-1]) * (1 / c->task->time_step);
+	c->part = c->task->time_step;
+	c->steps = 0;
+	if (c->ground == 0 && c->slope == 0)
+		chain_settle(c);
+	if (c->n_links == 0)
+		return;
+	chain_displacements(c);
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].own && link_far(c, &c->link[j]))
+			c->link[j].own = false;
+}
+
+/* Follows a chain from its start to the end of its ground motion. */
+static enum pound_status chain_march(struct chain *c, const atomic_bool *stop)
+{
+	int64_t steps = 0;
+	for (; c->next < c->task->n_samples; c->next++) {
+		chain_interval(c);
+		while (c->part > 0) {
+			if (++c->steps > POUND_STEPS_LIMIT)
+				return POUND_CHATTER;
+			if (++steps % STOP_STEPS == 0 && pound_stopped(stop))
+				return POUND_STOPPED;
+			chain_step(c);
+		}
+	}
+	c->next--;
+	return POUND_OK;
+}
+
+static_assert(sizeof(struct chain) <= POUND_CHAIN_SCRATCH, "a chain fits into its work space");
+
+/* Runs every task to its end.
+ *
+ * Given    tasks    (n)
+ *          scratch  POUND_CHAIN_SCRATCH bytes, 64-byte aligned
+ *          stop     looked at between steps: when it is set the results are not to be used; NULL: never
+ * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
+ *
+ * Source   buildings.md 1 and 3 of the project's design pages
+ * Test     unit_chain
+ */
+void POUND_CHAIN(const struct pound_chain_task *tasks, struct pound_chain_result *results, int n,
+                 void *scratch, const atomic_bool *stop)
+{
+	struct chain *c = scratch;
+	for (int j = 0; j < n && !pound_stopped(stop); j++) {
+		chain_start(c, &tasks[j], &results[j]);
+		const enum pound_status status = chain_march(c, stop);
+		chain_displacements(c);
+		for (int i = 0; i < c->n_links; i++)
+			if (c->link[i].touching) // a contact still open at the end counts with what it has
+				contact_over(c, &c->link[i]);
+		chain_write(c, status);
+	}
+	lanes_leave();
+}

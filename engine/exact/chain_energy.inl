@@ -1,0 +1,83 @@
+/* chain_energy.inl - the work done in a step of a chain.
+ *
+ *   put in    -sum m a_g v        absorbed    sum (r + c d') d' + a0 m v^2 + v C d' + F q
+ *
+ * by quadrature over the step's series: nothing of the way that these were made is used.
+ *
+ * Included by chain.inl alone, once per lane count, after chain_peaks.inl. */
+
+/* Value of a series of one floor or link at a time, and its rate by the share of the step. */
+static double column_at(const double *first, size_t stride, int order, double t, double *rate)
+{
+	double value = first[(size_t)order * stride], slope = 0;
+	for (int n = order - 1; n >= 0; n--) {
+		slope = fma(slope, t, value);
+		value = fma(value, t, first[(size_t)n * stride]);
+	}
+	*rate = slope;
+	return value;
+}
+
+/* powers at one time of a step, and the kinetic energy */
+struct powers {
+	double in, out, moving;
+};
+
+static struct powers powers_at(const struct chain *c, double t)
+{
+	const struct pound_chain_task *task = c->task;
+	const double h = c->dt, ground = fma(c->slope, t * h, c->ground);
+	struct powers p = {0, 0, 0};
+	double rates[LONG];
+	for (int i = 0; i < c->n; i++) {
+		const double m = task->floors[i].mass;
+		double w, v;
+		column_at(&c->displacements[0].at[i], LONG, c->order, t, &w);
+		const double d = column_at(&c->drifts[0].at[i], LONG, c->order, t, &v);
+		w /= h, v /= h;
+		rates[i] = v;
+		p.in -= m * ground * w;
+		p.out += (fma(c->stiffness.at[i], d, c->offset.at[i]) + c->dashpot.at[i] * v) * v +
+		         c->drag.at[i] * m * w * w;
+		p.moving += 0.5 * m * w * w;
+	}
+	for (int first = 0, stories; c->modal && first < c->n; first += stories) {
+		stories = building_stories(task, first);
+		double w = 0;
+		for (int i = 0; i < stories && task->floors[first + i].modal; i++) {
+			w += rates[first + i];
+			for (int j = 0; j < stories; j++)
+				p.out += w * task->floors[first + i].modal[j] * rates[first + j];
+		}
+	}
+	for (int j = 0; j < c->n_links; j++) {
+		const struct pound_touch_branch *on = &c->link[j].at.on;
+		double q;
+		if (!c->link[j].touching)
+			continue;
+		const double overlap = column_at(&c->overlaps[0][j], LINKS, c->order, t, &q);
+		q /= h;
+		p.out += fma(on->stiffness, overlap, fma(on->damping, q, on->offset)) * q;
+	}
+	return p;
+}
+
+/* Accounts for a step that ended at a share of it.  A ground that takes back within the step what it has given leaves little
+ * at the end: what there is at the nodes counts. */
+static void energy_keep(struct chain *c, double time)
+{
+	double in = 0, out = 0, most = 0;
+	for (int k = 0; k < POUND_GAUSS; k++) {
+		const double node = k % 2 ? POUND_GAUSS_NODE[k / 2] : -POUND_GAUSS_NODE[k / 2];
+		const struct powers p = powers_at(c, (0.5 + 0.5 * node) * time);
+		in += 0.5 * POUND_GAUSS_WEIGHT[k / 2] * p.in;
+		out += 0.5 * POUND_GAUSS_WEIGHT[k / 2] * p.out;
+		most = fmax(most, p.moving);
+	}
+	const double elapsed = time * c->dt;
+	c->work_in = fma(elapsed, in, c->work_in);
+	const double gap = fma(elapsed, out - in, c->work_low), sum = c->work_gap + gap;
+	c->work_low = gap - (sum - c->work_gap);
+	c->work_gap = sum;
+	c->work_top = fmax(c->work_top, fmax(fabs(c->work_in), fmax(most, powers_at(c, time).moving)));
+}

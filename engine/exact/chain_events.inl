@@ -1,0 +1,266 @@
+/* chain_events.inl - the first event of a step of a chain: contacts that begin or end, branches that are left.
+ *
+ * Every guard is looked at over the whole step, in lanes: of stories, then of links.  The first root counts; of equal ones that of
+ * the lowest rank, contacts before stories, and the others follow at zero time.
+ *
+ * Included by chain.inl alone, once per lane count, after chain_series.inl. */
+
+/* what ends a step: of a link, or of a story EVENT_STORY + its edge */
+enum {
+	EVENT_NONE,
+	EVENT_CUT, /* a search was unsure: up to here nothing happens */
+	EVENT_BEGINS,
+	EVENT_ENDS,   /* the force does, or the overlap */
+	EVENT_CLEARS, /* what was left of the overlap is gone */
+	EVENT_LINK,   /* + edge of the branch of its force */
+	EVENT_STORY = EVENT_LINK + 3,
+	EVENT_END = EVENT_STORY + 3,
+};
+
+/* the first event so far */
+struct first {
+	double time; /* share of the step  1: none */
+	int event, index;
+};
+
+static void first_take(struct first *first, double time, int event, int index)
+{
+	const bool links = event < EVENT_STORY, were_links = first->event < EVENT_STORY;
+	bool sooner = time < first->time;
+	if (time == first->time && event != EVENT_CUT) {
+		const bool lower = links == were_links
+		                       ? index < first->index || (index == first->index && event < first->event)
+		                       : links;
+		sooner = first->event == EVENT_CUT || first->event == EVENT_NONE || lower;
+	}
+	if (sooner)
+		*first = (struct first){time, event, index};
+}
+
+/* Takes what a search found in some lanes.
+ *
+ * Given    index  of the first lane
+ */
+static void search_take(struct first *first, const struct search *search, vm lanes, int index)
+{
+	double time[W], event[W];
+	lanes_store(time, search->time);
+	lanes_store(event, search->event);
+	for (unsigned some = vbits(lanes); some; some &= some - 1) {
+		const int l = __builtin_ctz(some);
+		if (event[l] != EVENT_NONE)
+			first_take(first, time[l], (int)event[l], index + l);
+	}
+}
+
+/* Looks for crossings of a level in some lanes of a vector.
+ *
+ * Given    sign, level  the guard is sign (u - level)
+ */
+static void guard_search(struct first *first, const struct chain *c, const struct power *u,
+                         const struct course *course, vd level, vd sign, vm lanes, int event, int index)
+{
+	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
+	search_crossing(u, course, c->order, level, sign, lanes, vsplat(event), EVENT_CUT, &search);
+	search_take(first, &search, lanes, index);
+}
+
+/* The branches of a vector of stories. */
+LANE_INLINE void stories_search(struct first *first, const struct chain *c, int i)
+{
+	const vd zero = vsplat(0), one = vsplat(1);
+	struct course course = course_load(&c->drift, i);
+	const vd low = column_load(&c->low, i), high = column_load(&c->high, i);
+	const vd direction = column_load(&c->direction, i);
+	const vm past_high = may_cross(&course, high, one), past_low = may_cross(&course, low, -one);
+	vm turns = ~vequal(direction, zero);
+	if (!vany(past_high | past_low | turns))
+		return;
+	struct motion m;
+	motion_load(&m, c, c->drifts, &c->drift, i);
+	if (vany(past_low))
+		guard_search(first, c, &m.u, &course, low, -one, past_low, EVENT_STORY + POUND_EDGE_LOW, i);
+	if (vany(past_high))
+		guard_search(first, c, &m.u, &course, high, one, past_high, EVENT_STORY + POUND_EDGE_HIGH, i);
+	if (!vany(turns))
+		return;
+	course = course_of_velocity(&m, c->order);
+	turns &= may_cross(&course, zero, -direction);
+	if (!vany(turns))
+		return;
+	struct power velocity;
+	motion_velocity(&velocity, &m, c->order);
+	guard_search(first, c, &velocity, &course, zero, -direction, turns, EVENT_STORY + POUND_EDGE_TURN, i);
+}
+
+/* Whether a contact ends where its force does, which may be before its overlap does. */
+static bool link_forced(const struct link *l)
+{
+	return !l->link->law.tension && l->at.on.damping > 0;
+}
+
+/* What overlaps do over a step: those that are integrated in their own right by their series, others by their floors'. */
+static void overlaps_course(struct chain *c)
+{
+	struct courses *x = &c->overlap;
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		if (l->own)
+			continue;
+		x->u0.at[j] = fmin(link_sum(l, c->u.at) - l->link->gap, 0); // a rounding must not make it overlap
+		x->v0.at[j] = link_sum(l, c->displacement.v0.at);
+		x->u1.at[j] = link_sum(l, c->displacement.u1.at) - l->link->gap;
+		x->v1.at[j] = link_sum(l, c->displacement.v1.at);
+		x->bend.at[j] = 0;
+		for (int k = 0; k < l->n_ends; k++)
+			x->bend.at[j] = fma(fabs(l->weight[k]), c->displacement.bend.at[l->floor[k]], x->bend.at[j]);
+	}
+	for (int j = 0; j < c->n_links; j++) {
+		if (!c->link[j].own)
+			continue;
+		double u = c->overlaps[0][j], v = 0, bend = 0;
+		x->u0.at[j] = u;
+		x->v0.at[j] = c->overlaps[1][j];
+		for (int n = 1; n <= c->order; n++) {
+			u += c->overlaps[n][j];
+			v = fma(n, c->overlaps[n][j], v);
+			bend = fma(fourth(n), fabs(c->overlaps[n][j]), bend);
+		}
+		x->u1.at[j] = u;
+		x->v1.at[j] = v;
+		x->bend.at[j] = bend;
+	}
+}
+
+/* a vector of links */
+struct link_lanes {
+	struct motion overlap;
+	struct course course;
+	unsigned open, parted, touching;      /* which of the three */
+	unsigned forced;                      /* touching, and ends with its force */
+	double low[W], high[W], direction[W]; /* of the branches of those that touch */
+	double lead[W]; /* damping over stiffness, over the step: how far the force is ahead of the overlap */
+	double pull[W]; /* magnitude of the overlap's second derivative */
+	unsigned fresh;
+};
+
+static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
+{
+	memset(x, 0, sizeof *x);
+	x->course = course_load(&c->overlap, j);
+	for (int l = 0; l < W; l++) {
+		x->low[l] = -DBL_MAX, x->high[l] = DBL_MAX;
+		if (j + l >= c->n_links)
+			continue;
+		const struct link *link = &c->link[j + l];
+		const unsigned bit = 1u << l;
+		x->open |= link->touching || link->parted ? 0 : bit;
+		x->parted |= link->parted ? bit : 0;
+		x->touching |= link->touching ? bit : 0;
+		x->forced |= link->touching && link_forced(link) ? bit : 0;
+		x->fresh |= link->fresh ? bit : 0;
+		if (!(link->touching || link->parted))
+			continue;
+		if (link->touching) {
+			x->low[l] = x->forced & bit ? -DBL_MAX : link->at.on.low;
+			x->high[l] = link->at.on.high;
+			x->direction[l] = link->at.on.direction;
+		}
+		x->lead[l] = link->at.on.damping / link->at.on.stiffness / c->dt;
+		for (int k = 0; k < link->n_ends; k++)
+			x->pull[l] += 2 * fabs(link->weight[k] * c->displacements[2].at[link->floor[k]]);
+	}
+}
+
+/* Looks for where forces fall through 0, of those that touch, or rise through it again, of those whose force is gone before
+ * their overlap, and for where these clear. */
+static void forces_search(struct first *first, const struct chain *c, const struct link_lanes *x,
+                          unsigned lanes, int j)
+{
+	const vm touching = vmask(x->touching), some = vmask(lanes), fresh = vmask(x->fresh);
+	const vd sign = vselect(touching, vsplat(-1), vsplat(1)), lead = lanes_load(x->lead);
+	struct power guard = {0}, rate;
+	motion_velocity(&rate, &x->overlap, c->order);
+	for (int n = 0; n <= c->order; n++)
+		guard.c[n] = sign * vfma(lead, rate.c[n], x->overlap.u.c[n]);
+	// where the force has just passed 0 it is beyond by a rounding (step.inl: force_search)
+	const vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, lanes_load(x->pull), x->overlap.u.c[0]));
+	guard.c[0] = vselect(fresh, below, guard.c[0]);
+	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
+	search_safe(&guard, c->order, some, vselect(touching, vsplat(EVENT_ENDS), vsplat(EVENT_BEGINS)),
+	            EVENT_CUT, &search);
+	search_take(first, &search, some, j);
+	const vm parted = some & ~touching;
+	if (!vany(parted))
+		return;
+	for (int n = 0; n <= c->order; n++)
+		guard.c[n] = -x->overlap.u.c[n];
+	search = (struct search){.time = vsplat(1), .event = vsplat(EVENT_NONE)};
+	search_safe(&guard, c->order, parted, vsplat(EVENT_CLEARS), EVENT_CUT, &search);
+	search_take(first, &search, parted, j);
+}
+
+/* The overlaps of links that are not integrated in their own right. */
+static void overlaps_fill(struct chain *c, unsigned lanes, int j)
+{
+	for (; lanes; lanes &= lanes - 1) {
+		const int l = j + __builtin_ctz(lanes);
+		if (c->link[l].own)
+			continue;
+		for (int n = 1; n <= c->order; n++)
+			c->overlaps[n][l] = link_sum(&c->link[l], c->displacements[n].at);
+		c->overlaps[0][l] = c->overlap.u0.at[l];
+	}
+}
+
+LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
+{
+	const vd zero = vsplat(0), one = vsplat(1);
+	struct link_lanes x;
+	link_lanes_make(&x, c, j);
+	const vm open = vmask(x.open), touching = vmask(x.touching);
+	const vd low = lanes_load(x.low), high = lanes_load(x.high), direction = lanes_load(x.direction);
+	const vm begins = open & may_cross(&x.course, zero, one);
+	const vm past_low = touching & may_cross(&x.course, low, -one);
+	const vm past_high = touching & may_cross(&x.course, high, one);
+	vm turns = touching & ~vequal(direction, zero);
+	const unsigned by_force = x.forced | x.parted;
+	if (!vany(begins | past_low | past_high | turns) && by_force == 0)
+		return;
+	overlaps_fill(c, vbits(begins), j);
+	for (int n = 0; n <= ORDER_TOUCH; n++)
+		x.overlap.u.c[n] = n <= c->order ? lanes_load(&c->overlaps[n][j]) : zero;
+	x.overlap.end = (struct place){x.course.u1, x.course.v1};
+	x.overlap.bend = x.course.bend;
+	const struct power *p = &x.overlap.u;
+	if (vany(begins))
+		guard_search(first, c, p, &x.course, zero, one, begins, EVENT_BEGINS, j);
+	if (vany(past_low))
+		guard_search(first, c, p, &x.course, low, -one, past_low, EVENT_LINK + POUND_EDGE_LOW, j);
+	if (vany(past_high))
+		guard_search(first, c, p, &x.course, high, one, past_high, EVENT_LINK + POUND_EDGE_HIGH, j);
+	if (by_force)
+		forces_search(first, c, &x, by_force, j);
+	if (!vany(turns))
+		return;
+	const struct course course = course_of_velocity(&x.overlap, c->order);
+	turns &= may_cross(&course, zero, -direction);
+	if (!vany(turns))
+		return;
+	struct power velocity;
+	motion_velocity(&velocity, &x.overlap, c->order);
+	guard_search(first, c, &velocity, &course, zero, -direction, turns, EVENT_LINK + POUND_EDGE_TURN, j);
+}
+
+/* The first event of a step. */
+static struct first events_search(struct chain *c)
+{
+	struct first first = {.time = 1, .event = EVENT_NONE, .index = -1};
+	if (c->n_links > 0)
+		overlaps_course(c);
+	for (int j = 0; j < c->n_links; j += W)
+		links_search(&first, c, j);
+	for (int i = 0; c->edged && i < c->n; i += W)
+		stories_search(&first, c, i);
+	return first;
+}

@@ -1,0 +1,135 @@
+/* chain_peaks.inl - largest values inside a step: of drifts, displacements, accelerations and contact forces.
+ *
+ * Where the bound of a motion exceeds what is known, its rate is followed from root to root: several modes turn several times in
+ * a step.
+ *
+ * Included by chain.inl alone, once per lane count, after chain_events.inl. */
+
+enum { TURNS = 16 }; /* of one motion in a step, at most looked for */
+
+static struct course course_make(const struct power *x, int order)
+{
+	vd u = x->c[0], v = vsplat(0), bend = vsplat(0);
+	for (int n = 1; n <= order; n++) {
+		u = u + x->c[n];
+		v = vfma(vsplat(n), x->c[n], v);
+		if (n >= 4)
+			bend = vfma(vsplat(fourth(n)), vabs(x->c[n]), bend);
+	}
+	return (struct course){x->c[0], x->c[1], u, v, bend};
+}
+
+/* Bound of |u| inside a step, apart from its ends. */
+LANE_INLINE vd course_reach(const struct course *c)
+{
+	const vd third = vsplat(1.0 / 3), b1 = vfma(third, c->v0, c->u0), b2 = vfma(-third, c->v1, c->u1);
+	return vfma(vsplat(POUND_CUBIC_ERROR), c->bend, vmax(vabs(b1), vabs(b2)));
+}
+
+/* A series as one of the time from t on. */
+static void power_shift(struct power *x, int order, vd t)
+{
+	for (int i = 0; i < order; i++)
+		for (int n = order - 1; n >= i; n--)
+			x->c[n] = vfma(t, x->c[n + 1], x->c[n]);
+}
+
+/* Largest magnitude inside a step.
+ *
+ * Given    x       changed
+ *          end     share of the step that is gone where it ended
+ *          top     the largest that is known, with both ends
+ *          mirror  -1: of the magnitude; 0: of values above 0
+ *          lanes   to look into
+ */
+LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror, vm lanes)
+{
+	const vd zero = vsplat(0), one = vsplat(1);
+	struct motion rate;
+	for (int turn = 0; turn < TURNS; turn++) {
+		struct motion m = {.u = *x};
+		motion_velocity(&rate.u, &m, order);
+		const vd *v = rate.u.c;
+		const struct course course = course_make(&rate.u, order);
+		const vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
+		const vd sign = vselect(vless(way, zero), one, -one);
+		struct search search = {.time = vmin(end, one), .event = vsplat(EVENT_NONE)};
+		search_crossing(&rate.u, &course, order, zero, sign, lanes, vsplat(EVENT_STORY), EVENT_CUT, &search);
+		lanes &= ~vequal(search.event, vsplat(EVENT_NONE));
+		if (!vany(lanes))
+			break;
+		const vd t = search.time;
+		const vd value = power_at(x, order, t);
+		top = vselect(lanes, vmax(top, vmax(value, mirror * value)), top);
+		power_shift(x, order, t);
+		x->c[1] = vselect(vequal(search.event, vsplat(EVENT_STORY)), zero, x->c[1]);
+		end = end - t;
+		const struct course rest = course_make(x, order);
+		lanes &= vless(zero, end) & vless(top, course_reach(&rest));
+		if (!vany(lanes))
+			break;
+	}
+	return top;
+}
+
+/* Largest values of a column of series in a step that ended at a share of it. */
+LANE_INLINE void tops_keep(const struct chain *c, const struct column series[TERMS],
+                           const struct courses *courses, const struct column *end, double time,
+                           struct column *tops)
+{
+	for (int i = 0; i < c->wide; i += W) {
+		const struct course course = course_load(courses, i);
+		const vd top = vmax(column_load(tops, i), vabs(column_load(end, i)));
+		const vm inside = vless(top, course_reach(&course));
+		if (!vany(inside)) {
+			column_store(tops, i, top);
+			continue;
+		}
+		struct power x;
+		power_load(&x, c->order, series, i);
+		column_store(tops, i, top_follow(&x, c->order, vsplat(time), top, vsplat(-1), inside));
+	}
+}
+
+/* Largest absolute accelerations in a step, on both sides of its ends. */
+static void accelerations_keep(struct chain *c, double time)
+{
+	const double h = c->dt, rise = c->slope * h;
+	const vd per_h2 = vsplat(1 / (h * h)), zero = vsplat(0);
+	for (int i = 0; i < c->wide; i += W) {
+		struct power x;
+		for (int n = 0; n <= ORDER_TOUCH; n++)
+			x.c[n] = n + 2 > c->order
+			             ? zero
+			             : vsplat((n + 1.0) * (n + 2.0)) * per_h2 * column_load(&c->displacements[n + 2], i);
+		x.c[0] = x.c[0] + vsplat(c->ground);
+		x.c[1] = x.c[1] + vsplat(rise);
+		const vd there = power_at(&x, c->order, vsplat(time));
+		vd top = vmax(column_load(&c->top_acceleration, i), vmax(vabs(x.c[0]), vabs(there)));
+		const struct course course = course_make(&x, c->order);
+		const vm inside = vless(top, course_reach(&course));
+		if (vany(inside))
+			top = top_follow(&x, c->order, vsplat(time), top, vsplat(-1), inside);
+		column_store(&c->top_acceleration, i, top);
+	}
+}
+
+/* Largest force that pushes, of a contact. */
+static void force_keep(struct chain *c, struct link *l, int j, double time)
+{
+	const double k = l->at.on.stiffness, lead = l->at.on.damping / c->dt;
+	struct power x = {0};
+	for (int n = 0; n <= c->order; n++) {
+		const double next = n < c->order ? c->overlaps[n + 1][j] : 0;
+		x.c[n] = vsplat(fma(k, c->overlaps[n][j], lead * (n + 1) * next) + (n == 0 ? l->at.on.offset : 0));
+	}
+	double *most = &l->measures[POUND_LINK_FORCE_MAX], value[W];
+	const struct course course = course_make(&x, c->order);
+	lanes_store(value, power_at(&x, c->order, vsplat(time)));
+	vd top = vsplat(fmax(*most, fmax(value[0], ((const double *)&x.c[0])[0])));
+	const vm inside = vless(top, course_reach(&course)) & vmask(1);
+	if (vany(inside))
+		top = top_follow(&x, c->order, vsplat(time), top, vsplat(0), inside);
+	lanes_store(value, top);
+	*most = value[0];
+}

@@ -1,0 +1,265 @@
+/* chain_series.inl - the power series of a chain over a step: all floors side by side in lanes, order by order.
+ *
+ *   S = k h^2 D_n + c h (n+1) D_(n+1)                             spring and dashpot of a story
+ *   A = (S of the story above - S)/m - contacts/m
+ *   D_(n+2) = (A - A of the floor below - a0 h (n+1) D_(n+1))/((n+1)(n+2))      of the lowest story: the ground's
+ *   U_(n+2) = (A - ground - a0 h (n+1) U_(n+1))/((n+1)(n+2))
+ *
+ * D are drifts and U displacements, by the share of the step that is gone.  A drift has its own series: the difference of two
+ * displacements would lose the digits of a stiff story, and so it is with the overlap of a contact.
+ *
+ * Included by chain.inl alone, once per lane count, after series.inl. */
+
+LANE_INLINE vd column_load(const struct column *x, int j)
+{
+	return lanes_load(&x->at[j]);
+}
+LANE_INLINE void column_store(struct column *x, int j, vd value)
+{
+	lanes_store(&x->at[j], value);
+}
+
+/* Adds a contact's force, or what else acts on a floor from outside, of order n. */
+static void push_add(struct chain *c, const struct link *l, double force)
+{
+	for (int k = 0; k < l->n_ends; k++) {
+		const int i = l->floor[k];
+		c->push.at[i] = fma(l->weight[k] * c->inverse_mass.at[i], force, c->push.at[i]);
+	}
+}
+
+/* Force of a contact, of order n, times the square of the step. */
+LANE_INLINE double link_force(const struct chain *c, const struct link *l, int j, int n)
+{
+	const double h = c->dt;
+	const double spring = l->at.on.stiffness * (h * h) * c->overlaps[n][j];
+	const double force = fma(l->at.on.damping * h * (n + 1), c->overlaps[n + 1][j], spring);
+	return n == 0 ? force + l->at.on.offset * (h * h) : force;
+}
+
+/* Adds the forces of modal damping of order n, over masses. */
+LANE_SHARED void modal_add(struct chain *c, int n)
+{
+	const struct pound_chain_task *task = c->task;
+	for (int first = 0, stories; first < c->n; first += stories) {
+		stories = building_stories(task, first);
+		for (int i = first; i < first + stories && task->floors[i].modal; i++) {
+			double sum = 0;
+			for (int j = 0; j < stories; j++)
+				sum = fma(task->floors[i].modal[j], c->drifts[n + 1].at[first + j], sum);
+			c->push.at[i] += c->dt * (n + 1) * c->inverse_mass.at[i] * sum;
+		}
+	}
+}
+
+/* Sets what acts on floors from outside at order n. */
+static void pushes_set(struct chain *c, int n)
+{
+	for (int i = 0; i < c->wide; i += W)
+		column_store(&c->push, i, vsplat(0));
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].touching)
+			push_add(c, &c->link[j], link_force(c, &c->link[j], j, n));
+	if (c->modal)
+		modal_add(c, n);
+}
+
+/* Force of a vector of stories, of order n. */
+LANE_INLINE vd story_force(const struct chain *c, int i, int n)
+{
+	const vd elastic = column_load(&c->spring, i) * column_load(&c->drifts[n], i);
+	const vd s = vfma(column_load(&c->dash, i) * vsplat(n + 1), column_load(&c->drifts[n + 1], i), elastic);
+	return n == 0 ? s + column_load(&c->force, i) : s;
+}
+
+/* Makes order n + 2 of all floors out of those before.
+ *
+ * Given    ground  of order n, times the square of the step
+ */
+LANE_INLINE void floors_next(struct chain *c, int n, double ground, bool pushed, bool moving)
+{
+	const vd zero = vsplat(0), share = vsplat(1.0 / ((n + 1.0) * (n + 2.0)));
+	vd s = story_force(c, 0, n), below = zero;
+	for (int i = 0; i < c->wide; i += W) {
+		const vd next = i + W < c->wide ? story_force(c, i + W, n) : zero;
+		vd a =
+		    vfma(vabove(s, next), column_load(&c->inverse_above, i), -(s * column_load(&c->inverse_mass, i)));
+		if (pushed)
+			a = a - column_load(&c->push, i);
+		const vd under =
+		    vfma(vbelow(below, a), column_load(&c->inner, i), column_load(&c->base, i) * vsplat(ground));
+		const vd drag = column_load(&c->drag_step, i) * vsplat(n + 1);
+		column_store(&c->drifts[n + 2], i,
+		             (a - vfma(drag, column_load(&c->drifts[n + 1], i), under)) * share);
+		if (moving)
+			column_store(&c->displacements[n + 2], i,
+			             (a - vfma(drag, column_load(&c->displacements[n + 1], i), vsplat(ground))) * share);
+		below = a;
+		s = next;
+	}
+}
+
+/* Magnitudes of what a floor's acceleration is made of at order n, but for contacts, times the square of the step. */
+static double floor_terms(const struct chain *c, int i, int n)
+{
+	double terms = 0;
+	for (int above = 0; above < 2; above++) {
+		const int k = i + above;
+		if (above && c->inverse_above.at[i] == 0)
+			break;
+		terms += fabs(c->spring.at[k] * c->drifts[n].at[k]) +
+		         fabs(c->dash.at[k] * (n + 1) * c->drifts[n + 1].at[k]) + (n == 0 ? fabs(c->force.at[k]) : 0);
+	}
+	return terms * c->inverse_mass.at[i] +
+	       fabs(c->drag_step.at[i] * (n + 1) * c->displacements[n + 1].at[i]) + fabs(c->push.at[i]);
+}
+
+/* Floors that touch without overlap, at one velocity, part or press by the difference of their accelerations.  Where that is
+ * no more than the rounding of what these are made of it is nothing, and the next derivative decides: else they would part and
+ * meet for ever.
+ *
+ * Given    ground  of order n
+ */
+static void link_settle(struct chain *c, struct link *l, int j, int n, double ground)
+{
+	double made = fabs(ground);
+	for (int k = 0; k < l->n_ends; k++)
+		made += fabs(l->weight[k]) * floor_terms(c, l->floor[k], n);
+	double *overlap = &c->overlaps[n + 2][j];
+	if (fabs(*overlap) * (n + 1) * (n + 2) <= POUND_UNDECIDED * made)
+		*overlap = 0;
+	else
+		l->level = false;
+}
+
+/* A story without rate where its branch ends goes on to the next or back by its acceleration: where that is no more than the
+ * rounding of what it is made of it is nothing (step.inl: still_settle). */
+static void story_settle(struct chain *c, int i, double ground)
+{
+	const double d = c->d.at[i];
+	if (c->v.at[i] != 0 || (d != c->low.at[i] && d != c->high.at[i] && c->direction.at[i] == 0))
+		return;
+	double made = floor_terms(c, i, 0);
+	made += c->inner.at[i] != 0 ? floor_terms(c, i - 1, 0) : fabs(ground);
+	if (fabs(2 * c->drifts[2].at[i]) < POUND_UNDECIDED * made)
+		c->drifts[2].at[i] = 0;
+}
+
+/* Orders 0 and 1 of the step, and its coefficients. */
+static void series_start(struct chain *c)
+{
+	const vd h = vsplat(c->dt), h2 = h * h;
+	for (int i = 0; i < c->wide; i += W) {
+		column_store(&c->spring, i, column_load(&c->stiffness, i) * h2);
+		column_store(&c->dash, i, column_load(&c->dashpot, i) * h);
+		column_store(&c->force, i, column_load(&c->offset, i) * h2);
+		column_store(&c->drag_step, i, column_load(&c->drag, i) * h);
+		column_store(&c->drifts[0], i, column_load(&c->d, i));
+		column_store(&c->drifts[1], i, column_load(&c->v, i) * h);
+		column_store(&c->displacements[0], i, column_load(&c->u, i));
+		column_store(&c->displacements[1], i, column_load(&c->w, i) * h);
+	}
+	for (int j = 0; j < c->n_links; j++) {
+		struct link *l = &c->link[j];
+		if (!l->own)
+			continue;
+		c->overlaps[0][j] = l->p;
+		c->overlaps[1][j] = l->q * c->dt;
+		double alike = 0;
+		for (int k = 0; k < l->n_ends; k++)
+			alike += fabs(l->weight[k] * c->w.at[l->floor[k]]);
+		l->level = l->p == 0 && fabs(l->q) <= DBL_EPSILON * alike;
+	}
+}
+
+/* Orders of overlaps that are integrated in their own right. */
+static void overlaps_next(struct chain *c, int n, double ground)
+{
+	for (int j = 0; j < c->n_links; j++) {
+		struct link *l = &c->link[j];
+		if (!l->own)
+			continue;
+		c->overlaps[n + 2][j] = link_sum(l, c->displacements[n + 2].at);
+		if (l->level)
+			link_settle(c, l, j, n, ground);
+	}
+}
+
+LANE_INLINE void series_orders(struct chain *c, bool pushed, bool owned)
+{
+	const double h2 = c->dt * c->dt, ground[2] = {c->ground * h2, c->slope * c->dt * h2};
+	for (int n = 0; n + 2 <= c->order; n++) {
+		const double g = n < 2 ? ground[n] : 0;
+		if (pushed)
+			pushes_set(c, n);
+		floors_next(c, n, g, pushed, c->moving);
+		if (n == 0 && c->edged)
+			for (int i = 0; i < c->n; i++)
+				story_settle(c, i, g);
+		if (owned)
+			overlaps_next(c, n, g);
+	}
+}
+
+/* What a column of series does over a step. */
+LANE_INLINE void courses_make(const struct chain *c, const struct column series[TERMS], struct courses *to)
+{
+	for (int i = 0; i < c->wide; i += W) {
+		vd u = column_load(&series[0], i), v = vsplat(0), bend = vsplat(0);
+		column_store(&to->u0, i, u);
+		column_store(&to->v0, i, column_load(&series[1], i));
+		for (int n = 1; n < 4; n++) {
+			const vd x = column_load(&series[n], i);
+			u = u + x;
+			v = vfma(vsplat(n), x, v);
+		}
+		for (int n = 4; n <= c->order; n++) {
+			const vd x = column_load(&series[n], i);
+			u = u + x;
+			v = vfma(vsplat(n), x, v);
+			bend = vfma(vsplat(fourth(n)), vabs(x), bend);
+		}
+		column_store(&to->u1, i, u);
+		column_store(&to->v1, i, v);
+		column_store(&to->bend, i, bend);
+	}
+}
+
+/* Makes the series of a step of c->dt. */
+static void series_chain(struct chain *c)
+{
+	bool touching = c->modal, owned = false;
+	for (int j = 0; j < c->n_links; j++) {
+		touching |= c->link[j].touching;
+		owned |= c->link[j].own;
+	}
+	series_start(c);
+	if (touching)
+		series_orders(c, true, owned);
+	else
+		series_orders(c, false, owned);
+	courses_make(c, c->drifts, &c->drift);
+	if (c->moving)
+		courses_make(c, c->displacements, &c->displacement);
+}
+
+/* The series of a vector of floors; 0 beyond their order. */
+LANE_INLINE void power_load(struct power *x, int order, const struct column series[TERMS], int i)
+{
+	for (int n = 0; n <= ORDER_TOUCH; n++)
+		x->c[n] = n <= order ? column_load(&series[n], i) : vsplat(0);
+}
+
+LANE_INLINE void motion_load(struct motion *m, const struct chain *c, const struct column series[TERMS],
+                             const struct courses *course, int i)
+{
+	power_load(&m->u, c->order, series, i);
+	m->end = (struct place){column_load(&course->u1, i), column_load(&course->v1, i)};
+	m->bend = column_load(&course->bend, i);
+}
+
+LANE_INLINE struct course course_load(const struct courses *x, int i)
+{
+	return (struct course){column_load(&x->u0, i), column_load(&x->v0, i), column_load(&x->u1, i),
+	                       column_load(&x->v1, i), column_load(&x->bend, i)};
+}

@@ -1,0 +1,305 @@
+/* chain_state.inl - a chain as it is marched: floors and links in arrays over which lanes go, its start and its end.
+ *
+ * Included by chain.inl alone, once per lane count, first. */
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stdalign.h>
+#include <string.h>
+
+#include "engine/exact/chain.h"
+#include "engine/exact/counts.h"
+#include "engine/exact/tolerances.h"
+#include "engine/numeric/lanes.h"
+#include "engine/scene/modes.h"
+
+enum {
+	LONG = POUND_CHAIN_FLOORS + ROW, /* floors with room for whole vectors */
+	LINKS = POUND_CHAIN_LINKS + ROW,
+	TERMS = ORDER_TOUCH + 1,
+	ENDS = 4, /* floors that a link joins */
+};
+
+/* a column of floors; lanes go over whole vectors, and what is behind the last floor is 0 */
+struct column {
+	alignas(64) double at[LONG];
+};
+
+/* a quantity of every floor over a step: value and rate times the step at both ends, and the bound of its fourth derivative */
+struct courses {
+	struct column u0, v0, u1, v1, bend;
+};
+
+/* one contact, or what may become one */
+struct link {
+	const struct pound_link *link;
+	int n_ends; /* floors that move */
+	int floor[ENDS];
+	double weight
+	    [ENDS]; /* > 0: the level moves with the floor, and the force goes against it; right side: < 0 */
+	double inverse_mass;   /* 1 over the effective mass [1/kg] */
+	struct pound_touch at; /* branch of its force */
+	bool touching;         /* the force acts */
+	bool parted;           /* the force is gone before the overlap */
+	bool fresh;            /* the force has just passed zero */
+	bool own;       /* p and q are integrated in their own right; else they are differences of the floors' */
+	bool level;     /* without overlap, at one velocity but for a rounding; nothing has decided yet */
+	double p, q;    /* overlap [m] and its rate [m/s] */
+	double impulse; /* of this contact so far [N s] */
+	double time;    /* in contact, so far [s] */
+	double counted_time; /* of contacts that count [s] */
+	struct pound_counts_scale scale;
+	double *measures;
+};
+
+struct chain {
+	const struct pound_chain_task *task;
+	struct pound_chain_result *result;
+	int n, wide; /* floors, and as many as whole vectors have */
+	int n_links, wide_links;
+	bool edged;                    /* a law has more than one branch */
+	bool modal;                    /* a building has a damping matrix */
+	bool moving;                   /* displacements are looked at */
+	double rate_apart, drag_apart; /* fastest that floors do without contact, and the damping of that [1/s] */
+	// what does not change: 1/m, the same where there is a floor above, whether there is one below, whether there is not
+	struct column inverse_mass, inverse_above, inner, base, drag, dashpot;
+	// branches
+	struct column stiffness, offset, low, high, direction;
+	struct pound_branch branch[LONG];
+	// state
+	struct column d, v; /* drifts and their rates */
+	struct column top_drift, top_displacement, top_acceleration;
+	struct link link[POUND_CHAIN_LINKS];
+	// interval and step
+	int64_t next;         /* sample at the end of the interval */
+	double ground, slope; /* [m/s2], [m/s3] */
+	double part;          /* left of the interval [s] */
+	double pace;          /* <= 1: steps are shorter where a search was unsure */
+	double dt;            /* of the step [s] */
+	int order;            /* of its series */
+	int steps;            /* in this interval */
+	// the step: coefficients of springs, dashpots, offsets and drag, scaled to it; forces of contacts over masses
+	struct column spring, dash, force, drag_step, push;
+	struct column u, w; /* displacements and velocities at its start */
+	struct courses drift, displacement, overlap;
+	struct column drifts[TERMS], displacements[TERMS];
+	double overlaps[TERMS][LINKS];
+	double reach; /* longest step, of the links that touch now; 0: to be found [s] */
+	// energy
+	double work_in, work_gap, work_low, work_top, work_start;
+};
+
+/* ---- links ---- */
+
+static void link_start(struct link *l, const struct pound_chain_task *task, int j)
+{
+	const struct pound_link *link = &task->links[j];
+	memset(l, 0, sizeof *l);
+	l->link = link;
+	for (int side = 0; side < 2; side++)
+		for (int k = 0; k < 2; k++) {
+			const int floor = link->floor[side][k];
+			const double weight = link->weight[side][k];
+			if (floor == POUND_CHAIN_GROUND || weight == 0)
+				continue;
+			assert(floor >= 0 && floor < task->n_floors && weight > 0);
+			l->floor[l->n_ends] = floor;
+			l->weight[l->n_ends++] = side ? -weight : weight;
+			l->inverse_mass += weight * weight / task->floors[floor].mass;
+		}
+	l->own = true;
+	l->p = -link->gap;
+}
+
+/* Sum over the floors of a link of its weights and what is in a column. */
+static double link_sum(const struct link *l, const double *column)
+{
+	double sum = 0;
+	for (int k = 0; k < l->n_ends; k++)
+		sum = fma(l->weight[k], column[l->floor[k]], sum);
+	return sum;
+}
+
+/* ---- the start ---- */
+
+/* Fastest rate of a building or of a chain: of the highest frequency w with damping c.
+ *
+ * Returns  share  by which steps are shorter where damping is near critical (next_step.inl: touch_reach)
+ */
+static double rate_of(double w, double c)
+{
+	const double zeta = w > 0 ? 0.5 * c / w : 0;
+	double share = fmax(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
+	for (int halving = 0; halving < 5; halving++)
+		share = sqrt(share);
+	return w * (zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1) / share;
+}
+
+/* Bound of what a building's modal damping gives a floor's velocity, over its mass [1/s]. */
+static double modal_bound(const struct pound_floor *floor, int stories)
+{
+	double sum = 0;
+	for (int j = 0; j < stories; j++)
+		sum += fabs(floor->modal[j] - (j + 1 < stories ? floor->modal[j + 1] : 0));
+	return sum / floor->mass;
+}
+
+/* The floors of the building that begins with one. */
+static int building_stories(const struct pound_chain_task *task, int first)
+{
+	int n = 1;
+	while (first + n < task->n_floors && !task->floors[first + n].base)
+		n++;
+	return n;
+}
+
+/* Fastest that a chain does without contact: all laws are stiffest at the start. */
+static void chain_rates(struct chain *c)
+{
+	const struct pound_chain_task *task = c->task;
+	for (int first = 0, n; first < task->n_floors; first += n) {
+		double mass[POUND_STORIES], stiffness[POUND_STORIES], w[POUND_STORIES], ratio = 0, modal = 0;
+		const struct pound_floor *floor = &task->floors[first];
+		n = building_stories(task, first);
+		for (int i = 0; i < n; i++) {
+			mass[i] = floor[i].mass;
+			stiffness[i] = floor[i].story.stiffness;
+			ratio = fmax(ratio, floor[i].dashpot / stiffness[i]);
+			if (floor[i].modal)
+				modal = fmax(modal, modal_bound(&floor[i], n));
+		}
+		pound_modes_frequencies(n, mass, stiffness, w);
+		const double fastest = w[n - 1], damping = ratio * fastest * fastest + floor->drag + modal;
+		c->rate_apart = fmax(c->rate_apart, fastest);
+		c->drag_apart = fmax(c->drag_apart, damping);
+	}
+}
+
+/* Puts a story's branch into the columns. */
+static void branch_enter(struct chain *c, int i)
+{
+	const struct pound_piece *piece = &c->branch[i].piece;
+	c->stiffness.at[i] = piece->stiffness;
+	c->offset.at[i] = piece->offset;
+	c->low.at[i] = piece->low;
+	c->high.at[i] = piece->high;
+	c->direction.at[i] = piece->direction;
+}
+
+static void floor_start(struct chain *c, int i)
+{
+	const struct pound_chain_task *task = c->task;
+	const struct pound_floor *floor = &task->floors[i];
+	assert(floor->base || (i > 0 && floor->drag == floor[-1].drag));
+	const bool above = i + 1 < task->n_floors && !floor[1].base;
+	c->inverse_mass.at[i] = 1 / floor->mass;
+	c->inverse_above.at[i] = above ? 1 / floor->mass : 0;
+	c->inner.at[i] = floor->base ? 0 : 1;
+	c->base.at[i] = floor->base ? 1 : 0;
+	c->drag.at[i] = floor->drag;
+	c->dashpot.at[i] = floor->dashpot;
+	c->edged |= !pound_law_linear(floor->story.law);
+	c->modal |= floor->modal != NULL;
+	pound_law_start(&floor->story, &c->branch[i]);
+	branch_enter(c, i);
+}
+
+static int whole_vectors(int n)
+{
+	return (n + ROW - 1) / ROW * ROW;
+}
+
+/* A chain at rest at the start of its task. */
+static void chain_start(struct chain *c, const struct pound_chain_task *task,
+                        struct pound_chain_result *result)
+{
+	assert(task->n_floors >= 1 && task->n_floors <= POUND_CHAIN_FLOORS);
+	assert(task->n_links >= 0 && task->n_links <= POUND_CHAIN_LINKS);
+	memset(c, 0, sizeof *c);
+	c->task = task;
+	c->result = result;
+	c->n = task->n_floors;
+	c->wide = whole_vectors(c->n);
+	c->n_links = task->n_links;
+	c->wide_links = whole_vectors(c->n_links);
+	c->pace = 1;
+	c->next = 1;
+	for (int i = c->n; i < c->wide; i++) {
+		c->low.at[i] = -DBL_MAX;
+		c->high.at[i] = DBL_MAX;
+	}
+	for (int i = 0; i < c->n; i++)
+		floor_start(c, i);
+	chain_rates(c);
+	for (int j = 0; j < c->n_links; j++) {
+		link_start(&c->link[j], task, j);
+		c->link[j].measures = &result->links[j * POUND_LINK_MEASURES];
+		memset(c->link[j].measures, 0, sizeof(double) * POUND_LINK_MEASURES);
+	}
+	c->moving = c->n_links > 0 || task->observer ||
+	            (task->asked & (POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_ENERGY));
+}
+
+/* Displacements and velocities of floors, from the drifts of their stories. */
+static void chain_displacements(struct chain *c)
+{
+	double u = 0, w = 0;
+	for (int i = 0; i < c->n; i++) {
+		u = fma(c->inner.at[i], u, c->d.at[i]);
+		w = fma(c->inner.at[i], w, c->v.at[i]);
+		c->u.at[i] = u;
+		c->w.at[i] = w;
+	}
+}
+
+/* ---- the end ---- */
+
+static double chain_kinetic(const struct chain *c)
+{
+	double sum = 0;
+	for (int i = 0; i < c->n; i++)
+		sum += 0.5 * c->task->floors[i].mass * c->w.at[i] * c->w.at[i];
+	return sum;
+}
+
+/* Center of a story's elastic range: where its force would be 0 but for what hardening adds. */
+static double story_center(const struct chain *c, int i)
+{
+	return pound_law_center(&c->task->floors[i].story, &c->branch[i], c->d.at[i]);
+}
+
+static void chain_write(struct chain *c, enum pound_status status)
+{
+	struct pound_chain_result *r = c->result;
+	const unsigned asked = c->task->asked;
+	bool finite = true;
+	chain_displacements(c);
+	for (int i = 0; i < c->n; i++) {
+		double *m = &r->floors[i * POUND_FLOOR_MEASURES];
+		m[POUND_FLOOR_DRIFT_MAX] = asked & POUND_CHAIN_DRIFTS ? c->top_drift.at[i] : NAN;
+		m[POUND_FLOOR_DISPLACEMENT_MAX] = asked & POUND_CHAIN_DISPLACEMENTS ? c->top_displacement.at[i] : NAN;
+		m[POUND_FLOOR_ACCELERATION_MAX] = asked & POUND_CHAIN_ACCELERATIONS ? c->top_acceleration.at[i] : NAN;
+		m[POUND_FLOOR_SHEAR_MAX] = asked & POUND_CHAIN_DRIFTS
+		                               ? pound_law_envelope(&c->task->floors[i].story, c->top_drift.at[i])
+		                               : NAN;
+		m[POUND_FLOOR_CENTER] = story_center(c, i);
+		m[POUND_FLOOR_END_U] = c->u.at[i];
+		m[POUND_FLOOR_END_V] = c->w.at[i];
+		finite &= isfinite(c->d.at[i]) && isfinite(c->v.at[i]);
+	}
+	for (int j = 0; j < c->n_links; j++) {
+		double *m = c->link[j].measures;
+		m[POUND_LINK_TIME] = c->link[j].time;
+		if (!(asked & POUND_CHAIN_FORCES))
+			m[POUND_LINK_FORCE_MAX] = NAN;
+		if (m[POUND_LINK_CONTACTS] == 0)
+			m[POUND_LINK_FIRST_TIME] = m[POUND_LINK_FIRST_SPEED] = 0;
+	}
+	r->energy_residual = NAN;
+	if (asked & POUND_CHAIN_ENERGY) {
+		const double missing = fabs(chain_kinetic(c) + (c->work_gap + c->work_low));
+		r->energy_residual = c->work_top > 0 ? missing / c->work_top : 0;
+	}
+	r->status = finite ? status : POUND_OVERFLOW;
+}

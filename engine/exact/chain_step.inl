@@ -1,0 +1,265 @@
+/* chain_step.inl - one step of a chain up to an event, and what follows it.
+ *
+ * Included by chain.inl alone, once per lane count, after chain_energy.inl. */
+
+/* Longest step while some links touch: contacts on one floor add up.
+ *
+ *   rate of the contacts^2 <= the largest sum over a link's floors of |w|/m times the sum over these floors' links of |w| K
+ */
+static double reach_touching(struct chain *c)
+{
+	double spring = 0, dash = 0, load[2][LONG] = {{0}};
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		for (int k = 0; l->touching && k < l->n_ends; k++) {
+			const int i = l->floor[k];
+			const double share = fabs(l->weight[k]) * c->inverse_mass.at[i];
+			load[0][i] = fma(share, l->at.on.stiffness, load[0][i]);
+			load[1][i] = fma(share, l->at.on.damping, load[1][i]);
+		}
+	}
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		double sum[2] = {0, 0};
+		for (int k = 0; l->touching && k < l->n_ends; k++)
+			for (int s = 0; s < 2; s++)
+				sum[s] = fma(fabs(l->weight[k]), load[s][l->floor[k]], sum[s]);
+		spring = fmax(spring, sum[0]);
+		dash = fmax(dash, sum[1]);
+	}
+	const double rate = rate_of(sqrt(c->rate_apart * c->rate_apart + spring), c->drag_apart + dash);
+	return rate > 0 ? POUND_TERMS_REACH[ORDER_TOUCH] / rate : DBL_MAX;
+}
+
+/* Chooses the next step. */
+static void step_choose(struct chain *c)
+{
+	if (c->reach == 0)
+		c->reach = reach_touching(c);
+	const double reach = c->reach * c->pace;
+	c->dt = c->part <= reach ? c->part : c->part > 2 * reach ? reach : 0.5 * c->part;
+	bool level = false;
+	for (int j = 0; j < c->n_links; j++) {
+		struct link *l = &c->link[j];
+		double alike = 0;
+		for (int k = 0; k < l->n_ends; k++)
+			alike += fabs(l->weight[k] * c->w.at[l->floor[k]]);
+		l->level = l->own && l->p == 0 && fabs(l->q) <= DBL_EPSILON * alike;
+		level |= l->level;
+	}
+	// derivatives by the share of a step that is a power of two have the same roundings in contact and apart
+	if (level)
+		c->dt = ldexp(1, ilogb(c->dt));
+	c->order = c->dt * POUND_TERMS_REACH[ORDER_TOUCH] <= c->reach * POUND_TERMS_REACH[ORDER_APART]
+	               ? ORDER_APART
+	               : ORDER_TOUCH;
+}
+
+/* ---- contacts ---- */
+
+/* What a side of a link moves by: magnitudes, of which its velocity has the roundings. */
+static struct pound_counts_body side_of(const struct chain *c, const struct link *l, int side)
+{
+	struct pound_counts_body b = {.pull = c->ground};
+	double damping = DBL_MAX;
+	for (int k = 0; k < l->n_ends; k++) {
+		const int i = l->floor[k];
+		const double weight = fabs(l->weight[k]), m = c->inverse_mass.at[i];
+		if ((l->weight[k] < 0) != side)
+			continue;
+		b.v = fma(weight, c->w.at[i], b.v);
+		b.offset += weight * m * fabs(fma(c->stiffness.at[i], c->d.at[i], c->offset.at[i]));
+		if (c->inverse_above.at[i] > 0)
+			b.offset += weight * m * fabs(fma(c->stiffness.at[i + 1], c->d.at[i + 1], c->offset.at[i + 1]));
+		damping = fmin(damping, c->drag.at[i] + c->dashpot.at[i] * m);
+	}
+	b.damping = damping == DBL_MAX ? 0 : damping;
+	return b;
+}
+
+/* A contact has ended, or the signal has in it. */
+static void contact_over(struct chain *c, struct link *l)
+{
+	double *m = l->measures;
+	const double changed = l->inverse_mass * l->impulse + fabs(l->q), h = c->task->time_step;
+	m[POUND_LINK_IMPULSE_MAX] = fmax(m[POUND_LINK_IMPULSE_MAX], l->impulse);
+	chain_displacements(c);
+	const struct pound_counts counts = {.body = {side_of(c, l, 0), side_of(c, l, 1)},
+	                                    .time = (double)c->next * h,
+	                                    .steps = (l->time - l->counted_time) / h,
+	                                    .changed = changed};
+	if (pound_contact_counts(&counts, &l->scale)) {
+		m[POUND_LINK_CONTACTS]++;
+		l->counted_time = l->time;
+	} else {
+		l->time = l->counted_time;
+	}
+}
+
+static double chain_time(const struct chain *c)
+{
+	return (double)c->next * c->task->time_step - c->part;
+}
+
+static void contact_begins(struct chain *c, struct link *l)
+{
+	double *m = l->measures;
+	if (!l->parted) {
+		l->p = 0; // from here exactly
+		pound_contact_begin(&l->link->law, &l->at, l->q);
+	}
+	l->touching = l->own = true;
+	l->parted = l->fresh = false;
+	l->impulse = 0;
+	if (m[POUND_LINK_CONTACTS] == 0) {
+		m[POUND_LINK_FIRST_TIME] = chain_time(c);
+		m[POUND_LINK_FIRST_SPEED] = l->q;
+	}
+	c->reach = 0;
+}
+
+static void contact_ends(struct chain *c, struct link *l)
+{
+	l->touching = false;
+	l->parted = l->fresh = link_forced(l) && l->p > 0;
+	if (!l->parted)
+		l->p = 0;
+	contact_over(c, l);
+	c->reach = 0;
+}
+
+/* The force of a contact is at an edge of its branch. */
+static void link_leave(struct chain *c, struct link *l, enum pound_edge edge)
+{
+	if (edge == POUND_EDGE_LOW && l->at.on.low == 0) {
+		contact_ends(c, l);
+		return;
+	}
+	if (edge == POUND_EDGE_TURN)
+		l->q = 0;
+	else
+		l->p = edge == POUND_EDGE_HIGH ? l->at.on.high : l->at.on.low;
+	pound_contact_leave(&l->link->law, &l->at, edge, l->p);
+	c->reach = 0;
+}
+
+/* A story's law goes on to its next branch; from here the edge is exact. */
+static void story_leave(struct chain *c, int i, enum pound_edge edge, bool moved)
+{
+	if (edge == POUND_EDGE_TURN) {
+		if (moved)
+			c->v.at[i] = 0;
+	} else {
+		c->d.at[i] = edge == POUND_EDGE_HIGH ? c->high.at[i] : c->low.at[i];
+	}
+	pound_law_leave(&c->task->floors[i].story, &c->branch[i], edge, c->d.at[i]);
+	branch_enter(c, i);
+}
+
+/* ---- the step ---- */
+
+/* Where the floors and links are at a share of the step. */
+static void step_arrive(struct chain *c, double time)
+{
+	const vd per_dt = vsplat(1 / c->dt);
+	const bool whole = time == 1;
+	for (int i = 0; i < c->wide; i += W) {
+		struct place at = {column_load(&c->drift.u1, i), column_load(&c->drift.v1, i)};
+		if (!whole) {
+			struct power x;
+			power_load(&x, c->order, c->drifts, i);
+			at = place_at(&x, c->order, vsplat(time));
+		}
+		column_store(&c->d, i, at.u);
+		column_store(&c->v, i, at.v * per_dt);
+	}
+	const double elapsed = time * c->dt;
+	for (int j = 0; j < c->n_links; j++) {
+		struct link *l = &c->link[j];
+		if (!l->own)
+			continue;
+		double q = c->overlap.v1.at[j], p = c->overlap.u1.at[j], area = 0, slope;
+		if (!whole)
+			p = column_at(&c->overlaps[0][j], LINKS, c->order, time, &q);
+		l->q = q / c->dt;
+		if (l->touching) {
+			for (int n = c->order; n >= 0; n--)
+				area = fma(area, time, c->overlaps[n][j] * POUND_SHARE[n]);
+			slope = fma(l->at.on.stiffness, area, l->at.on.offset) * elapsed;
+			l->impulse += fma(l->at.on.damping, p - l->p, slope);
+			l->time += elapsed;
+		}
+		l->p = p;
+		l->fresh = false;
+	}
+	c->ground = fma(c->slope, elapsed, c->ground);
+	c->part = fmax(c->part - elapsed, 0);
+}
+
+/* Largest values on the way of a step to a share of it. */
+static void step_tops(struct chain *c, double time)
+{
+	const unsigned asked = c->task->asked;
+	if (asked & POUND_CHAIN_DRIFTS)
+		tops_keep(c, c->drifts, &c->drift, &c->d, time, &c->top_drift);
+	if (asked & POUND_CHAIN_DISPLACEMENTS) {
+		chain_displacements(c);
+		tops_keep(c, c->displacements, &c->displacement, &c->u, time, &c->top_displacement);
+	}
+	if (asked & POUND_CHAIN_FORCES)
+		for (int j = 0; j < c->n_links; j++)
+			if (c->link[j].touching)
+				force_keep(c, &c->link[j], j, time);
+}
+
+static void event_apply(struct chain *c, const struct first *first)
+{
+	const int i = first->index;
+	const bool moved = first->time > 0;
+	if (first->event >= EVENT_STORY)
+		story_leave(c, i, (enum pound_edge)(first->event - EVENT_STORY), moved);
+	else if (first->event >= EVENT_LINK)
+		link_leave(c, &c->link[i], (enum pound_edge)(first->event - EVENT_LINK));
+	else if (first->event == EVENT_BEGINS)
+		contact_begins(c, &c->link[i]);
+	else if (first->event == EVENT_ENDS)
+		contact_ends(c, &c->link[i]);
+	else if (first->event == EVENT_CLEARS) {
+		c->link[i].p = 0;
+		c->link[i].parted = false;
+	}
+}
+
+/* A link that begins to be looked at closely has its overlap from the floors. */
+static void overlap_enter(struct chain *c, const struct first *first)
+{
+	if (first->event != EVENT_BEGINS || c->link[first->index].own)
+		return;
+	struct link *l = &c->link[first->index];
+	l->p = 0;
+	l->q = link_sum(l, c->w.at);
+}
+
+/* One step: to the next event, or as far as it was meant to go. */
+static void chain_step(struct chain *c)
+{
+	if (c->moving)
+		chain_displacements(c);
+	step_choose(c);
+	series_chain(c);
+	const struct first first = events_search(c);
+	if (first.time > 0) {
+		if (c->task->asked & POUND_CHAIN_ENERGY)
+			energy_keep(c, first.time);
+		if (c->task->asked & POUND_CHAIN_ACCELERATIONS)
+			accelerations_keep(c, first.time);
+		step_arrive(c, first.time);
+		step_tops(c, first.time);
+	}
+	if (first.event != EVENT_NONE && c->moving)
+		chain_displacements(c);
+	overlap_enter(c, &first);
+	event_apply(c, &first);
+	c->pace = first.event == EVENT_CUT ? fmax(c->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
+	                                   : fmin(c->pace * POUND_STEP_LONGER, 1);
+}
