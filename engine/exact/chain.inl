@@ -11,6 +11,8 @@ enum {
 	ORDER_TOUCH = 21, /* of long ones */
 };
 
+enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */
+
 // clang-format off
 #include "engine/exact/chain_state.inl"
 #include "engine/exact/series.inl"
@@ -19,9 +21,8 @@ enum {
 #include "engine/exact/chain_peaks.inl"
 #include "engine/exact/chain_energy.inl"
 #include "engine/exact/chain_step.inl"
+#include "engine/exact/chain_flight.inl"
 // clang-format on
-
-enum { STOP_STEPS = 1024 }; /* between two looks at the flag */
 
 /* Whether a link's overlap can be had from its floors again: it is far beyond the rounding of their displacements. */
 static bool link_far(const struct chain *c, const struct link *l)
@@ -29,7 +30,7 @@ static bool link_far(const struct chain *c, const struct link *l)
 	double terms = l->link->gap;
 	for (int k = 0; k < l->n_ends; k++)
 		terms += fabs(l->weight[k] * c->u.at[l->floor[k]]);
-	return !l->touching && !l->parted && l->p < -0x1p-20 * terms && l->p + c->part * l->q < 0;
+	return !l->touching && !l->parted && l->p < -0x1p-20 * terms && l->p + c->task->time_step * l->q < 0;
 }
 
 /* Brings to rest what is left of next to nothing of a building that touches none, where nothing comes from the ground. */
@@ -54,6 +55,20 @@ static void chain_settle(struct chain *c)
 	}
 }
 
+/* Links whose overlap need not be integrated any more. */
+static void links_release(struct chain *c)
+{
+	bool own = false;
+	for (int j = 0; j < c->n_links; j++)
+		own |= c->link[j].own;
+	if (!own)
+		return;
+	chain_displacements(c);
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].own && link_far(c, &c->link[j]))
+			c->link[j].own = false;
+}
+
 /* Enters the interval that ends at c->next. */
 static void chain_interval(struct chain *c)
 {
@@ -64,12 +79,7 @@ static void chain_interval(struct chain *c)
 	c->steps = 0;
 	if (c->ground == 0 && c->slope == 0)
 		chain_settle(c);
-	if (c->n_links == 0)
-		return;
-	chain_displacements(c);
-	for (int j = 0; j < c->n_links; j++)
-		if (c->link[j].own && link_far(c, &c->link[j]))
-			c->link[j].own = false;
+	links_release(c);
 }
 
 /* Follows a chain from its start to the end of its ground motion. */
@@ -77,6 +87,12 @@ static enum pound_status chain_march(struct chain *c, const atomic_bool *stop)
 {
 	int64_t steps = 0;
 	for (; c->next < c->task->n_samples; c->next++) {
+		if (c->flight.can) {
+			links_release(c);
+			flight(c, stop);
+			if (c->next == c->task->n_samples)
+				break;
+		}
 		chain_interval(c);
 		while (c->part > 0) {
 			if (++c->steps > POUND_STEPS_LIMIT)
@@ -108,6 +124,7 @@ void POUND_CHAIN(const struct pound_chain_task *tasks, struct pound_chain_result
 	struct chain *c = scratch;
 	for (int j = 0; j < n && !pound_stopped(stop); j++) {
 		chain_start(c, &tasks[j], &results[j]);
+		flight_start(c);
 		const enum pound_status status = chain_march(c, stop);
 		chain_displacements(c);
 		for (int i = 0; i < c->n_links; i++)

@@ -6,6 +6,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdalign.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "engine/exact/chain.h"
@@ -53,6 +54,31 @@ struct link {
 	double *measures;
 };
 
+/* drifts and displacements at a sample, and their rates */
+struct flight_place {
+	struct column d, v, u, w;
+};
+
+enum { MODE_ROWS = 5200 }; /* of all vectors of floors: 8 buildings of 50 stories have so many at most */
+
+/* modes of all buildings, those of a building in the lanes of its floors, and their motion at samples */
+struct flight {
+	bool can;          /* the chain has modes, and nothing is asked that these do not give */
+	bool flown;        /* since it was entered */
+	int wait, refused; /* samples until it is tried again */
+	int now;           /* place of the sample it is at */
+	int from[LONG / ROW], upto[LONG / ROW],
+	    row[LONG / ROW]; /* modes of a vector of floors, and their rows of shapes */
+	// maps over a sample: of q and v, for q, v, the ground's acceleration and its growth
+	struct column uu, uv, ua, ud, vu, vv, va, vd;
+	struct column per_w2, still, lag, drift_speed, bend, bend_rate; /* mode_fill */
+	struct column q, v, q_next, v_next, bound;
+	struct column shift, elastic[2], bent, top, top_displacement;
+	struct flight_place at[2];
+	struct pound_modes modes;
+	double shape[MODE_ROWS][ROW]; /* drifts of shapes */
+};
+
 struct chain {
 	const struct pound_chain_task *task;
 	struct pound_chain_result *result;
@@ -62,8 +88,9 @@ struct chain {
 	bool modal;                    /* a building has a damping matrix */
 	bool moving;                   /* displacements are looked at */
 	double rate_apart, drag_apart; /* fastest that floors do without contact, and the damping of that [1/s] */
-	// what does not change: 1/m, the same where there is a floor above, whether there is one below, whether there is not
-	struct column inverse_mass, inverse_above, inner, base, drag, dashpot;
+	// what does not change: 1/m, the same where there is a floor above, whether there is one below, whether there is not,
+	// the initial stiffness and 1 over it
+	struct column inverse_mass, inverse_above, inner, base, drag, dashpot, initial, pliancy;
 	// branches
 	struct column stiffness, offset, low, high, direction;
 	struct pound_branch branch[LONG];
@@ -86,8 +113,9 @@ struct chain {
 	struct column drifts[TERMS], displacements[TERMS];
 	double overlaps[TERMS][LINKS];
 	double reach; /* longest step, of the links that touch now; 0: to be found [s] */
+	struct flight flight;
 	// energy
-	double work_in, work_gap, work_low, work_top, work_start;
+	double work_in, work_gap, work_low, work_top;
 };
 
 /* ---- links ---- */
@@ -199,6 +227,8 @@ static void floor_start(struct chain *c, int i)
 	c->base.at[i] = floor->base ? 1 : 0;
 	c->drag.at[i] = floor->drag;
 	c->dashpot.at[i] = floor->dashpot;
+	c->initial.at[i] = floor->story.stiffness;
+	c->pliancy.at[i] = 1 / floor->story.stiffness;
 	c->edged |= !pound_law_linear(floor->story.law);
 	c->modal |= floor->modal != NULL;
 	pound_law_start(&floor->story, &c->branch[i]);
@@ -216,7 +246,8 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 {
 	assert(task->n_floors >= 1 && task->n_floors <= POUND_CHAIN_FLOORS);
 	assert(task->n_links >= 0 && task->n_links <= POUND_CHAIN_LINKS);
-	memset(c, 0, sizeof *c);
+	memset(c, 0, offsetof(struct chain, flight));
+	c->work_in = c->work_gap = c->work_low = c->work_top = 0;
 	c->task = task;
 	c->result = result;
 	c->n = task->n_floors;

@@ -1,0 +1,440 @@
+/* chain_flight.inl - whole samples of a chain without contact, on elastic branches, by its modes.
+ *
+ *   q'' + c q' + w^2 q = -G (a + d t/h)          of each mode of each building, exact over a sample for any w h
+ *
+ * Drifts and their rates at the samples are sums over modes.  The cubic through both ends of a sample, widened by the bound of its
+ * error, proves that nothing lies between: no contact, no edge of a branch, no new largest value.  Where it cannot, the sample
+ * goes by power series.
+ *
+ * Included by chain.inl alone, once per lane count, after chain_step.inl. */
+
+static const double REACH_SERIES = 0.8; /* (w + c) h of a map's series: 0.8^18/18! = 3e-18 */
+enum { ORDER_MAP = 18 };
+/* Highest over lowest frequency of a building that flies: shapes of low modes have roundings of the square of that. */
+static const double STIFF = 90;
+
+/* response of a mode to an initial velocity of 1, its rate, and its integrals once and twice, after some time */
+struct impulse_response {
+	double psi, rate, once, twice;
+};
+
+/* The same over a time h, by the power series of a time short enough, doubled.
+ *
+ *   psi(2 h) = psi (2 psi' + c psi)                psi'(2 h) = psi'^2 - w^2 psi^2
+ *   once(2 h) = once (1 + psi' + c psi) + psi^2    twice(2 h) = twice (1 + psi' + c psi) + (h + psi) once
+ */
+static struct impulse_response mode_response(double w, double c, double h)
+{
+	int halvings = 0;
+	while ((w + c) * h > REACH_SERIES) {
+		h *= 0.5;
+		halvings++;
+	}
+	struct impulse_response r = {0, 0, 0, 0};
+	const double ch = c * h, kh = w * h * (w * h);
+	double u = 0, v = 1; // coefficient n of psi/h, and of its rate
+	for (int n = 0; n <= ORDER_MAP; n++) {
+		const double share = 1.0 / (n + 1);
+		r.psi += u;
+		r.rate += v;
+		r.once = fma(u, share, r.once);
+		r.twice = fma(u, share / (n + 2), r.twice);
+		const double next = -fma(ch, v, kh * u) * share;
+		u = v * share;
+		v = next;
+	}
+	r.psi *= h, r.once *= h * h, r.twice *= h * h * h;
+	for (; halvings > 0; halvings--, h *= 2) {
+		const double grown = 1 + r.rate + c * r.psi;
+		r = (struct impulse_response){.psi = r.psi * (2 * r.rate + c * r.psi),
+		                              .rate = r.rate * r.rate - w * w * r.psi * r.psi,
+		                              .once = r.once * grown + r.psi * r.psi,
+		                              .twice = r.twice * grown + (h + r.psi) * r.once};
+	}
+	return r;
+}
+
+/* Puts a mode's map over a sample into the columns.
+ *
+ * Given    i      lane of the mode
+ *          gain   G
+ *
+ * What bounds the fourth derivative is that of the motion about its quasi-static part, whose energy does not grow.  Above some
+ * 8 radians a sample the motion itself is a better bound.
+ */
+static void mode_fill(struct flight *f, int i, double w, double c, double gain, double h)
+{
+	const struct impulse_response r = mode_response(w, c, h);
+	const double x = w * h, ratio = c / w;
+	const double quartic = x * x * x * x * (1 + ratio * (2 + ratio * (1 + ratio)));
+	const double swing = x * sqrt(x) * (1 + ratio) / POUND_CUBIC_ERROR;
+	f->uu.at[i] = r.rate + c * r.psi;
+	f->uv.at[i] = r.psi;
+	f->ua.at[i] = -gain * r.once;
+	f->ud.at[i] = -gain * r.twice / h;
+	f->vu.at[i] = -w * w * r.psi;
+	f->vv.at[i] = r.rate;
+	f->va.at[i] = -gain * r.psi;
+	f->vd.at[i] = -gain * r.once / h;
+	f->per_w2.at[i] = 1 / (w * w);
+	f->still.at[i] = gain / (w * w);
+	f->lag.at[i] = gain * c / (w * w * w * w) / h;
+	f->drift_speed.at[i] = gain / (w * w) / h;
+	f->bend.at[i] = fmin(quartic, swing);
+	f->bend_rate.at[i] = fmin(quartic, swing) / w;
+}
+
+/* Damping of a building's modes, if they do not act on each other.
+ *
+ * Returns  value  false: they do
+ *          c      [1/s]  (n)
+ */
+static bool modes_damping(const struct pound_floor *floor, int n, const struct pound_modes *modes, double *c)
+{
+	const double ratio = floor->dashpot / floor->story.stiffness;
+	bool apart = true;
+	for (int i = 0; i < n; i++)
+		apart &= fabs(floor[i].dashpot - ratio * floor[i].story.stiffness) <=
+		         POUND_UNDECIDED * fabs(floor[i].dashpot);
+	for (int r = 0; r < n; r++)
+		c[r] = floor->drag + ratio * modes->w[r] * modes->w[r];
+	if (!floor->modal)
+		return apart;
+	for (int r = 0; r < n && apart; r++) {
+		const double *shape = modes->shape[r];
+		double force[POUND_STORIES], largest = 0;
+		for (int i = 0; i < n; i++) {
+			force[i] = 0;
+			for (int j = 0; j < n; j++)
+				force[i] += floor[i].modal[j] * (shape[j] - (j > 0 ? shape[j - 1] : 0));
+		}
+		for (int s = 0; s < n; s++) {
+			double sum = 0;
+			for (int i = 0; i < n; i++)
+				sum += modes->shape[s][i] * force[i];
+			if (s == r)
+				c[r] += sum;
+			else
+				largest = fmax(largest, fabs(sum));
+		}
+		apart = largest <= n * POUND_UNDECIDED * modes->w[n - 1];
+	}
+	return apart;
+}
+
+/* Where a chain's modes are kept: of the vector of floors j those of its buildings, a row of coefficients for each. */
+static void flight_rows(struct chain *c)
+{
+	struct flight *f = &c->flight;
+	int rows = 0;
+	for (int j = 0; j < c->wide; j += ROW) {
+		int first = j, last = j + ROW - 1 < c->n ? j + ROW : c->n;
+		while (first > 0 && !c->task->floors[first].base)
+			first--;
+		while (last < c->n && !c->task->floors[last].base)
+			last++;
+		f->from[j / ROW] = first;
+		f->upto[j / ROW] = last;
+		f->row[j / ROW] = rows;
+		rows += last - first;
+	}
+	f->can &= rows <= MODE_ROWS;
+}
+
+/* Makes modes and maps of a chain. */
+static void flight_start(struct chain *c)
+{
+	const struct pound_chain_task *task = c->task;
+	struct flight *f = &c->flight;
+	const unsigned followed = POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_ENERGY;
+	f->wait = f->refused = 0;
+	f->can = !(task->asked & followed) && !task->observer;
+	if (!f->can)
+		return;
+	flight_rows(c);
+	for (int j = 0; j < c->wide / ROW && f->can; j++)
+		memset(f->shape[f->row[j]], 0, sizeof(double) * ROW * (size_t)(f->upto[j] - f->from[j]));
+	for (int first = 0, n; first < c->n && f->can; first += n) {
+		const struct pound_floor *floor = &task->floors[first];
+		struct pound_modes *modes = &f->modes;
+		double mass[POUND_STORIES], stiffness[POUND_STORIES], damping[POUND_STORIES];
+		n = building_stories(task, first);
+		for (int i = 0; i < n; i++) {
+			mass[i] = floor[i].mass;
+			stiffness[i] = floor[i].story.stiffness;
+		}
+		pound_modes_fill(n, mass, stiffness, modes);
+		f->can = modes->w[n - 1] <= STIFF * modes->w[0] && modes_damping(floor, n, modes, damping);
+		for (int r = 0; r < n && f->can; r++) {
+			double gain = 0;
+			for (int i = 0; i < n; i++) {
+				const int j = (first + i) / ROW;
+				gain += mass[i] * modes->shape[r][i];
+				f->shape[f->row[j] + first + r - f->from[j]][(first + i) % ROW] =
+				    modes->shape[r][i] - (i > 0 ? modes->shape[r][i - 1] : 0);
+			}
+			mode_fill(f, first + r, modes->w[r], damping[r], gain, task->time_step);
+		}
+	}
+}
+
+/* ---- entering and leaving ---- */
+
+/* Whether every story is on an elastic branch, and nothing is about to touch. */
+static bool flight_clear(const struct chain *c)
+{
+	for (int i = 0; c->edged && i < c->n; i++)
+		if (c->stiffness.at[i] != c->task->floors[i].story.stiffness || c->direction.at[i] != 0)
+			return false;
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].own)
+			return false;
+	return true;
+}
+
+/* Sum of a vector of ROW numbers, by index. */
+LANE_INLINE double row_sum(const double x[ROW])
+{
+	double sum = 0;
+	for (int l = 0; l < ROW; l++)
+		sum += x[l];
+	return sum;
+}
+
+/* Modal coordinates of the drifts off their elastic centers, q = 1/w^2 sum of k d times the shape's drift. */
+static void flight_enter(struct chain *c)
+{
+	struct flight *f = &c->flight;
+	for (int i = 0; i < c->wide; i += W) {
+		const vd k = column_load(&c->initial, i);
+		const vd shift = i < c->n ? -column_load(&c->offset, i) * column_load(&c->pliancy, i) : vsplat(0);
+		column_store(&f->shift, i, shift);
+		column_store(&f->at[0].d, i, column_load(&c->d, i));
+		column_store(&f->at[0].v, i, column_load(&c->v, i));
+		column_store(&f->elastic[0], i, k * (column_load(&c->d, i) - shift));
+		column_store(&f->elastic[1], i, k * column_load(&c->v, i));
+		column_store(&f->q, i, vsplat(0));
+		column_store(&f->v, i, vsplat(0));
+	}
+	for (int j = 0; j < c->wide; j += ROW)
+		for (int r = f->from[j / ROW]; r < f->upto[j / ROW]; r++) {
+			alignas(64) double q[ROW], v[ROW];
+			const double *shape = f->shape[f->row[j / ROW] + r - f->from[j / ROW]];
+			for (int l = 0; l < ROW; l += W) {
+				lanes_store(q + l, lanes_load(shape + l) * column_load(&f->elastic[0], j + l));
+				lanes_store(v + l, lanes_load(shape + l) * column_load(&f->elastic[1], j + l));
+			}
+			f->q.at[r] += row_sum(q) * f->per_w2.at[r];
+			f->v.at[r] += row_sum(v) * f->per_w2.at[r];
+		}
+	f->now = 0;
+	f->flown = false;
+}
+
+/* ---- a sample ---- */
+
+/* Modes over a sample, and what bounds their fourth derivatives. */
+LANE_INLINE void modes_move(struct flight *f, int wide, double ground, double rise)
+{
+	const vd a = vsplat(ground), d = vsplat(rise);
+	for (int i = 0; i < wide; i += W) {
+		const vd q = column_load(&f->q, i), v = column_load(&f->v, i);
+		const vd still = vfma(column_load(&f->lag, i), d, -(column_load(&f->still, i) * a));
+		const vd off = vabs(q - still), speed = vabs(vfma(column_load(&f->drift_speed, i), d, v));
+		column_store(&f->bound, i,
+		             vfma(column_load(&f->bend, i), off, column_load(&f->bend_rate, i) * speed));
+		const vd q_ground = vfma(column_load(&f->ua, i), a, column_load(&f->ud, i) * d);
+		const vd v_ground = vfma(column_load(&f->va, i), a, column_load(&f->vd, i) * d);
+		column_store(&f->q_next, i,
+		             vfma(column_load(&f->uu, i), q, vfma(column_load(&f->uv, i), v, q_ground)));
+		column_store(&f->v_next, i,
+		             vfma(column_load(&f->vu, i), q, vfma(column_load(&f->vv, i), v, v_ground)));
+	}
+}
+
+/* drifts of a vector of stories and their rates, and what bounds their fourth derivatives */
+struct drifts {
+	vd d, v, bend;
+};
+
+LANE_INLINE struct drifts drifts_sum(const struct flight *f, int i)
+{
+	const int j = i / ROW, from = f->from[j], upto = f->upto[j];
+	const double *shape = &f->shape[f->row[j]][i % ROW];
+	const vd zero = vsplat(0);
+	struct drifts even = {column_load(&f->shift, i), zero, zero}, odd = {zero, zero, zero};
+	int r = from;
+	for (; r + 1 < upto; r += 2, shape += 2 * ROW) {
+		const vd s = lanes_load(shape), t = lanes_load(shape + ROW);
+		even.d = vfma(s, vsplat(f->q_next.at[r]), even.d);
+		even.v = vfma(s, vsplat(f->v_next.at[r]), even.v);
+		even.bend = vfma(vabs(s), vsplat(f->bound.at[r]), even.bend);
+		odd.d = vfma(t, vsplat(f->q_next.at[r + 1]), odd.d);
+		odd.v = vfma(t, vsplat(f->v_next.at[r + 1]), odd.v);
+		odd.bend = vfma(vabs(t), vsplat(f->bound.at[r + 1]), odd.bend);
+	}
+	if (r < upto) {
+		const vd s = lanes_load(shape);
+		even.d = vfma(s, vsplat(f->q_next.at[r]), even.d);
+		even.v = vfma(s, vsplat(f->v_next.at[r]), even.v);
+		even.bend = vfma(vabs(s), vsplat(f->bound.at[r]), even.bend);
+	}
+	return (struct drifts){even.d + odd.d, even.v + odd.v, even.bend + odd.bend};
+}
+
+/* Displacements and velocities at the end of the sample, and sums of bounds, from drifts. */
+static void displacements_sum(const struct chain *c, struct flight_place *at, struct column *bend)
+{
+	double u = 0, w = 0, sum = 0;
+	for (int i = 0; i < c->n; i++) {
+		const double inner = c->inner.at[i];
+		u = fma(inner, u, at->d.at[i]);
+		w = fma(inner, w, at->v.at[i]);
+		at->u.at[i] = u;
+		at->w.at[i] = w;
+		if (bend) {
+			sum = fma(inner, sum, bend->at[i]);
+			bend->at[i] = sum;
+		}
+	}
+}
+
+/* Whether a link may begin to touch inside the sample. */
+static bool links_risk(const struct chain *c, const struct flight_place *from, const struct flight_place *to)
+{
+	const double h = c->task->time_step;
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		double u0 = -l->link->gap, v0 = 0, u1 = u0, v1 = 0, bend = 0;
+		for (int k = 0; k < l->n_ends; k++) {
+			const int i = l->floor[k];
+			const double weight = l->weight[k];
+			u0 = fma(weight, from->u.at[i], u0);
+			v0 = fma(weight, from->w.at[i], v0);
+			u1 = fma(weight, to->u.at[i], u1);
+			v1 = fma(weight, to->w.at[i], v1);
+			bend = fma(fabs(weight), c->flight.bent.at[i], bend);
+		}
+		const double b1 = fma(h / 3, v0, u0), b2 = fma(-h / 3, v1, u1);
+		if (!(fma(POUND_CUBIC_ERROR, bend, fmax(fmax(b1, b2), u1)) < 0))
+			return true;
+	}
+	return false;
+}
+
+/* Flies over the sample that ends at c->next, if nothing happens inside.
+ *
+ * Returns  value  false: something may; nothing has changed
+ */
+LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool moving, bool displaced)
+{
+	struct flight *f = &c->flight;
+	const double *a = &c->task->ground[c->next];
+	const vd h = vsplat(c->task->time_step), one = vsplat(1);
+	const struct flight_place *from = &f->at[f->now];
+	struct flight_place *to = &f->at[1 - f->now];
+	modes_move(f, c->wide, a[-1], a[0] - a[-1]);
+	vm risk = vmask(0);
+	for (int i = 0; i < c->wide; i += W) {
+		const struct drifts s = drifts_sum(f, i);
+		const struct course course = {column_load(&from->d, i), column_load(&from->v, i) * h, s.d, s.v * h,
+		                              s.bend};
+		column_store(&to->d, i, s.d);
+		column_store(&to->v, i, s.v);
+		if (moving)
+			column_store(&f->bent, i, s.bend);
+		if (edged)
+			risk |= may_cross(&course, column_load(&c->high, i), one) |
+			        may_cross(&course, column_load(&c->low, i), -one);
+		if (!drifts)
+			continue;
+		const vd top = vmax(column_load(&c->top_drift, i), vabs(s.d));
+		risk |= vless(top, course_reach(&course));
+		column_store(&f->top, i, top);
+	}
+	if (vany(risk))
+		return false;
+	if (moving) {
+		displacements_sum(c, to, &f->bent);
+		if (c->n_links > 0 && links_risk(c, from, to))
+			return false;
+	}
+	if (displaced)
+		for (int i = 0; i < c->wide; i += W) {
+			const struct course course = {column_load(&from->u, i), column_load(&from->w, i) * h,
+			                              column_load(&to->u, i), column_load(&to->w, i) * h,
+			                              column_load(&f->bent, i)};
+			const vd top = vmax(column_load(&c->top_displacement, i), vabs(course.u1));
+			risk |= vless(top, course_reach(&course));
+			column_store(&f->top_displacement, i, top);
+		}
+	if (vany(risk))
+		return false;
+	for (int i = 0; i < c->wide; i += W) {
+		column_store(&f->q, i, column_load(&f->q_next, i));
+		column_store(&f->v, i, column_load(&f->v_next, i));
+		if (drifts)
+			column_store(&c->top_drift, i, column_load(&f->top, i));
+		if (displaced)
+			column_store(&c->top_displacement, i, column_load(&f->top_displacement, i));
+	}
+	f->now = 1 - f->now;
+	f->flown = true;
+	return true;
+}
+
+/* Ends what is left of next to nothing while the ground is silent: below nothing could be proved, and every operation would take
+ * a hundred times as long. */
+static void flight_settle(struct chain *c)
+{
+	struct flight *f = &c->flight;
+	const double *a = &c->task->ground[c->next];
+	if (a[-1] != 0 || a[0] != 0)
+		return;
+	for (int i = 0; i < c->n; i++)
+		if (fabs(f->q.at[i]) >= POUND_AT_REST || fabs(f->v.at[i]) * c->task->time_step >= POUND_AT_REST)
+			return;
+	memset(&f->q, 0, sizeof f->q);
+	memset(&f->v, 0, sizeof f->v);
+}
+
+LANE_INLINE void flight_go(struct chain *c, const atomic_bool *stop, bool edged, bool moving)
+{
+	const bool drifts = c->task->asked & POUND_CHAIN_DRIFTS;
+	const bool displaced = moving && (c->task->asked & POUND_CHAIN_DISPLACEMENTS);
+	for (; c->next < c->task->n_samples; c->next++) {
+		if (c->next % STOP_STEPS == 0 && pound_stopped(stop))
+			break;
+		flight_settle(c);
+		if (!flight_sample(c, edged, drifts, moving, displaced))
+			break;
+	}
+}
+
+/* Flies from the sample before c->next as far as nothing happens.  One that went nowhere is not tried again at once. */
+static void flight(struct chain *c, const atomic_bool *stop)
+{
+	enum { WAIT_MAX = 8 };
+	struct flight *f = &c->flight;
+	if (f->wait > 0) {
+		f->wait--;
+		return;
+	}
+	if (!flight_clear(c))
+		return;
+	flight_enter(c);
+	if (c->moving)
+		displacements_sum(c, &f->at[0], NULL);
+	if (c->edged)
+		flight_go(c, stop, true, c->moving);
+	else
+		flight_go(c, stop, false, c->moving);
+	f->refused = f->flown ? 0 : f->refused < WAIT_MAX ? 2 * f->refused + 1 : f->refused;
+	f->wait = f->refused / 2;
+	if (!f->flown)
+		return;
+	for (int i = 0; i < c->wide; i += W) {
+		column_store(&c->d, i, column_load(&f->at[f->now].d, i));
+		column_store(&c->v, i, column_load(&f->at[f->now].v, i));
+	}
+}
