@@ -72,10 +72,7 @@ static void links_release(struct chain *c)
 /* Enters the interval that ends at c->next. */
 static void chain_interval(struct chain *c)
 {
-	const double *a = &c->task->ground[c->next];
-	c->ground = a[-1];
-	c->slope = (a[0] - a[-1]) * (1 / c->task->time_step);
-	c->part = c->task->time_step;
+	interval_set(c, c->next);
 	c->steps = 0;
 	if (c->ground == 0 && c->slope == 0)
 		chain_settle(c);
@@ -130,6 +127,8 @@ void POUND_CHAIN(const struct pound_chain_task *tasks, struct pound_chain_result
 		for (int i = 0; i < c->n_links; i++)
 			if (c->link[i].touching) // a contact still open at the end counts with what it has
 				contact_over(c, &c->link[i]);
+		if (c->flight.can && status == POUND_OK)
+			notes_look(c);
 		chain_write(c, status);
 	}
 	lanes_leave();

@@ -147,7 +147,8 @@ static void flight_start(struct chain *c)
 	const struct pound_chain_task *task = c->task;
 	struct flight *f = &c->flight;
 	const unsigned followed = POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_ENERGY;
-	f->wait = f->refused = 0;
+	f->wait = f->refused = f->notes = 0;
+	f->room = KEPT / (NOTE_COLUMNS * c->wide) < NOTES ? KEPT / (NOTE_COLUMNS * c->wide) : NOTES;
 	f->can = !(task->asked & followed) && !task->observer;
 	if (!f->can)
 		return;
@@ -322,6 +323,102 @@ static bool links_risk(const struct chain *c, const struct flight_place *from, c
 	return false;
 }
 
+/* ---- samples that may hold largest values ---- */
+
+LANE_INLINE double *note_column(struct chain *c, int k, int column)
+{
+	return &c->flight.kept[(k * NOTE_COLUMNS + column) * c->wide];
+}
+
+/* Whether a sample may still hold a largest value. */
+static bool note_stands(struct chain *c, int k)
+{
+	const double *drift = note_column(c, k, NOTE_REACH),
+	             *displacement = note_column(c, k, NOTE_DISPLACEMENT_REACH);
+	for (int i = 0; i < c->n; i++)
+		if (drift[i] > c->top_drift.at[i] || displacement[i] > c->top_displacement.at[i])
+			return true;
+	return false;
+}
+
+/* Notes the sample that ends at c->next: larger values come more often than not, so it is looked into at the end.
+ *
+ * Returns  value  false: there is no room
+ */
+LANE_SHARED bool note_keep(struct chain *c, const struct flight_place *from, bool drifts, bool displaced)
+{
+	struct flight *f = &c->flight;
+	const size_t bytes = sizeof(double) * (size_t)c->wide;
+	if (f->notes == f->room) {
+		int kept = 0;
+		for (int k = 0; k < f->notes; k++) {
+			if (!note_stands(c, k))
+				continue;
+			f->noted[kept] = f->noted[k];
+			memmove(note_column(c, kept++, 0), note_column(c, k, 0), NOTE_COLUMNS * bytes);
+		}
+		f->notes = kept;
+		if (kept == f->room)
+			return false;
+	}
+	const int k = f->notes++;
+	f->noted[k] = c->next;
+	memcpy(note_column(c, k, NOTE_D), from->d.at, bytes);
+	memcpy(note_column(c, k, NOTE_V), from->v.at, bytes);
+	memcpy(note_column(c, k, NOTE_SHIFT), f->shift.at, bytes);
+	memset(note_column(c, k, NOTE_REACH), 0, 2 * bytes);
+	if (drifts)
+		memcpy(note_column(c, k, NOTE_REACH), f->reach.at, bytes);
+	if (displaced)
+		memcpy(note_column(c, k, NOTE_DISPLACEMENT_REACH), f->displacement_reach.at, bytes);
+	return true;
+}
+
+/* Goes through a noted sample again, by power series, for its largest values alone. */
+static void note_look(struct chain *c, int k)
+{
+	const double *d = note_column(c, k, NOTE_D), *v = note_column(c, k, NOTE_V);
+	const double *shift = note_column(c, k, NOTE_SHIFT);
+	for (int i = 0; i < c->n; i++) {
+		c->d.at[i] = d[i];
+		c->v.at[i] = v[i];
+		c->stiffness.at[i] = c->initial.at[i];
+		c->offset.at[i] = -c->initial.at[i] * shift[i];
+	}
+	interval_set(c, c->flight.noted[k]);
+	while (c->part > 0) {
+		if (c->moving)
+			chain_displacements(c);
+		step_choose(c);
+		series_chain(c);
+		step_arrive(c, 1);
+		step_tops(c, 1);
+	}
+}
+
+/* Looks into the samples noted, when a chain has come to its end. */
+static void notes_look(struct chain *c)
+{
+	struct flight *f = &c->flight;
+	if (f->notes == 0)
+		return;
+	const int n_links = c->n_links;
+	const bool edged = c->edged;
+	f->at[0].d = c->d;
+	f->at[0].v = c->v;
+	c->n_links = 0;
+	c->edged = false;
+	c->pace = 1;
+	c->reach = 0;
+	for (int k = f->notes - 1; k >= 0; k--)
+		if (note_stands(c, k))
+			note_look(c, k);
+	c->n_links = n_links;
+	c->edged = edged;
+	c->d = f->at[0].d;
+	c->v = f->at[0].v;
+}
+
 /* Flies over the sample that ends at c->next, if nothing happens inside.
  *
  * Returns  value  false: something may; nothing has changed
@@ -334,7 +431,7 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool mo
 	const struct flight_place *from = &f->at[f->now];
 	struct flight_place *to = &f->at[1 - f->now];
 	modes_move(f, c->wide, a[-1], a[0] - a[-1]);
-	vm risk = vmask(0);
+	vm risk = vmask(0), peaks = vmask(0);
 	for (int i = 0; i < c->wide; i += W) {
 		const struct drifts s = drifts_sum(f, i);
 		const struct course course = {column_load(&from->d, i), column_load(&from->v, i) * h, s.d, s.v * h,
@@ -349,7 +446,10 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool mo
 		if (!drifts)
 			continue;
 		const vd top = vmax(column_load(&c->top_drift, i), vabs(s.d));
-		risk |= vless(top, course_reach(&course));
+		const vd reach = course_reach(&course);
+		const vm inside = vless(top, reach);
+		peaks |= inside;
+		column_store(&f->reach, i, vselect(inside, reach, vsplat(0)));
 		column_store(&f->top, i, top);
 	}
 	if (vany(risk))
@@ -365,10 +465,13 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool mo
 			                              column_load(&to->u, i), column_load(&to->w, i) * h,
 			                              column_load(&f->bent, i)};
 			const vd top = vmax(column_load(&c->top_displacement, i), vabs(course.u1));
-			risk |= vless(top, course_reach(&course));
+			const vd reach = course_reach(&course);
+			const vm inside = vless(top, reach);
+			peaks |= inside;
+			column_store(&f->displacement_reach, i, vselect(inside, reach, vsplat(0)));
 			column_store(&f->top_displacement, i, top);
 		}
-	if (vany(risk))
+	if (vany(peaks) && !note_keep(c, from, drifts, displaced))
 		return false;
 	for (int i = 0; i < c->wide; i += W) {
 		column_store(&f->q, i, column_load(&f->q_next, i));

@@ -59,7 +59,15 @@ struct flight_place {
 	struct column d, v, u, w;
 };
 
-enum { MODE_ROWS = 5200 }; /* of all vectors of floors: 8 buildings of 50 stories have so many at most */
+enum {
+	NOTES = 48,      /* samples that may hold largest values, at most */
+	KEPT = 5 * 3264, /* numbers that are kept of these */
+};
+
+/* what is kept of a sample: drifts and their rates at its start, elastic centers, bounds inside it */
+enum { NOTE_D, NOTE_V, NOTE_SHIFT, NOTE_REACH, NOTE_DISPLACEMENT_REACH, NOTE_COLUMNS };
+
+enum { MODE_ROWS = 2900 }; /* of all vectors of floors: 8 buildings of 50 stories have so many at most */
 
 /* modes of all buildings, those of a building in the lanes of its floors, and their motion at samples */
 struct flight {
@@ -74,7 +82,12 @@ struct flight {
 	struct column per_w2, still, lag, drift_speed, bend, bend_rate; /* mode_fill */
 	struct column q, v, q_next, v_next, bound;
 	struct column shift, elastic[2], bent, top, top_displacement;
+	struct column reach,
+	    displacement_reach; /* bounds inside the sample, where they exceed what is known; else 0 */
 	struct flight_place at[2];
+	int notes, room;      /* samples noted, of so many */
+	int64_t noted[NOTES]; /* sample at the end of each */
+	double kept[KEPT];    /* NOTE_COLUMNS columns of whole vectors of each */
 	struct pound_modes modes;
 	double shape[MODE_ROWS][ROW]; /* drifts of shapes */
 };

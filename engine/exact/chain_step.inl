@@ -31,6 +31,15 @@ static double reach_touching(struct chain *c)
 	return rate > 0 ? POUND_TERMS_REACH[ORDER_TOUCH] / rate : DBL_MAX;
 }
 
+/* The interval that ends at a sample. */
+static void interval_set(struct chain *c, int64_t next)
+{
+	const double *a = &c->task->ground[next];
+	c->ground = a[-1];
+	c->slope = (a[0] - a[-1]) * (1 / c->task->time_step);
+	c->part = c->task->time_step;
+}
+
 /* Chooses the next step. */
 static void step_choose(struct chain *c)
 {
