@@ -164,9 +164,11 @@ static double link_sum(const struct link *l, const double *column)
 
 /* ---- the start ---- */
 
-/* Fastest rate of a building or of a chain: of the highest frequency w with damping c.
+/* Bound of the rates of a chain whose highest frequency is w and whose largest damping is c.
  *
- * Returns  share  by which steps are shorter where damping is near critical (next_step.inl: touch_reach)
+ * A rate r has r^2 + c' r + k' = 0 with c' <= c and k' <= w^2: it swings with at most w, or dies away with at most c.  Where damping
+ * is near critical, derivative n of a free motion is up to n times as large: steps are shorter by the 16th root of that, as
+ * those of the pair (next_step.inl: touch_reach).
  */
 static double rate_of(double w, double c)
 {
@@ -174,7 +176,7 @@ static double rate_of(double w, double c)
 	double share = fmax(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
 	for (int halving = 0; halving < 5; halving++)
 		share = sqrt(share);
-	return w * (zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1) / share;
+	return fmax(w / share, c);
 }
 
 /* Bound of what a building's modal damping gives a floor's velocity, over its mass [1/s]. */
@@ -200,20 +202,22 @@ static void chain_rates(struct chain *c)
 {
 	const struct pound_chain_task *task = c->task;
 	for (int first = 0, n; first < task->n_floors; first += n) {
-		double mass[POUND_STORIES], stiffness[POUND_STORIES], w[POUND_STORIES], ratio = 0, modal = 0;
+		double mass[POUND_STORIES], stiffness[POUND_STORIES], dashpot[POUND_STORIES], modal = 0;
+		double w[POUND_STORIES], damped[POUND_STORIES];
 		const struct pound_floor *floor = &task->floors[first];
 		n = building_stories(task, first);
 		for (int i = 0; i < n; i++) {
 			mass[i] = floor[i].mass;
 			stiffness[i] = floor[i].story.stiffness;
-			ratio = fmax(ratio, floor[i].dashpot / stiffness[i]);
+			dashpot[i] = floor[i].dashpot;
 			if (floor[i].modal)
 				modal = fmax(modal, modal_bound(&floor[i], n));
 		}
 		pound_modes_frequencies(n, mass, stiffness, w);
-		const double fastest = w[n - 1], damping = ratio * fastest * fastest + floor->drag + modal;
-		c->rate_apart = fmax(c->rate_apart, fastest);
-		c->drag_apart = fmax(c->drag_apart, damping);
+		// dashpots over masses have the same form as springs
+		pound_modes_frequencies(n, mass, dashpot, damped);
+		c->rate_apart = fmax(c->rate_apart, w[n - 1]);
+		c->drag_apart = fmax(c->drag_apart, damped[n - 1] * damped[n - 1] + floor->drag + modal);
 	}
 }
 

@@ -1,6 +1,9 @@
 /* unit_chain.c - rows of buildings against known answers by two independent 113-bit programs (buildings.md 4). */
+#include "engine/exact/task.h"
+#include "engine/numeric/cpu_width.h"
 #include "tests/support/chain_scenes.h"
 #include "tests/support/check.h"
+#include "tests/support/scenes.h"
 
 #include <math.h>
 #include <string.h>
@@ -198,9 +201,233 @@ static void levels_within_stories_come_out(void **state)
 	LINKS(row, IMPULSE_MAX, 85896.7700219882, 46498.6591743184);
 }
 
+/* ---- what must be the same ---- */
+
+/* A row of its own for every number: any law and damping, up to four buildings or a wall, levels within stories. */
+static int row_random(struct row *r, uint64_t number)
+{
+	uint64_t seed = number * 2654435761u + 88172645463325252u;
+	row_init(r);
+	r->n_buildings = 1 + (int)specimen_uniform(&seed, 0, 3.999);
+	r->wall = r->n_buildings == 1 || specimen_uniform(&seed, 0, 1) < 0.3;
+	r->contact.stiffness_ratio = pow(10, specimen_uniform(&seed, 1.5, 3));
+	r->contact.gap = specimen_uniform(&seed, 0, 1) < 0.2 ? 0 : specimen_uniform(&seed, 0, 0.01);
+	r->contact.restitution = specimen_uniform(&seed, 0.1, 1);
+	r->contact.tension = specimen_uniform(&seed, 0, 1) < 0.5;
+	for (int b = 0; b < r->n_buildings; b++) {
+		struct row_building *x = &r->buildings[b];
+		*x = row_building(1 + (int)specimen_uniform(&seed, 0, 11.999), 1e5, 1);
+		for (int i = 0; i < x->stories; i++) {
+			x->mass[i] *= specimen_uniform(&seed, 0.3, 3);
+			x->stiffness[i] *= specimen_uniform(&seed, 0.3, 3);
+		}
+		x->frequency_hz = specimen_uniform(&seed, 0.5, 4);
+		x->damping = (enum row_damping)specimen_uniform(&seed, 0, 3.999);
+		x->damping_ratio = specimen_uniform(&seed, 0, 0.1);
+		x->law = (struct pound_backbone){.law = (int)specimen_uniform(&seed, 0, 3.999),
+		                                 .hardening = specimen_uniform(&seed, 0, 0.2),
+		                                 .yield = pow(10, specimen_uniform(&seed, -3.5, -1.5))};
+	}
+	double a = 0;
+	for (int i = 0; i <= 400; i++) {
+		a = 0.7 * a + specimen_uniform(&seed, -2, 2);
+		r->ground[i] = i > 350 ? 0 : a;
+	}
+	return 401;
+}
+
+static void rows_have_the_same_bytes_at_every_lane_count(void **state)
+{
+	(void)state;
+	static struct row one, other;
+	for (int number = 0; number < check_count(20, 1000); number++)
+		for (int energy = 0; energy < 2; energy++) {
+			const int n = row_random(&one, (uint64_t)number);
+			other = one;
+			const struct pound_chain_task task =
+			    row_task(&one, n, 0.01, (unsigned)(ALL | (energy ? POUND_CHAIN_ENERGY : 0)));
+			const struct pound_chain_task same = row_task(&other, n, 0.01, task.asked);
+			row_run(&one, &task, 1);
+			for (int lanes = 4; lanes <= 8; lanes += 4) {
+				if (pound_dispatch_width(lanes) < 0)
+					continue;
+				row_run(&other, &same, lanes);
+				assert_memory_equal(one.floor_measures, other.floor_measures, sizeof one.floor_measures);
+				assert_memory_equal(one.link_measures, other.link_measures, sizeof one.link_measures);
+			}
+		}
+}
+
+/* Whole samples by modes against power series alone, which a balance of energy asks for. */
+static void flights_go_where_series_do(void **state)
+{
+	(void)state;
+	static struct row flown, slow;
+	double worst = 0, residual = 0;
+	const int rows = check_count(30, 2000);
+	for (int number = 0; number < rows; number++) {
+		const int n = row_random(&flown, (uint64_t)number);
+		slow = flown;
+		const unsigned asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
+		const struct pound_chain_task task = row_task(&flown, n, 0.01, asked);
+		const struct pound_chain_task same = row_task(&slow, n, 0.01, asked | POUND_CHAIN_ENERGY);
+		assert_int_equal(row_run(&flown, &task, 0).status, POUND_OK);
+		const struct pound_chain_result result = row_run(&slow, &same, 0);
+		assert_int_equal(result.status, POUND_OK);
+		residual = fmax(residual, result.energy_residual);
+		for (int m = 0; m < POUND_FLOOR_ACCELERATION_MAX; m++) {
+			double top = 0, error = 0;
+			for (int i = 0; i < task.n_floors; i++) {
+				top = fmax(top, slow.floor_measures[i][m]);
+				error = fmax(error, fabs(slow.floor_measures[i][m] - flown.floor_measures[i][m]));
+			}
+			worst = fmax(worst, error / top);
+		}
+	}
+	check_report("%d rows: flown off series by %.1e, energy residual %.1e at most", rows, worst, residual);
+	assert_true(residual < 1e-11);
+	assert_true(worst < 1e-11); // impacts make an error grow
+}
+
+static void a_mirrored_row_under_a_mirrored_ground_is_mirrored(void **state)
+{
+	(void)state;
+	static struct row left, right;
+	for (int number = 0; number < 10; number++) {
+		const int n = row_random(&left, (uint64_t)number);
+		if (left.wall || left.n_buildings < 2)
+			continue;
+		right = left;
+		for (int b = 0; b < left.n_buildings; b++)
+			right.buildings[b] = left.buildings[left.n_buildings - 1 - b];
+		for (int i = 0; i < n; i++)
+			right.ground[i] = -left.ground[i];
+		const struct pound_chain_task task = row_task(&left, n, 0.01, ALL),
+		                              mirrored = row_task(&right, n, 0.01, ALL);
+		row_run(&left, &task, 0);
+		row_run(&right, &mirrored, 0);
+		for (int b = 0; b < left.n_buildings; b++) {
+			const int first = left.first[b], other = right.first[left.n_buildings - 1 - b];
+			for (int i = 0; i < left.buildings[b].stories; i++)
+				check_near(left.floor_measures[first + i][POUND_FLOOR_DRIFT_MAX],
+				           right.floor_measures[other + i][POUND_FLOOR_DRIFT_MAX], 1e-11);
+		}
+	}
+}
+
+static void equal_buildings_do_not_meet(void **state)
+{
+	(void)state;
+	row_init(&row);
+	row.contact.gap = 0;
+	row.n_buildings = 4;
+	for (int b = 0; b < 4; b++) {
+		row.buildings[b] = row_building(5, 1e5, 1e8);
+		row.buildings[b].law =
+		    (struct pound_backbone){.law = law_row("elastoplastic"), .hardening = .05, .yield = .003};
+	}
+	row_run_all(&row, row_harmonic(&row, 1.4, 5, 4), ALL);
+	assert_true(row.floor_measures[0][POUND_FLOOR_DRIFT_MAX] > .003);
+	for (int j = 0; j < 15; j++) {
+		assert_true(row.link_measures[j][POUND_LINK_IMPULSE_MAX] < 1e-6); // of 1e5 N s: roundings
+		check_near(row.link_measures[j][POUND_LINK_CONTACTS], 0, 0);
+	}
+}
+
+static void a_linear_row_scales(void **state)
+{
+	(void)state;
+	static struct row once, twice;
+	for (int number = 0; number < 10; number++) {
+		const int n = row_random(&once, (uint64_t)number);
+		for (int b = 0; b < once.n_buildings; b++)
+			once.buildings[b].law.law = law_row("linear");
+		twice = once;
+		twice.contact.gap *= 2;
+		for (int i = 0; i < n; i++)
+			twice.ground[i] *= 2;
+		const struct pound_chain_task task = row_task(&once, n, 0.01, ALL),
+		                              more = row_task(&twice, n, 0.01, ALL);
+		row_run(&once, &task, 0);
+		row_run(&twice, &more, 0);
+		for (int i = 0; i < task.n_floors; i++)
+			for (int m = 0; m <= POUND_FLOOR_ACCELERATION_MAX; m++)
+				check_near(2 * once.floor_measures[i][m], twice.floor_measures[i][m], 0);
+	}
+}
+
+/* ---- one story ---- */
+
+/* The pair that a row of two buildings of one story is. */
+static struct pound_task pair_of(const struct row *r, const struct pound_chain_task *chain)
+{
+	const double m = r->floors[0].mass, m2 = r->floors[1].mass;
+	struct pound_task task = {.ground = chain->ground,
+	                          .n_samples = chain->n_samples,
+	                          .time_step = chain->time_step,
+	                          .contact = true,
+	                          .gap = r->links[0].gap,
+	                          .contact_stiffness = r->links[0].law.stiffness / m,
+	                          .contact_damping = r->links[0].law.dashpot / m,
+	                          .mass_ratio = m / m2,
+	                          .tension = r->links[0].law.tension};
+	for (int b = 0; b < 2; b++) {
+		task.bodies[b] = (struct pound_task_body){.backbone = r->floors[b].story,
+		                                          .damping = r->floors[b].dashpot / r->floors[b].mass,
+		                                          .drive = 1,
+		                                          .followed = true};
+		task.bodies[b].backbone.stiffness /= r->floors[b].mass;
+	}
+	return task;
+}
+
+static void one_story_goes_as_the_pair(void **state)
+{
+	(void)state;
+	static struct row r;
+	double worst = 0;
+	const int rows = check_count(60, 5000);
+	void *scratch = aligned_alloc(64, POUND_EXACT_SCRATCH);
+	assert_non_null(scratch);
+	for (int number = 0; number < rows; number++) {
+		const int n = row_random(&r, (uint64_t)number);
+		r.n_buildings = 2;
+		r.wall = false;
+		for (int b = 0; b < 2; b++) {
+			r.buildings[b] = row_building(1, 1e5 * (b + 1), 1);
+			r.buildings[b].law = (struct pound_backbone){
+			    .law = number % 4, .hardening = 0.05, .yield = 0.001 * (1 + number % 7)};
+			r.buildings[b].frequency_hz = b ? 2.7 : 1.1;
+		}
+		const struct pound_chain_task task = row_task(&r, n, 0.01, ALL);
+		const struct pound_task pair = pair_of(&r, &task);
+		struct pound_task_result want;
+		assert_true(pound_exact_lanes(0, &pair, &want, 1, scratch, NULL));
+		row_run(&r, &task, 0);
+		const double *link = r.link_measures[0];
+		check_near(link[POUND_LINK_CONTACTS], (double)want.contacts, 0);
+		const double of[][2] = {{r.floor_measures[0][POUND_FLOOR_DRIFT_MAX], want.displacement_max[0]},
+		                        {r.floor_measures[1][POUND_FLOOR_DISPLACEMENT_MAX], want.displacement_max[1]},
+		                        {link[POUND_LINK_IMPULSE_MAX], want.impulse_max * r.floors[0].mass},
+		                        {link[POUND_LINK_TIME], want.contact_time},
+		                        {link[POUND_LINK_FIRST_TIME], want.first_contact},
+		                        {link[POUND_LINK_FIRST_SPEED], want.first_speed}};
+		for (size_t k = 0; k < sizeof of / sizeof of[0]; k++)
+			worst = fmax(worst, fabs(of[k][0] - of[k][1]) / fmax(fabs(of[k][1]), 1e-3));
+	}
+	free(scratch);
+	check_report("%d rows of one story: off the pair by %.1e at most", rows, worst);
+	assert_true(worst < 1e-12);
+}
+
 CHECK_MAIN(cmocka_unit_test(two_and_two_stories_come_out),
            cmocka_unit_test(three_and_two_stories_without_tension_come_out),
            cmocka_unit_test(elastoplastic_stories_come_out),
            cmocka_unit_test(oriented_and_elastic_stories_come_out),
            cmocka_unit_test(a_row_of_three_comes_out), cmocka_unit_test(a_wall_comes_out),
-           cmocka_unit_test(levels_within_stories_come_out))
+           cmocka_unit_test(levels_within_stories_come_out),
+           cmocka_unit_test(rows_have_the_same_bytes_at_every_lane_count),
+           cmocka_unit_test(flights_go_where_series_do),
+           cmocka_unit_test(a_mirrored_row_under_a_mirrored_ground_is_mirrored),
+           cmocka_unit_test(equal_buildings_do_not_meet), cmocka_unit_test(a_linear_row_scales),
+           cmocka_unit_test(one_story_goes_as_the_pair))
