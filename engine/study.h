@@ -98,23 +98,14 @@ struct pound_contact {
 	double gap;             /* clear distance at rest [m]  >= 0 */
 	bool tension;           /* the dashpot may pull just before separation */
 	// of some models each, pound_contact_reads
-<<<<<<< HEAD
 	int calibration;  /* of the dashpot to the restitution: row of the calibrations, pound_calibration_name */
 	double stiffness; /* [N/m]  > 0; 0: by stiffness_ratio */
-=======
-	int calibration;               /* of the dashpot to the restitution: row of the calibrations, pound_calibration_name */
-	double stiffness;              /* [N/m]  > 0; 0: by stiffness_ratio */
->>>>>>> 10cbe6e (Tests of chains: lane counts, flights, mirrors, scales, one story against the pair; modes against closed forms)
 	double hertz_stiffness;        /* [N/m^1.5]  > 0; 0: from the linear one and reference_speed */
 	double reference_speed;        /* at which both springs have the same largest overlap [m/s]  > 0 */
 	double second_stiffness_ratio; /* stiffness beyond the yield overlap over the first one  [0, 1] */
 	double yield_overlap;          /* [m]  > 0 */
-<<<<<<< HEAD
 	double
 	    speed_floor; /* least approach speed that a dashpot is divided by, or an impact counts with [m/s]  > 0 */
-=======
-	double speed_floor;            /* least approach speed that a dashpot is divided by, or an impact counts with [m/s]  > 0 */
->>>>>>> 10cbe6e (Tests of chains: lane counts, flights, mirrors, scales, one story against the pair; modes against closed forms)
 };
 
 struct pound_excitation {
@@ -258,11 +249,7 @@ const char *pound_contact_name(int row);
 enum pound_force pound_contact_force(int row);
 bool pound_force_scales(enum pound_force force); /* twice the motion, twice the force */
 const char *pound_calibration_name(int row);
-<<<<<<< HEAD
 bool pound_contact_reads(int row, const char *member);              /* of /scene/contact */
-=======
-bool pound_contact_reads(int row, const char *member);             /* of /scene/contact */
->>>>>>> 10cbe6e (Tests of chains: lane counts, flights, mirrors, scales, one story against the pair; modes against closed forms)
 bool pound_contact_takes_zero(const struct pound_contact *contact); /* restitution 0 has a dashpot */
 const char *pound_excitation_name(int row);
 const char *pound_distribution_name(int row);
