@@ -183,7 +183,6 @@ struct pound_member {
 	struct pound_task_result *result;
 };
 
-
 struct simulation {
 	alignas(64) struct state_rows x;
 	// what is read or written at every turn: two cache lines
