@@ -149,8 +149,8 @@ $(B)/tests/long/paper: $(patsubst %.c,$(B)/%.o,$(wildcard tests/long/paper_*.c))
 golden: $(B)/tests/unit/run/unit_golden
 	@POUND_GOLDEN=whole $<
 # stiff and extreme scenes, a table: what every one of them is checked for by the tests
-extremes: $(B)/tests/unit/exact/unit_extremes
-	@$< | grep '^|'
+extremes: $(B)/tests/unit/exact/unit_extremes $(B)/tests/unit/exact/unit_chain_extremes
+	@for table in $^; do $$table | grep '^|'; done
 # searches for the yield displacement of a target demand, a table: how many end at it, by law and corrections
 yield: $(B)/tests/unit/run/unit_yield
 	@$< | grep '^|'

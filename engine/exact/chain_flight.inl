@@ -77,6 +77,9 @@ static void mode_fill(struct flight *f, int i, double w, double c, double gain, 
 	f->va.at[i] = -gain * r.psi;
 	f->vd.at[i] = -gain * r.once / h;
 	f->per_w2.at[i] = 1 / (w * w);
+	f->w2.at[i] = w * w;
+	f->damping.at[i] = c;
+	f->gain.at[i] = gain;
 	f->still.at[i] = gain / (w * w);
 	f->lag.at[i] = gain * c / (w * w * w * w) / h;
 	f->drift_speed.at[i] = gain / (w * w) / h;
@@ -146,12 +149,14 @@ static void flight_start(struct chain *c)
 {
 	const struct pound_chain_task *task = c->task;
 	struct flight *f = &c->flight;
-	const unsigned followed = POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_ENERGY;
 	f->wait = f->refused = f->notes = 0;
 	f->room = KEPT / (NOTE_COLUMNS * c->wide) < NOTES ? KEPT / (NOTE_COLUMNS * c->wide) : NOTES;
-	f->can = !(task->asked & followed) && !task->observer;
+	f->can = !(task->asked & POUND_CHAIN_ENERGY) && !task->observer;
 	if (!f->can)
 		return;
+	for (int k = 0; k < 2; k++) // what is behind the last floor
+		for (int i = c->n; i < c->wide; i++)
+			f->at[k].u.at[i] = f->at[k].w.at[i] = 0;
 	flight_rows(c);
 	for (int j = 0; j < c->wide / ROW && f->can; j++)
 		memset(f->shape[f->row[j]], 0, sizeof(double) * ROW * (size_t)(f->upto[j] - f->from[j]));
@@ -300,6 +305,79 @@ static void displacements_sum(const struct chain *c, struct flight_place *at, st
 	}
 }
 
+/* Elastic and damping forces of modes per modal mass at a sample, -(c q' + w^2 q), of which absolute accelerations are sums, their
+ * rates, and what bounds their fourth derivatives over the sample before.
+ *
+ * Given    ground  acceleration there
+ */
+LANE_INLINE void modes_force(struct flight *f, const struct column *q, const struct column *v, int wide,
+                             double ground)
+{
+	for (int i = 0; i < wide; i += W) {
+		const vd w2 = column_load(&f->w2, i), c = column_load(&f->damping, i), rate = column_load(v, i);
+		const vd force = -vfma(c, rate, w2 * column_load(q, i));
+		const vd second = force - column_load(&f->gain, i) * vsplat(ground);
+		column_store(&f->force, i, force);
+		column_store(&f->force_rate, i, -vfma(c, second, w2 * rate));
+		// derivative n + 1 of a free motion is at most w + c times that of derivative n
+		const vd more = vfma(c, c + vsqrt(w2), w2);
+		column_store(&f->force_bound, i, more * column_load(&f->bound, i));
+	}
+}
+
+/* Absolute accelerations of floors at a sample, and their rates: sums over stories of sums over modes. */
+LANE_INLINE void accelerations_sum(struct chain *c, struct flight_place *at)
+{
+	struct flight *f = &c->flight;
+	for (int i = 0; i < c->wide; i += W) {
+		const int j = i / ROW, from = f->from[j], upto = f->upto[j];
+		const double *shape = &f->shape[f->row[j]][i % ROW];
+		vd a = vsplat(0), jerk = a, bound = a;
+		for (int r = from; r < upto; r++, shape += ROW) {
+			const vd s = lanes_load(shape);
+			a = vfma(s, vsplat(f->force.at[r]), a);
+			jerk = vfma(s, vsplat(f->force_rate.at[r]), jerk);
+			bound = vfma(vabs(s), vsplat(f->force_bound.at[r]), bound);
+		}
+		column_store(&at->a, i, a);
+		column_store(&at->jerk, i, jerk);
+		column_store(&f->bent_force, i, bound);
+	}
+	double a = 0, jerk = 0, bound = 0;
+	for (int i = 0; i < c->n; i++) {
+		const double inner = c->inner.at[i];
+		a = fma(inner, a, at->a.at[i]);
+		jerk = fma(inner, jerk, at->jerk.at[i]);
+		bound = fma(inner, bound, f->bent_force.at[i]);
+		at->a.at[i] = a;
+		at->jerk.at[i] = jerk;
+		f->bent_force.at[i] = bound;
+	}
+}
+
+/* a quantity of floors over a sample: values and rates at both ends, the bound of its fourth derivative, its largest values */
+struct sampled {
+	const struct column *u0, *v0, *u1, *v1, *bend, *top;
+	struct column *reach, *top_next;
+};
+
+/* Lanes that may have a largest value inside the sample. */
+LANE_INLINE unsigned sampled_peaks(const struct chain *c, const struct sampled *x)
+{
+	const vd h = vsplat(c->task->time_step);
+	unsigned some = 0;
+	for (int i = 0; i < c->wide; i += W) {
+		const struct course course = {column_load(x->u0, i), column_load(x->v0, i) * h, column_load(x->u1, i),
+		                              column_load(x->v1, i) * h, column_load(x->bend, i)};
+		const vd top = vmax(column_load(x->top, i), vabs(course.u1)), reach = course_reach(&course);
+		const vm inside = vless(top, reach);
+		some |= vbits(inside);
+		column_store(x->reach, i, vselect(inside, reach, vsplat(0)));
+		column_store(x->top_next, i, top);
+	}
+	return some;
+}
+
 /* Whether a link may begin to touch inside the sample. */
 static bool links_risk(const struct chain *c, const struct flight_place *from, const struct flight_place *to)
 {
@@ -333,11 +411,13 @@ LANE_INLINE double *note_column(struct chain *c, int k, int column)
 /* Whether a sample may still hold a largest value. */
 static bool note_stands(struct chain *c, int k)
 {
-	const double *drift = note_column(c, k, NOTE_REACH),
-	             *displacement = note_column(c, k, NOTE_DISPLACEMENT_REACH);
-	for (int i = 0; i < c->n; i++)
-		if (drift[i] > c->top_drift.at[i] || displacement[i] > c->top_displacement.at[i])
-			return true;
+	const struct column *tops[] = {&c->top_drift, &c->top_displacement, &c->top_acceleration};
+	for (int m = 0; m < 3; m++) {
+		const double *reach = note_column(c, k, NOTE_REACH + m);
+		for (int i = 0; i < c->n; i++)
+			if (reach[i] > tops[m]->at[i])
+				return true;
+	}
 	return false;
 }
 
@@ -345,8 +425,10 @@ static bool note_stands(struct chain *c, int k)
  *
  * Returns  value  false: there is no room
  */
-LANE_SHARED bool note_keep(struct chain *c, const struct flight_place *from, bool drifts, bool displaced)
+LANE_SHARED bool note_keep(struct chain *c, const struct flight_place *from)
 {
+	static const unsigned asked[] = {POUND_CHAIN_DRIFTS, POUND_CHAIN_DISPLACEMENTS,
+	                                 POUND_CHAIN_ACCELERATIONS};
 	struct flight *f = &c->flight;
 	const size_t bytes = sizeof(double) * (size_t)c->wide;
 	if (f->notes == f->room) {
@@ -366,11 +448,12 @@ LANE_SHARED bool note_keep(struct chain *c, const struct flight_place *from, boo
 	memcpy(note_column(c, k, NOTE_D), from->d.at, bytes);
 	memcpy(note_column(c, k, NOTE_V), from->v.at, bytes);
 	memcpy(note_column(c, k, NOTE_SHIFT), f->shift.at, bytes);
-	memset(note_column(c, k, NOTE_REACH), 0, 2 * bytes);
-	if (drifts)
-		memcpy(note_column(c, k, NOTE_REACH), f->reach.at, bytes);
-	if (displaced)
-		memcpy(note_column(c, k, NOTE_DISPLACEMENT_REACH), f->displacement_reach.at, bytes);
+	const struct column *reach[] = {&f->reach, &f->displacement_reach, &f->acceleration_reach};
+	for (int m = 0; m < 3; m++)
+		if (c->task->asked & asked[m])
+			memcpy(note_column(c, k, NOTE_REACH + m), reach[m]->at, bytes);
+		else
+			memset(note_column(c, k, NOTE_REACH + m), 0, bytes);
 	return true;
 }
 
@@ -391,6 +474,8 @@ static void note_look(struct chain *c, int k)
 			chain_displacements(c);
 		step_choose(c);
 		series_chain(c);
+		if (c->task->asked & POUND_CHAIN_ACCELERATIONS)
+			accelerations_keep(c, 1);
 		step_arrive(c, 1);
 		step_tops(c, 1);
 	}
@@ -423,7 +508,7 @@ static void notes_look(struct chain *c)
  *
  * Returns  value  false: something may; nothing has changed
  */
-LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool moving, bool displaced)
+LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
 {
 	struct flight *f = &c->flight;
 	const double *a = &c->task->ground[c->next];
@@ -431,7 +516,10 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool mo
 	const struct flight_place *from = &f->at[f->now];
 	struct flight_place *to = &f->at[1 - f->now];
 	modes_move(f, c->wide, a[-1], a[0] - a[-1]);
-	vm risk = vmask(0), peaks = vmask(0);
+	const bool drifts = c->task->asked & POUND_CHAIN_DRIFTS;
+	const bool displaced = c->task->asked & POUND_CHAIN_DISPLACEMENTS;
+	const bool accelerated = c->task->asked & POUND_CHAIN_ACCELERATIONS;
+	vm risk = vmask(0), inside = vmask(0);
 	for (int i = 0; i < c->wide; i += W) {
 		const struct drifts s = drifts_sum(f, i);
 		const struct course course = {column_load(&from->d, i), column_load(&from->v, i) * h, s.d, s.v * h,
@@ -447,9 +535,9 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool mo
 			continue;
 		const vd top = vmax(column_load(&c->top_drift, i), vabs(s.d));
 		const vd reach = course_reach(&course);
-		const vm inside = vless(top, reach);
-		peaks |= inside;
-		column_store(&f->reach, i, vselect(inside, reach, vsplat(0)));
+		const vm higher = vless(top, reach);
+		inside |= higher;
+		column_store(&f->reach, i, vselect(higher, reach, vsplat(0)));
 		column_store(&f->top, i, top);
 	}
 	if (vany(risk))
@@ -459,19 +547,19 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool mo
 		if (c->n_links > 0 && links_risk(c, from, to))
 			return false;
 	}
+	unsigned peaks = vbits(inside);
 	if (displaced)
-		for (int i = 0; i < c->wide; i += W) {
-			const struct course course = {column_load(&from->u, i), column_load(&from->w, i) * h,
-			                              column_load(&to->u, i), column_load(&to->w, i) * h,
-			                              column_load(&f->bent, i)};
-			const vd top = vmax(column_load(&c->top_displacement, i), vabs(course.u1));
-			const vd reach = course_reach(&course);
-			const vm inside = vless(top, reach);
-			peaks |= inside;
-			column_store(&f->displacement_reach, i, vselect(inside, reach, vsplat(0)));
-			column_store(&f->top_displacement, i, top);
-		}
-	if (vany(peaks) && !note_keep(c, from, drifts, displaced))
+		peaks |= sampled_peaks(c, &(struct sampled){&from->u, &from->w, &to->u, &to->w, &f->bent,
+		                                            &c->top_displacement, &f->displacement_reach,
+		                                            &f->top_displacement});
+	if (accelerated) {
+		modes_force(f, &f->q_next, &f->v_next, c->wide, a[0]);
+		accelerations_sum(c, to);
+		peaks |= sampled_peaks(c, &(struct sampled){&from->a, &from->jerk, &to->a, &to->jerk, &f->bent_force,
+		                                            &c->top_acceleration, &f->acceleration_reach,
+		                                            &f->top_acceleration});
+	}
+	if (peaks && !note_keep(c, from))
 		return false;
 	for (int i = 0; i < c->wide; i += W) {
 		column_store(&f->q, i, column_load(&f->q_next, i));
@@ -480,6 +568,8 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool drifts, bool mo
 			column_store(&c->top_drift, i, column_load(&f->top, i));
 		if (displaced)
 			column_store(&c->top_displacement, i, column_load(&f->top_displacement, i));
+		if (accelerated)
+			column_store(&c->top_acceleration, i, column_load(&f->top_acceleration, i));
 	}
 	f->now = 1 - f->now;
 	f->flown = true;
@@ -503,13 +593,11 @@ static void flight_settle(struct chain *c)
 
 LANE_INLINE void flight_go(struct chain *c, const atomic_bool *stop, bool edged, bool moving)
 {
-	const bool drifts = c->task->asked & POUND_CHAIN_DRIFTS;
-	const bool displaced = moving && (c->task->asked & POUND_CHAIN_DISPLACEMENTS);
 	for (; c->next < c->task->n_samples; c->next++) {
 		if (c->next % STOP_STEPS == 0 && pound_stopped(stop))
 			break;
 		flight_settle(c);
-		if (!flight_sample(c, edged, drifts, moving, displaced))
+		if (!flight_sample(c, edged, moving))
 			break;
 	}
 }
@@ -528,6 +616,10 @@ static void flight(struct chain *c, const atomic_bool *stop)
 	flight_enter(c);
 	if (c->moving)
 		displacements_sum(c, &f->at[0], NULL);
+	if (c->task->asked & POUND_CHAIN_ACCELERATIONS) {
+		modes_force(f, &f->q, &f->v, c->wide, c->task->ground[c->next - 1]);
+		accelerations_sum(c, &f->at[0]);
+	}
 	if (c->edged)
 		flight_go(c, stop, true, c->moving);
 	else

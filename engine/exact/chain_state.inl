@@ -54,18 +54,26 @@ struct link {
 	double *measures;
 };
 
-/* drifts and displacements at a sample, and their rates */
+/* drifts, displacements and absolute accelerations at a sample, and their rates */
 struct flight_place {
-	struct column d, v, u, w;
+	struct column d, v, u, w, a, jerk;
 };
 
 enum {
 	NOTES = 48,      /* samples that may hold largest values, at most */
-	KEPT = 5 * 3264, /* numbers that are kept of these */
+	KEPT = 6 * 3264, /* numbers that are kept of these */
 };
 
 /* what is kept of a sample: drifts and their rates at its start, elastic centers, bounds inside it */
-enum { NOTE_D, NOTE_V, NOTE_SHIFT, NOTE_REACH, NOTE_DISPLACEMENT_REACH, NOTE_COLUMNS };
+enum {
+	NOTE_D,
+	NOTE_V,
+	NOTE_SHIFT,
+	NOTE_REACH,
+	NOTE_DISPLACEMENT_REACH,
+	NOTE_ACCELERATION_REACH,
+	NOTE_COLUMNS
+};
 
 enum { MODE_ROWS = 2900 }; /* of all vectors of floors: 8 buildings of 50 stories have so many at most */
 
@@ -81,9 +89,10 @@ struct flight {
 	struct column uu, uv, ua, ud, vu, vv, va, vd;
 	struct column per_w2, still, lag, drift_speed, bend, bend_rate; /* mode_fill */
 	struct column q, v, q_next, v_next, bound;
-	struct column shift, elastic[2], bent, top, top_displacement;
-	struct column reach,
-	    displacement_reach; /* bounds inside the sample, where they exceed what is known; else 0 */
+	struct column w2, damping, gain, force, force_rate, force_bound; /* of a mode, and -(c q' + w^2 q) */
+	struct column shift, elastic[2], bent, bent_force, top, top_displacement, top_acceleration;
+	struct column reach, displacement_reach,
+	    acceleration_reach; /* bounds inside the sample, where they exceed what is known; else 0 */
 	struct flight_place at[2];
 	int notes, room;      /* samples noted, of so many */
 	int64_t noted[NOTES]; /* sample at the end of each */

@@ -139,6 +139,7 @@ int main(int argc, char **argv)
 	bench_campaign(rows);
 	bench_reference();
 	bench_kernel();
+	bench_chains();
 	bench_growth();
 	bench_indices();
 	bench_spectra();

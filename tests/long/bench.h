@@ -47,5 +47,6 @@ void bench_kernel(void);
 void bench_growth(void);
 void bench_indices(void);
 void bench_spectra(void);
+void bench_chains(void);
 
 #endif

@@ -268,14 +268,14 @@ static void flights_go_where_series_do(void **state)
 	for (int number = 0; number < rows; number++) {
 		const int n = row_random(&flown, (uint64_t)number);
 		slow = flown;
-		const unsigned asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
+		const unsigned asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS;
 		const struct pound_chain_task task = row_task(&flown, n, 0.01, asked);
 		const struct pound_chain_task same = row_task(&slow, n, 0.01, asked | POUND_CHAIN_ENERGY);
 		assert_int_equal(row_run(&flown, &task, 0).status, POUND_OK);
 		const struct pound_chain_result result = row_run(&slow, &same, 0);
 		assert_int_equal(result.status, POUND_OK);
 		residual = fmax(residual, result.energy_residual);
-		for (int m = 0; m < POUND_FLOOR_ACCELERATION_MAX; m++) {
+		for (int m = 0; m <= POUND_FLOOR_ACCELERATION_MAX; m++) {
 			double top = 0, error = 0;
 			for (int i = 0; i < task.n_floors; i++) {
 				top = fmax(top, slow.floor_measures[i][m]);
@@ -356,6 +356,55 @@ static void a_linear_row_scales(void **state)
 	}
 }
 
+/* ---- observers ---- */
+
+/* what an observer got: where the last piece ended, and how far the next began from there */
+struct story {
+	double time, u, v, gap_time, gap_u, gap_v, most;
+	int pieces, samples;
+};
+
+static void story_add(void *into, const struct pound_chain_piece *piece)
+{
+	struct story *story = into;
+	if (story->pieces++ > 0) {
+		story->gap_time = fmax(story->gap_time, fabs(piece->time - story->time));
+		story->gap_u = fmax(story->gap_u, fabs(piece->u[0] - story->u));
+		story->gap_v = fmax(story->gap_v, fabs(piece->u[1] / piece->length - story->v));
+	}
+	story->samples += piece->sampled;
+	story->time = piece->time + piece->length;
+	story->u = story->v = 0;
+	for (int n = piece->order; n >= 0; n--) {
+		story->u += piece->u[n];
+		story->v += n * piece->u[n] / piece->length;
+	}
+	story->most = fmax(story->most, fabs(story->u));
+}
+
+static void an_observer_gets_the_whole_motion_of_a_floor(void **state)
+{
+	(void)state;
+	static struct row r;
+	for (int number = 0; number < 10; number++) {
+		const int n = row_random(&r, (uint64_t)number);
+		struct story story = {0};
+		struct pound_chain_task task = row_task(&r, n, 0.01, ALL);
+		const struct pound_chain_observer observer = {story_add, &story, task.n_floors - 1};
+		task.observer = &observer;
+		assert_int_equal(row_run(&r, &task, 0).status, POUND_OK);
+		const double *floor = r.floor_measures[task.n_floors - 1];
+		assert_int_equal(story.samples, n - 1);
+		check_near(story.time, (n - 1) * 0.01, 1e-12);
+		check_near(story.gap_time, 0, 1e-12);
+		check_near(story.gap_u, 0, 1e-13);
+		check_near(story.gap_v, 0, 1e-11);
+		check_near(story.u, floor[POUND_FLOOR_END_U], 1e-13);
+		check_near(story.v, floor[POUND_FLOOR_END_V], 1e-11);
+		assert_true(story.most <= floor[POUND_FLOOR_DISPLACEMENT_MAX] * (1 + 1e-13));
+	}
+}
+
 /* ---- one story ---- */
 
 /* The pair that a row of two buildings of one story is. */
@@ -430,4 +479,5 @@ CHECK_MAIN(cmocka_unit_test(two_and_two_stories_come_out),
            cmocka_unit_test(flights_go_where_series_do),
            cmocka_unit_test(a_mirrored_row_under_a_mirrored_ground_is_mirrored),
            cmocka_unit_test(equal_buildings_do_not_meet), cmocka_unit_test(a_linear_row_scales),
+           cmocka_unit_test(an_observer_gets_the_whole_motion_of_a_floor),
            cmocka_unit_test(one_story_goes_as_the_pair))
