@@ -27,8 +27,13 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 /* the same, or NULL soon after the flag is set: a design of a million rows takes seconds to draw */
 struct pound_run *pound_run_create_by(const struct pound_study *study, int n_workers,
                                       const atomic_bool *stop);
-/* bytes that it takes, with ground motions of so many samples in the mean; nothing is allocated */
-double pound_run_bytes(const struct pound_study *study, int n_workers, double samples);
+/* What differs among the runs that one signal of a row of the design is used in: only that is computed. */
+struct pound_run_shared {
+	double samples; /* of a ground motion, in the mean */
+	double motions, marches;
+};
+/* bytes that a run takes; nothing is allocated */
+double pound_run_bytes(const struct pound_study *study, int n_workers, const struct pound_run_shared *shared);
 void pound_run_free(struct pound_run *run);
 int pound_run_blocks(const struct pound_run *run);      /* to run before the next reductions */
 int pound_run_blocks_most(const struct pound_run *run); /* of a design that grows: if it grows to the end */

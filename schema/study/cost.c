@@ -425,6 +425,18 @@ static void count(const struct pound_study *study, struct counts *c)
 		count_reductions(study, c);
 }
 
+/* What an item has of which nothing is run twice, as it is counted above. */
+static struct pound_run_shared shared_of(const struct pound_study *study)
+{
+	const struct bodies b = bodies_of(study);
+	struct pound_run_shared shared = {.samples = samples_mean(study),
+	                                  .motions = distinct(study, MOTION),
+	                                  .marches = study->scene.contact.present ? distinct(study, ALL) : 0};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		shared.marches += b.hz[i] > 0 ? distinct(study, i) * (1 + b.marches[i]) : 0;
+	return shared;
+}
+
 /* What a study will take.
  *
  * Given    study       valid
@@ -448,8 +460,9 @@ struct cost cost_of(const struct pound_study *study, int n_workers)
 		numbers = sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
 		cost.bytes += runs * SIGNAL_BYTES + cells * 20 * study->spectrum.n * NUMBER_BYTES;
 	}
+	const struct pound_run_shared shared = shared_of(study);
 	cost.memory = STUDY_MEMORY + NUMBER_MEMORY * study->scene.excitation.n_record +
-	              RESULT_MEMORY * cost.bytes + pound_run_bytes(study, n_workers, samples_mean(study));
+	              RESULT_MEMORY * cost.bytes + pound_run_bytes(study, n_workers, &shared);
 	cost.bytes += runs * numbers * sizeof(double);
 	return cost;
 }
