@@ -83,8 +83,8 @@ static void mode_fill(struct flight *f, int i, double w, double c, double gain, 
 	f->still.at[i] = gain / (w * w);
 	f->lag.at[i] = gain * c / (w * w * w * w) / h;
 	f->drift_speed.at[i] = gain / (w * w) / h;
-	f->bend.at[i] = fmin(quartic, swing);
-	f->bend_rate.at[i] = fmin(quartic, swing) / w;
+	f->bend.at[i] = smaller(quartic, swing);
+	f->bend_rate.at[i] = smaller(quartic, swing) / w;
 }
 
 /* Damping of a building's modes, if they do not act on each other.
@@ -118,7 +118,7 @@ static bool modes_damping(const struct pound_floor *floor, int n, const struct p
 			if (s == r)
 				c[r] += sum;
 			else
-				largest = fmax(largest, fabs(sum));
+				largest = larger(largest, fabs(sum));
 		}
 		apart = largest <= n * POUND_UNDECIDED * modes->w[n - 1];
 	}
@@ -378,24 +378,33 @@ LANE_INLINE unsigned sampled_peaks(const struct chain *c, const struct sampled *
 	return some;
 }
 
-/* Whether a link may begin to touch inside the sample. */
-static bool links_risk(const struct chain *c, const struct flight_place *from, const struct flight_place *to)
+/* Overlap of a link at a place of a flight, and its rate. */
+LANE_INLINE void link_at(const struct link *l, const struct flight_place *at, double *p, double *q)
 {
-	const double h = c->task->time_step;
+	double overlap = -l->link->gap, rate = 0;
+	for (int k = 0; k < l->n_ends; k++) {
+		overlap = fma(l->weight[k], at->u.at[l->floor[k]], overlap);
+		rate = fma(l->weight[k], at->w.at[l->floor[k]], rate);
+	}
+	*p = overlap;
+	*q = rate;
+}
+
+/* Whether a link may begin to touch inside the sample that leads to a place. */
+static bool links_risk(struct chain *c, const struct flight_place *to)
+{
+	struct flight *f = &c->flight;
+	const double third = c->task->time_step / 3;
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
-		double u0 = -l->link->gap, v0 = 0, u1 = u0, v1 = 0, bend = 0;
-		for (int k = 0; k < l->n_ends; k++) {
-			const int i = l->floor[k];
-			const double weight = l->weight[k];
-			u0 = fma(weight, from->u.at[i], u0);
-			v0 = fma(weight, from->w.at[i], v0);
-			u1 = fma(weight, to->u.at[i], u1);
-			v1 = fma(weight, to->w.at[i], v1);
-			bend = fma(fabs(weight), c->flight.bent.at[i], bend);
-		}
-		const double b1 = fma(h / 3, v0, u0), b2 = fma(-h / 3, v1, u1);
-		if (!(fma(POUND_CUBIC_ERROR, bend, fmax(fmax(b1, b2), u1)) < 0))
+		double p, q, bend = 0;
+		link_at(l, to, &p, &q);
+		f->overlap_next[j] = p;
+		f->rate_next[j] = q;
+		for (int k = 0; k < l->n_ends; k++)
+			bend = fma(fabs(l->weight[k]), f->bent.at[l->floor[k]], bend);
+		const double b1 = fma(third, f->rate[j], f->overlap[j]), b2 = fma(-third, q, p);
+		if (!(fma(POUND_CUBIC_ERROR, bend, larger(larger(b1, b2), p)) < 0))
 			return true;
 	}
 	return false;
@@ -544,7 +553,7 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
 		return false;
 	if (moving) {
 		displacements_sum(c, to, &f->bent);
-		if (c->n_links > 0 && links_risk(c, from, to))
+		if (c->n_links > 0 && links_risk(c, to))
 			return false;
 	}
 	unsigned peaks = vbits(inside);
@@ -570,6 +579,10 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
 			column_store(&c->top_displacement, i, column_load(&f->top_displacement, i));
 		if (accelerated)
 			column_store(&c->top_acceleration, i, column_load(&f->top_acceleration, i));
+	}
+	for (int j = 0; j < c->n_links; j++) {
+		f->overlap[j] = f->overlap_next[j];
+		f->rate[j] = f->rate_next[j];
 	}
 	f->now = 1 - f->now;
 	f->flown = true;
@@ -616,6 +629,8 @@ static void flight(struct chain *c, const atomic_bool *stop)
 	flight_enter(c);
 	if (c->moving)
 		displacements_sum(c, &f->at[0], NULL);
+	for (int j = 0; j < c->n_links; j++)
+		link_at(&c->link[j], &f->at[0], &f->overlap[j], &f->rate[j]);
 	if (c->task->asked & POUND_CHAIN_ACCELERATIONS) {
 		modes_force(f, &f->q, &f->v, c->wide, c->task->ground[c->next - 1]);
 		accelerations_sum(c, &f->at[0]);

@@ -137,7 +137,7 @@ static void link_settle(struct chain *c, struct link *l, int j, int n, double gr
 static void story_settle(struct chain *c, int i, double ground)
 {
 	const double d = c->d.at[i];
-	if (c->v.at[i] != 0 || (d != c->low.at[i] && d != c->high.at[i] && c->direction.at[i] == 0))
+	if (i >= c->n || (d != c->low.at[i] && d != c->high.at[i] && c->direction.at[i] == 0))
 		return;
 	double made = floor_terms(c, i, 0);
 	made += c->inner.at[i] != 0 ? floor_terms(c, i - 1, 0) : fabs(ground);
@@ -194,8 +194,10 @@ LANE_INLINE void series_orders(struct chain *c, bool pushed, bool owned)
 			pushes_set(c, n);
 		floors_next(c, n, g, pushed, c->moving);
 		if (n == 0 && c->edged)
-			for (int i = 0; i < c->n; i++)
-				story_settle(c, i, g);
+			for (int i = 0; i < c->n; i += W)
+				for (unsigned still = vbits(vequal(column_load(&c->v, i), vsplat(0))); still;
+				     still &= still - 1)
+					story_settle(c, i + __builtin_ctz(still), g);
 		if (owned)
 			overlaps_next(c, n, g);
 	}

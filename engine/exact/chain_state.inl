@@ -22,6 +22,16 @@ enum {
 	ENDS = 4, /* floors that a link joins */
 };
 
+/* The C library's are calls, and slow ones from code of wide vectors.  What is not a number is passed over. */
+static inline double larger(double a, double b)
+{
+	return a < b || a != a ? b : a;
+}
+static inline double smaller(double a, double b)
+{
+	return b < a || a != a ? b : a;
+}
+
 /* a column of floors; lanes go over whole vectors, and what is behind the last floor is 0 */
 struct column {
 	alignas(64) double at[LONG];
@@ -98,6 +108,8 @@ struct flight {
 	int64_t noted[NOTES]; /* sample at the end of each */
 	double kept[KEPT];    /* NOTE_COLUMNS columns of whole vectors of each */
 	struct pound_modes modes;
+	double overlap[LINKS], rate[LINKS], overlap_next[LINKS],
+	    rate_next[LINKS];         /* of links, at both ends of a sample */
 	double shape[MODE_ROWS][ROW]; /* drifts of shapes */
 };
 
@@ -182,10 +194,10 @@ static double link_sum(const struct link *l, const double *column)
 static double rate_of(double w, double c)
 {
 	const double zeta = w > 0 ? 0.5 * c / w : 0;
-	double share = fmax(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
+	double share = larger(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
 	for (int halving = 0; halving < 5; halving++)
 		share = sqrt(share);
-	return fmax(w / share, c);
+	return larger(w / share, c);
 }
 
 /* Bound of what a building's modal damping gives a floor's velocity, over its mass [1/s]. */
@@ -206,27 +218,39 @@ static int building_stories(const struct pound_chain_task *task, int first)
 	return n;
 }
 
+/* Bound of the largest eigenvalue of springs, or of dashpots, over masses: the largest sum of a row of M^(-1/2) K M^(-1/2).
+ *
+ * Given    column  of the floors: of what a story has
+ * Source   Gershgorin 1931
+ */
+static double building_bound(const struct chain *c, const struct column *column, int first, int stories)
+{
+	double bound = 0;
+	for (int i = first; i < first + stories; i++) {
+		const double own = column->at[i], above = i + 1 < first + stories ? column->at[i + 1] : 0;
+		double row = (own + above) * c->inverse_mass.at[i];
+		if (i > first)
+			row += own * sqrt(c->inverse_mass.at[i] * c->inverse_mass.at[i - 1]);
+		if (above > 0)
+			row += above * sqrt(c->inverse_mass.at[i] * c->inverse_mass.at[i + 1]);
+		bound = larger(bound, row);
+	}
+	return bound;
+}
+
 /* Fastest that a chain does without contact: all laws are stiffest at the start. */
 static void chain_rates(struct chain *c)
 {
 	const struct pound_chain_task *task = c->task;
 	for (int first = 0, n; first < task->n_floors; first += n) {
-		double mass[POUND_STORIES], stiffness[POUND_STORIES], dashpot[POUND_STORIES], modal = 0;
-		double w[POUND_STORIES], damped[POUND_STORIES];
 		const struct pound_floor *floor = &task->floors[first];
+		double modal = 0;
 		n = building_stories(task, first);
-		for (int i = 0; i < n; i++) {
-			mass[i] = floor[i].mass;
-			stiffness[i] = floor[i].story.stiffness;
-			dashpot[i] = floor[i].dashpot;
+		for (int i = 0; i < n; i++)
 			if (floor[i].modal)
-				modal = fmax(modal, modal_bound(&floor[i], n));
-		}
-		pound_modes_frequencies(n, mass, stiffness, w);
-		// dashpots over masses have the same form as springs
-		pound_modes_frequencies(n, mass, dashpot, damped);
-		c->rate_apart = fmax(c->rate_apart, w[n - 1]);
-		c->drag_apart = fmax(c->drag_apart, damped[n - 1] * damped[n - 1] + floor->drag + modal);
+				modal = larger(modal, modal_bound(&floor[i], n));
+		c->rate_apart = larger(c->rate_apart, sqrt(building_bound(c, &c->initial, first, n)));
+		c->drag_apart = larger(c->drag_apart, building_bound(c, &c->dashpot, first, n) + floor->drag + modal);
 	}
 }
 
