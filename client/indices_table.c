@@ -241,6 +241,8 @@ static void print_output_head(const struct reading *result, const char *output)
 	print_measure(result, output, "frequency_hz", "at", " ");
 	if (isfinite(reading_number(result, "%s/frequency_hz", output)))
 		fputs(" Hz", stdout);
+	print_measure(result, output, "building", "building", ", ");
+	print_measure(result, output, "storey", "story", ", ");
 	print_measure(result, output, "mean", "mean", ": ");
 	print_measure(result, output, "variance", "variance", ", ");
 	print_measure(result, output, "noise_share", "noise share", ", ");

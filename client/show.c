@@ -14,8 +14,19 @@
 
 enum { PEAKS = 12 }; /* of a spectrum, the first ones; all are in the JSON */
 
-/* The signals and outputs of a cell; `at` is where it stands in the result. */
-static void print_responses(const struct reading *result, const char *at)
+/* The outputs of a cell. */
+static void print_outputs(const struct reading *result, const char *at)
+{
+	const char *name;
+	putchar('\n');
+	for (int i = 0; (name = reading_member(result, i, "%s/outputs", at)); i++) {
+		double value = reading_number(result, "%s/outputs/%s", at, name);
+		printf(isfinite(value) ? "%s %.6g\n" : "%s -\n", name, value);
+	}
+}
+
+/* The signals and outputs of a cell of two oscillators; `at` is where it stands in the result. */
+static void print_pairs(const struct reading *result, const char *at)
 {
 	static const char *const columns[] = {"signal",      "oscillator", "u_max_m",   "u_free_m",
 	                                      "force_n",     "yield_m",    "demand",    "demand_free",
@@ -42,12 +53,81 @@ static void print_responses(const struct reading *result, const char *at)
 	putchar('\n');
 	table_print(table, 2);
 	table_close(table);
-	const char *name;
-	putchar('\n');
-	for (int i = 0; (name = reading_member(result, i, "%s/outputs", at)); i++) {
-		double value = reading_number(result, "%s/outputs/%s", at, name);
-		printf(isfinite(value) ? "%s %.6g\n" : "%s -\n", name, value);
+	print_outputs(result, at);
+}
+
+/* The storeys of a row and the floors above them, means over the signals, which the JSON has each. */
+static void print_storeys(const struct reading *result, const char *at)
+{
+	static const char *const columns[] = {"building", "storey",   "drift_m", "free_m", "ratio",
+	                                      "shear_n",  "residual", "a_m_s2",  "a_free", NULL};
+	static const struct {
+		const char *list, *name;
+	} members[] = {{"storeys", "drift_max_m"},
+	               {"storeys", "drift_max_free_m"},
+	               {"storeys", "drift_ratio_max"},
+	               {"storeys", "shear_max_n"},
+	               {"storeys", "residual_drift_m"},
+	               {"floors", "acceleration_max_m_s2"},
+	               {"floors", "acceleration_max_free_m_s2"}};
+	const int n = reading_count(result, "%s/signals", at);
+	struct table *table = table_open(columns);
+	for (int b = 0; b < reading_count(result, "%s/signals/0/buildings", at); b++)
+		for (int i = 0; i < reading_count(result, "%s/signals/0/buildings/%d/storeys", at, b); i++) {
+			table_number(table, b);
+			table_number(table, i + 1);
+			for (size_t m = 0; m < sizeof members / sizeof members[0]; m++) {
+				double sum = 0;
+				for (int s = 0; s < n; s++)
+					sum += fabs(reading_number(result, "%s/signals/%d/buildings/%d/%s/%d/%s", at, s, b,
+					                           members[m].list, i, members[m].name));
+				table_number(table, sum / n);
+			}
+		}
+	puts("\nstoreys and the floors above them, means over the signals of what is largest in each");
+	table_print(table, 2);
+	table_close(table);
+}
+
+static void print_contacts(const struct reading *result, const char *at)
+{
+	static const char *const columns[] = {"left",     "levels",    "impulse_n_s", "force_n",
+	                                      "contacts", "contact_s", "first_m_s",   NULL};
+	static const char *const members[] = {"impulse_max_n_s", "force_max_n", "contact_count", "contact_time_s",
+	                                      "first_speed_m_s"};
+	const int n = reading_count(result, "%s/signals", at);
+	struct table *table = table_open(columns);
+	for (int k = 0; k < reading_count(result, "%s/signals/0/contacts", at); k++) {
+		char contact[96], levels[64];
+		snprintf(contact, sizeof contact, "%s/signals/0/contacts/%d", at, k);
+		snprintf(levels, sizeof levels, "%.4g-%.4g", reading_number(result, "%s/levels/0", contact),
+		         reading_number(result, "%s/levels/1", contact));
+		table_number(table, reading_number(result, "%s/left_building", contact));
+		table_text(table, levels);
+		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++) {
+			double sum = 0;
+			for (int s = 0; s < n; s++)
+				sum += reading_number(result, "%s/signals/%d/contacts/%d/%s", at, s, k, members[m]);
+			table_number(table, sum / n);
+		}
 	}
+	puts("\ncontacts, by the index of the building on their left and the levels they join; means over the "
+	     "signals");
+	table_print(table, 2);
+	table_close(table);
+}
+
+/* The signals and outputs of a cell; `at` is where it stands in the result. */
+static void print_responses(const struct reading *result, const char *at)
+{
+	if (!reading_has(result, "%s/signals/0/buildings", at)) {
+		print_pairs(result, at);
+		return;
+	}
+	cell_failed(result, at);
+	print_storeys(result, at);
+	print_contacts(result, at);
+	print_outputs(result, at);
 }
 
 /* A response without a sweep is its one cell itself. */

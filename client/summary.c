@@ -44,7 +44,13 @@ static void output_name(const struct reading *result, const char *output, char n
 {
 	double frequency = reading_number(result, "%s/frequency_hz", output);
 	const char *text = reading_text(result, "%s/name", output);
-	snprintf(name, NAME_SIZE, isfinite(frequency) ? "%.60s %.4g Hz" : "%.60s", text ? text : "?", frequency);
+	double building = reading_number(result, "%s/building", output);
+	if (isfinite(building))
+		snprintf(name, NAME_SIZE, "%.60s, building %.0f, story %.0f", text ? text : "?", building,
+		         reading_number(result, "%s/storey", output));
+	else
+		snprintf(name, NAME_SIZE, isfinite(frequency) ? "%.60s %.4g Hz" : "%.60s", text ? text : "?",
+		         frequency);
 }
 
 static void spans_find(const struct reading *result, struct spans *spans)

@@ -36,6 +36,58 @@ struct pound_response {
 	double energy_residual; /* energy put in and not found again, over the most there was along the way */
 };
 
+// one row per quantity of one storey, and of the floor above it, of a row of buildings: X(member, name in a result)
+// clang-format off
+#define POUND_STOREY_MEASURES(X)                                                          \
+	X(drift_max,             "drift_max_m")                                               \
+	X(drift_max_free,        "drift_max_free_m")                                          \
+	X(drift_ratio_max,       "drift_ratio_max")                                           \
+	X(shear_max,             "shear_max_n")                                               \
+	X(yield_drift,           "yield_drift_m")                                             \
+	X(demand,                "demand")                                                    \
+	X(demand_free,           "demand_free")                                               \
+	X(residual_drift,        "residual_drift_m")
+
+#define POUND_FLOOR_MEASURES(X)                                                           \
+	X(displacement_max,      "displacement_max_m")                                        \
+	X(displacement_max_free, "displacement_max_free_m")                                   \
+	X(acceleration_max,      "acceleration_max_m_s2")                                     \
+	X(acceleration_max_free, "acceleration_max_free_m_s2")                                \
+	X(end_u,                 "u_m")                                                       \
+	X(end_v,                 "v_m_s")
+
+// one row per quantity of one contact
+#define POUND_CONTACT_MEASURES(X)                                                         \
+	X(impulse_max,           "impulse_max_n_s")                                           \
+	X(force_max,             "force_max_n")                                               \
+	X(contact_count,         "contact_count")                                             \
+	X(contact_time,          "contact_time_s")                                            \
+	X(first_time,            "first_time_s")                                              \
+	X(first_speed,           "first_speed_m_s")
+// clang-format on
+
+/* One signal's response of a storey and the floor above it.  NAN as above. */
+struct pound_storey_response {
+#define X(member, name) double member;
+	POUND_STOREY_MEASURES(X)
+	POUND_FLOOR_MEASURES(X)
+#undef X
+};
+
+struct pound_contact_response {
+#define X(member, name) double member;
+	POUND_CONTACT_MEASURES(X)
+#undef X
+};
+
+/* One signal's response of a row of buildings. */
+struct pound_row_response {
+	double energy_residual;
+	double impulse_scale; /* mass of building 0 times the frequency of its first mode [kg/s] */
+	const struct pound_storey_response *storeys;   /* by pound_row_first  (floors) */
+	const struct pound_contact_response *contacts; /* (contacts) */
+};
+
 struct pound_estimate {
 	double value, low, high; /* low and high: 95 % interval; NAN: undefined */
 };
@@ -229,6 +281,7 @@ struct pound_cell {
 	int rows_dropped;                  /* rows of the design left out because one of their runs failed */
 	int n_signals;                     /* response: signals */
 	struct pound_response *signals;    /* response: (n_signals) */
+	struct pound_row_response *rows;   /* response of a row of buildings, instead: (n_signals) */
 	double outputs[POUND_OUTPUTS_MAX]; /* response: ratio of means of each asked output */
 	struct pound_indices *indices;     /* sensitivity: (n_outputs) */
 };

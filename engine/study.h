@@ -10,19 +10,24 @@
 #include <stdint.h>
 
 enum {
-	POUND_OSCILLATORS = 2,                        /* left, right */
-	POUND_INPUTS_MAX = 16,                        /* inputs of one sensitivity study */
-	POUND_ORDINATES_MAX = 64,                     /* frequencies of a sensitivity study's floor spectrum */
-	POUND_OUTPUTS_ASKED_MAX = 8,                  /* names in the outputs of one study */
-	POUND_OUTPUTS_MAX = 8 + POUND_ORDINATES_MAX,  /* outputs of one study, each ordinate one of its own */
-	POUND_SWEEPS_MAX = 8,                         /* swept fields of one study */
-	POUND_RATIOS_MAX = 3,                         /* ratios of inputs of one study */
-	POUND_SOLVERS = 4,                            /* rows of the solvers */
-	POUND_CONTACT_MODELS = 10,                    /* rows of the contact models */
-	POUND_SETTINGS_MAX = 16,                      /* of one solver that are compared */
-	POUND_ROWS_MAX = 1 << 20,                     /* rows of a design */
-	POUND_FACTORIAL_INPUTS_MAX = 5,               /* inputs whose every mixture of A and B is run */
+	POUND_OSCILLATORS = 2,          /* left, right */
+	POUND_INPUTS_MAX = 20,          /* inputs of one sensitivity study */
+	POUND_QUASI_INPUTS_MAX = 16,    /* with a quasi-random design */
+	POUND_ORDINATES_MAX = 64,       /* frequencies of a sensitivity study's floor spectrum */
+	POUND_OUTPUTS_ASKED_MAX = 8,    /* names in the outputs of one study */
+	POUND_OUTPUTS_MAX = 8 + 3 * 64, /* outputs of one study, each ordinate and each place one of its own */
+	POUND_SWEEPS_MAX = 8,           /* swept fields of one study */
+	POUND_RATIOS_MAX = 3,           /* ratios of inputs of one study */
+	POUND_SOLVERS = 4,              /* rows of the solvers */
+	POUND_CONTACT_MODELS = 10,      /* rows of the contact models */
+	POUND_SETTINGS_MAX = 16,        /* of one solver that are compared */
+	POUND_ROWS_MAX = 1 << 20,       /* rows of a design */
+	POUND_FACTORIAL_INPUTS_MAX = 5, /* inputs whose every mixture of A and B is run */
 	POUND_SAMPLES_MAX = 2 * POUND_INPUTS_MAX + 2, /* of a row of the design */
+	POUND_BUILDINGS_MAX = 8,                      /* of a row of buildings */
+	POUND_STOREYS_MAX = 50,                       /* of a building */
+	POUND_CONTACTS_MAX = 400,                     /* between the buildings of a row */
+	POUND_PLACES_MAX = 64,                        /* storeys whose outputs are wanted */
 };
 
 // why a run has no result
@@ -108,6 +113,46 @@ struct pound_contact {
 	    speed_floor; /* least approach speed that a dashpot is divided by, or an impact counts with [m/s]  > 0 */
 };
 
+/* A number of every storey, from the ground up. */
+struct pound_each {
+	int n; /* 0: none; 1: the same for all; else one of each storey */
+	double values[POUND_STOREYS_MAX];
+};
+
+/* A shear building: floors of mass, each on a story of columns. */
+struct pound_building {
+	int storeys;                 /* [1, POUND_STOREYS_MAX] */
+	struct pound_each mass;      /* of the floors [kg]  > 0 */
+	struct pound_each stiffness; /* of the storeys [N/m]  > 0; n = 0: found from frequency_hz and profile */
+	double frequency_hz;         /* of the first mode  > 0; 0: the stiffness is given */
+	struct pound_each profile;   /* stiffness of the storeys among each other  > 0 */
+	struct pound_each height;    /* of the storeys [m]  > 0 */
+	int damping;                 /* row of the damping forms, pound_damping_name */
+	struct pound_each
+	    damping_ratio;    /* fraction of critical; of storeys where the form has them alone  [0, 1) */
+	int damping_modes[2]; /* of Rayleigh damping, ascending, from 1 */
+	bool rigid_wall;      /* follows the ground for ever; only the last one may be */
+	bool has_law;         /* law below instead of the scene's */
+	struct pound_law law; /* of every story, yield displacement beside it */
+	struct pound_each
+	    yield_drift; /* [m]  > 0 given by the user, n = 0: found from target_demand for every signal */
+};
+
+/* A contact between a building of a row and its right neighbor. */
+struct pound_row_contact {
+	int left_building; /* index */
+	double levels[2];  /* left, right: floor 2 is 2, between floors 2 and 3 in (2, 3)  > 0 */
+	struct pound_contact contact;
+	unsigned char
+	    own[sizeof(struct pound_contact)]; /* 1: this byte of `contact` is its own, 0: that of the scene's */
+};
+
+/* A story of a building, and the floor above it. */
+struct pound_storey_place {
+	int building; /* index */
+	int storey;   /* from 1 */
+};
+
 struct pound_excitation {
 	int type;               /* row of the excitations, pound_excitation_name */
 	double frequency_hz;    /* filter (Kanai-Tajimi) or sine  > 0 */
@@ -128,6 +173,12 @@ struct pound_scene {
 	struct pound_oscillator oscillators[POUND_OSCILLATORS];
 	struct pound_contact contact;
 	struct pound_excitation excitation;
+	int n_buildings;                    /* of a row, >= 2; 0: two oscillators */
+	struct pound_building *buildings;   /* from left to right  (n_buildings), not owned */
+	int n_contacts;                     /* 0: floors i with i, in every gap */
+	struct pound_row_contact *contacts; /* (n_contacts), not owned */
+	int n_places;
+	struct pound_storey_place *places; /* of a row: whose outputs are wanted  (n_places), not owned */
 };
 
 struct pound_distribution {
@@ -139,11 +190,22 @@ struct pound_distribution {
 };
 
 /* what a varied field of the scene holds; a varied value is a double whatever it holds */
-enum pound_field_type { POUND_FIELD_REAL, POUND_FIELD_COUNT, POUND_FIELD_CHOICE, POUND_FIELD_BOOL };
+enum pound_field_type {
+	POUND_FIELD_REAL,
+	POUND_FIELD_COUNT,
+	POUND_FIELD_CHOICE,
+	POUND_FIELD_BOOL,
+	POUND_FIELD_EACH
+};
+
+/* where a field is */
+enum pound_part { POUND_PART_SCENE, POUND_PART_BUILDINGS, POUND_PART_CONTACTS };
 
 struct pound_field {
 	enum pound_field_type type;
-	size_t offset; /* of the field in struct pound_scene */
+	size_t offset; /* in struct pound_scene, or from the first building or contact of its row [bytes] */
+	enum pound_part part; /* which of them */
+	int storey;           /* of a number of every storey: from 1; 0: all */
 };
 
 struct pound_input {
@@ -208,9 +270,10 @@ struct pound_spectrum {
 	const double
 	    *frequencies_hz; /* (n); NULL: n from min_hz to max_hz, each the same multiple of the one before */
 	double min_hz, max_hz;
-	double damping_ratio; /* [0, 1) */
-	int pulses;           /* of the idealised train; 0: as many as there are contacts */
-	bool histories;       /* the floor's history is wanted too */
+	double damping_ratio;            /* [0, 1) */
+	int pulses;                      /* of the idealised train; 0: as many as there are contacts */
+	bool histories;                  /* the floor's history is wanted too */
+	struct pound_storey_place place; /* the floor, of a row of buildings */
 };
 
 struct pound_study {
@@ -237,6 +300,7 @@ struct pound_study {
 /* Lines of documentation of the tables' rows. */
 const char *pound_law_text(int row);
 const char *pound_contact_text(int row);
+const char *pound_damping_text(int row);
 const char *pound_excitation_text(int row);
 const char *pound_solver_text(int row);
 const char *pound_output_text(int row);
@@ -251,6 +315,9 @@ bool pound_force_scales(enum pound_force force); /* twice the motion, twice the 
 const char *pound_calibration_name(int row);
 bool pound_contact_reads(int row, const char *member);              /* of /scene/contact */
 bool pound_contact_takes_zero(const struct pound_contact *contact); /* restitution 0 has a dashpot */
+const char *pound_damping_name(int row);
+bool pound_damping_takes_modes(int row); /* two modes have the damping ratio */
+bool pound_damping_takes_each(int row);  /* every storey may have its own */
 const char *pound_excitation_name(int row);
 const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
@@ -265,11 +332,14 @@ const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
 bool pound_solver_takes_force(int row, enum pound_force force); /* can integrate it */
+bool pound_solver_takes_rows(int row);                          /* of buildings */
 bool pound_floor_takes_force(enum pound_force force);           /* a floor can be followed under it */
 const char *pound_output_name(int row);
-const char *pound_output_needs(int row);  /* from the scene, in words */
+const char *pound_output_needs(int row, const struct pound_scene *scene); /* from it, in words */
 bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */
+bool pound_output_has_places(int row, const struct pound_scene *scene); /* and once for each place */
 int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */
+int pound_study_place(const struct pound_study *study, int output);    /* number of its place; -1: none */
 
 /* Rows of a study's design at its look-th look at the intervals, from 0; one that does not grow has all of them always.
  * 0: max_runs does not allow the first look. */
@@ -308,8 +378,23 @@ void pound_distribution_support(const struct pound_distribution *distribution, d
 
 /* The law an oscillator follows: its own or the scene's. */
 const struct pound_law *pound_scene_law(const struct pound_scene *scene, int oscillator);
+double pound_each_of(const struct pound_each *each, int i); /* of storey i, from 0 */
 void pound_scene_assign(struct pound_scene *scene, struct pound_field field, double value);
 double pound_scene_field(const struct pound_scene *scene, struct pound_field field);
+bool pound_field_alike(struct pound_field a, struct pound_field b);    /* one and the same */
+bool pound_field_overlaps(struct pound_field a, struct pound_field b); /* have a storey in common */
+
+/* A row of buildings as floors, from left to right and from the ground up, and contacts. */
+int pound_row_floors(const struct pound_scene *scene);
+int pound_row_first(const struct pound_scene *scene, int building);   /* its first floor among them */
+int pound_row_storeys(const struct pound_scene *scene, int building); /* 0 of a rigid wall */
+int pound_row_contacts(const struct pound_scene *scene);
+void pound_row_contact_of(const struct pound_scene *scene, int k, struct pound_row_contact *contact);
+size_t pound_row_bytes(const struct pound_scene *scene);
+void pound_row_own(struct pound_scene *scene, void *memory);
+int pound_row_measures(
+    const struct pound_study *study); /* doubles of a response, in the cell with the most storeys */
+const struct pound_law *pound_row_law(const struct pound_scene *scene, int building);
 
 /* Whether an output is defined for a scene (force amplification: linear left oscillator, ...). */
 bool pound_output_applies(int row, const struct pound_scene *scene);

@@ -9,6 +9,7 @@ enum {
 	BLOCK_RUNS = 768,        /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
 	BLOCK_FLOORS = 96,       /* of them whose floors are followed, which takes longer */
 	BLOCK_SPECTRA = 8,       /* of them with whole spectra, which take longer still */
+	BLOCK_SHORT = 4,         /* floors of a row from which on its runs take longer */
 	BLOCK_SAMPLES = 1 << 21, /* of its ground motions at most, unless one item has more: 16 MiB */
 };
 
@@ -18,11 +19,43 @@ int pound_blocks_items(const struct pound_cells *campaign)
 	return campaign->n_rows * campaign->n_signals;
 }
 
+static size_t larger(size_t a, size_t b)
+{
+	return a > b ? a : b;
+}
+
 static int block_runs(const struct pound_study *study)
 {
+	if (study->scene.n_buildings)
+		return 1 + BLOCK_RUNS * BLOCK_SHORT / (BLOCK_SHORT + pound_row_floors(&study->scene));
 	if (study->spectrum.n == 0)
 		return BLOCK_RUNS;
 	return study->kind == POUND_KIND_FLOOR_SPECTRUM ? BLOCK_SPECTRA : BLOCK_FLOORS;
+}
+
+// sums over the samples of a block; storeys, contacts and memory are those of one scene
+static void row_size_add(struct pound_row_size *block, const struct pound_row_size *item, int times)
+{
+	block->tasks += times * item->tasks;
+	block->floors += times * item->floors;
+	block->links += times * item->links;
+	block->yields += times * item->yields;
+	block->modal += times * item->modal;
+	block->memory = larger(block->memory, item->memory);
+	block->storeys = (int)larger((size_t)block->storeys, (size_t)item->storeys);
+	block->contacts = (int)larger((size_t)block->contacts, (size_t)item->contacts);
+}
+
+static void row_size_max(struct pound_row_size *largest, const struct pound_row_size *block)
+{
+	largest->tasks = (int)larger((size_t)largest->tasks, (size_t)block->tasks);
+	largest->floors = (int)larger((size_t)largest->floors, (size_t)block->floors);
+	largest->links = (int)larger((size_t)largest->links, (size_t)block->links);
+	largest->yields = (int)larger((size_t)largest->yields, (size_t)block->yields);
+	largest->modal = (int)larger((size_t)largest->modal, (size_t)block->modal);
+	largest->memory = larger(largest->memory, block->memory);
+	largest->storeys = (int)larger((size_t)largest->storeys, (size_t)block->storeys);
+	largest->contacts = (int)larger((size_t)largest->contacts, (size_t)block->contacts);
 }
 
 static void size_add(struct pound_request_size *block, struct pound_request_size item, bool checked)
@@ -32,6 +65,7 @@ static void size_add(struct pound_request_size *block, struct pound_request_size
 	block->motions += times * item.motions;
 	block->tasks += times * item.tasks;
 	block->samples += (checked ? 3 : 1) * item.samples;
+	row_size_add(&block->rows, &item.rows, times);
 }
 
 /* Cuts the items into blocks.
@@ -72,6 +106,7 @@ int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct poun
 		largest->motions = block.motions > largest->motions ? block.motions : largest->motions;
 		largest->tasks = block.tasks > largest->tasks ? block.tasks : largest->tasks;
 		largest->samples = block.samples > largest->samples ? block.samples : largest->samples;
+		row_size_max(&largest->rows, &block.rows);
 	}
 	if (first)
 		first[n_blocks] = n_items;

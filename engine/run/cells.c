@@ -24,16 +24,24 @@ int pound_cells_checks(const struct pound_cells *campaign, int item)
 	return every ? (item + every - 1) / every : 0;
 }
 
-/* The scene of one sample: the study's, with the cell's sweep values and the sample's inputs put in. */
-struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample)
+/* The scene of one sample: the study's, with the cell's sweep values and the sample's inputs put in.
+ *
+ * Given    row_memory   (pound_row_bytes)   for its buildings and contacts; NULL: these are left as the study has them
+ */
+struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample,
+                                     void *row_memory)
 {
 	const struct pound_study *study = campaign->study;
 	struct pound_scene scene = study->scene;
+	if (row_memory)
+		pound_row_own(&scene, row_memory);
 	for (int s = 0; s < study->n_sweeps; s++)
-		pound_scene_assign(&scene, study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
+		if (row_memory || study->sweeps[s].field.part == POUND_PART_SCENE)
+			pound_scene_assign(&scene, study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
 	for (int j = 0; j < study->n_inputs; j++)
-		pound_scene_assign(&scene, study->inputs[j].field,
-		                   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
+		if (row_memory || study->inputs[j].field.part == POUND_PART_SCENE)
+			pound_scene_assign(&scene, study->inputs[j].field,
+			                   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
 	return scene;
 }
 

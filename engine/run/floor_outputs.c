@@ -392,12 +392,10 @@ static void instant_tell(void *of, const struct pound_floor_instant *instant)
 	to->take(to->into, to->signal, &told);
 }
 
-static void response_leave(void *into, const struct pound_scene *scene, const struct pound_response *response,
-                           enum pound_status status)
+static void response_leave(void *into, const struct pound_outcome *outcome)
 {
 	enum pound_status *first = into;
-	(void)scene, (void)response;
-	*first = *first ? *first : status;
+	*first = *first ? *first : outcome->status;
 }
 
 /* Hands out the history of a signal.

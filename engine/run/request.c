@@ -22,6 +22,7 @@
 #include "engine/run/request_keys.h"
 #include "engine/run/request_motions.h"
 #include "engine/run/response.h"
+#include "engine/run/row_asks.h"
 #include "engine/run/scene.h"
 #include "engine/solver/solver.h"
 
@@ -42,6 +43,7 @@ struct body_ask {
 
 struct ask {
 	struct pound_scene scene;
+	int cell, row, sample; /* of it */
 	int motion;
 	bool response; /* all of the response is wanted */
 	struct body_ask bodies[POUND_OSCILLATORS];
@@ -51,14 +53,17 @@ struct ask {
 struct pound_request {
 	struct pound_request_size size;
 	struct pound_keys motion_keys, march_keys;
-	struct pound_motion *motions;      /* (motions) */
-	double *ground;                    /* (samples) */
-	struct ask *asks;                  /* (asks) */
-	struct pound_task *tasks;          /* (tasks) */
-	struct pound_task_result *results; /* (tasks) */
-	void *scratch;                     /* of the march */
-	int n_before;                      /* marches without pounding, they are the first */
-	int n_asks, n_items;               /* of the last run; n_items without those of checks */
+	struct pound_motion *motions;       /* (motions) */
+	double *ground;                     /* (samples) */
+	struct ask *asks;                   /* (asks) */
+	struct pound_row_ask *row_asks;     /* of a row of buildings, instead of their bodies and march  (asks) */
+	struct pound_row_asks rows;         /* the marches of these */
+	const struct pound_cells *campaign; /* of the last run */
+	struct pound_task *tasks;           /* (tasks) */
+	struct pound_task_result *results;  /* (tasks) */
+	void *scratch;                      /* of the march */
+	int n_before;                       /* marches without pounding, they are the first */
+	int n_asks, n_items;                /* of the last run; n_items without those of checks */
 };
 
 /* ---- work space ---- */
@@ -66,6 +71,7 @@ struct pound_request {
 /* Carves a request out of memory, or with memory NULL only counts the bytes. */
 static size_t request_carve(char *memory, struct pound_request *request, struct pound_request_size size)
 {
+	const struct pound_row_size *rows = &size.rows;
 	const struct {
 		void *into;
 		size_t bytes;
@@ -80,6 +86,20 @@ static size_t request_carve(char *memory, struct pound_request *request, struct 
 	    {&request->tasks, sizeof *request->tasks * (size_t)size.tasks},
 	    {&request->results, sizeof *request->results * (size_t)size.tasks},
 	    {&request->scratch, POUND_EXACT_SCRATCH},
+	    {&request->row_asks, sizeof *request->row_asks * (size_t)(rows->tasks ? size.asks : 0)},
+	    {&request->rows.tasks, sizeof *request->rows.tasks * (size_t)rows->tasks},
+	    {&request->rows.results, sizeof *request->rows.results * (size_t)rows->tasks},
+	    {&request->rows.motions, sizeof(int) * (size_t)rows->tasks},
+	    {&request->rows.slots, sizeof(int) * (size_t)(rows->tasks ? pound_hash_slots(rows->tasks) : 0)},
+	    {&request->rows.floors, sizeof *request->rows.floors * (size_t)rows->floors},
+	    {&request->rows.links, sizeof *request->rows.links * (size_t)rows->links},
+	    {&request->rows.floor_results, sizeof(double) * POUND_FLOOR_MEASURES * (size_t)rows->floors},
+	    {&request->rows.link_results, sizeof(double) * POUND_LINK_MEASURES * (size_t)rows->links},
+	    {&request->rows.yields, sizeof(double) * (size_t)rows->yields},
+	    {&request->rows.modal, sizeof(double) * (size_t)rows->modal},
+	    {&request->rows.memory, rows->memory},
+	    {&request->rows.storeys, sizeof *request->rows.storeys * (size_t)rows->storeys},
+	    {&request->rows.contacts, sizeof *request->rows.contacts * (size_t)rows->contacts},
 	};
 	size_t at = (sizeof *request + 63) / 64 * 64;
 	for (size_t j = 0; j < sizeof parts / sizeof parts[0]; j++) {
@@ -105,7 +125,20 @@ struct pound_request *pound_request_init(void *memory, struct pound_request_size
 	request->size = size;
 	request->motion_keys.n_slots = pound_hash_slots(size.motions);
 	request->march_keys.n_slots = pound_hash_slots(size.tasks);
+	request->rows.n_slots = size.rows.tasks ? pound_hash_slots(size.rows.tasks) : 0;
+	request->rows.scratch = request->scratch;
 	return request;
+}
+
+/* Gives a scene buildings that have the storeys of a cell. */
+static void storeys_put(const struct pound_cells *campaign, int cell,
+                        struct pound_building buildings[POUND_BUILDINGS_MAX], struct pound_scene *scene)
+{
+	memcpy(buildings, scene->buildings, sizeof *buildings * (size_t)scene->n_buildings);
+	scene->buildings = buildings;
+	for (int s = 0; s < campaign->study->n_sweeps; s++)
+		if (campaign->study->sweeps[s].field.part == POUND_PART_BUILDINGS)
+			pound_scene_assign(scene, campaign->study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
 }
 
 /* Upper bounds for the items of one row: whatever may differ between its samples counts as different. */
@@ -114,10 +147,15 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 	struct pound_request_size size = {0};
 	for (int cell = 0; cell < campaign->n_cells; cell++)
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
-			struct pound_scene scene = pound_cells_scene(campaign, cell, row, sample);
-			int marches = 1;
-			for (int i = 0; i < POUND_OSCILLATORS; i++)
+			struct pound_building buildings[POUND_BUILDINGS_MAX];
+			struct pound_scene scene = pound_cells_scene(campaign, cell, row, sample, NULL);
+			int marches = scene.n_buildings == 0;
+			for (int i = 0; i < POUND_OSCILLATORS && scene.n_buildings == 0; i++)
 				marches += 2 + pound_scene_law(&scene, i)->corrections;
+			if (scene.n_buildings) {
+				storeys_put(campaign, cell, buildings, &scene);
+				pound_row_size_add(&size.rows, &scene);
+			}
 			size.asks++;
 			size.motions++;
 			size.tasks += marches;
@@ -135,7 +173,8 @@ static int motion_ask(struct pound_request *request, const struct pound_excitati
 	int known = request->motion_keys.n;
 	int j = pound_keys_motion(&request->motion_keys, e, noise, halved);
 	if (j == known)
-		request->motions[j] = (struct pound_motion){.excitation = *e, .noise = noise, .halved = halved};
+		request->motions[j] =
+		    (struct pound_motion){.excitation = *e, .noise = noise, .halved = halved, .number = j};
 	return j;
 }
 
@@ -162,8 +201,10 @@ static bool forces_scale(const struct pound_request *request)
 {
 	bool scale = true;
 	for (int a = 0; a < request->n_asks && scale; a++) {
-		const struct pound_contact *contact = &request->asks[a].scene.contact;
-		scale = !contact->present || pound_force_scales(pound_contact_force(contact->model));
+		const struct pound_scene *scene = &request->asks[a].scene;
+		scale = !scene->contact.present || pound_force_scales(pound_contact_force(scene->contact.model));
+		for (int k = 0; k < scene->n_contacts && scale; k++)
+			scale = pound_force_scales(pound_contact_force(scene->contacts[k].contact.model));
 	}
 	return scale;
 }
@@ -403,6 +444,58 @@ static struct pound_runs_known ask_known(const struct pound_request *request, co
 	return known;
 }
 
+/* ---- rows of buildings ---- */
+
+/* The scene of an ask with its own buildings, until the next one is asked for. */
+static struct pound_scene row_scene(const struct pound_request *request, const struct ask *ask)
+{
+	return pound_cells_scene(request->campaign, ask->cell, ask->row, ask->sample, request->rows.memory);
+}
+
+/* What a row's chains are asked for: a response has all, of outputs accelerations are few. */
+static unsigned row_asked(const struct pound_study *study)
+{
+	const unsigned always = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
+	unsigned asked = study->kind == POUND_KIND_RESPONSE
+	                     ? always | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_FORCES | POUND_CHAIN_ENERGY
+	                     : always;
+	for (int o = 0; o < study->n_outputs; o++)
+		asked |= pound_output_accelerations(study->outputs[o]) ? (unsigned)POUND_CHAIN_ACCELERATIONS : 0;
+	return asked;
+}
+
+static void row_free(struct pound_request *request, int a)
+{
+	const struct pound_study *study = request->campaign->study;
+	const struct pound_scene scene = row_scene(request, &request->asks[a]);
+	pound_row_ask_free(&request->rows, &scene, &request->row_asks[a], study->kind == POUND_KIND_RESPONSE,
+	                   row_asked(study));
+}
+
+/* Marches registered so far, of both kinds. */
+static int marches_known(const struct pound_request *request)
+{
+	return request->march_keys.n + request->rows.n;
+}
+
+/* What came of an ask. */
+static struct pound_outcome ask_outcome(const struct pound_request *request, int a, struct pound_scene *scene,
+                                        struct pound_response *pair, struct pound_row_response *row)
+{
+	const struct ask *ask = &request->asks[a];
+	struct pound_outcome outcome = {.scene = scene, .pair = pair, .row = row};
+	if (ask->scene.n_buildings) {
+		*scene = row_scene(request, ask);
+		outcome.status = pound_row_response_of(&request->rows, scene, &request->row_asks[a],
+		                                       request->motions[ask->motion].exponent, row);
+	} else {
+		const struct pound_runs_known known = ask_known(request, ask);
+		*scene = ask->scene;
+		outcome.status = pound_response_of(&known, pair);
+	}
+	return outcome;
+}
+
 /* ---- the block ---- */
 
 /* Writes down the samples of one item from ask `a` on; returns the one after them. */
@@ -413,10 +506,14 @@ static int item_write(struct pound_request *request, const struct pound_cells *c
 	for (int cell = 0; cell < campaign->n_cells; cell++)
 		for (int sample = 0; sample < campaign->n_samples; sample++) {
 			struct ask *ask = &request->asks[a++];
-			ask->scene = pound_cells_scene(campaign, cell, row, sample);
+			ask->scene = pound_cells_scene(campaign, cell, row, sample, NULL);
+			ask->cell = cell, ask->row = row, ask->sample = sample;
 			ask->motion = motion_ask(request, &ask->scene.excitation,
 			                         pound_cells_noise(campaign, row, sample, signal), halved);
-			ask_free(campaign, ask);
+			if (ask->scene.n_buildings)
+				row_free(request, a - 1);
+			else
+				ask_free(campaign, ask);
 		}
 	return a;
 }
@@ -425,14 +522,22 @@ static int item_write(struct pound_request *request, const struct pound_cells *c
 static bool stage_ask(struct pound_request *request, int first, int end, int stage,
                       struct pound_stage_work *counted, struct pound_work *work)
 {
-	int before = request->march_keys.n;
+	int before = marches_known(request);
 	int64_t asked = 0;
-	for (int a = first; a < end; a++)
+	for (int a = first; a < end; a++) {
+		struct ask *ask = &request->asks[a];
+		if (ask->scene.n_buildings) {
+			const struct pound_scene scene = row_scene(request, ask);
+			asked += pound_row_stage(&request->rows, &scene, &request->row_asks[a],
+			                         &request->motions[ask->motion], stage, work);
+			continue;
+		}
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			if (!request->asks[a].scene.oscillators[i].rigid_wall)
-				asked += body_stage(request, &request->asks[a], &request->asks[a].bodies[i], i, stage, work);
+			if (!ask->scene.oscillators[i].rigid_wall)
+				asked += body_stage(request, ask, &ask->bodies[i], i, stage, work);
+	}
 	counted->asked += asked;
-	counted->run += request->march_keys.n - before;
+	counted->run += marches_known(request) - before;
 	return asked > 0 || stage == 0; // of a yield displacement that is given, the first is left out
 }
 
@@ -440,11 +545,18 @@ static bool stage_ask(struct pound_request *request, int first, int end, int sta
 static void pounding_ask(struct pound_request *request, int first, int end, struct pound_stage_work *counted,
                          struct pound_work *work)
 {
-	int before = request->march_keys.n;
-	for (int a = first; a < end; a++)
-		ask_pounding(request, &request->asks[a], work);
+	int before = marches_known(request);
+	for (int a = first; a < end; a++) {
+		struct ask *ask = &request->asks[a];
+		if (ask->scene.n_buildings) {
+			const struct pound_scene scene = row_scene(request, ask);
+			pound_row_ask_pounding(&request->rows, &scene, &request->row_asks[a],
+			                       &request->motions[ask->motion], work);
+		} else
+			ask_pounding(request, ask, work);
+	}
 	counted->asked += end - first;
-	counted->run += request->march_keys.n - before;
+	counted->run += marches_known(request) - before;
 }
 
 /* Runs items [first, first + n) of a campaign, and the checks among them.
@@ -462,6 +574,8 @@ enum pound_status pound_request_run(struct pound_request *request, const struct 
 {
 	int n_items = n * campaign->n_cells * campaign->n_samples, n_asks = 0;
 	const struct pound_solver solver = pound_cells_solver(campaign, first / campaign->n_signals);
+	request->campaign = campaign;
+	pound_row_clear(&request->rows);
 	pound_keys_clear(&request->motion_keys);
 	pound_keys_clear(&request->march_keys);
 	for (int item = first; item < first + n; item++)
@@ -479,7 +593,9 @@ enum pound_status pound_request_run(struct pound_request *request, const struct 
 	struct pound_work of_checks = {0}; // what they leave out is not reported
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++)
-		stages = (int)fmax(stages, stages_of(&request->asks[a]));
+		stages =
+		    (int)fmax(stages, request->asks[a].scene.n_buildings ? pound_row_stages(&request->asks[a].scene)
+		                                                         : stages_of(&request->asks[a]));
 	enum pound_status status = POUND_OK;
 	bool more = true;
 	for (int stage = 0; stage < stages && more && !status; stage++) {
@@ -489,26 +605,29 @@ enum pound_status pound_request_run(struct pound_request *request, const struct 
 		more |=
 		    stage_ask(request, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
 		status = marches_run(request, &solver, checks_end, &done, stop);
+		status = status ? status : pound_row_run(&request->rows, stop);
 	}
 	if (status)
 		return status;
 	pounding_ask(request, n_items, n_asks, &work->checks, &of_checks);
-	int before = request->n_before = request->march_keys.n;
+	int before = request->n_before = request->march_keys.n, rows_before = request->rows.n;
 	pounding_ask(request, 0, n_items, &work->pounding_runs, work);
 	status = marches_run(request, &solver, before, &done, stop);
+	status = status ? status : pound_row_run(&request->rows, stop);
 	if (status)
 		return status;
 	for (int j = before; j < done; j++)
 		work->contacts += request->results[j].contacts;
+	work->contacts += pound_row_contacts_run(&request->rows, rows_before);
 	for (int a = 0; a < n_asks; a++) {
-		struct pound_response response;
-		const struct ask *ask = &request->asks[a];
-		const struct pound_runs_known known = ask_known(request, ask);
-		enum pound_status failure = pound_response_of(&known, &response);
-		assert(!failure || failure <= POUND_CHATTER);
-		if (failure && a < n_items)
-			work->failed[POUND_CHATTER - failure]++;
-		take(into, &ask->scene, &response, failure);
+		struct pound_scene scene;
+		struct pound_response pair;
+		struct pound_row_response row;
+		const struct pound_outcome outcome = ask_outcome(request, a, &scene, &pair, &row);
+		assert(!outcome.status || outcome.status <= POUND_CHATTER);
+		if (outcome.status && a < n_items)
+			work->failed[POUND_CHATTER - outcome.status]++;
+		take(into, &outcome);
 	}
 	return POUND_OK;
 }

@@ -11,6 +11,8 @@
 #include "engine/indices/indices.h"
 #include "engine/numeric/random.h"
 #include "engine/pound.h"
+#include "engine/run/outputs.h"
+#include "engine/run/row_asks.h"
 
 /* the scenes of a study by cell, row of the design and sample of the row */
 struct pound_cells {
@@ -23,7 +25,8 @@ struct pound_cells {
 
 int pound_cells_checks(const struct pound_cells *campaign, int item); /* among the items before this */
 
-struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample);
+struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample,
+                                     void *row_memory);
 struct pound_stream pound_cells_noise(const struct pound_cells *campaign, int row, int sample, int signal);
 struct pound_solver pound_cells_solver(const struct pound_cells *campaign, int row);
 double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep);
@@ -32,10 +35,11 @@ size_t pound_cells_values_size(const struct pound_cells *c,
 struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows, const double *columns);
 
 struct pound_request_size {
-	int asks;        /* runs asked for at most */
-	int motions;     /* ground motions at most */
-	int tasks;       /* marches at most */
-	int64_t samples; /* of all ground motions at most */
+	int asks;                   /* runs asked for at most */
+	int motions;                /* ground motions at most */
+	int tasks;                  /* marches at most */
+	int64_t samples;            /* of all ground motions at most */
+	struct pound_row_size rows; /* of rows of buildings */
 };
 
 /* Upper bounds for an item of one row, its check left out. */
@@ -48,8 +52,7 @@ struct pound_request *pound_request_init(void *memory, struct pound_request_size
 
 /* Runs items [first, first + n), of one row where rows are trials, and hands every response to `take`, in the order of
  * item, cell, sample, then those of the checks in the same order. */
-typedef void pound_request_take(void *into, const struct pound_scene *scene,
-                                const struct pound_response *response, enum pound_status status);
+typedef void pound_request_take(void *into, const struct pound_outcome *outcome);
 enum pound_status pound_request_run(struct pound_request *request, const struct pound_cells *campaign,
                                     int first, int n, const atomic_bool *stop, struct pound_work *work,
                                     pound_request_take *take, void *into);

@@ -10,6 +10,7 @@ struct pound_motion {
 	bool halved; /* a sample between every two */
 	int n_samples;
 	double time_step; /* [s] */
+	int number;       /* among those of the block */
 	int exponent;     /* samples are kept times 2^-exponent, so that the largest is in [1, 2) */
 	double *ground;   /* (n_samples) */
 };

@@ -15,6 +15,7 @@
 #include "engine/indices/indices.h"
 #include "engine/run/floor_outputs.h"
 #include "engine/run/outputs.h"
+#include "engine/run/row_response.h"
 #include "engine/run/run.h"
 #include "engine/solver/convergence.h"
 
@@ -31,6 +32,12 @@ enum {
 static const double CLOCK_LEAST = 0.02;
 
 /* ---- life ---- */
+
+/* Doubles kept of a response. */
+static int response_measures(const struct pound_study *study)
+{
+	return study->scene.n_buildings ? pound_row_measures(study) : (int)MEASURES;
+}
 
 /* The scenes of a study; its design is not drawn yet. */
 struct pound_cells pound_run_campaign(const struct pound_study *study)
@@ -58,11 +65,12 @@ struct pound_blocks pound_run_layout(const struct pound_cells *campaign)
 {
 	const struct pound_study *study = campaign->study;
 	return (struct pound_blocks){.campaign = campaign,
-	                             .n_measures = pound_ordinate_measures(study) +
-	                                           (study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
-	                                            : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
-	                                            : study->kind == POUND_KIND_RESPONSE    ? (int)MEASURES
-	                                                                                    : 0),
+	                             .n_measures =
+	                                 pound_ordinate_measures(study) +
+	                                 (study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
+	                                  : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
+	                                  : study->kind == POUND_KIND_RESPONSE    ? response_measures(study)
+	                                                                          : 0),
 	                             .n_counts = COUNTS};
 }
 
@@ -90,6 +98,8 @@ size_t pound_run_reduction_size(const struct pound_cells *c)
 {
 	if (c->study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		return pound_ordinate_scratch(c->study, c->n_rows);
+	if (c->study->kind == POUND_KIND_RESPONSE)
+		return pound_row_bytes(&c->study->scene) / sizeof(double);
 	if (c->study->n_outputs == 0)
 		return 0;
 	if (c->trials)
@@ -152,6 +162,8 @@ void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[P
 	const struct pound_run_part all[POUND_RUN_PARTS] = {
 	    {&run->result.cells, sizeof *run->result.cells * n_cells},
 	    {&run->responses, sizeof *run->responses * n_cells * (size_t)c->n_signals},
+	    {&run->row_responses,
+	     sizeof *run->row_responses * (study->scene.n_buildings ? n_cells * (size_t)c->n_signals : 0)},
 	    {&run->indices, sizeof *run->indices * n_indices},
 	    {&run->estimates, sizeof *run->estimates * n_indices * COLUMNS * (size_t)study->n_inputs},
 	    {&run->result.trials, sizeof *run->result.trials * (size_t)run->result.n_trials},
@@ -179,6 +191,7 @@ static bool result_create(struct pound_run *run)
 			into->sweep[s] = pound_cells_sweep(c, cell, s);
 		into->n_signals = c->n_signals;
 		into->signals = &run->responses[cell * c->n_signals];
+		into->rows = study->scene.n_buildings ? &run->row_responses[cell * c->n_signals] : NULL;
 		into->indices = &run->indices[cell * study->n_outputs];
 		for (int o = 0; o < study->n_outputs; o++) {
 			size_t first = ((size_t)cell * n_outputs + (size_t)o) * COLUMNS;
@@ -265,6 +278,7 @@ void pound_run_free(struct pound_run *run)
 	                        run->result.trials,
 	                        run->result.looks,
 	                        run->responses,
+	                        run->row_responses,
 	                        run->indices,
 	                        run->estimates};
 	for (size_t j = 0; j < sizeof pieces / sizeof pieces[0]; j++)
@@ -337,10 +351,12 @@ struct slice {
 };
 
 /* Keeps of a response what the study's outputs need; NAN for a failed run. */
-static void response_keep(void *into, const struct pound_scene *scene, const struct pound_response *response,
-                          enum pound_status status)
+static void response_keep(void *into, const struct pound_outcome *outcome)
 {
 	struct slice *slice = into;
+	const struct pound_scene *scene = outcome->scene;
+	const struct pound_response *response = outcome->pair;
+	const enum pound_status status = outcome->status;
 	if (slice->study->kind == POUND_KIND_CONVERGENCE) {
 		struct pound_trial_run *trial = (struct pound_trial_run *)slice->at;
 		*trial = (struct pound_trial_run){.displacement = status ? NAN : response->displacement_max_1,
@@ -348,6 +364,11 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
 		                                  .impulse = status ? NAN : response->impulse_max,
 		                                  .cpu = NAN};
 		slice->at += TRIAL_MEASURES;
+		return;
+	}
+	if (slice->study->kind == POUND_KIND_RESPONSE && scene->n_buildings) {
+		pound_row_keep(outcome, response_measures(slice->study), slice->at);
+		slice->at += response_measures(slice->study);
 		return;
 	}
 	if (slice->study->kind == POUND_KIND_RESPONSE) {
@@ -360,13 +381,15 @@ static void response_keep(void *into, const struct pound_scene *scene, const str
 	for (int o = 0; o < slice->study->n_outputs; o++, slice->at += 2) {
 		slice->at[0] = slice->at[1] = 0;
 		if (pound_output_applies(slice->study->outputs[o], scene))
-			pound_outputs_measure(slice->study->outputs[o], scene, response, &slice->at[0], &slice->at[1]);
+			pound_outputs_measure(slice->study, o, outcome, &slice->at[0], &slice->at[1]);
 		if (status)
 			slice->at[0] = slice->at[1] = NAN;
 	}
 	int n = pound_ordinate_measures(slice->study);
 	for (int j = 0; j < n; j++) // spectra come later
-		*slice->at++ = status ? NAN : response->impulse_max / scene->oscillators[0].mass;
+		*slice->at++ = status               ? NAN
+		               : scene->n_buildings ? pound_row_impulse(outcome)
+		                                    : response->impulse_max / scene->oscillators[0].mass;
 }
 
 /* CPU time of a run in the request's last block, NAN without a clock: as many rounds as can be told from its ticks. */
@@ -541,27 +564,28 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	}
 }
 
-static bool failed(const struct pound_response *response)
-{
-	return isnan(response->displacement_max_1);
-}
-
 /* Ratio of means over the signals whose run has a result. */
-static void responses_reduce(struct pound_run *run, int cell, int output)
+static void responses_reduce(struct pound_run *run, int cell, int output, void *row_memory)
 {
 	const struct pound_cells *c = &run->campaign;
 	struct pound_cell *into = &run->result.cells[cell];
-	struct pound_scene scene = pound_cells_scene(c, cell, 0, 0);
-	int row = c->study->outputs[output];
+	// the storeys of a row, which a sweep may vary, say where its measures are
+	struct pound_scene scene = pound_cells_scene(c, cell, 0, 0, row_memory);
 	double above = 0, below = 0;
 	for (int signal = 0; signal < c->n_signals; signal++) {
-		struct pound_response response;
-		memcpy(&response, pound_blocks_run(&run->layout, signal, cell, 0), sizeof response);
-		if (failed(&response))
+		const double *kept = pound_blocks_run(&run->layout, signal, cell, 0);
+		struct pound_response response = {0};
+		struct pound_row_response row = {0};
+		if (scene.n_buildings)
+			row = pound_row_kept(&scene, kept);
+		else
+			memcpy(&response, kept, sizeof response);
+		if (isnan(*kept))
 			continue;
+		const struct pound_outcome outcome = {.scene = &scene, .pair = &response, .row = &row};
 		double numerator = NAN, denominator = NAN;
-		if (pound_output_applies(row, &scene))
-			pound_outputs_measure(row, &scene, &response, &numerator, &denominator);
+		if (pound_output_applies(c->study->outputs[output], &scene))
+			pound_outputs_measure(c->study, output, &outcome, &numerator, &denominator);
 		above += numerator;
 		below += denominator;
 	}
@@ -630,7 +654,7 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 	else if (has_indices(run))
 		indices_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
 	else
-		responses_reduce(run, reduction / n_outputs, reduction % n_outputs);
+		responses_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
 	return pound_stopped(run->stop) ? POUND_STOPPED : POUND_OK;
 }
 
@@ -646,9 +670,13 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 		struct pound_cell *into = &run->result.cells[cell];
 		into->runs_failed = 0;
 		for (int signal = 0; signal < c->n_signals; signal++) {
-			memcpy(&into->signals[signal], pound_blocks_run(&run->layout, signal, cell, 0),
-			       sizeof into->signals[signal]);
-			into->runs_failed += failed(&into->signals[signal]);
+			const double *kept = pound_blocks_run(&run->layout, signal, cell, 0);
+			if (c->study->scene.n_buildings) {
+				const struct pound_scene scene = pound_cells_scene(c, cell, 0, 0, run->scratch[0]);
+				into->rows[signal] = pound_row_kept(&scene, kept);
+			} else
+				memcpy(&into->signals[signal], kept, sizeof into->signals[signal]);
+			into->runs_failed += isnan(*kept);
 		}
 	}
 	return &run->result;

@@ -14,14 +14,15 @@ struct pound_run {
 	double **scratch;                /* of reductions  (n_workers) */
 	struct pound_ordinates **floors; /* (n_workers); NULL each: no spectra are asked */
 	struct pound_result result;
-	double *u;                        /* the design as probabilities  (rows x 2 x n_inputs) */
-	struct pound_estimate *estimates; /* columns  (n_cells x n_outputs x columns x n_inputs) */
-	struct pound_indices *indices;    /* (n_cells x n_outputs) */
-	struct pound_response *responses; /* (n_cells x n_signals) */
-	double *spectra;                  /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
-	double (*cpu)(void);              /* clock of the calling thread [s]; NULL: none */
-	atomic_bool stopped;              /* by pound_run_stop ... */
-	const atomic_bool *stop;          /* ... which this is, or what the caller has */
+	double *u;                                /* the design as probabilities  (rows x 2 x n_inputs) */
+	struct pound_estimate *estimates;         /* columns  (n_cells x n_outputs x columns x n_inputs) */
+	struct pound_indices *indices;            /* (n_cells x n_outputs) */
+	struct pound_response *responses;         /* (n_cells x n_signals) */
+	struct pound_row_response *row_responses; /* of a row of buildings likewise */
+	double *spectra;                          /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
+	double (*cpu)(void);                      /* clock of the calling thread [s]; NULL: none */
+	atomic_bool stopped;                      /* by pound_run_stop ... */
+	const atomic_bool *stop;                  /* ... which this is, or what the caller has */
 };
 
 /* How it is laid out, before anything is allocated. */
@@ -29,7 +30,7 @@ struct pound_cells pound_run_campaign(const struct pound_study *study);
 struct pound_blocks pound_run_layout(const struct pound_cells *campaign);
 size_t pound_run_reduction_size(const struct pound_cells *campaign); /* doubles of a worker's scratch */
 
-enum { POUND_RUN_PARTS = 7 };
+enum { POUND_RUN_PARTS = 8 };
 struct pound_run_part {
 	void *into; /* the pointer to it */
 	size_t bytes;

@@ -50,7 +50,7 @@ static struct pound_look widest_of(const struct pound_cells *campaign, const str
 	const struct pound_study *study = campaign->study;
 	struct pound_look widest = {.half_width = -1};
 	for (int cell = 0; cell < campaign->n_cells; cell++) {
-		const struct pound_scene scene = pound_cells_scene(campaign, cell, 0, 0);
+		const struct pound_scene scene = pound_cells_scene(campaign, cell, 0, 0, NULL);
 		for (int output = 0; output < study->n_outputs; output++) {
 			const struct pound_indices *indices = &cells[cell].indices[output];
 			bool constant = indices->notes >> POUND_NOTE_CONSTANT & 1;

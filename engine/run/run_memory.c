@@ -23,6 +23,11 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	pound_run_result_parts(&run, parts);
 	for (int j = 0; j < POUND_RUN_PARTS; j++)
 		bytes += (double)parts[j].bytes;
+	// a row of buildings has tasks of its own
+	if (study->scene.n_buildings)
+		item.tasks = 0;
+	for (int k = 0; k < item.asks && study->scene.n_buildings; k++)
+		pound_row_size_add(&item.rows, &study->scene);
 	run.layout = pound_run_layout(c);
 	if (!study->elsewhere)
 		run.layout.n_blocks = pound_blocks_alike(c, item, &largest);

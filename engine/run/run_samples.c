@@ -20,7 +20,7 @@ void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, d
 static struct pound_excitation excitation_of(const struct pound_run *run, const struct pound_place *place)
 {
 	assert(!run->campaign.study->elsewhere && place->signal < run->campaign.n_signals);
-	return pound_cells_scene(&run->campaign, place->cell, place->row, place->sample).excitation;
+	return pound_cells_scene(&run->campaign, place->cell, place->row, place->sample, NULL).excitation;
 }
 
 int pound_run_motion_samples(const struct pound_run *run, const struct pound_place *place, double *step)

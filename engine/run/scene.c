@@ -3,6 +3,8 @@
 #include "engine/scene/contact.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -12,12 +14,57 @@ const struct pound_law *pound_scene_law(const struct pound_scene *scene, int osc
 	return o->has_law ? &o->law : &scene->law;
 }
 
-/* Writes a varied value into the field of a scene, whatever the field holds. */
+/* The memory of a field. */
+static void *field_at(const struct pound_scene *scene, struct pound_field field)
+{
+	void *const parts[] = {[POUND_PART_SCENE] = (void *)scene,
+	                       [POUND_PART_BUILDINGS] = scene->buildings,
+	                       [POUND_PART_CONTACTS] = scene->contacts};
+	return (char *)parts[field.part] + field.offset;
+}
+
+double pound_each_of(const struct pound_each *each, int i)
+{
+	return each->values[each->n == 1 ? 0 : i];
+}
+
+/* Gives one storey, or all of them, a number. */
+static void each_assign(struct pound_each *each, int storey, double value)
+{
+	for (int i = 0; i < POUND_STOREYS_MAX && storey > 0 && each->n == 1; i++)
+		each->values[i] = each->values[0];
+	each->n = storey == 0 ? 1 : POUND_STOREYS_MAX;
+	each->values[storey == 0 ? 0 : storey - 1] = value;
+}
+
+/* A member that varies is the contact's own from then on. */
+static void own_assign(struct pound_scene *scene, struct pound_field field)
+{
+	static const size_t sizes[] = {[POUND_FIELD_REAL] = sizeof(double),
+	                               [POUND_FIELD_COUNT] = sizeof(int),
+	                               [POUND_FIELD_CHOICE] = sizeof(int),
+	                               [POUND_FIELD_BOOL] = sizeof(bool),
+	                               [POUND_FIELD_EACH] = 0};
+	struct pound_row_contact *contact = &scene->contacts[field.offset / sizeof *contact];
+	const size_t at = field.offset % sizeof *contact, start = offsetof(struct pound_row_contact, contact);
+	if (at >= start)
+		memset(contact->own + (at - start), 1, sizes[field.type]);
+}
+
+/* Writes a varied value into the field of a scene, whatever the field holds.
+ *
+ * Given    field    of a building or a contact: the scene has them for itself
+ * Test     unit_row_results: what_a_sweep_varies_is_what_a_document_says
+ */
 void pound_scene_assign(struct pound_scene *scene, struct pound_field field, double value)
 {
-	void *at = (char *)scene + field.offset;
+	void *at = field_at(scene, field);
+	if (field.part == POUND_PART_CONTACTS)
+		own_assign(scene, field);
 	if (field.type == POUND_FIELD_REAL)
 		*(double *)at = value;
+	else if (field.type == POUND_FIELD_EACH)
+		each_assign(at, field.storey, value);
 	else if (field.type == POUND_FIELD_BOOL)
 		*(bool *)at = value != 0;
 	else
@@ -26,10 +73,23 @@ void pound_scene_assign(struct pound_scene *scene, struct pound_field field, dou
 
 double pound_scene_field(const struct pound_scene *scene, struct pound_field field)
 {
-	const void *at = (const char *)scene + field.offset;
+	const void *at = field_at(scene, field);
 	if (field.type == POUND_FIELD_REAL)
 		return *(const double *)at;
+	if (field.type == POUND_FIELD_EACH)
+		return pound_each_of(at, field.storey > 0 ? field.storey - 1 : 0);
 	return field.type == POUND_FIELD_BOOL ? *(const bool *)at : *(const int *)at;
+}
+
+bool pound_field_alike(struct pound_field a, struct pound_field b)
+{
+	return a.part == b.part && a.offset == b.offset && a.storey == b.storey;
+}
+
+bool pound_field_overlaps(struct pound_field a, struct pound_field b)
+{
+	return a.part == b.part && a.offset == b.offset &&
+	       (a.storey == b.storey || a.storey == 0 || b.storey == 0);
 }
 
 /* Oscillator i as the march takes it, at rest; its yield displacement is still to be set.

@@ -24,12 +24,13 @@ static const struct solver {
 	void (*run)(const struct pound_solver *, const struct pound_task *, struct pound_task_result *,
 	            const atomic_bool *stop);
 	bool tolerance, step; /* the settings it takes */
+	bool rows;            /* it integrates rows of buildings */
 	bool forces
 	    [POUND_FORCES]; /* forms of contact force that it can integrate; it takes every law, as branches */
 } solvers[] = {
     // many tasks at once
     [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
-                            .tolerance = true, .forces = {[POUND_FORCE_LINEAR] = true}},
+                            .tolerance = true, .rows = true, .forces = {[POUND_FORCE_LINEAR] = true}},
     {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true,
      .forces = BRANCHES},
     {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true,
@@ -63,6 +64,11 @@ const char *pound_solver_text(int row)
 bool pound_solver_takes_force(int row, enum pound_force force)
 {
 	return solver_at(row)->forces[force];
+}
+
+bool pound_solver_takes_rows(int row)
+{
+	return solver_at(row)->rows;
 }
 
 bool pound_solver_takes_tolerance(int row)

@@ -242,8 +242,8 @@ static void study_given(struct um_bridge *b)
 static void assign(struct um_bridge *b, const struct pound_input *input, int j, const cJSON *number)
 {
 	char pointer[32], range[64];
-	int oscillator;
-	const struct field *field = fields_scene(input->path, &oscillator);
+	struct field_place place;
+	const struct field *field = fields_scene(input->path, &place);
 	snprintf(pointer, sizeof pointer, "/input/0/%d", j);
 	fields_range(field, range, sizeof range);
 	if (!cJSON_IsNumber(number))

@@ -135,6 +135,9 @@ const char *plot_output_name(const cJSON *output, char text[PLOT_TEXT])
 	blanks(text);
 	if (isfinite(frequency))
 		snprintf(text + n, (size_t)(PLOT_TEXT - n), " at %s Hz", draw_number(frequency, number));
+	else if (isfinite(plot_number(output, "building")))
+		snprintf(text + n, (size_t)(PLOT_TEXT - n), ", building %.0f, story %.0f",
+		         plot_number(output, "building"), plot_number(output, "storey"));
 	return text;
 }
 

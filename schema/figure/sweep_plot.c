@@ -141,6 +141,12 @@ static const cJSON *same_output(const cJSON *cell, const cJSON *row)
 	{
 		const char *own = plot_text(output, "name");
 		bool amplified = strstr(name, "_amplification") && strstr(own, "_amplification");
+		if (isfinite(plot_number(row, "building")) || isfinite(plot_number(output, "building"))) {
+			if (strcmp(own, name) == 0 && plot_number(row, "building") == plot_number(output, "building") &&
+			    plot_number(row, "storey") == plot_number(output, "storey"))
+				return output;
+			continue;
+		}
 		double a = plot_number(row, "frequency_hz"), b = plot_number(output, "frequency_hz");
 		if ((strcmp(own, name) == 0 || amplified) && (a == b || (isnan(a) && isnan(b))))
 			return output;
@@ -297,8 +303,8 @@ void plot_swept(struct plot *plot)
 
 bool plot_has_responses(const cJSON *result)
 {
-	const cJSON *cell = cells_of(result);
-	return cJSON_GetArraySize(plot_member(cell ? cell : result, "signals")) > 0;
+	const cJSON *cell = cells_of(result), *signals = plot_member(cell ? cell : result, "signals");
+	return plot_member(cJSON_GetArrayItem(signals, 0), "oscillators") != NULL;
 }
 
 static const char *const SIDES[] = {"left", "right"};

@@ -226,6 +226,34 @@ static void put_stopping(struct lines *lines, const cJSON *result)
 
 /* ---- response, convergence, floor spectra ---- */
 
+/* A row of buildings in one line: every storey, floor and contact by its number. */
+static void put_row(struct lines *lines, const cJSON *signal)
+{
+	static const char *const lists[] = {"storeys", "floors"}, *const ones[] = {"storey", "floor"};
+	const cJSON *building, *element;
+	int b = 0, k = 0;
+	char prefix[64];
+	cJSON_ArrayForEach(building, member(signal, "buildings"))
+	{
+		for (int list = 0; list < 2; list++) {
+			int i = 0;
+			cJSON_ArrayForEach(element, member(building, lists[list]))
+			{
+				snprintf(prefix, sizeof prefix, "building_%d.%s_%d.", b, ones[list], ++i);
+				put_scalars(lines, element, prefix);
+				snprintf(prefix, sizeof prefix, "building_%d.%s_%d.end.", b, ones[list], i);
+				put_scalars(lines, member(element, "end"), prefix);
+			}
+		}
+		b++;
+	}
+	cJSON_ArrayForEach(element, member(signal, "contacts"))
+	{
+		snprintf(prefix, sizeof prefix, "contact_%d.", k++);
+		put_scalars(lines, element, prefix);
+	}
+}
+
 static void put_signal(struct lines *lines, const cJSON *cell, const cJSON *signal)
 {
 	int index = 1;
@@ -238,6 +266,7 @@ static void put_signal(struct lines *lines, const cJSON *cell, const cJSON *sign
 		snprintf(prefix, sizeof prefix, "oscillator_%d.", index++);
 		put_scalars(lines, oscillator, prefix);
 	}
+	put_row(lines, signal);
 	put_scalars(lines, member(signal, "end"), "end.");
 	put_end(lines);
 }

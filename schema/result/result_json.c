@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "schema/json/json_writer.h"
@@ -10,8 +11,10 @@
 #include "schema/result/result_design.h"
 #include "schema/result/result_floor.h"
 #include "schema/result/result_notes.h"
+#include "schema/result/result_row.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
+#include "schema/study/study_spectrum.h"
 
 /* ---- response ---- */
 
@@ -65,7 +68,8 @@ static void write_balance(struct writer *w, const struct pound_cell *cells, int 
 	double residual = NAN;
 	for (int c = 0; c < n; c++)
 		for (int i = 0; i < cells[c].n_signals; i++)
-			residual = fmax(residual, cells[c].signals[i].energy_residual);
+			residual = fmax(residual, cells[c].rows ? cells[c].rows[i].energy_residual
+			                                        : cells[c].signals[i].energy_residual);
 	writer_object(w, "accuracy", WRITER_LINES);
 	writer_number(w, "energy_residual", residual);
 	writer_end(w);
@@ -75,17 +79,22 @@ static void write_response(struct writer *w, const struct pound_study *study, co
                            const struct pound_scene *scene)
 {
 	writer_array(w, "signals", WRITER_LINES);
-	for (int i = 0; i < cell->n_signals; i++)
+	for (int i = 0; i < cell->n_signals && cell->rows; i++)
+		result_row_signal(w, scene, &cell->rows[i], i);
+	for (int i = 0; i < cell->n_signals && !cell->rows; i++)
 		write_signal(w, &cell->signals[i], i);
 	writer_end(w);
 	writer_object(w, "outputs", WRITER_LINES);
-	for (int o = 0; o < study->n_outputs; o++)
+	for (int o = 0; o < study->n_outputs; o++) {
+		char name[STUDY_OUTPUT_SIZE];
 		if (pound_output_applies(study->outputs[o], scene))
-			writer_number(w, pound_output_name(study->outputs[o]), cell->outputs[o]);
+			writer_number(w, study_output_name(study, o, name), cell->outputs[o]);
+	}
 	writer_end(w);
 	bool moves = false;
 	for (int i = 0; i < cell->n_signals; i++)
-		moves |= cell->signals[i].displacement_max_free_1 != 0;
+		moves |= cell->rows ? result_row_moves(&cell->rows[i], scene)
+		                    : cell->signals[i].displacement_max_free_1 != 0;
 	if (cell->runs_failed && cell->runs_failed == cell->runs)
 		writer_text(w, "note", "no run has a result, so there are no outputs; work.failures has the reasons");
 	else if (cell->runs_failed)
@@ -302,6 +311,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	writer_object(w, NULL, WRITER_LINES);
 	writer_text(w, "name", study->elsewhere ? study->output_names[o] : pound_output_name(study->outputs[o]));
 	result_floor_ordinate(w, study, indices, o);
+	result_row_place(w, study, o);
 	writer_number(w, "mean", indices->mean);
 	writer_number(w, "variance", indices->variance);
 	writer_number(w, "noise_share", indices->noise_share);
@@ -409,7 +419,7 @@ static void write_not_applicable(struct writer *w, const struct pound_study *stu
 		char note[128];
 		if (pound_output_applies(study->outputs[o], scene))
 			continue;
-		snprintf(note, sizeof note, "needs %s", pound_output_needs(study->outputs[o]));
+		snprintf(note, sizeof note, "needs %s", pound_output_needs(study->outputs[o], scene));
 		writer_object(w, NULL, WRITER_LINE);
 		writer_text(w, "name", pound_output_name(study->outputs[o]));
 		writer_text(w, "note", note);
@@ -423,7 +433,15 @@ static void write_cell(struct writer *w, const struct pound_study *study, const 
 {
 	const struct pound_cell *cell = &result->cells[c];
 	struct pound_scene scene;
+	void *row = NULL; // buildings of the cell
 	study_cell(study, c, &scene);
+	if (cell->rows) {
+		row = malloc(pound_row_bytes(&study->scene));
+		w->failed |= !row;
+		if (!row)
+			return;
+		study_cell_row(study, c, row, &scene);
+	}
 	writer_whole(w, "runs", cell->runs);
 	writer_whole(w, "runs_failed", cell->runs_failed);
 	if (study->kind == POUND_KIND_SENSITIVITY) {
@@ -434,6 +452,7 @@ static void write_cell(struct writer *w, const struct pound_study *study, const 
 	}
 	if (!study->elsewhere)
 		write_not_applicable(w, study, &scene);
+	free(row);
 }
 
 static void write_cells(struct writer *w, const struct pound_study *study, const struct pound_result *result)
@@ -474,14 +493,24 @@ static void write_left_out(struct writer *w, const struct pound_study *study, co
 	leave_out(w, work->signals.asked - work->signals.run, "ground motions", repeated);
 	leave_out(w, work->free_runs.asked - work->free_runs.run, linear, repeated);
 	leave_out(w, work->yield_given, linear, "the yield displacement is given");
-	leave_out(w, work->linear_unasked, "linear responses of the right oscillator without pounding", unasked);
+	const bool row = study->scene.n_buildings > 0;
+	leave_out(w, work->linear_unasked,
+	          row ? "linear responses of other buildings without pounding"
+	              : "linear responses of the right oscillator without pounding",
+	          unasked);
 	if (work->yield_runs.asked + work->nonlinear_unasked == 0)
 		writer_text(w, NULL, "all nonlinear responses without pounding: no law needs them");
 	leave_out(w, work->yield_runs.asked - work->yield_runs.run, nonlinear, repeated);
-	leave_out(w, work->nonlinear_unasked, "last nonlinear responses of the right oscillator without pounding",
+	leave_out(w, work->nonlinear_unasked,
+	          row ? "last nonlinear responses of other buildings without pounding"
+	              : "last nonlinear responses of the right oscillator without pounding",
 	          unasked);
-	leave_out(w, work->never_touching, with, "the responses without pounding never close the gap");
-	leave_out(w, work->moving_alike, with, "equal oscillators move together and never touch with force");
+	leave_out(w, work->never_touching, with,
+	          row ? "the responses without pounding never close a gap"
+	              : "the responses without pounding never close the gap");
+	leave_out(w, work->moving_alike, with,
+	          row ? "equal buildings move together and never touch with force"
+	              : "equal oscillators move together and never touch with force");
 	if (study->scene.contact.present)
 		leave_out(w, work->pounding_runs.asked - made, with, repeated);
 	else

@@ -106,7 +106,7 @@ static void put_line(struct writer *w, const struct sample *s)
 	char number[16];
 	for (int k = 0; k < s->study->n_sweeps; k++) {
 		const struct pound_sweep *sweep = &s->study->sweeps[k];
-		double value = pound_scene_field(&s->scene, sweep->field);
+		double value = study_cell_sweep(s->study, s->cell, k);
 		const char *choice = study_choice(sweep->path, value);
 		if (choice)
 			put_text(w, "", choice, "");
@@ -179,7 +179,7 @@ static void put_record(struct writer *w, const struct sample *s)
 {
 	for (int k = 0; k < s->study->n_sweeps; k++) {
 		const struct pound_sweep *sweep = &s->study->sweeps[k];
-		double value = pound_scene_field(&s->scene, sweep->field);
+		double value = study_cell_sweep(s->study, s->cell, k);
 		const char *choice = study_choice(sweep->path, value);
 		char bytes[CHOICE_SIZE] = {0};
 		if (choice)

@@ -8,11 +8,13 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 
 #include "engine/ground/excitation.h"
 #include "engine/solver/solver.h"
 #include "schema/json/json_writer.h"
 #include "schema/study/fields.h"
+#include "schema/study/study_buildings.h"
 #include "schema/study/study_json.h"
 
 enum {
@@ -38,6 +40,9 @@ enum operation {
 	SWING,    /* ... times the logarithm of the contact's own frequency, */
 	POUNDED,  /* ... and radian that a body turns by which may yield */
 	TURN,     /* radian of a sample beyond those that go by maps */
+	ALONE,    /* sample of a floor of a row of buildings, of its building alone, */
+	CHAIN,    /* ... with pounding, */
+	BEND,     /* ... and for each march in which its story may yield */
 	START,    /* sample of a march by another solver, */
 	NEWMARK,  /* ... step of one, */
 	CENTRAL,  /* ... of the other, */
@@ -74,6 +79,9 @@ static const double seconds_of[OPERATIONS][KINDS] = {
     [SWING] = {3.4e-8, 2.3e-8, 4.2e-8, 1.5e-7},
     [POUNDED] = {9.4e-8, 5e-9, 6.4e-7, 5.2e-9},
     [TURN] = {3e-7, 3e-7, 3e-7, 3e-7},
+    [ALONE] = {1.5e-8, 1e-8, 0, 0},
+    [CHAIN] = {5e-8, 3e-8, 0, 0},
+    [BEND] = {2e-8, 1.5e-8, 0, 0},
     [START] = {8e-8, 8e-8, 1.4e-9, 0},
     [NEWMARK] = {2.3e-8, 2.3e-8, 6.3e-10, 0},
     [CENTRAL] = {1.5e-8, 1.5e-8, 6.3e-10, 0},
@@ -134,18 +142,25 @@ enum { RESAMPLES = 2000, MOMENTS = 10, MOMENTS_INPUT = 7, TILE_COLUMNS = 16 };
 static const double SEARCH_MEAN = 6;
 
 /* [bytes] in a result: of an index or of a signal, with its name and all members beside it */
-static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, DOCUMENT_BYTES = 3000;
+static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, MEASURE_BYTES = 45,
+                    DOCUMENT_BYTES = 3000;
 
 /* [bytes] of memory for a study, for a number of its document, and for a byte of its result, which is text that grows by doubling
  * and is then put into the database */
 static const double STUDY_MEMORY = 1.5 * MIB, NUMBER_MEMORY = 100, RESULT_MEMORY = 2;
+
+/* Where a varied field is in the scene; SIZE_MAX: in its buildings or contacts. */
+static size_t scene_offset(struct pound_field field)
+{
+	return field.part == POUND_PART_SCENE ? field.offset : SIZE_MAX;
+}
 
 /* The mean of a power of a field of the scene, over its distribution or its sweep. */
 static double mean(const struct pound_study *study, size_t offset, double power)
 {
 	double sum = 0;
 	for (int j = 0; j < study->n_inputs; j++) {
-		if (study->inputs[j].field.offset != offset)
+		if (scene_offset(study->inputs[j].field) != offset)
 			continue;
 		for (int k = 0; k < QUANTILES; k++)
 			sum += pow(pound_distribution_quantile(&study->inputs[j].distribution, (k + 0.5) / QUANTILES),
@@ -154,13 +169,13 @@ static double mean(const struct pound_study *study, size_t offset, double power)
 	}
 	for (int s = 0; s < study->n_sweeps; s++) {
 		const struct pound_sweep *sweep = &study->sweeps[s];
-		if (sweep->field.offset != offset)
+		if (scene_offset(sweep->field) != offset)
 			continue;
 		for (int k = 0; k < sweep->n_values; k++)
 			sum += pow(sweep->values[k], power);
 		return sum / sweep->n_values;
 	}
-	const struct pound_field field = {POUND_FIELD_REAL, offset};
+	const struct pound_field field = {.type = POUND_FIELD_REAL, .offset = offset};
 	return pow(pound_scene_field(&study->scene, field), power);
 }
 
@@ -216,11 +231,11 @@ static double distinct(const struct pound_study *study, int what)
 	int n_inputs = 0;
 	double cells = 1;
 	for (int j = 0; j < study->n_inputs; j++) {
-		const size_t at = study->inputs[j].field.offset;
+		const size_t at = scene_offset(study->inputs[j].field);
 		n_inputs += what == ALL || (what == MOTION ? of_motion(at) : of_body(study, what, at));
 	}
 	for (int s = 0; s < study->n_sweeps; s++) {
-		const size_t at = study->sweeps[s].field.offset;
+		const size_t at = scene_offset(study->sweeps[s].field);
 		if (what == ALL || (what == MOTION ? of_motion(at) : of_body(study, what, at)))
 			cells *= study->sweeps[s].n_values;
 	}
@@ -236,10 +251,10 @@ static double distinct(const struct pound_study *study, int what)
 static bool varies(const struct pound_study *study, size_t offset)
 {
 	for (int j = 0; j < study->n_inputs; j++)
-		if (study->inputs[j].field.offset == offset)
+		if (scene_offset(study->inputs[j].field) == offset)
 			return true;
 	for (int s = 0; s < study->n_sweeps; s++)
-		if (study->sweeps[s].field.offset == offset)
+		if (scene_offset(study->sweeps[s].field) == offset)
 			return true;
 	return false;
 }
@@ -346,10 +361,28 @@ static void count_steps(const struct pound_study *study, const struct pound_solv
 	}
 }
 
+/* The same of a row of buildings, of which each is counted alone as often as the row: what is shared nobody knows before. */
+static void count_row(const struct pound_study *study, double items, struct counts *c)
+{
+	const double samples = samples_mean(study), runs = items * distinct(study, ALL);
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	for (int b = 0; b < study->scene.n_buildings; b++) {
+		const struct pound_law *law = pound_row_law(&study->scene, b);
+		const double floors = study->scene.buildings[b].rigid_wall ? 0 : study_storeys_most(study, b);
+		c->of[BEGIN] += runs;
+		c->of[ALONE] += runs * samples * floors;
+		c->of[CHAIN] += study->scene.contact.present ? runs * samples * floors : 0;
+		if (law->type != 0 || varies(study, offsetof(struct pound_scene, law.type)))
+			c->of[BEND] += runs * samples * floors * (2 + law->corrections);
+	}
+}
+
 static void count_runs(const struct pound_study *study, const struct pound_solver *solver, double items,
                        struct counts *c)
 {
-	if (solver->method == POUND_SOLVER_EVENT)
+	if (study->scene.n_buildings)
+		count_row(study, items, c);
+	else if (solver->method == POUND_SOLVER_EVENT)
 		count_event(study, items, c);
 	else
 		count_steps(study, solver, items, c);
@@ -457,8 +490,11 @@ struct cost cost_of(const struct pound_study *study, int n_workers)
 		numbers = 2 * study->n_outputs;
 		cost.bytes += cells * study->n_outputs * (study->n_inputs + 1) * INDEX_BYTES;
 	} else {
-		numbers = sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
-		cost.bytes += runs * SIGNAL_BYTES + cells * 20 * study->spectrum.n * NUMBER_BYTES;
+		const double of_row = study->scene.n_buildings ? pound_row_measures(study) : 0;
+		numbers =
+		    of_row > 0 ? of_row : sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
+		cost.bytes +=
+		    runs * (SIGNAL_BYTES + of_row * MEASURE_BYTES) + cells * 20 * study->spectrum.n * NUMBER_BYTES;
 	}
 	const struct pound_run_shared shared = shared_of(study);
 	cost.memory = STUDY_MEMORY + NUMBER_MEMORY * study->scene.excitation.n_record +

@@ -112,6 +112,82 @@ static void count_openapi(struct writer *w, const struct field *field)
 	number_openapi(w, field, "integer");
 }
 
+/* ---- a number of every storey ---- */
+
+static void each_expected(const struct field *field, char *text, size_t size)
+{
+	char number[160];
+	real_expected(field, number, sizeof number);
+	snprintf(text, size, "%s, or an array of one for each storey", number);
+}
+
+/* Reads one number for all storeys, or an array of one for each. */
+static void each_read(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	struct pound_each *each = (struct pound_each *)(void *)(base + field->offset);
+	char expected[256];
+	const int n = cJSON_GetArraySize(node), most = r->storeys ? r->storeys : POUND_STOREYS_MAX;
+	each_expected(field, expected, sizeof expected);
+	if (!cJSON_IsArray(node)) {
+		each->n = real_number(r, field, node, &each->values[0]);
+		return;
+	}
+	if (n != r->storeys && (r->storeys || n == 0 || n > most)) {
+		problems_add(r->problems, r->pointer, "must have %d elements, one for each storey, has %d", most, n);
+		return;
+	}
+	const cJSON *element;
+	each->n = 0;
+	cJSON_ArrayForEach(element, node)
+	{
+		size_t length = reader_enter_element(r, each->n);
+		real_number(r, field, element, &each->values[each->n++]);
+		reader_leave(r, length);
+	}
+}
+
+static void each_store(void *at, double value)
+{
+	struct pound_each *each = at;
+	each->n = value > 0;
+	each->values[0] = value;
+}
+
+/* Numbers that are all the same are written as one: they mean the same. */
+static void each_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	const struct pound_each *each = at;
+	int same = 1;
+	while (same < each->n && each->values[same] == each->values[0])
+		same++;
+	if (same >= each->n) {
+		writer_number(w, name, each->n ? each->values[0] : NAN);
+		return;
+	}
+	(void)field;
+	writer_array(w, name, WRITER_LINE);
+	for (int i = 0; i < each->n; i++)
+		writer_number(w, NULL, each->values[i]);
+	writer_end(w);
+}
+
+static void each_openapi(struct writer *w, const struct field *field)
+{
+	writer_array(w, "oneOf", WRITER_LINES);
+	writer_object(w, NULL, WRITER_LINE);
+	real_openapi(w, field);
+	writer_end(w);
+	writer_object(w, NULL, WRITER_LINES);
+	writer_text(w, "type", "array");
+	writer_number(w, "minItems", 1);
+	writer_number(w, "maxItems", POUND_STOREYS_MAX);
+	writer_object(w, "items", WRITER_LINE);
+	real_openapi(w, field);
+	writer_end(w);
+	writer_end(w);
+	writer_end(w);
+}
+
 /* ---- names of a table's rows ---- */
 
 /* The nearest of the names that `choice` gives, NULL when none is near. */
@@ -332,6 +408,8 @@ static void list_expected(const struct field *field, char *text, size_t size)
 const struct field_type_row field_types[] = {
 	[FIELD_REAL]   = {read_number, real_number, real_store, real_write, NULL, real_expected, real_openapi,
 	                  POUND_FIELD_REAL},
+	[FIELD_EACH]   = {each_read, real_number, each_store, each_write, NULL, each_expected, each_openapi,
+	                  POUND_FIELD_EACH},
 	[FIELD_COUNT]  = {read_number, count_number, int_store, count_write, NULL, count_expected, count_openapi,
 	                  POUND_FIELD_COUNT},
 	[FIELD_CHOICE] = {read_number, choice_number, int_store, choice_write, choice_word, choice_expected, choice_openapi,
@@ -360,6 +438,7 @@ void field_write(struct writer *w, const struct field *field, const char *name, 
 		uint64_t seed;
 		int row;
 		bool truth;
+		struct pound_each each;
 	} memory;
 	field_types[field->type].store(&memory, value);
 	field_types[field->type].write(w, field, name, &memory);

@@ -21,7 +21,7 @@ struct field_type_row {
 	 * value is no number. */
 	bool (*number)(struct reader *r, const struct field *field, const cJSON *node, double *value);
 
-	void (*store)(void *at, double value); /* a number, at most 8 bytes; NULL: no default can be given */
+	void (*store)(void *at, double value); /* a number; NULL: no default can be given */
 	void (*write)(struct writer *w, const struct field *field, const char *name, const void *at);
 	const char *(*word)(const struct field *field, double value);         /* NULL: values are no words */
 	void (*expected)(const struct field *field, char *text, size_t size); /* behind "must be" */

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "schema/study/field_types.h"
@@ -24,24 +25,28 @@ static const char *signals_name(int common)
 	return common == 0 ? "independent" : common == 1 ? "common" : NULL;
 }
 
-#define AT(member)      offsetof(struct pound_study, member)
-#define LAW             AT(scene.law)
-#define OWN             AT(scene.oscillators[0].law)
-#define IN_LAW(member)  offsetof(struct pound_law, member)
-#define CONTACT(member) AT(scene.contact.member)
-#define SENSITIVITY     .kinds = " sensitivity "
-#define CONVERGENCE     .kinds = " convergence "
-#define SPECTRAL        .kinds = " floor_spectrum sensitivity "
-#define FLOORED         .kinds = " floor_spectrum "
-#define SOLVED          .kinds = " response sensitivity "
-#define FILTERED        .types = " kanai_tajimi "
-#define RANDOM          .types = " kanai_tajimi white_noise "
-#define LASTING         .types = " white_noise harmonic "
-#define PITCHED         .types = " kanai_tajimi harmonic "
-#define SCALED          .types = " kanai_tajimi white_noise harmonic "
-#define WITH_SCENE      .sceneless = FIELD_UNUSED
-#define LATER           .unwritten = true
-#define NOT_SCENE       .fixed = "only fields of the scene can vary"
+#define AT(member)          offsetof(struct pound_study, member)
+#define LAW                 AT(scene.law)
+#define OWN                 AT(scene.oscillators[0].law)
+#define IN_LAW(member)      offsetof(struct pound_law, member)
+#define CONTACT(member)     AT(scene.contact.member)
+#define SENSITIVITY         .kinds = " sensitivity "
+#define CONVERGENCE         .kinds = " convergence "
+#define SPECTRAL            .kinds = " floor_spectrum sensitivity "
+#define FLOORED             .kinds = " floor_spectrum "
+#define SOLVED              .kinds = " response sensitivity "
+#define FILTERED            .types = " kanai_tajimi "
+#define RANDOM              .types = " kanai_tajimi white_noise "
+#define LASTING             .types = " white_noise harmonic "
+#define PITCHED             .types = " kanai_tajimi harmonic "
+#define SCALED              .types = " kanai_tajimi white_noise harmonic "
+#define WITH_SCENE          .sceneless = FIELD_UNUSED
+#define LATER               .unwritten = true
+#define NOT_SCENE           .fixed = "only fields of the scene can vary"
+#define OWN_CONTACT(member) offsetof(struct pound_row_contact, contact.member)
+#define IN_CONTACTS(member) offsetof(struct pound_row_contact, member)
+#define BUILDING(member)    offsetof(struct pound_building, member)
+#define IN_PLACES(member)   offsetof(struct pound_storey_place, member)
 
 // clang-format off
 #define LAW_ROWS(pattern, law)                                                                          \
@@ -99,14 +104,14 @@ const struct field fields[] = {
 	{"/name", FIELD_TEXT, AT(name), 0, 0, 200, FIELD_CLOSED, "",
 	 .text = "display name", NOT_SCENE},
 	{"/scene", FIELD_OBJECT, 0, NAN, 0, 0, FIELD_CLOSED, "",
-	 .text = "two oscillators, the contact between them and the ground motion", .sceneless = FIELD_OPTIONAL, NOT_SCENE},
+	 .text = "two oscillators or a row of buildings, the contact between them and the ground motion", .sceneless = FIELD_OPTIONAL, NOT_SCENE},
 
 	{"/scene/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "constitutive law of every oscillator that has no law of its own"},
 	LAW_ROWS("/scene/law", LAW),
 
 	{"/scene/oscillators", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
-	 .text = "left oscillator, right oscillator"},
+	 .text = "left oscillator, right oscillator; this or buildings", .instead = "buildings"},
 	{"/scene/oscillators/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one oscillator"},
 	{"/scene/oscillators/*/mass_kg", FIELD_REAL, AT(scene.oscillators[0].mass), 1, 0, INFINITY,
@@ -124,6 +129,58 @@ const struct field fields[] = {
 	{"/scene/contact", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "contact between the bodies; absent: all defaults; null: no contact, the bodies pass each other"},
 	CONTACT_ROWS("/scene/contact", CONTACT),
+
+	{"/scene/buildings", FIELD_LIST, 0, 0, 2, POUND_BUILDINGS_MAX, FIELD_CLOSED, "",
+	 .text = "a row of shear buildings from left to right, instead of oscillators"},
+	{"/scene/buildings/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one building"},
+	{"/scene/buildings/*/storeys", FIELD_COUNT, BUILDING(storeys), 1, 1, POUND_STOREYS_MAX, FIELD_CLOSED, "",
+	 .text = "number of storeys, each with the floor above it"},
+	{"/scene/buildings/*/mass_kg", FIELD_EACH, BUILDING(mass), 1, 0, INFINITY, FIELD_OPEN, "kg",
+	 .text = "masses of the floors"},
+	{"/scene/buildings/*/stiffness_n_m", FIELD_EACH, BUILDING(stiffness), NAN, 0, INFINITY, FIELD_OPEN, "N/m",
+	 .text = "initial stiffness of the storeys; this or frequency_hz", .instead = "frequency_hz"},
+	{"/scene/buildings/*/frequency_hz", FIELD_REAL, BUILDING(frequency_hz), 0, 0, INFINITY, FIELD_OPEN_MIN, "Hz",
+	 .text = "undamped natural frequency of the first mode, which the stiffness of the storeys is scaled to"},
+	{"/scene/buildings/*/stiffness_profile", FIELD_EACH, BUILDING(profile), 1, 0, INFINITY, FIELD_OPEN, "",
+	 .text = "initial stiffness of the storeys relative to each other; only with frequency_hz"},
+	{"/scene/buildings/*/height_m", FIELD_EACH, BUILDING(height), 3, 0, INFINITY, FIELD_OPEN, "m",
+	 .text = "heights of the storeys, for drift ratios", .fixed = "only drift ratios depend on it, no output does"},
+	{"/scene/buildings/*/damping", FIELD_CHOICE, BUILDING(damping), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "form of damping, of the initial stiffness", .choice = pound_damping_name},
+	{"/scene/buildings/*/damping_ratio", FIELD_EACH, BUILDING(damping_ratio), 0.05, 0, 1,
+	 FIELD_OPEN_MAX, "", .text = "fraction of critical damping; an array only with damping storey"},
+	{"/scene/buildings/*/damping_modes", FIELD_LIST, 0, 0, 2, 2, FIELD_CLOSED, "",
+	 .text = "modes that have the damping ratio, ascending (default: 1, 3; at most the number of storeys); only with damping rayleigh",
+	 .fixed = "it is a choice of two modes"},
+	{"/scene/buildings/*/damping_modes/*", FIELD_COUNT, BUILDING(damping_modes), NAN, 1, POUND_STOREYS_MAX, FIELD_CLOSED, "",
+	 .text = "one of them", .fixed = "it is a choice of two modes"},
+	{"/scene/buildings/*/rigid_wall", FIELD_BOOL, BUILDING(rigid_wall), 0, 0, 1, FIELD_CLOSED, "",
+	 .text = "true: the last building is a rigid wall that moves with the ground; it has no other members", .fixed = "it determines which other members apply"},
+	{"/scene/buildings/*/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "law of every storey of this building, instead of the scene's"},
+	{"/scene/buildings/*/law/type", FIELD_CHOICE, BUILDING(law.type), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "constitutive law: storey shear over drift", .choice = pound_law_name, .fixed = "vary /law/type, or describe two studies"},
+	{"/scene/buildings/*/law/hardening_ratio", FIELD_REAL, BUILDING(law.hardening_ratio), 0.05, 0, 1, FIELD_CLOSED, "",
+	 .text = "post-yield stiffness over initial stiffness"},
+	{"/scene/buildings/*/law/target_demand", FIELD_REAL, BUILDING(law.target_demand), 2, 1, INFINITY, FIELD_CLOSED, "",
+	 .text = "ductility demand of every storey without pounding, from which its yield drift is found"},
+	{"/scene/buildings/*/law/yield_displacement_m", FIELD_EACH, BUILDING(yield_drift), 0, 0, INFINITY,
+	 FIELD_OPEN_MIN, "m", .text = "yield drift, instead of target_demand"},
+	{"/scene/buildings/*/law/corrections", FIELD_COUNT, BUILDING(law.corrections), 1, 0, 100, FIELD_CLOSED, "",
+	 .text = "times the yield drifts found from target_demand are corrected"},
+
+	{"/scene/contacts", FIELD_LIST, 0, 0, 1, POUND_CONTACTS_MAX, FIELD_CLOSED, "",
+	 .text = "contacts between the buildings; absent: floor i with floor i, in every gap"},
+	{"/scene/contacts/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one contact; what it does not say is that of /scene/contact"},
+	{"/scene/contacts/*/left_building", FIELD_COUNT, IN_CONTACTS(left_building), 0, 0, POUND_BUILDINGS_MAX - 2, FIELD_CLOSED, "",
+	 .text = "index of the building on its left", .fixed = "it determines which levels there are"},
+	{"/scene/contacts/*/levels", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
+	 .text = "where it touches the left and the right building, floor 2 being 2; 2.6 is the column 0.6 of the way from floor 2 to floor 3; of a wall any"},
+	{"/scene/contacts/*/levels/*", FIELD_REAL, IN_CONTACTS(levels[0]), NAN, 0, POUND_STOREYS_MAX, FIELD_OPEN_MIN, "",
+	 .text = "one of them, at most the number of storeys"},
+	CONTACT_ROWS("/scene/contacts/*", OWN_CONTACT),
 
 	{"/scene/excitation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "ground motion; absent: all defaults"},
@@ -227,7 +284,16 @@ const struct field fields[] = {
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
 	 .text = "outputs to compute, all different (default: the amplifications that apply and, with contact, the impulse)", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one output; force_amplification needs a linear law of the left oscillator, demand_amplification a nonlinear one, floor_spectrum a sensitivity study", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "one output; force_amplification needs a linear law of the left oscillator, demand_amplification a nonlinear one (of buildings: at every place), drift_amplification and acceleration_amplification need buildings, floor_spectrum a sensitivity study", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
+
+	{"/places", FIELD_LIST, 0, 0, 1, POUND_PLACES_MAX, FIELD_CLOSED, "",
+	 .text = "storeys of a row of buildings for which outputs are computed, all different (default: all of building 0)", SOLVED, WITH_SCENE, NOT_SCENE},
+	{"/places/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one storey and the floor above it", SOLVED, WITH_SCENE, NOT_SCENE},
+	{"/places/*/building", FIELD_COUNT, IN_PLACES(building), 0, 0, POUND_BUILDINGS_MAX - 1, FIELD_CLOSED, "",
+	 .text = "index of the building", SOLVED, WITH_SCENE, NOT_SCENE},
+	{"/places/*/storey", FIELD_COUNT, IN_PLACES(storey), NAN, 1, POUND_STOREYS_MAX, FIELD_CLOSED, "",
+	 .text = "storey, from 1", SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/solver", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "numerical solver of the equations of motion", SOLVED, WITH_SCENE, NOT_SCENE},
@@ -272,7 +338,12 @@ const struct field fields[] = {
 
 const int fields_count = sizeof fields / sizeof fields[0];
 
-const char *const fields_outputs_absent[] = {"force_amplification", "demand_amplification", "impulse", NULL};
+const char *const fields_outputs_absent[] = {"force_amplification",
+                                             "drift_amplification",
+                                             "acceleration_amplification",
+                                             "demand_amplification",
+                                             "impulse",
+                                             NULL};
 
 const struct field *fields_find(const char *pattern)
 {
@@ -291,6 +362,14 @@ bool fields_child(const struct field *field, const char *pattern)
 {
 	size_t length = strlen(pattern);
 	return strncmp(field->pattern, pattern, length) == 0 && fields_name(field) == field->pattern + length + 1;
+}
+
+bool fields_within(const struct field *field, const char *const starts[], size_t n)
+{
+	size_t k = 0;
+	while (k < n && strncmp(field->pattern, starts[k], strlen(starts[k])) != 0)
+		k++;
+	return k < n;
 }
 
 bool fields_listed(const char *names, const char *name)
@@ -363,30 +442,67 @@ int fields_choice(const char *(*choice)(int row), const char *name)
 	return -1;
 }
 
+/* A path with * for each index on its way, and these in turn; false: it is no path of a field. */
+static bool path_pattern(const char *path, char *pattern, size_t size, int indices[2])
+{
+	int n = 0;
+	size_t length = (size_t)snprintf(pattern, size, "/scene");
+	indices[0] = indices[1] = -1;
+	for (const char *part = path; *part == '/'; part += strcspn(part, "/")) {
+		const size_t digits = strspn(++part, "0123456789"), end = strcspn(part, "/");
+		const bool index = digits > 0 && digits == end;
+		if ((index && (n == 2 || digits > 3 || (digits > 1 && *part == '0'))) || length + end + 2 > size)
+			return false;
+		if (index)
+			indices[n++] = atoi(part);
+		length += (size_t)snprintf(pattern + length, size - length, "/%.*s", index ? 1 : (int)end,
+		                           index ? "*" : part);
+	}
+	return *path == '/' && !strchr(path, '*');
+}
+
+/* Whether an index is one of a list's elements at most. */
+static bool indexes(const struct field *list, int index)
+{
+	return list && index >= 0 && index < list->max;
+}
+
+/* The list that holds the elements of a pattern, from its start to the last "/\*" or the first. */
+static const struct field *list_of(const char *pattern)
+{
+	char list[256];
+	const char *star = strstr(pattern, "/*");
+	snprintf(list, sizeof list, "%.*s", star ? (int)(star - pattern) : 0, pattern);
+	return fields_find(list);
+}
+
 /* Finds what a JSON Pointer into "scene" names.
  *
- * Given    path        -       -       "/oscillators/1/mass_kg"
+ * Given    path        -       -       "/oscillators/1/mass_kg", "/buildings/0/mass_kg/3", "/contacts/0/levels/1"
  * Returns  value       -       -       its row, NULL: there is none
- *          oscillator  -       -       1; -1 when the path names none
+ *          place       -       -       {1, -1}, {0, 3}, {0, 1}; {-1, -1} when the path has no index
  *
  * Test     unit_fields: a_path_names_one_field_of_the_scene
  */
-const struct field *fields_scene(const char *path, int *oscillator)
+const struct field *fields_scene(const char *path, struct field_place *place)
 {
-	static const char list[] = "/oscillators/";
 	char pattern[256];
-	*oscillator = -1;
-	int length = snprintf(pattern, sizeof pattern, "/scene%s", path);
-	if (*path != '/' || length >= (int)sizeof pattern || strchr(path, '*'))
+	int indices[2];
+	*place = (struct field_place){-1, -1};
+	if (!path_pattern(path, pattern, sizeof pattern, indices))
 		return NULL;
-	if (strncmp(path, list, strlen(list)) == 0) {
-		const char *index = path + strlen(list);
-		if ((*index != '0' && *index != '1') || (index[1] != '/' && index[1] != 0))
-			return NULL;
-		*oscillator = *index - '0';
-		pattern[strlen("/scene") + strlen(list)] = '*';
-	}
-	return fields_find(pattern);
+	const struct field *field = fields_find(pattern);
+	if (indices[0] >= 0 && !indexes(list_of(pattern), indices[0]))
+		return NULL;
+	*place = (struct field_place){indices[0], indices[1]};
+	if (field)
+		return indices[1] < 2 ? field : NULL; // of two levels, or of two modes
+	char *last = strrchr(pattern, '/');
+	if (strcmp(last, "/*") != 0)
+		return NULL;
+	*last = 0;
+	field = fields_find(pattern);
+	return field && field->type == FIELD_EACH && indices[1] < POUND_STOREYS_MAX ? field : NULL;
 }
 
 bool fields_nearest_path(const char *path, char *nearest, size_t size)
@@ -400,10 +516,10 @@ bool fields_nearest_path(const char *path, char *nearest, size_t size)
 			continue;
 		char candidate[256];
 		snprintf(candidate, sizeof candidate, "%s", fields[i].pattern + strlen("/scene"));
-		char *star = strchr(candidate, '*');
-		for (char index = '0'; index <= (star ? '1' : '0'); index++) {
-			if (star)
-				*star = index;
+		char *stars[2] = {strchr(candidate, '*'), strrchr(candidate, '*')};
+		for (int index = 0; index < (stars[0] ? 4 : 1); index++) {
+			for (int k = 0; k < 2 && stars[0]; k++)
+				*stars[k] = (char)('0' + (index >> k & 1));
 			int distance = near_name_distance(path, candidate);
 			if (distance < best) {
 				best = distance;

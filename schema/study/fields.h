@@ -12,6 +12,7 @@
 /* What a field can be: a row each in field_types.c. */
 enum field_type {
 	FIELD_REAL,        /* double */
+	FIELD_EACH,        /* struct pound_each: a number, or an array of one for each storey */
 	FIELD_COUNT,       /* int */
 	FIELD_CHOICE,      /* int: row of the table that `choice` names */
 	FIELD_ALTERNATIVE, /* bool: row 0 or 1 of that table */
@@ -31,9 +32,10 @@ enum field_ends { FIELD_CLOSED, FIELD_OPEN_MIN, FIELD_OPEN_MAX, FIELD_OPEN };
 struct field {
 	const char *pattern;
 	enum field_type type;
-	size_t offset;   /* in struct pound_study (of the first element), pound_input or pound_sweep [bytes] */
-	double absent;   /* value of an absent member; NAN: it must be there */
-	double min, max; /* valid range; an infinite end is never reached */
+	/* in struct pound_study (of the first element), pound_input, pound_sweep, pound_building or pound_row_contact [bytes] */
+	size_t offset;
+	double absent;        /* value of an absent member; NAN: it must be there */
+	double min, max;      /* valid range; an infinite end is never reached */
 	enum field_ends ends; /* which ends are outside */
 	const char *unit;     /* "": none */
 	const char *text;     /* one line for people */
@@ -44,7 +46,8 @@ struct field {
 	enum field_sceneless sceneless;
 	bool
 	    unwritten; /* left out of a study's hash with its default value: it came after hashes had been stored */
-	const char *fixed; /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
+	const char *instead; /* the member that may be there in its place */
+	const char *fixed;   /* why it may not vary; NULL: a sweep may vary it, and an input if it is real */
 };
 
 extern const struct field fields[];
@@ -54,6 +57,9 @@ const struct field *fields_find(const char *pattern); /* NULL: none */
 const char *fields_name(const struct field *field);   /* last part of the pattern */
 bool fields_child(const struct field *field,
                   const char *pattern); /* a member of the object at that pattern */
+
+/* Whether its pattern begins with one of n. */
+bool fields_within(const struct field *field, const char *const starts[], size_t n);
 
 /* Whether a name is one of those between spaces; NULL: of none. */
 bool fields_listed(const char *names, const char *name);
@@ -70,8 +76,14 @@ bool fields_in_range(const struct field *field, double value);
 /* The number of the choice of that name, -1 if there is none. */
 int fields_choice(const char *(*choice)(int row), const char *name);
 
-/* The field that a JSON Pointer into "scene" names, and the oscillator in it (-1: none); NULL: none. */
-const struct field *fields_scene(const char *path, int *oscillator);
+/* Where a path is in the lists on its way; -1: none. */
+struct field_place {
+	int element; /* of the oscillators, the buildings or the contacts */
+	int index;   /* of the numbers of the storeys, or of the levels, from 0 */
+};
+
+/* The field that a JSON Pointer into "scene" names, and its place; NULL: none. */
+const struct field *fields_scene(const char *path, struct field_place *place);
 
 /* The field of the scene nearest to a mistyped path, as a path; false: none is near. */
 bool fields_nearest_path(const char *path, char *nearest, size_t size);

@@ -15,6 +15,7 @@ struct reader {
 	const cJSON *sweeps;                    /* of the document; NULL: none */
 	double *number;                         /* next free place for a sample or a sweep value */
 	char *text;                             /* next free place for a text */
+	int storeys;                            /* of the building in hand; 0: not known */
 	const struct field *swept; /* by the sweep in hand; NULL: its path names no field that varies */
 	char pointer[512];         /* of the member in hand */
 };
@@ -47,6 +48,17 @@ bool reader_seen(const cJSON *object, const cJSON *member); /* an earlier member
 void reader_require(struct reader *reader, const cJSON *node, const char *pattern);
 bool reader_object(struct reader *reader, const char *pattern, const cJSON *node, char *base);
 void reader_value(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+
+/* Members of what is a rigid wall, each refused; false: it is none. */
+bool reader_wall(struct reader *reader, const char *pattern, const cJSON *node, const char *refused);
+
+/* Rows of buildings: study_buildings.c. */
+void reader_buildings(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_building_law(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_modes(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_contacts(struct reader *reader, const cJSON *document);
+void reader_levels(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_places(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 
 /* What varies: study_varied.c. */
 void reader_distribution(struct reader *reader, const struct field *field, const cJSON *node, char *base);

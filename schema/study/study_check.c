@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "schema/study/field_types.h"
+#include "schema/study/study_buildings.h"
 #include "schema/study/study_json.h"
 #include "schema/study/study_size.h"
 #include "schema/study/study_spectrum.h"
@@ -18,20 +19,39 @@ enum { POINTER_SIZE = 64 };
 
 struct pound_field study_check_field(const char *path)
 {
-	int oscillator;
-	const struct field *field = fields_scene(path, &oscillator);
-	size_t shift = oscillator == 1 ? sizeof(struct pound_oscillator) : 0;
-	return (struct pound_field){field_types[field->type].varied,
-	                            field->offset - offsetof(struct pound_study, scene) + shift};
+	// the lists that a scene has; offsets in fields.c are those of the first element
+	static const struct {
+		const char *pattern;
+		enum pound_part part;
+		size_t start, size; /* where offsets count from, of an element [bytes] */
+	} lists[] = {
+	    {"/scene/oscillators/", POUND_PART_SCENE, offsetof(struct pound_study, scene),
+	     sizeof(struct pound_oscillator)},
+	    {"/scene/buildings/", POUND_PART_BUILDINGS, 0, sizeof(struct pound_building)},
+	    {"/scene/contacts/", POUND_PART_CONTACTS, 0, sizeof(struct pound_row_contact)},
+	    {"/scene/", POUND_PART_SCENE, offsetof(struct pound_study, scene), 0},
+	};
+	struct field_place place;
+	const struct field *field = fields_scene(path, &place);
+	size_t k = 0;
+	while (!fields_within(field, &lists[k].pattern, 1))
+		k++;
+	const bool each = field->type == FIELD_EACH;
+	const size_t shift = (lists[k].size ? (size_t)place.element * lists[k].size : 0) +
+	                     (place.index >= 0 && !each ? (size_t)place.index * sizeof(double) : 0);
+	return (struct pound_field){.type = field_types[field->type].varied,
+	                            .offset = field->offset - lists[k].start + shift,
+	                            .part = lists[k].part,
+	                            .storey = each ? place.index + 1 : 0};
 }
 
 static void check_path(const struct pound_study *study, const char *path, bool input, const char *pointer,
                        struct problems *problems)
 {
 	char nearest[128];
-	int oscillator;
+	struct field_place place;
 	const struct pound_scene *scene = &study->scene;
-	const struct field *field = fields_scene(path, &oscillator);
+	const struct field *field = fields_scene(path, &place);
 	const char *excitation = pound_excitation_name(scene->excitation.type);
 	if (strncmp(path, "/excitation/acceleration_m_s2/", 30) == 0)
 		field = fields_find("/scene/excitation/acceleration_m_s2/*");
@@ -44,7 +64,7 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 		problems_add(problems, pointer, "this field cannot vary: %s", field->fixed);
 	else if (!field_types[field->type].number)
 		problems_add(problems, pointer, "names an object or a list, not a single field");
-	else if (input && field->type != FIELD_REAL)
+	else if (input && field->type != FIELD_REAL && field->type != FIELD_EACH)
 		problems_add(problems, pointer, "this field is not a real number; only a sweep can vary it");
 	else if (problems_over(problems, "/scene/excitation/type") ||
 	         problems_at(problems, "/scene/excitation/type"))
@@ -52,10 +72,11 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 	else if (!fields_used(field, NULL, excitation, NULL))
 		problems_add(problems, pointer, "this field is not used by excitation \"%s\"", excitation);
 	else if (problems_at(problems, "/scene/law") || problems_at(problems, "/scene/oscillators") ||
-	         problems_at(problems, "/scene/contact"))
+	         problems_at(problems, "/scene/contact") || problems_at(problems, "/scene/buildings") ||
+	         problems_at(problems, "/scene/contacts"))
 		return; // whether it has an effect is seen by these
-	else if (study_idle(study, field, oscillator))
-		problems_add(problems, pointer, "%s", study_idle(study, field, oscillator));
+	else if (study_idle(study, field, place))
+		problems_add(problems, pointer, "%s", study_idle(study, field, place));
 }
 
 /* Inputs and sweeps in one row, as they are both named by paths. */
@@ -76,6 +97,14 @@ static int varied_all(const struct pound_study *study, struct varied all[POUND_I
 	return n;
 }
 
+/* Whether one of two paths names all storeys of a building and the other one of them. */
+static bool storeys_overlap(const char *a, const char *b)
+{
+	struct field_place place;
+	return fields_scene(a, &place) && fields_scene(b, &place) &&
+	       pound_field_overlaps(study_check_field(a), study_check_field(b));
+}
+
 static void check_paths(const struct pound_study *study, struct problems *problems)
 {
 	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
@@ -88,6 +117,10 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 		for (int k = 0; k < i && all[i].path; k++)
 			if (all[k].path && strcmp(all[i].path, all[k].path) == 0) {
 				problems_add(problems, pointer, "names the same field as /%s/%d", all[k].list, all[k].index);
+				break;
+			} else if (all[k].path && storeys_overlap(all[i].path, all[k].path)) {
+				problems_add(problems, pointer, "names a storey that /%s/%d names too", all[k].list,
+				             all[k].index);
 				break;
 			}
 	}
@@ -172,14 +205,14 @@ static void check_supports(const struct pound_study *study, struct problems *pro
 	for (int j = 0; j < study->n_inputs; j++) {
 		char pointer[POINTER_SIZE], range[80];
 		double low, high;
-		int oscillator;
+		struct field_place place;
 		const struct pound_input *input = &study->inputs[j];
 		snprintf(pointer, sizeof pointer, "/inputs/%d/path", j);
 		bool found = input->path && !problems_at(problems, pointer);
 		snprintf(pointer, sizeof pointer, "/inputs/%d/distribution", j);
 		if (!found || problems_at(problems, pointer) || problems_over(problems, pointer))
 			continue;
-		const struct field *field = fields_scene(input->path, &oscillator);
+		const struct field *field = fields_scene(input->path, &place);
 		if (supports(field, &input->distribution))
 			continue;
 		pound_distribution_support(&input->distribution, &low, &high);
@@ -195,11 +228,11 @@ void study_check_reach(const struct pound_study *study, const char *path, double
 	struct pound_field field = study_check_field(path);
 	*low = *high = pound_scene_field(&study->scene, field);
 	for (int j = 0; j < study->n_inputs; j++)
-		if (study->inputs[j].field.offset == field.offset)
+		if (pound_field_alike(study->inputs[j].field, field))
 			pound_distribution_support(&study->inputs[j].distribution, low, high);
 	for (int s = 0; s < study->n_sweeps; s++) {
 		const struct pound_sweep *sweep = &study->sweeps[s];
-		if (sweep->field.offset != field.offset)
+		if (!pound_field_alike(sweep->field, field))
 			continue;
 		*low = *high = sweep->values[0];
 		for (int i = 1; i < sweep->n_values; i++) {
@@ -328,7 +361,7 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
 		if (!study_check_applies(study, study->outputs[o]))
 			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
-			             pound_output_needs(study->outputs[o]));
+			             pound_output_needs(study->outputs[o], &study->scene));
 	}
 }
 
@@ -387,6 +420,15 @@ static void check_order(const struct pound_study *study, struct problems *proble
 		    problems, "/design/order",
 		    "\"factorial\" runs all 2^n_inputs mixtures of A and B, so it takes at most %d inputs, got %d",
 		    POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
+}
+
+/* The sequence behind a quasi-random design has so many dimensions. */
+static void check_dimensions(const struct pound_study *study, struct problems *problems)
+{
+	if (study->kind == POUND_KIND_SENSITIVITY && pound_design_quasi_random(study->design.method) &&
+	    study->n_inputs > POUND_QUASI_INPUTS_MAX)
+		problems_add(problems, "/design/method", "\"%s\" takes at most %d inputs, got %d",
+		             pound_design_name(study->design.method), POUND_QUASI_INPUTS_MAX, study->n_inputs);
 }
 
 /* ---- ratios ---- */
@@ -472,6 +514,8 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		return;
 	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
 		check_order(study, problems);
+	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
+		check_dimensions(study, problems);
 	check_ratios(study, problems);
 	if (study->elsewhere) {
 		if (rows_known(problems))
@@ -483,6 +527,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	check_excitation(study, problems);
 	if (problems_at(problems, "/sweep"))
 		return;
+	study_buildings_check(study, problems);
 	if (study_size_cells(study) > STUDY_CELLS_MAX) {
 		problems_exceed(problems, "/sweep", study_size_cells(study), STUDY_CELLS_MAX,
 		                "asks for %.15g cells, a study may have at most %d", study_size_cells(study),

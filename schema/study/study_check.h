@@ -30,6 +30,6 @@ bool study_check_uses(const struct pound_study *study, const char *pattern);
 struct pound_field study_check_field(const char *path);
 
 /* Why varying a field of the scene would change nothing, NULL when it may vary. */
-const char *study_idle(const struct pound_study *study, const struct field *field, int oscillator);
+const char *study_idle(const struct pound_study *study, const struct field *field, struct field_place place);
 
 #endif

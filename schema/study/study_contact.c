@@ -107,12 +107,12 @@ void reader_contact(struct reader *r, const cJSON *node, int model)
 /* Whether a field is varied by an input or a sweep, or has a value other than 0. */
 static bool given_or_varied(const struct pound_study *study, const char *path, double value)
 {
-	const size_t offset = study_check_field(path).offset;
+	const struct pound_field field = study_check_field(path);
 	bool given = value > 0;
 	for (int j = 0; j < study->n_inputs; j++)
-		given |= study->inputs[j].path && study->inputs[j].field.offset == offset;
+		given |= study->inputs[j].path && pound_field_alike(study->inputs[j].field, field);
 	for (int s = 0; s < study->n_sweeps; s++)
-		given |= study->sweeps[s].path && study->sweeps[s].field.offset == offset;
+		given |= study->sweeps[s].path && pound_field_alike(study->sweeps[s].field, field);
 	return given;
 }
 

@@ -68,14 +68,77 @@ static void write_oscillators(struct canon *c)
 	writer_end(&c->w);
 }
 
+static void write_buildings(struct canon *c)
+{
+	writer_array(&c->w, "buildings", WRITER_LINES);
+	for (int i = 0; i < c->study->scene.n_buildings; i++) {
+		const struct pound_building *building = &c->study->scene.buildings[i];
+		writer_object(&c->w, NULL, WRITER_LINES);
+		if (building->rigid_wall)
+			writer_bool(&c->w, "rigid_wall", true);
+		else
+			write_members(c, "/scene/buildings/*", building);
+		for (int k = 0; k < 2 && pound_damping_takes_modes(building->damping); k++)
+			writer_whole(&c->w, "damping_mode", building->damping_modes[k]);
+		if (building->has_law)
+			write_object(c, "law", "/scene/buildings/*/law", building);
+		writer_end(&c->w);
+	}
+	writer_end(&c->w);
+}
+
+/* A contact is written with all it follows, but what it has for itself is another meaning where that varies. */
+static void write_contacts(struct canon *c)
+{
+	writer_array(&c->w, "contacts", WRITER_LINES);
+	for (int i = 0; i < c->study->scene.n_contacts; i++) {
+		const struct pound_row_contact *contact = &c->study->scene.contacts[i];
+		writer_object(&c->w, NULL, WRITER_LINES);
+		write_members(c, "/scene/contacts/*", contact);
+		for (int k = 0; k < 2; k++)
+			writer_number(&c->w, "level", contact->levels[k]);
+		for (int k = 0; k < fields_count; k++)
+			if (fields_child(&fields[k], "/scene/contacts/*") &&
+			    fields[k].offset >= offsetof(struct pound_row_contact, contact) &&
+			    contact->own[fields[k].offset - offsetof(struct pound_row_contact, contact)])
+				writer_text(&c->w, "own", fields_name(&fields[k]));
+		writer_end(&c->w);
+	}
+	writer_end(&c->w);
+}
+
+static void write_place(struct canon *c, const char *name, const struct pound_storey_place *place)
+{
+	writer_object(&c->w, name, WRITER_LINES);
+	writer_whole(&c->w, "building", place->building);
+	writer_whole(&c->w, "storey", place->storey);
+	writer_end(&c->w);
+}
+
+/* Where outputs of a row are wanted, and its spectrum. */
+static void write_places(struct canon *c)
+{
+	writer_array(&c->w, "places", WRITER_LINES);
+	for (int k = 0; k < c->study->scene.n_places; k++)
+		write_place(c, NULL, &c->study->scene.places[k]);
+	writer_end(&c->w);
+	if (c->study->spectrum.n)
+		write_place(c, "place", &c->study->spectrum.place);
+}
+
 static void write_scene(struct canon *c)
 {
 	const struct pound_excitation *e = &c->study->scene.excitation;
 	writer_object(&c->w, "scene", WRITER_LINES);
 	write_object(c, "law", "/scene/law", c->study);
-	write_oscillators(c);
+	if (c->study->scene.n_buildings)
+		write_buildings(c);
+	else
+		write_oscillators(c);
 	if (c->study->scene.contact.present)
 		write_object(c, "contact", "/scene/contact", c->study);
+	if (c->study->scene.n_contacts)
+		write_contacts(c);
 	write_object(c, "excitation", "/scene/excitation", c->study);
 	writer_array(&c->w, "record", WRITER_LINES);
 	for (int i = 0; i < e->n_record; i++)
@@ -163,15 +226,15 @@ static void write_spectrum(struct canon *c)
 /* A varied value as a document has it. */
 void study_value(struct writer *writer, const char *name, const char *path, double value)
 {
-	int oscillator;
-	field_write(writer, fields_scene(path, &oscillator), name, value);
+	struct field_place place;
+	field_write(writer, fields_scene(path, &place), name, value);
 }
 
 /* The word that a varied value is written as; NULL: it is written as a number. */
 const char *study_choice(const char *path, double value)
 {
-	int oscillator;
-	const struct field *field = fields_scene(path, &oscillator);
+	struct field_place place;
+	const struct field *field = fields_scene(path, &place);
 	return field_types[field->type].word ? field_types[field->type].word(field, value) : NULL;
 }
 
@@ -209,6 +272,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 		writer_end(&c.w);
 		write_object(&c, "solver", "/solver", study);
 	}
+	if (study->scene.n_buildings)
+		write_places(&c);
 	if (study->spectrum.n)
 		write_spectrum(&c);
 	if (study->kind == POUND_KIND_CONVERGENCE)

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "schema/study/study_buildings.h"
 #include "schema/study/study_check.h"
 
 enum { PATH_SIZE = 64 };
@@ -42,7 +43,8 @@ static bool yield_given(const struct pound_study *study, const struct pound_law 
 	bool given = law->yield_displacement > 0 || law_sweep(study, oscillator, "yield_displacement_m");
 	const size_t offset = (size_t)((const char *)&law->yield_displacement - (const char *)&study->scene);
 	for (int j = 0; j < study->n_inputs; j++)
-		given |= study->inputs[j].path && study->inputs[j].field.offset == offset;
+		given |= study->inputs[j].path && study->inputs[j].field.part == POUND_PART_SCENE &&
+		         study->inputs[j].field.offset == offset;
 	return given;
 }
 
@@ -55,7 +57,7 @@ static const char *law_idle(const struct pound_study *study, const struct field 
 	const char *name = fields_name(field);
 	if (oscillator >= 0 && !o[oscillator].has_law)
 		return "this oscillator has no law of its own";
-	if (oscillator < 0 && o[0].has_law && (o[1].has_law || o[1].rigid_wall))
+	if (oscillator < 0 && scene->n_buildings == 0 && o[0].has_law && (o[1].has_law || o[1].rigid_wall))
 		return "has no effect: no oscillator uses the scene's law";
 	if (strcmp(name, "type") == 0)
 		return NULL;
@@ -70,21 +72,25 @@ static const char *law_idle(const struct pound_study *study, const struct field 
 /* Why varying a field of the scene would change nothing.
  *
  * Given    study       -   read, with problems in its inputs and sweeps or without
- *          oscillator  -   of the field, < 0: of none
+ *          place       -   of the field in the lists on its path
  * Returns  value       -   in words; NULL: it may vary
  *
  * Test     unit_study_cases
  */
-const char *study_idle(const struct pound_study *study, const struct field *field, int oscillator)
+const char *study_idle(const struct pound_study *study, const struct field *field, struct field_place place)
 {
 	const struct pound_scene *scene = &study->scene;
+	const char *in_row = study_row_idle(study, field, place);
+	if (in_row)
+		return in_row;
+	const int oscillator = scene->n_buildings ? -1 : place.element;
 	if (oscillator == 1 && scene->oscillators[1].rigid_wall)
 		return "a rigid wall has no such field";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
 		return "has no effect: there is no contact in this scene";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0)
 		return study_contact_idle(study, fields_name(field));
-	if (strstr(field->pattern, "/law/"))
+	if (strstr(field->pattern, "/law/") && !strstr(field->pattern, "/buildings/"))
 		return law_idle(study, field, oscillator);
 	return NULL;
 }

@@ -16,6 +16,7 @@
 #include "schema/study/field_types.h"
 #include "schema/study/near_name.h"
 #include "schema/study/reader.h"
+#include "schema/study/study_buildings.h"
 #include "schema/study/study_check.h"
 #include "schema/study/study_spectrum.h"
 
@@ -27,7 +28,9 @@ struct block {
 	struct pound_study study;
 	struct pound_input inputs[POUND_INPUTS_MAX];
 	struct pound_sweep sweeps[POUND_SWEEPS_MAX];
-	double numbers[]; /* samples and sweep values; texts follow them */
+	struct pound_building buildings[POUND_BUILDINGS_MAX];
+	struct pound_storey_place places[POUND_PLACES_MAX];
+	double numbers[]; /* samples and sweep values; contacts and texts follow them */
 };
 
 /* ---- objects ---- */
@@ -96,7 +99,8 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 		              (r->excitation || !field->types) &&
 		              fields_used(field, r->kind, r->excitation, r->solver) &&
 		              !(r->study->elsewhere && field->sceneless);
-		if (!needed || cJSON_GetObjectItemCaseSensitive(node, fields_name(field)))
+		if (!needed || cJSON_GetObjectItemCaseSensitive(node, fields_name(field)) ||
+		    (field->instead && cJSON_GetObjectItemCaseSensitive(node, field->instead)))
 			continue;
 		char expected[256];
 		fields_expected(field, expected, sizeof expected);
@@ -189,31 +193,42 @@ static void read_design(struct reader *r, const struct field *field, const cJSON
 
 /* ---- lists ---- */
 
-static void read_oscillator(struct reader *r, const cJSON *node, int i)
+/* Refuses every other member of a rigid wall, with `refused` if it may not be one.
+ *
+ * Returns  value   false: it is no rigid wall, and nothing was read
+ * Test     unit_study_cases
+ */
+bool reader_wall(struct reader *r, const char *pattern, const cJSON *node, const char *refused)
 {
-	struct pound_oscillator *oscillator = &r->study->scene.oscillators[i];
-	// offsets in fields.c are those of the first oscillator
-	char *base = (char *)r->study + (size_t)i * sizeof *oscillator;
-	const cJSON *wall = cJSON_GetObjectItemCaseSensitive(node, "rigid_wall");
-	if (!cJSON_IsTrue(wall)) {
-		reader_object(r, "/scene/oscillators/*", node, base);
-		return;
-	}
-	oscillator->rigid_wall = true;
-	const cJSON *member;
+	const cJSON *wall = cJSON_GetObjectItemCaseSensitive(node, "rigid_wall"), *member;
+	if (!cJSON_IsTrue(wall))
+		return false;
 	cJSON_ArrayForEach(member, node)
 	{
 		size_t length = reader_enter(r, member->string);
 		if (reader_seen(node, member))
 			problems_add(r->problems, r->pointer, "duplicate member");
-		else if (member != wall && !member_field("/scene/oscillators/*", member->string))
-			unknown(r, "/scene/oscillators/*", member->string);
+		else if (member != wall && !member_field(pattern, member->string))
+			unknown(r, pattern, member->string);
 		else if (member != wall)
 			problems_add(r->problems, r->pointer, "is not used by a rigid wall");
-		else if (i == 0)
-			problems_add(r->problems, r->pointer, "only the right oscillator (index 1) may be a rigid wall");
+		else if (refused)
+			problems_add(r->problems, r->pointer, "%s", refused);
 		reader_leave(r, length);
 	}
+	return true;
+}
+
+static void read_oscillator(struct reader *r, const cJSON *node, int i)
+{
+	struct pound_oscillator *oscillator = &r->study->scene.oscillators[i];
+	// offsets in fields.c are those of the first oscillator
+	char *base = (char *)r->study + (size_t)i * sizeof *oscillator;
+	oscillator->rigid_wall =
+	    reader_wall(r, "/scene/oscillators/*", node,
+	                i == 0 ? "only the right oscillator (index 1) may be a rigid wall" : NULL);
+	if (!oscillator->rigid_wall)
+		reader_object(r, "/scene/oscillators/*", node, base);
 }
 
 static void read_oscillators(struct reader *r, const struct field *field, const cJSON *node, char *base)
@@ -246,6 +261,12 @@ static void read_outputs(struct reader *r, const struct field *field, const cJSO
 	r->study->n_outputs = reader_each(r, field, node, read_output);
 }
 
+/* Contacts are read when the scene's contact is known, which they follow: reader_contacts. */
+static void read_later(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)r, (void)field, (void)node, (void)base;
+}
+
 /* ---- any value ---- */
 
 static const struct {
@@ -256,6 +277,12 @@ static const struct {
     {"/scene/oscillators", read_oscillators},
     {"/scene/oscillators/*/law", read_own_law},
     {"/scene/contact", read_contact},
+    {"/scene/buildings", reader_buildings},
+    {"/scene/buildings/*/law", reader_building_law},
+    {"/scene/buildings/*/damping_modes", reader_modes},
+    {"/scene/contacts", read_later},
+    {"/scene/contacts/*/levels", reader_levels},
+    {"/places", reader_places},
     {"/scene/excitation/acceleration_m_s2", read_record},
     {"/inputs", reader_inputs},
     {"/inputs/*/distribution", reader_distribution},
@@ -287,11 +314,13 @@ void reader_value(struct reader *r, const struct field *field, const cJSON *node
 /* Fills a study with what absent members mean; what its excitation does not use is 0. */
 static void defaults(struct pound_study *study, const char *excitation)
 {
+	// whose elements are objects of their own
+	static const char *const elsewhere_kept[] = {"/inputs/",          "/sweep/",          "/ratios/",
+	                                             "/scene/buildings/", "/scene/contacts/", "/places/"};
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		void (*const store)(void *at, double value) = field_types[field->type].store;
-		if (!store || strncmp(field->pattern, "/inputs/", 8) == 0 ||
-		    strncmp(field->pattern, "/sweep/", 7) == 0 || strncmp(field->pattern, "/ratios/", 8) == 0)
+		if (!store || fields_within(field, elsewhere_kept, sizeof elsewhere_kept / sizeof *elsewhere_kept))
 			continue;
 		bool absent = !isnan(field->absent) && fields_used(field, NULL, excitation, NULL);
 		int copies = strncmp(field->pattern, "/scene/oscillators/*/", 21) == 0 ? POUND_OSCILLATORS : 1;
@@ -336,13 +365,25 @@ static void outputs_default(struct pound_study *study)
 	}
 }
 
+/* Contacts that a document of that length has at most: each takes its levels at least. */
+static size_t contacts_room(size_t length)
+{
+	const size_t most = length / strlen("{\"levels\":[1,1]}") + 1;
+	return most < POUND_CONTACTS_MAX ? most : POUND_CONTACTS_MAX;
+}
+
 static struct pound_study *block_create(size_t length)
 {
 	// an element takes two characters at least, and a text is never longer than its spelling
 	size_t numbers = length / 2 + 1;
-	struct block *block = calloc(1, sizeof *block + numbers * sizeof(double) + length + 1);
+	struct block *block =
+	    calloc(1, sizeof *block + numbers * sizeof(double) +
+	                  contacts_room(length) * sizeof *block->study.scene.contacts + length + 1);
 	if (!block)
 		return NULL;
+	block->study.scene.buildings = block->buildings;
+	block->study.scene.contacts = (struct pound_row_contact *)(block->numbers + numbers);
+	block->study.scene.places = block->places;
 	block->study.inputs = block->inputs;
 	block->study.sweeps = block->sweeps;
 	return &block->study;
@@ -377,12 +418,13 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 		return NULL;
 	}
 	struct reader r = {.problems = problems, .study = study, .number = ((struct block *)study)->numbers};
-	r.text = (char *)(r.number + length / 2 + 1);
+	r.text = (char *)(study->scene.contacts + contacts_room(length));
 	foresee(&r, document);
 	defaults(study, r.excitation);
 	if (design && cJSON_IsObject(document) && !cJSON_HasObjectItem(document, "scene"))
 		sceneless(&r);
 	reader_object(&r, "", document, (char *)study);
+	reader_contacts(&r, document);
 	reader_ordinates(&r, document);
 	cJSON_Delete(document);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
@@ -395,6 +437,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 	}
 	if (study->n_outputs == 0 && study->kind != POUND_KIND_FLOOR_SPECTRUM && !study->elsewhere)
 		outputs_default(study);
+	study_places_lay(study);
 	study_spectrum_lay(study);
 	return study;
 }

@@ -46,6 +46,9 @@ double study_steps(
 
 /* The scene of one cell: the study's with that combination of sweep values. */
 void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene);
+/* The same with buildings and contacts of its own in memory  (pound_row_bytes), as study_cell leaves them unvaried. */
+void study_cell_row(const struct pound_study *study, int cell, void *memory, struct pound_scene *scene);
+double study_cell_sweep(const struct pound_study *study, int cell, int sweep); /* the sweep's value there */
 
 /* A varied value as a document has it: a number, the name of a choice, true or false. */
 void study_value(struct writer *writer, const char *name, const char *path, double value);

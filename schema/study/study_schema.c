@@ -44,7 +44,7 @@ static void rules(char *text, size_t size)
 /* The default of a field, if one is known: an absent yield displacement, of 0, is found otherwise. */
 static void absent(struct writer *w, const struct field *field)
 {
-	bool found_otherwise = field->ends == FIELD_OPEN_MIN && field->absent == field->min;
+	bool found_otherwise = field->ends & FIELD_OPEN_MIN && field->absent == field->min;
 	bool element = strchr(fields_name(field), '*') != NULL;
 	if (field_types[field->type].store && !isnan(field->absent) && !found_otherwise && !element)
 		field_write(w, field, "default", field->absent);
@@ -72,14 +72,15 @@ static void property(struct writer *w, const char *name, const struct field *fie
 /* Whether a member must be there in every study that has its object. */
 static bool required(const struct field *field, const char *pattern)
 {
-	return fields_child(field, pattern) && isnan(field->absent) && !field->types &&
+	return fields_child(field, pattern) && isnan(field->absent) && !field->types && !field->instead &&
 	       field->kinds == fields_find(*pattern ? pattern : "/kind")->kinds;
 }
 
 void study_schema_members(struct writer *w, const char *pattern)
 {
 	bool distribution = !strcmp(pattern, "/inputs/*/distribution");
-	bool oscillator = !strcmp(pattern, "/scene/oscillators/*");
+	bool oscillator = !strcmp(pattern, "/scene/oscillators/*"), scene = !strcmp(pattern, "/scene");
+	bool building = !strcmp(pattern, "/scene/buildings/*");
 	int n = 0;
 	writer_text(w, "type", "object");
 	writer_bool(w, "additionalProperties", false);
@@ -94,6 +95,13 @@ void study_schema_members(struct writer *w, const char *pattern)
 		writer_json(w, "anyOf", "[{\"required\": [\"frequency_hz\"]}, {\"required\": [\"rigid_wall\"]}]");
 		return;
 	}
+	if (building)
+		writer_json(
+		    w, "anyOf",
+		    "[{\"required\": [\"frequency_hz\"]}, {\"required\": [\"stiffness_n_m\"]}, {\"required\": "
+		    "[\"rigid_wall\"]}]");
+	if (scene)
+		writer_json(w, "oneOf", "[{\"required\": [\"oscillators\"]}, {\"required\": [\"buildings\"]}]");
 	for (int i = 0; i < fields_count; i++) {
 		if (!required(&fields[i], pattern))
 			continue;

@@ -137,6 +137,11 @@ void study_size_check(const struct pound_study *study, struct problems *problems
 		problems_exceed(problems, pointer, runs * study_steps(study), STUDY_WORK_MAX,
 		                "asks for %.3g steps of the solver in all runs, at most %.0e",
 		                runs * study_steps(study), STUDY_WORK_MAX);
+	const double floors = study->scene.n_buildings ? pound_row_floors(&study->scene) : 0;
+	if (few && floors * runs * study_samples(study) > STUDY_WORK_MAX)
+		problems_exceed(problems, pointer, floors * runs * study_samples(study), STUDY_WORK_MAX,
+		                "asks for %.3g samples of floors in all runs, at most %.0e",
+		                floors * runs * study_samples(study), STUDY_WORK_MAX);
 	if (at_once > STUDY_AT_ONCE_MAX)
 		problems_exceed(
 		    problems, "/sweep", at_once, STUDY_AT_ONCE_MAX,
@@ -177,16 +182,30 @@ double study_steps(const struct pound_study *study)
 	return study_samples(study) * sum / n;
 }
 
-/* The scene of a cell; the last sweep runs fastest.
+double study_cell_sweep(const struct pound_study *study, int cell, int sweep)
+{
+	for (int s = study->n_sweeps - 1; s > sweep; s--)
+		cell /= study->sweeps[s].n_values;
+	return study->sweeps[sweep].values[cell % study->sweeps[sweep].n_values];
+}
+
+/* The scene of a cell; the last sweep runs fastest.  Buildings and contacts are the study's, without what a sweep varies there.
  *
  * Test     unit_study_check: cells_are_the_product_of_the_sweeps_the_last_one_fastest
  */
 void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene)
 {
 	*scene = study->scene;
-	for (int s = study->n_sweeps - 1; s >= 0; s--) {
-		const struct pound_sweep *sweep = &study->sweeps[s];
-		pound_scene_assign(scene, sweep->field, sweep->values[cell % sweep->n_values]);
-		cell /= sweep->n_values;
-	}
+	for (int s = 0; s < study->n_sweeps; s++)
+		if (study->sweeps[s].field.part == POUND_PART_SCENE)
+			pound_scene_assign(scene, study->sweeps[s].field, study_cell_sweep(study, cell, s));
+}
+
+void study_cell_row(const struct pound_study *study, int cell, void *memory, struct pound_scene *scene)
+{
+	study_cell(study, cell, scene);
+	pound_row_own(scene, memory);
+	for (int s = 0; s < study->n_sweeps; s++)
+		if (study->sweeps[s].field.part != POUND_PART_SCENE)
+			pound_scene_assign(scene, study->sweeps[s].field, study_cell_sweep(study, cell, s));
 }

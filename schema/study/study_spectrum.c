@@ -147,9 +147,15 @@ void study_spectrum_lay(struct pound_study *study)
 const char *study_output_name(const struct pound_study *study, int output, char name[STUDY_OUTPUT_SIZE])
 {
 	char digits[WRITER_NUMBER_SIZE];
-	int k = pound_study_ordinate(study, output);
 	if (study->elsewhere)
 		return study->output_names[output];
+	const int k = pound_study_ordinate(study, output), at = pound_study_place(study, output);
+	if (at >= 0) {
+		const struct pound_storey_place *place = &study->scene.places[at];
+		snprintf(name, STUDY_OUTPUT_SIZE, "%s.building_%d.storey_%d",
+		         pound_output_name(study->outputs[output]), place->building, place->storey);
+		return name;
+	}
 	if (k < 0)
 		return pound_output_name(study->outputs[output]);
 	writer_digits(pound_spectrum_frequency(&study->spectrum, k), digits);

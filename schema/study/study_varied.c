@@ -103,8 +103,8 @@ void reader_distribution(struct reader *r, const struct field *field, const cJSO
 /* The field of the scene that a path names if it may vary, else NULL. */
 static const struct field *varying(const char *path)
 {
-	int oscillator;
-	const struct field *field = path ? fields_scene(path, &oscillator) : NULL;
+	struct field_place place;
+	const struct field *field = path ? fields_scene(path, &place) : NULL;
 	return field && !field->fixed && field_types[field->type].number ? field : NULL;
 }
 

@@ -32,6 +32,27 @@ const char study_documents_sensitivity[] =
     " \"outputs\": [\"demand_amplification\", \"impulse\"],\n"
     " \"solver\": {\"method\": \"event\", \"tolerance\": 1e-9}}\n";
 
+const char study_documents_row[] =
+    "{\"kind\": \"sensitivity\", \"scene\": {\n"
+    "  \"buildings\": [\n"
+    "   {\"storeys\": 2, \"mass_kg\": [1e5, 9e4], \"stiffness_n_m\": [4e7, 3e7], \"damping\": \"rayleigh\",\n"
+    "    \"damping_modes\": [1, 2]},\n"
+    "   {\"storeys\": 3, \"mass_kg\": 2e5, \"frequency_hz\": 3, \"stiffness_profile\": [1.5, 1.2, 1], "
+    "\"height_m\": 3.5,\n"
+    "    \"damping\": \"storey\", \"damping_ratio\": 0.02,\n"
+    "    \"law\": {\"type\": \"elastoplastic\", \"hardening_ratio\": 0.1, \"target_demand\": 2, "
+    "\"corrections\": 1}},\n"
+    "   {\"rigid_wall\": true}],\n"
+    "  \"contact\": {\"restitution\": 0.5, \"gap_m\": 0.01},\n"
+    "  \"contacts\": [{\"left_building\": 0, \"levels\": [2, 2.4], \"gap_m\": 0.02}, {\"levels\": [1, 1]},\n"
+    "   {\"left_building\": 1, \"levels\": [3, 1], \"model\": \"kelvin_voigt\", \"stiffness_ratio\": 50,\n"
+    "    \"restitution\": 0.9, \"tension\": false}],\n"
+    "  \"excitation\": {\"signals\": 2}},\n"
+    " \"places\": [{\"building\": 0, \"storey\": 1}, {\"building\": 1, \"storey\": 3}],\n"
+    " \"inputs\": [{\"path\": \"/buildings/0/mass_kg/1\", \"distribution\": {\"type\": \"uniform\", \"min\": "
+    "5e4, \"max\": 2e5}}],\n"
+    " \"outputs\": [\"drift_amplification\", \"impulse\"], \"design\": {\"rows\": 10}}\n";
+
 const char study_documents_response[] =
     "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "
     "2}, {\"frequency_hz\": 3.1}]}}";
@@ -57,6 +78,7 @@ const char *documents_named(const char *name)
 		const char *name, *document;
 	} all[] = {{"sensitivity", study_documents_sensitivity},
 	           {"response", study_documents_response},
+	           {"row", study_documents_row},
 	           {"convergence", study_documents_convergence},
 	           {"floor", study_documents_floor}};
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)

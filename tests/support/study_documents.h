@@ -7,6 +7,7 @@
 
 extern const char
     study_documents_sensitivity[]; /* every member of a sensitivity study but its sweep, all written out */
+extern const char study_documents_row[]; /* a sensitivity study of a row of buildings, with all its members */
 extern const char study_documents_response[]; /* the least response: two frequencies */
 
 extern const char
@@ -14,7 +15,7 @@ extern const char
 
 extern const char study_documents_floor[]; /* a floor spectrum study, every member of it written out */
 
-/* One of these by its name: "sensitivity", "response", "convergence", "floor". */
+/* One of these by its name: "sensitivity", "row", "response", "convergence", "floor". */
 const char *documents_named(const char *name);
 
 /* A copy with the first `from` replaced, which must be there; the caller frees it. */

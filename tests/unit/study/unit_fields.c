@@ -80,16 +80,30 @@ static void every_field_says_what_it_takes(void **state)
 static void a_path_names_one_field_of_the_scene(void **state)
 {
 	(void)state;
-	int oscillator;
-	const struct field *field = fields_scene("/oscillators/1/law/type", &oscillator);
+	struct field_place place;
+	const struct field *field = fields_scene("/oscillators/1/law/type", &place);
 	assert_string_equal(field->pattern, "/scene/oscillators/*/law/type");
-	assert_int_equal(oscillator, 1);
-	field = fields_scene("/oscillators/0", &oscillator);
+	assert_int_equal(place.element, 1);
+	field = fields_scene("/oscillators/0", &place);
 	assert_int_equal(field->type, FIELD_OBJECT);
-	assert_int_equal(oscillator, 0);
-	field = fields_scene("/contact/gap_m", &oscillator);
+	assert_int_equal(place.element, 0);
+	field = fields_scene("/contact/gap_m", &place);
 	assert_string_equal(field->pattern, "/scene/contact/gap_m");
-	assert_int_equal(oscillator, -1);
+	assert_int_equal(place.element, -1);
+	field = fields_scene("/buildings/7/mass_kg/49", &place);
+	assert_string_equal(field->pattern, "/scene/buildings/*/mass_kg");
+	assert_int_equal(place.element, 7);
+	assert_int_equal(place.index, 49);
+	field = fields_scene("/contacts/399/levels/1", &place);
+	assert_string_equal(field->pattern, "/scene/contacts/*/levels/*");
+	assert_int_equal(place.element, 399);
+	assert_int_equal(place.index, 1);
+	static const char *const none[] = {"/buildings/8/mass_kg",        "/buildings/0/mass_kg/50",
+	                                   "/contacts/400/gap_m",         "/contacts/0/levels/2",
+	                                   "/buildings/0/frequency_hz/0", "/buildings/00/mass_kg",
+	                                   "/buildings/0/mass_kg/",       "/buildings/0/mass_kg/0/0"};
+	for (size_t k = 0; k < sizeof none / sizeof none[0]; k++)
+		assert_null(fields_scene(none[k], &place));
 }
 
 static void a_slip_of_the_pen_is_near_and_a_stranger_is_not(void **state)

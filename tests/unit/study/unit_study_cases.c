@@ -227,6 +227,15 @@ static void cover(const struct study_case *of, void *context)
 	covered->invalid[field - fields] |= own;
 }
 
+/* Whether a member of one contact of a row is one of the scene's contact, of the same line of fields.c. */
+static bool of_contact(const struct field *field)
+{
+	char pattern[128];
+	snprintf(pattern, sizeof pattern, "/scene/contact/%s", fields_name(field));
+	return strncmp(field->pattern, "/scene/contacts/*/", strlen("/scene/contacts/*/")) == 0 &&
+	       fields_find(pattern);
+}
+
 static void every_field_has_a_valid_and_an_invalid_case(void **state)
 {
 	struct covered covered = {{0}, {0}};
@@ -236,6 +245,8 @@ static void every_field_has_a_valid_and_an_invalid_case(void **state)
 	for (int f = 0; f < N_FILES; f++)
 		study_cases(files[f], cover, &covered);
 	for (int i = 0; i < fields_count; i++) {
+		if (of_contact(&fields[i]))
+			continue;
 		if (!covered.valid[i])
 			print_error("%s has no valid case\n", fields[i].pattern);
 		if (!covered.invalid[i])

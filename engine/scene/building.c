@@ -1,0 +1,116 @@
+/* building.c - a shear building as masses, springs and dashpots of its storeys.
+ *
+ * Adding a damping form: its function and its row in forms[]. */
+#include "engine/scene/building.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/scene/modes.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* The damping ratio xi in two modes, and about that between them.
+ *
+ *   c_i = 2 xi k_i/(wp + wq)     a0 = 2 xi wp wq/(wp + wq)     one storey: as by stiffness
+ *
+ * Source   Chopra 2017, Dynamics of Structures, Eq. (11.4.11)
+ */
+static void rayleigh(const struct pound_building *building, const double *w, struct pound_storeys *s)
+{
+	const int n = s->n, *modes = building->damping_modes;
+	const double p = w[(modes[0] < n ? modes[0] : n) - 1], q = w[(modes[1] < n ? modes[1] : n) - 1];
+	const double xi = pound_each_of(&building->damping_ratio, 0);
+	s->drag = n == 1 ? 0 : 2 * xi * p * q / (p + q);
+	for (int i = 0; i < n; i++)
+		s->dashpot[i] = 2 * xi * s->stiffness[i] / (n == 1 ? p : p + q);
+}
+
+/* The damping ratio in the first mode, and more in the others as their frequency is higher. */
+static void by_stiffness(const struct pound_building *building, const double *w, struct pound_storeys *s)
+{
+	for (int i = 0; i < s->n; i++)
+		s->dashpot[i] = 2 * pound_each_of(&building->damping_ratio, 0) * s->stiffness[i] / w[0];
+}
+
+/* Every storey as if it were an oscillator of its own: the paper, Figure 5. */
+static void by_storey(const struct pound_building *building, const double *w, struct pound_storeys *s)
+{
+	(void)w;
+	for (int i = 0; i < s->n; i++)
+		s->dashpot[i] = 2 * pound_each_of(&building->damping_ratio, i) * sqrt(s->mass[i] * s->stiffness[i]);
+}
+
+/* The damping ratio in every mode; of one storey a dashpot gives it. */
+static void modal(const struct pound_building *building, const double *w, struct pound_storeys *s)
+{
+	if (s->n == 1)
+		by_stiffness(building, w, s);
+	s->modal = s->n > 1;
+}
+
+static const struct form {
+	const char *name;
+	const char *text; /* one line of documentation */
+	void (*dashpots)(const struct pound_building *building, const double *w, struct pound_storeys *s);
+	bool modes; /* two modes have the damping ratio */
+	bool each;  /* every storey may have a damping ratio of its own */
+} forms[] = {
+    {"rayleigh", "the damping ratio in two modes", rayleigh, true, false},
+    {"stiffness", "proportional to the stiffness: the damping ratio in the first mode", by_stiffness, false,
+     false},
+    {"storey", "of every storey as if it were an oscillator of its own", by_storey, false, true},
+    {"modal", "the damping ratio in every mode", modal, false, false},
+};
+
+const char *pound_damping_name(int row)
+{
+	return row >= 0 && row < (int)(sizeof forms / sizeof forms[0]) ? forms[row].name : NULL;
+}
+
+const char *pound_damping_text(int row)
+{
+	return forms[row].text;
+}
+
+bool pound_damping_takes_modes(int row)
+{
+	return forms[row].modes;
+}
+
+bool pound_damping_takes_each(int row)
+{
+	return forms[row].each;
+}
+
+/* A building as its storeys, from what its document gives.
+ *
+ * Given    building   no rigid wall
+ * Returns  storeys    (building->storeys)
+ *
+ * By frequency the profile is scaled: k_i = profile_i (2 pi f/w_1)^2, w_1 that of the profile.
+ *
+ * Source   the project's design pages, buildings.md 1
+ * Test     unit_building
+ */
+void pound_building_storeys(const struct pound_building *building, struct pound_storeys *storeys)
+{
+	const bool given = building->stiffness.n > 0;
+	double w[POUND_STOREYS_MAX];
+	*storeys = (struct pound_storeys){.n = building->storeys};
+	for (int i = 0; i < storeys->n; i++) {
+		storeys->mass[i] = pound_each_of(&building->mass, i);
+		storeys->stiffness[i] = pound_each_of(given ? &building->stiffness : &building->profile, i);
+	}
+	pound_modes_frequencies(storeys->n, storeys->mass, storeys->stiffness, w);
+	if (!given) {
+		const double wanted = 2 * PI * building->frequency_hz, factor = wanted / w[0];
+		for (int i = 0; i < storeys->n; i++) {
+			storeys->stiffness[i] *= factor * factor;
+			w[i] *= factor;
+		}
+		w[0] = wanted;
+	}
+	storeys->frequency = w[0];
+	forms[building->damping].dashpots(building, w, storeys);
+}

@@ -1,0 +1,20 @@
+/* building.h - a shear building as masses, springs and dashpots of its storeys. */
+#ifndef BUILDING_H
+#define BUILDING_H
+
+#include "engine/study.h"
+
+/* Of the storeys from the ground up, each with the floor above it. */
+struct pound_storeys {
+	int n;
+	double mass[POUND_STOREYS_MAX];      /* [kg] */
+	double stiffness[POUND_STOREYS_MAX]; /* initial [N/m] */
+	double dashpot[POUND_STOREYS_MAX];   /* [N s/m] */
+	double drag;                         /* damping by mass, of every floor [1/s] */
+	double frequency;                    /* of the first mode [rad/s] */
+	bool modal;                          /* the damping is of the modes, not of dashpots */
+};
+
+void pound_building_storeys(const struct pound_building *building, struct pound_storeys *storeys);
+
+#endif

@@ -1,0 +1,134 @@
+/* height_plot.c - story drifts and floor accelerations of a row of buildings over their heights, with and without pounding. */
+#include "schema/figure/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { BUILDINGS_MOST = 8, STOREYS_MOST = 50 };
+
+/* a number of every storey, and how it is drawn */
+struct quantity {
+	const char *list, *with, *without; /* members of a building and of its elements */
+	const char *label, *unit;
+};
+
+static const struct quantity QUANTITIES[] = {
+    {"storeys", "drift_max_m", "drift_max_free_m", "peak story drift", "m"},
+    {"floors", "acceleration_max_m_s2", "acceleration_max_free_m_s2", "peak floor acceleration", "m/s²"},
+};
+
+static const struct key KEYS[] = {
+    {.name = "with pounding", .mark = {.series = 0}, .pen = {.ink = 0, .width = 1.8}, .marked = true},
+    {.name = "without pounding",
+     .mark = {.series = 5, .hollow = true},
+     .pen = {.ink = 5, .width = 1.8, .dash = "6 3"},
+     .marked = true},
+};
+
+static const cJSON *signals_of(const cJSON *result, const cJSON *cell)
+{
+	return plot_member(cell ? cell : result, "signals");
+}
+
+static const cJSON *building_of(const cJSON *signal, int b)
+{
+	return cJSON_GetArrayItem(plot_member(signal, "buildings"), b);
+}
+
+bool plot_has_heights(const cJSON *result)
+{
+	const cJSON *cell = plot_first(plot_member(result, "cells"));
+	return building_of(plot_first(signals_of(result, cell)), 0) != NULL;
+}
+
+/* Mean over the signals of a number of a storey; what is not finite is left out. */
+static double mean_of(const cJSON *signals, int b, const char *list, int i, const char *member)
+{
+	const cJSON *signal;
+	double sum = 0;
+	int n = 0;
+	cJSON_ArrayForEach(signal, signals)
+	{
+		const double value =
+		    plot_number(cJSON_GetArrayItem(plot_member(building_of(signal, b), list), i), member);
+		if (isfinite(value)) {
+			sum += value;
+			n++;
+		}
+	}
+	return n ? sum / n : NAN;
+}
+
+static int storeys_of(const cJSON *signals, int b)
+{
+	const int n = cJSON_GetArraySize(plot_member(building_of(plot_first(signals), b), "storeys"));
+	return n < STOREYS_MOST ? n : STOREYS_MOST;
+}
+
+/* One building: the stories from the ground up, without and with pounding. */
+static void draw_building(struct plot *plot, const cJSON *signals, int b, const struct quantity *quantity,
+                          struct panel *panel)
+{
+	const int n = storeys_of(signals, b);
+	double value[2][STOREYS_MOST], x[STOREYS_MOST], y[STOREYS_MOST];
+	struct range range = {0, 0}, stories = {0.5, n + 0.5};
+	char label[PLOT_TEXT], title[PLOT_TEXT];
+	for (int free = 0; free < 2; free++)
+		for (int i = 0; i < n; i++) {
+			value[free][i] =
+			    mean_of(signals, b, quantity->list, i, free ? quantity->without : quantity->with);
+			range_add(&range, value[free][i]);
+		}
+	snprintf(label, sizeof label, "%s [%s]", quantity->label, quantity->unit);
+	snprintf(title, sizeof title, "building %d", b);
+	panel->title = title;
+	panel->x_label = label;
+	panel->y_label = "story";
+	panel->across = axis_linear(range.high > 0 ? range : (struct range){0, 1});
+	panel->up = axis_linear(stories);
+	panel->up.whole = true;
+	panel_draw(&plot->d, panel);
+	for (int free = 1; free >= 0; free--) {
+		for (int i = 0; i < n; i++) {
+			x[i] = axis_at(&panel->across, value[free][i]);
+			y[i] = axis_at(&panel->up, i + 1);
+		}
+		draw_curve(&plot->d, &KEYS[free].pen, n, x, y);
+		for (int i = 0; i < n; i++) {
+			char text[PLOT_TEXT], number[32];
+			snprintf(text, sizeof text, "story %d, %s: %s %s", i + 1, KEYS[free].name,
+			         draw_number(value[free][i], number), quantity->unit);
+			draw_mark(&plot->d, &(struct mark){.series = KEYS[free].mark.series, .hollow = free, .size = 3.5},
+			          x[i], y[i], text);
+		}
+	}
+}
+
+void plot_heights(struct plot *plot)
+{
+	const cJSON *cell = plot_member(plot->result, "cells") ? plot_cell(plot) : NULL;
+	const cJSON *signals = signals_of(plot->result, cell);
+	char sweep[PLOT_TEXT], number[2][32];
+	int buildings[BUILDINGS_MOST], n = 0;
+	if (*plot->fault)
+		return;
+	for (int b = 0; b < BUILDINGS_MOST; b++)
+		if (storeys_of(signals, b) > 0) // a wall has none
+			buildings[n++] = b;
+	plot_head(plot, "Story drifts and floor accelerations over the height",
+	          cell ? plot_sweep_text(cell, 0, NULL, sweep) : "means over the signals");
+	double top = draw_legend(&plot->d, 2, KEYS, plot->y) + 6;
+	const int columns = panel_columns(&plot->d, n, 230);
+	for (size_t q = 0; q < sizeof QUANTITIES / sizeof QUANTITIES[0]; q++) {
+		for (int k = 0; k < n; k++) {
+			struct panel panel = {.height = 300};
+			panel_place(&plot->d, columns, k, top, &panel);
+			draw_building(plot, signals, buildings[k], &QUANTITIES[q], &panel);
+		}
+		top = plot->d.height + 12;
+	}
+	snprintf(plot->sentence, sizeof plot->sentence,
+	         "Building 0, story 1: mean peak drift %s m with pounding, %s m without.",
+	         draw_number(mean_of(signals, 0, "storeys", 0, "drift_max_m"), number[0]),
+	         draw_number(mean_of(signals, 0, "storeys", 0, "drift_max_free_m"), number[1]));
+}

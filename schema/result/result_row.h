@@ -1,0 +1,16 @@
+/* result_row.h - responses of rows of buildings as members of a result. */
+#ifndef RESULT_ROW_H
+#define RESULT_ROW_H
+
+#include "engine/pound.h"
+#include "schema/json/json_writer.h"
+
+/* One signal; the scene has the buildings of its cell. */
+void result_row_signal(struct writer *w, const struct pound_scene *scene,
+                       const struct pound_row_response *row, int index);
+bool result_row_moves(const struct pound_row_response *row, const struct pound_scene *scene);
+
+/* Members of an output about its place, of all outputs where one of them has one. */
+void result_row_place(struct writer *w, const struct pound_study *study, int output);
+
+#endif
