@@ -32,7 +32,7 @@ struct options {
 	const char *table;   /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
 	const char *status;  /* list: only studies in this state; NULL: all */
 	const char *cursor;  /* list: where the previous page ended; NULL: the newest */
-	const char *samples; /* run: file for every sample, or for the floor's history; NULL: none */
+	const char *samples; /* run: file for every sample, or for the histories; NULL: none */
 	int limit;           /* list: studies on a page; 0: as the server likes */
 	int threads;         /* run */
 	bool wait;           /* submit */

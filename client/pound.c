@@ -97,7 +97,7 @@ static const struct command COMMANDS[] = {
 
 static const struct argp_option OPTIONS[] = {
 	{"threads", 't', "N",      0, "compute with N threads (default: number of cores)", 0},
-	{"samples", 'o', "FILE",   0, "also write every sample, or the floor's history, to FILE (NumPy if it ends in .npy, else CSV)", 0},
+	{"samples", 'o', "FILE",   0, "also write every sample, or the histories, to FILE (NumPy if it ends in .npy, else CSV)", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
 	{"limit",   'l', "N",      0, "at most N studies", 0},

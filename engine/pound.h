@@ -84,14 +84,18 @@ void pound_run_motion(const struct pound_run *run, const struct pound_place *pla
 void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
                              double variance);
 
-/* The left floor at one time, with pounding. */
+/* Both oscillators at one time, with pounding: left, right. */
 struct pound_instant {
-	double time, u, v;   /* [s]; relative to the ground [m], [m/s] */
-	double acceleration; /* absolute [m/s2] */
-	double force;        /* of the contact, > 0 pushes the left body away [N] */
+	double time;                                       /* [s] */
+	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS]; /* relative to the ground [m], [m/s] */
+	double acceleration[POUND_OSCILLATORS];            /* absolute [m/s2] */
+	double force;                                      /* of the contact, > 0 pushes the bodies apart [N] */
+	double gap;    /* clear distance, < 0: overlap; NAN: the scene has no contact [m] */
+	double ground; /* acceleration [m/s2] */
 };
 
-/* The history of one signal of a study of spectra: at its samples, and on both sides of every event.  Runs it once more, in
+/* The history of one signal of a study of spectra: at its samples, on both sides of every event, and between them so often
+ * that straight lines between rows give the response spectrum within 0.5 % (engine/floor/spectra.md).  Runs it once more, in
  * the work space of worker 0. */
 typedef void pound_run_take(void *into, int signal, const struct pound_instant *instant);
 enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into);

@@ -272,7 +272,7 @@ struct pound_spectrum {
 	double min_hz, max_hz;
 	double damping_ratio;            /* [0, 1) */
 	int pulses;                      /* of the idealised train; 0: as many as there are contacts */
-	bool histories;                  /* the floor's history is wanted too */
+	bool histories;                  /* histories are wanted, too */
 	struct pound_storey_place place; /* the floor, of a row of buildings */
 };
 

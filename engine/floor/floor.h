@@ -31,10 +31,18 @@ struct pound_floor_answer {
 enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       struct pound_floor_answer *answer);
 
-/* Hands every row of a task's history to `take`: at the samples, and on both sides of every event. */
+/* Both bodies at one time: left, right. */
 struct pound_floor_instant {
-	double time, u, v, acceleration, push; /* [s], [m], [m/s], [m/s2]; push: the contact's part */
+	double time;                                       /* [s] */
+	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS]; /* relative to the ground [m], [m/s] */
+	double acceleration[POUND_OSCILLATORS];            /* absolute [m/s2] */
+	double gap, gap_rate;                              /* clear distance, < 0: overlap [m], [m/s] */
+	double ground;                                     /* acceleration [m/s2] */
+	double push; /* of the contact: force over the left mass, < 0 pushes away [m/s2] */
 };
+
+/* Hands every row of a task's history to `take`: at the samples, on both sides of every event, and between them as often as
+ * straight lines between rows need. */
 typedef void pound_floor_take(void *into, const struct pound_floor_instant *instant);
 enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       pound_floor_take *take, void *into);

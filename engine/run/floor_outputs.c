@@ -373,23 +373,32 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 /* ---- histories ---- */
 
 /* Where the instants of a signal go, in the units of the study. */
-struct telling {
+struct history {
 	pound_run_take *take;
 	void *into;
 	int signal, exponent;
+	bool contact;
 	double mass;
 };
 
-static void instant_tell(void *of, const struct pound_floor_instant *instant)
+static double history_scaled(const struct history *to, double value)
 {
-	const struct telling *to = of;
-	const struct pound_instant told = {.time = instant->time,
-	                                   .u = ldexp(instant->u, to->exponent),
-	                                   .v = ldexp(instant->v, to->exponent),
-	                                   .acceleration =
-	                                       ldexp(instant->acceleration, to->exponent) + 0.0, // no -0
-	                                   .force = 0 - to->mass * ldexp(instant->push, to->exponent)};
-	to->take(to->into, to->signal, &told);
+	return ldexp(value, to->exponent) + 0.0; // no -0
+}
+
+static void history_take(void *of, const struct pound_floor_instant *instant)
+{
+	const struct history *to = of;
+	struct pound_instant row = {.time = instant->time,
+	                            .force = 0 - to->mass * ldexp(instant->push, to->exponent),
+	                            .gap = to->contact ? history_scaled(to, instant->gap) : NAN,
+	                            .ground = history_scaled(to, instant->ground)};
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		row.u[i] = history_scaled(to, instant->u[i]);
+		row.v[i] = history_scaled(to, instant->v[i]);
+		row.acceleration[i] = history_scaled(to, instant->acceleration[i]);
+	}
+	to->take(to->into, to->signal, &row);
 }
 
 static void response_leave(void *into, const struct pound_outcome *outcome)
@@ -416,8 +425,13 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 	if (status || left)
 		return status ? status : left;
 	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);
-	struct telling to = {take, into, signal, floor.exponent, floor.scene->oscillators[0].mass};
-	const struct pound_floor_ask ask = {
-	    .task = floor.pounding ? floor.pounding : floor.free, .stop = run->stop, .scratch = floor.scratch};
-	return pound_floor_history(run->floors[0]->floor, &ask, instant_tell, &to);
+	const struct pound_task pair = pound_request_pair(run->requests[0], 0);
+	struct history to = {.take = take,
+	                     .into = into,
+	                     .signal = signal,
+	                     .exponent = floor.exponent,
+	                     .contact = floor.scene->contact.present,
+	                     .mass = floor.scene->oscillators[0].mass};
+	const struct pound_floor_ask ask = {.task = &pair, .stop = run->stop, .scratch = floor.scratch};
+	return pound_floor_history(run->floors[0]->floor, &ask, history_take, &to);
 }

@@ -396,17 +396,10 @@ static double free_max(const struct pound_request *request, const struct body_as
 	return body->finished ? request->results[body->march].displacement_max[0] : 0;
 }
 
-/* Asks for the run with pounding, unless the responses without it are the answer. */
-static void ask_pounding(struct pound_request *request, struct ask *ask, struct pound_work *work)
+/* Both bodies of an ask, whose yield displacements are known, and their contact; the ground motion is not set. */
+static struct pound_task pair_task(const struct pound_request *request, const struct ask *ask)
 {
 	struct pound_task task = {0};
-	ask->march = -1;
-	if (!ask->scene.contact.present)
-		return;
-	if (pound_scene_alike(&ask->scene)) {
-		work->moving_alike++;
-		return;
-	}
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		task.bodies[i] = pound_scene_body(&ask->scene, i);
 		task.bodies[i].followed = ask->bodies[i].wanted;
@@ -416,11 +409,27 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		if (linear)
 			task.bodies[i].backbone.hardening = 0;
 	}
+	if (!ask->scene.contact.present)
+		return task;
 	pound_scene_contact(&ask->scene, &task);
-	task.accounted = ask->response;
 	task.gap = ldexp(task.gap, -request->motions[ask->motion].exponent);
 	if (task.gap < negligible(request, ask))
 		task.gap = 0;
+	return task;
+}
+
+/* Asks for the run with pounding, unless the responses without it are the answer. */
+static void ask_pounding(struct pound_request *request, struct ask *ask, struct pound_work *work)
+{
+	ask->march = -1;
+	if (!ask->scene.contact.present)
+		return;
+	if (pound_scene_alike(&ask->scene)) {
+		work->moving_alike++;
+		return;
+	}
+	struct pound_task task = pair_task(request, ask);
+	task.accounted = ask->response;
 	if (task.gap > 0 && free_max(request, &ask->bodies[0]) + free_max(request, &ask->bodies[1]) < task.gap) {
 		work->never_touching++;
 		return;
@@ -672,4 +681,17 @@ struct pound_request_floor pound_request_floor(const struct pound_request *reque
 	                                    .march = march,
 	                                    .exponent = request->motions[a->motion].exponent,
 	                                    .scratch = request->scratch};
+}
+
+/* The two bodies of an ask together; without contact where the answer is the responses without it. */
+struct pound_task pound_request_pair(const struct pound_request *request, int ask)
+{
+	const struct ask *a = &request->asks[ask];
+	const struct pound_motion *m = &request->motions[a->motion];
+	struct pound_task task = a->march < 0 ? pair_task(request, a) : request->tasks[a->march];
+	task.contact = a->march >= 0;
+	task.ground = m->ground;
+	task.n_samples = m->n_samples;
+	task.time_step = m->time_step;
+	return task;
 }

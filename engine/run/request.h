@@ -75,6 +75,8 @@ struct pound_request_floor {
 };
 
 struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask);
+/* The task that follows both bodies of an ask, its motion times 2^-exponent, too. */
+struct pound_task pound_request_pair(const struct pound_request *request, int ask);
 
 /* After pound_request_run, for taking the time: its marches with pounding once more, all its marches if there is none.
  * n: how many. */

@@ -1,4 +1,4 @@
-/* histories.c - the motion of the left floor in time, signal after signal, as CSV and as a NumPy file.
+/* histories.c - the motion of both oscillators in time, signal after signal, as CSV and as a NumPy file.
  *
  * Nothing of it is stored: the signals are run once more, to the same bits. */
 #include <stdio.h>
@@ -6,48 +6,75 @@
 
 #include "schema/result/npy.h"
 #include "schema/result/result_json.h"
+#include "schema/study/study_json.h"
 
-// in the order of struct pound_instant
-static const char *const columns[] = {"time_s", "u_m", "v_m_s", "acceleration_m_s2", "contact_force_n"};
+// clang-format off
+#define COLUMNS(X)                                            \
+	X("time_s",                 instant->time)                \
+	X("u_m",                    instant->u[0])                \
+	X("v_m_s",                  instant->v[0])                \
+	X("acceleration_m_s2",      instant->acceleration[0])     \
+	X("contact_force_n",        instant->force)               \
+	X("u_right_m",              instant->u[1])                \
+	X("v_right_m_s",            instant->v[1])                \
+	X("acceleration_right_m_s2", instant->acceleration[1])    \
+	X("gap_m",                  instant->gap)                 \
+	X("ground_m_s2",            instant->ground)
+// clang-format on
 
-enum { COLUMNS = sizeof columns / sizeof columns[0] };
+#define X(name, value) name,
+static const char *const columns[] = {COLUMNS(X)};
+#undef X
+
+enum {
+	N_COLUMNS = sizeof columns / sizeof columns[0],
+	ROWS_MAX = 16 * STUDY_HISTORIES_MAX, /* rows, twice what most contacts need: 800 MB as CSV */
+};
 
 struct rows {
 	struct writer w;
 	int64_t n;
 };
 
-static void values_of(const struct pound_instant *instant, double values[COLUMNS])
+static void values_of(const struct pound_instant *instant, double values[N_COLUMNS])
 {
-	const double all[COLUMNS] = {instant->time, instant->u, instant->v, instant->acceleration,
-	                             instant->force};
-	for (int j = 0; j < COLUMNS; j++)
+#define X(name, value) value,
+	const double all[N_COLUMNS] = {COLUMNS(X)};
+#undef X
+	for (int j = 0; j < N_COLUMNS; j++)
 		values[j] = all[j];
+}
+
+static void row_count(struct rows *rows)
+{
+	rows->n++;
+	rows->w.failed |= rows->n > ROWS_MAX;
 }
 
 static void line_add(void *into, int signal, const struct pound_instant *instant)
 {
 	struct rows *rows = into;
 	char text[WRITER_NUMBER_SIZE];
-	double values[COLUMNS];
+	double values[N_COLUMNS];
 	values_of(instant, values);
 	writer_raw(&rows->w, text, (size_t)snprintf(text, sizeof text, "%d", signal));
-	for (int j = 0; j < COLUMNS; j++) {
+	for (int j = 0; j < N_COLUMNS; j++) {
 		writer_raw(&rows->w, ",", 1);
 		writer_raw(&rows->w, text, (size_t)writer_digits(values[j], text));
 	}
 	writer_raw(&rows->w, "\r\n", 2);
+	row_count(rows);
 }
 
 static void record_add(void *into, int signal, const struct pound_instant *instant)
 {
 	struct rows *rows = into;
 	const int32_t number = signal;
-	double values[COLUMNS];
+	double values[N_COLUMNS];
 	values_of(instant, values);
 	writer_raw(&rows->w, (const char *)&number, sizeof number);
 	writer_raw(&rows->w, (const char *)values, sizeof values);
-	rows->n++;
+	row_count(rows);
 }
 
 /* Every signal's history; of one that cannot be followed to its end there is what there is, and of a run that is stopped
@@ -63,7 +90,7 @@ static void rows_fill(const struct pound_study *study, struct pound_run *run, po
 /* Histories as CSV.
  *
  * Given    study, run  -         -       a study of spectra; blocks need not be run
- * Returns  value       (length)  -       NULL: out of memory, or the run is stopped
+ * Returns  value       (length)  -       NULL: out of memory or more than ROWS_MAX rows, or the run is stopped
  * Memory   allocates; the caller frees
  *
  * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event, a_run_that_is_stopped_leaves_no_file
@@ -73,7 +100,7 @@ char *histories_to_csv(const struct pound_study *study, struct pound_run *run, s
 	struct rows rows = {0};
 	writer_init(&rows.w);
 	writer_raw(&rows.w, "signal", 6);
-	for (int j = 0; j < COLUMNS; j++) {
+	for (int j = 0; j < N_COLUMNS; j++) {
 		writer_raw(&rows.w, ",", 1);
 		writer_cell(&rows.w, columns[j]);
 	}
@@ -99,7 +126,7 @@ char *histories_to_npy(const struct pound_study *study, struct pound_run *run, s
 	writer_init(&fields);
 	rows_fill(study, run, record_add, &rows);
 	npy_field(&fields, "signal", "", "<i4");
-	for (int j = 0; j < COLUMNS; j++)
+	for (int j = 0; j < N_COLUMNS; j++)
 		npy_field(&fields, columns[j], "", "<f8");
 	char *records = writer_take(&rows.w, &n);
 	bool headed = npy_head(&file, &fields, rows.n);

@@ -324,7 +324,7 @@ const struct field fields[] = {
 	{"/spectrum/pulses", FIELD_COUNT, AT(spectrum.pulses), 0, 0, 1000000, FIELD_CLOSED, "",
 	 .text = "number of pulses in the idealized pulse train; 0: the number of contacts of each signal", FLOORED, WITH_SCENE, NOT_SCENE},
 	{"/histories", FIELD_BOOL, AT(spectrum.histories), 0, 0, 1, FIELD_CLOSED, "",
-	 .text = "true: samples have the time histories of the left floor; at most 2000000 samples over all signals", FLOORED, WITH_SCENE, NOT_SCENE},
+	 .text = "true: samples have the time histories of both oscillators; at most 250000 ground motion samples over all signals", FLOORED, WITH_SCENE, NOT_SCENE},
 
 	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "solver settings to compare with the event solver; at most 100000 runs in all", CONVERGENCE, NOT_SCENE},

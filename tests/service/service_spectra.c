@@ -25,8 +25,8 @@ static char *file_read(const char *path, size_t *length)
 {
 	FILE *file = fopen(path, "rb");
 	assert_non_null(file);
-	char *bytes = malloc(1 << 20);
-	*length = fread(bytes, 1, 1 << 20, file);
+	char *bytes = malloc(1 << 24);
+	*length = fread(bytes, 1, 1 << 24, file);
 	fclose(file);
 	return bytes;
 }

@@ -29,9 +29,11 @@ static int tear_down(void **state)
 	return 0;
 }
 
+enum { ROWS = 20000, COLUMNS = 11 };
+
 struct rows {
 	int n;
-	double values[5000][6];
+	double values[ROWS][COLUMNS];
 };
 
 static struct rows rows;
@@ -39,9 +41,18 @@ static struct rows rows;
 static void row_take(void *into, int signal, const struct pound_instant *instant)
 {
 	struct rows *r = into;
-	const double values[6] = {signal,     instant->time,         instant->u,
-	                          instant->v, instant->acceleration, instant->force};
-	assert_true(r->n < 5000);
+	const double values[COLUMNS] = {signal,
+	                                instant->time,
+	                                instant->u[0],
+	                                instant->v[0],
+	                                instant->acceleration[0],
+	                                instant->force,
+	                                instant->u[1],
+	                                instant->v[1],
+	                                instant->acceleration[1],
+	                                instant->gap,
+	                                instant->ground};
+	assert_true(r->n < ROWS);
 	memcpy(r->values[r->n++], values, sizeof values);
 }
 
@@ -59,14 +70,17 @@ static void a_line_for_every_sample_and_both_sides_of_every_event(void **state)
 	size_t length;
 	char *csv = histories_to_csv(study, run, &length), *at = csv;
 	assert_int_equal(strlen(csv), length);
-	assert_memory_equal(csv, "signal,time_s,u_m,v_m_s,acceleration_m_s2,contact_force_n\r\n", 59);
+	static const char head[] =
+	    "signal,time_s,u_m,v_m_s,acceleration_m_s2,contact_force_n,u_right_m,v_right_m_s,"
+	    "acceleration_right_m_s2,gap_m,ground_m_s2\r\n";
+	assert_memory_equal(csv, head, sizeof head - 1);
 	at = strchr(at, '\n') + 1;
 	rows_take();
 	for (int i = 0; i < rows.n; i++)
-		for (int j = 0; j < 6; j++) {
+		for (int j = 0; j < COLUMNS; j++) {
 			check_near(strtod(at, &at), rows.values[i][j], 0);
-			assert_int_equal(*at, j < 5 ? ',' : '\r');
-			at += j < 5 ? 1 : 2;
+			assert_int_equal(*at, j < COLUMNS - 1 ? ',' : '\r');
+			at += j < COLUMNS - 1 ? 1 : 2;
 		}
 	assert_int_equal(*at, 0);
 	free(csv);
@@ -81,15 +95,15 @@ static void a_numpy_file_holds_the_same_numbers(void **state)
 	size_t head = 12 + (npy[8] | (size_t)npy[9] << 8);
 	assert_int_equal(head % 64, 0);
 	rows_take();
-	assert_int_equal(length - head, (size_t)rows.n * (4 + 5 * 8));
+	assert_int_equal(length - head, (size_t)rows.n * (4 + (COLUMNS - 1) * 8));
 	for (int i = 0; i < rows.n; i++) {
-		const unsigned char *at = npy + head + (size_t)i * 44;
+		const unsigned char *at = npy + head + (size_t)i * (4 + (COLUMNS - 1) * 8);
 		int32_t signal;
-		double values[5];
+		double values[COLUMNS - 1];
 		memcpy(&signal, at, 4);
 		memcpy(values, at + 4, sizeof values);
 		assert_int_equal(signal, (int)rows.values[i][0]);
-		for (int j = 0; j < 5; j++)
+		for (int j = 0; j < COLUMNS - 1; j++)
 			check_near(values[j], rows.values[i][j + 1], 0);
 	}
 	free(npy);
