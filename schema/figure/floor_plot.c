@@ -1,4 +1,4 @@
-/* floor_plot.c - the left floor: `spectra` of a floor_spectrum, `history` of its samples. */
+/* floor_plot.c - of a floor_spectrum: `spectra` of the left floor, `history` of both oscillators. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -177,14 +177,21 @@ bool plot_has_history(const cJSON *result)
 // what is drawn of a history, each in a panel: columns of the samples, those there are
 static const struct series {
 	const char *title, *unit;
+	double height;
 	struct {
 		const char *column, *text;
 	} lines[2];
 } SERIES[] = {
-    {"displacement", "[m]", {{"u_m", "left"}, {"u_right_m", "right"}}},
-    {"contact force", "[N]", {{"contact_force_n", "contact force"}}},
-    {"acceleration of the left floor", "[m/s²]", {{"acceleration_m_s2", "left"}}},
+    {"displacement", "[m]", 200, {{"u_m", "left"}, {"u_right_m", "right"}}},
+    {"clear distance", "[m]", 150, {{"gap_m", "clear distance"}}},
+    {"contact force", "[N]", 150, {{"contact_force_n", "contact force"}}},
+    {"absolute acceleration",
+     "[m/s²]",
+     200,
+     {{"acceleration_m_s2", "left"}, {"acceleration_right_m_s2", "right"}}},
 };
+
+static const char *const RIGHT_DASH = "5 2";
 
 enum { N_SERIES = sizeof SERIES / sizeof SERIES[0], COLUMNS_MOST = 24 };
 
@@ -307,26 +314,31 @@ void plot_history(struct plot *plot)
 	}
 	for (int k = 0; k < table.n; k++)
 		range_add(&times, time[k]);
-	snprintf(more, sizeof more, "ground motion %d", signal);
-	plot_head(plot, "Motion of the left floor, and its impacts", more);
-	double top = plot->y + 4;
+	snprintf(more, sizeof more, "ground motion %d; a tick above the displacement is the begin of a contact",
+	         signal);
+	plot_head(plot, "Motion of both oscillators, and their impacts", more);
+	const bool both = table_column(&table, "u_right_m");
+	const struct key keys[2] = {{.name = "left", .pen = {.width = 1.5}},
+	                            {.name = "right", .pen = {.ink = 1, .width = 1.5, .dash = RIGHT_DASH}}};
+	double top = both ? draw_legend(&plot->d, 2, keys, plot->y) + 8 : plot->y + 4;
 	for (int s = 0; s < N_SERIES; s++) {
 		struct range range = {0, 0};
 		const double *columns[2] = {NULL, NULL};
+		int known = 0;
 		for (int l = 0; l < 2 && SERIES[s].lines[l].column; l++) {
 			columns[l] = table_column(&table, SERIES[s].lines[l].column);
 			for (int k = 0; columns[l] && k < table.n; k++)
-				range_add(&range, columns[l][k]);
+				range_add(&range, columns[l][k]), known += isfinite(columns[l][k]);
 		}
-		if (!columns[0])
+		if (known == 0) // a scene without contact has no clear distance
 			continue;
 		if (s == 0)
 			ups = range;
-		struct panel panel = {.height = 210,
+		struct panel panel = {.height = SERIES[s].height,
 		                      .room = 48,
 		                      .title = SERIES[s].title,
 		                      .y_label = SERIES[s].unit,
-		                      .x_label = "time [s]"};
+		                      .x_label = s == N_SERIES - 1 ? "time [s]" : NULL};
 		panel.across = axis_linear(times);
 		if (panel.across.low < times.low || panel.across.high > times.high) {
 			panel.across.low = times.low,
@@ -338,17 +350,17 @@ void plot_history(struct plot *plot)
 		panel_place(&plot->d, 1, 0, top, &panel);
 		panel_draw(&plot->d, &panel);
 		for (int l = 0; l < 2 && columns[l]; l++)
-			draw_dense(plot, &(struct pen){.ink = (enum ink)l, .width = 1.1, .dash = l ? "5 2" : NULL},
+			draw_dense(plot, &(struct pen){.ink = (enum ink)l, .width = 1.1, .dash = l ? RIGHT_DASH : NULL},
 			           &panel, time, columns[l], table.n);
 		for (int k = 1; s == 0 && force && k < table.n; k++)
 			if (force[k] != 0 && force[k - 1] == 0) {
 				double x = axis_at(&panel.across, time[k]);
-				draw_line(&plot->d, &(struct pen){.ink = 1, .width = 1}, x, panel.top - 5, x, panel.top + 2);
+				draw_line(&plot->d, &(struct pen){.ink = INK_TEXT, .width = 1}, x, panel.top - 5, x,
+				          panel.top + 2);
 				impacts++;
 			}
 		top = plot->d.height + 8;
 	}
-	snprintf(plot->sentence, sizeof plot->sentence,
-	         "%d impacts, each a tick above the displacement, which lies in [%s, %s] m.", impacts,
+	snprintf(plot->sentence, sizeof plot->sentence, "%d impacts; displacements lie in [%s, %s] m.", impacts,
 	         draw_number(ups.low, number[0]), draw_number(ups.high, number[1]));
 }
