@@ -173,8 +173,10 @@ async function table(figure) {
 	return element("div", { class: "wide", tabindex: 0, role: "region", "aria-label": figure.title }, made);
 }
 
+// Of a figure that fills the page with text as large as the page's, which a reader may have doubled.
 function figureWidth() {
-	return Math.max(320, Math.min(1400, Math.floor(($("figures").clientWidth - 20) / 20) * 20));
+	const zoom = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
+	return Math.max(320, Math.min(1400, Math.floor(($("figures").clientWidth - 20) / zoom / 20) * 20));
 }
 
 // One figure with its table and links; parsed as XML, and without its style: the page's own sheet has the colors.

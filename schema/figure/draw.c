@@ -175,6 +175,9 @@ double draw_width(const char *text, double size)
 	return width;
 }
 
+/* Width of a bold text over that of a plain one, in the widest of common fonts (DejaVu Sans). */
+static const double BOLD = 1.12;
+
 /* The bytes of a text that fit in a width beside an ellipsis; all of them if it fits. */
 static size_t fitting(const char *text, double size, double fit)
 {
@@ -192,7 +195,7 @@ void draw_text(struct drawing *drawing, const struct label *label, const char *t
 {
 	double size = label->size > 0 ? label->size : DRAW_TEXT_SIZE;
 	enum ink ink = label->ink ? label->ink : INK_TEXT;
-	size_t whole = strlen(text), n = fitting(text, size, label->fit);
+	size_t whole = strlen(text), n = fitting(text, label->bold ? BOLD * size : size, label->fit);
 	put(drawing, "<text class=\"f%d\" fill=\"%s\"", ink, INKS[ink].light);
 	put_attribute(drawing, "x", label->x);
 	put_attribute(drawing, "y", label->y);
@@ -234,8 +237,9 @@ double draw_prose(struct drawing *drawing, const struct label *label, const char
 {
 	struct label here = *label;
 	double size = label->size > 0 ? label->size : DRAW_TEXT_SIZE;
+	const double wide = label->bold ? BOLD * size : size;
 	for (int line = 1; *text; line++, here.y += 1.35 * size) {
-		size_t n = fitting(text, size, label->fit), whole = strlen(text);
+		size_t n = fitting(text, wide, label->fit), whole = strlen(text);
 		if (line == lines || n == whole) {
 			draw_text(drawing, &here, text);
 			return here.y + 1.35 * size;

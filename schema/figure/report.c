@@ -38,7 +38,10 @@ static const char STYLE[] =
     "@media screen and "
     "(prefers-color-scheme:dark){body{color:#eceff2;background:#14171b}th,td{border-color:#323941}"
     "pre{background:#1d2228}.muted{color:#9aa4af}}"
-    "@media print{details:not([open])>*{display:revert}figure,tr{break-inside:avoid}}";
+    "@media "
+    "print{details:not([open])>*{display:revert}figure,tr{break-inside:avoid}h2{break-after:avoid}pre{white-"
+    "space:pre-wrap}"
+    "figure svg{min-width:0;max-height:85vh}}";
 
 static void put(struct report *report, const char *html)
 {
@@ -178,7 +181,8 @@ static void put_figure(struct report *report, const struct figure_row *row, int 
 	char number[16];
 	struct figure figure;
 	snprintf(number, sizeof number, "%d", cell);
-	const struct figure_choice choice = {.cell = takes_cell(row) && cell > 0 ? number : NULL};
+	// its text is 6 points in print, and no larger than the page's own on a screen
+	const struct figure_choice choice = {.cell = takes_cell(row) && cell > 0 ? number : NULL, .width = "960"};
 	enum figure_status status = figure_of(row, report->result, report->source, &choice, &figure);
 	report->failed = report->failed || status == FIGURE_NOMEM;
 	if (status != FIGURE_DRAWN)
