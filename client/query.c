@@ -18,9 +18,17 @@ static const struct {
 	const char *member;
 	enum { TEXT, NUMBER, YES } type; // YES: "yes" where it is true
 } COLUMNS[] = {
-    {"id", TEXT},          {"status", TEXT},       {"progress", NUMBER},
-    {"runs_done", NUMBER}, {"runs_total", NUMBER}, {"over_estimate", YES},
-    {"created", TEXT},     {"kind", TEXT},         {"name", TEXT},
+    {"id", TEXT},
+    {"status", TEXT},
+    {"progress", NUMBER},
+    {"runs_done", NUMBER},
+    {"runs_total", NUMBER},
+    {"over_estimate", YES},
+    {"queue_position", NUMBER},
+    {"expected_start", TEXT},
+    {"created", TEXT},
+    {"kind", TEXT},
+    {"name", TEXT},
 };
 
 enum { N_COLUMNS = sizeof COLUMNS / sizeof COLUMNS[0] };

@@ -98,9 +98,10 @@ static void write_status(void *to, const struct study_status *study)
 	page->id = study->id;
 	page->eta_s = study_status_eta(study, page->n_workers);
 	snprintf(page->status, sizeof page->status, "%s", study->status);
-	snprintf(page->etag, sizeof page->etag, "\"%s-%" PRId64 "%s\"", study->status, study->runs_done,
+	snprintf(page->etag, sizeof page->etag, "\"%s-%" PRId64 "%s\"", study->status,
+	         study->queue_position ? study->queue_position : study->runs_done,
 	         study_status_over(study->cpu_s, study->cpu_s_estimated) ? "-over" : "");
-	study_status_write(&page->writer, study, page->eta_s);
+	study_status_write(&page->writer, study, page->n_workers);
 }
 
 static void page_init(struct page *page, const struct request *request, int room)

@@ -12,9 +12,15 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 
 #define NOW "CAST(round((julianday('now') - 2440587.5) * 86400000) AS INTEGER)"
 #define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
+// place of a study, and what is left of the CPU time of those before it, when they are taken up in order
+#define QUEUE                                                                                             \
+	"iif(status = 'queued', (SELECT count(*) FROM study AS other WHERE other.status = 'queued' "          \
+	"AND other.id <= study.id), 0), "                                                                     \
+	"iif(status = 'queued', (SELECT total(max(0, other.cpu_s_estimated - other.cpu_s)) FROM study AS other "  \
+	"WHERE other.status = 'running' OR (other.status = 'queued' AND other.id < study.id)), 0) "
 #define STUDY_ROW                                                                                         \
 	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
-	"error, runs, iif(status = 'succeeded', runs, runs_done), cpu_s, cpu_s_estimated FROM study "
+	"error, runs, iif(status = 'succeeded', runs, runs_done), cpu_s, cpu_s_estimated, " QUEUE "FROM study "
 #define QUEUED "SELECT id FROM study WHERE status = 'queued' "
 // what bytes are checked with: where they belong, and themselves; a block belongs to the version that made it, too
 #define DOCUMENT_DIGEST(study, name, content) "digest(" name " || ' ' || " study " || ' ', " content ")"

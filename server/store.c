@@ -328,6 +328,8 @@ static enum store_status studies(struct database *c, sqlite3_stmt *rows, store_s
 		    .runs_done = sqlite3_column_int64(rows, 9),
 		    .cpu_s = sqlite3_column_double(rows, 10),
 		    .cpu_s_estimated = sqlite3_column_double(rows, 11),
+		    .queue_position = sqlite3_column_int64(rows, 12),
+		    .cpu_s_before = sqlite3_column_double(rows, 13),
 		};
 		each(to, &study);
 	}

@@ -83,6 +83,8 @@ function duration(seconds) {
 	return s < 3600 ? `${Math.floor(s / 60)}:${two(s % 60)}` : `${Math.floor(s / 3600)}:${two(Math.floor(s / 60) % 60)}:${two(s % 60)}`;
 }
 
+const queued = study => `${study.queue_position === 1 ? "next" : `number ${study.queue_position}`} in the queue, expected to start ${new Date(study.expected_start).toLocaleTimeString()}`;
+
 // ---- the list ----
 
 function listed(study) {
@@ -93,7 +95,7 @@ function listed(study) {
 		element("td", {}, study.kind.replaceAll("_", " ")),
 		element("td", {}, study.status),
 		element("td", {}, ...(active ? [element("progress", { max: 1, value: study.progress, "aria-label": "progress" }), " "] : []),
-			active ? percent(study) + left : ""),
+			!active ? "" : study.queue_position ? queued(study) : percent(study) + left),
 		element("td", {}, time(study.created)));
 }
 
@@ -264,7 +266,7 @@ function show(study) {
 	$("status").textContent = study.status;
 	$("progress").hidden = ended(study.status);
 	$("progress").value = study.progress;
-	$("left").textContent = running ? `${percent(study)}${study.eta_s === null ? "" : `, ${duration(study.eta_s)} left`}` : "";
+	$("left").textContent = running ? `${percent(study)}${study.eta_s === null ? "" : `, ${duration(study.eta_s)} left`}` : study.queue_position ? queued(study) : "";
 	$("late").hidden = !study.over_estimate;
 	$("late").textContent = study.over_estimate ? `${Math.round(study.cpu_s / study.estimated_cpu_s)} times the estimated CPU time: ${study.cpu_s.toPrecision(2)} s` : "";
 	$("error").hidden = !study.error;

@@ -30,6 +30,8 @@ static const struct member members[] = {
 	{"Status", "cpu_s",       "number",  "",     "CPU time taken so far, by its stored runs [s of one core]"},
 	{"Status", "estimated_cpu_s", "number", "null", "CPU time estimated at submission [s of one core]; null: by a version that did not store it"},
 	{"Status", "over_estimate", "boolean", "",   "whether cpu_s is three times estimated_cpu_s or more"},
+	{"Status", "queue_position", "integer", "null", "place of a queued study in the queue, 1: the next to run"},
+	{"Status", "expected_start", "string", "null", "when a queued study is expected to start, by the estimates of those before it, RFC 3339, UTC"},
 	{"Status", "created",     "string",  "",     "time of submission, RFC 3339, UTC"},
 	{"Status", "started",     "string",  "null", "time of the start of computation, RFC 3339, UTC"},
 	{"Status", "finished",    "string",  "null", "time of the end, RFC 3339, UTC"},
@@ -102,6 +104,7 @@ static const struct {
 	{"Status", "{\"id\": \"0019c5a0b1c2d3e4\", \"name\": \"two towers\", \"kind\": \"sensitivity\", \"status\": \"running\", "
 	           "\"progress\": 0.25, \"runs_done\": 7500, \"runs_total\": 30000, \"eta_s\": 2.5, "
 	           "\"cpu_s\": 0.9, \"estimated_cpu_s\": 3.5, \"over_estimate\": false, "
+	           "\"queue_position\": null, \"expected_start\": null, "
 	           "\"created\": \"2026-01-01T00:00:00.000Z\", \"started\": \"2026-01-01T00:00:00.010Z\", \"finished\": null, "
 	           "\"error\": null, \"links\": {\"self\": \"/v1/studies/0019c5a0b1c2d3e4\", "
 	           "\"request\": \"/v1/studies/0019c5a0b1c2d3e4/request\", \"results\": \"/v1/studies/0019c5a0b1c2d3e4/results\", "

@@ -23,7 +23,7 @@ enum {
 	    50000000, /* samples of ground motion of all cells and samples of one row: 400 MB a worker */
 	STUDY_TRIALS_MAX = 100000,     /* runs of one convergence study */
 	STUDY_FREQUENCIES_MAX = 10000, /* of one spectrum */
-	STUDY_HISTORIES_MAX = 250000, /* samples of all signals whose histories are wanted: some 10 rows each */
+	STUDY_HISTORIES_MAX = 250000,  /* samples of all signals whose histories are wanted: some 10 rows each */
 	STUDY_ORDINATES_MAX = 5000000, /* frequencies of the spectra of all signals */
 	STUDY_STEPS_MAX = 1000000,     /* of a solver in one sample interval */
 	STUDY_HASH_SIZE = 65,          /* characters of a study hash and its zero */

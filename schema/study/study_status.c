@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 /* A few digits of a value, towards zero, so that a part is 1 only when it is all: to print 17 of them takes longer than
  * the rest of the object. */
@@ -15,6 +16,9 @@ static double rounded(double value)
 
 /* How much longer than estimated a study may take before its status says so. */
 static const double OVER = 3;
+
+/* Ten years: no date has more than four digits of years. */
+static const double START_MAX_S = 3.2e8;
 
 bool study_status_over(double cpu_s, double cpu_s_estimated)
 {
@@ -29,19 +33,28 @@ double study_status_eta(const struct study_status *study, int n_workers)
 	return study->cpu_s / (double)study->runs_done * (double)(study->runs - study->runs_done) / n_workers;
 }
 
+/* When a queued study will start, if those before it take as long as estimated: RFC 3339, UTC. */
+static void start_text(const struct study_status *study, int n_workers, char text[static 32])
+{
+	const time_t start = time(NULL) + (time_t)fmin(ceil(study->cpu_s_before / n_workers), START_MAX_S);
+	struct tm utc;
+	strftime(text, 32, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&start, &utc));
+}
+
 /* Writes it.
  *
- * Given    eta_s   s   NAN: unknown
- * Test     service_routes: a_finished_study_has_times_in_order_and_all_runs_done
+ * Test     service_routes: a_finished_study_has_times_in_order_and_all_runs_done;
+ *          service_queue: a_queued_study_has_its_place_in_the_queue
  */
-void study_status_write(struct writer *w, const struct study_status *study, double eta_s)
+void study_status_write(struct writer *w, const struct study_status *study, int n_workers)
 {
 	static const char *const links[][2] = {{"self", ""},
 	                                       {"request", "/request"},
 	                                       {"results", "/results"},
 	                                       {"samples", "/samples"},
 	                                       {"cancel", "/cancel"}};
-	char id[17], link[64];
+	char id[17], link[64], start[32];
+	start_text(study, n_workers, start);
 	snprintf(id, sizeof id, "%016" PRIx64, (uint64_t)study->id);
 	writer_object(w, NULL, WRITER_LINES);
 	writer_text(w, "id", id);
@@ -51,10 +64,12 @@ void study_status_write(struct writer *w, const struct study_status *study, doub
 	writer_number(w, "progress", rounded((double)study->runs_done / (double)study->runs));
 	writer_whole(w, "runs_done", study->runs_done);
 	writer_whole(w, "runs_total", study->runs);
-	writer_number(w, "eta_s", rounded(eta_s));
+	writer_number(w, "eta_s", rounded(study_status_eta(study, n_workers)));
 	writer_number(w, "cpu_s", rounded(study->cpu_s));
 	writer_number(w, "estimated_cpu_s", study->cpu_s_estimated > 0 ? rounded(study->cpu_s_estimated) : NAN);
 	writer_bool(w, "over_estimate", study_status_over(study->cpu_s, study->cpu_s_estimated));
+	writer_number(w, "queue_position", study->queue_position ? (double)study->queue_position : NAN);
+	writer_text(w, "expected_start", study->queue_position ? start : NULL);
 	writer_text(w, "created", study->created);
 	writer_text(w, "started", study->started);
 	writer_text(w, "finished", study->finished);

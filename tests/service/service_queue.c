@@ -1,5 +1,6 @@
 /* Many studies, and studies that are not wanted any more. */
 #include <dirent.h>
+#include <math.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -111,6 +112,41 @@ static void one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_
 	service_stop(service);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'"), 2);
 	free(small);
+}
+
+static void a_queued_study_has_its_place_in_the_queue(void **state)
+{
+	enum { LONG = 2, STUDIES = 8 }; // one for each worker
+	struct service *service = *state;
+	char id[17];
+	for (int i = 0; i < STUDIES; i++) {
+		char *study = service_study(2, 1, i + 1);
+		if (i < LONG)
+			submit_long(service, id);
+		else
+			service_submit(service, study, id);
+		free(study);
+	}
+	struct answer answer = service_get(service, "/v1/studies?limit=%d", STUDIES);
+	struct reading *page = answer_read(&answer);
+	int queued = 0;
+	// the oldest is the next
+	for (int i = STUDIES - 1; i >= 0; i--)
+		if (!strcmp(reading_text(page, "/studies/%d/status", i), "queued")) {
+			check_near(reading_number(page, "/studies/%d/queue_position", i), ++queued, 0);
+			// no study is expected to have started before it was made
+			assert_int_equal(strlen(reading_text(page, "/studies/%d/expected_start", i)),
+			                 strlen("2026-01-01T00:00:00Z"));
+			assert_true(strncmp(reading_text(page, "/studies/%d/expected_start", i),
+			                    reading_text(page, "/studies/%d/created", i),
+			                    strlen("2026-01-01T00:00:00")) >= 0);
+		} else {
+			assert_true(isnan(reading_number(page, "/studies/%d/queue_position", i)));
+			assert_null(reading_text(page, "/studies/%d/expected_start", i));
+		}
+	assert_true(queued > 0 && queued < STUDIES);
+	reading_close(page);
+	answer_free(&answer);
 }
 
 static void a_study_that_runs_for_too_long_has_failed(void **state)
@@ -242,6 +278,7 @@ static void a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_fre
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_cancelled_at_any_moment),
+           SERVED(a_queued_study_has_its_place_in_the_queue),
            SERVED(one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_end),
            cmocka_unit_test(a_study_that_runs_for_too_long_has_failed),
            SERVED(a_cancelled_study_has_times_in_order_though_the_clock_went_back),
