@@ -95,11 +95,10 @@ static void write_status(void *to, const struct study_status *study)
 	page->more = page->room-- <= 0;
 	if (page->more)
 		return;
-	page->id = study->id;
-	page->eta_s = study_status_eta(study, page->n_workers);
+	page->id = study->id, page->eta_s = study_status_eta(study, page->n_workers);
 	snprintf(page->status, sizeof page->status, "%s", study->status);
 	snprintf(page->etag, sizeof page->etag, "\"%s-%" PRId64 "%s\"", study->status,
-	         study->queue_position ? study->queue_position : study->runs_done,
+	         study->runs_done + study->queue_position,
 	         study_status_over(study->cpu_s, study->cpu_s_estimated) ? "-over" : "");
 	study_status_write(&page->writer, study, page->n_workers);
 }
