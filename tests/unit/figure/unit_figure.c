@@ -292,7 +292,8 @@ static void the_golden_figures_have_not_changed(void **state)
 		const char *name, *source;
 	} golden[] = {{"indices", "indices.json"},     {"swept", "swept.json"},    {"given", "given.json"},
 	              {"widths", "given.json"},        {"pairs", "given.json"},    {"spectra", "spectra.json"},
-	              {"responses", "responses.json"}, {"history", "history.csv"}, {"errors", "errors.json"}};
+	              {"responses", "responses.json"}, {"history", "history.csv"}, {"errors", "errors.json"},
+	              {"heights", "heights.json"}};
 	enum { GOLDEN = sizeof golden / sizeof golden[0] };
 	(void)state;
 	assert_null(figure_rows[GOLDEN].name); // every figure has one
