@@ -57,8 +57,9 @@ static const char *const statement_text[] = {
 	[DELETE]   = "DELETE FROM study WHERE id = ?1",
 	[CLAIM]    = "UPDATE study SET status = 'running', attempt = attempt + 1, "
 	              "started = coalesce(started, max(" NOW ", created)) WHERE id = "
-	              "coalesce((" QUEUED "AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "
-	              "(" QUEUED "ORDER BY id LIMIT 1)) AND memory <= ?1 RETURNING id, memory, cpu_s_estimated",
+	              "coalesce((" QUEUED "AND ?2 <> '' AND client <> ?2 AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "
+	              "(" QUEUED "AND attempt - attempt_kept < 3 ORDER BY id LIMIT 1), "
+	              "(" QUEUED "ORDER BY id LIMIT 1)) AND memory <= ?1 RETURNING id, memory, cpu_s_estimated, coalesce(client, '')",
 	[KEEP]     = "INSERT OR REPLACE INTO block (study, number, attempt, runs, cpu_s, wall_s, content, sha256) "
 	              "SELECT id, ?2, attempt, ?3, ?4, ?5, ?6, " BLOCK_DIGEST("?1", "?2", "?6") " "
 	              "FROM study WHERE id = ?1 AND status = 'running'",

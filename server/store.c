@@ -84,7 +84,17 @@ static enum store_status run(struct database *c, sqlite3_stmt *statement, int64_
 	return ended(c, statement, sqlite3_stmt_readonly(statement) ? n : sqlite3_changes(c->db));
 }
 
-/* Runs two changes, both or none; without the second (NULL) the first alone.  A full disk may have rolled back already. */
+/* Ends a transaction: what it comes to, when its changes came to `status`.  A full disk may have rolled back already. */
+static enum store_status committed(struct database *c, enum store_status status)
+{
+	if (status == STORE_OK && run(c, bound(c, COMMIT, ""), NULL) == STORE_FAILED)
+		status = STORE_FAILED;
+	if (!sqlite3_get_autocommit(c->db))
+		run(c, bound(c, ROLLBACK, ""), NULL);
+	return status;
+}
+
+/* Runs two changes, both or none; without the second (NULL) the first alone. */
 static enum store_status both(struct database *c, sqlite3_stmt *first, sqlite3_stmt *second)
 {
 	enum store_status status = run(c, bound(c, BEGIN, ""), NULL);
@@ -92,11 +102,7 @@ static enum store_status both(struct database *c, sqlite3_stmt *first, sqlite3_s
 		status = run(c, first, NULL);
 	if (status == STORE_OK && second)
 		status = run(c, second, NULL);
-	if (status == STORE_OK && run(c, bound(c, COMMIT, ""), NULL) == STORE_FAILED)
-		status = STORE_FAILED;
-	if (!sqlite3_get_autocommit(c->db))
-		run(c, bound(c, ROLLBACK, ""), NULL);
-	return status;
+	return committed(c, status);
 }
 
 /* Any connection that is free, its lock taken. */
@@ -498,19 +504,24 @@ enum store_status store_delete(struct store *store, int64_t id)
 /* Takes the oldest queued study, last those that were taken three times in vain; it is then running, the attempt counted.
  *
  * Given    memory_most   bytes   that it may take; no later one is taken in its place, so that it has its turn
+ *          avoided       token whose studies are taken only when there are no others; "": none
  * Returns  claimed       the study
  * Status   STORE_NONE    nothing is queued, or that takes more
- * Test     service_estimates: two_studies_that_do_not_fit_together_run_one_after_the_other
+ * Test     unit_store: a_study_of_another_token_is_claimed_before_an_older_one,
+ *          service_estimates: two_studies_that_do_not_fit_together_run_one_after_the_other
  */
-enum store_status store_claim(struct store *store, int64_t memory_most, struct store_claimed *claimed)
+enum store_status store_claim(struct store *store, int64_t memory_most, const char *avoided,
+                              struct store_claimed *claimed)
 {
 	int n = 0;
 	struct database *c = writer(store);
-	sqlite3_stmt *row = bound(c, CLAIM, "i", memory_most);
-	for (; sqlite3_step(row) == SQLITE_ROW; n++)
+	sqlite3_stmt *row = bound(c, CLAIM, "it", memory_most, avoided);
+	for (; sqlite3_step(row) == SQLITE_ROW; n++) {
 		*claimed = (struct store_claimed){.id = sqlite3_column_int64(row, 0),
 		                                  .memory = sqlite3_column_int64(row, 1),
 		                                  .cpu_s = sqlite3_column_double(row, 2)};
+		snprintf(claimed->client, sizeof claimed->client, "%s", text(row, 3));
+	}
 	enum store_status status = ended(c, row, n);
 	return changed(store, status == STORE_OK ? claimed->id : 0, status);
 }
@@ -528,19 +539,36 @@ void store_blame(const struct store *store, int64_t id)
 	disk_blame(&store->disk, id);
 }
 
-/* Keeps a finished block of a running study; STORE_NONE: it was canceled or deleted.
+/* Keeps finished blocks of running studies, all in one commit.
  *
- * Test     unit_store: a_block_is_kept_only_while_its_study_runs
+ * Given    blocks   (n) pointers
+ * Returns  blocks   `kept`: false for one whose study was canceled or deleted, which is not stored
+ * Status   STORE_FAILED   none is kept
+ * Test     unit_store: blocks_are_kept_together_and_only_while_their_studies_run
  */
-enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block)
+enum store_status store_keep(struct store *store, struct store_block *const blocks[], int n)
 {
 	struct database *c = writer(store);
-	enum store_status status =
-	    both(c,
-	         bound(c, KEEP, "iiiddb", id, (int64_t)block->number, block->runs, block->cpu_s, block->wall_s,
-	               block->values, (size_t)block->n * sizeof(double)),
-	         bound(c, PROGRESS, "i", id));
-	return changed(store, id, status);
+	enum store_status status = run(c, bound(c, BEGIN, ""), NULL) == STORE_FAILED ? STORE_FAILED : STORE_OK;
+	for (int i = 0; i < n && status != STORE_FAILED; i++) {
+		struct store_block *b = blocks[i];
+		status = run(c,
+		             bound(c, KEEP, "iiiddb", b->study, (int64_t)b->number, b->runs, b->cpu_s, b->wall_s,
+		                   b->values, (size_t)b->n * sizeof(double)),
+		             NULL);
+		b->kept = status == STORE_OK;
+		// the sums of a study, once, after its last block here
+		bool last = b->kept;
+		for (int j = i + 1; j < n; j++)
+			last = last && blocks[j]->study != b->study;
+		if (last)
+			status = run(c, bound(c, PROGRESS, "i", b->study), NULL);
+	}
+	status = committed(c, status == STORE_FAILED ? STORE_FAILED : STORE_OK);
+	if (status == STORE_OK)
+		for (int i = 0; i < n; i++)
+			atomic_fetch_add(&store->changes[blocks[i]->study % CHANGES], blocks[i]->kept);
+	return changed(store, n > 0 ? blocks[0]->study : 0, status);
 }
 
 /* Hands over the kept blocks, by number, as long as they are wanted, without damaged ones and those of another version.

@@ -25,6 +25,8 @@ enum store_status {
 
 struct store;
 
+enum { STORE_CLIENT_SIZE = 32 /* [bytes] of a token's name */ };
+
 /* a new one */
 struct store_study {
 	const char *kind, *name; /* name: NULL if none */
@@ -65,26 +67,31 @@ enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neithe
 enum store_status store_delete(struct store *store, int64_t id);
 
 struct store_claimed {
-	int64_t id, memory; /* estimated [bytes] */
-	double cpu_s;       /* estimated [s] 0: not known */
+	int64_t id, memory;             /* estimated [bytes] */
+	double cpu_s;                   /* estimated [s] 0: not known */
+	char client[STORE_CLIENT_SIZE]; /* name of its token; "": none */
 };
 
-/* The oldest queued study becomes running; STORE_NONE when there is none, or it takes more memory [bytes] than that. */
-enum store_status store_claim(struct store *store, int64_t memory_most, struct store_claimed *claimed);
+/* The oldest queued study becomes running, if there is one of another token than `avoided` that one; STORE_NONE when none is
+ * queued, or it takes more memory [bytes] than that. */
+enum store_status store_claim(struct store *store, int64_t memory_most, const char *avoided,
+                              struct store_claimed *claimed);
 void store_blame(const struct store *store, int64_t id); /* the server crashes with it; signal-safe */
 
 struct store_block {
+	int64_t study;
 	int number;
 	int64_t runs;  /* pounding runs in it */
 	double cpu_s;  /* [s] */
 	double wall_s; /* since its study started, without the time between sessions [s] */
 	int n;
 	const double *values; /* (n) */
+	bool kept;            /* by store_keep: its study was still running */
 };
 typedef bool store_block_reader(void *to, const struct store_block *block); /* false: no more are wanted */
 
-/* keeps a finished block; STORE_NONE: the study is not running any more */
-enum store_status store_keep(struct store *store, int64_t id, const struct store_block *block);
+/* keeps finished blocks in one commit, those whose studies still run */
+enum store_status store_keep(struct store *store, struct store_block *const blocks[], int n);
 /* the stored blocks of this engine version; CORRUPT: others or damaged ones were left out */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *reader, void *to);
 enum store_status store_prune(struct store *store, int64_t id); /* deletes what is left out */

@@ -2,13 +2,17 @@
  *
  *   worker 0  | claim | open | block 0 | block 2 | block 3      | reduce 0 | finish |
  *   worker 1  | wait         | block 1 | block 4 | block 5 | ...| reduce 1 | claim the next study ...
+ *   committer                          | commit 0 1   | commit 4 2 5 3 |
  *
- * 1. A worker takes the next step of the oldest study that has one to give: a block, or when all blocks are done a
- *    reduction.  A finished block is stored before it counts.
- * 2. When no running study has a step to give, one worker claims the oldest queued study, the others wait for it.
- * 3. Who ends the last reduction asks whether the design grows; if so there are more blocks, and reductions again.
- * 4. Who ends the last step of a study turns its result into bytes and stores them.
- * 5. A study that runs for longer than it may is ended by a thread that waits for that.
+ * 1. While fewer than OPEN_MAX studies are open, a worker claims a queued one: the oldest, but of another token than the one
+ *    with the most open studies, if there is one.
+ * 2. A worker takes the next step of one of the open studies: a block, or when all blocks are stored a reduction.  It is the
+ *    study with the least CPU time so far: first among tokens, by the sum over their open studies, then among the studies of
+ *    that token.  So short studies end soon behind long ones.
+ * 3. One thread commits all finished blocks that wait, together; a block counts after its commit.
+ * 4. Who ends the last reduction asks whether the design grows; if so there are more blocks, and reductions again.
+ * 5. Who ends the last step of a study turns its result into bytes and stores them.
+ * 6. A study that runs for longer than it may is ended by a thread that waits for that.
  *
  * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
  * store takes no more blocks and no result. */
@@ -18,7 +22,9 @@
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/queue.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -35,37 +41,52 @@ enum {
 	PATIENCE = 1,         /* [s] between two tries to get memory or to store something */
 	MEMORY_TRIES = 30,    /* before a study fails for want of memory */
 	STOP_NS = 300000000,  /* [ns] for what workers are at, which is stopped, to end */
+	OPEN_MAX = 4,         /* studies whose steps are taken in turn */
+	WAITING_MAX = 256, /* finished blocks that wait for their commit, before their workers wait with them */
 };
 
 struct job {
 	TAILQ_ENTRY(job) others;
 	int64_t id;
+	char client[STORE_CLIENT_SIZE]; /* name of its token, "": there are none */
 	bool opened;
 	struct work_run of;
 	int block, reduction; /* next to hand out */
 	int n_reductions, reductions_left;
-	int n_inside;                  /* workers in one of its steps */
-	bool ended;                    /* gives no more steps, ... */
-	atomic_bool stop;              /* ... and those that are taken stop soon */
-	const char *error;             /* why it failed, NULL if it did not */
+	int n_inside;      /* workers in one of its steps, and finished blocks that are not committed yet */
+	bool ended;        /* gives no more steps, ... */
+	atomic_bool stop;  /* ... and those that are taken stop soon */
+	const char *error; /* why it failed, NULL if it did not */
 	double cpu_s, cpu_s_estimated; /* [s] */
 	bool over;                     /* it is known to have taken much longer than estimated */
 	int64_t memory;                /* estimated [bytes] */
 	double started;                /* [s] monotonic, as if all its sessions were this one */
 };
 
+/* A finished block; its values are in its run. */
+struct finished {
+	struct job *job;
+	struct store_block block;
+};
+
 struct work {
 	struct store *store;
 	pthread_mutex_t lock; /* of all below */
 	pthread_cond_t changed;
+	pthread_cond_t waits; /* for the committer: a block does, or nothing will any more */
+	struct finished waiting[WAITING_MAX], committing[WAITING_MAX];
+	int n_waiting;
 	TAILQ_HEAD(, job) jobs; /* oldest first */
 	bool queued;            /* the store may hold a queued study */
 	bool claiming;          /* a worker is about to bring the next study */
 	bool stopping;
+	bool drained;        /* the workers have ended */
 	double time_max;     /* that a study may run [s] */
 	int64_t memory_left; /* of what studies may take at a time [bytes] */
 	bool watched;        /* there is ... */
 	pthread_t watch;     /* ... a thread that sees to that */
+	bool commits;        /* there is ... */
+	pthread_t committer;
 	int n_started;
 	int n_workers;
 	pthread_t workers[]; /* (n_workers) */
@@ -163,18 +184,18 @@ static void end(struct job *job, const char *error)
 	job->stop = true;
 }
 
-/* Waits when there is no memory, or the disk does not take what there is to store; false: the study or the server stops,
- * so do not try again. */
+/* Waits when there is no memory, or the disk does not take what there is to store; false: the study (NULL: any) or the server
+ * stops, so do not try again. */
 static bool patient(struct work *work, const struct job *job)
 {
 	struct timespec until;
 	clock_gettime(CLOCK_MONOTONIC, &until);
 	until.tv_sec += PATIENCE;
 	pthread_mutex_lock(&work->lock);
-	while (!work->stopping && !job->stop &&
+	while (!work->stopping && !(job && job->stop) &&
 	       pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until) != ETIMEDOUT)
 		;
-	bool stopping = work->stopping || job->stop;
+	bool stopping = work->stopping || (job && job->stop);
 	pthread_mutex_unlock(&work->lock);
 	return !stopping;
 }
@@ -230,20 +251,68 @@ static void settle(struct work *work, struct job *job)
 	drop(work, job);
 }
 
-/* false: the study is not running any more in the store, or the server stops. */
-static bool keep(struct work *work, struct job *job, int block, double cpu_s)
+/* Hands a finished block to the committer; waits while too many wait.  Under the lock. */
+static void hand_over(struct work *work, struct job *job, int block, double cpu_s)
 {
-	struct store_block done = {.number = block,
-	                           .runs = pound_run_block_runs(job->of.run, block),
-	                           .cpu_s = cpu_s,
-	                           .wall_s = seconds(CLOCK_MONOTONIC) - job->started,
-	                           .n = (int)pound_run_block_size(job->of.run, block),
-	                           .values = pound_run_block_values(job->of.run, block)};
+	while (work->n_waiting == WAITING_MAX && !work->stopping && !job->stop)
+		pthread_cond_wait(&work->changed, &work->lock);
+	if (work->n_waiting == WAITING_MAX) {
+		job->n_inside--;
+		settle(work, job);
+		return;
+	}
+	work->waiting[work->n_waiting++] =
+	    (struct finished){job,
+	                      {.study = job->id,
+	                       .number = block,
+	                       .runs = pound_run_block_runs(job->of.run, block),
+	                       .cpu_s = cpu_s,
+	                       .wall_s = seconds(CLOCK_MONOTONIC) - job->started,
+	                       .n = (int)pound_run_block_size(job->of.run, block),
+	                       .values = pound_run_block_values(job->of.run, block)}};
+	pthread_cond_signal(&work->waits);
+}
+
+/* Commits what waits, in one transaction; the lock is free meanwhile. */
+static void commit_waiting(struct work *work)
+{
+	struct finished *done = work->committing;
+	struct store_block *blocks[WAITING_MAX];
 	enum store_status status;
+	const int n = work->n_waiting;
+	memcpy(done, work->waiting, (size_t)n * sizeof done[0]);
+	work->n_waiting = 0;
+	pthread_mutex_unlock(&work->lock);
+	for (int i = 0; i < n; i++)
+		blocks[i] = &done[i].block;
 	do
-		status = store_keep(work->store, job->id, &done);
-	while (status == STORE_FAILED && patient(work, job));
-	return status == STORE_OK;
+		status = store_keep(work->store, blocks, n);
+	while (status == STORE_FAILED && patient(work, NULL));
+	pthread_mutex_lock(&work->lock);
+	for (int i = 0; i < n; i++) {
+		struct job *job = done[i].job;
+		job->n_inside--;
+		if (status == STORE_OK && done[i].block.kept)
+			job->of.stored[done[i].block.number] = true;
+		else
+			end(job, NULL);
+		settle(work, job);
+	}
+	pthread_cond_broadcast(&work->changed);
+}
+
+/* Test     service_power: a_cut_loses_no_block_of_a_commit_that_returned */
+static void *commit(void *of)
+{
+	struct work *work = of;
+	pthread_mutex_lock(&work->lock);
+	while (work->n_waiting > 0 || !work->drained)
+		if (work->n_waiting > 0)
+			commit_waiting(work);
+		else
+			pthread_cond_wait(&work->waits, &work->lock);
+	pthread_mutex_unlock(&work->lock);
+	return NULL;
 }
 
 /* What a crash is due to: the study this thread is at, and where that is noted. */
@@ -272,26 +341,62 @@ struct step {
 	int block, reduction; /* one of them, the other is -1 */
 };
 
+/* The next step of a study, not taken yet; false: it has none to give now. */
+static bool next_step(struct job *job, struct step *step)
+{
+	if (!job->opened || job->ended)
+		return false;
+	int n_blocks = pound_run_blocks(job->of.run);
+	while (job->block < n_blocks && job->of.stored[job->block])
+		job->block++;
+	if (job->block < n_blocks)
+		*step = (struct step){job, job->block, -1};
+	else if (job->reduction < job->n_reductions && !work_left(&job->of))
+		*step = (struct step){job, -1, job->reduction};
+	else
+		return false;
+	return true;
+}
+
+/* CPU time of the open studies of a study's token [s]. */
+static double client_cpu(const struct work *work, const struct job *job)
+{
+	double sum = 0;
+	const struct job *other;
+	TAILQ_FOREACH(other, &work->jobs, others)
+	if (!strcmp(other->client, job->client))
+		sum += other->cpu_s;
+	return sum;
+}
+
+/* Takes the next step, of the study whose turn it is.
+ *
+ * Test     service_queue: short_studies_end_soon_behind_a_long_one
+ */
 static bool take(struct work *work, struct step *step)
 {
+	double client_least = INFINITY, least = INFINITY;
+	struct step next;
 	struct job *job;
 	TAILQ_FOREACH(job, &work->jobs, others)
 	{
-		if (!job->opened || job->ended)
+		if (!next_step(job, &next))
 			continue;
-		int n_blocks = pound_run_blocks(job->of.run);
-		while (job->block < n_blocks && job->of.stored[job->block])
-			job->block++;
-		if (job->block < n_blocks)
-			*step = (struct step){job, job->block++, -1};
-		else if (job->reduction < job->n_reductions && !work_left(&job->of))
-			*step = (struct step){job, -1, job->reduction++};
-		else
+		double of_client = client_cpu(work, job);
+		if (of_client > client_least || (of_client == client_least && job->cpu_s >= least))
 			continue;
-		job->n_inside++;
-		return true;
+		client_least = of_client;
+		least = job->cpu_s;
+		*step = next;
 	}
-	return false;
+	if (least == INFINITY)
+		return false;
+	if (step->block >= 0)
+		step->job->block++;
+	else
+		step->job->reduction++;
+	step->job->n_inside++;
+	return true;
 }
 
 /* Lets the store know when a study has taken much longer than estimated: blocks do by themselves, reductions do not.  Under the
@@ -321,20 +426,21 @@ static void perform(struct work *work, const struct step *step, int worker)
 		                          : pound_run_reduce(job->of.run, step->reduction, worker);
 	while (status == POUND_NOMEM && --tries && patient(work, job));
 	cpu_s = thread_cpu() - cpu_s;
-	bool wanted = status != POUND_OK || step->block < 0 || keep(work, job, step->block, cpu_s);
 	pthread_mutex_lock(&work->lock);
 	job->cpu_s += cpu_s;
 	note_over(work, job);
-	job->n_inside--;
-	if (status != POUND_OK || !wanted)
-		end(job, wanted ? pound_status_error(status) : NULL);
-	else if (step->block >= 0)
-		job->of.stored[step->block] = true;
-	else if (--job->reductions_left == 0 && pound_run_grow(job->of.run)) {
-		job->reduction = 0;
-		job->reductions_left = job->n_reductions;
+	if (status == POUND_OK && step->block >= 0)
+		hand_over(work, job, step->block, cpu_s);
+	else {
+		job->n_inside--;
+		if (status != POUND_OK)
+			end(job, pound_status_error(status));
+		else if (--job->reductions_left == 0 && pound_run_grow(job->of.run)) {
+			job->reduction = 0;
+			job->reductions_left = job->n_reductions;
+		}
+		settle(work, job);
 	}
-	settle(work, job);
 	study_here = 0;
 	pthread_cond_broadcast(&work->changed);
 }
@@ -364,10 +470,41 @@ static void open_run(struct work *work, struct job *job)
 		job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
 }
 
-/* Brings the oldest queued study; the lock is free meanwhile. */
+/* Whether one more study may be open. */
+static bool has_place(const struct work *work)
+{
+	int n = 0;
+	const struct job *job;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	n += !job->ended;
+	return n < OPEN_MAX;
+}
+
+/* The token with the most open studies; "": there are none. */
+static const char *busiest(const struct work *work)
+{
+	const char *client = "";
+	int most = 0;
+	const struct job *job, *other;
+	TAILQ_FOREACH(job, &work->jobs, others)
+	{
+		int n = 0;
+		TAILQ_FOREACH(other, &work->jobs, others)
+		n += !strcmp(other->client, job->client);
+		if (n > most) {
+			most = n;
+			client = job->client;
+		}
+	}
+	return client;
+}
+
+/* Brings a queued study; the lock is free meanwhile. */
 static void claim(struct work *work)
 {
 	struct job *job = calloc(1, sizeof *job);
+	char avoided[STORE_CLIENT_SIZE];
+	snprintf(avoided, sizeof avoided, "%s", busiest(work));
 	work->claiming = true;
 	// before the question, so that a study queued during it is not missed
 	work->queued = false;
@@ -375,7 +512,7 @@ static void claim(struct work *work)
 	const int64_t memory = TAILQ_EMPTY(&work->jobs) ? INT64_MAX : work->memory_left;
 	struct store_claimed claimed = {0};
 	pthread_mutex_unlock(&work->lock);
-	enum store_status status = job ? store_claim(work->store, memory, &claimed) : STORE_FAILED;
+	enum store_status status = job ? store_claim(work->store, memory, avoided, &claimed) : STORE_FAILED;
 	bool again = status == STORE_FAILED && (!job || patient(work, job));
 	pthread_mutex_lock(&work->lock);
 	work->queued = work->queued || again || status == STORE_OK;
@@ -383,6 +520,7 @@ static void claim(struct work *work)
 		job->id = claimed.id;
 		job->cpu_s_estimated = claimed.cpu_s;
 		job->memory = claimed.memory;
+		strcpy(job->client, claimed.client);
 		job->n_inside = 1;
 		work->memory_left -= job->memory;
 		TAILQ_INSERT_TAIL(&work->jobs, job, others);
@@ -399,15 +537,15 @@ static void claim(struct work *work)
 static void *worker(void *of)
 {
 	struct work *work = of;
-	struct step step;
+	struct step step = {0};
 	setpriority(PRIO_PROCESS, (id_t)gettid(), WORKER_NICENESS);
 	pthread_mutex_lock(&work->lock);
 	int number = work->n_started++;
 	while (!work->stopping) {
-		if (take(work, &step))
-			perform(work, &step, number);
-		else if (work->queued && !work->claiming)
+		if (work->queued && !work->claiming && has_place(work))
 			claim(work);
+		else if (take(work, &step))
+			perform(work, &step, number);
 		else
 			pthread_cond_wait(&work->changed, &work->lock);
 	}
@@ -479,9 +617,11 @@ struct work *work_start(struct store *store, int n_workers, double time_max, int
 	TAILQ_INIT(&work->jobs);
 	pthread_mutex_init(&work->lock, NULL);
 	pthread_cond_init(&work->changed, NULL);
+	pthread_cond_init(&work->waits, NULL);
 	work->watched = pthread_create(&work->watch, NULL, watch, work) == 0;
+	work->commits = pthread_create(&work->committer, NULL, commit, work) == 0;
 	int started = 0;
-	while (work->watched && started < n_workers &&
+	while (work->watched && work->commits && started < n_workers &&
 	       pthread_create(&work->workers[started], NULL, worker, work) == 0)
 		started++;
 	if (started == n_workers)
@@ -542,10 +682,17 @@ bool work_stop(struct work *work)
 	for (int w = 0; w < work->n_workers; w++)
 		if (pthread_clockjoin_np(work->workers[w], NULL, CLOCK_MONOTONIC, &until) != 0)
 			return false;
+	pthread_mutex_lock(&work->lock);
+	work->drained = true;
+	pthread_cond_signal(&work->waits);
+	pthread_mutex_unlock(&work->lock);
+	if (work->commits && pthread_clockjoin_np(work->committer, NULL, CLOCK_MONOTONIC, &until) != 0)
+		return false;
 	if (work->watched)
 		pthread_join(work->watch, NULL);
 	while ((job = TAILQ_FIRST(&work->jobs)))
 		drop(work, job);
+	pthread_cond_destroy(&work->waits);
 	pthread_cond_destroy(&work->changed);
 	pthread_mutex_destroy(&work->lock);
 	free(work);

@@ -126,7 +126,7 @@ static void a_study_of_which_ten_servers_are_killed_fails_and_the_others_finish(
 	// a server that is stopped in order has not run it in vain
 	struct store_claimed claimed;
 	for (int i = 0; i < 20; i++) {
-		assert_int_equal(store_claim(store, INT64_MAX, &claimed), STORE_OK);
+		assert_int_equal(store_claim(store, INT64_MAX, "", &claimed), STORE_OK);
 		store_close(store);
 		store = store_open(service->database);
 		assert_non_null(store);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "schema/json/json_pointer.h"
@@ -10,6 +11,13 @@
 
 /* a study that takes long enough to be asked about while it runs */
 enum { ROWS = SERVICE_ROWS, SIGNALS = 5 };
+
+static double seconds(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 static int ask_status(const struct service *service, const char *method, const char *id, const char *rest)
 {
@@ -206,6 +214,43 @@ static void a_study_can_be_deleted_at_any_moment(void **state)
 	assert_int_equal(service_number(service, "SELECT count(*) FROM block"), 0);
 }
 
+static void short_studies_end_soon_behind_a_long_one(void **state)
+{
+	enum { SHORT = 3, LONG_ROWS = 6 * SERVICE_ROWS };
+	struct service *service = *state;
+	char long_id[17], ids[SHORT][17], *long_study = service_study(LONG_ROWS, SIGNALS, 1);
+	struct service_bytes bytes;
+	service_submit(service, long_study, long_id);
+	assert_true(service_wait(service, long_id, "running", 1));
+	double start = seconds();
+	for (int i = 0; i < SHORT; i++) {
+		char *study = service_study(10, SIGNALS, i);
+		service_submit(service, study, ids[i]);
+		free(study);
+	}
+	for (int i = 0; i < SHORT; i++)
+		assert_true(service_wait(service, ids[i], "succeeded", 0));
+	double short_s = seconds() - start;
+	struct answer answer = service_get(service, "/v1/studies/%s", long_id);
+	struct reading *status = answer_read(&answer);
+	assert_string_equal(reading_text(status, "/status"), "running");
+	reading_close(status);
+	answer_free(&answer);
+	assert_true(service_wait(service, long_id, "succeeded", 0));
+	check_report("three short studies behind a long one of %.1f s end after %.2f s", seconds() - start, short_s);
+	// the order in which studies get their turns changes no byte
+	for (int i = 0; i <= SHORT; i++) {
+		char *study = i < SHORT ? service_study(10, SIGNALS, i) : strdup(long_study);
+		struct service_bytes alone = service_uninterrupted(study, 1);
+		bytes = service_bytes(service, i < SHORT ? ids[i] : long_id);
+		service_bytes_compare(&bytes, &alone);
+		free(alone.result);
+		free(alone.samples);
+		free(study);
+	}
+	free(long_study);
+}
+
 /* Threads of a process that are nicer than its first one, as workers are, and have had at least `least` seconds of a core. */
 static int nice_threads(pid_t pid, double least)
 {
@@ -283,4 +328,5 @@ CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_
            cmocka_unit_test(a_study_that_runs_for_too_long_has_failed),
            SERVED(a_cancelled_study_has_times_in_order_though_the_clock_went_back),
            SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study),
+           SERVED(short_studies_end_soon_behind_a_long_one),
            SERVED(a_full_disk_refuses_studies_and_holds_those_that_run_until_it_is_free))

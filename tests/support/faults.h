@@ -28,6 +28,7 @@ struct faults {
 	atomic_long files_opened; /* any */
 	atomic_bool records;      /* writes go to FOLDER/record as well */
 	atomic_bool normal;       /* connections are changed to synchronous=NORMAL after the server has looked */
+	atomic_int sync_ms;       /* a sync takes so much longer [ms] */
 	atomic_long clock_s;      /* the wall clock is so far off [s] */
 };
 

@@ -147,6 +147,8 @@ static int synced(int file, long call)
 	int kind = kind_at(file);
 	if (kind && fails(faults->sync_fails))
 		return -1;
+	if (kind && faults->sync_ms)
+		usleep(1000 * (useconds_t)faults->sync_ms);
 	int done = (int)syscall(call, file);
 	if (kind && done == 0)
 		note(FAULTS_SYNC, kind, 0, NULL, 0);

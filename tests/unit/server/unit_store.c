@@ -16,7 +16,7 @@
 static enum store_status claim(struct store *store, int64_t *id)
 {
 	struct store_claimed claimed = {0};
-	enum store_status status = store_claim(store, INT64_MAX, &claimed);
+	enum store_status status = store_claim(store, INT64_MAX, "", &claimed);
 	*id = status == STORE_OK ? claimed.id : *id;
 	return status;
 }
@@ -57,6 +57,19 @@ static void name_keep(void *to, const struct study_status *study)
 	snprintf(to, 128, "%s %s", study->name, study->status);
 }
 
+static void runs_keep(void *to, const struct study_status *study)
+{
+	*(int64_t *)to = study->runs_done;
+}
+
+/* Whether a block is kept. */
+static bool keep(struct store *store, int64_t id, const struct store_block *block)
+{
+	struct store_block mine = *block, *blocks[] = {&mine};
+	mine.study = id;
+	return store_keep(store, blocks, 1) == STORE_OK && mine.kept;
+}
+
 /* The server takes a study, keeps a block of it or none, crashes, and starts again. */
 static void crashed(void **state, int64_t id, const struct store_block *block)
 {
@@ -68,7 +81,7 @@ static void crashed(void **state, int64_t id, const struct store_block *block)
 		struct store *store = store_open(path);
 		if (!store || claim(store, &claimed) != STORE_OK || claimed != id)
 			_exit(1);
-		if (block && store_keep(store, id, block) != STORE_OK)
+		if (block && !keep(store, id, block))
 			_exit(1);
 		store_blame(store, id);
 		_exit(0);
@@ -116,18 +129,52 @@ static void a_study_finishes_once(void **state)
 	free(result);
 }
 
-static void a_block_is_kept_only_while_its_study_runs(void **state)
+static void a_study_of_another_token_is_claimed_before_an_older_one(void **state)
+{
+	int64_t ids[3];
+	for (int i = 0; i < 3; i++) {
+		const struct store_study study = {
+		    .kind = "response", .runs = 5, .hash = "hash", .client = i < 2 ? "first" : "second"};
+		assert_int_equal(store_submit(*state, &study, "{}", 2, &ids[i]), STORE_OK);
+	}
+	struct store_claimed claimed;
+	static const char *const avoided[] = {"", "first", "first"};
+	static const int expected[] = {0, 2, 1};
+	for (int i = 0; i < 3; i++) {
+		assert_int_equal(store_claim(*state, INT64_MAX, avoided[i], &claimed), STORE_OK);
+		assert_true(claimed.id == ids[expected[i]]);
+		assert_string_equal(claimed.client, expected[i] < 2 ? "first" : "second");
+	}
+	assert_int_equal(store_claim(*state, INT64_MAX, "first", &claimed), STORE_NONE);
+}
+
+static void blocks_are_kept_together_and_only_while_their_studies_run(void **state)
 {
 	const double values[] = {1, 2, 3};
 	const struct store_block block = {.number = 0, .runs = 5, .cpu_s = 0.5, .n = 3, .values = values};
-	int64_t id = submitted(*state, "a");
-	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+	int64_t id = submitted(*state, "a"), other = submitted(*state, "b"), sum = 0;
+	assert_false(keep(*state, id, &block));
 	assert_int_equal(claim(*state, &id), STORE_OK);
-	assert_int_equal(store_keep(*state, id, &block), STORE_OK);
+	assert_true(keep(*state, id, &block));
+	// of two studies in turn, one of which does not run
+	struct store_block mixed[6], *blocks[6];
+	for (int i = 0; i < 6; i++) {
+		mixed[i] = block;
+		mixed[i].study = i % 2 ? other : id;
+		mixed[i].number = i;
+		blocks[i] = &mixed[i];
+	}
+	assert_int_equal(store_keep(*state, blocks, 6), STORE_OK);
+	for (int i = 0; i < 6; i++)
+		assert_int_equal(mixed[i].kept, i % 2 == 0);
+	assert_int_equal(store_study(*state, id, runs_keep, &sum), STORE_OK);
+	assert_int_equal(sum, 3 * 5);
+	assert_int_equal(store_study(*state, other, runs_keep, &sum), STORE_OK);
+	assert_int_equal(sum, 0);
 	assert_int_equal(store_cancel(*state, id), STORE_OK);
-	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+	assert_false(keep(*state, id, &block));
 	assert_int_equal(store_delete(*state, id), STORE_OK);
-	assert_int_equal(store_keep(*state, id, &block), STORE_NONE);
+	assert_false(keep(*state, id, &block));
 }
 
 static void a_failed_study_says_why(void **state)
@@ -436,9 +483,10 @@ CHECK_MAIN(STORED(a_key_stands_for_one_study), STORED(keys_of_every_version_stan
            STORED(a_study_taken_three_times_in_vain_lets_the_others_go_first),
            STORED(only_crashes_that_follow_each_other_without_a_block_make_a_poison),
            STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
-           STORED(a_study_finishes_once), STORED(a_block_is_kept_only_while_its_study_runs),
-           STORED(a_failed_study_says_why), STORED(names_are_bytes_and_never_sql),
-           STORED(a_store_in_use_is_not_opened_again), STORED(a_store_in_use_is_not_opened_by_another_name),
+           STORED(a_study_finishes_once), STORED(a_study_of_another_token_is_claimed_before_an_older_one),
+           STORED(blocks_are_kept_together_and_only_while_their_studies_run), STORED(a_failed_study_says_why),
+           STORED(names_are_bytes_and_never_sql), STORED(a_store_in_use_is_not_opened_again),
+           STORED(a_store_in_use_is_not_opened_by_another_name),
            STORED(a_link_to_no_database_yet_makes_it_where_it_leads),
            STORED(a_store_whose_server_was_just_killed_is_opened),
            STORED(a_running_study_is_queued_again_when_the_store_opens),
