@@ -21,6 +21,7 @@
 #include "server/http.h"
 #include "server/pages.h"
 #include "server/store.h"
+#include "server/stored_run.h"
 #include "server/token.h"
 #include "server/workers.h"
 
@@ -322,7 +323,7 @@ static bool second(const struct request *request, const struct format formats[2]
 }
 
 /* Why the run of a study cannot be made: not now, or never, for its document is gone or damaged, or not for this version. */
-static struct reply unopened(struct request *request, const struct work_run *opened, const char *error)
+static struct reply unopened(struct request *request, const struct stored_run *opened, const char *error)
 {
 	if (opened->passing)
 		return problem(API_UNAVAILABLE, error);
@@ -336,17 +337,17 @@ static struct reply unopened(struct request *request, const struct work_run *ope
 /* The run of a study of which an answer is computed, which ends when nobody waits for that any more: what is replied then is
  * not sent.
  *
- * Returns  value  NULL, or why it cannot be made; closed by work_close in either case
+ * Returns  value  NULL, or why it cannot be made; closed by stored_run_close in either case
  */
-static const char *answer_open(const struct request *request, struct work_run *opened)
+static const char *answer_open(const struct request *request, struct stored_run *opened)
 {
-	return work_open(request->server->store, request->id, 1, request->unwanted, opened);
+	return stored_run_open(request->server->store, request->id, 1, request->unwanted, opened);
 }
 
 /* The result of the rows that are stored whole; an unfinished study is looked at again after a time [s]. */
 static struct reply so_far(struct request *request, int retry_after, int *rows)
 {
-	struct work_run opened;
+	struct stored_run opened;
 	struct reply reply;
 	const char *error = answer_open(request, &opened);
 	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
@@ -372,7 +373,7 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 		                                         "study is not finished yet");
 		reply.retry_after = retry_after;
 	}
-	work_close(&opened);
+	stored_run_close(&opened);
 	return reply;
 }
 
@@ -466,7 +467,7 @@ static struct reply samples(struct request *request)
 	bool npy = second(request, formats, NULL, 0, &reply);
 	if (http_known(request, reply.etag) && sampled(request, ours))
 		return reply;
-	struct work_run opened;
+	struct stored_run opened;
 	const char *error = answer_open(request, &opened);
 	if (error)
 		reply = unopened(request, &opened, error);
@@ -476,7 +477,7 @@ static struct reply samples(struct request *request)
 		                          "submit it again");
 	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
 		pound_run_rows_take(opened.run, (int)rows);
-		if (work_left(&opened) > 0)
+		if (stored_run_left(&opened) > 0)
 			reply = problem(API_CORRUPT, "stored blocks are damaged");
 		else
 			reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
@@ -485,7 +486,7 @@ static struct reply samples(struct request *request)
 	else
 		reply =
 		    problem(API_CONFLICT, "only a sensitivity study has samples, and floor spectra with histories");
-	work_close(&opened);
+	stored_run_close(&opened);
 	return reply.body ? reply : no_memory();
 }
 
@@ -517,12 +518,12 @@ static struct reply figures(struct request *request)
 /* The histories of a study as CSV, computed again; NULL: it has none, or they cannot be made. */
 static char *histories(const struct request *request, size_t *length)
 {
-	struct work_run opened;
+	struct stored_run opened;
 	const char *error = answer_open(request, &opened);
 	char *csv = !error && opened.study->spectrum.histories
 	                ? histories_to_csv(opened.study, opened.run, length)
 	                : NULL;
-	work_close(&opened);
+	stored_run_close(&opened);
 	return csv;
 }
 

@@ -17,6 +17,7 @@
  * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
  * store takes no more blocks and no result. */
 #include "server/workers.h"
+#include "server/stored_run.h"
 
 #include <errno.h>
 #include <math.h>
@@ -30,9 +31,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "schema/json/problems.h"
 #include "schema/result/result_json.h"
-#include "schema/study/study_json.h"
 #include "schema/study/study_status.h"
 #include "server/log.h"
 
@@ -50,7 +49,7 @@ struct job {
 	int64_t id;
 	char client[STORE_CLIENT_SIZE]; /* name of its token, "": there are none */
 	bool opened;
-	struct work_run of;
+	struct stored_run of;
 	int block, reduction; /* next to hand out */
 	int n_reductions, reductions_left;
 	int n_inside;      /* workers in one of its steps, and finished blocks that are not committed yet */
@@ -97,82 +96,6 @@ static double seconds(clockid_t clock)
 	struct timespec now;
 	clock_gettime(clock, &now);
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static double thread_cpu(void)
-{
-	return seconds(CLOCK_THREAD_CPUTIME_ID);
-}
-
-static bool restore(void *to, const struct store_block *block)
-{
-	struct work_run *opened = to;
-	bool goes_on = !pound_run_stopped(opened->run);
-	if (block->number >= pound_run_blocks_most(opened->run) ||
-	    (size_t)block->n != pound_run_block_size(opened->run, block->number))
-		return goes_on;
-	pound_run_block_restore(opened->run, block->number, block->values);
-	opened->stored[block->number] = true;
-	opened->cpu_s += block->cpu_s;
-	opened->wall_s = block->wall_s > opened->wall_s ? block->wall_s : opened->wall_s;
-	return goes_on;
-}
-
-/* Makes the run of a stored study, with the blocks that are stored; without some of these once it is stopped.
- *
- * Given    id          of the study
- *          n_workers   that will run its blocks
- * Returns  opened      closed by work_close, even after a failure
- *          value       NULL, or why it failed
- * Memory   allocates
- * Test     service_resume: a_killed_study_goes_on_to_the_same_bytes_without_running_stored_blocks_again
- */
-const char *work_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
-                      struct work_run *opened)
-{
-	char *request = NULL;
-	size_t length = 0;
-	*opened = (struct work_run){0};
-	enum store_status found = store_document(store, id, "request", &request, &length);
-	opened->passing = found == STORE_FAILED;
-	if (found != STORE_OK)
-		return "the stored study could not be read";
-	struct problems problems;
-	opened->study = study_from_json(request, length, &problems);
-	free(request);
-	if (!opened->study && problems.status != PROBLEMS_NOMEM)
-		return "this version does not accept the study";
-	opened->passing = true;
-	opened->run = opened->study ? pound_run_create_by(opened->study, n_workers, stop) : NULL;
-	if (!opened->run)
-		return "out of memory";
-	pound_run_clock(opened->run, thread_cpu);
-	pound_run_stop_by(opened->run, stop);
-	opened->stored = calloc((size_t)pound_run_blocks_most(opened->run), sizeof *opened->stored);
-	if (!opened->stored)
-		return "out of memory";
-	found = store_blocks(store, id, restore, opened);
-	opened->leftovers = found == STORE_CORRUPT;
-	return found == STORE_FAILED ? "the stored blocks could not be read" : NULL;
-}
-
-/* Blocks that are not stored, of the rows in hand. */
-int work_left(const struct work_run *opened)
-{
-	int n = 0;
-	for (int block = pound_run_blocks(opened->run) - 1; block >= 0; block--)
-		n += !opened->stored[block];
-	return n;
-}
-
-/* Frees what work_open made. */
-void work_close(struct work_run *opened)
-{
-	if (opened->run)
-		pound_run_free(opened->run);
-	if (opened->study)
-		study_free(opened->study);
-	free(opened->stored);
 }
 
 /* No more steps of this study; those that run stop soon. */
@@ -229,7 +152,7 @@ static void finish(struct work *work, struct job *job)
 static void drop(struct work *work, struct job *job)
 {
 	TAILQ_REMOVE(&work->jobs, job, others);
-	work_close(&job->of);
+	stored_run_close(&job->of);
 	work->memory_left += job->memory;
 	work->queued = true; // the next may have waited for that
 	pthread_cond_broadcast(&work->changed);
@@ -239,7 +162,7 @@ static void drop(struct work *work, struct job *job)
 /* What is to do when a worker has left a study, or it was ended: under the lock, which finishing lets go. */
 static void settle(struct work *work, struct job *job)
 {
-	if (job->n_inside || (!job->ended && (job->reductions_left || work_left(&job->of))))
+	if (job->n_inside || (!job->ended && (job->reductions_left || stored_run_left(&job->of))))
 		return;
 	if (!job->ended || job->error) {
 		job->ended = true;
@@ -351,7 +274,7 @@ static bool next_step(struct job *job, struct step *step)
 		job->block++;
 	if (job->block < n_blocks)
 		*step = (struct step){job, job->block, -1};
-	else if (job->reduction < job->n_reductions && !work_left(&job->of))
+	else if (job->reduction < job->n_reductions && !stored_run_left(&job->of))
 		*step = (struct step){job, -1, job->reduction};
 	else
 		return false;
@@ -417,7 +340,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 {
 	struct job *job = step->job;
 	study_here = job->id;
-	double cpu_s = thread_cpu();
+	double cpu_s = stored_run_clock();
 	pthread_mutex_unlock(&work->lock);
 	enum pound_status status;
 	int tries = MEMORY_TRIES;
@@ -425,7 +348,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 		status = step->block >= 0 ? pound_run_block(job->of.run, step->block, worker)
 		                          : pound_run_reduce(job->of.run, step->reduction, worker);
 	while (status == POUND_NOMEM && --tries && patient(work, job));
-	cpu_s = thread_cpu() - cpu_s;
+	cpu_s = stored_run_clock() - cpu_s;
 	pthread_mutex_lock(&work->lock);
 	job->cpu_s += cpu_s;
 	note_over(work, job);
@@ -448,14 +371,14 @@ static void perform(struct work *work, const struct step *step, int worker)
 /* Makes the run of a claimed study, waiting for memory or the disk; the lock is free meanwhile. */
 static void open_run(struct work *work, struct job *job)
 {
-	struct work_run opened;
+	struct stored_run opened;
 	const char *error;
 	int tries = MEMORY_TRIES;
 	pthread_mutex_unlock(&work->lock);
 	study_here = job->id;
-	while ((error = work_open(work->store, job->id, work->n_workers, &job->stop, &opened)) &&
+	while ((error = stored_run_open(work->store, job->id, work->n_workers, &job->stop, &opened)) &&
 	       opened.passing && --tries && patient(work, job))
-		work_close(&opened);
+		stored_run_close(&opened);
 	// they would count as done; where that fails they still do, until they are run again
 	if (!error && opened.leftovers)
 		store_prune(work->store, job->id);

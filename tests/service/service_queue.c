@@ -237,7 +237,8 @@ static void short_studies_end_soon_behind_a_long_one(void **state)
 	reading_close(status);
 	answer_free(&answer);
 	assert_true(service_wait(service, long_id, "succeeded", 0));
-	check_report("three short studies behind a long one of %.1f s end after %.2f s", seconds() - start, short_s);
+	check_report("three short studies behind a long one of %.1f s end after %.2f s", seconds() - start,
+	             short_s);
 	// the order in which studies get their turns changes no byte
 	for (int i = 0; i <= SHORT; i++) {
 		char *study = i < SHORT ? service_study(10, SIGNALS, i) : strdup(long_study);
