@@ -335,10 +335,7 @@ static struct reply unopened(struct request *request, const struct stored_run *o
 }
 
 /* The run of a study of which an answer is computed, which ends when nobody waits for that any more: what is replied then is
- * not sent.
- *
- * Returns  value  NULL, or why it cannot be made; closed by stored_run_close in either case
- */
+ * not sent.  Returns NULL, or why it cannot be made; closed by stored_run_close in either case. */
 static const char *answer_open(const struct request *request, struct stored_run *opened)
 {
 	return stored_run_open(request->server->store, request->id, 1, request->unwanted, opened);
