@@ -39,11 +39,23 @@ struct options {
 	bool names;          /* example, plot */
 	bool partial;        /* results, plot: of the rows so far, while the study runs */
 	struct figure_choice choice; /* plot */
+	struct {
+		const char *model;       /* URL of its server */
+		const char *name;        /* there; NULL: the first */
+		const char *outputs;     /* names between commas; NULL: y1, y2, ... */
+		const char *config;      /* JSON object for the model; NULL: {} */
+		const char *seed_member; /* of config, which is the number of a run; NULL: none */
+		const char *journal;     /* file; NULL: none */
+		int jobs;                /* requests at a time */
+		int replicates;          /* runs of a sample; 0: one */
+		int timeout;             /* of a request [s]; 0: none */
+	} evaluate;
 };
 
 enum outcome run_study(const struct options *options);
 enum outcome model_design(const struct options *options);
 enum outcome model_indexes(const struct options *options);
+enum outcome evaluate_model(const struct options *options);
 enum outcome submit_study(const struct options *options);
 enum outcome query_status(const struct options *options);
 enum outcome query_wait(const struct options *options);

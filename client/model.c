@@ -1,4 +1,5 @@
 /* external_model.c - a model that is run elsewhere: `pound design` prints where, `pound indices` reads what came out. */
+#include "client/model.h"
 #include "client/command.h"
 #include "client/document.h"
 #include "client/show.h"
@@ -11,8 +12,7 @@
 
 enum { ROWS_AT_ONCE = 1000 };
 
-/* The study of a file as one that is run elsewhere; NULL: said why, and what that comes to. */
-static struct pound_study *study_read(const char *path, enum outcome *outcome)
+struct pound_study *model_study(const char *path, enum outcome *outcome)
 {
 	size_t n;
 	struct problems problems;
@@ -44,7 +44,7 @@ static enum outcome no_memory(void)
 enum outcome model_design(const struct options *options)
 {
 	enum outcome outcome;
-	struct pound_study *study = study_read(options->argument, &outcome);
+	struct pound_study *study = model_study(options->argument, &outcome);
 	if (!study)
 		return outcome;
 	study->n_outputs = 0; // only the design is wanted of the run
@@ -79,7 +79,7 @@ enum outcome model_indexes(const struct options *options)
 		command_complain("the study and the outputs cannot both be standard input");
 		return OUTCOME_USAGE;
 	}
-	struct pound_study *study = study_read(options->argument, &outcome);
+	struct pound_study *study = model_study(options->argument, &outcome);
 	char *csv = study ? document_read(options->second, &n_csv) : NULL;
 	if (csv) {
 		char *json = model_indices(study, csv, n_csv, &problems, &n);

@@ -15,7 +15,16 @@
 
 static const char URL_DEFAULT[] = "http://127.0.0.1:8437";
 
-enum { THREADS_MAX = 1024, LIMIT_MAX = 100, CHANNEL_MAX = 1000, FORMATS_MAX = 4 };
+enum {
+	THREADS_MAX = 1024,
+	LIMIT_MAX = 100,
+	CHANNEL_MAX = 1000,
+	FORMATS_MAX = 4,
+	JOBS = 8,
+	JOBS_MAX = 1000,
+	REPLICATES_MAX = 100000,
+	TIMEOUT_MAX = 10000000, /* [s] */
+};
 
 struct command {
 	const char *name;
@@ -56,6 +65,11 @@ static const struct command COMMANDS[] = {
 	 "sensitivity indices of the outputs of a model of your own",
 	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
 	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number."},
+	{"evaluate", "STUDY.json", "mNjJOGKSWfT", false, {"json", "table", "csv"}, evaluate_model,
+	 "run a model of your own on a study's design by UM-Bridge and print its indices",
+	 "Runs every row of `pound design' on the model at --model, several at a time, and prints what `pound indices' prints.  "
+	 "With --journal, a command that was stopped goes on where it was.  A run that the model refuses or fails is "
+	 "left out with its row."},
 	{"submit", "STUDY.json", "wu", false, {0}, submit_study,
 	 "submit a study to the server and print its id",
 	 "With --wait, follows the study until it has ended."},
@@ -112,6 +126,15 @@ static const struct argp_option OPTIONS[] = {
 	{"channel", 'C', "N",      0, "channel of files that have several", 0},
 	{"periods", 'P', "LIST",   0, "periods of a response spectrum, in s, between commas", 0},
 	{"partial", 'p', NULL,     0, "intermediate result of the completed rows, if the study is still running", 0},
+	{"model",   'm', "URL",    0, "URL of the model's server", 0},
+	{"name",    'N', "NAME",   0, "name of the model there (default: the first)", 0},
+	{"jobs",    'j', "N",      0, "runs at a time (default: 8)", 0},
+	{"journal", 'J', "FILE",   0, "keep every run in FILE, and do not repeat those that are in it", 0},
+	{"outputs", 'O', "NAMES",  0, "names of the outputs, between commas (default: y1,y2,...)", 0},
+	{"config",  'G', "JSON",   0, "configuration of the model, an object", 0},
+	{"replicates", 'K', "N",   0, "runs of a random model for each row; their mean and its variance are used; needs --seed-member", 0},
+	{"seed-member", 'S', "NAME", 0, "member of the configuration that is set to the number of a run: 0, 1, ...", 0},
+	{"timeout", 'W', "S",      0, "seconds for one run (default: no limit)", 0},
 #define X(name, values, lowest, highest, text) {#name, FIGURE_KEY_##name, "VALUE", 0, text, 0},
 	FIGURE_ARGUMENTS(X)
 #undef X
@@ -274,6 +297,33 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 	case 'p':
 		options->partial = true;
 		return 0;
+	case 'm':
+		options->evaluate.model = value;
+		return 0;
+	case 'N':
+		options->evaluate.name = value;
+		return 0;
+	case 'j':
+		options->evaluate.jobs = whole_number(state, "--jobs", value, JOBS_MAX);
+		return 0;
+	case 'J':
+		options->evaluate.journal = value;
+		return 0;
+	case 'O':
+		options->evaluate.outputs = value;
+		return 0;
+	case 'G':
+		options->evaluate.config = value;
+		return 0;
+	case 'K':
+		options->evaluate.replicates = whole_number(state, "--replicates", value, REPLICATES_MAX);
+		return 0;
+	case 'S':
+		options->evaluate.seed_member = value;
+		return 0;
+	case 'W':
+		options->evaluate.timeout = whole_number(state, "--timeout", value, TIMEOUT_MAX);
+		return 0;
 #define X(name, values, lowest, highest, text) \
 	case FIGURE_KEY_##name:                    \
 		options->choice.name = value;          \
@@ -287,6 +337,10 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 		check_table(state, options);
 		if (options->names)
 			return 0;
+		if (strchr(parsing->command->takes, 'm') && !options->evaluate.model)
+			argp_error(state, "--model is missing");
+		if (options->evaluate.replicates && !options->evaluate.seed_member)
+			argp_error(state, "--replicates needs --seed-member: equal calls may have equal answers");
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
 			argp_error(state, "%s is missing", parsing->command->arguments);
 		if (!options->second && strchr(parsing->command->arguments, ' ') &&
@@ -337,7 +391,8 @@ static enum outcome command_run(const struct command *command, int argc, char **
 	                .url = url && *url ? url : URL_DEFAULT,
 	                .format =
 	                    command->terminal_table && isatty(STDOUT_FILENO) ? "table" : command->formats[0],
-	                .threads = cores()},
+	                .threads = cores(),
+	                .evaluate.jobs = JOBS},
 	};
 	// an empty list, unlike none, is memory that argp's help does not give back
 	struct argp argp = {.options = taken->key ? taken : NULL,

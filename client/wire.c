@@ -19,6 +19,10 @@ struct wire {
 	const char *url;
 	size_t n_url; /* of url without the slashes it ends in */
 	char *direct; /* hosts that no proxy is asked for */
+	bool in_time; /* a request may take timeout_s, 0: for ever, whether bytes come or not */
+	int timeout_s;
+	FILE *body; /* of the reply that is coming */
+	struct curl_slist *headers;
 	char failure[CURL_ERROR_SIZE];
 };
 
@@ -65,8 +69,7 @@ static char *header(CURL *curl, const char *name)
 	return command_sure(strndup(found->value, strcspn(found->value, ";")));
 }
 
-static void options_set(struct wire *wire, const struct wire_request *request, const char *url, FILE *body,
-                        struct curl_slist *headers)
+static void options_set(struct wire *wire, const struct wire_request *request, const char *url)
 {
 	CURL *curl = wire->curl;
 	curl_easy_reset(curl);
@@ -76,15 +79,19 @@ static void options_set(struct wire *wire, const struct wire_request *request, c
 	curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, wire->failure);
 	curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
 	curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
-	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
-	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, request->made ? (long)MADE_S : (long)SILENCE_S);
+	if (wire->in_time)
+		curl_easy_setopt(curl, CURLOPT_TIMEOUT, (long)wire->timeout_s);
+	else {
+		curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
+		curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, request->made ? (long)MADE_S : (long)SILENCE_S);
+	}
 	curl_easy_setopt(curl, CURLOPT_TCP_KEEPALIVE, 1L);
 	curl_easy_setopt(curl, CURLOPT_TCP_KEEPIDLE, SILENCE_S / 2L);
 	curl_easy_setopt(curl, CURLOPT_TCP_KEEPINTVL, SILENCE_S / 12L);
 	curl_easy_setopt(curl, CURLOPT_USERAGENT, "pound/" POUND_VERSION);
 	curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take_body);
-	curl_easy_setopt(curl, CURLOPT_WRITEDATA, body);
-	curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers);
+	curl_easy_setopt(curl, CURLOPT_WRITEDATA, wire->body);
+	curl_easy_setopt(curl, CURLOPT_HTTPHEADER, wire->headers);
 	const char *token = getenv("POUND_TOKEN");
 	if (token) {
 		curl_easy_setopt(curl, CURLOPT_HTTPAUTH, (long)CURLAUTH_BEARER);
@@ -106,6 +113,41 @@ static bool no_url(CURL *curl, CURLcode code)
 	return connections == 0 && (code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL);
 }
 
+/* Makes the handle ready for a request; what it needs meanwhile is kept in the wire. */
+static void request_begin(struct wire *wire, const struct wire_request *request, struct wire_reply *reply)
+{
+	*reply = (struct wire_reply){0};
+	wire->failure[0] = '\0';
+	wire->body = command_sure(open_memstream(&reply->body, &reply->n_body));
+	char *url = command_text("%.*s%s", (int)wire->n_url, wire->url, request->path);
+	char *accept = command_text("Accept: %s", request->accept ? request->accept : "*/*");
+	wire->headers = curl_slist_append(NULL, accept);
+	wire->headers =
+	    curl_slist_append(wire->headers, request->body ? "Content-Type: application/json" : "Content-Type:");
+	// no pause for "100 Continue" before a long body
+	wire->headers = curl_slist_append(wire->headers, "Expect:");
+	options_set(wire, request, url);
+	free(accept);
+	free(url);
+}
+
+/* Takes the reply, or what there is of it; the reason why there is none is in the wire. */
+static enum outcome request_end(struct wire *wire, CURLcode code, struct wire_reply *reply)
+{
+	fclose(wire->body);
+	wire->body = NULL;
+	curl_easy_getinfo(wire->curl, CURLINFO_RESPONSE_CODE, &reply->status);
+	reply->type = header(wire->curl, "Content-Type");
+	char *retry = header(wire->curl, "Retry-After");
+	reply->retry_after_s = atol(retry);
+	free(retry);
+	curl_slist_free_all(wire->headers);
+	wire->headers = NULL;
+	if (code != CURLE_OK && !wire->failure[0])
+		snprintf(wire->failure, sizeof wire->failure, "%s", curl_easy_strerror(code));
+	return code == CURLE_OK ? OUTCOME_OK : no_url(wire->curl, code) ? OUTCOME_USAGE : OUTCOME_UNREACHED;
+}
+
 /* Sends one request and takes the whole answer.
  *
  * Returns  value   OUTCOME_OK, OUTCOME_UNREACHED, or OUTCOME_USAGE for a URL that is none
@@ -113,29 +155,8 @@ static bool no_url(CURL *curl, CURLcode code)
  */
 enum outcome wire_send(struct wire *wire, const struct wire_request *request, struct wire_reply *reply)
 {
-	*reply = (struct wire_reply){0};
-	wire->failure[0] = '\0';
-	FILE *body = command_sure(open_memstream(&reply->body, &reply->n_body));
-	char *url = command_text("%.*s%s", (int)wire->n_url, wire->url, request->path);
-	char *accept = command_text("Accept: %s", request->accept ? request->accept : "*/*");
-	struct curl_slist *headers = curl_slist_append(NULL, accept);
-	headers = curl_slist_append(headers, request->body ? "Content-Type: application/json" : "Content-Type:");
-	// no pause for "100 Continue" before a long body
-	headers = curl_slist_append(headers, "Expect:");
-	options_set(wire, request, url, body, headers);
-	CURLcode code = curl_easy_perform(wire->curl);
-	fclose(body);
-	curl_easy_getinfo(wire->curl, CURLINFO_RESPONSE_CODE, &reply->status);
-	reply->type = header(wire->curl, "Content-Type");
-	char *retry = header(wire->curl, "Retry-After");
-	reply->retry_after_s = atol(retry);
-	free(retry);
-	curl_slist_free_all(headers);
-	free(accept);
-	free(url);
-	if (code != CURLE_OK && !wire->failure[0])
-		snprintf(wire->failure, sizeof wire->failure, "%s", curl_easy_strerror(code));
-	return code == CURLE_OK ? OUTCOME_OK : no_url(wire->curl, code) ? OUTCOME_USAGE : OUTCOME_UNREACHED;
+	request_begin(wire, request, reply);
+	return request_end(wire, curl_easy_perform(wire->curl), reply);
 }
 
 /* The address of the server as the user gave it. */
@@ -165,4 +186,92 @@ char *wire_escape(struct wire *wire, const char *text)
 	     *copy = command_sure(strdup(escaped));
 	curl_free(escaped);
 	return copy;
+}
+
+struct wire_jobs {
+	CURLM *curl;
+	int n;
+	struct wire **wires;        /* (n) */
+	struct wire_reply *replies; /* that are coming  (n) */
+};
+
+/* Connections are kept: as many as there are jobs.
+ *
+ * Memory   allocates; wire_jobs_close frees
+ */
+struct wire_jobs *wire_jobs_open(const char *url, int n, int timeout_s)
+{
+	struct wire_jobs *jobs = command_sure(calloc(1, sizeof *jobs));
+	*jobs = (struct wire_jobs){.n = n,
+	                           .wires = command_sure(calloc((size_t)n, sizeof *jobs->wires)),
+	                           .replies = command_sure(calloc((size_t)n, sizeof *jobs->replies))};
+	for (int job = 0; job < n; job++) {
+		jobs->wires[job] = wire_open(url);
+		jobs->wires[job]->in_time = true;
+		jobs->wires[job]->timeout_s = timeout_s;
+	}
+	jobs->curl = command_sure(curl_multi_init());
+	curl_multi_setopt(jobs->curl, CURLMOPT_MAXCONNECTS, (long)n);
+	return jobs;
+}
+
+/* Gives up what is under way. */
+void wire_jobs_close(struct wire_jobs *jobs)
+{
+	for (int job = 0; job < jobs->n; job++) {
+		struct wire *wire = jobs->wires[job];
+		curl_multi_remove_handle(jobs->curl, wire->curl);
+		if (wire->body)
+			fclose(wire->body);
+		curl_slist_free_all(wire->headers);
+		wire_reply_free(&jobs->replies[job]);
+	}
+	curl_multi_cleanup(jobs->curl);
+	for (int job = 0; job < jobs->n; job++)
+		wire_close(jobs->wires[job]);
+	free(jobs->replies);
+	free(jobs->wires);
+	free(jobs);
+}
+
+void wire_jobs_send(struct wire_jobs *jobs, int job, const struct wire_request *request)
+{
+	struct wire *wire = jobs->wires[job];
+	request_begin(wire, request, &jobs->replies[job]);
+	curl_easy_setopt(wire->curl, CURLOPT_PRIVATE, &jobs->wires[job]);
+	curl_multi_add_handle(jobs->curl, wire->curl);
+}
+
+/* Drives the transfers until one has ended.
+ *
+ * Returns  value    the job; -1: none within the time
+ *          outcome  of that job as wire_send returns it
+ *          reply    of that job; wire_reply_free frees it
+ */
+int wire_jobs_receive(struct wire_jobs *jobs, int wait_ms, enum outcome *outcome, struct wire_reply *reply)
+{
+	int running, left;
+	curl_multi_perform(jobs->curl, &running);
+	CURLMsg *ended = curl_multi_info_read(jobs->curl, &left);
+	if (!ended) {
+		curl_multi_poll(jobs->curl, NULL, 0, wait_ms, NULL);
+		curl_multi_perform(jobs->curl, &running);
+		ended = curl_multi_info_read(jobs->curl, &left);
+	}
+	if (!ended)
+		return -1;
+	struct wire **wire;
+	const CURLcode code = ended->data.result;
+	curl_easy_getinfo(ended->easy_handle, CURLINFO_PRIVATE, &wire);
+	const int job = (int)(wire - jobs->wires);
+	curl_multi_remove_handle(jobs->curl, (*wire)->curl);
+	*outcome = request_end(*wire, code, &jobs->replies[job]);
+	*reply = jobs->replies[job];
+	jobs->replies[job] = (struct wire_reply){0};
+	return job;
+}
+
+const char *wire_jobs_failure(const struct wire_jobs *jobs, int job)
+{
+	return wire_failure(jobs->wires[job]);
 }

@@ -40,4 +40,18 @@ void wire_reply_free(struct wire_reply *reply);
 /* `text` made fit to stand in a path or a query; the caller frees it. */
 char *wire_escape(struct wire *wire, const char *text);
 
+/* Several requests to one server at a time, each by a job: a number from 0. */
+struct wire_jobs;
+
+/* `timeout_s` of one request, 0: none; `url` is kept, not copied. */
+struct wire_jobs *wire_jobs_open(const char *url, int n, int timeout_s);
+void wire_jobs_close(struct wire_jobs *jobs);
+
+/* Begins a request by a job that has none; its texts must last until its reply is there. */
+void wire_jobs_send(struct wire_jobs *jobs, int job, const struct wire_request *request);
+
+/* The job whose reply has come, or that got none, as wire_send says; -1: none has within so many milliseconds. */
+int wire_jobs_receive(struct wire_jobs *jobs, int wait_ms, enum outcome *outcome, struct wire_reply *reply);
+const char *wire_jobs_failure(const struct wire_jobs *jobs, int job);
+
 #endif
