@@ -1,0 +1,134 @@
+/* client_python.c - the page client/python.md is run as one notebook, and what pound.py gives is what `pound` gives. */
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+#include "tests/support/service.h"
+
+static const char PYTHON[] = "/usr/bin/python3", PAGE[] = "client/python.md";
+
+static struct program_outcome python(const char *script)
+{
+	return program_run((const char *const[]){PYTHON, "-", NULL}, script);
+}
+
+/* Sets what pound.py is found by; skips the test where there is no Python with NumPy. */
+static void prepare(void)
+{
+	const char *build = getenv("POUND_BUILD");
+	char command[512];
+	struct program_outcome there = python("import numpy\n");
+	const int status = there.status;
+	program_free(&there);
+	if (status != 0)
+		skip();
+	char *folder = realpath(build ? build : "build/release", NULL);
+	assert_non_null(folder);
+	snprintf(command, sizeof command, "%s/pound", folder);
+	setenv("POUND", command, 1);
+	setenv("PYTHONPATH", "client", 1);
+	setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
+	setenv("no_proxy", "127.0.0.1", 1);
+	free(folder);
+}
+
+static void the_page_is_a_notebook_that_runs(void **state)
+{
+	size_t n;
+	char *page = program_file(PAGE, NULL), *script = NULL;
+	int blocks = 0;
+	bool inside = false;
+	(void)state;
+	prepare();
+	assert_non_null(page);
+	FILE *out = open_memstream(&script, &n);
+	for (char *line = strtok(page, "\n"); line; line = strtok(NULL, "\n")) {
+		const bool begins = !strcmp(line, "```python"), ends = !strcmp(line, "```");
+		blocks += begins;
+		inside = begins || (inside && !ends);
+		if (inside && !begins)
+			fprintf(out, "%s\n", line);
+	}
+	fclose(out);
+	assert_true(blocks >= 6);
+	struct program_outcome outcome = python(script);
+	program_expect(&outcome, 0);
+	// what is printed: a line for each input, the faults of the study
+	assert_non_null(strstr(outcome.out, "f_2: S1 0."));
+	assert_non_null(strstr(outcome.out, "/scene/oscillators/0/frequency_hz: must be"));
+	assert_non_null(strstr(outcome.out, "did you mean \"frequency_hz\"?"));
+	check_report("%d cells of %s", blocks, PAGE);
+	program_free(&outcome);
+	free(script);
+	free(page);
+}
+
+static void errors_of_command_and_server_name_every_fault(void **state)
+{
+	(void)state;
+	prepare();
+	struct program_outcome outcome = python(
+	    "import os, pound\n"
+	    "study = {'kind': 'response', 'scene': {'oscillators': [{'frequency_hz': 0}, {'frequency_hz': "
+	    "-1}]}}\n"
+	    "for url in (None, os.environ['POUND_URL']):\n"
+	    "    try: pound.run(study, url=url)\n"
+	    "    except pound.Error as error: text = str(error)\n"
+	    "    assert 'oscillators/0/frequency_hz: must be' in text, text\n"
+	    "    assert 'oscillators/1/frequency_hz: must be' in text, text\n"
+	    "def fails(call, *words):\n"
+	    "    try: call()\n"
+	    "    except pound.Error as error: assert all(word in str(error) for word in words), str(error)\n"
+	    "    else: assert False\n"
+	    "model = {'inputs': [{'name': 'x', 'distribution': {'type': 'uniform', 'min': 0, 'max': 1}}], "
+	    "'design': "
+	    "{'rows': 40}}\n"
+	    "X = pound.design(model)\n"
+	    "assert X.shape == (120, 1)\n"
+	    "fails(lambda: pound.indices(model, X[:-1]), 'has 119 lines', 'expected 120')\n"
+	    "fails(lambda: pound.indices(model, X[:-1], order='salib'), 'multiple of 3')\n"
+	    "fails(lambda: pound.indices(model, X, names=['a', 'b']), 'names must be 1')\n"
+	    "fails(lambda: pound.design(model, order='sobol'), 'order must be')\n"
+	    "fails(lambda: pound.salib(pound.indices(model, X), 'z'), 'there are: y')\n"
+	    "fails(lambda: pound.run(study, url='http://127.0.0.1:1'), 'refused')\n"
+	    "os.environ['POUND'] = '/nowhere/pound'\n"
+	    "fails(lambda: pound.run(study), '/nowhere/pound')\n");
+	program_expect(&outcome, 0);
+	program_free(&outcome);
+}
+
+static void a_failed_run_and_a_variance_pass_to_the_indices_as_they_are(void **state)
+{
+	(void)state;
+	prepare();
+	struct program_outcome outcome = python(
+	    "import json, math, numpy, pound, subprocess, os, tempfile\n"
+	    "model = {'inputs': [{'name': n, 'distribution': {'type': 'normal', 'mean': 0, 'standard_deviation': "
+	    "1}} for n in "
+	    "'ab'], "
+	    "'design': {'rows': 60, 'method': 'random'}}\n"
+	    "X = pound.design(model)\n"
+	    "Y = numpy.column_stack([X[:, 0] + X[:, 1] ** 3, numpy.full(len(X), 0.01), X[:, 0] / 3])\n"
+	    "Y[7, 0] = math.nan\n"
+	    "names = ['y', 'y.variance', 'z']\n"
+	    "result = pound.indices(model, Y, names)\n"
+	    "assert result['cells'][0]['rows_dropped'] == 1\n"
+	    "with tempfile.NamedTemporaryFile('w') as file:\n"
+	    "    file.write(','.join(names) + '\\n' + ''.join('%.17g,%.17g,%.17g\\n' % tuple(row) for row in "
+	    "Y))\n"
+	    "    file.flush()\n"
+	    "    text = subprocess.run([os.environ['POUND'], 'indices', '-', file.name], "
+	    "input=json.dumps(model), "
+	    "capture_output=True, text=True, check=True).stdout\n"
+	    "assert json.loads(text) == result\n"
+	    "assert set(pound.salib(result, 'z')) == {a + b for a in ('S1', 'ST', 'S2') for b in ('', '_low', "
+	    "'_high', "
+	    "'_conf')} | {'names'}\n");
+	program_expect(&outcome, 0);
+	program_free(&outcome);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
+CHECK_MAIN(TEST(the_page_is_a_notebook_that_runs), TEST(errors_of_command_and_server_name_every_fault),
+           TEST(a_failed_run_and_a_variance_pass_to_the_indices_as_they_are))
