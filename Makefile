@@ -44,7 +44,9 @@ objs   = $(patsubst %.c,$(B)/%.o,$(filter-out $(2),$(wildcard $(1)/*.c $(1)/*/*.
 ENGINE := $(call objs,engine)
 SCHEMA := $(call objs,schema) $(B)/schema/examples.o $(B)/schema/page.o
 SERVER := $(call objs,server,server/main.c)
-CLIENT := $(call objs,client)
+# one of these asks servers: the second says that it cannot (make client CURL=0)
+WIRE   := client/wire.c client/unwired.c
+CLIENT := $(call objs,client,$(WIRE))
 # a program each; the files of tests/support serve them all
 TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/service/*.c tests/client/*.c))
 # what takes minutes is built with the tests, so that no change breaks it unseen
@@ -58,10 +60,19 @@ $(B)/libpound.a: $(ENGINE)
 	@rm -f $@; $(AR) rcs $@ $^
 $(B)/poundd: $(B)/server/main.o $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
-$(B)/pound: $(CLIENT) $(SCHEMA) $(B)/libpound.a
+$(B)/pound: $(CLIENT) $(B)/client/wire.o $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.client) $(LIBS.schema) $(LIBS.engine)
 $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.tests) $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
+
+# the command line alone, for clusters: GSL, cJSON, nettle and Random123; CURL=0: without libcurl
+CURL ?= 1
+$(B)/client/pound: $(CLIENT) $(B)/client/$(if $(filter 0,$(CURL)),unwired.o,wire.o) $(SCHEMA) $(B)/libpound.a FORCE
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter-out FORCE,$^) $(if $(filter 0,$(CURL)),$(filter-out -lcurl,$(LIBS.client)),$(LIBS.client)) \
+	  $(LIBS.schema) $(LIBS.engine)
+client: $(B)/client/pound
+	@echo $<
+FORCE:
 
 # the test's own blocks crash in their place
 $(B)/tests/service/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create_by,--wrap=pound_run_block
@@ -183,20 +194,48 @@ build/fuzz/%: tests/fuzz/%.c $(wildcard schema/*/*.c) $(B)/schema/examples.c $(B
 	clang -std=c17 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all $(CPPFLAGS) -o $@ $^ \
 	  $(LIBS.schema) $(LIBS.engine)
 
-# programs, manual pages and a systemd unit; DESTDIR goes before PREFIX
-PREFIX ?= /usr/local
+# programs, manual pages, a systemd unit, pound.py and completions; DESTDIR goes before PREFIX
+PREFIX    ?= /usr/local
+PYTHONDIR ?= $(PREFIX)/lib/python3/dist-packages
+BASHDIR   ?= $(PREFIX)/share/bash-completion/completions
+ZSHDIR    ?= $(PREFIX)/share/zsh/site-functions
+FISHDIR   ?= $(PREFIX)/share/fish/vendor_completions.d
 install: all
-	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin share/man/man1 share/man/man8 lib/systemd/system)
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin share/man/man1 share/man/man8 lib/systemd/system) \
+	  $(addprefix $(DESTDIR),$(PYTHONDIR) $(BASHDIR) $(ZSHDIR) $(FISHDIR))
 	install $(B)/poundd $(B)/pound $(DESTDIR)$(PREFIX)/bin
 	client/manual $(B)/pound client/pound.1 >$(DESTDIR)$(PREFIX)/share/man/man1/pound.1
 	client/manual $(B)/poundd server/poundd.8 >$(DESTDIR)$(PREFIX)/share/man/man8/poundd.8
 	sed 's|@PREFIX@|$(PREFIX)|' server/poundd.service >$(DESTDIR)$(PREFIX)/lib/systemd/system/poundd.service
+	install -m 644 client/pound.py $(DESTDIR)$(PYTHONDIR)
+	install -m 644 client/pound.bash $(DESTDIR)$(BASHDIR)/pound
+	install -m 644 client/_pound $(DESTDIR)$(ZSHDIR)
+	install -m 644 client/pound.fish $(DESTDIR)$(FISHDIR)
+
+# the sources as a tarball, and as Debian packages, in build/dist; the same bytes for the same sources and SOURCE_DATE_EPOCH
+VERSION := $(shell sed -n 's/^#define POUND_VERSION "\(.*\)"/\1/p' engine/pound.h)
+NAME    := pound-$(VERSION)
+export SOURCE_DATE_EPOCH ?= $(or $(shell git log -1 --format=%ct 2>/dev/null),0)
+dist:
+	@mkdir -p build/dist
+	@{ git ls-files 2>/dev/null || find . -path ./build -prune -o -type f -print | sed 's|^./||'; } | LC_ALL=C sort | \
+	  tar --transform 's|^|$(NAME)/|' --owner=0 --group=0 --numeric-owner --mode=go=rX,u+rw --mtime=@$(SOURCE_DATE_EPOCH) -cf - -T - | \
+	  gzip -n >build/dist/$(NAME).tar.gz
+	@echo build/dist/$(NAME).tar.gz
+deb: dist
+	@$(RM) -r build/dist/$(NAME)
+	@tar -xzf build/dist/$(NAME).tar.gz -C build/dist
+	@client/debian build/dist/$(NAME) $(VERSION)
+	@cd build/dist/$(NAME) && env -u MAKEFLAGS -u MAKELEVEL CC='$(CC)' DEB_BUILD_OPTIONS=parallel=$$(nproc) \
+	  dpkg-buildpackage -b -us -uc >../$(NAME).log 2>&1 || { tail -30 ../$(NAME).log; exit 1; }
+	@ls -s --block-size=1 build/dist/*.deb
 
 fmt:
 	clang-format -i $$(git ls-files '*.c' '*.h' '*.inl')
 clean:
 	$(RM) -r build
 
-.PHONY: all browser deps run test check soak install bench golden paper extremes yield statistics asan tsan lint fuzz fmt clean
+# .dockerignore keeps what is built out of a container's build (server/Dockerfile)
+.PHONY: all browser client dist deb deps run test check soak install bench golden paper extremes yield statistics asan tsan lint fuzz fmt clean
 .SECONDARY:
--include $(shell find build -name '*.d' 2>/dev/null)
+-include $(shell find build -path build/dist -prune -o -name '*.d' -type f -print 2>/dev/null)
