@@ -63,7 +63,8 @@ static const struct script SCRIPTS[] = {
     {{JSON("200 OK", "{\"status\": \"running\", \"id\": \"7\", \"runs_done\": 3}")},
      {"status", "--format=csv", "7"},
      0,
-     "id,status,progress,runs_done,runs_total,over_estimate,queue_position,expected_start,created,kind,name\n7,running,,3,",
+     "id,status,progress,runs_done,runs_total,over_estimate,queue_position,expected_start,created,kind,"
+     "name\n7,running,,3,",
      NULL},
     {{JSON("404 Not Found", "{\"detail\": \"\\u001b]0;title\"}")}, {"status", "1"}, 1, "?]0;title", "\033"},
     {{JSON("200 OK", "{\"status\": \"failed\", \"error\": \"too few rows\"}")},
