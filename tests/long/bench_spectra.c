@@ -44,10 +44,9 @@ static void ride(void *of)
 		bench_fail("a floor could not be followed");
 }
 
-static void leave(void *into, const struct pound_scene *scene, const struct pound_response *response,
-                  enum pound_status status)
+static void leave(void *into, const struct pound_outcome *outcome)
 {
-	(void)into, (void)scene, (void)response, (void)status;
+	(void)into, (void)outcome;
 }
 
 static void one_signal(void)

@@ -21,7 +21,7 @@ enum law { LINEAR, ELASTOPLASTIC, NONLINEAR_ELASTIC, ORIGIN_ORIENTED };
 enum ground { NOISE, ZEROS, SPIKE, STEP, RAMP, TO_AND_FRO };
 
 // clang-format off
-#define FIELD(kind, member) {POUND_FIELD_##kind, offsetof(struct pound_scene, member)}
+#define FIELD(kind, member) {.type = POUND_FIELD_##kind, .offset = offsetof(struct pound_scene, member)}
 #define K_RATIO    FIELD(REAL, contact.stiffness_ratio)
 #define EPS        FIELD(REAL, contact.restitution)
 #define GAP        FIELD(REAL, contact.gap)
