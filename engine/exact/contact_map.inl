@@ -374,15 +374,20 @@ static double length_above(double x, double y)
 	return a < b ? b + 0.4143 * a : a + 0.4143 * b;
 }
 
+/* How a contact swings at the start of a rung: W p', W^2 p - g, and g. */
+struct swing {
+	double hurry, off, pull;
+};
+
 /* Whether bodies in contact are bound to stay pressed over a rung: see rest_fill.
  *
  * Given    x     inputs;  bound  magnitudes of w, w', g, w1' - w0', and of x from there on
- *          pull  g at the start;  hurry, off  W p' and W^2 p - g there
  *          h     length of the rung [s]
  */
-static bool rests(const struct pound_press_map *map, const double x[N], double bound[N], double pull,
-                  double hurry, double off, double h)
+static bool rests(const struct pound_press_map *map, const double x[N], double bound[N],
+                  const struct swing *start, double h)
 {
+	const double pull = start->pull;
 	const double *split = map->row[PRESS_SPLIT];
 	double change = row_at(map->pull, x), pull1 = pull + change, drift = change / (split[SPLIT_OMEGA] * h);
 	bound[2] = fabs(pull) + fabs(pull1);
@@ -390,7 +395,7 @@ static bool rests(const struct pound_press_map *map, const double x[N], double b
 	bound[6] = fabs(x[6]);
 	bound[7] = fabs(x[7]);
 	double bend = row_at(map->row[REST_BEND], bound);
-	double swing = length_above(hurry - drift, off + split[SPLIT_DRAG] * drift) + 0.5 * bend;
+	double swing = length_above(start->hurry - drift, start->off + split[SPLIT_DRAG] * drift) + 0.5 * bend;
 	double lag = fmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * fabs(drift);
 	return split[SPLIT_LEAD] * swing + lag + 0.125 * bend < (change < 0 ? pull1 : pull);
 }
@@ -409,10 +414,10 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	double w = in[0] - split[SPLIT_BASE] * x->p, rate = in[1] - split[SPLIT_BASE] * x->q;
 	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
-	double hurry = omega * x->q, off = omega * omega * x->p - pull;
+	const struct swing start = {.hurry = omega * x->q, .off = omega * omega * x->p - pull, .pull = pull};
 	// without overlap and rate bodies alike stay so, over any rung
 	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
-	if (!still && !(split[SPLIT_LEAD] * length_above(hurry, off) < pull))
+	if (!still && !(split[SPLIT_LEAD] * length_above(start.hurry, start.off) < pull))
 		return NULL;
 	struct pound_ladder *ladder = press->ladder;
 	if (!press->laddered)
@@ -423,8 +428,7 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 		double cells = sim->rung_cells[r];
 		in[6] = x->base_drive * rise * cells;
 		in[7] = x->gap_drive * rise * cells;
-		if (cells <= x->cells &&
-		    (still || rests(&ladder->rung[r], in, bound, pull, hurry, off, x->cell * cells))) {
+		if (cells <= x->cells && (still || rests(&ladder->rung[r], in, bound, &start, x->cell * cells))) {
 			sim->rung = r;
 			return &ladder->rung[r];
 		}

@@ -11,7 +11,7 @@
  *                  less that by the ground, summed with the rounding of each addition carried on (Kahan 1965);
  *                  work_top: the largest work_in or kinetic energy so far
  */
-static void energy_add(struct lanes *g, const struct series *s, vd time, bool paired, bool touching)
+static void energy_add(struct lanes *g, const struct series *s, vd time, struct scope scope)
 {
 	vd in = vsplat(0), out = in, top = in, dt = g->dt;
 	const vd mass[2] = {vsplat(1), g->right_mass};
@@ -20,7 +20,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 		vd weight = vsplat(0.5 * POUND_GAUSS_WEIGHT[j % (POUND_GAUSS / 2)]);
 		vd t = vsplat(0.5 + 0.5 * node) * time;
 		vd ground = vfma(g->slope, t * dt, g->ground), moving = vsplat(0);
-		for (int i = 0; i < (paired ? 2 : 1); i++) {
+		for (int i = 0; i < (scope.paired ? 2 : 1); i++) {
 			struct place at = place_at(&s->body[i].u, s->order, t);
 			vd u = at.u, v = at.v / dt;
 			vd spring = vfma(g->body[i].stiffness, u, g->body[i].offset);
@@ -30,7 +30,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 		}
 		// a ground that takes back within the step what it has given leaves little at the end
 		top = vmax(top, moving);
-		if (!touching)
+		if (!scope.touching)
 			continue;
 		struct place at = place_at(&s->overlap.u, s->order, t);
 		vd p = at.u, q = at.v / dt;
@@ -42,7 +42,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, bool pa
 	g->work_low = gap - (sum - g->work_gap);
 	g->work_gap = sum;
 	vd moving = vsplat(0);
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
+	for (int i = 0; i < (scope.paired ? 2 : 1); i++) {
 		vd v = place_at(&s->body[i].u, s->order, time).v / dt;
 		moving = vfma(0.5 * mass[i] * v, v, moving);
 	}

@@ -49,6 +49,7 @@ enum {
 struct ahead {
 	const double *ground[W]; /* from where it started */
 	int64_t gone;            /* samples that those who still fly have gone since */
+	unsigned flying;         /* lanes that still do */
 	vd samples;              /* that are left */
 	unsigned edged;          /* lanes that stopped where an edge may be reached */
 	unsigned observed;       /* lanes of TRAIT_OBSERVED */
@@ -58,10 +59,10 @@ struct ahead {
  *
  * Returns  value  lanes that have fewer
  */
-LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, unsigned flying,
-                                 vd ground[ROW])
+LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, vd ground[ROW])
 {
 	const double *at[W];
+	const unsigned flying = ahead->flying;
 	unsigned whole = flying & ~vbits(vless(ahead->samples, vsplat(ROW)));
 	for (int l = 0; l < W; l++) {
 		at[l] = whole >> l & 1 ? ahead->ground[l] + ahead->gone : work->beyond[l];
@@ -96,7 +97,13 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
 	while (noted) {
 		int l = lane_next(&noted);
 		struct simulation *sim = b->sim[l];
-		if (!peak_note(sim, i, sim->next + gone, u[l], v[l], bound[l], top[l]))
+		const struct pound_peak peak = {.next = sim->next + gone,
+		                                .u = u[l],
+		                                .v = v[l],
+		                                .stiffness = sim->x.body[i].stiffness,
+		                                .offset = sim->x.body[i].offset,
+		                                .bound = bound[l]};
+		if (!peak_note(sim, i, &peak, top[l]))
 			full |= 1u << l;
 	}
 	return full;
@@ -129,49 +136,49 @@ LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahea
 
 /* Flies ROW samples at most, and not beyond the end of any lane: each as far as nothing else happens to it.
  *
- * Given    on  lanes that do;  edged, paired, right: as stretch_fly() has them
  * Returns  g       their states there
- *          value   those that still do, with samples left
- *          ahead   what is left in front of each
+ *          ahead   what is left in front of each, and those that still fly, with samples left
  */
-LANE_INLINE unsigned fly_on(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
-                            const struct flyer flyers[2], unsigned on, bool edged, bool paired, bool right)
+LANE_INLINE void fly_on(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
+                        const struct flyer flyers[2], const struct scope *scope)
 {
 	struct stretch s;
+	unsigned on = ahead->flying;
 	s.ground[0] = g->ground;
-	unsigned more = vbits(vless(vsplat(ROW), ahead->samples)),
-	         ends = ground_load(work, ahead, on, s.ground + 1);
-	stretch_fly(&s, g, flyers, edged, paired, right);
+	unsigned more = vbits(vless(vsplat(ROW), ahead->samples)), ends = ground_load(work, ahead, s.ground + 1);
+	stretch_fly(&s, g, flyers, scope);
 	vd flown = vsplat(0), one = vsplat(1);
 	for (int r = 0; r < ROW; r++) {
 		if (ends)
 			on &= vbits(vless(vsplat(r), ahead->samples));
-		if (edged) {
+		if (scope->edged) {
 			ahead->edged |= on & s.edge[r];
 			on &= ~s.edge[r];
 		}
-		if (paired)
+		if (scope->paired)
 			on &= ~s.meet[r];
-		for (int i = 0; i < (paired && right ? 2 : 1); i++)
+		for (int i = 0; i < (scope->paired && scope->right ? 2 : 1); i++)
 			if (s.peak[i][r] & on)
 				on &= ~peaks_keep(b, i, &s, r, s.peak[i][r] & on, ahead->gone + r);
 		flown = vselect(vmask(on), flown + one, flown);
-		stretch_keep(g, &s, r + 1, vmask(on), paired, right);
+		stretch_keep(g, &s, r + 1, vmask(on), scope);
 	}
 	if (__builtin_expect(ahead->observed, 0))
 		stretch_observe(b, ahead, &s, flown);
 	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - flown;
 	ahead->gone += ROW;
-	return on & more;
+	ahead->flying = on & more;
 }
 
 /* Given    g, flyers  what does not change meanwhile */
 LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
-                           const struct flyer flyers[2], bool edged)
+                           const struct flyer flyers[2], enum kind kind)
 {
-	const bool paired = stage == STAGE_FLY_APART, right = b->traits & TRAIT_RIGHT;
-	struct ahead ahead = {.observed = b->traits & TRAIT_OBSERVED ? vbits(batch_trait(b, TRAIT_OBSERVED)) : 0};
+	const struct scope scope = {
+	    .paired = stage == STAGE_FLY_APART, .edged = kind == KIND_EDGED, .right = b->traits & TRAIT_RIGHT};
+	struct ahead ahead = {.flying = batch_lanes(b),
+	                      .observed = b->traits & TRAIT_OBSERVED ? vbits(batch_trait(b, TRAIT_OBSERVED)) : 0};
 	double ground[W], samples[W];
 	lanes_fill(g, b, ROW_STATE);
 	for (int l = 0; l < W; l++) {
@@ -182,17 +189,17 @@ LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_
 	}
 	g->ground = lanes_of(ground);
 	ahead.samples = lanes_of(samples);
-	unsigned on = batch_lanes(b);
 	do
-		on = fly_on(work, b, &ahead, g, flyers, on, edged, paired, right);
-	while (__builtin_popcount(on) > b->n * 3 / 4);
+		fly_on(work, b, &ahead, g, flyers, &scope);
+	while (__builtin_popcount(ahead.flying) > b->n * 3 / 4);
+	unsigned on = ahead.flying;
 	lanes_empty(g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++)
 		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
 	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0)));
 	unsigned met = batch_lanes(b) & ~there & ~on,
-	         parting = edged ? met & batch_parting(b, vmask(ahead.edged)) : 0;
+	         parting = scope.edged ? met & batch_parting(b, vmask(ahead.edged)) : 0;
 	met &= ~parting;
 	while (met) {
 		struct simulation *sim = b->sim[lane_next(&met)];
@@ -208,8 +215,9 @@ LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_
 	}
 }
 
-LANE_INLINE void fly(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
+LANE_INLINE void fly(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
 {
+	const bool common = kind == KIND_COMMON;
 	const struct state_rows *shared = common ? &work->common.x : NULL;
 	struct lanes g;
 	lanes_constant(&g, b, shared, ROW_LEFT);
@@ -221,7 +229,7 @@ LANE_INLINE void fly(struct work *work, struct batch *b, enum pound_stage stage,
 		flyers[1] = flyer_of(&g, 1);
 	}
 	do
-		fly_batch(work, b, stage, &g, flyers, edged);
+		fly_batch(work, b, stage, &g, flyers, kind);
 	while (common && batch_again(work, b));
 }
 
@@ -324,13 +332,13 @@ LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double
 	s->error = form_of(row, g, true);
 }
 
-/* Given    g, s    what does not change meanwhile, and of g the row PRESS
- *          seldom  a lane's energy is accounted for, it is observed, or nothing presses its bodies on each
- *                  other */
+/* Given    g, s  what does not change meanwhile, and of g the row PRESS */
 LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum pound_stage stage,
-                             struct lanes *g, struct press *s, bool edged, bool seldom)
+                             struct lanes *g, struct press *s, struct scope scope)
 {
-	const bool forced = b->traits & TRAIT_FORCED, right = b->traits & TRAIT_RIGHT;
+	const bool edged = scope.edged, seldom = scope.seldom;
+	scope.forced = b->traits & TRAIT_FORCED;
+	scope.right = b->traits & TRAIT_RIGHT;
 	lanes_fill(g, b, ROW_STATE);
 	lanes_fill(g, b, ROW_STEP);
 	s->alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
@@ -339,7 +347,7 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 	const vd before = g->pressed;
 	vd zero = vsplat(0), one = vsplat(1), share = one / g->cells_whole, behind;
 	struct samples samples = samples_of(b, &behind);
-	press_load(s, g, (samples.ground - samples.before) * share, behind, edged);
+	press_load(s, g, (samples.ground - samples.before) * share, behind, &scope);
 	const vd rounds = s->at.rounds, cells = stage == STAGE_REST ? s->rest[PRESS_SPLIT][SPLIT_CELLS] : one;
 	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
 	vm decided = vmask(0);
@@ -350,8 +358,8 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 			struct pressed from;
 			if (seldom)
 				from = s->at;
-			vm edge, risk = stage == STAGE_REST ? rest(g, s, edged, pressed, &edge)
-			                                    : press(g, s, edged, right, forced, seldom, pressed, &edge);
+			vm edge, risk = stage == STAGE_REST ? rest(g, s, &scope, pressed, &edge)
+			                                    : press(g, s, &scope, pressed, &edge);
 			refused |= risk & pressed;
 			if (edged)
 				decided |= edge & pressed;
@@ -407,25 +415,24 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 		finish(work, b->sim[lane_next(&ends)], STAGE_END);
 }
 
-LANE_INLINE void press_on(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common,
-                          bool seldom)
+LANE_INLINE void press_on(struct work *work, struct batch *b, enum pound_stage stage, struct scope scope)
 {
 	struct lanes g;
 	struct press s;
-	const struct state_rows *shared = common ? &work->common.x : NULL;
+	const struct state_rows *shared = scope.common ? &work->common.x : NULL;
 	lanes_constant(&g, b, shared, ROW_PAIR);
 	lanes_fill(&g, b, ROW_PRESS);
-	if (edged) {
+	if (scope.edged) {
 		lanes_constant(&g, b, shared, ROW_LEFT);
 		lanes_constant(&g, b, shared, ROW_RIGHT);
 	}
 	const double *map[W];
 	for (int l = 0; l < W; l++)
 		map[l] = b->sim[l]->pressed->row[0];
-	press_maps(&s, &g, map, stage, common);
+	press_maps(&s, &g, map, stage, scope.common);
 	for (bool again = true; again;) {
-		press_batch(work, b, stage, &g, &s, edged, seldom);
-		again = common && batch_again(work, b);
+		press_batch(work, b, stage, &g, &s, scope);
+		again = scope.common && batch_again(work, b);
 		if (again)
 			lanes_fill(&g, b, ROW_PRESS);
 	}
@@ -434,44 +441,46 @@ LANE_INLINE void press_on(struct work *work, struct batch *b, enum pound_stage s
 /* What is asked for or happens seldom goes one way for all laws. */
 static void press_seldom(struct work *work, struct batch *b, enum pound_stage stage)
 {
+	const struct scope scope = {.edged = true, .seldom = true};
 	if (stage == STAGE_REST)
-		press_on(work, b, STAGE_REST, true, false, true);
+		press_on(work, b, STAGE_REST, scope);
 	else
-		press_on(work, b, STAGE_PRESS, true, false, true);
+		press_on(work, b, STAGE_PRESS, scope);
 }
 
-LANE_INLINE void press_any(struct work *work, struct batch *b, enum pound_stage stage, bool edged,
-                           bool common)
+LANE_INLINE void press_any(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
 {
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE | TRAIT_OBSERVED))
 		press_seldom(work, b, stage);
 	else
-		press_on(work, b, stage, edged, common, false);
+		press_on(work, b, stage, (struct scope){.edged = kind == KIND_EDGED, .common = kind == KIND_COMMON});
 }
 
 /* ---- one step up to an event ---- */
 
-LANE_INLINE struct event_lanes event_lanes_of(const struct batch *b, bool touching, bool paired, bool edged)
+LANE_INLINE struct event_lanes event_lanes_of(const struct batch *b, enum pound_stage stage)
 {
-	struct event_lanes e = {.touching = touching,
-	                        .paired = paired,
-	                        .edged = edged,
-	                        .right = b->traits & TRAIT_RIGHT,
-	                        .forced = b->traits & TRAIT_FORCED,
+	struct event_lanes e = {.scope = {.touching = stage == STAGE_TOUCH,
+	                                  .paired = stage != STAGE_ALONE && stage != STAGE_LEAP_ALONE,
+	                                  .edged = b->traits & TRAIT_EDGED,
+	                                  .right = b->traits & TRAIT_RIGHT,
+	                                  .forced = b->traits & TRAIT_FORCED},
 	                        .active = vmask(batch_lanes(b)),
 	                        .parted = vmask(0),
 	                        .fresh = vmask(0),
 	                        .decided = vmask(0)};
-	if (e.forced)
+	if (e.scope.forced)
 		batch_forces(b, &e.parted, &e.fresh);
 	return e;
 }
 
 /* Given    g  what does not change meanwhile */
 LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage stage, struct lanes *g,
-                            bool edged)
+                            enum kind kind)
 {
-	struct event_lanes e = event_lanes_of(b, stage == STAGE_TOUCH, stage != STAGE_ALONE, edged);
+	struct event_lanes e = event_lanes_of(b, stage);
+	if (kind == KIND_COMMON)
+		e.scope.edged = false;
 	const bool accounted = b->traits & TRAIT_ACCOUNTED;
 	lanes_fill(g, b, ROW_STATE);
 	lanes_fill(g, b, ROW_STEP);
@@ -479,7 +488,7 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 		lanes_fill(g, b, ROW_WORK);
 	vd events = event_step(g, &e, accounted);
 	vm turns = vmask(0);
-	if (e.paired)
+	if (e.scope.paired)
 		turns = event_follow(g, &e, events);
 	double event[W], left[W], speed[W];
 	lanes_store(event, events);
@@ -489,10 +498,10 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_OBSERVED))
 		turns &= ~batch_trait(b, TRAIT_ACCOUNTED | TRAIT_OBSERVED);
 	if (vany(turns)) {
-		e.touching = !e.touching;
+		e.scope.touching = !e.scope.touching;
 		event_leap(g, &e, turns);
 	}
-	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
+	const unsigned parting = e.scope.edged ? batch_parting(b, e.decided) : 0;
 	batch_forget(b, parting, &work->filler);
 	lanes_empty(g, b, ROW_STATE);
 	lanes_empty(g, b, ROW_STEP);
@@ -512,8 +521,9 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 	}
 }
 
-LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage, bool edged, bool common)
+LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
 {
+	const bool common = kind == KIND_COMMON;
 	const struct state_rows *shared = common ? &work->common.x : NULL;
 	struct lanes g;
 	lanes_constant(&g, b, shared, ROW_LEFT);
@@ -521,25 +531,24 @@ LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage
 	if (stage != STAGE_ALONE)
 		lanes_constant(&g, b, shared, ROW_RIGHT);
 	do
-		step_batch(work, b, stage, &g, edged);
+		step_batch(work, b, stage, &g, kind);
 	while (common && batch_again(work, b));
 }
 
 /* What is left of a sample. */
-LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage, bool edged)
+LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage)
 {
-	const bool paired = stage == STAGE_LEAP_APART;
-	struct event_lanes e = event_lanes_of(b, false, paired, edged);
+	struct event_lanes e = event_lanes_of(b, stage);
 	struct lanes g;
 	lanes_fill(&g, b, ROW_STATE);
 	lanes_fill(&g, b, ROW_STEP);
 	lanes_fill(&g, b, ROW_LEFT);
 	lanes_fill(&g, b, ROW_PAIR);
-	if (paired)
+	if (e.scope.paired)
 		lanes_fill(&g, b, ROW_RIGHT);
 	event_leap(&g, &e, vmask(batch_lanes(b)));
 	// nothing is to be taken back: they have not moved
-	const unsigned parting = edged ? batch_parting(b, e.decided) : 0;
+	const unsigned parting = e.scope.edged ? batch_parting(b, e.decided) : 0;
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	for (int l = 0; l < b->n; l++) {
@@ -562,24 +571,24 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 	{                                                    \
 		__VA_ARGS__;                                     \
 	}
-STEP(fly_alone, fly(work, b, STAGE_FLY_ALONE, false, false))
-STEP(fly_alone_edged, fly(work, b, STAGE_FLY_ALONE, true, false))
-STEP(fly_alone_common, fly(work, b, STAGE_FLY_ALONE, false, true))
-STEP(fly_apart, fly(work, b, STAGE_FLY_APART, false, false))
-STEP(fly_apart_edged, fly(work, b, STAGE_FLY_APART, true, false))
-STEP(fly_apart_common, fly(work, b, STAGE_FLY_APART, false, true))
-STEP(press_plain, press_any(work, b, STAGE_PRESS, false, false))
-STEP(press_edged, press_any(work, b, STAGE_PRESS, true, false))
-STEP(press_common, press_any(work, b, STAGE_PRESS, false, true))
-STEP(rest_plain, press_any(work, b, STAGE_REST, false, false))
-STEP(rest_edged, press_any(work, b, STAGE_REST, true, false))
-STEP(step_alone, step(work, b, STAGE_ALONE, (b->traits & TRAIT_EDGED) != 0, false))
-STEP(step_apart, step(work, b, STAGE_APART, (b->traits & TRAIT_EDGED) != 0, false))
-STEP(step_apart_common, step(work, b, STAGE_APART, false, true))
-STEP(step_touch, step(work, b, STAGE_TOUCH, (b->traits & TRAIT_EDGED) != 0, false))
-STEP(step_touch_common, step(work, b, STAGE_TOUCH, false, true))
-STEP(leap_alone, leap(work, b, STAGE_LEAP_ALONE, (b->traits & TRAIT_EDGED) != 0))
-STEP(leap_apart, leap(work, b, STAGE_LEAP_APART, (b->traits & TRAIT_EDGED) != 0))
+STEP(fly_alone, fly(work, b, STAGE_FLY_ALONE, KIND_PLAIN))
+STEP(fly_alone_edged, fly(work, b, STAGE_FLY_ALONE, KIND_EDGED))
+STEP(fly_alone_common, fly(work, b, STAGE_FLY_ALONE, KIND_COMMON))
+STEP(fly_apart, fly(work, b, STAGE_FLY_APART, KIND_PLAIN))
+STEP(fly_apart_edged, fly(work, b, STAGE_FLY_APART, KIND_EDGED))
+STEP(fly_apart_common, fly(work, b, STAGE_FLY_APART, KIND_COMMON))
+STEP(press_plain, press_any(work, b, STAGE_PRESS, KIND_PLAIN))
+STEP(press_edged, press_any(work, b, STAGE_PRESS, KIND_EDGED))
+STEP(press_common, press_any(work, b, STAGE_PRESS, KIND_COMMON))
+STEP(rest_plain, press_any(work, b, STAGE_REST, KIND_PLAIN))
+STEP(rest_edged, press_any(work, b, STAGE_REST, KIND_EDGED))
+STEP(step_alone, step(work, b, STAGE_ALONE, KIND_EDGED))
+STEP(step_apart, step(work, b, STAGE_APART, KIND_EDGED))
+STEP(step_apart_common, step(work, b, STAGE_APART, KIND_COMMON))
+STEP(step_touch, step(work, b, STAGE_TOUCH, KIND_EDGED))
+STEP(step_touch_common, step(work, b, STAGE_TOUCH, KIND_COMMON))
+STEP(leap_alone, leap(work, b, STAGE_LEAP_ALONE))
+STEP(leap_apart, leap(work, b, STAGE_LEAP_APART))
 
 static void (*const steps[STAGES][KINDS])(struct work *, struct batch *) = {
     [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged, fly_alone_common},

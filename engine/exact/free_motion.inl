@@ -208,17 +208,18 @@ struct stretch {
 };
 
 /* Moves every lane over a sample of a stretch. */
-LANE_INLINE void stretch_move(struct stretch *s, const struct flyer flyers[2], int r, bool paired)
+LANE_INLINE void stretch_move(struct stretch *s, const struct flyer flyers[2], int r,
+                              const struct scope *scope)
 {
-	for (int i = 0; i < (paired ? 2 : 1); i++)
+	for (int i = 0; i < (scope->paired ? 2 : 1); i++)
 		s->at[i][r + 1] = flight_move(&flyers[i], s->at[i][r], s->ground[r], s->ground[r + 1]);
 }
 
 /* Asks what may happen on the way. */
 LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const struct flyer flyers[2], int r,
-                               bool edged, bool paired, bool right)
+                               const struct scope *scope)
 {
-	const int bodies = paired ? 2 : 1, watched = paired && right ? 2 : 1;
+	const int bodies = scope->paired ? 2 : 1, watched = scope->paired && scope->right ? 2 : 1;
 	vd third = g->body[0].step_gap * vsplat(1.0 / 3);
 	vd pull = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
 	struct flight f[2];
@@ -226,17 +227,17 @@ LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const s
 	for (int i = 0; i < bodies; i++) {
 		f[i] = flight_way(&flyers[i], s->at[i][r], s->at[i][r + 1], pull, third);
 		const struct edges edges = edges_of(g, i);
-		if (edged)
+		if (scope->edged)
 			edge |= flight_edges(s->at[i][r].v, &f[i], third, &edges);
 	}
-	if (edged)
+	if (scope->edged)
 		s->edge[r] = vbits(edge);
 	for (int i = 0; i < watched; i++) {
 		s->bound[i][r] = flight_reach(&f[i]);
 		s->top[i][r + 1] = vmax(s->top[i][r], vabs(f[i].u));
 		s->peak[i][r] = vbits(vless(s->top[i][r + 1], s->bound[i][r]));
 	}
-	if (paired) {
+	if (scope->paired) {
 		vd gap = vsplat(1 - 4 * DBL_EPSILON) * g->body[1].step_gap;
 		vd nearest = vmax(vmax(f[0].b1 - f[1].b1, f[0].b2 - f[1].b2), f[0].u - f[1].u);
 		s->meet[r] = vbits(vless(gap, nearest + (f[0].error + f[1].error)));
@@ -247,40 +248,38 @@ LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const s
  *
  * Given    s       ground
  *          g       where it begins;  flyers: the bodies' maps
- *          edged   a lane has a law of more than one piece;  paired: the lanes have two bodies
- *          right   a lane's largest displacement of the right body is wanted
  */
 LANE_INLINE void stretch_fly(struct stretch *s, const struct lanes *g, const struct flyer flyers[2],
-                             bool edged, bool paired, bool right)
+                             const struct scope *scope)
 {
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
+	for (int i = 0; i < (scope->paired ? 2 : 1); i++) {
 		s->at[i][0] = (struct place){g->u[i], g->v[i]};
 		s->top[i][0] = g->top[i];
 	}
 	if (W == 8) {
 		// there are registers for one thing after the other
 		for (int r = 0; r < ROW; r++)
-			stretch_move(s, flyers, r, paired);
+			stretch_move(s, flyers, r, scope);
 		for (int r = 0; r < ROW; r++)
-			stretch_prove(s, g, flyers, r, edged, paired, right);
+			stretch_prove(s, g, flyers, r, scope);
 		return;
 	}
 	// a proof runs while the next move waits for the last
 	_Pragma("GCC unroll 1") for (int r = 0; r < ROW; r++)
 	{
-		stretch_move(s, flyers, r, paired);
-		stretch_prove(s, g, flyers, r, edged, paired, right);
+		stretch_move(s, flyers, r, scope);
+		stretch_prove(s, g, flyers, r, scope);
 	}
 }
 
 /* Some lanes arrive at a sample of a stretch. */
-LANE_INLINE void stretch_keep(struct lanes *g, const struct stretch *s, int r, vm which, bool paired,
-                              bool right)
+LANE_INLINE void stretch_keep(struct lanes *g, const struct stretch *s, int r, vm which,
+                              const struct scope *scope)
 {
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
+	for (int i = 0; i < (scope->paired ? 2 : 1); i++) {
 		g->u[i] = vselect(which, s->at[i][r].u, g->u[i]);
 		g->v[i] = vselect(which, s->at[i][r].v, g->v[i]);
-		if (i == 0 || right)
+		if (i == 0 || scope->right)
 			g->top[i] = vselect(which, s->top[i][r], g->top[i]);
 	}
 }
@@ -399,16 +398,12 @@ LANE_INLINE vd press_fades(const struct lanes *g, const struct press *s, const v
 
 /* One cell of pressed contact.
  *
- * Given    edged   a lane has a law of more than one piece
- *          right   a lane's largest displacement of the right body is wanted
- *          forced  a lane's contact ends when its force does;  seldom: bodies of a lane may be alike
- *          going   lanes that are to go on
+ * Given    going   lanes that are to go on
  * Returns  s       those of them in which nothing can happen, at the end of the cell
  *          edge    lanes in which an edge of a piece may be reached
  *          value   those, and others in which something may happen inside it
  */
-LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool right, bool forced, bool seldom,
-                     vm going, vm *edge)
+LANE_INLINE vm press(const struct lanes *g, struct press *s, const struct scope *scope, vm going, vm *edge)
 {
 	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
 	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
@@ -418,7 +413,7 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 		end[j] = x[j] + form_at(&s->moved[PRESS_U + j], x, ground, rise);
 	}
 	vd error = form_at(&s->error, bound, vabs(ground), vabs(rise)), error_overlap = error;
-	if (seldom)
+	if (scope->seldom)
 		error_overlap = press_fades(g, s, bound, error, end);
 	struct flight b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
 	b.b1 = vfma(third, x[1], x[0]);
@@ -430,12 +425,12 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 	b.error = vfma(rounding, bound[0] + vabs(b.u), error);
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
-	if (forced) {
+	if (scope->forced) {
 		vd force = vfma(g->release / third, flight_along(x[3], &p, third, vsplat(1)), vmin(least, x[2]));
 		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
 		risk |= ~vless(zero, force) & vless(zero, g->release);
 	}
-	if (seldom)
+	if (scope->seldom)
 		risk &= ~press_still(s, end[2], end[3]);
 	vd side = g->side, off = side * g->gap, v = x[1] - side * x[3];
 	struct flight o = {.u = press_other(b.u, p.u, side, off),
@@ -445,9 +440,9 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, bool edged, bool ri
 	// the magnitudes it is made of are those of base, overlap and gap
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	*edge = vmask(0);
-	if (edged)
+	if (scope->edged)
 		*edge = flight_edges(x[1], &b, third, &s->base) | flight_edges(v, &o, third, &s->other);
-	if (edged || right) {
+	if (scope->edged || scope->right) {
 		risk |= flight_peaks(&b, top[0]) | flight_peaks(&o, top[1]);
 	} else {
 		vm left = vless(zero, side);
@@ -515,12 +510,12 @@ LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd speed, vm steady, const st
 
 /* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in contact_map.inl.
  *
- * Given    edged  a lane has a law of more than one piece;  going: lanes that are to go on
+ * Given    going  lanes that are to go on
  * Returns  s      those of them in which nothing can happen, at their end
  *          edge   lanes in which an edge of a piece may be reached
  *          value  those, and others in which something may happen meanwhile
  */
-LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm going, vm *edge)
+LANE_INLINE vm rest(const struct lanes *g, struct press *s, const struct scope *scope, vm going, vm *edge)
 {
 	const vd *split = s->rest[PRESS_SPLIT];
 	vd x[POUND_PRESS_INPUTS], zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4], gone[4];
@@ -581,7 +576,7 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, bool edged, vm going
 		                        vmax(vabs(u), vabs(u1)));
 		vd least = low + mid - size * ripple, most = high + mid + size * ripple;
 		risk |= rest_peaks(u, u1, least, most, steady, s->at.top[i]);
-		if (edged)
+		if (scope->edged)
 			*edge |= rest_edges(u1, least, most, speed, steady, edges[i]);
 	}
 	risk |= *edge;
@@ -596,10 +591,11 @@ LANE_INLINE struct edges edges_select(vm mask, struct edges a, struct edges b)
 }
 
 /* Pressed contact as the lanes come to it, and back. */
-LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd rise, vd left_samples, bool edged)
+LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd rise, vd left_samples,
+                            const struct scope *scope)
 {
 	vm left = vless(vsplat(0), g->side);
-	if (edged) {
+	if (scope->edged) {
 		s->base = edges_select(left, edges_of(g, 0), edges_of(g, 1));
 		s->other = edges_select(left, edges_of(g, 1), edges_of(g, 0));
 	}

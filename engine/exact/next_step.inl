@@ -321,12 +321,10 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 
 /* Notes a sample inside of which a body may have its largest displacement.
  *
- * Given    next    sample at its end
- *          u, v    of body i at its start;  bound: of |u| inside;  top: the largest that is known
+ * Given    noted   the sample, of body i;  top: the largest displacement that is known
  * Returns  value   false: there is no room for it
  */
-static bool peak_note(struct simulation *sim, int i, int64_t next, double u, double v, double bound,
-                      double top)
+static bool peak_note(struct simulation *sim, int i, const struct pound_peak *noted, double top)
 {
 	struct pound_peak *peak = sim->peak[i];
 	int kept = 0;
@@ -336,8 +334,7 @@ static bool peak_note(struct simulation *sim, int i, int64_t next, double u, dou
 	sim->peaks[i] = kept;
 	if (kept == POUND_PEAKS)
 		return false;
-	const struct state_rows *x = &sim->x;
-	peak[kept] = (struct pound_peak){next, u, v, x->body[i].stiffness, x->body[i].offset, bound};
+	peak[kept] = *noted;
 	sim->peaks[i]++;
 	return true;
 }

@@ -160,11 +160,27 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
 	return sum;
 }
 
+/* A guard g = sign (u - level) that an event waits for: positive beyond it. */
+struct guard {
+	const struct power *u;
+	vd level, sign;
+	vd g0, g1; /* its values at the start of the step, not positive but for rounding, and at the end */
+	vd bend;   /* bound of its fourth derivative over the step */
+};
+
+LANE_INLINE struct guard guard_of(const struct power *u, const struct course *c, vd level, vd sign)
+{
+	return (struct guard){.u = u,
+	                      .level = level,
+	                      .sign = sign,
+	                      .g0 = sign * (c->u0 - level),
+	                      .g1 = sign * (c->u1 - level),
+	                      .bend = c->bend};
+}
+
 /* First root by Halley's method where the guard is positive at the limit, with a proof that it is the first.
  *
- * Given    u       guard before sign and level: g = sign (u - level)
- *          g0, g1  its values at 0, not positive, and at the limit, the last time of interest
- *          bend    bound of the fourth derivative of g over the step
+ * Given    g       with g1 at the limit, the last time of interest
  *          active  lanes to search
  * Returns  value   lanes whose root t was found and proved
  *
@@ -172,9 +188,10 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
  * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
  * cubic's inner control points are, the second by more than the error: no root lies before t.
  */
-LANE_SHARED vm root_quick(const struct power *u, int order, vd level, vd sign, vd g0, vd g1, vd limit,
-                          vd bend, vm active, vd *t)
+LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active, vd *t)
 {
+	const struct power *u = g->u;
+	vd sign = g->sign, g0 = g->g0, g1 = g->g1;
 	vd zero = vsplat(0), d0 = sign * u->c[1], slope = zero;
 	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
 	vd d = d0 * limit, c = g1 - (d + g0);
@@ -184,7 +201,7 @@ LANE_SHARED vm root_quick(const struct power *u, int order, vd level, vd sign, v
 	vm settled = vless(zero, zero);
 	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
 		struct place at = place_at(u, order, *t);
-		vd value = sign * (at.u - level), bow = sign * curvature_at(u, order, *t);
+		vd value = sign * (at.u - g->level), bow = sign * curvature_at(u, order, *t);
 		slope = vselect(settled, slope, sign * at.v);
 		vd fall = vfma(slope, slope, vsplat(-0.5) * value * bow);
 		vm rises = vless(zero, slope) & vless(zero, fall);
@@ -198,7 +215,7 @@ LANE_SHARED vm root_quick(const struct power *u, int order, vd level, vd sign, v
 	}
 	// the slope is that before the last step, which changed it by less than 2^-20
 	return sure & settled & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
-	       vless(bend * (*t * *t * *t) * vsplat(1.01 / 24), slope);
+	       vless(g->bend * (*t * *t * *t) * vsplat(1.01 / 24), slope);
 }
 
 /* Safe root search: first time at which a guard, negative at 0, becomes positive.
@@ -241,12 +258,11 @@ LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, 
 	return found;
 }
 
-/* The safe search on any guard; `cut` is noted where the step is only cut at a safe time.
+/* The safe search on any guard; EVENT_CUT is noted where the step is only cut at a safe time.
  *
  * A guard that starts at exactly 0 is divided by the powers of time it starts with: the sign of its first term decides.
  */
-LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event, double cut,
-                             struct search *search)
+LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event, struct search *search)
 {
 	vd zero = vsplat(0), large = zero;
 	// squares are taken: what would vanish in them is raised by a power of two
@@ -269,7 +285,7 @@ LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event
 	vm unsure;
 	found |= root_safe(guard, order, active, search->time, &t, &unsure);
 	search->time = vselect(found | unsure, t, search->time);
-	search->event = vselect(found, event, vselect(unsure, vsplat(cut), search->event));
+	search->event = vselect(found, event, vselect(unsure, vsplat(EVENT_CUT), search->event));
 }
 
 /* The velocity of a motion, times the step. */
@@ -283,20 +299,17 @@ static void motion_velocity(struct power *v, const struct motion *m, int order)
 
 /* Looks for the first time at which a guard crosses a level, and notes it as the event where it comes first.
  *
- * Given    u       the guard; sign (u - level) is not positive at 0 but for rounding
- *          active  lanes to search
- *          event   what to note;  cut: what to note where the step is only cut at a safe time
+ * Given    active  lanes to search
+ *          event   what to note
  * Returns  search  time and event of the lanes that have one, up to the time already there
  */
-LANE_INLINE void search_crossing(const struct power *u, const struct course *c, int order, vd level, vd sign,
-                                 vm active, vd event, double cut, struct search *search)
+LANE_INLINE void search_crossing(struct guard *g, int order, vm active, vd event, struct search *search)
 {
 	vd one = vsplat(1), t;
-	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
 	vm shorter = vless(search->time, one) & active;
 	if (vany(shorter))
-		g1 = vselect(shorter, sign * (power_at(u, order, search->time) - level), g1);
-	vm found = root_quick(u, order, level, sign, g0, g1, search->time, c->bend, active, &t);
+		g->g1 = vselect(shorter, g->sign * (power_at(g->u, order, search->time) - g->level), g->g1);
+	vm found = root_quick(g, order, search->time, active, &t);
 	search->time = vselect(found, t, search->time);
 	search->event = vselect(found, event, search->event);
 	active &= ~found;
@@ -304,7 +317,7 @@ LANE_INLINE void search_crossing(const struct power *u, const struct course *c, 
 		return;
 	struct power guard;
 	for (int n = 0; n <= order; n++)
-		guard.c[n] = sign * u->c[n];
-	guard.c[0] = g0;
-	search_safe(&guard, order, active, event, cut, search);
+		guard.c[n] = g->sign * g->u->c[n];
+	guard.c[0] = g->g0;
+	search_safe(&guard, order, active, event, search);
 }

@@ -177,6 +177,18 @@ enum {
 	TRAIT_OBSERVED = 128, /* it has an observer: observer.inl */
 };
 
+/* What is true of the lanes of a batch; what is not is neither looked into nor computed. */
+struct scope {
+	bool paired;   /* they have two bodies */
+	bool touching; /* all are in contact, or none is */
+	bool edged;    /* a lane has a law of more than one branch */
+	bool right;    /* a lane's largest displacement of the right body is wanted */
+	bool forced;   /* a lane's contact ends when its force does */
+	bool
+	    seldom; /* a lane's energy is accounted for, it is observed, or nothing presses its bodies on each other */
+	bool common; /* all have the same constants */
+};
+
 /* a task that a simulation is the run of as well */
 struct pound_member {
 	const struct pound_task *task;

@@ -9,13 +9,10 @@
 
 /* lanes of a step by power series, and what they are */
 struct event_lanes {
-	vm active;          /* lanes in use */
-	vm parted, fresh;   /* as in struct simulation */
-	bool touching;      /* all lanes are in contact, or none */
-	bool paired, edged; /* as stretch_fly() has them */
-	bool right;         /* a lane's largest displacement of the right body is wanted */
-	bool forced;        /* a lane's contact ends when its force does */
-	vm decided;         /* lanes in which an edge of a piece decided how far they went */
+	struct scope scope;
+	vm active;        /* lanes in use */
+	vm parted, fresh; /* as in struct simulation */
+	vm decided;       /* lanes in which an edge of a piece decided how far they went */
 };
 
 /* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
@@ -33,11 +30,11 @@ struct terms {
 };
 
 /* Derivatives 0 and 1: where a step starts. */
-LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool touching)
+LANE_INLINE struct terms terms_start(const struct lanes *g, const struct scope *scope)
 {
 	struct terms t;
 	vd dt = g->dt, dt2 = dt * dt;
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
+	for (int i = 0; i < (scope->paired ? 2 : 1); i++) {
 		t.u[i] = g->u[i], t.v[i] = g->v[i] * dt;
 		t.c[i] = -g->body[i].damping * dt;
 		t.k[i] = -g->body[i].stiffness * dt2;
@@ -45,10 +42,10 @@ LANE_INLINE struct terms terms_start(const struct lanes *g, bool paired, bool to
 		t.increase[i] = -(g->body[i].drive * g->slope) * dt2 * dt;
 		t.still[i] = vequal(g->v[i], vsplat(0));
 	}
-	if (!paired)
+	if (!scope->paired)
 		return t;
 	t.u[2] = g->p, t.v[2] = g->q * dt;
-	if (touching) {
+	if (scope->touching) {
 		t.spring = g->contact_stiffness * dt2;
 		t.dash = g->contact_damping * dt;
 	}
@@ -114,32 +111,32 @@ LANE_SHARED vd still_settle(const struct lanes *g, int i, vd b, vd push, vm stil
  *
  * Given    level  bodies of a lane are
  */
-LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, bool paired, bool touching,
+LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, const struct scope *scope,
                             bool level)
 {
 	vd b[2];
-	for (int i = 0; i < (paired ? 2 : 1); i++) {
+	for (int i = 0; i < (scope->paired ? 2 : 1); i++) {
 		vd slow = t->k[i] * t->u[i];
 		if (n < 2)
 			slow = slow + (n ? t->increase[i] : t->force[i]);
 		b[i] = vfma(t->c[i], t->v[i], slow);
 	}
 	vd apart = b[0];
-	if (paired)
+	if (scope->paired)
 		apart = b[0] - b[1];
 	if (level)
 		apart = apart_settle(t, g, apart, n);
 	vd push = vsplat(0);
-	if (touching) {
+	if (scope->touching) {
 		push = vfma(t->dash, t->v[2], t->spring * t->u[2]);
 		b[0] = b[0] - push;
 		b[1] = vfma(g->mass_ratio, push, b[1]);
 		apart = vfma(g->both, -push, apart);
 	}
-	for (int i = 0; i < (paired ? 2 : 1); i++)
+	for (int i = 0; i < (scope->paired ? 2 : 1); i++)
 		if (n == 0 && vany(t->still[i]))
 			b[i] = still_settle(g, i, b[i], i ? g->mass_ratio * push : push, t->still[i]);
-	for (int j = 0; j < (paired ? 3 : 1); j++) {
+	for (int j = 0; j < (scope->paired ? 3 : 1); j++) {
 		t->u[j] = t->v[j];
 		t->v[j] = j < 2 ? b[j] : apart;
 	}
@@ -167,7 +164,8 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 	for (vm past = past_high | past_low; vany(past); past = past_high & past_low, past_high = vmask(0)) {
 		vd level = vselect(past_high, g->body[i].high, g->body[i].low), sign = vselect(past_high, one, -one);
 		vd edge = vselect(past_high, vsplat(POUND_EDGE_HIGH), vsplat(POUND_EDGE_LOW));
-		search_crossing(&m->u, &c, s->order, level, sign, past, body + edge, EVENT_CUT, search);
+		struct guard guard = guard_of(&m->u, &c, level, sign);
+		search_crossing(&guard, s->order, past, body + edge, search);
 	}
 	if (!vany(turns))
 		return;
@@ -177,8 +175,8 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 		return;
 	struct power velocity;
 	motion_velocity(&velocity, m, s->order);
-	search_crossing(&velocity, &c, s->order, zero, -g->body[i].direction, turns,
-	                body + vsplat(POUND_EDGE_TURN), EVENT_CUT, search);
+	struct guard guard = guard_of(&velocity, &c, zero, -g->body[i].direction);
+	search_crossing(&guard, s->order, turns, body + vsplat(POUND_EDGE_TURN), search);
 }
 
 /* Follows the largest displacement of a body inside the step, before what the search found.
@@ -197,8 +195,8 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
 	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
 	vd sign = vselect(vless(way, zero), one, -one);
-	vm once =
-	    root_quick(&velocity, s->order, zero, sign, sign * v[0], sign * m->end.v, one, c.bend, inside, &t);
+	const struct guard turns = guard_of(&velocity, &c, zero, sign);
+	vm once = root_quick(&turns, s->order, one, inside, &t);
 	vd turn = power_at(&m->u, s->order, t), behind = one - t, behind2 = behind * behind;
 	struct course rest = {turn, zero, m->end.u, m->end.v * behind, m->bend * (behind2 * behind2)};
 	vd most = vmax(vmax(vabs(turn), vabs(m->end.u)), g->top[i]);
@@ -210,8 +208,7 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 	struct power guard;
 	for (int n = 0; n <= s->order; n++)
 		guard.c[n] = sign * v[n];
-	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN), EVENT_CUT,
-	            search);
+	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN), search);
 }
 
 /* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
@@ -223,7 +220,7 @@ LANE_SHARED void force_search(const struct series *s, const struct lanes *g, con
                               vm by_force, struct search *search)
 {
 	const struct motion *p = &s->overlap;
-	vd sign = e->touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;
+	vd sign = e->scope.touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;
 	struct power guard, rate;
 	motion_velocity(&rate, p, s->order);
 	for (int n = 0; n <= s->order; n++)
@@ -233,36 +230,37 @@ LANE_SHARED void force_search(const struct series *s, const struct lanes *g, con
 	vd pull = 2.0 * (vabs(s->body[0].u.c[2]) + vabs(s->body[1].u.c[2]));
 	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, pull, p->u.c[0]));
 	guard.c[0] = vselect(e->fresh, below, guard.c[0]);
-	search_safe(&guard, s->order, by_force, vsplat(EVENT_CONTACT), EVENT_CUT, search);
-	if (e->touching)
+	search_safe(&guard, s->order, by_force, vsplat(EVENT_CONTACT), search);
+	if (e->scope.touching)
 		return;
 	for (int n = 0; n <= s->order; n++)
 		guard.c[n] = -p->u.c[n];
-	search_safe(&guard, s->order, by_force, vsplat(EVENT_CLEARS), EVENT_CUT, search);
+	search_safe(&guard, s->order, by_force, vsplat(EVENT_CLEARS), search);
 }
 
 /* Looks for the beginning or the end of a contact: the overlap p rises or falls through 0. */
 LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
                                 struct search *search)
 {
-	vd zero = vsplat(0), sign = e->touching ? vsplat(-1) : vsplat(1);
+	vd zero = vsplat(0), sign = e->scope.touching ? vsplat(-1) : vsplat(1);
 	vm by_force = vmask(0);
-	if (e->forced)
-		by_force = (e->touching ? ~vequal(g->release, zero) : e->parted) & e->active;
+	if (e->scope.forced)
+		by_force = (e->scope.touching ? ~vequal(g->release, zero) : e->parted) & e->active;
 	struct course c = course_of(&s->overlap);
 	vm risk = may_cross(&c, zero, sign) & e->active & ~by_force;
-	if (vany(risk))
-		search_crossing(&s->overlap.u, &c, s->order, zero, sign, risk, vsplat(EVENT_CONTACT), EVENT_CUT,
-		                search);
+	if (vany(risk)) {
+		struct guard guard = guard_of(&s->overlap.u, &c, zero, sign);
+		search_crossing(&guard, s->order, risk, vsplat(EVENT_CONTACT), search);
+	}
 	if (vany(by_force))
 		force_search(s, g, e, by_force, search);
 }
 
 /* Moves the ends of a step to its events. */
-LANE_INLINE void series_cut(struct series *s, vm event, vd time, bool paired)
+LANE_INLINE void series_cut(struct series *s, vm event, vd time, const struct scope *scope)
 {
 	struct motion *m[3] = {&s->body[0], &s->body[1], &s->overlap};
-	for (int j = 0; j < (paired ? 3 : 1); j++) {
+	for (int j = 0; j < (scope->paired ? 3 : 1); j++) {
 		struct place at = place_at(&m[j]->u, s->order, time);
 		m[j]->end.u = vselect(event, at.u, m[j]->end.u);
 		m[j]->end.v = vselect(event, at.v, m[j]->end.v);
@@ -282,19 +280,19 @@ LANE_INLINE vd impulse_of(const struct lanes *g, const struct series *s, vd time
 /* Which bodies' motion a step must look into: the left one's always. */
 LANE_INLINE int bodies_watched(const struct event_lanes *e)
 {
-	return e->paired && (e->edged || e->right) ? 2 : 1;
+	return e->scope.paired && (e->scope.edged || e->scope.right) ? 2 : 1;
 }
 
 /* Makes the series of a step, and the bounds of what is looked into.
  *
  * Given    level  lanes whose bodies are, or NULL: there are none
  */
-LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, bool paired, bool touching,
+LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, const struct scope *scope,
                              const vm *level)
 {
 	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
-	struct terms t = terms_start(g, paired, touching);
-	const int order = touching ? ORDER_TOUCH : ORDER_APART, motions = paired ? 3 : 1;
+	struct terms t = terms_start(g, scope);
+	const int order = scope->touching ? ORDER_TOUCH : ORDER_APART, motions = scope->paired ? 3 : 1;
 	s->order = order;
 	if (level) {
 		t.level = *level;
@@ -303,50 +301,51 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 			t.by_time[i] = (struct place){g->u[i], g->v[i]};
 	}
 	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions);
-	          if (n < order) terms_next(&t, g, n, paired, touching, level != NULL);)
+	          if (n < order) terms_next(&t, g, n, scope, level != NULL);)
 	// no result depends on this: what is added up is to be read from memory, or gcc keeps the coefficients there twice
 	__asm__ volatile("" ::: "memory");
 	for (int j = 0; j < motions; j++)
 		motion_end(into[j], order);
 	for (int i = 0; i < watched; i++)
 		motion_bound(&s->body[i], order);
-	if (paired)
+	if (scope->paired)
 		motion_bound(&s->overlap, order);
 }
 
 LANE_SHARED void series_alone(struct series *s, const struct lanes *g)
 {
-	series_make(s, g, 1, false, false, NULL);
+	series_make(s, g, 1, &(struct scope){.paired = false}, NULL);
 }
 LANE_SHARED void series_apart(struct series *s, const struct lanes *g, int watched)
 {
-	series_make(s, g, watched, true, false, NULL);
+	series_make(s, g, watched, &(struct scope){.paired = true}, NULL);
 }
 LANE_SHARED void series_touch(struct series *s, const struct lanes *g, int watched)
 {
-	series_make(s, g, watched, true, true, NULL);
+	series_make(s, g, watched, &(struct scope){.paired = true, .touching = true}, NULL);
 }
-LANE_SHARED void series_level(struct series *s, const struct lanes *g, int watched, bool touching, vm level)
+LANE_SHARED void series_level(struct series *s, const struct lanes *g, int watched, struct scope scope,
+                              vm level)
 {
-	if (touching)
-		series_make(s, g, watched, true, true, &level);
+	if (scope.touching)
+		series_make(s, g, watched, &(struct scope){.paired = true, .touching = true}, &level);
 	else
-		series_make(s, g, watched, true, false, &level);
+		series_make(s, g, watched, &(struct scope){.paired = true}, &level);
 }
 
 LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struct event_lanes *e)
 {
 	int watched = bodies_watched(e);
-	vm level = e->paired ? bodies_level(g) & e->active : vmask(0);
-	if (!e->paired)
+	vm level = e->scope.paired ? bodies_level(g) & e->active : vmask(0);
+	if (!e->scope.paired)
 		series_alone(s, g);
 	else if (vany(level))
-		series_level(s, g, watched, e->touching, level);
-	else if (e->touching)
+		series_level(s, g, watched, e->scope, level);
+	else if (e->scope.touching)
 		series_touch(s, g, watched);
 	else
 		series_apart(s, g, watched);
-	s->order = e->touching ? ORDER_TOUCH : ORDER_APART; // the compiler is to know it
+	s->order = e->scope.touching ? ORDER_TOUCH : ORDER_APART; // the compiler is to know it
 }
 
 /* Lanes arrive at the end of a step, or of the share `time` of it that was gone. */
@@ -354,16 +353,16 @@ LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct 
                           vm arrived)
 {
 	vd per_dt = vsplat(1) / g->dt, elapsed = time * g->dt;
-	if (e->touching) {
+	if (e->scope.touching) {
 		g->impulse = vselect(arrived, g->impulse + impulse_of(g, s, time), g->impulse);
 		g->contact_time = vselect(arrived, g->contact_time + elapsed, g->contact_time);
 	}
-	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
+	for (int i = 0; i < (e->scope.paired ? 2 : 1); i++) {
 		g->u[i] = vselect(arrived, s->body[i].end.u, g->u[i]);
 		g->v[i] = vselect(arrived, s->body[i].end.v * per_dt, g->v[i]);
 		g->top[i] = vmax(g->top[i], vabs(g->u[i]));
 	}
-	if (e->paired) {
+	if (e->scope.paired) {
 		g->p = vselect(arrived, s->overlap.end.u, g->p);
 		g->q = vselect(arrived, s->overlap.end.v * per_dt, g->q);
 	}
@@ -382,11 +381,11 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	struct series s;
 	step_begin(&s, g, e);
 	struct search search = {.time = one, .event = zero};
-	if (e->paired)
+	if (e->scope.paired)
 		contact_search(&s, g, e, &search);
-	if (e->edged) {
+	if (e->scope.edged) {
 		struct search before = search;
-		for (int i = 0; i < (e->paired ? 2 : 1); i++)
+		for (int i = 0; i < (e->scope.paired ? 2 : 1); i++)
 			body_search(&s, g, i, e->active, &search);
 		e->decided = ~vequal(search.time, before.time) | ~vequal(search.event, before.event);
 	}
@@ -395,22 +394,22 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].end.u));
 		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
 		// a piece with a direction ends where the velocity turns: up to what was found neither end is exceeded
-		if (e->edged)
+		if (e->scope.edged)
 			inside &= vequal(g->body[i].direction, zero);
 		if (vany(inside))
 			body_top(&s, g, i, inside, &search);
 	}
 	vm event = ~vequal(search.event, zero);
 	if (vany(event))
-		series_cut(&s, event, search.time, e->paired);
+		series_cut(&s, event, search.time, &e->scope);
 	if (accounted)
-		energy_add(g, &s, search.time, e->paired, e->touching);
+		energy_add(g, &s, search.time, e->scope);
 	// where no time has gone by nothing is to change, not by a rounding
 	vm moved = vless(zero, search.time);
 	step_end(g, &s, e, search.time, moved);
 	g->dt = search.time * g->dt;
 	// a body turns with no velocity, but where it had turned before that was noticed
-	for (int i = 0; i < (e->paired ? 2 : 1); i++) {
+	for (int i = 0; i < (e->scope.paired ? 2 : 1); i++) {
 		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);
 		g->v[i] = vselect(vequal(search.event, turn) & moved, zero, g->v[i]);
 	}
@@ -430,8 +429,8 @@ LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
 {
 	vd zero = vsplat(0);
 	vm turns = vequal(event, vsplat(EVENT_CONTACT)) & e->active, parted = e->parted;
-	if (e->touching) {
-		parted = e->forced ? turns & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
+	if (e->scope.touching) {
+		parted = e->scope.forced ? turns & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
 		g->part = vselect(turns, vfma(g->cells, g->cell, g->part), g->part);
 		g->cells = vselect(turns, zero, g->cells);
 	} else {
@@ -442,7 +441,7 @@ LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
 	}
 	g->p = vselect(turns & ~parted, zero, g->p); // from here exactly
 	e->fresh = parted & turns;
-	if (e->forced && !e->touching) {
+	if (e->scope.forced && !e->scope.touching) {
 		vm clears = vequal(event, vsplat(EVENT_CLEARS));
 		g->p = vselect(clears, zero, g->p);
 		parted &= ~clears & ~turns;
@@ -481,7 +480,7 @@ LANE_INLINE void event_leap(struct lanes *g, struct event_lanes *e, vm leaping)
 {
 	vd one = vsplat(1), zero = vsplat(0);
 	leaping &= ~e->parted & ~e->fresh & vequal(g->pace, one) & vless(zero, g->part);
-	if (!e->touching)
+	if (!e->scope.touching)
 		leaping &= ~vless(g->reach, g->part);
 	if (!vany(leaping))
 		return;
@@ -489,18 +488,18 @@ LANE_INLINE void event_leap(struct lanes *g, struct event_lanes *e, vm leaping)
 	struct series s;
 	step_begin(&s, g, e);
 	vm risk = vmask(0);
-	if (e->paired) {
+	if (e->scope.paired) {
 		struct course c = course_of(&s.overlap);
-		risk = may_cross(&c, zero, e->touching ? -one : one);
+		risk = may_cross(&c, zero, e->scope.touching ? -one : one);
 		// as long as the overlap grows its force does not end
-		if (e->touching && e->forced)
+		if (e->scope.touching && e->scope.forced)
 			risk |= ~vless(zero, course_slowest(&c)) & vless(zero, g->release);
 	}
 	for (int i = 0; i < bodies_watched(e); i++)
 		risk |= peak_risk(&s, g, i);
-	if (e->edged) {
+	if (e->scope.edged) {
 		vm edge = vmask(0);
-		for (int i = 0; i < (e->paired ? 2 : 1); i++)
+		for (int i = 0; i < (e->scope.paired ? 2 : 1); i++)
 			edge |= edge_risk(&s, g, i);
 		risk |= edge;
 		e->decided |= leaping & edge;
