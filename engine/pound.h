@@ -67,8 +67,11 @@ bool pound_run_stopped(const struct pound_run *run);
  * over its signals divided by their number (NAN: failed run, or a variance of one signal). */
 int pound_run_samples(const struct pound_run *run); /* of a row */
 void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x);
-void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
-                             double *mean, double *variance);
+struct pound_sample_output {
+	double mean, variance;
+};
+struct pound_sample_output pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample,
+                                                   int output);
 
 /* The ground motion of a signal of that sample, which need not have been run: its samples in number, and their
  * accelerations [m/s2] at times 0, step, ...  (value of pound_run_motion_samples) */

@@ -101,20 +101,26 @@ LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, do
 	return p;
 }
 
+/* Acceleration over a part as a power series: coefficients to be taken times `scale`  (order + 1);  order -1: none. */
+struct drive {
+	const double *a;
+	int order;
+	double scale;
+};
+
 /* Power series of oscillators over a part.
  *
  * Given    z, y    at the start, y = z' in the part's time
- *          drive   (order + 1)  coefficients of the acceleration, to be taken times `scale`;  order -1: none
+ *          drive   acceleration of the floor or by the contact
  *
  *   (n + 1) z_n+1 = y_n     (n + 1) y_n+1 = -(2 xi x y_n + x^2 z_n + a_n)
  *
  * Only one fused operation of an order has to wait for the order before.
  */
-LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y, const double *drive,
-                             int order, double scale)
+LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y, const struct drive *drive)
 {
-	vd x2 = p->x * p->x, factor = vsplat(scale);
-	s->terms = larger(p->terms, order + 2);
+	vd x2 = p->x * p->x, factor = vsplat(drive->scale);
+	s->terms = larger(p->terms, drive->order + 2);
 	s->z1 = s->y1 = vsplat(0);
 	for (int n = 0;; n++) {
 		s->z[n] = z;
@@ -124,8 +130,8 @@ LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y,
 		if (n == s->terms)
 			break;
 		vd share = vsplat(POUND_SHARE[n]), minus = vsplat(MINUS_SHARE[n]), force = x2 * z;
-		if (n <= order)
-			force = vfma(factor, vsplat(drive[n]), force);
+		if (n <= drive->order)
+			force = vfma(factor, vsplat(drive->a[n]), force);
 		z = y * share;
 		y = vfma(p->damp * minus, y, minus * force);
 	}
@@ -303,23 +309,23 @@ LANE_SHARED vd part_top(const struct part *p, const struct place *at, enum pound
 	const double *a;
 	struct series series;
 	const int order = pound_floor_drive(at->ride->stretch, at->piece, drive, at->ride->damping, flown, &a);
-	a = part_drive(a, order, at->j, at->n, room);
-	series_fill(&series, p, s.z, s.v * p->step, a, order, p->step * p->step);
+	const struct drive of_part = {part_drive(a, order, at->j, at->n, room), order, p->step * p->step};
+	series_fill(&series, p, s.z, s.v * p->step, &of_part);
 	return peak_add(&series, risk, s.top);
 }
 
 /* Moves a state over a part; the series is only made where there may be an extremum inside.
  *
- * Given    error  of the drive
+ * Given    to     its z and v there;  error: of the drive
  */
 LANE_INLINE void part_pass(const struct part *p, const struct place *at, enum pound_drive drive,
-                           struct state *s, vd z1, vd v1, vd error)
+                           struct state *s, struct state to, vd error)
 {
-	vm risk = part_risk(p, s, z1, v1, error);
+	vm risk = part_risk(p, s, to.z, to.v, error);
 	if (__builtin_expect(vany(risk), 0))
 		s->top = part_top(p, at, drive, *s, risk);
-	s->z = z1;
-	s->v = v1;
+	s->z = to.z;
+	s->v = to.v;
 }
 
 /* Oscillators over one part of a piece, by the integrals of its drives. */
@@ -334,7 +340,7 @@ LANE_INLINE void part_ride(const struct part *p, const struct place *at, struct 
 		vd y = s[d].v * p->step;
 		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
 		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
-		part_pass(p, at, d, &s[d], z1, y1 * per_step, drive_error(p, a[d]->bound));
+		part_pass(p, at, d, &s[d], (struct state){.z = z1, .v = y1 * per_step}, drive_error(p, a[d]->bound));
 	}
 }
 
@@ -407,7 +413,7 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 		}
 		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
 		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
-		part_pass(p, at, drive, s, z, v, error);
+		part_pass(p, at, drive, s, (struct state){.z = z, .v = v}, error);
 	}
 }
 

@@ -96,12 +96,13 @@ size_t pound_bootstrap_scratch(int n_rows, int n_moments, int n_values)
  * Source   percentile interval, Efron, Tibshirani 1993, section 13.3
  * Test     unit_bootstrap: intervals_of_a_mean_are_those_of_the_normal_law
  */
-void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
-                              int n_resamples, double *scratch, struct pound_estimate *estimates)
+void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_rows,
+                              struct pound_resampling resampling, double *scratch,
+                              struct pound_estimate *estimates)
 {
 	assert(statistic->n_moments <= POUND_MOMENTS_MAX && statistic->n_values <= POUND_VALUES_MAX);
 	assert(n_rows <= POUND_RESAMPLE_ROWS_MAX);
-	assert(n_resamples % GROUP == 0 && n_resamples <= POUND_RESAMPLES);
+	assert(resampling.n % GROUP == 0 && resampling.n <= POUND_RESAMPLES);
 	const int n_moments = statistic->n_moments;
 	double *on_cache_line = (double *)(((uintptr_t)scratch + 63) / 64 * 64);
 	const struct pound_tiles moments = moments_of(statistic, n_rows, on_cache_line);
@@ -114,9 +115,9 @@ void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_row
 	statistic->values(statistic->subject, mean, value);
 	for (int v = 0; v < statistic->n_values; v++)
 		estimates[v] = (struct pound_estimate){value[v], NAN, NAN};
-	for (int r = 0; r < n_resamples && !pound_stopped(statistic->stop); r++) {
+	for (int r = 0; r < resampling.n && !pound_stopped(statistic->stop); r++) {
 		if (r % GROUP == 0)
-			pound_bootstrap_sums(pound_dispatch_width(0), &moments, seed, r, sum);
+			pound_bootstrap_sums(pound_dispatch_width(0), &moments, resampling.seed, r, sum);
 		for (int k = 0; k < n_moments; k++)
 			mean[k] = sum[r % GROUP * width + k] / n_rows;
 		statistic->values(statistic->subject, mean, value);
@@ -141,7 +142,7 @@ void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_row
  * Test     unit_jackknife: rows_in_groups_are_never_resampled
  */
 void pound_bootstrap_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
-                               int n_rows, uint64_t seed, int n_resamples, double *scratch,
+                               int n_rows, struct pound_resampling resampling, double *scratch,
                                struct pound_estimate *estimates)
 {
 	assert(pound_jackknife_scratch(scatter, statistic->n_moments) <=
@@ -149,5 +150,5 @@ void pound_bootstrap_estimates(const struct pound_statistic *statistic, const st
 	if (scatter->grouping.n)
 		pound_jackknife_estimates(statistic, scatter, n_rows, scratch, estimates);
 	else
-		pound_bootstrap_interval(statistic, n_rows, seed, n_resamples, scratch, estimates);
+		pound_bootstrap_interval(statistic, n_rows, resampling, scratch, estimates);
 }

@@ -289,8 +289,9 @@ static void estimates_fill(const struct fits *f, bool corrected)
 			const size_t first = (size_t)row * n_samples;
 			if (corrected)
 				pound_rows_noise(f->rows, row, noise);
-			pound_closed_row(&f->closed, f->rows->y + first, f->fit + first,
-			                 f->coefficients[(size_t)fold * f->terms], part, corrected ? noise : NULL,
+			const struct pound_control_variate control = {f->fit + first,
+			                                              f->coefficients[(size_t)fold * f->terms], part};
+			pound_closed_row(&f->closed, f->rows->y + first, &control, corrected ? noise : NULL,
 			                 f->estimates + (size_t)row * f->closed.n_columns);
 		}
 	}
@@ -370,10 +371,9 @@ size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape)
 /* All indices and conditional means with a cross-fitted polynomial as control variate.
  *
  * Given    rows       -                      outputs and their noise
- *          u          (n x 2 x n_inputs)     the design as probabilities in (0, 1), rows of A and B
- *          corrected  -                      for the noise of few signals (NAN for one signal)
- *          kept       (pound_chaos_expansion_kept_size)    zeros, or as a call for another output of the design left it, maybe with
+ *          sampling   -                      u, and as `kept` (pound_chaos_expansion_kept_size) zeros, or as a call for another output of the design left it, maybe with
  *                                            other rows; NULL: nothing is kept
+ *          noise      -                      kept or removed (NAN for one signal)
  * Returns  results    -                      with 95 % intervals from the scatter of the rows, or of their groups
  *          curves     (n_inputs)             mean outputs given each input; NULL: not wanted
  * Memory   scratch    (pound_chaos_expansion_scratch)  for all rows of the design
@@ -385,18 +385,18 @@ size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape)
  *          Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indices of the polynomial
  * Test     unit_chaos_expansion
  */
-void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected,
-                                   double *kept, double *scratch, struct pound_closed_results *results,
-                                   struct pound_curve *curves)
+void pound_chaos_expansion_indices(const struct pound_rows *rows, const struct pound_sampling *sampling,
+                                   enum pound_noise noise, double *scratch,
+                                   struct pound_closed_results *results, struct pound_curve *curves)
 {
-	struct fits fits = {.rows = rows, .u = u, .kept = kept};
+	struct fits fits = {.rows = rows, .u = sampling->u, .kept = sampling->kept};
 	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
 	for (int sample = 0; sample < rows->n_samples; sample++)
 		fits.mask[sample] = pound_order_mask(rows->n_inputs, sample);
 	folds_fill(&fits);
 	fits_fill(&fits);
 	fits_shrink(&fits);
-	estimates_fill(&fits, corrected);
+	estimates_fill(&fits, noise == POUND_NOISE_REMOVED);
 	pound_closed_indices(&fits.closed, fits.estimates, rows, fits.rest, results);
 	if (curves)
 		curves_fill(&fits, curves);

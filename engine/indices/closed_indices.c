@@ -72,9 +72,7 @@ void pound_closed_init(struct pound_closed *closed, int n_inputs, int order)
  *   other sets     C_u = G_u + mean over pairs of y_p y_q - g_p g_q
  *
  * Given    y          (n_samples)               outputs of the row
- *          g          (n_samples)               values of the control variate; NULL: none
- *          mean       -                         taken off both
- *          part       (n_columns)               closed parts G_u of the control variate's variance; without it zeros
+ *          control    -                         g, the mean, and as `part` the closed parts G_u
  *          noise      (n_samples x n_samples)   covariances of the outputs' noise, to take off; NULL: none
  * Returns  estimate   (n_columns)
  *
@@ -84,9 +82,10 @@ void pound_closed_init(struct pound_closed *closed, int n_inputs, int order)
  * Source   Sobol' 2001, Math. Comput. Simul. 55, 271-280; Jansen 1999, Comput. Phys. Commun. 117, 35-43
  * Test     unit_closed_indices: contrasts_of_the_factorial_design_have_their_golden_values
  */
-void pound_closed_row(const struct pound_closed *closed, const double *y, const double *g, double mean,
-                      const double *part, const double *noise, double *estimate)
+void pound_closed_row(const struct pound_closed *closed, const double *y,
+                      const struct pound_control_variate *control, const double *noise, double *estimate)
 {
+	const double *g = control->g, *part = control->part, mean = control->mean;
 	const int n_samples = closed->n_samples, last = closed->n_columns - 1;
 	double squares = 0.0;
 	for (int p = 0; p < n_samples; p++) {

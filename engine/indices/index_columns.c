@@ -97,6 +97,11 @@ static double half(struct pound_estimate estimate)
 	return 0.5 * (estimate.high - estimate.low);
 }
 
+static enum pound_noise noise_of(const struct sources *s)
+{
+	return s->corrected ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT;
+}
+
 /* The half widths that the first n/8, n/4 and n/2 rows give by chaos_expansion.c, as it has left its scratch, and by pick-freeze;
  * those of all rows are the indices' own. */
 static void levels_fill(struct sources *s, uint64_t seed)
@@ -120,8 +125,8 @@ static void levels_fill(struct sources *s, uint64_t seed)
 		part.n_rows = level->kept;
 		if (level->kept < POUND_ROWS_MIN)
 			continue;
-		pound_plain_estimates(&part, pound_estimator_row(0), s->corrected, seed, RESAMPLES_FEW, s->scratch,
-		                      estimates);
+		pound_plain_estimates(&part, pound_estimator_row(0), noise_of(s),
+		                      (struct pound_resampling){seed, RESAMPLES_FEW}, s->scratch, estimates);
 		for (int j = 0; j < d; j++) {
 			level->pick_freeze.first[j] = half(estimates[j]);
 			level->pick_freeze.total[j] = half(estimates[d + j]);
@@ -174,7 +179,9 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		return;
 	}
 	if (neighbours)
-		pound_local_regression_first(s->rows, s->sampling->u, s->variance_known, s->scratch, local);
+		pound_local_regression_first(s->rows, s->sampling->u,
+		                             s->variance_known ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT, s->scratch,
+		                             local);
 	if (neighbours && !s->shared)
 		refuse(s, s->closed.first, local);
 	if (s->shared)
@@ -245,8 +252,8 @@ static void named_fill(const struct sources *s, uint64_t seed, struct pound_indi
 		for (int k = 0; k < 2 * POUND_INPUTS_MAX; k++)
 			undefined(&estimates[k], 1);
 		if (s->corrected || !corrected)
-			pound_plain_estimates(s->rows, estimator, corrected, seed, POUND_RESAMPLES, s->scratch,
-			                      estimates);
+			pound_plain_estimates(s->rows, estimator, corrected ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT,
+			                      (struct pound_resampling){seed, POUND_RESAMPLES}, s->scratch, estimates);
 		copy(s, estimates, into[POUND_NAMED_S1]);
 		copy(s, estimates + s->rows->n_inputs, into[POUND_NAMED_ST]);
 	}
@@ -417,12 +424,12 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 		undefined(indices->curves[j].mean, POUND_CURVE);
 	levels_init(&s, values->n_rows);
 	if (varies) {
-		pound_noise_correction_estimates(&rows, seed,
-		                                 sampling->n_resamples ? sampling->n_resamples : POUND_RESAMPLES,
-		                                 s.scratch, &s.pick_freeze);
+		const struct pound_resampling resampling = {seed, sampling->n_resamples ? sampling->n_resamples
+		                                                                        : POUND_RESAMPLES};
+		pound_noise_correction_estimates(&rows, resampling, s.scratch, &s.pick_freeze);
 		if (rows_enough(&s) && !pound_stopped(rows.stop)) {
-			pound_chaos_expansion_indices(&rows, sampling->u, s.corrected, sampling->kept, s.scratch,
-			                              &s.closed, indices->curves);
+			pound_chaos_expansion_indices(&rows, sampling, noise_of(&s), s.scratch, &s.closed,
+			                              indices->curves);
 			levels_fill(&s, seed);
 		}
 		indices->sets = s.closed.sets;

@@ -109,13 +109,23 @@ enum {
 	POUND_VALUES_MAX = POUND_MOMENTS_MAX
 };
 
+/* How rows are resampled. */
+struct pound_resampling {
+	uint64_t seed;
+	int n; /* resamples: a multiple of 8, at most POUND_RESAMPLES */
+};
+
+/* Whether the noise of few signals is taken off the products of outputs. */
+enum pound_noise { POUND_NOISE_KEPT, POUND_NOISE_REMOVED };
+
 /* A statistic's values with 95 % intervals: by resampling rows, or by leaving out groups where there are some. */
 size_t pound_bootstrap_scratch(int n_rows, int n_moments, int n_values); /* doubles */
 void pound_bootstrap_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
-                               int n_rows, uint64_t seed, int n_resamples, double *scratch,
+                               int n_rows, struct pound_resampling resampling, double *scratch,
                                struct pound_estimate *estimates);
-void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_rows, uint64_t seed,
-                              int n_resamples, double *scratch, struct pound_estimate *estimates);
+void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_rows,
+                              struct pound_resampling resampling, double *scratch,
+                              struct pound_estimate *estimates);
 size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments); /* doubles */
 void pound_jackknife_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
                                int n_rows, double *scratch, struct pound_estimate *estimates);
@@ -137,7 +147,7 @@ struct pound_pick_freeze {
 };
 
 size_t pound_noise_correction_scratch(const struct pound_sample_values *shape); /* doubles */
-void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
+void pound_noise_correction_estimates(const struct pound_rows *rows, struct pound_resampling resampling,
                                       double *scratch, struct pound_pick_freeze *result);
 
 #define POUND_NORMAL_95 1.959963984540054 /* 97.5 % quantile of the normal law */
@@ -146,7 +156,7 @@ void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t se
 enum { POUND_ROWS_MIN = 30 };
 size_t pound_local_regression_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_local_regression_fit(const double *y, int n, int reach, double *fit);
-void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected,
+void pound_local_regression_first(const struct pound_rows *rows, const double *x, enum pound_noise noise,
                                   double *scratch, struct pound_estimate *first);
 /* Half widths of the intervals from the first n of those rows alone, with the neighbours of all; the scratch as it was left.
  * half: (n_inputs) */
@@ -180,8 +190,15 @@ struct pound_closed_results {
 };
 
 void pound_closed_init(struct pound_closed *closed, int n_inputs, int order);
-void pound_closed_row(const struct pound_closed *closed, const double *y, const double *g, double mean,
-                      const double *part, const double *noise, double *estimate);
+/* A control variate of a row's outputs. */
+struct pound_control_variate {
+	const double *g;    /* its values  (n_samples); NULL: none */
+	double mean;        /* taken off both */
+	const double *part; /* closed parts of its variance  (n_columns); without it zeros */
+};
+
+void pound_closed_row(const struct pound_closed *closed, const double *y,
+                      const struct pound_control_variate *control, const double *noise, double *estimate);
 size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows); /* doubles */
 void pound_closed_indices(const struct pound_closed *closed, const double *estimates,
                           const struct pound_rows *rows, double *scratch,
@@ -190,9 +207,9 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 int pound_chaos_expansion_degree(int n_rows, int n_inputs, int n_samples);
 size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape);   /* doubles */
 size_t pound_chaos_expansion_kept_size(const struct pound_sample_values *shape); /* doubles */
-void pound_chaos_expansion_indices(const struct pound_rows *rows, const double *u, bool corrected,
-                                   double *kept, double *scratch, struct pound_closed_results *results,
-                                   struct pound_curve *curves);
+void pound_chaos_expansion_indices(const struct pound_rows *rows, const struct pound_sampling *sampling,
+                                   enum pound_noise noise, double *scratch,
+                                   struct pound_closed_results *results, struct pound_curve *curves);
 /* From the first n of those rows alone, with the polynomials of all; the scratch as it was left. */
 void pound_chaos_expansion_first_rows(const struct pound_rows *rows, int n, double *scratch,
                                       struct pound_closed_results *results);
@@ -218,13 +235,13 @@ void pound_ratio_indices(const struct pound_rows *rows, const double *u, const s
 
 /* The plain protocol: mean, variance, noise share and the raw indices. */
 size_t pound_plain_scratch(const struct pound_sample_values *shape); /* doubles */
-int pound_plain_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
+int pound_plain_indices(const struct pound_sample_values *values, struct pound_resampling resampling,
                         double *scratch, struct pound_indices *indices); /* rows dropped */
 /* first then total  (2 x n_inputs);  scratch: (pound_plain_estimates_scratch) */
 size_t pound_plain_estimates_scratch(const struct pound_sample_values *shape,
                                      const struct pound_estimator *estimator); /* doubles */
 void pound_plain_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
-                           bool corrected, uint64_t seed, int n_resamples, double *scratch,
+                           enum pound_noise noise, struct pound_resampling resampling, double *scratch,
                            struct pound_estimate *estimates);
 bool pound_plain_summary(const struct pound_rows *rows, struct pound_indices *indices);
 

@@ -216,7 +216,7 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
  * Given    rows       -                            outputs and their noise
  *          x          (n x 2 x n_inputs)           the design, rows of A and B, or its probabilities; only the
  *                                                  order within a column counts, but of inputs of few values
- *          corrected  -                            the variance without the noise of few signals (NAN for one signal)
+ *          noise      -                            of the variance: kept or removed (NAN for one signal)
  * Returns  first      (n_inputs)                   with 95 % intervals from the influence of the rows; NAN for
  *                                                  fewer than POUND_ROWS_MIN
  * Memory   scratch    (pound_local_regression_scratch)
@@ -229,13 +229,13 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
  * Source   lag averaging attains the efficiency bound: Klein, Rochet 2023, arXiv 2306.05842; extrapolation: Richardson
  * Test     unit_local_regression
  */
-void pound_local_regression_first(const struct pound_rows *rows, const double *x, bool corrected,
+void pound_local_regression_first(const struct pound_rows *rows, const double *x, enum pound_noise noise,
                                   double *scratch, struct pound_estimate *first)
 {
 	const int n = rows->n_rows, d = rows->n_inputs;
 	const struct space at = carve(scratch, n, d);
 	bool enough = n >= POUND_ROWS_MIN;
-	const double grand = enough ? variances_fill(rows, corrected, at.variance) : NAN;
+	const double grand = enough ? variances_fill(rows, noise == POUND_NOISE_REMOVED, at.variance) : NAN;
 	for (int j = 0; j < d; j++) {
 		const int levels = pound_rows_levels(rows, j);
 		memset(at.sums.near, 0, 3 * sizeof *at.sums.near * (size_t)n);

@@ -119,7 +119,7 @@ size_t pound_noise_correction_scratch(const struct pound_sample_values *shape)
 /* Pick-freeze indices raw and corrected for the noise of few signals, and the shares of the signals.
  *
  * Given    rows       -      outputs and their noise
- *          seed       -      of the resamples, n_resamples in number
+ *          resampling -      of the rows
  * Returns  result     -      each with its 95 % interval; corrected ones and shares are NAN for one signal
  * Memory   scratch    (pound_noise_correction_scratch)
  *
@@ -137,15 +137,14 @@ size_t pound_noise_correction_scratch(const struct pound_sample_values *shape)
  *          signals
  * Test     unit_noise_correction: the_golden_row_set_is_met
  */
-void pound_noise_correction_estimates(const struct pound_rows *rows, uint64_t seed, int n_resamples,
+void pound_noise_correction_estimates(const struct pound_rows *rows, struct pound_resampling resampling,
                                       double *scratch, struct pound_pick_freeze *result)
 {
 	const int d = rows->n_inputs;
 	const struct pound_statistic statistic = {
 	    FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill, values_fill, rows, rows->stop};
 	struct pound_estimate estimates[POUND_VALUES_MAX];
-	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch,
-	                          estimates);
+	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, resampling, scratch, estimates);
 	for (int j = 0; j < d; j++) {
 		result->first_raw[j] = estimates[FIRST_RAW * d + j];
 		result->total_raw[j] = estimates[TOTAL_RAW * d + j];

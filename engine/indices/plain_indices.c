@@ -74,26 +74,25 @@ size_t pound_plain_estimates_scratch(const struct pound_sample_values *shape,
 /* First-order and total indices by an estimator, with 95 % intervals.
  *
  * Given    rows       -      outputs and their noise; of the estimator's order at least
- *          corrected  -      for the noise of few signals
- *          seed       -      of the resamples, n_resamples in number
+ *          noise      -      kept or removed
+ *          resampling -      of the rows
  * Returns  estimates  (2 x n_inputs)                   first, then total
  * Memory   scratch    (pound_plain_estimates_scratch)
  *
  * Test     unit_plain_indices: golden_values_come_out_of_sample_values
  */
 void pound_plain_estimates(const struct pound_rows *rows, const struct pound_estimator *estimator,
-                           bool corrected, uint64_t seed, int n_resamples, double *scratch,
+                           enum pound_noise noise, struct pound_resampling resampling, double *scratch,
                            struct pound_estimate *estimates)
 {
-	const struct subject subject = {estimator, rows, corrected};
+	const struct subject subject = {estimator, rows, noise == POUND_NOISE_REMOVED};
 	const struct pound_statistic statistic = {estimator->n_moments(rows->n_inputs),
 	                                          2 * rows->n_inputs,
 	                                          subject_moments,
 	                                          subject_values,
 	                                          &subject,
 	                                          rows->stop};
-	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, seed, n_resamples, scratch,
-	                          estimates);
+	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, resampling, scratch, estimates);
 }
 
 size_t pound_plain_scratch(const struct pound_sample_values *shape)
@@ -104,7 +103,7 @@ size_t pound_plain_scratch(const struct pound_sample_values *shape)
 /* First-order and total sensitivity indices of one output, with 95 % intervals.
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
- *          seed      -                                       of the resamples, n_resamples in number
+ *          resampling -                                      of the rows
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   mean, variance (of A and B, divided by their number), noise share, raw indices (n_inputs)
  * Memory   scratch   (pound_plain_scratch)
@@ -114,7 +113,7 @@ size_t pound_plain_scratch(const struct pound_sample_values *shape)
  * Source   pick_freeze.c, bootstrap.c
  * Test     unit_plain_indices
  */
-int pound_plain_indices(const struct pound_sample_values *values, uint64_t seed, int n_resamples,
+int pound_plain_indices(const struct pound_sample_values *values, struct pound_resampling resampling,
                         double *scratch, struct pound_indices *indices)
 {
 	const int d = values->n_inputs;
@@ -124,7 +123,7 @@ int pound_plain_indices(const struct pound_sample_values *values, uint64_t seed,
 	for (int k = 0; k < 2 * d; k++)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
 	if (pound_plain_summary(&rows, indices))
-		pound_plain_estimates(&rows, pound_estimator_row(0), false, seed, n_resamples,
+		pound_plain_estimates(&rows, pound_estimator_row(0), POUND_NOISE_KEPT, resampling,
 		                      scratch + pound_rows_scratch(values), estimates);
 	for (int j = 0; j < d; j++) {
 		indices->index[POUND_S1_RAW][j] = estimates[j];

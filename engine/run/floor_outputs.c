@@ -104,13 +104,12 @@ static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound
 
 /* All spectra of one signal. */
 static enum pound_status spectra_fill(struct pound_ordinates *o, const struct pound_study *study,
-                                      const struct pound_request_floor *request, double radians,
-                                      double *values, const atomic_bool *stop)
+                                      const struct pound_request_floor *request, struct pound_floor_ask ask,
+                                      double *values)
 {
 	int n = study->spectrum.n;
 	struct pound_floor_answer answer = {.psa = {o->psa[0], o->psa[1]}};
-	struct pound_floor_ask ask = {
-	    .task = request->free, .n_drives = 1, .radians = radians, .stop = stop, .scratch = request->scratch};
+	ask.task = request->free;
 	enum pound_status status = pound_floor_spectra(o->floor, &ask, &answer);
 	if (status)
 		return status;
@@ -127,7 +126,7 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 	const struct pound_pulse_train dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
 	                                        .spacing = 0.5 / left->frequency_hz,
 	                                        .pulses = pulses ? pulses : (double)answer.contacts,
-	                                        .stop = stop};
+	                                        .stop = ask.stop};
 	dirac_fill(&study->spectrum, &dirac, values);
 	values[POUND_N_SPECTRA * n + IMPULSE] = left->mass * dirac.speed;
 	values[POUND_N_SPECTRA * n + PULSES] = dirac.pulses;
@@ -136,15 +135,11 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 
 /* The ordinates of one sample and signal, or those of the ask before it that has the same floor. */
 static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct pound_study *study,
-                                        const struct pound_request_floor *request, double radians,
-                                        const double *known, double *values, const atomic_bool *stop)
+                                        const struct pound_request_floor *request, struct pound_floor_ask ask,
+                                        const double *known, double *values)
 {
 	struct pound_floor_answer answer = {.psa = {o->psa[0]}};
-	const struct pound_floor_ask ask = {.task = request->pounding ? request->pounding : request->free,
-	                                    .n_drives = 1,
-	                                    .radians = radians,
-	                                    .stop = stop,
-	                                    .scratch = request->scratch};
+	ask.task = request->pounding ? request->pounding : request->free;
 	enum pound_status status = known ? POUND_OK : pound_floor_spectra(o->floor, &ask, &answer);
 	for (int output = 0; output < study->n_outputs; output++) {
 		int k = pound_study_ordinate(study, output);
@@ -177,7 +172,10 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 	memset(o->followed, 0, sizeof *o->followed * (size_t)o->n_tasks);
 	for (int a = 0; a < n_asks && !pound_stopped(stop); a++, values += n) {
 		const struct pound_request_floor floor = pound_request_floor(request, a);
-		double radians = a < n_items ? RADIANS : RADIANS_CHECK;
+		const struct pound_floor_ask ask = {.n_drives = 1,
+		                                    .radians = a < n_items ? RADIANS : RADIANS_CHECK,
+		                                    .stop = stop,
+		                                    .scratch = floor.scratch};
 		assert(floor.march < o->n_tasks);
 		struct followed *followed = &o->followed[floor.march];
 		const int before = has_spectra(study) ? 0 : followed->ask;
@@ -186,9 +184,8 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		work->floors.asked += a < n_items ? floors : 0;
 		if (isnan(values[n - 1]))
 			continue;
-		enum pound_status status = has_spectra(study)
-		                               ? spectra_fill(o, study, &floor, radians, values, stop)
-		                               : ordinates_fill(o, study, &floor, radians, known, values, stop);
+		enum pound_status status = has_spectra(study) ? spectra_fill(o, study, &floor, ask, values)
+		                                              : ordinates_fill(o, study, &floor, ask, known, values);
 		work->floors.run += a < n_items && !known ? floors : 0;
 		*followed = (struct followed){a + 1, known ? followed->status : status};
 		// a run whose floor could not be followed has failed, also where another ask followed that floor
@@ -309,18 +306,21 @@ static void pair_correlation(const void *subject, const double *m, double *value
 	*value = xx > 0 && yy > 0 ? (m[4] - m[0] * m[1]) / sqrt(xx * yy) : NAN;
 }
 
-/* Means over the signals of one sample's ordinate and of its largest impulse per mass; false: a run failed. */
-static bool pair_of(const struct pound_run *run, int cell, int row, int sample, int output, double *x,
-                    double *y)
+struct pair {
+	double x, y;
+};
+
+/* Means over the signals of one sample's ordinate x and of its largest impulse per mass y: not finite where a run failed. */
+static struct pair pair_of(const struct pound_run *run, int cell, int row, int sample, int output)
 {
 	int n_signals = run->campaign.n_signals;
-	*x = *y = 0;
+	struct pair pair = {0, 0};
 	for (int r = 0; r < n_signals; r++) {
 		const double *values = pound_blocks_run(&run->layout, row * n_signals + r, cell, sample);
-		*x += values[2 * output] / n_signals;
-		*y += values[2 * run->campaign.study->n_outputs] / n_signals;
+		pair.x += values[2 * output] / n_signals;
+		pair.y += values[2 * run->campaign.study->n_outputs] / n_signals;
 	}
-	return isfinite(*x) && isfinite(*y);
+	return pair;
 }
 
 static void centre(double *x, int n)
@@ -347,8 +347,12 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	double *x = scratch, *y = scratch + 2 * run->rows;
 	int64_t *rows = (int64_t *)(y + 2 * run->rows);
 	for (int row = 0; row < run->rows && !pound_stopped(run->stop); row++) {
-		bool whole = pair_of(run, cell, row, 0, output, &x[2 * n], &y[2 * n]);
-		whole &= pair_of(run, cell, row, 1, output, &x[2 * n + 1], &y[2 * n + 1]);
+		bool whole = true;
+		for (int sample = 0; sample < 2; sample++) {
+			const struct pair pair = pair_of(run, cell, row, sample, output);
+			x[2 * n + sample] = pair.x, y[2 * n + sample] = pair.y;
+			whole &= isfinite(pair.x) && isfinite(pair.y);
+		}
 		rows[n] = row;
 		n += whole;
 	}
@@ -365,7 +369,8 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 	                                          .stop = run->stop};
 	const struct pound_sample_values values = pound_cells_values(&run->campaign, run->rows, NULL);
 	const struct pound_scatter scatter = pound_rows_scatter(&values, rows);
-	pound_bootstrap_estimates(&statistic, &scatter, n, study->design.seed, POUND_RESAMPLES,
+	pound_bootstrap_estimates(&statistic, &scatter, n,
+	                          (struct pound_resampling){study->design.seed, POUND_RESAMPLES},
 	                          scratch + 5 * run->rows, &correlation);
 	return correlation;
 }
@@ -420,8 +425,8 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 	struct pound_work work = {0};
 	enum pound_status status = POUND_OK, left = POUND_OK;
 	assert(has_spectra(run->campaign.study));
-	status = pound_request_run(run->requests[0], &run->campaign, signal, 1, run->stop, &work, response_leave,
-	                           &left);
+	status = pound_request_run(run->requests[0], (struct pound_items){&run->campaign, signal, 1}, run->stop,
+	                           &work, response_leave, &left);
 	if (status || left)
 		return status ? status : left;
 	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);

@@ -570,17 +570,18 @@ static void pounding_ask(struct pound_request *request, int first, int end, stru
 
 /* Runs items [first, first + n) of a campaign, and the checks among them.
  *
- * Given    first, n  items, item = row n_signals + signal
- *          stop      looked at throughout
+ * Given    stop      looked at throughout
  * Returns  take      called for every item, cell and sample in this order, then for those of the checks
  *          work      what was asked and run is added
  * Status   POUND_STOPPED  stop was set; nothing was handed to take
  *          POUND_NOMEM    there was no memory for a run, so too
  */
-enum pound_status pound_request_run(struct pound_request *request, const struct pound_cells *campaign,
-                                    int first, int n, const atomic_bool *stop, struct pound_work *work,
+enum pound_status pound_request_run(struct pound_request *request, struct pound_items items,
+                                    const atomic_bool *stop, struct pound_work *work,
                                     pound_request_take *take, void *into)
 {
+	const struct pound_cells *campaign = items.campaign;
+	const int first = items.first, n = items.n;
 	int n_items = n * campaign->n_cells * campaign->n_samples, n_asks = 0;
 	const struct pound_solver solver = pound_cells_solver(campaign, first / campaign->n_signals);
 	request->campaign = campaign;

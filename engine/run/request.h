@@ -52,9 +52,13 @@ struct pound_request *pound_request_init(void *memory, struct pound_request_size
 
 /* Runs items [first, first + n), of one row where rows are trials, and hands every response to `take`, in the order of
  * item, cell, sample, then those of the checks in the same order. */
+struct pound_items {
+	const struct pound_cells *campaign;
+	int first, n; /* item = row n_signals + signal */
+};
 typedef void pound_request_take(void *into, const struct pound_outcome *outcome);
-enum pound_status pound_request_run(struct pound_request *request, const struct pound_cells *campaign,
-                                    int first, int n, const atomic_bool *stop, struct pound_work *work,
+enum pound_status pound_request_run(struct pound_request *request, struct pound_items items,
+                                    const atomic_bool *stop, struct pound_work *work,
                                     pound_request_take *take, void *into);
 
 /* After pound_request_run, for its items in turn where each has one sample: the displacement of the left body at a sample of

@@ -449,8 +449,9 @@ enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 	struct slice slice = {.study = run->campaign.study, .at = pound_blocks_block(&run->layout, block)};
 	struct pound_work work = {0};
 	int first = run->layout.first[block], n = run->layout.first[block + 1] - first;
-	enum pound_status status = pound_request_run(run->requests[worker], &run->campaign, first, n, run->stop,
-	                                             &work, response_keep, &slice);
+	enum pound_status status =
+	    pound_request_run(run->requests[worker], (struct pound_items){&run->campaign, first, n}, run->stop,
+	                      &work, response_keep, &slice);
 	if (!status && run->campaign.trials)
 		status = trial_block(run, run->requests[worker], first, n,
 		                     (struct pound_trial_run *)pound_blocks_block(&run->layout, block));

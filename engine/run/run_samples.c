@@ -44,16 +44,14 @@ void pound_run_motion(const struct pound_run *run, const struct pound_place *pla
 	pound_signals_fill(&signal, 1);
 }
 
-void pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample, int output,
-                             double *mean, double *variance)
+struct pound_sample_output pound_run_sample_output(const struct pound_run *run, int cell, int row, int sample,
+                                                   int output)
 {
 	const struct pound_cells *c = &run->campaign;
 	assert(c->study->kind == POUND_KIND_SENSITIVITY);
 	if (c->study->elsewhere) {
 		const double *values = pound_blocks_run(&run->layout, row, cell, sample) + 2 * output;
-		*mean = values[0];
-		*variance = values[1];
-		return;
+		return (struct pound_sample_output){values[0], values[1]};
 	}
 	// the runs of a row's signals are one item apart, but a block may end between them
 	double above = 0, below = 0;
@@ -63,15 +61,16 @@ void pound_run_sample_output(const struct pound_run *run, int cell, int row, int
 		above += values[0];
 		below += values[1];
 	}
-	*mean = below > 0 ? above / below : NAN;
+	const double mean = below > 0 ? above / below : NAN;
 	double sum = 0;
 	for (int r = 0; r < c->n_signals; r++) {
 		const double *values =
 		    pound_blocks_run(&run->layout, row * c->n_signals + r, cell, sample) + 2 * output;
-		double deviation = (values[0] - *mean * values[1]) * c->n_signals / below;
+		double deviation = (values[0] - mean * values[1]) * c->n_signals / below;
 		sum += deviation * deviation;
 	}
-	*variance = c->n_signals > 1 && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN;
+	return (struct pound_sample_output){
+	    mean, c->n_signals > 1 && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN};
 }
 
 void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,

@@ -44,9 +44,11 @@ static void samples_each(const struct pound_study *study, const struct pound_run
 /* An output and its variance, NAN where the cell has none. */
 static void output_of(const struct sample *s, int o, double *mean, double *variance)
 {
-	*mean = *variance = NAN;
+	struct pound_sample_output output = {NAN, NAN};
 	if (pound_output_applies(s->study->outputs[o], &s->scene))
-		pound_run_sample_output(s->run, s->cell, s->row, s->sample, o, mean, variance);
+		output = pound_run_sample_output(s->run, s->cell, s->row, s->sample, o);
+	*mean = output.mean;
+	*variance = output.variance;
 }
 
 /* ---- CSV ---- */

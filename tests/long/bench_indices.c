@@ -44,7 +44,7 @@ static void everything(void *of)
 static void plain(void *of)
 {
 	struct reduction *r = of;
-	pound_plain_indices(&r->values, 1, 1000, r->scratch, &r->indices);
+	pound_plain_indices(&r->values, (struct pound_resampling){1, 1000}, r->scratch, &r->indices);
 }
 
 /* Four inputs: every column, set and curve; the plain protocol alone; the same of a large design. */

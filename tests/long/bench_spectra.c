@@ -54,7 +54,8 @@ static void one_signal(void)
 	struct pound_study *study = bench_study(signal);
 	struct pound_run *run = pound_run_create(study, 1);
 	struct pound_work work = {0};
-	if (!run || pound_request_run(run->requests[0], &run->campaign, 0, 1, run->stop, &work, leave, NULL))
+	if (!run || pound_request_run(run->requests[0], (struct pound_items){&run->campaign, 0, 1}, run->stop,
+	                              &work, leave, NULL))
 		bench_fail("out of memory");
 	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);
 	struct ridden with = {.task = floor.pounding, .n_drives = 1, .scratch = floor.scratch};

@@ -130,11 +130,11 @@ static struct moments beside(struct pound_run *run, int law, const struct pound_
 		fail("out of memory");
 	for (int row = 0; row < rows; row++)
 		for (int sample = 0; sample < MATRICES; sample++) {
-			double x[INPUTS], value, variance;
+			double x[INPUTS];
 			pound_run_sample_inputs(run, row, sample, x);
 			double distance = fabs(x[F_2] - findings_f1[AT_2_HZ]);
-			pound_run_sample_output(run, cell(law, AT_2_HZ), row, sample, column(IMPULSE, law), &value,
-			                        &variance);
+			const double value =
+			    pound_run_sample_output(run, cell(law, AT_2_HZ), row, sample, column(IMPULSE, law)).mean;
 			if (distance >= away[0] && distance < away[1] && isfinite(value))
 				y[n++] = value / impulse->mean;
 		}

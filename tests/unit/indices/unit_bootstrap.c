@@ -41,7 +41,8 @@ static struct pound_estimate *estimates_of(struct pound_statistic statistic, int
 	struct pound_estimate *estimates = malloc(sizeof *estimates * statistic.n_values);
 	double *scratch =
 	    malloc(sizeof *scratch * pound_bootstrap_scratch(n_rows, statistic.n_moments, statistic.n_values));
-	pound_bootstrap_interval(&statistic, n_rows, seed, POUND_RESAMPLES, scratch, estimates);
+	pound_bootstrap_interval(&statistic, n_rows, (struct pound_resampling){seed, POUND_RESAMPLES}, scratch,
+	                         estimates);
 	free(scratch);
 	return estimates;
 }

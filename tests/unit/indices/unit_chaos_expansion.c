@@ -15,7 +15,9 @@ static struct pound_closed_results indexes_kept(const struct pound_sample_values
 	size_t rows_size = pound_rows_scratch(values);
 	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_expansion_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_chaos_expansion_indices(&rows, u, corrected, kept, scratch + rows_size, &result, NULL);
+	pound_chaos_expansion_indices(&rows, &(struct pound_sampling){.u = u, .kept = kept},
+	                              corrected ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT, scratch + rows_size,
+	                              &result, NULL);
 	free(scratch);
 	return result;
 }

@@ -18,8 +18,9 @@ static struct pound_closed_results *plain(const double *y, int n_rows, int n_inp
 	pound_closed_init(&closed, n_inputs, order);
 	double *estimates = malloc(sizeof *estimates * (size_t)(n_rows * closed.n_columns));
 	double *scratch = malloc(sizeof *scratch * pound_closed_scratch(&closed, n_rows));
+	const struct pound_control_variate control = {.part = none};
 	for (int i = 0; i < n_rows; i++)
-		pound_closed_row(&closed, y + (size_t)i * closed.n_samples, NULL, 0.0, none, NULL,
+		pound_closed_row(&closed, y + (size_t)i * closed.n_samples, &control, NULL,
 		                 estimates + (size_t)i * closed.n_columns);
 	pound_closed_indices(&closed, estimates, &rows, scratch, results);
 	free(estimates), free(scratch);
@@ -91,7 +92,9 @@ static struct pound_closed_results *indexes_of(const struct function *f, int n_r
 	size_t rows_size = pound_rows_scratch(&values);
 	double *scratch = malloc(sizeof *scratch * (rows_size + pound_chaos_expansion_scratch(&values)));
 	pound_rows_init(&rows, &values, scratch);
-	pound_chaos_expansion_indices(&rows, u, noise.n_signals > 1, NULL, scratch + rows_size, results, NULL);
+	pound_chaos_expansion_indices(&rows, &(struct pound_sampling){.u = u},
+	                              noise.n_signals > 1 ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT,
+	                              scratch + rows_size, results, NULL);
 	free(scratch), free(u);
 	function_values_free(&values);
 	return results;

@@ -25,7 +25,9 @@ static void curves_of(const struct function *f, const struct pound_design *desig
 	for (int j = 0; j < D && !trend; j++)
 		pound_conditional_mean(&plain, j, rest, &curves[j]);
 	if (trend)
-		pound_chaos_expansion_indices(&rows, u, noise.n_signals > 1, NULL, rest, &results, curves);
+		pound_chaos_expansion_indices(&rows, &(struct pound_sampling){.u = u},
+		                              noise.n_signals > 1 ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT, rest,
+		                              &results, curves);
 	free(scratch), free(u);
 	function_values_free(&values);
 }
@@ -219,8 +221,8 @@ static void a_discrete_input_has_one_exact_mean_for_each_of_its_values(void **st
 		double *scratch =
 		    malloc(sizeof *scratch * (pound_rows_scratch(&values) + pound_chaos_expansion_scratch(&values)));
 		pound_rows_init(&rows, &values, scratch);
-		pound_chaos_expansion_indices(&rows, u, false, NULL, scratch + pound_rows_scratch(&values), &results,
-		                              curves);
+		pound_chaos_expansion_indices(&rows, &(struct pound_sampling){.u = u}, POUND_NOISE_KEPT,
+		                              scratch + pound_rows_scratch(&values), &results, curves);
 		for (int k = 0; k < 3; k++) {
 			const struct pound_estimate *mean = &curves[1].mean[k];
 			check_near(pound_conditional_x(discrete, k), numbers[k], 0.0);

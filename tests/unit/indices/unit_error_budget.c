@@ -181,13 +181,14 @@ static void half_widths_of_all_rows_are_those_of_the_indexes(void **state)
 		double from_all[D], from_half[D];
 		pound_rows_init(&rows, &values, scratch);
 		double *rest = scratch + pound_rows_scratch(&values);
-		pound_chaos_expansion_indices(&rows, u, false, NULL, rest, &all, NULL);
+		pound_chaos_expansion_indices(&rows, &(struct pound_sampling){.u = u}, POUND_NOISE_KEPT, rest, &all,
+		                              NULL);
 		pound_chaos_expansion_first_rows(&rows, N, rest, &first_rows);
 		for (int j = 0; j < D; j++) {
 			check_near(half(first_rows.first[j]), half(all.first[j]), 1e-15);
 			check_near(half(first_rows.total[j]), half(all.total[j]), 1e-15);
 		}
-		pound_local_regression_first(&rows, u, false, rest, first);
+		pound_local_regression_first(&rows, u, POUND_NOISE_KEPT, rest, first);
 		pound_local_regression_first_rows(&rows, N, rest, from_all);
 		pound_local_regression_first_rows(&rows, N / 2, rest, from_half);
 		for (int j = 0; j < D; j++) {

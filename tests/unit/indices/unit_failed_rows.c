@@ -21,7 +21,7 @@ static struct bounded *bounded_of(const struct pound_sample_values *values, int 
 	struct pound_rows rows;
 	b->of.index[POUND_S1_RAW] = b->first;
 	b->of.index[POUND_ST_RAW] = b->total;
-	pound_plain_indices(values, SEED, 8, scratch, &b->of);
+	pound_plain_indices(values, (struct pound_resampling){SEED, 8}, scratch, &b->of);
 	pound_rows_init(&rows, values, scratch);
 	pound_failed_rows_changes(&rows, dropped < 0 ? values->n_rows - rows.n_rows : dropped, &b->of.accuracy);
 	free(scratch);

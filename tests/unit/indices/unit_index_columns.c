@@ -75,9 +75,11 @@ static void every_column_comes_from_its_function(void **state)
 	double *held = malloc(sizeof *held * pound_rows_scratch(&values));
 	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0));
 	pound_rows_init(&rows, &values, held);
-	pound_noise_correction_estimates(&rows, SEED, POUND_RESAMPLES, scratch, &pick_freeze);
-	pound_local_regression_first(&rows, u, true, scratch, local);
-	pound_chaos_expansion_indices(&rows, u, true, NULL, scratch, &closed, curves);
+	pound_noise_correction_estimates(&rows, (struct pound_resampling){SEED, POUND_RESAMPLES}, scratch,
+	                                 &pick_freeze);
+	pound_local_regression_first(&rows, u, POUND_NOISE_REMOVED, scratch, local);
+	pound_chaos_expansion_indices(&rows, &(struct pound_sampling){.u = u}, POUND_NOISE_REMOVED, scratch,
+	                              &closed, curves);
 	for (int j = 0; j < D; j++) {
 		first[j] = width(local[j]) < width(closed.first[j]) ? local[j] : closed.first[j];
 		total[j] =
@@ -272,9 +274,9 @@ static struct pound_sample_values means_of(const struct pound_study *study, cons
                                            int cell, int output)
 {
 	const int d = study->n_inputs, n = study->design.rows * (d + 2);
-	double *numerator = malloc(2 * sizeof *numerator * (size_t)n), *denominator = numerator + n, variance;
+	double *numerator = malloc(2 * sizeof *numerator * (size_t)n), *denominator = numerator + n;
 	for (int k = 0; k < n; k++) {
-		pound_run_sample_output(run, cell, k / (d + 2), k % (d + 2), output, &numerator[k], &variance);
+		numerator[k] = pound_run_sample_output(run, cell, k / (d + 2), k % (d + 2), output).mean;
 		denominator[k] = 1;
 	}
 	return (struct pound_sample_values){.n_rows = study->design.rows,

@@ -137,7 +137,8 @@ static void rows_in_groups_are_never_resampled(void **state)
 	double *scratch = malloc(sizeof *scratch * pound_bootstrap_scratch(8, 2, 2));
 	estimate(rows, 8, scatter.grouping, NULL, want);
 	for (uint64_t seed = 0; seed < 2; seed++) {
-		pound_bootstrap_estimates(&statistic, &scatter, 8, seed, POUND_RESAMPLES, scratch, got);
+		pound_bootstrap_estimates(&statistic, &scatter, 8, (struct pound_resampling){seed, POUND_RESAMPLES},
+		                          scratch, got);
 		assert_memory_equal(got, want, sizeof got);
 	}
 	free(scratch);

@@ -54,7 +54,8 @@ static void first_of(const struct pound_sample_values *values, const double *x, 
 	double *scratch =
 	    malloc(sizeof *scratch * (pound_rows_scratch(values) + pound_local_regression_scratch(values)));
 	pound_rows_init(&rows, values, scratch);
-	pound_local_regression_first(&rows, x, corrected, scratch + pound_rows_scratch(values), first);
+	pound_local_regression_first(&rows, x, corrected ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT,
+	                             scratch + pound_rows_scratch(values), first);
 	free(scratch);
 }
 

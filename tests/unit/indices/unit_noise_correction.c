@@ -12,7 +12,8 @@ static struct pound_pick_freeze pick_freeze(const struct pound_rows *rows, uint6
 	struct pound_pick_freeze result;
 	const struct pound_sample_values shape = {.n_rows = rows->n_rows, .n_inputs = rows->n_inputs};
 	double *scratch = malloc(sizeof *scratch * pound_noise_correction_scratch(&shape));
-	pound_noise_correction_estimates(rows, seed, POUND_RESAMPLES, scratch, &result);
+	pound_noise_correction_estimates(rows, (struct pound_resampling){seed, POUND_RESAMPLES}, scratch,
+	                                 &result);
 	free(scratch);
 	return result;
 }

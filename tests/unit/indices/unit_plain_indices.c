@@ -21,7 +21,8 @@ static struct indices *indexes_of(const struct pound_sample_values *values, uint
 	double *scratch = malloc(sizeof *scratch * n);
 	result->of.index[POUND_S1_RAW] = result->first;
 	result->of.index[POUND_ST_RAW] = result->total;
-	result->dropped = pound_plain_indices(values, seed, POUND_RESAMPLES, scratch, &result->of);
+	result->dropped =
+	    pound_plain_indices(values, (struct pound_resampling){seed, POUND_RESAMPLES}, scratch, &result->of);
 	free(scratch);
 	return result;
 }

@@ -39,6 +39,10 @@ static const struct violation VIOLATIONS[] = {
      "schema/s.h, server/s.h: #ifndef S_H"},
     {"README.md", "What engine/gone.c does.\n", "files that there are", "README.md:1:engine/gone.c"},
     {"engine/j.h", "#if 0\n#endif\n", "dead code", "engine/j.h:1:"},
+    {"engine/u.c",
+     "int pound_u(int a, int b, int c, int (*d)(int, int),\n            int e, int f, int g)\n{\n"
+     "\treturn a + b + c + d(e, f) + g;\n}\n",
+     "missing struct", "engine/u.c:1: pound_u"},
     {"Makefile", "CFLAGS += -ffast-math\n", "floating point", "1:CFLAGS"},
     {"engine/k.c", "int other_name(void);\nint other_name(void)\n{\n\treturn 1;\n}\n", "start with pound_",
      "other_name"},

@@ -137,17 +137,17 @@ static void an_ordinate_is_that_of_a_study_of_spectra(void **state)
 	(void)state;
 	struct pound_study *study = sensitivity_of(2, "\"floor_spectrum\"", true);
 	struct pound_run *run = run_all(study, false);
-	double x[2], mean, variance;
+	double x[2];
 	pound_run_sample_inputs(run, 0, 0, x);
 	struct pound_study *spectra = study_of("floor_spectrum", 2, few);
 	spectra->scene.contact.restitution = x[0];
 	spectra->scene.oscillators[1].mass = x[1];
 	struct pound_run *whole = run_all(spectra, false);
 	for (int k = 0; k < 4; k++) {
-		pound_run_sample_output(run, 0, 0, 0, k, &mean, &variance);
-		check_near(mean, pound_run_result(whole)->floor.spectra[POUND_SPECTRUM_POUNDING].mean[k],
-		           1e-13 * mean);
-		assert_true(variance > 0);
+		const struct pound_sample_output output = pound_run_sample_output(run, 0, 0, 0, k);
+		check_near(output.mean, pound_run_result(whole)->floor.spectra[POUND_SPECTRUM_POUNDING].mean[k],
+		           1e-13 * output.mean);
+		assert_true(output.variance > 0);
 	}
 	pound_run_free(run);
 	pound_run_free(whole);
@@ -187,9 +187,9 @@ static void the_correlation_is_that_of_the_samples(void **state)
 	struct pound_run *run = run_all(study, false);
 	const struct pound_cell *cell = &pound_run_result(run)->cells[0];
 	for (int o = 1; o < 5; o++) {
-		double x[2 * ROWS], y[2 * ROWS], mx = 0, my = 0, xx = 0, yy = 0, xy = 0, unused;
+		double x[2 * ROWS], y[2 * ROWS], mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
 		for (int i = 0; i < 2 * ROWS; i++) {
-			pound_run_sample_output(run, 0, i / 2, i % 2, o, &x[i], &unused);
+			x[i] = pound_run_sample_output(run, 0, i / 2, i % 2, o).mean;
 			// one f_1, one excitation: the ratio to the free displacement is that of the impulses for each row's signals
 			double sum = 0;
 			for (int r = 0; r < 2; r++)
@@ -226,12 +226,12 @@ static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
 	const struct pound_estimate *r = &pound_run_result(run)->cells[0].indices[1].impulse_correlation;
 	double pseudo[8], mean = 0, squares = 0;
 	for (int without = -1; without < groups; without++) {
-		double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0, unused;
+		double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
 		for (int i = 0; i < 2 * ROWS; i++) {
-			double x, y = 0;
+			double y = 0;
 			if (without >= 0 && i / 2 % groups == without)
 				continue;
-			pound_run_sample_output(run, 0, i / 2, i % 2, 1, &x, &unused);
+			const double x = pound_run_sample_output(run, 0, i / 2, i % 2, 1).mean;
 			for (int s = 0; s < 2; s++)
 				y += pound_blocks_run(&run->layout, i / 2 * 2 + s, 0, i % 2)[2 * study->n_outputs] / 2;
 			n++, mx += x, my += y, xx += x * x, yy += y * y, xy += x * y;

@@ -126,14 +126,14 @@ static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void 
 	    "[{\"path\": \"/contact/restitution\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
 	    "\"max\": "
 	    "0.6}}]}";
-	double mean[2], variance;
+	double mean[2];
 	for (int may_miss = 0; may_miss < 2; may_miss++) {
 		char filled[700];
 		// a gap is nothing beside the motion, but whether the bodies meet is to be found out
 		snprintf(filled, sizeof filled, document, may_miss ? "1e-300" : "0");
 		struct pound_study *study = study_documents_study(filled);
 		struct pound_run *run = specimen_run(study);
-		pound_run_sample_output(run, 0, 0, 0, 0, &mean[may_miss], &variance);
+		mean[may_miss] = pound_run_sample_output(run, 0, 0, 0, 0).mean;
 		assert_int_equal(pound_run_result(run)->work.yield_missed, 0);
 		pound_run_free(run);
 		study_free(study);
