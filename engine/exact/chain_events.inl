@@ -7,9 +7,7 @@
 
 /* what ends a step: of a link, or of a story EVENT_STORY + its edge */
 enum {
-	EVENT_NONE,
-	EVENT_CUT, /* a search was unsure: up to here nothing happens */
-	EVENT_BEGINS,
+	EVENT_BEGINS = EVENT_OWN,
 	EVENT_ENDS,   /* the force does, or the overlap */
 	EVENT_CLEARS, /* what was left of the overlap is gone */
 	EVENT_LINK,   /* + edge of the branch of its force */
@@ -53,15 +51,12 @@ static void search_take(struct first *first, const struct search *search, vm lan
 	}
 }
 
-/* Looks for crossings of a level in some lanes of a vector.
- *
- * Given    sign, level  the guard is sign (u - level)
- */
-static void guard_search(struct first *first, const struct chain *c, const struct power *u,
-                         const struct course *course, vd level, vd sign, vm lanes, int event, int index)
+/* Looks for where a guard becomes positive in some lanes of a vector. */
+static void guard_search(struct first *first, const struct chain *c, struct guard guard, vm lanes, int event,
+                         int index)
 {
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
-	search_crossing(u, course, c->order, level, sign, lanes, vsplat(event), EVENT_CUT, &search);
+	search_crossing(&guard, c->order, lanes, vsplat(event), &search);
 	search_take(first, &search, lanes, index);
 }
 
@@ -79,9 +74,10 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	struct motion m;
 	motion_load(&m, c, c->drifts, &c->drift, i);
 	if (vany(past_low))
-		guard_search(first, c, &m.u, &course, low, -one, past_low, EVENT_STORY + POUND_EDGE_LOW, i);
+		guard_search(first, c, guard_of(&m.u, &course, low, -one), past_low, EVENT_STORY + POUND_EDGE_LOW, i);
 	if (vany(past_high))
-		guard_search(first, c, &m.u, &course, high, one, past_high, EVENT_STORY + POUND_EDGE_HIGH, i);
+		guard_search(first, c, guard_of(&m.u, &course, high, one), past_high, EVENT_STORY + POUND_EDGE_HIGH,
+		             i);
 	if (!vany(turns))
 		return;
 	course = course_of_velocity(&m, c->order);
@@ -90,7 +86,8 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 		return;
 	struct power velocity;
 	motion_velocity(&velocity, &m, c->order);
-	guard_search(first, c, &velocity, &course, zero, -direction, turns, EVENT_STORY + POUND_EDGE_TURN, i);
+	guard_search(first, c, guard_of(&velocity, &course, zero, -direction), turns,
+	             EVENT_STORY + POUND_EDGE_TURN, i);
 }
 
 /* Whether a contact ends where its force does, which may be before its overlap does. */
@@ -187,8 +184,7 @@ static void forces_search(struct first *first, const struct chain *c, const stru
 	const vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, lanes_load(x->pull), x->overlap.u.c[0]));
 	guard.c[0] = vselect(fresh, below, guard.c[0]);
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
-	search_safe(&guard, c->order, some, vselect(touching, vsplat(EVENT_ENDS), vsplat(EVENT_BEGINS)),
-	            EVENT_CUT, &search);
+	search_safe(&guard, c->order, some, vselect(touching, vsplat(EVENT_ENDS), vsplat(EVENT_BEGINS)), &search);
 	search_take(first, &search, some, j);
 	const vm parted = some & ~touching;
 	if (!vany(parted))
@@ -196,7 +192,7 @@ static void forces_search(struct first *first, const struct chain *c, const stru
 	for (int n = 0; n <= c->order; n++)
 		guard.c[n] = -x->overlap.u.c[n];
 	search = (struct search){.time = vsplat(1), .event = vsplat(EVENT_NONE)};
-	search_safe(&guard, c->order, parted, vsplat(EVENT_CLEARS), EVENT_CUT, &search);
+	search_safe(&guard, c->order, parted, vsplat(EVENT_CLEARS), &search);
 	search_take(first, &search, parted, j);
 }
 
@@ -234,11 +230,11 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 	x.overlap.bend = x.course.bend;
 	const struct power *p = &x.overlap.u;
 	if (vany(begins))
-		guard_search(first, c, p, &x.course, zero, one, begins, EVENT_BEGINS, j);
+		guard_search(first, c, guard_of(p, &x.course, zero, one), begins, EVENT_BEGINS, j);
 	if (vany(past_low))
-		guard_search(first, c, p, &x.course, low, -one, past_low, EVENT_LINK + POUND_EDGE_LOW, j);
+		guard_search(first, c, guard_of(p, &x.course, low, -one), past_low, EVENT_LINK + POUND_EDGE_LOW, j);
 	if (vany(past_high))
-		guard_search(first, c, p, &x.course, high, one, past_high, EVENT_LINK + POUND_EDGE_HIGH, j);
+		guard_search(first, c, guard_of(p, &x.course, high, one), past_high, EVENT_LINK + POUND_EDGE_HIGH, j);
 	if (by_force)
 		forces_search(first, c, &x, by_force, j);
 	if (!vany(turns))
@@ -249,7 +245,8 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 		return;
 	struct power velocity;
 	motion_velocity(&velocity, &x.overlap, c->order);
-	guard_search(first, c, &velocity, &course, zero, -direction, turns, EVENT_LINK + POUND_EDGE_TURN, j);
+	guard_search(first, c, guard_of(&velocity, &course, zero, -direction), turns,
+	             EVENT_LINK + POUND_EDGE_TURN, j);
 }
 
 /* The first event of a step. */

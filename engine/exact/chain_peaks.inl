@@ -54,7 +54,8 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 		const vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
 		const vd sign = vselect(vless(way, zero), one, -one);
 		struct search search = {.time = vmin(end, one), .event = vsplat(EVENT_NONE)};
-		search_crossing(&rate.u, &course, order, zero, sign, lanes, vsplat(EVENT_STORY), EVENT_CUT, &search);
+		struct guard turns = guard_of(&rate.u, &course, zero, sign);
+		search_crossing(&turns, order, lanes, vsplat(EVENT_STORY), &search);
 		lanes &= ~vequal(search.event, vsplat(EVENT_NONE));
 		if (!vany(lanes))
 			break;

@@ -142,10 +142,17 @@ LANE_INLINE vd reach_of(const struct motion *m)
 	return vfma(vsplat(POUND_CUBIC_ERROR), m->bend, vmax(vabs(b1), vabs(b2)));
 }
 
+/* what a search finds: these, or a number of the solver's own from EVENT_OWN on */
+enum {
+	EVENT_NONE,
+	EVENT_CUT, /* a search was unsure: up to here nothing happens */
+	EVENT_OWN,
+};
+
 /* First event found so far in each lane. */
 struct search {
 	vd time;  /* as a share of the step, 1: none yet */
-	vd event; /* enum event as a double, 0: none yet */
+	vd event; /* as a double */
 };
 
 /* Second derivative of a series, from its first half: what is left out is near 1e-4 of it. */

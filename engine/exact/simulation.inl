@@ -162,9 +162,6 @@ enum pound_stage {
 	STAGE_CHATTER,
 };
 
-/* what ends a step; the event of an edge of body i is EVENT_BODY + EVENT_EDGES i + edge */
-enum { EVENT_NONE, EVENT_CUT, EVENT_CONTACT, EVENT_CLEARS, EVENT_BODY, EVENT_EDGES = 3 };
-
 /* what a step must look after for a simulation; otherwise it is left out */
 enum {
 	TRAIT_EDGED = 1,      /* a law has more than one piece */

@@ -5,7 +5,8 @@
  *
  * Included by exact.inl after energy.inl. */
 
-// behind the others: it reads struct lanes
+/* what ends a step; the event of an edge of body i is EVENT_BODY + EVENT_EDGES i + edge */
+enum { EVENT_CONTACT = EVENT_OWN, EVENT_CLEARS, EVENT_BODY, EVENT_EDGES = 3 };
 
 /* lanes of a step by power series, and what they are */
 struct event_lanes {

@@ -257,15 +257,25 @@ static void yields_find(const struct pound_row_asks *asks, const struct pound_sc
 		yields[i] = before->floors[i * POUND_FLOOR_MEASURES + POUND_FLOOR_DRIFT_MAX] / over;
 }
 
+/* a stage of a row's ask */
+struct row_stage {
+	const struct pound_scene *scene;
+	struct pound_row_ask *ask;
+	const struct pound_motion *motion;
+	int stage;
+};
+
 /* Asks for a building's march of a stage.
  *
  * Returns  value   false: none is needed
  *          work    what was left out is counted
  */
-static bool building_stage(struct pound_row_asks *asks, const struct pound_scene *scene, int b,
-                           struct pound_row_ask *ask, const struct pound_motion *motion, int stage,
+static bool building_stage(struct pound_row_asks *asks, const struct row_stage *of, int b,
                            struct pound_work *work)
 {
+	const struct pound_scene *scene = of->scene;
+	struct pound_row_ask *ask = of->ask;
+	const int stage = of->stage;
 	const struct pound_law *law = pound_row_law(scene, b);
 	struct pound_building_ask *building = &ask->buildings[b];
 	const bool linear = pound_law_linear(law->type), given = yields_given(scene, b);
@@ -281,12 +291,12 @@ static bool building_stage(struct pound_row_asks *asks, const struct pound_scene
 		return false;
 	}
 	if (stage > 0)
-		yields_find(asks, scene, b, ask, motion->exponent, stage);
+		yields_find(asks, scene, b, ask, of->motion->exponent, stage);
 	if (stage > 0 && stage == last && !building->wanted) {
 		work->nonlinear_unasked++;
 		return false;
 	}
-	building->march = building_march(asks, scene, b, ask, motion, stage == 0);
+	building->march = building_march(asks, scene, b, ask, of->motion, stage == 0);
 	building->finished = stage == last;
 	return true;
 }
@@ -297,7 +307,7 @@ int pound_row_stage(struct pound_row_asks *asks, const struct pound_scene *scene
 	int asked = 0;
 	for (int b = 0; b < scene->n_buildings; b++)
 		if (pound_row_storeys(scene, b) > 0)
-			asked += building_stage(asks, scene, b, ask, motion, stage, work);
+			asked += building_stage(asks, &(struct row_stage){scene, ask, motion, stage}, b, work);
 	return asked;
 }
 
