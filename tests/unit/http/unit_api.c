@@ -204,14 +204,23 @@ static void the_schema_and_the_reader_take_and_refuse_the_same_studies(void **st
 			const char *name = fields_name(field);
 			if (!isfinite(cases[k].value))
 				continue;
-			bool contact = strstr(field->pattern, "contact") != NULL,
-			     frequency = !strcmp(name, "frequency_hz");
+			const bool contact = strstr(field->pattern, "contact") != NULL;
+			const bool frequency = !strcmp(name, "frequency_hz");
+			// a contact of a model that reads the member, with what that model requires besides
+			char model[128] = "\"gap_m\": 0";
+			if (contact) {
+				int row = 0;
+				while (!pound_contact_reads(row, name))
+					row++;
+				snprintf(model, sizeof model, "\"model\": \"%s\", %s\"%s\": %.17g", pound_contact_name(row),
+				         !strcmp(name, "second_stiffness_ratio") ? "\"yield_overlap_m\": 0.001, " : "", name,
+				         cases[k].value);
+			}
 			snprintf(study, sizeof study,
 			         "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{%s\"%s\": %.17g}, "
-			         "{\"frequency_hz\": 3}], "
-			         "\"contact\": {\"%s\": %.17g}}}",
+			         "{\"frequency_hz\": 3}], \"contact\": {%s}}, \"solver\": {\"method\": \"adaptive\"}}",
 			         frequency || contact ? "" : "\"frequency_hz\": 2, ", contact ? "frequency_hz" : name,
-			         contact ? 2 : cases[k].value, contact ? name : "gap_m", contact ? cases[k].value : 0);
+			         contact ? 2 : cases[k].value, model);
 			judged_alike(api, study, field->pattern, cases[k].valid);
 			n++;
 		}
