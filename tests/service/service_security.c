@@ -260,15 +260,17 @@ static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
 	unsetenv("POUNDD_QUEUE_TOKEN_MAX");
 	snprintf(tokens[0], sizeof tokens[0], "Authorization: Bearer %s", TOKEN);
 	snprintf(tokens[1], sizeof tokens[1], "Authorization: Bearer %s", other);
-	// the first is claimed, two are queued, the third is too many, but what has a key is there already; the other
+	// the first four are claimed, two are queued, the next one is too many, but what has a key is there already; the other
 	// client has its own two
 	static const struct {
 		int token, status;
 		bool keyed;
-	} posts[] = {{0, 201, false}, {0, 201, true}, {0, 201, false}, {0, 429, false},
-	             {0, 201, true},  {1, 201, true}, {1, 201, false}, {1, 429, false}};
+	} posts[] = {{0, 201, false}, {0, 201, false}, {0, 201, false}, {0, 201, false},
+	             {0, 201, true},  {0, 201, false}, {0, 429, false}, {0, 201, true},
+	             {1, 201, true},  {1, 201, false}, {1, 429, false}};
+	enum { OPEN = 4, AGAIN = 7 };
 	for (size_t i = 0; i < sizeof posts / sizeof posts[0]; i++) {
-		study = i == 0 ? large : small;
+		study = i < OPEN ? large : small;
 		struct answer answer = service_ask(
 		    service, &(struct ask){.method = "POST",
 		                           .path = "/v1/studies",
@@ -279,12 +281,12 @@ static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
 		if (answer.status != posts[i].status)
 			fail_msg("post %zu: %d %s", i, answer.status, answer.body);
 		assert_true(answer.status == 201 || atoi(answer.retry_after) >= 1);
-		if (i == 4)
+		if (i == AGAIN)
 			assert_string_equal(answer.location, locations[0]);
 		if (posts[i].keyed)
 			strcpy(locations[posts[i].token], answer.location);
 		// until it is claimed
-		while (i == 0 && service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'") > 0)
+		while (i < OPEN && service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'") > 0)
 			usleep(1000);
 		answer_free(&answer);
 	}
