@@ -469,11 +469,11 @@ static void ctrl_c_stops_histories_that_are_being_written(void **state)
 	char study[32], err[48], histories[48];
 	(void)state;
 	int file = mkstemp(strcpy(study, "/tmp/pound.XXXXXX"));
-	// 1,000 floors at one frequency take a moment, and their histories seconds
+	// 300 floors at one frequency take a moment, and their histories seconds
 	dprintf(file, "{\"kind\": \"floor_spectrum\", \"histories\": true, \"spectrum\": {\"frequencies_hz\": "
 	              "[3]}, \"scene\": {"
 	              "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
-	              "\"excitation\": {\"signals\": 1000}}}");
+	              "\"excitation\": {\"signals\": 300}}}");
 	close(file);
 	snprintf(err, sizeof err, "%s.err", study);
 	snprintf(histories, sizeof histories, "%s.csv", study);

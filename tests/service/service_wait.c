@@ -226,13 +226,16 @@ static void more_seconds_than_there_are_are_the_most_there_are(void **state)
 	service_free(service);
 }
 
-/* A study that is queued behind a long one, so that it changes when the test wants. */
+/* A study that is queued behind as many long ones as take turns, so that it changes when the test wants. */
 static void queued_study(const struct service *service, char first[17], char second[17], char tag[64])
 {
+	enum { OPEN = 4 };
 	char *study = service_study(SERVICE_ROWS, 5, 1), *other = service_study(2, 1, 2);
-	service_submit(service, study, first);
+	for (int i = 0; i < OPEN; i++) {
+		service_submit(service, study, first);
+		assert_true(service_wait(service, first, "running", 0));
+	}
 	service_submit(service, other, second);
-	assert_true(service_wait(service, first, "running", 1));
 	struct answer answer = service_get(service, "/v1/studies/%s", second);
 	snprintf(tag, 64, "%s", answer.etag);
 	answer_free(&answer);
