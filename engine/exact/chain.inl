@@ -17,9 +17,12 @@ enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */
 #include "engine/exact/chain_state.inl"
 #include "engine/exact/series.inl"
 #include "engine/exact/chain_series.inl"
+#include "engine/exact/touch.inl"
+#include "engine/exact/impact.inl"
 #include "engine/exact/chain_events.inl"
 #include "engine/exact/chain_peaks.inl"
 #include "engine/exact/chain_energy.inl"
+#include "engine/exact/touch_step.inl"
 #include "engine/exact/chain_step.inl"
 #include "engine/exact/chain_flight.inl"
 // clang-format on

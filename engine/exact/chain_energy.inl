@@ -18,6 +18,19 @@ static double column_at(const double *first, size_t stride, int order, double t,
 	return value;
 }
 
+static double series_at(const double *first, size_t stride, double t)
+{
+	double rate;
+	return column_at(first, stride, ORDER_TOUCH, t, &rate);
+}
+
+/* Overlap of the contact that gives w, to all digits however small. */
+static double warp_overlap(const struct warp *x, double t)
+{
+	const double w = series_at(x->w, 1, t);
+	return x->power == 1 ? w * w : w * w * (w * w);
+}
+
 /* powers at one time of a step, and the kinetic energy */
 struct powers {
 	double in, out, moving;
@@ -25,8 +38,14 @@ struct powers {
 
 static struct powers powers_at(const struct chain *c, double t)
 {
+	const struct warp *x = &c->warp;
+	double pace = 1; // of time by the share of the step, over c->dt
 	const struct pound_chain_task *task = c->task;
-	const double h = c->dt, ground = fma(c->slope, t * h, c->ground);
+	const double h = c->dt, elapsed = x->on ? series_at(x->clock, 1, t) : t * h;
+	const double ground = fma(c->slope, elapsed, c->ground);
+	double moving = 0; // velocity of the floor below
+	if (x->on)
+		pace = x->length * series_at(x->gauge, 1, t);
 	struct powers p = {0, 0, 0};
 	double rates[LONG];
 	for (int i = 0; i < c->n; i++) {
@@ -35,6 +54,10 @@ static struct powers powers_at(const struct chain *c, double t)
 		column_at(&c->displacements[0].at[i], LONG, c->order, t, &w);
 		const double d = column_at(&c->drifts[0].at[i], LONG, c->order, t, &v);
 		w /= h, v /= h;
+		if (x->on) {
+			v = series_at(&x->rates[0].at[i], LONG, t);
+			w = moving = fma(c->inner.at[i], moving, v);
+		}
 		rates[i] = v;
 		p.in -= m * ground * w;
 		p.out += (fma(c->stiffness.at[i], d, c->offset.at[i]) + c->dashpot.at[i] * v) * v +
@@ -57,8 +80,13 @@ static struct powers powers_at(const struct chain *c, double t)
 			continue;
 		const double overlap = column_at(&c->overlaps[0][j], LINKS, c->order, t, &q);
 		q /= h;
-		p.out += fma(on->stiffness, overlap, fma(on->damping, q, on->offset)) * q;
+		if (x->on) {
+			q = series_at(x->links[j].rate, 1, t);
+			p.out += pound_contact_force_on(on, j == x->master ? warp_overlap(x, t) : overlap, q) * q;
+		} else
+			p.out += fma(on->stiffness, overlap, fma(on->damping, q, on->offset)) * q;
 	}
+	p.in *= pace, p.out *= pace;
 	return p;
 }
 

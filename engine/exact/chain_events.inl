@@ -80,12 +80,17 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 		             i);
 	if (!vany(turns))
 		return;
-	course = course_of_velocity(&m, c->order);
+	struct power velocity;
+	if (c->warp.on) {
+		power_load(&velocity, c->order, c->warp.rates, i);
+		course = course_make(&velocity, c->order);
+	} else
+		course = course_of_velocity(&m, c->order);
 	turns &= may_cross(&course, zero, -direction);
 	if (!vany(turns))
 		return;
-	struct power velocity;
-	motion_velocity(&velocity, &m, c->order);
+	if (!c->warp.on)
+		motion_velocity(&velocity, &m, c->order);
 	guard_search(first, c, guard_of(&velocity, &course, zero, -direction), turns,
 	             EVENT_STORY + POUND_EDGE_TURN, i);
 }
@@ -151,6 +156,8 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 			continue;
 		const struct link *link = &c->link[j + l];
 		const unsigned bit = 1u << l;
+		if (link_curved(link) || link->held)
+			continue; // touch_step.inl looks at them
 		x->open |= link->touching || link->parted ? 0 : bit;
 		x->parted |= link->parted ? bit : 0;
 		x->touching |= link->touching ? bit : 0;
@@ -169,6 +176,22 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 	}
 }
 
+/* Rates of overlaps of a vector of links, over the step: their derivatives by its share; where the step is no share of time, the
+ * rates themselves (touch.inl), as the share stands still where a power begins or ends. */
+static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap, int j)
+{
+	if (!c->warp.on) {
+		motion_velocity(rate, overlap, c->order);
+		return;
+	}
+	for (int n = 0; n <= ORDER_TOUCH; n++) {
+		double value[W];
+		for (int l = 0; l < W; l++)
+			value[l] = n <= c->order && j + l < c->n_links ? c->warp.links[j + l].rate[n] : 0;
+		rate->c[n] = lanes_load(value);
+	}
+}
+
 /* Looks for where forces fall through 0, of those that touch, or rise through it again, of those whose force is gone before
  * their overlap, and for where these clear. */
 static void forces_search(struct first *first, const struct chain *c, const struct link_lanes *x,
@@ -177,7 +200,7 @@ static void forces_search(struct first *first, const struct chain *c, const stru
 	const vm touching = vmask(x->touching), some = vmask(lanes), fresh = vmask(x->fresh);
 	const vd sign = vselect(touching, vsplat(-1), vsplat(1)), lead = lanes_load(x->lead);
 	struct power guard = {0}, rate;
-	motion_velocity(&rate, &x->overlap, c->order);
+	link_rates(&rate, c, &x->overlap, j);
 	for (int n = 0; n <= c->order; n++)
 		guard.c[n] = sign * vfma(lead, rate.c[n], x->overlap.u.c[n]);
 	// where the force has just passed 0 it is beyond by a rounding (step.inl: force_search)
@@ -239,14 +262,28 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 		forces_search(first, c, &x, by_force, j);
 	if (!vany(turns))
 		return;
-	const struct course course = course_of_velocity(&x.overlap, c->order);
+	struct power velocity;
+	link_rates(&velocity, c, &x.overlap, j);
+	const struct course course = course_make(&velocity, c->order);
 	turns &= may_cross(&course, zero, -direction);
 	if (!vany(turns))
 		return;
-	struct power velocity;
-	motion_velocity(&velocity, &x.overlap, c->order);
 	guard_search(first, c, guard_of(&velocity, &course, zero, -direction), turns,
 	             EVENT_LINK + POUND_EDGE_TURN, j);
+}
+
+/* Looks for where the force that holds the sides of a rigid contact together falls through 0. */
+static void held_search(struct first *first, const struct chain *c, int j)
+{
+	struct power guard;
+	for (int n = 0; n <= ORDER_TOUCH; n++)
+		guard.c[n] = vsplat(n + 2 <= c->order ? -c->overlaps[n][j] : 0);
+	// no more than the rounding of what it is made of: nothing, and the next derivative decides (chain_series.inl: link_settle)
+	if (fabs(c->overlaps[0][j]) <= POUND_UNDECIDED * held_terms(c, &c->link[j]))
+		guard.c[0] = vsplat(0);
+	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
+	search_safe(&guard, c->order, vmask(1), vsplat(EVENT_ENDS), &search);
+	search_take(first, &search, vmask(1), j);
 }
 
 /* The first event of a step. */
@@ -257,6 +294,9 @@ static struct first events_search(struct chain *c)
 		overlaps_course(c);
 	for (int j = 0; j < c->n_links; j += W)
 		links_search(&first, c, j);
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].held)
+			held_search(&first, c, j);
 	for (int i = 0; c->edged && i < c->n; i += W)
 		stories_search(&first, c, i);
 	return first;

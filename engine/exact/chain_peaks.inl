@@ -5,19 +5,10 @@
  *
  * Included by chain.inl alone, once per lane count, after chain_events.inl. */
 
-enum { TURNS = 16 }; /* of one motion in a step, at most looked for */
-
-static struct course course_make(const struct power *x, int order)
-{
-	vd u = x->c[0], v = vsplat(0), bend = vsplat(0);
-	for (int n = 1; n <= order; n++) {
-		u = u + x->c[n];
-		v = vfma(vsplat(n), x->c[n], v);
-		if (n >= 4)
-			bend = vfma(vsplat(fourth(n)), vabs(x->c[n]), bend);
-	}
-	return (struct course){x->c[0], x->c[1], u, v, bend};
-}
+enum {
+	TURNS = 16,  /* of one motion in a step, at most looked for */
+	LEADING = 4, /* zeros that a rate may start with: touch.inl has three where a contact begins */
+};
 
 /* Bound of |u| inside a step, apart from its ends. */
 LANE_INLINE vd course_reach(const struct course *c)
@@ -51,7 +42,9 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 		motion_velocity(&rate.u, &m, order);
 		const vd *v = rate.u.c;
 		const struct course course = course_make(&rate.u, order);
-		const vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
+		vd way = v[LEADING];
+		for (int n = LEADING - 1; n >= 0; n--)
+			way = vselect(vequal(v[n], zero), way, v[n]);
 		const vd sign = vselect(vless(way, zero), one, -one);
 		struct search search = {.time = vmin(end, one), .event = vsplat(EVENT_NONE)};
 		struct guard turns = guard_of(&rate.u, &course, zero, sign);
@@ -92,10 +85,35 @@ LANE_INLINE void tops_keep(const struct chain *c, const struct column series[TER
 	}
 }
 
+/* Follows the accelerations of a vector of floors over a step. */
+static void acceleration_follow(struct chain *c, struct power *x, int i, double time)
+{
+	const vd there = power_at(x, c->order, vsplat(time));
+	vd top = vmax(column_load(&c->top_acceleration, i), vmax(vabs(x->c[0]), vabs(there)));
+	const struct course course = course_make(x, c->order);
+	const vm inside = vless(top, course_reach(&course));
+	if (vany(inside))
+		top = top_follow(x, c->order, vsplat(time), top, vsplat(-1), inside);
+	column_store(&c->top_acceleration, i, top);
+}
+
+LANE_INLINE void acceleration_top(struct chain *c, const struct column series[TERMS], int i, double time)
+{
+	struct power x;
+	power_load(&x, c->order, series, i);
+	acceleration_follow(c, &x, i, time);
+}
+
 /* Largest absolute accelerations in a step, on both sides of its ends. */
 static void accelerations_keep(struct chain *c, double time)
 {
 	const double h = c->dt, rise = c->slope * h;
+	if (c->warp.on) {
+		warp_floor_accelerations(c);
+		for (int i = 0; i < c->wide; i += W)
+			acceleration_top(c, c->warp.accelerations, i, time);
+		return;
+	}
 	const vd per_h2 = vsplat(1 / (h * h)), zero = vsplat(0);
 	for (int i = 0; i < c->wide; i += W) {
 		struct power x;
@@ -105,13 +123,7 @@ static void accelerations_keep(struct chain *c, double time)
 			             : vsplat((n + 1.0) * (n + 2.0)) * per_h2 * column_load(&c->displacements[n + 2], i);
 		x.c[0] = x.c[0] + vsplat(c->ground);
 		x.c[1] = x.c[1] + vsplat(rise);
-		const vd there = power_at(&x, c->order, vsplat(time));
-		vd top = vmax(column_load(&c->top_acceleration, i), vmax(vabs(x.c[0]), vabs(there)));
-		const struct course course = course_make(&x, c->order);
-		const vm inside = vless(top, course_reach(&course));
-		if (vany(inside))
-			top = top_follow(&x, c->order, vsplat(time), top, vsplat(-1), inside);
-		column_store(&c->top_acceleration, i, top);
+		acceleration_follow(c, &x, i, time);
 	}
 }
 
@@ -121,6 +133,12 @@ static void force_keep(struct chain *c, struct link *l, int j, double time)
 	const double k = l->at.on.stiffness, lead = l->at.on.damping / c->dt;
 	struct power x = {0};
 	for (int n = 0; n <= c->order; n++) {
+		if (c->warp.on || l->held) {
+			x.c[n] = vsplat(!l->held            ? curve_force(c, j, n)
+			                : n + 2 <= c->order ? c->overlaps[n][j] / (c->dt * c->dt)
+			                                    : 0);
+			continue;
+		}
 		const double next = n < c->order ? c->overlaps[n + 1][j] : 0;
 		x.c[n] = vsplat(fma(k, c->overlaps[n][j], lead * (n + 1) * next) + (n == 0 ? l->at.on.offset : 0));
 	}

@@ -37,6 +37,8 @@ LANE_INLINE double link_force(const struct chain *c, const struct link *l, int j
 	return n == 0 ? force + l->at.on.offset * (h * h) : force;
 }
 
+static void held_push(struct chain *c, int n, double ground); /* impact.inl */
+
 /* Adds the forces of modal damping of order n, over masses. */
 LANE_SHARED void modal_add(struct chain *c, int n)
 {
@@ -179,6 +181,10 @@ static void overlaps_next(struct chain *c, int n, double ground)
 		struct link *l = &c->link[j];
 		if (!l->own)
 			continue;
+		if (l->held) {
+			c->overlaps[n + 2][j] = 0;
+			continue;
+		}
 		c->overlaps[n + 2][j] = link_sum(l, c->displacements[n + 2].at);
 		if (l->level)
 			link_settle(c, l, j, n, ground);
@@ -190,8 +196,11 @@ LANE_INLINE void series_orders(struct chain *c, bool pushed, bool owned)
 	const double h2 = c->dt * c->dt, ground[2] = {c->ground * h2, c->slope * c->dt * h2};
 	for (int n = 0; n + 2 <= c->order; n++) {
 		const double g = n < 2 ? ground[n] : 0;
-		if (pushed)
+		if (pushed) {
 			pushes_set(c, n);
+			if (c->held)
+				held_push(c, n, g);
+		}
 		floors_next(c, n, g, pushed, c->moving);
 		if (n == 0 && c->edged)
 			for (int i = 0; i < c->n; i += W)
@@ -227,12 +236,27 @@ LANE_INLINE void courses_make(const struct chain *c, const struct column series[
 	}
 }
 
+/* What a series does over a step. */
+static struct course course_make(const struct power *x, int order)
+{
+	vd u = x->c[0], v = vsplat(0), bend = vsplat(0);
+	for (int n = 1; n <= order; n++) {
+		u = u + x->c[n];
+		v = vfma(vsplat(n), x->c[n], v);
+		if (n >= 4)
+			bend = vfma(vsplat(fourth(n)), vabs(x->c[n]), bend);
+	}
+	return (struct course){x->c[0], x->c[1], u, v, bend};
+}
+
 /* Makes the series of a step of c->dt. */
 static void series_chain(struct chain *c)
 {
 	bool touching = c->modal, owned = false;
+	c->held = false;
 	for (int j = 0; j < c->n_links; j++) {
 		touching |= c->link[j].touching;
+		c->held |= c->link[j].held;
 		owned |= c->link[j].own;
 	}
 	series_start(c);

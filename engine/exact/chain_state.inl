@@ -12,6 +12,7 @@
 #include "engine/exact/chain.h"
 #include "engine/exact/counts.h"
 #include "engine/exact/tolerances.h"
+#include "engine/numeric/elementary.h"
 #include "engine/numeric/lanes.h"
 #include "engine/scene/modes.h"
 
@@ -55,6 +56,7 @@ struct link {
 	bool parted;           /* the force is gone before the overlap */
 	bool fresh;            /* the force has just passed zero */
 	bool own;       /* p and q are integrated in their own right; else they are differences of the floors' */
+	bool held;      /* touching: rigid, and the sides stay together */
 	bool level;     /* without overlap, at one velocity but for a rounding; nothing has decided yet */
 	double p, q;    /* overlap [m] and its rate [m/s] */
 	double impulse; /* of this contact so far [N s] */
@@ -113,12 +115,31 @@ struct flight {
 	double shape[MODE_ROWS][ROW]; /* drifts of shapes */
 };
 
+/* series of a link over such a step: its overlap p, the rate of that, p^1.5 and p^0.25 */
+struct curve {
+	double overlap[TERMS], rate[TERMS], power[TERMS], quarter[TERMS];
+};
+
+/* the series of a step while the force of a contact is no straight line (touch.inl) */
+struct warp {
+	bool on;       /* the step in hand is one */
+	bool still;    /* a contact begins without speed: its force waits for a moment */
+	bool sampled;  /* the step ends at the end of the interval */
+	int power;     /* dt = w^power ds times the length; 0: the step goes in time */
+	int master;    /* link whose overlap is w^2 or w^4; -1: none */
+	double length; /* [s], [s m^(-1/2)] or [s m^(-3/4)] */
+	double clock[TERMS], gauge[TERMS], w[TERMS], w2[TERMS], w3[TERMS]; /* time, g and powers of w */
+	struct column rates[TERMS], accelerations[TERMS];                  /* of drifts */
+	struct curve links[POUND_CHAIN_LINKS];
+};
+
 struct chain {
 	const struct pound_chain_task *task;
 	struct pound_chain_result *result;
 	int n, wide; /* floors, and as many as whole vectors have */
 	int n_links, wide_links;
 	bool edged;                    /* a law has more than one branch */
+	bool held;                     /* a rigid contact holds, in the step in hand */
 	bool modal;                    /* a building has a damping matrix */
 	bool moving;                   /* displacements are looked at */
 	double rate_apart, drag_apart; /* fastest that floors do without contact, and the damping of that [1/s] */
@@ -148,6 +169,7 @@ struct chain {
 	double overlaps[TERMS][LINKS];
 	double reach; /* longest step, of the links that touch now; 0: to be found [s] */
 	struct flight flight;
+	struct warp warp;
 	// energy
 	double work_in, work_gap, work_low, work_top;
 };

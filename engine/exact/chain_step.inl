@@ -113,6 +113,10 @@ static double chain_time(const struct chain *c)
 static void contact_begins(struct chain *c, struct link *l)
 {
 	double *m = l->measures;
+	if (link_rigid(l)) {
+		impact(c, l, chain_time(c));
+		return;
+	}
 	if (!l->parted) {
 		l->p = 0; // from here exactly
 		pound_contact_begin(&l->link->law, &l->at, l->q);
@@ -129,6 +133,12 @@ static void contact_begins(struct chain *c, struct link *l)
 
 static void contact_ends(struct chain *c, struct link *l)
 {
+	if (l->held) {
+		l->measures[POUND_LINK_IMPULSE_MAX] = fmax(l->measures[POUND_LINK_IMPULSE_MAX], l->impulse);
+		held_end(l);
+		c->reach = 0;
+		return;
+	}
 	l->touching = false;
 	l->parted = l->fresh = link_forced(l) && l->p > 0;
 	if (!l->parted)
@@ -187,6 +197,15 @@ static void step_arrive(struct chain *c, double time)
 		struct link *l = &c->link[j];
 		if (!l->own)
 			continue;
+		if (l->held) {
+			double sum = 0;
+			for (int n = c->order - 2; n >= 0; n--)
+				sum = fma(sum, time, c->overlaps[n][j] * POUND_SHARE[n]);
+			l->impulse += sum * elapsed / (c->dt * c->dt);
+			l->time += elapsed;
+			l->p = l->q = 0;
+			continue;
+		}
 		double q = c->overlap.v1.at[j], p = c->overlap.u1.at[j], area = 0, slope;
 		if (!whole)
 			p = column_at(&c->overlaps[0][j], LINKS, c->order, time, &q);
@@ -279,9 +298,14 @@ static void chain_step(struct chain *c)
 {
 	if (c->moving)
 		chain_displacements(c);
-	step_choose(c);
-	series_chain(c);
-	const struct first first = events_search(c);
+	c->warp.on = chain_curved(c);
+	if (c->warp.on) {
+		touch_series(c);
+	} else {
+		step_choose(c);
+		series_chain(c);
+	}
+	const struct first first = c->warp.on ? touch_events(c) : events_search(c);
 	if (first.time > 0) {
 		if (c->task->observer)
 			step_observe(c, first.time);
@@ -289,7 +313,10 @@ static void chain_step(struct chain *c)
 			energy_keep(c, first.time);
 		if (c->task->asked & POUND_CHAIN_ACCELERATIONS)
 			accelerations_keep(c, first.time);
-		step_arrive(c, first.time);
+		if (c->warp.on)
+			touch_arrive(c, first.time);
+		else
+			step_arrive(c, first.time);
 		step_tops(c, first.time);
 	}
 	if (first.event != EVENT_NONE && c->moving)

@@ -255,7 +255,7 @@ static void contact_impact(struct course *c)
 	struct pound_task_result *r = c->result;
 	const double q = fmax(c->y[Q], 0), a = relative_acceleration(c, c->t, c->y);
 	double e = c->law.restitution;
-	c->held = a > 0 && e < 1 && 2 * e * q < a * (1 - e) * HOPS_END * c->task->time_step;
+	c->held = q == 0 || (a > 0 && e < 1 && 2 * e * q < a * (1 - e) * HOPS_END * c->task->time_step);
 	if (c->held)
 		e = 0;
 	const double impulse = (1 + e) * q / (1 + c->task->mass_ratio);

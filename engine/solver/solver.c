@@ -1,6 +1,8 @@
 /* solver.c - the ways to integrate a scene.  Adding one: its function and its row in solvers[]. */
 #include "engine/solver/solver.h"
 
+#include "engine/exact/chain.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
@@ -30,7 +32,7 @@ static const struct solver {
 } solvers[] = {
     // many tasks at once
     [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
-                            .tolerance = true, .rows = true, .forces = {[POUND_FORCE_LINEAR] = true}},
+                            .tolerance = true, .rows = true, .forces = EVERY},
     {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true,
      .forces = BRANCHES},
     {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true,
@@ -90,6 +92,80 @@ struct pound_contact_law pound_task_law(const struct pound_task *task)
 	    .stiffness = task->contact_stiffness, .dashpot = task->contact_damping, .tension = task->tension};
 }
 
+/* ---- the exact solver ---- */
+
+/* Two oscillators as a chain of two one-story buildings, or of one beside a wall, over the left mass: for the forms of contact
+ * force that the march of pairs does not have.
+ *
+ * Given    task     at rest at the start
+ * Returns  result   as that of the march of pairs
+ */
+static void chain_run(const struct pound_task *task, struct pound_task_result *result, void *scratch,
+                      const atomic_bool *stop)
+{
+	const bool wall = task->mass_ratio == 0;
+	const double mass[POUND_OSCILLATORS] = {1, wall ? 1 : 1 / task->mass_ratio};
+	struct pound_floor floors[POUND_OSCILLATORS];
+	const int right = wall ? POUND_CHAIN_GROUND : 1, n = wall ? 1 : POUND_OSCILLATORS;
+	const struct pound_link link = {
+	    .floor = {{0, 0}, {right, right}}, .weight = {{1, 0}, {1, 0}}, .law = task->law, .gap = task->gap};
+	double floor_rows[POUND_OSCILLATORS][POUND_FLOOR_MEASURES], row[POUND_LINK_MEASURES];
+	for (int i = 0; i < n; i++) {
+		const struct pound_task_body *body = &task->bodies[i];
+		assert(body->u == 0 && body->v == 0 && body->drive == 1);
+		floors[i] = (struct pound_floor){
+		    .mass = mass[i], .dashpot = body->damping * mass[i], .story = body->backbone, .base = true};
+		floors[i].story.stiffness *= mass[i];
+	}
+	const struct pound_chain_task chain = {.ground = task->ground,
+	                                       .n_samples = task->n_samples,
+	                                       .time_step = task->time_step,
+	                                       .n_floors = n,
+	                                       .n_links = 1,
+	                                       .floors = floors,
+	                                       .links = &link,
+	                                       .asked = POUND_CHAIN_DRIFTS |
+	                                                (task->accounted ? POUND_CHAIN_ENERGY : 0)};
+	struct pound_chain_result rows = {.floors = floor_rows[0], .links = row};
+	pound_chain_lanes(0, &chain, &rows, 1, scratch, stop);
+	*result = (struct pound_task_result){.status = rows.status,
+	                                     .impulse_max = row[POUND_LINK_IMPULSE_MAX],
+	                                     .contact_time = row[POUND_LINK_TIME],
+	                                     .contacts = (int64_t)row[POUND_LINK_CONTACTS],
+	                                     .energy_residual = rows.energy_residual,
+	                                     .first_contact = row[POUND_LINK_FIRST_TIME],
+	                                     .first_speed = row[POUND_LINK_FIRST_SPEED]};
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const bool moves = i < n;
+		result->displacement_max[i] = !task->bodies[i].followed ? NAN
+		                              : moves                   ? floor_rows[i][POUND_FLOOR_DRIFT_MAX]
+		                                                        : 0;
+		result->u[i] = moves ? floor_rows[i][POUND_FLOOR_END_U] : 0;
+		result->v[i] = moves ? floor_rows[i][POUND_FLOOR_END_V] : 0;
+	}
+}
+
+static bool runs_as_pair(const struct pound_task *task)
+{
+	return !task->contact || task->force == POUND_FORCE_LINEAR;
+}
+
+/* Runs tasks from event to event: pairs many at once, in the order they are in, all others as chains. */
+static void exact_run(const struct pound_task *tasks, struct pound_task_result *results, int n, void *scratch,
+                      const atomic_bool *stop)
+{
+	for (int j = 0, end; j < n && !pound_stopped(stop); j = end) {
+		for (end = j; end < n && runs_as_pair(&tasks[end]); end++)
+			continue;
+		if (end > j)
+			pound_exact_lanes(0, &tasks[j], &results[j], end - j, scratch, stop);
+		else
+			chain_run(&tasks[end], &results[end], scratch, stop), end++;
+	}
+}
+
+static_assert((int)POUND_CHAIN_SCRATCH <= (int)POUND_EXACT_SCRATCH, "a chain fits into the work space of pairs");
+
 /* Runs tasks, with the method and the setting of a solver.
  *
  * Given    solver    -       -       row of the solvers, and the setting it takes
@@ -109,7 +185,7 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
 	for (int j = 0; j < n; j++)
 		assert(!tasks[j].contact || row->forces[tasks[j].force]);
 	if (!row->run)
-		pound_exact_lanes(0, tasks, results, n, scratch, stop);
+		exact_run(tasks, results, n, scratch, stop);
 	for (int j = 0; row->run && j < n && !pound_stopped(stop); j++) {
 		row->run(solver, &tasks[j], &results[j], stop);
 		results[j].energy_residual = NAN; // only the march keeps the balance

@@ -151,6 +151,24 @@ static void the_adaptive_solver_has_the_known_answers_of_every_model(void **stat
 	}
 }
 
+static void the_exact_solver_has_the_known_answers_of_every_model(void **state)
+{
+	(void)state;
+	for (int i = 0; i < COUNT(cases); i++) {
+		struct pound_task task = task_of(&cases[i]);
+		task.accounted = true;
+		const struct pound_solver solver = {.method = POUND_SOLVER_EVENT};
+		const struct pound_task_result r = result_of(&task, &solver);
+		check_near(r.energy_residual, 0, 1e-12);
+		check_near(r.first_contact, .411331188317195, 1e-14);
+		check_near(r.first_speed, .513724371110237, 1e-13);
+		const struct known known = known_of(&cases[i]);
+		assert_int_equal(r.contacts, known.contacts);
+		// what is not known is compared with the adaptive solver
+		check_near(error_of(&r, &known), 0, cases[i].known.contacts > 0 ? 1e-12 : 1e-9);
+	}
+}
+
 /* Errors of the fixed steps fall with the step: to a tenth at least where that is a hundredth. */
 static void fixed_steps_converge_to_the_known_answers_of_every_model_they_take(void **state)
 {
@@ -176,5 +194,6 @@ static void fixed_steps_converge_to_the_known_answers_of_every_model_they_take(v
 	assert_int_equal(compared, 2 * (COUNT(cases) - 1)); // all but rigid
 }
 
-CHECK_MAIN(cmocka_unit_test(the_adaptive_solver_has_the_known_answers_of_every_model),
+CHECK_MAIN(cmocka_unit_test(the_exact_solver_has_the_known_answers_of_every_model),
+           cmocka_unit_test(the_adaptive_solver_has_the_known_answers_of_every_model),
            cmocka_unit_test(fixed_steps_converge_to_the_known_answers_of_every_model_they_take))

@@ -1,0 +1,200 @@
+/* impact.inl - rigid contacts: velocities that jump, and bodies that stay together where their hops have ended.
+ *
+ *   an impact        q becomes -e q by J = (1 + e) m q, which the floors of both sides share by weights
+ *   staying together p'' = 0: forces f of each order from J M^-1 J^T f = relative accelerations without them, until one falls
+ *                    through 0
+ *
+ * Included by chain.inl alone, once per lane count, after touch.inl. */
+
+enum { SWEEPS = 60 };
+
+static const double HOPS_END =
+    1e-12; /* of a sample: hops that are over in so short a time are no hops any more */
+
+static bool link_rigid(const struct link *l)
+{
+	return pound_contact_force(l->link->law.model) == POUND_FORCE_IMPACT;
+}
+
+/* ---- staying together ---- */
+
+/* Acceleration of a floor of order n, in the units of the step, but for what holds bodies together. */
+static double floor_acceleration(const struct chain *c, int i, int n, double ground)
+{
+	double force = 0, drag;
+	for (int above = 0; above < 2; above++) {
+		const int k = i + above;
+		if (above && c->inverse_above.at[i] == 0)
+			break;
+		double s;
+		if (c->warp.on)
+			s = fma(c->dashpot.at[k], c->warp.rates[n].at[k], c->stiffness.at[k] * c->drifts[n].at[k]) +
+			    (n == 0 ? c->offset.at[k] : 0);
+		else
+			s = fma(c->dash.at[k] * (n + 1), c->drifts[n + 1].at[k], c->spring.at[k] * c->drifts[n].at[k]) +
+			    (n == 0 ? c->force.at[k] : 0);
+		force += above ? s : -s;
+	}
+	if (c->drag.at[i] == 0)
+		drag = 0;
+	else if (c->warp.on) {
+		drag = 0;
+		for (int k = i; k >= 0; k = c->base.at[k] != 0 ? -1 : k - 1)
+			drag += c->warp.rates[n].at[k];
+		drag *= c->drag.at[i];
+	} else
+		drag = c->drag_step.at[i] * (n + 1) * c->displacements[n + 1].at[i];
+	return fma(force, c->inverse_mass.at[i], -c->push.at[i] - drag - ground);
+}
+
+/* Adds the forces of order n that hold bodies together: sums over links that share floors are found by sweeps, each of which
+ * leaves at most half of what the one before left.
+ *
+ * Given    ground  of order n
+ * Returns  overlaps  of these links: their forces, for they have no overlap
+ */
+static void held_push(struct chain *c, int n, double ground)
+{
+	bool shared = false;
+	for (int j = 0; j < c->n_links; j++)
+		c->overlaps[n][j] = c->link[j].held ? 0 : c->overlaps[n][j];
+	for (int sweep = 0; sweep < (shared || sweep == 0 ? SWEEPS : 2); sweep++) {
+		int held = 0;
+		for (int j = 0; j < c->n_links; j++) {
+			const struct link *l = &c->link[j];
+			if (!l->held)
+				continue;
+			double sum = 0;
+			for (int k = 0; k < l->n_ends; k++)
+				sum = fma(l->weight[k], floor_acceleration(c, l->floor[k], n, ground), sum);
+			sum /= l->inverse_mass;
+			c->overlaps[n][j] += sum;
+			push_add(c, l, sum);
+			held++;
+		}
+		shared = held > 1;
+	}
+}
+
+/* Magnitudes that the force of a held contact is made of at the start of a step, in the units of the step. */
+static double held_terms(const struct chain *c, const struct link *l)
+{
+	const double h2 = c->dt * c->dt;
+	double made = 0;
+	for (int k = 0; k < l->n_ends; k++)
+		made += fabs(l->weight[k]) * (floor_terms(c, l->floor[k], 0) + fabs(c->ground) * h2);
+	return made / l->inverse_mass;
+}
+
+/* Lets go of a contact; what is left of its overlap is nothing. */
+static void held_end(struct link *l)
+{
+	l->held = l->touching = false;
+	l->p = l->q = 0;
+}
+
+/* ---- impacts ---- */
+
+/* Changes velocities by an impulse between the sides of a link. */
+static void impulse_apply(struct chain *c, const struct link *by, double impulse)
+{
+	for (int k = 0; k < by->n_ends; k++) {
+		const int i = by->floor[k];
+		const double change = -by->weight[k] * impulse * c->inverse_mass.at[i];
+		c->v.at[i] += change;
+		if (c->inverse_above.at[i] != 0)
+			c->v.at[i + 1] -= change;
+		for (int j = 0; j < c->n_links; j++) {
+			struct link *l = &c->link[j];
+			for (int e = 0; l->own && e < l->n_ends; e++)
+				if (l->floor[e] == i)
+					l->q = fma(l->weight[e], change, l->q);
+		}
+	}
+}
+
+/* Gives all bodies that are held together one velocity, with their momentum: by sweeps, as the forces (held_push). */
+static void held_merge(struct chain *c)
+{
+	for (int sweep = 0; sweep < SWEEPS; sweep++)
+		for (int j = 0; j < c->n_links; j++) {
+			struct link *l = &c->link[j];
+			if (!l->held || l->q == 0)
+				continue;
+			const double q = l->q, impulse = q / l->inverse_mass;
+			impulse_apply(c, l, impulse);
+			l->q = 0;
+			l->impulse += impulse;
+			c->work_gap += 0.5 * q * q / l->inverse_mass;
+		}
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].held)
+			c->link[j].q = 0;
+}
+
+/* Lets go of bodies that an impact beside them has given different velocities. */
+static void held_part(struct chain *c)
+{
+	for (int j = 0; j < c->n_links; j++) {
+		struct link *l = &c->link[j];
+		const double q = l->q;
+		if (!l->held || q == 0)
+			continue;
+		held_end(l);
+		l->q = q;
+	}
+}
+
+/* Relative acceleration of the sides of a link without its force [m/s2]. */
+static double link_acceleration(struct chain *c, const struct link *l)
+{
+	double sum = 0;
+	c->dt = 1;
+	chain_displacements(c);
+	series_start(c);
+	pushes_set(c, 0);
+	held_push(c, 0, c->ground);
+	for (int k = 0; k < l->n_ends; k++)
+		sum = fma(l->weight[k], floor_acceleration(c, l->floor[k], 0, c->ground), sum);
+	return sum;
+}
+
+/* Two sides meet.
+ *
+ * Given    l   p = 0, q >= 0
+ */
+static void impact(struct chain *c, struct link *l, double time)
+{
+	const struct pound_contact_law *law = &l->link->law;
+	double *m = l->measures, q = fmax(l->q, 0), e = law->restitution;
+	const bool warped = c->warp.on;
+	c->warp.on = false;
+	l->own = true;
+	l->p = 0;
+	const double a = link_acceleration(c, l);
+	const double hops = e < 1 ? 2 * e * q / (a * (1 - e)) : INFINITY;
+	// sides that meet without speed do so by an acceleration, or by what comes after it
+	const bool stays = q == 0 || (a > 0 && hops < HOPS_END * c->task->time_step);
+	const double impulse = (1 + (stays ? 0 : e)) * q / l->inverse_mass;
+	l->held = l->touching = stays;
+	l->impulse = 0;
+	memset(&l->at, 0, sizeof l->at);
+	if (stays) {
+		l->q = q;
+		held_merge(c);
+	} else {
+		impulse_apply(c, l, impulse);
+		l->q = -e * q;
+		c->work_gap += 0.5 * (1 - e * e) * q * q / l->inverse_mass;
+		held_part(c);
+	}
+	m[POUND_LINK_IMPULSE_MAX] = fmax(m[POUND_LINK_IMPULSE_MAX], impulse);
+	if (q >= law->speed_floor) {
+		if (m[POUND_LINK_CONTACTS]++ == 0) {
+			m[POUND_LINK_FIRST_TIME] = time;
+			m[POUND_LINK_FIRST_SPEED] = q;
+		}
+	}
+	c->reach = 0;
+	c->warp.on = warped;
+}

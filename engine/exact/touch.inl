@@ -1,0 +1,461 @@
+/* touch.inl - steps of a chain while the force of a contact is no straight line: products p q and powers of p.
+ *
+ * 1. p^1.5 has a branch point where a contact begins and ends, so time is a bad variable there.  Such a step goes in s with
+ *    dt = g ds, g = w = p^(1/2), or g = w^3, w = p^(1/4), where a dashpot has p^(1/4):
+ *
+ *       w' = q/2,  p^1.5 = w^3             w' = q/4,  p^1.5 = w^6,  p^0.25 = w
+ *       t' = g    d' = g v    v' = g a    q' = g a
+ *
+ *    All right sides are polynomials: coefficients by products, at w = 0 as elsewhere.  The contact ends at the simple root of w,
+ *    and a sample is the root of t(s).
+ * 2. One contact gives w: of those that touch the one with the least p/|q|.  Far from its branch points, and for products,
+ *    g = 1.  Powers of the other overlaps are by n p_0 P_n = sum_(k=1..n) (a k - n + k) p_k P_(n-k), P_0 = p_0^a.
+ * 3. The step is as long as its last coefficients allow: a series of another length has coefficients times powers of the ratio.
+ *
+ * Included by chain.inl alone, once per lane count, before chain_events.inl. */
+
+static bool link_curved(const struct link *l)
+{
+	return (l->touching || l->parted) && l->at.on.form != POUND_TOUCH_STRAIGHT;
+}
+
+static bool link_power(const struct link *l)
+{
+	return link_curved(l) && l->at.on.form != POUND_TOUCH_PRODUCT;
+}
+
+/* x^(1/n), x > 0 */
+static double root_of(double x, int n)
+{
+	return pound_elementary_exp(pound_elementary_log(fmax(x, DBL_MIN)) / n);
+}
+
+/* ---- products of series ---- */
+
+/* Coefficient n of the product of two series: by turns into two sums, as each waits for its term before. */
+LANE_INLINE double product_at(const double *a, const double *b, int n)
+{
+	double even = 0, odd = 0;
+	for (int k = 0; k < n; k += 2) {
+		even = fma(a[k], b[n - k], even);
+		odd = fma(a[k + 1], b[n - k - 1], odd);
+	}
+	return n % 2 ? even + odd : fma(a[n], b[0], even) + odd;
+}
+
+/* Coefficient n >= 1 of p^a: the weights are made on the way. */
+LANE_INLINE double power_next(double a, const double *p, const double *power, int n)
+{
+	double even = 0, odd = 0, weight = a + 1 - n;
+	for (int k = 1; k < n; k += 2) {
+		even = fma(weight * p[k], power[n - k], even);
+		odd = fma((weight + (a + 1)) * p[k + 1], power[n - k - 1], odd);
+		weight += 2 * (a + 1);
+	}
+	return (n % 2 ? fma(weight * p[n], power[0], even) + odd : even + odd) / (n * p[0]);
+}
+
+/* ---- what a step is made of ---- */
+
+/* Fastest of the contacts' forces: largest growth with the overlap, or with the rate times the frequency, over effective mass. */
+static double curve_rate(const struct link *l)
+{
+	const struct pound_touch_line line = pound_contact_line(&l->at.on, fmax(l->p, 0));
+	const double spring =
+	    line.slope * (1 + fabs(l->q) * (l->at.on.form == POUND_TOUCH_ROOT ? 0 : l->at.on.damping));
+	return sqrt(spring * l->inverse_mass) + line.rate * l->inverse_mass;
+}
+
+/* Fastest rate in s where the contact is near its beginning or its end: there w = |q| s/2 or |q| s/4. */
+static double branch_rate(const struct link *l)
+{
+	const double m = l->inverse_mass, q = fabs(l->q), K = l->at.on.stiffness, c = l->at.on.damping;
+	if (l->at.on.form == POUND_TOUCH_POWER)
+		return root_of(K * q * q * q * m / 16, 5);
+	const double q4 = q * q * q * q;
+	return fmax(root_of(c * q4 * m / 256, 5), root_of(K * q4 * q4 * m / 262144, 10));
+}
+
+/* Whether a contact begins with next to no speed: it has no branch point to go through, and for a moment no force. */
+static bool link_still(const struct link *l)
+{
+	return link_power(l) && l->p <= 0 && fabs(l->q) < 0x1p-500;
+}
+
+/* Chooses what the step goes in, and for how long at first. */
+static void warp_choose(struct chain *c)
+{
+	struct warp *x = &c->warp;
+	double least = INFINITY, rate = c->rate_apart + c->drag_apart;
+	bool still = false;
+	x->master = -1;
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		if (!l->touching && !link_curved(l))
+			continue;
+		rate = fmax(rate, curve_rate(l));
+		still |= link_still(l);
+		if (!link_power(l) || l->q == 0)
+			continue;
+		const double near = fmax(l->p, 0) / fabs(l->q);
+		if (near < least) {
+			least = near;
+			x->master = j;
+		}
+	}
+	const struct link *l = x->master >= 0 ? &c->link[x->master] : NULL;
+	x->power = 0;
+	x->still = still;
+	x->length = c->part * rate <= 1 ? c->part : 1 / rate;
+	if (still)
+		x->length = 0x1p-40 * x->length; // its force is below rounding: (2^-80)^1.5, 2^-60 of a dashpot's
+	else if (l && least * curve_rate(l) < 0.3) {
+		x->power = l->at.on.form == POUND_TOUCH_ROOT ? 3 : 1;
+		const double root = sqrt(fmax(l->p, 0));
+		x->w[0] = x->power == 1 ? root : sqrt(root);
+		const double gauge = x->power == 1 ? root : root * x->w[0];
+		x->length = 1 / fmax(branch_rate(l), fmax(rate * gauge, 0x1p-200));
+	}
+	if (x->power == 0)
+		x->master = -1;
+}
+
+/* Powers of a link's overlap of order n. */
+static void link_powers(struct chain *c, int j, int n)
+{
+	struct warp *x = &c->warp;
+	const struct link *l = &c->link[j];
+	const bool root = l->at.on.form == POUND_TOUCH_ROOT;
+	struct curve *v = &x->links[j];
+	double *power = &v->power[n], *quarter = &v->quarter[n];
+	if (j == x->master) {
+		*power = root ? product_at(x->w3, x->w3, n) : x->w3[n];
+		*quarter = x->w[n];
+		return;
+	}
+	if (v->overlap[0] <= 0 || x->still) { // too short a step for it to act
+		*power = *quarter = 0;
+		return;
+	}
+	const double *p = v->overlap;
+	if (n == 0) {
+		const double half = sqrt(*p);
+		*power = *p * half;
+		*quarter = sqrt(half);
+		return;
+	}
+	*power = power_next(1.5, p, v->power, n);
+	if (root)
+		*quarter = power_next(0.25, p, v->quarter, n);
+}
+
+/* Force of a contact, of order n: its overlap, rate and powers are known up to there. */
+static double curve_force(const struct chain *c, int j, int n)
+{
+	const struct warp *x = &c->warp;
+	const struct pound_touch_branch *on = &c->link[j].at.on;
+	const struct curve *v = &x->links[j];
+	switch (on->form) {
+	case POUND_TOUCH_STRAIGHT:
+		return fma(on->stiffness, v->overlap[n], fma(on->damping, v->rate[n], n == 0 ? on->offset : 0));
+	case POUND_TOUCH_PRODUCT:
+		return on->stiffness * fma(on->damping, product_at(v->overlap, v->rate, n), v->overlap[n]);
+	case POUND_TOUCH_POWER: {
+		const double moving = on->damping != 0 ? on->damping * product_at(v->power, v->rate, n) : 0;
+		return on->stiffness * (v->power[n] + moving);
+	}
+	case POUND_TOUCH_ROOT:
+		return fma(on->stiffness, v->power[n], on->damping * product_at(v->quarter, v->rate, n));
+	}
+	return 0;
+}
+
+/* Adds the forces of modal damping of order n, over masses. */
+static void warp_modal(struct chain *c, int n)
+{
+	const struct pound_chain_task *task = c->task;
+	for (int first = 0, stories; first < c->n; first += stories) {
+		stories = building_stories(task, first);
+		for (int i = first; i < first + stories && task->floors[i].modal; i++) {
+			double sum = 0;
+			for (int j = 0; j < stories; j++)
+				sum = fma(task->floors[i].modal[j], c->warp.rates[n].at[first + j], sum);
+			c->push.at[i] = fma(c->inverse_mass.at[i], sum, c->push.at[i]);
+		}
+	}
+}
+
+/* Sets what acts on floors from outside at order n. */
+static void warp_pushes(struct chain *c, int n)
+{
+	for (int i = 0; i < c->wide; i += W)
+		column_store(&c->push, i, vsplat(0));
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		if (link_power(l))
+			link_powers(c, j, n);
+		if (l->touching)
+			push_add(c, l, curve_force(c, j, n));
+	}
+	if (c->modal)
+		warp_modal(c, n);
+}
+
+LANE_INLINE vd warp_story_force(const struct chain *c, int i, int n)
+{
+	const vd elastic = column_load(&c->stiffness, i) * column_load(&c->drifts[n], i);
+	const vd s = vfma(column_load(&c->dashpot, i), column_load(&c->warp.rates[n], i), elastic);
+	return n == 0 ? s + column_load(&c->offset, i) : s;
+}
+
+/* Accelerations of drifts of order n (chain_series.inl: floors_next). */
+LANE_INLINE void warp_accelerate(struct chain *c, int n, double ground)
+{
+	const vd zero = vsplat(0);
+	vd s = warp_story_force(c, 0, n), below = zero;
+	for (int i = 0; i < c->wide; i += W) {
+		const vd next = i + W < c->wide ? warp_story_force(c, i + W, n) : zero;
+		const vd a = vfma(vabove(s, next), column_load(&c->inverse_above, i),
+		                  -(s * column_load(&c->inverse_mass, i))) -
+		             column_load(&c->push, i);
+		const vd under =
+		    vfma(vbelow(below, a), column_load(&c->inner, i), column_load(&c->base, i) * vsplat(ground));
+		column_store(&c->warp.accelerations[n], i,
+		             a - vfma(column_load(&c->drag, i), column_load(&c->warp.rates[n], i), under));
+		below = a;
+		s = next;
+	}
+}
+
+/* Order n + 1 of drifts and their rates, whose derivatives by s are g times the rates and their accelerations; by turns into two
+ * sums each, as each waits for its term before. */
+LANE_INLINE void warp_integrate(struct chain *c, int n, int i)
+{
+	struct warp *x = &c->warp;
+	vd drift[2] = {vsplat(0), vsplat(0)}, rate[2] = {vsplat(0), vsplat(0)};
+	if (x->power == 0) {
+		drift[0] = column_load(&x->rates[n], i);
+		rate[0] = column_load(&x->accelerations[n], i);
+	} else {
+		for (int k = 0; k < n; k += 2) {
+			const vd even = vsplat(x->gauge[k]), odd = vsplat(x->gauge[k + 1]);
+			drift[0] = vfma(even, column_load(&x->rates[n - k], i), drift[0]);
+			drift[1] = vfma(odd, column_load(&x->rates[n - k - 1], i), drift[1]);
+			rate[0] = vfma(even, column_load(&x->accelerations[n - k], i), rate[0]);
+			rate[1] = vfma(odd, column_load(&x->accelerations[n - k - 1], i), rate[1]);
+		}
+		if (n % 2 == 0) {
+			const vd even = vsplat(x->gauge[n]);
+			drift[0] = vfma(even, column_load(&x->rates[0], i), drift[0]);
+			rate[0] = vfma(even, column_load(&x->accelerations[0], i), rate[0]);
+		}
+	}
+	const vd share = vsplat(x->length * POUND_SHARE[n]);
+	column_store(&c->drifts[n + 1], i, share * (drift[0] + drift[1]));
+	column_store(&x->rates[n + 1], i, share * (rate[0] + rate[1]));
+}
+
+/* Sums over the stories below: what floors do, from drifts. */
+static void floors_sum(const struct chain *c, const struct column *drifts, struct column *floors)
+{
+	double sum = 0;
+	for (int i = 0; i < c->n; i++) {
+		sum = fma(c->inner.at[i], sum, drifts->at[i]);
+		floors->at[i] = sum;
+	}
+}
+
+/* Order n of g and of the time, out of w. */
+static void warp_gauge(struct warp *x, int n)
+{
+	if (x->power > 0) {
+		x->w2[n] = product_at(x->w, x->w, n);
+		x->w3[n] = product_at(x->w2, x->w, n);
+	}
+	x->gauge[n] = x->power == 0 ? n == 0 : x->power == 1 ? x->w[n] : x->w3[n];
+	if (n < ORDER_TOUCH)
+		x->clock[n + 1] = x->length * POUND_SHARE[n] * x->gauge[n];
+}
+
+/* Order n + 1 of what links do. */
+static void warp_links(struct chain *c, int n)
+{
+	struct warp *x = &c->warp;
+	struct column floors;
+	floors_sum(c, &x->rates[n + 1], &floors);
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		if (!l->own)
+			continue;
+		struct curve *v = &x->links[j];
+		v->rate[n + 1] = l->held ? 0 : link_sum(l, floors.at);
+		v->overlap[n + 1] =
+		    x->length * POUND_SHARE[n] * (x->power == 0 ? v->rate[n] : product_at(x->gauge, v->rate, n));
+		if (j == x->master)
+			x->w[n + 1] = x->length * POUND_SHARE[n] * v->rate[n] / (x->power == 1 ? 2 : 4);
+	}
+}
+
+/* Order 0. */
+static void warp_start(struct chain *c)
+{
+	struct warp *x = &c->warp;
+	c->dt = 1;
+	c->held = false;
+	for (int j = 0; j < c->n_links; j++)
+		c->held |= c->link[j].held;
+	series_start(c);
+	for (int i = 0; i < c->wide; i += W)
+		column_store(&x->rates[0], i, column_load(&c->v, i));
+	for (int j = 0; j < c->n_links; j++)
+		x->links[j].overlap[0] = c->link[j].p, x->links[j].rate[0] = c->link[j].q;
+	x->clock[0] = 0;
+}
+
+/* A story without rate where its branch ends (chain_series.inl: story_settle). */
+static void warp_story_settle(struct chain *c, int i)
+{
+	c->drifts[2].at[i] = 0.5 * c->warp.accelerations[0].at[i];
+	story_settle(c, i, c->ground);
+	c->warp.accelerations[0].at[i] = 2 * c->drifts[2].at[i];
+}
+
+/* Makes the series of a step, of the length in hand. */
+static void warp_series(struct chain *c)
+{
+	struct warp *x = &c->warp;
+	warp_start(c);
+	for (int n = 0; n <= ORDER_TOUCH; n++) {
+		warp_gauge(x, n);
+		const double ground = fma(c->slope, x->clock[n], n == 0 ? c->ground : 0);
+		warp_pushes(c, n);
+		if (c->held)
+			held_push(c, n, ground);
+		warp_accelerate(c, n, ground);
+		if (n == 0 && c->edged)
+			for (int i = 0; i < c->n; i++)
+				warp_story_settle(c, i);
+		if (n == ORDER_TOUCH)
+			break;
+		for (int i = 0; i < c->wide; i += W)
+			warp_integrate(c, n, i);
+		warp_links(c, n);
+	}
+}
+
+/* ---- how long it is ---- */
+
+enum { LAST = 3 }; /* terms that are looked at: of some series every other one vanishes */
+
+static const double TAIL = 1e-16; /* of the last terms, over the first ones */
+
+/* Largest of the last terms of a series, some numbers apart, over its first ones. */
+static void tail_keep(double most[LAST], const double *series, size_t stride, double least)
+{
+	const double first = fmax(fabs(series[0]) + fabs(series[stride]), least);
+	for (int k = 0; k < LAST && first > 0; k++)
+		most[k] = fmax(most[k], fabs(series[(size_t)(ORDER_TOUCH - k) * stride]) / first);
+}
+
+/* Ratio of lengths by which the last terms of all rates and of w are below rounding of the first ones. */
+static double warp_ratio(const struct chain *c)
+{
+	const struct warp *x = &c->warp;
+	double fastest = 0, most[LAST] = {0}, ratio = INFINITY;
+	for (int i = 0; i < c->n; i++)
+		fastest = fmax(fastest, fabs(x->rates[0].at[i]));
+	for (int i = 0; i < c->n; i++)
+		tail_keep(most, &x->rates[0].at[i], LONG, 0x1p-10 * fastest);
+	for (int j = 0; j < c->n_links; j++)
+		if (link_curved(&c->link[j]))
+			tail_keep(most, x->links[j].rate, 1, 0x1p-10 * fastest);
+	if (x->power > 0)
+		tail_keep(most, x->w, 1, 0);
+	for (int k = 0; k < LAST; k++)
+		if (most[k] > 0)
+			ratio = fmin(ratio, root_of(TAIL / most[k], ORDER_TOUCH - k));
+	return ratio;
+}
+
+/* Makes a series one of a step that is longer or shorter by a ratio. */
+static void warp_scale(struct chain *c, double ratio)
+{
+	struct warp *x = &c->warp;
+	double factor = 1;
+	x->length *= ratio;
+	for (int n = 1; n <= ORDER_TOUCH; n++) {
+		factor *= ratio;
+		for (int i = 0; i < c->wide; i += W) {
+			const vd f = vsplat(factor);
+			column_store(&c->drifts[n], i, f * column_load(&c->drifts[n], i));
+			column_store(&x->rates[n], i, f * column_load(&x->rates[n], i));
+			column_store(&x->accelerations[n], i, f * column_load(&x->accelerations[n], i));
+		}
+		for (int j = 0; j < c->n_links; j++) {
+			struct curve *v = &x->links[j];
+			if (c->link[j].held)
+				c->overlaps[n][j] *= factor;
+			v->overlap[n] *= factor;
+			v->rate[n] *= factor;
+			v->power[n] *= factor;
+			v->quarter[n] *= factor;
+		}
+		x->clock[n] *= factor;
+		x->gauge[n] *= factor;
+		x->w[n] *= factor;
+		x->w2[n] *= factor;
+		x->w3[n] *= factor;
+	}
+}
+
+/* Makes the series of a step as long as it may be. */
+static void touch_series(struct chain *c)
+{
+	enum { TRIES = 8 };
+	struct warp *x = &c->warp;
+	c->order = ORDER_TOUCH;
+	warp_choose(c);
+	x->length *= c->pace;
+	for (int try = 0; try < TRIES; try++) {
+		warp_series(c);
+		double ratio = x->still ? 1 : warp_ratio(c);
+		if (x->power == 0)
+			ratio = fmin(ratio, c->part / x->length);
+		if (ratio >= 0x1p-4 || try == TRIES - 1) {
+			ratio = fmin(ratio, c->pace < 1 ? 1 : 4);
+			if (ratio != 1)
+				warp_scale(c, ratio);
+			break;
+		}
+		x->length *= ratio;
+	}
+	for (int n = 0; n <= ORDER_TOUCH; n++)
+		floors_sum(c, &c->drifts[n], &c->displacements[n]);
+	for (int j = 0; j < c->n_links; j++)
+		for (int n = 0; c->link[j].own && !c->link[j].held && n <= ORDER_TOUCH; n++)
+			c->overlaps[n][j] = x->links[j].overlap[n];
+	courses_make(c, c->drifts, &c->drift);
+	courses_make(c, c->displacements, &c->displacement);
+}
+
+/* Whether a contact's force is no straight line. */
+static bool chain_curved(const struct chain *c)
+{
+	for (int j = 0; j < c->n_links; j++)
+		if (link_curved(&c->link[j]))
+			return true;
+	return false;
+}
+
+/* Makes accelerations of drifts those of floors, with the ground's: the series is not needed any more. */
+static void warp_floor_accelerations(struct chain *c)
+{
+	struct warp *x = &c->warp;
+	for (int n = 0; n <= ORDER_TOUCH; n++) {
+		struct column floors;
+		floors_sum(c, &x->accelerations[n], &floors);
+		const double ground = fma(c->slope, x->clock[n], n == 0 ? c->ground : 0);
+		for (int i = 0; i < c->n; i++)
+			x->accelerations[n].at[i] = floors.at[i] + ground;
+	}
+}
