@@ -24,6 +24,12 @@ static bool link_power(const struct link *l)
 	return link_curved(l) && l->at.on.form != POUND_TOUCH_PRODUCT;
 }
 
+/* Whether a contact's force, which has a fourth root of its overlap, ends it before its overlap does. */
+static bool link_curve_forced(const struct link *l)
+{
+	return link_curved(l) && l->at.on.form == POUND_TOUCH_ROOT && !l->link->law.tension;
+}
+
 /* x^(1/n), x > 0 */
 static double root_of(double x, int n)
 {
@@ -369,6 +375,10 @@ static double warp_ratio(const struct chain *c)
 	for (int j = 0; j < c->n_links; j++)
 		if (link_curved(&c->link[j]))
 			tail_keep(most, x->links[j].rate, 1, 0x1p-10 * fastest);
+	// a force that is small beside others still decides by its sign when its contact ends
+	for (int j = 0; j < c->n_links; j++)
+		if (j != x->master && link_curve_forced(&c->link[j]) && x->links[j].overlap[0] > 0)
+			tail_keep(most, x->links[j].quarter, 1, 0);
 	if (x->power > 0)
 		tail_keep(most, x->w, 1, 0);
 	for (int k = 0; k < LAST; k++)

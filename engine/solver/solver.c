@@ -164,7 +164,8 @@ static void exact_run(const struct pound_task *tasks, struct pound_task_result *
 	}
 }
 
-static_assert((int)POUND_CHAIN_SCRATCH <= (int)POUND_EXACT_SCRATCH, "a chain fits into the work space of pairs");
+static_assert((int)POUND_CHAIN_SCRATCH <= (int)POUND_EXACT_SCRATCH,
+              "a chain fits into the work space of pairs");
 
 /* Runs tasks, with the method and the setting of a solver.
  *
