@@ -18,7 +18,7 @@ enum {
 	POUND_CHAIN_FLOORS = 400,      /* of a chain, at most */
 	POUND_CHAIN_LINKS = 400,       /* of a chain, at most */
 	POUND_CHAIN_GROUND = -1,       /* in place of a floor */
-	POUND_CHAIN_SCRATCH = 3 << 19, /* bytes of work space, 64-byte aligned */
+	POUND_CHAIN_SCRATCH = 7 << 18, /* bytes of work space, 64-byte aligned */
 	POUND_CHAIN_ORDER = 21,        /* of the longest series of a piece */
 };
 

@@ -115,9 +115,12 @@ struct flight {
 	double shape[MODE_ROWS][ROW]; /* drifts of shapes */
 };
 
-/* series of a link over such a step: its overlap p, the rate of that, p^1.5 and p^0.25 */
+/* series of a link over such a step: its overlap p, the rate of that, p^1.5 and p^0.25; P = p over the overlap that gives w, P^1.5
+ * and P^0.25 where both contacts begin at one instant */
 struct curve {
+	bool beside; /* it begins with the master */
 	double overlap[TERMS], rate[TERMS], power[TERMS], quarter[TERMS];
+	double ratio[TERMS], ratio_power[TERMS], ratio_quarter[TERMS];
 };
 
 /* the series of a step while the force of a contact is no straight line (touch.inl) */

@@ -8,8 +8,10 @@
  *
  *    All right sides are polynomials: coefficients by products, at w = 0 as elsewhere.  The contact ends at the simple root of w,
  *    and a sample is the root of t(s).
- * 2. One contact gives w: of those that touch the one with the least p/|q|.  Far from its branch points, and for products,
- *    g = 1.  Powers of the other overlaps are by n p_0 P_n = sum_(k=1..n) (a k - n + k) p_k P_(n-k), P_0 = p_0^a.
+ * 2. One contact gives w, the master: of those that touch the one with the least p/|q|.  Far from its branch points, and for
+ *    products, g = 1.  Powers of the other overlaps are by n p_0 P_n = sum_(k=1..n) (a k - n + k) p_k P_(n-k), P_0 = p_0^a.
+ *    Another power that begins at the same instant has p = g w P = w^2 P or w^4 P, and from p' = g q follows, by the share of
+ *    the step of length L,  L q_master P + w P' = L q.
  * 3. The step is as long as its last coefficients allow: a series of another length has coefficients times powers of the ratio.
  *
  * Included by chain.inl alone, once per lane count, before chain_events.inl. */
@@ -73,12 +75,12 @@ static double curve_rate(const struct link *l)
 }
 
 /* Fastest rate in s where the contact is near its beginning or its end: there w = |q| s/2 or |q| s/4. */
-static double branch_rate(const struct link *l)
+static double branch_rate(const struct link *l, int power)
 {
-	const double m = l->inverse_mass, q = fabs(l->q), K = l->at.on.stiffness, c = l->at.on.damping;
-	if (l->at.on.form == POUND_TOUCH_POWER)
+	const double m = l->inverse_mass, q = fabs(l->q), K = l->at.on.stiffness;
+	if (power == 1)
 		return root_of(K * q * q * q * m / 16, 5);
-	const double q4 = q * q * q * q;
+	const double q4 = q * q * q * q, c = l->at.on.form == POUND_TOUCH_ROOT ? l->at.on.damping : 0;
 	return fmax(root_of(c * q4 * m / 256, 5), root_of(K * q4 * q4 * m / 262144, 10));
 }
 
@@ -86,6 +88,29 @@ static double branch_rate(const struct link *l)
 static bool link_still(const struct link *l)
 {
 	return link_power(l) && l->p <= 0 && fabs(l->q) < 0x1p-500;
+}
+
+/* Chooses the power of w near the branch point of the master, and which contacts begin with it.
+ *
+ * Returns  the fastest rate in s of these contacts
+ */
+static double warp_begin(struct chain *c)
+{
+	struct warp *x = &c->warp;
+	const struct link *master = &c->link[x->master];
+	bool root = master->at.on.form == POUND_TOUCH_ROOT;
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		x->links[j].beside =
+		    j != x->master && master->p <= 0 && l->touching && link_power(l) && l->p <= 0 && l->q > 0;
+		root |= x->links[j].beside && l->at.on.form == POUND_TOUCH_ROOT;
+	}
+	x->power = root ? 3 : 1;
+	double rate = branch_rate(master, x->power);
+	for (int j = 0; j < c->n_links; j++)
+		if (x->links[j].beside)
+			rate = fmax(rate, branch_rate(&c->link[j], x->power));
+	return rate;
 }
 
 /* Chooses what the step goes in, and for how long at first. */
@@ -97,6 +122,7 @@ static void warp_choose(struct chain *c)
 	x->master = -1;
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
+		x->links[j].beside = false;
 		if (!l->touching && !link_curved(l))
 			continue;
 		rate = fmax(rate, curve_rate(l));
@@ -104,7 +130,8 @@ static void warp_choose(struct chain *c)
 		if (!link_power(l) || l->q == 0)
 			continue;
 		const double near = fmax(l->p, 0) / fabs(l->q);
-		if (near < least) {
+		// of several that begin now the fastest one: the overlaps of the others are smaller
+		if (near < least || (near == 0 && least == 0 && l->q > c->link[x->master].q)) {
 			least = near;
 			x->master = j;
 		}
@@ -116,14 +143,38 @@ static void warp_choose(struct chain *c)
 	if (still)
 		x->length = 0x1p-40 * x->length; // its force is below rounding: (2^-80)^1.5, 2^-60 of a dashpot's
 	else if (l && least * curve_rate(l) < 0.3) {
-		x->power = l->at.on.form == POUND_TOUCH_ROOT ? 3 : 1;
-		const double root = sqrt(fmax(l->p, 0));
+		const double fastest = warp_begin(c), root = sqrt(fmax(l->p, 0));
 		x->w[0] = x->power == 1 ? root : sqrt(root);
 		const double gauge = x->power == 1 ? root : root * x->w[0];
-		x->length = 1 / fmax(branch_rate(l), fmax(rate * gauge, 0x1p-200));
+		x->length = 1 / fmax(fastest, fmax(rate * gauge, 0x1p-200));
 	}
 	if (x->power == 0)
 		x->master = -1;
+}
+
+/* Order n of a power of a series. */
+LANE_INLINE void power_fill(double a, const double *p, double *power, int n)
+{
+	power[n] = n > 0 ? power_next(a, p, power, n) : a == 0.25 ? sqrt(sqrt(*p)) : *p * sqrt(*p);
+}
+
+/* Order n of the powers of an overlap that begins with the master's: of P, times those of w. */
+static void beside_powers(struct warp *x, int j, bool root, int n)
+{
+	const struct curve *by = &x->links[x->master];
+	struct curve *v = &x->links[j];
+	double sum = v->rate[n], bend = 0;
+	for (int k = 1; k <= n; k++)
+		sum = fma(-by->rate[k], v->ratio[n - k], sum);
+	for (int k = 2; k <= n; k++)
+		bend = fma((n - k + 1) * x->w[k], v->ratio[n - k + 1], bend);
+	v->ratio[n] = (sum - bend / x->length) / (by->rate[0] * (1 + n / (x->power + 1.0)));
+	power_fill(1.5, v->ratio, v->ratio_power, n);
+	v->power[n] = product_at(by->power, v->ratio_power, n);
+	if (!root)
+		return;
+	power_fill(0.25, v->ratio, v->ratio_quarter, n);
+	v->quarter[n] = product_at(x->w, v->ratio_quarter, n);
 }
 
 /* Powers of a link's overlap of order n. */
@@ -135,24 +186,21 @@ static void link_powers(struct chain *c, int j, int n)
 	struct curve *v = &x->links[j];
 	double *power = &v->power[n], *quarter = &v->quarter[n];
 	if (j == x->master) {
-		*power = root ? product_at(x->w3, x->w3, n) : x->w3[n];
+		*power = x->power == 3 ? product_at(x->w3, x->w3, n) : x->w3[n];
 		*quarter = x->w[n];
+		return;
+	}
+	if (v->beside) {
+		beside_powers(x, j, root, n);
 		return;
 	}
 	if (v->overlap[0] <= 0 || x->still) { // too short a step for it to act
 		*power = *quarter = 0;
 		return;
 	}
-	const double *p = v->overlap;
-	if (n == 0) {
-		const double half = sqrt(*p);
-		*power = *p * half;
-		*quarter = sqrt(half);
-		return;
-	}
-	*power = power_next(1.5, p, v->power, n);
+	power_fill(1.5, v->overlap, v->power, n);
 	if (root)
-		*quarter = power_next(0.25, p, v->quarter, n);
+		power_fill(0.25, v->overlap, v->quarter, n);
 }
 
 /* Force of a contact, of order n: its overlap, rate and powers are known up to there. */
@@ -196,9 +244,11 @@ static void warp_pushes(struct chain *c, int n)
 {
 	for (int i = 0; i < c->wide; i += W)
 		column_store(&c->push, i, vsplat(0));
+	if (c->warp.master >= 0)
+		link_powers(c, c->warp.master, n);
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
-		if (link_power(l))
+		if (link_power(l) && j != c->warp.master)
 			link_powers(c, j, n);
 		if (l->touching)
 			push_add(c, l, curve_force(c, j, n));
@@ -377,7 +427,9 @@ static double warp_ratio(const struct chain *c)
 			tail_keep(most, x->links[j].rate, 1, 0x1p-10 * fastest);
 	// a force that is small beside others still decides by its sign when its contact ends
 	for (int j = 0; j < c->n_links; j++)
-		if (j != x->master && link_curve_forced(&c->link[j]) && x->links[j].overlap[0] > 0)
+		if (x->links[j].beside)
+			tail_keep(most, x->links[j].ratio, 1, 0);
+		else if (j != x->master && link_curve_forced(&c->link[j]) && x->links[j].overlap[0] > 0)
 			tail_keep(most, x->links[j].quarter, 1, 0);
 	if (x->power > 0)
 		tail_keep(most, x->w, 1, 0);
@@ -409,6 +461,7 @@ static void warp_scale(struct chain *c, double ratio)
 			v->rate[n] *= factor;
 			v->power[n] *= factor;
 			v->quarter[n] *= factor;
+			v->ratio[n] *= factor;
 		}
 		x->clock[n] *= factor;
 		x->gauge[n] *= factor;

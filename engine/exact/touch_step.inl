@@ -57,6 +57,8 @@ static void curved_search(struct first *first, const struct chain *c, int j)
 	}
 	if (j == x->master)
 		guard_fill(guard, x->w, -1);
+	else if (x->links[j].beside)
+		guard_fill(guard, x->links[j].ratio, -1);
 	else
 		guard_fill(guard, x->links[j].overlap, -1);
 	curve_search(first, c, guard, l->touching ? EVENT_LINK + POUND_EDGE_LOW : EVENT_CLEARS, j);
@@ -142,6 +144,8 @@ static void touch_arrive(struct chain *c, double time)
 		l->q = series_at(x->links[j].rate, 1, time);
 		if (j == x->master)
 			l->p = warp_overlap(x, time);
+		else if (x->links[j].beside)
+			l->p = warp_overlap(x, time) * series_at(x->links[j].ratio, 1, time);
 		l->fresh = false;
 	}
 	c->ground = fma(c->slope, elapsed, c->ground);

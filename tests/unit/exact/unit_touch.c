@@ -130,6 +130,56 @@ static void exact_calibrations_give_the_restitution_that_was_asked_for(void **st
 			}
 }
 
+/* Two free bodies that the ground gives one speed meet their walls at one instant: each contact is what it is by itself. */
+static void contacts_that_begin_at_one_instant_are_those_of_each(void **state)
+{
+	(void)state;
+	static const char *const models[] = {"hertz", "hertz_damp", "viscoelastic", "damped_hertz"};
+	static double ground[SAMPLES] = {-20, -20};
+	static const double mass[2] = {2, 3}, stiffness[2] = {1e6, 4e5};
+	const int n = COUNT(models);
+	for (int pair = 0; pair < n * n * 2; pair++) {
+		struct pound_floor floors[2];
+		struct pound_link links[2];
+		struct outcome both, one[2];
+		for (int i = 0; i < 2; i++) {
+			const struct pound_contact_law law = {
+			    .model = row_of(models[i ? pair / 2 / n : pair / 2 % n]),
+			    .stiffness = stiffness[i],
+			    .dashpot =
+			        pound_contact_reads(row_of(models[i ? pair / 2 / n : pair / 2 % n]), "speed_floor_m_s")
+			            ? 0.5
+			            : 0.3 * 2 * sqrt(stiffness[i] * mass[i]),
+			    .tension = pair % 2};
+			isolated(&law, mass[i], &one[i]);
+			floors[i] =
+			    (struct pound_floor){.mass = mass[i], .story = {.stiffness = 1e-12 * mass[i]}, .base = true};
+			links[i] = (struct pound_link){.floor = {{i, i}, {POUND_CHAIN_GROUND, POUND_CHAIN_GROUND}},
+			                               .weight = {{1, 0}, {1, 0}},
+			                               .law = law,
+			                               .gap = 0.01};
+		}
+		const struct pound_chain_task task = {.ground = ground,
+		                                      .n_samples = 21,
+		                                      .time_step = 0.01,
+		                                      .n_floors = 2,
+		                                      .n_links = 2,
+		                                      .floors = floors,
+		                                      .links = links,
+		                                      .asked = EVERYTHING};
+		run(&task, 0, &both);
+		assert_int_equal(both.result.status, POUND_OK);
+		for (int i = 0; i < 2; i++) {
+			static const int measures[] = {POUND_LINK_IMPULSE_MAX, POUND_LINK_FORCE_MAX, POUND_LINK_TIME};
+			check_near(both.floors[i][POUND_FLOOR_END_V], one[i].floors[0][POUND_FLOOR_END_V], 1e-13);
+			for (int k = 0; k < COUNT(measures); k++) {
+				const double alone = one[i].links[0][measures[k]];
+				check_near(both.links[i][measures[k]], alone, 1e-12 * alone);
+			}
+		}
+	}
+}
+
 /* ---- rigid contacts ---- */
 
 /* A body that a constant acceleration of 1 m/s2 drives against a wall 10 mm away hops with e = 0.5, the first time after
@@ -269,6 +319,7 @@ static void every_lane_count_gives_the_same_bits(void **state)
 
 CHECK_MAIN(cmocka_unit_test(isolated_impacts_are_those_of_the_known_answers),
            cmocka_unit_test(exact_calibrations_give_the_restitution_that_was_asked_for),
+           cmocka_unit_test(contacts_that_begin_at_one_instant_are_those_of_each),
            cmocka_unit_test(hops_of_a_rigid_contact_end_at_the_wall),
            cmocka_unit_test(energy_is_kept_by_every_model_in_rows_of_buildings),
            cmocka_unit_test(every_lane_count_gives_the_same_bits))
