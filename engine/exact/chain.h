@@ -23,7 +23,7 @@ enum {
 };
 
 /* a floor and the story below it; u is its displacement relative to the ground, d = u - u of the floor below its drift */
-struct pound_floor {
+struct pound_chain_floor {
 	double mass;    /* [kg]  > 0 */
 	double dashpot; /* of the story, per rate of its drift [N s/m] */
 	double drag;    /* a0, times mass and velocity; the same for all floors of a building [1/s] */
@@ -77,7 +77,7 @@ struct pound_chain_task {
 	int n_samples;        /* >= 2 */
 	double time_step;     /* [s] */
 	int n_floors, n_links;
-	const struct pound_floor *floors;            /* (n_floors) */
+	const struct pound_chain_floor *floors;      /* (n_floors) */
 	const struct pound_link *links;              /* (n_links); NULL: none */
 	unsigned asked;                              /* of enum pound_chain_asked */
 	const struct pound_chain_observer *observer; /* NULL: none */

@@ -92,7 +92,8 @@ static void mode_fill(struct flight *f, int i, double w, double c, double gain, 
  * Returns  value  false: they do
  *          c      [1/s]  (n)
  */
-static bool modes_damping(const struct pound_floor *floor, int n, const struct pound_modes *modes, double *c)
+static bool modes_damping(const struct pound_chain_floor *floor, int n, const struct pound_modes *modes,
+                          double *c)
 {
 	const double ratio = floor->dashpot / floor->story.stiffness;
 	bool apart = true;
@@ -161,7 +162,7 @@ static void flight_start(struct chain *c)
 	for (int j = 0; j < c->wide / ROW && f->can; j++)
 		memset(f->shape[f->row[j]], 0, sizeof(double) * ROW * (size_t)(f->upto[j] - f->from[j]));
 	for (int first = 0, n; first < c->n && f->can; first += n) {
-		const struct pound_floor *floor = &task->floors[first];
+		const struct pound_chain_floor *floor = &task->floors[first];
 		struct pound_modes *modes = &f->modes;
 		double mass[POUND_STORIES], stiffness[POUND_STORIES], damping[POUND_STORIES];
 		n = building_stories(task, first);

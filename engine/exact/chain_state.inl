@@ -226,7 +226,7 @@ static double rate_of(double w, double c)
 }
 
 /* Bound of what a building's modal damping gives a floor's velocity, over its mass [1/s]. */
-static double modal_bound(const struct pound_floor *floor, int stories)
+static double modal_bound(const struct pound_chain_floor *floor, int stories)
 {
 	double sum = 0;
 	for (int j = 0; j < stories; j++)
@@ -268,7 +268,7 @@ static void chain_rates(struct chain *c)
 {
 	const struct pound_chain_task *task = c->task;
 	for (int first = 0, n; first < task->n_floors; first += n) {
-		const struct pound_floor *floor = &task->floors[first];
+		const struct pound_chain_floor *floor = &task->floors[first];
 		double modal = 0;
 		n = building_stories(task, first);
 		for (int i = 0; i < n; i++)
@@ -293,7 +293,7 @@ static void branch_enter(struct chain *c, int i)
 static void floor_start(struct chain *c, int i)
 {
 	const struct pound_chain_task *task = c->task;
-	const struct pound_floor *floor = &task->floors[i];
+	const struct pound_chain_floor *floor = &task->floors[i];
 	assert(floor->base || (i > 0 && floor->drag == floor[-1].drag));
 	const bool above = i + 1 < task->n_floors && !floor[1].base;
 	c->inverse_mass.at[i] = 1 / floor->mass;

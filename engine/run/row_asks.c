@@ -59,7 +59,7 @@ static bool same_task(const struct pound_row_asks *asks, int j, int motion,
 	        memcmp(other->links, task->links, sizeof *task->links * (size_t)task->n_links) == 0);
 }
 
-static_assert(sizeof(struct pound_floor) % sizeof(double) == 0 &&
+static_assert(sizeof(struct pound_chain_floor) % sizeof(double) == 0 &&
                   sizeof(struct pound_link) % sizeof(double) == 0,
               "floors and links are read as doubles by the hash");
 
@@ -132,7 +132,7 @@ static const double *modal_lay(struct pound_row_asks *asks, const struct pound_b
 
 /* Lays the floors of a building; yields NULL: linear. */
 static void building_lay(struct pound_row_asks *asks, const struct pound_scene *scene, int b,
-                         const double *yields, struct pound_floor *floors)
+                         const double *yields, struct pound_chain_floor *floors)
 {
 	const struct pound_law *law = pound_row_law(scene, b);
 	const double least = yields ? negligible(scene) : 0;
@@ -330,7 +330,7 @@ static void level_place(const struct pound_scene *scene, int b, double level, in
 }
 
 /* The storey of a building that holds a level: its initial stiffness; 0 of a wall. */
-static double stiffness_at(const struct pound_scene *scene, const struct pound_floor *floors, int b,
+static double stiffness_at(const struct pound_scene *scene, const struct pound_chain_floor *floors, int b,
                            double level)
 {
 	if (pound_row_storeys(scene, b) == 0)
@@ -339,8 +339,8 @@ static double stiffness_at(const struct pound_scene *scene, const struct pound_f
 }
 
 /* Lays contact k of a row whose floors are laid; its gap is scaled. */
-static void link_lay(const struct pound_scene *scene, int k, const struct pound_floor *floors, int exponent,
-                     struct pound_link *link)
+static void link_lay(const struct pound_scene *scene, int k, const struct pound_chain_floor *floors,
+                     int exponent, struct pound_link *link)
 {
 	struct pound_row_contact contact;
 	double stiffness = 0, compliance = 0; // larger stiffness beside, 1 over the effective mass
@@ -380,7 +380,8 @@ static bool misses(const struct pound_row_asks *asks, const struct pound_scene *
 }
 
 /* Whether two buildings move alike under any ground motion: the same floors, yield drifts given alike. */
-static bool buildings_alike(const struct pound_scene *scene, const struct pound_floor *floors, int a, int b)
+static bool buildings_alike(const struct pound_scene *scene, const struct pound_chain_floor *floors, int a,
+                            int b)
 {
 	const int n = pound_row_storeys(scene, a);
 	return n > 0 && n == pound_row_storeys(scene, b) &&
@@ -388,7 +389,7 @@ static bool buildings_alike(const struct pound_scene *scene, const struct pound_
 	              sizeof *floors * (size_t)n) == 0;
 }
 
-static bool row_alike(const struct pound_scene *scene, const struct pound_floor *floors)
+static bool row_alike(const struct pound_scene *scene, const struct pound_chain_floor *floors)
 {
 	bool alike = true;
 	for (int k = 0; k < pound_row_contacts(scene) && alike; k++) {
@@ -406,7 +407,7 @@ void pound_row_ask_pounding(struct pound_row_asks *asks, const struct pound_scen
                             struct pound_work *work)
 {
 	const int n_links = pound_row_contacts(scene);
-	struct pound_floor *floors = asks->floors + asks->n_floors;
+	struct pound_chain_floor *floors = asks->floors + asks->n_floors;
 	struct pound_link *links = asks->links + asks->n_links;
 	const double least = negligible(scene);
 	bool open = true, all_free = true;

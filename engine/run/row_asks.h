@@ -40,7 +40,7 @@ struct pound_row_asks {
 	int *motions;                       /* of the tasks  (n) */
 	int n_slots, *slots;                /* of the table of tasks  (n_slots), -1: empty */
 	int n_floors, n_links, n_yields;    /* in use of the pools */
-	struct pound_floor *floors;         /* of the tasks, one after another */
+	struct pound_chain_floor *floors;   /* of the tasks, one after another */
 	struct pound_link *links;
 	double *floor_results; /* (n_floors x POUND_FLOOR_MEASURES) */
 	double *link_results;  /* (n_links x POUND_LINK_MEASURES) */

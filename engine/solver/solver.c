@@ -105,7 +105,7 @@ static void chain_run(const struct pound_task *task, struct pound_task_result *r
 {
 	const bool wall = task->mass_ratio == 0;
 	const double mass[POUND_OSCILLATORS] = {1, wall ? 1 : 1 / task->mass_ratio};
-	struct pound_floor floors[POUND_OSCILLATORS];
+	struct pound_chain_floor floors[POUND_OSCILLATORS];
 	const int right = wall ? POUND_CHAIN_GROUND : 1, n = wall ? 1 : POUND_OSCILLATORS;
 	const struct pound_link link = {
 	    .floor = {{0, 0}, {right, right}}, .weight = {{1, 0}, {1, 0}}, .law = task->law, .gap = task->gap};
@@ -113,7 +113,7 @@ static void chain_run(const struct pound_task *task, struct pound_task_result *r
 	for (int i = 0; i < n; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
 		assert(body->u == 0 && body->v == 0 && body->drive == 1);
-		floors[i] = (struct pound_floor){
+		floors[i] = (struct pound_chain_floor){
 		    .mass = mass[i], .dashpot = body->damping * mass[i], .story = body->backbone, .base = true};
 		floors[i].story.stiffness *= mass[i];
 	}

@@ -22,7 +22,7 @@ static void loop_start(struct loop *x, const struct pound_chain_task *task, doub
 	x->n = task->n_floors;
 	assert(x->n <= FLOORS);
 	for (int i = 0; i < x->n; i++) {
-		const struct pound_floor *floor = &task->floors[i];
+		const struct pound_chain_floor *floor = &task->floors[i];
 		x->k[i] = floor->story.stiffness;
 		x->c[i] = floor->dashpot / h;
 		x->high[i] = floor->story.yield;

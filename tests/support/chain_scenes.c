@@ -38,7 +38,7 @@ int row_harmonic(struct row *row, double frequency_hz, double duration, double p
 }
 
 /* Stiffnesses of a building by its first frequency, and its dashpots. */
-static void building_floors(struct row *row, int b, struct pound_floor *floor)
+static void building_floors(struct row *row, int b, struct pound_chain_floor *floor)
 {
 	struct row_building *x = &row->buildings[b];
 	const int n = x->stories;
@@ -54,7 +54,7 @@ static void building_floors(struct row *row, int b, struct pound_floor *floor)
 	if (x->damping == ROW_MODAL)
 		pound_modes_damping(n, x->mass, stiffness, xi, row->modal[b]);
 	for (int i = 0; i < n; i++) {
-		floor[i] = (struct pound_floor){.mass = x->mass[i], .base = i == 0, .story = x->law};
+		floor[i] = (struct pound_chain_floor){.mass = x->mass[i], .base = i == 0, .story = x->law};
 		floor[i].story.stiffness = stiffness[i];
 		switch (x->damping) {
 		case ROW_RAYLEIGH:

@@ -34,7 +34,7 @@ struct row {
 	struct pound_contact contact;
 	double ground[ROW_SAMPLES];
 	// made by row_task
-	struct pound_floor floors[ROW_FLOORS];
+	struct pound_chain_floor floors[ROW_FLOORS];
 	struct pound_link links[ROW_LINKS];
 	double modal[ROW_BUILDINGS][POUND_STORIES * POUND_STORIES];
 	int first[ROW_BUILDINGS]; /* floor of a building */

@@ -43,7 +43,7 @@ static const unsigned EVERYTHING = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENT
 static void isolated(const struct pound_contact_law *law, double mass, struct outcome *o)
 {
 	static double ground[SAMPLES] = {-20, -20};
-	const struct pound_floor floor = {.mass = mass, .story = {.stiffness = 1e-12 * mass}, .base = true};
+	const struct pound_chain_floor floor = {.mass = mass, .story = {.stiffness = 1e-12 * mass}, .base = true};
 	const struct pound_link link = {.floor = {{0, 0}, {POUND_CHAIN_GROUND, POUND_CHAIN_GROUND}},
 	                                .weight = {{1, 0}, {1, 0}},
 	                                .law = *law,
@@ -139,7 +139,7 @@ static void contacts_that_begin_at_one_instant_are_those_of_each(void **state)
 	static const double mass[2] = {2, 3}, stiffness[2] = {1e6, 4e5};
 	const int n = COUNT(models);
 	for (int pair = 0; pair < n * n * 2; pair++) {
-		struct pound_floor floors[2];
+		struct pound_chain_floor floors[2];
 		struct pound_link links[2];
 		struct outcome both, one[2];
 		for (int i = 0; i < 2; i++) {
@@ -152,8 +152,8 @@ static void contacts_that_begin_at_one_instant_are_those_of_each(void **state)
 			            : 0.3 * 2 * sqrt(stiffness[i] * mass[i]),
 			    .tension = pair % 2};
 			isolated(&law, mass[i], &one[i]);
-			floors[i] =
-			    (struct pound_floor){.mass = mass[i], .story = {.stiffness = 1e-12 * mass[i]}, .base = true};
+			floors[i] = (struct pound_chain_floor){
+			    .mass = mass[i], .story = {.stiffness = 1e-12 * mass[i]}, .base = true};
 			links[i] = (struct pound_link){.floor = {{i, i}, {POUND_CHAIN_GROUND, POUND_CHAIN_GROUND}},
 			                               .weight = {{1, 0}, {1, 0}},
 			                               .law = law,
@@ -190,7 +190,7 @@ static void hops_of_a_rigid_contact_end_at_the_wall(void **state)
 	static double ground[SAMPLES];
 	for (int t = 0; t < 101; t++)
 		ground[t] = t < 80 ? -1 : -1 + 0.5 * (t - 79);
-	const struct pound_floor floor = {.mass = 2, .story = {.stiffness = 1e-12}, .base = true};
+	const struct pound_chain_floor floor = {.mass = 2, .story = {.stiffness = 1e-12}, .base = true};
 	struct pound_link link = {.floor = {{0, 0}, {POUND_CHAIN_GROUND, POUND_CHAIN_GROUND}},
 	                          .weight = {{1, 0}, {1, 0}},
 	                          .law = {.model = row_of("rigid"), .restitution = 0.5, .speed_floor = 1e-3},
@@ -228,7 +228,7 @@ static void hops_of_a_rigid_contact_end_at_the_wall(void **state)
 /* Three buildings of two stories under noise, each contact of a model of its own. */
 struct touch_row {
 	double ground[SAMPLES];
-	struct pound_floor floors[FLOORS];
+	struct pound_chain_floor floors[FLOORS];
 	struct pound_link links[LINKS];
 	struct pound_chain_task task;
 };
@@ -241,7 +241,7 @@ static void touch_row_make(struct touch_row *s, int number, int model)
 		s->ground[t] = specimen_uniform(&stream, -6, 6);
 	for (int i = 0; i < FLOORS; i++) {
 		const double m = specimen_uniform(&stream, 5e4, 3e5), w = specimen_uniform(&stream, 10, 40);
-		s->floors[i] = (struct pound_floor){
+		s->floors[i] = (struct pound_chain_floor){
 		    .mass = m,
 		    .dashpot = 0.02 * m * w,
 		    .story = {.law = number % 2, .stiffness = m * w * w, .hardening = 0.1, .yield = 0.01},
