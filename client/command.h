@@ -19,7 +19,7 @@ enum outcome {
 
 struct options {
 	const char *argument; /* what stands after the subcommand: a file, an id or a name; NULL: none */
-	const char *second;   /* indices, plot, report: what stands behind that */
+	const char *second;   /* indices, plot, report, archive: what stands behind that */
 	const char **files;   /* of a subcommand that takes any number of them  (n_files) */
 	int n_files;
 	const char *unit;    /* record: of a file that names none; NULL: not known */
@@ -31,6 +31,8 @@ struct options {
 	const char *format;  /* one of the names the subcommand offers */
 	const char *table;   /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
 	const char *status;  /* list: only studies in this state; NULL: all */
+	const char *name;    /* list: only studies with this text in their name; NULL: all */
+	const char *hash;    /* list: only studies of this hash; NULL: all */
 	const char *cursor;  /* list: where the previous page ended; NULL: the newest */
 	const char *samples; /* run: file for every sample, or for the histories; NULL: none */
 	int limit;           /* list: studies on a page; 0: as the server likes */
@@ -62,6 +64,7 @@ enum outcome query_wait(const struct options *options);
 enum outcome query_results(const struct options *options);
 enum outcome query_samples(const struct options *options);
 enum outcome query_list(const struct options *options);
+enum outcome archive_make(const struct options *options);
 enum outcome query_cancel(const struct options *options);
 enum outcome query_delete(const struct options *options);
 enum outcome report_print(const struct options *options);

@@ -89,7 +89,12 @@ static const struct command COMMANDS[] = {
 	 "a result as one self-contained HTML page",
 	 "A result is a file, - or the id of a study on the server, which also has the study document; for a file, "
 	 "give it as STUDY."},
-	{"list", "", "slcuf", true, {"json", "table", "csv"}, query_list,
+	{"archive", "ID [FOLDER]", "uf", false, {"csv", "npy"}, archive_make,
+	 "keep a finished study in a folder of its own, with checksums",
+	 "Writes study.json, result.json, status.json, samples.csv (or samples.npy) if the study has samples, versions.json and "
+	 "SHA256SUMS into FOLDER, by default named by the id; `sha256sum -c SHA256SUMS' in it checks them.  `pound run "
+	 "study.json' of the engine_version in versions.json gives the same result again."},
+	{"list", "", "sAHlcuf", true, {"json", "table", "csv"}, query_list,
 	 "studies on the server, newest first", ""},
 	{"cancel", "ID", "uf", true, {"json", "table", "csv"}, query_cancel,
 	 "cancel a queued or running study", ""},
@@ -114,6 +119,8 @@ static const struct argp_option OPTIONS[] = {
 	{"samples", 'o', "FILE",   0, "also write every sample, or the histories, to FILE (NumPy if it ends in .npy, else CSV)", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
+	{"name",    'A', "TEXT",   0, "only studies with this text in their name; case matters", 0},
+	{"hash",    'H', "HASH",   0, "only studies with this study_hash, as in a result: the same study, whatever its name", 0},
 	{"limit",   'l', "N",      0, "at most N studies", 0},
 	{"cursor",  'c', "CURSOR", 0, "continue an earlier list", 0},
 	{"names",   'n', NULL,     0, "print the available names", 0},
@@ -261,6 +268,12 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 		return 0;
 	case 's':
 		options->status = value;
+		return 0;
+	case 'A':
+		options->name = value;
+		return 0;
+	case 'H':
+		options->hash = value;
 		return 0;
 	case 'c':
 		options->cursor = value;

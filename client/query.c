@@ -154,21 +154,25 @@ enum outcome query_list(const struct options *options)
 {
 	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
-	char *state = wire_escape(wire, options->status ? options->status : "");
-	char *cursor = wire_escape(wire, options->cursor ? options->cursor : "");
-	char limit[32] = "";
-	if (options->limit)
-		snprintf(limit, sizeof limit, "&limit=%d", options->limit);
-	char *path = command_text("/v1/studies?%s%s%s%s%s", *state ? "&status=" : "", state,
-	                          *cursor ? "&cursor=" : "", cursor, limit);
+	const char *const arguments[][2] = {{"status", options->status},
+	                                    {"name", options->name},
+	                                    {"hash", options->hash},
+	                                    {"cursor", options->cursor}};
+	char *path = command_text("/v1/studies?limit=%.0d", options->limit);
+	for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
+		if (!arguments[i][1])
+			continue;
+		char *value = wire_escape(wire, arguments[i][1]), *before = path;
+		path = command_text("%s&%s=%s", before, arguments[i][0], value);
+		free(before);
+		free(value);
+	}
 	enum outcome outcome =
 	    answer_take(wire, &(struct wire_request){.method = "GET", .path = path}, "list", &reply);
 	if (outcome == OUTCOME_OK)
 		outcome = print_studies(&reply, options->format);
 	wire_reply_free(&reply);
 	free(path);
-	free(cursor);
-	free(state);
 	wire_close(wire);
 	return outcome;
 }

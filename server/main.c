@@ -23,8 +23,9 @@
 #include "server/workers.h"
 
 enum {
-	STOP_MAX = 25,       /* [s] from the signal to the end, come what may: what is accepted is on the disk */
-	STORE_WAIT_MS = 100, /* for the connection to the database, when workers do not end soon */
+	STOP_MAX = 25, /* [s] from the signal to the end, come what may: what is accepted is on the disk */
+	EXPIRY_PERIOD = 60000000, /* [us] between two looks for studies that are not to be kept any longer */
+	STORE_WAIT_MS = 100,      /* for the connection to the database, when workers do not end soon */
 };
 
 /* A standard stream that is closed leads to nowhere: else a file opened later would take its number, and what is printed. */
@@ -55,18 +56,26 @@ static void tell(const char *state)
 	close(end);
 }
 
-/* Waits for the signal to stop; meanwhile systemd, when it watches, hears that the store answers. */
-static int await(struct store *store, const sigset_t *signals)
+/* Waits for the signal to stop; meanwhile what is not to be kept any longer is deleted, a study at a time, and systemd, when it
+ * watches, hears that the store answers.
+ *
+ * Test     service_retention: studies_and_samples_are_deleted_when_their_time_is_up
+ */
+static int await(const struct server *server, const sigset_t *signals)
 {
-	const char *period = getenv("WATCHDOG_USEC");
-	long long half = period ? atoll(period) / 2 : 0;
-	struct timespec pause = {.tv_sec = half / 1000000, .tv_nsec = half % 1000000 * 1000};
+	const struct options *options = server->options;
+	const char *watchdog = getenv("WATCHDOG_USEC");
+	const long long half = watchdog ? atoll(watchdog) / 2 : 0,
+	                period = half > 0 && half < EXPIRY_PERIOD ? half : EXPIRY_PERIOD;
 	for (;;) {
 		int64_t n;
-		int caught = half > 0 ? sigtimedwait(signals, NULL, &pause) : sigwaitinfo(signals, NULL);
+		const bool more = store_expire(server->store, options->keep_days, options->keep_samples_days);
+		const struct timespec pause = {.tv_sec = more ? 0 : period / 1000000,
+		                               .tv_nsec = more ? 0 : period % 1000000 * 1000};
+		const int caught = sigtimedwait(signals, NULL, &pause);
 		if (caught > 0)
 			return caught;
-		if (errno == EAGAIN && store_count(store, "queued", &n) == STORE_OK)
+		if (errno == EAGAIN && half > 0 && store_count(server->store, "queued", &n) == STORE_OK)
 			tell("WATCHDOG=1");
 	}
 }
@@ -84,7 +93,7 @@ static int serve(struct server *server, const sigset_t *signals)
 		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", daemon_port(server));
 		fflush(stdout);
 		tell("READY=1");
-		log_line("stopping: %s", strsignal(await(server->store, signals)));
+		log_line("stopping: %s", strsignal(await(server, signals)));
 		tell("STOPPING=1");
 		// the next signal ends the program at once, and so does the clock
 		alarm(STOP_MAX);

@@ -27,6 +27,8 @@ const struct option_row options_table[] = {
 	{"restore",         0,   "FILE",    "put a copy of FILE in the place of the database, which is kept as DATABASE-replaced, and end; no server may use it",
 	 NULL, AT(restore), 0, 0},
 	{"workers",         'w', "N",       "threads that compute; one for each core when absent", NULL, AT(workers), 1, WORKERS_MAX},
+	{"keep-days",       0,   "N",       "days after its end until a study is deleted, 0: never", "0", AT(keep_days), 0, 36500},
+	{"keep-samples-days", 0, "N",       "days after its end until the samples of a study are deleted, 0: with the study", "0", AT(keep_samples_days), 0, 36500},
 	{"host",            0,   "NAMES",   "names the server is asked by, between commas, besides localhost and addresses",
 	 NULL, AT(host), 0, 0},
 	{"token-file",      0,   "FILE",    "file of bearer tokens, one a line; who has none is answered 401", NULL, AT(token_file), 0, 0},

@@ -12,6 +12,8 @@ struct options {
 	const char *database;   /* file */
 	const char *backup;     /* file to copy it to, and no more; NULL: serve */
 	const char *restore;    /* file to put in its place, and no more; NULL: serve */
+	int keep_days;          /* after its end a study is deleted; 0: never */
+	int keep_samples_days;  /* after its end its samples are; 0: with the study */
 	const char *host;       /* further names the server is asked by, between commas; NULL: none */
 	const char *token_file; /* NULL: anyone who reaches the server may use it */
 	int insecure;           /* 1: that holds for any address */

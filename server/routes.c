@@ -211,21 +211,20 @@ static struct reply submit(struct request *request)
 static struct reply list(struct request *request)
 {
 	const char *cursor = http_argument(request, "cursor");
-	int limit = atoi(http_argument(request, "limit"));
-	int64_t before = cursor ? (int64_t)strtoull(cursor, NULL, 16) : INT64_MAX;
-	if (cursor && (strlen(cursor) != 16 || strspn(cursor, "0123456789abcdef") != 16 || before < 0))
-		return problem(API_BAD_REQUEST, "cursor must be the next of an earlier page");
-
+	const int limit = atoi(http_argument(request, "limit"));
+	const struct store_filter filter = {.status = http_argument(request, "status"),
+	                                    .name = http_argument(request, "name"),
+	                                    .hash = http_argument(request, "hash"),
+	                                    .before = cursor ? strtoll(cursor, NULL, 16) : INT64_MAX,
+	                                    // one more than fits, to see whether there is a next page
+	                                    .limit = limit + 1};
 	struct page page;
 	char next[17];
 	page_init(&page, request, limit);
 	writer_object(&page.writer, NULL, WRITER_LINES);
 	writer_array(&page.writer, "studies", WRITER_LINES);
-	// one more than fits, to see whether there is a next page
-	enum store_status listed = store_list(request->server->store, http_argument(request, "status"), before,
-	                                      limit + 1, write_status, &page);
-	if (listed == STORE_FAILED)
-		return page_drop(&page, listed);
+	if (store_list(request->server->store, &filter, write_status, &page) == STORE_FAILED)
+		return page_drop(&page, STORE_FAILED);
 	snprintf(next, sizeof next, "%016" PRIx64, (uint64_t)page.id);
 	writer_end(&page.writer);
 	writer_text(&page.writer, "next", page.more ? next : NULL);
@@ -474,10 +473,13 @@ static struct reply samples(struct request *request)
 		                          "submit it again");
 	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
 		pound_run_rows_take(opened.run, (int)rows);
-		if (stored_run_left(&opened) > 0)
-			reply = problem(API_CORRUPT, "stored blocks are damaged");
-		else
+		const int left = stored_run_left(&opened);
+		if (left == 0)
 			reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);
+		else
+			reply = left == pound_run_blocks(opened.run) && !opened.leftovers
+			            ? problem(API_CONFLICT, "the samples of this study are no longer stored")
+			            : problem(API_CORRUPT, "stored blocks are damaged");
 	} else if (opened.study->spectrum.histories)
 		reply.body = (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, &reply.length);
 	else

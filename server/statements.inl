@@ -1,9 +1,9 @@
 /* The statements of the database, a name and a text each.  Included by server/store.c, before all else of it. */
 // clang-format off
 enum statement {
-	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE,
+	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE, EXPIRED, EXPIRED_BLOCKS,
 	BEGIN, // the first of those that the writer alone has
-	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, RECOUNT, SPENT, FINISH, REQUEUE,
+	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, SHED, RECOUNT, SPENT, FINISH, REQUEUE,
 	STOPPED, VAIN, POISON,
 	N_STATEMENTS
 };
@@ -31,10 +31,15 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 #define BLOCK_SUMS(cpu_s) \
 	"(runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), " cpu_s " FROM block WHERE study = ?1)"
 
+// filters of a list, each NULL: any
+#define ALIKE " AND (?4 IS NULL OR instr(name, ?4) > 0) AND (?5 IS NULL OR hash = ?5) "
+// one that ended more than ?1 milliseconds ago
+#define EXPIRY "SELECT id FROM study WHERE finished < " NOW " - ?1 "
+
 static const char *const statement_text[] = {
 	[STUDY]    = STUDY_ROW "WHERE id = ?1",
-	[LIST]     = STUDY_ROW "WHERE id < ?1 ORDER BY id DESC LIMIT ?2",
-	[LIST_OF]  = STUDY_ROW "WHERE id < ?1 AND status = ?3 ORDER BY id DESC LIMIT ?2",
+	[LIST]     = STUDY_ROW "WHERE id < ?1" ALIKE "ORDER BY id DESC LIMIT ?2",
+	[LIST_OF]  = STUDY_ROW "WHERE id < ?1" ALIKE "AND status = ?3 ORDER BY id DESC LIMIT ?2",
 	[DOCUMENT] = "SELECT content, sha256 = " DOCUMENT_DIGEST("study", "name", "content") " "
 	              "FROM document WHERE study = ?1 AND name = ?2",
 	[LENGTH]   = "SELECT length(content), rowid, sha256 FROM document WHERE study = ?1 AND name = ?2",
@@ -42,6 +47,8 @@ static const char *const statement_text[] = {
 	              "number, runs, cpu_s, wall_s FROM block WHERE study = ?1 ORDER BY number",
 	[COUNT]    = "SELECT count(*) FROM (SELECT 1 FROM study WHERE status = ?1 AND (?2 IS NULL OR client = ?2) LIMIT ?3)",
 	[REUSABLE] = "SELECT freelist_count * page_size FROM pragma_freelist_count(), pragma_page_size()",
+	[EXPIRED]  = EXPIRY "LIMIT 1",
+	[EXPIRED_BLOCKS] = EXPIRY "AND EXISTS (SELECT 1 FROM block WHERE study = id) LIMIT 1",
 	[BEGIN]    = "BEGIN IMMEDIATE",
 	[COMMIT]   = "COMMIT",
 	[ROLLBACK] = "ROLLBACK",
@@ -65,6 +72,7 @@ static const char *const statement_text[] = {
 	              "FROM study WHERE id = ?1 AND status = 'running'",
 	[PROGRESS] = "UPDATE study SET " BLOCK_SUMS("max(study.cpu_s, total(block.cpu_s))") ", attempt_kept = attempt WHERE id = ?1",
 	[PRUNE]    = "DELETE FROM block WHERE study = ?1 AND sha256 IS NOT " BLOCK_DIGEST("study", "number", "content"),
+	[SHED]     = "DELETE FROM block WHERE study = ?1",
 	[RECOUNT]  = "UPDATE study SET " BLOCK_SUMS("total(cpu_s)") " WHERE id = ?1",
 	[SPENT]    = "UPDATE study SET cpu_s = max(cpu_s, ?2) WHERE id = ?1 AND status = 'running'",
 	[FINISH]   = "UPDATE study SET cpu_s = max(cpu_s, ?4), status = ?2, finished = max(" NOW ", started), error = ?3, "

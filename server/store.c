@@ -30,6 +30,7 @@ enum {
 	READERS = 8,
 	CHANGES = 1021,     /* a prime, so that ids fall everywhere */
 	PIECE = 256 * 1024, /* [bytes] of a document that is copied */
+	DAY = 86400 * 1000, /* [ms] */
 };
 
 #include "server/statements.inl"
@@ -351,18 +352,17 @@ enum store_status store_study(struct store *store, int64_t id, store_study_reade
 
 /* Hands over a page of studies, newest first.
  *
- * Given    status   only these; NULL: any
- *          before   only ids below; INT64_MAX: all
- *          limit    at most so many
- *          each     called with `to` and each study
- * Test     service_routes: the_list_is_newest_first_and_pages_by_cursor
+ * Given    each     called with `to` and each study
+ * Test     service_list: the_list_is_newest_first_and_pages_by_cursor,
+ *          unit_store: a_list_has_the_studies_of_a_status_a_name_and_a_hash
  */
-enum store_status store_list(struct store *store, const char *status, int64_t before, int limit,
-                             store_study_reader *each, void *to)
+enum store_status store_list(struct store *store, const struct store_filter *filter, store_study_reader *each,
+                             void *to)
 {
 	struct database *c = reader(store);
-	int64_t n = limit;
-	return studies(c, status ? bound(c, LIST_OF, "iit", before, n, status) : bound(c, LIST, "ii", before, n),
+	return studies(c,
+	               bound(c, filter->status ? LIST_OF : LIST, "iittt", filter->before, (int64_t)filter->limit,
+	                     filter->status, filter->name, filter->hash),
 	               each, to);
 }
 
@@ -499,6 +499,36 @@ enum store_status store_cancel(struct store *store, int64_t id)
 enum store_status store_delete(struct store *store, int64_t id)
 {
 	return relieved(store, DELETE, id);
+}
+
+/* Deletes one study that ended too long ago, or else the blocks of one.  One at a time, so that no other change waits for long.
+ *
+ * Given    days          that an ended study is kept; 0: for ever
+ *          days_blocks   that its blocks are kept, of which its samples are made; 0: as long as the study
+ * Returns  value         whether there was one: call again
+ * Test     unit_store: what_ended_too_long_ago_is_deleted_and_nothing_else
+ */
+bool store_expire(struct store *store, int days, int days_blocks)
+{
+	const struct {
+		int64_t days;
+		enum statement find, end;
+		const char *what;
+	} rules[] = {{days, EXPIRED, DELETE, "deleted"},
+	             {days_blocks, EXPIRED_BLOCKS, SHED, "its samples are deleted"}};
+	for (int i = 0; i < 2; i++) {
+		int64_t id = 0;
+		struct database *c = reader(store);
+		if (rules[i].days == 0)
+			released(c, STORE_NONE);
+		else if (released(c, run(c, bound(c, rules[i].find, "i", rules[i].days * DAY), &id)) == STORE_OK &&
+		         relieved(store, rules[i].end, id) == STORE_OK) {
+			log_line("study %016llx ended %lld days ago: %s", (unsigned long long)id,
+			         (long long)rules[i].days, rules[i].what);
+			return true;
+		}
+	}
+	return false;
 }
 
 /* Takes the oldest queued study, last those that were taken three times in vain; it is then running, the attempt counted.

@@ -52,8 +52,14 @@ int store_spool(const struct store *store, size_t n);
 enum store_status store_submit(struct store *store, const struct store_study *study, const char *request,
                                size_t length, int64_t *id);
 enum store_status store_study(struct store *store, int64_t id, store_study_reader *reader, void *to);
-/* newest first, those older than `before` (INT64_MAX: all) and of one status (NULL: any) */
-enum store_status store_list(struct store *store, const char *status, int64_t before, int limit,
+/* which studies are listed, newest first */
+struct store_filter {
+	const char *status, *name,
+	    *hash;      /* of this status, with this text in the name, of this meaning; NULL: any */
+	int64_t before; /* only ids below; INT64_MAX: all */
+	int limit;      /* at most so many */
+};
+enum store_status store_list(struct store *store, const struct store_filter *filter,
                              store_study_reader *reader, void *to);
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length); /* on the heap, for the caller to free */
@@ -65,6 +71,9 @@ enum store_status store_count(struct store *store, const char *status, int64_t *
 unsigned store_changes(struct store *store, int64_t id);
 enum store_status store_cancel(struct store *store, int64_t id); /* NONE: neither queued nor running */
 enum store_status store_delete(struct store *store, int64_t id);
+/* Deletes one study that ended more than `days` ago, or the blocks of one that ended more than `days_blocks` ago; 0: never.
+ * false: there is none. */
+bool store_expire(struct store *store, int days, int days_blocks);
 
 struct store_claimed {
 	int64_t id, memory;             /* estimated [bytes] */

@@ -71,12 +71,14 @@ const struct api_operation api_operations[] = {
 };
 
 const struct api_argument api_arguments[] = {
-	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "id of the study: 16 hexadecimal digits"},
+	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "id of the study: 16 hexadecimal digits", .digits = 16},
 	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", .text = "true: checks the study and estimates its cost; nothing is stored"},
 	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, .text = "1 to 200 characters of UTF-8; repeating a request with the same key and body returns the first study"},
 	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies with this status", .blank = true},
 	{"list",    "limit",           "query",  NULL, 1, 100, "20", .text = "number of studies per page", .blank = true},
-	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, .text = "the member next of the previous page", .blank = true},
+	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, .text = "the member next of the previous page", .digits = 16, .blank = true},
+	{"list",    "name",            "query",  NULL, 0, 0, NULL, .text = "only studies with this text in their name; case matters", .blank = true},
+	{"list",    "hash",            "query",  NULL, 0, 0, NULL, .text = "only studies with this study_hash: the same study, whatever its name and form", .digits = 64, .blank = true},
 	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, .text = "wait=N: with If-None-Match, waits for a change up to N seconds or the limit of the server"},
 	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
@@ -123,13 +125,15 @@ void api_expected(const struct api_argument *argument, char *text, size_t size)
 {
 	if (argument->max > 0)
 		snprintf(text, size, "a whole number in [%d, %d]", argument->min, argument->max);
+	else if (argument->digits > 0)
+		snprintf(text, size, "%d hexadecimal digits", argument->digits);
 	else if (argument->choices)
 		snprintf(text, size, "one of%.*s", (int)strlen(argument->choices) - 1, argument->choices);
 	else
 		snprintf(text, size, "%s", argument->text);
 }
 
-/* Whether the value of a query argument is one that it takes; a cursor is looked at by who reads it.
+/* Whether the value of a query argument is one that it takes.
  *
  * Test     unit_api: an_argument_takes_what_it_says
  */
@@ -140,6 +144,9 @@ bool api_takes(const struct api_argument *argument, const char *value)
 		return argument->blank;
 	if (argument->choices)
 		return !strchr(value, ' ') && fields_listed(argument->choices, value);
+	if (argument->digits > 0)
+		return strlen(value) == (size_t)argument->digits &&
+		       strspn(value, "0123456789abcdef") == strlen(value);
 	if (argument->max == 0)
 		return true;
 	long number = strtol(value, &rest, 10);

@@ -87,6 +87,7 @@ struct api_argument {
 	int min, max;                 /* a whole number in [min, max], when max > 0 */
 	const char *absent;           /* its default; NULL: none */
 	const char *text;
+	int digits; /* it is so many hexadecimal digits, when > 0 */
 	bool blank; /* it may be empty, which is as if it were not there */
 };
 

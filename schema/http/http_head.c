@@ -193,7 +193,7 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
  *
  * Given    operation   row of api_operations
  *          name        "" when there is an ampersand too many
- * Test     service_routes: list_arguments_that_make_no_sense_are_400
+ * Test     service_list: list_arguments_that_make_no_sense_are_400
  */
 void head_argument(struct head *head, int operation, const char *name, const char *value)
 {

@@ -45,6 +45,7 @@ static const struct member members[] = {
 	{"Page",   "studies",     "[Status]", "",    "newest first"},
 	{"Page",   "next",        "string",  "null", "cursor of the next page; null on the last"},
 	{"Estimate", "kind",            "string",  "", "kind of study"},
+	{"Estimate", "study_hash",      "string",  "", "hash of the study's meaning, as in its result; the list takes it as `hash`"},
 	{"Estimate", "runs_total",      "integer", "", "pounding runs requested"},
 	{"Estimate", "estimated_cpu_s", "number",  "", "estimated CPU time [s of one core]"},
 	{"Estimate", "estimated_bytes", "number",  "", "estimated size in the database [bytes]"},
@@ -109,7 +110,7 @@ static const struct {
 	           "\"error\": null, \"links\": {\"self\": \"/v1/studies/0019c5a0b1c2d3e4\", "
 	           "\"request\": \"/v1/studies/0019c5a0b1c2d3e4/request\", \"results\": \"/v1/studies/0019c5a0b1c2d3e4/results\", "
 	           "\"samples\": \"/v1/studies/0019c5a0b1c2d3e4/samples\", \"cancel\": \"/v1/studies/0019c5a0b1c2d3e4/cancel\"}}"},
-	{"Estimate", "{\"kind\": \"sensitivity\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000, \"estimated_memory_bytes\": 24000000}"},
+	{"Estimate", "{\"kind\": \"sensitivity\", \"study_hash\": \"0f343b0931126a20f133d67c2b018a3b5d1b0e2f7c7c2e6c9b0a4d3e5f60718a\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000, \"estimated_memory_bytes\": 24000000}"},
 	{"Problem", "{\"type\": \"invalid-study\", \"title\": \"Invalid Study\", \"status\": 422, "
 	            "\"detail\": \"the study has errors, see the list\", \"errors\": "
 	            "[{\"pointer\": \"/scene/contact/gap_m\", \"detail\": \"must be at least 0, got -0.1\"}]}"},
@@ -218,8 +219,10 @@ static void argument(struct writer *w, const struct api_argument *of)
 		writer_whole(w, "minimum", of->min);
 		writer_whole(w, "maximum", of->max);
 	}
-	if (!strcmp(of->place, "path") && !strcmp(of->name, "id"))
-		writer_text(w, "pattern", "^[0-9a-f]{16}$");
+	if (of->digits > 0) {
+		snprintf(text, sizeof text, "^[0-9a-f]{%d}$", of->digits);
+		writer_text(w, "pattern", text);
+	}
 	if (of->choices) {
 		writer_array(w, "enum", WRITER_LINE);
 		snprintf(text, sizeof text, "%s", of->choices);

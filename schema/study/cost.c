@@ -533,9 +533,13 @@ bool cost_allowed(const struct cost *cost, const struct cost *most, struct probl
 char *cost_to_json(const struct cost *cost, const struct pound_study *study, size_t *length)
 {
 	struct writer w;
+	char hash[STUDY_HASH_SIZE];
+	if (!study_hash(study, hash))
+		return NULL;
 	writer_init(&w);
 	writer_object(&w, NULL, WRITER_LINES);
 	writer_text(&w, "kind", study_kind_name(study->kind));
+	writer_text(&w, "study_hash", hash);
 	writer_whole(&w, "runs_total", cost->runs);
 	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
 	writer_number(&w, "estimated_bytes", ceil(cost->bytes));

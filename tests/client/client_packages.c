@@ -65,6 +65,7 @@ static void every_shell_completes_commands_options_names_and_ids(void **state)
 	} cases[] = {
 	    {"pound ex", "example"},      {"pound run --", "--threads"}, {"pound example pa", "paper_linear"},
 	    {"pound plot in", "indices"}, {"pound status ", id},         {"pound plot indices ", id},
+	    {"pound archive ", id},       {"pound list --ha", "--hash"},
 	};
 	int tried = 0;
 	for (size_t s = 0; s < sizeof shells / sizeof shells[0]; s++) {

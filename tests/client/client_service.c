@@ -115,6 +115,8 @@ static void list_goes_page_by_page_from_the_newest(void **state)
 	program_free(&page);
 	expect_words(POUND("list"), 0, WORDS("\"studies\": [", first, second));
 	expect_words(POUND("list", "--status", "asleep"), 2, WORDS("status must be"));
+	expect_words(POUND("list", "--hash", "1f"), 2, WORDS("hash must be 64 hexadecimal digits"));
+	expect_words(POUND("list", "--name", "no such & name"), 0, WORDS("\"studies\": []"));
 }
 
 #define SERVED(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)

@@ -67,7 +67,7 @@ static void ignore(void *to, const struct study_status *study)
 static void look(struct store *store)
 {
 	int rows = 0;
-	store_list(store, NULL, INT64_MAX, 100, ignore, &rows);
+	store_list(store, &(struct store_filter){.before = INT64_MAX, .limit = 100}, ignore, &rows);
 	for (int i = 0; i < STUDIES; i++) {
 		struct seen seen = {.study = i};
 		// all blocks of a study or fewer, never another value

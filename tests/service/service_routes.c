@@ -271,85 +271,6 @@ static void validate_only_tells_the_cost_and_stores_nothing(void **state)
 	free(study);
 }
 
-static void the_list_is_newest_first_and_pages_by_cursor(void **state)
-{
-	enum { N = 5 };
-	struct service *service = *state;
-	char ids[N][17];
-	for (int i = 0; i < N; i++) {
-		char *study = service_study(2, 1, i);
-		service_submit(service, study, ids[i]);
-		free(study);
-	}
-	char path[128] = "/v1/studies?limit=2";
-	int seen = 0;
-	while (path[0]) {
-		struct answer answer = service_get(service, "%s", path);
-		status_is(&answer, 200);
-		struct reading *page = answer_read(&answer);
-		int n = reading_count(page, "/studies");
-		assert_int_equal(n, seen < 4 ? 2 : 1);
-		for (int i = 0; i < n; i++, seen++)
-			assert_string_equal(reading_text(page, "/studies/%d/id", i), ids[N - 1 - seen]);
-		const char *next = reading_text(page, "/next");
-		path[0] = '\0';
-		if (next)
-			snprintf(path, sizeof path, "/v1/studies?limit=2&cursor=%s", next);
-		reading_close(page);
-		answer_free(&answer);
-	}
-	assert_int_equal(seen, N);
-	for (int i = 0; i < N; i++)
-		assert_true(service_wait(service, ids[i], "succeeded", 0));
-	struct answer answer = service_get(service, "/v1/studies?status=succeeded");
-	struct reading *page = answer_read(&answer);
-	assert_int_equal(reading_count(page, "/studies"), N);
-	assert_null(reading_text(page, "/next"));
-	reading_close(page);
-	answer_free(&answer);
-	answer = service_get(service, "/v1/studies?status=failed");
-	page = answer_read(&answer);
-	assert_int_equal(reading_count(page, "/studies"), 0);
-	reading_close(page);
-	answer_free(&answer);
-}
-
-static void list_arguments_that_make_no_sense_are_400(void **state)
-{
-	static const char *const arguments[] = {"limit=0",    "limit=101",
-	                                        "limit=1x",   "status=new",
-	                                        "cursor=1",   "cursor=%27",
-	                                        "limit=+",    "limit=99999999999999999999",
-	                                        "status=%20", "status=&status=queued"};
-	struct service *service = *state;
-	for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++)
-		problem_is(service_get(service, "/v1/studies?%s", arguments[i]), 400,
-		           strchr(arguments[i], '&') ? "twice" : "must be");
-	problem_is(service_get(service, "/v1/studies/0123456789abcdef/results?format="), 400, "must be");
-}
-
-/* A script's variables may be empty. */
-static void list_arguments_that_are_empty_are_as_if_they_were_not_there(void **state)
-{
-	static const char *const arguments[] = {
-	    "status=&limit=&cursor=", "status=", "limit=", "cursor=", "cursor", "limit=&status=queued"};
-	struct service *service = *state;
-	for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
-		struct answer answer = service_get(service, "/v1/studies?%s", arguments[i]);
-		status_is(&answer, 200);
-		answer_free(&answer);
-	}
-	char *study = service_study(2, 1, 1), id[17];
-	service_submit(service, study, id);
-	assert_true(service_wait(service, id, "succeeded", 0));
-	struct answer all = service_get(service, "/v1/studies?status=&limit=1&cursor=");
-	struct reading *page = answer_read(&all);
-	assert_string_equal(reading_text(page, "/studies/0/id"), id);
-	reading_close(page);
-	answer_free(&all);
-	free(study);
-}
-
 static void results_are_404_with_retry_after_until_they_are_there(void **state)
 {
 	struct service *service = *state;
@@ -680,9 +601,6 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(a_study_that_is_not_declared_as_json_is_415), SERVED(every_route_answers_only_its_methods),
            SERVED(head_is_get_without_the_body), SERVED(unknown_paths_and_studies_are_404),
            SERVED(validate_only_tells_the_cost_and_stores_nothing),
-           SERVED(the_list_is_newest_first_and_pages_by_cursor),
-           SERVED(list_arguments_that_make_no_sense_are_400),
-           SERVED(list_arguments_that_are_empty_are_as_if_they_were_not_there),
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
            SERVED(an_answer_is_kept_until_what_it_is_about_changes),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),

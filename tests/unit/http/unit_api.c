@@ -81,6 +81,13 @@ static void an_argument_takes_what_it_says(void **state)
 	    {API_list, "limit", "", true},
 	    {API_list, "status", "", true},
 	    {API_list, "cursor", "", true},
+	    {API_list, "cursor", "0123456789abcdef", true},
+	    {API_list, "cursor", "0123456789abcdeF", false},
+	    {API_list, "cursor", "0123456789abcde", false},
+	    {API_list, "cursor", "0123456789abcdef0", false},
+	    {API_list, "hash", "0123456789abcdef", false},
+	    {API_list, "hash", "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef", true},
+	    {API_list, "name", "' OR 1=1 --", true},
 	    {API_list, "limit", "1x", false},
 	    {API_list, "limit", " 1", false},
 	    {API_list, "limit", "+1", false},
@@ -102,7 +109,7 @@ static void an_argument_takes_what_it_says(void **state)
 		assert_true(!argument->absent || api_takes(argument, argument->absent));
 	}
 	struct reading *api = document();
-	for (int i = 0; i < 3; i++)
+	for (int i = 0; i < 5; i++)
 		assert_true(reading_has(api, "/paths/~1v1~1studies/get/parameters/%d/allowEmptyValue", i));
 	assert_false(reading_has(api, "/paths/~1v1~1studies/post/parameters/0/allowEmptyValue"));
 	reading_close(api);

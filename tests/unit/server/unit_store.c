@@ -476,10 +476,113 @@ static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(vo
 	assert_string_equal(told, "a failed");
 }
 
+struct listed {
+	char names[256]; /* each with a space behind it */
+};
+
+static void name_add(void *to, const struct study_status *study)
+{
+	struct listed *listed = to;
+	strcat(strcat(listed->names, study->name), " ");
+}
+
+static void list_is(struct store *store, struct store_filter filter, const char *names)
+{
+	struct listed listed = {""};
+	filter.before = filter.before ? filter.before : INT64_MAX;
+	filter.limit = 10;
+	assert_int_equal(store_list(store, &filter, name_add, &listed), *names ? STORE_OK : STORE_NONE);
+	assert_string_equal(listed.names, names);
+}
+
+static void a_list_has_the_studies_of_a_status_a_name_and_a_hash(void **state)
+{
+	static const char *const rows[][2] = {{"tower", "a"}, {"tower%", "b"}, {"bridge", "a"}, {"Tower", "b"}};
+	int64_t ids[4], id = 0;
+	for (int i = 0; i < 4; i++) {
+		const struct store_study study = {
+		    .kind = "response", .name = rows[i][0], .runs = 5, .hash = rows[i][1]};
+		assert_int_equal(store_submit(*state, &study, "{}", 2, &ids[i]), STORE_OK);
+	}
+	assert_int_equal(claim(*state, &id), STORE_OK);
+	list_is(*state, (struct store_filter){0}, "Tower bridge tower% tower ");
+	list_is(*state, (struct store_filter){.name = "tower"}, "tower% tower ");
+	// a text, and no pattern
+	list_is(*state, (struct store_filter){.name = "%"}, "tower% ");
+	list_is(*state, (struct store_filter){.hash = "a"}, "bridge tower ");
+	list_is(*state, (struct store_filter){.hash = "a", .status = "running"}, "tower ");
+	list_is(*state, (struct store_filter){.hash = "a", .name = "ow", .before = ids[0]}, "");
+	list_is(*state, (struct store_filter){.name = "ow", .before = ids[3]}, "tower% tower ");
+	list_is(*state, (struct store_filter){.name = "ow", .status = "queued"}, "Tower tower% ");
+}
+
+/* The server stops, and starts again when a statement has changed its database. */
+static void changed_to(void **state, const char *sql)
+{
+	sqlite3 *db;
+	store_close(*state);
+	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+	assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+	sqlite3_close(db);
+	*state = store_open(path);
+	assert_non_null(*state);
+}
+
+static bool block_count(void *to, const struct store_block *block)
+{
+	(void)block;
+	++*(int *)to;
+	return true;
+}
+
+static int blocks_of(struct store *store, int64_t id)
+{
+	int n = 0;
+	store_blocks(store, id, block_count, &n);
+	return n;
+}
+
+/* Five studies that ended i days and an hour ago, each with a block, and one that has not ended. */
+static void what_ended_too_long_ago_is_deleted_and_nothing_else(void **state)
+{
+	enum { N = 5, DAYS = 3, DAYS_BLOCKS = 1 };
+	const double values[] = {1, 2, 3};
+	const struct store_block block = {.number = 0, .runs = 5, .n = 3, .values = values};
+	char told[128];
+	int64_t ids[N + 1], id = 0;
+	for (int i = 0; i <= N; i++) {
+		ids[i] = submitted(*state, "a");
+		assert_int_equal(claim(*state, &id), STORE_OK);
+		assert_true(keep(*state, id, &block));
+		if (i < N)
+			assert_int_equal(i % 2 ? store_finish(*state, id, NULL, 0, "why", 0)
+			                       : store_finish(*state, id, "1", 1, NULL, 0),
+			                 STORE_OK);
+	}
+	assert_false(store_expire(*state, 1, 1));
+	changed_to(state, "UPDATE study SET finished = finished - 3600000 - 86400000 * "
+	                  "(SELECT count(*) FROM study AS other WHERE other.id < study.id)");
+	assert_false(store_expire(*state, 0, 0));
+	int n = 0;
+	while (store_expire(*state, DAYS, DAYS_BLOCKS))
+		n++;
+	assert_int_equal(n, (N - DAYS) + (DAYS - DAYS_BLOCKS));
+	for (int i = 0; i <= N; i++) {
+		const bool there = i == N || i < DAYS, whole = i == N || i < DAYS_BLOCKS;
+		assert_int_equal(store_study(*state, ids[i], name_keep, told), there ? STORE_OK : STORE_NONE);
+		assert_int_equal(blocks_of(*state, ids[i]), whole);
+	}
+	char *result;
+	size_t length;
+	assert_int_equal(store_document(*state, ids[2], "result", &result, &length), STORE_OK);
+	free(result);
+}
+
 #define STORED(test) cmocka_unit_test_setup_teardown(test, database, removal)
 
-CHECK_MAIN(STORED(a_key_stands_for_one_study), STORED(keys_of_every_version_stand_for_their_studies),
-           STORED(no_more_are_queued_than_may_be),
+CHECK_MAIN(STORED(a_list_has_the_studies_of_a_status_a_name_and_a_hash),
+           STORED(what_ended_too_long_ago_is_deleted_and_nothing_else), STORED(a_key_stands_for_one_study),
+           STORED(keys_of_every_version_stand_for_their_studies), STORED(no_more_are_queued_than_may_be),
            STORED(a_study_taken_three_times_in_vain_lets_the_others_go_first),
            STORED(only_crashes_that_follow_each_other_without_a_block_make_a_poison),
            STORED(ids_grow_within_one_millisecond), STORED(the_oldest_queued_study_is_claimed_first),
