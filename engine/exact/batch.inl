@@ -63,12 +63,12 @@ LANE_INLINE vm batch_trait(const struct batch *b, unsigned trait)
 	return vmask(lanes);
 }
 
-/* Lanes of families in which an edge decided: that is to be taken back. */
-static unsigned batch_parting(const struct batch *b, vm decided)
+/* Lanes of shared_starts in which an edge decided: that is to be taken back. */
+static unsigned batch_leaving(const struct batch *b, vm decided)
 {
-	if (!(b->traits & TRAIT_FAMILY))
+	if (!(b->traits & TRAIT_SHARED))
 		return 0;
-	return vbits(decided & batch_trait(b, TRAIT_FAMILY)) & batch_lanes(b);
+	return vbits(decided & batch_trait(b, TRAIT_SHARED)) & batch_lanes(b);
 }
 
 /* Nothing that became of these lanes is carried out: it goes to a simulation that is none. */
@@ -79,13 +79,13 @@ static void batch_forget(struct batch *b, unsigned lanes, struct simulation *fil
 }
 
 /* Lanes whose bodies overlap without force, and those in which the force has just passed zero. */
-LANE_INLINE void batch_forces(const struct batch *b, vm *parted, vm *fresh)
+LANE_INLINE void batch_forces(const struct batch *b, vm *released, vm *fresh)
 {
 	unsigned gone = 0, passed = 0;
 	for (int l = 0; l < W; l++) {
-		gone |= (unsigned)b->sim[l]->parted << l;
+		gone |= (unsigned)b->sim[l]->released << l;
 		passed |= (unsigned)b->sim[l]->fresh << l;
 	}
-	*parted = vmask(gone);
+	*released = vmask(gone);
 	*fresh = vmask(passed);
 }

@@ -33,7 +33,7 @@ static bool link_far(const struct chain *c, const struct link *l)
 	double terms = l->link->gap;
 	for (int k = 0; k < l->n_ends; k++)
 		terms += fabs(l->weight[k] * c->u.at[l->floor[k]]);
-	return !l->touching && !l->parted && l->p < -0x1p-20 * terms && l->p + c->task->time_step * l->q < 0;
+	return !l->touching && !l->released && l->p < -0x1p-20 * terms && l->p + c->task->time_step * l->q < 0;
 }
 
 /* Brings to rest what is left of next to nothing of a building that touches none, where nothing comes from the ground. */
@@ -50,7 +50,7 @@ static void building_settle(struct chain *c, int first, int stories)
 static void chain_settle(struct chain *c)
 {
 	for (int j = 0; j < c->n_links; j++)
-		if (c->link[j].touching || c->link[j].parted)
+		if (c->link[j].touching || c->link[j].released)
 			return;
 	for (int first = 0, stories; first < c->n; first += stories) {
 		stories = building_stories(c->task, first);
@@ -94,7 +94,7 @@ static enum pound_status chain_march(struct chain *c, const atomic_bool *stop)
 				break;
 		}
 		chain_interval(c);
-		while (c->part > 0) {
+		while (c->remainder > 0) {
 			if (++c->steps > POUND_STEPS_LIMIT)
 				return POUND_CHATTER;
 			if (++steps % STOP_STEPS == 0 && pound_stopped(stop))

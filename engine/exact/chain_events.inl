@@ -138,7 +138,7 @@ static void overlaps_course(struct chain *c)
 struct link_lanes {
 	struct motion overlap;
 	struct course course;
-	unsigned open, parted, touching;      /* which of the three */
+	unsigned open, released, touching;    /* which of the three */
 	unsigned forced;                      /* touching, and ends with its force */
 	double low[W], high[W], direction[W]; /* of the branches of those that touch */
 	double lead[W]; /* damping over stiffness, over the step: how far the force is ahead of the overlap */
@@ -158,12 +158,12 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 		const unsigned bit = 1u << l;
 		if (link_curved(link) || link->held)
 			continue; // touch_step.inl looks at them
-		x->open |= link->touching || link->parted ? 0 : bit;
-		x->parted |= link->parted ? bit : 0;
+		x->open |= link->touching || link->released ? 0 : bit;
+		x->released |= link->released ? bit : 0;
 		x->touching |= link->touching ? bit : 0;
 		x->forced |= link->touching && link_forced(link) ? bit : 0;
 		x->fresh |= link->fresh ? bit : 0;
-		if (!(link->touching || link->parted))
+		if (!(link->touching || link->released))
 			continue;
 		if (link->touching) {
 			x->low[l] = x->forced & bit ? -DBL_MAX : link->at.on.low;
@@ -209,14 +209,14 @@ static void forces_search(struct first *first, const struct chain *c, const stru
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
 	search_safe(&guard, c->order, some, vselect(touching, vsplat(EVENT_ENDS), vsplat(EVENT_BEGINS)), &search);
 	search_take(first, &search, some, j);
-	const vm parted = some & ~touching;
-	if (!vany(parted))
+	const vm released = some & ~touching;
+	if (!vany(released))
 		return;
 	for (int n = 0; n <= c->order; n++)
 		guard.c[n] = -x->overlap.u.c[n];
 	search = (struct search){.time = vsplat(1), .event = vsplat(EVENT_NONE)};
-	search_safe(&guard, c->order, parted, vsplat(EVENT_CLEARS), &search);
-	search_take(first, &search, parted, j);
+	search_safe(&guard, c->order, released, vsplat(EVENT_CLEARS), &search);
+	search_take(first, &search, released, j);
 }
 
 /* The overlaps of links that are not integrated in their own right. */
@@ -243,7 +243,7 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 	const vm past_low = touching & may_cross(&x.course, low, -one);
 	const vm past_high = touching & may_cross(&x.course, high, one);
 	vm turns = touching & ~vequal(direction, zero);
-	const unsigned by_force = x.forced | x.parted;
+	const unsigned by_force = x.forced | x.released;
 	if (!vany(begins | past_low | past_high | turns) && by_force == 0)
 		return;
 	overlaps_fill(c, vbits(begins), j);

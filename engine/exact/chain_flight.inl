@@ -479,7 +479,7 @@ static void note_look(struct chain *c, int k)
 		c->offset.at[i] = -c->initial.at[i] * shift[i];
 	}
 	interval_set(c, c->flight.noted[k]);
-	while (c->part > 0) {
+	while (c->remainder > 0) {
 		if (c->moving)
 			chain_displacements(c);
 		step_choose(c);

@@ -53,7 +53,7 @@ struct link {
 	double inverse_mass;   /* 1 over the effective mass [1/kg] */
 	struct pound_touch at; /* branch of its force */
 	bool touching;         /* the force acts */
-	bool parted;           /* the force is gone before the overlap */
+	bool released;         /* the force is gone before the overlap */
 	bool fresh;            /* the force has just passed zero */
 	bool own;       /* p and q are integrated in their own right; else they are differences of the floors' */
 	bool held;      /* touching: rigid, and the sides stay together */
@@ -159,7 +159,7 @@ struct chain {
 	// interval and step
 	int64_t next;         /* sample at the end of the interval */
 	double ground, slope; /* [m/s2], [m/s3] */
-	double part;          /* left of the interval [s] */
+	double remainder;     /* left of the interval [s] */
 	double pace;          /* <= 1: steps are shorter where a search was unsure */
 	double dt;            /* of the step [s] */
 	int order;            /* of its series */

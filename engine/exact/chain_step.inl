@@ -37,7 +37,7 @@ static void interval_set(struct chain *c, int64_t next)
 	const double *a = &c->task->ground[next];
 	c->ground = a[-1];
 	c->slope = (a[0] - a[-1]) * (1 / c->task->time_step);
-	c->part = c->task->time_step;
+	c->remainder = c->task->time_step;
 }
 
 /* Chooses the next step. */
@@ -46,7 +46,7 @@ static void step_choose(struct chain *c)
 	if (c->reach == 0)
 		c->reach = reach_touching(c);
 	const double reach = c->reach * c->pace;
-	c->dt = c->part <= reach ? c->part : c->part > 2 * reach ? reach : 0.5 * c->part;
+	c->dt = c->remainder <= reach ? c->remainder : c->remainder > 2 * reach ? reach : 0.5 * c->remainder;
 	bool level = false;
 	for (int j = 0; j < c->n_links; j++) {
 		struct link *l = &c->link[j];
@@ -107,7 +107,7 @@ static void contact_over(struct chain *c, struct link *l)
 
 static double chain_time(const struct chain *c)
 {
-	return (double)c->next * c->task->time_step - c->part;
+	return (double)c->next * c->task->time_step - c->remainder;
 }
 
 static void contact_begins(struct chain *c, struct link *l)
@@ -117,12 +117,12 @@ static void contact_begins(struct chain *c, struct link *l)
 		impact(c, l, chain_time(c));
 		return;
 	}
-	if (!l->parted) {
+	if (!l->released) {
 		l->p = 0; // from here exactly
 		pound_contact_begin(&l->link->law, &l->at, l->q);
 	}
 	l->touching = l->own = true;
-	l->parted = l->fresh = false;
+	l->released = l->fresh = false;
 	l->impulse = 0;
 	if (m[POUND_LINK_CONTACTS] == 0) {
 		m[POUND_LINK_FIRST_TIME] = chain_time(c);
@@ -140,8 +140,8 @@ static void contact_ends(struct chain *c, struct link *l)
 		return;
 	}
 	l->touching = false;
-	l->parted = l->fresh = link_forced(l) && l->p > 0;
-	if (!l->parted)
+	l->released = l->fresh = link_forced(l) && l->p > 0;
+	if (!l->released)
 		l->p = 0;
 	contact_over(c, l);
 	c->reach = 0;
@@ -221,7 +221,7 @@ static void step_arrive(struct chain *c, double time)
 		l->fresh = false;
 	}
 	c->ground = fma(c->slope, elapsed, c->ground);
-	c->part = fmax(c->part - elapsed, 0);
+	c->remainder = fmax(c->remainder - elapsed, 0);
 }
 
 /* Largest values on the way of a step to a share of it. */
@@ -254,7 +254,7 @@ static void event_apply(struct chain *c, const struct first *first)
 		contact_ends(c, &c->link[i]);
 	else if (first->event == EVENT_CLEARS) {
 		c->link[i].p = 0;
-		c->link[i].parted = false;
+		c->link[i].released = false;
 	}
 }
 
@@ -289,7 +289,7 @@ static void step_observe(const struct chain *c, double time)
 	                                        .force = force,
 	                                        .u = u,
 	                                        .order = c->order,
-	                                        .sampled = c->part == c->task->time_step};
+	                                        .sampled = c->remainder == c->task->time_step};
 	observer->observe(observer->into, &piece);
 }
 

@@ -1,12 +1,12 @@
-/* contact_map.inl - exact maps of pressed contact, over a cell and over many cells at once.
+/* contact_map.inl - exact maps of contact, over a substep and over many substeps at once.
  *
  * Included by exact.inl alone, once per lane count: the columns of a map are made side by side in lanes.
  *
- * 1. Pressed on each other the bodies are one linear system: over a cell, a fraction of a radian of the contact's own
+ * 1. Pressed on each other the bodies are one linear system: over a substep, a fraction of a radian of the contact's own
  *    frequency, its map is a power series.
- * 2. Rungs of a ladder are maps over eight times as many cells each, by doubling, kept as what they add to the state:
+ * 2. Doubled maps are maps over eight times as many substeps each, by doubling, kept as what they add to the state:
  *    nothing small is lost beside 1.
- * 3. A bound proves that bodies stay pressed over a rung however often the contact swings within.
+ * 3. A bound proves that bodies stay pressed over a doubled map however often the contact swings within.
  *
  * Included by exact.inl after series.inl. */
 
@@ -19,15 +19,15 @@
 #include "engine/numeric/lanes.h"
 
 enum {
-	N = POUND_PRESS_INPUTS,
-	MOVED = PRESS_IMPULSE +
+	N = POUND_CONTACT_INPUTS,
+	MOVED = CONTACT_IMPULSE +
 	        1, /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
-	RUNG_DOUBLINGS =
-	    3, /* from a rung to the next; more where as many as there may be would not reach a sample */
-	RUNG_RATIO = 1 << RUNG_DOUBLINGS,
+	DOUBLINGS =
+	    3, /* from a doubled map to the next; more where as many as there may be would not reach a sample */
+	DOUBLED_RATIO = 1 << DOUBLINGS,
 };
 
-/* How the motion is split into the bodies' common one and that of the contact: see rest_fill. */
+/* How the motion is split into the bodies' common one and that of the contact: see doubled_bounds. */
 static void split_fill(double split[N], const struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
@@ -42,7 +42,7 @@ static void split_fill(double split[N], const struct simulation *sim)
 	split[SPLIT_OMEGA] = sqrt(stiffness);
 	split[SPLIT_DRAG] = (x->both * x->contact_damping + x->body[o].damping - dc * share) / split[SPLIT_OMEGA];
 	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
-	split[SPLIT_CELLS] = 1;
+	split[SPLIT_SUBSTEPS] = 1;
 }
 
 /* Overlap by what presses the bodies on each other, once it does not swing. */
@@ -51,7 +51,7 @@ static double yield_of(const double split[N])
 	return 1 / (split[SPLIT_OMEGA] * split[SPLIT_OMEGA]);
 }
 
-/* Adds term n of the rates of base and overlap, times the cell's length, at the nodes of a quadrature. */
+/* Adds term n of the rates of base and overlap, times the substep's length, at the nodes of a quadrature. */
 static void rates_add(double rates[POUND_GAUSS][2][N], int n, int column, vd w, vd z)
 {
 	for (int g = 0; g < POUND_GAUSS; g++) {
@@ -81,7 +81,7 @@ static void form_off(double row[N], const double split[N])
 	row[5] += pull;
 }
 
-/* What the dashpots of both bodies and of the contact take over a cell, per mass of the left body, as a quadratic form of
+/* What the dashpots of both bodies and of the contact take over a substep, per mass of the left body, as a quadratic form of
  * the inputs with the overlap off its equilibrium: the integral of m c v^2 by quadrature, exact to rounding. */
 static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const double split[N],
                       const struct simulation *sim)
@@ -99,15 +99,15 @@ static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const 
 				double other = (v[i] - x->side * q[i]) * (v[j] - x->side * q[j]);
 				double rate = mass[b] * x->body[b].damping * v[i] * v[j] +
 				              mass[o] * x->body[o].damping * other + x->contact_damping * q[i] * q[j];
-				loss[i][j] += 0.5 * POUND_GAUSS_WEIGHT[g % (POUND_GAUSS / 2)] * rate / x->cell;
+				loss[i][j] += 0.5 * POUND_GAUSS_WEIGHT[g % (POUND_GAUSS / 2)] * rate / x->substep;
 			}
 	}
 }
 
-/* Exact map of the base body and the overlap over one cell h of pressed contact, by its power series.
+/* Exact map of the base body and the overlap over one substep h of contact, by its power series.
  *
  * Given    sim    its bodies on their pieces, contact
- * Returns  map    rows of POUND_PRESS_INPUTS coefficients
+ * Returns  map    rows of POUND_CONTACT_INPUTS coefficients
  *          work   what an account of energy needs beside them; NULL: there is none
  *
  *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
@@ -117,12 +117,12 @@ static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const 
  * the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times
  * that of their own columns.
  */
-static void cell_fill(struct pound_press_map *map, struct pound_press_work *work,
-                      const struct simulation *sim)
+static void substep_fill(struct pound_contact_map *map, struct pound_contact_work *work,
+                         const struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
-	const double h = x->cell, h2 = h * h, push = b ? -x->mass_ratio : 1;
+	const double h = x->substep, h2 = h * h, push = b ? -x->mass_ratio : 1;
 	const double K = x->contact_stiffness * h2, C = x->contact_damping * h;
 	const double dc = (x->body[1].damping - x->body[0].damping) * h;
 	const double dk = (x->body[1].stiffness - x->body[0].stiffness) * h2;
@@ -134,7 +134,7 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 	double(*row)[N] = map->row;
 	if (work)
 		memset(rates, 0, sizeof rates);
-	split_fill(row[PRESS_SPLIT], sim);
+	split_fill(row[CONTACT_SPLIT], sim);
 	for (int j = 0; j < N; j += W) {
 		vd zero = vsplat(0), sum[4] = {zero, zero, zero, zero}, area = zero, mean = zero, error = zero;
 		vd u = lanes_load(&start[0][j]), w = lanes_load(&start[1][j]);
@@ -161,23 +161,23 @@ static void cell_fill(struct pound_press_map *map, struct pound_press_work *work
 			z = vfma(vsplat(-co * share), z, vfma(vsplat(dc * share), w, z1));
 			w = w1;
 		}
-		lanes_store(&row[PRESS_U][j], sum[0]);
-		lanes_store(&row[PRESS_V][j], sum[1] / vsplat(h));
-		lanes_store(&row[PRESS_P][j], sum[2]);
-		lanes_store(&row[PRESS_Q][j], sum[3] / vsplat(h));
-		lanes_store(&row[PRESS_IMPULSE][j],
+		lanes_store(&row[CONTACT_U][j], sum[0]);
+		lanes_store(&row[CONTACT_V][j], sum[1] / vsplat(h));
+		lanes_store(&row[CONTACT_P][j], sum[2]);
+		lanes_store(&row[CONTACT_Q][j], sum[3] / vsplat(h));
+		lanes_store(&row[CONTACT_IMPULSE][j],
 		            vfma(vsplat(x->contact_stiffness * h), area, vsplat(x->contact_damping) * sum[2]));
-		lanes_store(&row[PRESS_ERROR][j], error);
+		lanes_store(&row[CONTACT_ERROR][j], error);
 		if (work) {
 			lanes_store(&work->mean_base[j], mean);
 			lanes_store(&work->mean_overlap[j], area);
 		}
 	}
 	if (work)
-		loss_fill(work->loss, rates, row[PRESS_SPLIT], sim);
+		loss_fill(work->loss, rates, row[CONTACT_SPLIT], sim);
 }
 
-/* ---- the ladder ---- */
+/* ---- doubled maps ---- */
 
 /* The map over twice as long: with s the state, f the forcing and d its growth over the length,
  *
@@ -204,7 +204,7 @@ static void map_double(double row[][N])
 /* From the inputs over a length to those over the next, with the overlap off its equilibrium or as it is. */
 static void inputs_next(double next[N][N], const double row[][N], bool off)
 {
-	const double *split = row[PRESS_SPLIT];
+	const double *split = row[CONTACT_SPLIT];
 	for (int i = 0; i < N; i++)
 		for (int j = 0; j < N; j++)
 			next[i][j] = (i == j) + (i < 4 ? row[i][j] : i < 6 && j == i + 2);
@@ -224,7 +224,7 @@ static void inputs_next(double next[N][N], const double row[][N], bool off)
  *
  * Given    row   of the map over the length
  */
-static void work_double(struct pound_press_work *work, const double row[][N])
+static void work_double(struct pound_contact_work *work, const double row[][N])
 {
 	double next[N][N], once[N][N], half[2][N], *const mean[2] = {work->mean_base, work->mean_overlap};
 	inputs_next(next, row, false);
@@ -254,7 +254,7 @@ static void work_double(struct pound_press_work *work, const double row[][N])
 	}
 }
 
-/* What proves that nothing happens over a rung of length h.
+/* What proves that nothing happens over a doubled map of length h.
  *
  * With the slow coordinate w = ub - s/(1 + m1/m2) p of the bodies' common motion
  *
@@ -277,16 +277,16 @@ static void work_double(struct pound_press_work *work, const double row[][N])
  * that rest have small bounds, however far they are pressed, and those that are pressed ever more go steadily.
  * w - kq int e is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h |e| is
  * added for the rest, e with B/8 for what int p misses a cubic by.  Its roundings are those of the
- * way, that is of h w' and of the terms of h^2 w''; where w itself is looked at, rest() adds that of it: bodies that creep
+ * way, that is of h w' and of the terms of h^2 w''; where w itself is looked at, sustained_contact() adds that of it: bodies that creep
  * may go less far than that, and their velocity still has a sign.
  */
-static void rest_fill(struct pound_press_map *map, const struct simulation *sim, double cells)
+static void doubled_bounds(struct pound_contact_map *map, const struct simulation *sim, double substeps)
 {
 	const struct state_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
-	double *split = map->row[PRESS_SPLIT];
-	split[SPLIT_CELLS] = cells;
-	const double h = x->cell * cells, share = split[SPLIT_BASE], omega = split[SPLIT_OMEGA];
+	double *split = map->row[CONTACT_SPLIT];
+	split[SPLIT_SUBSTEPS] = substeps;
+	const double h = x->substep * substeps, share = split[SPLIT_BASE], omega = split[SPLIT_OMEGA];
 	const double dc = split[SPLIT_DAMPING], dk = split[SPLIT_STIFFNESS], yield = yield_of(split);
 	const double cw = x->body[b].damping + share * dc, kw = x->body[b].stiffness + share * dk;
 	const double kp = fabs(share * (x->body[o].stiffness - kw)), kq = fabs(share * (x->body[o].damping - cw));
@@ -298,8 +298,8 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 	const double a0[N] = {[1] = kw * h, 2 * (2 * kp * yield + kq / omega), 1 / h, [6] = 1, fabs(share)};
 	const double grown[N] = {[6] = 1 / h, [7] = fabs(share) / h};
 	for (int j = 0; j < N; j++)
-		map->pull[j] = dc * (map->row[PRESS_V][j] - share * map->row[PRESS_Q][j]) +
-		               dk * (map->row[PRESS_U][j] - share * map->row[PRESS_P][j]) + (j == 7);
+		map->pull[j] = dc * (map->row[CONTACT_V][j] - share * map->row[CONTACT_Q][j]) +
+		               dk * (map->row[CONTACT_U][j] - share * map->row[CONTACT_P][j]) + (j == 7);
 	// twice for the difference of rates, which is one of large numbers
 	const double rounded[N] = {2 * fabs(dk), 2 * fabs(dc), 1, 0, 0, 1};
 	const double lost[N] = {2 * kw * h * h, h, 0, 0, h * h, 2 * fabs(share) * h * h};
@@ -307,55 +307,55 @@ static void rest_fill(struct pound_press_map *map, const struct simulation *sim,
 		double a2 = ahead * a0[j], a1 = (j == 1) + h * a2;
 		double a3 = cw * a2 + kw * a1 + grown[j] + (j == 2 ? jerk : 0);
 		double a4 = cw * a3 + kw * a2 + (j == 2 ? jounce : 0);
-		map->row[REST_BEND][j] = h * h * (fabs(dc) * a3 + fabs(dk) * a2) + rounding * rounded[j];
-		map->row[REST_ERROR][j] = quartic * a4 + rounding * lost[j];
+		map->row[DOUBLED_CURVATURE][j] = h * h * (fabs(dc) * a3 + fabs(dk) * a2) + rounding * rounded[j];
+		map->row[DOUBLED_ERROR][j] = quartic * a4 + rounding * lost[j];
 	}
 }
 
-/* Fills a ladder: rungs of as many cells as a whole sample has, or of an eighth, a 64th ... */
-static void ladder_fill(struct pound_ladder *ladder, const struct pound_press_map *cell,
-                        const struct simulation *sim)
+/* Fills the doubled maps: of as many substeps as a whole sample has, or of an eighth, a 64th ... */
+static void doubled_fill(struct pound_doubled_maps *doubled, const struct pound_contact_map *substep,
+                         const struct simulation *sim)
 {
-	double cells = 1;
-	struct pound_press_map map = *cell;
-	struct pound_press_work *work = ladder->work;
-	for (int r = 0; r < sim->rungs; r++) {
+	double substeps = 1;
+	struct pound_contact_map map = *substep;
+	struct pound_contact_work *work = doubled->work;
+	for (int r = 0; r < sim->n_doubled; r++) {
 		if (sim->task->accounted)
-			work[r] = work[r > 0 ? r - 1 : POUND_PRESS_RUNGS];
-		for (; cells < sim->rung_cells[r]; cells *= 2) {
+			work[r] = work[r > 0 ? r - 1 : POUND_DOUBLED_MAPS];
+		for (; substeps < sim->doubled_substeps[r]; substeps *= 2) {
 			if (sim->task->accounted)
 				work_double(&work[r], map.row);
 			map_double(map.row);
 		}
-		ladder->rung[r] = map;
-		rest_fill(&ladder->rung[r], sim, cells);
+		doubled->map[r] = map;
+		doubled_bounds(&doubled->map[r], sim, substeps);
 	}
 }
 
-/* Chooses the rungs of a simulation: of one cell, and of as many as lead to a whole sample, as far as the bodies' own
- * rates allow.  A few cells a sample go as fast one by one. */
-static void press_rungs(struct simulation *sim)
+/* Chooses the doubled maps of a simulation: of one substep, and of as many as lead to a whole sample, as far as the bodies' own
+ * rates allow.  A few substeps a sample go as fast one by one. */
+static void doubled_choose(struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
-	double first = x->cells_whole;
-	int doublings = RUNG_DOUBLINGS; // from a rung to the next
-	if (first <= RUNG_RATIO)
+	double first = x->substeps_per_sample;
+	int doublings = DOUBLINGS; // from a doubled map to the next
+	if (first <= DOUBLED_RATIO)
 		return;
-	sim->rung_ratio = RUNG_RATIO;
+	sim->doubled_ratio = DOUBLED_RATIO;
 	if (first > 0x1p53) // no double counts them one by one: who is pressed does not come to the end of them
 		return;
-	while (ldexp(1, doublings * (POUND_PRESS_RUNGS - 1)) < first)
+	while (ldexp(1, doublings * (POUND_DOUBLED_MAPS - 1)) < first)
 		doublings++;
-	const double ratio = sim->rung_ratio = ldexp(1, doublings);
+	const double ratio = sim->doubled_ratio = ldexp(1, doublings);
 	while (first > ratio)
 		first /= ratio;
-	for (double cells = 1; cells <= x->cells_whole && sim->rungs < POUND_PRESS_RUNGS;
-	     cells *= cells == 1 ? first : ratio) {
-		double h = cells * x->cell;
+	for (double substeps = 1; substeps <= x->substeps_per_sample && sim->n_doubled < POUND_DOUBLED_MAPS;
+	     substeps *= substeps == 1 ? first : ratio) {
+		double h = substeps * x->substep;
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			if (h * (x->body[i].damping + sim->task->bodies[i].backbone.stiffness * h) > 0.5)
 				return;
-		sim->rung_cells[sim->rungs++] = cells;
+		sim->doubled_substeps[sim->n_doubled++] = substeps;
 	}
 }
 
@@ -366,45 +366,46 @@ static double row_at(const double row[N], const double x[N])
 	return (row[0] * x[0] + row[1] * x[1] + slow) + (row[2] * x[2] + row[3] * x[3] + force);
 }
 
-/* The greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale.  Not as close as rest() has
- * it: this only chooses a rung, for one simulation at a time. */
+/* The greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale.  Not as close as sustained_contact() has
+ * it: this only chooses a doubled map, for one simulation at a time. */
 static double length_above(double x, double y)
 {
 	double a = fabs(x), b = fabs(y);
 	return a < b ? b + 0.4143 * a : a + 0.4143 * b;
 }
 
-/* How a contact swings at the start of a rung: W p', W^2 p - g, and g. */
+/* How a contact swings at the start of a doubled map: W p', W^2 p - g, and g. */
 struct swing {
 	double hurry, off, pull;
 };
 
-/* Whether bodies in contact are bound to stay pressed over a rung: see rest_fill.
+/* Whether bodies in contact are bound to stay pressed over a doubled map: see doubled_bounds.
  *
  * Given    x     inputs;  bound  magnitudes of w, w', g, w1' - w0', and of x from there on
- *          h     length of the rung [s]
+ *          h     length of the doubled map [s]
  */
-static bool rests(const struct pound_press_map *map, const double x[N], double bound[N],
-                  const struct swing *start, double h)
+static bool stays_in_contact(const struct pound_contact_map *map, const double x[N], double bound[N],
+                             const struct swing *start, double h)
 {
 	const double pull = start->pull;
-	const double *split = map->row[PRESS_SPLIT];
+	const double *split = map->row[CONTACT_SPLIT];
 	double change = row_at(map->pull, x), pull1 = pull + change, drift = change / (split[SPLIT_OMEGA] * h);
 	bound[2] = fabs(pull) + fabs(pull1);
-	bound[3] = fabs(row_at(map->row[PRESS_V], x) - split[SPLIT_BASE] * row_at(map->row[PRESS_Q], x));
+	bound[3] = fabs(row_at(map->row[CONTACT_V], x) - split[SPLIT_BASE] * row_at(map->row[CONTACT_Q], x));
 	bound[6] = fabs(x[6]);
 	bound[7] = fabs(x[7]);
-	double bend = row_at(map->row[REST_BEND], bound);
+	double bend = row_at(map->row[DOUBLED_CURVATURE], bound);
 	double swing = length_above(start->hurry - drift, start->off + split[SPLIT_DRAG] * drift) + 0.5 * bend;
 	double lag = fmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * fabs(drift);
 	return split[SPLIT_LEAD] * swing + lag + 0.125 * bend < (change < 0 ? pull1 : pull);
 }
 
-/* The longest rung that bodies in contact are bound to stay pressed over; NULL: there is none. */
-static const struct pound_press_map *rung_longest(struct simulation *sim, struct pound_press *press)
+/* The longest doubled map that bodies in contact are bound to stay pressed over; NULL: there is none. */
+static const struct pound_contact_map *doubled_longest(struct simulation *sim,
+                                                       struct pound_contact_maps *maps)
 {
 	struct state_rows *x = &sim->x;
-	const double *split = press->cell.row[PRESS_SPLIT], omega = split[SPLIT_OMEGA];
+	const double *split = maps->substep.row[CONTACT_SPLIT], omega = split[SPLIT_OMEGA];
 	double in[N] = {x->u[sim->base],
 	                x->v[sim->base],
 	                x->p,
@@ -415,58 +416,61 @@ static const struct pound_press_map *rung_longest(struct simulation *sim, struct
 	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
 	const struct swing start = {.hurry = omega * x->q, .off = omega * omega * x->p - pull, .pull = pull};
-	// without overlap and rate bodies alike stay so, over any rung
+	// without overlap and rate bodies alike stay so, over any doubled map
 	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
 	if (!still && !(split[SPLIT_LEAD] * length_above(start.hurry, start.off) < pull))
 		return NULL;
-	struct pound_ladder *ladder = press->ladder;
-	if (!press->laddered)
-		ladder_fill(ladder, &press->cell, sim);
-	press->laddered = true;
-	const double *ground = &sim->ground[sim->next], rise = (ground[0] - ground[-1]) * (1 / x->cells_whole);
-	for (int r = sim->rung_limit; r >= 0; r--) {
-		double cells = sim->rung_cells[r];
-		in[6] = x->base_drive * rise * cells;
-		in[7] = x->gap_drive * rise * cells;
-		if (cells <= x->cells && (still || rests(&ladder->rung[r], in, bound, &start, x->cell * cells))) {
-			sim->rung = r;
-			return &ladder->rung[r];
+	struct pound_doubled_maps *doubled = maps->doubled;
+	if (!maps->has_doubled)
+		doubled_fill(doubled, &maps->substep, sim);
+	maps->has_doubled = true;
+	const double *ground = &sim->ground[sim->next],
+	             rise = (ground[0] - ground[-1]) * (1 / x->substeps_per_sample);
+	for (int r = sim->doubled_limit; r >= 0; r--) {
+		double substeps = sim->doubled_substeps[r];
+		in[6] = x->base_drive * rise * substeps;
+		in[7] = x->gap_drive * rise * substeps;
+		if (substeps <= x->substeps &&
+		    (still || stays_in_contact(&doubled->map[r], in, bound, &start, x->substep * substeps))) {
+			sim->doubled = r;
+			return &doubled->map[r];
 		}
 	}
 	return NULL;
 }
 
-/* The maps of pressed contact on the pieces that the bodies are on. */
-static struct pound_press *press_find(struct simulation *sim)
+/* The maps of contact on the pieces that the bodies are on. */
+static struct pound_contact_maps *contact_maps_find(struct simulation *sim)
 {
 	if (sim->common)
-		return &sim->common->press;
+		return &sim->common->maps;
 	const struct state_rows *x = &sim->x;
 	unsigned found = 0;
-	for (int m = 0; m < POUND_PRESS_MAPS; m++)
-		found |= (unsigned)(sim->press_of[0][m] == x->body[0].stiffness &&
-		                    sim->press_of[1][m] == x->body[1].stiffness)
+	for (int m = 0; m < POUND_CONTACT_MAPS; m++)
+		found |= (unsigned)(sim->contact_map_of[0][m] == x->body[0].stiffness &&
+		                    sim->contact_map_of[1][m] == x->body[1].stiffness)
 		         << m;
 	if (found)
-		return &sim->press[__builtin_ctz(found)];
-	int m = sim->press_next;
-	sim->press_next = (m + 1) % POUND_PRESS_MAPS;
+		return &sim->own_maps[__builtin_ctz(found)];
+	int m = sim->contact_map_next;
+	sim->contact_map_next = (m + 1) % POUND_CONTACT_MAPS;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		sim->press_of[i][m] = x->body[i].stiffness;
-	sim->press[m].made = false;
-	return &sim->press[m];
+		sim->contact_map_of[i][m] = x->body[i].stiffness;
+	sim->own_maps[m].made = false;
+	return &sim->own_maps[m];
 }
 
 /* Contact on pieces that the bodies have not been pressed on since they entered them. */
-LANE_SHARED void press_enter(struct simulation *sim)
+LANE_SHARED void contact_maps_enter(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
 	const int b = sim->base, o = 1 - b;
-	struct pound_press *press = sim->press_now = press_find(sim);
-	if (!press->made) {
-		cell_fill(&press->cell, sim->task->accounted ? &press->ladder->work[POUND_PRESS_RUNGS] : NULL, sim);
-		press->made = true;
-		press->laddered = false;
+	struct pound_contact_maps *maps = sim->contact_maps = contact_maps_find(sim);
+	if (!maps->made) {
+		substep_fill(&maps->substep, sim->task->accounted ? &maps->doubled->work[POUND_DOUBLED_MAPS] : NULL,
+		             sim);
+		maps->made = true;
+		maps->has_doubled = false;
 	}
 	x->base_force = x->body[b].offset;
 	x->gap_force = x->body[1].offset - x->body[0].offset - x->body[o].stiffness * x->gap;
@@ -476,75 +480,75 @@ LANE_SHARED void press_enter(struct simulation *sim)
 	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 }
 
-/* Gives a copy of a simulation what maps of pressed contact that has, but for the ladder: it is still on its first pieces,
+/* Gives a copy of a simulation what maps of contact that has, but for the doubled maps: it is still on its first pieces,
  * so there is one pair of pieces at most that it has maps of. */
-static void press_copy(struct simulation *to, const struct simulation *from)
+static void contact_maps_copy(struct simulation *to, const struct simulation *from)
 {
-	if (!from->press_now)
+	if (!from->contact_maps)
 		return;
-	assert(from->press_now == &from->press[0]);
-	struct pound_press *press = to->press_now = &to->press[0];
-	press->cell = from->press[0].cell;
-	press->made = true;
-	press->laddered = false;
+	assert(from->contact_maps == &from->own_maps[0]);
+	struct pound_contact_maps *maps = to->contact_maps = &to->own_maps[0];
+	maps->substep = from->own_maps[0].substep;
+	maps->made = true;
+	maps->has_doubled = false;
 }
 
 /* Finds the map again that a copy goes on with. */
-static void press_resume(struct simulation *sim, enum pound_stage stage)
+static void contact_maps_resume(struct simulation *sim, enum pound_stage stage)
 {
-	struct pound_press *press = sim->press_now;
-	if (stage == STAGE_PRESS)
-		sim->pressed = &press->cell;
-	if (stage != STAGE_REST)
+	struct pound_contact_maps *maps = sim->contact_maps;
+	if (stage == STAGE_CONTACT)
+		sim->contact_map = &maps->substep;
+	if (stage != STAGE_SUSTAINED)
 		return;
-	ladder_fill(press->ladder, &press->cell, sim);
-	press->laddered = true;
-	sim->pressed = &press->ladder->rung[sim->rung];
+	doubled_fill(maps->doubled, &maps->substep, sim);
+	maps->has_doubled = true;
+	sim->contact_map = &maps->doubled->map[sim->doubled];
 }
 
-/* Gets everything ready for whole cells of pressed contact: the longest map over which nothing is known to happen.
+/* Gets everything ready for whole substeps of contact: the longest map over which nothing is known to happen.
  *
- * Given    sim    in contact, with whole cells left
- * Returns  value  STAGE_REST: sim->pressed is a rung of the ladder; STAGE_PRESS: it is a cell; STAGE_CHATTER: above 2^53
- *                 cells in an interval there is no end to them
+ * Given    sim    in contact, with whole substeps left
+ * Returns  value  STAGE_SUSTAINED: sim->contact_map is a doubled map; STAGE_CONTACT: it is a substep; STAGE_CHATTER: above 2^53
+ *                 substeps in an interval there is no end to them
  */
-static enum pound_stage press_ready(struct simulation *sim)
+static enum pound_stage contact_ready(struct simulation *sim)
 {
 	if (++sim->steps > POUND_STEPS_LIMIT)
 		return STAGE_CHATTER;
-	if (!sim->press_now)
-		press_enter(sim);
-	struct pound_press *press = sim->press_now;
-	if (sim->rung_ratio > 0) {
-		sim->x.rounds = sim->rung_ratio; // a rung goes as far as the next longer one
-		sim->pressed = sim->rungs > 0 ? rung_longest(sim, press) : NULL;
-		if (sim->pressed)
-			return STAGE_REST;
+	if (!sim->contact_maps)
+		contact_maps_enter(sim);
+	struct pound_contact_maps *maps = sim->contact_maps;
+	if (sim->doubled_ratio > 0) {
+		sim->x.rounds = sim->doubled_ratio; // a doubled map goes as far as the next longer one
+		sim->contact_map = sim->n_doubled > 0 ? doubled_longest(sim, maps) : NULL;
+		if (sim->contact_map)
+			return STAGE_SUSTAINED;
 	}
-	sim->pressed = &press->cell;
-	return STAGE_PRESS;
+	sim->contact_map = &maps->substep;
+	return STAGE_CONTACT;
 }
 
-/* Accounts for the energy of cells that a simulation went over.
+/* Accounts for the energy of substeps that a simulation went over.
  *
  * Given    sim     its map and interval
  *          x, end  inputs of the map, and the state behind it
- *          ground  acceleration at the start [m/s2];  rise: its growth over one cell
+ *          ground  acceleration at the start [m/s2];  rise: its growth over one substep
  * Returns  sim     work, as energy.inl adds it: the ground's is -m (a (u1 - u0) + d (u1 - mean u)), with a growing by d
  */
-static void press_work(struct simulation *sim, const double x[N], const double end[4], double ground,
-                       double rise)
+static void contact_work(struct simulation *sim, const double x[N], const double end[4], double ground,
+                         double rise)
 {
 	struct state_rows *r = &sim->x;
-	const struct pound_press_map *map = sim->pressed;
-	const struct pound_press *press = sim->press_now;
-	const struct pound_press_work *work =
-	    &press->ladder->work[map == &press->cell ? POUND_PRESS_RUNGS : sim->rung];
-	const double cells = map->row[PRESS_SPLIT][SPLIT_CELLS], grown = rise * cells;
+	const struct pound_contact_map *map = sim->contact_map;
+	const struct pound_contact_maps *maps = sim->contact_maps;
+	const struct pound_contact_work *work =
+	    &maps->doubled->work[map == &maps->substep ? POUND_DOUBLED_MAPS : sim->doubled];
+	const double substeps = map->row[CONTACT_SPLIT][SPLIT_SUBSTEPS], grown = rise * substeps;
 	const int b = sim->base, o = 1 - b;
 	const double mass[2] = {1, r->right_mass};
 	double mean = row_at(work->mean_base, x), mean_p = row_at(work->mean_overlap, x);
-	const double *split = map->row[PRESS_SPLIT];
+	const double *split = map->row[CONTACT_SPLIT];
 	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
 	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
 	const double off[N] = {x[0], x[1], x[2] - yield_of(split) * pull, x[3], x[4], x[5], x[6], x[7]};

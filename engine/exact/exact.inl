@@ -1,7 +1,7 @@
 /* exact.inl - the exact event-driven march, many simulations side by side in lanes.
  *
  * Between events a pair of oscillators is linear and the ground motion a straight line, so:
- * 1. whole samples apart, eight of them before their proofs, and whole cells of contact, go by precomputed exact maps,
+ * 1. whole samples apart, eight of them before their proofs, and whole substeps of contact, go by precomputed exact maps,
  *    where a bound proves that nothing lies inside (free_motion.inl);
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (step.inl);
  * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
@@ -13,7 +13,7 @@
  * 6. simulations of one scene, of laws of one piece, make their maps once, and their constants stay in lanes from batch to
  *    batch;
  * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (shared_start.inl);
- * 8. one that is observed goes through the same steps, and stops at every event and, in pressed contact, at every sample.
+ * 8. one that is observed goes through the same steps, and stops at every event and, in going contact, at every sample.
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/exact/task.h"
 
@@ -40,7 +40,7 @@ enum {
 // clang-format on
 
 enum {
-	PRESS_ROUNDS = 2, /* moves of pressed contact before it is asked who is left: no branch foresees that */
+	CONTACT_ROUNDS = 2, /* moves of going contact before it is asked who is left: no branch foresees that */
 };
 
 /* ---- whole samples apart ---- */
@@ -199,14 +199,14 @@ LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_
 		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
 	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0)));
 	unsigned met = batch_lanes(b) & ~there & ~on,
-	         parting = scope.edged ? met & batch_parting(b, vmask(ahead.edged)) : 0;
-	met &= ~parting;
+	         leaving = scope.edged ? met & batch_leaving(b, vmask(ahead.edged)) : 0;
+	met &= ~leaving;
 	while (met) {
 		struct simulation *sim = b->sim[lane_next(&met)];
 		send(work, sim, simulation_meet(sim));
 	}
-	while (parting)
-		part(work, b->sim[lane_next(&parting)], stage);
+	while (leaving)
+		member_leave(work, b->sim[lane_next(&leaving)], stage);
 	while (on)
 		push(&work->queues[stage], b->sim[lane_next(&on)]);
 	while (there) {
@@ -233,22 +233,22 @@ LANE_INLINE void fly(struct work *work, struct batch *b, enum pound_stage stage,
 	while (common && batch_again(work, b));
 }
 
-/* ---- whole cells of contact ---- */
+/* ---- whole substeps of contact ---- */
 
-/* Accounts for the energy of the lanes that went over a map of some cells. */
-static void press_account(const struct batch *b, const struct lanes *g, const struct pressed *from,
-                          const struct pressed *to, vd cells, unsigned pressed)
+/* Accounts for the energy of the lanes that went over a map of some substeps. */
+static void contact_account(const struct batch *b, const struct lanes *g, const struct contact_state *from,
+                            const struct contact_state *to, vd substeps, unsigned going)
 {
-	vd inputs[POUND_PRESS_INPUTS];
-	press_inputs(inputs, g, from, from->rise * cells);
-	while (pressed) {
-		int l = lane_next(&pressed);
-		double x[POUND_PRESS_INPUTS], end[4];
-		for (int j = 0; j < POUND_PRESS_INPUTS; j++)
+	vd inputs[POUND_CONTACT_INPUTS];
+	contact_inputs(inputs, g, from, from->rise * substeps);
+	while (going) {
+		int l = lane_next(&going);
+		double x[POUND_CONTACT_INPUTS], end[4];
+		for (int j = 0; j < POUND_CONTACT_INPUTS; j++)
 			x[j] = ((const double *)&inputs[j])[l];
 		for (int j = 0; j < 4; j++)
 			end[j] = ((const double *)&to->x[j])[l];
-		press_work(b->sim[l], x, end, ((const double *)&from->ground)[l], ((const double *)&from->rise)[l]);
+		contact_work(b->sim[l], x, end, ((const double *)&from->ground)[l], ((const double *)&from->rise)[l]);
 	}
 }
 
@@ -282,59 +282,60 @@ LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
 
 /* Lanes at a sample enter the next interval.
  *
- * Given    share  of an interval that a cell is
+ * Given    share  of an interval that a substep is
  */
-LANE_INLINE void samples_next(struct samples *s, struct pressed *x, vm entering, vd cells, vd share)
+LANE_INLINE void samples_next(struct samples *s, struct contact_state *x, vm entering, vd substeps, vd share)
 {
 	vd left = x->left - vsplat(1), rise = (s->next - s->ground) * share;
 	x->ground = vselect(entering, s->ground, x->ground);
 	x->rise = vselect(entering, rise, x->rise);
-	x->cells = vselect(entering, cells, x->cells);
+	x->substeps = vselect(entering, substeps, x->substeps);
 	x->left = vselect(entering, left, x->left);
 	s->ground = vselect(entering, s->next, s->ground);
 	s->at = vnext(entering & vless(vsplat(0), left), s->at);
 	s->next = vgather(s->at);
 }
 
-/* Lanes that keep their rung: it has room before the next sample, and none longer has behind the one just entered. */
-LANE_INLINE vm rest_stays(const struct press *s, vm entered)
+/* Lanes that keep their doubled map: it has room before the next sample, and none longer has behind the one just entered. */
+LANE_INLINE vm doubled_stays(const struct contact_lanes *s, vm entered)
 {
-	vd cells = s->rest[PRESS_SPLIT][SPLIT_CELLS];
-	return ~vless(s->at.cells, cells) & ~(entered & vless(cells, s->at.cells));
+	vd substeps = s->doubled[CONTACT_SPLIT][SPLIT_SUBSTEPS];
+	return ~vless(s->at.substeps, substeps) & ~(entered & vless(substeps, s->at.substeps));
 }
 
 /* Carries one row of the maps into lanes: of one map, where it is common to all. */
-LANE_INLINE void press_map_row(vd row[POUND_PRESS_INPUTS], const double *const map[W], int r, bool common)
+LANE_INLINE void contact_row_load(vd row[POUND_CONTACT_INPUTS], const double *const map[W], int r,
+                                  bool common)
 {
 	if (!common) {
-		rows_load(row, map, r * POUND_PRESS_INPUTS);
+		rows_load(row, map, r * POUND_CONTACT_INPUTS);
 		return;
 	}
-	for (int j = 0; j < POUND_PRESS_INPUTS; j++)
-		row[j] = vsplat(map[0][r * POUND_PRESS_INPUTS + j]);
+	for (int j = 0; j < POUND_CONTACT_INPUTS; j++)
+		row[j] = vsplat(map[0][r * POUND_CONTACT_INPUTS + j]);
 }
 
-/* Carries the maps into lanes: of a cell, or of a rung. */
-LANE_INLINE void press_maps(struct press *s, const struct lanes *g, const double *const map[W],
-                            enum pound_stage stage, bool common)
+/* Carries the maps into lanes: of a substep, or of a doubled map. */
+LANE_INLINE void contact_maps_load(struct contact_lanes *s, const struct lanes *g, const double *const map[W],
+                                   enum pound_stage stage, bool common)
 {
-	vd row[POUND_PRESS_INPUTS];
-	for (int r = 0; r <= PRESS_IMPULSE; r++) {
-		press_map_row(row, map, r, common);
+	vd row[POUND_CONTACT_INPUTS];
+	for (int r = 0; r <= CONTACT_IMPULSE; r++) {
+		contact_row_load(row, map, r, common);
 		s->moved[r] = form_of(row, g, false);
 	}
-	if (stage == STAGE_REST) {
-		for (int r = REST_ERROR; r < REST_ROWS; r++)
-			rows_load(s->rest[r], map, r * POUND_PRESS_INPUTS);
+	if (stage == STAGE_SUSTAINED) {
+		for (int r = DOUBLED_ERROR; r < CONTACT_MAP_ROWS; r++)
+			rows_load(s->doubled[r], map, r * POUND_CONTACT_INPUTS);
 		return;
 	}
-	press_map_row(row, map, PRESS_ERROR, common);
+	contact_row_load(row, map, CONTACT_ERROR, common);
 	s->error = form_of(row, g, true);
 }
 
 /* Given    g, s  what does not change meanwhile, and of g the row PRESS */
-LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum pound_stage stage,
-                             struct lanes *g, struct press *s, struct scope scope)
+LANE_INLINE void contact_batch(struct work *work, const struct batch *b, enum pound_stage stage,
+                               struct lanes *g, struct contact_lanes *s, struct scope scope)
 {
 	const bool edged = scope.edged, seldom = scope.seldom;
 	scope.forced = b->traits & TRAIT_FORCED;
@@ -344,50 +345,51 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 	s->alike = seldom ? batch_trait(b, TRAIT_ALIKE) : vmask(0);
 	const vm accounted = seldom ? batch_trait(b, TRAIT_ACCOUNTED) : vmask(0);
 	const vm watched = seldom ? batch_trait(b, TRAIT_OBSERVED) : vmask(0);
-	const vd before = g->pressed;
-	vd zero = vsplat(0), one = vsplat(1), share = one / g->cells_whole, behind;
+	const vd before = g->substeps_done;
+	vd zero = vsplat(0), one = vsplat(1), share = one / g->substeps_per_sample, behind;
 	struct samples samples = samples_of(b, &behind);
-	press_load(s, g, (samples.ground - samples.before) * share, behind, &scope);
-	const vd rounds = s->at.rounds, cells = stage == STAGE_REST ? s->rest[PRESS_SPLIT][SPLIT_CELLS] : one;
-	vm pressed = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
+	contact_load(s, g, (samples.ground - samples.before) * share, behind, &scope);
+	const vd rounds = s->at.rounds,
+	         substeps = stage == STAGE_SUSTAINED ? s->doubled[CONTACT_SPLIT][SPLIT_SUBSTEPS] : one;
+	vm going = vmask(batch_lanes(b)), ended = vmask(0), refused = vmask(0), gone = vmask(0);
 	vm decided = vmask(0);
 	int few = b->n / 2;
 	do {
-		_Pragma("GCC unroll 1") for (int round = 0; round < PRESS_ROUNDS; round++)
+		_Pragma("GCC unroll 1") for (int round = 0; round < CONTACT_ROUNDS; round++)
 		{
-			struct pressed from;
+			struct contact_state from;
 			if (seldom)
 				from = s->at;
-			vm edge, risk = stage == STAGE_REST ? rest(g, s, &scope, pressed, &edge)
-			                                    : press(g, s, &scope, pressed, &edge);
-			refused |= risk & pressed;
+			vm edge, risk = stage == STAGE_SUSTAINED ? sustained_contact(g, s, &scope, going, &edge)
+			                                         : contact_substep(g, s, &scope, going, &edge);
+			refused |= risk & going;
 			if (edged)
-				decided |= edge & pressed;
-			pressed &= ~risk;
+				decided |= edge & going;
+			going &= ~risk;
 			if (seldom)
-				press_account(b, g, &from, &s->at, cells, vbits(pressed & accounted));
-			vm sampled = vequal(s->at.cells, zero), last = vequal(s->at.left, zero);
-			ended |= sampled & last & pressed;
+				contact_account(b, g, &from, &s->at, substeps, vbits(going & accounted));
+			vm sampled = vequal(s->at.substeps, zero), last = vequal(s->at.left, zero);
+			ended |= sampled & last & going;
 			vm entered = sampled & ~last;
-			samples_next(&samples, &s->at, entered, g->cells_whole, share);
-			s->at.rounds = vselect(pressed, s->at.rounds - one, s->at.rounds);
-			gone |= vequal(s->at.rounds, zero) & pressed;
-			pressed &= ~ended & ~gone;
+			samples_next(&samples, &s->at, entered, g->substeps_per_sample, share);
+			s->at.rounds = vselect(going, s->at.rounds - one, s->at.rounds);
+			gone |= vequal(s->at.rounds, zero) & going;
+			going &= ~ended & ~gone;
 			if (seldom) // a sample is an instant
-				pressed &= ~(entered & watched);
-			if (stage == STAGE_REST)
-				pressed &= rest_stays(s, entered);
+				going &= ~(entered & watched);
+			if (stage == STAGE_SUSTAINED)
+				going &= doubled_stays(s, entered);
 		}
-	} while (__builtin_popcount(vbits(pressed)) > few);
-	press_store(&s->at, g);
-	g->pressed = vfma(rounds - s->at.rounds, cells, g->pressed);
+	} while (__builtin_popcount(vbits(going)) > few);
+	contact_store(&s->at, g);
+	g->substeps_done = vfma(rounds - s->at.rounds, substeps, g->substeps_done);
 	lanes_empty(g, b, ROW_STATE);
 	lanes_empty(g, b, ROW_STEP);
-	lanes_empty(g, b, ROW_PRESS);
-	double left[W], cells_gone[W];
+	lanes_empty(g, b, ROW_CONTACT);
+	double left[W], substeps_gone[W];
 	lanes_store(left, s->at.left);
 	if (seldom)
-		lanes_store(cells_gone, g->pressed - before);
+		lanes_store(substeps_gone, g->substeps_done - before);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
 		int64_t next = sim->last - (int64_t)left[l];
@@ -396,64 +398,65 @@ LANE_INLINE void press_batch(struct work *work, const struct batch *b, enum poun
 		interval_set(sim, next);
 		if (!seldom || !observed(sim))
 			continue;
-		sim->unobserved += cells_gone[l] * sim->x.cell;
+		sim->unobserved += substeps_gone[l] * sim->x.substep;
 		if (entered)
 			simulation_observe(sim, next - 1);
 	}
-	unsigned stays = vbits(pressed), ends = vbits(ended), parting = edged ? batch_parting(b, decided) : 0;
-	unsigned turns = batch_lanes(b) & ~stays & ~ends & ~parting;
-	while (parting)
-		part(work, b->sim[lane_next(&parting)], stage);
+	unsigned stays = vbits(going), ends = vbits(ended), leaving = edged ? batch_leaving(b, decided) : 0;
+	unsigned turns = batch_lanes(b) & ~stays & ~ends & ~leaving;
+	while (leaving)
+		member_leave(work, b->sim[lane_next(&leaving)], stage);
 	while (stays)
 		push(&work->queues[stage], b->sim[lane_next(&stays)]);
 	while (turns) {
 		int l = lane_next(&turns);
 		struct simulation *sim = b->sim[l];
-		send(work, sim, simulation_pressed(sim, stage, vbits(refused) >> l & 1, vbits(gone) >> l & 1));
+		send(work, sim, simulation_after_contact(sim, stage, vbits(refused) >> l & 1, vbits(gone) >> l & 1));
 	}
 	while (ends)
 		finish(work, b->sim[lane_next(&ends)], STAGE_END);
 }
 
-LANE_INLINE void press_on(struct work *work, struct batch *b, enum pound_stage stage, struct scope scope)
+LANE_INLINE void contact_run(struct work *work, struct batch *b, enum pound_stage stage, struct scope scope)
 {
 	struct lanes g;
-	struct press s;
+	struct contact_lanes s;
 	const struct state_rows *shared = scope.common ? &work->common.x : NULL;
 	lanes_constant(&g, b, shared, ROW_PAIR);
-	lanes_fill(&g, b, ROW_PRESS);
+	lanes_fill(&g, b, ROW_CONTACT);
 	if (scope.edged) {
 		lanes_constant(&g, b, shared, ROW_LEFT);
 		lanes_constant(&g, b, shared, ROW_RIGHT);
 	}
 	const double *map[W];
 	for (int l = 0; l < W; l++)
-		map[l] = b->sim[l]->pressed->row[0];
-	press_maps(&s, &g, map, stage, scope.common);
+		map[l] = b->sim[l]->contact_map->row[0];
+	contact_maps_load(&s, &g, map, stage, scope.common);
 	for (bool again = true; again;) {
-		press_batch(work, b, stage, &g, &s, scope);
+		contact_batch(work, b, stage, &g, &s, scope);
 		again = scope.common && batch_again(work, b);
 		if (again)
-			lanes_fill(&g, b, ROW_PRESS);
+			lanes_fill(&g, b, ROW_CONTACT);
 	}
 }
 
 /* What is asked for or happens seldom goes one way for all laws. */
-static void press_seldom(struct work *work, struct batch *b, enum pound_stage stage)
+static void contact_seldom(struct work *work, struct batch *b, enum pound_stage stage)
 {
 	const struct scope scope = {.edged = true, .seldom = true};
-	if (stage == STAGE_REST)
-		press_on(work, b, STAGE_REST, scope);
+	if (stage == STAGE_SUSTAINED)
+		contact_run(work, b, STAGE_SUSTAINED, scope);
 	else
-		press_on(work, b, STAGE_PRESS, scope);
+		contact_run(work, b, STAGE_CONTACT, scope);
 }
 
-LANE_INLINE void press_any(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
+LANE_INLINE void contact_any(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
 {
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_ALIKE | TRAIT_OBSERVED))
-		press_seldom(work, b, stage);
+		contact_seldom(work, b, stage);
 	else
-		press_on(work, b, stage, (struct scope){.edged = kind == KIND_EDGED, .common = kind == KIND_COMMON});
+		contact_run(work, b, stage,
+		            (struct scope){.edged = kind == KIND_EDGED, .common = kind == KIND_COMMON});
 }
 
 /* ---- one step up to an event ---- */
@@ -466,11 +469,11 @@ LANE_INLINE struct event_lanes event_lanes_of(const struct batch *b, enum pound_
 	                                  .right = b->traits & TRAIT_RIGHT,
 	                                  .forced = b->traits & TRAIT_FORCED},
 	                        .active = vmask(batch_lanes(b)),
-	                        .parted = vmask(0),
+	                        .released = vmask(0),
 	                        .fresh = vmask(0),
 	                        .decided = vmask(0)};
 	if (e.scope.forced)
-		batch_forces(b, &e.parted, &e.fresh);
+		batch_forces(b, &e.released, &e.fresh);
 	return e;
 }
 
@@ -492,7 +495,7 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 		turns = event_follow(g, &e, events);
 	double event[W], left[W], speed[W];
 	lanes_store(event, events);
-	lanes_store(left, vfma(g->cells, g->cell, g->part));
+	lanes_store(left, vfma(g->substeps, g->substep, g->remainder));
 	lanes_store(speed, g->q);
 	// the work done is kept of whole steps only, and an event is an instant
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_OBSERVED))
@@ -501,19 +504,19 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 		e.scope.touching = !e.scope.touching;
 		event_leap(g, &e, turns);
 	}
-	const unsigned parting = e.scope.edged ? batch_parting(b, e.decided) : 0;
-	batch_forget(b, parting, &work->filler);
+	const unsigned leaving = e.scope.edged ? batch_leaving(b, e.decided) : 0;
+	batch_forget(b, leaving, &work->filler);
 	lanes_empty(g, b, ROW_STATE);
 	lanes_empty(g, b, ROW_STEP);
 	if (accounted)
 		lanes_empty(g, b, ROW_WORK);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
-		if (parting >> l & 1) {
-			part(work, sim, stage);
+		if (leaving >> l & 1) {
+			member_leave(work, sim, stage);
 			continue;
 		}
-		sim->parted = vbits(e.parted) >> l & 1;
+		sim->released = vbits(e.released) >> l & 1;
 		sim->fresh = vbits(e.fresh) >> l & 1;
 		if (observed(sim))
 			sim->unobserved += sim->x.dt;
@@ -548,16 +551,16 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 		lanes_fill(&g, b, ROW_RIGHT);
 	event_leap(&g, &e, vmask(batch_lanes(b)));
 	// nothing is to be taken back: they have not moved
-	const unsigned parting = e.scope.edged ? batch_parting(b, e.decided) : 0;
+	const unsigned leaving = e.scope.edged ? batch_leaving(b, e.decided) : 0;
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
 	for (int l = 0; l < b->n; l++) {
 		struct simulation *sim = b->sim[l];
-		if (parting >> l & 1) {
-			part(work, sim, stage);
+		if (leaving >> l & 1) {
+			member_leave(work, sim, stage);
 			continue;
 		}
-		if (observed(sim) && sim->x.part == 0) // else it has stayed
+		if (observed(sim) && sim->x.remainder == 0) // else it has stayed
 			sim->unobserved += sim->x.dt;
 		send(work, sim, simulation_next(sim));
 	}
@@ -577,11 +580,11 @@ STEP(fly_alone_common, fly(work, b, STAGE_FLY_ALONE, KIND_COMMON))
 STEP(fly_apart, fly(work, b, STAGE_FLY_APART, KIND_PLAIN))
 STEP(fly_apart_edged, fly(work, b, STAGE_FLY_APART, KIND_EDGED))
 STEP(fly_apart_common, fly(work, b, STAGE_FLY_APART, KIND_COMMON))
-STEP(press_plain, press_any(work, b, STAGE_PRESS, KIND_PLAIN))
-STEP(press_edged, press_any(work, b, STAGE_PRESS, KIND_EDGED))
-STEP(press_common, press_any(work, b, STAGE_PRESS, KIND_COMMON))
-STEP(rest_plain, press_any(work, b, STAGE_REST, KIND_PLAIN))
-STEP(rest_edged, press_any(work, b, STAGE_REST, KIND_EDGED))
+STEP(contact_plain, contact_any(work, b, STAGE_CONTACT, KIND_PLAIN))
+STEP(contact_edged, contact_any(work, b, STAGE_CONTACT, KIND_EDGED))
+STEP(contact_common, contact_any(work, b, STAGE_CONTACT, KIND_COMMON))
+STEP(sustained_plain, contact_any(work, b, STAGE_SUSTAINED, KIND_PLAIN))
+STEP(sustained_edged, contact_any(work, b, STAGE_SUSTAINED, KIND_EDGED))
 STEP(step_alone, step(work, b, STAGE_ALONE, KIND_EDGED))
 STEP(step_apart, step(work, b, STAGE_APART, KIND_EDGED))
 STEP(step_apart_common, step(work, b, STAGE_APART, KIND_COMMON))
@@ -593,8 +596,8 @@ STEP(leap_apart, leap(work, b, STAGE_LEAP_APART))
 static void (*const steps[STAGES][KINDS])(struct work *, struct batch *) = {
     [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged, fly_alone_common},
     [STAGE_FLY_APART] = {fly_apart, fly_apart_edged, fly_apart_common},
-    [STAGE_PRESS] = {press_plain, press_edged, press_common},
-    [STAGE_REST] = {rest_plain, rest_edged, rest_plain},
+    [STAGE_CONTACT] = {contact_plain, contact_edged, contact_common},
+    [STAGE_SUSTAINED] = {sustained_plain, sustained_edged, sustained_plain},
     [STAGE_ALONE] = {step_alone, step_alone, step_alone},
     [STAGE_APART] = {step_apart, step_apart, step_apart_common},
     [STAGE_CLEAR] = {step_apart, step_apart, step_apart_common},

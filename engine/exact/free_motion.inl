@@ -1,6 +1,6 @@
-/* free_motion.inl - whole samples apart and whole cells of contact, by precomputed exact maps.
+/* free_motion.inl - whole samples apart and whole substeps of contact, by precomputed exact maps.
  *
- * Included by exact.inl, once per lane count, and by its test.  A map takes a simulation over its sample or cell at once; the
+ * Included by exact.inl, once per lane count, and by its test.  A map takes a simulation over its sample or substep at once; the
  * cubic through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
  * edge of a law, no new largest displacement.  A lane in which it cannot prove that stays in front of it; but a sample that
  * may hold nothing but a largest displacement is flown over, and noted.
@@ -74,7 +74,7 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 	map->ef = quartic * h * fmax(s.bend_a, s.bend_d) + rounding * h * h;
 }
 
-/* a body's motion over a sample or cell: its end, the inner control points of the cubic, and the bound of its error */
+/* a body's motion over a sample or substep: its end, the inner control points of the cubic, and the bound of its error */
 struct flight {
 	vd u, v, b1, b2, error;
 };
@@ -147,7 +147,7 @@ struct edges {
 	vd low, high, direction;
 };
 
-/* How far a body may go inside a sample or cell, apart from its ends. */
+/* How far a body may go inside a sample or substep, apart from its ends. */
 LANE_INLINE vd flight_reach(const struct flight *f)
 {
 	return vmax(vabs(f->b1), vabs(f->b2)) + f->error;
@@ -162,7 +162,7 @@ LANE_INLINE vm flight_peaks(const struct flight *f, vd top)
 	return vless(vmax(top, vabs(f->u)), flight_reach(f));
 }
 
-/* How far a third of a sample or cell takes a body one way at least, by its velocity anywhere inside.
+/* How far a third of a sample or substep takes a body one way at least, by its velocity anywhere inside.
  *
  * Given    v    velocity at the start;  f: the flight from there
  *          way  +1, -1
@@ -284,12 +284,12 @@ LANE_INLINE void stretch_keep(struct lanes *g, const struct stretch *s, int r, v
 	}
 }
 
-/* ---- pressed contact ---- */
+/* ---- contact ---- */
 
-/* how far pressed contact has come: base u, v, overlap p, q; largest displacements of the base and the other body; maps
+/* how far contact has come: base u, v, overlap p, q; largest displacements of the base and the other body; maps
  * until another is asked for; samples behind the interval */
-struct pressed {
-	vd x[4], top[2], impulse, ground, rise, cells, rounds, left;
+struct contact_state {
+	vd x[4], top[2], impulse, ground, rise, substeps, rounds, left;
 };
 
 /* a linear form of the state, the ground motion, its growth over the map, and 1 */
@@ -298,20 +298,20 @@ struct form {
 };
 
 /* the base body and the overlap in lanes, and the map of either */
-struct press {
-	struct pressed at;
+struct contact_lanes {
+	struct contact_state at;
 	struct edges base, other; /* where a lane has a law of more than one piece */
-	struct form moved[PRESS_IMPULSE + 1];
-	struct form error;                      /* of a cell, of the magnitudes */
-	vm alike;                               /* lanes of TRAIT_ALIKE */
-	vd rest[REST_ROWS][POUND_PRESS_INPUTS]; /* of a rung: its bounds and how it is split */
+	struct form moved[CONTACT_IMPULSE + 1];
+	struct form error;                                  /* of a substep, of the magnitudes */
+	vm alike;                                           /* lanes of TRAIT_ALIKE */
+	vd doubled[CONTACT_MAP_ROWS][POUND_CONTACT_INPUTS]; /* of a doubled map: its bounds and how it is split */
 };
 
 /* The form that a row of a map is of the state and the ground motion.
  *
  * Given    magnitudes  the row is one of these
  */
-LANE_INLINE struct form form_of(const vd row[POUND_PRESS_INPUTS], const struct lanes *g, bool magnitudes)
+LANE_INLINE struct form form_of(const vd row[POUND_CONTACT_INPUTS], const struct lanes *g, bool magnitudes)
 {
 	vd force[2] = {g->base_force, g->gap_force}, drive[2] = {g->base_drive, g->gap_drive};
 	for (int i = 0; i < 2 && magnitudes; i++)
@@ -329,15 +329,15 @@ LANE_INLINE vd form_at(const struct form *f, const vd x[4], vd ground, vd rise)
 }
 
 /* A row of a map applied to its inputs. */
-LANE_INLINE vd press_row(const vd row[POUND_PRESS_INPUTS], const vd x[POUND_PRESS_INPUTS])
+LANE_INLINE vd contact_row(const vd row[POUND_CONTACT_INPUTS], const vd x[POUND_CONTACT_INPUTS])
 {
 	vd slow = vfma(row[6], x[6], row[7] * x[7]), force = vfma(row[4], x[4], row[5] * x[5]);
 	return vfma(row[0], x[0], vfma(row[1], x[1], slow)) + vfma(row[2], x[2], vfma(row[3], x[3], force));
 }
 
-/* The inputs of a map over some cells: the state, the forcing of base and overlap, and its growth. */
-LANE_INLINE void press_inputs(vd x[POUND_PRESS_INPUTS], const struct lanes *g, const struct pressed *at,
-                              vd rise)
+/* The inputs of a map over some substeps: the state, the forcing of base and overlap, and its growth. */
+LANE_INLINE void contact_inputs(vd x[POUND_CONTACT_INPUTS], const struct lanes *g,
+                                const struct contact_state *at, vd rise)
 {
 	for (int j = 0; j < 4; j++)
 		x[j] = at->x[j];
@@ -351,23 +351,23 @@ LANE_INLINE void press_inputs(vd x[POUND_PRESS_INPUTS], const struct lanes *g, c
  *
  * Given    off  side * gap
  */
-LANE_INLINE vd press_other(vd base, vd overlap, vd side, vd off)
+LANE_INLINE vd other_body(vd base, vd overlap, vd side, vd off)
 {
 	return base - vfma(side, overlap, off);
 }
 
-/* Moves lanes over some cells. */
-LANE_INLINE void press_move(const struct lanes *g, struct press *s, const vd end[4], vd cells, vd rise,
-                            vm moves)
+/* Moves lanes over some substeps. */
+LANE_INLINE void contact_move(const struct lanes *g, struct contact_lanes *s, const vd end[4], vd substeps,
+                              vd rise, vm moves)
 {
-	struct pressed *at = &s->at;
-	at->impulse =
-	    vselect(moves, at->impulse + form_at(&s->moved[PRESS_IMPULSE], at->x, at->ground, rise), at->impulse);
+	struct contact_state *at = &s->at;
+	at->impulse = vselect(moves, at->impulse + form_at(&s->moved[CONTACT_IMPULSE], at->x, at->ground, rise),
+	                      at->impulse);
 	at->ground = vselect(moves, at->ground + rise, at->ground);
-	at->cells = vselect(moves, at->cells - cells, at->cells);
+	at->substeps = vselect(moves, at->substeps - substeps, at->substeps);
 	at->top[0] = vselect(moves, vmax(at->top[0], vabs(end[0])), at->top[0]);
-	at->top[1] = vselect(
-	    moves, vmax(at->top[1], vabs(press_other(end[0], end[2], g->side, g->side * g->gap))), at->top[1]);
+	at->top[1] = vselect(moves, vmax(at->top[1], vabs(other_body(end[0], end[2], g->side, g->side * g->gap))),
+	                     at->top[1]);
 	for (int j = 0; j < 4; j++)
 		at->x[j] = vselect(moves, end[j], at->x[j]);
 }
@@ -376,7 +376,7 @@ LANE_INLINE void press_move(const struct lanes *g, struct press *s, const vd end
  *
  * Given    p, q  overlap and its rate
  */
-LANE_INLINE vm press_still(const struct press *s, vd p, vd q)
+LANE_INLINE vm contact_still(const struct contact_lanes *s, vd p, vd q)
 {
 	return s->alike & vequal(p, vsplat(0)) & vequal(q, vsplat(0));
 }
@@ -386,35 +386,36 @@ LANE_INLINE vm press_still(const struct press *s, vd p, vd q)
  * Given    bound  magnitudes of the state;  error  of both cubics
  * Returns  end    0 where nothing is left;  value  error of the overlap's cubic: there, by its own columns alone
  */
-LANE_INLINE vd press_fades(const struct lanes *g, const struct press *s, const vd bound[4], vd error,
-                           vd end[4])
+LANE_INLINE vd contact_fades(const struct lanes *g, const struct contact_lanes *s, const vd bound[4],
+                             vd error, vd end[4])
 {
 	vd own = vfma(s->error.x[2], bound[2], s->error.x[3] * bound[3]);
-	vm over = s->alike & vless(vmax(vabs(end[2]), vabs(end[3]) * g->cell), vsplat(POUND_AT_REST));
+	vm over = s->alike & vless(vmax(vabs(end[2]), vabs(end[3]) * g->substep), vsplat(POUND_AT_REST));
 	for (int j = 2; j < 4; j++)
 		end[j] = vselect(over, vsplat(0), end[j]);
 	return vselect(s->alike, own, error);
 }
 
-/* One cell of pressed contact.
+/* One substep of contact.
  *
  * Given    going   lanes that are to go on
- * Returns  s       those of them in which nothing can happen, at the end of the cell
+ * Returns  s       those of them in which nothing can happen, at the end of the substep
  *          edge    lanes in which an edge of a piece may be reached
  *          value   those, and others in which something may happen inside it
  */
-LANE_INLINE vm press(const struct lanes *g, struct press *s, const struct scope *scope, vm going, vm *edge)
+LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, const struct scope *scope,
+                               vm going, vm *edge)
 {
-	vd zero = vsplat(0), third = g->cell * vsplat(1.0 / 3), end[4], bound[4];
+	vd zero = vsplat(0), third = g->substep * vsplat(1.0 / 3), end[4], bound[4];
 	const vd *x = s->at.x, ground = s->at.ground, rise = s->at.rise;
 	const vd *top = s->at.top;
 	for (int j = 0; j < 4; j++) {
 		bound[j] = vabs(x[j]);
-		end[j] = x[j] + form_at(&s->moved[PRESS_U + j], x, ground, rise);
+		end[j] = x[j] + form_at(&s->moved[CONTACT_U + j], x, ground, rise);
 	}
 	vd error = form_at(&s->error, bound, vabs(ground), vabs(rise)), error_overlap = error;
 	if (scope->seldom)
-		error_overlap = press_fades(g, s, bound, error, end);
+		error_overlap = contact_fades(g, s, bound, error, end);
 	struct flight b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
 	b.b1 = vfma(third, x[1], x[0]);
 	b.b2 = vfma(-third, b.v, b.u);
@@ -431,12 +432,12 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, const struct scope 
 		risk |= ~vless(zero, force) & vless(zero, g->release);
 	}
 	if (scope->seldom)
-		risk &= ~press_still(s, end[2], end[3]);
+		risk &= ~contact_still(s, end[2], end[3]);
 	vd side = g->side, off = side * g->gap, v = x[1] - side * x[3];
-	struct flight o = {.u = press_other(b.u, p.u, side, off),
+	struct flight o = {.u = other_body(b.u, p.u, side, off),
 	                   .v = b.v - side * p.v,
-	                   .b1 = press_other(b.b1, p.b1, side, off),
-	                   .b2 = press_other(b.b2, p.b2, side, off)};
+	                   .b1 = other_body(b.b1, p.b1, side, off),
+	                   .b2 = other_body(b.b2, p.b2, side, off)};
 	// the magnitudes it is made of are those of base, overlap and gap
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	*edge = vmask(0);
@@ -453,76 +454,79 @@ LANE_INLINE vm press(const struct lanes *g, struct press *s, const struct scope 
 		risk |= flight_peaks(&l, vselect(left, top[0], top[1]));
 	}
 	risk |= *edge;
-	press_move(g, s, end, vsplat(1), rise, going & ~risk);
+	contact_move(g, s, end, vsplat(1), rise, going & ~risk);
 	return risk;
 }
 
-/* What the bounds of a rung make of the roundings of a body that stands, over where it is: a few dozen.  Less than this is no
+/* What the bounds of a doubled map make of the roundings of a body that stands, over where it is: a few dozen.  Less than this is no
  * motion, and none is looked for. */
-static const double REST_ROUNDING = 64 * DBL_EPSILON;
+static const double SUSTAINED_ROUNDING = 64 * DBL_EPSILON;
 
-/* Lanes in which a body's velocity keeps its sign over many cells, but for times in which it goes back by less than the rounding
+/* Lanes in which a body's velocity keeps its sign over many substeps, but for times in which it goes back by less than the rounding
  * of where it is: pressed from rest by a load that grows, it stands still once in every swing, and rounding would decide.
  *
- * All rates are times a third of the rung.  Where the swing is ahead of the slow motion by a small share of itself it is so for
+ * All rates are times a third of the doubled map.  Where the swing is ahead of the slow motion by a small share of itself it is so for
  * 2 acos(1 - share) of its radians, for a share up to 1 at most pi share^1/2.
  *
  * Given    along   of the slow motion, at least;  swing: of the swing, at most;  error: of both
- *          radian  time of the swing's radian, over a third of the rung
+ *          radian  time of the swing's radian, over a third of the doubled map
  *          where   magnitude of its displacement
  */
-LANE_INLINE vm rest_steady(vd along, vd swing, vd error, vd radian, vd where)
+LANE_INLINE vm sustained_steady(vd along, vd swing, vd error, vd radian, vd where)
 {
 	vd zero = vsplat(0), ahead = (swing + error) - along;
 	vd back = ahead * vsqrt(ahead / swing) * (vsplat(3.15) * radian);
-	return vless(ahead, zero) | (~vless(along, error) & vless(back, vsplat(REST_ROUNDING) * where));
+	return vless(ahead, zero) | (~vless(along, error) & vless(back, vsplat(SUSTAINED_ROUNDING) * where));
 }
 
-/* Lanes in which a body may have a new largest displacement over many cells.
+/* Lanes in which a body may have a new largest displacement over many substeps.
  *
  * Given    u, end     at both ends
  *          low, high  its motion lies between, by the cubic of the slow part of it
- *          steady     lanes of rest_steady(): nothing lies beyond the ends
+ *          steady     lanes of sustained_steady(): nothing lies beyond the ends
  */
-LANE_INLINE vm rest_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
+LANE_INLINE vm sustained_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 {
 	vd most = vmax(vmax(vabs(u), vabs(end)), top);
-	return vless(most, vfma(vsplat(-REST_ROUNDING), most, vmax(high, -low))) & ~steady;
+	return vless(most, vfma(vsplat(-SUSTAINED_ROUNDING), most, vmax(high, -low))) & ~steady;
 }
 
 /* Lanes in which an edge of its piece may be reached.
  *
  * A body that creeps goes less far than the rounding of where it is: no bound of its velocity could show that it goes on, so that
  * none is asked for, and at the end of its piece it may be beyond by as much.  Its velocity at the start still counts: who
- * goes back where a piece only goes on must leave that now, however slowly it goes, or what it goes adds up from rung to
- * rung.
+ * goes back where a piece only goes on must leave that now, however slowly it goes, or what it goes adds up from doubled map to
+ * doubled map.
  *
  * Given    speed  its velocity at the start, or any multiple of it
  */
-LANE_INLINE vm rest_edges(vd end, vd low, vd high, vd speed, vm steady, const struct edges *x)
+LANE_INLINE vm sustained_edges(vd end, vd low, vd high, vd speed, vm steady, const struct edges *x)
 {
-	vd slack = vsplat(REST_ROUNDING) * vabs(end), most = x->high + slack, least = x->low - slack;
+	vd slack = vsplat(SUSTAINED_ROUNDING) * vabs(end), most = x->high + slack, least = x->low - slack;
 	vm creeps = ~vless(2.0 * slack, high - low);
 	vm inside = vless(most, high) | vless(low, least) | ~vequal(x->direction, vsplat(0));
 	return (inside & ~steady & ~creeps) | vless(most, end) | vless(end, least) |
 	       vless(x->direction * speed, vsplat(0));
 }
 
-/* Many cells of pressed contact, in which it may swing often, by a rung of the ladder: see rest_fill in contact_map.inl.
+/* Many substeps of contact, in which it may swing often, by a doubled map: see doubled_bounds in contact_map.inl.
  *
  * Given    going  lanes that are to go on
  * Returns  s      those of them in which nothing can happen, at their end
  *          edge   lanes in which an edge of a piece may be reached
  *          value  those, and others in which something may happen meanwhile
  */
-LANE_INLINE vm rest(const struct lanes *g, struct press *s, const struct scope *scope, vm going, vm *edge)
+LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s, const struct scope *scope,
+                                 vm going, vm *edge)
 {
-	const vd *split = s->rest[PRESS_SPLIT];
-	vd x[POUND_PRESS_INPUTS], zero = vsplat(0), one = vsplat(1), bound[POUND_PRESS_INPUTS], end[4], gone[4];
-	vd cells = split[SPLIT_CELLS], rise = s->at.rise * cells, third = g->cell * cells * vsplat(1.0 / 3);
-	press_inputs(x, g, &s->at, rise);
+	const vd *split = s->doubled[CONTACT_SPLIT];
+	vd x[POUND_CONTACT_INPUTS], zero = vsplat(0), one = vsplat(1), bound[POUND_CONTACT_INPUTS], end[4],
+	                            gone[4];
+	vd substeps = split[SPLIT_SUBSTEPS], rise = s->at.rise * substeps,
+	   third = g->substep * substeps * vsplat(1.0 / 3);
+	contact_inputs(x, g, &s->at, rise);
 	for (int j = 0; j < 4; j++)
-		gone[j] = form_at(&s->moved[PRESS_U + j], x, s->at.ground, rise), end[j] = x[j] + gone[j];
+		gone[j] = form_at(&s->moved[CONTACT_U + j], x, s->at.ground, rise), end[j] = x[j] + gone[j];
 	vd w = vfma(-split[SPLIT_BASE], x[2], x[0]), rate = vfma(-split[SPLIT_BASE], x[3], x[1]);
 	vd w1 = vfma(-split[SPLIT_BASE], end[2], end[0]), rate1 = vfma(-split[SPLIT_BASE], end[3], end[1]);
 	vd pull = vfma(split[SPLIT_DAMPING], rate, vfma(split[SPLIT_STIFFNESS], w, x[5]));
@@ -531,34 +535,34 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, const struct scope *
 	bound[1] = vabs(rate);
 	bound[2] = vabs(pull) + vabs(pull1);
 	bound[3] = vabs(vfma(-split[SPLIT_BASE], gone[3], gone[1]));
-	for (int j = 4; j < POUND_PRESS_INPUTS; j++)
+	for (int j = 4; j < POUND_CONTACT_INPUTS; j++)
 		bound[j] = vabs(x[j]);
 	const vd omega = split[SPLIT_OMEGA], per_omega = one / omega, yield = per_omega * per_omega;
-	const vd change = pull1 - pull, drift = change * (per_omega / (g->cell * cells));
+	const vd change = pull1 - pull, drift = change * (per_omega / (g->substep * substeps));
 	vd a = vabs(vfma(omega, x[3], -drift));
 	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_DRAG], drift, -pull)));
 	// the root of both squares, in their scale, raised by no more than its rounding: a coarser bound would stay above the
-	// largest displacement of a contact that swings for ever, and refuse every rung
+	// largest displacement of a contact that swings for ever, and refuse every doubled map
 	vd larger = vmax(vmax(a, c), vsplat(DBL_MIN)), lesser = vmin(a, c) / larger;
 	vd swung = vsplat(1 + 4 * DBL_EPSILON) * larger * vsqrt(vfma(lesser, lesser, one));
 	vd grown = vabs(change) + vabs(drift), bend, swing;
-	// once by all that presses, and then by what of it swings: see rest_fill in contact_map.inl
+	// once by all that presses, and then by what of it swings: see doubled_bounds in contact_map.inl
 	for (int round = 0; round < 2; round++) {
-		bend = press_row(s->rest[REST_BEND], bound);
+		bend = contact_row(s->doubled[DOUBLED_CURVATURE], bound);
 		swing = vfma(vsplat(0.5), bend, swung);
 		bound[2] = vmin(bound[2], swing + grown);
 	}
 	vd lag = vmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * vabs(drift), beside = vsplat(0.125) * bend;
 	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, lag + beside), vmin(pull, pull1));
-	risk &= ~press_still(s, x[2], x[3]);
+	risk &= ~contact_still(s, x[2], x[3]);
 	vd still = yield * pull, ripple = yield * (swing + beside);
-	vd error = vfma(split[SPLIT_LAG], ripple, press_row(s->rest[REST_ERROR], bound));
+	vd error = vfma(split[SPLIT_LAG], ripple, contact_row(s->doubled[DOUBLED_ERROR], bound));
 	ripple = vfma(yield, vabs(change) + lag, ripple);
 	// the common motion's cubic, and whether a body's velocity keeps its sign
 	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
 	vd reach = vfma(vsplat(4 * DBL_EPSILON), bound[0], error);
 	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + reach, low = vmin(vmin(b1, b2), vmin(w, w1)) - reach;
-	// b2 - b1 by what the rung adds: creeping bodies go less far than the rounding of where they are
+	// b2 - b1 by what the doubled map adds: creeping bodies go less far than the rounding of where they are
 	vd way0 = third * rate, way1 = third * rate1;
 	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - (way0 + way1);
 	vd creep = yield * change * vsplat(1.0 / 3), hurry = third * swing * per_omega, off = g->side * g->gap;
@@ -566,21 +570,21 @@ LANE_INLINE vm rest(const struct lanes *g, struct press *s, const struct scope *
 	*edge = vmask(0);
 	for (int i = 0; i < 2; i++) {
 		vd share = i ? split[SPLIT_BASE] - g->side : split[SPLIT_BASE], size = vabs(share);
-		vd u = i ? press_other(x[0], x[2], g->side, off) : x[0];
-		vd u1 = i ? press_other(end[0], end[2], g->side, off) : end[0];
+		vd u = i ? other_body(x[0], x[2], g->side, off) : x[0];
+		vd u1 = i ? other_body(end[0], end[2], g->side, off) : end[0];
 		vd mid = i ? vfma(share, still, -off) : share * still;
 		// the line that the overlap follows goes along
 		vd more = share * creep, speed = way0 + more, way = vselect(vless(speed, zero), -one, one);
 		vd along = vmin(vmin(way * speed, way * (way1 + more)), way * (mean + more));
-		vm steady = rest_steady(along, size * hurry, vsplat(1.0265) * error, per_omega / third,
-		                        vmax(vabs(u), vabs(u1)));
+		vm steady = sustained_steady(along, size * hurry, vsplat(1.0265) * error, per_omega / third,
+		                             vmax(vabs(u), vabs(u1)));
 		vd least = low + mid - size * ripple, most = high + mid + size * ripple;
-		risk |= rest_peaks(u, u1, least, most, steady, s->at.top[i]);
+		risk |= sustained_peaks(u, u1, least, most, steady, s->at.top[i]);
 		if (scope->edged)
-			*edge |= rest_edges(u1, least, most, speed, steady, edges[i]);
+			*edge |= sustained_edges(u1, least, most, speed, steady, edges[i]);
 	}
 	risk |= *edge;
-	press_move(g, s, end, cells, rise, going & ~risk);
+	contact_move(g, s, end, substeps, rise, going & ~risk);
 	return risk;
 }
 
@@ -591,30 +595,30 @@ LANE_INLINE struct edges edges_select(vm mask, struct edges a, struct edges b)
 }
 
 /* Pressed contact as the lanes come to it, and back. */
-LANE_INLINE void press_load(struct press *s, const struct lanes *g, vd rise, vd left_samples,
-                            const struct scope *scope)
+LANE_INLINE void contact_load(struct contact_lanes *s, const struct lanes *g, vd rise, vd left_samples,
+                              const struct scope *scope)
 {
 	vm left = vless(vsplat(0), g->side);
 	if (scope->edged) {
 		s->base = edges_select(left, edges_of(g, 0), edges_of(g, 1));
 		s->other = edges_select(left, edges_of(g, 1), edges_of(g, 0));
 	}
-	s->at =
-	    (struct pressed){.x = {vselect(left, g->u[0], g->u[1]), vselect(left, g->v[0], g->v[1]), g->p, g->q},
-	                     .top = {vselect(left, g->top[0], g->top[1]), vselect(left, g->top[1], g->top[0])},
-	                     .impulse = g->impulse,
-	                     .ground = g->ground,
-	                     .rise = rise,
-	                     .cells = g->cells,
-	                     .rounds = g->rounds,
-	                     .left = left_samples};
+	s->at = (struct contact_state){
+	    .x = {vselect(left, g->u[0], g->u[1]), vselect(left, g->v[0], g->v[1]), g->p, g->q},
+	    .top = {vselect(left, g->top[0], g->top[1]), vselect(left, g->top[1], g->top[0])},
+	    .impulse = g->impulse,
+	    .ground = g->ground,
+	    .rise = rise,
+	    .substeps = g->substeps,
+	    .rounds = g->rounds,
+	    .left = left_samples};
 }
 
-LANE_INLINE void press_store(const struct pressed *at, struct lanes *g)
+LANE_INLINE void contact_store(const struct contact_state *at, struct lanes *g)
 {
 	vm left = vless(vsplat(0), g->side);
 	const vd *x = at->x;
-	vd u = press_other(x[0], x[2], g->side, g->side * g->gap), v = x[1] - g->side * x[3];
+	vd u = other_body(x[0], x[2], g->side, g->side * g->gap), v = x[1] - g->side * x[3];
 	g->u[0] = vselect(left, x[0], u);
 	g->v[0] = vselect(left, x[1], v);
 	g->u[1] = vselect(left, u, x[0]);
@@ -625,6 +629,6 @@ LANE_INLINE void press_store(const struct pressed *at, struct lanes *g)
 	g->q = x[3];
 	g->impulse = at->impulse;
 	g->ground = at->ground;
-	g->cells = at->cells;
+	g->substeps = at->substeps;
 	g->rounds = at->rounds;
 }

@@ -133,7 +133,7 @@ static void held_merge(struct chain *c)
 }
 
 /* Lets go of bodies that an impact beside them has given different velocities. */
-static void held_part(struct chain *c)
+static void held_separate(struct chain *c)
 {
 	for (int j = 0; j < c->n_links; j++) {
 		struct link *l = &c->link[j];
@@ -186,7 +186,7 @@ static void impact(struct chain *c, struct link *l, double time)
 		impulse_apply(c, l, impulse);
 		l->q = -e * q;
 		c->work_gap += 0.5 * (1 - e * e) * q * q / l->inverse_mass;
-		held_part(c);
+		held_separate(c);
 	}
 	m[POUND_LINK_IMPULSE_MAX] = fmax(m[POUND_LINK_IMPULSE_MAX], impulse);
 	if (q >= law->speed_floor) {

@@ -42,7 +42,7 @@ static void piece_enter(struct simulation *sim, int i)
 	x->body[i].low = piece->low;
 	x->body[i].high = piece->high;
 	x->body[i].direction = piece->direction;
-	sim->press_now = NULL;
+	sim->contact_maps = NULL;
 	if (!sim->can_fly)
 		return;
 	unsigned found = 0;
@@ -76,8 +76,8 @@ static void simulation_interval(struct simulation *sim)
 	interval_set(sim, sim->next);
 	sim->steps = 0;
 	x->ground = sim->ground[sim->next - 1];
-	x->part = sim->touching ? 0 : x->body[0].step_gap; // the sample step
-	x->cells = sim->touching ? x->cells_whole : 0;
+	x->remainder = sim->touching ? 0 : x->body[0].step_gap; // the sample step
+	x->substeps = sim->touching ? x->substeps_per_sample : 0;
 	if (observed(sim))
 		simulation_observe(sim, sim->next - 1);
 }
@@ -89,15 +89,15 @@ static enum pound_stage simulation_step(struct simulation *sim)
 		return STAGE_CHATTER;
 	struct state_rows *x = &sim->x;
 	if (sim->touching) {
-		if (x->part == 0) {
-			x->part = x->cell;
-			x->cells--;
+		if (x->remainder == 0) {
+			x->remainder = x->substep;
+			x->substeps--;
 		}
-		x->dt = x->part * x->pace;
+		x->dt = x->remainder * x->pace;
 		return STAGE_TOUCH;
 	}
 	double reach = x->reach * x->pace;
-	x->dt = x->part <= reach ? x->part : x->part > 2 * reach ? reach : 0.5 * x->part;
+	x->dt = x->remainder <= reach ? x->remainder : x->remainder > 2 * reach ? reach : 0.5 * x->remainder;
 	if (!sim->paired)
 		return STAGE_ALONE;
 	return x->p + x->dt * x->q < 0 ? STAGE_CLEAR : STAGE_APART;
@@ -127,7 +127,8 @@ LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 static bool contact_counts(struct simulation *sim, double changed)
 {
 	const struct state_rows *x = &sim->x;
-	const double lasted = x->contact_time - sim->counted_time + x->cell * (x->pressed - sim->counted_cells);
+	const double lasted =
+	    x->contact_time - sim->counted_time + x->substep * (x->substeps_done - sim->counted_substeps);
 	struct pound_counts counts = {
 	    .time = (double)sim->next * x->body[0].step_gap, .steps = lasted * sim->per_step, .changed = changed};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
@@ -153,10 +154,10 @@ static void contact_over(struct simulation *sim, double speed)
 	    contact_counts(sim, changed)) {
 		sim->contacts++;
 		sim->counted_time = x->contact_time;
-		sim->counted_cells = x->pressed;
+		sim->counted_substeps = x->substeps_done;
 	} else {
 		x->contact_time = sim->counted_time;
-		x->pressed = sim->counted_cells;
+		x->substeps_done = sim->counted_substeps;
 	}
 }
 
@@ -167,7 +168,7 @@ static void contact_over(struct simulation *sim, double speed)
 static void contact_turn(struct simulation *sim, double left, double speed)
 {
 	sim->touching = !sim->touching;
-	sim->rung_limit = sim->rungs - 1;
+	sim->doubled_limit = sim->n_doubled - 1;
 	if (!sim->touching) {
 		contact_over(sim, speed);
 	} else if (sim->contacts == 0) {
@@ -200,7 +201,7 @@ static bool simulation_settles(struct simulation *sim)
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		over[i] = fabs(x->u[i]) < POUND_AT_REST && fabs(x->v[i]) * sim->task->time_step < POUND_AT_REST &&
 		          x->body[i].offset == 0 && x->body[i].low <= 0 && x->body[i].high >= 0;
-	if (over[0] == over[1] || sim->touching || sim->parted)
+	if (over[0] == over[1] || sim->touching || sim->released)
 		return over[0] && over[1];
 	x->u[over[1]] = x->v[over[1]] = 0;
 	overlap_start(x);
@@ -215,10 +216,11 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 		contact_turn(sim, 0, 0);
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		x->u[i] = x->v[i] = 0;
-	sim->parted = sim->fresh = false;
+	sim->released = sim->fresh = false;
 	x->pace = 1;
 	double left =
-	    x->part + x->cells * x->cell; // of the interval: bodies that press each other settle inside one too
+	    x->remainder +
+	    x->substeps * x->substep; // of the interval: bodies that press each other settle inside one too
 	if (observed(sim))
 		simulation_observe(sim, sim->unobserved > 0 ? -1 : sim->next - 1);
 	while (sim->ground[sim->next] == 0) {
@@ -253,7 +255,7 @@ static enum pound_stage simulation_flown(struct simulation *sim, enum pound_stag
 static enum pound_stage simulation_next(struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
-	if (x->part + x->cells == 0) {
+	if (x->remainder + x->substeps == 0) {
 		if (sim->next == sim->last)
 			return STAGE_END;
 		sim->next++;
@@ -261,30 +263,30 @@ static enum pound_stage simulation_next(struct simulation *sim)
 		if (simulation_settles(sim))
 			return simulation_rest(sim);
 		// apart, and not about to touch inside the next interval
-		if (sim->can_fly && !sim->touching && !sim->parted && x->p + x->part * x->q < 0)
+		if (sim->can_fly && !sim->touching && !sim->released && x->p + x->remainder * x->q < 0)
 			return simulation_from(sim);
 	}
-	if (sim->touching && x->part == 0 && sim->can_press)
-		return press_ready(sim);
+	if (sim->touching && x->remainder == 0 && sim->has_contact)
+		return contact_ready(sim);
 	return simulation_step(sim);
 }
 
-/* What a simulation does after cells of pressed contact.
+/* What a simulation does after substeps of contact.
  *
- * Given    stage    that it was in: STAGE_PRESS or STAGE_REST
- *          refused  the next cells could not be proved: shorter rungs are to be tried
- *          gone     it went as far as a longer rung would have: past what refused that
+ * Given    stage    that it was in: STAGE_CONTACT or STAGE_SUSTAINED
+ *          refused  the next substeps could not be proved: shorter doubled maps are to be tried
+ *          gone     it went as far as a longer doubled map would have: past what refused that
  */
-static enum pound_stage simulation_pressed(struct simulation *sim, enum pound_stage stage, bool refused,
-                                           bool gone)
+static enum pound_stage simulation_after_contact(struct simulation *sim, enum pound_stage stage, bool refused,
+                                                 bool gone)
 {
 	if (simulation_settles(sim))
 		return simulation_rest(sim);
 	if (refused)
-		sim->rung_limit = stage == STAGE_REST ? sim->rung - 1 : 0;
+		sim->doubled_limit = stage == STAGE_SUSTAINED ? sim->doubled - 1 : 0;
 	else if (gone)
-		sim->rung_limit = sim->rungs - 1;
-	return stage == STAGE_PRESS && refused ? simulation_step(sim) : press_ready(sim);
+		sim->doubled_limit = sim->n_doubled - 1;
+	return stage == STAGE_CONTACT && refused ? simulation_step(sim) : contact_ready(sim);
 }
 
 /* A body's law goes on to its next piece; from here the edge is exact. */
@@ -312,7 +314,7 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
 	if (observed(sim) && event > EVENT_CUT)
 		simulation_observe(sim, -1);
-	if (event >= EVENT_CLEARS && sim->can_fly && !sim->touching && sim->x.part > 0)
+	if (event >= EVENT_CLEARS && sim->can_fly && !sim->touching && sim->x.remainder > 0)
 		return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
 	return simulation_next(sim);
 }
@@ -350,7 +352,7 @@ static enum pound_stage peaks_look(struct simulation *sim)
 	double *largest = sim->result->displacement_max;
 	if (sim->looked < POUND_OSCILLATORS)
 		largest[sim->looked] = x->top[0];
-	sim->touching = sim->parted = sim->fresh = sim->paired = sim->can_fly = false;
+	sim->touching = sim->released = sim->fresh = sim->paired = sim->can_fly = false;
 	x->pace = 1;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		while (sim->peaks[i] > 0) {
@@ -410,7 +412,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	sim->last = task->n_samples - 1;
 	struct state_rows *x = &sim->x;
 	x->pace = 1;
-	x->rounds = -1; // another map is asked for only where there are rungs
+	x->rounds = -1; // another map is asked for only where there are doubled maps
 	sim->looked = POUND_OSCILLATORS;
 	double h = task->time_step;
 	double rate = 0, fastest = 0, damping = 0;
@@ -430,8 +432,8 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 		for (int m = 0; m < POUND_MAPS; m++)
 			sim->map_of[i][m] = -1;
 	}
-	for (int m = 0; m < POUND_PRESS_MAPS; m++)
-		sim->press_of[0][m] = -1;
+	for (int m = 0; m < POUND_CONTACT_MAPS; m++)
+		sim->contact_map_of[0][m] = -1;
 	sim->can_fly = can_fly;
 	sim->traits = TRAIT_OWN;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
@@ -456,15 +458,15 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->body[0].step_gap = h;
 	x->body[1].step_gap = x->gap;
 	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
-	sim->can_press = task->contact;
+	sim->has_contact = task->contact;
 	double reach = touch_reach(x, fastest, damping);
-	// no more cells than it takes, but for rungs, which are made by doubling
-	x->cells_whole = 1;
-	while (h > reach * x->cells_whole)
-		x->cells_whole += x->cells_whole < RUNG_RATIO ? 1 : x->cells_whole;
-	x->cell = h / x->cells_whole;
-	if (sim->can_press)
-		press_rungs(sim);
+	// no more substeps than it takes, but for doubled maps, which are made by doubling
+	x->substeps_per_sample = 1;
+	while (h > reach * x->substeps_per_sample)
+		x->substeps_per_sample += x->substeps_per_sample < DOUBLED_RATIO ? 1 : x->substeps_per_sample;
+	x->substep = h / x->substeps_per_sample;
+	if (sim->has_contact)
+		doubled_choose(sim);
 	sim->base = task->mass_ratio < 1;
 	x->side = sim->base ? -1 : 1;
 	x->base_drive = task->bodies[sim->base].drive;
@@ -492,7 +494,7 @@ static void common_join(struct pound_common *common, struct simulation *sim)
 		return;
 	if (common->members++ == 0) {
 		memcpy(shared, own, size);
-		common->press.made = false;
+		common->maps.made = false;
 	}
 	sim->common = common;
 	sim->traits &= ~(unsigned)TRAIT_OWN;
@@ -540,7 +542,7 @@ static void result_write(struct simulation *sim, enum pound_status status)
 	r->impulse_max = sim->impulse_max;
 	if (r->contacts == 0)
 		r->first_contact = r->first_speed = 0;
-	r->contact_time = x->contact_time + x->cell * x->pressed;
+	r->contact_time = x->contact_time + x->substep * x->substeps_done;
 	r->energy_residual = sim->task->accounted ? residual(sim) : NAN;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		r->displacement_max[i] = sim->task->bodies[i].followed ? x->top[i] : NAN;

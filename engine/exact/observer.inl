@@ -1,6 +1,6 @@
 /* observer.inl - reports the instants of a simulation to its observer (task.h).
  *
- * Steps, cells and flights that end elsewhere are not reported: between two instants the motion is one linear system, and who
+ * Steps, substeps and flights that end elsewhere are not reported: between two instants the motion is one linear system, and who
  * observes it may cut it as needed.
  *
  * Included by exact.inl alone, once per lane count.
@@ -21,7 +21,7 @@ LANE_SHARED void simulation_observe(struct simulation *sim, int64_t sample)
 {
 	const struct state_rows *x = &sim->x;
 	const struct pound_task_observer *observer = sim->task->observer;
-	const double left = x->part + x->cells * x->cell, step = sim->task->time_step;
+	const double left = x->remainder + x->substeps * x->substep, step = sim->task->time_step;
 	struct pound_instant_of_task now = {.elapsed = sim->unobserved,
 	                                    .sampled = sample >= 0,
 	                                    .touching = sim->touching,

@@ -29,17 +29,17 @@ struct work {
 	struct pound_task_result *results;
 	int n, started;          /* tasks, and those gone through in this pass */
 	int passed;              /* 0: laws of one piece are started, 1: the others */
-	int parted;              /* simulations that wait */
+	int n_waiting;           /* simulations that wait */
 	const atomic_bool *stop; /* NULL: never */
 	double beyond[W][ROW];   /* ground motion up to its end, and whatever was there behind */
 	struct pound_common common;
-	// from here on nothing is cleared: a simulation's start does, and what finds the families
-	struct families families;
+	// from here on nothing is cleared: a simulation's start does, and what finds the shared_starts
+	struct shared_starts shared_starts;
 	struct simulation filler;      /* of the lanes that a batch leaves empty, and ... */
 	struct pound_task_result none; /* ... what comes of it */
 	struct simulation pool[POOL];
 	struct simulation waiting[POOL * POUND_OTHERS]; /* for room, out of a family: no task starts meanwhile */
-	struct pound_ladder ladders[POOL][POUND_PRESS_MAPS], common_ladder;
+	struct pound_doubled_maps doubled[POOL][POUND_CONTACT_MAPS], common_doubled;
 };
 
 static_assert(sizeof(struct work) <= POUND_EXACT_SCRATCH, "the work space is too small");
@@ -63,15 +63,15 @@ LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_st
 		push(&work->queues[stage], sim);
 		return;
 	}
-	family_end(sim);
+	shared_end(sim);
 	push(&work->idle, sim);
 }
 
 /* A member leaves a family, and both try the step again. */
-LANE_SHARED void part(struct work *work, struct simulation *sim, enum pound_stage stage)
+LANE_SHARED void member_leave(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
-	assert(work->parted < POOL * POUND_OTHERS);
-	family_part(sim, &work->waiting[work->parted++], stage);
+	assert(work->n_waiting < POOL * POUND_OTHERS);
+	shared_leave(sim, &work->waiting[work->n_waiting++], stage);
 	push(&work->queues[stage], sim);
 }
 
@@ -102,7 +102,7 @@ static enum kind batch_kind(unsigned traits)
 }
 
 /* Takes the next batch of the queue behind one of a scene, if it is of the same kind: what they have in common is in lanes
- * already, and stays what it is, as no task starts meanwhile.  Alike bodies go another way (press_any in exact.inl). */
+ * already, and stays what it is, as no task starts meanwhile.  Alike bodies go another way (contact_any in exact.inl). */
 LANE_INLINE bool batch_again(struct work *work, struct batch *b)
 {
 	struct queue *queue = b->from;
@@ -122,7 +122,7 @@ static void task_start(struct work *work, int j)
 {
 	struct simulation *sim = pop(&work->idle);
 	enum pound_stage stage = simulation_start(sim, &work->tasks[j], &work->results[j]);
-	family_gather(&work->families, work->tasks, work->results, j, sim);
+	shared_gather(&work->shared_starts, work->tasks, work->results, j, sim);
 	common_join(&work->common, sim);
 	send(work, sim, stage);
 }
@@ -131,15 +131,15 @@ static void task_start(struct work *work, int j)
  * one piece, which need less when they are among themselves. */
 static void tasks_start(struct work *work)
 {
-	while (work->parted > 0 && work->idle.n > 0) {
+	while (work->n_waiting > 0 && work->idle.n > 0) {
 		struct simulation *sim = pop(&work->idle);
-		family_resume(sim, &work->waiting[--work->parted]);
+		shared_resume(sim, &work->waiting[--work->n_waiting]);
 		push(&work->queues[sim->stage], sim);
 	}
 	while (work->passed < 2 && work->idle.n > 0) {
 		for (; work->started < work->n && work->idle.n > 0; work->started++)
-			if (family_leads(&work->families, work->started) &&
-			    family_edged(&work->families, work->tasks, work->started) == work->passed)
+			if (shared_first(&work->shared_starts, work->started) &&
+			    shared_edged(&work->shared_starts, work->tasks, work->started) == work->passed)
 				task_start(work, work->started);
 		if (work->started < work->n)
 			return;
@@ -153,22 +153,22 @@ static void work_init(struct work *work, const struct pound_task *tasks, struct 
                       int n, const atomic_bool *stop)
 {
 	static const double still[2];
-	static const struct pound_press_map loose;
+	static const struct pound_contact_map loose;
 	static const struct pound_task nothing = {.ground = still, .n_samples = 2, .time_step = 1};
-	memset(work, 0, offsetof(struct work, families));
+	memset(work, 0, offsetof(struct work, shared_starts));
 	work->tasks = tasks;
 	work->results = results;
 	work->n = n;
 	work->stop = stop;
-	families_find(&work->families, tasks, n);
+	shared_find(&work->shared_starts, tasks, n);
 	simulation_start(&work->filler, &nothing, &work->none);
-	work->filler.pressed = &loose;
+	work->filler.contact_map = &loose;
 	work->filler.x.dt = 1;
 	work->filler.x.gap = 0;
-	work->common.press.ladder = &work->common_ladder;
+	work->common.maps.doubled = &work->common_doubled;
 	for (int j = 0; j < POOL; j++) {
-		for (int m = 0; m < POUND_PRESS_MAPS; m++)
-			work->pool[j].press[m].ladder = &work->ladders[j][m];
+		for (int m = 0; m < POUND_CONTACT_MAPS; m++)
+			work->pool[j].own_maps[m].doubled = &work->doubled[j][m];
 		push(&work->idle, &work->pool[j]);
 	}
 }

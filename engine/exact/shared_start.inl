@@ -16,17 +16,17 @@
 #include "engine/numeric/hash.h"
 
 enum {
-	FAMILY_TASKS = 4096,             /* the first of a call's, among which families are looked for */
-	FAMILY_SLOTS = 2 * FAMILY_TASKS, /* of their hash table */
+	SHARED_TASKS = 4096,             /* the first of a call's, among which shared_starts are looked for */
+	SHARED_SLOTS = 2 * SHARED_TASKS, /* of their hash table */
 };
 
-/* the families of a call's tasks */
-struct families {
+/* the shared_starts of a call's tasks */
+struct shared_starts {
 	// number of a first member and 1, 0: empty; where that family is full, of the next one like it
-	int slot[FAMILY_SLOTS];
-	int next[FAMILY_TASKS];     /* number of the next member; 0: there is none */
-	bool edged[FAMILY_TASKS];   /* of a first member: a law of the family has more than one piece */
-	bool follows[FAMILY_TASKS]; /* is not the first of its family */
+	int slot[SHARED_SLOTS];
+	int next[SHARED_TASKS];     /* number of the next member; 0: there is none */
+	bool edged[SHARED_TASKS];   /* of a first member: a law of the family has more than one piece */
+	bool follows[SHARED_TASKS]; /* is not the first of its family */
 };
 
 /* A zero and its negative make different bits. */
@@ -35,21 +35,21 @@ static bool same(double a, double b)
 	return memcmp(&a, &b, sizeof a) == 0;
 }
 
-static bool bodies_kin(const struct pound_task_body *a, const struct pound_task_body *b)
+static bool bodies_same(const struct pound_task_body *a, const struct pound_task_body *b)
 {
 	return same(a->backbone.stiffness, b->backbone.stiffness) && same(a->damping, b->damping) &&
 	       same(a->drive, b->drive) && same(a->u, b->u) && same(a->v, b->v) && a->followed == b->followed;
 }
 
 /* Whether tasks differ in nothing but their laws. */
-static bool tasks_kin(const struct pound_task *a, const struct pound_task *b)
+static bool tasks_same(const struct pound_task *a, const struct pound_task *b)
 {
 	return a->ground == b->ground && a->n_samples == b->n_samples && same(a->time_step, b->time_step) &&
 	       a->contact == b->contact && same(a->gap, b->gap) &&
 	       same(a->contact_stiffness, b->contact_stiffness) && same(a->contact_damping, b->contact_damping) &&
 	       same(a->mass_ratio, b->mass_ratio) && a->tension == b->tension && !a->accounted && !b->accounted &&
-	       !a->observer && !b->observer && bodies_kin(&a->bodies[0], &b->bodies[0]) &&
-	       bodies_kin(&a->bodies[1], &b->bodies[1]);
+	       !a->observer && !b->observer && bodies_same(&a->bodies[0], &b->bodies[0]) &&
+	       bodies_same(&a->bodies[1], &b->bodies[1]);
 }
 
 /* The slot in which the search for those that are kin to a task begins. */
@@ -68,7 +68,7 @@ static int task_slot(const struct pound_task *task, int slots)
 }
 
 /* Adds a task to the family whose first member another is, if there is room and one of them may leave its piece. */
-static void family_add(struct families *f, int first, int j)
+static void shared_add(struct shared_starts *f, int first, int j)
 {
 	int last = first, members = 1;
 	for (; f->next[last] > 0; last = f->next[last])
@@ -80,10 +80,10 @@ static void family_add(struct families *f, int first, int j)
 	f->edged[first] |= f->edged[j];
 }
 
-/* Finds the families of n tasks. */
-static void families_find(struct families *f, const struct pound_task *tasks, int n)
+/* Finds the shared_starts of n tasks. */
+static void shared_find(struct shared_starts *f, const struct pound_task *tasks, int n)
 {
-	const int looked = n < FAMILY_TASKS ? n : FAMILY_TASKS;
+	const int looked = n < SHARED_TASKS ? n : SHARED_TASKS;
 	const int slots = pound_hash_slots(looked);
 	memset(f->slot, 0, sizeof f->slot[0] * (size_t)slots);
 	for (int j = 0; j < looked; j++) {
@@ -91,25 +91,25 @@ static void families_find(struct families *f, const struct pound_task *tasks, in
 		f->edged[j] = simulation_edged(&tasks[j]);
 		f->follows[j] = false;
 		int at = task_slot(&tasks[j], slots);
-		while (f->slot[at] > 0 && !tasks_kin(&tasks[f->slot[at] - 1], &tasks[j]))
+		while (f->slot[at] > 0 && !tasks_same(&tasks[f->slot[at] - 1], &tasks[j]))
 			at = (at + 1) & (slots - 1);
 		if (f->slot[at] > 0)
-			family_add(f, f->slot[at] - 1, j);
+			shared_add(f, f->slot[at] - 1, j);
 		if (!f->follows[j])
 			f->slot[at] = j + 1;
 	}
 }
 
 /* Whether a task is the first of its family: a simulation begins with it. */
-static bool family_leads(const struct families *f, int j)
+static bool shared_first(const struct shared_starts *f, int j)
 {
-	return j >= FAMILY_TASKS || !f->follows[j];
+	return j >= SHARED_TASKS || !f->follows[j];
 }
 
 /* Whether a law of a task, or of one that goes along with it, has more than one piece. */
-static bool family_edged(const struct families *f, const struct pound_task *tasks, int j)
+static bool shared_edged(const struct shared_starts *f, const struct pound_task *tasks, int j)
 {
-	return j < FAMILY_TASKS ? f->edged[j] : simulation_edged(&tasks[j]);
+	return j < SHARED_TASKS ? f->edged[j] : simulation_edged(&tasks[j]);
 }
 
 /* The first piece of a body's law. */
@@ -121,7 +121,7 @@ static struct pound_piece first_piece(const struct pound_task *task, int i)
 }
 
 /* A simulation goes between its own edges, and nearer ones of those it has with it. */
-static void family_edges(struct simulation *sim)
+static void shared_edges(struct simulation *sim)
 {
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		double low = sim->at[i].piece.low, high = sim->at[i].piece.high;
@@ -133,27 +133,27 @@ static void family_edges(struct simulation *sim)
 		sim->x.body[i].low = low;
 		sim->x.body[i].high = high;
 	}
-	sim->traits &= ~(unsigned)(TRAIT_FAMILY | TRAIT_EDGED);
+	sim->traits &= ~(unsigned)(TRAIT_SHARED | TRAIT_EDGED);
 	if (sim->n_others > 0)
-		sim->traits |= TRAIT_FAMILY | TRAIT_EDGED;
+		sim->traits |= TRAIT_SHARED | TRAIT_EDGED;
 	if (simulation_edged(sim->task))
 		sim->traits |= TRAIT_EDGED;
 }
 
 /* Takes the others of its family along with the simulation of the first, which is at its start. */
-static void family_gather(const struct families *f, const struct pound_task *tasks,
+static void shared_gather(const struct shared_starts *f, const struct pound_task *tasks,
                           struct pound_task_result *results, int first, struct simulation *sim)
 {
-	if (first >= FAMILY_TASKS || f->next[first] == 0)
+	if (first >= SHARED_TASKS || f->next[first] == 0)
 		return;
 	for (int j = f->next[first]; j > 0; j = f->next[j])
 		sim->others[sim->n_others++] = (struct pound_member){&tasks[j], &results[j]};
-	family_edges(sim);
+	shared_edges(sim);
 }
 
 /* How near bodies are to the ends of the first pieces of a task's laws: roughly, in which order members will leave.  From
  * rest it is the narrower piece that is nearer to its end. */
-static double family_share(const struct simulation *sim, const struct pound_task *task)
+static double edge_nearness(const struct simulation *sim, const struct pound_task *task)
 {
 	double share = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
@@ -164,8 +164,8 @@ static double family_share(const struct simulation *sim, const struct pound_task
 /* Copies a simulation, as it is before a step. */
 static void simulation_copy(struct simulation *to, const struct simulation *from)
 {
-	memcpy(to, from, offsetof(struct simulation, press));
-	press_copy(to, from);
+	memcpy(to, from, offsetof(struct simulation, own_maps));
+	contact_maps_copy(to, from);
 }
 
 /* The member that seems nearest to an edge leaves the family.
@@ -173,12 +173,12 @@ static void simulation_copy(struct simulation *to, const struct simulation *from
  * Given    stage  in which it does
  * Returns  own    its simulation, which waits
  */
-static void family_part(struct simulation *sim, struct simulation *own, enum pound_stage stage)
+static void shared_leave(struct simulation *sim, struct simulation *own, enum pound_stage stage)
 {
 	assert(sim->n_others > 0 && sim->looked == POUND_OSCILLATORS);
 	struct pound_member *nearest = &sim->others[0];
 	for (int k = 1; k < sim->n_others; k++)
-		if (family_share(sim, sim->others[k].task) > family_share(sim, nearest->task))
+		if (edge_nearness(sim, sim->others[k].task) > edge_nearness(sim, nearest->task))
 			nearest = &sim->others[k];
 	struct pound_member leaver = *nearest, self = {sim->task, sim->result};
 	*nearest = sim->others[--sim->n_others];
@@ -186,7 +186,7 @@ static void family_part(struct simulation *sim, struct simulation *own, enum pou
 	simulation_copy(own, sim);
 	own->n_others = 0;
 	own->stage = stage;
-	if (family_share(sim, leaver.task) < family_share(sim, self.task)) {
+	if (edge_nearness(sim, leaver.task) < edge_nearness(sim, self.task)) {
 		// it is the one that the others go with: these go with another from here on
 		sim->task = leaver.task;
 		sim->result = leaver.result;
@@ -198,19 +198,19 @@ static void family_part(struct simulation *sim, struct simulation *own, enum pou
 		pound_law_start(&sim->task->bodies[i].backbone, &sim->at[i]);
 		pound_law_start(&own->task->bodies[i].backbone, &own->at[i]);
 	}
-	family_edges(sim);
-	family_edges(own);
+	shared_edges(sim);
+	shared_edges(own);
 }
 
 /* One that has left goes on. */
-static void family_resume(struct simulation *sim, const struct simulation *own)
+static void shared_resume(struct simulation *sim, const struct simulation *own)
 {
 	simulation_copy(sim, own);
-	press_resume(sim, sim->stage);
+	contact_maps_resume(sim, sim->stage);
 }
 
 /* The end of a simulation is that of those who are still with it. */
-static void family_end(const struct simulation *sim)
+static void shared_end(const struct simulation *sim)
 {
 	for (int k = 0; k < sim->n_others; k++)
 		*sim->others[k].result = *sim->result;

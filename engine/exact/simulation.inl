@@ -1,4 +1,4 @@
-/* simulation.inl - one simulation of the march as it rests between its turns in the lanes.
+/* simulation.inl - one simulation of the march as it stays_in_contact between its turns in the lanes.
  *
  * Its numbers stand in rows of a cache line each, columns of which become vectors: a batch of simulations is carried
  * into lanes and out by whole rows.  next_step.inl has what is done to one at a time.
@@ -12,38 +12,38 @@
 #include "engine/exact/task.h"
 
 enum {
-	POUND_MAPS = 4,         /* free-flight maps a body keeps */
-	POUND_PEAKS = 4,        /* samples that may hold its largest displacement */
-	POUND_OTHERS = 3,       /* other tasks that go along with a simulation: shared_start.inl */
-	POUND_MAP_ORDERS = 18,  /* of a map's series; 0.945^18/18! = 6e-17 */
-	POUND_MAP_LONGER = 26,  /* of a long sample's; 2^26/26! = 2e-19 */
-	POUND_PRESS_MAPS = 3,   /* pairs of pieces whose cell map and ladder a simulation keeps */
-	POUND_PRESS_RUNGS = 12, /* of a ladder: maps over many cells */
-	POUND_PRESS_INPUTS =
+	POUND_MAPS = 4,          /* free-flight maps a body keeps */
+	POUND_PEAKS = 4,         /* samples that may hold its largest displacement */
+	POUND_OTHERS = 3,        /* other tasks that go along with a simulation: shared_start.inl */
+	POUND_MAP_ORDERS = 18,   /* of a map's series; 0.945^18/18! = 6e-17 */
+	POUND_MAP_LONGER = 26,   /* of a long sample's; 2^26/26! = 2e-19 */
+	POUND_CONTACT_MAPS = 3,  /* pairs of pieces whose substep map and doubled maps a simulation keeps */
+	POUND_DOUBLED_MAPS = 12, /* maps over many substeps */
+	POUND_CONTACT_INPUTS =
 	    8 /* base u, v, overlap p, q, forcing of either, and its growth over the map's length */
 };
 
 /* Rows of a simulation: T is double at rest, and a vector in lanes; every row has eight. */
-#define POUND_ROWS(T)                                                                                                                              \
-	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */                                      \
-	T u[2], v[2], top[2], p, q;                                                                                                                    \
-	/* STEP: the next step; the ground at its start and its growth; this contact's impulse, all contacts' time but for whole cells; what is left \
-	 * of the interval: a part, and whole cells; <= 1: steps are shorter where a search was unsure */ \
-	T dt, ground, slope, impulse, contact_time, part, cells, pace;                                                                                 \
-	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */                                \
-	struct {                                                                                                                                       \
-		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                                       \
-	} body[2];                                                                                                                                     \
-	/* PAIR: the contact; lengths of a cell of it, and of the longest step apart */                                                                \
-	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, cell, reach;                                                             \
-	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                                                      \
-	struct {                                                                                                                                       \
-		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                                          \
-	} map[2];                                                                                                                                      \
-	/* PRESS: a cell of pressed contact: forcing, which body is the base; whole cells that all contacts had; how often the map goes on \
-	 * until another is asked for; cells of an interval */           \
-	T base_force, gap_force, base_drive, gap_drive, side, pressed, rounds, cells_whole;                                                            \
-	/* WORK: energy put in, what is found of it less that, and the rounding of the latter; the most there was of it */                             \
+#define POUND_ROWS(T)                                                                                                                                 \
+	/* STATE: displacement, velocity, largest |u| (DBL_MAX: not wanted) of each body; overlap and its rate */                                         \
+	T u[2], v[2], top[2], p, q;                                                                                                                       \
+	/* STEP: the next step; the ground at its start and its growth; this contact's impulse, all contacts' time but for whole substeps; what is left \
+	 * of the interval: a part, and whole substeps; <= 1: steps are shorter where a search was unsure */ \
+	T dt, ground, slope, impulse, contact_time, remainder, substeps, pace;                                                                            \
+	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */                                   \
+	struct {                                                                                                                                          \
+		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                                          \
+	} body[2];                                                                                                                                        \
+	/* PAIR: the contact; lengths of a substep of it, and of the longest step apart */                                                                \
+	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, substep, reach;                                                             \
+	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                                                         \
+	struct {                                                                                                                                          \
+		T uu, uv, ua, ud, va, eu, ev, ef;                                                                                                             \
+	} map[2];                                                                                                                                         \
+	/* PRESS: a substep of contact: forcing, which body is the base; whole substeps that all contacts had; how often the map goes on \
+	 * until another is asked for; substeps of an interval */                \
+	T base_force, gap_force, base_drive, gap_drive, side, substeps_done, rounds, substeps_per_sample;                                                 \
+	/* WORK: energy put in, what is found of it less that, and the rounding of the latter; the most there was of it */                                \
 	T work_in, work_gap, work_low, work_top, right_mass, work_spare[3];
 
 struct state_rows {
@@ -59,7 +59,7 @@ enum {
 	ROW_PAIR = 32,
 	ROW_MAP_LEFT = 40,
 	ROW_MAP_RIGHT = 48,
-	ROW_PRESS = 56,
+	ROW_CONTACT = 56,
 	ROW_WORK = 64,
 	ROWS_END = 72,
 };
@@ -67,7 +67,7 @@ enum {
 /* what does not change while the bodies stay on their pieces, in doubles */
 enum {
 	ROWS_CONSTANT = ROW_LEFT,
-	ROWS_CONSTANT_END = ROW_PRESS,
+	ROWS_CONSTANT_END = ROW_CONTACT,
 };
 
 /* exact displacement of one body after one sample, from (u, v) and a forcing a at the start that grows by d: a row MAP */
@@ -77,19 +77,19 @@ struct pound_map {
 	double eu, ev, ef;     /* the cubic's error is at most eu |u| + ev |v| + ef (|a| + |d|) */
 };
 
-/* rows of a map of pressed contact, each a linear form of the inputs; the bounds of their magnitudes */
+/* rows of a map of contact, each a linear form of the inputs; the bounds of their magnitudes */
 enum {
-	PRESS_U, /* what is added to the base's displacement and velocity, the overlap and its rate */
-	PRESS_V,
-	PRESS_P,
-	PRESS_Q,
-	PRESS_IMPULSE,
-	PRESS_ERROR, /* of a cell: of the cubics of the base's displacement and of the overlap */
-	REST_ERROR =
-	    PRESS_ERROR, /* of a rung, by other magnitudes (contact_map.inl): of the cubic of the common motion */
-	REST_BEND,       /* of a rung: of what presses the bodies on each other, off its straight line */
-	PRESS_SPLIT,     /* not a form but the enum below */
-	REST_ROWS,
+	CONTACT_U, /* what is added to the base's displacement and velocity, the overlap and its rate */
+	CONTACT_V,
+	CONTACT_P,
+	CONTACT_Q,
+	CONTACT_IMPULSE,
+	CONTACT_ERROR, /* of a substep: of the cubics of the base's displacement and of the overlap */
+	DOUBLED_ERROR =
+	    CONTACT_ERROR, /* of a doubled map, by other magnitudes (contact_map.inl): of the cubic of the common motion */
+	DOUBLED_CURVATURE, /* of a doubled map: of what presses the bodies on each other, off its straight line */
+	CONTACT_SPLIT,     /* not a form but the enum below */
+	CONTACT_MAP_ROWS,
 };
 
 /* how a map splits the motion into that of both bodies and the contact's own */
@@ -97,16 +97,17 @@ enum {
 	SPLIT_DAMPING,
 	SPLIT_STIFFNESS, /* what presses: times the common velocity and displacement */
 	SPLIT_BASE,      /* displacement of the base, beyond the common one, by the overlap */
-	SPLIT_LAG,       /* of a rung: how far the overlap's own motion takes the common one off a slow course */
-	SPLIT_OMEGA,     /* of the contact [rad/s] */
-	SPLIT_DRAG,      /* its damping over omega */
-	SPLIT_LEAD,      /* how much more than the overlap the force swings, where contact ends with it */
-	SPLIT_CELLS,
+	SPLIT_LAG, /* of a doubled map: how far the overlap's own motion takes the common one off a slow course */
+	SPLIT_OMEGA, /* of the contact [rad/s] */
+	SPLIT_DRAG,  /* its damping over omega */
+	SPLIT_LEAD,  /* how much more than the overlap the force swings, where contact ends with it */
+	SPLIT_SUBSTEPS,
 };
 
-struct pound_press_map {
-	alignas(64) double row[REST_ROWS][POUND_PRESS_INPUTS];
-	double pull[POUND_PRESS_INPUTS]; /* of a rung: what is added to what presses the bodies on each other */
+struct pound_contact_map {
+	alignas(64) double row[CONTACT_MAP_ROWS][POUND_CONTACT_INPUTS];
+	double pull
+	    [POUND_CONTACT_INPUTS]; /* of a doubled map: what is added to what presses the bodies on each other */
 };
 
 /* A sample that a body flew over, and inside of which it may have had its largest displacement: how it started, on which
@@ -116,32 +117,32 @@ struct pound_peak {
 	double u, v, stiffness, offset, bound;
 };
 
-/* what an account of energy needs beside a map of pressed contact */
-struct pound_press_work {
-	double mean_base[POUND_PRESS_INPUTS];    /* of the base's displacement: a linear form */
-	double mean_overlap[POUND_PRESS_INPUTS]; /* of the overlap: another */
-	double
-	    loss[POUND_PRESS_INPUTS]
-	        [POUND_PRESS_INPUTS]; /* in the dashpots: a quadratic form, of the overlap off its equilibrium */
+/* what an account of energy needs beside a map of contact */
+struct pound_contact_work {
+	double mean_base[POUND_CONTACT_INPUTS];    /* of the base's displacement: a linear form */
+	double mean_overlap[POUND_CONTACT_INPUTS]; /* of the overlap: another */
+	double loss
+	    [POUND_CONTACT_INPUTS]
+	    [POUND_CONTACT_INPUTS]; /* in the dashpots: a quadratic form, of the overlap off its equilibrium */
 };
 
-/* maps over many cells of pressed contact, and where energy is accounted for, what that needs of all of these */
-struct pound_ladder {
-	struct pound_press_map rung[POUND_PRESS_RUNGS];
-	struct pound_press_work work[POUND_PRESS_RUNGS + 1]; /* the last: of a cell */
+/* maps over many substeps of contact, and where energy is accounted for, what that needs of all of these */
+struct pound_doubled_maps {
+	struct pound_contact_map map[POUND_DOUBLED_MAPS];
+	struct pound_contact_work work[POUND_DOUBLED_MAPS + 1]; /* the last: of a substep */
 };
 
-/* pressed contact on a pair of pieces: over a cell, and whether that and its ladder are filled */
-struct pound_press {
-	struct pound_press_map cell;
-	bool made, laddered;
-	struct pound_ladder *ladder; /* elsewhere: what is used often is to stay close together */
+/* contact on a pair of pieces: over a substep, and whether that and its doubled maps are filled */
+struct pound_contact_maps {
+	struct pound_contact_map substep;
+	bool made, has_doubled;
+	struct pound_doubled_maps *doubled; /* elsewhere: what is used often is to stay close together */
 };
 
 /* What simulations of one scene have in common, where their laws have one piece: constants and maps are read and made once. */
 struct pound_common {
 	struct state_rows x; /* of its constants alone */
-	struct pound_press press;
+	struct pound_contact_maps maps;
 	int members;
 };
 
@@ -149,8 +150,8 @@ struct pound_common {
 enum pound_stage {
 	STAGE_FLY_ALONE, /* whole samples of the left body */
 	STAGE_FLY_APART, /* whole samples of both */
-	STAGE_PRESS,     /* whole cells of pressed contact */
-	STAGE_REST,      /* many cells of it at once */
+	STAGE_CONTACT,   /* whole substeps of contact */
+	STAGE_SUSTAINED, /* many substeps of it at once */
 	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
 	STAGE_APART,     /* of both, who likely meet */
 	STAGE_CLEAR,     /* of both, who likely do not: what a batch looks for alike takes less */
@@ -170,7 +171,7 @@ enum {
 	TRAIT_ACCOUNTED = 8,  /* the energy balance is kept */
 	TRAIT_ALIKE = 16,     /* touching without overlap the bodies go the same way, on the pieces they are on */
 	TRAIT_OWN = 32,       /* its constants are not those of others */
-	TRAIT_FAMILY = 64,    /* there are others that go along: what an edge decides is not for all of them */
+	TRAIT_SHARED = 64,    /* there are others that go along: what an edge decides is not for all of them */
 	TRAIT_OBSERVED = 128, /* it has an observer: observer.inl */
 };
 
@@ -199,20 +200,22 @@ struct simulation {
 	int64_t next, last;               /* sample at the end of this interval, and the last of the signal */
 	double per_step;
 	double impulse_max, contacts;
-	double counted_time, counted_cells; /* of contacts that count, as contact_time and pressed in the rows */
-	struct pound_press *press_now;      /* of the pieces that the bodies are on; NULL: to be looked for */
-	const struct pound_press_map *pressed; /* of the next cells */
-	struct pound_common *common;           /* with others; NULL: nothing */
-	unsigned traits;                       /* see enum above */
-	int steps;                             /* and turns in the queues of pressed contact, in this interval */
-	int rungs, rung, rung_limit;           /* there are, in use, the longest to try */
-	int base;      /* the heavier body, whose motion and the overlap describe pressed contact */
+	double counted_time,
+	    counted_substeps; /* of contacts that count, as contact_time and pressed in the rows */
+	struct pound_contact_maps
+	    *contact_maps; /* of the pieces that the bodies are on; NULL: to be looked for */
+	const struct pound_contact_map *contact_map; /* of the next substeps */
+	struct pound_common *common;                 /* with others; NULL: nothing */
+	unsigned traits;                             /* see enum above */
+	int steps;                                   /* and turns in the queues of contact, in this interval */
+	int n_doubled, doubled, doubled_limit;       /* there are, in use, the longest to try */
+	int base;      /* the heavier body, whose motion and the overlap describe contact */
 	bool touching; /* the contact's force acts */
-	bool parted;   /* force gone before the overlap: bodies still overlap */
+	bool released; /* force gone before the overlap: bodies still overlap */
 	bool fresh;    /* the force has just passed zero */
 	bool paired;   /* the right body moves, or there is something to touch */
 	bool can_fly;  /* samples are short enough for maps, and no balance is kept */
-	bool can_press;
+	bool has_contact;
 	// and what is read seldom
 	const struct pound_task *task;
 	struct pound_task_result *result;
@@ -221,15 +224,15 @@ struct simulation {
 	struct pound_member others[POUND_OTHERS];
 	int n_others;
 	enum pound_stage stage; /* what it does next, while it waits for room */
-	double rung_cells[POUND_PRESS_RUNGS];
-	double rung_ratio; /* of a rung to the one below; 0: few cells, and no rungs */
+	double doubled_substeps[POUND_DOUBLED_MAPS];
+	double doubled_ratio; /* of a doubled map to the shorter one; 0: few substeps, and no doubled maps */
 	struct pound_branch at[2];
 	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */
-	int map_next[2], press_next;
+	int map_next[2], contact_map_next;
 	// stiffnesses of the pieces that the maps below belong to; < 0: none
-	double map_of[2][POUND_MAPS], press_of[2][POUND_PRESS_MAPS];
+	double map_of[2][POUND_MAPS], contact_map_of[2][POUND_CONTACT_MAPS];
 	// from here on a start clears nothing: what is there is filled with its key
 	struct pound_peak peak[2][POUND_PEAKS];
 	struct pound_map maps[2][POUND_MAPS];
-	struct pound_press press[POUND_PRESS_MAPS];
+	struct pound_contact_maps own_maps[POUND_CONTACT_MAPS];
 };

@@ -11,9 +11,9 @@ enum { EVENT_CONTACT = EVENT_OWN, EVENT_CLEARS, EVENT_BODY, EVENT_EDGES = 3 };
 /* lanes of a step by power series, and what they are */
 struct event_lanes {
 	struct scope scope;
-	vm active;        /* lanes in use */
-	vm parted, fresh; /* as in struct simulation */
-	vm decided;       /* lanes in which an edge of a piece decided how far they went */
+	vm active;          /* lanes in use */
+	vm released, fresh; /* as in struct simulation */
+	vm decided;         /* lanes in which an edge of a piece decided how far they went */
 };
 
 /* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
@@ -214,7 +214,7 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 
 /* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
  *
- * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then parted: the contact goes
+ * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then released: the contact goes
  * on when that force rises again, and they are apart when p has fallen to 0.
  */
 LANE_SHARED void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
@@ -246,7 +246,7 @@ LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, c
 	vd zero = vsplat(0), sign = e->scope.touching ? vsplat(-1) : vsplat(1);
 	vm by_force = vmask(0);
 	if (e->scope.forced)
-		by_force = (e->scope.touching ? ~vequal(g->release, zero) : e->parted) & e->active;
+		by_force = (e->scope.touching ? ~vequal(g->release, zero) : e->released) & e->active;
 	struct course c = course_of(&s->overlap);
 	vm risk = may_cross(&c, zero, sign) & e->active & ~by_force;
 	if (vany(risk)) {
@@ -368,7 +368,7 @@ LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct 
 		g->q = vselect(arrived, s->overlap.end.v * per_dt, g->q);
 	}
 	g->ground = vselect(arrived, vfma(g->slope, elapsed, g->ground), g->ground);
-	g->part = vselect(arrived, vmax(g->part - elapsed, vsplat(0)), g->part);
+	g->remainder = vselect(arrived, vmax(g->remainder - elapsed, vsplat(0)), g->remainder);
 }
 
 /* One step: every lane goes on to its next event, or as far as it meant to.
@@ -423,31 +423,31 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 /* What the beginning or end of a contact, or of the overlap it left, does to a simulation's numbers.
  *
  * Given    event  of the step
- * Returns  e      parted and fresh
+ * Returns  e      released and fresh
  *          value  lanes in which a contact began or ended
  */
 LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
 {
 	vd zero = vsplat(0);
-	vm turns = vequal(event, vsplat(EVENT_CONTACT)) & e->active, parted = e->parted;
+	vm turns = vequal(event, vsplat(EVENT_CONTACT)) & e->active, released = e->released;
 	if (e->scope.touching) {
-		parted = e->scope.forced ? turns & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
-		g->part = vselect(turns, vfma(g->cells, g->cell, g->part), g->part);
-		g->cells = vselect(turns, zero, g->cells);
+		released = e->scope.forced ? turns & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
+		g->remainder = vselect(turns, vfma(g->substeps, g->substep, g->remainder), g->remainder);
+		g->substeps = vselect(turns, zero, g->substeps);
 	} else {
-		vd cells = vfloor(g->part / g->cell);
-		g->part = vselect(turns, vmax(g->part - cells * g->cell, zero), g->part);
-		g->cells = vselect(turns, cells, g->cells);
+		vd substeps = vfloor(g->remainder / g->substep);
+		g->remainder = vselect(turns, vmax(g->remainder - substeps * g->substep, zero), g->remainder);
+		g->substeps = vselect(turns, substeps, g->substeps);
 		g->impulse = vselect(turns, zero, g->impulse);
 	}
-	g->p = vselect(turns & ~parted, zero, g->p); // from here exactly
-	e->fresh = parted & turns;
+	g->p = vselect(turns & ~released, zero, g->p); // from here exactly
+	e->fresh = released & turns;
 	if (e->scope.forced && !e->scope.touching) {
 		vm clears = vequal(event, vsplat(EVENT_CLEARS));
 		g->p = vselect(clears, zero, g->p);
-		parted &= ~clears & ~turns;
+		released &= ~clears & ~turns;
 	}
-	e->parted = parted;
+	e->released = released;
 	return turns;
 }
 
@@ -473,19 +473,19 @@ LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
 	return risk | (turns & may_cross(&c, zero, -g->body[i].direction));
 }
 
-/* Takes what is left of an interval or of a cell as one step, in the lanes where nothing can happen in it.
+/* Takes what is left of an interval or of a substep as one step, in the lanes where nothing can happen in it.
  *
  * Returns  e  decided
  */
 LANE_INLINE void event_leap(struct lanes *g, struct event_lanes *e, vm leaping)
 {
 	vd one = vsplat(1), zero = vsplat(0);
-	leaping &= ~e->parted & ~e->fresh & vequal(g->pace, one) & vless(zero, g->part);
+	leaping &= ~e->released & ~e->fresh & vequal(g->pace, one) & vless(zero, g->remainder);
 	if (!e->scope.touching)
-		leaping &= ~vless(g->reach, g->part);
+		leaping &= ~vless(g->reach, g->remainder);
 	if (!vany(leaping))
 		return;
-	g->dt = vselect(leaping, g->part, g->dt);
+	g->dt = vselect(leaping, g->remainder, g->dt);
 	struct series s;
 	step_begin(&s, g, e);
 	vm risk = vmask(0);

@@ -18,7 +18,7 @@
 
 static bool link_curved(const struct link *l)
 {
-	return (l->touching || l->parted) && l->at.on.form != POUND_TOUCH_STRAIGHT;
+	return (l->touching || l->released) && l->at.on.form != POUND_TOUCH_STRAIGHT;
 }
 
 static bool link_power(const struct link *l)
@@ -139,7 +139,7 @@ static void warp_choose(struct chain *c)
 	const struct link *l = x->master >= 0 ? &c->link[x->master] : NULL;
 	x->power = 0;
 	x->still = still;
-	x->length = c->part * rate <= 1 ? c->part : 1 / rate;
+	x->length = c->remainder * rate <= 1 ? c->remainder : 1 / rate;
 	if (still)
 		x->length = 0x1p-40 * x->length; // its force is below rounding: (2^-80)^1.5, 2^-60 of a dashpot's
 	else if (l && least * curve_rate(l) < 0.3) {
@@ -483,7 +483,7 @@ static void touch_series(struct chain *c)
 		warp_series(c);
 		double ratio = x->still ? 1 : warp_ratio(c);
 		if (x->power == 0)
-			ratio = fmin(ratio, c->part / x->length);
+			ratio = fmin(ratio, c->remainder / x->length);
 		if (ratio >= 0x1p-4 || try == TRIES - 1) {
 			ratio = fmin(ratio, c->pace < 1 ? 1 : 4);
 			if (ratio != 1)

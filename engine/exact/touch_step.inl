@@ -76,13 +76,13 @@ static struct first touch_events(struct chain *c)
 			curved_search(&first, c, j);
 	x->sampled = false;
 	if (x->power == 0) {
-		x->sampled = first.event == EVENT_NONE && x->length >= c->part;
+		x->sampled = first.event == EVENT_NONE && x->length >= c->remainder;
 		return first;
 	}
 	struct first sample = {.time = 1, .event = EVENT_NONE, .index = -1};
 	double guard[TERMS];
 	memcpy(guard, x->clock, sizeof guard);
-	guard[0] = -c->part;
+	guard[0] = -c->remainder;
 	curve_search(&sample, c, guard, EVENT_CLEARS, 0);
 	if (sample.event == EVENT_CUT && sample.time < first.time)
 		return sample;
@@ -122,7 +122,7 @@ static void touch_arrive(struct chain *c, double time)
 		column_store(&c->d, i, power_at(&d, c->order, vsplat(time)));
 		column_store(&c->v, i, power_at(&v, c->order, vsplat(time)));
 	}
-	const double elapsed = x->sampled ? c->part : series_at(x->clock, 1, time);
+	const double elapsed = x->sampled ? c->remainder : series_at(x->clock, 1, time);
 	for (int j = 0; j < c->n_links; j++) {
 		struct link *l = &c->link[j];
 		if (!l->own)
@@ -149,5 +149,5 @@ static void touch_arrive(struct chain *c, double time)
 		l->fresh = false;
 	}
 	c->ground = fma(c->slope, elapsed, c->ground);
-	c->part = x->sampled ? 0 : fmax(c->part - elapsed, 0);
+	c->remainder = x->sampled ? 0 : fmax(c->remainder - elapsed, 0);
 }

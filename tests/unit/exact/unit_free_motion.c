@@ -119,13 +119,13 @@ static void a_swing_that_is_just_ahead_takes_a_body_back_by_no_more_than_is_said
 		const double way = a > 0.01 ? sin(a) - a * cos(a) : a * a * a * (1.0 / 3 - a * a / 30),
 		             back = 2 * radian * way;
 		// the share is known but for the rounding of along
-		assert_false(rest_steady(along, 1, 0, radian, 0.999 * back / REST_ROUNDING));
-		assert_true(rest_steady(along, 1, 0, radian, 2 * back / REST_ROUNDING));
-		assert_true(rest_steady(1 + share, 1, 0, radian, 0));
-		assert_false(rest_steady(-share, 1, 0, radian, 1));
+		assert_false(sustained_steady(along, 1, 0, radian, 0.999 * back / SUSTAINED_ROUNDING));
+		assert_true(sustained_steady(along, 1, 0, radian, 2 * back / SUSTAINED_ROUNDING));
+		assert_true(sustained_steady(1 + share, 1, 0, radian, 0));
+		assert_false(sustained_steady(-share, 1, 0, radian, 1));
 	}
-	assert_false(rest_steady(0, 0, 0, 1, 1)); // it stands still: its velocity has no sign
-	assert_false(rest_steady(1, 1, NAN, 1, 1));
+	assert_false(sustained_steady(0, 0, 0, 1, 1)); // it stands still: its velocity has no sign
+	assert_false(sustained_steady(1, 1, NAN, 1, 1));
 }
 
 CHECK_MAIN(cmocka_unit_test(the_cubic_misses_the_motion_by_no_more_than_its_error),
