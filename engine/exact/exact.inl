@@ -49,7 +49,7 @@ enum {
 struct ahead {
 	const double *ground[W]; /* from where it started */
 	int64_t gone;            /* samples that those who still fly have gone since */
-	unsigned flying;         /* lanes that still do */
+	unsigned moving;         /* lanes that still do */
 	vd samples;              /* that are left */
 	unsigned edged;          /* lanes that stopped where an edge may be reached */
 	unsigned observed;       /* lanes of TRAIT_OBSERVED */
@@ -62,8 +62,8 @@ struct ahead {
 LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, vd ground[ROW])
 {
 	const double *at[W];
-	const unsigned flying = ahead->flying;
-	unsigned whole = flying & ~vbits(vless(ahead->samples, vsplat(ROW)));
+	const unsigned moving = ahead->moving;
+	unsigned whole = moving & ~vbits(vless(ahead->samples, vsplat(ROW)));
 	for (int l = 0; l < W; l++) {
 		at[l] = whole >> l & 1 ? ahead->ground[l] + ahead->gone : work->beyond[l];
 		// the line that the next ROW end in: that in which they begin has come with these
@@ -71,12 +71,12 @@ LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, v
 	}
 	double samples[W];
 	lanes_store(samples, ahead->samples);
-	for (unsigned ends = flying & ~whole; ends;) {
+	for (unsigned ends = moving & ~whole; ends;) {
 		int l = lane_next(&ends);
 		memcpy(work->beyond[l], ahead->ground[l] + ahead->gone, sizeof(double) * (size_t)samples[l]);
 	}
 	rows_load(ground, at, 0);
-	return flying & ~whole;
+	return moving & ~whole;
 }
 
 /* Notes the largest displacements that lanes may have inside a sample of a stretch.
@@ -111,13 +111,13 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
 
 /* Tells the observers of lanes the samples that these flew to in a stretch.
  *
- * Given    flown  how many
+ * Given    moved  how many
  */
 LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahead, const struct stretch *s,
-                                 vd flown)
+                                 vd moved)
 {
 	double samples[W], at[W];
-	lanes_store(samples, flown);
+	lanes_store(samples, moved);
 	for (unsigned lanes = ahead->observed; lanes;) {
 		int l = lane_next(&lanes);
 		struct simulation *sim = b->sim[l];
@@ -139,15 +139,15 @@ LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahea
  * Returns  g       their states there
  *          ahead   what is left in front of each, and those that still fly, with samples left
  */
-LANE_INLINE void fly_on(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
-                        const struct flyer flyers[2], const struct scope *scope)
+LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
+                        const struct free_map maps[2], const struct scope *scope)
 {
 	struct stretch s;
-	unsigned on = ahead->flying;
+	unsigned on = ahead->moving;
 	s.ground[0] = g->ground;
 	unsigned more = vbits(vless(vsplat(ROW), ahead->samples)), ends = ground_load(work, ahead, s.ground + 1);
-	stretch_fly(&s, g, flyers, scope);
-	vd flown = vsplat(0), one = vsplat(1);
+	stretch_run(&s, g, maps, scope);
+	vd moved = vsplat(0), one = vsplat(1);
 	for (int r = 0; r < ROW; r++) {
 		if (ends)
 			on &= vbits(vless(vsplat(r), ahead->samples));
@@ -160,43 +160,43 @@ LANE_INLINE void fly_on(struct work *work, const struct batch *b, struct ahead *
 		for (int i = 0; i < (scope->paired && scope->right ? 2 : 1); i++)
 			if (s.peak[i][r] & on)
 				on &= ~peaks_keep(b, i, &s, r, s.peak[i][r] & on, ahead->gone + r);
-		flown = vselect(vmask(on), flown + one, flown);
+		moved = vselect(vmask(on), moved + one, moved);
 		stretch_keep(g, &s, r + 1, vmask(on), scope);
 	}
 	if (__builtin_expect(ahead->observed, 0))
-		stretch_observe(b, ahead, &s, flown);
+		stretch_observe(b, ahead, &s, moved);
 	g->ground = s.ground[ROW];
-	ahead->samples = ahead->samples - flown;
+	ahead->samples = ahead->samples - moved;
 	ahead->gone += ROW;
-	ahead->flying = on & more;
+	ahead->moving = on & more;
 }
 
-/* Given    g, flyers  what does not change meanwhile */
-LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
-                           const struct flyer flyers[2], enum kind kind)
+/* Given    g, maps  what does not change meanwhile */
+LANE_INLINE void free_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
+                           const struct free_map maps[2], enum kind kind)
 {
 	const struct scope scope = {
-	    .paired = stage == STAGE_FLY_APART, .edged = kind == KIND_EDGED, .right = b->traits & TRAIT_RIGHT};
-	struct ahead ahead = {.flying = batch_lanes(b),
+	    .paired = stage == STAGE_FREE_PAIR, .edged = kind == KIND_EDGED, .right = b->traits & TRAIT_RIGHT};
+	struct ahead ahead = {.moving = batch_lanes(b),
 	                      .observed = b->traits & TRAIT_OBSERVED ? vbits(batch_trait(b, TRAIT_OBSERVED)) : 0};
 	double ground[W], samples[W];
 	lanes_fill(g, b, ROW_STATE);
 	for (int l = 0; l < W; l++) {
 		const struct simulation *sim = b->sim[l];
 		ahead.ground[l] = &sim->ground[sim->next];
-		samples[l] = (double)(flight_end(sim) - sim->next + 1);
+		samples[l] = (double)(free_end(sim) - sim->next + 1);
 		ground[l] = ahead.ground[l][-1];
 	}
 	g->ground = lanes_of(ground);
 	ahead.samples = lanes_of(samples);
 	do
-		fly_on(work, b, &ahead, g, flyers, &scope);
-	while (__builtin_popcount(ahead.flying) > b->n * 3 / 4);
-	unsigned on = ahead.flying;
+		free_stretch(work, b, &ahead, g, maps, &scope);
+	while (__builtin_popcount(ahead.moving) > b->n * 3 / 4);
+	unsigned on = ahead.moving;
 	lanes_empty(g, b, ROW_STATE);
 	lanes_store(samples, ahead.samples);
 	for (int l = 0; l < b->n; l++)
-		b->sim[l]->next = flight_end(b->sim[l]) + 1 - (int64_t)samples[l];
+		b->sim[l]->next = free_end(b->sim[l]) + 1 - (int64_t)samples[l];
 	unsigned there = batch_lanes(b) & vbits(vequal(ahead.samples, vsplat(0)));
 	unsigned met = batch_lanes(b) & ~there & ~on,
 	         leaving = scope.edged ? met & batch_leaving(b, vmask(ahead.edged)) : 0;
@@ -211,25 +211,25 @@ LANE_INLINE void fly_batch(struct work *work, const struct batch *b, enum pound_
 		push(&work->queues[stage], b->sim[lane_next(&on)]);
 	while (there) {
 		struct simulation *sim = b->sim[lane_next(&there)];
-		send(work, sim, simulation_flown(sim, stage));
+		send(work, sim, simulation_after_free(sim, stage));
 	}
 }
 
-LANE_INLINE void fly(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
+LANE_INLINE void free_run(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
 {
 	const bool common = kind == KIND_COMMON;
 	const struct state_rows *shared = common ? &work->common.x : NULL;
 	struct lanes g;
 	lanes_constant(&g, b, shared, ROW_LEFT);
 	lanes_constant(&g, b, shared, ROW_MAP_LEFT);
-	struct flyer flyers[2] = {flyer_of(&g, 0)};
-	if (stage == STAGE_FLY_APART) {
+	struct free_map maps[2] = {free_map_of(&g, 0)};
+	if (stage == STAGE_FREE_PAIR) {
 		lanes_constant(&g, b, shared, ROW_RIGHT);
 		lanes_constant(&g, b, shared, ROW_MAP_RIGHT);
-		flyers[1] = flyer_of(&g, 1);
+		maps[1] = free_map_of(&g, 1);
 	}
 	do
-		fly_batch(work, b, stage, &g, flyers, kind);
+		free_batch(work, b, stage, &g, maps, kind);
 	while (common && batch_again(work, b));
 }
 
@@ -463,8 +463,8 @@ LANE_INLINE void contact_any(struct work *work, struct batch *b, enum pound_stag
 
 LANE_INLINE struct event_lanes event_lanes_of(const struct batch *b, enum pound_stage stage)
 {
-	struct event_lanes e = {.scope = {.touching = stage == STAGE_TOUCH,
-	                                  .paired = stage != STAGE_ALONE && stage != STAGE_LEAP_ALONE,
+	struct event_lanes e = {.scope = {.touching = stage == STAGE_STEP_CONTACT,
+	                                  .paired = stage != STAGE_STEP_SINGLE && stage != STAGE_FINISH_SINGLE,
 	                                  .edged = b->traits & TRAIT_EDGED,
 	                                  .right = b->traits & TRAIT_RIGHT,
 	                                  .forced = b->traits & TRAIT_FORCED},
@@ -502,7 +502,7 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 		turns &= ~batch_trait(b, TRAIT_ACCOUNTED | TRAIT_OBSERVED);
 	if (vany(turns)) {
 		e.scope.touching = !e.scope.touching;
-		event_leap(g, &e, turns);
+		event_finish(g, &e, turns);
 	}
 	const unsigned leaving = e.scope.edged ? batch_leaving(b, e.decided) : 0;
 	batch_forget(b, leaving, &work->filler);
@@ -531,7 +531,7 @@ LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage
 	struct lanes g;
 	lanes_constant(&g, b, shared, ROW_LEFT);
 	lanes_constant(&g, b, shared, ROW_PAIR);
-	if (stage != STAGE_ALONE)
+	if (stage != STAGE_STEP_SINGLE)
 		lanes_constant(&g, b, shared, ROW_RIGHT);
 	do
 		step_batch(work, b, stage, &g, kind);
@@ -539,7 +539,7 @@ LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage
 }
 
 /* What is left of a sample. */
-LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage)
+LANE_INLINE void finish_interval(struct work *work, struct batch *b, enum pound_stage stage)
 {
 	struct event_lanes e = event_lanes_of(b, stage);
 	struct lanes g;
@@ -549,7 +549,7 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 	lanes_fill(&g, b, ROW_PAIR);
 	if (e.scope.paired)
 		lanes_fill(&g, b, ROW_RIGHT);
-	event_leap(&g, &e, vmask(batch_lanes(b)));
+	event_finish(&g, &e, vmask(batch_lanes(b)));
 	// nothing is to be taken back: they have not moved
 	const unsigned leaving = e.scope.edged ? batch_leaving(b, e.decided) : 0;
 	lanes_empty(&g, b, ROW_STATE);
@@ -574,36 +574,36 @@ LANE_INLINE void leap(struct work *work, struct batch *b, enum pound_stage stage
 	{                                                    \
 		__VA_ARGS__;                                     \
 	}
-STEP(fly_alone, fly(work, b, STAGE_FLY_ALONE, KIND_PLAIN))
-STEP(fly_alone_edged, fly(work, b, STAGE_FLY_ALONE, KIND_EDGED))
-STEP(fly_alone_common, fly(work, b, STAGE_FLY_ALONE, KIND_COMMON))
-STEP(fly_apart, fly(work, b, STAGE_FLY_APART, KIND_PLAIN))
-STEP(fly_apart_edged, fly(work, b, STAGE_FLY_APART, KIND_EDGED))
-STEP(fly_apart_common, fly(work, b, STAGE_FLY_APART, KIND_COMMON))
+STEP(free_single, free_run(work, b, STAGE_FREE_SINGLE, KIND_PLAIN))
+STEP(free_single_edged, free_run(work, b, STAGE_FREE_SINGLE, KIND_EDGED))
+STEP(free_single_common, free_run(work, b, STAGE_FREE_SINGLE, KIND_COMMON))
+STEP(free_pair, free_run(work, b, STAGE_FREE_PAIR, KIND_PLAIN))
+STEP(free_pair_edged, free_run(work, b, STAGE_FREE_PAIR, KIND_EDGED))
+STEP(free_pair_common, free_run(work, b, STAGE_FREE_PAIR, KIND_COMMON))
 STEP(contact_plain, contact_any(work, b, STAGE_CONTACT, KIND_PLAIN))
 STEP(contact_edged, contact_any(work, b, STAGE_CONTACT, KIND_EDGED))
 STEP(contact_common, contact_any(work, b, STAGE_CONTACT, KIND_COMMON))
 STEP(sustained_plain, contact_any(work, b, STAGE_SUSTAINED, KIND_PLAIN))
 STEP(sustained_edged, contact_any(work, b, STAGE_SUSTAINED, KIND_EDGED))
-STEP(step_alone, step(work, b, STAGE_ALONE, KIND_EDGED))
-STEP(step_apart, step(work, b, STAGE_APART, KIND_EDGED))
-STEP(step_apart_common, step(work, b, STAGE_APART, KIND_COMMON))
-STEP(step_touch, step(work, b, STAGE_TOUCH, KIND_EDGED))
-STEP(step_touch_common, step(work, b, STAGE_TOUCH, KIND_COMMON))
-STEP(leap_alone, leap(work, b, STAGE_LEAP_ALONE))
-STEP(leap_apart, leap(work, b, STAGE_LEAP_APART))
+STEP(step_single, step(work, b, STAGE_STEP_SINGLE, KIND_EDGED))
+STEP(step_pair, step(work, b, STAGE_STEP_PAIR, KIND_EDGED))
+STEP(step_pair_common, step(work, b, STAGE_STEP_PAIR, KIND_COMMON))
+STEP(step_contact, step(work, b, STAGE_STEP_CONTACT, KIND_EDGED))
+STEP(step_contact_common, step(work, b, STAGE_STEP_CONTACT, KIND_COMMON))
+STEP(finish_single, finish_interval(work, b, STAGE_FINISH_SINGLE))
+STEP(finish_pair, finish_interval(work, b, STAGE_FINISH_PAIR))
 
 static void (*const steps[STAGES][KINDS])(struct work *, struct batch *) = {
-    [STAGE_FLY_ALONE] = {fly_alone, fly_alone_edged, fly_alone_common},
-    [STAGE_FLY_APART] = {fly_apart, fly_apart_edged, fly_apart_common},
+    [STAGE_FREE_SINGLE] = {free_single, free_single_edged, free_single_common},
+    [STAGE_FREE_PAIR] = {free_pair, free_pair_edged, free_pair_common},
     [STAGE_CONTACT] = {contact_plain, contact_edged, contact_common},
     [STAGE_SUSTAINED] = {sustained_plain, sustained_edged, sustained_plain},
-    [STAGE_ALONE] = {step_alone, step_alone, step_alone},
-    [STAGE_APART] = {step_apart, step_apart, step_apart_common},
-    [STAGE_CLEAR] = {step_apart, step_apart, step_apart_common},
-    [STAGE_TOUCH] = {step_touch, step_touch, step_touch_common},
-    [STAGE_LEAP_ALONE] = {leap_alone, leap_alone, leap_alone},
-    [STAGE_LEAP_APART] = {leap_apart, leap_apart, leap_apart},
+    [STAGE_STEP_SINGLE] = {step_single, step_single, step_single},
+    [STAGE_STEP_PAIR] = {step_pair, step_pair, step_pair_common},
+    [STAGE_STEP_CLEAR] = {step_pair, step_pair, step_pair_common},
+    [STAGE_STEP_CONTACT] = {step_contact, step_contact, step_contact_common},
+    [STAGE_FINISH_SINGLE] = {finish_single, finish_single, finish_single},
+    [STAGE_FINISH_PAIR] = {finish_pair, finish_pair, finish_pair},
 };
 
 static_assert(sizeof(struct lanes) == W * sizeof(struct state_rows), "rows are doubles and nothing else");

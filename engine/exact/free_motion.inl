@@ -3,7 +3,7 @@
  * Included by exact.inl, once per lane count, and by its test.  A map takes a simulation over its sample or substep at once; the
  * cubic through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
  * edge of a law, no new largest displacement.  A lane in which it cannot prove that stays in front of it; but a sample that
- * may hold nothing but a largest displacement is flown over, and noted.
+ * may hold nothing but a largest displacement is moved over, and noted.
  *
  * Included by exact.inl after simulation.inl. */
 
@@ -75,12 +75,12 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 }
 
 /* a body's motion over a sample or substep: its end, the inner control points of the cubic, and the bound of its error */
-struct flight {
+struct cubic {
 	vd u, v, b1, b2, error;
 };
 
 /* One body's map over one whole sample, from displacement, velocity and the ground motion at both ends; its error. */
-struct flyer {
+struct free_map {
 	vd uu, uv, u_force, u_ground, u_next;
 	vd vu, vv, v_force, v_ground, v_next;
 	vd error_u, error_v, error_force, error_ground;
@@ -93,10 +93,10 @@ struct flyer {
  *   u' = uu u + psi v + ua a + ud d     v' = uu v - psi (c v + k u + a) + va d
  * with the forcing a = offset + drive ground, and d = drive (next - ground).
  */
-LANE_INLINE struct flyer flyer_of(const struct lanes *g, int i)
+LANE_INLINE struct free_map free_map_of(const struct lanes *g, int i)
 {
 	vd psi = g->map[i].uv, drive = g->body[i].drive, offset = g->body[i].offset;
-	return (struct flyer){.uu = g->map[i].uu,
+	return (struct free_map){.uu = g->map[i].uu,
 	                      .uv = psi,
 	                      .u_force = g->map[i].ua * offset,
 	                      .u_ground = (g->map[i].ua - g->map[i].ud) * drive,
@@ -117,7 +117,7 @@ LANE_INLINE struct flyer flyer_of(const struct lanes *g, int i)
  * Given    f             its map
  *          ground, next  acceleration at both ends [m/s2]
  */
-LANE_INLINE struct place flight_move(const struct flyer *f, struct place from, vd ground, vd next)
+LANE_INLINE struct place free_move(const struct free_map *f, struct place from, vd ground, vd next)
 {
 	vd u_force = vfma(f->u_ground, ground, vfma(f->u_next, next, f->u_force));
 	vd v_force = vfma(f->v_ground, ground, vfma(f->v_next, next, f->v_force));
@@ -131,11 +131,11 @@ LANE_INLINE struct place flight_move(const struct flyer *f, struct place from, v
  *          pull   bound of |ground| + |next - ground|
  *          third  of the sample
  */
-LANE_INLINE struct flight flight_way(const struct flyer *f, struct place from, struct place to, vd pull,
+LANE_INLINE struct cubic cubic_of(const struct free_map *f, struct place from, struct place to, vd pull,
                                      vd third)
 {
 	vd error = vfma(f->error_ground, pull, f->error_force);
-	return (struct flight){.u = to.u,
+	return (struct cubic){.u = to.u,
 	                       .v = to.v,
 	                       .b1 = vfma(third, from.v, from.u),
 	                       .b2 = vfma(-third, to.v, to.u),
@@ -148,7 +148,7 @@ struct edges {
 };
 
 /* How far a body may go inside a sample or substep, apart from its ends. */
-LANE_INLINE vd flight_reach(const struct flight *f)
+LANE_INLINE vd cubic_reach(const struct cubic *f)
 {
 	return vmax(vabs(f->b1), vabs(f->b2)) + f->error;
 }
@@ -157,9 +157,9 @@ LANE_INLINE vd flight_reach(const struct flight *f)
  *
  * Given    f  its flight;  top: the largest, not below the displacement at the start
  */
-LANE_INLINE vm flight_peaks(const struct flight *f, vd top)
+LANE_INLINE vm cubic_peaks(const struct cubic *f, vd top)
 {
-	return vless(vmax(top, vabs(f->u)), flight_reach(f));
+	return vless(vmax(top, vabs(f->u)), cubic_reach(f));
 }
 
 /* How far a third of a sample or substep takes a body one way at least, by its velocity anywhere inside.
@@ -170,7 +170,7 @@ LANE_INLINE vm flight_peaks(const struct flight *f, vd top)
  * The velocity's control points times h/3 are its own at the ends, and b2 - b1 between; what they miss the velocity by is
  * at most sqrt(3)/216 h^3 of the fourth derivative, that is 288 sqrt(3)/648 of the error.
  */
-LANE_INLINE vd flight_along(vd v, const struct flight *f, vd third, vd way)
+LANE_INLINE vd cubic_slowest(vd v, const struct cubic *f, vd third, vd way)
 {
 	vd ends = vmin(way * (third * v), way * (third * f->v));
 	return vmin(ends, way * (f->b2 - f->b1)) - vsplat(0.77) * f->error;
@@ -180,7 +180,7 @@ LANE_INLINE vd flight_along(vd v, const struct flight *f, vd third, vd way)
  *
  * Given    v  velocity at the start;  f: the flight from there
  */
-LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct edges *x)
+LANE_INLINE vm cubic_edges(vd v, const struct cubic *f, vd third, const struct edges *x)
 {
 	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2), zero = vsplat(0);
 	vm risk = vless(x->high, vmax(high, f->u) + f->error);
@@ -188,7 +188,7 @@ LANE_INLINE vm flight_edges(vd v, const struct flight *f, vd third, const struct
 	vm turns = ~vequal(x->direction, zero);
 	if (!vany(turns))
 		return risk;
-	return risk | (vless(flight_along(v, f, third, x->direction), zero) & turns);
+	return risk | (vless(cubic_slowest(v, f, third, x->direction), zero) & turns);
 }
 
 LANE_INLINE struct edges edges_of(const struct lanes *g, int i)
@@ -208,32 +208,32 @@ struct stretch {
 };
 
 /* Moves every lane over a sample of a stretch. */
-LANE_INLINE void stretch_move(struct stretch *s, const struct flyer flyers[2], int r,
+LANE_INLINE void stretch_move(struct stretch *s, const struct free_map maps[2], int r,
                               const struct scope *scope)
 {
 	for (int i = 0; i < (scope->paired ? 2 : 1); i++)
-		s->at[i][r + 1] = flight_move(&flyers[i], s->at[i][r], s->ground[r], s->ground[r + 1]);
+		s->at[i][r + 1] = free_move(&maps[i], s->at[i][r], s->ground[r], s->ground[r + 1]);
 }
 
 /* Asks what may happen on the way. */
-LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const struct flyer flyers[2], int r,
+LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const struct free_map maps[2], int r,
                                const struct scope *scope)
 {
 	const int bodies = scope->paired ? 2 : 1, watched = scope->paired && scope->right ? 2 : 1;
 	vd third = g->body[0].step_gap * vsplat(1.0 / 3);
 	vd pull = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
-	struct flight f[2];
+	struct cubic f[2];
 	vm edge = vmask(0);
 	for (int i = 0; i < bodies; i++) {
-		f[i] = flight_way(&flyers[i], s->at[i][r], s->at[i][r + 1], pull, third);
+		f[i] = cubic_of(&maps[i], s->at[i][r], s->at[i][r + 1], pull, third);
 		const struct edges edges = edges_of(g, i);
 		if (scope->edged)
-			edge |= flight_edges(s->at[i][r].v, &f[i], third, &edges);
+			edge |= cubic_edges(s->at[i][r].v, &f[i], third, &edges);
 	}
 	if (scope->edged)
 		s->edge[r] = vbits(edge);
 	for (int i = 0; i < watched; i++) {
-		s->bound[i][r] = flight_reach(&f[i]);
+		s->bound[i][r] = cubic_reach(&f[i]);
 		s->top[i][r + 1] = vmax(s->top[i][r], vabs(f[i].u));
 		s->peak[i][r] = vbits(vless(s->top[i][r + 1], s->bound[i][r]));
 	}
@@ -247,9 +247,9 @@ LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const s
 /* Flies every lane over a stretch, and asks what may have happened on the way: no lane waits for its proof.
  *
  * Given    s       ground
- *          g       where it begins;  flyers: the bodies' maps
+ *          g       where it begins;  maps: the bodies' maps
  */
-LANE_INLINE void stretch_fly(struct stretch *s, const struct lanes *g, const struct flyer flyers[2],
+LANE_INLINE void stretch_run(struct stretch *s, const struct lanes *g, const struct free_map maps[2],
                              const struct scope *scope)
 {
 	for (int i = 0; i < (scope->paired ? 2 : 1); i++) {
@@ -259,16 +259,16 @@ LANE_INLINE void stretch_fly(struct stretch *s, const struct lanes *g, const str
 	if (W == 8) {
 		// there are registers for one thing after the other
 		for (int r = 0; r < ROW; r++)
-			stretch_move(s, flyers, r, scope);
+			stretch_move(s, maps, r, scope);
 		for (int r = 0; r < ROW; r++)
-			stretch_prove(s, g, flyers, r, scope);
+			stretch_prove(s, g, maps, r, scope);
 		return;
 	}
 	// a proof runs while the next move waits for the last
 	_Pragma("GCC unroll 1") for (int r = 0; r < ROW; r++)
 	{
-		stretch_move(s, flyers, r, scope);
-		stretch_prove(s, g, flyers, r, scope);
+		stretch_move(s, maps, r, scope);
+		stretch_prove(s, g, maps, r, scope);
 	}
 }
 
@@ -416,7 +416,7 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	vd error = form_at(&s->error, bound, vabs(ground), vabs(rise)), error_overlap = error;
 	if (scope->seldom)
 		error_overlap = contact_fades(g, s, bound, error, end);
-	struct flight b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
+	struct cubic b = {.u = end[0], .v = end[1]}, p = {.u = end[2], .v = end[3]};
 	b.b1 = vfma(third, x[1], x[0]);
 	b.b2 = vfma(-third, b.v, b.u);
 	p.b1 = vfma(third, x[3], x[2]);
@@ -427,14 +427,14 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	vd least = vmin(vmin(p.b1, p.b2), p.u) - p.error;
 	vm risk = ~vless(zero, least);
 	if (scope->forced) {
-		vd force = vfma(g->release / third, flight_along(x[3], &p, third, vsplat(1)), vmin(least, x[2]));
+		vd force = vfma(g->release / third, cubic_slowest(x[3], &p, third, vsplat(1)), vmin(least, x[2]));
 		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
 		risk |= ~vless(zero, force) & vless(zero, g->release);
 	}
 	if (scope->seldom)
 		risk &= ~contact_still(s, end[2], end[3]);
 	vd side = g->side, off = side * g->gap, v = x[1] - side * x[3];
-	struct flight o = {.u = other_body(b.u, p.u, side, off),
+	struct cubic o = {.u = other_body(b.u, p.u, side, off),
 	                   .v = b.v - side * p.v,
 	                   .b1 = other_body(b.b1, p.b1, side, off),
 	                   .b2 = other_body(b.b2, p.b2, side, off)};
@@ -442,16 +442,16 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	*edge = vmask(0);
 	if (scope->edged)
-		*edge = flight_edges(x[1], &b, third, &s->base) | flight_edges(v, &o, third, &s->other);
+		*edge = cubic_edges(x[1], &b, third, &s->base) | cubic_edges(v, &o, third, &s->other);
 	if (scope->edged || scope->right) {
-		risk |= flight_peaks(&b, top[0]) | flight_peaks(&o, top[1]);
+		risk |= cubic_peaks(&b, top[0]) | cubic_peaks(&o, top[1]);
 	} else {
 		vm left = vless(zero, side);
-		struct flight l = {.u = vselect(left, b.u, o.u),
+		struct cubic l = {.u = vselect(left, b.u, o.u),
 		                   .b1 = vselect(left, b.b1, o.b1),
 		                   .b2 = vselect(left, b.b2, o.b2),
 		                   .error = vselect(left, b.error, o.error)};
-		risk |= flight_peaks(&l, vselect(left, top[0], top[1]));
+		risk |= cubic_peaks(&l, vselect(left, top[0], top[1]));
 	}
 	risk |= *edge;
 	contact_move(g, s, end, vsplat(1), rise, going & ~risk);

@@ -19,7 +19,7 @@ static const double REACH_FREE = 0.35, REACH_TOUCH = 0.945;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
-enum { LEG = 4095 }; /* a flight ends at every sample with these bits, wherever it began */
+enum { FREE_SAMPLES = 4095 }; /* a flight ends at every sample with these bits, wherever it began */
 
 static_assert(sizeof(struct state_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 static_assert(offsetof(struct simulation, task) - offsetof(struct simulation, ground) <= 128,
@@ -43,7 +43,7 @@ static void piece_enter(struct simulation *sim, int i)
 	x->body[i].high = piece->high;
 	x->body[i].direction = piece->direction;
 	sim->contact_maps = NULL;
-	if (!sim->can_fly)
+	if (!sim->has_free_maps)
 		return;
 	unsigned found = 0;
 	for (int m = 0; m < POUND_MAPS; m++)
@@ -94,13 +94,13 @@ static enum pound_stage simulation_step(struct simulation *sim)
 			x->substeps--;
 		}
 		x->dt = x->remainder * x->pace;
-		return STAGE_TOUCH;
+		return STAGE_STEP_CONTACT;
 	}
 	double reach = x->reach * x->pace;
 	x->dt = x->remainder <= reach ? x->remainder : x->remainder > 2 * reach ? reach : 0.5 * x->remainder;
 	if (!sim->paired)
-		return STAGE_ALONE;
-	return x->p + x->dt * x->q < 0 ? STAGE_CLEAR : STAGE_APART;
+		return STAGE_STEP_SINGLE;
+	return x->p + x->dt * x->q < 0 ? STAGE_STEP_CLEAR : STAGE_STEP_PAIR;
 }
 
 /* The overlap of bodies apart, from where they are. */
@@ -165,7 +165,7 @@ static void contact_over(struct simulation *sim, double speed)
  *
  * Given    left   of the interval [s];  speed: of approach [m/s]
  */
-static void contact_turn(struct simulation *sim, double left, double speed)
+static void contact_transition(struct simulation *sim, double left, double speed)
 {
 	sim->touching = !sim->touching;
 	sim->doubled_limit = sim->n_doubled - 1;
@@ -180,8 +180,8 @@ static void contact_turn(struct simulation *sim, double left, double speed)
 /* A simulation whose bodies are apart goes on from a sample. */
 static enum pound_stage simulation_from(struct simulation *sim)
 {
-	if (sim->can_fly)
-		return sim->paired ? STAGE_FLY_APART : STAGE_FLY_ALONE;
+	if (sim->has_free_maps)
+		return sim->paired ? STAGE_FREE_PAIR : STAGE_FREE_SINGLE;
 	return simulation_meet(sim);
 }
 
@@ -213,7 +213,7 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
 	if (sim->touching)
-		contact_turn(sim, 0, 0);
+		contact_transition(sim, 0, 0);
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		x->u[i] = x->v[i] = 0;
 	sim->released = sim->fresh = false;
@@ -236,14 +236,14 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 }
 
 /* The sample up to which a simulation may fly before it is looked at: its neighbours have no part in that. */
-static int64_t flight_end(const struct simulation *sim)
+static int64_t free_end(const struct simulation *sim)
 {
-	int64_t leg = sim->next | LEG;
-	return leg < sim->last ? leg : sim->last;
+	int64_t end = sim->next | FREE_SAMPLES;
+	return end < sim->last ? end : sim->last;
 }
 
-/* What a simulation does that has flown as far as it might. */
-static enum pound_stage simulation_flown(struct simulation *sim, enum pound_stage stage)
+/* What a simulation does that has moved as far as it might. */
+static enum pound_stage simulation_after_free(struct simulation *sim, enum pound_stage stage)
 {
 	if (sim->next > sim->last)
 		return STAGE_END;
@@ -263,7 +263,7 @@ static enum pound_stage simulation_next(struct simulation *sim)
 		if (simulation_settles(sim))
 			return simulation_rest(sim);
 		// apart, and not about to touch inside the next interval
-		if (sim->can_fly && !sim->touching && !sim->released && x->p + x->remainder * x->q < 0)
+		if (sim->has_free_maps && !sim->touching && !sim->released && x->p + x->remainder * x->q < 0)
 			return simulation_from(sim);
 	}
 	if (sim->touching && x->remainder == 0 && sim->has_contact)
@@ -290,7 +290,7 @@ static enum pound_stage simulation_after_contact(struct simulation *sim, enum po
 }
 
 /* A body's law goes on to its next piece; from here the edge is exact. */
-static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
+static void body_transition(struct simulation *sim, int i, enum pound_edge edge)
 {
 	struct state_rows *x = &sim->x;
 	if (edge != POUND_EDGE_TURN)
@@ -303,19 +303,19 @@ static void body_turn(struct simulation *sim, int i, enum pound_edge edge)
 
 /* What a simulation does after a step by power series.
  *
- * Given    event  that ended it;  left, speed: as contact_turn has them
+ * Given    event  that ended it;  left, speed: as contact_transition has them
  */
 static enum pound_stage simulation_stepped(struct simulation *sim, int event, double left, double speed)
 {
 	if (event == EVENT_CONTACT)
-		contact_turn(sim, left, speed);
+		contact_transition(sim, left, speed);
 	if (event >= EVENT_BODY)
-		body_turn(sim, (event - EVENT_BODY) / EVENT_EDGES,
+		body_transition(sim, (event - EVENT_BODY) / EVENT_EDGES,
 		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
 	if (observed(sim) && event > EVENT_CUT)
 		simulation_observe(sim, -1);
-	if (event >= EVENT_CLEARS && sim->can_fly && !sim->touching && sim->x.remainder > 0)
-		return sim->paired ? STAGE_LEAP_APART : STAGE_LEAP_ALONE;
+	if (event >= EVENT_CLEARS && sim->has_free_maps && !sim->touching && sim->x.remainder > 0)
+		return sim->paired ? STAGE_FINISH_PAIR : STAGE_FINISH_SINGLE;
 	return simulation_next(sim);
 }
 
@@ -352,7 +352,7 @@ static enum pound_stage peaks_look(struct simulation *sim)
 	double *largest = sim->result->displacement_max;
 	if (sim->looked < POUND_OSCILLATORS)
 		largest[sim->looked] = x->top[0];
-	sim->touching = sim->released = sim->fresh = sim->paired = sim->can_fly = false;
+	sim->touching = sim->released = sim->fresh = sim->paired = sim->has_free_maps = false;
 	x->pace = 1;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		while (sim->peaks[i] > 0) {
@@ -416,7 +416,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	sim->looked = POUND_OSCILLATORS;
 	double h = task->time_step;
 	double rate = 0, fastest = 0, damping = 0;
-	bool can_fly = !task->accounted; // the work in a step is that of its series
+	bool has_free_maps = !task->accounted; // the work in a step is that of its series
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
 		double k = body->backbone.stiffness;
@@ -424,7 +424,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 		rate = most(rate, most(omega, body->damping));
 		fastest = most(fastest, omega);
 		damping = most(damping, body->damping);
-		can_fly &= h * (body->damping + omega) <= REACH_MAP;
+		has_free_maps &= h * (body->damping + omega) <= REACH_MAP;
 		x->u[i] = body->u, x->v[i] = body->v;
 		x->top[i] = body->followed ? fabs(body->u) : DBL_MAX;
 		x->body[i].damping = body->damping;
@@ -434,7 +434,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	}
 	for (int m = 0; m < POUND_CONTACT_MAPS; m++)
 		sim->contact_map_of[0][m] = -1;
-	sim->can_fly = can_fly;
+	sim->has_free_maps = has_free_maps;
 	sim->traits = TRAIT_OWN;
 	sim->paired = task->contact || task->bodies[1].drive != 0;
 	if (simulation_edged(task))

@@ -148,16 +148,16 @@ struct pound_common {
 
 /* what a simulation does next */
 enum pound_stage {
-	STAGE_FLY_ALONE, /* whole samples of the left body */
-	STAGE_FLY_APART, /* whole samples of both */
+	STAGE_FREE_SINGLE, /* whole samples of the left body */
+	STAGE_FREE_PAIR, /* whole samples of both */
 	STAGE_CONTACT,   /* whole substeps of contact */
 	STAGE_SUSTAINED, /* many substeps of it at once */
-	STAGE_ALONE,     /* a step up to an event, by power series: of the left body */
-	STAGE_APART,     /* of both, who likely meet */
-	STAGE_CLEAR,     /* of both, who likely do not: what a batch looks for alike takes less */
-	STAGE_TOUCH,     /* of both in contact */
-	STAGE_LEAP_ALONE, /* what is left of a sample behind an event, where likely nothing happens: of the left body */
-	STAGE_LEAP_APART, /* of both */
+	STAGE_STEP_SINGLE,     /* a step up to an event, by power series: of the left body */
+	STAGE_STEP_PAIR,     /* of both, who likely meet */
+	STAGE_STEP_CLEAR,     /* of both, who likely do not: what a batch looks for alike takes less */
+	STAGE_STEP_CONTACT,     /* of both in contact */
+	STAGE_FINISH_SINGLE, /* what is left of a sample behind an event, where likely nothing happens: of the left body */
+	STAGE_FINISH_PAIR, /* of both */
 	STAGES,
 	STAGE_END = STAGES,
 	STAGE_CHATTER,
@@ -214,7 +214,7 @@ struct simulation {
 	bool released; /* force gone before the overlap: bodies still overlap */
 	bool fresh;    /* the force has just passed zero */
 	bool paired;   /* the right body moves, or there is something to touch */
-	bool can_fly;  /* samples are short enough for maps, and no balance is kept */
+	bool has_free_maps;  /* samples are short enough for maps, and no balance is kept */
 	bool has_contact;
 	// and what is read seldom
 	const struct pound_task *task;

@@ -313,15 +313,15 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 		motion_bound(&s->overlap, order);
 }
 
-LANE_SHARED void series_alone(struct series *s, const struct lanes *g)
+LANE_SHARED void series_single(struct series *s, const struct lanes *g)
 {
 	series_make(s, g, 1, &(struct scope){.paired = false}, NULL);
 }
-LANE_SHARED void series_apart(struct series *s, const struct lanes *g, int watched)
+LANE_SHARED void series_pair(struct series *s, const struct lanes *g, int watched)
 {
 	series_make(s, g, watched, &(struct scope){.paired = true}, NULL);
 }
-LANE_SHARED void series_touch(struct series *s, const struct lanes *g, int watched)
+LANE_SHARED void series_contact(struct series *s, const struct lanes *g, int watched)
 {
 	series_make(s, g, watched, &(struct scope){.paired = true, .touching = true}, NULL);
 }
@@ -339,13 +339,13 @@ LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struc
 	int watched = bodies_watched(e);
 	vm level = e->scope.paired ? bodies_level(g) & e->active : vmask(0);
 	if (!e->scope.paired)
-		series_alone(s, g);
+		series_single(s, g);
 	else if (vany(level))
 		series_level(s, g, watched, e->scope, level);
 	else if (e->scope.touching)
-		series_touch(s, g, watched);
+		series_contact(s, g, watched);
 	else
-		series_apart(s, g, watched);
+		series_pair(s, g, watched);
 	s->order = e->scope.touching ? ORDER_TOUCH : ORDER_APART; // the compiler is to know it
 }
 
@@ -477,15 +477,15 @@ LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
  *
  * Returns  e  decided
  */
-LANE_INLINE void event_leap(struct lanes *g, struct event_lanes *e, vm leaping)
+LANE_INLINE void event_finish(struct lanes *g, struct event_lanes *e, vm finishing)
 {
 	vd one = vsplat(1), zero = vsplat(0);
-	leaping &= ~e->released & ~e->fresh & vequal(g->pace, one) & vless(zero, g->remainder);
+	finishing &= ~e->released & ~e->fresh & vequal(g->pace, one) & vless(zero, g->remainder);
 	if (!e->scope.touching)
-		leaping &= ~vless(g->reach, g->remainder);
-	if (!vany(leaping))
+		finishing &= ~vless(g->reach, g->remainder);
+	if (!vany(finishing))
 		return;
-	g->dt = vselect(leaping, g->remainder, g->dt);
+	g->dt = vselect(finishing, g->remainder, g->dt);
 	struct series s;
 	step_begin(&s, g, e);
 	vm risk = vmask(0);
@@ -503,7 +503,7 @@ LANE_INLINE void event_leap(struct lanes *g, struct event_lanes *e, vm leaping)
 		for (int i = 0; i < (e->scope.paired ? 2 : 1); i++)
 			edge |= edge_risk(&s, g, i);
 		risk |= edge;
-		e->decided |= leaping & edge;
+		e->decided |= finishing & edge;
 	}
-	step_end(g, &s, e, one, leaping & ~risk);
+	step_end(g, &s, e, one, finishing & ~risk);
 }

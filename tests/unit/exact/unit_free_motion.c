@@ -34,16 +34,16 @@ static struct sample sample_random(uint64_t *seed)
 }
 
 /* The motion after a share of the sample: displacement, velocity, and what bounds it on the way. */
-static struct flight sample_fly(const struct sample *s, double share)
+static struct cubic sample_move(const struct sample *s, double share)
 {
 	struct sample part = *s;
 	struct pound_map map;
 	map_fill(&map, s->g.body[0].stiffness, s->g.body[0].damping, share * s->h);
 	memcpy(&part.g.map[0], &map, sizeof map);
-	const struct flyer flyer = flyer_of(&part.g, 0);
+	const struct free_map map = free_map_of(&part.g, 0);
 	const double ground = s->g.ground, grown = share * (s->next - ground);
-	const struct place from = {s->g.u[0], s->g.v[0]}, to = flight_move(&flyer, from, ground, ground + grown);
-	return flight_way(&flyer, from, to, fabs(ground) + fabs(grown), share * s->h / 3);
+	const struct place from = {s->g.u[0], s->g.v[0]}, to = free_move(&map, from, ground, ground + grown);
+	return cubic_of(&map, from, to, fabs(ground) + fabs(grown), share * s->h / 3);
 }
 
 enum { SAMPLES = 4000, PARTS = 16 };
@@ -55,9 +55,9 @@ static void the_cubic_misses_the_motion_by_no_more_than_its_error(void **state)
 	double nearest = 0;
 	for (int n = 0; n < SAMPLES; n++) {
 		const struct sample s = sample_random(&seed);
-		const struct flight whole = sample_fly(&s, 1);
+		const struct cubic whole = sample_move(&s, 1);
 		for (int j = 1; j < PARTS; j++) {
-			const double t = (double)j / PARTS, b = 1 - t, u = sample_fly(&s, t).u;
+			const double t = (double)j / PARTS, b = 1 - t, u = sample_move(&s, t).u;
 			const double cubic = b * b * b * s.g.u[0] + 3 * b * b * t * whole.b1 + 3 * b * t * t * whole.b2 +
 			                     t * t * t * whole.u;
 			// the error is that of the inner points: it lifts the cubic by 3/4 of it in the middle
@@ -76,12 +76,12 @@ static void no_velocity_inside_is_below_the_bound_of_it(void **state)
 	double nearest = INFINITY;
 	for (int n = 0; n < SAMPLES; n++) {
 		const struct sample s = sample_random(&seed);
-		const struct flight whole = sample_fly(&s, 1);
+		const struct cubic whole = sample_move(&s, 1);
 		const double third = s.h / 3;
 		for (int way = -1; way <= 1; way += 2) {
-			const double bound = flight_along(s.g.v[0], &whole, third, way);
+			const double bound = cubic_slowest(s.g.v[0], &whole, third, way);
 			for (int j = 1; j < PARTS; j++) {
-				const double v = sample_fly(&s, (double)j / PARTS).v;
+				const double v = sample_move(&s, (double)j / PARTS).v;
 				assert_true(way * third * v >= bound);
 				nearest = fmin(nearest, (way * third * v - bound) / whole.error);
 			}
@@ -97,13 +97,13 @@ static void two_halves_of_a_sample_are_the_whole(void **state)
 	uint64_t seed = 3;
 	for (int n = 0; n < SAMPLES; n++) {
 		struct sample s = sample_random(&seed);
-		const struct flight whole = sample_fly(&s, 1), half = sample_fly(&s, 0.5);
+		const struct cubic whole = sample_move(&s, 1), half = sample_move(&s, 0.5);
 		const double h = s.h, unit = fabs(s.g.u[0]) + fabs(s.g.v[0]) * h + h * h;
 		s.g.u[0] = half.u;
 		s.g.v[0] = half.v;
 		s.g.ground = 0.5 * (s.g.ground + s.next);
 		s.h = 0.5 * h;
-		const struct flight rest = sample_fly(&s, 1);
+		const struct cubic rest = sample_move(&s, 1);
 		check_near((rest.u - whole.u) / unit, 0, 16 * 2.2e-16);
 		check_near((rest.v - whole.v) * h / unit, 0, 32 * 2.2e-16);
 	}
