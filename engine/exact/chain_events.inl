@@ -64,35 +64,36 @@ static void guard_search(struct first *first, const struct chain *c, struct guar
 LANE_INLINE void stories_search(struct first *first, const struct chain *c, int i)
 {
 	const vd zero = vsplat(0), one = vsplat(1);
-	struct course course = course_load(&c->drift, i);
+	struct enclosure enclosure = enclosure_load(&c->drift, i);
 	const vd low = column_load(&c->low, i), high = column_load(&c->high, i);
 	const vd direction = column_load(&c->direction, i);
-	const vm past_high = may_cross(&course, high, one), past_low = may_cross(&course, low, -one);
+	const vm past_high = may_cross(&enclosure, high, one), past_low = may_cross(&enclosure, low, -one);
 	vm turns = ~vequal(direction, zero);
 	if (!vany(past_high | past_low | turns))
 		return;
 	struct motion m;
 	motion_load(&m, c, c->drifts, &c->drift, i);
 	if (vany(past_low))
-		guard_search(first, c, guard_of(&m.u, &course, low, -one), past_low, EVENT_STORY + POUND_EDGE_LOW, i);
-	if (vany(past_high))
-		guard_search(first, c, guard_of(&m.u, &course, high, one), past_high, EVENT_STORY + POUND_EDGE_HIGH,
+		guard_search(first, c, guard_of(&m.u, &enclosure, low, -one), past_low, EVENT_STORY + POUND_EDGE_LOW,
 		             i);
+	if (vany(past_high))
+		guard_search(first, c, guard_of(&m.u, &enclosure, high, one), past_high,
+		             EVENT_STORY + POUND_EDGE_HIGH, i);
 	if (!vany(turns))
 		return;
 	struct power velocity;
 	if (c->warp.on) {
 		power_load(&velocity, c->order, c->warp.rates, i);
-		course = course_make(&velocity, c->order);
+		enclosure = enclosure_make(&velocity, c->order);
 	} else
-		course = course_of_velocity(&m, c->order);
-	turns &= may_cross(&course, zero, -direction);
+		enclosure = enclosure_of_velocity(&m, c->order);
+	turns &= may_cross(&enclosure, zero, -direction);
 	if (!vany(turns))
 		return;
 	if (!c->warp.on)
 		motion_velocity(&velocity, &m, c->order);
-	guard_search(first, c, guard_of(&velocity, &course, zero, -direction), turns,
-	             EVENT_STORY + POUND_EDGE_TURN, i);
+	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), turns,
+	             EVENT_STORY + POUND_EDGE_REVERSAL, i);
 }
 
 /* Whether a contact ends where its force does, which may be before its overlap does. */
@@ -102,9 +103,9 @@ static bool link_forced(const struct link *l)
 }
 
 /* What overlaps do over a step: those that are integrated in their own right by their series, others by their floors'. */
-static void overlaps_course(struct chain *c)
+static void overlaps_enclose(struct chain *c)
 {
-	struct courses *x = &c->overlap;
+	struct enclosures *x = &c->overlap;
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
 		if (l->own)
@@ -137,7 +138,7 @@ static void overlaps_course(struct chain *c)
 /* a vector of links */
 struct link_lanes {
 	struct motion overlap;
-	struct course course;
+	struct enclosure enclosure;
 	unsigned open, released, touching;    /* which of the three */
 	unsigned forced;                      /* touching, and ends with its force */
 	double low[W], high[W], direction[W]; /* of the branches of those that touch */
@@ -149,7 +150,7 @@ struct link_lanes {
 static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 {
 	memset(x, 0, sizeof *x);
-	x->course = course_load(&c->overlap, j);
+	x->enclosure = enclosure_load(&c->overlap, j);
 	for (int l = 0; l < W; l++) {
 		x->low[l] = -DBL_MAX, x->high[l] = DBL_MAX;
 		if (j + l >= c->n_links)
@@ -239,9 +240,9 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 	link_lanes_make(&x, c, j);
 	const vm open = vmask(x.open), touching = vmask(x.touching);
 	const vd low = lanes_load(x.low), high = lanes_load(x.high), direction = lanes_load(x.direction);
-	const vm begins = open & may_cross(&x.course, zero, one);
-	const vm past_low = touching & may_cross(&x.course, low, -one);
-	const vm past_high = touching & may_cross(&x.course, high, one);
+	const vm begins = open & may_cross(&x.enclosure, zero, one);
+	const vm past_low = touching & may_cross(&x.enclosure, low, -one);
+	const vm past_high = touching & may_cross(&x.enclosure, high, one);
 	vm turns = touching & ~vequal(direction, zero);
 	const unsigned by_force = x.forced | x.released;
 	if (!vany(begins | past_low | past_high | turns) && by_force == 0)
@@ -249,27 +250,29 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 	overlaps_fill(c, vbits(begins), j);
 	for (int n = 0; n <= ORDER_TOUCH; n++)
 		x.overlap.u.c[n] = n <= c->order ? lanes_load(&c->overlaps[n][j]) : zero;
-	x.overlap.end = (struct place){x.course.u1, x.course.v1};
-	x.overlap.bend = x.course.bend;
+	x.overlap.end = (struct place){x.enclosure.u1, x.enclosure.v1};
+	x.overlap.bend = x.enclosure.bend;
 	const struct power *p = &x.overlap.u;
 	if (vany(begins))
-		guard_search(first, c, guard_of(p, &x.course, zero, one), begins, EVENT_BEGINS, j);
+		guard_search(first, c, guard_of(p, &x.enclosure, zero, one), begins, EVENT_BEGINS, j);
 	if (vany(past_low))
-		guard_search(first, c, guard_of(p, &x.course, low, -one), past_low, EVENT_LINK + POUND_EDGE_LOW, j);
+		guard_search(first, c, guard_of(p, &x.enclosure, low, -one), past_low, EVENT_LINK + POUND_EDGE_LOW,
+		             j);
 	if (vany(past_high))
-		guard_search(first, c, guard_of(p, &x.course, high, one), past_high, EVENT_LINK + POUND_EDGE_HIGH, j);
+		guard_search(first, c, guard_of(p, &x.enclosure, high, one), past_high, EVENT_LINK + POUND_EDGE_HIGH,
+		             j);
 	if (by_force)
 		forces_search(first, c, &x, by_force, j);
 	if (!vany(turns))
 		return;
 	struct power velocity;
 	link_rates(&velocity, c, &x.overlap, j);
-	const struct course course = course_make(&velocity, c->order);
-	turns &= may_cross(&course, zero, -direction);
+	const struct enclosure enclosure = enclosure_make(&velocity, c->order);
+	turns &= may_cross(&enclosure, zero, -direction);
 	if (!vany(turns))
 		return;
-	guard_search(first, c, guard_of(&velocity, &course, zero, -direction), turns,
-	             EVENT_LINK + POUND_EDGE_TURN, j);
+	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), turns,
+	             EVENT_LINK + POUND_EDGE_REVERSAL, j);
 }
 
 /* Looks for where the force that holds the sides of a rigid contact together falls through 0. */
@@ -291,7 +294,7 @@ static struct first events_search(struct chain *c)
 {
 	struct first first = {.time = 1, .event = EVENT_NONE, .index = -1};
 	if (c->n_links > 0)
-		overlaps_course(c);
+		overlaps_enclose(c);
 	for (int j = 0; j < c->n_links; j += W)
 		links_search(&first, c, j);
 	for (int j = 0; j < c->n_links; j++)

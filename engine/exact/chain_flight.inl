@@ -368,9 +368,10 @@ LANE_INLINE unsigned sampled_peaks(const struct chain *c, const struct sampled *
 	const vd h = vsplat(c->task->time_step);
 	unsigned some = 0;
 	for (int i = 0; i < c->wide; i += W) {
-		const struct course course = {column_load(x->u0, i), column_load(x->v0, i) * h, column_load(x->u1, i),
-		                              column_load(x->v1, i) * h, column_load(x->bend, i)};
-		const vd top = vmax(column_load(x->top, i), vabs(course.u1)), reach = course_reach(&course);
+		const struct enclosure enclosure = {column_load(x->u0, i), column_load(x->v0, i) * h,
+		                                    column_load(x->u1, i), column_load(x->v1, i) * h,
+		                                    column_load(x->bend, i)};
+		const vd top = vmax(column_load(x->top, i), vabs(enclosure.u1)), reach = enclosure_reach(&enclosure);
 		const vm inside = vless(top, reach);
 		some |= vbits(inside);
 		column_store(x->reach, i, vselect(inside, reach, vsplat(0)));
@@ -532,19 +533,19 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
 	vm risk = vmask(0), inside = vmask(0);
 	for (int i = 0; i < c->wide; i += W) {
 		const struct drifts s = drifts_sum(f, i);
-		const struct course course = {column_load(&from->d, i), column_load(&from->v, i) * h, s.d, s.v * h,
-		                              s.bend};
+		const struct enclosure enclosure = {column_load(&from->d, i), column_load(&from->v, i) * h, s.d,
+		                                    s.v * h, s.bend};
 		column_store(&to->d, i, s.d);
 		column_store(&to->v, i, s.v);
 		if (moving)
 			column_store(&f->bent, i, s.bend);
 		if (edged)
-			risk |= may_cross(&course, column_load(&c->high, i), one) |
-			        may_cross(&course, column_load(&c->low, i), -one);
+			risk |= may_cross(&enclosure, column_load(&c->high, i), one) |
+			        may_cross(&enclosure, column_load(&c->low, i), -one);
 		if (!drifts)
 			continue;
 		const vd top = vmax(column_load(&c->top_drift, i), vabs(s.d));
-		const vd reach = course_reach(&course);
+		const vd reach = enclosure_reach(&enclosure);
 		const vm higher = vless(top, reach);
 		inside |= higher;
 		column_store(&f->reach, i, vselect(higher, reach, vsplat(0)));

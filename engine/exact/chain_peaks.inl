@@ -11,7 +11,7 @@ enum {
 };
 
 /* Bound of |u| inside a step, apart from its ends. */
-LANE_INLINE vd course_reach(const struct course *c)
+LANE_INLINE vd enclosure_reach(const struct enclosure *c)
 {
 	const vd third = vsplat(1.0 / 3), b1 = vfma(third, c->v0, c->u0), b2 = vfma(-third, c->v1, c->u1);
 	return vfma(vsplat(POUND_CUBIC_ERROR), c->bend, vmax(vabs(b1), vabs(b2)));
@@ -41,13 +41,13 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 		struct motion m = {.u = *x};
 		motion_velocity(&rate.u, &m, order);
 		const vd *v = rate.u.c;
-		const struct course course = course_make(&rate.u, order);
+		const struct enclosure enclosure = enclosure_make(&rate.u, order);
 		vd way = v[LEADING];
 		for (int n = LEADING - 1; n >= 0; n--)
 			way = vselect(vequal(v[n], zero), way, v[n]);
 		const vd sign = vselect(vless(way, zero), one, -one);
 		struct search search = {.time = vmin(end, one), .event = vsplat(EVENT_NONE)};
-		struct guard turns = guard_of(&rate.u, &course, zero, sign);
+		struct guard turns = guard_of(&rate.u, &enclosure, zero, sign);
 		search_crossing(&turns, order, lanes, vsplat(EVENT_STORY), &search);
 		lanes &= ~vequal(search.event, vsplat(EVENT_NONE));
 		if (!vany(lanes))
@@ -58,8 +58,8 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 		power_shift(x, order, t);
 		x->c[1] = vselect(vequal(search.event, vsplat(EVENT_STORY)), zero, x->c[1]);
 		end = end - t;
-		const struct course rest = course_make(x, order);
-		lanes &= vless(zero, end) & vless(top, course_reach(&rest));
+		const struct enclosure rest = enclosure_make(x, order);
+		lanes &= vless(zero, end) & vless(top, enclosure_reach(&rest));
 		if (!vany(lanes))
 			break;
 	}
@@ -68,13 +68,13 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 
 /* Largest values of a column of series in a step that ended at a share of it. */
 LANE_INLINE void tops_keep(const struct chain *c, const struct column series[TERMS],
-                           const struct courses *courses, const struct column *end, double time,
+                           const struct enclosures *enclosures, const struct column *end, double time,
                            struct column *tops)
 {
 	for (int i = 0; i < c->wide; i += W) {
-		const struct course course = course_load(courses, i);
+		const struct enclosure enclosure = enclosure_load(enclosures, i);
 		const vd top = vmax(column_load(tops, i), vabs(column_load(end, i)));
-		const vm inside = vless(top, course_reach(&course));
+		const vm inside = vless(top, enclosure_reach(&enclosure));
 		if (!vany(inside)) {
 			column_store(tops, i, top);
 			continue;
@@ -90,8 +90,8 @@ static void acceleration_follow(struct chain *c, struct power *x, int i, double 
 {
 	const vd there = power_at(x, c->order, vsplat(time));
 	vd top = vmax(column_load(&c->top_acceleration, i), vmax(vabs(x->c[0]), vabs(there)));
-	const struct course course = course_make(x, c->order);
-	const vm inside = vless(top, course_reach(&course));
+	const struct enclosure enclosure = enclosure_make(x, c->order);
+	const vm inside = vless(top, enclosure_reach(&enclosure));
 	if (vany(inside))
 		top = top_follow(x, c->order, vsplat(time), top, vsplat(-1), inside);
 	column_store(&c->top_acceleration, i, top);
@@ -143,10 +143,10 @@ static void force_keep(struct chain *c, struct link *l, int j, double time)
 		x.c[n] = vsplat(fma(k, c->overlaps[n][j], lead * (n + 1) * next) + (n == 0 ? l->at.on.offset : 0));
 	}
 	double *most = &l->measures[POUND_LINK_FORCE_MAX], value[W];
-	const struct course course = course_make(&x, c->order);
+	const struct enclosure enclosure = enclosure_make(&x, c->order);
 	lanes_store(value, power_at(&x, c->order, vsplat(time)));
 	vd top = vsplat(fmax(*most, fmax(value[0], ((const double *)&x.c[0])[0])));
-	const vm inside = vless(top, course_reach(&course)) & vmask(1);
+	const vm inside = vless(top, enclosure_reach(&enclosure)) & vmask(1);
 	if (vany(inside))
 		top = top_follow(&x, c->order, vsplat(time), top, vsplat(0), inside);
 	lanes_store(value, top);

@@ -213,7 +213,8 @@ LANE_INLINE void series_orders(struct chain *c, bool pushed, bool owned)
 }
 
 /* What a column of series does over a step. */
-LANE_INLINE void courses_make(const struct chain *c, const struct column series[TERMS], struct courses *to)
+LANE_INLINE void enclosures_make(const struct chain *c, const struct column series[TERMS],
+                                 struct enclosures *to)
 {
 	for (int i = 0; i < c->wide; i += W) {
 		vd u = column_load(&series[0], i), v = vsplat(0), bend = vsplat(0);
@@ -237,7 +238,7 @@ LANE_INLINE void courses_make(const struct chain *c, const struct column series[
 }
 
 /* What a series does over a step. */
-static struct course course_make(const struct power *x, int order)
+static struct enclosure enclosure_make(const struct power *x, int order)
 {
 	vd u = x->c[0], v = vsplat(0), bend = vsplat(0);
 	for (int n = 1; n <= order; n++) {
@@ -246,7 +247,7 @@ static struct course course_make(const struct power *x, int order)
 		if (n >= 4)
 			bend = vfma(vsplat(fourth(n)), vabs(x->c[n]), bend);
 	}
-	return (struct course){x->c[0], x->c[1], u, v, bend};
+	return (struct enclosure){x->c[0], x->c[1], u, v, bend};
 }
 
 /* Makes the series of a step of c->dt. */
@@ -264,9 +265,9 @@ static void series_chain(struct chain *c)
 		series_orders(c, true, owned);
 	else
 		series_orders(c, false, owned);
-	courses_make(c, c->drifts, &c->drift);
+	enclosures_make(c, c->drifts, &c->drift);
 	if (c->moving)
-		courses_make(c, c->displacements, &c->displacement);
+		enclosures_make(c, c->displacements, &c->displacement);
 }
 
 /* The series of a vector of floors; 0 beyond their order. */
@@ -277,15 +278,15 @@ LANE_INLINE void power_load(struct power *x, int order, const struct column seri
 }
 
 LANE_INLINE void motion_load(struct motion *m, const struct chain *c, const struct column series[TERMS],
-                             const struct courses *course, int i)
+                             const struct enclosures *enclosure, int i)
 {
 	power_load(&m->u, c->order, series, i);
-	m->end = (struct place){column_load(&course->u1, i), column_load(&course->v1, i)};
-	m->bend = column_load(&course->bend, i);
+	m->end = (struct place){column_load(&enclosure->u1, i), column_load(&enclosure->v1, i)};
+	m->bend = column_load(&enclosure->bend, i);
 }
 
-LANE_INLINE struct course course_load(const struct courses *x, int i)
+LANE_INLINE struct enclosure enclosure_load(const struct enclosures *x, int i)
 {
-	return (struct course){column_load(&x->u0, i), column_load(&x->v0, i), column_load(&x->u1, i),
-	                       column_load(&x->v1, i), column_load(&x->bend, i)};
+	return (struct enclosure){column_load(&x->u0, i), column_load(&x->v0, i), column_load(&x->u1, i),
+	                          column_load(&x->v1, i), column_load(&x->bend, i)};
 }

@@ -39,7 +39,7 @@ struct column {
 };
 
 /* a quantity of every floor over a step: value and rate times the step at both ends, and the bound of its fourth derivative */
-struct courses {
+struct enclosures {
 	struct column u0, v0, u1, v1, bend;
 };
 
@@ -151,7 +151,7 @@ struct chain {
 	struct column inverse_mass, inverse_above, inner, base, drag, dashpot, initial, pliancy;
 	// branches
 	struct column stiffness, offset, low, high, direction;
-	struct pound_branch branch[LONG];
+	struct pound_law_state laws[LONG];
 	// state
 	struct column d, v; /* drifts and their rates */
 	struct column top_drift, top_displacement, top_acceleration;
@@ -167,7 +167,7 @@ struct chain {
 	// the step: coefficients of springs, dashpots, offsets and drag, scaled to it; forces of contacts over masses
 	struct column spring, dash, force, drag_step, push;
 	struct column u, w; /* displacements and velocities at its start */
-	struct courses drift, displacement, overlap;
+	struct enclosures drift, displacement, overlap;
 	struct column drifts[TERMS], displacements[TERMS];
 	double overlaps[TERMS][LINKS];
 	double reach; /* longest step, of the links that touch now; 0: to be found [s] */
@@ -280,14 +280,14 @@ static void chain_rates(struct chain *c)
 }
 
 /* Puts a story's branch into the columns. */
-static void branch_enter(struct chain *c, int i)
+static void story_branch_enter(struct chain *c, int i)
 {
-	const struct pound_piece *piece = &c->branch[i].piece;
-	c->stiffness.at[i] = piece->stiffness;
-	c->offset.at[i] = piece->offset;
-	c->low.at[i] = piece->low;
-	c->high.at[i] = piece->high;
-	c->direction.at[i] = piece->direction;
+	const struct pound_branch *branch = &c->laws[i].branch;
+	c->stiffness.at[i] = branch->stiffness;
+	c->offset.at[i] = branch->offset;
+	c->low.at[i] = branch->low;
+	c->high.at[i] = branch->high;
+	c->direction.at[i] = branch->direction;
 }
 
 static void floor_start(struct chain *c, int i)
@@ -306,8 +306,8 @@ static void floor_start(struct chain *c, int i)
 	c->pliancy.at[i] = 1 / floor->story.stiffness;
 	c->edged |= !pound_law_linear(floor->story.law);
 	c->modal |= floor->modal != NULL;
-	pound_law_start(&floor->story, &c->branch[i]);
-	branch_enter(c, i);
+	pound_law_start(&floor->story, &c->laws[i]);
+	story_branch_enter(c, i);
 }
 
 static int whole_vectors(int n)
@@ -372,7 +372,7 @@ static double chain_kinetic(const struct chain *c)
 /* Center of a story's elastic range: where its force would be 0 but for what hardening adds. */
 static double story_center(const struct chain *c, int i)
 {
-	return pound_law_center(&c->task->floors[i].story, &c->branch[i], c->d.at[i]);
+	return pound_law_center(&c->task->floors[i].story, &c->laws[i], c->d.at[i]);
 }
 
 static void chain_write(struct chain *c, enum pound_status status)

@@ -154,7 +154,7 @@ static void link_leave(struct chain *c, struct link *l, enum pound_edge edge)
 		contact_ends(c, l);
 		return;
 	}
-	if (edge == POUND_EDGE_TURN)
+	if (edge == POUND_EDGE_REVERSAL)
 		l->q = 0;
 	else
 		l->p = edge == POUND_EDGE_HIGH ? l->at.on.high : l->at.on.low;
@@ -165,14 +165,14 @@ static void link_leave(struct chain *c, struct link *l, enum pound_edge edge)
 /* A story's law goes on to its next branch; from here the edge is exact. */
 static void story_leave(struct chain *c, int i, enum pound_edge edge, bool moved)
 {
-	if (edge == POUND_EDGE_TURN) {
+	if (edge == POUND_EDGE_REVERSAL) {
 		if (moved)
 			c->v.at[i] = 0;
 	} else {
 		c->d.at[i] = edge == POUND_EDGE_HIGH ? c->high.at[i] : c->low.at[i];
 	}
-	pound_law_leave(&c->task->floors[i].story, &c->branch[i], edge, c->d.at[i]);
-	branch_enter(c, i);
+	pound_law_leave(&c->task->floors[i].story, &c->laws[i], edge, c->d.at[i]);
+	story_branch_enter(c, i);
 }
 
 /* ---- the step ---- */

@@ -106,7 +106,7 @@ static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const 
 
 /* Exact map of the base body and the overlap over one substep h of contact, by its power series.
  *
- * Given    sim    its bodies on their pieces, contact
+ * Given    sim    its bodies on their branches, contact
  * Returns  map    rows of POUND_CONTACT_INPUTS coefficients
  *          work   what an account of energy needs beside them; NULL: there is none
  *
@@ -439,7 +439,7 @@ static const struct pound_contact_map *doubled_longest(struct simulation *sim,
 	return NULL;
 }
 
-/* The maps of contact on the pieces that the bodies are on. */
+/* The maps of contact on the branches that the bodies are on. */
 static struct pound_contact_maps *contact_maps_find(struct simulation *sim)
 {
 	if (sim->common)
@@ -460,7 +460,7 @@ static struct pound_contact_maps *contact_maps_find(struct simulation *sim)
 	return &sim->own_maps[m];
 }
 
-/* Contact on pieces that the bodies have not been pressed on since they entered them. */
+/* Contact on branches that the bodies have not been pressed on since they entered them. */
 LANE_SHARED void contact_maps_enter(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
@@ -480,8 +480,8 @@ LANE_SHARED void contact_maps_enter(struct simulation *sim)
 	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 }
 
-/* Gives a copy of a simulation what maps of contact that has, but for the doubled maps: it is still on its first pieces,
- * so there is one pair of pieces at most that it has maps of. */
+/* Gives a copy of a simulation what maps of contact that has, but for the doubled maps: it is still on its first branches,
+ * so there is one pair of branches at most that it has maps of. */
 static void contact_maps_copy(struct simulation *to, const struct simulation *from)
 {
 	if (!from->contact_maps)

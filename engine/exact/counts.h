@@ -20,7 +20,7 @@ static const double POUND_COUNTS_ROUNDINGS = 16;
 /* what a body's motion is made of where a contact ends */
 struct pound_counts_body {
 	double u, v;              /* [m], [m/s] */
-	double stiffness, offset; /* of the piece it is on, per mass [1/s2], [m/s2] */
+	double stiffness, offset; /* of the branch it is on, per mass [1/s2], [m/s2] */
 	double damping;           /* c/m [1/s] */
 	double pull;              /* what the ground gives it [m/s2] */
 };

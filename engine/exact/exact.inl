@@ -10,7 +10,7 @@
  * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
  * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
  *    costs more than what it decides;
- * 6. simulations of one scene, of laws of one piece, make their maps once, and their constants stay in lanes from batch to
+ * 6. simulations of one scene, of laws of one branch, make their maps once, and their constants stay in lanes from batch to
  *    batch;
  * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (shared_start.inl);
  * 8. one that is observed goes through the same steps, and stops at every event and, in going contact, at every sample.
@@ -140,7 +140,7 @@ LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahea
  *          ahead   what is left in front of each, and those that still fly, with samples left
  */
 LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
-                        const struct free_map maps[2], const struct scope *scope)
+                              const struct free_map maps[2], const struct scope *scope)
 {
 	struct stretch s;
 	unsigned on = ahead->moving;
@@ -173,7 +173,7 @@ LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct a
 
 /* Given    g, maps  what does not change meanwhile */
 LANE_INLINE void free_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
-                           const struct free_map maps[2], enum kind kind)
+                            const struct free_map maps[2], enum kind kind)
 {
 	const struct scope scope = {
 	    .paired = stage == STAGE_FREE_PAIR, .edged = kind == KIND_EDGED, .right = b->traits & TRAIT_RIGHT};
@@ -568,7 +568,7 @@ LANE_INLINE void finish_interval(struct work *work, struct batch *b, enum pound_
 
 /* ---- the march ---- */
 
-/* the stages' steps: of laws of one piece, of others, and of simulations of one scene */
+/* the stages' steps: of laws of one branch, of others, and of simulations of one scene */
 #define STEP(name, ...)                                  \
 	static void name(struct work *work, struct batch *b) \
 	{                                                    \

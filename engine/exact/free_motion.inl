@@ -86,7 +86,7 @@ struct free_map {
 	vd error_u, error_v, error_force, error_ground;
 };
 
-/* The map of a body on the piece it is on.
+/* The map of a body on the branch it is on.
  *
  * With the response psi = uv to an initial velocity, uu = psi' + c psi, and the responses ua and ud to constant and
  * growing forcing have the derivatives -psi and va = ua/h, so that the velocity needs few columns of its own:
@@ -97,19 +97,19 @@ LANE_INLINE struct free_map free_map_of(const struct lanes *g, int i)
 {
 	vd psi = g->map[i].uv, drive = g->body[i].drive, offset = g->body[i].offset;
 	return (struct free_map){.uu = g->map[i].uu,
-	                      .uv = psi,
-	                      .u_force = g->map[i].ua * offset,
-	                      .u_ground = (g->map[i].ua - g->map[i].ud) * drive,
-	                      .u_next = g->map[i].ud * drive,
-	                      .vu = -psi * g->body[i].stiffness,
-	                      .vv = vfma(-psi, g->body[i].damping, g->map[i].uu),
-	                      .v_force = -psi * offset,
-	                      .v_ground = -(psi + g->map[i].va) * drive,
-	                      .v_next = g->map[i].va * drive,
-	                      .error_u = g->map[i].eu,
-	                      .error_v = g->map[i].ev,
-	                      .error_force = g->map[i].ef * vabs(offset),
-	                      .error_ground = g->map[i].ef * drive};
+	                         .uv = psi,
+	                         .u_force = g->map[i].ua * offset,
+	                         .u_ground = (g->map[i].ua - g->map[i].ud) * drive,
+	                         .u_next = g->map[i].ud * drive,
+	                         .vu = -psi * g->body[i].stiffness,
+	                         .vv = vfma(-psi, g->body[i].damping, g->map[i].uu),
+	                         .v_force = -psi * offset,
+	                         .v_ground = -(psi + g->map[i].va) * drive,
+	                         .v_next = g->map[i].va * drive,
+	                         .error_u = g->map[i].eu,
+	                         .error_v = g->map[i].ev,
+	                         .error_force = g->map[i].ef * vabs(offset),
+	                         .error_ground = g->map[i].ef * drive};
 }
 
 /* Where a body is one whole sample later.
@@ -132,17 +132,17 @@ LANE_INLINE struct place free_move(const struct free_map *f, struct place from, 
  *          third  of the sample
  */
 LANE_INLINE struct cubic cubic_of(const struct free_map *f, struct place from, struct place to, vd pull,
-                                     vd third)
+                                  vd third)
 {
 	vd error = vfma(f->error_ground, pull, f->error_force);
 	return (struct cubic){.u = to.u,
-	                       .v = to.v,
-	                       .b1 = vfma(third, from.v, from.u),
-	                       .b2 = vfma(-third, to.v, to.u),
-	                       .error = vfma(f->error_u, vabs(from.u), vfma(f->error_v, vabs(from.v), error))};
+	                      .v = to.v,
+	                      .b1 = vfma(third, from.v, from.u),
+	                      .b2 = vfma(-third, to.v, to.u),
+	                      .error = vfma(f->error_u, vabs(from.u), vfma(f->error_v, vabs(from.v), error))};
 }
 
-/* the ends of a body's piece: displacements, and the way in which it must go (0: either) */
+/* the ends of a body's branch: displacements, and the way in which it must go (0: either) */
 struct edges {
 	vd low, high, direction;
 };
@@ -176,7 +176,7 @@ LANE_INLINE vd cubic_slowest(vd v, const struct cubic *f, vd third, vd way)
 	return vmin(ends, way * (f->b2 - f->b1)) - vsplat(0.77) * f->error;
 }
 
-/* Lanes in which an edge of a body's piece may be reached.
+/* Lanes in which an edge of a body's branch may be reached.
  *
  * Given    v  velocity at the start;  f: the flight from there
  */
@@ -202,7 +202,7 @@ struct stretch {
 	struct place at[2][ROW + 1];
 	vd top[2][ROW + 1];    /* the largest displacement up to there */
 	vd bound[2][ROW];      /* of |u| inside a sample */
-	unsigned edge[ROW];    /* lanes in which an edge of a piece may be reached inside a sample */
+	unsigned edge[ROW];    /* lanes in which an edge of a branch may be reached inside a sample */
 	unsigned meet[ROW];    /* in which bodies may touch */
 	unsigned peak[2][ROW]; /* and those in which a body may have its largest displacement */
 };
@@ -300,7 +300,7 @@ struct form {
 /* the base body and the overlap in lanes, and the map of either */
 struct contact_lanes {
 	struct contact_state at;
-	struct edges base, other; /* where a lane has a law of more than one piece */
+	struct edges base, other; /* where a lane has a law of more than one branch */
 	struct form moved[CONTACT_IMPULSE + 1];
 	struct form error;                                  /* of a substep, of the magnitudes */
 	vm alike;                                           /* lanes of TRAIT_ALIKE */
@@ -400,7 +400,7 @@ LANE_INLINE vd contact_fades(const struct lanes *g, const struct contact_lanes *
  *
  * Given    going   lanes that are to go on
  * Returns  s       those of them in which nothing can happen, at the end of the substep
- *          edge    lanes in which an edge of a piece may be reached
+ *          edge    lanes in which an edge of a branch may be reached
  *          value   those, and others in which something may happen inside it
  */
 LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, const struct scope *scope,
@@ -435,9 +435,9 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 		risk &= ~contact_still(s, end[2], end[3]);
 	vd side = g->side, off = side * g->gap, v = x[1] - side * x[3];
 	struct cubic o = {.u = other_body(b.u, p.u, side, off),
-	                   .v = b.v - side * p.v,
-	                   .b1 = other_body(b.b1, p.b1, side, off),
-	                   .b2 = other_body(b.b2, p.b2, side, off)};
+	                  .v = b.v - side * p.v,
+	                  .b1 = other_body(b.b1, p.b1, side, off),
+	                  .b2 = other_body(b.b2, p.b2, side, off)};
 	// the magnitudes it is made of are those of base, overlap and gap
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	*edge = vmask(0);
@@ -448,9 +448,9 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	} else {
 		vm left = vless(zero, side);
 		struct cubic l = {.u = vselect(left, b.u, o.u),
-		                   .b1 = vselect(left, b.b1, o.b1),
-		                   .b2 = vselect(left, b.b2, o.b2),
-		                   .error = vselect(left, b.error, o.error)};
+		                  .b1 = vselect(left, b.b1, o.b1),
+		                  .b2 = vselect(left, b.b2, o.b2),
+		                  .error = vselect(left, b.error, o.error)};
 		risk |= cubic_peaks(&l, vselect(left, top[0], top[1]));
 	}
 	risk |= *edge;
@@ -491,11 +491,11 @@ LANE_INLINE vm sustained_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 	return vless(most, vfma(vsplat(-SUSTAINED_ROUNDING), most, vmax(high, -low))) & ~steady;
 }
 
-/* Lanes in which an edge of its piece may be reached.
+/* Lanes in which an edge of its branch may be reached.
  *
  * A body that creeps goes less far than the rounding of where it is: no bound of its velocity could show that it goes on, so that
- * none is asked for, and at the end of its piece it may be beyond by as much.  Its velocity at the start still counts: who
- * goes back where a piece only goes on must leave that now, however slowly it goes, or what it goes adds up from doubled map to
+ * none is asked for, and at the end of its branch it may be beyond by as much.  Its velocity at the start still counts: who
+ * goes back where a branch only goes on must leave that now, however slowly it goes, or what it goes adds up from doubled map to
  * doubled map.
  *
  * Given    speed  its velocity at the start, or any multiple of it
@@ -513,7 +513,7 @@ LANE_INLINE vm sustained_edges(vd end, vd low, vd high, vd speed, vm steady, con
  *
  * Given    going  lanes that are to go on
  * Returns  s      those of them in which nothing can happen, at their end
- *          edge   lanes in which an edge of a piece may be reached
+ *          edge   lanes in which an edge of a branch may be reached
  *          value  those, and others in which something may happen meanwhile
  */
 LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s, const struct scope *scope,

@@ -1,4 +1,4 @@
-/* next_step.inl - what is done to one simulation at a time: its start, what follows a step, its next piece, its end.
+/* next_step.inl - what is done to one simulation at a time: its start, what follows a step, its next branch, its end.
  *
  * Included by exact.inl alone, once per lane count.
  *
@@ -32,29 +32,29 @@ static double most(double a, double b)
 
 /* ---- maps ---- */
 
-/* Puts a body's current piece, and the map that belongs to it, into the rows. */
-static void piece_enter(struct simulation *sim, int i)
+/* Puts a body's current branch, and the map that belongs to it, into the rows. */
+static void branch_enter(struct simulation *sim, int i)
 {
-	const struct pound_piece *piece = &sim->at[i].piece;
+	const struct pound_branch *branch = &sim->at[i].branch;
 	struct state_rows *x = &sim->x;
-	x->body[i].stiffness = piece->stiffness;
-	x->body[i].offset = piece->offset;
-	x->body[i].low = piece->low;
-	x->body[i].high = piece->high;
-	x->body[i].direction = piece->direction;
+	x->body[i].stiffness = branch->stiffness;
+	x->body[i].offset = branch->offset;
+	x->body[i].low = branch->low;
+	x->body[i].high = branch->high;
+	x->body[i].direction = branch->direction;
 	sim->contact_maps = NULL;
 	if (!sim->has_free_maps)
 		return;
 	unsigned found = 0;
 	for (int m = 0; m < POUND_MAPS; m++)
-		found |= (unsigned)(sim->map_of[i][m] == piece->stiffness) << m;
+		found |= (unsigned)(sim->map_of[i][m] == branch->stiffness) << m;
 	int m = sim->map_next[i];
 	if (found)
 		m = __builtin_ctz(found);
 	else {
 		sim->map_next[i] = (m + 1) % POUND_MAPS;
-		sim->map_of[i][m] = piece->stiffness;
-		map_fill(&sim->maps[i][m], piece->stiffness, x->body[i].damping, sim->task->time_step);
+		sim->map_of[i][m] = branch->stiffness;
+		map_fill(&sim->maps[i][m], branch->stiffness, x->body[i].damping, sim->task->time_step);
 	}
 	memcpy(&x->map[i], &sim->maps[i][m], sizeof sim->maps[i][m]);
 }
@@ -289,16 +289,16 @@ static enum pound_stage simulation_after_contact(struct simulation *sim, enum po
 	return stage == STAGE_CONTACT && refused ? simulation_step(sim) : contact_ready(sim);
 }
 
-/* A body's law goes on to its next piece; from here the edge is exact. */
+/* A body's law goes on to its next branch; from here the edge is exact. */
 static void body_transition(struct simulation *sim, int i, enum pound_edge edge)
 {
 	struct state_rows *x = &sim->x;
-	if (edge != POUND_EDGE_TURN)
+	if (edge != POUND_EDGE_REVERSAL)
 		x->u[i] = edge == POUND_EDGE_HIGH ? x->body[i].high : x->body[i].low;
-	if (edge == POUND_EDGE_TURN && x->body[i].direction == 0)
+	if (edge == POUND_EDGE_REVERSAL && x->body[i].direction == 0)
 		return; // a turn that was only looked for as a largest displacement
 	pound_law_leave(&sim->task->bodies[i].backbone, &sim->at[i], edge, x->u[i]);
-	piece_enter(sim, i);
+	branch_enter(sim, i);
 }
 
 /* What a simulation does after a step by power series.
@@ -311,7 +311,7 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 		contact_transition(sim, left, speed);
 	if (event >= EVENT_BODY)
 		body_transition(sim, (event - EVENT_BODY) / EVENT_EDGES,
-		          (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
+		                (enum pound_edge)((event - EVENT_BODY) % EVENT_EDGES));
 	if (observed(sim) && event > EVENT_CUT)
 		simulation_observe(sim, -1);
 	if (event >= EVENT_CLEARS && sim->has_free_maps && !sim->touching && sim->x.remainder > 0)
@@ -375,7 +375,7 @@ static enum pound_stage peaks_look(struct simulation *sim)
 
 /* ---- the start ---- */
 
-/* Whether a law of a task has more than one piece. */
+/* Whether a law of a task has more than one branch. */
 static bool simulation_edged(const struct pound_task *task)
 {
 	return !pound_law_linear(task->bodies[0].backbone.law) || !pound_law_linear(task->bodies[1].backbone.law);
@@ -473,7 +473,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->gap_drive = task->bodies[1].drive - task->bodies[0].drive;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		pound_law_start(&task->bodies[i].backbone, &sim->at[i]);
-		piece_enter(sim, i);
+		branch_enter(sim, i);
 	}
 	if (task->observer)
 		simulation_observe(sim, 0);
@@ -483,7 +483,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 /* ---- what simulations of one scene have in common ---- */
 
 /* A simulation with the constants of others has them in common with these from its start to its end: bodies with laws of one
- * piece keep theirs.  When all have left, the next to start sets them. */
+ * branch keep theirs.  When all have left, the next to start sets them. */
 static void common_join(struct pound_common *common, struct simulation *sim)
 {
 	if (sim->traits & (TRAIT_EDGED | TRAIT_ACCOUNTED))
@@ -500,7 +500,7 @@ static void common_join(struct pound_common *common, struct simulation *sim)
 	sim->traits &= ~(unsigned)TRAIT_OWN;
 }
 
-/* What looks for largest displacements at the end puts other pieces into the rows. */
+/* What looks for largest displacements at the end puts other branches into the rows. */
 static void common_leave(struct simulation *sim)
 {
 	if (sim->common)

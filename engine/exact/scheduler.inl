@@ -17,9 +17,9 @@ struct queue {
 
 /* of a batch: what its code need not ask of each lane */
 enum kind {
-	KIND_PLAIN,  /* all laws have one piece */
+	KIND_PLAIN,  /* all laws have one branch */
 	KIND_EDGED,  /* a law has more */
-	KIND_COMMON, /* all of one scene, whose laws have one piece, and no lane empty */
+	KIND_COMMON, /* all of one scene, whose laws have one branch, and no lane empty */
 	KINDS
 };
 
@@ -28,7 +28,7 @@ struct work {
 	const struct pound_task *tasks;
 	struct pound_task_result *results;
 	int n, started;          /* tasks, and those gone through in this pass */
-	int passed;              /* 0: laws of one piece are started, 1: the others */
+	int passed;              /* 0: laws of one branch are started, 1: the others */
 	int n_waiting;           /* simulations that wait */
 	const atomic_bool *stop; /* NULL: never */
 	double beyond[W][ROW];   /* ground motion up to its end, and whatever was there behind */
@@ -128,7 +128,7 @@ static void task_start(struct work *work, int j)
 }
 
 /* Goes on with simulations that wait, and starts tasks, as long as there are any and there is room: first those of laws of
- * one piece, which need less when they are among themselves. */
+ * one branch, which need less when they are among themselves. */
 static void tasks_start(struct work *work)
 {
 	while (work->n_waiting > 0 && work->idle.n > 0) {

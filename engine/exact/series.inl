@@ -90,21 +90,21 @@ LANE_INLINE void motion_bound(struct motion *m, int order)
 
 /* What a guard is known to do over a step without being followed: values and slopes at both ends, and a bound of its
  * fourth derivative. */
-struct course {
+struct enclosure {
 	vd u0, v0, u1, v1, bend;
 };
 
-LANE_INLINE struct course course_of(const struct motion *m)
+LANE_INLINE struct enclosure enclosure_of(const struct motion *m)
 {
-	return (struct course){m->u.c[0], m->u.c[1], m->end.u, m->end.v, m->bend};
+	return (struct enclosure){m->u.c[0], m->u.c[1], m->end.u, m->end.v, m->bend};
 }
 
-LANE_INLINE struct course course_of_velocity(const struct motion *m, int order)
+LANE_INLINE struct enclosure enclosure_of_velocity(const struct motion *m, int order)
 {
 	vd bend = vsplat(0), end = vsplat(0);
 	ORDERS_UP(n, 2, order, end = vfma(vsplat(n * (n - 1.0)), m->u.c[n], end);)
 	ORDERS_UP(n, 5, order, bend = vfma(vsplat(n * fourth(n - 1)), vabs(m->u.c[n]), bend);)
-	return (struct course){m->u.c[1], 2.0 * m->u.c[2], m->end.v, end, bend};
+	return (struct enclosure){m->u.c[1], 2.0 * m->u.c[2], m->end.v, end, bend};
 }
 
 /* Lanes in which a guard may cross a level inside a step that it starts on the right side of.
@@ -115,7 +115,7 @@ LANE_INLINE struct course course_of_velocity(const struct motion *m, int order)
  * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when the points behind g0 are below -bend/288 (see
  * POUND_CUBIC_ERROR), and also, from a start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
  */
-LANE_INLINE vm may_cross(const struct course *c, vd level, vd sign)
+LANE_INLINE vm may_cross(const struct enclosure *c, vd level, vd sign)
 {
 	vd zero = vsplat(0), third = vsplat(1.0 / 3);
 	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
@@ -128,7 +128,7 @@ LANE_INLINE vm may_cross(const struct course *c, vd level, vd sign)
 
 /* Bound from below of a guard's rate over a step: the velocity's control points are its own at the ends and the third below;
  * they miss it by sqrt(3)/216 of the fourth derivative at most. */
-LANE_INLINE vd course_slowest(const struct course *c)
+LANE_INLINE vd enclosure_slowest(const struct enclosure *c)
 {
 	vd middle = vfma(vsplat(3), c->u1 - c->u0, -(c->v0 + c->v1));
 	return vmin(vmin(c->v0, c->v1), middle) - vsplat(0.00802) * c->bend;
@@ -175,7 +175,7 @@ struct guard {
 	vd bend;   /* bound of its fourth derivative over the step */
 };
 
-LANE_INLINE struct guard guard_of(const struct power *u, const struct course *c, vd level, vd sign)
+LANE_INLINE struct guard guard_of(const struct power *u, const struct enclosure *c, vd level, vd sign)
 {
 	return (struct guard){.u = u,
 	                      .level = level,

@@ -1,6 +1,6 @@
-/* shared_start.inl - tasks that differ in nothing but their laws, run as one simulation as long as no edge of a piece decides.
+/* shared_start.inl - tasks that differ in nothing but their laws, run as one simulation as long as no edge of a branch decides.
  *
- * Included by exact.inl alone, once per lane count.  All laws start on the same elastic piece.  A family goes along it between
+ * Included by exact.inl alone, once per lane count.  All laws start on the same elastic branch.  A family goes along it between
  * the edges nearest to it.  Where one of them decides what it does next, or may, that is taken back: a member leaves, to go on
  * from there by itself, and the others try again.  Every proof and search that finds nothing of an edge finds nothing of one
  * farther away.  So every member does what it would have done alone, to the last bit; who leaves first, and when, is of no
@@ -25,7 +25,7 @@ struct shared_starts {
 	// number of a first member and 1, 0: empty; where that family is full, of the next one like it
 	int slot[SHARED_SLOTS];
 	int next[SHARED_TASKS];     /* number of the next member; 0: there is none */
-	bool edged[SHARED_TASKS];   /* of a first member: a law of the family has more than one piece */
+	bool edged[SHARED_TASKS];   /* of a first member: a law of the family has more than one branch */
 	bool follows[SHARED_TASKS]; /* is not the first of its family */
 };
 
@@ -67,7 +67,7 @@ static int task_slot(const struct pound_task *task, int slots)
 	return pound_hash_slot((uintptr_t)task->ground, numbers, sizeof numbers / sizeof numbers[0], slots);
 }
 
-/* Adds a task to the family whose first member another is, if there is room and one of them may leave its piece. */
+/* Adds a task to the family whose first member another is, if there is room and one of them may leave its branch. */
 static void shared_add(struct shared_starts *f, int first, int j)
 {
 	int last = first, members = 1;
@@ -106,29 +106,29 @@ static bool shared_first(const struct shared_starts *f, int j)
 	return j >= SHARED_TASKS || !f->follows[j];
 }
 
-/* Whether a law of a task, or of one that goes along with it, has more than one piece. */
+/* Whether a law of a task, or of one that goes along with it, has more than one branch. */
 static bool shared_edged(const struct shared_starts *f, const struct pound_task *tasks, int j)
 {
 	return j < SHARED_TASKS ? f->edged[j] : simulation_edged(&tasks[j]);
 }
 
-/* The first piece of a body's law. */
-static struct pound_piece first_piece(const struct pound_task *task, int i)
+/* The first branch of a body's law. */
+static struct pound_branch first_branch(const struct pound_task *task, int i)
 {
-	struct pound_branch at;
+	struct pound_law_state at;
 	pound_law_start(&task->bodies[i].backbone, &at);
-	return at.piece;
+	return at.branch;
 }
 
 /* A simulation goes between its own edges, and nearer ones of those it has with it. */
 static void shared_edges(struct simulation *sim)
 {
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		double low = sim->at[i].piece.low, high = sim->at[i].piece.high;
+		double low = sim->at[i].branch.low, high = sim->at[i].branch.high;
 		for (int k = 0; k < sim->n_others; k++) {
-			struct pound_piece piece = first_piece(sim->others[k].task, i);
-			low = fmax(low, piece.low);
-			high = fmin(high, piece.high);
+			struct pound_branch branch = first_branch(sim->others[k].task, i);
+			low = fmax(low, branch.low);
+			high = fmin(high, branch.high);
 		}
 		sim->x.body[i].low = low;
 		sim->x.body[i].high = high;
@@ -151,13 +151,13 @@ static void shared_gather(const struct shared_starts *f, const struct pound_task
 	shared_edges(sim);
 }
 
-/* How near bodies are to the ends of the first pieces of a task's laws: roughly, in which order members will leave.  From
- * rest it is the narrower piece that is nearer to its end. */
+/* How near bodies are to the ends of the first branches of a task's laws: roughly, in which order members will leave.  From
+ * rest it is the narrower branch that is nearer to its end. */
 static double edge_nearness(const struct simulation *sim, const struct pound_task *task)
 {
 	double share = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		share = most(share, (fabs(sim->x.u[i]) + DBL_MIN) / first_piece(task, i).high);
+		share = most(share, (fabs(sim->x.u[i]) + DBL_MIN) / first_branch(task, i).high);
 	return share;
 }
 

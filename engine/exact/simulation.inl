@@ -17,7 +17,7 @@ enum {
 	POUND_OTHERS = 3,        /* other tasks that go along with a simulation: shared_start.inl */
 	POUND_MAP_ORDERS = 18,   /* of a map's series; 0.945^18/18! = 6e-17 */
 	POUND_MAP_LONGER = 26,   /* of a long sample's; 2^26/26! = 2e-19 */
-	POUND_CONTACT_MAPS = 3,  /* pairs of pieces whose substep map and doubled maps a simulation keeps */
+	POUND_CONTACT_MAPS = 3,  /* pairs of branches whose substep map and doubled maps a simulation keeps */
 	POUND_DOUBLED_MAPS = 12, /* maps over many substeps */
 	POUND_CONTACT_INPUTS =
 	    8 /* base u, v, overlap p, q, forcing of either, and its growth over the map's length */
@@ -30,7 +30,7 @@ enum {
 	/* STEP: the next step; the ground at its start and its growth; this contact's impulse, all contacts' time but for whole substeps; what is left \
 	 * of the interval: a part, and whole substeps; <= 1: steps are shorter where a search was unsure */ \
 	T dt, ground, slope, impulse, contact_time, remainder, substeps, pace;                                                                            \
-	/* LEFT, RIGHT: a body and the piece it is on, and behind the left the sample step, behind the right the gap */                                   \
+	/* LEFT, RIGHT: a body and the branch it is on, and behind the left the sample step, behind the right the gap */                                  \
 	struct {                                                                                                                                          \
 		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                                          \
 	} body[2];                                                                                                                                        \
@@ -64,7 +64,7 @@ enum {
 	ROWS_END = 72,
 };
 
-/* what does not change while the bodies stay on their pieces, in doubles */
+/* what does not change while the bodies stay on their branches, in doubles */
 enum {
 	ROWS_CONSTANT = ROW_LEFT,
 	ROWS_CONSTANT_END = ROW_CONTACT,
@@ -97,7 +97,7 @@ enum {
 	SPLIT_DAMPING,
 	SPLIT_STIFFNESS, /* what presses: times the common velocity and displacement */
 	SPLIT_BASE,      /* displacement of the base, beyond the common one, by the overlap */
-	SPLIT_LAG, /* of a doubled map: how far the overlap's own motion takes the common one off a slow course */
+	SPLIT_LAG, /* of a doubled map: how far the overlap's own motion takes the common one off a slow enclosure */
 	SPLIT_OMEGA, /* of the contact [rad/s] */
 	SPLIT_DRAG,  /* its damping over omega */
 	SPLIT_LEAD,  /* how much more than the overlap the force swings, where contact ends with it */
@@ -111,7 +111,7 @@ struct pound_contact_map {
 };
 
 /* A sample that a body flew over, and inside of which it may have had its largest displacement: how it started, on which
- * piece, and how far it cannot have gone.  Larger ones come more often than not, so it is looked into at the end. */
+ * branch, and how far it cannot have gone.  Larger ones come more often than not, so it is looked into at the end. */
 struct pound_peak {
 	int64_t next;
 	double u, v, stiffness, offset, bound;
@@ -132,14 +132,14 @@ struct pound_doubled_maps {
 	struct pound_contact_work work[POUND_DOUBLED_MAPS + 1]; /* the last: of a substep */
 };
 
-/* contact on a pair of pieces: over a substep, and whether that and its doubled maps are filled */
+/* contact on a pair of branches: over a substep, and whether that and its doubled maps are filled */
 struct pound_contact_maps {
 	struct pound_contact_map substep;
 	bool made, has_doubled;
 	struct pound_doubled_maps *doubled; /* elsewhere: what is used often is to stay close together */
 };
 
-/* What simulations of one scene have in common, where their laws have one piece: constants and maps are read and made once. */
+/* What simulations of one scene have in common, where their laws have one branch: constants and maps are read and made once. */
 struct pound_common {
 	struct state_rows x; /* of its constants alone */
 	struct pound_contact_maps maps;
@@ -148,14 +148,14 @@ struct pound_common {
 
 /* what a simulation does next */
 enum pound_stage {
-	STAGE_FREE_SINGLE, /* whole samples of the left body */
-	STAGE_FREE_PAIR, /* whole samples of both */
-	STAGE_CONTACT,   /* whole substeps of contact */
-	STAGE_SUSTAINED, /* many substeps of it at once */
-	STAGE_STEP_SINGLE,     /* a step up to an event, by power series: of the left body */
-	STAGE_STEP_PAIR,     /* of both, who likely meet */
-	STAGE_STEP_CLEAR,     /* of both, who likely do not: what a batch looks for alike takes less */
-	STAGE_STEP_CONTACT,     /* of both in contact */
+	STAGE_FREE_SINGLE,  /* whole samples of the left body */
+	STAGE_FREE_PAIR,    /* whole samples of both */
+	STAGE_CONTACT,      /* whole substeps of contact */
+	STAGE_SUSTAINED,    /* many substeps of it at once */
+	STAGE_STEP_SINGLE,  /* a step up to an event, by power series: of the left body */
+	STAGE_STEP_PAIR,    /* of both, who likely meet */
+	STAGE_STEP_CLEAR,   /* of both, who likely do not: what a batch looks for alike takes less */
+	STAGE_STEP_CONTACT, /* of both in contact */
 	STAGE_FINISH_SINGLE, /* what is left of a sample behind an event, where likely nothing happens: of the left body */
 	STAGE_FINISH_PAIR, /* of both */
 	STAGES,
@@ -165,13 +165,13 @@ enum pound_stage {
 
 /* what a step must look after for a simulation; otherwise it is left out */
 enum {
-	TRAIT_EDGED = 1,      /* a law has more than one piece */
-	TRAIT_RIGHT = 2,      /* the right body's largest displacement is wanted */
-	TRAIT_FORCED = 4,     /* contact ends when its force does */
-	TRAIT_ACCOUNTED = 8,  /* the energy balance is kept */
-	TRAIT_ALIKE = 16,     /* touching without overlap the bodies go the same way, on the pieces they are on */
-	TRAIT_OWN = 32,       /* its constants are not those of others */
-	TRAIT_SHARED = 64,    /* there are others that go along: what an edge decides is not for all of them */
+	TRAIT_EDGED = 1,     /* a law has more than one branch */
+	TRAIT_RIGHT = 2,     /* the right body's largest displacement is wanted */
+	TRAIT_FORCED = 4,    /* contact ends when its force does */
+	TRAIT_ACCOUNTED = 8, /* the energy balance is kept */
+	TRAIT_ALIKE = 16,  /* touching without overlap the bodies go the same way, on the branches they are on */
+	TRAIT_OWN = 32,    /* its constants are not those of others */
+	TRAIT_SHARED = 64, /* there are others that go along: what an edge decides is not for all of them */
 	TRAIT_OBSERVED = 128, /* it has an observer: observer.inl */
 };
 
@@ -203,18 +203,18 @@ struct simulation {
 	double counted_time,
 	    counted_substeps; /* of contacts that count, as contact_time and pressed in the rows */
 	struct pound_contact_maps
-	    *contact_maps; /* of the pieces that the bodies are on; NULL: to be looked for */
+	    *contact_maps; /* of the branches that the bodies are on; NULL: to be looked for */
 	const struct pound_contact_map *contact_map; /* of the next substeps */
 	struct pound_common *common;                 /* with others; NULL: nothing */
 	unsigned traits;                             /* see enum above */
 	int steps;                                   /* and turns in the queues of contact, in this interval */
 	int n_doubled, doubled, doubled_limit;       /* there are, in use, the longest to try */
-	int base;      /* the heavier body, whose motion and the overlap describe contact */
-	bool touching; /* the contact's force acts */
-	bool released; /* force gone before the overlap: bodies still overlap */
-	bool fresh;    /* the force has just passed zero */
-	bool paired;   /* the right body moves, or there is something to touch */
-	bool has_free_maps;  /* samples are short enough for maps, and no balance is kept */
+	int base;           /* the heavier body, whose motion and the overlap describe contact */
+	bool touching;      /* the contact's force acts */
+	bool released;      /* force gone before the overlap: bodies still overlap */
+	bool fresh;         /* the force has just passed zero */
+	bool paired;        /* the right body moves, or there is something to touch */
+	bool has_free_maps; /* samples are short enough for maps, and no balance is kept */
 	bool has_contact;
 	// and what is read seldom
 	const struct pound_task *task;
@@ -226,10 +226,10 @@ struct simulation {
 	enum pound_stage stage; /* what it does next, while it waits for room */
 	double doubled_substeps[POUND_DOUBLED_MAPS];
 	double doubled_ratio; /* of a doubled map to the shorter one; 0: few substeps, and no doubled maps */
-	struct pound_branch at[2];
+	struct pound_law_state at[2];
 	int peaks[2], looked; /* samples to look into, and the body that is: POUND_OSCILLATORS: neither yet */
 	int map_next[2], contact_map_next;
-	// stiffnesses of the pieces that the maps below belong to; < 0: none
+	// stiffnesses of the branches that the maps below belong to; < 0: none
 	double map_of[2][POUND_MAPS], contact_map_of[2][POUND_CONTACT_MAPS];
 	// from here on a start clears nothing: what is there is filled with its key
 	struct pound_peak peak[2][POUND_PEAKS];

@@ -1,7 +1,7 @@
 /* step.inl - one step up to an event, by power series in time.
  *
  * Included by exact.inl alone, once per lane count.  A step ends at the first root of a guard (contact opens or closes, an
- * edge of a piece is reached, the velocity turns), found to rounding, or where it was meant to.
+ * edge of a branch is reached, the velocity turns), found to rounding, or where it was meant to.
  *
  * Included by exact.inl after energy.inl. */
 
@@ -13,7 +13,7 @@ struct event_lanes {
 	struct scope scope;
 	vm active;          /* lanes in use */
 	vm released, fresh; /* as in struct simulation */
-	vm decided;         /* lanes in which an edge of a piece decided how far they went */
+	vm decided;         /* lanes in which an edge of a branch decided how far they went */
 };
 
 /* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
@@ -91,8 +91,8 @@ LANE_SHARED vd apart_settle(struct terms *t, const struct lanes *g, vd apart, in
 	return vselect(t->level, vsplat(0), apart);
 }
 
-/* A body that stands still where its piece ends goes on to the next or back by its acceleration.  Where that is no more than
- * the rounding of what it is made of it is nothing, and what differs in its later course decides: else each of two pieces,
+/* A body that stands still where its branch ends goes on to the next or back by its acceleration.  Where that is no more than
+ * the rounding of what it is made of it is nothing, and what differs in its later enclosure decides: else each of two branches,
  * with a rounding of its own, would send the body to the other for ever.
  *
  * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while apart
@@ -151,13 +151,13 @@ LANE_INLINE void terms_keep(const struct terms *t, struct motion *const into[3],
 		into[j]->u.c[n] = t->u[j] * share;
 }
 
-/* Looks for the edges of a body's piece. */
+/* Looks for the edges of a body's branch. */
 LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int i, vm active,
                              struct search *search)
 {
 	vd zero = vsplat(0), one = vsplat(1), body = vsplat(EVENT_BODY + EVENT_EDGES * i);
 	const struct motion *m = &s->body[i];
-	struct course c = course_of(m);
+	struct enclosure c = enclosure_of(m);
 	vm past_high = may_cross(&c, g->body[i].high, one) & active;
 	vm past_low = may_cross(&c, g->body[i].low, -one) & active;
 	vm turns = ~vequal(g->body[i].direction, zero) & active;
@@ -170,14 +170,14 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 	}
 	if (!vany(turns))
 		return;
-	c = course_of_velocity(m, s->order);
+	c = enclosure_of_velocity(m, s->order);
 	turns &= may_cross(&c, zero, -g->body[i].direction);
 	if (!vany(turns))
 		return;
 	struct power velocity;
 	motion_velocity(&velocity, m, s->order);
 	struct guard guard = guard_of(&velocity, &c, zero, -g->body[i].direction);
-	search_crossing(&guard, s->order, turns, body + vsplat(POUND_EDGE_TURN), search);
+	search_crossing(&guard, s->order, turns, body + vsplat(POUND_EDGE_REVERSAL), search);
 }
 
 /* Follows the largest displacement of a body inside the step, before what the search found.
@@ -188,7 +188,7 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
 {
 	const struct motion *m = &s->body[i];
-	struct course c = course_of_velocity(m, s->order);
+	struct enclosure c = enclosure_of_velocity(m, s->order);
 	struct power velocity;
 	motion_velocity(&velocity, m, s->order);
 	const vd *v = velocity.c;
@@ -199,7 +199,7 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 	const struct guard turns = guard_of(&velocity, &c, zero, sign);
 	vm once = root_quick(&turns, s->order, one, inside, &t);
 	vd turn = power_at(&m->u, s->order, t), behind = one - t, behind2 = behind * behind;
-	struct course rest = {turn, zero, m->end.u, m->end.v * behind, m->bend * (behind2 * behind2)};
+	struct enclosure rest = {turn, zero, m->end.u, m->end.v * behind, m->bend * (behind2 * behind2)};
 	vd most = vmax(vmax(vabs(turn), vabs(m->end.u)), g->top[i]);
 	once &= ~(may_cross(&rest, most, one) | may_cross(&rest, -most, -one));
 	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], vabs(turn)), g->top[i]);
@@ -209,7 +209,7 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 	struct power guard;
 	for (int n = 0; n <= s->order; n++)
 		guard.c[n] = sign * v[n];
-	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN), search);
+	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_REVERSAL), search);
 }
 
 /* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
@@ -247,7 +247,7 @@ LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, c
 	vm by_force = vmask(0);
 	if (e->scope.forced)
 		by_force = (e->scope.touching ? ~vequal(g->release, zero) : e->released) & e->active;
-	struct course c = course_of(&s->overlap);
+	struct enclosure c = enclosure_of(&s->overlap);
 	vm risk = may_cross(&c, zero, sign) & e->active & ~by_force;
 	if (vany(risk)) {
 		struct guard guard = guard_of(&s->overlap.u, &c, zero, sign);
@@ -394,7 +394,7 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 		// the end of the step does not count where the motion was cut before it
 		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].end.u));
 		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
-		// a piece with a direction ends where the velocity turns: up to what was found neither end is exceeded
+		// a branch with a direction ends where the velocity turns: up to what was found neither end is exceeded
 		if (e->scope.edged)
 			inside &= vequal(g->body[i].direction, zero);
 		if (vany(inside))
@@ -411,7 +411,7 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	g->dt = search.time * g->dt;
 	// a body turns with no velocity, but where it had turned before that was noticed
 	for (int i = 0; i < (e->scope.paired ? 2 : 1); i++) {
-		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_TURN);
+		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_REVERSAL);
 		g->v[i] = vselect(vequal(search.event, turn) & moved, zero, g->v[i]);
 	}
 	vm cut = vequal(search.event, vsplat(EVENT_CUT));
@@ -455,21 +455,21 @@ LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
 LANE_INLINE vm peak_risk(const struct series *s, const struct lanes *g, int i)
 {
 	vd one = vsplat(1);
-	struct course c = course_of(&s->body[i]);
+	struct enclosure c = enclosure_of(&s->body[i]);
 	vd top = vmax(g->top[i], vabs(c.u1));
 	return may_cross(&c, top, one) | may_cross(&c, -top, -one);
 }
 
-/* Lanes in which it may reach an edge of its piece. */
+/* Lanes in which it may reach an edge of its branch. */
 LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
 {
 	vd zero = vsplat(0), one = vsplat(1);
-	struct course c = course_of(&s->body[i]);
+	struct enclosure c = enclosure_of(&s->body[i]);
 	vm risk = may_cross(&c, g->body[i].high, one) | may_cross(&c, g->body[i].low, -one);
 	vm turns = ~vequal(g->body[i].direction, zero);
 	if (!vany(turns))
 		return risk;
-	c = course_of_velocity(&s->body[i], s->order);
+	c = enclosure_of_velocity(&s->body[i], s->order);
 	return risk | (turns & may_cross(&c, zero, -g->body[i].direction));
 }
 
@@ -490,11 +490,11 @@ LANE_INLINE void event_finish(struct lanes *g, struct event_lanes *e, vm finishi
 	step_begin(&s, g, e);
 	vm risk = vmask(0);
 	if (e->scope.paired) {
-		struct course c = course_of(&s.overlap);
+		struct enclosure c = enclosure_of(&s.overlap);
 		risk = may_cross(&c, zero, e->scope.touching ? -one : one);
 		// as long as the overlap grows its force does not end
 		if (e->scope.touching && e->scope.forced)
-			risk |= ~vless(zero, course_slowest(&c)) & vless(zero, g->release);
+			risk |= ~vless(zero, enclosure_slowest(&c)) & vless(zero, g->release);
 	}
 	for (int i = 0; i < bodies_watched(e); i++)
 		risk |= peak_risk(&s, g, i);

@@ -497,8 +497,8 @@ static void touch_series(struct chain *c)
 	for (int j = 0; j < c->n_links; j++)
 		for (int n = 0; c->link[j].own && !c->link[j].held && n <= ORDER_TOUCH; n++)
 			c->overlaps[n][j] = x->links[j].overlap[n];
-	courses_make(c, c->drifts, &c->drift);
-	courses_make(c, c->displacements, &c->displacement);
+	enclosures_make(c, c->drifts, &c->drift);
+	enclosures_make(c, c->displacements, &c->displacement);
 }
 
 /* Whether a contact's force is no straight line. */

@@ -9,11 +9,11 @@ static void curve_search(struct first *first, const struct chain *c, const doubl
 	struct power g;
 	for (int n = 0; n <= ORDER_TOUCH; n++)
 		g.c[n] = vsplat(guard[n]);
-	const struct course course = course_make(&g, c->order);
+	const struct enclosure enclosure = enclosure_make(&g, c->order);
 	const vd zero = vsplat(0), one = vsplat(1);
-	const vm lane = vmask(1) & may_cross(&course, zero, one);
+	const vm lane = vmask(1) & may_cross(&enclosure, zero, one);
 	if (vany(lane))
-		guard_search(first, c, guard_of(&g, &course, zero, one), lane, event, index);
+		guard_search(first, c, guard_of(&g, &enclosure, zero, one), lane, event, index);
 }
 
 /* A series as a guard, times a sign. */
@@ -53,7 +53,7 @@ static void curved_search(struct first *first, const struct chain *c, int j)
 		return;
 	if (l->touching && l->at.on.direction != 0) {
 		guard_fill(guard, x->links[j].rate, -l->at.on.direction);
-		curve_search(first, c, guard, EVENT_LINK + POUND_EDGE_TURN, j);
+		curve_search(first, c, guard, EVENT_LINK + POUND_EDGE_REVERSAL, j);
 	}
 	if (j == x->master)
 		guard_fill(guard, x->w, -1);

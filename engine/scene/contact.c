@@ -569,7 +569,7 @@ double pound_contact_force_on(const struct pound_touch_branch *on, double overla
 void pound_contact_follow(const struct pound_contact_law *law, struct pound_touch *at, double from, double to)
 {
 	if (at->on.direction * (to - from) < 0)
-		pound_contact_leave(law, at, POUND_EDGE_TURN, from);
+		pound_contact_leave(law, at, POUND_EDGE_REVERSAL, from);
 	for (;;)
 		if (to > at->on.high)
 			pound_contact_leave(law, at, POUND_EDGE_HIGH, at->on.high);

@@ -1,6 +1,6 @@
 /* law.c - the constitutive laws, one function and one row each.
  *
- * A law's function makes the next piece out of the branch, the edge that was reached and the displacement there.
+ * A law's function makes the next branch out of the branch, the edge that was reached and the displacement there.
  * Adding a law: its function, its row in laws[], its known answers in tests/unit/scene/unit_law.c. */
 #include "engine/scene/law.h"
 
@@ -10,98 +10,98 @@
 
 #include "engine/pound.h"
 
-enum { CENTRE, RIGHT, LEFT, RIGHT_SECANT, LEFT_SECANT };
+enum { CENTER, RIGHT, LEFT, RIGHT_SECANT, LEFT_SECANT };
 
-/* The piece of the backbone curve beyond the yield point on one side (+1 right, -1 left). */
-static struct pound_piece hardened(const struct pound_backbone *s, double side)
+/* The branch of the backbone curve beyond the yield point on one side (+1 right, -1 left). */
+static struct pound_branch hardened(const struct pound_backbone *s, double side)
 {
-	return (struct pound_piece){.stiffness = s->hardening * s->stiffness,
-	                            .offset = side * (1 - s->hardening) * s->stiffness * s->yield,
-	                            .low = -DBL_MAX,
-	                            .high = DBL_MAX};
+	return (struct pound_branch){.stiffness = s->hardening * s->stiffness,
+	                             .offset = side * (1 - s->hardening) * s->stiffness * s->yield,
+	                             .low = -DBL_MAX,
+	                             .high = DBL_MAX};
 }
 
-static void linear(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge, double u)
+static void linear(const struct pound_backbone *s, struct pound_law_state *at, enum pound_edge edge, double u)
 {
 	(void)edge, (void)u;
-	at->piece = (struct pound_piece){.stiffness = s->stiffness, .low = -DBL_MAX, .high = DBL_MAX};
+	at->branch = (struct pound_branch){.stiffness = s->stiffness, .low = -DBL_MAX, .high = DBL_MAX};
 }
 
-/* Kinematic hardening: an elastic range of width 2 yield whose centre, memory[0], plastic flow drags along. */
-static void elastoplastic(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge,
+/* Kinematic hardening: an elastic range of width 2 yield whose center, memory[0], plastic flow drags along. */
+static void elastoplastic(const struct pound_backbone *s, struct pound_law_state *at, enum pound_edge edge,
                           double u)
 {
-	if (at->branch == CENTRE && edge != POUND_EDGE_TURN) {
+	if (at->number == CENTER && edge != POUND_EDGE_REVERSAL) {
 		double side = edge == POUND_EDGE_HIGH ? 1 : -1;
-		at->branch = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
-		at->piece = hardened(s, side);
-		at->piece.direction = side;
+		at->number = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
+		at->branch = hardened(s, side);
+		at->branch.direction = side;
 		return;
 	}
-	if (at->branch != CENTRE)
-		at->memory[0] = at->branch == RIGHT ? u - s->yield : u + s->yield;
-	double centre = at->memory[0];
+	if (at->number != CENTER)
+		at->memory[0] = at->number == RIGHT ? u - s->yield : u + s->yield;
+	double center = at->memory[0];
 	// the edge the branch starts from is u itself, so that it starts on it to the last bit
-	double high = at->branch == RIGHT ? u : centre + s->yield;
-	double low = at->branch == LEFT ? u : centre - s->yield;
-	at->branch = CENTRE;
-	at->piece = (struct pound_piece){.stiffness = s->stiffness,
-	                                 .offset = -(1 - s->hardening) * s->stiffness * centre,
-	                                 .low = low,
-	                                 .high = high};
+	double high = at->number == RIGHT ? u : center + s->yield;
+	double low = at->number == LEFT ? u : center - s->yield;
+	at->number = CENTER;
+	at->branch = (struct pound_branch){.stiffness = s->stiffness,
+	                                   .offset = -(1 - s->hardening) * s->stiffness * center,
+	                                   .low = low,
+	                                   .high = high};
 }
 
 /* Loads and unloads on the backbone curve. */
-static void nonlinear_elastic(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge,
-                              double u)
+static void nonlinear_elastic(const struct pound_backbone *s, struct pound_law_state *at,
+                              enum pound_edge edge, double u)
 {
 	(void)u;
-	if (at->branch != CENTRE || edge == POUND_EDGE_TURN) {
-		at->branch = CENTRE;
-		at->piece = (struct pound_piece){.stiffness = s->stiffness, .low = -s->yield, .high = s->yield};
+	if (at->number != CENTER || edge == POUND_EDGE_REVERSAL) {
+		at->number = CENTER;
+		at->branch = (struct pound_branch){.stiffness = s->stiffness, .low = -s->yield, .high = s->yield};
 	} else if (edge == POUND_EDGE_HIGH) {
-		at->branch = RIGHT;
-		at->piece = hardened(s, 1);
-		at->piece.low = s->yield;
+		at->number = RIGHT;
+		at->branch = hardened(s, 1);
+		at->branch.low = s->yield;
 	} else {
-		at->branch = LEFT;
-		at->piece = hardened(s, -1);
-		at->piece.high = -s->yield;
+		at->number = LEFT;
+		at->branch = hardened(s, -1);
+		at->branch.high = -s->yield;
 	}
 }
 
 /* Straight between the origin and the farthest point of each side: memory[0] right, memory[1] left (both > 0). */
-static void origin_oriented(const struct pound_backbone *s, struct pound_branch *at, enum pound_edge edge,
+static void origin_oriented(const struct pound_backbone *s, struct pound_law_state *at, enum pound_edge edge,
                             double u)
 {
-	if (at->branch == RIGHT || at->branch == LEFT) { // turned on the backbone: this is the farthest point now
-		int side = at->branch == LEFT;
+	if (at->number == RIGHT || at->number == LEFT) { // turned on the backbone: this is the farthest point now
+		int side = at->number == LEFT;
 		at->memory[side] = fabs(u);
-		at->branch = side ? LEFT_SECANT : RIGHT_SECANT;
-	} else if (at->branch == RIGHT_SECANT && edge == POUND_EDGE_LOW) {
-		at->branch = LEFT_SECANT;
-	} else if (at->branch == LEFT_SECANT && edge == POUND_EDGE_HIGH) {
-		at->branch = RIGHT_SECANT;
+		at->number = side ? LEFT_SECANT : RIGHT_SECANT;
+	} else if (at->number == RIGHT_SECANT && edge == POUND_EDGE_LOW) {
+		at->number = LEFT_SECANT;
+	} else if (at->number == LEFT_SECANT && edge == POUND_EDGE_HIGH) {
+		at->number = RIGHT_SECANT;
 	} else { // past the farthest point, or past the yield point of a law never yielded
 		double side = edge == POUND_EDGE_HIGH ? 1 : -1;
-		at->branch = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
-		at->piece = hardened(s, side);
-		at->piece.direction = side;
+		at->number = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
+		at->branch = hardened(s, side);
+		at->branch.direction = side;
 		return;
 	}
-	double far = at->memory[at->branch == LEFT_SECANT];
-	at->piece = (struct pound_piece){.stiffness = pound_law_envelope(s, far) / far,
-	                                 .low = at->branch == LEFT_SECANT ? -far : 0,
-	                                 .high = at->branch == LEFT_SECANT ? 0 : far};
+	double far = at->memory[at->number == LEFT_SECANT];
+	at->branch = (struct pound_branch){.stiffness = pound_law_envelope(s, far) / far,
+	                                   .low = at->number == LEFT_SECANT ? -far : 0,
+	                                   .high = at->number == LEFT_SECANT ? 0 : far};
 }
 
 static const struct law {
 	const char *name;
 	const char *text; /* one line of documentation */
 	bool linear;
-	bool drags; /* yields for good: memory[0] is the centre of its elastic range */
+	bool drags; /* yields for good: memory[0] is the center of its elastic range */
 	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
-	void (*leave)(const struct pound_backbone *, struct pound_branch *, enum pound_edge, double u);
+	void (*leave)(const struct pound_backbone *, struct pound_law_state *, enum pound_edge, double u);
 } laws[] = {
     {"linear", "a spring", true, false, false, linear},
     {"elastoplastic",
@@ -124,41 +124,41 @@ const char *pound_law_name(int row)
 	return row >= 0 && row < (int)(sizeof laws / sizeof laws[0]) ? laws[row].name : NULL;
 }
 
-/* Whether a law has one piece for ever, so that no yield displacement is needed. */
+/* Whether a law has one branch for ever, so that no yield displacement is needed. */
 bool pound_law_linear(int law)
 {
 	return laws[law].linear;
 }
 
-/* Puts an oscillator at rest on the first piece of its law.
+/* Puts an oscillator at rest on the first branch of its law.
  *
  * Given    backbone  the law and its numbers
  * Returns  at        branch at u = 0, nothing remembered: elastic up to the yield displacement on either side
  * Source   model.md 2 of the project's design pages; the paper, Figure 2
  * Test     unit_law
  */
-void pound_law_start(const struct pound_backbone *backbone, struct pound_branch *at)
+void pound_law_start(const struct pound_backbone *backbone, struct pound_law_state *at)
 {
-	*at = (struct pound_branch){.branch = CENTRE};
+	*at = (struct pound_law_state){.number = CENTER};
 	if (laws[backbone->law].linear) {
-		linear(backbone, at, POUND_EDGE_TURN, 0);
+		linear(backbone, at, POUND_EDGE_REVERSAL, 0);
 		return;
 	}
 	at->memory[0] = at->memory[1] = 0;
-	at->piece = (struct pound_piece){
+	at->branch = (struct pound_branch){
 	    .stiffness = backbone->stiffness, .low = -backbone->yield, .high = backbone->yield};
 	if (laws[backbone->law].peaks)
 		at->memory[0] = at->memory[1] = backbone->yield;
 }
 
-/* Moves on to the piece behind an edge.
+/* Moves on to the branch behind an edge.
  *
  * Given    backbone  the law and its numbers
- *          edge      which end of the piece was reached
+ *          edge      which end of the branch was reached
  *          u         displacement there [m]
- * Returns  at        the next piece, continuous in force with the last
+ * Returns  at        the next branch, continuous in force with the last
  */
-void pound_law_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
+void pound_law_leave(const struct pound_backbone *backbone, struct pound_law_state *at, enum pound_edge edge,
                      double u)
 {
 	laws[backbone->law].leave(backbone, at, edge, u);
@@ -172,10 +172,10 @@ double pound_law_envelope(const struct pound_backbone *s, double u)
 	return s->stiffness * (s->hardening * u + (1 - s->hardening) * s->yield);
 }
 
-/* Centre of the elastic range, were the oscillator to turn at u [m]; 0 for laws whose range stays. */
-double pound_law_center(const struct pound_backbone *s, const struct pound_branch *at, double u)
+/* Center of the elastic range, were the oscillator to turn at u [m]; 0 for laws whose range stays. */
+double pound_law_center(const struct pound_backbone *s, const struct pound_law_state *at, double u)
 {
 	if (!laws[s->law].drags)
 		return 0;
-	return at->branch == CENTRE ? at->memory[0] : at->branch == RIGHT ? u - s->yield : u + s->yield;
+	return at->number == CENTER ? at->memory[0] : at->number == RIGHT ? u - s->yield : u + s->yield;
 }

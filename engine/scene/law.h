@@ -1,6 +1,6 @@
-/* law.h - constitutive laws as straight pieces and the edges between them.
+/* law.h - constitutive laws as straight branches and the edges between them.
  *
- * An integrator sees only a piece: on it the restoring force per mass is stiffness * u + offset, until u leaves
+ * An integrator sees only a branch: on it the restoring force per mass is stiffness * u + offset, until u leaves
  * [low, high] or, where direction is not 0, the velocity turns against direction.  At such an edge it asks for the next. */
 #ifndef PIECES_H
 #define PIECES_H
@@ -14,27 +14,27 @@ struct pound_backbone {
 	double yield;     /* yield displacement [m]  > 0; not read by linear laws */
 };
 
-struct pound_piece {
+struct pound_branch {
 	double stiffness; /* [1/s2] */
 	double offset;    /* force per mass at u = 0 [m/s2] */
 	double low, high; /* [m]  -DBL_MAX, DBL_MAX: no edge there */
 	double direction; /* +1, -1: ends when the velocity turns against it; 0: does not */
 };
 
-enum pound_edge { POUND_EDGE_LOW, POUND_EDGE_HIGH, POUND_EDGE_TURN };
+enum pound_edge { POUND_EDGE_LOW, POUND_EDGE_HIGH, POUND_EDGE_REVERSAL };
 
 /* where on its law an oscillator is */
-struct pound_branch {
-	int branch;       /* the law's own number of the piece */
+struct pound_law_state {
+	int number;       /* the law's own number of the branch */
 	double memory[2]; /* what the law remembers [m] */
-	struct pound_piece piece;
+	struct pound_branch branch;
 };
 
 bool pound_law_linear(int law);
-void pound_law_start(const struct pound_backbone *backbone, struct pound_branch *at);
-void pound_law_leave(const struct pound_backbone *backbone, struct pound_branch *at, enum pound_edge edge,
+void pound_law_start(const struct pound_backbone *backbone, struct pound_law_state *at);
+void pound_law_leave(const struct pound_backbone *backbone, struct pound_law_state *at, enum pound_edge edge,
                      double u);
 double pound_law_envelope(const struct pound_backbone *backbone, double u);
-double pound_law_center(const struct pound_backbone *backbone, const struct pound_branch *at, double u);
+double pound_law_center(const struct pound_backbone *backbone, const struct pound_law_state *at, double u);
 
 #endif

@@ -50,10 +50,10 @@ enum guard {
 	GUARDS
 };
 
-struct course {
+struct adaptive_task {
 	const struct pound_task *task;
 	struct pound_task_result *result;
-	struct pound_branch at[POUND_OSCILLATORS];
+	struct pound_law_state at[POUND_OSCILLATORS];
 	struct pound_contact_law law;
 	struct pound_touch touch; /* while touching: branch of the contact's force */
 	bool touching, parted;    /* parted: overlapping without force */
@@ -74,23 +74,23 @@ struct course {
 
 /* ---- the equations ---- */
 
-static double contact_force(const struct course *c, const double y[])
+static double contact_force(const struct adaptive_task *c, const double y[])
 {
 	return c->touching && !c->held ? pound_contact_force_on(&c->touch.on, y[P], y[Q]) : 0;
 }
 
 /* Acceleration of a body by its own spring and dashpot [m/s2]. */
-static double own_acceleration(const struct course *c, int i, const double y[])
+static double own_acceleration(const struct adaptive_task *c, int i, const double y[])
 {
-	const struct pound_piece *piece = &c->at[i].piece;
-	return -c->task->bodies[i].damping * y[V1 + 2 * i] - piece->stiffness * y[U1 + 2 * i] - piece->offset;
+	const struct pound_branch *branch = &c->at[i].branch;
+	return -c->task->bodies[i].damping * y[V1 + 2 * i] - branch->stiffness * y[U1 + 2 * i] - branch->offset;
 }
 
 /* Relative acceleration of the bodies without contact [m/s2].
  *
  * Not the difference of two accelerations: when the ground begins to move its rounding would decide who meets.
  */
-static double relative_acceleration(const struct course *c, double t, const double y[])
+static double relative_acceleration(const struct adaptive_task *c, double t, const double y[])
 {
 	const double a = c->ground + c->slope * t;
 	return (c->task->bodies[1].drive - c->task->bodies[0].drive) * a +
@@ -99,7 +99,7 @@ static double relative_acceleration(const struct course *c, double t, const doub
 
 static int derivative(double t, const double y[], double dydt[], void *of)
 {
-	const struct course *c = of;
+	const struct adaptive_task *c = of;
 	const double a = c->ground + c->slope * t, apart = relative_acceleration(c, t, y);
 	const double force = c->held ? apart / (1 + c->task->mass_ratio) : contact_force(c, y);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -115,7 +115,7 @@ static int derivative(double t, const double y[], double dydt[], void *of)
 
 static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *of)
 {
-	const struct course *c = of;
+	const struct adaptive_task *c = of;
 	(void)t;
 	double(*row)[STATES] = (double(*)[STATES])dfdy;
 	memset(dfdy, 0, sizeof(double) * STATES * STATES);
@@ -130,7 +130,7 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
 		double share = i == 0 ? -1 : c->task->mass_ratio;
 		int u = U1 + 2 * i, v = V1 + 2 * i;
 		row[u][v] = 1;
-		row[v][u] = -c->at[i].piece.stiffness;
+		row[v][u] = -c->at[i].branch.stiffness;
 		row[v][v] = -body->damping;
 		row[v][P] = share * row[IMPULSE][P];
 		row[v][Q] = share * row[IMPULSE][Q];
@@ -154,7 +154,7 @@ struct rate {
 	double value, change;
 };
 
-static struct rate rate_at(const struct course *c, enum guard j, double t, const double y[])
+static struct rate rate_at(const struct adaptive_task *c, enum guard j, double t, const double y[])
 {
 	double dydt[STATES], dfdy[STATES][STATES], dfdt[STATES];
 	derivative(t, y, dydt, (void *)c);
@@ -168,7 +168,7 @@ static struct rate rate_at(const struct course *c, enum guard j, double t, const
 }
 
 /* A guard above 0 is an event that has come to pass. */
-static double guard(const struct course *c, enum guard j, double t, const double y[])
+static double guard(const struct adaptive_task *c, enum guard j, double t, const double y[])
 {
 	const struct pound_task *task = c->task;
 	double force = y[P] + c->release * y[Q]; // per stiffness
@@ -185,10 +185,10 @@ static double guard(const struct course *c, enum guard j, double t, const double
 		return c->way[j] == 0 ? -1 : -c->way[j] * rate_at(c, j, t, y).value;
 	case LOW:
 	case LOW_2:
-		return c->at[j - LOW].piece.low - y[U1 + 2 * (j - LOW)];
+		return c->at[j - LOW].branch.low - y[U1 + 2 * (j - LOW)];
 	case HIGH:
 	case HIGH_2:
-		return y[U1 + 2 * (j - HIGH)] - c->at[j - HIGH].piece.high;
+		return y[U1 + 2 * (j - HIGH)] - c->at[j - HIGH].branch.high;
 	case CONTACT:
 		return !task->contact ? -1 : c->touching ? -force : c->parted ? force : y[P];
 	case CLEARS:
@@ -209,10 +209,10 @@ static double sign(double x)
 }
 
 /* The guards of velocities look for the way they go now, or for the one that a branch of a law ends against. */
-static void ways_set(struct course *c)
+static void ways_set(struct adaptive_task *c)
 {
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		double direction = c->at[i].piece.direction;
+		double direction = c->at[i].branch.direction;
 		c->way[i] = direction != 0 ? direction : sign(c->y[V1 + 2 * i]);
 	}
 	// a contact ends with its force, or with the overlap
@@ -225,7 +225,7 @@ static void ways_set(struct course *c)
 /* ---- events ---- */
 
 /* A contact has ended, or the signal has in it. */
-static void contact_over(struct course *c)
+static void contact_over(struct adaptive_task *c)
 {
 	const struct pound_task *task = c->task;
 	struct pound_task_result *r = c->result;
@@ -234,9 +234,9 @@ static void contact_over(struct course *c)
 	                              .steps = c->touch_steps,
 	                              .changed = (1 + task->mass_ratio) * c->y[IMPULSE] + fabs(c->y[Q])};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		counts.body[i] = (struct pound_counts_body){c->y[U1 + 2 * i],         c->y[V1 + 2 * i],
-		                                            c->at[i].piece.stiffness, c->at[i].piece.offset,
-		                                            task->bodies[i].damping,  task->bodies[i].drive * ground};
+		counts.body[i] = (struct pound_counts_body){
+		    c->y[U1 + 2 * i],       c->y[V1 + 2 * i],        c->at[i].branch.stiffness,
+		    c->at[i].branch.offset, task->bodies[i].damping, task->bodies[i].drive * ground};
 	r->impulse_max = fmax(r->impulse_max, c->y[IMPULSE]);
 	if (pound_contact_counts(&counts, &c->counts_scale)) {
 		r->contacts++;
@@ -249,7 +249,7 @@ static void contact_over(struct course *c)
  *
  *   v_1 -= J, v_2 += r J,  J = (1 + e) q/(1 + r)       hops that are left: 2 e q/(a (1 - e)), a their relative acceleration
  */
-static void contact_impact(struct course *c)
+static void contact_impact(struct adaptive_task *c)
 {
 	static const double HOPS_END = 1e-12; // of a sample
 	struct pound_task_result *r = c->result;
@@ -270,7 +270,7 @@ static void contact_impact(struct course *c)
 		r->first_contact = c->start + c->t, r->first_speed = q;
 }
 
-static void contact_turn(struct course *c)
+static void contact_transition(struct adaptive_task *c)
 {
 	struct pound_task_result *r = c->result;
 	if (c->held) {
@@ -297,36 +297,36 @@ static void contact_turn(struct course *c)
 	c->parted = false;
 }
 
-static void body_turn(struct course *c, int i, enum pound_edge edge)
+static void body_transition(struct adaptive_task *c, int i, enum pound_edge edge)
 {
-	struct pound_branch *at = &c->at[i];
-	double u = edge == POUND_EDGE_LOW    ? at->piece.low
-	           : edge == POUND_EDGE_HIGH ? at->piece.high
+	struct pound_law_state *at = &c->at[i];
+	double u = edge == POUND_EDGE_LOW    ? at->branch.low
+	           : edge == POUND_EDGE_HIGH ? at->branch.high
 	                                     : c->y[U1 + 2 * i];
-	if (edge != POUND_EDGE_TURN || at->piece.direction != 0)
+	if (edge != POUND_EDGE_REVERSAL || at->branch.direction != 0)
 		pound_law_leave(&c->task->bodies[i].backbone, at, edge, u);
 }
 
-static void event_pass(struct course *c, enum guard j)
+static void event_pass(struct adaptive_task *c, enum guard j)
 {
 	// bodies that are pressed to rest turn by every rounding: turns count where a branch of a law ends with them
 	c->events += j >= TURNS || (j == TURN_OVERLAP && c->touching && c->touch.on.direction != 0) ||
-	             (j < TURN_OVERLAP && c->at[j - TURN].piece.direction != 0);
+	             (j < TURN_OVERLAP && c->at[j - TURN].branch.direction != 0);
 	if (j == CONTACT)
-		contact_turn(c);
+		contact_transition(c);
 	else if (j == CLEARS)
 		c->parted = false;
 	else if (j == TOUCH_LOW || j == TOUCH_HIGH)
 		pound_contact_leave(&c->law, &c->touch, j == TOUCH_LOW ? POUND_EDGE_LOW : POUND_EDGE_HIGH,
 		                    j == TOUCH_LOW ? c->touch.on.low : c->touch.on.high);
 	else if (j == TURN_OVERLAP && c->touching && c->touch.on.direction != 0)
-		pound_contact_leave(&c->law, &c->touch, POUND_EDGE_TURN, c->y[P]);
+		pound_contact_leave(&c->law, &c->touch, POUND_EDGE_REVERSAL, c->y[P]);
 	else if (j >= HIGH)
-		body_turn(c, j - HIGH, POUND_EDGE_HIGH);
+		body_transition(c, j - HIGH, POUND_EDGE_HIGH);
 	else if (j >= LOW)
-		body_turn(c, j - LOW, POUND_EDGE_LOW);
+		body_transition(c, j - LOW, POUND_EDGE_LOW);
 	else if (j < TURN_OVERLAP)
-		body_turn(c, j - TURN, POUND_EDGE_TURN);
+		body_transition(c, j - TURN, POUND_EDGE_REVERSAL);
 	c->steps = 0;
 	gsl_odeiv2_driver_reset(c->explicit);
 }
@@ -334,7 +334,7 @@ static void event_pass(struct course *c, enum guard j)
 /* ---- steps ---- */
 
 /* The state at t, from that at the start of a step. */
-static bool state_at(struct course *c, const double from[STATES], double t, double y[STATES])
+static bool state_at(struct adaptive_task *c, const double from[STATES], double t, double y[STATES])
 {
 	double now = c->t;
 	memcpy(y, from, sizeof(double) * STATES);
@@ -349,7 +349,8 @@ static bool state_at(struct course *c, const double from[STATES], double t, doub
  * Returns  t, y      -, (STATES)     the end, guard above 0 there
  *          value     -               false: the stepper failed
  */
-static bool locate(struct course *c, enum guard j, const double from[STATES], double *t, double y[STATES])
+static bool locate(struct adaptive_task *c, enum guard j, const double from[STATES], double *t,
+                   double y[STATES])
 {
 	double low = c->t, g_low = guard(c, j, c->t, from), g_high = guard(c, j, *t, y), middle[STATES];
 	int side = 0;
@@ -378,7 +379,7 @@ static bool locate(struct course *c, enum guard j, const double from[STATES], do
 }
 
 /* The first guard that is above 0 already, GUARDS: none. */
-static enum guard crossed(const struct course *c)
+static enum guard crossed(const struct adaptive_task *c)
 {
 	enum guard j = TURN;
 	while (j < GUARDS && !(guard(c, j, c->t, c->y) > 0))
@@ -408,7 +409,7 @@ static double hump(const double g[2], const double d[2])
  * Given    t, y   end of the step
  * Returns  t, y   the same, or an earlier end, one above 0 there;  value: false: the stepper failed
  */
-static bool turns_find(struct course *c, double *t, double y[STATES])
+static bool turns_find(struct adaptive_task *c, double *t, double y[STATES])
 {
 	for (enum guard j = TURN; j < TURNS; j++) {
 		// contact ends with its force, which has a guard of its own, or with an overlap that the steps then resolve
@@ -433,7 +434,7 @@ static bool turns_find(struct course *c, double *t, double y[STATES])
 }
 
 /* One step, cut at its first event; false: the stepper failed. */
-static bool course_step(struct course *c)
+static bool task_step(struct adaptive_task *c)
 {
 	double y[STATES], t = c->t, left = c->task->time_step - c->t;
 	gsl_odeiv2_driver *driver = c->steps < STIFF_STEPS ? c->explicit : c->implicit;
@@ -472,7 +473,7 @@ static bool course_step(struct course *c)
 	return finite;
 }
 
-static enum pound_status interval_run(struct course *c, int sample)
+static enum pound_status interval_run(struct adaptive_task *c, int sample)
 {
 	const struct pound_task *task = c->task;
 	c->start = (sample - 1) * task->time_step;
@@ -487,7 +488,7 @@ static enum pound_status interval_run(struct course *c, int sample)
 		enum guard j = crossed(c);
 		if (j != GUARDS)
 			event_pass(c, j);
-		else if (!course_step(c))
+		else if (!task_step(c))
 			return POUND_TOLERANCE;
 		if (c->events > EVENTS_LIMIT)
 			return POUND_CHATTER;
@@ -495,10 +496,10 @@ static enum pound_status interval_run(struct course *c, int sample)
 	return POUND_OK;
 }
 
-/* ---- the course of a task ---- */
+/* ---- from the start of a task to its end ---- */
 
 /* Sizes that components have at least where they matter: of the response to be expected. */
-static void scales_fill(const struct course *c, double scale[STATES])
+static void scales_fill(const struct adaptive_task *c, double scale[STATES])
 {
 	const struct pound_task *task = c->task;
 	double w = 1 / (task->n_samples * task->time_step), a = 0;
@@ -513,7 +514,7 @@ static void scales_fill(const struct course *c, double scale[STATES])
 		scale[j] = FLOOR * a / (j == U1 || j == U2 || j == P ? w * w : w);
 }
 
-static void course_start(struct course *c)
+static void task_start(struct adaptive_task *c)
 {
 	const struct pound_task *task = c->task;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -530,7 +531,7 @@ static void course_start(struct course *c)
 	c->release = line ? c->law.dashpot / c->law.stiffness : 0;
 }
 
-static void course_end(struct course *c, enum pound_status status)
+static void task_end(struct adaptive_task *c, enum pound_status status)
 {
 	struct pound_task_result *r = c->result;
 	if (status) {
@@ -573,11 +574,11 @@ void pound_adaptive_run(const struct pound_solver *solver, const struct pound_ta
                         struct pound_task_result *result, const atomic_bool *stop)
 {
 	*result = (struct pound_task_result){0};
-	struct course c = {.task = task, .result = result};
+	struct adaptive_task c = {.task = task, .result = result};
 	// at rest no velocity has a way yet, so the first steps are short and grow
 	double scale[STATES], h = task->time_step * 0x1p-20;
 	c.system = (gsl_odeiv2_system){derivative, jacobian, STATES, &c};
-	course_start(&c);
+	task_start(&c);
 	scales_fill(&c, scale);
 	c.explicit = gsl_odeiv2_driver_alloc_scaled_new(&c.system, gsl_odeiv2_step_rk8pd, h, solver->tolerance,
 	                                                solver->tolerance, 1, 1, scale);
@@ -588,7 +589,7 @@ void pound_adaptive_run(const struct pound_solver *solver, const struct pound_ta
 		gsl_odeiv2_driver_set_nmax(c.explicit, STEPS_LIMIT);
 	for (int t = 1; t < task->n_samples && !status; t++)
 		status = pound_stopped(stop) ? POUND_STOPPED : interval_run(&c, t);
-	course_end(&c, status);
+	task_end(&c, status);
 	if (c.explicit)
 		gsl_odeiv2_driver_free(c.explicit);
 	if (c.implicit)

@@ -21,11 +21,11 @@ static const double SETTLED = 1e-10;
 /* No response has a velocity above what the ground motion can give; one this many times larger is the integrator's. */
 static const double UNSTABLE = 10;
 
-struct course {
+struct stepped_task {
 	const struct pound_task *task;
 	struct pound_task_result *result;
 	double step, frequency; /* [s], [1/s] */
-	struct pound_branch at[POUND_OSCILLATORS];
+	struct pound_law_state at[POUND_OSCILLATORS];
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS];
 	double
 	    rate[POUND_OSCILLATORS];  /* newmark: acceleration; central difference: velocity half a step later */
@@ -46,27 +46,28 @@ struct course {
 /* ---- laws and contact at the end of a step ---- */
 
 /* Takes a law along the straight way from one displacement to another. */
-static void law_follow(const struct pound_backbone *backbone, struct pound_branch *at, double from, double to)
+static void law_follow(const struct pound_backbone *backbone, struct pound_law_state *at, double from,
+                       double to)
 {
-	if (at->piece.direction * (to - from) < 0)
-		pound_law_leave(backbone, at, POUND_EDGE_TURN, from);
+	if (at->branch.direction * (to - from) < 0)
+		pound_law_leave(backbone, at, POUND_EDGE_REVERSAL, from);
 	for (;;)
-		if (to > at->piece.high)
-			pound_law_leave(backbone, at, POUND_EDGE_HIGH, at->piece.high);
-		else if (to < at->piece.low)
-			pound_law_leave(backbone, at, POUND_EDGE_LOW, at->piece.low);
+		if (to > at->branch.high)
+			pound_law_leave(backbone, at, POUND_EDGE_HIGH, at->branch.high);
+		else if (to < at->branch.low)
+			pound_law_leave(backbone, at, POUND_EDGE_LOW, at->branch.low);
 		else
 			return;
 }
 
-static double restoring(const struct pound_branch *at, double u)
+static double restoring(const struct pound_law_state *at, double u)
 {
-	return at->piece.stiffness * u + at->piece.offset;
+	return at->branch.stiffness * u + at->branch.offset;
 }
 
-static bool same_piece(const struct pound_branch *a, const struct pound_branch *b)
+static bool same_law_branch(const struct pound_law_state *a, const struct pound_law_state *b)
 {
-	return a->piece.stiffness == b->piece.stiffness && a->piece.offset == b->piece.offset;
+	return a->branch.stiffness == b->branch.stiffness && a->branch.offset == b->branch.offset;
 }
 
 static bool same_branch(const struct pound_touch *a, const struct pound_touch *b)
@@ -78,7 +79,7 @@ static bool same_branch(const struct pound_touch *a, const struct pound_touch *b
  *
  * Given    rate   of the overlap before [m/s]
  */
-static struct pound_touch touch_at(const struct course *c, double from, double to, double rate)
+static struct pound_touch touch_at(const struct stepped_task *c, double from, double to, double rate)
 {
 	struct pound_touch touch = c->touch;
 	if (!c->touching) {
@@ -90,7 +91,8 @@ static struct pound_touch touch_at(const struct course *c, double from, double t
 	return touch;
 }
 
-static bool touches(const struct course *c, const struct pound_touch *touch, double overlap, double rate)
+static bool touches(const struct stepped_task *c, const struct pound_touch *touch, double overlap,
+                    double rate)
 {
 	return c->task->contact && overlap > 0 &&
 	       (c->law.tension || pound_contact_force_on(&touch->on, overlap, rate) > 0);
@@ -111,14 +113,14 @@ static void pair_solve(const double a[2], double s, double r, const double b[2],
 }
 
 /* Largest growth of the contact's force with the overlap, over overlaps up to p, per left mass [1/s2]. */
-static double touch_stiffness(const struct course *c, double p)
+static double touch_stiffness(const struct stepped_task *c, double p)
 {
 	const bool power = c->task->force == POUND_FORCE_POWER;
 	return c->law.stiffness * (power ? 1.5 * sqrt(p) : 1);
 }
 
 /* A contact has ended, or the signal has in it. */
-static void contact_over(struct course *c)
+static void contact_over(struct stepped_task *c)
 {
 	const struct pound_task *task = c->task;
 	struct pound_task_result *r = c->result;
@@ -132,8 +134,8 @@ static void contact_over(struct course *c)
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		counts.body[i] = (struct pound_counts_body){c->u[i],
 		                                            c->v[i],
-		                                            c->at[i].piece.stiffness,
-		                                            c->at[i].piece.offset,
+		                                            c->at[i].branch.stiffness,
+		                                            c->at[i].branch.offset,
 		                                            task->bodies[i].damping,
 		                                            task->bodies[i].drive * c->ground};
 	r->impulse_max = fmax(r->impulse_max, c->impulse);
@@ -145,7 +147,7 @@ static void contact_over(struct course *c)
 }
 
 /* Takes note of the state that a step ended in; force between two such states is a straight line. */
-static void course_note(struct course *c, double force, bool touching, double approach)
+static void task_note(struct stepped_task *c, double force, bool touching, double approach)
 {
 	struct pound_task_result *r = c->result;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
@@ -187,16 +189,16 @@ static struct newmark_force newmark_force(const struct pound_touch_branch *on, d
  *
  *   d = u1 - u,  v1 = 2 d/h - v,  a1 = 4 d/h^2 - 4 v/h - a,  a1 + c v1 + r(u + d) + share F(d) = -a_g
  *
- * r and F are straight on the pieces assumed, so a round of Newton's method is one linear solution; powers are replaced by
+ * r and F are straight on the branches assumed, so a round of Newton's method is one linear solution; powers are replaced by
  * their tangent.  Where bodies are apart if they touch and touch if they are apart, because the dashpot's force begins with a
  * jump, they stay as they were until the next step.
  */
-static bool newmark_advance(struct course *c, double ground)
+static bool newmark_advance(struct stepped_task *c, double ground)
 {
 	const struct pound_task *task = c->task;
 	double h = c->step;
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1], p1 = p;
-	struct pound_branch at[2] = {c->at[0], c->at[1]};
+	struct pound_law_state at[2] = {c->at[0], c->at[1]};
 	struct pound_touch touch = c->touch;
 	bool touching = c->touching, settled = false;
 	double d[2], a[2], b[2];
@@ -205,16 +207,16 @@ static bool newmark_advance(struct course *c, double ground)
 		double stiff = force.slope + force.rate * (2 / h), still = force.still + force.rate * -q;
 		for (int i = 0; i < 2; i++) {
 			const struct pound_task_body *body = &task->bodies[i];
-			a[i] = 4 / (h * h) + 2 * body->damping / h + at[i].piece.stiffness;
+			a[i] = 4 / (h * h) + 2 * body->damping / h + at[i].branch.stiffness;
 			b[i] = 4 / h * c->v[i] + c->rate[i] + body->damping * c->v[i] - body->drive * ground -
 			       restoring(&at[i], c->u[i]) - share(task, i) * still;
 		}
 		pair_solve(a, stiff, task->mass_ratio, b, d);
 		settled = true;
 		for (int i = 0; i < 2; i++) {
-			struct pound_branch next = c->at[i];
+			struct pound_law_state next = c->at[i];
 			law_follow(&task->bodies[i].backbone, &next, c->u[i], c->u[i] + d[i]);
-			settled &= same_piece(&next, &at[i]);
+			settled &= same_law_branch(&next, &at[i]);
 			at[i] = next;
 		}
 		const double before = p1;
@@ -238,13 +240,13 @@ static bool newmark_advance(struct course *c, double ground)
 	}
 	c->touch = touch;
 	double overlap = c->u[0] - c->u[1] - task->gap;
-	course_note(c, touching ? pound_contact_force_on(&touch.on, overlap, c->v[0] - c->v[1]) : 0, touching, q);
+	task_note(c, touching ? pound_contact_force_on(&touch.on, overlap, c->v[0] - c->v[1]) : 0, touching, q);
 	return settled;
 }
 
 /* ---- central differences ---- */
 
-/* Square of the highest angular frequency of bodies on the first pieces of their laws, the stiffest ones, with a contact of some
+/* Square of the highest angular frequency of bodies on the first branches of their laws, the stiffest ones, with a contact of some
  * stiffness between them [1/s2]. */
 static double stiffest(const struct pound_task *task, double contact)
 {
@@ -258,7 +260,7 @@ static double stiffest(const struct pound_task *task, double contact)
  *
  *   (w1 - w)/h + c (w1 + w)/2 + r(u) + share F(u, (w1 + w)/2) = -a_g,   v = (w1 + w)/2
  */
-static bool central_advance(struct course *c, double ground)
+static bool central_advance(struct stepped_task *c, double ground)
 {
 	const struct pound_task *task = c->task;
 	double h = c->step, a[2], b[2], w[2];
@@ -293,17 +295,17 @@ static bool central_advance(struct course *c, double ground)
 		c->v[i] = (c->rate[i] + w[i]) / 2;
 		c->rate[i] = w[i];
 	}
-	course_note(c, force, touching, approach);
+	task_note(c, force, touching, approach);
 	return true;
 }
 
-/* ---- the course of a task ---- */
+/* ---- from the start of a task to its end ---- */
 
 /* Velocities that no response can have: of the bodies, by the work that the ground motion does on them.
  *
  *   E' <= |a_g| sqrt(2 M E), so sqrt(2 E) <= sqrt(2 E_0) + sqrt(M) int |a_g| dt, with M all that rides on the ground
  */
-static void speed_limits(struct course *c)
+static void speed_limits(struct stepped_task *c)
 {
 	const struct pound_task *task = c->task;
 	double push = 0, mass[2] = {1, task->mass_ratio > 0 ? 1 / task->mass_ratio : 1};
@@ -320,7 +322,7 @@ static void speed_limits(struct course *c)
 }
 
 /* The state at the start, and the accelerations there in `rate`. */
-static void course_start(struct course *c, int n_steps)
+static void task_start(struct stepped_task *c, int n_steps)
 {
 	const struct pound_task *task = c->task;
 	c->step = task->time_step / n_steps;
@@ -360,9 +362,9 @@ double pound_fixed_step(double time_step, double step)
 	return time_step / steps_of(time_step, step);
 }
 
-typedef bool advance(struct course *c, double ground);
+typedef bool advance(struct stepped_task *c, double ground);
 
-static void course_run(struct course *c, int n_steps, advance *step, const atomic_bool *stop)
+static void task_run(struct stepped_task *c, int n_steps, advance *step, const atomic_bool *stop)
 {
 	const struct pound_task *task = c->task;
 	struct pound_task_result *r = c->result;
@@ -411,10 +413,10 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_t
                          struct pound_task_result *result, const atomic_bool *stop)
 {
 	*result = (struct pound_task_result){0};
-	struct course c = {.task = task, .result = result};
+	struct stepped_task c = {.task = task, .result = result};
 	int n_steps = steps_of(task->time_step, solver->step);
-	course_start(&c, n_steps);
-	course_run(&c, n_steps, newmark_advance, stop);
+	task_start(&c, n_steps);
+	task_run(&c, n_steps, newmark_advance, stop);
 }
 
 /* The response of a task by central differences, the explicit method.
@@ -433,13 +435,13 @@ void pound_fixed_central(const struct pound_solver *solver, const struct pound_t
                          struct pound_task_result *result, const atomic_bool *stop)
 {
 	*result = (struct pound_task_result){0};
-	struct course c = {.task = task, .result = result};
+	struct stepped_task c = {.task = task, .result = result};
 	int n_steps = steps_of(task->time_step, solver->step);
-	course_start(&c, n_steps);
+	task_start(&c, n_steps);
 	const bool power = task->force == POUND_FORCE_POWER; // as stiff as its overlap is large
 	for (int i = 0; i < 2; i++) {
 		c.rate[i] = c.v[i] + c.step / 2 * c.rate[i];
 		c.too_long[i] = c.step * sqrt(stiffest(task, i == 1 && !power ? c.law.stiffness : 0)) > 2;
 	}
-	course_run(&c, n_steps, central_advance, stop);
+	task_run(&c, n_steps, central_advance, stop);
 }

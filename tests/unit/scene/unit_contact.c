@@ -289,7 +289,7 @@ static bool passed(const struct pound_contact_law *law, struct pound_touch *touc
 	else if (touch->on.low > 0 && y[0] <= touch->on.low)
 		pound_contact_leave(law, touch, POUND_EDGE_LOW, y[0]);
 	else if (touch->on.direction * y[1] < 0)
-		pound_contact_leave(law, touch, POUND_EDGE_TURN, y[0]);
+		pound_contact_leave(law, touch, POUND_EDGE_REVERSAL, y[0]);
 	else
 		return false;
 	return true;

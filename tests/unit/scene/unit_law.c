@@ -13,14 +13,14 @@ static const double PI = 3.14159265358979323846;
 /* A displacement-driven test: follows a list of turning points and returns the work done, piece by piece exactly. */
 struct push {
 	struct pound_backbone backbone;
-	struct pound_branch at;
+	struct pound_law_state at;
 	double u, force, force_max, work;
 	int pieces;
 };
 
 static double force_at(const struct push *push, double u)
 {
-	return push->at.piece.stiffness * u + push->at.piece.offset;
+	return push->at.branch.stiffness * u + push->at.branch.offset;
 }
 
 static void push_start(struct push *push, int law, double yield, double hardening)
@@ -51,10 +51,10 @@ static void push_edge(struct push *push, enum pound_edge edge)
 static void push_to(struct push *push, double to)
 {
 	double way = to > push->u ? 1 : -1;
-	if (push->at.piece.direction * way < 0)
-		push_edge(push, POUND_EDGE_TURN);
+	if (push->at.branch.direction * way < 0)
+		push_edge(push, POUND_EDGE_REVERSAL);
 	for (int piece = 0; piece < 5; piece++) {
-		double edge = way > 0 ? push->at.piece.high : push->at.piece.low;
+		double edge = way > 0 ? push->at.branch.high : push->at.branch.low;
 		if ((to - edge) * way <= 0)
 			break;
 		push_along(push, edge);
