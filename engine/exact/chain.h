@@ -24,9 +24,9 @@ enum {
 
 /* a floor and the story below it; u is its displacement relative to the ground, d = u - u of the floor below its drift */
 struct pound_chain_floor {
-	double mass;    /* [kg]  > 0 */
-	double dashpot; /* of the story, per rate of its drift [N s/m] */
-	double drag;    /* a0, times mass and velocity; the same for all floors of a building [1/s] */
+	double mass;         /* [kg]  > 0 */
+	double dashpot;      /* of the story, per rate of its drift [N s/m] */
+	double mass_damping; /* a0, times mass and velocity; the same for all floors of a building [1/s] */
 	struct pound_backbone story; /* in forces: stiffness [N/m], yield displacement: a drift [m] */
 	const double *modal; /* force on this floor, against the rates of the drifts of its building's stories
 	                                 * [N s/m]  (stories of the building); NULL: none */

@@ -7,8 +7,8 @@
  * Laws, contacts, root searches and tolerances are those of the pair (exact.inl). */
 
 enum {
-	ORDER_APART = 15, /* of the series of short steps */
-	ORDER_TOUCH = 21, /* of long ones */
+	ORDER_LOW = 15,  /* of the series of short steps */
+	ORDER_HIGH = 21, /* of long ones */
 };
 
 enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */

@@ -21,7 +21,7 @@ static double column_at(const double *first, size_t stride, int order, double t,
 static double series_at(const double *first, size_t stride, double t)
 {
 	double rate;
-	return column_at(first, stride, ORDER_TOUCH, t, &rate);
+	return column_at(first, stride, ORDER_HIGH, t, &rate);
 }
 
 /* Overlap of the contact that gives w, to all digits however small. */
@@ -61,7 +61,7 @@ static struct powers powers_at(const struct chain *c, double t)
 		rates[i] = v;
 		p.in -= m * ground * w;
 		p.out += (fma(c->stiffness.at[i], d, c->offset.at[i]) + c->dashpot.at[i] * v) * v +
-		         c->drag.at[i] * m * w * w;
+		         c->mass_damping.at[i] * m * w * w;
 		p.moving += 0.5 * m * w * w;
 	}
 	for (int first = 0, stories; c->modal && first < c->n; first += stories) {

@@ -68,8 +68,8 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	const vd low = column_load(&c->low, i), high = column_load(&c->high, i);
 	const vd direction = column_load(&c->direction, i);
 	const vm past_high = may_cross(&enclosure, high, one), past_low = may_cross(&enclosure, low, -one);
-	vm turns = ~vequal(direction, zero);
-	if (!vany(past_high | past_low | turns))
+	vm reversals = ~vequal(direction, zero);
+	if (!vany(past_high | past_low | reversals))
 		return;
 	struct motion m;
 	motion_load(&m, c, c->drifts, &c->drift, i);
@@ -79,7 +79,7 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	if (vany(past_high))
 		guard_search(first, c, guard_of(&m.u, &enclosure, high, one), past_high,
 		             EVENT_STORY + POUND_EDGE_HIGH, i);
-	if (!vany(turns))
+	if (!vany(reversals))
 		return;
 	struct power velocity;
 	if (c->warp.on) {
@@ -87,12 +87,12 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 		enclosure = enclosure_make(&velocity, c->order);
 	} else
 		enclosure = enclosure_of_velocity(&m, c->order);
-	turns &= may_cross(&enclosure, zero, -direction);
-	if (!vany(turns))
+	reversals &= may_cross(&enclosure, zero, -direction);
+	if (!vany(reversals))
 		return;
 	if (!c->warp.on)
 		motion_velocity(&velocity, &m, c->order);
-	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), turns,
+	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), reversals,
 	             EVENT_STORY + POUND_EDGE_REVERSAL, i);
 }
 
@@ -114,24 +114,25 @@ static void overlaps_enclose(struct chain *c)
 		x->v0.at[j] = link_sum(l, c->displacement.v0.at);
 		x->u1.at[j] = link_sum(l, c->displacement.u1.at) - l->link->gap;
 		x->v1.at[j] = link_sum(l, c->displacement.v1.at);
-		x->bend.at[j] = 0;
+		x->fourth_max.at[j] = 0;
 		for (int k = 0; k < l->n_ends; k++)
-			x->bend.at[j] = fma(fabs(l->weight[k]), c->displacement.bend.at[l->floor[k]], x->bend.at[j]);
+			x->fourth_max.at[j] =
+			    fma(fabs(l->weight[k]), c->displacement.fourth_max.at[l->floor[k]], x->fourth_max.at[j]);
 	}
 	for (int j = 0; j < c->n_links; j++) {
 		if (!c->link[j].own)
 			continue;
-		double u = c->overlaps[0][j], v = 0, bend = 0;
+		double u = c->overlaps[0][j], v = 0, fourth_max = 0;
 		x->u0.at[j] = u;
 		x->v0.at[j] = c->overlaps[1][j];
 		for (int n = 1; n <= c->order; n++) {
 			u += c->overlaps[n][j];
 			v = fma(n, c->overlaps[n][j], v);
-			bend = fma(fourth(n), fabs(c->overlaps[n][j]), bend);
+			fourth_max = fma(fourth(n), fabs(c->overlaps[n][j]), fourth_max);
 		}
 		x->u1.at[j] = u;
 		x->v1.at[j] = v;
-		x->bend.at[j] = bend;
+		x->fourth_max.at[j] = fourth_max;
 	}
 }
 
@@ -142,8 +143,9 @@ struct link_lanes {
 	unsigned open, released, touching;    /* which of the three */
 	unsigned forced;                      /* touching, and ends with its force */
 	double low[W], high[W], direction[W]; /* of the branches of those that touch */
-	double lead[W]; /* damping over stiffness, over the step: how far the force is ahead of the overlap */
-	double pull[W]; /* magnitude of the overlap's second derivative */
+	double
+	    phase_lead[W]; /* damping over stiffness, over the step: how far the force is ahead of the overlap */
+	double acceleration[W]; /* magnitude of the overlap's second derivative */
 	unsigned fresh;
 };
 
@@ -171,9 +173,9 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 			x->high[l] = link->at.on.high;
 			x->direction[l] = link->at.on.direction;
 		}
-		x->lead[l] = link->at.on.damping / link->at.on.stiffness / c->dt;
+		x->phase_lead[l] = link->at.on.damping / link->at.on.stiffness / c->dt;
 		for (int k = 0; k < link->n_ends; k++)
-			x->pull[l] += 2 * fabs(link->weight[k] * c->displacements[2].at[link->floor[k]]);
+			x->acceleration[l] += 2 * fabs(link->weight[k] * c->displacements[2].at[link->floor[k]]);
 	}
 }
 
@@ -185,7 +187,7 @@ static void link_rates(struct power *rate, const struct chain *c, const struct m
 		motion_velocity(rate, overlap, c->order);
 		return;
 	}
-	for (int n = 0; n <= ORDER_TOUCH; n++) {
+	for (int n = 0; n <= ORDER_HIGH; n++) {
 		double value[W];
 		for (int l = 0; l < W; l++)
 			value[l] = n <= c->order && j + l < c->n_links ? c->warp.links[j + l].rate[n] : 0;
@@ -199,13 +201,14 @@ static void forces_search(struct first *first, const struct chain *c, const stru
                           unsigned lanes, int j)
 {
 	const vm touching = vmask(x->touching), some = vmask(lanes), fresh = vmask(x->fresh);
-	const vd sign = vselect(touching, vsplat(-1), vsplat(1)), lead = lanes_load(x->lead);
+	const vd sign = vselect(touching, vsplat(-1), vsplat(1)), phase_lead = lanes_load(x->phase_lead);
 	struct power guard = {0}, rate;
 	link_rates(&rate, c, &x->overlap, j);
 	for (int n = 0; n <= c->order; n++)
-		guard.c[n] = sign * vfma(lead, rate.c[n], x->overlap.u.c[n]);
+		guard.c[n] = sign * vfma(phase_lead, rate.c[n], x->overlap.u.c[n]);
 	// where the force has just passed 0 it is beyond by a rounding (step.inl: force_search)
-	const vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, lanes_load(x->pull), x->overlap.u.c[0]));
+	const vd below =
+	    vmin(guard.c[0], -DBL_EPSILON * vfma(phase_lead, lanes_load(x->acceleration), x->overlap.u.c[0]));
 	guard.c[0] = vselect(fresh, below, guard.c[0]);
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
 	search_safe(&guard, c->order, some, vselect(touching, vsplat(EVENT_ENDS), vsplat(EVENT_BEGINS)), &search);
@@ -243,15 +246,15 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 	const vm begins = open & may_cross(&x.enclosure, zero, one);
 	const vm past_low = touching & may_cross(&x.enclosure, low, -one);
 	const vm past_high = touching & may_cross(&x.enclosure, high, one);
-	vm turns = touching & ~vequal(direction, zero);
+	vm reversals = touching & ~vequal(direction, zero);
 	const unsigned by_force = x.forced | x.released;
-	if (!vany(begins | past_low | past_high | turns) && by_force == 0)
+	if (!vany(begins | past_low | past_high | reversals) && by_force == 0)
 		return;
 	overlaps_fill(c, vbits(begins), j);
-	for (int n = 0; n <= ORDER_TOUCH; n++)
+	for (int n = 0; n <= ORDER_HIGH; n++)
 		x.overlap.u.c[n] = n <= c->order ? lanes_load(&c->overlaps[n][j]) : zero;
 	x.overlap.end = (struct place){x.enclosure.u1, x.enclosure.v1};
-	x.overlap.bend = x.enclosure.bend;
+	x.overlap.fourth_max = x.enclosure.fourth_max;
 	const struct power *p = &x.overlap.u;
 	if (vany(begins))
 		guard_search(first, c, guard_of(p, &x.enclosure, zero, one), begins, EVENT_BEGINS, j);
@@ -263,15 +266,15 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 		             j);
 	if (by_force)
 		forces_search(first, c, &x, by_force, j);
-	if (!vany(turns))
+	if (!vany(reversals))
 		return;
 	struct power velocity;
 	link_rates(&velocity, c, &x.overlap, j);
 	const struct enclosure enclosure = enclosure_make(&velocity, c->order);
-	turns &= may_cross(&enclosure, zero, -direction);
-	if (!vany(turns))
+	reversals &= may_cross(&enclosure, zero, -direction);
+	if (!vany(reversals))
 		return;
-	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), turns,
+	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), reversals,
 	             EVENT_LINK + POUND_EDGE_REVERSAL, j);
 }
 
@@ -279,7 +282,7 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 static void held_search(struct first *first, const struct chain *c, int j)
 {
 	struct power guard;
-	for (int n = 0; n <= ORDER_TOUCH; n++)
+	for (int n = 0; n <= ORDER_HIGH; n++)
 		guard.c[n] = vsplat(n + 2 <= c->order ? -c->overlaps[n][j] : 0);
 	// no more than the rounding of what it is made of: nothing, and the next derivative decides (chain_series.inl: link_settle)
 	if (fabs(c->overlaps[0][j]) <= POUND_UNDECIDED * held_terms(c, &c->link[j]))

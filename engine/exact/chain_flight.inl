@@ -80,11 +80,11 @@ static void mode_fill(struct flight *f, int i, double w, double c, double gain, 
 	f->w2.at[i] = w * w;
 	f->damping.at[i] = c;
 	f->gain.at[i] = gain;
-	f->still.at[i] = gain / (w * w);
-	f->lag.at[i] = gain * c / (w * w * w * w) / h;
+	f->quasi_static.at[i] = gain / (w * w);
+	f->quasi_static_lag.at[i] = gain * c / (w * w * w * w) / h;
 	f->drift_speed.at[i] = gain / (w * w) / h;
-	f->bend.at[i] = smaller(quartic, swing);
-	f->bend_rate.at[i] = smaller(quartic, swing) / w;
+	f->fourth_max.at[i] = smaller(quartic, swing);
+	f->fourth_max_rate.at[i] = smaller(quartic, swing) / w;
 }
 
 /* Damping of a building's modes, if they do not act on each other.
@@ -101,7 +101,7 @@ static bool modes_damping(const struct pound_chain_floor *floor, int n, const st
 		apart &= fabs(floor[i].dashpot - ratio * floor[i].story.stiffness) <=
 		         POUND_UNDECIDED * fabs(floor[i].dashpot);
 	for (int r = 0; r < n; r++)
-		c[r] = floor->drag + ratio * modes->w[r] * modes->w[r];
+		c[r] = floor->mass_damping + ratio * modes->w[r] * modes->w[r];
 	if (!floor->modal)
 		return apart;
 	for (int r = 0; r < n && apart; r++) {
@@ -246,10 +246,11 @@ LANE_INLINE void modes_move(struct flight *f, int wide, double ground, double ri
 	const vd a = vsplat(ground), d = vsplat(rise);
 	for (int i = 0; i < wide; i += W) {
 		const vd q = column_load(&f->q, i), v = column_load(&f->v, i);
-		const vd still = vfma(column_load(&f->lag, i), d, -(column_load(&f->still, i) * a));
-		const vd off = vabs(q - still), speed = vabs(vfma(column_load(&f->drift_speed, i), d, v));
+		const vd quasi_static =
+		    vfma(column_load(&f->quasi_static_lag, i), d, -(column_load(&f->quasi_static, i) * a));
+		const vd off = vabs(q - quasi_static), speed = vabs(vfma(column_load(&f->drift_speed, i), d, v));
 		column_store(&f->bound, i,
-		             vfma(column_load(&f->bend, i), off, column_load(&f->bend_rate, i) * speed));
+		             vfma(column_load(&f->fourth_max, i), off, column_load(&f->fourth_max_rate, i) * speed));
 		const vd q_ground = vfma(column_load(&f->ua, i), a, column_load(&f->ud, i) * d);
 		const vd v_ground = vfma(column_load(&f->va, i), a, column_load(&f->vd, i) * d);
 		column_store(&f->q_next, i,
@@ -261,7 +262,7 @@ LANE_INLINE void modes_move(struct flight *f, int wide, double ground, double ri
 
 /* drifts of a vector of stories and their rates, and what bounds their fourth derivatives */
 struct drifts {
-	vd d, v, bend;
+	vd d, v, fourth_max;
 };
 
 LANE_INLINE struct drifts drifts_sum(const struct flight *f, int i)
@@ -275,22 +276,22 @@ LANE_INLINE struct drifts drifts_sum(const struct flight *f, int i)
 		const vd s = lanes_load(shape), t = lanes_load(shape + ROW);
 		even.d = vfma(s, vsplat(f->q_next.at[r]), even.d);
 		even.v = vfma(s, vsplat(f->v_next.at[r]), even.v);
-		even.bend = vfma(vabs(s), vsplat(f->bound.at[r]), even.bend);
+		even.fourth_max = vfma(vabs(s), vsplat(f->bound.at[r]), even.fourth_max);
 		odd.d = vfma(t, vsplat(f->q_next.at[r + 1]), odd.d);
 		odd.v = vfma(t, vsplat(f->v_next.at[r + 1]), odd.v);
-		odd.bend = vfma(vabs(t), vsplat(f->bound.at[r + 1]), odd.bend);
+		odd.fourth_max = vfma(vabs(t), vsplat(f->bound.at[r + 1]), odd.fourth_max);
 	}
 	if (r < upto) {
 		const vd s = lanes_load(shape);
 		even.d = vfma(s, vsplat(f->q_next.at[r]), even.d);
 		even.v = vfma(s, vsplat(f->v_next.at[r]), even.v);
-		even.bend = vfma(vabs(s), vsplat(f->bound.at[r]), even.bend);
+		even.fourth_max = vfma(vabs(s), vsplat(f->bound.at[r]), even.fourth_max);
 	}
-	return (struct drifts){even.d + odd.d, even.v + odd.v, even.bend + odd.bend};
+	return (struct drifts){even.d + odd.d, even.v + odd.v, even.fourth_max + odd.fourth_max};
 }
 
 /* Displacements and velocities at the end of the sample, and sums of bounds, from drifts. */
-static void displacements_sum(const struct chain *c, struct flight_place *at, struct column *bend)
+static void displacements_sum(const struct chain *c, struct flight_place *at, struct column *fourth_max)
 {
 	double u = 0, w = 0, sum = 0;
 	for (int i = 0; i < c->n; i++) {
@@ -299,9 +300,9 @@ static void displacements_sum(const struct chain *c, struct flight_place *at, st
 		w = fma(inner, w, at->v.at[i]);
 		at->u.at[i] = u;
 		at->w.at[i] = w;
-		if (bend) {
-			sum = fma(inner, sum, bend->at[i]);
-			bend->at[i] = sum;
+		if (fourth_max) {
+			sum = fma(inner, sum, fourth_max->at[i]);
+			fourth_max->at[i] = sum;
 		}
 	}
 }
@@ -342,23 +343,23 @@ LANE_INLINE void accelerations_sum(struct chain *c, struct flight_place *at)
 		}
 		column_store(&at->a, i, a);
 		column_store(&at->jerk, i, jerk);
-		column_store(&f->bent_force, i, bound);
+		column_store(&f->fourth_force, i, bound);
 	}
 	double a = 0, jerk = 0, bound = 0;
 	for (int i = 0; i < c->n; i++) {
 		const double inner = c->inner.at[i];
 		a = fma(inner, a, at->a.at[i]);
 		jerk = fma(inner, jerk, at->jerk.at[i]);
-		bound = fma(inner, bound, f->bent_force.at[i]);
+		bound = fma(inner, bound, f->fourth_force.at[i]);
 		at->a.at[i] = a;
 		at->jerk.at[i] = jerk;
-		f->bent_force.at[i] = bound;
+		f->fourth_force.at[i] = bound;
 	}
 }
 
 /* a quantity of floors over a sample: values and rates at both ends, the bound of its fourth derivative, its largest values */
 struct sampled {
-	const struct column *u0, *v0, *u1, *v1, *bend, *top;
+	const struct column *u0, *v0, *u1, *v1, *fourth_max, *top;
 	struct column *reach, *top_next;
 };
 
@@ -370,7 +371,7 @@ LANE_INLINE unsigned sampled_peaks(const struct chain *c, const struct sampled *
 	for (int i = 0; i < c->wide; i += W) {
 		const struct enclosure enclosure = {column_load(x->u0, i), column_load(x->v0, i) * h,
 		                                    column_load(x->u1, i), column_load(x->v1, i) * h,
-		                                    column_load(x->bend, i)};
+		                                    column_load(x->fourth_max, i)};
 		const vd top = vmax(column_load(x->top, i), vabs(enclosure.u1)), reach = enclosure_reach(&enclosure);
 		const vm inside = vless(top, reach);
 		some |= vbits(inside);
@@ -399,14 +400,14 @@ static bool links_risk(struct chain *c, const struct flight_place *to)
 	const double third = c->task->time_step / 3;
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
-		double p, q, bend = 0;
+		double p, q, fourth_max = 0;
 		link_at(l, to, &p, &q);
 		f->overlap_next[j] = p;
 		f->rate_next[j] = q;
 		for (int k = 0; k < l->n_ends; k++)
-			bend = fma(fabs(l->weight[k]), f->bent.at[l->floor[k]], bend);
+			fourth_max = fma(fabs(l->weight[k]), f->fourth_drift.at[l->floor[k]], fourth_max);
 		const double b1 = fma(third, f->rate[j], f->overlap[j]), b2 = fma(-third, q, p);
-		if (!(fma(POUND_CUBIC_ERROR, bend, larger(larger(b1, b2), p)) < 0))
+		if (!(fma(POUND_CUBIC_ERROR, fourth_max, larger(larger(b1, b2), p)) < 0))
 			return true;
 	}
 	return false;
@@ -534,11 +535,11 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
 	for (int i = 0; i < c->wide; i += W) {
 		const struct drifts s = drifts_sum(f, i);
 		const struct enclosure enclosure = {column_load(&from->d, i), column_load(&from->v, i) * h, s.d,
-		                                    s.v * h, s.bend};
+		                                    s.v * h, s.fourth_max};
 		column_store(&to->d, i, s.d);
 		column_store(&to->v, i, s.v);
 		if (moving)
-			column_store(&f->bent, i, s.bend);
+			column_store(&f->fourth_drift, i, s.fourth_max);
 		if (edged)
 			risk |= may_cross(&enclosure, column_load(&c->high, i), one) |
 			        may_cross(&enclosure, column_load(&c->low, i), -one);
@@ -554,21 +555,21 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
 	if (vany(risk))
 		return false;
 	if (moving) {
-		displacements_sum(c, to, &f->bent);
+		displacements_sum(c, to, &f->fourth_drift);
 		if (c->n_links > 0 && links_risk(c, to))
 			return false;
 	}
 	unsigned peaks = vbits(inside);
 	if (displaced)
-		peaks |= sampled_peaks(c, &(struct sampled){&from->u, &from->w, &to->u, &to->w, &f->bent,
+		peaks |= sampled_peaks(c, &(struct sampled){&from->u, &from->w, &to->u, &to->w, &f->fourth_drift,
 		                                            &c->top_displacement, &f->displacement_reach,
 		                                            &f->top_displacement});
 	if (accelerated) {
 		modes_force(f, &f->q_next, &f->v_next, c->wide, a[0]);
 		accelerations_sum(c, to);
-		peaks |= sampled_peaks(c, &(struct sampled){&from->a, &from->jerk, &to->a, &to->jerk, &f->bent_force,
-		                                            &c->top_acceleration, &f->acceleration_reach,
-		                                            &f->top_acceleration});
+		peaks |= sampled_peaks(c, &(struct sampled){&from->a, &from->jerk, &to->a, &to->jerk,
+		                                            &f->fourth_force, &c->top_acceleration,
+		                                            &f->acceleration_reach, &f->top_acceleration});
 	}
 	if (peaks && !note_keep(c, from))
 		return false;

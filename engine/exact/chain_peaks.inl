@@ -6,15 +6,15 @@
  * Included by chain.inl alone, once per lane count, after chain_events.inl. */
 
 enum {
-	TURNS = 16,  /* of one motion in a step, at most looked for */
-	LEADING = 4, /* zeros that a rate may start with: touch.inl has three where a contact begins */
+	REVERSALS = 16, /* of one motion in a step, at most looked for */
+	LEADING = 4,    /* zeros that a rate may start with: touch.inl has three where a contact begins */
 };
 
 /* Bound of |u| inside a step, apart from its ends. */
 LANE_INLINE vd enclosure_reach(const struct enclosure *c)
 {
 	const vd third = vsplat(1.0 / 3), b1 = vfma(third, c->v0, c->u0), b2 = vfma(-third, c->v1, c->u1);
-	return vfma(vsplat(POUND_CUBIC_ERROR), c->bend, vmax(vabs(b1), vabs(b2)));
+	return vfma(vsplat(POUND_CUBIC_ERROR), c->fourth_max, vmax(vabs(b1), vabs(b2)));
 }
 
 /* A series as one of the time from t on. */
@@ -37,7 +37,7 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 {
 	const vd zero = vsplat(0), one = vsplat(1);
 	struct motion rate;
-	for (int turn = 0; turn < TURNS; turn++) {
+	for (int reversal = 0; reversal < REVERSALS; reversal++) {
 		struct motion m = {.u = *x};
 		motion_velocity(&rate.u, &m, order);
 		const vd *v = rate.u.c;
@@ -47,8 +47,8 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 			way = vselect(vequal(v[n], zero), way, v[n]);
 		const vd sign = vselect(vless(way, zero), one, -one);
 		struct search search = {.time = vmin(end, one), .event = vsplat(EVENT_NONE)};
-		struct guard turns = guard_of(&rate.u, &enclosure, zero, sign);
-		search_crossing(&turns, order, lanes, vsplat(EVENT_STORY), &search);
+		struct guard reversals = guard_of(&rate.u, &enclosure, zero, sign);
+		search_crossing(&reversals, order, lanes, vsplat(EVENT_STORY), &search);
 		lanes &= ~vequal(search.event, vsplat(EVENT_NONE));
 		if (!vany(lanes))
 			break;
@@ -117,7 +117,7 @@ static void accelerations_keep(struct chain *c, double time)
 	const vd per_h2 = vsplat(1 / (h * h)), zero = vsplat(0);
 	for (int i = 0; i < c->wide; i += W) {
 		struct power x;
-		for (int n = 0; n <= ORDER_TOUCH; n++)
+		for (int n = 0; n <= ORDER_HIGH; n++)
 			x.c[n] = n + 2 > c->order
 			             ? zero
 			             : vsplat((n + 1.0) * (n + 2.0)) * per_h2 * column_load(&c->displacements[n + 2], i);
@@ -130,7 +130,7 @@ static void accelerations_keep(struct chain *c, double time)
 /* Largest force that pushes, of a contact. */
 static void force_keep(struct chain *c, struct link *l, int j, double time)
 {
-	const double k = l->at.on.stiffness, lead = l->at.on.damping / c->dt;
+	const double k = l->at.on.stiffness, damping = l->at.on.damping / c->dt;
 	struct power x = {0};
 	for (int n = 0; n <= c->order; n++) {
 		if (c->warp.on || l->held) {
@@ -140,7 +140,7 @@ static void force_keep(struct chain *c, struct link *l, int j, double time)
 			continue;
 		}
 		const double next = n < c->order ? c->overlaps[n + 1][j] : 0;
-		x.c[n] = vsplat(fma(k, c->overlaps[n][j], lead * (n + 1) * next) + (n == 0 ? l->at.on.offset : 0));
+		x.c[n] = vsplat(fma(k, c->overlaps[n][j], damping * (n + 1) * next) + (n == 0 ? l->at.on.offset : 0));
 	}
 	double *most = &l->measures[POUND_LINK_FORCE_MAX], value[W];
 	const struct enclosure enclosure = enclosure_make(&x, c->order);

@@ -90,12 +90,13 @@ LANE_INLINE void floors_next(struct chain *c, int n, double ground, bool pushed,
 			a = a - column_load(&c->push, i);
 		const vd under =
 		    vfma(vbelow(below, a), column_load(&c->inner, i), column_load(&c->base, i) * vsplat(ground));
-		const vd drag = column_load(&c->drag_step, i) * vsplat(n + 1);
+		const vd damping = column_load(&c->mass_damping_step, i) * vsplat(n + 1);
 		column_store(&c->drifts[n + 2], i,
-		             (a - vfma(drag, column_load(&c->drifts[n + 1], i), under)) * share);
+		             (a - vfma(damping, column_load(&c->drifts[n + 1], i), under)) * share);
 		if (moving)
 			column_store(&c->displacements[n + 2], i,
-			             (a - vfma(drag, column_load(&c->displacements[n + 1], i), vsplat(ground))) * share);
+			             (a - vfma(damping, column_load(&c->displacements[n + 1], i), vsplat(ground))) *
+			                 share);
 		below = a;
 		s = next;
 	}
@@ -113,7 +114,7 @@ static double floor_terms(const struct chain *c, int i, int n)
 		         fabs(c->dash.at[k] * (n + 1) * c->drifts[n + 1].at[k]) + (n == 0 ? fabs(c->force.at[k]) : 0);
 	}
 	return terms * c->inverse_mass.at[i] +
-	       fabs(c->drag_step.at[i] * (n + 1) * c->displacements[n + 1].at[i]) + fabs(c->push.at[i]);
+	       fabs(c->mass_damping_step.at[i] * (n + 1) * c->displacements[n + 1].at[i]) + fabs(c->push.at[i]);
 }
 
 /* Floors that touch without overlap, at one velocity, part or press by the difference of their accelerations.  Where that is
@@ -155,7 +156,7 @@ static void series_start(struct chain *c)
 		column_store(&c->spring, i, column_load(&c->stiffness, i) * h2);
 		column_store(&c->dash, i, column_load(&c->dashpot, i) * h);
 		column_store(&c->force, i, column_load(&c->offset, i) * h2);
-		column_store(&c->drag_step, i, column_load(&c->drag, i) * h);
+		column_store(&c->mass_damping_step, i, column_load(&c->mass_damping, i) * h);
 		column_store(&c->drifts[0], i, column_load(&c->d, i));
 		column_store(&c->drifts[1], i, column_load(&c->v, i) * h);
 		column_store(&c->displacements[0], i, column_load(&c->u, i));
@@ -217,7 +218,7 @@ LANE_INLINE void enclosures_make(const struct chain *c, const struct column seri
                                  struct enclosures *to)
 {
 	for (int i = 0; i < c->wide; i += W) {
-		vd u = column_load(&series[0], i), v = vsplat(0), bend = vsplat(0);
+		vd u = column_load(&series[0], i), v = vsplat(0), fourth_max = vsplat(0);
 		column_store(&to->u0, i, u);
 		column_store(&to->v0, i, column_load(&series[1], i));
 		for (int n = 1; n < 4; n++) {
@@ -229,25 +230,25 @@ LANE_INLINE void enclosures_make(const struct chain *c, const struct column seri
 			const vd x = column_load(&series[n], i);
 			u = u + x;
 			v = vfma(vsplat(n), x, v);
-			bend = vfma(vsplat(fourth(n)), vabs(x), bend);
+			fourth_max = vfma(vsplat(fourth(n)), vabs(x), fourth_max);
 		}
 		column_store(&to->u1, i, u);
 		column_store(&to->v1, i, v);
-		column_store(&to->bend, i, bend);
+		column_store(&to->fourth_max, i, fourth_max);
 	}
 }
 
 /* What a series does over a step. */
 static struct enclosure enclosure_make(const struct power *x, int order)
 {
-	vd u = x->c[0], v = vsplat(0), bend = vsplat(0);
+	vd u = x->c[0], v = vsplat(0), fourth_max = vsplat(0);
 	for (int n = 1; n <= order; n++) {
 		u = u + x->c[n];
 		v = vfma(vsplat(n), x->c[n], v);
 		if (n >= 4)
-			bend = vfma(vsplat(fourth(n)), vabs(x->c[n]), bend);
+			fourth_max = vfma(vsplat(fourth(n)), vabs(x->c[n]), fourth_max);
 	}
-	return (struct enclosure){x->c[0], x->c[1], u, v, bend};
+	return (struct enclosure){x->c[0], x->c[1], u, v, fourth_max};
 }
 
 /* Makes the series of a step of c->dt. */
@@ -273,7 +274,7 @@ static void series_chain(struct chain *c)
 /* The series of a vector of floors; 0 beyond their order. */
 LANE_INLINE void power_load(struct power *x, int order, const struct column series[TERMS], int i)
 {
-	for (int n = 0; n <= ORDER_TOUCH; n++)
+	for (int n = 0; n <= ORDER_HIGH; n++)
 		x->c[n] = n <= order ? column_load(&series[n], i) : vsplat(0);
 }
 
@@ -282,11 +283,11 @@ LANE_INLINE void motion_load(struct motion *m, const struct chain *c, const stru
 {
 	power_load(&m->u, c->order, series, i);
 	m->end = (struct place){column_load(&enclosure->u1, i), column_load(&enclosure->v1, i)};
-	m->bend = column_load(&enclosure->bend, i);
+	m->fourth_max = column_load(&enclosure->fourth_max, i);
 }
 
 LANE_INLINE struct enclosure enclosure_load(const struct enclosures *x, int i)
 {
 	return (struct enclosure){column_load(&x->u0, i), column_load(&x->v0, i), column_load(&x->u1, i),
-	                          column_load(&x->v1, i), column_load(&x->bend, i)};
+	                          column_load(&x->v1, i), column_load(&x->fourth_max, i)};
 }

@@ -19,7 +19,7 @@
 enum {
 	LONG = POUND_CHAIN_FLOORS + ROW, /* floors with room for whole vectors */
 	LINKS = POUND_CHAIN_LINKS + ROW,
-	TERMS = ORDER_TOUCH + 1,
+	TERMS = ORDER_HIGH + 1,
 	ENDS = 4, /* floors that a link joins */
 };
 
@@ -40,7 +40,7 @@ struct column {
 
 /* a quantity of every floor over a step: value and rate times the step at both ends, and the bound of its fourth derivative */
 struct enclosures {
-	struct column u0, v0, u1, v1, bend;
+	struct column u0, v0, u1, v1, fourth_max;
 };
 
 /* one contact, or what may become one */
@@ -99,10 +99,11 @@ struct flight {
 	    row[LONG / ROW]; /* modes of a vector of floors, and their rows of shapes */
 	// maps over a sample: of q and v, for q, v, the ground's acceleration and its growth
 	struct column uu, uv, ua, ud, vu, vv, va, vd;
-	struct column per_w2, still, lag, drift_speed, bend, bend_rate; /* mode_fill */
+	struct column per_w2, quasi_static, quasi_static_lag, drift_speed, fourth_max,
+	    fourth_max_rate; /* mode_fill */
 	struct column q, v, q_next, v_next, bound;
 	struct column w2, damping, gain, force, force_rate, force_bound; /* of a mode, and -(c q' + w^2 q) */
-	struct column shift, elastic[2], bent, bent_force, top, top_displacement, top_acceleration;
+	struct column shift, elastic[2], fourth_drift, fourth_force, top, top_displacement, top_acceleration;
 	struct column reach, displacement_reach,
 	    acceleration_reach; /* bounds inside the sample, where they exceed what is known; else 0 */
 	struct flight_place at[2];
@@ -141,14 +142,15 @@ struct chain {
 	struct pound_chain_result *result;
 	int n, wide; /* floors, and as many as whole vectors have */
 	int n_links, wide_links;
-	bool edged;                    /* a law has more than one branch */
-	bool held;                     /* a rigid contact holds, in the step in hand */
-	bool modal;                    /* a building has a damping matrix */
-	bool moving;                   /* displacements are looked at */
-	double rate_apart, drag_apart; /* fastest that floors do without contact, and the damping of that [1/s] */
+	bool edged;  /* a law has more than one branch */
+	bool held;   /* a rigid contact holds, in the step in hand */
+	bool modal;  /* a building has a damping matrix */
+	bool moving; /* displacements are looked at */
+	double rate_separated,
+	    damping_separated; /* fastest that floors do without contact, and the damping of that [1/s] */
 	// what does not change: 1/m, the same where there is a floor above, whether there is one below, whether there is not,
 	// the initial stiffness and 1 over it
-	struct column inverse_mass, inverse_above, inner, base, drag, dashpot, initial, pliancy;
+	struct column inverse_mass, inverse_above, inner, base, mass_damping, dashpot, initial, pliancy;
 	// branches
 	struct column stiffness, offset, low, high, direction;
 	struct pound_law_state laws[LONG];
@@ -164,8 +166,8 @@ struct chain {
 	double dt;            /* of the step [s] */
 	int order;            /* of its series */
 	int steps;            /* in this interval */
-	// the step: coefficients of springs, dashpots, offsets and drag, scaled to it; forces of contacts over masses
-	struct column spring, dash, force, drag_step, push;
+	// the step: coefficients of springs, dashpots, offsets and damping by mass, scaled to it; forces of contacts over masses
+	struct column spring, dash, force, mass_damping_step, push;
 	struct column u, w; /* displacements and velocities at its start */
 	struct enclosures drift, displacement, overlap;
 	struct column drifts[TERMS], displacements[TERMS];
@@ -214,12 +216,12 @@ static double link_sum(const struct link *l, const double *column)
  *
  * A rate r has r^2 + c' r + k' = 0 with c' <= c and k' <= w^2: it swings with at most w, or dies away with at most c.  Where damping
  * is near critical, derivative n of a free motion is up to n times as large: steps are shorter by the 16th root of that, as
- * those of the pair (next_step.inl: touch_reach).
+ * those of the pair (next_step.inl: contact_reach).
  */
 static double rate_of(double w, double c)
 {
 	const double zeta = w > 0 ? 0.5 * c / w : 0;
-	double share = larger(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
+	double share = larger(1 - zeta * zeta, 1.0 / (ORDER_HIGH * ORDER_HIGH));
 	for (int halving = 0; halving < 5; halving++)
 		share = sqrt(share);
 	return larger(w / share, c);
@@ -274,8 +276,9 @@ static void chain_rates(struct chain *c)
 		for (int i = 0; i < n; i++)
 			if (floor[i].modal)
 				modal = larger(modal, modal_bound(&floor[i], n));
-		c->rate_apart = larger(c->rate_apart, sqrt(building_bound(c, &c->initial, first, n)));
-		c->drag_apart = larger(c->drag_apart, building_bound(c, &c->dashpot, first, n) + floor->drag + modal);
+		c->rate_separated = larger(c->rate_separated, sqrt(building_bound(c, &c->initial, first, n)));
+		c->damping_separated = larger(c->damping_separated,
+		                              building_bound(c, &c->dashpot, first, n) + floor->mass_damping + modal);
 	}
 }
 
@@ -294,13 +297,13 @@ static void floor_start(struct chain *c, int i)
 {
 	const struct pound_chain_task *task = c->task;
 	const struct pound_chain_floor *floor = &task->floors[i];
-	assert(floor->base || (i > 0 && floor->drag == floor[-1].drag));
+	assert(floor->base || (i > 0 && floor->mass_damping == floor[-1].mass_damping));
 	const bool above = i + 1 < task->n_floors && !floor[1].base;
 	c->inverse_mass.at[i] = 1 / floor->mass;
 	c->inverse_above.at[i] = above ? 1 / floor->mass : 0;
 	c->inner.at[i] = floor->base ? 0 : 1;
 	c->base.at[i] = floor->base ? 1 : 0;
-	c->drag.at[i] = floor->drag;
+	c->mass_damping.at[i] = floor->mass_damping;
 	c->dashpot.at[i] = floor->dashpot;
 	c->initial.at[i] = floor->story.stiffness;
 	c->pliancy.at[i] = 1 / floor->story.stiffness;

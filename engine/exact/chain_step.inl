@@ -27,8 +27,9 @@ static double reach_touching(struct chain *c)
 		spring = fmax(spring, sum[0]);
 		dash = fmax(dash, sum[1]);
 	}
-	const double rate = rate_of(sqrt(c->rate_apart * c->rate_apart + spring), c->drag_apart + dash);
-	return rate > 0 ? POUND_TERMS_REACH[ORDER_TOUCH] / rate : DBL_MAX;
+	const double rate =
+	    rate_of(sqrt(c->rate_separated * c->rate_separated + spring), c->damping_separated + dash);
+	return rate > 0 ? POUND_TERMS_REACH[ORDER_HIGH] / rate : DBL_MAX;
 }
 
 /* The interval that ends at a sample. */
@@ -59,9 +60,8 @@ static void step_choose(struct chain *c)
 	// derivatives by the share of a step that is a power of two have the same roundings in contact and apart
 	if (level)
 		c->dt = ldexp(1, ilogb(c->dt));
-	c->order = c->dt * POUND_TERMS_REACH[ORDER_TOUCH] <= c->reach * POUND_TERMS_REACH[ORDER_APART]
-	               ? ORDER_APART
-	               : ORDER_TOUCH;
+	c->order = c->dt * POUND_TERMS_REACH[ORDER_HIGH] <= c->reach * POUND_TERMS_REACH[ORDER_LOW] ? ORDER_LOW
+	                                                                                            : ORDER_HIGH;
 }
 
 /* ---- contacts ---- */
@@ -69,7 +69,7 @@ static void step_choose(struct chain *c)
 /* What a side of a link moves by: magnitudes, of which its velocity has the roundings. */
 static struct pound_counts_body side_of(const struct chain *c, const struct link *l, int side)
 {
-	struct pound_counts_body b = {.pull = c->ground};
+	struct pound_counts_body b = {.ground = c->ground};
 	double damping = DBL_MAX;
 	for (int k = 0; k < l->n_ends; k++) {
 		const int i = l->floor[k];
@@ -80,7 +80,7 @@ static struct pound_counts_body side_of(const struct chain *c, const struct link
 		b.offset += weight * m * fabs(fma(c->stiffness.at[i], c->d.at[i], c->offset.at[i]));
 		if (c->inverse_above.at[i] > 0)
 			b.offset += weight * m * fabs(fma(c->stiffness.at[i + 1], c->d.at[i + 1], c->offset.at[i + 1]));
-		damping = fmin(damping, c->drag.at[i] + c->dashpot.at[i] * m);
+		damping = fmin(damping, c->mass_damping.at[i] + c->dashpot.at[i] * m);
 	}
 	b.damping = damping == DBL_MAX ? 0 : damping;
 	return b;

@@ -40,8 +40,9 @@ static void split_fill(double split[N], const struct simulation *sim)
 	split[SPLIT_STIFFNESS] = dk;
 	split[SPLIT_BASE] = share;
 	split[SPLIT_OMEGA] = sqrt(stiffness);
-	split[SPLIT_DRAG] = (x->both * x->contact_damping + x->body[o].damping - dc * share) / split[SPLIT_OMEGA];
-	split[SPLIT_LEAD] = sqrt(1 + x->release * x->release * stiffness);
+	split[SPLIT_TWO_ZETA] =
+	    (x->both * x->contact_damping + x->body[o].damping - dc * share) / split[SPLIT_OMEGA];
+	split[SPLIT_PHASE_LEAD] = sqrt(1 + x->release * x->release * stiffness);
 	split[SPLIT_SUBSTEPS] = 1;
 }
 
@@ -73,12 +74,12 @@ static void rates_add(double rates[POUND_GAUSS][2][N], int n, int column, vd w, 
 static void form_off(double row[N], const double split[N])
 {
 	double yield = yield_of(split), slack = row[2] / (1 + yield * split[SPLIT_STIFFNESS] * split[SPLIT_BASE]);
-	double pull = slack * yield, rate = pull * split[SPLIT_DAMPING];
-	row[0] += pull * split[SPLIT_STIFFNESS];
+	double closing = slack * yield, rate = closing * split[SPLIT_DAMPING];
+	row[0] += closing * split[SPLIT_STIFFNESS];
 	row[1] += rate;
 	row[2] = slack;
 	row[3] -= rate * split[SPLIT_BASE];
-	row[5] += pull;
+	row[5] += closing;
 }
 
 /* What the dashpots of both bodies and of the contact take over a substep, per mass of the left body, as a quadratic form of
@@ -140,13 +141,14 @@ static void substep_fill(struct pound_contact_map *map, struct pound_contact_wor
 		vd u = lanes_load(&start[0][j]), w = lanes_load(&start[1][j]);
 		vd p = lanes_load(&start[2][j]), z = lanes_load(&start[3][j]);
 		for (int n = 0; n < POUND_MAP_ORDERS; n++) {
-			double share = 1.0 / (n + 1), bend = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
+			double share = 1.0 / (n + 1),
+			       fourth_factor = POUND_CUBIC_ERROR * n * (n - 1.0) * (n - 2.0) * (n - 3.0);
 			const vd terms[4] = {u, w, p, z};
 			for (int r = 0; r < 4 && n > 0; r++)
 				sum[r] = sum[r] + terms[r];
 			area = vfma(p, vsplat(share), area);
 			mean = vfma(u, vsplat(share), mean);
-			error = vfma(vsplat(bend), vmax(vabs(u), vabs(p)), error);
+			error = vfma(vsplat(fourth_factor), vmax(vabs(u), vabs(p)), error);
 			if (work)
 				rates_add(rates, n, j, w, z);
 			vd w1 = -vfma(vsplat(kb * share), u, vsplat(push * K * share) * p);
@@ -215,8 +217,8 @@ static void inputs_next(double next[N][N], const double row[][N], bool off)
 	for (int j = 0; j < N; j++) {
 		double w = next[0][j] - split[SPLIT_BASE] * next[2][j],
 		       rate = next[1][j] - split[SPLIT_BASE] * next[3][j];
-		double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + next[5][j];
-		next[2][j] -= yield_of(split) * pull;
+		double closing = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + next[5][j];
+		next[2][j] -= yield_of(split) * closing;
 	}
 }
 
@@ -290,16 +292,17 @@ static void doubled_bounds(struct pound_contact_map *map, const struct simulatio
 	const double dc = split[SPLIT_DAMPING], dk = split[SPLIT_STIFFNESS], yield = yield_of(split);
 	const double cw = x->body[b].damping + share * dc, kw = x->body[b].stiffness + share * dk;
 	const double kp = fabs(share * (x->body[o].stiffness - kw)), kq = fabs(share * (x->body[o].damping - cw));
-	const double jerk = kp / omega + kq * (1 + split[SPLIT_DRAG]), jounce = kp * (1 + split[SPLIT_DRAG]);
+	const double jerk = kp / omega + kq * (1 + split[SPLIT_TWO_ZETA]),
+	             jounce = kp * (1 + split[SPLIT_TWO_ZETA]);
 	const double quartic = h * h * h * h * POUND_CUBIC_ERROR, rounding = 4 * DBL_EPSILON;
 	const double ahead = 1 / (1 - h * (cw + kw * h));
-	split[SPLIT_LAG] = 4 * kq * h;
+	split[SPLIT_RESIDUAL] = 4 * kq * h;
 	// of the magnitudes of w, w', g, w1' - w0', Ab, Ap, Db, Dp
 	const double a0[N] = {[1] = kw * h, 2 * (2 * kp * yield + kq / omega), 1 / h, [6] = 1, fabs(share)};
 	const double grown[N] = {[6] = 1 / h, [7] = fabs(share) / h};
 	for (int j = 0; j < N; j++)
-		map->pull[j] = dc * (map->row[CONTACT_V][j] - share * map->row[CONTACT_Q][j]) +
-		               dk * (map->row[CONTACT_U][j] - share * map->row[CONTACT_P][j]) + (j == 7);
+		map->closing[j] = dc * (map->row[CONTACT_V][j] - share * map->row[CONTACT_Q][j]) +
+		                  dk * (map->row[CONTACT_U][j] - share * map->row[CONTACT_P][j]) + (j == 7);
 	// twice for the difference of rates, which is one of large numbers
 	const double rounded[N] = {2 * fabs(dk), 2 * fabs(dc), 1, 0, 0, 1};
 	const double lost[N] = {2 * kw * h * h, h, 0, 0, h * h, 2 * fabs(share) * h * h};
@@ -376,7 +379,7 @@ static double length_above(double x, double y)
 
 /* How a contact swings at the start of a doubled map: W p', W^2 p - g, and g. */
 struct swing {
-	double hurry, off, pull;
+	double rate, off, closing;
 };
 
 /* Whether bodies in contact are bound to stay pressed over a doubled map: see doubled_bounds.
@@ -387,17 +390,20 @@ struct swing {
 static bool stays_in_contact(const struct pound_contact_map *map, const double x[N], double bound[N],
                              const struct swing *start, double h)
 {
-	const double pull = start->pull;
+	const double closing = start->closing;
 	const double *split = map->row[CONTACT_SPLIT];
-	double change = row_at(map->pull, x), pull1 = pull + change, drift = change / (split[SPLIT_OMEGA] * h);
-	bound[2] = fabs(pull) + fabs(pull1);
+	double change = row_at(map->closing, x), closing1 = closing + change,
+	       drift = change / (split[SPLIT_OMEGA] * h);
+	bound[2] = fabs(closing) + fabs(closing1);
 	bound[3] = fabs(row_at(map->row[CONTACT_V], x) - split[SPLIT_BASE] * row_at(map->row[CONTACT_Q], x));
 	bound[6] = fabs(x[6]);
 	bound[7] = fabs(x[7]);
-	double bend = row_at(map->row[DOUBLED_CURVATURE], bound);
-	double swing = length_above(start->hurry - drift, start->off + split[SPLIT_DRAG] * drift) + 0.5 * bend;
-	double lag = fmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * fabs(drift);
-	return split[SPLIT_LEAD] * swing + lag + 0.125 * bend < (change < 0 ? pull1 : pull);
+	double curvature = row_at(map->row[DOUBLED_CURVATURE], bound);
+	double swing =
+	    length_above(start->rate - drift, start->off + split[SPLIT_TWO_ZETA] * drift) + 0.5 * curvature;
+	double phase_lag = fmax(split[SPLIT_TWO_ZETA], split[SPLIT_PHASE_LEAD]) * fabs(drift);
+	return split[SPLIT_PHASE_LEAD] * swing + phase_lag + 0.125 * curvature <
+	       (change < 0 ? closing1 : closing);
 }
 
 /* The longest doubled map that bodies in contact are bound to stay pressed over; NULL: there is none. */
@@ -414,11 +420,12 @@ static const struct pound_contact_map *doubled_longest(struct simulation *sim,
 	                x->gap_drive * x->ground + x->gap_force};
 	double w = in[0] - split[SPLIT_BASE] * x->p, rate = in[1] - split[SPLIT_BASE] * x->q;
 	double bound[N] = {[0] = fabs(w), [1] = fabs(rate), [4] = fabs(in[4]), [5] = fabs(in[5])};
-	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
-	const struct swing start = {.hurry = omega * x->q, .off = omega * omega * x->p - pull, .pull = pull};
+	double closing = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
+	const struct swing start = {
+	    .rate = omega * x->q, .off = omega * omega * x->p - closing, .closing = closing};
 	// without overlap and rate bodies alike stay so, over any doubled map
 	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
-	if (!still && !(split[SPLIT_LEAD] * length_above(start.hurry, start.off) < pull))
+	if (!still && !(split[SPLIT_PHASE_LEAD] * length_above(start.rate, start.off) < closing))
 		return NULL;
 	struct pound_doubled_maps *doubled = maps->doubled;
 	if (!maps->has_doubled)
@@ -550,8 +557,8 @@ static void contact_work(struct simulation *sim, const double x[N], const double
 	double mean = row_at(work->mean_base, x), mean_p = row_at(work->mean_overlap, x);
 	const double *split = map->row[CONTACT_SPLIT];
 	double w = x[0] - split[SPLIT_BASE] * x[2], rate = x[1] - split[SPLIT_BASE] * x[3];
-	double pull = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
-	const double off[N] = {x[0], x[1], x[2] - yield_of(split) * pull, x[3], x[4], x[5], x[6], x[7]};
+	double closing = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + x[5];
+	const double off[N] = {x[0], x[1], x[2] - yield_of(split) * closing, x[3], x[4], x[5], x[6], x[7]};
 	double u0[2], u1[2], v1[2], means[2];
 	u0[b] = x[0], u1[b] = end[0], v1[b] = end[1], means[b] = mean;
 	u0[o] = x[0] - r->side * (r->gap + x[2]);

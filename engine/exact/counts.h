@@ -22,7 +22,7 @@ struct pound_counts_body {
 	double u, v;              /* [m], [m/s] */
 	double stiffness, offset; /* of the branch it is on, per mass [1/s2], [m/s2] */
 	double damping;           /* c/m [1/s] */
-	double pull;              /* what the ground gives it [m/s2] */
+	double ground;            /* what the ground gives it [m/s2] */
 };
 
 struct pound_counts {
@@ -41,7 +41,7 @@ static inline double pound_counts_speed(const struct pound_counts_body *b, doubl
 {
 	const double memory = b->damping * time > 2 ? 2 / b->damping : time;
 	const double terms =
-	    fabs(b->stiffness * b->u) + fabs(b->offset) + b->damping * fabs(b->v) + fabs(b->pull);
+	    fabs(b->stiffness * b->u) + fabs(b->offset) + b->damping * fabs(b->v) + fabs(b->ground);
 	return fabs(b->v) + terms * memory;
 }
 

@@ -21,8 +21,8 @@
 #include <string.h>
 
 enum {
-	ORDER_APART = 13, /* of the series of a displacement while apart */
-	ORDER_TOUCH = 17, /* while touching */
+	ORDER_LOW = 13,  /* of the series of a displacement while apart */
+	ORDER_HIGH = 17, /* while touching */
 };
 
 // clang-format off
@@ -403,13 +403,13 @@ LANE_INLINE void contact_batch(struct work *work, const struct batch *b, enum po
 			simulation_observe(sim, next - 1);
 	}
 	unsigned stays = vbits(going), ends = vbits(ended), leaving = edged ? batch_leaving(b, decided) : 0;
-	unsigned turns = batch_lanes(b) & ~stays & ~ends & ~leaving;
+	unsigned changes = batch_lanes(b) & ~stays & ~ends & ~leaving;
 	while (leaving)
 		member_leave(work, b->sim[lane_next(&leaving)], stage);
 	while (stays)
 		push(&work->queues[stage], b->sim[lane_next(&stays)]);
-	while (turns) {
-		int l = lane_next(&turns);
+	while (changes) {
+		int l = lane_next(&changes);
 		struct simulation *sim = b->sim[l];
 		send(work, sim, simulation_after_contact(sim, stage, vbits(refused) >> l & 1, vbits(gone) >> l & 1));
 	}
@@ -490,19 +490,19 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 	if (accounted)
 		lanes_fill(g, b, ROW_WORK);
 	vd events = event_step(g, &e, accounted);
-	vm turns = vmask(0);
+	vm changes = vmask(0);
 	if (e.scope.paired)
-		turns = event_follow(g, &e, events);
+		changes = event_follow(g, &e, events);
 	double event[W], left[W], speed[W];
 	lanes_store(event, events);
 	lanes_store(left, vfma(g->substeps, g->substep, g->remainder));
 	lanes_store(speed, g->q);
 	// the work done is kept of whole steps only, and an event is an instant
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_OBSERVED))
-		turns &= ~batch_trait(b, TRAIT_ACCOUNTED | TRAIT_OBSERVED);
-	if (vany(turns)) {
+		changes &= ~batch_trait(b, TRAIT_ACCOUNTED | TRAIT_OBSERVED);
+	if (vany(changes)) {
 		e.scope.touching = !e.scope.touching;
-		event_finish(g, &e, turns);
+		event_finish(g, &e, changes);
 	}
 	const unsigned leaving = e.scope.edged ? batch_leaving(b, e.decided) : 0;
 	batch_forget(b, leaving, &work->filler);

@@ -26,7 +26,7 @@ static const double REACH_MAP = 2, REACH_MAP_SHORT = 0.8;
 struct map_series {
 	double u, w;
 	double psi, rate, once, twice;
-	double bend_u, bend_v, bend_a, bend_d;
+	double fourth_u, fourth_v, fourth_a, fourth_d;
 };
 
 /* Given    ch, kh  c h and k h^2 */
@@ -37,10 +37,10 @@ LANE_INLINE void map_order(struct map_series *s, double ch, double kh, int n)
 	s->rate += s->w;
 	s->once = fma(s->u, share, s->once);
 	s->twice = fma(s->u, share * (1.0 / (n + 2)), s->twice);
-	s->bend_u = fma(four, fabs(fma(ch, s->u, s->w)), s->bend_u);
-	s->bend_v = fma(four, fabs(s->u), s->bend_v);
-	s->bend_a = fma(n * (n - 1.0) * (n - 2.0), fabs(s->u), s->bend_a);
-	s->bend_d = fma(n * (n - 1.0), fabs(s->u), s->bend_d);
+	s->fourth_u = fma(four, fabs(fma(ch, s->u, s->w)), s->fourth_u);
+	s->fourth_v = fma(four, fabs(s->u), s->fourth_v);
+	s->fourth_a = fma(n * (n - 1.0) * (n - 2.0), fabs(s->u), s->fourth_a);
+	s->fourth_d = fma(n * (n - 1.0), fabs(s->u), s->fourth_d);
 	const double w = fma(-(ch * share), s->w, -(kh * share) * s->u);
 	s->u = s->w * share;
 	s->w = w;
@@ -69,9 +69,9 @@ static void map_fill(struct pound_map *map, double k, double c, double h)
 	map->ua = -h * s.once;
 	map->ud = -h * s.twice;
 	map->va = -s.once;
-	map->eu = quartic / h * s.bend_u + 3 * rounding;
-	map->ev = quartic * s.bend_v + 2 * rounding * h;
-	map->ef = quartic * h * fmax(s.bend_a, s.bend_d) + rounding * h * h;
+	map->eu = quartic / h * s.fourth_u + 3 * rounding;
+	map->ev = quartic * s.fourth_v + 2 * rounding * h;
+	map->ef = quartic * h * fmax(s.fourth_a, s.fourth_d) + rounding * h * h;
 }
 
 /* a body's motion over a sample or substep: its end, the inner control points of the cubic, and the bound of its error */
@@ -128,13 +128,13 @@ LANE_INLINE struct place free_move(const struct free_map *f, struct place from, 
 /* What is known of the way there.
  *
  * Given    f      its map
- *          pull   bound of |ground| + |next - ground|
+ *          forcing  bound of |ground| + |next - ground|
  *          third  of the sample
  */
-LANE_INLINE struct cubic cubic_of(const struct free_map *f, struct place from, struct place to, vd pull,
+LANE_INLINE struct cubic cubic_of(const struct free_map *f, struct place from, struct place to, vd forcing,
                                   vd third)
 {
-	vd error = vfma(f->error_ground, pull, f->error_force);
+	vd error = vfma(f->error_ground, forcing, f->error_force);
 	return (struct cubic){.u = to.u,
 	                      .v = to.v,
 	                      .b1 = vfma(third, from.v, from.u),
@@ -185,10 +185,10 @@ LANE_INLINE vm cubic_edges(vd v, const struct cubic *f, vd third, const struct e
 	vd high = vmax(f->b1, f->b2), low = vmin(f->b1, f->b2), zero = vsplat(0);
 	vm risk = vless(x->high, vmax(high, f->u) + f->error);
 	risk |= vless(vmin(low, f->u) - f->error, x->low);
-	vm turns = ~vequal(x->direction, zero);
-	if (!vany(turns))
+	vm reversals = ~vequal(x->direction, zero);
+	if (!vany(reversals))
 		return risk;
-	return risk | (vless(cubic_slowest(v, f, third, x->direction), zero) & turns);
+	return risk | (vless(cubic_slowest(v, f, third, x->direction), zero) & reversals);
 }
 
 LANE_INLINE struct edges edges_of(const struct lanes *g, int i)
@@ -221,11 +221,11 @@ LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const s
 {
 	const int bodies = scope->paired ? 2 : 1, watched = scope->paired && scope->right ? 2 : 1;
 	vd third = g->body[0].step_gap * vsplat(1.0 / 3);
-	vd pull = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
+	vd forcing = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
 	struct cubic f[2];
 	vm edge = vmask(0);
 	for (int i = 0; i < bodies; i++) {
-		f[i] = cubic_of(&maps[i], s->at[i][r], s->at[i][r + 1], pull, third);
+		f[i] = cubic_of(&maps[i], s->at[i][r], s->at[i][r + 1], forcing, third);
 		const struct edges edges = edges_of(g, i);
 		if (scope->edged)
 			edge |= cubic_edges(s->at[i][r].v, &f[i], third, &edges);
@@ -529,35 +529,36 @@ LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s,
 		gone[j] = form_at(&s->moved[CONTACT_U + j], x, s->at.ground, rise), end[j] = x[j] + gone[j];
 	vd w = vfma(-split[SPLIT_BASE], x[2], x[0]), rate = vfma(-split[SPLIT_BASE], x[3], x[1]);
 	vd w1 = vfma(-split[SPLIT_BASE], end[2], end[0]), rate1 = vfma(-split[SPLIT_BASE], end[3], end[1]);
-	vd pull = vfma(split[SPLIT_DAMPING], rate, vfma(split[SPLIT_STIFFNESS], w, x[5]));
-	vd pull1 = vfma(split[SPLIT_DAMPING], rate1, vfma(split[SPLIT_STIFFNESS], w1, x[5] + x[7]));
+	vd closing = vfma(split[SPLIT_DAMPING], rate, vfma(split[SPLIT_STIFFNESS], w, x[5]));
+	vd closing1 = vfma(split[SPLIT_DAMPING], rate1, vfma(split[SPLIT_STIFFNESS], w1, x[5] + x[7]));
 	bound[0] = vabs(w);
 	bound[1] = vabs(rate);
-	bound[2] = vabs(pull) + vabs(pull1);
+	bound[2] = vabs(closing) + vabs(closing1);
 	bound[3] = vabs(vfma(-split[SPLIT_BASE], gone[3], gone[1]));
 	for (int j = 4; j < POUND_CONTACT_INPUTS; j++)
 		bound[j] = vabs(x[j]);
 	const vd omega = split[SPLIT_OMEGA], per_omega = one / omega, yield = per_omega * per_omega;
-	const vd change = pull1 - pull, drift = change * (per_omega / (g->substep * substeps));
+	const vd change = closing1 - closing, drift = change * (per_omega / (g->substep * substeps));
 	vd a = vabs(vfma(omega, x[3], -drift));
-	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_DRAG], drift, -pull)));
+	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_TWO_ZETA], drift, -closing)));
 	// the root of both squares, in their scale, raised by no more than its rounding: a coarser bound would stay above the
 	// largest displacement of a contact that swings for ever, and refuse every doubled map
 	vd larger = vmax(vmax(a, c), vsplat(DBL_MIN)), lesser = vmin(a, c) / larger;
 	vd swung = vsplat(1 + 4 * DBL_EPSILON) * larger * vsqrt(vfma(lesser, lesser, one));
-	vd grown = vabs(change) + vabs(drift), bend, swing;
+	vd grown = vabs(change) + vabs(drift), curvature, swing;
 	// once by all that presses, and then by what of it swings: see doubled_bounds in contact_map.inl
 	for (int round = 0; round < 2; round++) {
-		bend = contact_row(s->doubled[DOUBLED_CURVATURE], bound);
-		swing = vfma(vsplat(0.5), bend, swung);
+		curvature = contact_row(s->doubled[DOUBLED_CURVATURE], bound);
+		swing = vfma(vsplat(0.5), curvature, swung);
 		bound[2] = vmin(bound[2], swing + grown);
 	}
-	vd lag = vmax(split[SPLIT_DRAG], split[SPLIT_LEAD]) * vabs(drift), beside = vsplat(0.125) * bend;
-	vm risk = ~vless(vfma(split[SPLIT_LEAD], swing, lag + beside), vmin(pull, pull1));
+	vd phase_lag = vmax(split[SPLIT_TWO_ZETA], split[SPLIT_PHASE_LEAD]) * vabs(drift),
+	   beside = vsplat(0.125) * curvature;
+	vm risk = ~vless(vfma(split[SPLIT_PHASE_LEAD], swing, phase_lag + beside), vmin(closing, closing1));
 	risk &= ~contact_still(s, x[2], x[3]);
-	vd still = yield * pull, ripple = yield * (swing + beside);
-	vd error = vfma(split[SPLIT_LAG], ripple, contact_row(s->doubled[DOUBLED_ERROR], bound));
-	ripple = vfma(yield, vabs(change) + lag, ripple);
+	vd still = yield * closing, ripple = yield * (swing + beside);
+	vd error = vfma(split[SPLIT_RESIDUAL], ripple, contact_row(s->doubled[DOUBLED_ERROR], bound));
+	ripple = vfma(yield, vabs(change) + phase_lag, ripple);
 	// the common motion's cubic, and whether a body's velocity keeps its sign
 	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
 	vd reach = vfma(vsplat(4 * DBL_EPSILON), bound[0], error);
@@ -565,7 +566,8 @@ LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s,
 	// b2 - b1 by what the doubled map adds: creeping bodies go less far than the rounding of where they are
 	vd way0 = third * rate, way1 = third * rate1;
 	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - (way0 + way1);
-	vd creep = yield * change * vsplat(1.0 / 3), hurry = third * swing * per_omega, off = g->side * g->gap;
+	vd creep = yield * change * vsplat(1.0 / 3), scaled_rate = third * swing * per_omega,
+	   off = g->side * g->gap;
 	const struct edges *const edges[2] = {&s->base, &s->other};
 	*edge = vmask(0);
 	for (int i = 0; i < 2; i++) {
@@ -576,7 +578,7 @@ LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s,
 		// the line that the overlap follows goes along
 		vd more = share * creep, speed = way0 + more, way = vselect(vless(speed, zero), -one, one);
 		vd along = vmin(vmin(way * speed, way * (way1 + more)), way * (mean + more));
-		vm steady = sustained_steady(along, size * hurry, vsplat(1.0265) * error, per_omega / third,
+		vm steady = sustained_steady(along, size * scaled_rate, vsplat(1.0265) * error, per_omega / third,
 		                             vmax(vabs(u), vabs(u1)));
 		vd least = low + mid - size * ripple, most = high + mid + size * ripple;
 		risk |= sustained_peaks(u, u1, least, most, steady, s->at.top[i]);

@@ -21,7 +21,7 @@ static bool link_rigid(const struct link *l)
 /* Acceleration of a floor of order n, in the units of the step, but for what holds bodies together. */
 static double floor_acceleration(const struct chain *c, int i, int n, double ground)
 {
-	double force = 0, drag;
+	double force = 0, damping;
 	for (int above = 0; above < 2; above++) {
 		const int k = i + above;
 		if (above && c->inverse_above.at[i] == 0)
@@ -35,16 +35,16 @@ static double floor_acceleration(const struct chain *c, int i, int n, double gro
 			    (n == 0 ? c->force.at[k] : 0);
 		force += above ? s : -s;
 	}
-	if (c->drag.at[i] == 0)
-		drag = 0;
+	if (c->mass_damping.at[i] == 0)
+		damping = 0;
 	else if (c->warp.on) {
-		drag = 0;
+		damping = 0;
 		for (int k = i; k >= 0; k = c->base.at[k] != 0 ? -1 : k - 1)
-			drag += c->warp.rates[n].at[k];
-		drag *= c->drag.at[i];
+			damping += c->warp.rates[n].at[k];
+		damping *= c->mass_damping.at[i];
 	} else
-		drag = c->drag_step.at[i] * (n + 1) * c->displacements[n + 1].at[i];
-	return fma(force, c->inverse_mass.at[i], -c->push.at[i] - drag - ground);
+		damping = c->mass_damping_step.at[i] * (n + 1) * c->displacements[n + 1].at[i];
+	return fma(force, c->inverse_mass.at[i], -c->push.at[i] - damping - ground);
 }
 
 /* Adds the forces of order n that hold bodies together: sums over links that share floors are found by sweeps, each of which

@@ -14,8 +14,8 @@
 
 /* Largest rate * time of a series step: of a velocity the first term left out is near 2^-52 of the first kept or below: apart
  * 0.35^13/13! = 1.9e-16; touching 0.945^17/17! = 1.1e-15, and where the dashpot lets it swing less no more: see
- * touch_reach. */
-static const double REACH_FREE = 0.35, REACH_TOUCH = 0.945;
+ * contact_reach. */
+static const double REACH_FREE = 0.35, REACH_CONTACT = 0.945;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
@@ -389,14 +389,14 @@ static bool simulation_edged(const struct pound_task *task)
  *
  * Given    omega, damping  the largest of both bodies [1/s]
  */
-static double touch_reach(const struct state_rows *x, double omega, double damping)
+static double contact_reach(const struct state_rows *x, double omega, double damping)
 {
 	const double own = sqrt(omega * omega + x->both * x->contact_stiffness);
 	const double zeta = own > 0 ? 0.5 * (damping + x->both * x->contact_damping) / own : 0;
-	double share = most(1 - zeta * zeta, 1.0 / (ORDER_TOUCH * ORDER_TOUCH));
+	double share = most(1 - zeta * zeta, 1.0 / (ORDER_HIGH * ORDER_HIGH));
 	for (int halving = 0; halving < 5; halving++)
 		share = sqrt(share);
-	return REACH_TOUCH * share / (own * (zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1));
+	return REACH_CONTACT * share / (own * (zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1));
 }
 
 /* A simulation at the start of its task; what it does first. */
@@ -459,7 +459,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->body[1].step_gap = x->gap;
 	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
 	sim->has_contact = task->contact;
-	double reach = touch_reach(x, fastest, damping);
+	double reach = contact_reach(x, fastest, damping);
 	// no more substeps than it takes, but for doubled maps, which are made by doubling
 	x->substeps_per_sample = 1;
 	while (h > reach * x->substeps_per_sample)

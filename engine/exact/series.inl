@@ -1,7 +1,7 @@
 /* series.inl - motion between two events as power series in time, and the first root of a guard on it.
  *
  * Included by exact.inl, after free_motion.inl, and by chain.inl, once per lane count.  Who includes it says of which orders the
- * series are: ORDER_APART and ORDER_TOUCH, odd, as terms are taken in pairs. */
+ * series are: ORDER_LOW and ORDER_HIGH, odd, as terms are taken in pairs. */
 
 #include <float.h>
 
@@ -22,23 +22,23 @@ enum {
 		__VA_ARGS__                                               \
 	}
 /* Runs BODY for odd n, down from `below` less than the order of a series: straight code, whichever order that is. */
-#define ORDERS_ODD(n, order, below, ...)                                                            \
-	_Pragma("GCC unroll 10") for (int n = ORDER_TOUCH - (below); n > 0;                             \
-	                              n -= 2) if (n <= ORDER_APART - (below) || (order) == ORDER_TOUCH) \
-	{                                                                                               \
-		__VA_ARGS__                                                                                 \
+#define ORDERS_ODD(n, order, below, ...)                                                         \
+	_Pragma("GCC unroll 10") for (int n = ORDER_HIGH - (below); n > 0;                           \
+	                              n -= 2) if (n <= ORDER_LOW - (below) || (order) == ORDER_HIGH) \
+	{                                                                                            \
+		__VA_ARGS__                                                                              \
 	}
 
 /* Coefficients of a series. */
 struct power {
-	vd c[ORDER_TOUCH + 1];
+	vd c[ORDER_HIGH + 1];
 };
 
 /* A motion over a step of time 0 .. 1: its displacement. */
 struct motion {
 	struct power u;
 	struct place end; /* displacement, and velocity times the step */
-	vd bend;          /* bound of the fourth derivative over the step */
+	vd fourth_max;    /* bound of the fourth derivative over the step */
 };
 
 /* Both bodies and the overlap over a step.  The overlap is integrated in its own right: the difference u1 - u2 - gap
@@ -83,28 +83,28 @@ LANE_INLINE void motion_end(struct motion *m, int order)
 /* Bounds the fourth derivative of a motion by the magnitudes of its terms. */
 LANE_INLINE void motion_bound(struct motion *m, int order)
 {
-	vd bend = vsplat(0);
-	ORDERS_UP(n, 4, order, bend = vfma(vsplat(fourth(n)), vabs(m->u.c[n]), bend);)
-	m->bend = bend;
+	vd fourth_max = vsplat(0);
+	ORDERS_UP(n, 4, order, fourth_max = vfma(vsplat(fourth(n)), vabs(m->u.c[n]), fourth_max);)
+	m->fourth_max = fourth_max;
 }
 
 /* What a guard is known to do over a step without being followed: values and slopes at both ends, and a bound of its
  * fourth derivative. */
 struct enclosure {
-	vd u0, v0, u1, v1, bend;
+	vd u0, v0, u1, v1, fourth_max;
 };
 
 LANE_INLINE struct enclosure enclosure_of(const struct motion *m)
 {
-	return (struct enclosure){m->u.c[0], m->u.c[1], m->end.u, m->end.v, m->bend};
+	return (struct enclosure){m->u.c[0], m->u.c[1], m->end.u, m->end.v, m->fourth_max};
 }
 
 LANE_INLINE struct enclosure enclosure_of_velocity(const struct motion *m, int order)
 {
-	vd bend = vsplat(0), end = vsplat(0);
+	vd fourth_max = vsplat(0), end = vsplat(0);
 	ORDERS_UP(n, 2, order, end = vfma(vsplat(n * (n - 1.0)), m->u.c[n], end);)
-	ORDERS_UP(n, 5, order, bend = vfma(vsplat(n * fourth(n - 1)), vabs(m->u.c[n]), bend);)
-	return (struct enclosure){m->u.c[1], 2.0 * m->u.c[2], m->end.v, end, bend};
+	ORDERS_UP(n, 5, order, fourth_max = vfma(vsplat(n * fourth(n - 1)), vabs(m->u.c[n]), fourth_max);)
+	return (struct enclosure){m->u.c[1], 2.0 * m->u.c[2], m->end.v, end, fourth_max};
 }
 
 /* Lanes in which a guard may cross a level inside a step that it starts on the right side of.
@@ -112,8 +112,8 @@ LANE_INLINE struct enclosure enclosure_of_velocity(const struct motion *m, int o
  * Given    sign  +1: it must not rise above the level, -1: it must not fall below
  *
  * With g = sign (u - level) the cubic through the ends has the control points g0 <= 0, b1, b2, g1, and misses g by at
- * most bend/24 t^2 (1 - t)^2 <= bend/384.  So g stays negative when the points behind g0 are below -bend/288 (see
- * POUND_CUBIC_ERROR), and also, from a start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + bend/24 <= 0.
+ * most fourth_max/24 t^2 (1 - t)^2 <= fourth_max/384.  So g stays negative when the points behind g0 are below -fourth_max/288 (see
+ * POUND_CUBIC_ERROR), and also, from a start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + fourth_max/24 <= 0.
  */
 LANE_INLINE vm may_cross(const struct enclosure *c, vd level, vd sign)
 {
@@ -121,8 +121,8 @@ LANE_INLINE vm may_cross(const struct enclosure *c, vd level, vd sign)
 	vd g0 = sign * (c->u0 - level), g1 = sign * (c->u1 - level);
 	vd b1 = vfma(sign * third, c->v0, g0), b2 = vfma(-sign * third, c->v1, g1);
 	vd top = vmax(vmax(b1, b2), g1);
-	vm inside = ~vless(vfma(vsplat(POUND_CUBIC_ERROR), c->bend, top), zero);
-	vm after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), c->bend, 3.0 * b2));
+	vm inside = ~vless(vfma(vsplat(POUND_CUBIC_ERROR), c->fourth_max, top), zero);
+	vm after = vless(zero, vmax(b1, g1)) | vless(zero, vfma(vsplat(1.0 / 24), c->fourth_max, 3.0 * b2));
 	return inside & after;
 }
 
@@ -131,7 +131,7 @@ LANE_INLINE vm may_cross(const struct enclosure *c, vd level, vd sign)
 LANE_INLINE vd enclosure_slowest(const struct enclosure *c)
 {
 	vd middle = vfma(vsplat(3), c->u1 - c->u0, -(c->v0 + c->v1));
-	return vmin(vmin(c->v0, c->v1), middle) - vsplat(0.00802) * c->bend;
+	return vmin(vmin(c->v0, c->v1), middle) - vsplat(0.00802) * c->fourth_max;
 }
 
 /* Bound of |u| inside a step, apart from its ends. */
@@ -139,7 +139,7 @@ LANE_INLINE vd reach_of(const struct motion *m)
 {
 	vd third = vsplat(1.0 / 3);
 	vd b1 = vfma(third, m->u.c[1], m->u.c[0]), b2 = vfma(-third, m->end.v, m->end.u);
-	return vfma(vsplat(POUND_CUBIC_ERROR), m->bend, vmax(vabs(b1), vabs(b2)));
+	return vfma(vsplat(POUND_CUBIC_ERROR), m->fourth_max, vmax(vabs(b1), vabs(b2)));
 }
 
 /* what a search finds: these, or a number of the solver's own from EVENT_OWN on */
@@ -159,10 +159,10 @@ struct search {
 LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
 {
 	vd sum = vsplat(0);
-	if (order == ORDER_TOUCH)
-		for (int n = ORDER_TOUCH / 2; n > ORDER_APART / 2; n--)
+	if (order == ORDER_HIGH)
+		for (int n = ORDER_HIGH / 2; n > ORDER_LOW / 2; n--)
 			sum = vfma(sum, t, vsplat((double)n * (n - 1)) * s->c[n]);
-	for (int n = ORDER_APART / 2; n >= 2; n--)
+	for (int n = ORDER_LOW / 2; n >= 2; n--)
 		sum = vfma(sum, t, vsplat((double)n * (n - 1)) * s->c[n]);
 	return sum;
 }
@@ -171,8 +171,8 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
 struct guard {
 	const struct power *u;
 	vd level, sign;
-	vd g0, g1; /* its values at the start of the step, not positive but for rounding, and at the end */
-	vd bend;   /* bound of its fourth derivative over the step */
+	vd g0, g1;     /* its values at the start of the step, not positive but for rounding, and at the end */
+	vd fourth_max; /* bound of its fourth derivative over the step */
 };
 
 LANE_INLINE struct guard guard_of(const struct power *u, const struct enclosure *c, vd level, vd sign)
@@ -182,7 +182,7 @@ LANE_INLINE struct guard guard_of(const struct power *u, const struct enclosure 
 	                      .sign = sign,
 	                      .g0 = sign * (c->u0 - level),
 	                      .g1 = sign * (c->u1 - level),
-	                      .bend = c->bend};
+	                      .fourth_max = c->fourth_max};
 }
 
 /* First root by Halley's method where the guard is positive at the limit, with a proof that it is the first.
@@ -192,7 +192,7 @@ LANE_INLINE struct guard guard_of(const struct power *u, const struct enclosure 
  * Returns  value   lanes whose root t was found and proved
  *
  * The search starts at the root of the parabola through value and slope at 0 and the value at the limit.  With g(t) = 0,
- * the cubic through 0 and t over (t - time), and its error bend/24 time^2 (t - time), stay negative before t when the
+ * the cubic through 0 and t over (t - time), and its error fourth_max/24 time^2 (t - time), stay negative before t when the
  * cubic's inner control points are, the second by more than the error: no root lies before t.
  */
 LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active, vd *t)
@@ -208,21 +208,21 @@ LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active,
 	vm settled = vless(zero, zero);
 	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
 		struct place at = place_at(u, order, *t);
-		vd value = sign * (at.u - g->level), bow = sign * curvature_at(u, order, *t);
+		vd value = sign * (at.u - g->level), curvature = sign * curvature_at(u, order, *t);
 		slope = vselect(settled, slope, sign * at.v);
-		vd fall = vfma(slope, slope, vsplat(-0.5) * value * bow);
+		vd fall = vfma(slope, slope, vsplat(-0.5) * value * curvature);
 		vm rises = vless(zero, slope) & vless(zero, fall);
 		vd next = vselect(rises, vmin(vmax(*t - value * slope / fall, zero), limit), limit);
 		vd step = next - *t;
 		*t = vselect(settled, *t, next);
-		// the error after a step of s is near s (s bow/slope)^2, and s^2/slope times what bow leaves out: 1e-4 of the
+		// the error after a step of s is near s (s curvature/slope)^2, and s^2/slope times what curvature leaves out: 1e-4 of the
 		// magnitudes of its terms, so that near an inflection 1e-13 of the whole step may remain
 		vd small = vsplat(0x1p-20);
-		settled |= vless(vabs(step), small * *t) & vless(vabs(step * bow), small * slope) & rises;
+		settled |= vless(vabs(step), small * *t) & vless(vabs(step * curvature), small * slope) & rises;
 	}
 	// the slope is that before the last step, which changed it by less than 2^-20
 	return sure & settled & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
-	       vless(g->bend * (*t * *t * *t) * vsplat(1.01 / 24), slope);
+	       vless(g->fourth_max * (*t * *t * *t) * vsplat(1.01 / 24), slope);
 }
 
 /* Safe root search: first time at which a guard, negative at 0, becomes positive.
@@ -241,7 +241,7 @@ LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, 
 	vd zero = vsplat(0), curved = zero;
 	for (int n = order; n > 2; n--)
 		curved = vfma(vsplat((double)n * (n - 1)), vabs(g->c[n]), curved);
-	vd bend = vmax(zero, vfma(vsplat(2), g->c[2], curved));
+	vd curvature_max = vmax(zero, vfma(vsplat(2), g->c[2], curved));
 	curved = vfma(vsplat(2), vabs(g->c[2]), curved);
 	vm going = active, found = vless(zero, zero);
 	*unsure = found;
@@ -249,10 +249,10 @@ LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, 
 	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
 		struct place at = place_at(g, order, *t);
 		vd slope = at.v, below = vmin(at.u, zero);
-		vd root = vsqrt(vfma(slope, slope, -2.0 * bend * below));
+		vd root = vsqrt(vfma(slope, slope, -2.0 * curvature_max * below));
 		vm rises = vless(zero, slope);
-		vd step = vselect(rises, -2.0 * below, root - slope) / vselect(rises, slope + root, bend);
-		step = vselect(rises | vless(zero, bend), step, vsplat(2));
+		vd step = vselect(rises, -2.0 * below, root - slope) / vselect(rises, slope + root, curvature_max);
+		step = vselect(rises | vless(zero, curvature_max), step, vsplat(2));
 		vm near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope);
 		vm stuck = vless(step, vsplat(0.5 * DBL_EPSILON)) & ~near;
 		*t = vselect(going & ~stuck, *t + step, *t);
@@ -298,9 +298,9 @@ LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event
 /* The velocity of a motion, times the step. */
 static void motion_velocity(struct power *v, const struct motion *m, int order)
 {
-	if (order == ORDER_TOUCH)
-		ORDERS_UP(n, ORDER_APART + 1, ORDER_TOUCH, v->c[n - 1] = vsplat(n) * m->u.c[n];)
-	ORDERS_UP(n, 1, ORDER_APART, v->c[n - 1] = vsplat(n) * m->u.c[n];)
+	if (order == ORDER_HIGH)
+		ORDERS_UP(n, ORDER_LOW + 1, ORDER_HIGH, v->c[n - 1] = vsplat(n) * m->u.c[n];)
+	ORDERS_UP(n, 1, ORDER_LOW, v->c[n - 1] = vsplat(n) * m->u.c[n];)
 	v->c[order] = vsplat(0);
 }
 

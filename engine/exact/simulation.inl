@@ -97,16 +97,16 @@ enum {
 	SPLIT_DAMPING,
 	SPLIT_STIFFNESS, /* what presses: times the common velocity and displacement */
 	SPLIT_BASE,      /* displacement of the base, beyond the common one, by the overlap */
-	SPLIT_LAG, /* of a doubled map: how far the overlap's own motion takes the common one off a slow enclosure */
-	SPLIT_OMEGA, /* of the contact [rad/s] */
-	SPLIT_DRAG,  /* its damping over omega */
-	SPLIT_LEAD,  /* how much more than the overlap the force swings, where contact ends with it */
+	SPLIT_RESIDUAL, /* of a doubled map: how far the overlap's own motion takes the common one off a slow enclosure */
+	SPLIT_OMEGA,      /* of the contact [rad/s] */
+	SPLIT_TWO_ZETA,   /* its damping over omega */
+	SPLIT_PHASE_LEAD, /* how much more than the overlap the force swings, where contact ends with it */
 	SPLIT_SUBSTEPS,
 };
 
 struct pound_contact_map {
 	alignas(64) double row[CONTACT_MAP_ROWS][POUND_CONTACT_INPUTS];
-	double pull
+	double closing
 	    [POUND_CONTACT_INPUTS]; /* of a doubled map: what is added to what presses the bodies on each other */
 };
 

@@ -65,11 +65,11 @@ LANE_INLINE vm bodies_level(const struct lanes *g)
  * meet for ever.  Derivatives by time decide: those by the share of a step have other roundings in contact than apart, where
  * steps are of another length.
  *
- * Given    apart  the difference of the accelerations' derivative n, scaled to the step
+ * Given    separating  the difference of the accelerations' derivative n, scaled to the step
  * Returns  t      level: lanes in which nothing has decided yet
  *          value  what is left of it
  */
-LANE_SHARED vd apart_settle(struct terms *t, const struct lanes *g, vd apart, int n)
+LANE_SHARED vd separation_settle(struct terms *t, const struct lanes *g, vd separating, int n)
 {
 	vd a[2], made = vsplat(0);
 	for (int i = 0; i < 2; i++) {
@@ -83,12 +83,12 @@ LANE_SHARED vd apart_settle(struct terms *t, const struct lanes *g, vd apart, in
 		made = made + (vabs(damping) + vabs(spring)) + (vabs(drive) + vabs(offset));
 		t->by_time[i] = (struct place){t->by_time[i].v, a[i]};
 	}
-	vd apart_by_time = a[0] - a[1];
+	vd separating_by_time = a[0] - a[1];
 	vm was = t->level;
-	t->level &= ~vless(vsplat(POUND_UNDECIDED) * made, vabs(apart_by_time));
-	apart = vselect(was, apart_by_time * t->per_time, apart);
+	t->level &= ~vless(vsplat(POUND_UNDECIDED) * made, vabs(separating_by_time));
+	separating = vselect(was, separating_by_time * t->per_time, separating);
 	t->per_time = t->per_time * g->dt;
-	return vselect(t->level, vsplat(0), apart);
+	return vselect(t->level, vsplat(0), separating);
 }
 
 /* A body that stands still where its branch ends goes on to the next or back by its acceleration.  Where that is no more than
@@ -122,24 +122,24 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, const
 			slow = slow + (n ? t->increase[i] : t->force[i]);
 		b[i] = vfma(t->c[i], t->v[i], slow);
 	}
-	vd apart = b[0];
+	vd separating = b[0];
 	if (scope->paired)
-		apart = b[0] - b[1];
+		separating = b[0] - b[1];
 	if (level)
-		apart = apart_settle(t, g, apart, n);
+		separating = separation_settle(t, g, separating, n);
 	vd push = vsplat(0);
 	if (scope->touching) {
 		push = vfma(t->dash, t->v[2], t->spring * t->u[2]);
 		b[0] = b[0] - push;
 		b[1] = vfma(g->mass_ratio, push, b[1]);
-		apart = vfma(g->both, -push, apart);
+		separating = vfma(g->both, -push, separating);
 	}
 	for (int i = 0; i < (scope->paired ? 2 : 1); i++)
 		if (n == 0 && vany(t->still[i]))
 			b[i] = still_settle(g, i, b[i], i ? g->mass_ratio * push : push, t->still[i]);
 	for (int j = 0; j < (scope->paired ? 3 : 1); j++) {
 		t->u[j] = t->v[j];
-		t->v[j] = j < 2 ? b[j] : apart;
+		t->v[j] = j < 2 ? b[j] : separating;
 	}
 }
 
@@ -160,7 +160,7 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 	struct enclosure c = enclosure_of(m);
 	vm past_high = may_cross(&c, g->body[i].high, one) & active;
 	vm past_low = may_cross(&c, g->body[i].low, -one) & active;
-	vm turns = ~vequal(g->body[i].direction, zero) & active;
+	vm reversals = ~vequal(g->body[i].direction, zero) & active;
 	// one search for the lanes that may pass either edge, and another for those that may pass both
 	for (vm past = past_high | past_low; vany(past); past = past_high & past_low, past_high = vmask(0)) {
 		vd level = vselect(past_high, g->body[i].high, g->body[i].low), sign = vselect(past_high, one, -one);
@@ -168,16 +168,16 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 		struct guard guard = guard_of(&m->u, &c, level, sign);
 		search_crossing(&guard, s->order, past, body + edge, search);
 	}
-	if (!vany(turns))
+	if (!vany(reversals))
 		return;
 	c = enclosure_of_velocity(m, s->order);
-	turns &= may_cross(&c, zero, -g->body[i].direction);
-	if (!vany(turns))
+	reversals &= may_cross(&c, zero, -g->body[i].direction);
+	if (!vany(reversals))
 		return;
 	struct power velocity;
 	motion_velocity(&velocity, m, s->order);
 	struct guard guard = guard_of(&velocity, &c, zero, -g->body[i].direction);
-	search_crossing(&guard, s->order, turns, body + vsplat(POUND_EDGE_REVERSAL), search);
+	search_crossing(&guard, s->order, reversals, body + vsplat(POUND_EDGE_REVERSAL), search);
 }
 
 /* Follows the largest displacement of a body inside the step, before what the search found.
@@ -196,13 +196,13 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
 	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
 	vd sign = vselect(vless(way, zero), one, -one);
-	const struct guard turns = guard_of(&velocity, &c, zero, sign);
-	vm once = root_quick(&turns, s->order, one, inside, &t);
-	vd turn = power_at(&m->u, s->order, t), behind = one - t, behind2 = behind * behind;
-	struct enclosure rest = {turn, zero, m->end.u, m->end.v * behind, m->bend * (behind2 * behind2)};
-	vd most = vmax(vmax(vabs(turn), vabs(m->end.u)), g->top[i]);
-	once &= ~(may_cross(&rest, most, one) | may_cross(&rest, -most, -one));
-	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], vabs(turn)), g->top[i]);
+	const struct guard reversals = guard_of(&velocity, &c, zero, sign);
+	vm once = root_quick(&reversals, s->order, one, inside, &t);
+	vd peak = power_at(&m->u, s->order, t), behind = one - t, behind2 = behind * behind;
+	struct enclosure after = {peak, zero, m->end.u, m->end.v * behind, m->fourth_max * (behind2 * behind2)};
+	vd most = vmax(vmax(vabs(peak), vabs(m->end.u)), g->top[i]);
+	once &= ~(may_cross(&after, most, one) | may_cross(&after, -most, -one));
+	g->top[i] = vselect(once & vless(t, search->time), vmax(g->top[i], vabs(peak)), g->top[i]);
 	inside &= ~once;
 	if (!vany(inside))
 		return;
@@ -221,15 +221,15 @@ LANE_SHARED void force_search(const struct series *s, const struct lanes *g, con
                               vm by_force, struct search *search)
 {
 	const struct motion *p = &s->overlap;
-	vd sign = e->scope.touching ? vsplat(-1) : vsplat(1), lead = g->release / g->dt;
+	vd sign = e->scope.touching ? vsplat(-1) : vsplat(1), phase_lead = g->release / g->dt;
 	struct power guard, rate;
 	motion_velocity(&rate, p, s->order);
 	for (int n = 0; n <= s->order; n++)
-		guard.c[n] = sign * vfma(lead, rate.c[n], p->u.c[n]);
+		guard.c[n] = sign * vfma(phase_lead, rate.c[n], p->u.c[n]);
 	// where the force has just passed 0 it is beyond by the rounding of the overlap and of its acceleration, or
 	// bodies that are alike would turn to and fro at one instant for ever
-	vd pull = 2.0 * (vabs(s->body[0].u.c[2]) + vabs(s->body[1].u.c[2]));
-	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(lead, pull, p->u.c[0]));
+	vd acceleration = 2.0 * (vabs(s->body[0].u.c[2]) + vabs(s->body[1].u.c[2]));
+	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(phase_lead, acceleration, p->u.c[0]));
 	guard.c[0] = vselect(e->fresh, below, guard.c[0]);
 	search_safe(&guard, s->order, by_force, vsplat(EVENT_CONTACT), search);
 	if (e->scope.touching)
@@ -272,9 +272,9 @@ LANE_INLINE void series_cut(struct series *s, vm event, vd time, const struct sc
 LANE_INLINE vd impulse_of(const struct lanes *g, const struct series *s, vd time)
 {
 	struct power area; // of the overlap from 0 to t, over t
-	ORDERS_UP(n, 0, ORDER_TOUCH, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
+	ORDERS_UP(n, 0, ORDER_HIGH, area.c[n] = s->overlap.u.c[n] * vsplat(1.0 / (n + 1));)
 	vd elapsed = time * g->dt;
-	return vfma(g->contact_stiffness, power_at(&area, ORDER_TOUCH, time) * elapsed,
+	return vfma(g->contact_stiffness, power_at(&area, ORDER_HIGH, time) * elapsed,
 	            g->contact_damping * (s->overlap.end.u - s->overlap.u.c[0]));
 }
 
@@ -293,7 +293,7 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 {
 	struct motion *into[3] = {&s->body[0], &s->body[1], &s->overlap};
 	struct terms t = terms_start(g, scope);
-	const int order = scope->touching ? ORDER_TOUCH : ORDER_APART, motions = scope->paired ? 3 : 1;
+	const int order = scope->touching ? ORDER_HIGH : ORDER_LOW, motions = scope->paired ? 3 : 1;
 	s->order = order;
 	if (level) {
 		t.level = *level;
@@ -346,7 +346,7 @@ LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struc
 		series_contact(s, g, watched);
 	else
 		series_pair(s, g, watched);
-	s->order = e->scope.touching ? ORDER_TOUCH : ORDER_APART; // the compiler is to know it
+	s->order = e->scope.touching ? ORDER_HIGH : ORDER_LOW; // the compiler is to know it
 }
 
 /* Lanes arrive at the end of a step, or of the share `time` of it that was gone. */
@@ -394,7 +394,7 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 		// the end of the step does not count where the motion was cut before it
 		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].end.u));
 		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
-		// a branch with a direction ends where the velocity turns: up to what was found neither end is exceeded
+		// a branch with a direction ends where the velocity reversals: up to what was found neither end is exceeded
 		if (e->scope.edged)
 			inside &= vequal(g->body[i].direction, zero);
 		if (vany(inside))
@@ -411,8 +411,8 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	g->dt = search.time * g->dt;
 	// a body turns with no velocity, but where it had turned before that was noticed
 	for (int i = 0; i < (e->scope.paired ? 2 : 1); i++) {
-		vd turn = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_REVERSAL);
-		g->v[i] = vselect(vequal(search.event, turn) & moved, zero, g->v[i]);
+		vd reversal = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_REVERSAL);
+		g->v[i] = vselect(vequal(search.event, reversal) & moved, zero, g->v[i]);
 	}
 	vm cut = vequal(search.event, vsplat(EVENT_CUT));
 	g->pace = vselect(cut, vmax(g->pace * vsplat(POUND_STEP_SHORTER), vsplat(POUND_STEP_SHORTEST)),
@@ -429,26 +429,26 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 LANE_INLINE vm event_follow(struct lanes *g, struct event_lanes *e, vd event)
 {
 	vd zero = vsplat(0);
-	vm turns = vequal(event, vsplat(EVENT_CONTACT)) & e->active, released = e->released;
+	vm changes = vequal(event, vsplat(EVENT_CONTACT)) & e->active, released = e->released;
 	if (e->scope.touching) {
-		released = e->scope.forced ? turns & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
-		g->remainder = vselect(turns, vfma(g->substeps, g->substep, g->remainder), g->remainder);
-		g->substeps = vselect(turns, zero, g->substeps);
+		released = e->scope.forced ? changes & vless(zero, g->release) & vless(zero, g->p) : vmask(0);
+		g->remainder = vselect(changes, vfma(g->substeps, g->substep, g->remainder), g->remainder);
+		g->substeps = vselect(changes, zero, g->substeps);
 	} else {
 		vd substeps = vfloor(g->remainder / g->substep);
-		g->remainder = vselect(turns, vmax(g->remainder - substeps * g->substep, zero), g->remainder);
-		g->substeps = vselect(turns, substeps, g->substeps);
-		g->impulse = vselect(turns, zero, g->impulse);
+		g->remainder = vselect(changes, vmax(g->remainder - substeps * g->substep, zero), g->remainder);
+		g->substeps = vselect(changes, substeps, g->substeps);
+		g->impulse = vselect(changes, zero, g->impulse);
 	}
-	g->p = vselect(turns & ~released, zero, g->p); // from here exactly
-	e->fresh = released & turns;
+	g->p = vselect(changes & ~released, zero, g->p); // from here exactly
+	e->fresh = released & changes;
 	if (e->scope.forced && !e->scope.touching) {
 		vm clears = vequal(event, vsplat(EVENT_CLEARS));
 		g->p = vselect(clears, zero, g->p);
-		released &= ~clears & ~turns;
+		released &= ~clears & ~changes;
 	}
 	e->released = released;
-	return turns;
+	return changes;
 }
 
 /* Lanes in which a body may have a new largest displacement inside a step. */
@@ -466,11 +466,11 @@ LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
 	vd zero = vsplat(0), one = vsplat(1);
 	struct enclosure c = enclosure_of(&s->body[i]);
 	vm risk = may_cross(&c, g->body[i].high, one) | may_cross(&c, g->body[i].low, -one);
-	vm turns = ~vequal(g->body[i].direction, zero);
-	if (!vany(turns))
+	vm reversals = ~vequal(g->body[i].direction, zero);
+	if (!vany(reversals))
 		return risk;
 	c = enclosure_of_velocity(&s->body[i], s->order);
-	return risk | (turns & may_cross(&c, zero, -g->body[i].direction));
+	return risk | (reversals & may_cross(&c, zero, -g->body[i].direction));
 }
 
 /* Takes what is left of an interval or of a substep as one step, in the lanes where nothing can happen in it.

@@ -117,7 +117,7 @@ static double warp_begin(struct chain *c)
 static void warp_choose(struct chain *c)
 {
 	struct warp *x = &c->warp;
-	double least = INFINITY, rate = c->rate_apart + c->drag_apart;
+	double least = INFINITY, rate = c->rate_separated + c->damping_separated;
 	bool still = false;
 	x->master = -1;
 	for (int j = 0; j < c->n_links; j++) {
@@ -163,12 +163,12 @@ static void beside_powers(struct warp *x, int j, bool root, int n)
 {
 	const struct curve *by = &x->links[x->master];
 	struct curve *v = &x->links[j];
-	double sum = v->rate[n], bend = 0;
+	double sum = v->rate[n], later = 0;
 	for (int k = 1; k <= n; k++)
 		sum = fma(-by->rate[k], v->ratio[n - k], sum);
 	for (int k = 2; k <= n; k++)
-		bend = fma((n - k + 1) * x->w[k], v->ratio[n - k + 1], bend);
-	v->ratio[n] = (sum - bend / x->length) / (by->rate[0] * (1 + n / (x->power + 1.0)));
+		later = fma((n - k + 1) * x->w[k], v->ratio[n - k + 1], later);
+	v->ratio[n] = (sum - later / x->length) / (by->rate[0] * (1 + n / (x->power + 1.0)));
 	power_fill(1.5, v->ratio, v->ratio_power, n);
 	v->power[n] = product_at(by->power, v->ratio_power, n);
 	if (!root)
@@ -277,7 +277,7 @@ LANE_INLINE void warp_accelerate(struct chain *c, int n, double ground)
 		const vd under =
 		    vfma(vbelow(below, a), column_load(&c->inner, i), column_load(&c->base, i) * vsplat(ground));
 		column_store(&c->warp.accelerations[n], i,
-		             a - vfma(column_load(&c->drag, i), column_load(&c->warp.rates[n], i), under));
+		             a - vfma(column_load(&c->mass_damping, i), column_load(&c->warp.rates[n], i), under));
 		below = a;
 		s = next;
 	}
@@ -329,7 +329,7 @@ static void warp_gauge(struct warp *x, int n)
 		x->w3[n] = product_at(x->w2, x->w, n);
 	}
 	x->gauge[n] = x->power == 0 ? n == 0 : x->power == 1 ? x->w[n] : x->w3[n];
-	if (n < ORDER_TOUCH)
+	if (n < ORDER_HIGH)
 		x->clock[n + 1] = x->length * POUND_SHARE[n] * x->gauge[n];
 }
 
@@ -381,7 +381,7 @@ static void warp_series(struct chain *c)
 {
 	struct warp *x = &c->warp;
 	warp_start(c);
-	for (int n = 0; n <= ORDER_TOUCH; n++) {
+	for (int n = 0; n <= ORDER_HIGH; n++) {
 		warp_gauge(x, n);
 		const double ground = fma(c->slope, x->clock[n], n == 0 ? c->ground : 0);
 		warp_pushes(c, n);
@@ -391,7 +391,7 @@ static void warp_series(struct chain *c)
 		if (n == 0 && c->edged)
 			for (int i = 0; i < c->n; i++)
 				warp_story_settle(c, i);
-		if (n == ORDER_TOUCH)
+		if (n == ORDER_HIGH)
 			break;
 		for (int i = 0; i < c->wide; i += W)
 			warp_integrate(c, n, i);
@@ -410,7 +410,7 @@ static void tail_keep(double most[LAST], const double *series, size_t stride, do
 {
 	const double first = fmax(fabs(series[0]) + fabs(series[stride]), least);
 	for (int k = 0; k < LAST && first > 0; k++)
-		most[k] = fmax(most[k], fabs(series[(size_t)(ORDER_TOUCH - k) * stride]) / first);
+		most[k] = fmax(most[k], fabs(series[(size_t)(ORDER_HIGH - k) * stride]) / first);
 }
 
 /* Ratio of lengths by which the last terms of all rates and of w are below rounding of the first ones. */
@@ -435,7 +435,7 @@ static double warp_ratio(const struct chain *c)
 		tail_keep(most, x->w, 1, 0);
 	for (int k = 0; k < LAST; k++)
 		if (most[k] > 0)
-			ratio = fmin(ratio, root_of(TAIL / most[k], ORDER_TOUCH - k));
+			ratio = fmin(ratio, root_of(TAIL / most[k], ORDER_HIGH - k));
 	return ratio;
 }
 
@@ -445,7 +445,7 @@ static void warp_scale(struct chain *c, double ratio)
 	struct warp *x = &c->warp;
 	double factor = 1;
 	x->length *= ratio;
-	for (int n = 1; n <= ORDER_TOUCH; n++) {
+	for (int n = 1; n <= ORDER_HIGH; n++) {
 		factor *= ratio;
 		for (int i = 0; i < c->wide; i += W) {
 			const vd f = vsplat(factor);
@@ -476,7 +476,7 @@ static void touch_series(struct chain *c)
 {
 	enum { TRIES = 8 };
 	struct warp *x = &c->warp;
-	c->order = ORDER_TOUCH;
+	c->order = ORDER_HIGH;
 	warp_choose(c);
 	x->length *= c->pace;
 	for (int try = 0; try < TRIES; try++) {
@@ -492,10 +492,10 @@ static void touch_series(struct chain *c)
 		}
 		x->length *= ratio;
 	}
-	for (int n = 0; n <= ORDER_TOUCH; n++)
+	for (int n = 0; n <= ORDER_HIGH; n++)
 		floors_sum(c, &c->drifts[n], &c->displacements[n]);
 	for (int j = 0; j < c->n_links; j++)
-		for (int n = 0; c->link[j].own && !c->link[j].held && n <= ORDER_TOUCH; n++)
+		for (int n = 0; c->link[j].own && !c->link[j].held && n <= ORDER_HIGH; n++)
 			c->overlaps[n][j] = x->links[j].overlap[n];
 	enclosures_make(c, c->drifts, &c->drift);
 	enclosures_make(c, c->displacements, &c->displacement);
@@ -514,7 +514,7 @@ static bool chain_curved(const struct chain *c)
 static void warp_floor_accelerations(struct chain *c)
 {
 	struct warp *x = &c->warp;
-	for (int n = 0; n <= ORDER_TOUCH; n++) {
+	for (int n = 0; n <= ORDER_HIGH; n++) {
 		struct column floors;
 		floors_sum(c, &x->accelerations[n], &floors);
 		const double ground = fma(c->slope, x->clock[n], n == 0 ? c->ground : 0);

@@ -7,7 +7,7 @@ static void curve_search(struct first *first, const struct chain *c, const doubl
                          int index)
 {
 	struct power g;
-	for (int n = 0; n <= ORDER_TOUCH; n++)
+	for (int n = 0; n <= ORDER_HIGH; n++)
 		g.c[n] = vsplat(guard[n]);
 	const struct enclosure enclosure = enclosure_make(&g, c->order);
 	const vd zero = vsplat(0), one = vsplat(1);
@@ -19,7 +19,7 @@ static void curve_search(struct first *first, const struct chain *c, const doubl
 /* A series as a guard, times a sign. */
 static void guard_fill(double guard[TERMS], const double *series, double sign)
 {
-	for (int n = 0; n <= ORDER_TOUCH; n++)
+	for (int n = 0; n <= ORDER_HIGH; n++)
 		guard[n] = sign * series[n];
 }
 
@@ -32,7 +32,7 @@ static void forced_search(struct first *first, const struct chain *c, int j)
 	const double K = l->at.on.stiffness, C = l->at.on.damping;
 	const double sign = l->touching ? -1 : 1;
 	double guard[TERMS];
-	for (int n = 0; n <= ORDER_TOUCH; n++) {
+	for (int n = 0; n <= ORDER_HIGH; n++) {
 		const double power =
 		    j == x->master ? product_at(x->w2, x->w3, n) : product_at(v->overlap, v->quarter, n);
 		guard[n] = sign * fma(K, power, C * v->rate[n]);
@@ -97,7 +97,7 @@ static struct first touch_events(struct chain *c)
 static double warp_integral(const struct warp *x, const double series[TERMS], double time)
 {
 	double sum = 0;
-	for (int n = ORDER_TOUCH; n >= 0; n--)
+	for (int n = ORDER_HIGH; n >= 0; n--)
 		sum = fma(sum, time, POUND_SHARE[n] * (x->power == 0 ? series[n] : product_at(x->gauge, series, n)));
 	return sum * time * x->length;
 }
@@ -106,7 +106,7 @@ static double warp_integral(const struct warp *x, const double series[TERMS], do
 static double curve_impulse(const struct chain *c, int j, double time)
 {
 	double force[TERMS];
-	for (int n = 0; n <= ORDER_TOUCH; n++)
+	for (int n = 0; n <= ORDER_HIGH; n++)
 		force[n] = curve_force(c, j, n);
 	return warp_integral(&c->warp, force, time);
 }
@@ -129,7 +129,7 @@ static void touch_arrive(struct chain *c, double time)
 			continue;
 		if (l->held) {
 			double force[TERMS];
-			for (int n = 0; n <= ORDER_TOUCH; n++)
+			for (int n = 0; n <= ORDER_HIGH; n++)
 				force[n] = c->overlaps[n][j];
 			l->impulse += warp_integral(x, force, time);
 			l->time += elapsed;

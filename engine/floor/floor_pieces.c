@@ -243,30 +243,30 @@ static double swing_nothing(const struct pound_floor_motion *motion)
 
 /* Whether a contact may be settled: its overlap is neither fast nor accelerated, as the swinging one is all the time.
  *
- * Returns  pull  what the accelerations of both bodies are made of, but for the contact's, added up [m/s2]
+ * Returns  terms  what the accelerations of both bodies are made of, but for the contact's, added up [m/s2]
  */
 static bool may_settle(const struct pound_floor_motion *motion, const struct pound_instant_of_task *at,
-                       double *pull)
+                       double *terms)
 {
 	const struct pound_task *task = motion->task;
 	double apart = 0, slow = motion->rate / motion->rate_touch;
-	*pull = 0;
+	*terms = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const double part[4] = {task->bodies[i].damping * at->v[i], at->stiffness[i] * at->u[i],
 		                        at->spring_offset[i], task->bodies[i].drive * at->ground};
 		double force = part[0] + part[1] + part[2] + part[3];
-		*pull += fabs(part[0]) + fabs(part[1]) + fabs(part[2]) + fabs(part[3]);
+		*terms += fabs(part[0]) + fabs(part[1]) + fabs(part[2]) + fabs(part[3]);
 		apart += i ? force : -force;
 	}
 	double push = task->contact_stiffness * at->overlap + task->contact_damping * at->overlap_rate;
 	return fabs(apart - (1 + task->mass_ratio) * push) <=
-	       fmax(4 * slow * slow, swing_nothing(motion)) * *pull;
+	       fmax(4 * slow * slow, swing_nothing(motion)) * *terms;
 }
 
 /* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing adds
  * no more than a rounding.
  *
- * Given    pull    as may_settle has it;  s: its order and step
+ * Given    terms    as may_settle has it;  s: its order and step
  * Returns  value   false: it has not settled; s is not to be used
  *
  *   w = (m1 u1 + m2 u2)/(m1 + m2)     w'' = (r b1 + b2)/(1 + r)     r = m1/m2
@@ -277,7 +277,7 @@ static bool may_settle(const struct pound_floor_motion *motion, const struct pou
  * b2 is by (rate/W)^2 less than what they are made of, so that few rounds settle that.
  */
 static bool series_settle(struct series *s, const struct pound_floor_motion *motion,
-                          const struct pound_instant_of_task *at, double pull)
+                          const struct pound_instant_of_task *at, double terms)
 {
 	const double dt = s->step;
 	const struct terms m = terms_of(motion->task, at, dt);
@@ -319,8 +319,8 @@ static bool series_settle(struct series *s, const struct pound_floor_motion *mot
 		s->floor[n] = -(m.c[0] * w[0][n] + m.k[0] * u[0][n] + push) * factorial;
 		s->push[n] = -push * factorial;
 	}
-	double swing = fabs(m.u[2] - p[0]) * spring, hurry = fabs(m.w[2] - q[0]) * sqrt(spring);
-	return swing + hurry <= swing_nothing(motion) * (pull * (dt * dt));
+	double swing = fabs(m.u[2] - p[0]) * spring, scaled_rate = fabs(m.w[2] - q[0]) * sqrt(spring);
+	return swing + scaled_rate <= swing_nothing(motion) * (terms * (dt * dt));
 }
 
 /* ---- the next series ---- */
@@ -339,11 +339,11 @@ static double step_length(double left, double rate)
 static void series_next(struct series *s, const struct pound_floor_motion *motion,
                         const struct pound_instant_of_task *at, double left)
 {
-	double pull, rate = at->touching ? motion->rate_touch : motion->rate;
+	double terms, rate = at->touching ? motion->rate_touch : motion->rate;
 	s->step = step_length(left, motion->rate);
 	s->order = order_of(motion->rate * s->step);
-	if (at->touching && rate * s->step >= SETTLED_LEAST && may_settle(motion, at, &pull) &&
-	    series_settle(s, motion, at, pull))
+	if (at->touching && rate * s->step >= SETTLED_LEAST && may_settle(motion, at, &terms) &&
+	    series_settle(s, motion, at, terms))
 		return;
 	s->step = step_length(left, rate);
 	s->order = order_of(rate * s->step);

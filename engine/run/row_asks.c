@@ -143,7 +143,7 @@ static void building_lay(struct pound_row_asks *asks, const struct pound_scene *
 	for (int i = 0; i < storeys.n; i++) {
 		floors[i].mass = storeys.mass[i];
 		floors[i].dashpot = storeys.dashpot[i];
-		floors[i].drag = storeys.drag;
+		floors[i].mass_damping = storeys.mass_damping;
 		floors[i].base = i == 0;
 		floors[i].modal = modal ? modal + i * storeys.n : NULL;
 		floors[i].story.law = yields ? law->type : 0;

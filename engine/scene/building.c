@@ -21,7 +21,7 @@ static void rayleigh(const struct pound_building *building, const double *w, str
 	const int n = s->n, *modes = building->damping_modes;
 	const double p = w[(modes[0] < n ? modes[0] : n) - 1], q = w[(modes[1] < n ? modes[1] : n) - 1];
 	const double xi = pound_each_of(&building->damping_ratio, 0);
-	s->drag = n == 1 ? 0 : 2 * xi * p * q / (p + q);
+	s->mass_damping = n == 1 ? 0 : 2 * xi * p * q / (p + q);
 	for (int i = 0; i < n; i++)
 		s->dashpot[i] = 2 * xi * s->stiffness[i] / (n == 1 ? p : p + q);
 }

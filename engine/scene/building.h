@@ -10,7 +10,7 @@ struct pound_storeys {
 	double mass[POUND_STOREYS_MAX];      /* [kg] */
 	double stiffness[POUND_STOREYS_MAX]; /* initial [N/m] */
 	double dashpot[POUND_STOREYS_MAX];   /* [N s/m] */
-	double drag;                         /* damping by mass, of every floor [1/s] */
+	double mass_damping;                 /* damping by mass, of every floor [1/s] */
 	double frequency;                    /* of the first mode [rad/s] */
 	bool modal;                          /* the damping is of the modes, not of dashpots */
 };

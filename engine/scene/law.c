@@ -27,7 +27,7 @@ static void linear(const struct pound_backbone *s, struct pound_law_state *at, e
 	at->branch = (struct pound_branch){.stiffness = s->stiffness, .low = -DBL_MAX, .high = DBL_MAX};
 }
 
-/* Kinematic hardening: an elastic range of width 2 yield whose center, memory[0], plastic flow drags along. */
+/* Kinematic hardening: an elastic range of width 2 yield whose center, memory[0], plastic flow moves. */
 static void elastoplastic(const struct pound_backbone *s, struct pound_law_state *at, enum pound_edge edge,
                           double u)
 {
@@ -99,7 +99,7 @@ static const struct law {
 	const char *name;
 	const char *text; /* one line of documentation */
 	bool linear;
-	bool drags; /* yields for good: memory[0] is the center of its elastic range */
+	bool kinematic; /* yields for good: memory[0] is the center of its elastic range */
 	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
 	void (*leave)(const struct pound_backbone *, struct pound_law_state *, enum pound_edge, double u);
 } laws[] = {
@@ -175,7 +175,7 @@ double pound_law_envelope(const struct pound_backbone *s, double u)
 /* Center of the elastic range, were the oscillator to turn at u [m]; 0 for laws whose range stays. */
 double pound_law_center(const struct pound_backbone *s, const struct pound_law_state *at, double u)
 {
-	if (!laws[s->law].drags)
+	if (!laws[s->law].kinematic)
 		return 0;
 	return at->number == CENTER ? at->memory[0] : at->number == RIGHT ? u - s->yield : u + s->yield;
 }

@@ -11,7 +11,7 @@ enum { FLOORS = POUND_CHAIN_FLOORS };
 
 struct loop {
 	int n;
-	double k[FLOORS], c[FLOORS], low[FLOORS], high[FLOORS], r[FLOORS], drag[FLOORS], share[FLOORS];
+	double k[FLOORS], c[FLOORS], low[FLOORS], high[FLOORS], r[FLOORS], mass_damping[FLOORS], share[FLOORS];
 	double inner[FLOORS], u[FLOORS + 1], before[FLOORS + 1], force[FLOORS + 1], drift[FLOORS], center[FLOORS],
 	    top[FLOORS];
 };
@@ -27,7 +27,7 @@ static void loop_start(struct loop *x, const struct pound_chain_task *task, doub
 		x->c[i] = floor->dashpot / h;
 		x->high[i] = floor->story.yield;
 		x->r[i] = floor->story.hardening;
-		x->drag[i] = floor->drag * h;
+		x->mass_damping[i] = floor->mass_damping * h;
 		x->share[i] = h * h / floor->mass;
 		x->inner[i] = floor->base ? 0 : 1;
 		x->before[i + 1] = -0.5 * h * h * task->ground[0];
@@ -92,7 +92,7 @@ static inline __attribute__((always_inline)) void loop_run(const struct pound_ch
 			for (int f = 0; f < x->n; f++) {
 				const double u = x->u[f + 1], way = u - x->before[f + 1];
 				x->before[f + 1] = u;
-				x->u[f + 1] = u + way - x->drag[f] * way + x->force[f] * x->share[f] - a;
+				x->u[f + 1] = u + way - x->mass_damping[f] * way + x->force[f] * x->share[f] - a;
 			}
 		}
 	}

@@ -58,7 +58,7 @@ static void building_floors(struct row *row, int b, struct pound_chain_floor *fl
 		floor[i].story.stiffness = stiffness[i];
 		switch (x->damping) {
 		case ROW_RAYLEIGH:
-			floor[i].drag = n == 1 ? 0 : 2 * xi * w[0] * w[high] / (w[0] + w[high]);
+			floor[i].mass_damping = n == 1 ? 0 : 2 * xi * w[0] * w[high] / (w[0] + w[high]);
 			floor[i].dashpot = 2 * xi * stiffness[i] / (n == 1 ? w[0] : w[0] + w[high]);
 			break;
 		case ROW_STIFFNESS:

@@ -68,14 +68,14 @@ static void damping_is_that_of_its_form(void **state)
 		struct pound_building one = equal_storeys(1, row);
 		pound_building_storeys(&one, &s);
 		check_near(s.dashpot[0], 2 * 0.05 * 2e5 * sqrt(3e8 / 2e5), 1e-14 * s.dashpot[0]);
-		check_near(s.drag, 0, 0);
+		check_near(s.mass_damping, 0, 0);
 		assert_false(s.modal);
 	}
 	struct pound_building many = equal_storeys(8, damping_named("rayleigh"));
 	pound_building_storeys(&many, &s);
 	for (int mode = 1; mode <= 3; mode += 2) {
 		const double w = closed(8, mode), a1 = s.dashpot[0] / s.stiffness[0];
-		check_near(s.drag / (2 * w) + a1 * w / 2, 0.05, 1e-13);
+		check_near(s.mass_damping / (2 * w) + a1 * w / 2, 0.05, 1e-13);
 	}
 	many = equal_storeys(8, damping_named("stiffness"));
 	pound_building_storeys(&many, &s);
@@ -90,7 +90,8 @@ static void damping_is_that_of_its_form(void **state)
 	// two modes of a building of two stories are its first and its last
 	many = equal_storeys(2, damping_named("rayleigh"));
 	pound_building_storeys(&many, &s);
-	check_near(s.drag / (2 * closed(2, 2)) + s.dashpot[0] / s.stiffness[0] * closed(2, 2) / 2, 0.05, 1e-13);
+	check_near(s.mass_damping / (2 * closed(2, 2)) + s.dashpot[0] / s.stiffness[0] * closed(2, 2) / 2, 0.05,
+	           1e-13);
 }
 
 CHECK_MAIN(cmocka_unit_test(equal_storeys_have_the_frequencies_of_the_closed_form),
