@@ -293,7 +293,7 @@ struct contact_state {
 };
 
 /* a linear form of the state, the ground motion, its growth over the map, and 1 */
-struct form {
+struct linear_form {
 	vd x[4], ground, rise, force;
 };
 
@@ -301,8 +301,8 @@ struct form {
 struct contact_lanes {
 	struct contact_state at;
 	struct edges base, other; /* where a lane has a law of more than one branch */
-	struct form moved[CONTACT_IMPULSE + 1];
-	struct form error;                                  /* of a substep, of the magnitudes */
+	struct linear_form moved[CONTACT_IMPULSE + 1];
+	struct linear_form error;                           /* of a substep, of the magnitudes */
 	vm alike;                                           /* lanes of TRAIT_ALIKE */
 	vd doubled[CONTACT_MAP_ROWS][POUND_CONTACT_INPUTS]; /* of a doubled map: its bounds and how it is split */
 };
@@ -311,18 +311,19 @@ struct contact_lanes {
  *
  * Given    magnitudes  the row is one of these
  */
-LANE_INLINE struct form form_of(const vd row[POUND_CONTACT_INPUTS], const struct lanes *g, bool magnitudes)
+LANE_INLINE struct linear_form form_of(const vd row[POUND_CONTACT_INPUTS], const struct lanes *g,
+                                       bool magnitudes)
 {
 	vd force[2] = {g->base_force, g->gap_force}, drive[2] = {g->base_drive, g->gap_drive};
 	for (int i = 0; i < 2 && magnitudes; i++)
 		force[i] = vabs(force[i]), drive[i] = vabs(drive[i]);
-	return (struct form){.x = {row[0], row[1], row[2], row[3]},
-	                     .ground = vfma(row[4], drive[0], row[5] * drive[1]),
-	                     .rise = vfma(row[6], drive[0], row[7] * drive[1]),
-	                     .force = vfma(row[4], force[0], row[5] * force[1])};
+	return (struct linear_form){.x = {row[0], row[1], row[2], row[3]},
+	                            .ground = vfma(row[4], drive[0], row[5] * drive[1]),
+	                            .rise = vfma(row[6], drive[0], row[7] * drive[1]),
+	                            .force = vfma(row[4], force[0], row[5] * force[1])};
 }
 
-LANE_INLINE vd form_at(const struct form *f, const vd x[4], vd ground, vd rise)
+LANE_INLINE vd form_at(const struct linear_form *f, const vd x[4], vd ground, vd rise)
 {
 	vd slow = vfma(f->ground, ground, vfma(f->rise, rise, f->force));
 	return vfma(f->x[0], x[0], vfma(f->x[1], x[1], slow)) + vfma(f->x[2], x[2], f->x[3] * x[3]);

@@ -1,7 +1,7 @@
 /* floor.c - the spectra and the history of one floor under one task.
  *
  * 1. The exact solver follows the task; the floor is its observer, and makes pieces of its motion, stretch by stretch;
- * 2. every oscillator rides over a stretch before the next one is made, so that memory does not grow with time. */
+ * 2. every oscillator goes over a stretch before the next one is made, so that memory does not grow with time. */
 #include "engine/floor/floor.h"
 
 #include <assert.h>
@@ -23,13 +23,13 @@ struct pound_floor {
 	struct pound_floor_stretch stretch;
 };
 
-typedef void width_ride(const struct pound_bank *, const struct pound_ride *, void *scratch);
+typedef void width_bank(const struct pound_bank *, const struct pound_bank_input *, void *scratch);
 
 /* Takes a bank over a stretch at a lane count; 0: the widest there is; false: this machine has no such lanes. */
-bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *stretch,
-                                 void *scratch)
+bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank,
+                                 const struct pound_bank_input *stretch, void *scratch)
 {
-	static width_ride *const run[POUND_WIDTHS] = {pound_oscillator_bank_w8, pound_oscillator_bank_w4,
+	static width_bank *const run[POUND_WIDTHS] = {pound_oscillator_bank_w8, pound_oscillator_bank_w4,
 	                                              pound_oscillator_bank_w1, pound_oscillator_bank_portable};
 	int width = pound_dispatch_width(lanes);
 	if (width >= 0)
@@ -127,19 +127,19 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 /* ---- spectra ---- */
 
 /* what takes a bank over a stretch */
-struct riders {
+struct bank_drive {
 	const struct pound_bank *bank;
-	struct pound_ride ride;
+	struct pound_bank_input input;
 	int lanes;
 	void *scratch;
 };
 
-static void riders_take(void *of)
+static void bank_take(void *of)
 {
-	const struct riders *riders = of;
-	bool ridden = pound_oscillator_bank_lanes(riders->lanes, riders->bank, &riders->ride, riders->scratch);
-	assert(ridden);
-	(void)ridden;
+	const struct bank_drive *drive = of;
+	bool done = pound_oscillator_bank_lanes(drive->lanes, drive->bank, &drive->input, drive->scratch);
+	assert(done);
+	(void)done;
 }
 
 /* Pseudo-acceleration spectra of the floor of a task.
@@ -162,18 +162,18 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 	                          .radians = ask->radians,
 	                          .kernel = &floor->kernel,
 	                          .omega = floor->omega};
-	struct riders riders = {.bank = &bank,
-	                        .ride = {.stretch = &floor->stretch,
-	                                 .time_step = ask->task->time_step,
-	                                 .damping = ask->task->bodies[0].damping},
-	                        .lanes = ask->lanes,
-	                        .scratch = floor->scratch};
+	struct bank_drive drive = {.bank = &bank,
+	                           .input = {.stretch = &floor->stretch,
+	                                     .time_step = ask->task->time_step,
+	                                     .damping = ask->task->bodies[0].damping},
+	                           .lanes = ask->lanes,
+	                           .scratch = floor->scratch};
 	struct pound_task_result result = {0}; // stopped before it began it is not written
 	for (int d = 0; d < ask->n_drives; d++) {
 		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
 		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
 	}
-	const struct pound_floor_taker taker = {riders_take, &riders};
+	const struct pound_floor_taker taker = {bank_take, &drive};
 	const struct pound_task_observer observer = {pound_floor_observe, &floor->motion};
 	enum pound_status status = floor_follow(floor, ask, &observer, &taker, &result);
 	for (int d = 0; d < ask->n_drives; d++)
@@ -206,7 +206,7 @@ static const double ROWS_ERROR = 0.005, ROWS_DRIFT = 60;
  *    2 W A: theta/pi A.  Its spectrum is at least A.
  * Source   Nigam and Jennings, Bulletin of the Seismological Society of America 59 (1969) 909: a record of straight lines
  */
-static double rows_apart(double xi)
+static double rows_spacing(double xi)
 {
 	static const double PI = 3.14159265358979323846;
 	const double undamped = PI * PI * ROWS_ERROR * ROWS_ERROR, damped = 4 * PI * PI * xi * ROWS_ERROR;
@@ -228,7 +228,7 @@ struct chronicle {
 	struct pound_floor *floor;
 	pound_floor_take *take;
 	void *into;
-	double apart;                      /* rows_apart */
+	double spacing;                    /* rows_spacing */
 	struct pound_instant_of_task from; /* where this interval began */
 	struct pound_floor_instant last;   /* the end of the piece before */
 	double largest;                    /* acceleration in any piece without contact [m/s2] */
@@ -340,7 +340,7 @@ static void chronicle_piece(struct chronicle *chronicle, const struct pound_floo
 	start.push = m.push[0];
 	if (!chronicle->from.touching)
 		chronicle->largest = fmax(chronicle->largest, p->floor.bound[0]);
-	const double size = chronicle->apart * fmax(chronicle->largest, p->floor.bound[0]);
+	const double size = chronicle->spacing * fmax(chronicle->largest, p->floor.bound[0]);
 	const double inside = size > 0 ? p->floor.bound[2] / size : 0; // over what one row for the piece allows
 	const double needed = fmax(chronicle->needed, inside / (m.step * m.step));
 	const bool instant = p->sampled || p->after_event;
@@ -393,7 +393,7 @@ static void chronicle_observe(void *of, const struct pound_instant_of_task *inst
  *
  * Given    ask     the task; its drives, radians and lanes are not looked at
  * Returns  take    called in the order of time: at every sample; at an event twice, for what was before and what is after;
- *                  and between them as often as rows_apart says
+ *                  and between them as often as rows_spacing says
  * Status   POUND_CHATTER  the motion could not be followed to its end
  *          POUND_STOPPED  stop was set
  * Valid    a response spectrum of the left floor's acceleration, straight between rows, is within 0.5 % of
@@ -406,7 +406,7 @@ enum pound_status pound_floor_history(struct pound_floor *floor, const struct po
 {
 	const struct pound_task *task = ask->task;
 	struct chronicle chronicle = {
-	    .floor = floor, .take = take, .into = into, .apart = rows_apart(floor->damping)};
+	    .floor = floor, .take = take, .into = into, .spacing = rows_spacing(floor->damping)};
 	const struct pound_floor_taker taker = {chronicle_take, &chronicle};
 	const struct pound_task_observer observer = {chronicle_observe, &chronicle};
 	struct pound_task_result result = {0};

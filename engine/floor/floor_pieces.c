@@ -34,7 +34,7 @@ static const double SETTLED_LEAST = 180;
 static const double SWING_MOST = 0x1p-24, SWING_LOST = 36;
 
 /* Derivatives by the share of the step that is gone, times 1/n! the coefficients of powers of it. */
-struct series {
+struct body_series {
 	int order;
 	double step;
 	// of left, right and overlap; those of their velocities are one further on.  Apart: of left alone
@@ -100,7 +100,7 @@ static int polynomial_fill(struct pound_polynomial *into, const double *a, int o
  *   r' = h k v     v' = -h (c v + r + forcing)     by the share of the sample that is gone
  * Test     unit_floor_pieces: every_piece_leads_to_the_next
  */
-void pound_floor_flight(const double state[4], double k, double c, double h, int order, double *a)
+void pound_floor_free_motion(const double state[4], double k, double c, double h, int order, double *a)
 {
 	const double hk = h * k, hc = h * c;
 	double r = state[0], v = state[1];
@@ -131,8 +131,8 @@ int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct po
 		return piece->order;
 	double size[N + 1], sum = 0;
 	*c = room;
-	pound_floor_flight(piece->state, stretch->stiffness[piece->map], damping, piece->step, stretch->order,
-	                   room);
+	pound_floor_free_motion(piece->state, stretch->stiffness[piece->map], damping, piece->step,
+	                        stretch->order, room);
 	for (int n = 0; n <= stretch->order; n++)
 		sum += size[n] = fabs(room[n]);
 	return order_kept(size, stretch->order, sum);
@@ -158,16 +158,17 @@ static int order_of(double x)
 
 /* Derivatives n and n + 1 of left, right and overlap by the share of a step that is gone, and what makes the next: all scaled
  * to the step. */
-struct terms {
+struct body_terms {
 	double u[3], w[3];
 	double c[2], k[2], force[2], increase[2]; /* of each body */
 	double spring, dash, both, ratio;         /* of the contact, 1 + m1/m2, m1/m2 */
 };
 
-static struct terms terms_of(const struct pound_task *task, const struct pound_instant_of_task *at, double dt)
+static struct body_terms terms_of(const struct pound_task *task, const struct pound_instant_of_task *at,
+                                  double dt)
 {
 	const double dt2 = dt * dt;
-	struct terms m = {.both = 1 + task->mass_ratio, .ratio = task->mass_ratio};
+	struct body_terms m = {.both = 1 + task->mass_ratio, .ratio = task->mass_ratio};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &task->bodies[i];
 		m.c[i] = b->damping * dt;
@@ -185,12 +186,12 @@ static struct terms terms_of(const struct pound_task *task, const struct pound_i
 }
 
 /* Derivative n of what the ground and its branch do to a body. */
-static inline double forcing(const struct terms *m, int i, int n)
+static inline double forcing(const struct body_terms *m, int i, int n)
 {
 	return n == 0 ? m->force[i] : n == 1 ? m->increase[i] : 0;
 }
 
-static void series_apart(struct series *s, struct terms m)
+static void series_separated(struct body_series *s, struct body_terms m)
 {
 	double u = m.u[0], w = m.w[0];
 	for (int n = 0; n <= s->order; n++) {
@@ -202,7 +203,7 @@ static void series_apart(struct series *s, struct terms m)
 	s->y[0][s->order + 1] = u;
 }
 
-static void series_touch(struct series *s, struct terms m)
+static void series_contact(struct body_series *s, struct body_terms m)
 {
 	for (int n = 0; n <= s->order; n++) {
 		double free[2], next[3];
@@ -249,17 +250,17 @@ static bool may_settle(const struct pound_floor_motion *motion, const struct pou
                        double *terms)
 {
 	const struct pound_task *task = motion->task;
-	double apart = 0, slow = motion->rate / motion->rate_touch;
+	double closing = 0, slow = motion->rate / motion->rate_touch;
 	*terms = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const double part[4] = {task->bodies[i].damping * at->v[i], at->stiffness[i] * at->u[i],
+		const double term[4] = {task->bodies[i].damping * at->v[i], at->stiffness[i] * at->u[i],
 		                        at->spring_offset[i], task->bodies[i].drive * at->ground};
-		double force = part[0] + part[1] + part[2] + part[3];
-		*terms += fabs(part[0]) + fabs(part[1]) + fabs(part[2]) + fabs(part[3]);
-		apart += i ? force : -force;
+		double force = term[0] + term[1] + term[2] + term[3];
+		*terms += fabs(term[0]) + fabs(term[1]) + fabs(term[2]) + fabs(term[3]);
+		closing += i ? force : -force;
 	}
 	double push = task->contact_stiffness * at->overlap + task->contact_damping * at->overlap_rate;
-	return fabs(apart - (1 + task->mass_ratio) * push) <=
+	return fabs(closing - (1 + task->mass_ratio) * push) <=
 	       fmax(4 * slow * slow, swing_nothing(motion)) * *terms;
 }
 
@@ -276,17 +277,17 @@ static bool may_settle(const struct pound_floor_motion *motion, const struct pou
  * power series as short as that of w: its coefficients follow from those above, down from the last.  What it adds to b1 and
  * b2 is by (rate/W)^2 less than what they are made of, so that few rounds settle that.
  */
-static bool series_settle(struct series *s, const struct pound_floor_motion *motion,
+static bool series_settle(struct body_series *s, const struct pound_floor_motion *motion,
                           const struct pound_instant_of_task *at, double terms)
 {
 	const double dt = s->step;
-	const struct terms m = terms_of(motion->task, at, dt);
+	const struct body_terms m = terms_of(motion->task, at, dt);
 	const double share[2] = {1 / m.both, -m.ratio / m.both};
 	const double spring = m.both * m.spring, dash = m.both * m.dash;
 	const double w0 = (m.ratio * m.u[0] + m.u[1]) / m.both;
 	const double rate0 = (m.ratio * m.w[0] + m.w[1]) / m.both;
 	const int order = s->order;
-	double u[2][N + 1], w[2][N + 1], p[N + 2] = {m.u[2]}, q[N + 2] = {0}, apart[N + 1], last = 0;
+	double u[2][N + 1], w[2][N + 1], p[N + 2] = {m.u[2]}, q[N + 2] = {0}, closing[N + 1], last = 0;
 	// the first round has the bodies go along with an overlap that stays: what it finds takes another to reach them
 	for (int round = 0; round < SETTLED_ROUNDS && (round < 2 || p[0] != last); round++) {
 		double mean = w0, rate = rate0;
@@ -298,13 +299,13 @@ static bool series_settle(struct series *s, const struct pound_floor_motion *mot
 				w[i][n] = rate + share[i] * q[n];
 				b[i] = -(m.c[i] * w[i][n] + m.k[i] * u[i][n]) - forcing(&m, i, n);
 			}
-			apart[n] = b[0] - b[1];
+			closing[n] = b[0] - b[1];
 			mean = rate * POUND_SHARE[n];
 			rate = (m.ratio * b[0] + b[1]) / m.both * POUND_SHARE[n];
 		}
 		for (int n = order; n >= 0; n--) {
 			q[n] = (n + 1) * p[n + 1];
-			p[n] = (apart[n] - dash * q[n] - (n + 1) * q[n + 1]) / spring;
+			p[n] = (closing[n] - dash * q[n] - (n + 1) * q[n + 1]) / spring;
 		}
 	}
 	double factorial = 1;
@@ -336,7 +337,7 @@ static double step_length(double left, double rate)
  *
  * Valid    to rounding: REACH^n/n! is below that at the first term left out
  */
-static void series_next(struct series *s, const struct pound_floor_motion *motion,
+static void series_next(struct body_series *s, const struct pound_floor_motion *motion,
                         const struct pound_instant_of_task *at, double left)
 {
 	double terms, rate = at->touching ? motion->rate_touch : motion->rate;
@@ -347,11 +348,11 @@ static void series_next(struct series *s, const struct pound_floor_motion *motio
 		return;
 	s->step = step_length(left, rate);
 	s->order = order_of(rate * s->step);
-	(at->touching ? series_touch : series_apart)(s, terms_of(motion->task, at, s->step));
+	(at->touching ? series_contact : series_separated)(s, terms_of(motion->task, at, s->step));
 }
 
 /* Moves the state of an instant to the end of a series: terms are added up, the smallest first. */
-static void instant_move(struct pound_instant_of_task *at, const struct series *s)
+static void instant_move(struct pound_instant_of_task *at, const struct body_series *s)
 {
 	double *const u[3] = {&at->u[0], &at->u[1], &at->overlap};
 	double *const v[3] = {&at->v[0], &at->v[1], &at->overlap_rate};
@@ -384,7 +385,7 @@ static int map_of(struct pound_floor_stretch *stretch, double stiffness, double 
 	for (int j = 0; j < 4; j++) {
 		const double unit[4] = {j == 0, j == 1, j == 2, j == 3};
 		double a[N + 1];
-		pound_floor_flight(unit, stiffness, damping, step, stretch->order, a);
+		pound_floor_free_motion(unit, stiffness, damping, step, stretch->order, a);
 		for (int n = 0; n <= stretch->order; n++) {
 			bound[0][j] += fabs(a[n]);
 			bound[1][j] += n * fabs(a[n]);
@@ -424,7 +425,7 @@ static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
  *
  * Given    map  number of its stiffness
  */
-static void flight_add(struct pound_floor_motion *motion, int map)
+static void free_motion_add(struct pound_floor_motion *motion, int map)
 {
 	const struct pound_instant_of_task *at = &motion->from;
 	const double h = motion->task->time_step, drive = motion->task->bodies[0].drive;
@@ -444,7 +445,7 @@ static void flight_add(struct pound_floor_motion *motion, int map)
 
 /* The floor over a series. */
 static void series_add(struct pound_floor_motion *motion, const struct pound_instant_of_task *at,
-                       const struct series *s)
+                       const struct body_series *s)
 {
 	struct pound_floor_piece *piece = piece_next(motion, at, s->step);
 	piece->order = polynomial_fill(&piece->floor, s->floor, s->order, at->spring_offset[0], s->step);
@@ -460,7 +461,7 @@ static void series_add(struct pound_floor_motion *motion, const struct pound_ins
 static void interval_add(struct pound_floor_motion *motion, double length)
 {
 	struct pound_instant_of_task at = motion->from;
-	struct series s;
+	struct body_series s;
 	double gone = 0; // beside the time it would lose its digits
 	for (int steps = 0; !motion->status && !pound_stopped(motion->stop); steps++) {
 		stretch_room(motion);
@@ -495,7 +496,7 @@ void pound_floor_observe(void *of, const struct pound_instant_of_task *instant)
 		if (whole && !motion->from.touching && motion->rate * h <= REACH)
 			map = map_of(motion->stretch, motion->from.stiffness[0], motion->task->bodies[0].damping, h);
 		if (map >= 0)
-			flight_add(motion, map);
+			free_motion_add(motion, map);
 		else
 			interval_add(motion, whole ? h : instant->elapsed);
 		motion->sampled = motion->after_event = false;

@@ -63,7 +63,7 @@ struct pound_floor_motion {
 };
 
 /* Coefficients of a flight's acceleration from its state. */
-void pound_floor_flight(const double state[4], double k, double c, double h, int order, double *a);
+void pound_floor_free_motion(const double state[4], double k, double c, double h, int order, double *a);
 /* Coefficients of a drive over any piece, and their order. */
 int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct pound_floor_piece *piece,
                       enum pound_drive drive, double damping, double room[POUND_FLOOR_ORDER + 1],

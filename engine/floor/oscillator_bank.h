@@ -1,4 +1,4 @@
-/* oscillator_bank.h - oscillators of many frequencies that ride on one floor, in vector lanes over the frequencies. */
+/* oscillator_bank.h - oscillators of many frequencies driven by one floor, in vector lanes over the frequencies. */
 #ifndef SPECTRUM_H
 #define SPECTRUM_H
 
@@ -22,20 +22,23 @@ struct pound_bank {
 };
 
 /* What all pieces of a stretch have in common. */
-struct pound_ride {
+struct pound_bank_input {
 	const struct pound_floor_stretch *stretch;
 	double time_step; /* of the ground motion [s] */
 	double damping;   /* of the left body, c/m [1/s] */
 };
 
-bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank, const struct pound_ride *ride,
-                                 void *scratch);
+bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank,
+                                 const struct pound_bank_input *input, void *scratch);
 
 /* oscillator_bank.inl, compiled once for each */
-void pound_oscillator_bank_w8(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
-void pound_oscillator_bank_w4(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
-void pound_oscillator_bank_w1(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch);
-void pound_oscillator_bank_portable(const struct pound_bank *bank, const struct pound_ride *ride,
+void pound_oscillator_bank_w8(const struct pound_bank *bank, const struct pound_bank_input *input,
+                              void *scratch);
+void pound_oscillator_bank_w4(const struct pound_bank *bank, const struct pound_bank_input *input,
+                              void *scratch);
+void pound_oscillator_bank_w1(const struct pound_bank *bank, const struct pound_bank_input *input,
+                              void *scratch);
+void pound_oscillator_bank_portable(const struct pound_bank *bank, const struct pound_bank_input *input,
                                     void *scratch);
 
 #endif

@@ -1,10 +1,10 @@
 /* oscillator_bank.inl - oscillators on a floor, driven by its pieces exactly, their largest displacements between steps too.
  *
- * 1. A piece is cut into 2^L equal parts, so that w times a part is at most 1.5 radians and a power series of the
+ * 1. A piece is cut into 2^L equal segments, so that w times a segment is at most 1.5 radians and a power series of the
  *    oscillator ends in rounding; L is that of the fastest of a group of eight.
- * 2. A whole sample of free flight is linear in the oscillator's state and four numbers of the floor's, with maps
+ * 2. A whole sample of free motion is linear in the oscillator's state and four numbers of the floor's, with maps
  *    that are made once; any other piece is done by the series itself.
- * 3. The cubic through both ends of a part, widened by the bound of its error, proves that no new largest displacement
+ * 3. The cubic through both ends of a segment, widened by the bound of its error, proves that no new largest displacement
  *    lies inside; where it does not, the velocity's roots are polished on the series. */
 #include "engine/floor/oscillator_bank.h"
 
@@ -16,37 +16,37 @@
 
 enum {
 	TERMS = POUND_FLOOR_TERMS,
-	PARTS_MAX = POUND_KERNEL_PARTS, /* of a sample that has maps */
+	SEGMENTS_MAX = POUND_KERNEL_SEGMENTS, /* of a sample that has maps */
 	INTEGRALS = POUND_KERNEL_INTEGRALS,
-	PARTS_LIMIT = 1 << 24,
+	SEGMENTS_LIMIT = 1 << 24,
 	POLISH =
 	    2, /* rounds of Newton from the cubic's extremum, which misses by 1e-2 at most: 1e-4, 1e-8, squared in z */
 };
 
-/* A part of a piece: its step and the bounds of the drive over it.  All motions below are in its time 0 .. 1. */
-struct part {
+/* A segment of a piece: its step and the bounds of the drive over it.  All motions below are in its time 0 .. 1. */
+struct segment {
 	double step; /* [s] */
 	int terms;   /* of a series without a drive, by the fastest of the group */
 	vd x, damp;  /* w step, 2 xi w step */
-	// |z''''|/288 <= on_z |z| + on_v |v| + on_drive (A, A', A''), A of the drive over the piece: see part_init
+	// |z''''|/288 <= on_z |z| + on_v |v| + on_drive (A, A', A''), A of the drive over the piece: see segment_init
 	vd on_z, on_v, on_drive[3];
 };
 
-/* the maps of one part of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
-struct flight {
+/* the maps of one segment of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
+struct segment_map {
 	vd gz[4], gv[4];
 };
 
 struct maps {
 	vd zz, zv, vz, vv;
-	struct flight part[POUND_FLOOR_MAPS][PARTS_MAX];
+	struct segment_map segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
 };
 
 struct state {
 	vd z, v, top;
 };
 
-struct series {
+struct oscillator_series {
 	int terms;
 	vd z[TERMS + 1], y[TERMS + 1]; /* y: derivative of z */
 	vd z1, y1;
@@ -81,15 +81,15 @@ LANE_INLINE int terms_of(double x)
 	return n;
 }
 
-/* A part of step h, one of n equal ones of a piece, for oscillators of frequency w.
+/* A segment of step h, one of n equal ones of a piece, for oscillators of frequency w.
  *
- * With e = x |z0| + h |v0| + A, x = w h and A, A', A'' bounds of the drive times h^2, in the part's time:
+ * With e = x |z0| + h |v0| + A, x = w h and A, A', A'' bounds of the drive times h^2, in the segment's time:
  * x |z| <= e and |z'| <= e inside, so
  *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
  */
-LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, double step, int n)
+LANE_INLINE struct segment segment_init(vd omega, double omega_max, double damping, double step, int n)
 {
-	struct part p = {.step = step, .terms = terms_of(omega_max * step)};
+	struct segment p = {.step = step, .terms = terms_of(omega_max * step)};
 	const double scale = step * step, share = 1.0 / n;
 	vd x = p.x = omega * step, x2 = x * x, damp = p.damp = x * (2 * damping), both = vfma(damp, damp, x2);
 	vd on_e = vfma(both * x, vsplat(2 * damping + 1), damp * x2) * vsplat(POUND_CUBIC_ERROR);
@@ -101,23 +101,24 @@ LANE_INLINE struct part part_init(vd omega, double omega_max, double damping, do
 	return p;
 }
 
-/* Acceleration over a part as a power series: coefficients to be taken times `scale`  (order + 1);  order -1: none. */
+/* Acceleration over a segment as a power series: coefficients to be taken times `scale`  (order + 1);  order -1: none. */
 struct drive {
 	const double *a;
 	int order;
 	double scale;
 };
 
-/* Power series of oscillators over a part.
+/* Power series of oscillators over a segment.
  *
- * Given    z, y    at the start, y = z' in the part's time
+ * Given    z, y    at the start, y = z' in the segment's time
  *          drive   acceleration of the floor or by the contact
  *
  *   (n + 1) z_n+1 = y_n     (n + 1) y_n+1 = -(2 xi x y_n + x^2 z_n + a_n)
  *
  * Only one fused operation of an order has to wait for the order before.
  */
-LANE_INLINE void series_fill(struct series *s, const struct part *p, vd z, vd y, const struct drive *drive)
+LANE_INLINE void series_fill(struct oscillator_series *s, const struct segment *p, vd z, vd y,
+                             const struct drive *drive)
 {
 	vd x2 = p->x * p->x, factor = vsplat(drive->scale);
 	s->terms = larger(p->terms, drive->order + 2);
@@ -152,8 +153,8 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 
 /* ---- largest displacements ---- */
 
-/* What a drive with these bounds over its piece adds to the error of the cubic of a part. */
-LANE_INLINE vd drive_error(const struct part *p, const double bound[3])
+/* What a drive with these bounds over its piece adds to the error of the cubic of a segment. */
+LANE_INLINE vd drive_error(const struct segment *p, const double bound[3])
 {
 	vd error = p->on_drive[2] * vsplat(bound[2]);
 	for (int k = 1; k >= 0; k--)
@@ -161,11 +162,11 @@ LANE_INLINE vd drive_error(const struct part *p, const double bound[3])
 	return error;
 }
 
-/* Lanes in which |z| may have a new largest value inside a part; ends are taken here.
+/* Lanes in which |z| may have a new largest value inside a segment; ends are taken here.
  *
  * Given    z1, v1  at the end;  error: of the drive
  */
-LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, vd error)
+LANE_INLINE vm segment_risk(const struct segment *p, struct state *s, vd z1, vd v1, vd error)
 {
 	vd third = vsplat(p->step * (1.0 / 3));
 	vd b1 = vfma(third, s->v, s->z), b2 = vfma(-third, v1, z1);
@@ -175,7 +176,7 @@ LANE_INLINE vm part_risk(const struct part *p, struct state *s, vd z1, vd v1, vd
 }
 
 /* |z| at the root of the velocity that Newton's method finds from t; whatever it finds is a value that z takes. */
-LANE_INLINE vd polished(const struct series *s, const vd *bend, vd t)
+LANE_INLINE vd polished(const struct oscillator_series *s, const vd *bend, vd t)
 {
 	vd zero = vsplat(0), one = vsplat(1);
 	for (int round = 0; round < POLISH; round++) {
@@ -186,8 +187,8 @@ LANE_INLINE vd polished(const struct series *s, const vd *bend, vd t)
 	return vabs(series_at(s->z, s->terms, t));
 }
 
-/* The larger of |z| at the extrema inside a part, from both roots of the velocity of the cubic through its ends, and of top. */
-static vd peak_add(const struct series *s, vm risk, vd top)
+/* The larger of |z| at the extrema inside a segment, from both roots of the velocity of the cubic through its ends, and of top. */
+static vd peak_add(const struct oscillator_series *s, vm risk, vd top)
 {
 	vd zero = vsplat(0), one = vsplat(1), bend[TERMS + 1];
 	for (int n = 0; n < s->terms; n++)
@@ -209,9 +210,9 @@ static vd peak_add(const struct series *s, vm risk, vd top)
 
 /* ---- drives ---- */
 
-/* Coefficients of part j of n equal ones in its own time, n a power of two: those of the piece where it is one part, else
+/* Coefficients of segment j of n equal ones in its own time, n a power of two: those of the piece where it is one segment, else
  * put into `room`. */
-static const double *part_drive(const double *a, int order, int j, int n, double *room)
+static const double *segment_drive(const double *a, int order, int j, int n, double *room)
 {
 	double share = 1.0 / n, from = j * share, power = 1;
 	if (n == 1)
@@ -227,23 +228,23 @@ static const double *part_drive(const double *a, int order, int j, int n, double
 }
 
 /* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
-static int parts_of(double omega_max, double step, double radians)
+static int segments_of(double omega_max, double step, double radians)
 {
 	int n = 1;
-	while (omega_max * step > radians * n && n < PARTS_LIMIT)
+	while (omega_max * step > radians * n && n < SEGMENTS_LIMIT)
 		n *= 2;
 	return n;
 }
 
 /* ---- any piece ---- */
 
-/* Integrals of a polynomial over part j of n of its piece. */
+/* Integrals of a polynomial over segment j of n of its piece. */
 static void integrals_fill(const struct pound_kernel *kernel, const double *a, int order, int j, int n,
                            double integral[INTEGRALS])
 {
 	double room[POUND_FLOOR_ORDER + 1];
-	const double *c = n > PARTS_MAX ? part_drive(a, order, j, n, room) : a;
-	const double(*row)[INTEGRALS] = kernel->part[n > PARTS_MAX ? 1 : n + j];
+	const double *c = n > SEGMENTS_MAX ? segment_drive(a, order, j, n, room) : a;
+	const double(*row)[INTEGRALS] = kernel->segment[n > SEGMENTS_MAX ? 1 : n + j];
 	vd sum[INTEGRALS / W] = {0};
 	for (int k = order; k >= 0; k--)
 #pragma GCC unroll 6
@@ -253,17 +254,17 @@ static void integrals_fill(const struct pound_kernel *kernel, const double *a, i
 		*(vd *)(integral + i * W) = sum[i];
 }
 
-/* What a part does to a state: z' = zz z + zy y + fz, y' = yz z + yy y + fy, and the drives' shares (fz, fy). */
+/* What a segment does to a state: z' = zz z + zy y + fz, y' = yz z + yy y + fy, and the drives' shares (fz, fy). */
 struct passage {
 	vd zz, zy, yz, yy, fz[POUND_DRIVES], fy[POUND_DRIVES];
 };
 
-/* The passage of a part by the response h to an initial y of 1, h = sum g_m t^m/m!, for n drives by their integrals.
+/* The passage of a segment by the response h to an initial y of 1, h = sum g_m t^m/m!, for n drives by their integrals.
  *
  *   g_0 = 0, g_1 = 1, g_m+1 = -(2 xi x g_m + x^2 g_m-1)
  *   z' = (h' + 2 xi x h) z + h y - sum g_m J_m     y' = -x^2 h z + h' y - sum g_m+1 J_m,  J_m the (m+1)-fold integral
  */
-LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const double *const integral[],
+LANE_INLINE void passage_fill(struct passage *s, const struct segment *p, const double *const integral[],
                               int n_drives)
 {
 	vd damp = -p->damp, x2 = -(p->x * p->x), g = vsplat(0), next = vsplat(1), h = g, rate = g;
@@ -291,46 +292,46 @@ LANE_INLINE void passage_fill(struct passage *s, const struct part *p, const dou
 	s->yy = rate;
 }
 
-/* part j of n equal ones of a piece */
-struct place {
-	const struct pound_ride *ride;
+/* segment j of n equal ones of a piece */
+struct segment_place {
+	const struct pound_bank_input *input;
 	const struct pound_floor_piece *piece;
 	int j, n;
 };
 
-/* The largest |z| of a part in which there may be an extremum, by its series; in the lanes of `risk`, else top.
+/* The largest |z| of a segment in which there may be an extremum, by its series; in the lanes of `risk`, else top.
  *
- * Given    s  at the start of the part, the largest so far in `top`
+ * Given    s  at the start of the segment, the largest so far in `top`
  */
-LANE_SHARED vd part_top(const struct part *p, const struct place *at, enum pound_drive drive, struct state s,
-                        vm risk)
+LANE_SHARED vd segment_top(const struct segment *p, const struct segment_place *at, enum pound_drive drive,
+                           struct state s, vm risk)
 {
-	double flown[POUND_FLOOR_ORDER + 1], room[POUND_FLOOR_ORDER + 1];
+	double made[POUND_FLOOR_ORDER + 1], room[POUND_FLOOR_ORDER + 1];
 	const double *a;
-	struct series series;
-	const int order = pound_floor_drive(at->ride->stretch, at->piece, drive, at->ride->damping, flown, &a);
-	const struct drive of_part = {part_drive(a, order, at->j, at->n, room), order, p->step * p->step};
-	series_fill(&series, p, s.z, s.v * p->step, &of_part);
+	struct oscillator_series series;
+	const int order = pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, made, &a);
+	const struct drive of_segment = {segment_drive(a, order, at->j, at->n, room), order, p->step * p->step};
+	series_fill(&series, p, s.z, s.v * p->step, &of_segment);
 	return peak_add(&series, risk, s.top);
 }
 
-/* Moves a state over a part; the series is only made where there may be an extremum inside.
+/* Moves a state over a segment; the series is only made where there may be an extremum inside.
  *
  * Given    to     its z and v there;  error: of the drive
  */
-LANE_INLINE void part_pass(const struct part *p, const struct place *at, enum pound_drive drive,
-                           struct state *s, struct state to, vd error)
+LANE_INLINE void segment_pass(const struct segment *p, const struct segment_place *at, enum pound_drive drive,
+                              struct state *s, struct state to, vd error)
 {
-	vm risk = part_risk(p, s, to.z, to.v, error);
+	vm risk = segment_risk(p, s, to.z, to.v, error);
 	if (__builtin_expect(vany(risk), 0))
-		s->top = part_top(p, at, drive, *s, risk);
+		s->top = segment_top(p, at, drive, *s, risk);
 	s->z = to.z;
 	s->v = to.v;
 }
 
-/* Oscillators over one part of a piece, by the integrals of its drives. */
-LANE_INLINE void part_ride(const struct part *p, const struct place *at, struct state s[], int n_drives,
-                           const double *const integral[])
+/* Oscillators over one segment of a piece, by the integrals of its drives. */
+LANE_INLINE void segment_move(const struct segment *p, const struct segment_place *at, struct state s[],
+                              int n_drives, const double *const integral[])
 {
 	const struct pound_polynomial *a[POUND_DRIVES] = {&at->piece->floor, &at->piece->push};
 	struct passage passage;
@@ -340,59 +341,60 @@ LANE_INLINE void part_ride(const struct part *p, const struct place *at, struct 
 		vd y = s[d].v * p->step;
 		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
 		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
-		part_pass(p, at, d, &s[d], (struct state){.z = z1, .v = y1 * per_step}, drive_error(p, a[d]->bound));
+		segment_pass(p, at, d, &s[d], (struct state){.z = z1, .v = y1 * per_step},
+		             drive_error(p, a[d]->bound));
 	}
 }
 
-/* Oscillators over a piece of many parts: each part has integrals of its own. */
-LANE_SHARED void parts_ride(const struct pound_bank *bank, const struct part *p, struct place *at,
-                            struct state s[])
+/* Oscillators over a piece of many segments: each segment has integrals of its own. */
+LANE_SHARED void segments_move(const struct pound_bank *bank, const struct segment *p,
+                               struct segment_place *at, struct state s[])
 {
 	alignas(64) double own[POUND_DRIVES][INTEGRALS];
 	double room[POUND_FLOOR_ORDER + 1];
 	const double *c[POUND_DRIVES], *const integral[POUND_DRIVES] = {own[0], own[1]};
 	int order[POUND_DRIVES];
 	for (int d = 0; d < bank->n_drives; d++)
-		order[d] = pound_floor_drive(at->ride->stretch, at->piece, d, at->ride->damping, room, &c[d]);
+		order[d] = pound_floor_drive(at->input->stretch, at->piece, d, at->input->damping, room, &c[d]);
 	for (at->j = 0; at->j < at->n; at->j++) {
 		for (int d = 0; d < bank->n_drives; d++)
 			integrals_fill(bank->kernel, c[d], order[d], at->j, at->n, own[d]);
-		part_ride(p, at, s, bank->n_drives, integral);
+		segment_move(p, at, s, bank->n_drives, integral);
 	}
 }
 
-/* ---- free flight ---- */
+/* ---- free motion ---- */
 
-/* The maps of all parts of a sample, of every stiffness of a stretch. */
-static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct part *p,
-                      const struct pound_ride *ride, int parts)
+/* The maps of all segments of a sample, of every stiffness of a stretch. */
+static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct segment *p,
+                      const struct pound_bank_input *input, int segments)
 {
 	alignas(64) double integrals[INTEGRALS] = {0};
 	const double *const integral[] = {integrals};
 	struct passage passage;
 	vd per_step = vsplat(1 / p->step);
-	const int order = ride->stretch->order;
+	const int order = input->stretch->order;
 	passage_fill(&passage, p, integral, 0);
 	maps->zz = passage.zz, maps->vz = passage.yz * per_step;
 	maps->zv = passage.zy * p->step, maps->vv = passage.yy;
-	for (int m = 0; m < ride->stretch->n_maps; m++)
+	for (int m = 0; m < input->stretch->n_maps; m++)
 		for (int state = 0; state < 4; state++) {
 			const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
-			const double k = ride->stretch->stiffness[m];
+			const double k = input->stretch->stiffness[m];
 			double a[POUND_FLOOR_ORDER + 1];
-			pound_floor_flight(unit, k, ride->damping, ride->time_step, order, a);
-			for (int j = 0; j < parts; j++) {
-				integrals_fill(bank->kernel, a, order, j, parts, integrals);
+			pound_floor_free_motion(unit, k, input->damping, input->time_step, order, a);
+			for (int j = 0; j < segments; j++) {
+				integrals_fill(bank->kernel, a, order, j, segments, integrals);
 				passage_fill(&passage, p, integral, 1);
-				maps->part[m][j].gz[state] = passage.fz[0];
-				maps->part[m][j].gv[state] = passage.fy[0] * per_step;
+				maps->segment[m][j].gz[state] = passage.fz[0];
+				maps->segment[m][j].gv[state] = passage.fy[0] * per_step;
 			}
 		}
 }
 
 /* A whole sample by maps; the floor's drive has them, the contact gives none. */
-LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, struct place *at,
-                             enum pound_drive drive, struct state *s)
+LANE_INLINE void free_move(const struct maps *maps, const struct segment *p, struct segment_place *at,
+                           enum pound_drive drive, struct state *s)
 {
 	const struct pound_floor_piece *piece = at->piece;
 	const bool driven = drive == POUND_DRIVE_FLOOR;
@@ -404,7 +406,7 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 		vd z = vsplat(0), v = vsplat(0);
 		if (driven) {
 			// what does not wait for the sample before comes first
-			const struct flight *f = &maps->part[piece->map][at->j];
+			const struct segment_map *f = &maps->segment[piece->map][at->j];
 #pragma GCC unroll 4
 			for (int k = 0; k < 4; k++) {
 				z = vfma(f->gz[k], state[k], z);
@@ -413,43 +415,44 @@ LANE_INLINE void flight_ride(const struct maps *maps, const struct part *p, stru
 		}
 		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
 		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
-		part_pass(p, at, drive, s, (struct state){.z = z, .v = v}, error);
+		segment_pass(p, at, drive, s, (struct state){.z = z, .v = v}, error);
 	}
 }
 
 /* ---- the bank ---- */
 
 /* One vector of oscillators over a whole stretch. */
-static void vector_ride(const struct pound_bank *bank, const struct pound_ride *ride, int at,
+static void vector_move(const struct pound_bank *bank, const struct pound_bank_input *input, int at,
                         double omega_max, struct scratch *scratch)
 {
 	vd omega = *(const vd *)(bank->omega + at);
 	struct state s[POUND_DRIVES];
 	for (int d = 0; d < bank->n_drives; d++)
 		s[d] = (struct state){*(vd *)(bank->z[d] + at), *(vd *)(bank->v[d] + at), *(vd *)(bank->top[d] + at)};
-	int parts = parts_of(omega_max, ride->time_step, bank->radians);
-	bool mapped = parts <= PARTS_MAX && ride->stretch->n_maps > 0;
-	struct part sample = part_init(omega, omega_max, bank->damping, ride->time_step / parts, parts);
+	int segments = segments_of(omega_max, input->time_step, bank->radians);
+	bool mapped = segments <= SEGMENTS_MAX && input->stretch->n_maps > 0;
+	struct segment sample =
+	    segment_init(omega, omega_max, bank->damping, input->time_step / segments, segments);
 	if (mapped)
-		maps_fill(&scratch->maps, bank, &sample, ride, parts);
-	for (int i = 0; i < ride->stretch->n; i++) {
-		const struct pound_floor_piece *piece = &ride->stretch->piece[i];
-		struct place place = {.ride = ride, .piece = piece, .n = parts};
+		maps_fill(&scratch->maps, bank, &sample, input, segments);
+	for (int i = 0; i < input->stretch->n; i++) {
+		const struct pound_floor_piece *piece = &input->stretch->piece[i];
+		struct segment_place place = {.input = input, .piece = piece, .n = segments};
 		if (piece->map >= 0 && mapped) {
-			flight_ride(&scratch->maps, &sample, &place, POUND_DRIVE_FLOOR, &s[POUND_DRIVE_FLOOR]);
+			free_move(&scratch->maps, &sample, &place, POUND_DRIVE_FLOOR, &s[POUND_DRIVE_FLOOR]);
 			if (bank->n_drives > 1)
-				flight_ride(&scratch->maps, &sample, &place, POUND_DRIVE_PUSH, &s[POUND_DRIVE_PUSH]);
+				free_move(&scratch->maps, &sample, &place, POUND_DRIVE_PUSH, &s[POUND_DRIVE_PUSH]);
 			continue;
 		}
-		place.n = parts_of(omega_max, piece->step, bank->radians);
-		struct part p = part_init(omega, omega_max, bank->damping, piece->step / place.n, place.n);
+		place.n = segments_of(omega_max, piece->step, bank->radians);
+		struct segment p = segment_init(omega, omega_max, bank->damping, piece->step / place.n, place.n);
 		const double *const whole[POUND_DRIVES] = {scratch->integral[i][0], scratch->integral[i][1]};
 		if (place.n > 1)
-			parts_ride(bank, &p, &place, s);
+			segments_move(bank, &p, &place, s);
 		else if (bank->n_drives > 1)
-			part_ride(&p, &place, s, POUND_DRIVES, whole);
+			segment_move(&p, &place, s, POUND_DRIVES, whole);
 		else
-			part_ride(&p, &place, s, 1, whole);
+			segment_move(&p, &place, s, 1, whole);
 	}
 	for (int d = 0; d < bank->n_drives; d++) {
 		*(vd *)(bank->z[d] + at) = s[d].z;
@@ -466,11 +469,11 @@ static void vector_ride(const struct pound_bank *bank, const struct pound_ride *
  * Valid    exact but for rounding; bits of an oscillator depend on its group, not on the lane count
  * Test     unit_oscillator_bank
  */
-void POUND_OSCILLATOR_BANK(const struct pound_bank *bank, const struct pound_ride *ride, void *scratch)
+void POUND_OSCILLATOR_BANK(const struct pound_bank *bank, const struct pound_bank_input *input, void *scratch)
 {
 	struct scratch *room = scratch;
-	for (int i = 0; i < ride->stretch->n; i++) {
-		const struct pound_floor_piece *piece = &ride->stretch->piece[i];
+	for (int i = 0; i < input->stretch->n; i++) {
+		const struct pound_floor_piece *piece = &input->stretch->piece[i];
 		if (piece->map >= 0)
 			continue;
 		integrals_fill(bank->kernel, piece->floor.c, piece->order, 0, 1,
@@ -485,6 +488,6 @@ void POUND_OSCILLATOR_BANK(const struct pound_bank *bank, const struct pound_rid
 		for (int l = 0; l < POUND_SPECTRUM_GROUP; l++)
 			omega_max = omega[l] > omega_max ? omega[l] : omega_max;
 		for (int l = 0; l < POUND_SPECTRUM_GROUP; l += W)
-			vector_ride(bank, ride, g * POUND_SPECTRUM_GROUP + l, omega_max, room);
+			vector_move(bank, input, g * POUND_SPECTRUM_GROUP + l, omega_max, room);
 	}
 }

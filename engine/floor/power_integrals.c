@@ -1,4 +1,4 @@
-/* power_integrals.c - integrals of powers over parts of a piece. */
+/* power_integrals.c - integrals of powers over segments of a piece. */
 #include "engine/floor/power_integrals.h"
 
 #include <string.h>
@@ -23,7 +23,7 @@ static void power_fill(int j, int n, int k, double out[POUND_KERNEL_INTEGRALS])
 	}
 }
 
-/* All parts of all powers of two.
+/* All segments of all powers of two.
  *
  * Valid    every term is positive: exact but for rounding
  * Test     unit_power_integrals
@@ -31,8 +31,8 @@ static void power_fill(int j, int n, int k, double out[POUND_KERNEL_INTEGRALS])
 void pound_kernel_fill(struct pound_kernel *kernel)
 {
 	memset(kernel, 0, sizeof *kernel);
-	for (int n = 1; n <= POUND_KERNEL_PARTS; n *= 2)
+	for (int n = 1; n <= POUND_KERNEL_SEGMENTS; n *= 2)
 		for (int j = 0; j < n; j++)
 			for (int k = 0; k <= POUND_FLOOR_ORDER; k++)
-				power_fill(j, n, k, kernel->part[n + j][k]);
+				power_fill(j, n, k, kernel->segment[n + j][k]);
 }

@@ -19,7 +19,7 @@ enum { N = FILTER_STATES, NODES = 8 };
 static const double HIGH_PASS_DAMPING = 0.6;
 
 /* p'''' + c[3] p''' + c[2] p'' + c[1] p' + c[0] p = (s^2 + alpha s + beta) (s^2 + gamma s + delta) p */
-struct chain {
+struct filter {
 	double alpha, beta;  /* Kanai-Tajimi */
 	double gamma, delta; /* high pass */
 	double c[N];
@@ -30,15 +30,15 @@ static double within(double x, double low, double high)
 	return x < low ? low : x > high ? high : x;
 }
 
-static struct chain chain_of(double theta, double damping_ratio, double high_pass_ratio)
+static struct filter filter_of(double theta, double damping_ratio, double high_pass_ratio)
 {
 	theta = within(theta, 1e-30, 1e6);
 	damping_ratio = within(damping_ratio, 1e-9, 1e9);
 	const double corner = within(high_pass_ratio, 1e-9, 1e9) * theta;
-	struct chain k = {.alpha = 2 * damping_ratio * theta,
-	                  .beta = theta * theta,
-	                  .gamma = 2 * HIGH_PASS_DAMPING * corner,
-	                  .delta = corner * corner};
+	struct filter k = {.alpha = 2 * damping_ratio * theta,
+	                   .beta = theta * theta,
+	                   .gamma = 2 * HIGH_PASS_DAMPING * corner,
+	                   .delta = corner * corner};
 	k.c[3] = k.alpha + k.gamma;
 	k.c[2] = k.beta + k.alpha * k.gamma + k.delta;
 	k.c[1] = k.alpha * k.delta + k.beta * k.gamma;
@@ -146,7 +146,7 @@ static void cholesky(double q[N][N], double l[N][N])
  *
  * Source   the four equations E[p^(k) (p'''' + c3 p''' + ... - w)] = 0, k = 0 .. 3
  * Test     unit_kanai_tajimi: the_stationary_covariance_stays */
-static void stationary(const struct chain *k, double l[N][N])
+static void stationary(const struct filter *k, double l[N][N])
 {
 	const double al = k->alpha, be = k->beta, ga = k->gamma, de = k->delta;
 	const double d = 2 * al * ga * ((be - de) * (be - de) + (al + ga) * (al * de + be * ga));
@@ -178,7 +178,7 @@ static void stationary(const struct chain *k, double l[N][N])
  * Test     unit_kanai_tajimi */
 void pound_filter_init(struct pound_filter *f, double theta, double damping_ratio, double high_pass_ratio)
 {
-	const struct chain k = chain_of(theta, damping_ratio, high_pass_ratio);
+	const struct filter k = filter_of(theta, damping_ratio, high_pass_ratio);
 	// a quadratic's roots are no larger than the larger of its natural frequency and its damping coefficient
 	const double bound[4] = {sqrt(k.beta), k.alpha, sqrt(k.delta), k.gamma};
 	double largest = 0;

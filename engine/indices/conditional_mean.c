@@ -29,7 +29,7 @@ struct points {
 };
 
 /* Weighted sums over points, u measured from some place: of 1, u, u^2, y, u y. */
-struct sums {
+struct line_sums {
 	double one, u, uu, y, uy;
 };
 
@@ -38,7 +38,7 @@ struct line {
 	double level, slope;
 };
 
-static struct line line_of(const struct sums *s)
+static struct line line_of(const struct line_sums *s)
 {
 	const double spread = s->one * s->uu - s->u * s->u;
 	// all points at one place have a mean alone
@@ -78,7 +78,7 @@ static void points_fill(struct points *points, const struct pound_conditional *g
 /* ---- the bandwidth ---- */
 
 struct bins {
-	struct sums fold[FOLDS + 1][BINS]; /* u from the middle of the bin; the last is that of all folds */
+	struct line_sums fold[FOLDS + 1][BINS]; /* u from the middle of the bin; the last is that of all folds */
 };
 
 static void bins_fill(struct bins *bins, const struct points *points)
@@ -88,7 +88,7 @@ static void bins_fill(struct bins *bins, const struct points *points)
 		const int bin = (int)(points->u[k] * BINS), fold = k / 2 % FOLDS;
 		const double u = points->u[k] - (bin + 0.5) / BINS, weight = points->weight[k % 2];
 		for (int f = fold;; f = FOLDS) {
-			struct sums *s = &bins->fold[f][bin];
+			struct line_sums *s = &bins->fold[f][bin];
 			s->one += weight;
 			s->u += weight * u;
 			s->uu += weight * u * u;
@@ -101,7 +101,7 @@ static void bins_fill(struct bins *bins, const struct points *points)
 }
 
 /* Adds sums of which u counts from a place that lies `shift` ahead. */
-static void sums_add(struct sums *into, const struct sums *s, double weight, double shift)
+static void sums_add(struct line_sums *into, const struct line_sums *s, double weight, double shift)
 {
 	into->one += weight * s->one;
 	into->u += weight * (s->u + shift * s->one);
@@ -117,7 +117,7 @@ static double prediction_error(const struct bins *bins, double bandwidth)
 	const int reach = (int)(fmin(bandwidth, 1.0) * BINS);
 	double error = 0.0;
 	for (int bin = 0; bin < BINS; bin++) {
-		struct sums near[FOLDS + 1];
+		struct line_sums near[FOLDS + 1];
 		memset(near, 0, sizeof near);
 		for (int other = bin - reach; other <= bin + reach; other++) {
 			const double shift = (double)(other - bin) / BINS;
@@ -125,7 +125,7 @@ static double prediction_error(const struct bins *bins, double bandwidth)
 				sums_add(&near[f], &bins->fold[f][other], kernel(shift, bandwidth), shift);
 		}
 		for (int f = 0; f < FOLDS; f++) {
-			const struct sums *in = &bins->fold[f][bin];
+			const struct line_sums *in = &bins->fold[f][bin];
 			sums_add(&near[f], &near[FOLDS], -1.0, 0.0);
 			if (in->one == 0.0)
 				continue;
@@ -181,9 +181,9 @@ double pound_conditional_x(const struct pound_distribution *distribution, int k)
 	           : pound_distribution_quantile(distribution, pound_conditional_place(k));
 }
 
-static struct sums sums_at(const struct points *points, double place, double bandwidth)
+static struct line_sums sums_at(const struct points *points, double place, double bandwidth)
 {
-	struct sums s = {0};
+	struct line_sums s = {0};
 	for (int k = 0; k < points->n; k++) {
 		const double u = points->u[k] - place;
 		if (!(fabs(u) < bandwidth))
@@ -210,7 +210,7 @@ static double level_at(const struct line *line, double u)
 
 /* What each row adds to the curve at a place: the kernel's weights of its points times their residuals. */
 static void influence_fill(const struct points *points, const double *residual, double place,
-                           double bandwidth, const struct sums *s, double *influence)
+                           double bandwidth, const struct line_sums *s, double *influence)
 {
 	const double spread = s->one * s->uu - s->u * s->u, n = points->n / 2;
 	for (int i = 0; i < points->n / 2; i++) {
@@ -225,7 +225,7 @@ static void influence_fill(const struct points *points, const double *residual, 
 }
 
 /* Where everything lies in the scratch. */
-struct work {
+struct mean_work {
 	struct bins *bins;
 	struct points points;
 	double *residual;  /* of the points  (2 n_rows) */
@@ -233,7 +233,7 @@ struct work {
 	double *groups;    /* (groups, at most n_rows) */
 };
 
-static size_t carve(struct work *work, double *scratch, int n_rows)
+static size_t carve(struct mean_work *work, double *scratch, int n_rows)
 {
 	const size_t n = n_rows;
 	if (scratch) {
@@ -247,15 +247,15 @@ static size_t carve(struct work *work, double *scratch, int n_rows)
 	return 8 * n + sizeof(struct bins) / sizeof(double);
 }
 
-static void curve_fill(const struct pound_conditional *given, const struct work *work, double bandwidth,
+static void curve_fill(const struct pound_conditional *given, const struct mean_work *work, double bandwidth,
                        struct pound_curve *curve)
 {
 	const struct pound_rows *rows = given->rows;
 	const struct points *points = &work->points;
 	struct line line[POUND_CURVE];
-	struct sums sums[POUND_CURVE];
+	struct line_sums sums[POUND_CURVE];
 	for (int k = 0; k < POUND_CURVE && !pound_stopped(rows->stop); k++) {
-		const struct sums wide = sums_at(points, pound_conditional_place(k), bandwidth);
+		const struct line_sums wide = sums_at(points, pound_conditional_place(k), bandwidth);
 		curve->mean[k].value = rows->mean + given->trend[k] + line_of(&wide).level;
 		sums[k] = sums_at(points, pound_conditional_place(k), 0.5 * bandwidth);
 		line[k] = line_of(&sums[k]);
@@ -275,7 +275,7 @@ static void curve_fill(const struct pound_conditional *given, const struct work 
 }
 
 /* The means of the rows at each of a discrete input's values. */
-static void levels_fill(const struct pound_conditional *given, int input, const struct work *work,
+static void levels_fill(const struct pound_conditional *given, int input, const struct mean_work *work,
                         struct pound_curve *curve)
 {
 	const struct pound_rows *rows = given->rows;
@@ -329,7 +329,7 @@ size_t pound_conditional_scratch(int n_rows)
 void pound_conditional_mean(const struct pound_conditional *given, int input, double *scratch,
                             struct pound_curve *curve)
 {
-	struct work work = {0};
+	struct mean_work work = {0};
 	carve(&work, scratch, given->rows->n_rows);
 	points_fill(&work.points, given, input);
 	if (pound_rows_levels(given->rows, input) > 0)

@@ -222,7 +222,7 @@ static void shapley(const struct sources *s, struct pound_estimate *into)
 
 // in the order in which they are made: a stand-in comes before the column it stands in for
 // clang-format off
-static const struct column {
+static const struct index_column {
 	enum pound_index index;
 	bool (*possible)(const struct sources *s);
 	void (*make)(const struct sources *s, struct pound_estimate *into);
@@ -263,7 +263,7 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 {
 	const int d = s->rows->n_inputs;
 	for (int k = 0; k < POUND_N_INDICES && !pound_stopped(s->rows->stop); k++) {
-		const struct column *column = &columns[k];
+		const struct index_column *column = &columns[k];
 		struct pound_estimate *into = indices->index[column->index];
 		const bool told = column->shared || !s->shared;
 		if (told && column->possible(s))

@@ -79,14 +79,14 @@ static void levels_fit(const double *y, const double *level, int n, double *fit)
 
 /* One input's sums over the sample blocks: of each row, output times prediction by the nearer and by the wider reach, and
  * the latter prediction squared. */
-struct sums {
+struct window_sums {
 	double *near, *wide, *square; /* (n_rows) each */
 };
 
 /* Where everything lies in the scratch. */
 struct space {
 	double *variance, *y, *fit, *fit_wide, *level; /* (n_rows) each */
-	struct sums sums;
+	struct window_sums sums;
 	size_t *order;      /* (n_rows) */
 	double *group_sums; /* (groups, at most n_rows) */
 	double *influence;  /* of each row on each input's index  (n_inputs x n_rows) */

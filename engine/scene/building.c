@@ -49,7 +49,7 @@ static void modal(const struct pound_building *building, const double *w, struct
 	s->modal = s->n > 1;
 }
 
-static const struct form {
+static const struct damping_form {
 	const char *name;
 	const char *text; /* one line of documentation */
 	void (*dashpots)(const struct pound_building *building, const double *w, struct pound_storeys *s);

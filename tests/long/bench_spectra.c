@@ -34,7 +34,7 @@ struct ridden {
 	double *psa[POUND_DRIVES];
 };
 
-static void ride(void *of)
+static void move(void *of)
 {
 	const struct ridden *ridden = of;
 	const struct pound_floor_ask ask = {
@@ -65,7 +65,7 @@ static void one_signal(void)
 	struct ridden both = with, without = with;
 	both.n_drives = POUND_DRIVES;
 	without.task = floor.free;
-	struct bench_job jobs[] = {{ride, &with, 0}, {ride, &both, 0}, {ride, &without, 0}};
+	struct bench_job jobs[] = {{move, &with, 0}, {move, &both, 0}, {move, &without, 0}};
 	bench_jobs(jobs, 3, REPEATS);
 	bench_print((struct bench_row){.what = "spectrum of 200 frequencies, 20 s with 91 contacts",
 	                               .value = 1e3 * jobs[0].seconds,

@@ -33,10 +33,10 @@ static struct pound_bank bank_of(const double *w, int n, double xi)
 }
 
 /* Rides over the stretch as it stands. */
-static void ride(const struct pound_bank *bank)
+static void move(const struct pound_bank *bank)
 {
-	const struct pound_ride ride = {.stretch = &stretch, .time_step = 0.01};
-	assert_true(pound_oscillator_bank_lanes(0, bank, &ride, scratch));
+	const struct pound_bank_input move = {.stretch = &stretch, .time_step = 0.01};
+	assert_true(pound_oscillator_bank_lanes(0, bank, &move, scratch));
 }
 
 /* One more piece of the stretch: a polynomial over its own time. */
@@ -89,7 +89,7 @@ static void a_half_sine_gives_the_known_shock_spectrum(void **state)
 			w[k] = 2 * pi * shocks[k][0] / td;
 		struct pound_bank bank = bank_of(w, SHOCKS, 0);
 		half_sine(td, pieces[p], td / shocks[0][0]);
-		ride(&bank);
+		move(&bank);
 		for (int k = 0; k < SHOCKS; k++) // half a unit of the ninth decimal
 			check_near(w[k] * w[k] * bank.top[0][k], shocks[k][1], 5.1e-10);
 	}
@@ -112,7 +112,7 @@ static void a_train_of_velocity_steps_gives_the_exact_values(void **state)
 			stretch.n = 0;
 			for (int part = 0; part < 5; part++)
 				piece_next(0.1, 0);
-			ride(&bank);
+			move(&bank);
 		}
 		check_near(w * w * bank.top[0][0] / (2 * w0), trains[i][2], 5.1e-10);
 	}
@@ -134,7 +134,7 @@ static void a_step_of_acceleration_overshoots_as_it_must(void **state)
 			piece->floor.c[0] = -3;
 			piece->floor.bound[0] = 3;
 		}
-		ride(&bank);
+		move(&bank);
 		for (int k = 0; k < OSCILLATORS; k++)
 			check_near(w[k] * w[k] * bank.top[0][k], 3 * (1 + exp(-xi * pi / sqrt(1 - xi * xi))), 2e-10);
 	}
@@ -153,7 +153,7 @@ static void the_contact_s_part_drives_its_own_oscillators(void **state)
 	piece->push.c[2] = -6 / step;
 	polynomial_bound(&piece->push, 2);
 	piece_next(1, 0);
-	ride(&bank);
+	move(&bank);
 	check_near(w * w * bank.top[POUND_DRIVE_PUSH][0], w, 1e-9); // (w step)^2 w = 1e-9
 	check_near(bank.top[POUND_DRIVE_FLOOR][0], 0, 0);
 }
@@ -169,7 +169,7 @@ static void shorter_steps_change_nothing(void **state)
 		struct pound_bank bank = bank_of(w, OSCILLATORS, 0.05);
 		bank.radians = fine ? 0.51 / fine : 1.5;
 		half_sine(0.3, fine == 2 ? 37 : 10, 1);
-		ride(&bank);
+		move(&bank);
 		for (int k = 0; k < OSCILLATORS; k++)
 			if (fine)
 				check_near(w[k] * w[k] * bank.top[0][k], once[k], 1e-12);

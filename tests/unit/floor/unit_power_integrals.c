@@ -1,4 +1,4 @@
-/* unit_power_integrals.c - integrals of powers over parts of a piece, against factorials and against each other. */
+/* unit_power_integrals.c - integrals of powers over segments of a piece, against factorials and against each other. */
 #include <math.h>
 
 #include "engine/floor/power_integrals.h"
@@ -13,7 +13,7 @@ static void the_whole_piece_gives_factorials(void **state)
 	for (int k = 0; k <= POUND_FLOOR_ORDER; k++)
 		for (int m = 0; m < POUND_KERNEL_INTEGRALS; m++) {
 			double exact = tgamma(k + 1) / tgamma(m + k + 2);
-			check_near(kernel.part[1][k][m] / exact, 1, 1e-14);
+			check_near(kernel.segment[1][k][m] / exact, 1, 1e-14);
 		}
 }
 
@@ -23,7 +23,7 @@ static void parts_give_the_integrals_of_cauchy(void **state)
 	(void)state;
 	pound_kernel_fill(&kernel);
 	static const int orders[] = {0, 1, 5, 12};
-	for (int n = 2; n <= POUND_KERNEL_PARTS; n *= 2)
+	for (int n = 2; n <= POUND_KERNEL_SEGMENTS; n *= 2)
 		for (int j = 0; j < n; j++)
 			for (int i = 0; i < 4; i++)
 				for (int m = 0; m < 4; m++) {
@@ -33,20 +33,20 @@ static void parts_give_the_integrals_of_cauchy(void **state)
 						sum += weight * pow(1 - s, m) / tgamma(m + 1) * pow((j + s) / n, orders[i]) /
 						       (3 * steps);
 					}
-					check_near(kernel.part[n + j][orders[i]][m], sum, 1e-7);
+					check_near(kernel.segment[n + j][orders[i]][m], sum, 1e-7);
 				}
 }
 
-/* Simple integrals over the parts of a piece add up to that over the piece. */
+/* Simple integrals over the segments of a piece add up to that over the piece. */
 static void parts_add_up(void **state)
 {
 	(void)state;
 	pound_kernel_fill(&kernel);
-	for (int n = 2; n <= POUND_KERNEL_PARTS; n *= 2)
+	for (int n = 2; n <= POUND_KERNEL_SEGMENTS; n *= 2)
 		for (int k = 0; k <= POUND_FLOOR_ORDER; k++) {
 			double sum = 0;
 			for (int j = 0; j < n; j++)
-				sum += kernel.part[n + j][k][0] / n;
+				sum += kernel.segment[n + j][k][0] / n;
 			check_near(sum, 1.0 / (k + 1), 1e-15);
 		}
 }
