@@ -40,10 +40,10 @@ static struct cubic sample_move(const struct sample *s, double share)
 	struct pound_map map;
 	map_fill(&map, s->g.body[0].stiffness, s->g.body[0].damping, share * s->h);
 	memcpy(&part.g.map[0], &map, sizeof map);
-	const struct free_map map = free_map_of(&part.g, 0);
+	const struct free_map free = free_map_of(&part.g, 0);
 	const double ground = s->g.ground, grown = share * (s->next - ground);
-	const struct place from = {s->g.u[0], s->g.v[0]}, to = free_move(&map, from, ground, ground + grown);
-	return cubic_of(&map, from, to, fabs(ground) + fabs(grown), share * s->h / 3);
+	const struct place from = {s->g.u[0], s->g.v[0]}, to = free_move(&free, from, ground, ground + grown);
+	return cubic_of(&free, from, to, fabs(ground) + fabs(grown), share * s->h / 3);
 }
 
 enum { SAMPLES = 4000, PARTS = 16 };
