@@ -33,7 +33,8 @@ struct pound_response {
 #define X(member, name, oscillator) double member;
 	POUND_MEASURES(X)
 #undef X
-	double energy_residual; /* energy put in and not found again, over the most there was along the way */
+	double
+	    energy_residual; /* energy put in and not found again, over the most there was along the way; NAN: not computed */
 };
 
 // one row per quantity of one storey, and of the floor above it, of a row of buildings: X(member, name in a result)

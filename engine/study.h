@@ -21,8 +21,9 @@ enum {
 	POUND_SOLVERS = 4,              /* rows of the solvers */
 	POUND_CONTACT_MODELS = 10,      /* rows of the contact models */
 	POUND_SETTINGS_MAX = 16,        /* of one solver that are compared */
-	POUND_ROWS_MAX = 1 << 20,       /* rows of a design */
-	POUND_FACTORIAL_INPUTS_MAX = 5, /* inputs whose every mixture of A and B is run */
+	POUND_BALANCED_SIGNALS = 32, /* of each cell of a response study have energy balances: the first ones */
+	POUND_ROWS_MAX = 1 << 20,    /* rows of a design */
+	POUND_FACTORIAL_INPUTS_MAX = 5,               /* inputs whose every mixture of A and B is run */
 	POUND_SAMPLES_MAX = 2 * POUND_INPUTS_MAX + 2, /* of a row of the design */
 	POUND_BUILDINGS_MAX = 8,                      /* of a row of buildings */
 	POUND_STOREYS_MAX = 50,                       /* of a building */

@@ -46,6 +46,7 @@ struct ask {
 	int cell, row, sample; /* of it */
 	int motion;
 	bool response; /* all of the response is wanted */
+	bool balanced; /* with the energy balances of its runs */
 	struct body_ask bodies[POUND_OSCILLATORS];
 	int march; /* with pounding; -1: the responses without pounding are the answer */
 };
@@ -261,7 +262,7 @@ static int body_march(struct pound_request *request, const struct ask *ask, int 
 {
 	struct pound_task task = {.bodies = {pound_scene_body(&ask->scene, i)}};
 	task.bodies[0].followed = true;
-	task.accounted = ask->response;
+	task.accounted = ask->balanced;
 	task.bodies[0].backbone.law = law;
 	task.bodies[0].backbone.yield = yield;
 	if (pound_law_linear(law))
@@ -429,7 +430,7 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		return;
 	}
 	struct pound_task task = pair_task(request, ask);
-	task.accounted = ask->response;
+	task.accounted = ask->balanced;
 	if (task.gap > 0 && free_max(request, &ask->bodies[0]) + free_max(request, &ask->bodies[1]) < task.gap) {
 		work->never_touching++;
 		return;
@@ -462,12 +463,12 @@ static struct pound_scene row_scene(const struct pound_request *request, const s
 }
 
 /* What a row's chains are asked for: a response has all, of outputs accelerations are few. */
-static unsigned row_asked(const struct pound_study *study)
+static unsigned row_asked(const struct pound_study *study, bool balanced)
 {
 	const unsigned always = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
-	unsigned asked = study->kind == POUND_KIND_RESPONSE
-	                     ? always | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_FORCES | POUND_CHAIN_ENERGY
-	                     : always;
+	const bool response = study->kind == POUND_KIND_RESPONSE;
+	unsigned asked = always | (response ? POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_FORCES : 0) |
+	                 (balanced ? POUND_CHAIN_ENERGY : 0);
 	for (int o = 0; o < study->n_outputs; o++)
 		asked |= pound_output_accelerations(study->outputs[o]) ? (unsigned)POUND_CHAIN_ACCELERATIONS : 0;
 	return asked;
@@ -478,7 +479,7 @@ static void row_free(struct pound_request *request, int a)
 	const struct pound_study *study = request->campaign->study;
 	const struct pound_scene scene = row_scene(request, &request->asks[a]);
 	pound_row_ask_free(&request->rows, &scene, &request->row_asks[a], study->kind == POUND_KIND_RESPONSE,
-	                   row_asked(study));
+	                   row_asked(study, request->asks[a].balanced));
 }
 
 /* Marches registered so far, of both kinds. */
@@ -517,6 +518,7 @@ static int item_write(struct pound_request *request, const struct pound_cells *c
 			struct ask *ask = &request->asks[a++];
 			ask->scene = pound_cells_scene(campaign, cell, row, sample, NULL);
 			ask->cell = cell, ask->row = row, ask->sample = sample;
+			ask->balanced = campaign->study->kind == POUND_KIND_RESPONSE && signal < POUND_BALANCED_SIGNALS;
 			ask->motion = motion_ask(request, &ask->scene.excitation,
 			                         pound_cells_noise(campaign, row, sample, signal), halved);
 			if (ask->scene.n_buildings)

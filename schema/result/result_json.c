@@ -62,16 +62,22 @@ static void write_signal(struct writer *w, const struct pound_response *response
 	writer_end(w);
 }
 
-/* The largest that is missing in the energy balances of n cells; null: a solver that does not keep them. */
+/* The largest that is missing in the energy balances of n cells, and of how many responses; null: a solver that does not keep
+ * them. */
 static void write_balance(struct writer *w, const struct pound_cell *cells, int n)
 {
 	double residual = NAN;
+	int known = 0;
 	for (int c = 0; c < n; c++)
-		for (int i = 0; i < cells[c].n_signals; i++)
-			residual = fmax(residual, cells[c].rows ? cells[c].rows[i].energy_residual
-			                                        : cells[c].signals[i].energy_residual);
+		for (int i = 0; i < cells[c].n_signals; i++) {
+			const double one =
+			    cells[c].rows ? cells[c].rows[i].energy_residual : cells[c].signals[i].energy_residual;
+			residual = fmax(residual, one);
+			known += !isnan(one);
+		}
 	writer_object(w, "accuracy", WRITER_LINES);
 	writer_number(w, "energy_residual", residual);
+	writer_whole(w, "energy_responses", known);
 	writer_end(w);
 }
 

@@ -140,6 +140,7 @@ int main(int argc, char **argv)
 	bench_reference();
 	bench_kernel();
 	bench_chains();
+	bench_responses();
 	bench_growth();
 	bench_indices();
 	bench_spectra();

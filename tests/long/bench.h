@@ -44,6 +44,7 @@ void *bench_memory(size_t bytes); /* zeroed, 64-byte aligned; ends the program w
 void bench_campaign(int rows);
 void bench_reference(void);
 void bench_kernel(void);
+void bench_responses(void);
 void bench_growth(void);
 void bench_indices(void);
 void bench_spectra(void);

@@ -178,6 +178,52 @@ void bench_campaign(int rows)
 	study_free(study);
 }
 
+/* ---- responses ---- */
+
+static const char response[] =
+    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}], "
+    "\"excitation\": {\"type\": \"kanai_tajimi\", \"frequency_hz\": 2.5, \"cycles\": 50, \"signals\": "
+    "2000}}}";
+
+static const char sensitivity[] =
+    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
+    "3.1}], "
+    "\"excitation\": {\"type\": \"kanai_tajimi\", \"frequency_hz\": 2.5, \"cycles\": 50}}, "
+    "\"inputs\": [{\"path\": \"/contact/restitution\", \"distribution\": {\"type\": \"uniform\", \"min\": "
+    "0.6499, \"max\": "
+    "0.6501}}], \"design\": {\"rows\": 700, \"signals\": \"independent\"}}";
+
+/* a study and its runs with pounding */
+struct document {
+	const char *text;
+	int64_t runs;
+};
+
+static void document_run(void *of)
+{
+	struct document *document = of;
+	struct pound_study *study = bench_study(document->text);
+	document->runs = study_cost(study, 1).runs;
+	study_free(study);
+}
+
+/* A response study of many signals beside a sensitivity study of the same scene, which records two outputs of a run. */
+void bench_responses(void)
+{
+	struct document documents[] = {{response, 0}, {sensitivity, 0}};
+	struct bench_job jobs[] = {{document_run, &documents[0], 0}, {document_run, &documents[1], 0}};
+	bench_jobs(jobs, 2, REPEATS);
+	const double whole = jobs[0].seconds / (double)documents[0].runs,
+	             part = jobs[1].seconds / (double)documents[1].runs;
+	bench_print((struct bench_row){.what = "response study of 2000 signals of 20 s: a run with all it needs",
+	                               .value = 1e6 * whole,
+	                               .unit = "us",
+	                               .ratio = whole / part,
+	                               .to = "a run of a sensitivity study",
+	                               .goal = "at most 2",
+	                               .met = whole / part <= 2});
+}
+
 /* ---- what grows ---- */
 
 struct growth {

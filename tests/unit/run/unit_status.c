@@ -330,7 +330,31 @@ static void want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again(voi
 	study_free(study);
 }
 
-CHECK_MAIN(cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a_result),
+/* Signals beyond the first ones of a cell have a response without an energy balance, and say so. */
+static void the_first_signals_of_each_cell_have_energy_balances(void **state)
+{
+	(void)state;
+	static const char pair[] =
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	    "{\"frequency_hz\": 3.1}], \"excitation\": {\"cycles\": 4, \"signals\": 40}}, \"sweep\": "
+	    "[{\"path\": \"/contact/restitution\", \"values\": [0.5, 0.6]}]}";
+	static const char row[] =
+	    "{\"kind\": \"response\", \"scene\": {\"buildings\": [{\"storeys\": 2, \"frequency_hz\": 2}, "
+	    "{\"frequency_hz\": 3.1}], \"excitation\": {\"cycles\": 4, \"signals\": 33}}}";
+	struct reading *r = succeeded(pair);
+	check_near(reading_number(r, "/accuracy/energy_responses"), 2 * POUND_BALANCED_SIGNALS, 0);
+	assert_true(reading_number(r, "/accuracy/energy_residual") < 1e-12);
+	assert_true(reading_number(r, "/cells/1/signals/39/contact_count") > 0);
+	reading_close(r);
+	r = succeeded(row);
+	check_near(reading_number(r, "/accuracy/energy_responses"), POUND_BALANCED_SIGNALS, 0);
+	assert_true(reading_number(r, "/accuracy/energy_residual") < 1e-12);
+	assert_true(reading_number(r, "/signals/32/contacts/0/contact_count") > 0);
+	reading_close(r);
+}
+
+CHECK_MAIN(cmocka_unit_test(the_first_signals_of_each_cell_have_energy_balances),
+           cmocka_unit_test(outputs_of_a_response_are_of_the_signals_that_have_a_result),
            cmocka_unit_test(rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says_so),
            cmocka_unit_test(a_cell_without_a_run_has_no_outputs_and_the_others_have),
            cmocka_unit_test(outputs_in_terms_of_no_motion_have_no_value_and_a_note),
