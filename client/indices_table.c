@@ -14,7 +14,6 @@
 
 #include "client/cell.h"
 #include "client/command.h"
-#include "client/summary.h"
 #include "client/table.h"
 
 #include <math.h>
@@ -27,7 +26,6 @@ enum { CHART = 20 };          /* columns of the chart of total indices */
 enum { ESTIMATE_WIDTH = 20 }; /* columns of "-0.123 [-0.12,-0.12]" */
 enum { ESTIMATES_MAX = 32 };  /* of one list */
 enum { INDENT = 2 };
-enum { OUTPUTS_MOST = 3 }; /* of one cell, whose indices fit on a screen */
 
 /* ---- one estimate ---- */
 
@@ -269,25 +267,18 @@ static void print_accuracy(const struct reading *result, const char *output)
 {
 	char accuracy[PATH_SIZE];
 	const char *before = "  widest interval: ", *of = " rows";
-	double least = NAN, rows_least = NAN, half = NAN, rows_at = NAN;
 	snprintf(accuracy, sizeof accuracy, "%s/accuracy", output);
 	for (int k = 0; k < reading_count(result, "%s/rows", accuracy); k++, before = ", ", of = "") {
-		half = widest(result, accuracy, k);
-		rows_at = reading_number(result, "%s/rows/%d", accuracy, k);
+		double half = widest(result, accuracy, k);
 		if (!isfinite(half))
 			return;
-		if (!(half > least)) {
-			least = half;
-			rows_least = rows_at;
-		}
-		printf("%s+-%.2g of %.0f%s", before, half, rows_at, of);
+		printf("%s+-%.2g of %.0f%s", before, half, reading_number(result, "%s/rows/%d", accuracy, k), of);
 	}
 	double slope = reading_number(result, "%s/slope", accuracy);
 	double rows = reading_number(result, "%s/rows_to_halve", accuracy);
 	if (isfinite(rows))
 		printf("\n  twice the rows leave %.2g of it, %.0f rows half of it", exp2(slope), rows);
 	putchar('\n');
-	summary_wider(least, rows_least, half, rows_at);
 	double checked = reading_number(result, "%s/runs_checked", accuracy);
 	double change = reading_number(result, "%s/errors/integration", accuracy);
 	if (checked > 0.0)
@@ -481,22 +472,17 @@ void indexes_print(const struct reading *result)
 	print_partial(result);
 	if (reading_has(result, "/stopping"))
 		print_stopping(result);
-	if (reading_count(result, "/cells") == 1 && reading_count(result, "/cells/0/outputs") <= OUTPUTS_MOST)
-		print_outputs(result, "inputs");
-	else
-		summary_print(result);
+	print_outputs(result, NULL);
 	print_cost(result);
-	summary_more(result);
 }
 
 bool indexes_print_table(const struct reading *result, const char *table)
 {
 	print_partial(result);
-	if (strcmp(table, "all") != 0 && strcmp(table, "stopping") != 0)
-		return print_outputs(result, table);
-	if (strcmp(table, "all") == 0)
-		print_design(result);
-	if (reading_has(result, "/stopping"))
-		print_stopping(result);
-	return strcmp(table, "all") == 0 ? print_outputs(result, NULL) : reading_has(result, "/stopping");
+	if (strcmp(table, "stopping") == 0) {
+		if (reading_has(result, "/stopping"))
+			print_stopping(result);
+		return reading_has(result, "/stopping");
+	}
+	return print_outputs(result, table);
 }

@@ -4,10 +4,10 @@
 
 #include "schema/json/json_pointer.h"
 
-/* One screen: what the design came to, the indices to quote, and which tables there are besides. */
+/* All of them: the design, every table of every output, and what more rows cost. */
 void indexes_print(const struct reading *result);
 
-/* One of RESULT_TABLES of every output that has it, or "all"; false: none has. */
+/* One of RESULT_TABLES, of every output that has it; false: none has. */
 bool indexes_print_table(const struct reading *result, const char *table);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "client/cell.h"
 #include "client/indices_table.h"
+#include "client/summary.h"
 #include "client/table.h"
 #include "schema/json/json_pointer.h"
 #include "schema/result/result_json.h"
@@ -251,10 +252,8 @@ static void print_work(const struct reading *result)
 static void print_head(const struct reading *result, const char *kind)
 {
 	const char *name = reading_text(result, "/name"), *seed = reading_text(result, "/seed");
-	if (name) {
-		table_say(name);
-		putchar('\n');
-	}
+	if (name)
+		table_prose(0, name);
 	// a seed from 2^53 on is a text
 	printf("%s study, seed ", kind);
 	if (seed)
@@ -271,25 +270,39 @@ static void print_head(const struct reading *result, const char *kind)
 static const struct {
 	const char *kind;
 	void (*print)(const struct reading *);
+	bool alone; /* without what study it is and the work */
 } KINDS[] = {
-	{"sensitivity", indexes_print},
-	{"response",    response},
-	{"convergence", convergence},
-	{"floor_spectrum", floor_spectrum},
+	{"sensitivity",    summary_print,  true},
+	{"response",       response,       false},
+	{"convergence",    convergence,    false},
+	{"floor_spectrum", floor_spectrum, false},
 };
 // clang-format on
 
-/* Prints all of a result by its kind. */
+/* Prints a result by its kind. */
 static bool print_kind(const struct reading *result, const char *kind)
 {
 	for (size_t i = 0; i < sizeof KINDS / sizeof KINDS[0]; i++)
 		if (strcmp(kind, KINDS[i].kind) == 0) {
-			print_head(result, kind);
+			if (!KINDS[i].alone)
+				print_head(result, kind);
 			KINDS[i].print(result);
-			print_work(result);
+			if (!KINDS[i].alone)
+				print_work(result);
 			return true;
 		}
 	return false;
+}
+
+/* One table of a sensitivity result, or all of it. */
+static bool print_table(const struct reading *result, const char *kind, const char *table)
+{
+	if (strcmp(table, "all") != 0)
+		return indexes_print_table(result, table);
+	print_head(result, kind);
+	indexes_print(result);
+	print_work(result);
+	return true;
 }
 
 /* Prints a result, or one table of it.
@@ -302,7 +315,7 @@ static enum outcome show_table(const char *json, size_t length, const char *tabl
 	const char *kind = result ? reading_text(result, "/kind") : NULL;
 	// only a sensitivity result has tables by name
 	bool none = kind && table && strcmp(kind, "sensitivity") != 0;
-	bool shown = kind && !none && (table ? indexes_print_table(result, table) : print_kind(result, kind));
+	bool shown = kind && !none && (table ? print_table(result, kind, table) : print_kind(result, kind));
 	if (!shown && table && kind)
 		command_complain("this result has no table '%s'", table);
 	else if (!shown)

@@ -1,4 +1,10 @@
-/* summary.c - a sensitivity result of many cells or outputs on one screen: each total index from its lowest to its highest. */
+/* summary.c - a sensitivity result on one screen.  Of few indices each with its interval and a bar:
+ *
+ *   impulse: mean 0.8992, noise 3.8 %
+ *     f_2      S1  0.243 +-0.049  ST  0.626 +-0.092  |#############       |
+ *
+ * of many a row for each output and a column for each input, from the lowest to the highest over cells, frequencies,
+ * stories. */
 #include "client/summary.h"
 
 #include "client/command.h"
@@ -10,133 +16,433 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS_MOST = 24, PATH_SIZE = 128, NAME_SIZE = 96 };
+enum {
+	LINES_MOST = 11, /* of indices */
+	INPUTS_MOST = 64,
+	PATH_SIZE = 128,
+	LABEL_WIDTH = 32, /* columns of an output's name at most */
+	INPUT_WIDTH = 14, /* of an input's, beside both indices and a bar */
+	CELL_WIDTH = 14,  /* "-0.01 to 0.74", and a blank */
+	CHART = 20,
+};
 
-/* The total index of one input in one output, over the cells. */
+/* An index of one input over what a result has under one output's name. */
 struct span {
-	char output[NAME_SIZE], input[NAME_SIZE];
 	double low, high;
-	int cell; /* of the highest */
 };
 
-struct spans {
-	struct span *all; /* (n) */
-	int n, room;
+struct row {
+	const char *output;
+	int n; /* outputs of that name in a cell: frequencies, stories */
+	struct span spans[INPUTS_MOST];
 };
 
-static struct span *span_of(struct spans *spans, const char *output, const char *input)
+struct summary {
+	const struct reading *result;
+	bool total; /* ST has values, else S1 */
+	int n_cells, n_outputs, n_rows, n_inputs;
+	struct row *rows;                /* (n_rows) */
+	const char *inputs[INPUTS_MOST]; /* (n_inputs) */
+	int order[INPUTS_MOST];          /* (n_inputs) the largest first */
+};
+
+/* ---- what the result has ---- */
+
+static const char *input_name(const struct reading *result, const char *output, int input)
 {
-	for (int k = 0; k < spans->n; k++)
-		if (strcmp(spans->all[k].output, output) == 0 && strcmp(spans->all[k].input, input) == 0)
-			return &spans->all[k];
-	if (spans->n == spans->room) {
-		spans->room = spans->room ? 2 * spans->room : 64;
-		spans->all = command_sure(realloc(spans->all, (size_t)spans->room * sizeof *spans->all));
-	}
-	struct span *span = &spans->all[spans->n++];
-	*span = (struct span){.low = NAN, .high = NAN};
-	snprintf(span->output, sizeof span->output, "%s", output);
-	snprintf(span->input, sizeof span->input, "%s", input);
-	return span;
+	const char *name = reading_text(result, "%s/inputs/%d/name", output, input);
+	name = name ? name : reading_text(result, "%s/inputs/%d/path", output, input);
+	return name ? name : "?";
 }
 
-static void output_name(const struct reading *result, const char *output, char name[NAME_SIZE])
+static struct row *row_of(struct summary *summary, const char *output)
 {
-	double frequency = reading_number(result, "%s/frequency_hz", output);
-	const char *text = reading_text(result, "%s/name", output);
-	double building = reading_number(result, "%s/building", output);
-	if (isfinite(building))
-		snprintf(name, NAME_SIZE, "%.60s, building %.0f, story %.0f", text ? text : "?", building,
-		         reading_number(result, "%s/storey", output));
-	else
-		snprintf(name, NAME_SIZE, isfinite(frequency) ? "%.60s %.4g Hz" : "%.60s", text ? text : "?",
-		         frequency);
+	for (int k = 0; k < summary->n_rows; k++)
+		if (strcmp(summary->rows[k].output, output) == 0)
+			return &summary->rows[k];
+	summary->rows =
+	    command_sure(realloc(summary->rows, (size_t)(summary->n_rows + 1) * sizeof *summary->rows));
+	struct row *row = &summary->rows[summary->n_rows++];
+	*row = (struct row){.output = output};
+	for (int j = 0; j < INPUTS_MOST; j++)
+		row->spans[j] = (struct span){NAN, NAN};
+	return row;
 }
 
-static void spans_find(const struct reading *result, struct spans *spans)
+/* Whether any index of that name has a value. */
+static bool spans_find(struct summary *summary, bool total)
 {
-	char output[PATH_SIZE], name[NAME_SIZE];
-	for (int c = 0; c < reading_count(result, "/cells"); c++)
+	const struct reading *result = summary->result;
+	bool any = false;
+	summary->total = total;
+	summary->n_rows = summary->n_outputs = summary->n_inputs = 0;
+	for (int c = 0; c < summary->n_cells; c++)
 		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++) {
+			char output[PATH_SIZE];
 			snprintf(output, sizeof output, "/cells/%d/outputs/%d", c, o);
-			output_name(result, output, name);
-			for (int j = 0; j < reading_count(result, "%s/inputs", output); j++) {
-				const char *input = reading_text(result, "%s/inputs/%d/name", output, j);
-				double value = reading_number(result, "%s/inputs/%d/ST", output, j);
-				struct span *span = span_of(spans, name, input ? input : "?");
-				if (isfinite(value) && !(value <= span->high)) {
-					span->high = value;
-					span->cell = c;
-				}
-				span->low = fmin(span->low, value);
+			const char *name = reading_text(result, "%s/name", output);
+			struct row *row = row_of(summary, name ? name : "?");
+			row->n += c == 0;
+			summary->n_outputs += c == 0;
+			for (int j = 0; j < reading_count(result, "%s/inputs", output) && j < INPUTS_MOST; j++) {
+				double value = reading_number(result, "%s/inputs/%d/%s", output, j, total ? "ST" : "S1");
+				row->spans[j].low = fmin(row->spans[j].low, value);
+				row->spans[j].high = fmax(row->spans[j].high, value);
+				any = any || isfinite(value);
+				if (j == summary->n_inputs)
+					summary->inputs[summary->n_inputs++] = input_name(result, output, j);
 			}
 		}
+	return any;
 }
 
-static void print_spans(const struct reading *result, const struct spans *spans)
+static double highest(const struct summary *summary, int input)
 {
-	static const char *const columns[] = {"output", "input", "lowest ST", "highest ST", "in cell", NULL};
-	struct table *table = table_open(columns);
-	int cells = reading_count(result, "/cells"), shown = spans->n < ROWS_MOST ? spans->n : ROWS_MOST;
-	for (int k = 0; k < shown; k++) {
-		table_text(table, spans->all[k].output);
-		table_text(table, spans->all[k].input);
-		table_number(table, spans->all[k].low);
-		table_number(table, spans->all[k].high);
-		table_number(table, cells > 1 ? spans->all[k].cell : NAN);
+	double most = -INFINITY;
+	for (int k = 0; k < summary->n_rows; k++)
+		most = fmax(most, summary->rows[k].spans[input].high);
+	return most;
+}
+
+/* The inputs by their largest index; equal ones in the study's order. */
+static void order_find(struct summary *summary)
+{
+	for (int j = 0; j < summary->n_inputs; j++) {
+		int at = j;
+		for (; at > 0 && highest(summary, summary->order[at - 1]) < highest(summary, j); at--)
+			summary->order[at] = summary->order[at - 1];
+		summary->order[at] = j;
 	}
-	printf("\ntotal indices ST: the share of an output's variance that an input explains, alone and with "
-	       "others%s\n",
-	       cells > 1 ? ",\nover all cells" : "");
-	table_print(table, 2);
-	table_close(table);
-	if (shown < spans->n)
-		printf("  and %d more rows\n", spans->n - shown);
-	if (cells > 1)
-		printf("  %d cells, counted from 0: one for each combination of the swept values\n", cells);
 }
 
-/* The accuracy of the whole. */
-static void print_note(const struct reading *result)
+/* ---- texts ---- */
+
+/* A text of at most `width` columns, for free; what is cut ends with "...". */
+static char *cut(const char *text, int width)
 {
-	const char *note = reading_text(result, "/accuracy/note");
+	char *copy = command_text("%s", text);
+	if (table_width(copy) <= width)
+		return copy;
+	int n = 0;
+	char *c = copy;
+	for (; n < width - 3; n++)
+		do
+			c++;
+		while (((unsigned char)*c & 0xc0) == 0x80);
+	strcpy(c, "...");
+	return copy;
+}
+
+static void chart(double share)
+{
+	long full = lround(fmin(fmax(share, 0.0), 1.0) * CHART);
+	printf("  |%.*s%*s|", (int)full, "####################", CHART - (int)full, "");
+}
+
+/* ---- one cell, few outputs ---- */
+
+/* "  ST  0.626 +-0.092"; nothing where no input has a value. */
+static void print_estimate(const struct reading *result, const char *input, const char *index)
+{
+	double value = reading_number(result, "%s/%s", input, index);
+	double half = (reading_number(result, "%s/%s_high", input, index) -
+	               reading_number(result, "%s/%s_low", input, index)) /
+	              2;
+	if (!isfinite(value))
+		printf("  %s %6s %7s", index, "-", "");
+	else if (isfinite(half))
+		printf("  %s %6.3f +-%-5.3f", index, value, half);
+	else
+		printf("  %s %6.3f %7s", index, value, "");
+}
+
+static void print_output(const struct summary *summary, int output)
+{
+	const struct reading *result = summary->result;
+	char at[PATH_SIZE], input[PATH_SIZE + 32];
+	int width = 0;
+	snprintf(at, sizeof at, "/cells/0/outputs/%d", output);
+	char *name = cut(reading_text(result, "%s/name", at), LABEL_WIDTH);
+	fputs("  ", stdout);
+	table_say(name);
+	free(name);
+	double frequency = reading_number(result, "%s/frequency_hz", at);
+	double building = reading_number(result, "%s/building", at);
+	if (isfinite(frequency))
+		printf(" at %.4g Hz", frequency);
+	if (isfinite(building))
+		printf(", building %.0f, story %.0f", building, reading_number(result, "%s/storey", at));
+	printf(": mean %.4g", reading_number(result, "%s/mean", at));
+	double noise = reading_number(result, "%s/noise_share", at);
+	if (isfinite(noise))
+		printf(", noise %.2g %%", 100 * noise);
 	putchar('\n');
-	if (note)
-		table_prose(0, note);
+	for (int j = 0; j < summary->n_inputs; j++) {
+		int n = table_width(summary->inputs[j]);
+		width = n > width ? n : width;
+	}
+	width = width > INPUT_WIDTH ? INPUT_WIDTH : width;
+	for (int k = 0; k < summary->n_inputs; k++) {
+		int j = summary->order[k];
+		char *label = cut(summary->inputs[j], width);
+		fputs("    ", stdout);
+		table_say(label);
+		printf("%*s", width - table_width(label), "");
+		free(label);
+		snprintf(input, sizeof input, "%s/inputs/%d", at, j);
+		print_estimate(result, input, "S1");
+		if (summary->total)
+			print_estimate(result, input, "ST");
+		double share = reading_number(result, "%s/%s", input, summary->total ? "ST" : "S1");
+		if (isfinite(share))
+			chart(share);
+		putchar('\n');
+	}
 }
 
-void summary_print(const struct reading *result)
+static void print_outputs(const struct summary *summary)
 {
-	struct spans spans = {0};
-	spans_find(result, &spans);
-	print_spans(result, &spans);
-	print_note(result);
-	free(spans.all);
+	puts("\nShare of an output's variance due to an input alone (S1), to an input with its\n"
+	     "interactions (ST), to the randomness of motions (noise); +-: 95 % interval.");
+	for (int o = 0; o < summary->n_outputs; o++)
+		print_output(summary, o);
 }
 
-/* Prints the tables that a result has besides, by their names. */
-void summary_more(const struct reading *result)
+/* ---- many of both ---- */
+
+/* No "-0.00". */
+static double rounded(double value)
+{
+	return fabs(value) < 0.005 ? 0.0 : value;
+}
+
+static void print_span(const struct span *span)
+{
+	char text[32] = "-";
+	if (isfinite(span->low)) {
+		snprintf(text, sizeof text, "%.2f to %.2f", rounded(span->low), rounded(span->high));
+		if (span->low == span->high)
+			snprintf(text, sizeof text, "%.2f", rounded(span->high));
+	}
+	printf("%*s", CELL_WIDTH, text);
+}
+
+static char *row_label(const struct row *row, int width)
+{
+	char *whole = row->n > 1 ? command_text("%s (%d)", row->output, row->n) : command_text("%s", row->output);
+	char *label = cut(whole, width);
+	free(whole);
+	return label;
+}
+
+static void print_rows(const struct summary *summary)
+{
+	int width = 0, shown = summary->n_rows < LINES_MOST - 1 ? summary->n_rows : LINES_MOST - 1;
+	for (int k = 0; k < shown; k++) {
+		char *label = row_label(&summary->rows[k], LABEL_WIDTH);
+		width = table_width(label) > width ? table_width(label) : width;
+		free(label);
+	}
+	int columns = (TABLE_PROSE - 2 - width) / CELL_WIDTH;
+	columns = columns < summary->n_inputs ? columns : summary->n_inputs;
+	printf("%*s", 2 + width, "");
+	for (int k = 0; k < columns; k++) {
+		char *name = cut(summary->inputs[summary->order[k]], CELL_WIDTH - 1);
+		table_tame(name);
+		printf("%*s%s", CELL_WIDTH - table_width(name), "", name);
+		free(name);
+	}
+	putchar('\n');
+	for (int r = 0; r < shown; r++) {
+		char *label = row_label(&summary->rows[r], LABEL_WIDTH);
+		fputs("  ", stdout);
+		table_say(label);
+		printf("%*s", width - table_width(label), "");
+		free(label);
+		for (int k = 0; k < columns; k++)
+			print_span(&summary->rows[r].spans[summary->order[k]]);
+		putchar('\n');
+	}
+	if (shown < summary->n_rows)
+		printf("  not shown: %d of %d outputs\n", summary->n_rows - shown, summary->n_rows);
+	if (columns < summary->n_inputs)
+		printf("  not shown: %d of %d inputs, those with the smallest indices\n", summary->n_inputs - columns,
+		       summary->n_inputs);
+}
+
+/* What the rows are, and what their ranges are over. */
+static void print_over(const struct summary *summary)
+{
+	char *cells = summary->n_cells > 1 ? command_text(" the %d cells of the sweep", summary->n_cells)
+	                                   : command_text("%s", "");
+	const char *of = "";
+	for (int k = 0; k < summary->n_rows; k++)
+		if (summary->rows[k].n > 1)
+			of = " frequencies or stories (their number)";
+	char *sentence = command_text(
+	    "Share of an output's variance due to an input %s (%s)%s%s%s%s:",
+	    summary->total ? "with its interactions with others" : "alone", summary->total ? "ST" : "S1",
+	    *cells || *of ? ", lowest to highest over" : "", cells, *cells && *of ? " and" : "", of);
+	putchar('\n');
+	table_prose(0, sentence);
+	free(sentence);
+	free(cells);
+}
+
+/* ---- how far they may be off ---- */
+
+/* The widest interval of one output, by number of rows. */
+struct widths {
+	const char *output;
+	char index[64];     /* "ST of f_e" */
+	double last, least; /* half widths of all rows, and the narrowest of fewer rows */
+	double rows, rows_least, rows_to_halve;
+};
+
+static struct widths widths_of(const struct reading *result, const char *output)
+{
+	static const char *const names[] = {"S1", "ST"};
+	struct widths widths = {.output = reading_text(result, "%s/name", output), .last = NAN, .least = NAN};
+	const int levels = reading_count(result, "%s/accuracy/rows", output);
+	widths.rows_to_halve = reading_number(result, "%s/accuracy/rows_to_halve", output);
+	for (int level = 0; level < levels; level++) {
+		double widest = NAN, rows = reading_number(result, "%s/accuracy/rows/%d", output, level);
+		for (int j = 0; j < reading_count(result, "%s/accuracy/inputs", output); j++)
+			for (int k = 0; k < 2; k++) {
+				double half = reading_number(result, "%s/accuracy/inputs/%d/%s_half_widths/%d", output, j,
+				                             names[k], level);
+				if (!(isfinite(half) && !(half <= widest)))
+					continue;
+				widest = half;
+				if (level == levels - 1)
+					snprintf(widths.index, sizeof widths.index, "%s of %.50s", names[k],
+					         input_name(result, output, j));
+			}
+		if (level == levels - 1) {
+			widths.last = widest;
+			widths.rows = rows;
+		} else if (!(widest >= widths.least)) {
+			widths.least = widest;
+			widths.rows_least = rows;
+		}
+	}
+	return widths;
+}
+
+/* The widest interval of all; why that of more rows is wider than that of fewer, where it is. */
+static void print_accuracy(const struct reading *result)
+{
+	struct widths widest = {.last = NAN};
+	for (int c = 0; c < reading_count(result, "/cells"); c++)
+		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++) {
+			char output[PATH_SIZE];
+			snprintf(output, sizeof output, "/cells/%d/outputs/%d", c, o);
+			struct widths widths = widths_of(result, output);
+			if (isfinite(widths.last) && !(widths.last <= widest.last))
+				widest = widths;
+		}
+	const char *note = reading_text(result, "/accuracy/note"),
+	           *dominant = reading_text(result, "/accuracy/dominant");
+	if (note && dominant && strcmp(dominant, "sampling") != 0)
+		table_prose(0, note);
+	if (!isfinite(widest.last))
+		return;
+	char *more = isfinite(widest.rows_to_halve)
+	                 ? command_text("; %.0f rows would halve it", widest.rows_to_halve)
+	                 : command_text("%s", "");
+	char *sentence = command_text("The widest 95 %% interval is +-%.2g, that of %s in %.60s%s.", widest.last,
+	                              widest.index, widest.output, more);
+	table_prose(0, sentence);
+	free(sentence);
+	free(more);
+	if (!(widest.last > 1.1 * widest.least))
+		return;
+	sentence = command_text(
+	    "With %.0f rows it was +-%.2g, narrower but not better: a few rare rows make much of the "
+	    "variance, and so few rows may not contain them. Quote the interval of %.0f rows.",
+	    widest.rows_least, widest.least, widest.rows);
+	table_prose(0, sentence);
+	free(sentence);
+}
+
+/* ---- the screen ---- */
+
+static void print_numbers(const struct reading *result)
+{
+	const char *name = reading_text(result, "/name");
+	double failed = 0, runs = 0;
+	for (int c = 0; c < reading_count(result, "/cells"); c++) {
+		double of_cell = reading_number(result, "/cells/%d/runs_failed", c);
+		failed += isfinite(of_cell) ? of_cell : 0;
+		runs += reading_number(result, "/cells/%d/runs", c);
+	}
+	table_prose(0, name ? name : "a study without a name");
+	fputs("sensitivity study: ", stdout);
+	if (reading_count(result, "/cells") > 1)
+		printf("%d cells, ", reading_count(result, "/cells"));
+	printf("%.0f rows (%s)", reading_number(result, "/design/rows"), reading_text(result, "/design/method"));
+	if (runs > 0)
+		printf(", %.0f runs", runs);
+	if (failed > 0)
+		printf(", %.0f failed", failed);
+	if (reading_has(result, "/timing"))
+		printf(", %.3g s with %.0f threads", reading_number(result, "/timing/wall_s"),
+		       reading_number(result, "/timing/threads"));
+	putchar('\n');
+	if (reading_has(result, "/partial")) {
+		char *sentence =
+		    command_text("PARTIAL RESULT, %.0f of %.0f rows: %s", reading_number(result, "/partial/rows"),
+		                 reading_number(result, "/partial/rows_most"), reading_text(result, "/partial/note"));
+		table_prose(0, sentence);
+		free(sentence);
+	}
+	if (reading_has(result, "/stopping")) {
+		char *sentence = command_text("%.0f rows: %s", reading_number(result, "/stopping/rows"),
+		                              reading_text(result, "/stopping/note"));
+		table_prose(0, sentence);
+		free(sentence);
+	}
+}
+
+static void print_more(const struct reading *result)
 {
 	static const char *const names[] = {
 #define X(name) #name,
 	    RESULT_TABLES(X)
 #undef X
 	};
-	fputs("\nmore with --format table and --table all", stdout);
+	char *line = command_text("%s", "More with --table all");
 	for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
-		if (reading_has(result, "/cells/0/outputs/0/%s", names[k]) || reading_has(result, "/%s", names[k]))
-			printf(", %s", names[k]);
-	puts("\npictures: pound plot, or pound report for all of it on one page");
+		if (reading_has(result, "/cells/0/outputs/0/%s", names[k]) || reading_has(result, "/%s", names[k])) {
+			char *longer = command_text("%s, %s", line, names[k]);
+			free(line);
+			line = longer;
+		}
+	table_prose(0, line);
+	free(line);
+	puts("Figures: pound plot, or pound report for all of it on one page");
 }
 
-void summary_wider(double earlier, double rows_earlier, double last, double rows)
+void summary_print(const struct reading *result)
 {
-	if (!(last > 1.1 * earlier))
-		return;
-	char *sentence = command_text(
-	    "wider at %.0f rows than at %.0f: rare rows add much to the variance, and fewer rows may "
-	    "miss them, so that their interval comes out too narrow; quote the wider one",
-	    rows, rows_earlier);
-	table_prose(2, sentence);
-	free(sentence);
+	struct summary summary = {.result = result, .n_cells = reading_count(result, "/cells")};
+	bool any = spans_find(&summary, true) || spans_find(&summary, false);
+	order_find(&summary);
+	print_numbers(result);
+	if (!any) {
+		const char *note = reading_text(result, "/cells/0/outputs/0/note");
+		puts("\nNo index to quote has a value.");
+		if (note)
+			table_prose(0, note);
+	} else {
+		if (summary.n_cells == 1 && summary.n_outputs * (1 + summary.n_inputs) <= LINES_MOST)
+			print_outputs(&summary);
+		else {
+			print_over(&summary);
+			print_rows(&summary);
+		}
+	}
+	print_accuracy(result);
+	print_more(result);
+	free(summary.rows);
 }

@@ -103,11 +103,11 @@ void table_say(const char *text)
 void table_prose(int indent, const char *text)
 {
 	char *words = command_sure(strdup(text)), *rest;
-	int column = TABLE_WIDTH;
+	int column = TABLE_PROSE;
 	table_tame(words);
 	for (char *word = strtok_r(words, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
 		int width = table_width(word);
-		bool fits = column + 1 + width <= TABLE_WIDTH;
+		bool fits = column + 1 + width <= TABLE_PROSE;
 		if (!fits && word != words)
 			putchar('\n');
 		pad(fits ? 1 : indent);

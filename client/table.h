@@ -6,7 +6,7 @@
 
 struct table;
 
-enum { TABLE_WIDTH = 100 }; /* columns that what is printed for people keeps within */
+enum { TABLE_WIDTH = 100, TABLE_PROSE = 80 }; /* columns that tables and sentences keep within */
 
 /* `names` are the column heads, ending with NULL; they are copied.  No function fails: no memory ends the program. */
 struct table *table_open(const char *const names[]);
@@ -27,7 +27,7 @@ void table_tame(char *text);
 
 /* Prints a text that came from elsewhere, tamed; NULL: nothing. */
 void table_say(const char *text);
-/* Prints one in lines of at most TABLE_WIDTH columns, all `indent` blanks in. */
+/* Prints one in lines of at most TABLE_PROSE columns, all `indent` blanks in. */
 void table_prose(int indent, const char *text);
 
 #endif

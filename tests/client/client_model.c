@@ -78,7 +78,7 @@ static void indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv(voi
 	reading_close(result);
 	struct program_outcome table = POUND("indices", "--format", "table", study, outputs);
 	program_expect(&table, 0);
-	assert_non_null(strstr(table.out, "\n  x3 "));
+	assert_non_null(strstr(table.out, "\n    x3  S1 "));
 	assert_null(strstr(table.out, "nan"));
 	struct program_outcome csv = POUND("indices", "--format", "csv", study, outputs);
 	program_expect(&csv, 0);
