@@ -46,7 +46,9 @@ SCHEMA := $(call objs,schema) $(B)/schema/examples.o $(B)/schema/page.o
 SERVER := $(call objs,server,server/main.c)
 # one of these asks servers: the second says that it cannot (make client CURL=0)
 WIRE   := client/wire.c client/unwired.c
-CLIENT := $(call objs,client,$(WIRE))
+# a program of its own: it runs blocks for other processes
+WORKER := client/worker.c client/worker_crew.c
+CLIENT := $(call objs,client,$(WIRE) $(WORKER))
 # a program each; the files of tests/support serve them all
 TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/service/*.c tests/client/*.c))
 # what takes minutes is built with the tests, so that no change breaks it unseen
@@ -54,7 +56,7 @@ LONG    := $(patsubst %.c,$(B)/%,$(wildcard tests/long/soak_*.c)) $(addprefix $(
            $(call objs,tests/fuzz)
 FIXTURE := $(call objs,tests/support,tests/support/preload.c)
 
-all: $(B)/poundd $(B)/pound
+all: $(B)/poundd $(B)/pound $(B)/pound-worker
 
 $(B)/libpound.a: $(ENGINE)
 	@rm -f $@; $(AR) rcs $@ $^
@@ -62,6 +64,8 @@ $(B)/poundd: $(B)/server/main.o $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
 $(B)/pound: $(CLIENT) $(B)/client/wire.o $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.client) $(LIBS.schema) $(LIBS.engine)
+$(B)/pound-worker: $(WORKER:%.c=$(B)/%.o) $(SCHEMA) $(B)/libpound.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.schema) $(LIBS.engine) -lpthread
 $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.tests) $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
 

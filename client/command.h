@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "schema/figure/figure.h"
+#include "schema/message/launcher.h"
 
 /* exit status of the program */
 enum outcome {
@@ -37,10 +38,12 @@ struct options {
 	const char *samples; /* run: file for every sample, or for the histories; NULL: none */
 	int limit;           /* list: studies on a page; 0: as the server likes */
 	int threads;         /* run */
+	const char *checkpoint; /* run: file of finished blocks; NULL: none */
 	bool wait;           /* submit */
 	bool names;          /* example, plot */
 	bool partial;        /* results, plot: of the rows so far, while the study runs */
 	struct figure_choice choice; /* plot */
+	struct launch launch;        /* run: workers in other processes */
 	struct {
 		const char *model;       /* URL of its server */
 		const char *name;        /* there; NULL: the first */

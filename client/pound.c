@@ -17,6 +17,7 @@ static const char URL_DEFAULT[] = "http://127.0.0.1:8437";
 
 enum {
 	THREADS_MAX = 1024,
+	LAUNCHERS_MAX = 256,
 	LIMIT_MAX = 100,
 	CHANNEL_MAX = 1000,
 	FORMATS_MAX = 4,
@@ -53,10 +54,10 @@ enum {
 
 // clang-format off
 static const struct command COMMANDS[] = {
-	{"run", "STUDY.json", "tfTo", false, {"json", "table", "csv"}, run_study,
+	{"run", "STUDY.json", "tfToLBHk", false, {"json", "table", "csv"}, run_study,
 	 "compute a study here, without a server",
 	 "Prints the result on standard output: the same bytes as from a server, except `timing'.  "
-	 "Ctrl-C stops the study."},
+	 "Ctrl-C stops the study.  With --launcher, worker processes on this and other machines compute too: client/machines.md."},
 	{"design", "STUDY.json", "", false, {0}, model_design,
 	 "print the rows of a study's design, to evaluate with a model of your own",
 	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
@@ -117,6 +118,10 @@ static const struct command COMMANDS[] = {
 static const struct argp_option OPTIONS[] = {
 	{"threads", 't', "N",      0, "compute with N threads (default: number of cores)", 0},
 	{"samples", 'o', "FILE",   0, "also write every sample, or the histories, to FILE (NumPy if it ends in .npy, else CSV)", 0},
+	{"launcher",   'L', "COMMAND", 0, "command that starts worker processes, such as 'srun pound-worker'", 0},
+	{"launchers",  'B', "N",   0, "run this command N times; each is a worker group that starts and fails independently (default: 1)", 0},
+	{"worker-host", 'H', "HOST", 0, "name or address of this machine for workers on other machines; listens on all addresses (default: loopback)", 0},
+	{"checkpoint", 'k', "FILE", 0, "keep finished blocks in FILE, and continue with those in it", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
 	{"name",    'A', "TEXT",   0, "only studies with this text in their name; case matters", 0},
@@ -253,6 +258,18 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 	switch (key) {
 	case 't':
 		options->threads = whole_number(state, "--threads", value, THREADS_MAX);
+		return 0;
+	case 'L':
+		options->launch.command = value;
+		return 0;
+	case 'H':
+		options->launch.host = value;
+		return 0;
+	case 'B':
+		options->launch.n = whole_number(state, "--launchers", value, LAUNCHERS_MAX);
+		return 0;
+	case 'k':
+		options->checkpoint = value;
 		return 0;
 	case 'l':
 		options->limit = whole_number(state, "--limit", value, LIMIT_MAX);
@@ -405,7 +422,8 @@ static enum outcome command_run(const struct command *command, int argc, char **
 	                .format =
 	                    command->terminal_table && isatty(STDOUT_FILENO) ? "table" : command->formats[0],
 	                .threads = cores(),
-	                .evaluate.jobs = JOBS},
+	                .evaluate.jobs = JOBS,
+	                .launch.n = 1},
 	};
 	// an empty list, unlike none, is memory that argp's help does not give back
 	struct argp argp = {.options = taken->key ? taken : NULL,

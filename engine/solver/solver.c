@@ -27,15 +27,16 @@ static const struct solver {
 	            const atomic_bool *stop);
 	bool tolerance, step; /* the settings it takes */
 	bool rows;            /* it integrates rows of buildings */
+	bool portable;        /* the same bytes on every processor */
 	bool forces
 	    [POUND_FORCES]; /* forms of contact force that it can integrate; it takes every law, as branches */
 } solvers[] = {
     // many tasks at once
     [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
-                            .tolerance = true, .rows = true, .forces = EVERY},
-    {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true,
+                            .tolerance = true, .rows = true, .portable = true, .forces = EVERY},
+    {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true, .portable = true,
      .forces = BRANCHES},
-    {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true,
+    {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true, .portable = true,
      .forces = BRANCHES},
     [POUND_SOLVER_ADAPTIVE] = {"adaptive",
                                "GSL's Runge-Kutta-Prince-Dormand (8, 9), restarted at every event",
@@ -71,6 +72,12 @@ bool pound_solver_takes_force(int row, enum pound_force force)
 bool pound_solver_takes_rows(int row)
 {
 	return solver_at(row)->rows;
+}
+
+/* Whether its bytes depend on the study alone; GSL's solvers call functions that the C library chooses by processor. */
+bool pound_solver_is_portable(int row)
+{
+	return solver_at(row)->portable;
 }
 
 bool pound_solver_takes_tolerance(int row)

@@ -1,0 +1,29 @@
+/* pound-worker: one process that runs blocks for a coordinator, until its connection ends. */
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "client/worker_crew.h"
+
+static void send_answer(void *to, const struct message *message, const void *body)
+{
+	// the coordinator has gone, and with it all reason to go on
+	if (!message_send(*(const int *)to, message, body))
+		_exit(EXIT_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+	const int n_threads = worker_options(argc, argv);
+	struct message message;
+	char *body;
+	gsl_set_error_handler_off();
+	int connection = worker_connect(n_threads);
+	struct worker_crew *crew = worker_crew_start(n_threads, send_answer, &connection);
+	while (crew && message_take(connection, MESSAGE_OF_COORDINATOR, &message, &body))
+		if (!worker_crew_take(crew, &message, body))
+			_exit(EXIT_FAILURE);
+	// threads are at work
+	_exit(crew ? EXIT_SUCCESS : EXIT_FAILURE);
+}

@@ -1,0 +1,303 @@
+/* The threads take orders from a queue: to make the run of a study and answer with the digest of its design, or to run a
+ * block.  Who receives messages never sends, so that a coordinator which sends much cannot wait for itself.  A study that was
+ * dropped is stopped, its orders are answered as such, and the last who is at it frees it. */
+#include "client/worker_crew.h"
+
+#include <argp.h>
+#include <assert.h>
+#include <netdb.h>
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/queue.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "schema/json/problems.h"
+#include "schema/study/study_json.h"
+
+struct work_study {
+	TAILQ_ENTRY(work_study) others;
+	uint64_t id;
+	char *document; /* (length) bytes, until it is opened */
+	size_t length;
+	struct pound_study *study;
+	struct pound_run *run; /* NULL: not yet, or it could not be made */
+	atomic_bool stop;      /* it was dropped */
+	int n_orders;          /* in the queue, and at work */
+};
+
+struct order {
+	STAILQ_ENTRY(order) next;
+	struct work_study *study;
+	int block; /* -1: make the run */
+};
+
+struct worker_crew {
+	pthread_mutex_t lock;
+	pthread_cond_t ordered;
+	TAILQ_HEAD(, work_study) studies;
+	STAILQ_HEAD(, order) orders;
+	pthread_mutex_t answers; /* one at a time */
+	worker_answer *answer;
+	void *to;
+	int n_threads, n_numbered;
+};
+
+static double thread_cpu(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void give_answer(struct worker_crew *crew, const struct message *message, const void *body)
+{
+	pthread_mutex_lock(&crew->answers);
+	crew->answer(crew->to, message, body);
+	pthread_mutex_unlock(&crew->answers);
+}
+
+/* Makes the run of a study and answers with the digest. */
+static void open_study(struct worker_crew *crew, struct work_study *s)
+{
+	struct message m = {.type = MESSAGE_DESIGN, .study = s->id, .status = POUND_NOMEM};
+	uint8_t digest[MESSAGE_DIGEST_SIZE];
+	struct problems problems;
+	s->study = study_from_json(s->document, s->length, &problems);
+	free(s->document);
+	s->document = NULL;
+	struct pound_run *run = s->study ? pound_run_create_by(s->study, crew->n_threads, &s->stop) : NULL;
+	if (run)
+		pound_run_stop_by(run, &s->stop);
+	if (run && message_design(s->study, run, digest)) {
+		m.status = POUND_OK;
+		m.n = sizeof digest;
+	}
+	pthread_mutex_lock(&crew->lock);
+	s->run = run;
+	pthread_mutex_unlock(&crew->lock);
+	give_answer(crew, &m, digest);
+}
+
+static void run_block(struct worker_crew *crew, struct work_study *s, int block, int worker)
+{
+	struct message m = {.type = MESSAGE_VALUES, .study = s->id, .block = block, .status = POUND_STOPPED};
+	double cpu_s = thread_cpu();
+	if (!s->stop)
+		m.status = (int32_t)pound_run_block(s->run, block, worker);
+	m.cpu_s = thread_cpu() - cpu_s;
+	if (m.status == POUND_OK)
+		m.n = (uint32_t)pound_run_block_size(s->run, block);
+	give_answer(crew, &m, m.n ? pound_run_block_values(s->run, block) : NULL);
+}
+
+static void study_end(struct worker_crew *crew, struct work_study *s)
+{
+	TAILQ_REMOVE(&crew->studies, s, others);
+	if (s->run)
+		pound_run_free(s->run);
+	if (s->study)
+		study_free(s->study);
+	free(s->document);
+	free(s);
+}
+
+static void *thread(void *of)
+{
+	struct worker_crew *crew = of;
+	pthread_mutex_lock(&crew->lock);
+	const int worker = crew->n_numbered++;
+	for (;;) {
+		struct order *order = STAILQ_FIRST(&crew->orders);
+		if (!order) {
+			pthread_cond_wait(&crew->ordered, &crew->lock);
+			continue;
+		}
+		STAILQ_REMOVE_HEAD(&crew->orders, next);
+		pthread_mutex_unlock(&crew->lock);
+		struct work_study *s = order->study;
+		if (order->block < 0)
+			open_study(crew, s);
+		else
+			run_block(crew, s, order->block, worker);
+		free(order);
+		pthread_mutex_lock(&crew->lock);
+		if (--s->n_orders == 0 && s->stop)
+			study_end(crew, s);
+	}
+	return NULL;
+}
+
+struct worker_crew *worker_crew_start(int n_threads, worker_answer *answer, void *to)
+{
+	struct worker_crew *crew = calloc(1, sizeof *crew);
+	if (!crew)
+		return NULL;
+	*crew = (struct worker_crew){.lock = PTHREAD_MUTEX_INITIALIZER,
+	                             .ordered = PTHREAD_COND_INITIALIZER,
+	                             .answers = PTHREAD_MUTEX_INITIALIZER,
+	                             .answer = answer,
+	                             .to = to,
+	                             .n_threads = n_threads};
+	TAILQ_INIT(&crew->studies);
+	STAILQ_INIT(&crew->orders);
+	for (int i = 0; i < n_threads; i++) {
+		pthread_t id;
+		if (pthread_create(&id, NULL, thread, crew) != 0)
+			return NULL; // the program ends
+		pthread_detach(id);
+	}
+	return crew;
+}
+
+/* Under the lock. */
+static bool put(struct worker_crew *crew, struct work_study *s, int block)
+{
+	struct order *order = malloc(sizeof *order);
+	if (!order)
+		return false;
+	*order = (struct order){.study = s, .block = block};
+	s->n_orders++;
+	STAILQ_INSERT_TAIL(&crew->orders, order, next);
+	pthread_cond_signal(&crew->ordered);
+	return true;
+}
+
+/* What a message means for the study it names (NULL: there is none). */
+static bool obey(struct worker_crew *crew, const struct message *m, struct work_study *s, char **body)
+{
+	switch ((enum message_type)m->type) {
+	case MESSAGE_STUDY:
+		if (s || !(s = calloc(1, sizeof *s)))
+			return false;
+		s->id = m->study;
+		s->document = *body;
+		s->length = m->n;
+		*body = NULL;
+		TAILQ_INSERT_TAIL(&crew->studies, s, others);
+		return put(crew, s, -1);
+	case MESSAGE_BLOCK:
+		return s && s->run && m->block < pound_run_blocks_most(s->run) && put(crew, s, m->block);
+	case MESSAGE_DROP:
+		if (!s)
+			return false;
+		s->stop = true;
+		if (s->n_orders == 0)
+			study_end(crew, s);
+		return true;
+	case MESSAGE_READY:
+	case MESSAGE_DESIGN:
+	case MESSAGE_VALUES:
+		break;
+	}
+	return false;
+}
+
+bool worker_crew_take(struct worker_crew *crew, const struct message *m, char *body)
+{
+	struct work_study *s;
+	pthread_mutex_lock(&crew->lock);
+	TAILQ_FOREACH(s, &crew->studies, others)
+	if (s->id == m->study && !s->stop)
+		break;
+	bool sense = obey(crew, m, s, &body);
+	pthread_mutex_unlock(&crew->lock);
+	free(body);
+	return sense;
+}
+
+int worker_threads(void)
+{
+	cpu_set_t set;
+	int n = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+	return n < MESSAGE_THREADS_MAX ? n : MESSAGE_THREADS_MAX;
+}
+
+__attribute__((noreturn)) static void fail(const char *what, const char *about)
+{
+	fprintf(stderr, "pound-worker: %s%s\n", what, about);
+	exit(1);
+}
+
+/* A connection to one of the addresses of a host, -1: none. */
+static int connect_to(const char *host, const char *port)
+{
+	const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM};
+	struct addrinfo *found = NULL;
+	int s = -1;
+	if (getaddrinfo(host, port, &wanted, &found) != 0)
+		return -1;
+	for (struct addrinfo *at = found; at && s < 0; at = at->ai_next) {
+		s = socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC, at->ai_protocol);
+		if (s >= 0 && connect(s, at->ai_addr, at->ai_addrlen) != 0) {
+			close(s);
+			s = -1;
+		}
+	}
+	freeaddrinfo(found);
+	return s;
+}
+
+int worker_connect(int n_threads)
+{
+	const char *address = getenv("POUND_WORKER");
+	if (!address)
+		fail("it is started by a launcher, which says in POUND_WORKER where to connect; "
+		     "see `pound run --help', --launcher",
+		     "");
+	// from the end, as an address of IPv6 has colons
+	char *host = strdup(address), *token = host ? strrchr(host, ':') : NULL;
+	if (token)
+		*token++ = '\0';
+	char *port = token ? strrchr(host, ':') : NULL;
+	if (port)
+		*port++ = '\0';
+	if (!port || strlen(token) != MESSAGE_TOKEN_SIZE)
+		fail("POUND_WORKER must be HOST:PORT:TOKEN", "");
+	int s = connect_to(host, port);
+	if (s < 0)
+		fail("cannot connect to ", host);
+	message_prepare(s);
+	const struct message ready = {
+	    .type = MESSAGE_READY, .block = n_threads, .n = (uint32_t)strlen(POUND_VERSION)};
+	if (send(s, token, MESSAGE_TOKEN_SIZE, MSG_NOSIGNAL) != MESSAGE_TOKEN_SIZE ||
+	    !message_send(s, &ready, POUND_VERSION))
+		fail("cannot send to ", host);
+	free(host);
+	return s;
+}
+
+const char *argp_program_version = "pound-worker " POUND_VERSION;
+
+static error_t take(int key, char *value, struct argp_state *state)
+{
+	int *n_threads = state->input;
+	char *end;
+	if (key != 't')
+		return ARGP_ERR_UNKNOWN;
+	long n = strtol(value, &end, 10);
+	if (end == value || *end || n < 1 || n > MESSAGE_THREADS_MAX)
+		argp_error(state, "--threads must be a whole number from 1 to %d, got '%s'", MESSAGE_THREADS_MAX,
+		           value);
+	*n_threads = (int)n;
+	return 0;
+}
+
+int worker_options(int argc, char **argv)
+{
+	static const struct argp_option options[] = {
+	    {"threads", 't', "N", 0, "compute with N threads (default: cores this process may use)", 0}, {0}};
+	static const struct argp argp = {
+	    .options = options,
+	    .parser = take,
+	    .doc = "Runs blocks of studies for a `pound run' or poundd that started it by --launcher.\v"
+	           "Where to connect is in POUND_WORKER, which the launcher sets: HOST:PORT:TOKEN."};
+	int n_threads = worker_threads();
+	argp_parse(&argp, argc, argv, 0, NULL, &n_threads);
+	return n_threads;
+}

@@ -1,0 +1,436 @@
+/* A group's life:
+ *
+ *   rest -- blocks are wanted --> launch --> wait for the connection --> serve --+
+ *    ^                              ^  failed: 1, 2, 4 ... 60 s later            |
+ *    +------------------------------+--------------------- idle for 60 s, or lost
+ *
+ * No block is taken before the group has connected, so a launcher that waits in a queue delays nothing.  While it serves,
+ * a group has two blocks a thread: one that runs, one on its way. */
+#include "schema/message/coordinator.h"
+
+#include <math.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+enum {
+	AHEAD = 2,        /* blocks a thread that a group has */
+	STUDIES_MAX = 16, /* that a group has at a time */
+	LOOK_MS = 200,    /* between two looks at what is not signaled: late blocks, an end of the launcher */
+	IDLE_MAX = 60,    /* [s] without a block, then the group ends */
+	PAUSE_MAX = 60,   /* [s] before a launcher is tried again */
+};
+
+/* What a group knows of a study. */
+enum standing { UNKNOWN, SENT, AGREED, REFUSED, DROPPED };
+struct known {
+	enum standing standing;
+	uint64_t id;
+	int n_out;                           /* blocks that the group has and has not answered */
+	uint8_t digest[MESSAGE_DIGEST_SIZE]; /* of the design here */
+};
+
+struct out {
+	struct coordinator_block block;
+	uint64_t id; /* of its study, also when that is gone */
+	bool taken;  /* it is still ours to give back */
+	bool waits;  /* not sent before the group agrees on the design */
+};
+
+struct group {
+	struct coordinator *of;
+	int number; /* from 1 */
+	pthread_t thread;
+	int wakes; /* eventfd */
+	struct launcher launcher;
+	int socket, n_threads;
+	struct known known[STUDIES_MAX];
+	struct out *out; /* (n_out_max) */
+	int n_out, n_out_max;
+	uint64_t refused[COORDINATOR_REFUSED_MAX];
+	int n_refused;
+	double *values; /* (n_values) of one block */
+	size_t n_values;
+	bool worked; /* a block was run since the launch */
+};
+
+struct coordinator {
+	struct launch launch;
+	struct coordinator_source source;
+	atomic_bool stopping;
+	atomic_int n_connected;
+	atomic_long n_blocks;
+	int n;
+	struct group groups[]; /* (n) */
+};
+
+static double now_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+__attribute__((format(printf, 2, 3))) static void say(const struct group *g, const char *format, ...)
+{
+	char line[256];
+	int n = snprintf(line, sizeof line, "worker group %d: ", g->number);
+	va_list values;
+	va_start(values, format);
+	vsnprintf(line + n, sizeof line - (size_t)n, format, values);
+	va_end(values);
+	g->of->source.log(line);
+}
+
+/* Waits for a signal, or for bytes of the socket (-1: none); true: there are bytes. */
+static bool pause_for(struct group *g, int socket, int ms)
+{
+	struct pollfd of[2] = {{.fd = g->wakes, .events = POLLIN}, {.fd = socket, .events = POLLIN}};
+	uint64_t count;
+	poll(of, 2, ms);
+	if (of[0].revents && read(g->wakes, &count, sizeof count) < 0)
+		return false;
+	return of[1].revents != 0;
+}
+
+static struct known *known_of(struct group *g, uint64_t id)
+{
+	for (int i = 0; i < STUDIES_MAX; i++)
+		if (g->known[i].standing != UNKNOWN && g->known[i].id == id)
+			return &g->known[i];
+	return NULL;
+}
+
+static void give_back(struct group *g, struct out *out)
+{
+	if (out->taken)
+		g->of->source.back(g->of->source.of, g->number, &out->block);
+	out->taken = false;
+}
+
+static void out_remove(struct group *g, struct out *out)
+{
+	*out = g->out[--g->n_out];
+}
+
+/* Takes no more blocks of a study for this group. */
+static void refuse(struct group *g, struct known *k, const char *why)
+{
+	say(g, "runs no block of this study: %s", why);
+	k->standing = REFUSED;
+	if (g->n_refused < COORDINATOR_REFUSED_MAX)
+		g->refused[g->n_refused++] = k->id;
+	for (int i = g->n_out - 1; i >= 0; i--)
+		if (g->out[i].id == k->id && g->out[i].waits) {
+			give_back(g, &g->out[i]);
+			out_remove(g, &g->out[i]);
+			k->n_out--;
+		}
+}
+
+/* Lets go of studies that have ended here; false: the connection failed. */
+static bool drop_ended(struct group *g)
+{
+	for (int s = 0; s < STUDIES_MAX; s++) {
+		struct known *k = &g->known[s];
+		if (k->standing == UNKNOWN)
+			continue;
+		if (k->standing != DROPPED && !g->of->source.lives(g->of->source.of, k->id)) {
+			const struct message drop = {.type = MESSAGE_DROP, .study = k->id};
+			for (int i = g->n_out - 1; i >= 0; i--)
+				if (g->out[i].id == k->id) {
+					const bool sent = !g->out[i].waits;
+					give_back(g, &g->out[i]);
+					if (sent)
+						continue;
+					out_remove(g, &g->out[i]);
+					k->n_out--;
+				}
+			const bool unanswered = k->standing == SENT;
+			k->standing = DROPPED;
+			k->n_out += unanswered; // the design
+			if (!message_send(g->socket, &drop, NULL))
+				return false;
+		}
+		if (k->standing == DROPPED && k->n_out == 0)
+			k->standing = UNKNOWN;
+	}
+	return true;
+}
+
+/* Sends a study, before its first block; false: the connection failed, or there is no memory. */
+static struct known *introduce(struct group *g, const struct coordinator_study *study)
+{
+	struct known *k = g->known;
+	while (k < g->known + STUDIES_MAX && k->standing != UNKNOWN)
+		k++;
+	// as many as studies may be open, and as many again that have just ended, have their place
+	if (k == g->known + STUDIES_MAX)
+		return NULL;
+	const struct message head = {.type = MESSAGE_STUDY, .study = study->id, .n = (uint32_t)study->length};
+	*k = (struct known){.standing = SENT, .id = study->id};
+	if (!message_design(study->study, study->run, k->digest) ||
+	    !message_send(g->socket, &head, study->document))
+		return NULL;
+	return k;
+}
+
+static bool send_block(struct group *g, struct out *out)
+{
+	const struct message head = {.type = MESSAGE_BLOCK, .study = out->id, .block = out->block.number};
+	out->waits = false;
+	return message_send(g->socket, &head, NULL);
+}
+
+/* Takes blocks until the group has enough; false: the connection failed. */
+static bool fill(struct group *g)
+{
+	const struct coordinator_source *source = &g->of->source;
+	struct coordinator_block block;
+	while (g->n_out < g->n_out_max && source->take(source->of, g->number, g->refused, g->n_refused, &block)) {
+		struct out *out = &g->out[g->n_out++];
+		struct known *k = known_of(g, block.study->id);
+		*out = (struct out){.block = block, .id = block.study->id, .taken = true, .waits = true};
+		if (!k && !(k = introduce(g, block.study)))
+			return false;
+		k->n_out++;
+		if (k->standing == AGREED && !send_block(g, out))
+			return false;
+	}
+	return true;
+}
+
+/* NULL, or what is wrong with the answer. */
+static const char *take_design(struct group *g, const struct message *m, const char *body)
+{
+	struct known *k = known_of(g, m->study);
+	if (k && k->standing == DROPPED && k->n_out > 0) {
+		k->n_out--;
+		return NULL;
+	}
+	if (!k || k->standing != SENT)
+		return "an answer about a study that was not sent";
+	if (m->status != POUND_OK)
+		refuse(g, k, pound_status_text((enum pound_status)m->status));
+	else if (memcmp(body, k->digest, sizeof k->digest) != 0)
+		refuse(g, k, "its processor or libraries give another design");
+	else {
+		k->standing = AGREED;
+		for (int i = 0; i < g->n_out; i++)
+			if (g->out[i].id == k->id && g->out[i].waits && !send_block(g, &g->out[i]))
+				return "the connection ended";
+	}
+	return NULL;
+}
+
+static const char *take_values(struct group *g, const struct message *m, const char *body)
+{
+	struct known *k = known_of(g, m->study);
+	struct out *out = g->out;
+	while (out < g->out + g->n_out && (out->id != m->study || out->block.number != m->block || out->waits))
+		out++;
+	if (!k || out == g->out + g->n_out)
+		return "values of a block that was not sent";
+	if (out->taken) {
+		const bool ran = m->status == POUND_OK;
+		if (ran && m->n != pound_run_block_size(out->block.study->run, m->block))
+			return "a block of another size";
+		if (m->status == POUND_STOPPED)
+			return "a block that was stopped";
+		// no memory there is not no memory here
+		if (m->status == POUND_NOMEM)
+			return "out of memory";
+		out->taken = false;
+		g->of->source.done(g->of->source.of, g->number, &out->block, m, (const double *)(const void *)body);
+		g->worked = true;
+		atomic_fetch_add(&g->of->n_blocks, ran);
+	}
+	out_remove(g, out);
+	k->n_out--;
+	return NULL;
+}
+
+/* Takes one message; false: the connection is over. */
+static bool answer(struct group *g)
+{
+	struct message m;
+	char *body;
+	if (!message_take(g->socket, MESSAGE_OF_WORKER, &m, &body)) {
+		if (!g->of->stopping)
+			say(g, "the connection ended");
+		return false;
+	}
+	const char *fault = m.type == MESSAGE_DESIGN   ? take_design(g, &m, body)
+	                    : m.type == MESSAGE_VALUES ? take_values(g, &m, body)
+	                                               : "a second greeting";
+	free(body);
+	if (fault)
+		say(g, "the connection is closed: %s", fault);
+	return !fault;
+}
+
+/* The first message; false: another version, or not that. */
+static bool greet(struct group *g)
+{
+	struct message m;
+	char *version = NULL;
+	bool ready = message_take(g->socket, MESSAGE_OF_WORKER, &m, &version) && m.type == MESSAGE_READY;
+	bool same = ready && m.n == strlen(POUND_VERSION) && memcmp(version, POUND_VERSION, m.n) == 0;
+	if (ready && !same)
+		say(g, "its version is %.*s, this is " POUND_VERSION, (int)m.n, version);
+	free(version);
+	if (!same)
+		return false;
+	g->n_threads = m.block;
+	g->n_out_max = AHEAD * g->n_threads;
+	g->out = calloc((size_t)g->n_out_max, sizeof *g->out);
+	return g->out;
+}
+
+/* Serves a group that has connected, until it ends or is idle for long. */
+static void serve(struct group *g)
+{
+	double busy = now_s(), looked = 0;
+	bool ok = greet(g);
+	if (ok) {
+		say(g, "connected, %d thread%s", g->n_threads, g->n_threads == 1 ? "" : "s");
+		atomic_fetch_add(&g->of->n_connected, 1);
+	}
+	const bool connected = ok;
+	while (ok && !g->of->stopping) {
+		if (now_s() - looked > 1e-3 * LOOK_MS) {
+			looked = now_s();
+			ok = drop_ended(g);
+		}
+		ok = ok && fill(g);
+		if (!ok)
+			break;
+		if (g->n_out > 0)
+			busy = now_s();
+		else if (now_s() - busy > IDLE_MAX) {
+			say(g, "is ended, as there is nothing to run");
+			break;
+		}
+		if (pause_for(g, g->socket, LOOK_MS))
+			ok = answer(g);
+		else
+			looked = 0;
+	}
+	for (int i = 0; i < g->n_out; i++)
+		give_back(g, &g->out[i]);
+	if (connected)
+		atomic_fetch_sub(&g->of->n_connected, 1);
+	shutdown(g->socket, SHUT_RDWR);
+	close(g->socket);
+	free(g->out);
+	g->out = NULL;
+	g->n_out = g->n_threads = g->n_refused = 0;
+	memset(g->known, 0, sizeof g->known);
+}
+
+/* Starts the launcher, waits for the connection, serves it. */
+static void launch(struct group *g)
+{
+	const struct coordinator_source *source = &g->of->source;
+	const char *fault = launcher_start(&g->launcher, &g->of->launch);
+	g->worked = false;
+	g->socket = -1;
+	if (fault)
+		say(g, "%s", fault);
+	bool ended = fault != NULL;
+	while (!ended && g->socket < 0 && !g->of->stopping && source->wanted(source->of)) {
+		ended = launcher_ended(&g->launcher);
+		if (pause_for(g, g->launcher.listens, LOOK_MS))
+			g->socket = launcher_accept(&g->launcher);
+	}
+	launcher_close(&g->launcher);
+	const bool connected = g->socket >= 0;
+	if (connected)
+		serve(g);
+	else if (ended && !fault)
+		say(g, "its launcher ended without a connection");
+	launcher_stop(&g->launcher, connected);
+}
+
+static void *group_run(void *of)
+{
+	struct group *g = of;
+	int pause = 1;
+	while (!g->of->stopping) {
+		if (!g->of->source.wanted(g->of->source.of)) {
+			pause_for(g, -1, -1);
+			continue;
+		}
+		launch(g);
+		pause = g->worked ? 1 : pause;
+		for (double until = now_s() + pause; !g->of->stopping && now_s() < until;)
+			pause_for(g, -1, LOOK_MS);
+		pause = 2 * pause < PAUSE_MAX ? 2 * pause : PAUSE_MAX;
+	}
+	return NULL;
+}
+
+/* Starts the threads of the groups; launchers start when blocks are wanted.
+ *
+ * Test     client_worker: every_example_gives_the_same_bytes_with_any_number_of_groups
+ */
+struct coordinator *coordinator_start(const struct launch *launch, const struct coordinator_source *source)
+{
+	const int n = launch->n;
+	struct coordinator *c = calloc(1, sizeof *c + (size_t)n * sizeof c->groups[0]);
+	if (!c)
+		return NULL;
+	c->launch = *launch;
+	c->source = *source;
+	for (; c->n < n; c->n++) {
+		struct group *g = &c->groups[c->n];
+		g->of = c;
+		g->number = c->n + 1;
+		g->wakes = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+		if (g->wakes < 0 || pthread_create(&g->thread, NULL, group_run, g) != 0)
+			break;
+	}
+	if (c->n == n)
+		return c;
+	coordinator_stop(c);
+	return NULL;
+}
+
+void coordinator_wake(struct coordinator *c)
+{
+	const uint64_t one = 1;
+	for (int i = 0; c && i < c->n; i++)
+		if (write(c->groups[i].wakes, &one, sizeof one) < 0)
+			continue; // it is awake
+}
+
+int coordinator_groups(const struct coordinator *c)
+{
+	return c ? c->n_connected : 0;
+}
+
+long coordinator_blocks(const struct coordinator *c)
+{
+	return c ? c->n_blocks : 0;
+}
+
+void coordinator_stop(struct coordinator *c)
+{
+	if (!c)
+		return;
+	c->stopping = true;
+	coordinator_wake(c);
+	for (int i = 0; i < c->n; i++) {
+		pthread_join(c->groups[i].thread, NULL);
+		close(c->groups[i].wakes);
+	}
+	free(c);
+}

@@ -1,0 +1,57 @@
+/* coordinator.h - groups of workers elsewhere: their launchers, their connections, the blocks they have.
+ *
+ * A thread for each group starts the launcher, a command, when there are blocks to run; waits for one connection; hands out
+ * blocks and takes their values; and when the group ends or its connection does, gives back what it had. */
+#ifndef COORDINATOR_H
+#define COORDINATOR_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schema/message/launcher.h"
+#include "schema/message/message.h"
+
+enum { COORDINATOR_GROUPS_MAX = 256, COORDINATOR_REFUSED_MAX = 64 };
+
+/* A study whose blocks are handed out; stays while one of them is taken. */
+struct coordinator_study {
+	uint64_t id;
+	const struct pound_study *study;
+	struct pound_run *run;
+	const char *document; /* (length) bytes */
+	size_t length;
+};
+
+struct coordinator_block {
+	const struct coordinator_study *study;
+	int number;
+};
+
+/* What the coordinator asks, in its threads; `group` is from 1. */
+struct coordinator_source {
+	void *of;
+	bool (*wanted)(void *of); /* there are blocks for workers elsewhere */
+	/* takes one, of a study that is not among the refused; false: there is none now */
+	bool (*take)(void *of, int group, const uint64_t refused[], int n_refused,
+	             struct coordinator_block *block);
+	void (*back)(void *of, int group, const struct coordinator_block *block); /* it was not run */
+	/* it was run: values (pound_run_block_size), or a status that is not POUND_OK */
+	void (*done)(void *of, int group, const struct coordinator_block *block, const struct message *message,
+	             const double *values);
+	bool (*lives)(void *of, uint64_t study); /* its blocks are still wanted */
+	void (*log)(const char *line);
+};
+
+struct coordinator;
+
+/* NULL: no memory or no threads.  What the launch points to outlives the coordinator. */
+struct coordinator *coordinator_start(const struct launch *launch, const struct coordinator_source *source);
+void coordinator_wake(
+    struct coordinator *coordinator); /* there are blocks, or studies have ended; signal-safe */
+int coordinator_groups(const struct coordinator *coordinator);  /* connected now */
+long coordinator_blocks(const struct coordinator *coordinator); /* blocks run by them */
+void coordinator_stop(struct coordinator *coordinator);         /* ends connections and launchers */
+
+#endif

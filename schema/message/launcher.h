@@ -1,0 +1,32 @@
+/* launcher.h - a command that starts workers, and the connection they open. */
+#ifndef LAUNCHER_H
+#define LAUNCHER_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+#include "schema/message/message.h"
+
+/* What starts worker groups. */
+struct launch {
+	const char *command; /* run by sh -c, POUND_WORKER in its environment; NULL: no workers */
+	const char *host;    /* by which workers reach this machine: listen on all addresses; NULL: on loopback only */
+	int n;               /* groups: the command runs once for each */
+};
+
+struct launcher {
+	pid_t pid;   /* of its process group, 0: none */
+	int listens; /* the socket that waits for the connection, -1: none */
+	char token[MESSAGE_TOKEN_SIZE + 1];
+};
+
+/* NULL, or what failed */
+const char *launcher_start(struct launcher *launcher, const struct launch *launch);
+bool launcher_ended(struct launcher *launcher);
+/* A connection that starts with the token, -1: not this time; then it is another one's. */
+int launcher_accept(const struct launcher *launcher);
+void launcher_close(struct launcher *launcher); /* takes no connection any more */
+/* ends all of its processes on this machine; those that had a connection have a while to end by themselves */
+void launcher_stop(struct launcher *launcher, bool connected);
+
+#endif
