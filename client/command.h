@@ -23,25 +23,25 @@ struct options {
 	const char *second;   /* indices, plot, report, archive: what stands behind that */
 	const char **files;   /* of a subcommand that takes any number of them  (n_files) */
 	int n_files;
-	const char *unit;    /* record: of a file that names none; NULL: not known */
-	double step;         /* record: of a file without times [s]; 0: not known */
-	int channel;         /* record: of a file with several, from 1; 0: not chosen */
-	const char *periods; /* record: of the response spectrum, between commas; NULL: none */
-	int row;             /* motion: of the design, from 0 */
-	const char *url;     /* of the server */
-	const char *format;  /* one of the names the subcommand offers */
-	const char *table;   /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
-	const char *status;  /* list: only studies in this state; NULL: all */
-	const char *name;    /* list: only studies with this text in their name; NULL: all */
-	const char *hash;    /* list: only studies of this hash; NULL: all */
-	const char *cursor;  /* list: where the previous page ended; NULL: the newest */
-	const char *samples; /* run: file for every sample, or for the histories; NULL: none */
-	int limit;           /* list: studies on a page; 0: as the server likes */
-	int threads;         /* run */
+	const char *unit;       /* record: of a file that names none; NULL: not known */
+	double step;            /* record: of a file without times [s]; 0: not known */
+	int channel;            /* record: of a file with several, from 1; 0: not chosen */
+	const char *periods;    /* record: of the response spectrum, between commas; NULL: none */
+	int row;                /* motion: of the design, from 0 */
+	const char *url;        /* of the server */
+	const char *format;     /* one of the names the subcommand offers */
+	const char *table;      /* of a sensitivity result, by its name there; NULL: all, or the first as CSV */
+	const char *status;     /* list: only studies in this state; NULL: all */
+	const char *name;       /* list: only studies with this text in their name; NULL: all */
+	const char *hash;       /* list: only studies of this hash; NULL: all */
+	const char *cursor;     /* list: where the previous page ended; NULL: the newest */
+	const char *samples;    /* run: file for every sample, or for the histories; NULL: none */
+	int limit;              /* list: studies on a page; 0: as the server likes */
+	int threads;            /* run */
 	const char *checkpoint; /* run: file of finished blocks; NULL: none */
-	bool wait;           /* submit */
-	bool names;          /* example, plot */
-	bool partial;        /* results, plot: of the rows so far, while the study runs */
+	bool wait;              /* submit */
+	bool names;             /* example, plot */
+	bool partial;           /* results, plot: of the rows so far, while the study runs */
 	struct figure_choice choice; /* plot */
 	struct launch launch;        /* run: workers in other processes */
 	struct {

@@ -1,8 +1,8 @@
 /* compute.c - blocks, then reductions, for as long as the design grows.
  *
- * 1. Threads of this process and the groups of a coordinator take blocks, so that which of them computes what is chance.
- * 2. The threads make the reductions.
- * 3. The calling thread watches: it draws the bar and looks for Ctrl-C. */
+ * 1. Threads of this process and the coordinator's worker groups take blocks in any order.
+ * 2. The threads of this process make the reductions.
+ * 3. The calling thread draws the progress bar and looks for Ctrl-C. */
 #include "client/compute.h"
 
 #include <pthread.h>
@@ -191,7 +191,9 @@ static bool remote_start(struct crew *crew)
 	if (!of->launch->command)
 		return true;
 	if (!message_movable(of->study)) {
-		remote_log("all blocks of this study run here, as their bytes or times depend on the processor");
+		remote_log(
+		    "no workers are started: the bytes or times of this study depend on the processor, so all blocks "
+		    "run in this process");
 		return true;
 	}
 	crew->coordinator = coordinator_start(of->launch, &source);
@@ -307,9 +309,12 @@ enum pound_status compute_run(struct compute *of)
 		if (crew.status != POUND_OK || !pound_run_grow(of->run))
 			break;
 	}
+	bar_clear();
+	if (crew.coordinator && crew.status == POUND_OK)
+		command_complain("worker groups ran %ld of %d blocks", coordinator_blocks(crew.coordinator),
+		                 crew.n_blocks);
 	coordinator_stop(crew.coordinator);
 	checkpoint_close(crew.checkpoint);
-	bar_clear();
 	sem_destroy(&crew.finished);
 	assignment_free(&crew.blocks);
 	free(members);

@@ -251,6 +251,21 @@ static void check_table(struct argp_state *state, const struct options *options)
 	free(padded);
 }
 
+/* Several ranks of this program would each compute the whole study. */
+static void check_ranks(struct argp_state *state)
+{
+	// what Open MPI, MPICH and srun give to each of several
+	static const char *const counts[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+	for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+		const char *n = getenv(counts[i]);
+		if (n && atoi(n) > 1)
+			argp_error(
+			    state,
+			    "this is one of %s ranks: start pound once, and its workers by --launcher '... pound-worker'",
+			    n);
+	}
+}
+
 static error_t take_option(int key, char *value, struct argp_state *state)
 {
 	struct parsing *parsing = state->input;
@@ -369,6 +384,12 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 			return 0;
 		if (strchr(parsing->command->takes, 'm') && !options->evaluate.model)
 			argp_error(state, "--model is missing");
+		if (!options->launch.command && (options->launch.host || options->launch.n))
+			argp_error(state, "--launchers and --worker-host need --launcher");
+		if (options->launch.n == 0)
+			options->launch.n = 1;
+		if (strchr(parsing->command->takes, 'L'))
+			check_ranks(state);
 		if (options->evaluate.replicates && !options->evaluate.seed_member)
 			argp_error(state, "--replicates needs --seed-member: equal calls may have equal answers");
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
@@ -422,8 +443,7 @@ static enum outcome command_run(const struct command *command, int argc, char **
 	                .format =
 	                    command->terminal_table && isatty(STDOUT_FILENO) ? "table" : command->formats[0],
 	                .threads = cores(),
-	                .evaluate.jobs = JOBS,
-	                .launch.n = 1},
+	                .evaluate.jobs = JOBS},
 	};
 	// an empty list, unlike none, is memory that argp's help does not give back
 	struct argp argp = {.options = taken->key ? taken : NULL,

@@ -51,6 +51,7 @@ struct group {
 	pthread_t thread;
 	int wakes; /* eventfd */
 	struct launcher launcher;
+	pthread_mutex_t lock; /* of the socket, which another thread may shut down */
 	int socket, n_threads;
 	struct known known[STUDIES_MAX];
 	struct out *out; /* (n_out_max) */
@@ -124,7 +125,7 @@ static void out_remove(struct group *g, struct out *out)
 /* Takes no more blocks of a study for this group. */
 static void refuse(struct group *g, struct known *k, const char *why)
 {
-	say(g, "runs no block of this study: %s", why);
+	say(g, "refused for this study: %s", why);
 	k->standing = REFUSED;
 	if (g->n_refused < COORDINATOR_REFUSED_MAX)
 		g->refused[g->n_refused++] = k->id;
@@ -221,7 +222,7 @@ static const char *take_design(struct group *g, const struct message *m, const c
 	if (m->status != POUND_OK)
 		refuse(g, k, pound_status_text((enum pound_status)m->status));
 	else if (memcmp(body, k->digest, sizeof k->digest) != 0)
-		refuse(g, k, "its processor or libraries give another design");
+		refuse(g, k, "its design differs, as its processor or its GSL gives other quantiles");
 	else {
 		k->standing = AGREED;
 		for (int i = 0; i < g->n_out; i++)
@@ -284,8 +285,12 @@ static bool greet(struct group *g)
 	char *version = NULL;
 	bool ready = message_take(g->socket, MESSAGE_OF_WORKER, &m, &version) && m.type == MESSAGE_READY;
 	bool same = ready && m.n == strlen(POUND_VERSION) && memcmp(version, POUND_VERSION, m.n) == 0;
-	if (ready && !same)
-		say(g, "its version is %.*s, this is " POUND_VERSION, (int)m.n, version);
+	if (!ready)
+		say(g, "refused: its first message is no greeting of a pound-worker");
+	else if (!same)
+		say(g,
+		    "refused: pound-worker has version %.*s, this program " POUND_VERSION "; both must be the same",
+		    (int)m.n, version);
 	free(version);
 	if (!same)
 		return false;
@@ -299,7 +304,7 @@ static bool greet(struct group *g)
 static void serve(struct group *g)
 {
 	double busy = now_s(), looked = 0;
-	bool ok = greet(g);
+	bool ok = !g->of->stopping && greet(g);
 	if (ok) {
 		say(g, "connected, %d thread%s", g->n_threads, g->n_threads == 1 ? "" : "s");
 		atomic_fetch_add(&g->of->n_connected, 1);
@@ -316,7 +321,7 @@ static void serve(struct group *g)
 		if (g->n_out > 0)
 			busy = now_s();
 		else if (now_s() - busy > IDLE_MAX) {
-			say(g, "is ended, as there is nothing to run");
+			say(g, "ended, as there were no blocks for %d s", IDLE_MAX);
 			break;
 		}
 		if (pause_for(g, g->socket, LOOK_MS))
@@ -328,8 +333,10 @@ static void serve(struct group *g)
 		give_back(g, &g->out[i]);
 	if (connected)
 		atomic_fetch_sub(&g->of->n_connected, 1);
-	shutdown(g->socket, SHUT_RDWR);
+	pthread_mutex_lock(&g->lock);
 	close(g->socket);
+	g->socket = -1;
+	pthread_mutex_unlock(&g->lock);
 	free(g->out);
 	g->out = NULL;
 	g->n_out = g->n_threads = g->n_refused = 0;
@@ -342,21 +349,26 @@ static void launch(struct group *g)
 	const struct coordinator_source *source = &g->of->source;
 	const char *fault = launcher_start(&g->launcher, &g->of->launch);
 	g->worked = false;
-	g->socket = -1;
 	if (fault)
 		say(g, "%s", fault);
 	bool ended = fault != NULL;
-	while (!ended && g->socket < 0 && !g->of->stopping && source->wanted(source->of)) {
+	int connection = -1;
+	for (double busy = now_s(); !ended && connection < 0 && !g->of->stopping && now_s() - busy < IDLE_MAX;) {
 		ended = launcher_ended(&g->launcher);
 		if (pause_for(g, g->launcher.listens, LOOK_MS))
-			g->socket = launcher_accept(&g->launcher);
+			connection = launcher_accept(&g->launcher);
+		if (source->wanted(source->of))
+			busy = now_s();
 	}
 	launcher_close(&g->launcher);
-	const bool connected = g->socket >= 0;
+	const bool connected = connection >= 0;
+	pthread_mutex_lock(&g->lock);
+	g->socket = connection;
+	pthread_mutex_unlock(&g->lock);
 	if (connected)
 		serve(g);
 	else if (ended && !fault)
-		say(g, "its launcher ended without a connection");
+		say(g, "its launcher ended with status %d and without a connection", g->launcher.status);
 	launcher_stop(&g->launcher, connected);
 }
 
@@ -394,6 +406,8 @@ struct coordinator *coordinator_start(const struct launch *launch, const struct 
 		struct group *g = &c->groups[c->n];
 		g->of = c;
 		g->number = c->n + 1;
+		g->socket = -1;
+		pthread_mutex_init(&g->lock, NULL);
 		g->wakes = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 		if (g->wakes < 0 || pthread_create(&g->thread, NULL, group_run, g) != 0)
 			break;
@@ -429,7 +443,16 @@ void coordinator_stop(struct coordinator *c)
 	c->stopping = true;
 	coordinator_wake(c);
 	for (int i = 0; i < c->n; i++) {
+		struct group *g = &c->groups[i];
+		pthread_mutex_lock(&g->lock);
+		// a thread may wait in the middle of a message for a worker that does not answer
+		if (g->socket >= 0)
+			shutdown(g->socket, SHUT_RDWR);
+		pthread_mutex_unlock(&g->lock);
+	}
+	for (int i = 0; i < c->n; i++) {
 		pthread_join(c->groups[i].thread, NULL);
+		pthread_mutex_destroy(&c->groups[i].lock);
 		close(c->groups[i].wakes);
 	}
 	free(c);

@@ -1,7 +1,7 @@
-/* coordinator.h - groups of workers elsewhere: their launchers, their connections, the blocks they have.
+/* coordinator.h - worker groups in other processes: their launchers, their connections, the blocks assigned to them.
  *
- * A thread for each group starts the launcher, a command, when there are blocks to run; waits for one connection; hands out
- * blocks and takes their values; and when the group ends or its connection does, gives back what it had. */
+ * One thread per group: starts the launcher when there are blocks to run, waits for its connection, assigns blocks and
+ * receives their values.  When the connection ends, it gives back the blocks that were not run. */
 #ifndef COORDINATOR_H
 #define COORDINATOR_H
 
@@ -15,7 +15,7 @@
 
 enum { COORDINATOR_GROUPS_MAX = 256, COORDINATOR_REFUSED_MAX = 64 };
 
-/* A study whose blocks are handed out; stays while one of them is taken. */
+/* A study whose blocks are assigned; it outlives the blocks that are taken. */
 struct coordinator_study {
 	uint64_t id;
 	const struct pound_study *study;
@@ -32,7 +32,7 @@ struct coordinator_block {
 /* What the coordinator asks, in its threads; `group` is from 1. */
 struct coordinator_source {
 	void *of;
-	bool (*wanted)(void *of); /* there are blocks for workers elsewhere */
+	bool (*wanted)(void *of); /* there are blocks for worker groups */
 	/* takes one, of a study that is not among the refused; false: there is none now */
 	bool (*take)(void *of, int group, const uint64_t refused[], int n_refused,
 	             struct coordinator_block *block);

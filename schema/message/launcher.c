@@ -19,9 +19,9 @@
 #include <nettle/memops.h>
 
 enum {
-	TOKEN_WAIT = 2,  /* [s] for a connection to say its token */
-	END_TRIES = 300, /* of 10 ms, from the end of the connection to a signal, and from there to SIGKILL */
-	PAUSE_US = 10000,
+	TOKEN_WAIT = 2,   /* [s] for a connection to say its token */
+	END_WAIT = 3,     /* [s] from the end of the connection to SIGTERM, and from there to SIGKILL */
+	PAUSE_US = 10000, /* between two looks whether it has ended */
 };
 
 enum reach { LOOPBACK, ALL_ADDRESSES };
@@ -122,8 +122,12 @@ const char *launcher_start(struct launcher *l, const struct launch *launch)
 bool launcher_ended(struct launcher *l)
 {
 	siginfo_t about = {0};
-	return l->pid == 0 || waitid(P_PID, (id_t)l->pid, &about, WEXITED | WNOHANG | WNOWAIT) != 0 ||
-	       about.si_pid != 0;
+	if (l->pid == 0)
+		return true;
+	bool ended = waitid(P_PID, (id_t)l->pid, &about, WEXITED | WNOHANG | WNOWAIT) != 0 || about.si_pid != 0;
+	if (ended)
+		l->status = about.si_code == CLD_EXITED ? about.si_status : 128 + about.si_status;
+	return ended;
 }
 
 int launcher_accept(const struct launcher *l)
@@ -150,19 +154,21 @@ void launcher_close(struct launcher *l)
 	l->listens = -1;
 }
 
-/* Ends the processes: those of a connection that has ended end by themselves, within a while. */
 void launcher_stop(struct launcher *l, bool connected)
 {
 	static const int signals[] = {0, SIGTERM, SIGKILL};
 	launcher_close(l);
-	for (int s = !connected; s < 3 && l->pid; s++) {
+	for (int s = !connected; s < 3 && !launcher_ended(l); s++) {
 		if (signals[s])
 			kill(-l->pid, signals[s]);
-		for (int i = 0; i < END_TRIES && !launcher_ended(l); i++)
+		// one that is stopped takes SIGTERM when it goes on
+		if (signals[s] == SIGTERM)
+			kill(-l->pid, SIGCONT);
+		for (int i = 0; i < 1000000 / PAUSE_US * END_WAIT && !launcher_ended(l); i++)
 			usleep(PAUSE_US);
 	}
 	if (l->pid) {
-		// what the command left behind
+		// processes that the command left behind
 		kill(-l->pid, SIGKILL);
 		waitpid(l->pid, NULL, 0);
 	}

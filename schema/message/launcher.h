@@ -1,4 +1,4 @@
-/* launcher.h - a command that starts workers, and the connection they open. */
+/* launcher.h - a command that starts workers, and the connection that they open. */
 #ifndef LAUNCHER_H
 #define LAUNCHER_H
 
@@ -10,12 +10,14 @@
 /* What starts worker groups. */
 struct launch {
 	const char *command; /* run by sh -c, POUND_WORKER in its environment; NULL: no workers */
-	const char *host;    /* by which workers reach this machine: listen on all addresses; NULL: on loopback only */
-	int n;               /* groups: the command runs once for each */
+	const char
+	    *host; /* by which workers reach this machine: listen on all addresses; NULL: on loopback only */
+	int n;     /* groups: the command runs once for each */
 };
 
 struct launcher {
 	pid_t pid;   /* of its process group, 0: none */
+	int status;  /* exit status of one that has ended, 128 + signal of one that a signal ended */
 	int listens; /* the socket that waits for the connection, -1: none */
 	char token[MESSAGE_TOKEN_SIZE + 1];
 };
@@ -23,10 +25,11 @@ struct launcher {
 /* NULL, or what failed */
 const char *launcher_start(struct launcher *launcher, const struct launch *launch);
 bool launcher_ended(struct launcher *launcher);
-/* A connection that starts with the token, -1: not this time; then it is another one's. */
+/* A connection that starts with the token; -1: there is none, or it starts with something else and is closed. */
 int launcher_accept(const struct launcher *launcher);
 void launcher_close(struct launcher *launcher); /* takes no connection any more */
-/* ends all of its processes on this machine; those that had a connection have a while to end by themselves */
+/* Ends all of its processes on this machine.  Workers whose connection was closed get END_WAIT to exit first, a command
+ * that never connected gets SIGTERM at once. */
 void launcher_stop(struct launcher *launcher, bool connected);
 
 #endif

@@ -174,6 +174,5 @@ bool message_design(const struct pound_study *study, struct pound_run *run,
 
 bool message_movable(const struct pound_study *study)
 {
-	return study->kind != POUND_KIND_CONVERGENCE &&
-	       pound_solver_is_portable(study->solver.method);
+	return study->kind != POUND_KIND_CONVERGENCE && pound_solver_is_portable(study->solver.method);
 }

@@ -1,0 +1,536 @@
+/* `pound run --launcher': the same bytes whatever runs blocks, and whatever happens to it.
+ *
+ * A checkpoint has a record for each block that was taken as done, so its records are counted: a block without one is
+ * lost, a block with two is doubled. */
+#include <fcntl.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "engine/pound.h"
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+#include "tests/support/service.h"
+#include "tests/support/study_documents.h"
+
+#define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
+
+enum {
+	ROWS = 1200,        /* of the study that is disturbed: a second of one core */
+	GONE_MS = 5000,     /* within which workers end after their coordinator */
+	KILLED_AT_MS = 300, /* at most, after the start */
+	BLOCKS_MAX = 1000,
+};
+
+static struct {
+	char directory[32];
+	char study[64], checkpoint[64], pids[64], out[64], err[64]; /* files in it */
+	char launcher[256]; /* a worker of one thread, which adds its process to pids */
+	char *reference;    /* the result without workers */
+	int n_blocks;
+} world;
+
+static double now_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void text_write(const char *path, const char *text)
+{
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	assert_int_equal(fclose(file), 0);
+}
+
+/* Records of the checkpoint: how many blocks have one, and how many have more. */
+static void records_count(int *n_once, int *n_more)
+{
+	int of_block[BLOCKS_MAX] = {0};
+	size_t n;
+	char *bytes = program_file(world.checkpoint, &n);
+	assert_non_null(bytes);
+	char *at = memchr(bytes, '\n', n);
+	assert_non_null(at);
+	for (at++; at < bytes + n;) {
+		uint32_t place[2]; // block, doubles
+		memcpy(place, at, sizeof place);
+		assert_true(place[0] < BLOCKS_MAX);
+		of_block[place[0]]++;
+		at += sizeof place + 32 + place[1] * sizeof(double);
+	}
+	assert_ptr_equal(at, bytes + n);
+	*n_once = *n_more = 0;
+	for (int block = 0; block < BLOCKS_MAX; block++) {
+		*n_once += of_block[block] == 1;
+		*n_more += of_block[block] > 1;
+	}
+	free(bytes);
+}
+
+static struct program_outcome run_with(const char *launcher, const char *launchers)
+{
+	return POUND("run", "--threads", "1", "--launcher", launcher, "--launchers", launchers, "--checkpoint",
+	             world.checkpoint, world.study);
+}
+
+/* Fails unless the run gave the reference, with a record for each block. */
+static void check_same(struct program_outcome *outcome)
+{
+	int n_once, n_more;
+	program_expect(outcome, 0);
+	if (strcmp(service_timeless(outcome->out), world.reference) != 0)
+		fail_msg("other bytes than without workers");
+	records_count(&n_once, &n_more);
+	assert_int_equal(n_more, 0);
+	assert_int_equal(n_once, world.n_blocks);
+}
+
+static int setup(void **state)
+{
+	int n_more;
+	(void)state;
+	strcpy(world.directory, "/tmp/pound-test-XXXXXX");
+	assert_non_null(mkdtemp(world.directory));
+	snprintf(world.study, sizeof world.study, "%s/study.json", world.directory);
+	snprintf(world.checkpoint, sizeof world.checkpoint, "%s/blocks", world.directory);
+	snprintf(world.pids, sizeof world.pids, "%s/pids", world.directory);
+	snprintf(world.out, sizeof world.out, "%s/out", world.directory);
+	snprintf(world.err, sizeof world.err, "%s/err", world.directory);
+	const char *build = getenv("POUND_BUILD");
+	snprintf(world.launcher, sizeof world.launcher, "echo $$ >>%s; exec %s/pound-worker --threads 1",
+	         world.pids, build ? build : "build/release");
+	char *study = service_study(ROWS, 5, 1);
+	text_write(world.study, study);
+	free(study);
+	struct program_outcome alone =
+	    POUND("run", "--threads", "1", "--checkpoint", world.checkpoint, world.study);
+	program_expect(&alone, 0);
+	assert_string_equal(alone.err, "");
+	world.reference = strdup(service_timeless(alone.out));
+	program_free(&alone);
+	records_count(&world.n_blocks, &n_more);
+	assert_true(world.n_blocks >= 20 && n_more == 0);
+	unlink(world.checkpoint);
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	const char *const files[] = {world.study, world.checkpoint, world.pids, world.out, world.err};
+	(void)state;
+	for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
+		unlink(files[i]);
+	free(world.reference);
+	return rmdir(world.directory);
+}
+
+/* Blocks that workers ran, as the program reports. */
+static int blocks_elsewhere(const char *err)
+{
+	const char *line = strstr(err, "worker groups ran ");
+	assert_non_null(line);
+	return atoi(line + strlen("worker groups ran "));
+}
+
+/* The examples that are quick. */
+static bool is_long(const char *name)
+{
+	return strncmp(name, "paper", 5) == 0;
+}
+
+static void every_example_gives_the_same_bytes_with_any_number_of_groups(void **state)
+{
+	static const char *const launchers[] = {"1", "4"};
+	struct program_outcome names = POUND("example", "--names");
+	int n_examples = 0, n_runs = 0, n_blocks = 0;
+	(void)state;
+	for (char *name = strtok(names.out, "\n"); name; name = strtok(NULL, "\n")) {
+		struct program_outcome document = POUND("example", name);
+		text_write(world.out, document.out);
+		const bool runs = !is_long(name) && strstr(document.out, "\"scene\"");
+		program_free(&document);
+		if (!runs)
+			continue;
+		struct program_outcome alone = POUND("run", "--threads", "1", world.out);
+		program_expect(&alone, 0);
+		service_timeless(alone.out);
+		const bool stays = strcmp(name, "convergence") == 0; // CPU times are among its results
+		for (int i = 0; i < 2; i++) {
+			struct program_outcome outcome = POUND("run", "--threads", "1", "--launcher", world.launcher,
+			                                       "--launchers", launchers[i], world.out);
+			program_expect(&outcome, 0);
+			if (stays)
+				assert_non_null(strstr(outcome.err, "no workers are started"));
+			else {
+				assert_string_equal(service_timeless(outcome.out), alone.out);
+				n_blocks += blocks_elsewhere(outcome.err);
+				n_runs++;
+			}
+			program_free(&outcome);
+		}
+		program_free(&alone);
+		n_examples++;
+	}
+	program_free(&names);
+	check_report("examples: %d, by 0, 1 and 4 groups; %d runs with groups, which ran %d blocks; "
+	             "results that differ 0",
+	             n_examples, n_runs, n_blocks);
+	assert_true(n_examples > 10 && n_blocks > n_examples);
+}
+
+/* The processes that the launchers have started so far. */
+static int pids_read(pid_t pids[], int n_max)
+{
+	int n = 0;
+	FILE *file = fopen(world.pids, "r");
+	while (file && n < n_max && fscanf(file, "%d", &pids[n]) == 1)
+		n++;
+	if (file)
+		fclose(file);
+	return n;
+}
+
+static pid_t run_start(const char *launcher, const char *launchers)
+{
+	return program_start((const char *const[]){"pound", "run", "--threads", "1", "--launcher", launcher,
+	                                           "--launchers", launchers, "--checkpoint", world.checkpoint,
+	                                           world.study, NULL},
+	                     world.out, world.err);
+}
+
+/* The result of a run that was started, once it has ended. */
+static struct program_outcome run_end(pid_t pid)
+{
+	struct program_outcome outcome = {.status = program_end(pid)};
+	outcome.out = program_file(world.out, &outcome.n_out);
+	outcome.err = program_file(world.err, &outcome.n_err);
+	return outcome;
+}
+
+static void killed_workers_lose_no_block_and_double_none(void **state)
+{
+	const int n = check_count(20, 500);
+	int n_blocks = 0, kills = 0, noticed = 0;
+	(void)state;
+	srand(1);
+	for (int i = 0; i < n; i++) {
+		pid_t pids[16];
+		unlink(world.pids);
+		unlink(world.checkpoint);
+		pid_t pid = run_start(world.launcher, "2");
+		while (pids_read(pids, 16) < 2)
+			usleep(1000);
+		usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
+		kills += kill(pids[rand() % 2], SIGKILL) == 0;
+		struct program_outcome outcome = run_end(pid);
+		check_same(&outcome);
+		n_blocks += blocks_elsewhere(outcome.err);
+		noticed += strstr(outcome.err, "ended") != NULL;
+		program_free(&outcome);
+	}
+	check_report("workers killed: %d, noticed %d; blocks %d, of them run by workers %d; lost 0, doubled 0, "
+	             "results that differ 0",
+	             kills, noticed, n * world.n_blocks, n_blocks);
+	assert_true(kills >= n / 2 && noticed >= n / 4 && n_blocks >= n);
+}
+
+static bool is_gone(pid_t pid)
+{
+	char path[64], state = 'X';
+	snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
+	FILE *file = fopen(path, "r");
+	if (file && fscanf(file, "%*d %*s %c", &state) != 1)
+		state = 'X';
+	if (file)
+		fclose(file);
+	return state == 'X' || state == 'Z';
+}
+
+static void a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end(void **state)
+{
+	const int n = check_count(20, 500);
+	int kills = 0, finished = 0, restored = 0;
+	double gone_most = 0;
+	(void)state;
+	srand(2);
+	unlink(world.checkpoint);
+	while (kills < n || finished == 0) {
+		pid_t pids[16];
+		unlink(world.pids);
+		unlink(world.out); // the result, once it is there
+		pid_t pid = run_start(world.launcher, "2");
+		double until = now_s() + 1e-3 * (rand() % KILLED_AT_MS);
+		while (kills < n && now_s() < until)
+			usleep(1000);
+		if (kills < n && kill(pid, SIGKILL) == 0)
+			kills++;
+		struct program_outcome outcome = run_end(pid);
+		const double killed = now_s();
+		for (int i = pids_read(pids, 16) - 1; i >= 0; i--)
+			while (!is_gone(pids[i])) {
+				if (now_s() - killed > 1e-3 * GONE_MS)
+					fail_msg("a worker is there %d ms after its coordinator", GONE_MS);
+				usleep(1000);
+			}
+		gone_most = now_s() - killed > gone_most ? now_s() - killed : gone_most;
+		if (outcome.status == 0) {
+			check_same(&outcome);
+			finished++;
+			unlink(world.checkpoint);
+		} else {
+			assert_int_equal(outcome.status, 128 + SIGKILL);
+			restored += access(world.checkpoint, F_OK) == 0;
+		}
+		program_free(&outcome);
+	}
+	check_report("coordinators killed: %d, of them with blocks to go on with %d; studies finished %d; "
+	             "workers were gone "
+	             "after %.2f s at most; blocks lost 0, doubled 0, results that differ 0",
+	             kills, restored, finished, gone_most);
+	assert_true(restored >= n / 2);
+}
+
+/* ---- launchers of all kinds ---- */
+
+// a worker in bash: connects, sends its token and a READY of one thread with a version of 6 or so characters
+#define CONNECT "IFS=: read -r host port token <<<$POUND_WORKER; exec 3<>/dev/tcp/$host/$port; "
+#define ZEROS_8 "\\0\\0\\0\\0\\0\\0\\0\\000" // three digits, as one may follow
+#define READY(version)                                                                             \
+	"version=" version                                                                             \
+	"; printf \"$token\\1\\0\\0\\0\\1\\0\\0\\0\\0\\0\\0\\0\\x${#version}\\0\\0\\0" ZEROS_8 ZEROS_8 \
+	"$version\" >&3; "
+// takes the head of STUDY and answers with the digest of another design
+#define DESIGN                                                                           \
+	"head -c 32 <&3 >/dev/null; printf "                                                 \
+	"'\\3\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\40\\0\\0\\0\\1\\0\\0\\0\\0\\0\\0\\0" ZEROS_8 \
+	"another design, of 32 characters' >&3; "
+
+static const struct {
+	const char *what;
+	const char *command; /* BASH: run by bash */
+	const char *reports; /* in stderr */
+} launchers[] = {
+    {"a launcher that fails", "false", "its launcher ended with status 1 and without a connection"},
+    {"a command that is not there", "/nonexistent/pound-worker", "its launcher ended with status 127"},
+    {"a launcher that waits", "sleep 99", "worker groups ran 0 of"},
+    {"a launcher that waits and takes no SIGTERM", "trap '' TERM; sleep 99; true", "worker groups ran 0 of"},
+    {"another version", CONNECT READY("9.9.9") "cat <&3",
+     "refused: pound-worker has version 9.9.9, this program"},
+    {"another token",
+     "token=$(printf %064d 7);" CONNECT "token=$(printf %064d 7);" READY(POUND_VERSION) "cat <&3",
+     "worker groups ran 0 of"},
+    {"no greeting", CONNECT "printf \"$token\" >&3; head -c 1000 /dev/urandom >&3; cat <&3",
+     "its first message is no greeting"},
+    {"another design", CONNECT READY(POUND_VERSION) DESIGN "cat <&3 >/dev/null",
+     "refused for this study: its design differs"},
+    {"bytes without sense", CONNECT READY(POUND_VERSION) "head -c 5000 /dev/urandom >&3; cat <&3 >/dev/null",
+     "the connection ended"},
+    {"a worker that goes away with blocks", CONNECT READY(POUND_VERSION) "head -c 32 <&3 >/dev/null",
+     "the connection ended"},
+};
+
+static void whatever_a_launcher_does_the_bytes_are_the_same(void **state)
+{
+	double most = 0;
+	(void)state;
+	for (size_t i = 0; i < sizeof launchers / sizeof launchers[0]; i++) {
+		char command[1024];
+		text_write(world.err, launchers[i].command);
+		snprintf(command, sizeof command, "exec bash %s", world.err);
+		unlink(world.checkpoint);
+		double start = now_s();
+		struct program_outcome outcome = run_with(command, "1");
+		most = now_s() - start > most ? now_s() - start : most;
+		check_same(&outcome);
+		if (!strstr(outcome.err, launchers[i].reports))
+			fail_msg("%s: '%s' is not in\n%s", launchers[i].what, launchers[i].reports, outcome.err);
+		assert_int_equal(blocks_elsewhere(outcome.err), 0);
+		program_free(&outcome);
+	}
+	check_report(
+	    "launchers that fail, wait or send what is wrong: %d; results that differ 0; longest run %.1f s",
+	    (int)(sizeof launchers / sizeof launchers[0]), most);
+}
+
+static void a_late_worker_takes_part(void **state)
+{
+	char command[320];
+	(void)state;
+	snprintf(command, sizeof command, "sleep 0.2; %s", world.launcher);
+	unlink(world.checkpoint);
+	struct program_outcome outcome = run_with(command, "2");
+	check_same(&outcome);
+	assert_non_null(strstr(outcome.err, "worker group 2: connected, 1 thread\n"));
+	assert_true(blocks_elsewhere(outcome.err) > 0);
+	program_free(&outcome);
+}
+
+static void blocks_of_a_worker_that_does_not_go_on_run_elsewhere(void **state)
+{
+	pid_t pids[2];
+	(void)state;
+	unlink(world.pids);
+	unlink(world.checkpoint);
+	double start = now_s();
+	pid_t pid = run_start(world.launcher, "1");
+	while (pids_read(pids, 2) < 1)
+		usleep(1000);
+	usleep(100000);
+	assert_int_equal(kill(pids[0], SIGSTOP), 0);
+	struct program_outcome outcome = run_end(pid);
+	check_same(&outcome);
+	check_report("a worker that was stopped with blocks: the run ended after %.1f s, same bytes",
+	             now_s() - start);
+	assert_true(is_gone(pids[0]));
+	program_free(&outcome);
+}
+
+/* ---- checkpoints ---- */
+
+static size_t checkpoint_size(void)
+{
+	struct stat about;
+	assert_int_equal(stat(world.checkpoint, &about), 0);
+	return (size_t)about.st_size;
+}
+
+static void bytes_write(const char *bytes, size_t n)
+{
+	FILE *file = fopen(world.checkpoint, "w");
+	assert_non_null(file);
+	assert_int_equal(fwrite(bytes, 1, n, file), n);
+	assert_int_equal(fclose(file), 0);
+}
+
+static void a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_bytes(void **state)
+{
+	// few blocks, whose last records are short: a response to 9 gaps
+	struct program_outcome document = POUND("example", "gap");
+	(void)state;
+	text_write(world.out, document.out);
+	program_free(&document);
+	unlink(world.checkpoint);
+	struct program_outcome whole =
+	    POUND("run", "--threads", "1", "--checkpoint", world.checkpoint, world.out);
+	program_expect(&whole, 0);
+	service_timeless(whole.out);
+	const size_t n = checkpoint_size();
+	char *bytes = program_file(world.checkpoint, &(size_t){0});
+	uint32_t place[2];
+	size_t at = strcspn(bytes, "\n") + 1, last = at;
+	while (at < n) {
+		last = at;
+		memcpy(place, bytes + at, sizeof place);
+		at += sizeof place + 32 + place[1] * sizeof(double);
+	}
+	const size_t step = (n - last) / 60 + 1;
+	int cuts = 0;
+	for (size_t cut = last; cut <= n; cut += cut + step > n && cut < n ? n - cut : step, cuts++) {
+		bytes_write(bytes, cut);
+		struct program_outcome outcome =
+		    POUND("run", "--threads", "1", "--checkpoint", world.checkpoint, world.out);
+		program_expect(&outcome, 0);
+		assert_string_equal(service_timeless(outcome.out), whole.out);
+		assert_int_equal(checkpoint_size(), n);
+		program_free(&outcome);
+	}
+	// a byte of the last record that is another one
+	for (size_t i = last; i < n; i += step, cuts++) {
+		bytes[i] ^= 4;
+		bytes_write(bytes, n);
+		bytes[i] ^= 4;
+		struct program_outcome outcome =
+		    POUND("run", "--threads", "1", "--checkpoint", world.checkpoint, world.out);
+		program_expect(&outcome, 0);
+		assert_string_equal(service_timeless(outcome.out), whole.out);
+		program_free(&outcome);
+	}
+	check_report("checkpoints cut or changed in their last record: %d; results that differ 0", cuts);
+	free(bytes);
+	program_free(&whole);
+}
+
+static void a_checkpoint_of_another_study_or_program_is_refused(void **state)
+{
+	static const char *const others[] = {"pound checkpoint 0.0.1 0123456789abcdef\n", "something else\n"};
+	static const char *const words[] = {"another study, or of another version", "no checkpoint"};
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		bytes_write(others[i], strlen(others[i]));
+		size_t n = checkpoint_size();
+		struct program_outcome outcome = POUND("run", "--checkpoint", world.checkpoint, world.study);
+		program_expect(&outcome, 1);
+		assert_string_equal(outcome.out, "");
+		if (i == 1 && !strstr(outcome.err, words[i]))
+			fail_msg("%s", outcome.err);
+		assert_int_equal(checkpoint_size(), n);
+		program_free(&outcome);
+	}
+	unlink(world.checkpoint);
+	struct program_outcome document = POUND("example", "gap");
+	text_write(world.out, document.out);
+	program_free(&document);
+	struct program_outcome other = POUND("run", "--checkpoint", world.checkpoint, world.out);
+	program_expect(&other, 0);
+	program_free(&other);
+	other = POUND("run", "--checkpoint", world.checkpoint, world.study);
+	program_expect(&other, 1);
+	assert_non_null(strstr(other.err, words[0]));
+	program_free(&other);
+}
+
+static void several_ranks_of_pound_run_are_wrong_usage(void **state)
+{
+	(void)state;
+	setenv("OMPI_COMM_WORLD_SIZE", "4", 1);
+	struct program_outcome outcome = POUND("run", world.study);
+	unsetenv("OMPI_COMM_WORLD_SIZE");
+	program_expect(&outcome, 2);
+	assert_string_equal(outcome.out, "");
+	assert_non_null(strstr(outcome.err, "--launcher"));
+	program_free(&outcome);
+}
+
+static void a_worker_that_no_launcher_started_says_so(void **state)
+{
+	(void)state;
+	struct program_outcome outcome = program_run((const char *const[]){"pound-worker", NULL}, NULL);
+	program_expect(&outcome, 1);
+	assert_non_null(strstr(outcome.err, "--launcher"));
+	program_free(&outcome);
+	setenv("POUND_WORKER", "nonsense", 1);
+	outcome = program_run((const char *const[]){"pound-worker", NULL}, NULL);
+	unsetenv("POUND_WORKER");
+	program_expect(&outcome, 1);
+	assert_non_null(strstr(outcome.err, "POUND_WORKER must be HOST:PORT:TOKEN"));
+	program_free(&outcome);
+	outcome = program_run((const char *const[]){"pound-worker", "--version", NULL}, NULL);
+	program_expect(&outcome, 0);
+	assert_string_equal(outcome.out, "pound-worker " POUND_VERSION "\n");
+	program_free(&outcome);
+}
+
+int main(int argc, char **argv)
+{
+	const struct CMUnitTest tests[] = {
+	    cmocka_unit_test(every_example_gives_the_same_bytes_with_any_number_of_groups),
+	    cmocka_unit_test(killed_workers_lose_no_block_and_double_none),
+	    cmocka_unit_test(a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end),
+	    cmocka_unit_test(whatever_a_launcher_does_the_bytes_are_the_same),
+	    cmocka_unit_test(a_late_worker_takes_part),
+	    cmocka_unit_test(blocks_of_a_worker_that_does_not_go_on_run_elsewhere),
+	    cmocka_unit_test(a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_bytes),
+	    cmocka_unit_test(a_checkpoint_of_another_study_or_program_is_refused),
+	    cmocka_unit_test(several_ranks_of_pound_run_are_wrong_usage),
+	    cmocka_unit_test(a_worker_that_no_launcher_started_says_so)};
+	(void)argc;
+	setup(NULL);
+	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
+	teardown(NULL);
+	return failed;
+}
