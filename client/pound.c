@@ -120,7 +120,7 @@ static const struct argp_option OPTIONS[] = {
 	{"samples", 'o', "FILE",   0, "also write every sample, or the histories, to FILE (NumPy if it ends in .npy, else CSV)", 0},
 	{"launcher",   'L', "COMMAND", 0, "command that starts worker processes, such as 'srun pound-worker'", 0},
 	{"launchers",  'B', "N",   0, "run this command N times; each is a worker group that starts and fails independently (default: 1)", 0},
-	{"worker-host", 'H', "HOST", 0, "name or address of this machine for workers on other machines; listens on all addresses (default: loopback)", 0},
+	{"worker-host", 'Q', "HOST", 0, "name or address of this machine for workers on other machines; listens on all addresses (default: loopback)", 0},
 	{"checkpoint", 'k', "FILE", 0, "keep finished blocks in FILE, and continue with those in it", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
@@ -277,7 +277,7 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 	case 'L':
 		options->launch.command = value;
 		return 0;
-	case 'H':
+	case 'Q':
 		options->launch.host = value;
 		return 0;
 	case 'B':
