@@ -41,6 +41,7 @@ struct options {
 	const char *checkpoint; /* run: file of finished blocks; NULL: none */
 	bool wait;              /* submit */
 	bool names;             /* example, plot */
+	bool given;             /* indices: both arguments are samples */
 	bool partial;           /* results, plot: of the rows so far, while the study runs */
 	struct figure_choice choice; /* plot */
 	struct launch launch;        /* run: workers in other processes */

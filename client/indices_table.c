@@ -245,6 +245,7 @@ static void print_output_head(const struct reading *result, const char *output)
 	print_measure(result, output, "variance", "variance", ", ");
 	print_measure(result, output, "noise_share", "noise share", ", ");
 	print_measure(result, output, "ratio_bias", "ratio bias", ", ");
+	print_measure(result, output, "explained", "cross-validated R2 of the polynomial", ", ");
 	putchar('\n');
 	if (reading_text(result, "%s/note", output))
 		print_note(reading_text(result, "%s/note", output));
@@ -474,6 +475,26 @@ void indexes_print(const struct reading *result)
 		print_stopping(result);
 	print_outputs(result, NULL);
 	print_cost(result);
+}
+
+/* The checks of samples that were drawn elsewhere, and their indices. */
+void given_data_print(const struct reading *result)
+{
+	const double missing = reading_number(result, "/given/samples_missing");
+	printf("%.0f samples", reading_number(result, "/given/samples"));
+	if (missing > 0)
+		printf(", %.0f more without one of their numbers are left out", missing);
+	putchar('\n');
+	if (reading_has(result, "/given/most_dependent")) {
+		fputs("most dependent inputs: ", stdout);
+		table_say(reading_text(result, "/given/most_dependent/0"));
+		fputs(" and ", stdout);
+		table_say(reading_text(result, "/given/most_dependent/1"));
+		printf(", rank correlation %.2f\n", reading_number(result, "/given/rank_correlation"));
+	}
+	for (int k = 0; k < reading_count(result, "/given/notes"); k++)
+		print_note(reading_text(result, "/given/notes/%d", k));
+	print_outputs(result, NULL);
 }
 
 bool indexes_print_table(const struct reading *result, const char *table)

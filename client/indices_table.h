@@ -6,6 +6,7 @@
 
 /* All of them: the design, every table of every output, and what more rows cost. */
 void indexes_print(const struct reading *result);
+void given_data_print(const struct reading *result);
 
 /* One of RESULT_TABLES, of every output that has it; false: none has. */
 bool indexes_print_table(const struct reading *result, const char *table);

@@ -4,6 +4,7 @@
 #include "client/document.h"
 #include "client/show.h"
 #include "schema/external/external_model.h"
+#include "schema/external/given_table.h"
 #include "schema/study/study_json.h"
 
 #include <stdio.h>
@@ -66,6 +67,44 @@ enum outcome model_design(const struct options *options)
 	return outcome;
 }
 
+/* A table of a file; false: complained about, with the outcome. */
+static bool table_read(struct given_table *table, enum given_role role, const char *path,
+                       enum outcome *outcome)
+{
+	size_t n;
+	struct problems problems;
+	char *csv = document_read(path, &n);
+	*table = (struct given_table){0};
+	*outcome = OUTCOME_FAILED;
+	if (!csv)
+		return false;
+	given_table_read(table, role, csv, n, &problems);
+	free(csv);
+	*outcome = problems.status == PROBLEMS_NONE ? OUTCOME_OK : document_reject(path, &problems);
+	return *outcome == OUTCOME_OK;
+}
+
+/* `pound indices --given X.csv Y.csv`: the indices of samples without a design.
+ *
+ * Test     client_model: given_samples_have_indices_without_a_study
+ */
+static enum outcome given_print(const struct options *options)
+{
+	enum outcome outcome;
+	struct given_table x, y = {0};
+	if (table_read(&x, GIVEN_INPUTS, options->argument, &outcome) &&
+	    table_read(&y, GIVEN_OUTPUTS, options->second, &outcome)) {
+		size_t n;
+		struct problems problems;
+		char *json = given_indices(&x, &y, &problems, &n);
+		outcome = json ? show_result(json, n, options) : document_reject(options->second, &problems);
+		free(json);
+	}
+	given_table_free(&x);
+	given_table_free(&y);
+	return outcome;
+}
+
 /* `pound indices STUDY.json Y.csv`: the indices of outputs computed elsewhere.
  *
  * Test     client_model: indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv
@@ -76,9 +115,11 @@ enum outcome model_indexes(const struct options *options)
 	size_t n_csv, n;
 	struct problems problems;
 	if (strcmp(options->argument, "-") == 0 && strcmp(options->second, "-") == 0) {
-		command_complain("the study and the outputs cannot both be standard input");
+		command_complain("the two files cannot both be standard input");
 		return OUTCOME_USAGE;
 	}
+	if (options->given)
+		return given_print(options);
 	struct pound_study *study = model_study(options->argument, &outcome);
 	char *csv = study ? document_read(options->second, &n_csv) : NULL;
 	if (csv) {

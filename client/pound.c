@@ -62,10 +62,12 @@ static const struct command COMMANDS[] = {
 	 "print the rows of a study's design, to evaluate with a model of your own",
 	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
 	 "column j from B_i for every j.  A study without \"scene\" describes the inputs of your own model."},
-	{"indices", "STUDY.json Y.csv", "fT", false, {"json", "table", "csv"}, model_indexes,
+	{"indices", "STUDY.json Y.csv", "gfT", false, {"json", "table", "csv"}, model_indexes,
 	 "sensitivity indices of the outputs of a model of your own",
 	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
-	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number."},
+	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number.  With --given, the "
+	 "first file is X.csv: samples of the inputs that were drawn or observed elsewhere, with a column for each input; Y.csv "
+	 "has the outputs of the same lines."},
 	{"evaluate", "STUDY.json", "mNjJOGKSWfT", false, {"json", "table", "csv"}, evaluate_model,
 	 "run a model of your own on a study's design by UM-Bridge and print its indices",
 	 "Runs every row of `pound design' on the model at --model, several at a time, and prints what `pound indices' prints.  "
@@ -129,6 +131,7 @@ static const struct argp_option OPTIONS[] = {
 	{"limit",   'l', "N",      0, "at most N studies", 0},
 	{"cursor",  'c', "CURSOR", 0, "continue an earlier list", 0},
 	{"names",   'n', NULL,     0, "print the available names", 0},
+	{"given",   'g', NULL,     0, "the first file has samples of the inputs as CSV, and is not a study", 0},
 	{"url",     'u', "URL",    0, "URL of the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "format of the output", 0},
 	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES ", or all as a table; without it, a summary as a table and inputs as csv", 0},
@@ -294,6 +297,9 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 		return 0;
 	case 'n':
 		options->names = true;
+		return 0;
+	case 'g':
+		options->given = true;
 		return 0;
 	case 'o':
 		options->samples = value;

@@ -272,10 +272,11 @@ static const struct {
 	void (*print)(const struct reading *);
 	bool alone; /* without what study it is and the work */
 } KINDS[] = {
-	{"sensitivity",    summary_print,  true},
-	{"response",       response,       false},
-	{"convergence",    convergence,    false},
-	{"floor_spectrum", floor_spectrum, false},
+	{"sensitivity",    summary_print,    true},
+	{"given_data",     given_data_print, true},
+	{"response",       response,         false},
+	{"convergence",    convergence,      false},
+	{"floor_spectrum", floor_spectrum,   false},
 };
 // clang-format on
 
@@ -294,11 +295,13 @@ static bool print_kind(const struct reading *result, const char *kind)
 	return false;
 }
 
-/* One table of a sensitivity result, or all of it. */
+/* One table of a result with indices, or all of it. */
 static bool print_table(const struct reading *result, const char *kind, const char *table)
 {
 	if (strcmp(table, "all") != 0)
 		return indexes_print_table(result, table);
+	if (strcmp(kind, "sensitivity") != 0)
+		return print_kind(result, kind);
 	print_head(result, kind);
 	indexes_print(result);
 	print_work(result);
@@ -313,8 +316,8 @@ static enum outcome show_table(const char *json, size_t length, const char *tabl
 {
 	struct reading *result = reading_open(json, length);
 	const char *kind = result ? reading_text(result, "/kind") : NULL;
-	// only a sensitivity result has tables by name
-	bool none = kind && table && strcmp(kind, "sensitivity") != 0;
+	// only results with indices have tables by name
+	bool none = kind && table && strcmp(kind, "sensitivity") != 0 && strcmp(kind, "given_data") != 0;
 	bool shown = kind && !none && (table ? print_table(result, kind, table) : print_kind(result, kind));
 	if (!shown && table && kind)
 		command_complain("this result has no table '%s'", table);

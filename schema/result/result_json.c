@@ -121,7 +121,7 @@ static const char *const notes[] = {POUND_NOTES(X)};
 static const char *const named_forms[] = {POUND_NAMED(X)};
 #undef X
 
-static void write_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate)
+void result_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate)
 {
 	char member[64];
 	writer_number(w, name, estimate->value);
@@ -155,7 +155,7 @@ static void write_excitation(struct writer *w, const struct pound_indices *indic
 	result_notes_init(&said);
 	writer_object(w, "excitation", WRITER_LINE);
 	for (int k = 0; k < POUND_N_SHARES; k++) {
-		write_estimate(w, share_names[k], &indices->share[k]);
+		result_estimate(w, share_names[k], &indices->share[k]);
 		result_notes_add(&said, share_names[k], &indices->share[k],
 		                 (struct result_notes_source){.large_only = true});
 	}
@@ -171,7 +171,7 @@ static void write_named(struct writer *w, const char *estimator, const struct po
 		const bool corrected = k == POUND_NAMED_S1_CORRECTED || k == POUND_NAMED_ST_CORRECTED;
 		char name[64];
 		snprintf(name, sizeof name, named_forms[k], estimator);
-		write_estimate(w, name, &indices->named[k][j]);
+		result_estimate(w, name, &indices->named[k][j]);
 		result_notes_add(said, name, &indices->named[k][j],
 		                 (struct result_notes_source){.lost = corrected && lost_in_noise(indices)});
 	}
@@ -188,7 +188,7 @@ static void write_input(struct writer *w, const struct pound_study *study,
 	writer_text(w, "path", input->path);
 	for (int k = 0; k < POUND_N_INDICES; k++) {
 		const bool raw = k == POUND_S1_RAW || k == POUND_ST_RAW;
-		write_estimate(w, index_names[k], &indices->index[k][j]);
+		result_estimate(w, index_names[k], &indices->index[k][j]);
 		result_notes_add(&said, index_names[k], &indices->index[k][j],
 		                 (struct result_notes_source){.lost = !raw && lost_in_noise(indices)});
 	}
@@ -222,7 +222,7 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 			if (set->inputs >> j & 1)
 				writer_text(w, NULL, study->inputs[j].name);
 		writer_end(w);
-		write_estimate(w, sets->index, &set->estimate);
+		result_estimate(w, sets->index, &set->estimate);
 		result_notes_add(&said, sets->index, &set->estimate, sets->source);
 		result_notes_write(w, &said);
 		writer_end(w);
@@ -240,7 +240,7 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 		return;
 	pound_ratio_variables(study, rest);
 	writer_object(w, "ratios", WRITER_LINES);
-	write_estimate(w, "explained", &ratios->explained);
+	result_estimate(w, "explained", &ratios->explained);
 	if (isnan(ratios->explained.value))
 		writer_text(
 		    w, "note",
@@ -254,9 +254,9 @@ static void write_ratios(struct writer *w, const struct pound_study *study,
 		writer_text(w, "name",
 		            k < study->n_ratios ? study->ratios[k].name
 		                                : study->inputs[rest[k - study->n_ratios]].name);
-		write_estimate(w, "shapley", &ratios->shapley[k]);
-		write_estimate(w, "S1", &ratios->first[k]);
-		write_estimate(w, "ST", &ratios->total[k]);
+		result_estimate(w, "shapley", &ratios->shapley[k]);
+		result_estimate(w, "S1", &ratios->first[k]);
+		result_estimate(w, "ST", &ratios->total[k]);
 		result_notes_add(&said, "shapley", &ratios->shapley[k], source);
 		result_notes_add(&said, "S1", &ratios->first[k], source);
 		result_notes_add(&said, "ST", &ratios->total[k], source);
@@ -286,14 +286,13 @@ static bool has_points(const struct pound_curve *curve)
 }
 
 /* The mean output given each input; nothing where there is none. */
-static void write_curves(struct writer *w, const struct pound_study *study,
-                         const struct pound_indices *indices)
+void result_curves(struct writer *w, const struct pound_study *study, const struct pound_curve *curves)
 {
-	if (!indices->curves || !has_points(&indices->curves[0]))
+	if (!curves || !has_points(&curves[0]))
 		return;
 	writer_array(w, "conditional_means", WRITER_LINES);
 	for (int j = 0; j < study->n_inputs; j++) {
-		const struct pound_curve *curve = &indices->curves[j];
+		const struct pound_curve *curve = &curves[j];
 		const struct pound_distribution *distribution = &study->inputs[j].distribution;
 		const int n = pound_conditional_points(distribution);
 		writer_object(w, NULL, WRITER_LINES);
@@ -333,7 +332,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	write_sets(w, study, &(struct sets){"second_order", "S2", sets->second, sets->n_second, source});
 	write_sets(w, study, &(struct sets){"closed", "S_closed", sets->closed, sets->n_closed, source});
 	write_ratios(w, study, indices);
-	write_curves(w, study, indices);
+	result_curves(w, study, indices->curves);
 	result_accuracy_output(w, study, indices);
 	writer_end(w);
 }

@@ -19,6 +19,12 @@ struct timing {
 char *result_to_json(const struct pound_study *study, const struct pound_result *result,
                      const struct timing *timing, size_t *length);
 
+/* Members of a sensitivity result: an index with its interval; the mean output given each input of the study, nothing where
+ * the first has no value. */
+struct writer;
+void result_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate);
+void result_curves(struct writer *w, const struct pound_study *study, const struct pound_curve *curves);
+
 /* Tables of a sensitivity result: lists of every output of every cell, and the looks of a design that grew. */
 #define RESULT_TABLES(X) X(inputs) X(second_order) X(closed) X(ratios) X(conditional_means) X(stopping)
 

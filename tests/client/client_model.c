@@ -91,6 +91,44 @@ static void indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv(voi
 	unlink(outputs);
 }
 
+static void given_samples_have_indices_without_a_study(void **state)
+{
+	(void)state;
+	char study[32], inputs[32], outputs[32];
+	ishigami(study, outputs);
+	// rows of a design are no random samples, and that is reported
+	struct program_outcome rows = POUND("design", study);
+	program_expect(&rows, 0);
+	file_of(rows.out, inputs);
+	struct program_outcome json = POUND("indices", "--given", inputs, outputs);
+	program_expect(&json, 0);
+	struct reading *result = reading_open(json.out, json.n_out);
+	assert_string_equal(reading_text(result, "/kind"), "given_data");
+	assert_non_null(strstr(json.out, "for rows of `pound design' use `pound indices STUDY.json Y.csv'"));
+	reading_close(result);
+	struct program_outcome table = POUND("indices", "--given", "--format", "table", inputs, outputs);
+	program_expect(&table, 0);
+	assert_non_null(strstr(table.out, "\n  x3 "));
+	assert_null(strstr(table.out, "nan"));
+	struct program_outcome csv =
+	    POUND("indices", "--given", "--format", "csv", "--table", "conditional_means", inputs, outputs);
+	program_expect(&csv, 0);
+	assert_non_null(strstr(csv.out, "\r\ny,"));
+	struct program_outcome refused =
+	    program_run((const char *const[]){"pound", "indices", "--given", inputs, "-", NULL}, "y\n1\n");
+	program_expect(&refused, 2);
+	assert_string_equal(refused.out, "");
+	assert_non_null(strstr(refused.err, "standard input: 1 fault: has 1 samples, but the inputs have"));
+	program_free(&refused);
+	program_free(&csv);
+	program_free(&table);
+	program_free(&json);
+	program_free(&rows);
+	unlink(study);
+	unlink(inputs);
+	unlink(outputs);
+}
+
 static void what_is_wrong_is_said_and_ends_with_2(void **state)
 {
 	(void)state;
@@ -161,7 +199,8 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 	program_free(&until);
 }
 
-CHECK_MAIN(cmocka_unit_test(what_there_is_to_say_about_a_design_is_said_on_stderr),
+CHECK_MAIN(cmocka_unit_test(given_samples_have_indices_without_a_study),
+           cmocka_unit_test(what_there_is_to_say_about_a_design_is_said_on_stderr),
            cmocka_unit_test(a_design_has_its_header_and_its_samples),
            cmocka_unit_test(indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv),
            cmocka_unit_test(what_is_wrong_is_said_and_ends_with_2))

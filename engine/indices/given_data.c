@@ -1,0 +1,430 @@
+/* given_data.c - sensitivity indices from samples that were drawn elsewhere.
+ *
+ * 1. An input is placed by its rank among the samples, so that its distribution is uniform, whatever it is.  One of few
+ *    values, each of which comes often, is discrete.
+ * 2. The samples are checked: inputs must be independent of each other (ranks correlated, or cells of a table of two inputs
+ *    filled unevenly), and near in one input must be near by chance alone in the others.
+ * 3. S1 is that of local_regression.c or of the polynomial (given_polynomial.c), whichever has the narrower interval; ST and S2
+ *    are those of the polynomial, or more by what it does not explain, which the interval holds.
+ * 4. Conditional means are the polynomial's and the mean of what it leaves (conditional_mean.c). */
+#include "engine/given.h"
+
+#include <assert.h>
+#include <float.h>
+#include <gsl/gsl_sort_double.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/indices/given_polynomial.h"
+#include "engine/indices/indices.h"
+
+enum {
+	ROWS_PER_VALUE = 5, // of an input with few values, on average
+	CELLS_MAX = 8,      // a side, of the table of two inputs
+	ROWS_PER_CELL = 10, // on average
+	LAGS = 10,          // neighbors that are looked at
+	PLACES = 2, // u of a sample comes twice: local_regression.c and conditional_mean.c expect two matrices
+};
+
+// standard errors by which a check fails: of some hundreds and some thousands of normal deviates one in a hundred sets would
+static const double DEPENDENT = 4.0, ARRANGED = 5.0;
+static const double EXPLAINED_LEAST = 0.9; // of the variance, for ST to be estimated
+
+/* ---- the distributions ---- */
+
+/* Row of the distributions whose parameters are values. */
+static int discrete_row(void)
+{
+	int row = 0;
+	while (!pound_distribution_lists_values(row))
+		row++;
+	return row;
+}
+
+/* Distributions of the samples themselves: each value with its share.
+ *
+ * Given    given      n_rows, n_inputs, x, inputs with names
+ * Returns  inputs     distribution, which points into values
+ * Memory   values     (2 x n_inputs x n_rows)
+ *          order      (n_rows)
+ *
+ * Test     unit_given_data: an_input_of_few_values_is_discrete
+ */
+void pound_given_inputs(struct pound_given *given, double *values, size_t *order)
+{
+	const int n = given->n_rows, d = given->n_inputs;
+	for (int j = 0; j < d; j++) {
+		double *value = values + (size_t)j * 2 * n, *weight = value + n;
+		int distinct = 0;
+		gsl_sort_index(order, given->x + j, (size_t)d, (size_t)n);
+		for (int k = 0; k < n; k++) {
+			const double x = given->x[order[k] * (size_t)d + j];
+			if (distinct == 0 || x != value[distinct - 1]) {
+				value[distinct] = x;
+				weight[distinct++] = 0.0;
+			}
+			weight[distinct - 1]++;
+		}
+		// few values that hardly come twice are those of a continuous input: all n, so that none has a level of its own
+		if (distinct <= POUND_CURVE && n < ROWS_PER_VALUE * distinct)
+			for (distinct = 0; distinct < n; distinct++) {
+				value[distinct] = given->x[order[distinct] * (size_t)d + j];
+				weight[distinct] = 1.0;
+			}
+		given->inputs[j].distribution = (struct pound_distribution){
+		    .type = discrete_row(), .n_values = distinct, .values = value, .weights = weight};
+	}
+}
+
+/* ---- the scratch ---- */
+
+struct space {
+	double *u;         /* (n_rows x PLACES x n_inputs) */
+	double *y, *zeros; /* (n_rows) each */
+	int64_t *row;      /* (n_rows) */
+	size_t *order;     /* (n_rows) */
+	double *rest;
+};
+
+static size_t carve(struct space *s, double *scratch, int n_rows, int n_inputs)
+{
+	const size_t n = n_rows;
+	const struct pound_sample_values shape = {.n_rows = n_rows, .n_inputs = n_inputs, .n_signals = 1};
+	const size_t sizes[] = {pound_local_regression_scratch(&shape), pound_conditional_scratch(n_rows)};
+	const size_t polynomial = pound_polynomial_scratch(n_rows, n_inputs);
+	if (s) {
+		s->u = scratch;
+		s->y = s->u + n * PLACES * n_inputs;
+		s->zeros = s->y + n;
+		s->row = (int64_t *)(s->zeros + n);
+		s->order = (size_t *)(s->row + n);
+		s->rest = scratch + n * PLACES * n_inputs + 4 * n;
+	}
+	// what is fitted stays while the others work behind it
+	return n * PLACES * n_inputs + 4 * n + polynomial + (sizes[0] > sizes[1] ? sizes[0] : sizes[1]);
+}
+
+size_t pound_given_scratch(int n_rows, int n_inputs)
+{
+	return carve(NULL, NULL, n_rows, n_inputs);
+}
+
+/* Probabilities of the samples: ranks in (0, 1), equal values in the middle of theirs. */
+static void places_fill(const struct pound_given *given, const struct space *s)
+{
+	const int n = given->n_rows, d = given->n_inputs;
+	for (int j = 0; j < d; j++) {
+		gsl_sort_index(s->order, given->x + j, (size_t)d, (size_t)n);
+		for (int first = 0, end; first < n; first = end) {
+			const double x = given->x[s->order[first] * (size_t)d + j];
+			for (end = first; end < n && given->x[s->order[end] * (size_t)d + j] == x;)
+				end++;
+			for (int k = first; k < end; k++)
+				for (int matrix = 0; matrix < PLACES; matrix++)
+					s->u[(s->order[k] * PLACES + matrix) * (size_t)d + j] = 0.5 * (first + end) / n;
+		}
+	}
+}
+
+/* ---- the checks ---- */
+
+static double rank_of(const struct space *s, int n_inputs, size_t row, int input)
+{
+	return s->u[row * PLACES * (size_t)n_inputs + input] - 0.5;
+}
+
+/* Correlation of the ranks of two inputs (Spearman's). */
+static double correlation(const struct space *s, int n, int d, int i, int j)
+{
+	double ii = 0.0, jj = 0.0, ij = 0.0;
+	for (int k = 0; k < n; k++) {
+		const double p = rank_of(s, d, k, i), q = rank_of(s, d, k, j);
+		ii += p * p;
+		jj += q * q;
+		ij += p * q;
+	}
+	return ij / sqrt(ii * jj);
+}
+
+/* How unevenly the table of two inputs' ranks is filled.
+ *
+ * Returns  value       standard normal deviate of Pearson's chi-square
+ *
+ * Source   Wilson and Hilferty 1931, Proc. Natl. Acad. Sci. 17, 684: (chi2 / f)^(1/3) is normal with mean 1 - 2/(9 f) and
+ *          variance 2/(9 f); here its cube is looked at
+ */
+static bool uneven(const struct space *s, int n, int d, int i, int j)
+{
+	int side = 2, table[CELLS_MAX][CELLS_MAX] = {0}, across[CELLS_MAX] = {0}, down[CELLS_MAX] = {0}, rows = 0,
+	    columns = 0;
+	while (side < CELLS_MAX && (side + 1) * (side + 1) * ROWS_PER_CELL <= n)
+		side++;
+	for (int k = 0; k < n; k++) {
+		const int p = (int)((rank_of(s, d, k, i) + 0.5) * side),
+		          q = (int)((rank_of(s, d, k, j) + 0.5) * side);
+		table[p][q]++;
+		across[p]++;
+		down[q]++;
+	}
+	double chi = 0.0;
+	for (int p = 0; p < side; p++) {
+		rows += across[p] > 0;
+		columns += down[p] > 0;
+		for (int q = 0; q < side; q++) {
+			const double expected = (double)across[p] * down[q] / n;
+			if (expected > 0.0)
+				chi += (table[p][q] - expected) * (table[p][q] - expected) / expected;
+		}
+	}
+	const double freedom = (rows - 1.0) * (columns - 1.0);
+	if (freedom < 1.0)
+		return false;
+	const double v = 2.0 / (9.0 * freedom), root = 1.0 - v + DEPENDENT * sqrt(v);
+	return chi / freedom > root * root * root;
+}
+
+/* Sum of the products of ranks of an input, of samples that are a lag apart in the order. */
+static double lagged(const struct space *s, int n, int d, int j, int lag)
+{
+	double sum = 0.0;
+	for (int k = 0; k + lag < n; k++)
+		sum += rank_of(s, d, s->order[k], j) * rank_of(s, d, s->order[k + lag], j);
+	return sum;
+}
+
+/* Whether samples that are neighbors in one input are alike, or unlike, in another one.  Ranks of random samples have no
+ * correlation at any lag; if the inputs depend on each other, nearly the same one at all small lags. */
+static bool arranged(const struct space *s, int n, int d, int j)
+{
+	const double limit = ARRANGED * sqrt((1.0 + 1.0 / LAGS) / n);
+	double square = 0.0, further = 0.0;
+	for (int k = 0; k < n; k++)
+		square += rank_of(s, d, k, j) * rank_of(s, d, k, j);
+	for (int lag = LAGS + 1; lag <= 2 * LAGS; lag++)
+		further += lagged(s, n, d, j, lag) / LAGS;
+	for (int lag = 1; lag <= LAGS; lag++)
+		if (fabs(lagged(s, n, d, j, lag) - further) > limit * square)
+			return true;
+	return false;
+}
+
+static bool arranged_by_any(const struct pound_given *given, const struct space *s)
+{
+	const int n = given->n_rows, d = given->n_inputs;
+	for (int i = 0; i < d; i++) {
+		// means over the values of a discrete input need no neighbors
+		if (pound_conditional_levels(&given->inputs[i].distribution) > 0)
+			continue;
+		gsl_sort_index(s->order, given->x + i, (size_t)d, (size_t)n);
+		for (int j = 0; j < d; j++)
+			if (j != i && arranged(s, n, d, j))
+				return true;
+	}
+	return false;
+}
+
+/* Whether lines resemble those before them. */
+static bool serial(const struct space *s, int n, int d)
+{
+	for (int k = 0; k < n; k++)
+		s->order[k] = (size_t)k;
+	for (int j = 0; j < d; j++) {
+		double square = 0.0, sum = 0.0;
+		for (int k = 0; k < n; k++) {
+			square += rank_of(s, d, k, j) * rank_of(s, d, k, j);
+			sum += k > 0 ? rank_of(s, d, k, j) * rank_of(s, d, k - 1, j) : 0.0;
+		}
+		if (sum > ARRANGED / sqrt(n) * square)
+			return true;
+	}
+	return false;
+}
+
+/* What the samples are.
+ *
+ * Given    given      -                      all of it
+ * Returns  checks     -
+ *          scratch    (pound_given_scratch)  for pound_given_estimate
+ *
+ * Pairs of inputs are looked at; three that depend on each other only together are not found.
+ *
+ * Test     unit_given_data: independent_samples_pass_and_others_are_named
+ */
+void pound_given_check(const struct pound_given *given, double *scratch, struct pound_given_checks *checks)
+{
+	const int n = given->n_rows, d = given->n_inputs;
+	struct space s;
+	bool dependent = false;
+	carve(&s, scratch, n, d);
+	places_fill(given, &s);
+	*checks = (struct pound_given_checks){.pair = {-1, -1}, .notes = 1u << POUND_GIVEN_NOISE};
+	for (int i = 0; i < d; i++)
+		for (int j = i + 1; j < d; j++) {
+			const double r = correlation(&s, n, d, i, j);
+			const bool independent = fabs(r) * sqrt(n - 1.0) <= DEPENDENT && !uneven(&s, n, d, i, j);
+			// the first pair that depends, and of others the most correlated one
+			if (checks->pair[0] < 0 ||
+			    (!dependent && (!independent || fabs(r) > fabs(checks->correlation)))) {
+				checks->pair[0] = i, checks->pair[1] = j;
+				checks->correlation = r;
+			}
+			dependent |= !independent;
+		}
+	checks->notes |= dependent ? 1u << POUND_GIVEN_DEPENDENT : 0u;
+	checks->notes |= arranged_by_any(given, &s) ? 1u << POUND_GIVEN_ARRANGED : 0u;
+	checks->notes |= serial(&s, n, d) ? 1u << POUND_GIVEN_SERIAL : 0u;
+}
+
+/* ---- the indices ---- */
+
+static const struct pound_estimate UNKNOWN = {NAN, NAN, NAN};
+
+static double width(struct pound_estimate e)
+{
+	return e.high - e.low;
+}
+
+/* An index of the fit as one of the output, which is more by a part of what the fit does not explain. */
+static struct pound_estimate widened(struct pound_estimate e, double explained)
+{
+	e.high += fmax(0.0, 1.0 - explained);
+	return e;
+}
+
+static void rows_init(struct pound_rows *rows, const struct pound_given *given, const struct space *s)
+{
+	*rows = (struct pound_rows){.n_rows = given->n_rows,
+	                            .n_inputs = given->n_inputs,
+	                            .n_samples = 1,
+	                            .n_signals = 1,
+	                            .row = s->row,
+	                            .scatter = {{0, 0}, s->row},
+	                            .y = s->y,
+	                            .plain = s->y,
+	                            .deviation = s->zeros,
+	                            .inputs = given->inputs};
+}
+
+/* The outputs less their mean; the first goes first, so that equal ones become zeros. */
+static bool centre(const struct pound_given *given, const double *y, const struct space *s,
+                   struct pound_given_indices *indices)
+{
+	const int n = given->n_rows;
+	double sum = 0.0, squares = 0.0, fourths = 0.0, largest = 0.0;
+	for (int i = 0; i < n; i++) {
+		sum += y[i] - y[0];
+		largest = fmax(largest, fabs(y[i]));
+		s->row[i] = i;
+		s->zeros[i] = 0.0;
+	}
+	indices->mean = y[0] + sum / n;
+	for (int i = 0; i < n; i++) {
+		s->y[i] = y[i] - indices->mean;
+		const double square = s->y[i] * s->y[i];
+		squares += square;
+		fourths += square * square;
+	}
+	const double rounding = 3.0 * DBL_EPSILON * largest, few = 5.0;
+	indices->variance = squares / (n - 1.0);
+	indices->notes |= squares * squares < few * fourths ? 1u << POUND_GIVEN_FEW_DECIDE : 0u;
+	return squares / n > rounding * rounding;
+}
+
+/* S1 by neighbors, or by the polynomial where that is known better. */
+static void first_fill(const struct pound_rows *rows, const struct space *s, const struct pound_polynomial *p,
+                       bool neighbors, struct pound_given_indices *indices)
+{
+	struct pound_estimate local[POUND_INPUTS_MAX];
+	const bool fits = p && indices->explained >= EXPLAINED_LEAST;
+	pound_local_regression_first(rows, s->u, POUND_NOISE_KEPT, s->rest, local);
+	for (int j = 0; j < rows->n_inputs; j++) {
+		// means over the values of a discrete input need no neighbors
+		const bool known = neighbors || pound_rows_levels(rows, j) > 0;
+		const struct pound_estimate fitted = fits ? widened(p->value[j], indices->explained) : UNKNOWN;
+		indices->first[j] = known && !(width(fitted) < width(local[j])) ? local[j] : fitted;
+		indices->notes |= !known && !fits ? 1u << POUND_GIVEN_FIRST_UNKNOWN : 0u;
+	}
+}
+
+/* ST and S2 by the polynomial; nothing where it explains too little. */
+static void others_fill(const struct pound_given *given, const struct pound_polynomial *p,
+                        struct pound_given_indices *indices)
+{
+	const int d = given->n_inputs;
+	const bool fits = p && indices->explained >= EXPLAINED_LEAST;
+	for (int j = 0; j < d; j++)
+		indices->total[j] = fits ? widened(p->value[d + j], indices->explained) : UNKNOWN;
+	indices->n_second = 0;
+	for (int i = 0; i < d && fits; i++)
+		for (int j = i + 1; j < d; j++, indices->n_second++)
+			indices->second[indices->n_second] = (struct pound_set_index){
+			    1u << i | 1u << j, widened(p->value[2 * d + indices->n_second], indices->explained)};
+	indices->notes |= p && !fits ? 1u << POUND_GIVEN_UNEXPLAINED : 0u;
+}
+
+/* Conditional means: those of the polynomial, and of what it leaves. */
+static void curves_fill(const struct pound_rows *rows, const struct space *s,
+                        const struct pound_polynomial *p, struct pound_given_indices *indices)
+{
+	struct pound_rows centred = *rows;
+	struct pound_conditional of = {.rows = &centred, .u = s->u, .y = s->y};
+	centred.mean = indices->mean;
+	for (int i = 0; i < rows->n_rows && p; i++)
+		s->y[i] -= p->fit[i];
+	for (int j = 0; j < rows->n_inputs; j++) {
+		const struct pound_distribution *distribution = &rows->inputs[j].distribution;
+		const int levels = pound_conditional_levels(distribution);
+		for (int k = 0; k < POUND_CURVE; k++) {
+			const double at = k >= levels ? pound_conditional_place(k)
+			                              : 0.5 * (pound_distribution_below(distribution, k) +
+			                                       pound_distribution_below(distribution, k + 1));
+			of.trend[k] = p ? pound_polynomial_effect(p, j, at) : 0.0;
+		}
+		pound_conditional_mean(&of, j, s->rest, &indices->curves[j]);
+	}
+}
+
+/* The indices of an output that samples allow.
+ *
+ * Given    given      -
+ *          checks     -                      of it
+ *          y          (n_rows)
+ *          scratch    (pound_given_scratch)  as pound_given_check left it
+ * Returns  indices    -                      NAN, with a note, for what they do not allow
+ *
+ * Valid    Independent draws, or one Latin hypercube, of independent inputs; of dependent ones S1 and conditional means alone
+ * Test     unit_given_data
+ */
+void pound_given_estimate(const struct pound_given *given, const struct pound_given_checks *checks,
+                          const double *y, double *scratch, struct pound_given_indices *indices)
+{
+	const bool independent = !(checks->notes >> POUND_GIVEN_DEPENDENT & 1),
+	           neighbors = !(checks->notes >> POUND_GIVEN_ARRANGED & 1);
+	struct space s;
+	struct pound_rows rows;
+	struct pound_polynomial fitted = {.n_rows = given->n_rows, .n_inputs = given->n_inputs};
+	carve(&s, scratch, given->n_rows, given->n_inputs);
+	rows_init(&rows, given, &s);
+	*indices = (struct pound_given_indices){.explained = NAN};
+	if (!centre(given, y, &s, indices)) {
+		indices->notes = 1u << POUND_GIVEN_CONSTANT;
+		for (int j = 0; j < given->n_inputs; j++) {
+			indices->first[j] = indices->total[j] = UNKNOWN;
+			for (int k = 0; k < POUND_CURVE; k++)
+				indices->curves[j].mean[k] = UNKNOWN;
+		}
+		return;
+	}
+	if (independent) {
+		fitted.u = s.u;
+		pound_polynomial_fit(&fitted, s.y, s.rest);
+		s.rest += pound_polynomial_scratch(given->n_rows, given->n_inputs);
+		indices->explained = fitted.explained;
+		indices->degree = fitted.chosen;
+		indices->terms = fitted.terms_of[fitted.chosen];
+	}
+	const struct pound_polynomial *p = independent ? &fitted : NULL;
+	first_fill(&rows, &s, p, neighbors, indices);
+	others_fill(given, p, indices);
+	curves_fill(&rows, &s, p, indices);
+}

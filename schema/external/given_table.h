@@ -1,0 +1,28 @@
+/* given_table.h - samples that were drawn elsewhere: a table of inputs and one of outputs as CSV, and their indices as JSON.
+ *
+ * Tables hold memory of their own.  Any thread. */
+#ifndef GIVEN_TABLE_H
+#define GIVEN_TABLE_H
+
+#include <stddef.h>
+
+#include "schema/json/problems.h"
+
+enum given_role { GIVEN_INPUTS, GIVEN_OUTPUTS };
+
+struct given_table {
+	int n_columns, n_rows;
+	char **names;  /* (n_columns) */
+	double *cells; /* NAN: missing  (n_rows x n_columns) */
+};
+
+/* A table from CSV; what is wrong is in problems.  Free it in any case. */
+void given_table_read(struct given_table *table, enum given_role role, const char *csv, size_t length,
+                      struct problems *problems);
+void given_table_free(struct given_table *table);
+
+/* The indices of the outputs, as JSON on the heap; NULL: problems->status says why. */
+char *given_indices(const struct given_table *x, const struct given_table *y, struct problems *problems,
+                    size_t *length);
+
+#endif
