@@ -54,7 +54,7 @@ enum {
 
 // clang-format off
 static const struct command COMMANDS[] = {
-	{"run", "STUDY.json", "tfToLBHk", false, {"json", "table", "csv"}, run_study,
+	{"run", "STUDY.json", "tfToLBQk", false, {"json", "table", "csv"}, run_study,
 	 "compute a study here, without a server",
 	 "Prints the result on standard output: the same bytes as from a server, except `timing'.  "
 	 "Ctrl-C stops the study.  With --launcher, worker processes on this and other machines compute too: client/machines.md."},

@@ -370,6 +370,24 @@ static void a_late_worker_takes_part(void **state)
 	program_free(&outcome);
 }
 
+/* The name of this machine that workers elsewhere use: it stands in POUND_WORKER. */
+static void workers_connect_to_the_host_that_the_user_names(void **state)
+{
+	char command[640];
+	(void)state;
+	snprintf(command, sizeof command, "case $POUND_WORKER in localhost:*) ;; *) exit 9;; esac; %s",
+	         world.launcher);
+	struct program_outcome outcome =
+	    POUND("run", "--threads", "1", "--worker-host", "localhost", "--launcher", command, world.study);
+	program_expect(&outcome, 0);
+	assert_string_equal(service_timeless(outcome.out), world.reference);
+	assert_non_null(strstr(outcome.err, "worker group 1: connected, 1 thread\n"));
+	program_free(&outcome);
+	outcome = POUND("run", "--worker-host", "localhost", world.study);
+	program_expect(&outcome, 2);
+	program_free(&outcome);
+}
+
 static void blocks_of_a_worker_that_does_not_go_on_run_elsewhere(void **state)
 {
 	pid_t pids[2];
@@ -523,6 +541,7 @@ int main(int argc, char **argv)
 	    cmocka_unit_test(a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end),
 	    cmocka_unit_test(whatever_a_launcher_does_the_bytes_are_the_same),
 	    cmocka_unit_test(a_late_worker_takes_part),
+	    cmocka_unit_test(workers_connect_to_the_host_that_the_user_names),
 	    cmocka_unit_test(blocks_of_a_worker_that_does_not_go_on_run_elsewhere),
 	    cmocka_unit_test(a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_bytes),
 	    cmocka_unit_test(a_checkpoint_of_another_study_or_program_is_refused),
