@@ -14,7 +14,7 @@ enum {
 	POUND_INPUTS_MAX = 20,          /* inputs of one sensitivity study */
 	POUND_QUASI_INPUTS_MAX = 16,    /* with a quasi-random design */
 	POUND_ORDINATES_MAX = 64,       /* frequencies of a sensitivity study's floor spectrum */
-	POUND_OUTPUTS_ASKED_MAX = 8,    /* names in the outputs of one study */
+	POUND_OUTPUTS_ASKED_MAX = 24,   /* names in the outputs of one study */
 	POUND_OUTPUTS_MAX = 8 + 3 * 64, /* outputs of one study, each ordinate and each place one of its own */
 	POUND_SWEEPS_MAX = 8,           /* swept fields of one study */
 	POUND_RATIOS_MAX = 3,           /* ratios of inputs of one study */

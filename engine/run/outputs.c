@@ -166,6 +166,138 @@ static double row_one(const struct pound_row_response *row, const struct pound_s
 	return 1;
 }
 
+static bool right_moves(const struct pound_scene *scene)
+{
+	return scene->n_buildings == 0 && !scene->oscillators[1].rigid_wall;
+}
+
+static bool right_is_linear(const struct pound_scene *scene)
+{
+	return right_moves(scene) && pound_law_linear(pound_scene_law(scene, 1)->type);
+}
+
+static bool right_yields(const struct pound_scene *scene)
+{
+	return right_moves(scene) && !right_is_linear(scene);
+}
+
+static bool row_meets(const struct pound_scene *scene)
+{
+	return is_row(scene) && bodies_meet(scene);
+}
+
+static double displacement_right(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->displacement_max_2;
+}
+
+static double displacement_free_right(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->displacement_max_free_2;
+}
+
+static double demand_right(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return isnan(r->demand_2) ? 0 : r->demand_2;
+}
+
+static double demand_free_right(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return isnan(r->demand_free_2) ? 0 : r->demand_free_2;
+}
+
+static double impulse_largest(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->impulse_max;
+}
+
+static double contact_count(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->contact_count;
+}
+
+static double contact_time(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->contact_time;
+}
+
+static double touches(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->contact_count > 0;
+}
+
+static double floor_displacement(const struct pound_row_response *row, const struct pound_scene *scene,
+                                 const struct pound_storey_place *place)
+{
+	return storey_of(row, scene, place)->displacement_max;
+}
+
+static double floor_displacement_free(const struct pound_row_response *row, const struct pound_scene *scene,
+                                      const struct pound_storey_place *place)
+{
+	return storey_of(row, scene, place)->displacement_max_free;
+}
+
+static double residual_drift(const struct pound_row_response *row, const struct pound_scene *scene,
+                             const struct pound_storey_place *place)
+{
+	return fabs(storey_of(row, scene, place)->residual_drift);
+}
+
+static double row_impulse_largest(const struct pound_row_response *row, const struct pound_scene *scene,
+                                  const struct pound_storey_place *place)
+{
+	(void)place;
+	double most = 0;
+	for (int k = 0; k < pound_row_contacts(scene); k++)
+		most = fmax(most, row->contacts[k].impulse_max);
+	return most;
+}
+
+static double row_force_largest(const struct pound_row_response *row, const struct pound_scene *scene,
+                                const struct pound_storey_place *place)
+{
+	(void)place;
+	double most = 0;
+	for (int k = 0; k < pound_row_contacts(scene); k++)
+		most = fmax(most, row->contacts[k].force_max);
+	return most;
+}
+
+static double row_contact_count(const struct pound_row_response *row, const struct pound_scene *scene,
+                                const struct pound_storey_place *place)
+{
+	(void)place;
+	double sum = 0;
+	for (int k = 0; k < pound_row_contacts(scene); k++)
+		sum += row->contacts[k].contact_count;
+	return sum;
+}
+
+static double row_contact_time(const struct pound_row_response *row, const struct pound_scene *scene,
+                               const struct pound_storey_place *place)
+{
+	(void)place;
+	double sum = 0;
+	for (int k = 0; k < pound_row_contacts(scene); k++)
+		sum += row->contacts[k].contact_time;
+	return sum;
+}
+
+static double row_touches(const struct pound_row_response *row, const struct pound_scene *scene,
+                          const struct pound_storey_place *place)
+{
+	return row_contact_count(row, scene, place) > 0;
+}
+
 typedef double measure(const struct pound_response *, const struct pound_scene *);
 typedef double row_measure(const struct pound_row_response *, const struct pound_scene *,
                            const struct pound_storey_place *);
@@ -175,29 +307,79 @@ static const struct output {
 	const char *text;              /* one line of documentation */
 	const char *needs, *row_needs; /* of two oscillators and of a row, or of a study, in words */
 	bool (*applies)(const struct pound_scene *);
-	measure *numerator, *denominator;             /* of two oscillators; NULL: it has none */
-	row_measure *row_numerator, *row_denominator; /* of a row of buildings; NULL likewise */
-	bool places;                                  /* of a row one output for each place */
-	bool ordinates;                               /* one output for each frequency of the spectrum */
+	measure *of, *over; /* of two oscillators: the output is the mean of the one over that of the other */
+	row_measure *row, *row_over; /* of a row of buildings likewise */
+	bool places;                 /* of a row one output for each place */
+	bool ordinates;              /* one output for each frequency of the spectrum */
+	unsigned asks;               /* of enum pound_output_ask */
 } outputs[] = {
     // the paper, Eq. (5), (7), (9) and (19)
     {"force_amplification", "largest displacement of the left body, with over without pounding",
      "a linear law of the left oscillator", "two oscillators", left_is_linear, displacement,
-     displacement_free, NULL, NULL, false, false},
+     displacement_free, .asks = 0},
     {"demand_amplification",
      "ductility demand of the left body, or of the story at each place, with over without pounding",
      "a nonlinear law of the left oscillator", "a nonlinear law of every building that has a place",
-     bodies_yield, demand, demand_free, storey_demand, storey_demand_free, true, false},
+     bodies_yield, demand, demand_free, storey_demand, storey_demand_free, .places = true},
     {"impulse",
      "largest impulse of a contact over m_1 omega_1 times the largest displacement without pounding",
-     "a contact", "a contact", bodies_meet, impulse, displacement_free, row_impulse, top_free, false, false},
+     "a contact", "a contact", bodies_meet, impulse, displacement_free, row_impulse, top_free, .asks = 0},
     {"floor_spectrum", "mean ordinate of the left floor's response spectrum, one output for each frequency",
-     "a sensitivity study", "a sensitivity study", always, absent, one, row_absent, row_one, false, true},
+     "a sensitivity study", "a sensitivity study", always, absent, one, row_absent, row_one,
+     .ordinates = true},
     {"drift_amplification", "largest story drift at each place, with over without pounding", "buildings",
-     "buildings", is_row, NULL, NULL, drift, drift_free, true, false},
+     "buildings", is_row, NULL, NULL, drift, drift_free, .places = true},
     {"acceleration_amplification",
      "largest absolute acceleration of the floor at each place, with over without pounding", "buildings",
-     "buildings", is_row, NULL, NULL, acceleration, acceleration_free, true, false},
+     "buildings", is_row, NULL, NULL, acceleration, acceleration_free, .places = true,
+     .asks = POUND_ASKS_ACCELERATIONS},
+    // the right body's amplifications
+    {"force_amplification_right", "largest displacement of the right body, with over without pounding",
+     "a right oscillator with a linear law", "two oscillators", right_is_linear, displacement_right,
+     displacement_free_right, .asks = POUND_ASKS_RIGHT},
+    {"demand_amplification_right", "ductility demand of the right body, with over without pounding",
+     "a right oscillator with a nonlinear law", "two oscillators", right_yields, demand_right,
+     demand_free_right, .asks = POUND_ASKS_RIGHT},
+    // means
+    {"peak_displacement_m", "largest displacement of the left body, or of the floor at each place [m]", "",
+     "", always, displacement, one, floor_displacement, row_one, .places = true},
+    {"peak_displacement_right_m", "largest displacement of the right body [m]", "a right oscillator",
+     "two oscillators", right_moves, displacement_right, one, .asks = POUND_ASKS_RIGHT},
+    {"peak_displacement_free_m",
+     "largest displacement of the left body, or of the floor at each place, without pounding [m]", "", "",
+     always, displacement_free, one, floor_displacement_free, row_one, .places = true},
+    {"peak_displacement_free_right_m", "largest displacement of the right body without pounding [m]",
+     "a right oscillator", "two oscillators", right_moves, displacement_free_right, one,
+     .asks = POUND_ASKS_RIGHT},
+    {"ductility_demand", "ductility demand of the left body, or of the story at each place",
+     "a nonlinear law of the left oscillator", "a nonlinear law of every building that has a place",
+     bodies_yield, demand, one, storey_demand, row_one, .places = true},
+    {"ductility_demand_right", "ductility demand of the right body",
+     "a right oscillator with a nonlinear law", "two oscillators", right_yields, demand_right, one,
+     .asks = POUND_ASKS_RIGHT},
+    {"peak_drift_m", "largest drift of the story at each place [m]", "buildings", "buildings", is_row, NULL,
+     NULL, drift, row_one, .places = true},
+    {"peak_drift_free_m", "largest drift of the story at each place, without pounding [m]", "buildings",
+     "buildings", is_row, NULL, NULL, drift_free, row_one, .places = true},
+    {"residual_drift_m", "magnitude of the residual drift of the story at each place [m]", "buildings",
+     "buildings", is_row, NULL, NULL, residual_drift, row_one, .places = true},
+    {"peak_acceleration_m_s2", "largest absolute acceleration of the floor at each place [m/s2]", "buildings",
+     "buildings", is_row, NULL, NULL, acceleration, row_one, .places = true,
+     .asks = POUND_ASKS_ACCELERATIONS},
+    {"peak_acceleration_free_m_s2",
+     "largest absolute acceleration of the floor at each place, without pounding [m/s2]", "buildings",
+     "buildings", is_row, NULL, NULL, acceleration_free, row_one, .places = true,
+     .asks = POUND_ASKS_ACCELERATIONS},
+    {"pounding_probability", "share of the signals in which bodies touch: 1 or 0 for each", "a contact",
+     "a contact", bodies_meet, touches, one, row_touches, row_one, .asks = 0},
+    {"contact_count", "number of contacts, of all gaps", "a contact", "a contact", bodies_meet, contact_count,
+     one, row_contact_count, row_one, .asks = 0},
+    {"contact_time_s", "time in contact, added up over all gaps [s]", "a contact", "a contact", bodies_meet,
+     contact_time, one, row_contact_time, row_one, .asks = 0},
+    {"peak_impulse_n_s", "largest impulse of one contact [N s]", "a contact", "a contact", bodies_meet,
+     impulse_largest, one, row_impulse_largest, row_one, .asks = 0},
+    {"peak_contact_force_n", "largest force that pushes in a contact [N]", "buildings with contact",
+     "a contact", row_meets, NULL, NULL, row_force_largest, row_one, .asks = POUND_ASKS_FORCES},
 };
 
 const char *pound_output_name(int row)
@@ -231,10 +413,13 @@ int pound_study_ordinate(const struct pound_study *study, int output)
 	return k;
 }
 
-/* Whether an output reads accelerations of floors, which are not computed otherwise. */
-bool pound_output_accelerations(int row)
+/* What the outputs of a study read beside what every study computes. */
+unsigned pound_outputs_asked(const struct pound_study *study)
 {
-	return outputs[row].row_numerator == acceleration;
+	unsigned asked = 0;
+	for (int o = 0; o < study->n_outputs; o++)
+		asked |= outputs[study->outputs[o]].asks;
+	return asked;
 }
 
 bool pound_output_has_places(int row, const struct pound_scene *scene)
@@ -265,12 +450,12 @@ void pound_outputs_measure(const struct pound_study *study, int output, const st
 	const struct output *row = &outputs[study->outputs[output]];
 	const struct pound_scene *scene = outcome->scene;
 	if (scene->n_buildings == 0) {
-		*numerator = row->numerator(outcome->pair, scene);
-		*denominator = row->denominator(outcome->pair, scene);
+		*numerator = row->of(outcome->pair, scene);
+		*denominator = row->over(outcome->pair, scene);
 		return;
 	}
 	const int k = pound_study_place(study, output);
 	const struct pound_storey_place *place = k < 0 ? NULL : &scene->places[k];
-	*numerator = row->row_numerator(outcome->row, scene, place);
-	*denominator = row->row_denominator(outcome->row, scene, place);
+	*numerator = row->row(outcome->row, scene, place);
+	*denominator = row->row_over(outcome->row, scene, place);
 }

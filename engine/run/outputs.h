@@ -12,7 +12,14 @@ struct pound_outcome {
 	enum pound_status status;
 };
 
-bool pound_output_accelerations(int row);
+/* What an output reads beside what every study computes. */
+enum pound_output_ask {
+	POUND_ASKS_RIGHT = 1,         /* the right body's displacements, with and without pounding */
+	POUND_ASKS_ACCELERATIONS = 2, /* of floors */
+	POUND_ASKS_FORCES = 4,        /* of contacts */
+};
+
+unsigned pound_outputs_asked(const struct pound_study *study); /* bits */
 void pound_outputs_measure(const struct pound_study *study, int output, const struct pound_outcome *outcome,
                            double *numerator, double *denominator);
 

@@ -375,9 +375,10 @@ static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 	const struct pound_scene *scene = &ask->scene;
 	bool response = ask->response = campaign->study->kind == POUND_KIND_RESPONSE;
 	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
+	bool right = response || may_miss || pound_outputs_asked(campaign->study) & POUND_ASKS_RIGHT;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
-		ask->bodies[i] = (struct body_ask){.march = -1, .wanted = moves && (i == 0 || response || may_miss)};
+		ask->bodies[i] = (struct body_ask){.march = -1, .wanted = moves && (i == 0 || right)};
 	}
 }
 
@@ -467,10 +468,10 @@ static unsigned row_asked(const struct pound_study *study, bool balanced)
 {
 	const unsigned always = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
 	const bool response = study->kind == POUND_KIND_RESPONSE;
-	unsigned asked = always | (response ? POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_FORCES : 0) |
-	                 (balanced ? POUND_CHAIN_ENERGY : 0);
-	for (int o = 0; o < study->n_outputs; o++)
-		asked |= pound_output_accelerations(study->outputs[o]) ? (unsigned)POUND_CHAIN_ACCELERATIONS : 0;
+	const unsigned asks = pound_outputs_asked(study);
+	unsigned asked = always | (balanced ? POUND_CHAIN_ENERGY : 0);
+	asked |= response || asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0;
+	asked |= response || asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0;
 	return asked;
 }
 

@@ -284,7 +284,7 @@ const struct field fields[] = {
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
 	 .text = "outputs to compute, all different (default: the amplifications that apply and, with contact, the impulse)", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one output; force_amplification needs a linear law of the left oscillator, demand_amplification a nonlinear one (of buildings: at every place), drift_amplification and acceleration_amplification need buildings, floor_spectrum a sensitivity study", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "one output: its name; guide.md has the formula of each, its unit and what it needs: a body, a law, a contact or buildings", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/places", FIELD_LIST, 0, 0, 1, POUND_PLACES_MAX, FIELD_CLOSED, "",
 	 .text = "storeys of a row of buildings for which outputs are computed, all different (default: all of building 0)", SOLVED, WITH_SCENE, NOT_SCENE},

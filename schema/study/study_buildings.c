@@ -423,6 +423,18 @@ static void check_kind(const struct pound_study *study, struct problems *problem
 			             "floor_spectrum cannot be computed of buildings, only of oscillators");
 }
 
+/* Every place has outputs of its own; those of a study without places are all storeys of the left building. */
+static void check_outputs_number(const struct pound_study *study, struct problems *problems)
+{
+	const int places = study->scene.n_places ? study->scene.n_places : study_storeys_least(study, 0);
+	int n = 0;
+	for (int o = 0; o < study->n_outputs; o++)
+		n += pound_output_has_places(study->outputs[o], &study->scene) ? places : 1;
+	if (n > POUND_OUTPUTS_MAX)
+		problems_exceed(problems, "/outputs", n, POUND_OUTPUTS_MAX,
+		                "asks for %d outputs of all places, at most %d", n, POUND_OUTPUTS_MAX);
+}
+
 /* Checks what the members of a row mean together, in every cell.
  *
  * Given    study      -     read, with problems or without
@@ -442,6 +454,8 @@ void study_buildings_check(const struct pound_study *study, struct problems *pro
 	if (!problems_over(problems, "/scene/contacts") && scene->n_buildings)
 		check_contacts(study, problems);
 	check_places(study, problems);
+	if (scene->n_buildings && !problems_at(problems, "/outputs") && !problems_at(problems, "/places"))
+		check_outputs_number(study, problems);
 }
 
 /* ---- varied fields ---- */
