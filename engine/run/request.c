@@ -467,11 +467,10 @@ static struct pound_scene row_scene(const struct pound_request *request, const s
 static unsigned row_asked(const struct pound_study *study, bool balanced)
 {
 	const unsigned always = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
-	const bool response = study->kind == POUND_KIND_RESPONSE;
-	const unsigned asks = pound_outputs_asked(study);
+	const unsigned asks = study->kind == POUND_KIND_RESPONSE ? ~0U : pound_outputs_asked(study);
 	unsigned asked = always | (balanced ? POUND_CHAIN_ENERGY : 0);
-	asked |= response || asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0;
-	asked |= response || asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0;
+	asked |= asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0;
+	asked |= asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0;
 	return asked;
 }
 
