@@ -2,8 +2,8 @@
  *
  * Operations are counted as the engine shares them, and each has its seconds.  How often bodies touch, yield and stay together
  * is not known before: it is taken from their frequencies, masses, gap and the peak ground acceleration, as it is in the mean of
- * many scenes.  soak_valid says how near this is, and unit_cost for a part of its studies.  Two things are bounded and not
- * predicted: a design that grows counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
+ * many scenes.  soak_valid says how near this is, and unit_cost for a part of its studies: rows of buildings and contacts that are
+ * not linear throughout scatter more than pairs in linear contact.  Two things are bounded and not predicted: a design that grows counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
 #include "schema/study/cost.h"
 
 #include <assert.h>
@@ -40,9 +40,15 @@ enum operation {
 	SWING,    /* ... times the logarithm of the contact's own frequency, */
 	POUNDED,  /* ... and radian that a body turns by which may yield */
 	TURN,     /* radian of a sample beyond those that go by maps */
-	ALONE,    /* sample of a floor of a row of buildings, of its building alone, */
-	CHAIN,    /* ... with pounding, */
-	BEND,     /* ... and for each march in which its story may yield */
+	SHAPE,    /* march of a row, by the cube of the storeys of a building, */
+	CHAIN,    /* ... sample of a floor, */
+	BEND,     /* ... step of one whose story may yield, */
+	NEARBY,   /* ... or of all floors while two buildings are near each other, */
+	MEET,     /* ... radian of that, by contact and floor, */
+	JUMP,     /* ... if velocities jump there, */
+	KEEP,     /* ... and times the logarithm of the contact's own frequency while they may stay together */
+	ROOT,     /* the same of two oscillators, of a contact that is a power of its overlap, */
+	STICK,    /* ... by the logarithm of the restitution coefficient, */
 	START,    /* sample of a march by another solver, */
 	NEWMARK,  /* ... step of one, */
 	CENTRAL,  /* ... of the other, */
@@ -80,9 +86,15 @@ static const double seconds_of[OPERATIONS][KINDS] = {
     [SWING] = {3.4e-8, 2.3e-8, 4.2e-8, 1.5e-7},
     [POUNDED] = {9.4e-8, 5e-9, 6.4e-7, 5.2e-9},
     [TURN] = {3e-7, 3e-7, 3e-7, 3e-7},
-    [ALONE] = {1.5e-8, 1e-8, 0, 0},
-    [CHAIN] = {5e-8, 3e-8, 0, 0},
-    [BEND] = {2e-8, 1.5e-8, 0, 0},
+    [SHAPE] = {3.5e-8, 3.5e-8, 3.5e-8, 3.5e-8},
+    [CHAIN] = {2.0e-7, 2.0e-7, 2.0e-7, 2.0e-7},
+    [BEND] = {2.1e-7, 2.1e-7, 2.1e-7, 2.1e-7},
+    [NEARBY] = {1.3e-7, 1.3e-7, 1.3e-7, 1.3e-7},
+    [MEET] = {1.5e-7, 1.5e-7, 1.5e-7, 1.5e-7},
+    [KEEP] = {5.5e-7, 5.5e-7, 5.5e-7, 5.5e-7},
+    [STICK] = {9e-7, 9e-7, 9e-7, 9e-7},
+    [ROOT] = {5.5e-7, 5.5e-7, 5.5e-7, 5.5e-7},
+    [JUMP] = {4.5e-7, 4.5e-7, 4.5e-7, 4.5e-7},
     [START] = {8e-8, 8e-8, 1.4e-9, 0},
     [NEWMARK] = {2.3e-8, 2.3e-8, 6.3e-10, 0},
     [CENTRAL] = {1.5e-8, 1.5e-8, 6.3e-10, 0},
@@ -128,6 +140,14 @@ static const double NEAR = 0.4, RIDING = 0.01;
 
 /* radians of the adaptive solver that take as long as to start again at a sample */
 static const double ADAPT_START = 0.55;
+
+/* [rad] of a step of a chain */
+static const double CHAIN_RADIANS = 4;
+
+/* floors of a chain that take as long as its step without them */
+static const double CHAIN_FLOORS = 8;
+
+static const double RESTITUTION_LEAST = 1e-3;
 
 /* [rad] of a step of a floor */
 static const double FLOOR_RADIANS = 1.5;
@@ -260,6 +280,28 @@ static bool varies(const struct pound_study *study, size_t offset)
 	return false;
 }
 
+/* A building of a chain in the mean; one of two oscillators is of one storey. */
+struct storeys {
+	int n;       /* 0: a wall */
+	double mass; /* of a floor, of whatever unit */
+	double low;  /* [rad/s] of the first mode */
+	double high; /* ... of the last one */
+};
+
+/* How fast two neighbors may come back to each other: by the faster, and by the lighter one. */
+static double touching(const struct storeys pair[static 2])
+{
+	const double ratio = pair[1].n ? pair[1].mass / pair[0].mass : 1;
+	return pair[1].n ? 0.5 * fmax(pair[0].low, pair[1].low) +
+	                       0.5 * (pair[0].low * ratio + pair[1].low) / (1 + ratio)
+	                 : pair[0].low;
+}
+
+static double masses(const struct storeys pair[static 2])
+{
+	return pair[1].n ? fmax(pair[0].mass / pair[1].mass, pair[1].mass / pair[0].mass) : 1;
+}
+
 /* What is known of the bodies in the mean. */
 struct bodies {
 	double hz[POUND_OSCILLATORS];      /* 0: a wall */
@@ -285,18 +327,14 @@ static struct bodies bodies_of(const struct pound_study *study)
 			b.marches[i] = 1 + (law->yield_displacement > 0 ? 0 : fmin(corrections, SEARCH_MEAN));
 	}
 	const double soft = 2 * PI * (wall ? b.hz[0] : fmin(b.hz[0], b.hz[1]));
-	const double masses =
-	    wall ? 1
-	         : fmax(MEAN(study, oscillators[0].mass, 1) * MEAN(study, oscillators[1].mass, -1),
-	                MEAN(study, oscillators[0].mass, -1) * MEAN(study, oscillators[1].mass, 1));
+	const struct storeys pair[] = {{1, MEAN(study, oscillators[0].mass, 1), b.hz[0], b.hz[0]},
+	                               {!wall, MEAN(study, oscillators[1].mass, 1), b.hz[1], b.hz[1]}};
 	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
-	const double mass = wall ? 1 : MEAN(study, oscillators[1].mass, 1) * MEAN(study, oscillators[0].mass, -1);
-	b.touching =
-	    wall ? b.hz[0] : 0.5 * fmax(b.hz[0], b.hz[1]) + 0.5 * (b.hz[0] * mass + b.hz[1]) / (1 + mass);
+	b.touching = touching(pair);
 	const double gap = MEAN(study, contact.gap, 1) * soft * soft / peak;
 	b.near = 1 / (1 + gap / NEAR);
 	b.riding = 1 / (1 + gap / RIDING);
-	b.ratio = MEAN(study, contact.stiffness_ratio, 1) * fmax(1, masses);
+	b.ratio = MEAN(study, contact.stiffness_ratio, 1) * masses(pair);
 	return b;
 }
 
@@ -309,25 +347,35 @@ static double turned(const struct bodies *b, double time_step)
 	return fmin(sum, TURNED_MOST);
 }
 
+/* Adds what so many items take by the event-driven solver before and without pounding. */
+static void count_free(const struct pound_study *study, const struct bodies *b, double items,
+                       struct counts *c)
+{
+	const double samples = samples_mean(study), radians = 2 * PI * duration_mean(study);
+	c->of[BEGIN] += items * distinct(study, MOTION);
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		if (b->hz[i] == 0)
+			continue;
+		const double free = items * distinct(study, i);
+		c->of[BEGIN] += free * (1 + b->marches[i]);
+		c->of[FREE] += free * samples;
+		c->of[YIELD] += free * b->marches[i] * samples;
+		c->of[FLOW] += free * b->marches[i] * radians * b->hz[i];
+	}
+}
+
 /* Adds what so many items take by the event-driven solver. */
 static void count_event(const struct pound_study *study, double items, struct counts *c)
 {
 	const struct bodies b = bodies_of(study);
 	const double samples = samples_mean(study), radians = 2 * PI * duration_mean(study);
 	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
-	c->of[GROUND] += items * distinct(study, MOTION) * samples;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		if (b.hz[i] == 0)
-			continue;
-		const double free = items * distinct(study, i);
-		c->of[BEGIN] += free * (1 + b.marches[i]);
-		c->of[FREE] += free * samples;
-		c->of[YIELD] += free * b.marches[i] * samples;
-		c->of[FLOW] += free * b.marches[i] * radians * b.hz[i];
+	count_free(study, &b, items, c);
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		c->of[POUNDED] += b.marches[i] > 0 ? pounded * radians * b.hz[i] : 0;
-	}
 	const double touches = pounded * b.near * radians * b.touching;
-	c->of[BEGIN] += pounded + items * distinct(study, MOTION);
+	c->of[BEGIN] += pounded;
 	c->of[MARCH] += pounded * samples;
 	c->of[TOUCH] += touches;
 	c->of[SWING] += touches * log1p(SWINGS * b.ratio);
@@ -362,20 +410,106 @@ static void count_steps(const struct pound_study *study, const struct pound_solv
 	}
 }
 
-/* The same of a row of buildings, of which each is counted alone as often as the row: what is shared nobody knows before. */
+/* Adds what two neighbors of a chain take where they meet.
+ *
+ * Given    marches   with pounding
+ *          steps     of one
+ *          floors    of the chain
+ */
+static void count_meetings(const struct pound_study *study, const struct storeys pair[static 2],
+                           double marches, double steps, double floors, struct counts *c)
+{
+	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
+	const double restitution = fmax(MEAN(study, contact.restitution, 1), RESTITUTION_LEAST);
+	const bool wall = pair[1].n == 0;
+	const double soft = wall ? pair[0].low : fmin(pair[0].low, pair[1].low);
+	const double reach = MEAN(study, contact.gap, 1) * soft * soft / peak;
+	const double near = marches / (1 + reach / NEAR), riding = marches / (1 + reach / RIDING);
+	const int links = wall || pair[0].n < pair[1].n ? pair[0].n : pair[1].n;
+	const double radians = duration_mean(study) * touching(pair) * links * (CHAIN_FLOORS + floors);
+	const double own = log1p(SWINGS * MEAN(study, contact.stiffness_ratio, 1) * masses(pair));
+	const enum pound_force force = pound_contact_force(study->scene.contact.model);
+	c->of[NEARBY] += near * steps * floors;
+	c->of[MEET] += near * radians;
+	c->of[JUMP] += force == POUND_FORCE_IMPACT ? near * radians : 0;
+	if (study->scene.n_buildings) {
+		c->of[KEEP] += riding * radians * own;
+		return;
+	}
+	c->of[ROOT] += force == POUND_FORCE_POWER ? near * radians : 0;
+	c->of[STICK] += riding * radians * own * -log(restitution);
+}
+
+/* Adds where the neighbors of a chain meet; returns the steps of a march. */
+static double count_chain(const struct pound_study *study, double pounded, const struct storeys *all, int n,
+                          struct counts *c)
+{
+	double floors = 0, high = 0;
+	for (int b = 0; b < n; b++)
+		floors += all[b].n, high = fmax(high, all[b].high);
+	const double steps = samples_mean(study) + duration_mean(study) * high / CHAIN_RADIANS;
+	for (int b = 0; b + 1 < n; b++)
+		count_meetings(study, &all[b], pounded, steps, floors, c);
+	return steps;
+}
+
+/* As if its storeys were alike: w(mode) = 2 sqrt(k/m) sin((2 mode - 1) pi/(4 n + 2)). */
+static struct storeys storeys_of(const struct pound_building *building, int n)
+{
+	const double shape = sin(PI / (4 * n + 2)), mass = building->mass.n ? building->mass.values[0] : 1;
+	const double high = building->frequency_hz > 0 ? 2 * PI * building->frequency_hz / shape
+	                                               : 2 * sqrt(building->stiffness.values[0] / mass);
+	return (struct storeys){.n = n, .mass = mass, .low = high * shape, .high = high};
+}
+
+static bool may_yield(const struct pound_study *study, int building)
+{
+	return pound_row_law(&study->scene, building)->type != 0 ||
+	       varies(study, offsetof(struct pound_scene, law.type));
+}
+
+/* The same of a row of buildings, of which each is counted alone as often as the row. */
 static void count_row(const struct pound_study *study, double items, struct counts *c)
 {
-	const double samples = samples_mean(study), runs = items * distinct(study, ALL);
-	c->of[GROUND] += items * distinct(study, MOTION) * samples;
-	for (int b = 0; b < study->scene.n_buildings; b++) {
-		const struct pound_law *law = pound_row_law(&study->scene, b);
-		const double floors = study->scene.buildings[b].rigid_wall ? 0 : study_storeys_most(study, b);
-		c->of[BEGIN] += runs;
-		c->of[ALONE] += runs * samples * floors;
-		c->of[CHAIN] += study->scene.contact.present ? runs * samples * floors : 0;
-		if (law->type != 0 || varies(study, offsetof(struct pound_scene, law.type)))
-			c->of[BEND] += runs * samples * floors * (2 + law->corrections);
+	struct storeys all[POUND_BUILDINGS_MAX] = {{0}};
+	const int n = study->scene.n_buildings;
+	const double samples = samples_mean(study), alone = items * distinct(study, ALL);
+	const double pounded = study->scene.contact.present ? alone : 0;
+	for (int b = 0; b < n; b++) {
+		const struct pound_building *building = &study->scene.buildings[b];
+		const int storeys = building->rigid_wall ? 0 : study_storeys_most(study, b);
+		all[b] = storeys ? storeys_of(building, storeys) : (struct storeys){.n = 0};
 	}
+	const double steps = count_chain(study, pounded, all, n, c);
+	c->of[BEGIN] += items * distinct(study, MOTION);
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	for (int b = 0; b < n; b++) {
+		const double corrections = fmin(pound_row_law(&study->scene, b)->corrections, SEARCH_MEAN);
+		const double yields = may_yield(study, b) ? 1 + corrections : 0;
+		const double marches = alone * (1 + yields) + pounded, storeys = all[b].n;
+		c->of[BEGIN] += storeys > 0 ? marches : 0;
+		c->of[SHAPE] += marches * pow(storeys, 3);
+		c->of[CHAIN] += marches * samples * storeys;
+		c->of[BEND] +=
+		    alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) * storeys;
+		c->of[BEND] += yields > 0 ? pounded * steps * storeys : 0;
+	}
+}
+
+/* The same of two oscillators whose contact the march of pairs does not have. */
+static void count_pair_chain(const struct pound_study *study, double items, struct counts *c)
+{
+	struct storeys all[POUND_OSCILLATORS];
+	const struct bodies bodies = bodies_of(study);
+	const double mass[] = {MEAN(study, oscillators[0].mass, 1), MEAN(study, oscillators[1].mass, 1)};
+	const double pounded = items * distinct(study, ALL);
+	for (int b = 0; b < POUND_OSCILLATORS; b++) {
+		const double w = 2 * PI * bodies.hz[b];
+		all[b] = (struct storeys){.n = w > 0, .mass = mass[b], .low = w, .high = w};
+	}
+	c->of[BEGIN] += pounded;
+	count_free(study, &bodies, items, c);
+	count_chain(study, pounded, all, POUND_OSCILLATORS, c);
 }
 
 static void count_runs(const struct pound_study *study, const struct pound_solver *solver, double items,
@@ -383,6 +517,9 @@ static void count_runs(const struct pound_study *study, const struct pound_solve
 {
 	if (study->scene.n_buildings)
 		count_row(study, items, c);
+	else if (solver->method == POUND_SOLVER_EVENT && study->scene.contact.present &&
+	         pound_contact_force(study->scene.contact.model) != POUND_FORCE_LINEAR)
+		count_pair_chain(study, items, c);
 	else if (solver->method == POUND_SOLVER_EVENT)
 		count_event(study, items, c);
 	else

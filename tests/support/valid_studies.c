@@ -5,7 +5,11 @@
  * duration 1 to 40 s or 2 to 40 cycles of 0.5 to 10 Hz, sample step 0.002 to 0.02 s, signals 1 to 500 (sensitivity: 20, floor
  * spectrum: 50, convergence: 10), rows 16 to 32,000, frequencies of spectra 2 to 1,000, pulses (half: 0) 1 to 10^6, steps of solvers
  * 10^-5 to 10^-3 s, tolerances 10^-10 to 10^-4.  Restitution 0 to 1, corrections 0 to 10 (half: 1).  A tenth has a wall, a tenth no
- * contact, a third a linear law, 3 of 8 another solver, a quarter a sweep, where the kind allows it. */
+ * contact, a third a linear law, 3 of 8 another solver, a quarter a sweep, where the kind allows it.
+ *
+ * Half have the default contact model, the others each of them with equal chances, calibrated either way, a third without tension.
+ * A third of responses and sensitivities is of a row of 2 to 8 buildings of 1 to 50 storeys, every form of damping; a quarter of
+ * the buildings have a law of their own, a third of the rows have one contact at levels of its own. */
 #include "tests/support/valid_studies.h"
 
 #include <math.h>
@@ -52,26 +56,42 @@ static void say(struct text *text, const char *format, ...)
 	va_end(values);
 }
 
-static void say_scene(struct text *text, int signals_most)
+static void say_law(struct text *text)
 {
-	say(text, "\"scene\": {\"law\": ");
 	if (below(3) == 0)
-		say(text, "{\"type\": \"linear\"}");
+		say(text, "\"law\": {\"type\": \"linear\"}");
 	else
-		say(text, "{\"type\": \"elastoplastic\", \"hardening_ratio\": %.3g, \"corrections\": %d}",
+		say(text, "\"law\": {\"type\": \"elastoplastic\", \"hardening_ratio\": %.3g, \"corrections\": %d}",
 		    below(2) * between(0.01, 0.2), below(2) ? 1 : below(11));
-	say(text, ", \"oscillators\": [{\"frequency_hz\": %.3g, \"damping_ratio\": %.3g}, ", between(0.3, 20),
-	    between(0.01, 0.2));
-	if (below(10) == 0)
-		say(text, "{\"rigid_wall\": true}], ");
-	else
-		say(text, "{\"mass_kg\": %.3g, \"frequency_hz\": %.3g, \"damping_ratio\": %.3g}], ",
-		    between(0.01, 100), between(0.3, 20), between(0.01, 0.2));
-	if (below(10) == 0)
+}
+
+static void say_contact(struct text *text)
+{
+	if (below(10) == 0) {
 		say(text, "\"contact\": null, ");
-	else
-		say(text, "\"contact\": {\"stiffness_ratio\": %.3g, \"restitution\": %.3g, \"gap_m\": %.3g}, ",
-		    between(1, 1e6), uniform(), below(2) ? between(1e-4, 0.1) : 0);
+		return;
+	}
+	say(text, "\"contact\": {");
+	if (below(2)) {
+		const int model = below(POUND_CONTACT_MODELS);
+		say(text, "\"model\": \"%s\", ", pound_contact_name(model));
+		if (pound_contact_reads(model, "calibration") && below(2))
+			say(text, "\"calibration\": \"exact\", ");
+		if (pound_contact_reads(model, "tension") && below(3) == 0)
+			say(text, "\"tension\": false, ");
+		if (pound_contact_reads(model, "yield_overlap_m"))
+			say(text, "\"yield_overlap_m\": %.3g, ", between(1e-5, 1e-2));
+		if (pound_contact_reads(model, "stiffness_ratio"))
+			say(text, "\"stiffness_ratio\": %.3g, ", between(1, 1e6));
+		if (pound_contact_reads(model, "restitution"))
+			say(text, "\"restitution\": %.3g, ", uniform());
+	} else
+		say(text, "\"stiffness_ratio\": %.3g, \"restitution\": %.3g, ", between(1, 1e6), uniform());
+	say(text, "\"gap_m\": %.3g}, ", below(2) ? between(1e-4, 0.1) : 0);
+}
+
+static void say_excitation(struct text *text, int signals_most)
+{
 	if (below(3) == 0)
 		say(text, "\"excitation\": {\"type\": \"white_noise\", \"duration_s\": %.3g, ", between(1, 40));
 	else
@@ -79,6 +99,55 @@ static void say_scene(struct text *text, int signals_most)
 		    between(2, 40));
 	say(text, "\"time_step_s\": %.3g, \"signals\": %d}}", between(0.002, 0.02),
 	    1 + (int)between(1, signals_most));
+}
+
+static void say_scene(struct text *text, int signals_most)
+{
+	say(text, "\"scene\": {");
+	say_law(text);
+	say(text, ", \"oscillators\": [{\"frequency_hz\": %.3g, \"damping_ratio\": %.3g}, ", between(0.3, 20),
+	    between(0.01, 0.2));
+	if (below(10) == 0)
+		say(text, "{\"rigid_wall\": true}], ");
+	else
+		say(text, "{\"mass_kg\": %.3g, \"frequency_hz\": %.3g, \"damping_ratio\": %.3g}], ",
+		    between(0.01, 100), between(0.3, 20), between(0.01, 0.2));
+	say_contact(text);
+	say_excitation(text, signals_most);
+}
+
+/* A row of buildings: the first two have a frequency and a mass that an input may vary. */
+static void say_row(struct text *text, int signals_most)
+{
+	const int n = 2 + below(POUND_BUILDINGS_MAX - 1);
+	int storeys[POUND_BUILDINGS_MAX];
+	say(text, "\"scene\": {");
+	say_law(text);
+	say(text, ", \"buildings\": [");
+	for (int b = 0; b < n; b++) {
+		storeys[b] = (int)between(1, POUND_STOREYS_MAX + 1);
+		if (b == n - 1 && below(10) == 0) {
+			say(text, ", {\"rigid_wall\": true}");
+			continue;
+		}
+		say(text, "%s{\"storeys\": %d, \"mass_kg\": %.3g, \"frequency_hz\": %.3g, \"damping\": \"%s\"",
+		    b ? ", " : "", storeys[b], between(0.1, 10), between(0.3, 10) / sqrt(storeys[b]),
+		    pound_damping_name(below(4)));
+		say(text, ", \"damping_ratio\": %.3g", between(0.01, 0.1));
+		if (below(4) == 0) {
+			say(text, ", ");
+			say_law(text);
+		}
+		say(text, "}");
+	}
+	say(text, "], ");
+	if (below(3) == 0) {
+		const double own = uniform();
+		say(text, "\"contacts\": [{\"left_building\": 0, \"levels\": [%.3g, %.3g]}], ", own * storeys[0],
+		    own * storeys[1]);
+	}
+	say_contact(text);
+	say_excitation(text, signals_most);
 }
 
 static void say_solver(struct text *text)
@@ -107,7 +176,7 @@ static void say_sweep(struct text *text)
 		say(text, ", \"sweep\": [%s]", sweeps[below(3)]);
 }
 
-static void say_sensitivity(struct text *text)
+static void say_sensitivity(struct text *text, bool row)
 {
 	static const char *const inputs[] = {
 	    "{\"path\": \"/oscillators/0/frequency_hz\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
@@ -121,12 +190,24 @@ static void say_sensitivity(struct text *text)
 	    "{\"path\": \"/excitation/rise\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.1, \"max\": "
 	    "0.3}}",
 	};
+	// in place of the first two
+	static const char *const of_row[] = {
+	    "{\"path\": \"/buildings/0/frequency_hz\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
+	    "\"max\": 2}}",
+	    "{\"path\": \"/buildings/1/mass_kg\", \"distribution\": {\"type\": \"uniform\", \"min\": 1, "
+	    "\"max\": 5}}",
+	};
 	static const char *const methods[] = {"lhs", "random", "sobol"}, *const orders[] = {"total", "second"};
 	const int n = 1 + below(5);
-	say_scene(text, 20);
+	if (row)
+		say_row(text, 20);
+	else
+		say_scene(text, 20);
+	if (row)
+		say(text, ", \"places\": [{\"building\": 0, \"storey\": 1}]");
 	say(text, ", \"inputs\": [");
 	for (int j = 0; j < n; j++)
-		say(text, "%s%s", j ? ", " : "", inputs[j]);
+		say(text, "%s%s", j ? ", " : "", row && j < 2 ? of_row[j] : inputs[j]);
 	say(text, "], \"design\": {\"method\": \"%s\", \"order\": \"%s\", \"rows\": %d}", methods[below(3)],
 	    orders[below(2)], 16 * (int)between(1, 2000));
 }
@@ -135,16 +216,16 @@ static void draw(struct text *text)
 {
 	const int kind = below(8);
 	text->n = 0;
+	const bool row = kind < 6 && below(3) == 0;
 	if (kind < 3) {
 		say(text, "{\"kind\": \"response\", ");
-		say_scene(text, 500);
-		say_solver(text);
-		say_sweep(text);
+		if (row)
+			say_row(text, 100);
+		else
+			say_scene(text, 500);
 	} else if (kind < 6) {
 		say(text, "{\"kind\": \"sensitivity\", ");
-		say_sensitivity(text);
-		say_solver(text);
-		say_sweep(text);
+		say_sensitivity(text, row);
 	} else if (kind < 7) {
 		say(text, "{\"kind\": \"floor_spectrum\", ");
 		say_scene(text, 50);
@@ -158,6 +239,10 @@ static void draw(struct text *text)
 		    "[]}, "
 		    "\"adaptive\": {\"tolerances\": [%.3g]}}",
 		    between(1e-4, 1e-3), between(1e-8, 1e-4));
+	}
+	if (kind < 6 && !row) {
+		say_solver(text);
+		say_sweep(text);
 	}
 	say(text, "}");
 }
