@@ -65,7 +65,8 @@ static const struct command COMMANDS[] = {
 	{"indices", "STUDY.json Y.csv", "gfT", false, {"json", "table", "csv"}, model_indexes,
 	 "sensitivity indices of the outputs of a model of your own",
 	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
-	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number.  With --given, the "
+	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number; or a column for each "
+	 "replicate: NAME.replicate1, NAME.replicate2, ...  With --given, the "
 	 "first file is X.csv: samples of the inputs that were drawn or observed elsewhere, with a column for each input; Y.csv "
 	 "has the outputs of the same lines."},
 	{"evaluate", "STUDY.json", "mNjJOGKSWfT", false, {"json", "table", "csv"}, evaluate_model,

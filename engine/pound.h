@@ -87,6 +87,10 @@ void pound_run_motion(const struct pound_run *run, const struct pound_place *pla
 void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
                              double variance);
 
+/* The same of a study with replicates, all of the sample's.  value: (study->replicates), as the model's noise was drawn:
+ * value r of each sample of a row shares it if the study's signals are common */
+void pound_run_replicates_assign(struct pound_run *run, int row, int sample, int output, const double *value);
+
 /* Both oscillators at one time, with pounding: left, right. */
 struct pound_instant {
 	double time;                                       /* [s] */

@@ -281,6 +281,7 @@ struct pound_study {
 	enum pound_kind kind;
 	const char *name; /* NULL: none */
 	bool elsewhere;   /* the design's samples are run by a model of the user's own; there need be no scene */
+	int replicates;   /* elsewhere: values of each sample; 0: one, a mean of known variance or without */
 	struct pound_scene scene;
 	int n_inputs;
 	struct pound_input *inputs; /* (n_inputs) */

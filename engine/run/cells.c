@@ -62,6 +62,12 @@ size_t pound_cells_values_size(const struct pound_cells *c, int n_rows)
 	return (size_t)n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
 }
 
+/* Whether the outputs are means that were computed elsewhere, with their variances, and not ratios of values of signals. */
+bool pound_cells_means(const struct pound_cells *c)
+{
+	return c->study->elsewhere && !c->study->replicates;
+}
+
 /* The values of an output in the first rows of a cell, from numerators and then denominators; NULL: their shape alone.
  *
  * Test     unit_index_columns: a_study_s_result_holds_what_its_samples_give
@@ -69,13 +75,12 @@ size_t pound_cells_values_size(const struct pound_cells *c, int n_rows)
 struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows, const double *columns)
 {
 	const double *second = columns ? columns + pound_cells_values_size(c, n_rows) : NULL;
-	const bool elsewhere = c->study->elsewhere;
 	return (struct pound_sample_values){.n_rows = n_rows,
 	                                    .n_inputs = c->study->n_inputs,
 	                                    .n_signals = c->n_signals,
 	                                    .numerator = columns,
-	                                    .denominator = elsewhere ? NULL : second,
-	                                    .variance = elsewhere ? second : NULL,
+	                                    .denominator = pound_cells_means(c) ? NULL : second,
+	                                    .variance = pound_cells_means(c) ? second : NULL,
 	                                    .grouping = pound_design_grouping(c->study),
 	                                    .order = pound_design_order(c->study),
 	                                    .inputs = c->study->inputs};

@@ -32,6 +32,7 @@ struct pound_solver pound_cells_solver(const struct pound_cells *campaign, int r
 double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep);
 size_t pound_cells_values_size(const struct pound_cells *c,
                                int n_rows); /* numerators of an output in a cell */
+bool pound_cells_means(const struct pound_cells *c);
 struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n_rows, const double *columns);
 
 struct pound_request_size {

@@ -49,7 +49,9 @@ struct pound_cells pound_run_campaign(const struct pound_study *study)
 	                                  : trials ? pound_convergence_trials(study)
 	                                           : 1,
 	                        .n_samples = sampled ? pound_design_samples(study) : 1,
-	                        .n_signals = study->elsewhere ? 1 : study->scene.excitation.signals,
+	                        .n_signals = study->replicates  ? study->replicates
+	                                     : study->elsewhere ? 1
+	                                                        : study->scene.excitation.signals,
 	                        .trials = trials};
 	for (int s = 0; s < study->n_sweeps; s++)
 		c.n_cells *= study->sweeps[s].n_values;
@@ -496,7 +498,7 @@ static int64_t columns_fill(const struct pound_run *run, int cell, int output, d
 				            (size_t)signal;
 				numerator[at] = values[0];
 				denominator[at] = values[1];
-				failed += isnan(values[0]) || (isnan(values[1]) && !c->study->elsewhere);
+				failed += isnan(values[0]) || (isnan(values[1]) && !pound_cells_means(c));
 			}
 	return failed;
 }
@@ -538,8 +540,8 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
 	const struct pound_sampling sampling = {
 	    .u = run->u,
-	    .random =
-	        elsewhere ? any_known(values.variance, n) : pound_excitation_random(&c->study->scene.excitation),
+	    .random = pound_cells_means(c) ? any_known(values.variance, n)
+	                                   : elsewhere || pound_excitation_random(&c->study->scene.excitation),
 	    // in a scene without random signals samples of a row have no noise to share, whoever runs them
 	    .fresh_signals = !c->study->design.common_signals ||
 	                     (elsewhere && !pound_excitation_random(&c->study->scene.excitation)),

@@ -49,7 +49,7 @@ struct pound_sample_output pound_run_sample_output(const struct pound_run *run, 
 {
 	const struct pound_cells *c = &run->campaign;
 	assert(c->study->kind == POUND_KIND_SENSITIVITY);
-	if (c->study->elsewhere) {
+	if (pound_cells_means(c)) {
 		const double *values = pound_blocks_run(&run->layout, row, cell, sample) + 2 * output;
 		return (struct pound_sample_output){values[0], values[1]};
 	}
@@ -76,8 +76,19 @@ struct pound_sample_output pound_run_sample_output(const struct pound_run *run, 
 void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,
                              double variance)
 {
-	assert(run->campaign.study->elsewhere);
+	assert(pound_cells_means(&run->campaign));
 	double *values = pound_blocks_run(&run->layout, row, 0, sample) + 2 * output;
 	values[0] = isfinite(value) ? value : NAN;
 	values[1] = variance;
+}
+
+void pound_run_replicates_assign(struct pound_run *run, int row, int sample, int output, const double *value)
+{
+	const int n = run->campaign.n_signals;
+	assert(run->campaign.study->replicates == n);
+	for (int r = 0; r < n; r++) {
+		double *values = pound_blocks_run(&run->layout, row * n + r, 0, sample) + 2 * output;
+		values[0] = isfinite(value[r]) ? value[r] : NAN;
+		values[1] = 1.0; // a mean is a ratio of means with equal denominators
+	}
 }

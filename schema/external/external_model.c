@@ -61,12 +61,15 @@ static const double OUTPUT_MOST = 1e60, VARIANCE_MOST = 1e120;
 /* What can be wrong with a cell, but for its header. */
 enum fault_kind { FAULT_NUMBER, FAULT_RANGE, FAULT_INPUT, N_FAULTS };
 
-enum role { ROLE_OUTPUT, ROLE_VARIANCE, ROLE_INPUT, ROLE_OTHER };
+enum role { ROLE_OUTPUT, ROLE_VARIANCE, ROLE_REPLICATE, ROLE_INPUT, ROLE_OTHER };
+
+enum { REPLICATES_MAX = 1000 };
 
 struct column {
 	char *name;
 	enum role role;
-	int index; /* of the output or the input */
+	int index;     /* of the output or the input */
+	int replicate; /* from 0 */
 	struct csv_fault faults[N_FAULTS];
 };
 
@@ -75,9 +78,10 @@ struct outputs {
 	int n_columns;
 	struct column *columns; /* (n_columns) */
 	char **names;           /* of the outputs  (study.n_outputs) */
+	char **stems; /* those of them that are not a column's, each in its place; NULL: it is  (n_columns) */
 };
 
-static const char VARIANCE[] = ".variance";
+static const char VARIANCE[] = ".variance", REPLICATE[] = ".replicate";
 
 /* Whether a name in a header is that of an input, as a cell writes it. */
 static bool is_input(const struct pound_input *input, const char *name)
@@ -94,6 +98,20 @@ static int column_named(const struct outputs *outputs, int n, const char *name, 
 	return -1;
 }
 
+/* NAME.replicateK, K from 1 without leading zeros: the length of NAME; 0: it is no such name. */
+static size_t replicate_stem(const char *name, int *replicate)
+{
+	const size_t n = strlen(name), digits = sizeof REPLICATE - 1;
+	size_t end = n;
+	while (end > 0 && name[end - 1] >= '0' && name[end - 1] <= '9')
+		end--;
+	if (end == n || name[end] == '0' || n - end > 4 || end <= digits ||
+	    strncmp(name + end - digits, REPLICATE, digits) != 0)
+		return 0;
+	*replicate = (int)strtol(name + end, NULL, 10) - 1;
+	return end - digits;
+}
+
 static void column_role(const struct outputs *outputs, struct column *column)
 {
 	size_t n = strlen(column->name), suffix = sizeof VARIANCE - 1;
@@ -102,11 +120,55 @@ static void column_role(const struct outputs *outputs, struct column *column)
 		column->role = ROLE_OTHER;
 	if (n > suffix && strcmp(column->name + n - suffix, VARIANCE) == 0)
 		column->role = ROLE_VARIANCE;
+	const size_t stem = replicate_stem(column->name, &column->replicate);
+	if (stem > 0)
+		column->role = ROLE_REPLICATE;
 	for (int j = 0; j < outputs->study.n_inputs; j++)
 		if (is_input(&outputs->study.inputs[j], column->name)) {
 			column->role = ROLE_INPUT;
 			column->index = j;
 		}
+}
+
+/* Outputs of columns of replicates, each of as many as the first; there are no other outputs then.
+ *
+ * Returns  value  outputs
+ */
+static int replicates_join(struct outputs *outputs, struct csv *csv, int n_outputs)
+{
+	const int single = n_outputs;
+	int most = 0, n = 0;
+	for (int c = 0; c < outputs->n_columns; c++) {
+		struct column *column = &outputs->columns[c];
+		if (column->role != ROLE_REPLICATE)
+			continue;
+		const size_t stem = replicate_stem(column->name, &column->replicate);
+		int o = single;
+		while (o < n_outputs &&
+		       (strlen(outputs->names[o]) != stem || strncmp(outputs->names[o], column->name, stem) != 0))
+			o++;
+		if (o == n_outputs &&
+		    !(outputs->names[n_outputs++] = outputs->stems[o] = strndup(column->name, stem)))
+			csv->problems->status = PROBLEMS_NOMEM;
+		column->index = o;
+		most = column->replicate + 1 > most ? column->replicate + 1 : most;
+		n++;
+	}
+	if (n == 0 || csv->problems->status == PROBLEMS_NOMEM)
+		return n_outputs;
+	char what[160];
+	snprintf(what, sizeof what,
+	         "replicates must be numbered from 1 to the same number, 2 to %d, for every output",
+	         REPLICATES_MAX);
+	// names are different, so as many columns as there are numbers have each number once
+	if (most < 2 || most > REPLICATES_MAX || n != most * (n_outputs - single))
+		csv_complain(csv, NULL, what);
+	if (single > 0)
+		csv_complain(
+		    csv, outputs->names[0],
+		    "has no replicates, but other outputs have; expected NAME.replicate1, ... of all or of none");
+	outputs->study.replicates = most;
+	return n_outputs;
 }
 
 /* Which outputs there are, and whose variances the other columns are. */
@@ -131,11 +193,14 @@ static void columns_join(struct outputs *outputs, struct csv *csv)
 		else
 			column->index = outputs->columns[of].index;
 	}
+	n_outputs = replicates_join(outputs, csv, n_outputs);
 	outputs->study.n_outputs = n_outputs;
 	outputs->study.output_names = outputs->names;
 	if (n_outputs == 0)
-		csv_complain(csv, NULL,
-		             "has no output column; expected one per output, and NAME.variance where that is known");
+		csv_complain(
+		    csv, NULL,
+		    "has no output column; expected one per output, and NAME.variance where that is known, or "
+		    "NAME.replicate1, NAME.replicate2, ...");
 }
 
 static void column_read(struct outputs *outputs, struct csv *csv)
@@ -185,7 +250,8 @@ static bool header_read(struct outputs *outputs, struct csv *csv)
 	}
 	outputs->columns = calloc(n_columns, sizeof *outputs->columns);
 	outputs->names = calloc(n_columns, sizeof *outputs->names);
-	if (!outputs->columns || !outputs->names) {
+	outputs->stems = calloc(n_columns, sizeof *outputs->stems);
+	if (!outputs->columns || !outputs->names || !outputs->stems) {
 		csv->problems->status = PROBLEMS_NOMEM;
 		return false;
 	}
@@ -203,14 +269,21 @@ struct line {
 	struct pound_run *run;
 	int row, sample;
 	double x[POUND_INPUTS_MAX];
-	double *value, *variance; /* (n_outputs) each */
-	bool strange;             /* an input that is not the design's was reported */
+	double *value;    /* (n_outputs x replicates) */
+	double *variance; /* (n_outputs) */
+	bool strange;     /* an input that is not the design's was reported */
 };
 
 /* An input that was written with a few digits only is still the design's. */
 static bool alike(double given, double wanted)
 {
 	return fabs(given - wanted) <= 1e-4 * fmax(fabs(given), fabs(wanted)) + 1e-6;
+}
+
+/* Values of an output in a line. */
+static int values_of(const struct outputs *outputs)
+{
+	return outputs->study.replicates ? outputs->study.replicates : 1;
 }
 
 static void cell_take(const struct outputs *outputs, struct csv *csv, struct line *line, int c)
@@ -223,8 +296,8 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 		csv_fault_note(&column->faults[FAULT_NUMBER], csv,
 		               "must be a decimal number, or empty or nan for a failed run, got \"%.60s\"",
 		               csv->cell);
-	} else if (column->role == ROLE_OUTPUT) {
-		line->value[column->index] = number;
+	} else if (column->role == ROLE_OUTPUT || column->role == ROLE_REPLICATE) {
+		line->value[column->index * values_of(outputs) + column->replicate] = number;
 		if (fabs(number) > OUTPUT_MOST)
 			csv_fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g in magnitude, got %.60s",
 			               OUTPUT_MOST, csv->cell);
@@ -247,12 +320,20 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 /* Gives a line's outputs to the run: a run without one of its numbers has failed. */
 static void line_assign(const struct outputs *outputs, const struct line *line)
 {
+	const int n = values_of(outputs);
 	bool failed = false;
+	for (int o = 0; o < outputs->study.n_outputs; o++) {
+		failed |= isinf(line->variance[o]);
+		for (int k = 0; k < n; k++)
+			failed |= !isfinite(line->value[o * n + k]);
+	}
+	for (int k = 0; k < outputs->study.n_outputs * n && failed; k++)
+		line->value[k] = NAN;
 	for (int o = 0; o < outputs->study.n_outputs; o++)
-		failed |= !isfinite(line->value[o]) || isinf(line->variance[o]);
-	for (int o = 0; o < outputs->study.n_outputs; o++)
-		pound_run_sample_assign(line->run, line->row, line->sample, o, failed ? NAN : line->value[o],
-		                        line->variance[o]);
+		if (outputs->study.replicates)
+			pound_run_replicates_assign(line->run, line->row, line->sample, o, line->value + (size_t)o * n);
+		else
+			pound_run_sample_assign(line->run, line->row, line->sample, o, line->value[o], line->variance[o]);
 }
 
 static void line_read(const struct outputs *outputs, struct csv *csv, struct line *line)
@@ -262,7 +343,9 @@ static void line_read(const struct outputs *outputs, struct csv *csv, struct lin
 	line->strange = false;
 	pound_run_sample_inputs(line->run, line->row, line->sample, line->x);
 	for (int o = 0; o < outputs->study.n_outputs; o++)
-		line->value[o] = line->variance[o] = NAN;
+		line->variance[o] = NAN;
+	for (int k = 0; k < outputs->study.n_outputs * values_of(outputs); k++)
+		line->value[k] = NAN;
 	do {
 		csv_read(csv);
 		if (n < outputs->n_columns)
@@ -285,8 +368,9 @@ static void faults_report(const struct outputs *outputs, const struct csv *csv)
 /* All lines after the header into the run. */
 static void lines_read(const struct outputs *outputs, struct csv *csv, struct pound_run *run)
 {
-	double *numbers = calloc(2 * (size_t)outputs->study.n_outputs, sizeof *numbers);
-	struct line line = {.run = run, .value = numbers, .variance = numbers + outputs->study.n_outputs};
+	const size_t n_outputs = (size_t)outputs->study.n_outputs, n_values = n_outputs * values_of(outputs);
+	double *numbers = calloc(n_outputs + n_values, sizeof *numbers);
+	struct line line = {.run = run, .value = numbers, .variance = numbers + n_values};
 	const int n_samples = pound_run_samples(run), rows = pound_run_rows(run);
 	int64_t wanted = (int64_t)rows * n_samples, there = csv_lines_left(csv);
 	const char *after = csv->at;
@@ -366,8 +450,11 @@ char *model_indices(const struct pound_study *study, const char *csv, size_t csv
 		if (!json && problems->status == PROBLEMS_NONE)
 			problems->status = PROBLEMS_NOMEM;
 	}
-	for (int c = 0; c < outputs.n_columns; c++)
+	for (int c = 0; c < outputs.n_columns; c++) {
 		free(outputs.columns[c].name);
+		free(outputs.stems ? outputs.stems[c] : NULL);
+	}
+	free(outputs.stems);
 	free(outputs.columns);
 	free(outputs.names);
 	return json;

@@ -522,7 +522,8 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 	    {"z.variance\n", "1\n", "1\n", "line 1, z.variance",
 	     "is the variance of an output that has no column"},
 	    {"p\n", "0.5\n", "0.5\n", "line 1",
-	     "has no output column; expected one per output, and NAME.variance where that is known"},
+	     "has no output column; expected one per output, and NAME.variance where that is known, or "
+	     "NAME.replicate1, NAME.replicate2, ..."},
 	    {"y;z\n", "1;2\n", "1;2\n", "line 1", "has no comma; columns must be separated by commas"},
 	    {"y,y\n", "1,2\n", "1,2\n", "line 1, y", "is already the name of column 1"},
 	    {"1.25\n", "1\n", "1\n", "line 1", "must be the name of a column, got \"1.25\""},
