@@ -2,8 +2,9 @@
  *
  * Operations are counted as the engine shares them, and each has its seconds.  How often bodies touch, yield and stay together
  * is not known before: it is taken from their frequencies, masses, gap and the peak ground acceleration, as it is in the mean of
- * many scenes.  soak_valid says how near this is, and unit_cost for a part of its studies: rows of buildings and contacts that are
- * not linear throughout scatter more than pairs in linear contact.  Two things are bounded and not predicted: a design that grows counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
+ * many scenes.  soak_valid says how near this is, and unit_cost for a part of its studies: rows of buildings and contacts that
+ * are not linear throughout scatter more than pairs in linear contact.  Two things are bounded and not predicted: a design that
+ * grows counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
 #include "schema/study/cost.h"
 
 #include <assert.h>
