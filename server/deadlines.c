@@ -112,6 +112,8 @@ bool connections_start(struct connections *all)
 	int error = pthread_create(&all->thread, NULL, watch, all);
 	if (error)
 		log_line("cannot start the thread that watches connections: %s", strerror(error));
+	else
+		pthread_setname_np(all->thread, "connections"); // for top -H
 	return error == 0;
 }
 

@@ -103,7 +103,7 @@ async function list() {
 	const chosen = new URLSearchParams(location.search);
 	$("status").value = chosen.get("status") ?? "";
 	$("status").onchange = () => { location.search = $("status").value ? `?status=${$("status").value}` : ""; };
-	for (let before = null; ; await sleep(2000)) {
+	for (let before = null; ; await sleep(3000)) {
 		await seen();
 		const answer = await ask(`/v1/studies?${chosen}`);
 		if (!answer.ok) {

@@ -1,4 +1,4 @@
-/* A thousand clients that ask once a second, while all workers compute.
+/* A thousand clients that ask once a second, and a hundred open pages of browsers, while all workers compute.
  *
  * An answer's time is from before the call that sends the question to when the kernel had the answer for the client
  * (SO_TIMESTAMPNS): the client's own delays do not count, those of the server and of the machine do.  What the study
@@ -209,5 +209,133 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 	free(study);
 }
 
+enum { PAGES = 100 };
+
+/* CPU time of the threads that answer and of the one that looks after those that wait: not of what a study needs by itself. */
+static double pages_s(pid_t pid)
+{
+	char path[64], name[32];
+	double sum = 0;
+	snprintf(path, sizeof path, "/proc/%d/task", (int)pid);
+	DIR *tasks = opendir(path);
+	assert_non_null(tasks);
+	for (struct dirent *task = readdir(tasks); task; task = readdir(tasks)) {
+		snprintf(path, sizeof path, "/proc/%d/task/%.16s/comm", (int)pid, task->d_name);
+		FILE *file = task->d_name[0] == '.' ? NULL : fopen(path, "r");
+		bool counts = file && fgets(name, sizeof name, file) &&
+		              (strcmp(name, "MHD-worker\n") == 0 || strcmp(name, "connections\n") == 0);
+		if (file)
+			fclose(file);
+		if (!counts)
+			continue;
+		snprintf(path, sizeof path, "/proc/%d/task/%.16s/schedstat", (int)pid, task->d_name);
+		file = fopen(path, "r");
+		double ns = 0;
+		assert_true(file && fscanf(file, "%lf", &ns) == 1);
+		fclose(file);
+		sum += 1e-9 * ns;
+	}
+	closedir(tasks);
+	return sum;
+}
+
+/* A page as client/page/page.js asks: a study's waits for a change and rests a second, the list rests three. */
+struct page {
+	int socket;
+	double due; /* [s] of the wall clock; 0 while an answer is awaited */
+	char tag[80];
+};
+
+static void page_ask(struct page *page, const char *id)
+{
+	char bytes[320];
+	int n = id ? snprintf(bytes, sizeof bytes, "GET /v1/studies/%s HTTP/1.1\r\nHost: localhost\r\n%s%s%s\r\n",
+	                      id, *page->tag ? "Prefer: wait=25\r\nIf-None-Match: " : "", page->tag,
+	                      *page->tag ? "\r\n" : "")
+	           : snprintf(bytes, sizeof bytes, "GET /v1/studies? HTTP/1.1\r\nHost: localhost\r\n\r\n");
+	raw_send(page->socket, bytes, (size_t)n);
+	page->due = 0;
+}
+
+/* Reads an answer, of several segments maybe; returns its status. */
+static int page_read(struct page *page, double pause)
+{
+	static char answer[1 << 16];
+	size_t n = 0, length = 0;
+	for (char *end = NULL; !end || n < (size_t)(end + 4 - answer) + length;) {
+		ssize_t came = recv(page->socket, answer + n, sizeof answer - 1 - n, 0);
+		if (came <= 0)
+			return 0;
+		answer[n += (size_t)came] = 0;
+		if (!end && (end = strstr(answer, "\r\n\r\n"))) {
+			const char *text = strstr(answer, "Content-Length: ");
+			length = text ? strtoul(text + 16, NULL, 10) : 0;
+		}
+	}
+	const char *tag = strstr(answer, "ETag: ");
+	if (tag)
+		snprintf(page->tag, sizeof page->tag, "%.*s", (int)strcspn(tag + 6, "\r"), tag + 6);
+	page->due = latency_now() + pause;
+	return atoi(answer + 9);
+}
+
+/* Opens 100 pages for a time; id NULL: of the list.  Returns the part of a core that answering them takes. */
+static double pages_cost(const struct service *service, const char *id, double seconds)
+{
+	static struct page pages[PAGES];
+	struct epoll_event events[PAGES];
+	int epoll = epoll_create1(EPOLL_CLOEXEC), answers = 0, wrong = 0;
+	double start = latency_now(), pause = id ? 1 : 3;
+	for (int i = 0; i < PAGES; i++) {
+		pages[i] = (struct page){.socket = raw_open(service), .due = start + pause * i / PAGES};
+		struct epoll_event event = {.events = EPOLLIN, .data.u32 = (uint32_t)i};
+		assert_int_equal(epoll_ctl(epoll, EPOLL_CTL_ADD, pages[i].socket, &event), 0);
+	}
+	double before = 0, counted = 0; // from the second round on: a page is opened once
+	for (double now = start; now < start + pause + seconds; now = latency_now()) {
+		if (counted == 0 && now >= start + pause) {
+			before = pages_s(service->pid);
+			counted = now;
+			answers = 0;
+		}
+		for (int i = 0; i < PAGES; i++)
+			if (pages[i].due > 0 && pages[i].due <= now)
+				page_ask(&pages[i], id);
+		int ready = epoll_wait(epoll, events, PAGES, 2);
+		for (int e = 0; e < ready; e++, answers++) {
+			int status = page_read(&pages[events[e].data.u32], pause);
+			wrong += status != 200 && (status != 304 || !id);
+		}
+	}
+	double wall = latency_now() - counted, share = (pages_s(service->pid) - before) / wall;
+	check_report("%d pages of %s: %.0f answers a second, %.2f %% of a core, %.0f us an answer", PAGES,
+	             id ? "a study" : "the list", answers / wall, 100 * share, 1e6 * share * wall / answers);
+	assert_int_equal(wrong, 0);
+	assert_true(answers > PAGES * wall / pause / 2);
+	for (int i = 0; i < PAGES; i++)
+		close(pages[i].socket);
+	close(epoll);
+	return share;
+}
+
+static void a_hundred_open_pages_take_two_percent_of_a_core_while_a_study_runs(void **state)
+{
+	struct service *service = *state;
+	char *study = service_study(200000, 9, 1), id[17];
+	for (int i = 0; i < 30; i++) // more than one page of the list has
+		service_submit(service, study, id);
+	double of_list = pages_cost(service, NULL, latency_soak_s() / 2);
+	char *first =
+	    service_text(service, "SELECT printf('%016x', id) FROM study WHERE status = 'running' LIMIT 1");
+	double of_study = pages_cost(service, first, latency_soak_s() / 2);
+	assert_true(service_wait(service, first, "running", 1));
+	assert_true(of_study <= 0.02);
+	assert_true(of_list <= 0.02);
+	free(first);
+	free(study);
+}
+
 CHECK_MAIN(cmocka_unit_test_setup_teardown(a_thousand_pollers_are_served_while_all_workers_are_busy,
+                                           service_setup, service_teardown),
+           cmocka_unit_test_setup_teardown(a_hundred_open_pages_take_two_percent_of_a_core_while_a_study_runs,
                                            service_setup, service_teardown))
