@@ -12,8 +12,9 @@
 #include <stdint.h>
 
 #include "engine/ground/excitation.h"
+#include "engine/scene/building.h"
+#include "engine/scene/contact.h"
 #include "engine/solver/solver.h"
-#include "schema/json/json_writer.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_buildings.h"
 #include "schema/study/study_json.h"
@@ -44,12 +45,16 @@ enum operation {
 	SHAPE,    /* march of a row, by the cube of the storeys of a building, */
 	CHAIN,    /* ... sample of a floor, */
 	BEND,     /* ... step of one whose story may yield, */
+	FULL,     /* ... by the square of the storeys where all are damped together, */
 	NEARBY,   /* ... or of all floors while two buildings are near each other, */
 	MEET,     /* ... radian of that, by contact and floor, */
 	JUMP,     /* ... if velocities jump there, */
 	KEEP,     /* ... and times the logarithm of the contact's own frequency while they may stay together */
 	ROOT,     /* the same of two oscillators, of a contact that is a power of its overlap, */
 	STICK,    /* ... by the logarithm of the restitution coefficient, */
+	DASH,     /* ... and radian of the contact's dashpot, */
+	REST,     /* march that begins in contact, */
+	BLUNT,    /* ... where the force is a power of the overlap */
 	START,    /* sample of a march by another solver, */
 	NEWMARK,  /* ... step of one, */
 	CENTRAL,  /* ... of the other, */
@@ -73,7 +78,7 @@ enum { KINDS = 4 };
 
 /* Seconds of one core for each, by the kind of study: a response study keeps the energy balances of its first signals; its other
  * runs take what those of a sensitivity study do.
- * Fitted to 2,500 valid studies (soak_valid has their distribution) with eight lanes. */
+ * Fitted to 2,500 valid studies (soak_valid has their distribution) with eight lanes; those of chains to 590. */
 static const double seconds_of[OPERATIONS][KINDS] = {
     // response, sensitivity, convergence, floor_spectrum
     [STUDY] = {1e-3, 1e-3, 1e-3, 1e-3},
@@ -87,15 +92,19 @@ static const double seconds_of[OPERATIONS][KINDS] = {
     [SWING] = {3.4e-8, 2.3e-8, 4.2e-8, 1.5e-7},
     [POUNDED] = {9.4e-8, 5e-9, 6.4e-7, 5.2e-9},
     [TURN] = {3e-7, 3e-7, 3e-7, 3e-7},
-    [SHAPE] = {3.5e-8, 3.5e-8, 3.5e-8, 3.5e-8},
-    [CHAIN] = {2.0e-7, 2.0e-7, 2.0e-7, 2.0e-7},
-    [BEND] = {2.1e-7, 2.1e-7, 2.1e-7, 2.1e-7},
-    [NEARBY] = {1.3e-7, 1.3e-7, 1.3e-7, 1.3e-7},
-    [MEET] = {1.5e-7, 1.5e-7, 1.5e-7, 1.5e-7},
-    [KEEP] = {5.5e-7, 5.5e-7, 5.5e-7, 5.5e-7},
-    [STICK] = {9e-7, 9e-7, 9e-7, 9e-7},
-    [ROOT] = {5.5e-7, 5.5e-7, 5.5e-7, 5.5e-7},
-    [JUMP] = {4.5e-7, 4.5e-7, 4.5e-7, 4.5e-7},
+    [SHAPE] = {5e-8, 5e-8, 5e-8, 5e-8},
+    [CHAIN] = {2.1e-7, 2.1e-7, 2.1e-7, 2.1e-7},
+    [BEND] = {1.4e-7, 1.4e-7, 1.4e-7, 1.4e-7},
+    [FULL] = {1.5e-8, 1.5e-8, 1.5e-8, 1.5e-8},
+    [NEARBY] = {1.2e-7, 1.2e-7, 1.2e-7, 1.2e-7},
+    [MEET] = {9.3e-8, 9.3e-8, 9.3e-8, 9.3e-8},
+    [KEEP] = {1.24e-6, 1.24e-6, 1.24e-6, 1.24e-6},
+    [STICK] = {5.2e-7, 5.2e-7, 5.2e-7, 5.2e-7},
+    [ROOT] = {2.8e-7, 2.8e-7, 2.8e-7, 2.8e-7},
+    [JUMP] = {6.2e-7, 6.2e-7, 6.2e-7, 6.2e-7},
+    [DASH] = {1.5e-9, 1.5e-9, 1.5e-9, 1.5e-9},
+    [REST] = {2.7e-4, 2.7e-4, 2.7e-4, 2.7e-4},
+    [BLUNT] = {5e-4, 5e-4, 5e-4, 5e-4},
     [START] = {8e-8, 8e-8, 1.4e-9, 0},
     [NEWMARK] = {2.3e-8, 2.3e-8, 6.3e-10, 0},
     [CENTRAL] = {1.5e-8, 1.5e-8, 6.3e-10, 0},
@@ -148,7 +157,7 @@ static const double CHAIN_RADIANS = 4;
 /* floors of a chain that take as long as its step without them */
 static const double CHAIN_FLOORS = 8;
 
-static const double RESTITUTION_LEAST = 1e-3;
+static const double RESTITUTION_LEAST = 1e-3, DASHPOT_MOST = 300;
 
 /* [rad] of a step of a floor */
 static const double FLOOR_RADIANS = 1.5;
@@ -244,7 +253,25 @@ static bool of_body(const struct pound_study *study, int body, size_t offset)
 	        offset != first + offsetof(struct pound_oscillator, mass));
 }
 
-enum { ALL = -2, MOTION = -1 /* or a body */ };
+/* Whether a response of a building of a row without pounding does. */
+static bool of_building(int building, struct pound_field field)
+{
+	const size_t at = scene_offset(field), law = offsetof(struct pound_scene, law);
+	return of_motion(at) || (at >= law && at < law + sizeof(struct pound_law)) ||
+	       (field.part == POUND_PART_BUILDINGS &&
+	        field.offset / sizeof(struct pound_building) == (size_t)building);
+}
+
+enum { ALL = -2, MOTION = -1 /* or a body, or a building of a row */ };
+
+/* Whether a part of what an item has depends on a member that varies. */
+static bool depends(const struct pound_study *study, int what, struct pound_field field)
+{
+	return what == ALL                ? true
+	       : what == MOTION           ? of_motion(scene_offset(field))
+	       : study->scene.n_buildings ? of_building(what, field)
+	                                  : of_body(study, what, scene_offset(field));
+}
 
 /* How many of an item's ground motions, or responses of a body, differ from each other: it has samples in all cells. */
 static double distinct(const struct pound_study *study, int what)
@@ -252,15 +279,10 @@ static double distinct(const struct pound_study *study, int what)
 	const int samples = study->kind == POUND_KIND_SENSITIVITY ? pound_design_samples(study) : 1;
 	int n_inputs = 0;
 	double cells = 1;
-	for (int j = 0; j < study->n_inputs; j++) {
-		const size_t at = scene_offset(study->inputs[j].field);
-		n_inputs += what == ALL || (what == MOTION ? of_motion(at) : of_body(study, what, at));
-	}
-	for (int s = 0; s < study->n_sweeps; s++) {
-		const size_t at = scene_offset(study->sweeps[s].field);
-		if (what == ALL || (what == MOTION ? of_motion(at) : of_body(study, what, at)))
-			cells *= study->sweeps[s].n_values;
-	}
+	for (int j = 0; j < study->n_inputs; j++)
+		n_inputs += depends(study, what, study->inputs[j].field);
+	for (int s = 0; s < study->n_sweeps; s++)
+		cells *= depends(study, what, study->sweeps[s].field) ? study->sweeps[s].n_values : 1;
 	const bool common = study->design.common_signals || !pound_excitation_random(&study->scene.excitation);
 	// A, B, and A with each column of B that matters, which is B where there is one alone; with interactions B with those of A, too,
 	// which are the same where there are two
@@ -286,7 +308,8 @@ struct storeys {
 	int n;       /* 0: a wall */
 	double mass; /* of a floor, of whatever unit */
 	double low;  /* [rad/s] of the first mode */
-	double high; /* ... of the last one */
+	double high; /* ... of the last one, with what dashpots add to it */
+	bool modal;  /* every floor is damped by the rates of all */
 };
 
 /* How fast two neighbors may come back to each other: by the faster, and by the lighter one. */
@@ -328,8 +351,8 @@ static struct bodies bodies_of(const struct pound_study *study)
 			b.marches[i] = 1 + (law->yield_displacement > 0 ? 0 : fmin(corrections, SEARCH_MEAN));
 	}
 	const double soft = 2 * PI * (wall ? b.hz[0] : fmin(b.hz[0], b.hz[1]));
-	const struct storeys pair[] = {{1, MEAN(study, oscillators[0].mass, 1), b.hz[0], b.hz[0]},
-	                               {!wall, MEAN(study, oscillators[1].mass, 1), b.hz[1], b.hz[1]}};
+	const struct storeys pair[] = {{1, MEAN(study, oscillators[0].mass, 1), b.hz[0], b.hz[0], false},
+	                               {!wall, MEAN(study, oscillators[1].mass, 1), b.hz[1], b.hz[1], false}};
 	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
 	b.touching = touching(pair);
 	const double gap = MEAN(study, contact.gap, 1) * soft * soft / peak;
@@ -411,26 +434,50 @@ static void count_steps(const struct pound_study *study, const struct pound_solv
 	}
 }
 
-/* Adds what two neighbors of a chain take where they meet.
- *
- * Given    marches   with pounding
- *          steps     of one
- *          floors    of the chain
- */
-static void count_meetings(const struct pound_study *study, const struct storeys pair[static 2],
-                           double marches, double steps, double floors, struct counts *c)
+/* [rad/s] at which a contact's dashpot acts, in the mean. */
+static double dashpot_rate(const struct pound_study *study, const struct storeys pair[static 2])
 {
+	const struct pound_contact_place place = {1, 1, 1};
+	struct pound_contact contact = study->scene.contact;
+	contact.restitution = fmax(MEAN(study, contact.restitution, 1), RESTITUTION_LEAST);
+	contact.stiffness = contact.hertz_stiffness = 0;
+	contact.stiffness_ratio = 1;
+	return fmin(pound_contact_law(&contact, &place).dashpot, DASHPOT_MOST) *
+	       fmax(pair[0].high, pair[1].high) * sqrt(MEAN(study, contact.stiffness_ratio, 1) * masses(pair));
+}
+
+/* Contacts between a building and its right neighbor. */
+static int links_of(const struct pound_study *study, int building, const struct storeys pair[static 2])
+{
+	int links = 0;
+	for (int k = 0; k < study->scene.n_contacts; k++)
+		links += study->scene.contacts[k].left_building == building;
+	return study->scene.n_contacts ? links : pair[1].n == 0 || pair[0].n < pair[1].n ? pair[0].n : pair[1].n;
+}
+
+/* of a chain with pounding */
+struct marches {
+	double n, steps; /* of each */
+	double floors;   /* of the chain */
+};
+
+/* Adds what a building and its right neighbor take where they meet. */
+static void count_meetings(const struct pound_study *study, int building, const struct storeys pair[static 2],
+                           const struct marches *m, struct counts *c)
+{
+	const int links = links_of(study, building, pair);
 	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
 	const double restitution = fmax(MEAN(study, contact.restitution, 1), RESTITUTION_LEAST);
 	const bool wall = pair[1].n == 0;
 	const double soft = wall ? pair[0].low : fmin(pair[0].low, pair[1].low);
 	const double reach = MEAN(study, contact.gap, 1) * soft * soft / peak;
-	const double near = marches / (1 + reach / NEAR), riding = marches / (1 + reach / RIDING);
-	const int links = wall || pair[0].n < pair[1].n ? pair[0].n : pair[1].n;
-	const double radians = duration_mean(study) * touching(pair) * links * (CHAIN_FLOORS + floors);
+	const double met = links ? m->n : 0, near = met / (1 + reach / NEAR), riding = met / (1 + reach / RIDING);
+	const double radians = duration_mean(study) * touching(pair) * links * (CHAIN_FLOORS + m->floors);
 	const double own = log1p(SWINGS * MEAN(study, contact.stiffness_ratio, 1) * masses(pair));
 	const enum pound_force force = pound_contact_force(study->scene.contact.model);
-	c->of[NEARBY] += near * steps * floors;
+	c->of[NEARBY] += near * m->steps * m->floors;
+	for (int side = 0; side < 2; side++)
+		c->of[FULL] += pair[side].modal ? near * m->steps * pair[side].n * pair[side].n : 0;
 	c->of[MEET] += near * radians;
 	c->of[JUMP] += force == POUND_FORCE_IMPACT ? near * radians : 0;
 	if (study->scene.n_buildings) {
@@ -438,6 +485,9 @@ static void count_meetings(const struct pound_study *study, const struct storeys
 		return;
 	}
 	c->of[ROOT] += force == POUND_FORCE_POWER ? near * radians : 0;
+	c->of[DASH] += near * duration_mean(study) * dashpot_rate(study, pair);
+	c->of[REST] += riding;
+	c->of[BLUNT] += force == POUND_FORCE_POWER ? riding : 0;
 	c->of[STICK] += riding * radians * own * -log(restitution);
 }
 
@@ -445,37 +495,36 @@ static void count_meetings(const struct pound_study *study, const struct storeys
 static double count_chain(const struct pound_study *study, double pounded, const struct storeys *all, int n,
                           struct counts *c)
 {
-	double floors = 0, high = 0;
+	struct marches m = {.n = pounded};
+	double high = 0;
 	for (int b = 0; b < n; b++)
-		floors += all[b].n, high = fmax(high, all[b].high);
-	const double steps = samples_mean(study) + duration_mean(study) * high / CHAIN_RADIANS;
+		m.floors += all[b].n, high = fmax(high, all[b].high);
+	m.steps = samples_mean(study) + duration_mean(study) * high / CHAIN_RADIANS;
 	for (int b = 0; b + 1 < n; b++)
-		count_meetings(study, &all[b], pounded, steps, floors, c);
-	return steps;
+		count_meetings(study, b, &all[b], &m, c);
+	return m.steps;
 }
 
-/* As if its storeys were alike: w(mode) = 2 sqrt(k/m) sin((2 mode - 1) pi/(4 n + 2)). */
-static struct storeys storeys_of(const struct pound_building *building, int n)
+static struct storeys storeys_of(const struct pound_building *of, int n)
 {
-	const double shape = sin(PI / (4 * n + 2)), mass = building->mass.n ? building->mass.values[0] : 1;
-	const double high = building->frequency_hz > 0 ? 2 * PI * building->frequency_hz / shape
-	                                               : 2 * sqrt(building->stiffness.values[0] / mass);
-	return (struct storeys){.n = n, .mass = mass, .low = high * shape, .high = high};
+	struct pound_building building = *of;
+	struct pound_storeys laid;
+	building.storeys = n;
+	pound_building_storeys(&building, &laid);
+	struct storeys one = {.n = n, .mass = laid.mass[0], .low = laid.frequency, .modal = laid.modal};
+	for (int i = 0; i < n; i++)
+		one.high =
+		    fmax(one.high, 2 * sqrt(laid.stiffness[i] / laid.mass[i]) + 4 * laid.dashpot[i] / laid.mass[i]);
+	return one;
 }
 
-static bool may_yield(const struct pound_study *study, int building)
-{
-	return pound_row_law(&study->scene, building)->type != 0 ||
-	       varies(study, offsetof(struct pound_scene, law.type));
-}
-
-/* The same of a row of buildings, of which each is counted alone as often as the row. */
+/* The same of a row of buildings. */
 static void count_row(const struct pound_study *study, double items, struct counts *c)
 {
 	struct storeys all[POUND_BUILDINGS_MAX] = {{0}};
 	const int n = study->scene.n_buildings;
-	const double samples = samples_mean(study), alone = items * distinct(study, ALL);
-	const double pounded = study->scene.contact.present ? alone : 0;
+	const double samples = samples_mean(study);
+	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
 	for (int b = 0; b < n; b++) {
 		const struct pound_building *building = &study->scene.buildings[b];
 		const int storeys = building->rigid_wall ? 0 : study_storeys_most(study, b);
@@ -485,15 +534,18 @@ static void count_row(const struct pound_study *study, double items, struct coun
 	c->of[BEGIN] += items * distinct(study, MOTION);
 	c->of[GROUND] += items * distinct(study, MOTION) * samples;
 	for (int b = 0; b < n; b++) {
-		const double corrections = fmin(pound_row_law(&study->scene, b)->corrections, SEARCH_MEAN);
-		const double yields = may_yield(study, b) ? 1 + corrections : 0;
+		const struct pound_law *law = pound_row_law(&study->scene, b);
+		const bool linear = law->type == 0 && !varies(study, offsetof(struct pound_scene, law.type));
+		const double yields = linear ? 0 : 1 + fmin(law->corrections, SEARCH_MEAN),
+		             alone = items * distinct(study, b);
 		const double marches = alone * (1 + yields) + pounded, storeys = all[b].n;
 		c->of[BEGIN] += storeys > 0 ? marches : 0;
 		c->of[SHAPE] += marches * pow(storeys, 3);
 		c->of[CHAIN] += marches * samples * storeys;
-		c->of[BEND] +=
-		    alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) * storeys;
-		c->of[BEND] += yields > 0 ? pounded * steps * storeys : 0;
+		const double bends = alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
+		                     (yields > 0 ? pounded * steps : 0);
+		c->of[BEND] += bends * storeys;
+		c->of[FULL] += all[b].modal ? bends * storeys * storeys : 0;
 	}
 }
 
@@ -645,49 +697,4 @@ struct cost cost_of(const struct pound_study *study, int n_workers)
 	              RESULT_MEMORY * cost.bytes + pound_run_bytes(study, n_workers, &shared);
 	cost.bytes += runs * numbers * sizeof(double);
 	return cost;
-}
-
-/* Whether a server takes a study.
- *
- * Given    most       of each, that it takes
- * Returns  problems   a sentence for every limit that the study would go over
- * Test     service_submit: a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked
- */
-bool cost_allowed(const struct cost *cost, const struct cost *most, struct problems *problems)
-{
-	const struct {
-		double asked, most;
-		const char *what, *option;
-	} limits[] = {
-	    {(double)cost->runs, (double)most->runs, "pounding runs", "runs-max"},
-	    {cost->cpu_s, most->cpu_s, "estimated seconds of one core", "cpu-max"},
-	    {cost->bytes / MIB, most->bytes / MIB, "estimated MiB in the database", "result-max"},
-	    {cost->memory / MIB, most->memory / MIB, "estimated MiB of memory", "memory-max"},
-	};
-	problems_init(problems);
-	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
-		if (limits[i].asked > limits[i].most)
-			problems_exceed(problems, "", limits[i].asked, limits[i].most,
-			                "asks for %.6g %s, this server accepts at most %.6g (--%s)", limits[i].asked,
-			                limits[i].what, limits[i].most, limits[i].option);
-	return problems->n == 0;
-}
-
-/* The object Estimate of the OpenAPI document. */
-char *cost_to_json(const struct cost *cost, const struct pound_study *study, size_t *length)
-{
-	struct writer w;
-	char hash[STUDY_HASH_SIZE];
-	if (!study_hash(study, hash))
-		return NULL;
-	writer_init(&w);
-	writer_object(&w, NULL, WRITER_LINES);
-	writer_text(&w, "kind", study_kind_name(study->kind));
-	writer_text(&w, "study_hash", hash);
-	writer_whole(&w, "runs_total", cost->runs);
-	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
-	writer_number(&w, "estimated_bytes", ceil(cost->bytes));
-	writer_number(&w, "estimated_memory_bytes", ceil(cost->memory));
-	writer_end(&w);
-	return writer_take(&w, length);
 }

@@ -11,7 +11,8 @@ enum { STUDIES = 500, BINS = 13 };
 static const double CPU_MOST =
     1.5; /* [s] estimated, of one study: what takes four times as long is stopped */
 
-/* Two groups: pairs in a contact that is linear throughout, and chains, which are rows and other contacts.  What the chance of how bodies meet leaves: so many of a hundred may be farther off. */
+/* Two groups: pairs in a contact that is linear throughout, and chains, which are rows and other contacts.  What the chance of
+ * how bodies meet leaves: so many of a hundred may be farther off. */
 static const double FACTOR = 3;
 static const struct group {
 	const char *name;
