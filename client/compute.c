@@ -63,6 +63,16 @@ static void block_end(struct crew *crew, int block, enum pound_status status)
 	pthread_cond_broadcast(&crew->changed);
 }
 
+/* Takes the next block for a thread (ASSIGNMENT_HERE) or a worker group, -1: there is none now.  Under the lock. */
+static int block_take(struct crew *crew, int taker)
+{
+	const double now = seconds();
+	int block = assignment_next(&crew->blocks, crew->n_blocks, taker, now);
+	if (block >= 0)
+		assignment_take(&crew->blocks, block, taker, now);
+	return block;
+}
+
 /* The next step of a thread, -1: there will be none.  Under the lock. */
 static int step_take(struct crew *crew)
 {
@@ -71,7 +81,7 @@ static int step_take(struct crew *crew)
 	if (crew->reducing)
 		return crew->next < crew->n_reductions ? crew->next++ : -1;
 	while (crew->n_done < crew->n_blocks && crew->status == POUND_OK) {
-		int block = assignment_take(&crew->blocks, crew->n_blocks, ASSIGNMENT_HERE, seconds());
+		int block = block_take(crew, ASSIGNMENT_HERE);
 		if (block >= 0)
 			return block;
 		struct timespec until;
@@ -136,9 +146,7 @@ static bool remote_take(void *of, int group, const uint64_t refused[], int n_ref
 	if (n_refused)
 		return false;
 	pthread_mutex_lock(&crew->lock);
-	block->number = crew->reducing || crew->status != POUND_OK
-	                    ? -1
-	                    : assignment_take(&crew->blocks, crew->n_blocks, group, seconds());
+	block->number = crew->reducing || crew->status != POUND_OK ? -1 : block_take(crew, group);
 	pthread_mutex_unlock(&crew->lock);
 	block->study = &crew->study;
 	return block->number >= 0;

@@ -83,7 +83,7 @@ static int await(const struct server *server, const sigset_t *signals)
 static int serve(struct server *server, const sigset_t *signals)
 {
 	server->work = work_start(server->store, server->options->workers, server->options->time_max,
-	                          (int64_t)server->options->memory_max << 20);
+	                          (int64_t)server->options->memory_max << 20, &server->options->launch);
 	if (!server->work)
 		return EXIT_FAILURE;
 	bool listens = daemon_start(server), ended = true;
@@ -116,6 +116,11 @@ int main(int argc, char **argv)
 	hold_streams();
 	options_read(&options, argc, argv);
 	umask(077);
+	if (!options.launch.command && (options.launch.host || options.launch.n)) {
+		log_line("--launchers and --worker-host need --launcher, the command that starts workers");
+		return EXIT_FAILURE;
+	}
+	options.launch.n = options.launch.n ? options.launch.n : 1;
 	if (options.backup)
 		return backup_make(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options.restore)

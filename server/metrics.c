@@ -9,6 +9,7 @@
 #include "schema/json/json_writer.h"
 #include "server/http.h"
 #include "server/store.h"
+#include "server/workers.h"
 
 static const double bounds[METRICS_BUCKETS] = {0.001, 0.005, 0.02, 0.1, 0.5, 2.5, 10}; /* [s] */
 
@@ -116,6 +117,9 @@ char *metrics_text(const struct server *server, size_t *length)
 	     server->connections.n_late},
 	    {"pound_http_waiting", "gauge", "", "Requests that wait for a study to change.",
 	     server->connections.n_waiting},
+	    {"pound_worker_groups", "gauge", "", "Worker groups that are connected.", work_groups(server->work)},
+	    {"pound_worker_blocks_total", "counter", "", "Blocks that worker groups have run.",
+	     (double)work_group_blocks(server->work)},
 	    {"process_cpu_seconds_total", "counter", "", "Processor time.",
 	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
 	    {"process_resident_memory_bytes", "gauge", "", "Resident memory.", resident_bytes()},

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "engine/pound.h"
+#include "schema/message/coordinator.h"
 #include "server/memory.h"
 
 enum { WORKERS_MAX = 1024, FIRST_KEY = 256 /* above all letters */ };
@@ -27,6 +28,11 @@ const struct option_row options_table[] = {
 	{"restore",         0,   "FILE",    "put a copy of FILE in the place of the database, which is kept as DATABASE-replaced, and end; no server may use it",
 	 NULL, AT(restore), 0, 0},
 	{"workers",         'w', "N",       "threads that compute; one for each core when absent", NULL, AT(workers), 1, WORKERS_MAX},
+	{"launcher",        0,   "COMMAND", "command that starts worker processes, such as 'srun pound-worker'", NULL, AT(launch.command), 0, 0},
+	{"launchers",       0,   "N",       "run this command N times; each is a worker group that starts and fails independently; once when absent",
+	 NULL, AT(launch.n), 1, COORDINATOR_GROUPS_MAX},
+	{"worker-host",     0,   "HOST",    "name or address by which workers on other machines reach this one; only this machine can connect when absent",
+	 NULL, AT(launch.host), 0, 0},
 	{"keep-days",       0,   "N",       "days after its end until a study is deleted, 0: never", "0", AT(keep_days), 0, 36500},
 	{"keep-samples-days", 0, "N",       "days after its end until the samples of a study are deleted, 0: with the study", "0", AT(keep_samples_days), 0, 36500},
 	{"host",            0,   "NAMES",   "names the server is asked by, between commas, besides localhost and addresses",

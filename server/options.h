@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "schema/message/launcher.h"
+
 struct options {
 	const char *listen;     /* address in digits */
 	const char *database;   /* file */
@@ -22,6 +24,7 @@ struct options {
 	int header_timeout, body_timeout, idle_timeout, wait_max; /* [s] */
 	int runs_max, time_max, cpu_max, result_max;              /* of one study: number, [s], [s], [MiB] */
 	int memory_max;                                           /* of all that run [MiB] */
+	struct launch launch;                                     /* of workers in other processes */
 };
 
 struct option_row {

@@ -41,16 +41,13 @@ static bool restore(void *to, const struct store_block *block)
 const char *stored_run_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
                             struct stored_run *opened)
 {
-	char *request = NULL;
-	size_t length = 0;
 	*opened = (struct stored_run){0};
-	enum store_status found = store_document(store, id, "request", &request, &length);
+	enum store_status found = store_document(store, id, "request", &opened->document, &opened->length);
 	opened->passing = found == STORE_FAILED;
 	if (found != STORE_OK)
 		return "the stored study could not be read";
 	struct problems problems;
-	opened->study = study_from_json(request, length, &problems);
-	free(request);
+	opened->study = study_from_json(opened->document, opened->length, &problems);
 	if (!opened->study && problems.status != PROBLEMS_NOMEM)
 		return "this version does not accept the study";
 	opened->passing = true;
@@ -84,4 +81,5 @@ void stored_run_close(struct stored_run *opened)
 	if (opened->study)
 		study_free(opened->study);
 	free(opened->stored);
+	free(opened->document);
 }

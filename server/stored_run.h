@@ -10,6 +10,8 @@
 
 /* A study as it stands in the store: its document read, its run made, its stored blocks restored. */
 struct stored_run {
+	char *document; /* (length) bytes */
+	size_t length;
 	struct pound_study *study;
 	struct pound_run *run;
 	bool *stored;         /* (pound_run_blocks_most) */

@@ -12,7 +12,9 @@
  * 3. One thread commits all finished blocks that wait, together; a block counts after its commit.
  * 4. Who ends the last reduction asks whether the design grows; if so there are more blocks, and reductions again.
  * 5. Who ends the last step of a study turns its result into bytes and stores them.
- * 6. A study that runs for longer than it may is ended by a thread that waits for that.
+ * 6. With --launcher worker groups in other processes take blocks, too, by the same rule (groups.inl); their values are
+ *    handed to the committer as those of workers are.
+ * 7. A study that runs for longer than it may is ended by a thread that waits for that.
  *
  * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
  * store takes no more blocks and no result. */
@@ -31,6 +33,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "schema/message/assignment.h"
+#include "schema/message/coordinator.h"
 #include "schema/result/result_json.h"
 #include "schema/study/study_status.h"
 #include "server/log.h"
@@ -39,10 +43,12 @@ enum {
 	WORKER_NICENESS = 10, /* requests are answered first */
 	PATIENCE = 1,         /* [s] between two tries to get memory or to store something */
 	MEMORY_TRIES = 30,    /* before a study fails for want of memory */
-	STOP_NS = 300000000,  /* [ns] for what workers are at, which is stopped, to end */
 	OPEN_MAX = 4,         /* studies whose steps are taken in turn */
 	WAITING_MAX = 256, /* finished blocks that wait for their commit, before their workers wait with them */
 };
+
+static const double STOP_MAX = 0.3;  /* [s] for what workers are at, which is stopped, to end */
+static const double LATE_LOOK = 0.5; /* [s] between two looks whether a worker group is late with a block */
 
 struct job {
 	TAILQ_ENTRY(job) others;
@@ -50,11 +56,16 @@ struct job {
 	char client[STORE_CLIENT_SIZE]; /* name of its token, "": there are none */
 	bool opened;
 	struct stored_run of;
-	int block, reduction; /* next to hand out */
+	struct assignment blocks;
+	bool movable;                   /* worker groups may run its blocks */
+	struct coordinator_study known; /* to them */
+	int n_out;                      /* blocks that they have */
+	int reduction;                  /* next to hand out */
 	int n_reductions, reductions_left;
 	int n_inside;      /* workers in one of its steps, and finished blocks that are not committed yet */
 	bool ended;        /* gives no more steps, ... */
 	atomic_bool stop;  /* ... and those that are taken stop soon */
+	bool finished;     /* its end is stored, or is not to be */
 	const char *error; /* why it failed, NULL if it did not */
 	double cpu_s, cpu_s_estimated; /* [s] */
 	bool over;                     /* it is known to have taken much longer than estimated */
@@ -70,7 +81,8 @@ struct finished {
 
 struct work {
 	struct store *store;
-	pthread_mutex_t lock; /* of all below */
+	struct coordinator *coordinator; /* of worker groups, NULL: there are none */
+	pthread_mutex_t lock;            /* of all below */
 	pthread_cond_t changed;
 	pthread_cond_t waits; /* for the committer: a block does, or nothing will any more */
 	struct finished waiting[WAITING_MAX], committing[WAITING_MAX];
@@ -98,6 +110,13 @@ static double seconds(clockid_t clock)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* A time of the monotonic clock [s] as functions of the system have it. */
+static struct timespec at(double time)
+{
+	const double whole = floor(time);
+	return (struct timespec){.tv_sec = (time_t)whole, .tv_nsec = (long)(1e9 * (time - whole))};
+}
+
 /* No more steps of this study; those that run stop soon. */
 static void end(struct job *job, const char *error)
 {
@@ -111,9 +130,7 @@ static void end(struct job *job, const char *error)
  * stops, so do not try again. */
 static bool patient(struct work *work, const struct job *job)
 {
-	struct timespec until;
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	until.tv_sec += PATIENCE;
+	const struct timespec until = at(seconds(CLOCK_MONOTONIC) + PATIENCE);
 	pthread_mutex_lock(&work->lock);
 	while (!work->stopping && !(job && job->stop) &&
 	       pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until) != ETIMEDOUT)
@@ -152,6 +169,7 @@ static void finish(struct work *work, struct job *job)
 static void drop(struct work *work, struct job *job)
 {
 	TAILQ_REMOVE(&work->jobs, job, others);
+	assignment_free(&job->blocks);
 	stored_run_close(&job->of);
 	work->memory_left += job->memory;
 	work->queued = true; // the next may have waited for that
@@ -164,14 +182,20 @@ static void settle(struct work *work, struct job *job)
 {
 	if (job->n_inside || (!job->ended && (job->reductions_left || stored_run_left(&job->of))))
 		return;
-	if (!job->ended || job->error) {
+	if (!job->finished && (!job->ended || job->error)) {
 		job->ended = true;
 		job->n_inside = 1;
 		pthread_mutex_unlock(&work->lock);
 		finish(work, job);
 		pthread_mutex_lock(&work->lock);
+		job->n_inside = 0;
 	}
-	drop(work, job);
+	job->finished = true;
+	// a block that also ran elsewhere may still be out: the groups are to give it back
+	if (job->n_out > 0)
+		coordinator_wake(work->coordinator);
+	else
+		drop(work, job);
 }
 
 /* Hands a finished block to the committer; waits while too many wait.  Under the lock. */
@@ -264,17 +288,33 @@ struct step {
 	int block, reduction; /* one of them, the other is -1 */
 };
 
-/* The next step of a study, not taken yet; false: it has none to give now. */
-static bool next_step(struct job *job, struct step *step)
+/* Who takes a step: a thread of this process, or a worker group and the studies that it cannot run. */
+struct taker {
+	int number;
+	const uint64_t *refused; /* (n_refused) */
+	int n_refused;
+};
+
+/* Whether a taker may run blocks of a study. */
+static bool suits(const struct job *job, const struct taker *taker)
 {
-	if (!job->opened || job->ended)
+	bool may = job->movable || taker->number == ASSIGNMENT_HERE;
+	for (int i = 0; i < taker->n_refused; i++)
+		may = may && taker->refused[i] != job->known.id;
+	return may;
+}
+
+/* The next step of a study, not taken yet; false: it has none to give now. */
+static bool next_step(struct job *job, const struct taker *taker, struct step *step)
+{
+	if (!job->opened || job->ended || !suits(job, taker))
 		return false;
-	int n_blocks = pound_run_blocks(job->of.run);
-	while (job->block < n_blocks && job->of.stored[job->block])
-		job->block++;
-	if (job->block < n_blocks)
-		*step = (struct step){job, job->block, -1};
-	else if (job->reduction < job->n_reductions && !stored_run_left(&job->of))
+	const int block =
+	    assignment_next(&job->blocks, pound_run_blocks(job->of.run), taker->number, seconds(CLOCK_MONOTONIC));
+	if (block >= 0)
+		*step = (struct step){job, block, -1};
+	else if (taker->number == ASSIGNMENT_HERE && job->reduction < job->n_reductions &&
+	         !stored_run_left(&job->of))
 		*step = (struct step){job, -1, job->reduction};
 	else
 		return false;
@@ -296,14 +336,14 @@ static double client_cpu(const struct work *work, const struct job *job)
  *
  * Test     service_queue: short_studies_end_soon_behind_a_long_one
  */
-static bool take(struct work *work, struct step *step)
+static bool take(struct work *work, const struct taker *taker, struct step *step)
 {
 	double client_least = INFINITY, least = INFINITY;
 	struct step next;
 	struct job *job;
 	TAILQ_FOREACH(job, &work->jobs, others)
 	{
-		if (!next_step(job, &next))
+		if (!next_step(job, taker, &next))
 			continue;
 		double of_client = client_cpu(work, job);
 		if (of_client > client_least || (of_client == client_least && job->cpu_s >= least))
@@ -315,10 +355,10 @@ static bool take(struct work *work, struct step *step)
 	if (least == INFINITY)
 		return false;
 	if (step->block >= 0)
-		step->job->block++;
+		assignment_take(&step->job->blocks, step->block, taker->number, seconds(CLOCK_MONOTONIC));
 	else
 		step->job->reduction++;
-	step->job->n_inside++;
+	*(taker->number == ASSIGNMENT_HERE ? &step->job->n_inside : &step->job->n_out) += 1;
 	return true;
 }
 
@@ -352,15 +392,17 @@ static void perform(struct work *work, const struct step *step, int worker)
 	pthread_mutex_lock(&work->lock);
 	job->cpu_s += cpu_s;
 	note_over(work, job);
-	if (status == POUND_OK && step->block >= 0)
+	if (status == POUND_OK && step->block >= 0) {
+		assignment_done(&job->blocks, step->block, ASSIGNMENT_HERE, seconds(CLOCK_MONOTONIC));
 		hand_over(work, job, step->block, cpu_s);
-	else {
+	} else {
 		job->n_inside--;
 		if (status != POUND_OK)
 			end(job, pound_status_error(status));
 		else if (--job->reductions_left == 0 && pound_run_grow(job->of.run)) {
 			job->reduction = 0;
 			job->reductions_left = job->n_reductions;
+			coordinator_wake(work->coordinator);
 		}
 		settle(work, job);
 	}
@@ -379,6 +421,11 @@ static void open_run(struct work *work, struct job *job)
 	while ((error = stored_run_open(work->store, job->id, work->n_workers, &job->stop, &opened)) &&
 	       opened.passing && --tries && patient(work, job))
 		stored_run_close(&opened);
+	if (!error && !assignment_init(&job->blocks, pound_run_blocks_most(opened.run)))
+		error = "out of memory";
+	for (int block = 0; !error && block < job->blocks.n; block++)
+		if (opened.stored[block])
+			assignment_restore(&job->blocks, block);
 	// they would count as done; where that fails they still do, until they are run again
 	if (!error && opened.leftovers)
 		store_prune(work->store, job->id);
@@ -389,8 +436,13 @@ static void open_run(struct work *work, struct job *job)
 	job->started = seconds(CLOCK_MONOTONIC) - opened.wall_s;
 	if (error)
 		end(job, opened.passing && work->stopping ? NULL : error); // the next start tries again
-	else
+	else {
 		job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
+		job->movable = message_movable(opened.study);
+		job->known = (struct coordinator_study){(uint64_t)job->id, opened.study, opened.run, opened.document,
+		                                        opened.length};
+		coordinator_wake(work->coordinator);
+	}
 }
 
 /* Whether one more study may be open. */
@@ -457,9 +509,20 @@ static void claim(struct work *work)
 	pthread_cond_broadcast(&work->changed);
 }
 
+/* Waits for a change; no one signals that a block of a worker group is late. */
+static void wait_changed(struct work *work)
+{
+	const struct timespec until = at(seconds(CLOCK_MONOTONIC) + LATE_LOOK);
+	if (work->coordinator)
+		pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until);
+	else
+		pthread_cond_wait(&work->changed, &work->lock);
+}
+
 static void *worker(void *of)
 {
 	struct work *work = of;
+	const struct taker here = {.number = ASSIGNMENT_HERE};
 	struct step step = {0};
 	setpriority(PRIO_PROCESS, (id_t)gettid(), WORKER_NICENESS);
 	pthread_mutex_lock(&work->lock);
@@ -467,14 +530,16 @@ static void *worker(void *of)
 	while (!work->stopping) {
 		if (work->queued && !work->claiming && has_place(work))
 			claim(work);
-		else if (take(work, &step))
+		else if (take(work, &here, &step))
 			perform(work, &step, number);
 		else
-			pthread_cond_wait(&work->changed, &work->lock);
+			wait_changed(work);
 	}
 	pthread_mutex_unlock(&work->lock);
 	return NULL;
 }
+
+#include "server/groups.inl"
 
 /* Ends the studies that have run for as long as they may; under the lock.
  *
@@ -509,9 +574,8 @@ static void *watch(void *of)
 	struct work *work = of;
 	pthread_mutex_lock(&work->lock);
 	while (!work->stopping) {
-		double until = end_late(work), whole = floor(until);
-		const struct timespec at = {.tv_sec = (time_t)whole, .tv_nsec = (long)(1e9 * (until - whole))};
-		pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &at);
+		const struct timespec until = at(end_late(work));
+		pthread_cond_clockwait(&work->changed, &work->lock, CLOCK_MONOTONIC, &until);
 	}
 	pthread_mutex_unlock(&work->lock);
 	return NULL;
@@ -522,9 +586,11 @@ static void *watch(void *of)
  * Given    n_workers   >= 1
  *          time_max    that a study may run [s]
  *          memory_max  that the studies which run at a time may take by their estimates [bytes]
+ *          launch      of worker groups
  * Returns  value       for work_stop; NULL: no memory, or no threads
  */
-struct work *work_start(struct store *store, int n_workers, double time_max, int64_t memory_max)
+struct work *work_start(struct store *store, int n_workers, double time_max, int64_t memory_max,
+                        const struct launch *launch)
 {
 	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
 	if (!work) {
@@ -543,8 +609,10 @@ struct work *work_start(struct store *store, int n_workers, double time_max, int
 	pthread_cond_init(&work->waits, NULL);
 	work->watched = pthread_create(&work->watch, NULL, watch, work) == 0;
 	work->commits = pthread_create(&work->committer, NULL, commit, work) == 0;
+	work->coordinator = launch->command ? groups_start(work, launch) : NULL;
 	int started = 0;
-	while (work->watched && work->commits && started < n_workers &&
+	const bool groups = work->coordinator || !launch->command;
+	while (groups && work->watched && work->commits && started < n_workers &&
 	       pthread_create(&work->workers[started], NULL, worker, work) == 0)
 		started++;
 	if (started == n_workers)
@@ -577,6 +645,7 @@ void work_drop(struct work *work, int64_t id)
 	if (job->id == id) {
 		end(job, NULL);
 		settle(work, job);
+		coordinator_wake(work->coordinator);
 		pthread_cond_broadcast(&work->changed);
 		break;
 	}
@@ -591,10 +660,6 @@ void work_drop(struct work *work, int64_t id)
  */
 bool work_stop(struct work *work)
 {
-	struct timespec until;
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	until.tv_sec += (until.tv_nsec + STOP_NS) / 1000000000;
-	until.tv_nsec = (until.tv_nsec + STOP_NS) % 1000000000;
 	pthread_mutex_lock(&work->lock);
 	work->stopping = true;
 	struct job *job;
@@ -602,6 +667,8 @@ bool work_stop(struct work *work)
 	end(job, NULL);
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);
+	coordinator_stop(work->coordinator);
+	const struct timespec until = at(seconds(CLOCK_MONOTONIC) + STOP_MAX);
 	for (int w = 0; w < work->n_workers; w++)
 		if (pthread_clockjoin_np(work->workers[w], NULL, CLOCK_MONOTONIC, &until) != 0)
 			return false;

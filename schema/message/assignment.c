@@ -28,14 +28,14 @@ static bool is_late(const struct assignment *a, const struct assignment_block *b
 	       out > LATE_LEAST && out > LATE_MEANS * mean;
 }
 
-/* Takes a block.
+/* Finds the next block for a taker.
  *
  * Given    n_blocks   that there are to run now
  *          taker      ASSIGNMENT_HERE, or the number of a group
  *          now        s   monotonic
  * Test     unit_assignment: a_block_that_is_out_for_long_runs_elsewhere_and_counts_once
  */
-int assignment_take(struct assignment *a, int n_blocks, int taker, double now)
+int assignment_next(struct assignment *a, int n_blocks, int taker, double now)
 {
 	int block = a->next;
 	while (block < n_blocks && a->blocks[block].state != FREE)
@@ -44,15 +44,17 @@ int assignment_take(struct assignment *a, int n_blocks, int taker, double now)
 	if (block == n_blocks)
 		for (block = 0; block < n_blocks && !is_late(a, &a->blocks[block], taker, now);)
 			block++;
-	if (block == n_blocks)
-		return -1;
+	return block < n_blocks ? block : -1;
+}
+
+void assignment_take(struct assignment *a, int block, int taker, double now)
+{
 	struct assignment_block *b = &a->blocks[block];
 	b->state = TAKEN;
 	b->here = taker == ASSIGNMENT_HERE;
 	b->copies++;
 	b->taker = taker;
 	b->since = now;
-	return block;
 }
 
 /* Gives a block back that was not run. */

@@ -25,8 +25,9 @@ struct assignment {
 
 bool assignment_init(struct assignment *assignment, int n); /* false: out of memory */
 void assignment_free(struct assignment *assignment);
-/* The next block of the first n_blocks, -1: none.  When none is free, one that another group has had for very long. */
-int assignment_take(struct assignment *assignment, int n_blocks, int taker, double now);
+/* The next block of the first n_blocks for a taker, -1: none.  When none is free, one that another group has had for very long. */
+int assignment_next(struct assignment *assignment, int n_blocks, int taker, double now);
+void assignment_take(struct assignment *assignment, int block, int taker, double now); /* the next one */
 void assignment_back(struct assignment *assignment, int block, int taker);
 /* false: its values are not wanted, as they are there already or a thread of this process makes them now */
 bool assignment_done(struct assignment *assignment, int block, int taker, double now);

@@ -8,7 +8,7 @@
  * a group has two blocks a thread: one that runs, one on its way. */
 #include "schema/message/coordinator.h"
 
-#include <math.h>
+#include <assert.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
@@ -173,9 +173,7 @@ static struct known *introduce(struct group *g, const struct coordinator_study *
 	struct known *k = g->known;
 	while (k < g->known + STUDIES_MAX && k->standing != UNKNOWN)
 		k++;
-	// as many as studies may be open, and as many again that have just ended, have their place
-	if (k == g->known + STUDIES_MAX)
-		return NULL;
+	assert(k < g->known + STUDIES_MAX);
 	const struct message head = {.type = MESSAGE_STUDY, .study = study->id, .n = (uint32_t)study->length};
 	*k = (struct known){.standing = SENT, .id = study->id};
 	if (!message_design(study->study, study->run, k->digest) ||
@@ -191,12 +189,24 @@ static bool send_block(struct group *g, struct out *out)
 	return message_send(g->socket, &head, NULL);
 }
 
+/* Whether the group may get one more study: many short ones may have ended since it answered last. */
+static bool has_place(const struct group *g)
+{
+	int n = 0;
+	for (int s = 0; s < STUDIES_MAX; s++)
+		n += g->known[s].standing != UNKNOWN;
+	return n < STUDIES_MAX;
+}
+
 /* Takes blocks until the group has enough; false: the connection failed. */
 static bool fill(struct group *g)
 {
 	const struct coordinator_source *source = &g->of->source;
 	struct coordinator_block block;
-	while (g->n_out < g->n_out_max && source->take(source->of, g->number, g->refused, g->n_refused, &block)) {
+	if (!has_place(g) && !drop_ended(g))
+		return false;
+	while (g->n_out < g->n_out_max && has_place(g) &&
+	       source->take(source->of, g->number, g->refused, g->n_refused, &block)) {
 		struct out *out = &g->out[g->n_out++];
 		struct known *k = known_of(g, block.study->id);
 		*out = (struct out){.block = block, .id = block.study->id, .taken = true, .waits = true};

@@ -1,0 +1,404 @@
+/* `poundd --launcher': the same bytes whatever runs blocks, and whatever happens to workers and server.
+ *
+ * A block is a row of the table `block`, whose key is its study and number: a block that is lost has no row, and the runs of a
+ * block that is doubled count twice in the study's `runs_done`. */
+#include <fcntl.h>
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "engine/pound.h"
+#include "tests/support/program.h"
+#include "tests/support/service.h"
+
+enum {
+	SIGNALS = 5,
+	SEED = 3,
+	ROWS = SERVICE_ROWS, /* of the study that is disturbed */
+	RUNS = ROWS * 5 * SIGNALS,
+	SHORT_ROWS = 20,
+	KILLED_AT_MS = 300, /* at most, after the study runs */
+	GONE_MS = 5000,     /* within which workers end after their server */
+	CANCEL_MS = 1000,   /* within which a cancelled study leaves its workers */
+	SOON_MS = 2000,     /* within which a short study ends behind a long one */
+	PIDS_MAX = 64,
+};
+
+static struct {
+	char pids[64];      /* file of the workers' processes */
+	char launcher[256]; /* starts a worker of one thread that adds its process to it */
+	char *study;
+	struct service_bytes reference;
+} world;
+
+static double now_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int setup(void **state)
+{
+	(void)state;
+	strcpy(world.pids, "/tmp/pound-test-pids-XXXXXX");
+	int file = mkstemp(world.pids);
+	assert_true(file >= 0);
+	close(file);
+	const char *build = getenv("POUND_BUILD");
+	snprintf(world.launcher, sizeof world.launcher, "echo $$ >>%s; exec %s/pound-worker --threads 1",
+	         world.pids, build ? build : "build/release");
+	world.study = service_study(ROWS, SIGNALS, SEED);
+	world.reference = service_uninterrupted(world.study, 1);
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	(void)state;
+	unlink(world.pids);
+	free(world.study);
+	free(world.reference.result);
+	free(world.reference.samples);
+	return 0;
+}
+
+/* The processes that the launchers have started since the file was emptied. */
+static int pids_read(pid_t pids[PIDS_MAX])
+{
+	int n = 0;
+	FILE *file = fopen(world.pids, "r");
+	while (file && n < PIDS_MAX && fscanf(file, "%d", &pids[n]) == 1)
+		n++;
+	if (file)
+		fclose(file);
+	return n;
+}
+
+static bool is_gone(pid_t pid)
+{
+	char path[64], state = 'X';
+	snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
+	FILE *file = fopen(path, "r");
+	if (file && fscanf(file, "%*d %*s %c", &state) != 1)
+		state = 'X';
+	if (file)
+		fclose(file);
+	return state == 'X' || state == 'Z';
+}
+
+/* Waits for the end of all workers; returns how long that took [s]. */
+static double workers_gone(void)
+{
+	pid_t pids[PIDS_MAX];
+	const double start = now_s();
+	for (int i = pids_read(pids) - 1; i >= 0; i--)
+		while (!is_gone(pids[i])) {
+			if (now_s() - start > 1e-3 * GONE_MS)
+				fail_msg("a worker is there %d ms after its server", GONE_MS);
+			usleep(1000);
+		}
+	return now_s() - start;
+}
+
+/* Starts a server with worker groups and no worker of before. */
+static void start(struct service *service, const char *launcher, const char *launchers)
+{
+	assert_int_equal(truncate(world.pids, 0), 0);
+	setenv("POUNDD_LAUNCHER", launcher, 1);
+	setenv("POUNDD_LAUNCHERS", launchers, 1);
+	service_start(service, 1);
+	unsetenv("POUNDD_LAUNCHER");
+	unsetenv("POUNDD_LAUNCHERS");
+}
+
+/* A sample of /metrics. */
+static double metric(const struct service *service, const char *name)
+{
+	char line[64];
+	struct answer answer = service_get(service, "/metrics");
+	snprintf(line, sizeof line, "\n%s ", name);
+	const char *at = strstr(answer.body, line);
+	assert_non_null(at);
+	const double value = strtod(at + strlen(line), NULL);
+	answer_free(&answer);
+	return value;
+}
+
+static void wait_groups(const struct service *service, int n)
+{
+	while (metric(service, "pound_worker_groups") < n)
+		usleep(2000);
+}
+
+/* Fails unless the study has succeeded with the reference's bytes, each of its blocks once. */
+static void check_same(const struct service *service, const char *id)
+{
+	assert_true(service_wait(service, id, "succeeded", 0));
+	struct service_bytes bytes = service_bytes(service, id);
+	service_bytes_compare(&bytes, &world.reference);
+	assert_int_equal(service_number(service, "SELECT sum(runs) FROM block"), RUNS);
+	assert_int_equal(service_number(service, "SELECT runs_done FROM study"), RUNS);
+}
+
+static bool logged(const struct service *service, const char *text)
+{
+	size_t n;
+	char *log = program_file(service->log, &n);
+	const bool found = log && strstr(log, text);
+	free(log);
+	return found;
+}
+
+static void workers_run_blocks_into_the_database(void **state)
+{
+	struct service *service = service_new();
+	char id[17];
+	(void)state;
+	start(service, world.launcher, "2");
+	assert_true(metric(service, "pound_worker_groups") == 0); // no study, no worker
+	service_submit(service, world.study, id);
+	check_same(service, id);
+	const double n = metric(service, "pound_worker_blocks_total");
+	check_report("blocks %d, of them run by 2 worker groups %d; same bytes",
+	             (int)service_number(service, "SELECT count(*) FROM block"), (int)n);
+	assert_true(n > 0);
+	assert_true(logged(service, "worker group 1: connected, 1 thread"));
+	service_stop(service);
+	workers_gone();
+	service_free(service);
+}
+
+static void killed_workers_lose_no_block_and_double_none(void **state)
+{
+	const int n = check_count(20, 500);
+	int kills = 0, noticed = 0;
+	double blocks = 0;
+	(void)state;
+	srand(1);
+	for (int i = 0; i < n; i++) {
+		pid_t pids[PIDS_MAX];
+		char id[17];
+		struct service *service = service_new();
+		start(service, world.launcher, "2");
+		service_submit(service, world.study, id);
+		while (pids_read(pids) < 2)
+			usleep(1000);
+		usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
+		kills += kill(pids[rand() % 2], SIGKILL) == 0;
+		check_same(service, id);
+		noticed += logged(service, "the connection ended");
+		blocks += metric(service, "pound_worker_blocks_total");
+		service_stop(service);
+		service_free(service);
+	}
+	check_report(
+	    "workers killed: %d, noticed %d; blocks run by workers %d; lost 0, doubled 0, results that differ 0",
+	    kills, noticed, (int)blocks);
+	assert_true(kills > 0 && noticed > 0 && blocks > 0);
+}
+
+static void a_killed_server_goes_on_and_its_workers_end(void **state)
+{
+	const int n = check_count(20, 500);
+	int kills = 0, studies = 0, resumed = 0;
+	double gone_most = 0;
+	(void)state;
+	srand(2);
+	while (kills < n) {
+		struct service *service = service_new();
+		char id[17];
+		start(service, world.launcher, "2");
+		service_submit(service, world.study, id);
+		for (bool running = true; running && kills < n; kills++) {
+			usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
+			service_kill(service);
+			const double gone = workers_gone();
+			gone_most = gone > gone_most ? gone : gone_most;
+			running = service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'") == 0;
+			const int64_t done = service_number(service, "SELECT count(*) FROM block");
+			resumed += running && done > 0;
+			start(service, world.launcher, "2");
+		}
+		check_same(service, id);
+		studies++;
+		service_stop(service);
+		service_free(service);
+	}
+	check_report("servers killed: %d, of them with blocks to go on with %d; studies finished %d; workers "
+	             "were gone after "
+	             "%.2f s at most; blocks lost 0, doubled 0, results that differ 0",
+	             kills, resumed, studies, gone_most);
+	assert_true(resumed > 0);
+}
+
+static void a_cancelled_study_leaves_its_workers(void **state)
+{
+	struct service *service = service_new();
+	char *large = service_study(20 * ROWS, SIGNALS, SEED), long_id[17], id[17];
+	(void)state;
+	start(service, world.launcher, "2");
+	service_submit(service, large, long_id);
+	wait_groups(service, 2);
+	char path[64];
+	snprintf(path, sizeof path, "/v1/studies/%s/cancel", long_id);
+	struct answer answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	// the same workers run the next one: theirs have stopped, and are not taken for it
+	const double start_s = now_s();
+	char *small = service_study(SHORT_ROWS, SIGNALS, SEED);
+	service_submit(service, small, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	const double took = now_s() - start_s;
+	check_report("a study after one that was cancelled ended after %.2f s", took);
+	assert_true(!check_soaks() || took < 1e-3 * CANCEL_MS);
+	assert_true(metric(service, "pound_worker_groups") == 2);
+	assert_false(logged(service, "the connection"));
+	service_stop(service);
+	workers_gone();
+	service_free(service);
+	free(large);
+	free(small);
+}
+
+static void a_short_study_ends_soon_behind_a_long_one(void **state)
+{
+	struct service *service = service_new();
+	char *large = service_study(20 * ROWS, SIGNALS, SEED), *small = service_study(SHORT_ROWS, SIGNALS, SEED),
+	     long_id[17], id[17];
+	(void)state;
+	start(service, world.launcher, "2");
+	service_submit(service, large, long_id);
+	wait_groups(service, 2);
+	usleep(200000);
+	const double start_s = now_s();
+	service_submit(service, small, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	const double took = now_s() - start_s;
+	check_report("a short study behind a long one ended after %.2f s", took);
+	assert_true(!check_soaks() || took < 1e-3 * SOON_MS);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'running'"), 1);
+	service_stop(service);
+	service_free(service);
+	free(large);
+	free(small);
+}
+
+static void a_stopped_server_ends_its_workers_and_goes_on(void **state)
+{
+	struct service *service = service_new();
+	char id[17];
+	(void)state;
+	start(service, world.launcher, "2");
+	service_submit(service, world.study, id);
+	wait_groups(service, 2);
+	const double start_s = now_s();
+	service_stop(service);
+	const double stopped = now_s() - start_s, gone = workers_gone();
+	start(service, world.launcher, "1");
+	check_same(service, id);
+	service_stop(service);
+	service_free(service);
+	check_report("a server with two groups stopped after %.2f s, its workers were gone %.2f s later", stopped,
+	             gone);
+}
+
+/* Blocks of a worker that does not go on run elsewhere, and the study ends without it. */
+static void a_study_does_not_wait_for_a_worker_that_hangs(void **state)
+{
+	struct service *service = service_new();
+	pid_t pids[PIDS_MAX];
+	char id[17], other[17];
+	(void)state;
+	start(service, world.launcher, "1");
+	service_submit(service, world.study, id);
+	wait_groups(service, 1);
+	assert_true(pids_read(pids) >= 1);
+	usleep(50000);
+	assert_int_equal(kill(pids[0], SIGSTOP), 0);
+	const double start_s = now_s();
+	check_same(service, id);
+	check_report("a worker that was stopped with blocks: the study ended after %.1f s, same bytes",
+	             now_s() - start_s);
+	// nothing of the study is left in the way of the next one, whose blocks the group gets and loses, too
+	assert_int_equal(kill(pids[0], SIGCONT), 0);
+	service_submit(service, world.study, other);
+	assert_true(service_wait(service, other, "succeeded", 0));
+	service_stop(service);
+	service_free(service);
+}
+
+/* A launcher in bash that greets with a version. */
+static const char stranger[] =
+    "exec bash -c 'IFS=: read -r host port token <<<$POUND_WORKER; exec 3<>/dev/tcp/$host/$port; "
+    "printf "
+    "\"$"
+    "token\\1\\0\\0\\0\\1\\0\\0\\0\\0\\0\\0\\0\\5\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0009"
+    ".9.9\" >&3; "
+    "cat <&3'";
+
+static void a_worker_of_another_version_is_refused(void **state)
+{
+	struct service *service = service_new();
+	char id[17];
+	(void)state;
+	start(service, stranger, "1");
+	service_submit(service, world.study, id);
+	check_same(service, id);
+	assert_true(logged(service, "refused: pound-worker has version 9.9.9, this program " POUND_VERSION));
+	assert_true(metric(service, "pound_worker_blocks_total") == 0);
+	service_stop(service);
+	service_free(service);
+}
+
+static void launchers_that_fail_or_wait_delay_nothing(void **state)
+{
+	static const char *const launchers[] = {"false", "sleep 99", "/nonexistent/pound-worker"};
+	(void)state;
+	for (size_t i = 0; i < sizeof launchers / sizeof launchers[0]; i++) {
+		struct service *service = service_new();
+		char id[17];
+		start(service, launchers[i], "2");
+		service_submit(service, world.study, id);
+		check_same(service, id);
+		assert_true(metric(service, "pound_worker_groups") == 0);
+		const double start_s = now_s();
+		service_stop(service);
+		assert_true(now_s() - start_s < 1e-3 * GONE_MS);
+		service_free(service);
+	}
+}
+
+static void options_of_workers_without_a_launcher_are_an_error(void **state)
+{
+	static const char *const options[] = {"--launchers=2", "--worker-host=node1"};
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		struct program_outcome outcome =
+		    program_run((const char *const[]){"poundd", options[i], "--port=0", NULL}, NULL);
+		program_expect(&outcome, 1);
+		assert_non_null(strstr(outcome.err, "--launchers and --worker-host need --launcher"));
+		program_free(&outcome);
+	}
+}
+
+int main(int argc, char **argv)
+{
+	const struct CMUnitTest tests[] = {cmocka_unit_test(workers_run_blocks_into_the_database),
+	                                   cmocka_unit_test(killed_workers_lose_no_block_and_double_none),
+	                                   cmocka_unit_test(a_killed_server_goes_on_and_its_workers_end),
+	                                   cmocka_unit_test(a_cancelled_study_leaves_its_workers),
+	                                   cmocka_unit_test(a_short_study_ends_soon_behind_a_long_one),
+	                                   cmocka_unit_test(a_stopped_server_ends_its_workers_and_goes_on),
+	                                   cmocka_unit_test(a_study_does_not_wait_for_a_worker_that_hangs),
+	                                   cmocka_unit_test(a_worker_of_another_version_is_refused),
+	                                   cmocka_unit_test(launchers_that_fail_or_wait_delay_nothing),
+	                                   cmocka_unit_test(options_of_workers_without_a_launcher_are_an_error)};
+	(void)argc;
+	setup(NULL);
+	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
+	teardown(NULL);
+	return failed;
+}
