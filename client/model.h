@@ -1,6 +1,6 @@
 /* model.h - the study of a model that is run elsewhere. */
-#ifndef CLIENT_MODEL_H
-#define CLIENT_MODEL_H
+#ifndef MODEL_H
+#define MODEL_H
 
 #include "client/command.h"
 #include "engine/pound.h"

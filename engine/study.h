@@ -354,7 +354,7 @@ int64_t pound_design_row_runs(const struct pound_study *study); /* pounding runs
 /* The trials of a convergence study: the event solver, the second opinion, every setting; and the solver of one. */
 int pound_convergence_trials(const struct pound_study *study);
 struct pound_solver pound_convergence_solver(const struct pound_study *study, int trial);
-/* The observed order of a solver over all its settings, NAN with fewer than two that tell. */
+/* The observed order of a solver over all its settings, NAN with fewer than two errors above rounding. */
 struct pound_trial;
 double pound_convergence_order(const struct pound_trial *trials, int n_trials, int method);
 

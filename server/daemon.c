@@ -55,23 +55,23 @@ static void log_library(void *of, const char *format, va_list values)
 {
 	struct server *server = of;
 	const double now = connection_now();
-	double told = server->library_told;
+	double reported = server->library_reported;
 	char text[256];
-	if (now < told + 1 || !atomic_compare_exchange_strong(&server->library_told, &told, now)) {
-		server->library_untold++;
+	if (now < reported + 1 || !atomic_compare_exchange_strong(&server->library_reported, &reported, now)) {
+		server->library_unreported++;
 		return;
 	}
 	vsnprintf(text, sizeof text, format, values);
 	text[strcspn(text, "\n")] = '\0';
 	log_line("http: %s (and %d lines before that were not reported)", text,
-	         atomic_exchange(&server->library_untold, 0));
+	         atomic_exchange(&server->library_unreported, 0));
 }
 
 /* Shares out the descriptors there may be, as many as are needed or allowed: a connection without one would keep a thread
  * that accepts it busy.
  *
  * Returns  value   connections that libmicrohttpd may have, 0: too few, logged; of them all but a few are served, and the
- *                  others told so
+ *                  others get 503
  */
 static int share_files(struct server *server, int wanted)
 {
@@ -156,7 +156,7 @@ int daemon_port(const struct server *server)
 	return MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
-/* Stops answering.  Who waits for a study is told 503; requests under way have a few seconds to end, and answers that
+/* Stops answering.  Clients that wait for a study get 503; requests under way have a few seconds to end, and answers that
  * take long, which are given up, less.
  *
  * Returns  value   false: one of these was not given up in time, and nothing that it may use may be given up but by the end

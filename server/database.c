@@ -55,7 +55,7 @@ static bool done(const struct database *d, const char *sql)
 	return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK;
 }
 
-/* The first value that a question comes to, as text; "": none. */
+/* The first value of a query's first row, as text; "": none. */
 static const char *answer(const struct database *d, const char *sql, char text[32])
 {
 	sqlite3_stmt *read = NULL;

@@ -1,8 +1,8 @@
 /* deadlines.h - the open connections: how long each may take, who waits for a study or an answer, who is still sending.
  *
  * A thread looks at all of them 20 times a second.  Any thread. */
-#ifndef CONNECTION_H
-#define CONNECTION_H
+#ifndef DEADLINES_H
+#define DEADLINES_H
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -97,7 +97,7 @@ bool disk_intact(struct disk *disk)
 	const bool there = note(disk->database, &database) && same(&database, &disk->files[0]),
 	           locked = note(disk->lock_name, &lock) && same(&lock, &disk->files[1]);
 	const time_t now = time(NULL);
-	if (!(there && locked) && atomic_exchange(&disk->told, now) != now)
+	if (!(there && locked) && atomic_exchange(&disk->reported, now) != now)
 		log_line("%s was removed or replaced while this server runs: nothing is accepted until it is started "
 		         "again with the right one",
 		         there ? disk->lock_name : disk->database);

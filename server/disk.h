@@ -23,7 +23,7 @@ struct disk {
 	char database[PATH_MAX]; /* its one name */
 	char ballast[PATH_MAX + 8], lock_name[PATH_MAX + 8];
 	struct disk_file files[2]; /* the database and the lock, as they were opened */
-	_Atomic time_t told;       /* when they were found replaced last */
+	_Atomic time_t reported;   /* when they were found replaced last */
 };
 
 bool disk_take(struct disk *disk,

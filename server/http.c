@@ -27,7 +27,7 @@
 
 enum {
 	TURN_TICK_NS = 50000000,  /* [ns] until who waits for one is asked whether he is still wanted */
-	GONE = 499,               /* told of a request whose client has gone */
+	GONE = 499,               /* reported of a request whose client has gone */
 	ASIDE_NICENESS = 5,       /* between other answers and the workers */
 	BODIES_MAX = 64 << 20,    /* [bytes] being received or read at a time */
 	SPOOLED_PART = 64 * 1024, /* [bytes] read of one at a time */
@@ -166,11 +166,11 @@ static struct MHD_Response *response_of(const struct request *request, struct re
 static void answered(const struct request *request, const struct reply *reply, size_t n)
 {
 	const double seconds = connection_now() - request->arrived;
-	const int told = reply->gone ? GONE : reply->status;
-	metrics_answered(&request->server->metrics, request->operation, told, seconds);
+	const int status = reply->gone ? GONE : reply->status;
+	metrics_answered(&request->server->metrics, request->operation, status, seconds);
 	// a path may be longer than a line
 	log_line("%016llx %.20s %.400s %d %zu bytes %.1f ms", (unsigned long long)request->number,
-	         request->method, request->path, told, n, 1e3 * seconds);
+	         request->method, request->path, status, n, 1e3 * seconds);
 }
 
 static enum MHD_Result send_reply(const struct request *request, struct reply *reply)
@@ -311,7 +311,7 @@ static enum MHD_Result refuse_head(struct request *request)
 	             reply.status, api_faults[fault].title, reply.type, reply.length, (int)reply.length,
 	             reply.body ? reply.body : "");
 	connection_of(request->connection)->lingers = true;
-	// a socket that has just been read from has room for one line; who has gone need not be told
+	// a socket that has just been read from has room for one line; a client that has gone needs no answer
 	if (send(connection_of(request->connection)->fd, text, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
 		reply.gone = true;
 	answered(request, &reply, reply.length);

@@ -29,8 +29,9 @@ struct server {
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;
-	_Atomic double library_told; /* [s] monotonic, when a line of libmicrohttpd's was told last, ... */
-	atomic_int library_untold;   /* ... and how many were not since */
+	_Atomic double
+	    library_reported;          /* [s] monotonic, when a line of libmicrohttpd's was reported last, ... */
+	atomic_int library_unreported; /* ... and how many were not since */
 	struct spools spools;
 	atomic_bool stopping;
 	atomic_int under_way; /* requests whose headers are here */
@@ -64,7 +65,7 @@ struct request {
 	struct reply reply;          /* if so, until it is sent */
 	const atomic_bool *unwanted; /* nobody waits for it any more */
 	double arrived;              /* [s] monotonic */
-	uint64_t number;             /* told as X-Request-Id */
+	uint64_t number;             /* sent as X-Request-Id */
 };
 
 const char *http_argument(const struct request *request,

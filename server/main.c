@@ -37,8 +37,8 @@ static void hold_streams(void)
 	close(file);
 }
 
-/* Tells systemd what we are at, when it has started us; sd_notify(3) has the words. */
-static void tell(const char *state)
+/* Reports our state to systemd, if it has started us; sd_notify(3) has the words. */
+static void notify(const char *state)
 {
 	const char *path = getenv("NOTIFY_SOCKET");
 	struct sockaddr_un to = {.sun_family = AF_UNIX};
@@ -52,7 +52,7 @@ static void tell(const char *state)
 	socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + n);
 	int end = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
 	if (sendto(end, state, strlen(state), MSG_NOSIGNAL | MSG_DONTWAIT, (struct sockaddr *)&to, size) < 0)
-		log_line("cannot tell systemd %s: %s", state, strerror(errno));
+		log_line("cannot notify systemd %s: %s", state, strerror(errno));
 	close(end);
 }
 
@@ -76,7 +76,7 @@ static int await(const struct server *server, const sigset_t *signals)
 		if (caught > 0)
 			return caught;
 		if (errno == EAGAIN && half > 0 && store_count(server->store, "queued", &n) == STORE_OK)
-			tell("WATCHDOG=1");
+			notify("WATCHDOG=1");
 	}
 }
 
@@ -92,9 +92,9 @@ static int serve(struct server *server, const sigset_t *signals)
 		bool v6 = strchr(listen, ':');
 		printf("listening on http://%s%s%s:%d\n", v6 ? "[" : "", listen, v6 ? "]" : "", daemon_port(server));
 		fflush(stdout);
-		tell("READY=1");
+		notify("READY=1");
 		log_line("stopping: %s", strsignal(await(server, signals)));
-		tell("STOPPING=1");
+		notify("STOPPING=1");
 		// the next signal ends the program at once, and so does the clock
 		alarm(STOP_MAX);
 		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
@@ -133,7 +133,7 @@ int main(int argc, char **argv)
 	// a client that has gone, and a file that may not grow, are errors of a write and no more
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
-	// there is nothing to read again, and the log is whoever started us's: a terminal that goes does not end studies
+	// there is nothing to read again, and the log belongs to the process that started us: a closed terminal does not end studies
 	signal(SIGHUP, SIG_IGN);
 	// blocked before any thread starts, so that only this one sees them
 	sigemptyset(&signals);

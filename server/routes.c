@@ -258,7 +258,7 @@ static struct reply document(struct request *request, const char *name)
 	                             : refusal(found);
 }
 
-/* What is told of a stored document without a look at it. */
+/* What is reported of a stored document without reading it. */
 static struct reply document_head(struct request *request, const char *name)
 {
 	size_t length;
@@ -427,7 +427,7 @@ static struct reply results(struct request *request)
 	return reply;
 }
 
-/* Whether a finished study has samples, told without its run, for who has them already. */
+/* Whether a finished study has samples, answered without its run, for clients that have them already. */
 static bool sampled(const struct request *request, bool ours)
 {
 	struct problems problems;

@@ -64,7 +64,7 @@ static sqlite3_stmt *bound(struct database *c, enum statement s, const char *typ
 	return statement;
 }
 
-/* After the last step of a statement that came to n rows. */
+/* After the last step of a statement that changed n rows. */
 static enum store_status ended(struct database *c, sqlite3_stmt *statement, int n)
 {
 	bool failed = sqlite3_reset(statement) != SQLITE_OK;
@@ -85,7 +85,7 @@ static enum store_status run(struct database *c, sqlite3_stmt *statement, int64_
 	return ended(c, statement, sqlite3_stmt_readonly(statement) ? n : sqlite3_changes(c->db));
 }
 
-/* Ends a transaction: what it comes to, when its changes came to `status`.  A full disk may have rolled back already. */
+/* Ends a transaction whose changes gave `status`, and returns its own.  A full disk may have rolled back already. */
 static enum store_status committed(struct database *c, enum store_status status)
 {
 	if (status == STORE_OK && run(c, bound(c, COMMIT, ""), NULL) == STORE_FAILED)
@@ -128,7 +128,7 @@ static enum store_status released(struct database *c, enum store_status status)
 	return status;
 }
 
-/* The same after a change of a study: those who wait for one may look.  It is not told before it is known that the file it
+/* The same after a change of a study: those who wait for one may look.  It is not reported before it is known that the file it
  * went into is the one that the next start will find. */
 static enum store_status changed(struct store *store, int64_t id, enum store_status status)
 {
@@ -146,7 +146,7 @@ static enum store_status changed(struct store *store, int64_t id, enum store_sta
  *
  * Given    id      of the study; 0: any
  * Returns  value   shared by about one in a thousand other studies
- * Test     service_wait: who_waits_for_a_change_is_told_of_it
+ * Test     service_wait: a_waiting_client_is_answered_at_a_change
  */
 unsigned store_changes(struct store *store, int64_t id)
 {

@@ -64,7 +64,7 @@ const char *stored_run_open(struct store *store, int64_t id, int n_workers, cons
 	return found == STORE_FAILED ? "the stored blocks could not be read" : NULL;
 }
 
-/* Blocks that are not stored, of the rows in hand. */
+/* Blocks that are not stored, of the current rows. */
 int stored_run_left(const struct stored_run *opened)
 {
 	int n = 0;

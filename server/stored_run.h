@@ -24,7 +24,7 @@ struct stored_run {
  * flag to stop by. */
 const char *stored_run_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
                             struct stored_run *opened);
-int stored_run_left(const struct stored_run *opened); /* blocks of the rows in hand that are not stored */
+int stored_run_left(const struct stored_run *opened); /* blocks of the current rows that are not stored */
 void stored_run_close(struct stored_run *opened);
 double stored_run_clock(void); /* CPU time of this thread [s] */
 

@@ -1,5 +1,5 @@
 /* Bearer tokens.  What a client sends is hashed and compared with every token's hash, all bytes of all of them, so that
- * the time it takes tells nothing of how near it was. */
+ * the time it takes reveals nothing of how near it was. */
 #include "server/token.h"
 
 #include <errno.h>

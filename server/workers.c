@@ -623,7 +623,7 @@ struct work *work_start(struct store *store, int n_workers, double time_max, int
 	return NULL;
 }
 
-/* Tells the workers that the store has a queued study. */
+/* Notifies the workers that the store has a queued study. */
 void work_wake(struct work *work)
 {
 	pthread_mutex_lock(&work->lock);

@@ -1,6 +1,6 @@
 /* workers.h - the threads that run studies. */
-#ifndef WORK_H
-#define WORK_H
+#ifndef WORKERS_H
+#define WORKERS_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -378,14 +378,14 @@ async function judge(number) {
 	const text = $("text").value;
 	const answer = await ask("/v1/studies?validate_only=true", { method: "POST", body: text, headers: { "Content-Type": "application/json" } });
 	if (number !== judge.number) return;
-	const told = await answer.json().catch(() => ({ detail: answer.statusText }));
+	const reply = await answer.json().catch(() => ({ detail: answer.statusText }));
 	$("submit").disabled = !answer.ok;
 	$("verdict").className = answer.ok ? "" : "fault";
 	$("verdict").textContent = answer.ok
-		? `valid: ${told.runs_total.toLocaleString("en")} runs, about ${Number(told.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(told.estimated_bytes)} stored, ${size(told.estimated_memory_bytes)} of memory`
-		: `${told.errors ? "faults, each a button that leads to its place:" : told.detail}${told.errors_not_listed ? `, and ${told.errors_not_listed} more` : ""}`;
-	const problems = told.errors ?? (told.line ? [{ pointer: "", ...told }] : []);
-	$("faults").replaceChildren(...(answer.ok ? [] : problems.map(problem => fault(told.line ? { ...problem, line: told.line, column: told.column } : problem))));
+		? `valid: ${reply.runs_total.toLocaleString("en")} runs, about ${Number(reply.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(reply.estimated_bytes)} stored, ${size(reply.estimated_memory_bytes)} of memory`
+		: `${reply.errors ? "faults, each a button that leads to its place:" : reply.detail}${reply.errors_not_listed ? `, and ${reply.errors_not_listed} more` : ""}`;
+	const problems = reply.errors ?? (reply.line ? [{ pointer: "", ...reply }] : []);
+	$("faults").replaceChildren(...(answer.ok ? [] : problems.map(problem => fault(reply.line ? { ...problem, line: reply.line, column: reply.column } : problem))));
 }
 judge.number = 0;
 

@@ -2,8 +2,8 @@
  *
  * Samples come in one order for all: A, B, A with column j from B for every j, B with column j from A for every j,
  * and then all other mixtures; an order of the design is how far a row goes. */
-#ifndef ORDER_H
-#define ORDER_H
+#ifndef ROW_SAMPLES_H
+#define ROW_SAMPLES_H
 
 #include "engine/pound.h"
 

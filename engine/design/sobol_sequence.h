@@ -1,6 +1,6 @@
 /* sobol_sequence.h - columns of scrambled Sobol' points, each point by its number. */
-#ifndef NET_H
-#define NET_H
+#ifndef SOBOL_SEQUENCE_H
+#define SOBOL_SEQUENCE_H
 
 #include "engine/numeric/random.h"
 

@@ -24,7 +24,7 @@ enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */
 #include "engine/exact/chain_energy.inl"
 #include "engine/exact/touch_step.inl"
 #include "engine/exact/chain_step.inl"
-#include "engine/exact/chain_flight.inl"
+#include "engine/exact/chain_modal.inl"
 // clang-format on
 
 /* Whether a link's overlap can be had from its floors again: it is far beyond the rounding of their displacements. */
@@ -87,9 +87,9 @@ static enum pound_status chain_march(struct chain *c, const atomic_bool *stop)
 {
 	int64_t steps = 0;
 	for (; c->next < c->task->n_samples; c->next++) {
-		if (c->flight.can) {
+		if (c->modal_motion.can) {
 			links_release(c);
-			flight(c, stop);
+			modal_advance(c, stop);
 			if (c->next == c->task->n_samples)
 				break;
 		}
@@ -124,13 +124,13 @@ void POUND_CHAIN(const struct pound_chain_task *tasks, struct pound_chain_result
 	struct chain *c = scratch;
 	for (int j = 0; j < n && !pound_stopped(stop); j++) {
 		chain_start(c, &tasks[j], &results[j]);
-		flight_start(c);
+		modal_start(c);
 		const enum pound_status status = chain_march(c, stop);
 		chain_displacements(c);
 		for (int i = 0; i < c->n_links; i++)
 			if (c->link[i].touching) // a contact still open at the end counts with what it has
 				contact_over(c, &c->link[i]);
-		if (c->flight.can && status == POUND_OK)
+		if (c->modal_motion.can && status == POUND_OK)
 			notes_look(c);
 		chain_write(c, status);
 	}

@@ -67,7 +67,7 @@ struct link {
 };
 
 /* drifts, displacements and absolute accelerations at a sample, and their rates */
-struct flight_place {
+struct modal_place {
 	struct column d, v, u, w, a, jerk;
 };
 
@@ -90,9 +90,9 @@ enum {
 enum { MODE_ROWS = 2900 }; /* of all vectors of floors: 8 buildings of 50 stories have so many at most */
 
 /* modes of all buildings, those of a building in the lanes of its floors, and their motion at samples */
-struct flight {
+struct modal_motion {
 	bool can;          /* the chain has modes, and nothing is asked that these do not give */
-	bool flown;        /* since it was entered */
+	bool moved;        /* since it was entered */
 	int wait, refused; /* samples until it is tried again */
 	int now;           /* place of the sample it is at */
 	int from[LONG / ROW], upto[LONG / ROW],
@@ -106,7 +106,7 @@ struct flight {
 	struct column shift, elastic[2], fourth_drift, fourth_force, top, top_displacement, top_acceleration;
 	struct column reach, displacement_reach,
 	    acceleration_reach; /* bounds inside the sample, where they exceed what is known; else 0 */
-	struct flight_place at[2];
+	struct modal_place at[2];
 	int notes, room;      /* samples noted, of so many */
 	int64_t noted[NOTES]; /* sample at the end of each */
 	double kept[KEPT];    /* NOTE_COLUMNS columns of whole vectors of each */
@@ -126,7 +126,7 @@ struct curve {
 
 /* the series of a step while the force of a contact is no straight line (touch.inl) */
 struct warp {
-	bool on;       /* the step in hand is one */
+	bool on;       /* the current step is one */
 	bool still;    /* a contact begins without speed: its force waits for a moment */
 	bool sampled;  /* the step ends at the end of the interval */
 	int power;     /* dt = w^power ds times the length; 0: the step goes in time */
@@ -143,7 +143,7 @@ struct chain {
 	int n, wide; /* floors, and as many as whole vectors have */
 	int n_links, wide_links;
 	bool edged;  /* a law has more than one branch */
-	bool held;   /* a rigid contact holds, in the step in hand */
+	bool held;   /* a rigid contact holds in the current step */
 	bool modal;  /* a building has a damping matrix */
 	bool moving; /* displacements are looked at */
 	double rate_separated,
@@ -173,7 +173,7 @@ struct chain {
 	struct column drifts[TERMS], displacements[TERMS];
 	double overlaps[TERMS][LINKS];
 	double reach; /* longest step, of the links that touch now; 0: to be found [s] */
-	struct flight flight;
+	struct modal_motion modal_motion;
 	struct warp warp;
 	// energy
 	double work_in, work_gap, work_low, work_top;
@@ -324,7 +324,7 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 {
 	assert(task->n_floors >= 1 && task->n_floors <= POUND_CHAIN_FLOORS);
 	assert(task->n_links >= 0 && task->n_links <= POUND_CHAIN_LINKS);
-	memset(c, 0, offsetof(struct chain, flight));
+	memset(c, 0, offsetof(struct chain, modal_motion));
 	c->work_in = c->work_gap = c->work_low = c->work_top = 0;
 	c->task = task;
 	c->result = result;

@@ -57,7 +57,7 @@ static void step_choose(struct chain *c)
 		l->level = l->own && l->p == 0 && fabs(l->q) <= DBL_EPSILON * alike;
 		level |= l->level;
 	}
-	// derivatives by the share of a step that is a power of two have the same roundings in contact and apart
+	// derivatives by the share of a step that is a power of two have the same roundings with and without contact
 	if (level)
 		c->dt = ldexp(1, ilogb(c->dt));
 	c->order = c->dt * POUND_TERMS_REACH[ORDER_HIGH] <= c->reach * POUND_TERMS_REACH[ORDER_LOW] ? ORDER_LOW

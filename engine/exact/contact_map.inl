@@ -345,7 +345,8 @@ static void doubled_choose(struct simulation *sim)
 	if (first <= DOUBLED_RATIO)
 		return;
 	sim->doubled_ratio = DOUBLED_RATIO;
-	if (first > 0x1p53) // no double counts them one by one: who is pressed does not come to the end of them
+	if (first >
+	    0x1p53) // no double counts them one by one: bodies pressed on each other do not reach the end of them
 		return;
 	while (ldexp(1, doublings * (POUND_DOUBLED_MAPS - 1)) < first)
 		doublings++;

@@ -1,11 +1,11 @@
 /* exact.inl - the exact event-driven march, many simulations side by side in lanes.
  *
  * Between events a pair of oscillators is linear and the ground motion a straight line, so:
- * 1. whole samples apart, eight of them before their proofs, and whole substeps of contact, go by precomputed exact maps,
+ * 1. whole samples without contact, eight of them before their proofs, and whole substeps of contact, go by precomputed exact maps,
  *    where a bound proves that nothing lies inside (free_motion.inl);
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (step.inl);
  * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
- *    lanes, goes on until half of it is done with that kind of step (of flights: a quarter), and is carried out to the next
+ *    lanes, goes on until half of it is done with that kind of step (of free motion: a quarter), and is carried out to the next
  *    queues;
  * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
  * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
@@ -21,7 +21,7 @@
 #include <string.h>
 
 enum {
-	ORDER_LOW = 13,  /* of the series of a displacement while apart */
+	ORDER_LOW = 13,  /* of the series of a displacement while separated */
 	ORDER_HIGH = 17, /* while touching */
 };
 
@@ -43,19 +43,19 @@ enum {
 	CONTACT_ROUNDS = 2, /* moves of going contact before it is asked who is left: no branch foresees that */
 };
 
-/* ---- whole samples apart ---- */
+/* ---- whole samples without contact ---- */
 
 /* the ground motion in front of each lane */
 struct ahead {
 	const double *ground[W]; /* from where it started */
-	int64_t gone;            /* samples that those who still fly have gone since */
+	int64_t gone;            /* samples that lanes still in free motion have gone since */
 	unsigned moving;         /* lanes that still do */
 	vd samples;              /* that are left */
 	unsigned edged;          /* lanes that stopped where an edge may be reached */
 	unsigned observed;       /* lanes of TRAIT_OBSERVED */
 };
 
-/* The next ROW samples of the lanes that fly, as far as there are any.
+/* The next ROW samples of the lanes in free motion, as far as there are any.
  *
  * Returns  value  lanes that have fewer
  */
@@ -109,7 +109,7 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
 	return full;
 }
 
-/* Tells the observers of lanes the samples that these flew to in a stretch.
+/* Reports to the observers of lanes the samples of free motion in a stretch.
  *
  * Given    moved  how many
  */
@@ -134,10 +134,10 @@ LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahea
 	}
 }
 
-/* Flies ROW samples at most, and not beyond the end of any lane: each as far as nothing else happens to it.
+/* Free motion over ROW samples at most, and not beyond the end of any lane: each as far as it has no event.
  *
  * Returns  g       their states there
- *          ahead   what is left in front of each, and those that still fly, with samples left
+ *          ahead   what is left in front of each, and those still in free motion, with samples left
  */
 LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
                               const struct free_map maps[2], const struct scope *scope)

@@ -1,4 +1,4 @@
-/* free_motion.inl - whole samples apart and whole substeps of contact, by precomputed exact maps.
+/* free_motion.inl - whole samples without contact and whole substeps of contact, by precomputed exact maps.
  *
  * Included by exact.inl, once per lane count, and by its test.  A map takes a simulation over its sample or substep at once; the
  * cubic through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no release, no
@@ -155,7 +155,7 @@ LANE_INLINE vd cubic_reach(const struct cubic *f)
 
 /* Lanes in which a body may have a new largest displacement.
  *
- * Given    f  its flight;  top: the largest, not below the displacement at the start
+ * Given    f  its motion;  top: the largest, not below the displacement at the start
  */
 LANE_INLINE vm cubic_peaks(const struct cubic *f, vd top)
 {
@@ -164,7 +164,7 @@ LANE_INLINE vm cubic_peaks(const struct cubic *f, vd top)
 
 /* How far a third of a sample or substep takes a body one way at least, by its velocity anywhere inside.
  *
- * Given    v    velocity at the start;  f: the flight from there
+ * Given    v    velocity at the start;  f: the free motion from there
  *          way  +1, -1
  *
  * The velocity's control points times h/3 are its own at the ends, and b2 - b1 between; what they miss the velocity by is
@@ -178,7 +178,7 @@ LANE_INLINE vd cubic_slowest(vd v, const struct cubic *f, vd third, vd way)
 
 /* Lanes in which an edge of a body's branch may be reached.
  *
- * Given    v  velocity at the start;  f: the flight from there
+ * Given    v  velocity at the start;  f: the free motion from there
  */
 LANE_INLINE vm cubic_edges(vd v, const struct cubic *f, vd third, const struct edges *x)
 {
@@ -196,7 +196,7 @@ LANE_INLINE struct edges edges_of(const struct lanes *g, int i)
 	return (struct edges){g->body[i].low, g->body[i].high, g->body[i].direction};
 }
 
-/* samples that lanes fly over, one after the other */
+/* samples of free motion of lanes, one after the other */
 struct stretch {
 	vd ground[ROW + 1]; /* acceleration at them [m/s2] */
 	struct place at[2][ROW + 1];
@@ -597,7 +597,7 @@ LANE_INLINE struct edges edges_select(vm mask, struct edges a, struct edges b)
 	                      vselect(mask, a.direction, b.direction)};
 }
 
-/* Pressed contact as the lanes come to it, and back. */
+/* Sustained contact into lanes, and back. */
 LANE_INLINE void contact_load(struct contact_lanes *s, const struct lanes *g, vd rise, vd left_samples,
                               const struct scope *scope)
 {

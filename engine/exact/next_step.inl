@@ -19,7 +19,7 @@ static const double REACH_FREE = 0.35, REACH_CONTACT = 0.945;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
-enum { FREE_SAMPLES = 4095 }; /* a flight ends at every sample with these bits, wherever it began */
+enum { FREE_SAMPLES = 4095 }; /* a free motion ends at every sample with these bits, wherever it began */
 
 static_assert(sizeof(struct state_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 static_assert(offsetof(struct simulation, task) - offsetof(struct simulation, ground) <= 128,
@@ -103,7 +103,7 @@ static enum pound_stage simulation_step(struct simulation *sim)
 	return x->p + x->dt * x->q < 0 ? STAGE_STEP_CLEAR : STAGE_STEP_PAIR;
 }
 
-/* The overlap of bodies apart, from where they are. */
+/* The overlap of separated bodies, from where they are. */
 static void overlap_start(struct state_rows *x)
 {
 	double p = x->u[0] - x->u[1] - x->gap;
@@ -111,7 +111,7 @@ static void overlap_start(struct state_rows *x)
 	x->q = x->v[0] - x->v[1];
 }
 
-/* A simulation that flew to a sample behind which it cannot fly on. */
+/* A simulation whose free motion ended at a sample. */
 LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
@@ -177,7 +177,7 @@ static void contact_transition(struct simulation *sim, double left, double speed
 	}
 }
 
-/* A simulation whose bodies are apart goes on from a sample. */
+/* A simulation whose bodies are separated goes on from a sample. */
 static enum pound_stage simulation_from(struct simulation *sim)
 {
 	if (sim->has_free_maps)
@@ -235,7 +235,7 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	return simulation_from(sim);
 }
 
-/* The sample up to which a simulation may fly before it is looked at: its neighbours have no part in that. */
+/* The sample up to which a free motion may go before it is examined; other simulations do not change it. */
 static int64_t free_end(const struct simulation *sim)
 {
 	int64_t end = sim->next | FREE_SAMPLES;
@@ -262,7 +262,7 @@ static enum pound_stage simulation_next(struct simulation *sim)
 		simulation_interval(sim);
 		if (simulation_settles(sim))
 			return simulation_rest(sim);
-		// apart, and not about to touch inside the next interval
+		// separated, and not about to touch inside the next interval
 		if (sim->has_free_maps && !sim->touching && !sim->released && x->p + x->remainder * x->q < 0)
 			return simulation_from(sim);
 	}

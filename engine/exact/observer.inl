@@ -1,6 +1,6 @@
 /* observer.inl - reports the instants of a simulation to its observer (task.h).
  *
- * Steps, substeps and flights that end elsewhere are not reported: between two instants the motion is one linear system, and who
+ * Steps, substeps and free motion that end elsewhere are not reported: between two instants the motion is one linear system, and who
  * observes it may cut it as needed.
  *
  * Included by exact.inl alone, once per lane count.

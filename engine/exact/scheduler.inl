@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-enum { POOL = 128 /* simulations in flight */ };
+enum { POOL = 128 /* simulations at once */ };
 
 /* simulations that wait for one kind of step, last come first served */
 struct queue {

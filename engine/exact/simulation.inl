@@ -12,7 +12,7 @@
 #include "engine/exact/task.h"
 
 enum {
-	POUND_MAPS = 4,          /* free-flight maps a body keeps */
+	POUND_MAPS = 4,          /* free-motion maps a body keeps */
 	POUND_PEAKS = 4,         /* samples that may hold its largest displacement */
 	POUND_OTHERS = 3,        /* other tasks that go along with a simulation: shared_start.inl */
 	POUND_MAP_ORDERS = 18,   /* of a map's series; 0.945^18/18! = 6e-17 */
@@ -34,7 +34,7 @@ enum {
 	struct {                                                                                                                                          \
 		T stiffness, damping, offset, drive, low, high, direction, step_gap;                                                                          \
 	} body[2];                                                                                                                                        \
-	/* PAIR: the contact; lengths of a substep of it, and of the longest step apart */                                                                \
+	/* PAIR: the contact; lengths of a substep of it, and of the longest step without */                                                              \
 	T contact_stiffness, contact_damping, mass_ratio, both, gap, release, substep, reach;                                                             \
 	/* MAP_LEFT, MAP_RIGHT: a body over one sample, and what bounds the error of its cubic */                                                         \
 	struct {                                                                                                                                          \

@@ -62,7 +62,7 @@ LANE_INLINE vm bodies_level(const struct lanes *g)
 
 /* Bodies that are level part or press by the difference of their accelerations.  Where that is no more than the rounding of
  * what these are made of it is nothing, and the next derivative decides: else bodies that are all but alike would part and
- * meet for ever.  Derivatives by time decide: those by the share of a step have other roundings in contact than apart, where
+ * meet for ever.  Derivatives by time decide: those by the share of a step have other roundings in contact than without, where
  * steps are of another length.
  *
  * Given    separating  the difference of the accelerations' derivative n, scaled to the step
@@ -95,7 +95,7 @@ LANE_SHARED vd separation_settle(struct terms *t, const struct lanes *g, vd sepa
  * the rounding of what it is made of it is nothing, and what differs in its later enclosure decides: else each of two branches,
  * with a rounding of its own, would send the body to the other for ever.
  *
- * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while apart
+ * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while separated
  *          still  lanes in which it has no velocity
  */
 LANE_SHARED vd still_settle(const struct lanes *g, int i, vd b, vd push, vm still)
@@ -215,7 +215,7 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 /* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
  *
  * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then released: the contact goes
- * on when that force rises again, and they are apart when p has fallen to 0.
+ * on when that force rises again, and they separate when p has fallen to 0.
  */
 LANE_SHARED void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
                               vm by_force, struct search *search)

@@ -1,8 +1,8 @@
 /* tolerances.h - what those who follow a motion from step to step have in common.
  *
  * No code, only numbers: the exact solver, a floor's pieces and the oscillators on it read them. */
-#ifndef STEPPING_H
-#define STEPPING_H
+#ifndef TOLERANCES_H
+#define TOLERANCES_H
 
 #include <float.h>
 #include <math.h>

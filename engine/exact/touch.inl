@@ -376,7 +376,7 @@ static void warp_story_settle(struct chain *c, int i)
 	c->warp.accelerations[0].at[i] = 2 * c->drifts[2].at[i];
 }
 
-/* Makes the series of a step, of the length in hand. */
+/* Makes the series of a step, of the current length. */
 static void warp_series(struct chain *c)
 {
 	struct warp *x = &c->warp;

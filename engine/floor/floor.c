@@ -109,7 +109,7 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 	struct pound_floor_motion *motion = &floor->motion;
 	struct pound_task observed = *ask->task;
 	observed.observer = observer;
-	// whoever wants the largest displacements has them
+	// the largest displacements, where they are asked for
 	observed.bodies[0].followed = observed.bodies[1].followed = false;
 	*motion = (struct pound_floor_motion){
 	    .task = ask->task, .stretch = &floor->stretch, .taker = *taker, .stop = ask->stop};

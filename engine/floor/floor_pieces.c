@@ -1,6 +1,6 @@
 /* floor_pieces.c - one floor's motion, instant by instant from the exact solver, as pieces.
  *
- * 1. Of a flight, a whole sample apart, the state is handed out, of which a polynomial is made where one is asked for.
+ * 1. Of free motion over a whole sample the state is handed out, of which a polynomial is made where one is asked for.
  * 2. Any other interval between two instants is a power series in time, or several where one does not reach: the floor's
  *    absolute acceleration -(c v + r + F)/m1 and its part -F/m1.
  * 3. A contact whose own swing has died away is a series as long as the bodies' own motion allows, however stiff it is.
@@ -91,7 +91,7 @@ static int polynomial_fill(struct pound_polynomial *into, const double *a, int o
 	return order;
 }
 
-/* Coefficients of the absolute acceleration -(c v + r) of a body in flight over a sample.
+/* Coefficients of the absolute acceleration -(c v + r) of a body in free motion over a sample.
  *
  * Given    state  as struct pound_floor_piece has it
  *          k, c   stiffness [1/s2] and damping [1/s] per mass;  h  the sample step [s]
@@ -116,7 +116,7 @@ void pound_floor_free_motion(const double state[4], double k, double c, double h
 /* Coefficients of a drive over a piece of a stretch.
  *
  * Given    damping  of the left body, per mass [1/s]
- * Returns  c        [m/s2]  (value + 1): the piece's own, or those of a flight's floor, made into `room`
+ * Returns  c        [m/s2]  (value + 1): the piece's own, or those of a floor in free motion, made into `room`
  *          value    their order; -1: the drive is 0
  * Test     unit_floor_pieces: every_piece_leads_to_the_next
  */
@@ -421,7 +421,7 @@ static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
 	return piece;
 }
 
-/* The floor over a flight.
+/* The floor over a sample of free motion.
  *
  * Given    map  number of its stiffness
  */

@@ -1,6 +1,6 @@
 /* floor_pieces.h - the motion of the left floor under one task, as exact pieces one after the other.
  *
- * The exact solver tells where one interval of a motion ends and the next begins (task.h); in a piece, which is one of these
+ * The exact solver reports where one interval of a motion ends and the next begins (task.h); in a piece, which is one of these
  * or a part of one, the floor's acceleration is a polynomial to rounding.  Only what needs whole histories pays for them. */
 #ifndef FLOOR_PIECES_H
 #define FLOOR_PIECES_H
@@ -11,7 +11,7 @@ enum {
 	POUND_FLOOR_ORDER = 21,   /* of a piece's power series, at most */
 	POUND_FLOOR_TERMS = 23,   /* of any motion it drives: 1.5^23/23! is below rounding */
 	POUND_FLOOR_PIECES = 512, /* handed out at once */
-	POUND_FLOOR_MAPS = 4,     /* stiffnesses of flights told apart among them */
+	POUND_FLOOR_MAPS = 4,     /* different stiffnesses of free motion among them */
 };
 
 /* what drives an oscillator: the floor's absolute acceleration, or the part of it that the contact gives */
@@ -26,21 +26,21 @@ struct pound_polynomial {
 struct pound_floor_piece {
 	double start, step; /* [s] */
 	double u, v;        /* of the left body at the start [m], [m/s] */
-	int map;            /* a flight, a whole sample apart: number of its stiffness; -1: any other piece */
-	// of a flight: spring force, velocity, forcing and what that grows by  [m/s2], [m/s], [m/s2], [m/s2]
+	int map;            /* free motion over a whole sample: number of its stiffness; -1: any other piece */
+	// of free motion: spring force, velocity, forcing and what that grows by  [m/s2], [m/s], [m/s2], [m/s2]
 	double state[4];
-	int order;                 /* of floor and push; not of a flight */
+	int order;                 /* of floor and push; not of free motion */
 	bool sampled, after_event; /* begins at a sample, at an event */
-	// of a flight only the bounds are set, those of its push 0; pound_floor_drive() has the coefficients of both
+	// of free motion only the bounds are set, those of its push 0; pound_floor_drive() has the coefficients of both
 	struct pound_polynomial floor, push;
 };
 
 struct pound_floor_stretch {
 	int n, n_maps;
-	int order;                          /* of the series of flights */
+	int order;                          /* of the series of free motion */
 	double stiffness[POUND_FLOOR_MAPS]; /* per mass [1/s2]  (n_maps) */
 	double bound[POUND_FLOOR_MAPS][3]
-	            [4]; /* of a flight's |a|, |a'|, |a''|, by the magnitudes of its state  (n_maps) */
+	            [4]; /* of |a|, |a'|, |a''| of free motion, by the magnitudes of its state  (n_maps) */
 	struct pound_floor_piece piece[POUND_FLOOR_PIECES];
 };
 
@@ -50,7 +50,7 @@ struct pound_floor_taker {
 	void *into;
 };
 
-/* a motion, as far as it was told */
+/* a motion, as far as it was reported */
 struct pound_floor_motion {
 	const struct pound_task *task;
 	struct pound_floor_stretch *stretch; /* of the pieces that were not taken yet */
@@ -62,7 +62,7 @@ struct pound_floor_motion {
 	bool sampled, after_event;         /* as struct pound_floor_piece has them */
 };
 
-/* Coefficients of a flight's acceleration from its state. */
+/* Coefficients of free motion's acceleration from its state. */
 void pound_floor_free_motion(const double state[4], double k, double c, double h, int order, double *a);
 /* Coefficients of a drive over any piece, and their order. */
 int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct pound_floor_piece *piece,
@@ -72,7 +72,7 @@ int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct po
 /* Terms after which x^n/n! is below rounding, n <= POUND_FLOOR_TERMS. */
 int pound_floor_terms(double x);
 
-/* A motion that no instant was told of yet; task, stretch, taker and stop are set. */
+/* A motion that no instant was reported of yet; task, stretch, taker and stop are set. */
 void pound_floor_start(struct pound_floor_motion *motion);
 /* Makes the pieces up to an instant; an observer of the exact solver. */
 void pound_floor_observe(void *motion, const struct pound_instant_of_task *instant);

@@ -1,6 +1,6 @@
 /* oscillator_bank.h - oscillators of many frequencies driven by one floor, in vector lanes over the frequencies. */
-#ifndef SPECTRUM_H
-#define SPECTRUM_H
+#ifndef OSCILLATOR_BANK_H
+#define OSCILLATOR_BANK_H
 
 #include "engine/floor/power_integrals.h"
 

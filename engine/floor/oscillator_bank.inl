@@ -176,11 +176,11 @@ LANE_INLINE vm segment_risk(const struct segment *p, struct state *s, vd z1, vd 
 }
 
 /* |z| at the root of the velocity that Newton's method finds from t; whatever it finds is a value that z takes. */
-LANE_INLINE vd polished(const struct oscillator_series *s, const vd *bend, vd t)
+LANE_INLINE vd polished(const struct oscillator_series *s, const vd *slope_series, vd t)
 {
 	vd zero = vsplat(0), one = vsplat(1);
 	for (int round = 0; round < POLISH; round++) {
-		vd slope = series_at(bend, s->terms - 1, t);
+		vd slope = series_at(slope_series, s->terms - 1, t);
 		vd flat = vselect(vequal(slope, zero), one, slope);
 		t = vmin(vmax(t - series_at(s->y, s->terms, t) / flat, zero), one);
 	}
@@ -190,9 +190,9 @@ LANE_INLINE vd polished(const struct oscillator_series *s, const vd *bend, vd t)
 /* The larger of |z| at the extrema inside a segment, from both roots of the velocity of the cubic through its ends, and of top. */
 static vd peak_add(const struct oscillator_series *s, vm risk, vd top)
 {
-	vd zero = vsplat(0), one = vsplat(1), bend[TERMS + 1];
+	vd zero = vsplat(0), one = vsplat(1), slope_series[TERMS + 1];
 	for (int n = 0; n < s->terms; n++)
-		bend[n] = s->y[n + 1] * vsplat(n + 1);
+		slope_series[n] = s->y[n + 1] * vsplat(n + 1);
 	vd y0 = s->y[0], rise = s->z1 - s->z[0];
 	vd a = 3.0 * rise - 2.0 * y0 - s->y1, b = s->y1 + y0 - 2.0 * rise;
 	vd root = vsqrt(vmax(vfma(a, a, -3.0 * b * y0), zero));
@@ -203,7 +203,7 @@ static vd peak_add(const struct oscillator_series *s, vm risk, vd top)
 	for (int i = 0; i < 2; i++) {
 		vm inside = vless(vsplat(-0.1), t[i]) & vless(t[i], vsplat(1.1)) & risk;
 		if (vany(inside))
-			most = vselect(inside, vmax(most, polished(s, bend, vmin(vmax(t[i], zero), one))), most);
+			most = vselect(inside, vmax(most, polished(s, slope_series, vmin(vmax(t[i], zero), one))), most);
 	}
 	return vselect(risk, vmax(top, most), top);
 }

@@ -1,6 +1,6 @@
 /* power_integrals.h - what the powers of a polynomial over a piece contribute to its integrals over equal segments of the piece. */
-#ifndef KERNEL_H
-#define KERNEL_H
+#ifndef POWER_INTEGRALS_H
+#define POWER_INTEGRALS_H
 
 #include <stdalign.h>
 

@@ -1,6 +1,6 @@
 /* pulse_train.h - floor spectra of idealised impacts: velocity steps of the floor, one or many alike. */
-#ifndef DIRAC_H
-#define DIRAC_H
+#ifndef PULSE_TRAIN_H
+#define PULSE_TRAIN_H
 
 #include <stdatomic.h>
 

@@ -1,6 +1,6 @@
 /* kanai_tajimi.h - the Kanai-Tajimi filter with its high pass, as an exact recurrence from sample to sample. */
-#ifndef FILTER_H
-#define FILTER_H
+#ifndef KANAI_TAJIMI_H
+#define KANAI_TAJIMI_H
 
 #include "engine/numeric/random.h"
 

@@ -1,6 +1,6 @@
 /* normals.h - independent standard normal numbers, a chunk of a stream at a time. */
-#ifndef NOISE_H
-#define NOISE_H
+#ifndef NORMALS_H
+#define NORMALS_H
 
 #include "engine/numeric/random.h"
 

@@ -1,6 +1,6 @@
 /* resample.h - means of columns over rows that are drawn with replacement, many resamples one after the other. */
-#ifndef RESAMPLE_H
-#define RESAMPLE_H
+#ifndef BOOTSTRAP_SUMS_H
+#define BOOTSTRAP_SUMS_H
 
 #include <stdatomic.h>
 #include <stdint.h>

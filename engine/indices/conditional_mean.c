@@ -4,7 +4,7 @@
  * 2. Local-linear regression with Epanechnikov's kernel; the bandwidth is that of the least error in predicting a fifth of
  *    the rows from the others.  It is of what a trend leaves of the outputs, and the trend's curve is added.
  * 3. The band is that of half the bandwidth, whose bias is small, from what each row adds to the curve (rows, not samples,
- *    are independent) and from what halving the bandwidth has changed, which tells where the output bends or jumps.
+ *    are independent) and from what halving the bandwidth has changed, which shows where the output has a kink or a jump.
  *
  * Fan, Gijbels 1996, Local polynomial modelling and its applications. */
 #include "engine/indices/indices.h"

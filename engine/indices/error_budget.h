@@ -1,6 +1,6 @@
 /* error_budget.h - how far the indices of an output may be off, and for want of what. */
-#ifndef ACCURACY_H
-#define ACCURACY_H
+#ifndef ERROR_BUDGET_H
+#define ERROR_BUDGET_H
 
 #include "engine/indices/indices.h"
 

@@ -265,10 +265,10 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 	for (int k = 0; k < POUND_N_INDICES && !pound_stopped(s->rows->stop); k++) {
 		const struct index_column *column = &columns[k];
 		struct pound_estimate *into = indices->index[column->index];
-		const bool told = column->shared || !s->shared;
-		if (told && column->possible(s))
+		const bool separable = column->shared || !s->shared;
+		if (separable && column->possible(s))
 			column->make(s, into);
-		else if (!told || column->instead == POUND_N_INDICES)
+		else if (!separable || column->instead == POUND_N_INDICES)
 			undefined(into, d);
 		else
 			copy(s, indices->index[column->instead], into);
@@ -387,7 +387,7 @@ size_t pound_index_columns_scratch(const struct pound_sample_values *shape,
 /* All sensitivity indices of one output, with 95 % intervals, and what there is to say about them.
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
- *          sampling  -                                       the design, and whether noise can be told apart
+ *          sampling  -                                       the design, and whether the share of noise can be estimated
  *          seed      -                                       of the resamples
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   all, and of the accuracy the half widths from the first rows; indices (n_inputs) each, NAN with a note

@@ -434,7 +434,7 @@ static void explained_fill(const struct fit *f, double explained[SETS])
 }
 
 /* How much of a group's sum of squares the fit without it explains: sum y^2 - (y - g)^2, from the sums of terms. */
-static double foretold(struct fit *f, int group)
+static double predicted(struct fit *f, int group)
 {
 	const double *c = f->coefficients, *products = f->products + (size_t)group * f->terms;
 	double sum = 0.0;
@@ -489,7 +489,7 @@ static struct pound_estimate jackknife(const double value[GROUPS + 1][KINDS * VA
  * interval says next to nothing.  It errs to the low side, by the square of what the fits err by, and stays below 1. */
 static struct pound_estimate explained_of(const struct fit *f, const double of_group[GROUPS], double noise)
 {
-	const double widest = 0.25; // half of an interval that still tells a half from all
+	const double widest = 0.25; // half of an interval that still distinguishes a half from all
 	double share[GROUPS + 1][KINDS * VARIABLES] = {{0.0}}, above = 0.0, below = 0.0;
 	for (int g = 0; g < GROUPS; g++) {
 		above += of_group[g];
@@ -539,7 +539,7 @@ void pound_ratio_indices(const struct pound_rows *rows, const double *u, const s
 		explained_fill(&f, explained);
 		values_fill(&f, explained, value[g]);
 		if (g < GROUPS)
-			of_group[g] = foretold(&f, g);
+			of_group[g] = predicted(&f, g);
 	}
 	results->n = n;
 	for (int k = 0; k < n; k++) {

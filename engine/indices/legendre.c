@@ -247,7 +247,7 @@ static void subtract(double *x, double factor, const double *y, int n)
 
 /* Cholesky's factor of a Gram matrix, in its upper triangle, with the inverse of the diagonal.
  *
- * A term that the points do not tell apart from those before it has 0 there.
+ * A term that the points cannot distinguish from those before it has 0 there.
  */
 void pound_legendre_factor(double *gram, int n)
 {
@@ -269,7 +269,7 @@ void pound_legendre_factor(double *gram, int n)
  *
  * Given    factor    of gram, by pound_legendre_factor
  *
- * A term that the points do not tell apart from those before it gets the coefficient 0.
+ * A term that the points cannot distinguish from those before it gets the coefficient 0.
  *
  * Test     unit_chaos_expansion: a_polynomial_within_the_degree_is_met_exactly
  */

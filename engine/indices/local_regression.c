@@ -4,7 +4,7 @@
  *    2 K nearest ranks on either side, itself left out.
  * 2. The mean product of output and prediction estimates the variance of the conditional mean, but for what the latter
  *    changes between a row and its neighbours: where it jumps that goes as the mean distance between them, so that the two
- *    reaches tell what none would have.
+ *    reaches estimate what reach 0 would give.
  * 3. The step from the nearer reach to none is in the interval, for where the change goes as no straight line.
  *
  * Every sample block of a Latin hypercube or random design serves, so that all runs count for each input.

@@ -2,8 +2,8 @@
  *
  * Items in order are cut into blocks.  A block holds the measures of its items' runs, by item, cell and sample, then
  * those of its checks in the same order, then counts of its work. */
-#ifndef LAYOUT_H
-#define LAYOUT_H
+#ifndef BLOCKS_H
+#define BLOCKS_H
 
 #include "engine/run/request.h"
 

@@ -1,6 +1,6 @@
 /* floor_outputs.h - floor spectra as what a study asks for: in a block, over the signals, beside the impulse. */
-#ifndef ORDINATE_H
-#define ORDINATE_H
+#ifndef FLOOR_OUTPUTS_H
+#define FLOOR_OUTPUTS_H
 
 #include "engine/floor/floor.h"
 #include "engine/indices/indices.h"

@@ -38,7 +38,7 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		force[i] = ldexp(scene->oscillators[i].mass * pound_law_envelope(&backbone, most), e);
 		double given = pound_scene_law(scene, i)->yield_displacement;
 		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);
-		// a yield displacement that is given may be too small beside the motion to be told in its scale
+		// a yield displacement that is given may be too small beside the motion to be expressed in its scale
 		double per_yield = !yields || body->yield == 0 ? NAN : given > 0 ? given : body->yield;
 		demand[i] = ldexp(most / per_yield, given > 0 ? e : 0);
 		demand_free[i] = free ? ldexp(free->displacement_max[0] / per_yield, given > 0 ? e : 0) : NAN;

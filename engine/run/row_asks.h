@@ -49,8 +49,8 @@ struct pound_row_asks {
 	int n_modal;
 	struct pound_modal_known modal_known[POUND_BUILDINGS_MAX]; /* the last one of each building */
 	void *scratch;                                             /* of the march */
-	void *memory; /* buildings and contacts of the scene in hand  (pound_row_bytes) */
-	struct pound_storey_response *storeys;   /* of the response in hand  (floors of a scene) */
+	void *memory; /* buildings and contacts of the current scene  (pound_row_bytes) */
+	struct pound_storey_response *storeys;   /* of the current response  (floors of a scene) */
 	struct pound_contact_response *contacts; /* likewise  (contacts of a scene) */
 };
 

@@ -107,7 +107,7 @@ struct storey_known {
 static struct pound_storey_response storey_of(const struct storey_known *k)
 {
 	const int e = k->exponent;
-	// a yield drift that is given may be too small beside the motion to be told in its scale
+	// a yield drift that is given may be too small beside the motion to be expressed in its scale
 	const double per_yield = k->yield == 0 ? NAN : k->given > 0 ? k->given : k->yield;
 	const int per = k->given > 0 ? e : 0;
 	const double *with = k->with, *free = k->free;

@@ -217,7 +217,7 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
  *
  * Given    stop    looked at while the design is drawn; NULL: never
  * Returns  value   NULL: out of memory, or stop was set
- * Test     unit_stop: what_takes_long_ends_soon_when_it_is_told_to
+ * Test     unit_stop: what_takes_long_ends_soon_when_it_is_stopped
  */
 struct pound_run *pound_run_create_by(const struct pound_study *study, int n_workers, const atomic_bool *stop)
 {
@@ -310,7 +310,7 @@ void pound_run_clock(struct pound_run *run, double (*cpu)(void))
 
 /* ---- blocks ---- */
 
-/* Blocks of the rows in hand. */
+/* Blocks of the current rows. */
 static int blocks_in_hand(const struct pound_run *run)
 {
 	return run->rows ? pound_blocks_block_of(&run->layout, run->rows * run->campaign.n_signals - 1) + 1 : 0;
@@ -394,7 +394,7 @@ static void response_keep(void *into, const struct pound_outcome *outcome)
 		                                    : response->impulse_max / scene->oscillators[0].mass;
 }
 
-/* CPU time of a run in the request's last block, NAN without a clock: as many rounds as can be told from its ticks. */
+/* CPU time of a run in the request's last block, NAN without a clock: as many rounds as its ticks can resolve. */
 static enum pound_status run_time(const struct pound_run *run, struct pound_request *request,
                                   const struct pound_solver *solver, double *cpu)
 {
@@ -427,7 +427,7 @@ static enum pound_status trial_block(const struct pound_run *run, struct pound_r
 		double *history = runs[item].history;
 		for (int k = 0; k < n_times && !status; k++) {
 			if (k > 0 && isnan(history[k - 1]))
-				history[k] = NAN; // it came to its end before that
+				history[k] = NAN; // it ended before that
 			else
 				status =
 				    pound_request_displacement(request, &solver, item, samples[k], run->stop, &history[k]);
@@ -542,7 +542,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    .u = run->u,
 	    .random = pound_cells_means(c) ? any_known(values.variance, n)
 	                                   : elsewhere || pound_excitation_random(&c->study->scene.excitation),
-	    // in a scene without random signals samples of a row have no noise to share, whoever runs them
+	    // in a scene without random signals samples of a row have no noise to share, in whatever order they are run
 	    .fresh_signals = !c->study->design.common_signals ||
 	                     (elsewhere && !pound_excitation_random(&c->study->scene.excitation)),
 	    .n_resamples = c->study->design.resamples,
@@ -608,7 +608,7 @@ static void trials_reduce(struct pound_run *run, double *scratch)
 		run->result.cells[0].runs_failed += run->result.trials[j].runs_failed;
 }
 
-/* The work of the blocks in hand. */
+/* The work of the current blocks. */
 static struct pound_work work_of(const struct pound_run *run)
 {
 	struct pound_work work = {0};

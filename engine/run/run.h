@@ -9,7 +9,7 @@
 struct pound_run {
 	struct pound_cells campaign;
 	struct pound_blocks layout;
-	int rows;                        /* in hand: of the look, or taken for an intermediate result */
+	int rows;                        /* current: of the look, or taken for an intermediate result */
 	struct pound_request **requests; /* (n_workers) */
 	double **scratch;                /* of reductions  (n_workers) */
 	struct pound_ordinates **floors; /* (n_workers); NULL each: no spectra are asked */

@@ -2,8 +2,8 @@
  *
  * An integrator sees only a branch: on it the restoring force per mass is stiffness * u + offset, until u leaves
  * [low, high] or, where direction is not 0, the velocity turns against direction.  At such an edge it asks for the next. */
-#ifndef PIECES_H
-#define PIECES_H
+#ifndef LAW_H
+#define LAW_H
 
 #include <stdbool.h>
 

@@ -67,7 +67,7 @@ struct adaptive_task {
 	gsl_odeiv2_driver *explicit, *implicit;
 	double counted_time; /* of contacts that count [s] */
 	struct pound_counts_scale counts_scale;
-	double touch_steps; /* of the contact in hand */
+	double touch_steps; /* of the current contact */
 	int steps;          /* since the interval began, or the last event */
 	int events;         /* since the interval began, without turns that change nothing */
 };
@@ -363,7 +363,7 @@ static bool locate(struct adaptive_task *c, enum guard j, const double from[STAT
 		if (!state_at(c, from, next, middle))
 			return false;
 		double g = guard(c, j, next, middle);
-		// of an end that stays, half the value, so that the other one comes to move
+		// of an end that stays, half the value, so that the other one moves
 		if (g > 0) {
 			*t = next, g_high = g;
 			memcpy(y, middle, sizeof middle);
@@ -561,7 +561,7 @@ static void task_end(struct adaptive_task *c, enum pound_status status)
  * Status   POUND_TOLERANCE  the steps became too small or too many
  *          POUND_CHATTER    more events in one sample interval than allowed
  *          POUND_STOPPED    stop, which is looked at between samples, was set; NULL: never
- *          POUND_NOMEM      where the program has told GSL not to end it for that
+ *          POUND_NOMEM      where the program has set GSL's error handler not to end it for that
  * Memory   allocates GSL's work space, some kB once for the task, and frees it
  *
  * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Steps

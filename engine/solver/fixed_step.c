@@ -35,7 +35,7 @@ struct stepped_task {
 	bool touching;
 	double start;        /* of the sample interval [s] */
 	int k;               /* step in it, from 1 */
-	double impulse;      /* of the contact in hand [m/s] */
+	double impulse;      /* of the current contact [m/s] */
 	double ground;       /* acceleration where the step ends [m/s2] */
 	double counted_time; /* of contacts that count [s] */
 	struct pound_counts_scale counts_scale;

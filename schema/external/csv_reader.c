@@ -141,7 +141,7 @@ bool csv_number(const struct csv *csv, double *value)
 	return isfinite(*value);
 }
 
-/* Whether the text is UTF-8; the line in hand is the first that is not. */
+/* Whether the text is UTF-8; the current line is the first that is not. */
 bool csv_is_text(struct csv *csv)
 {
 	const char *at = csv->at;

@@ -19,8 +19,8 @@ struct csv_fault {
 
 struct csv {
 	const char *at, *end;
-	int line;                 /* of the cell in hand, from 1 */
-	bool ended;               /* the cell in hand is the last of its line */
+	int line;                 /* of the current cell, from 1 */
+	bool ended;               /* the current cell is the last of its line */
 	char cell[CSV_CELL_SIZE]; /* without quotes and the spaces around it */
 	bool cut;                 /* it was longer */
 	struct csv_fault length;  /* a line has another number of cells than the header */
@@ -33,16 +33,16 @@ bool csv_is_text(struct csv *csv);
 /* The next cell of a line: up to a comma, the end of the line or that of the text. */
 void csv_read(struct csv *csv);
 
-/* The number in the cell in hand, NAN for the mark of a failed run; false: it is neither, or no double holds it. */
+/* The number in the current cell, NAN for the mark of a failed run; false: it is neither, or no double holds it. */
 bool csv_number(const struct csv *csv, double *value);
 
 int csv_lines_left(const struct csv *csv); /* from here on, blank ones too */
 bool csv_blank(const char *at, const char *end);
 
-/* Reports a fault of the line in hand; `column` may be NULL. */
+/* Reports a fault of the current line; `column` may be NULL. */
 void csv_complain(const struct csv *csv, const char *column, const char *what);
 
-/* Keeps a fault of the line in hand, to be reported with those of the other lines. */
+/* Keeps a fault of the current line, to be reported with those of the other lines. */
 void csv_fault_note(struct csv_fault *fault, const struct csv *csv, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 void csv_fault_report(const struct csv_fault *fault, const char *column, struct problems *problems);

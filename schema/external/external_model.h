@@ -2,8 +2,8 @@
  *
  * Every function returns bytes on the heap for the caller to free, zero-terminated too; NULL: out of memory, or what
  * `problems` says.  Any thread. */
-#ifndef MODEL_H
-#define MODEL_H
+#ifndef EXTERNAL_MODEL_H
+#define EXTERNAL_MODEL_H
 
 #include <stddef.h>
 

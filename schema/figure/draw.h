@@ -81,7 +81,7 @@ struct mark {
 	double size; /* radius; 0: 4 */
 };
 
-/* `value` is its title, what a reader of the picture is told about it; NULL: none. */
+/* `value` is its title, what the picture says about it; NULL: none. */
 void draw_mark(struct drawing *drawing, const struct mark *mark, double x, double y, const char *value);
 const char *draw_dash(int series); /* of a line */
 

@@ -2,7 +2,7 @@
  *
  * libmicrohttpd takes what RFC 9112 forbids (two lengths, a length and a coding, NUL anywhere), and what two servers read
  * differently lets a request hide in another one's body; so the rules are applied here, to what it read.  A body's length
- * is told before it: a chunked one is refused, as RFC 9112 section 6.3 lets a server do. */
+ * is stated before it: a chunked one is refused, as RFC 9112 section 6.3 lets a server do. */
 #include "schema/http/http_head.h"
 
 #include <arpa/inet.h>

@@ -1,8 +1,8 @@
 /* http_head.h - what the head of a request must be before anything is done for it.
  *
  * Bytes in, a verdict out: no library, no allocation.  Plain memory of the caller; one thread at a time. */
-#ifndef HEAD_H
-#define HEAD_H
+#ifndef HTTP_HEAD_H
+#define HTTP_HEAD_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -7,8 +7,8 @@
  *   reading_close(status);
  *
  * The pointer is a printf format, for array indices.  What is returned lives until reading_close. */
-#ifndef READING_H
-#define READING_H
+#ifndef JSON_POINTER_H
+#define JSON_POINTER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -47,7 +47,7 @@ void writer_raw(struct writer *writer, const char *bytes, size_t length)
  * Returns  value     (length)  -       the bytes and a zero behind them; NULL: out of memory
  * Memory   the caller frees it; the writer is empty again
  *
- * Test     unit_json_writer: a_document_comes_out_as_it_was_told
+ * Test     unit_json_writer: a_document_comes_out_as_it_was_put_in
  */
 char *writer_take(struct writer *writer, size_t *length)
 {

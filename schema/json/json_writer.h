@@ -11,8 +11,8 @@
  * `name` is the member's name, NULL for an array's element and the document itself.  A number reads back to the
  * same double; NaN and the infinities are null.  Out of memory shows only in writer_take.  No globals; numbers as in
  * the C locale, which no program here leaves. */
-#ifndef WRITER_H
-#define WRITER_H
+#ifndef JSON_WRITER_H
+#define JSON_WRITER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -72,7 +72,7 @@ static double factor_of(struct record_text *text, const char *header, struct rec
 
 /* ---- numbers ---- */
 
-/* The place of a decimal comma in the line in hand: a comma between digits where blanks or semicolons part the numbers;
+/* The place of a decimal comma in the current line: a comma between digits where blanks or semicolons part the numbers;
  * from 1, 0: there is none. */
 static int decimal_comma(const struct record_text *text)
 {
@@ -136,7 +136,7 @@ static double last_digit(const struct record_text *text)
 	return strchr("eEdD", *c) && *c ? digit * pow(10, atoi(c + 1)) : digit;
 }
 
-/* The numbers of the line in hand. */
+/* The numbers of the current line. */
 static bool line_numbers(struct record_text *text, struct numbers *numbers)
 {
 	const char *start = text->line.text, *end = start + text->line.length, *c = start + strspn(start, " \t");

@@ -34,7 +34,7 @@ bool record_cosmos_recognized(struct record_text *text)
 	return false;
 }
 
-/* Width of the numbers of the line in hand's Format= (8F10.3); 0: it has none. */
+/* Width of the numbers in the current line's Format= (8F10.3); 0: it has none. */
 static int format_width(const struct record_text *text)
 {
 	const int at = record_text_find(text, "Format");
@@ -49,7 +49,7 @@ static int format_width(const struct record_text *text)
 	return width > 0 && width < 64 ? width : 0;
 }
 
-/* The real values that follow the line in hand. */
+/* The real values that follow the current line. */
 static bool read_reals(struct record_text *text, struct channel *channel)
 {
 	double n;
@@ -83,7 +83,7 @@ static double step_of(const struct channel *channel)
 	return seconds > 0 ? seconds : milliseconds > 0 ? milliseconds / 1000 : NAN;
 }
 
-/* Whether the line in hand announces data, and whether they are accelerations. */
+/* Whether the current line announces data, and whether they are accelerations. */
 static bool is_data(const struct record_text *text, bool *acceleration)
 {
 	if (record_text_find(text, "pts") < 0 || record_text_find(text, "units") < 0 || !format_width(text))
@@ -92,7 +92,7 @@ static bool is_data(const struct record_text *text, bool *acceleration)
 	return true;
 }
 
-/* The accelerations that the line in hand announces. */
+/* The accelerations that the current line announces. */
 static bool read_data(struct record_text *text, const struct channel *channel, struct record *record)
 {
 	double n = 0;

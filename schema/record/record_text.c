@@ -173,7 +173,7 @@ bool record_sized(struct record_text *text, double n, double step, struct record
 	return false;
 }
 
-/* The numbers of the line in hand. */
+/* The numbers of the current line. */
 static bool line_samples(struct record_text *text, int width, int expected, struct record *record)
 {
 	const char *start = text->line.text, *end = start + text->line.length;

@@ -12,27 +12,27 @@ struct record_line {
 
 struct record_text {
 	const char *at, *end;
-	struct record_line line; /* the one in hand */
+	struct record_line line; /* the current one */
 	const struct record_choice *choice;
 	struct problems *problems;
 };
 
-/* Takes the next line in hand; false: there is none. */
+/* Makes the next line the current one; false: there is none. */
 bool record_text_next(struct record_text *text);
-/* Goes back to the start of the line in hand, to be taken again. */
+/* Goes back to the start of the current line, to be taken again. */
 void record_text_back(struct record_text *text);
 
-/* Reports what is wrong at a column, from 1, of the line in hand; 0: with the whole line; < 0: with the whole file. */
+/* Reports what is wrong at a column, from 1, of the current line; 0: with the whole line; < 0: with the whole file. */
 void record_text_complain(struct record_text *text, int column, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Where a phrase begins in the line in hand, whatever the case of its letters; -1: it is not there. */
+/* Where a phrase begins in the current line, whatever the case of its letters; -1: it is not there. */
 int record_text_find(const struct record_text *text, const char *phrase);
 bool record_text_begins(const struct record_text *text, const char *phrase); /* after blanks */
-/* The number at or behind a place of the line in hand, past blanks, `=` and `:`; false: there is none. */
+/* The number at or behind a place of the current line, past blanks, `=` and `:`; false: there is none. */
 bool record_text_value(const struct record_text *text, int at, double *value);
 bool record_text_blank(const struct record_text *text);
-/* Appends the line in hand to a title, without blanks at its ends. */
+/* Appends the current line to a title, without blanks at its ends. */
 void record_text_title(const struct record_text *text, int from, char title[RECORD_TITLE]);
 
 /* One number of a line: its value, and the length that it takes with the blanks and the separator behind it; 0: none.

@@ -30,7 +30,7 @@ static const cJSON *behind(const cJSON *element)
 /* A table in the making: first a line of the names of its cells, then lines of their values. */
 struct lines {
 	struct writer *w;
-	bool header, inside; /* the line in hand is that of names; it has a cell */
+	bool header, inside; /* the current line is that of names; it has a cell */
 };
 
 static void put_value(struct writer *w, const cJSON *value)

@@ -107,7 +107,7 @@ void result_floor_spectra(struct writer *w, const struct pound_study *study,
 /* Members of an output of a sensitivity study about its ordinate; all outputs have these members where one of them is an
  * ordinate, so that they fit into one table.
  *
- * Test     unit_result_floor: an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse
+ * Test     unit_result_floor: an_ordinate_has_its_frequency_and_its_correlation_with_the_impulse
  */
 void result_floor_ordinate(struct writer *w, const struct pound_study *study,
                            const struct pound_indices *indices, int output)

@@ -31,39 +31,39 @@ static const double PI = 3.14159265358979323846;
 
 /* What is counted.  Whatever may be shared is counted once: a ground motion, a response without pounding, a run. */
 enum operation {
-	STUDY,    /* the study itself */
-	BEGIN,    /* ground motion, response without pounding, or run */
-	GROUND,   /* sample of a ground motion */
-	FREE,     /* sample of a response without pounding, */
-	YIELD,    /* ... of a body that may yield, */
-	FLOW,     /* ... and radian that this turns by, in which it yields and returns */
-	MARCH,    /* sample of a run with pounding, */
-	TOUCH,    /* ... radian in which the bodies are near each other, */
-	SWING,    /* ... times the logarithm of the contact's own frequency, */
-	POUNDED,  /* ... and radian that a body turns by which may yield */
-	TURN,     /* radian of a sample beyond those that go by maps */
-	SHAPE,    /* march of a row, by the cube of the storeys of a building, */
-	CHAIN,    /* ... sample of a floor, */
-	BEND,     /* ... step of one whose story may yield, */
-	FULL,     /* ... by the square of the storeys where all are damped together, */
-	NEARBY,   /* ... or of all floors while two buildings are near each other, */
-	MEET,     /* ... radian of that, by contact and floor, */
-	JUMP,     /* ... if velocities jump there, */
-	KEEP,     /* ... and times the logarithm of the contact's own frequency while they may stay together */
-	ROOT,     /* the same of two oscillators, of a contact that is a power of its overlap, */
-	STICK,    /* ... by the logarithm of the restitution coefficient, */
-	DASH,     /* ... and radian of the contact's dashpot, */
-	REST,     /* march that begins in contact, */
-	BLUNT,    /* ... where the force is a power of the overlap */
-	START,    /* sample of a march by another solver, */
-	NEWMARK,  /* ... step of one, */
-	CENTRAL,  /* ... of the other, */
-	ADAPT,    /* ... radian of the adaptive one, by its tolerance, */
-	FOLLOW,   /* ... and radian in which the bodies are near each other, by the contact's frequency */
-	FLOOR,    /* step of a floor, */
-	PART,     /* ... radian in which the bodies are near each other, */
-	RIDE,     /* ... and of the contact while they may stay together */
-	ORDINATE, /* the same of an oscillator on it, */
+	STUDY,      /* the study itself */
+	BEGIN,      /* ground motion, response without pounding, or run */
+	GROUND,     /* sample of a ground motion */
+	FREE,       /* sample of a response without pounding, */
+	YIELD,      /* ... of a body that may yield, */
+	FLOW,       /* ... and radian that this turns by, in which it yields and returns */
+	MARCH,      /* sample of a run with pounding, */
+	TOUCH,      /* ... radian in which the bodies are near each other, */
+	SWING,      /* ... times the logarithm of the contact's own frequency, */
+	POUNDED,    /* ... and radian that a body turns by which may yield */
+	TURN,       /* radian of a sample beyond those that go by maps */
+	SHAPE,      /* march of a row, by the cube of the storeys of a building, */
+	CHAIN,      /* ... sample of a floor, */
+	YIELD_STEP, /* ... step of one whose story may yield, */
+	FULL,       /* ... by the square of the storeys where all are damped together, */
+	NEARBY,     /* ... or of all floors while two buildings are near each other, */
+	MEET,       /* ... radian of that, by contact and floor, */
+	JUMP,       /* ... if velocities jump there, */
+	KEEP,       /* ... and times the logarithm of the contact's own frequency while they may stay together */
+	ROOT,       /* the same of two oscillators, of a contact that is a power of its overlap, */
+	STICK,      /* ... by the logarithm of the restitution coefficient, */
+	DASH,       /* ... and radian of the contact's dashpot, */
+	REST,       /* march that begins in contact, */
+	BLUNT,      /* ... where the force is a power of the overlap */
+	START,      /* sample of a march by another solver, */
+	NEWMARK,    /* ... step of one, */
+	CENTRAL,    /* ... of the other, */
+	ADAPT,      /* ... radian of the adaptive one, by its tolerance, */
+	FOLLOW,     /* ... and radian in which the bodies are near each other, by the contact's frequency */
+	FLOOR,      /* step of a floor, */
+	PART,       /* ... radian in which the bodies are near each other, */
+	RIDE,       /* ... and of the contact while they may stay together */
+	ORDINATE,   /* the same of an oscillator on it, */
 	BOUNCE,
 	SHAKE,
 	PULSE, /* ... and pulse of an idealized train that it gets */
@@ -94,7 +94,7 @@ static const double seconds_of[OPERATIONS][KINDS] = {
     [TURN] = {3e-7, 3e-7, 3e-7, 3e-7},
     [SHAPE] = {5e-8, 5e-8, 5e-8, 5e-8},
     [CHAIN] = {2.1e-7, 2.1e-7, 2.1e-7, 2.1e-7},
-    [BEND] = {1.4e-7, 1.4e-7, 1.4e-7, 1.4e-7},
+    [YIELD_STEP] = {1.4e-7, 1.4e-7, 1.4e-7, 1.4e-7},
     [FULL] = {1.5e-8, 1.5e-8, 1.5e-8, 1.5e-8},
     [NEARBY] = {1.2e-7, 1.2e-7, 1.2e-7, 1.2e-7},
     [MEET] = {9.3e-8, 9.3e-8, 9.3e-8, 9.3e-8},
@@ -542,10 +542,11 @@ static void count_row(const struct pound_study *study, double items, struct coun
 		c->of[BEGIN] += storeys > 0 ? marches : 0;
 		c->of[SHAPE] += marches * pow(storeys, 3);
 		c->of[CHAIN] += marches * samples * storeys;
-		const double bends = alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
-		                     (yields > 0 ? pounded * steps : 0);
-		c->of[BEND] += bends * storeys;
-		c->of[FULL] += all[b].modal ? bends * storeys * storeys : 0;
+		const double yield_steps =
+		    alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
+		    (yields > 0 ? pounded * steps : 0);
+		c->of[YIELD_STEP] += yield_steps * storeys;
+		c->of[FULL] += all[b].modal ? yield_steps * storeys * storeys : 0;
 	}
 }
 

@@ -15,9 +15,9 @@ struct reader {
 	const cJSON *sweeps;                    /* of the document; NULL: none */
 	double *number;                         /* next free place for a sample or a sweep value */
 	char *text;                             /* next free place for a text */
-	int storeys;                            /* of the building in hand; 0: not known */
-	const struct field *swept; /* by the sweep in hand; NULL: its path names no field that varies */
-	char pointer[512];         /* of the member in hand */
+	int storeys;                            /* of the current building; 0: not known */
+	const struct field *swept; /* by the current sweep; NULL: its path names no field that varies */
+	char pointer[512];         /* of the current member */
 };
 
 /* Into a member or an element and out again: enter gives what leave takes. */

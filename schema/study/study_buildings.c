@@ -74,7 +74,7 @@ static void read_building(struct reader *r, const cJSON *node, int i)
 		refuse(r, node, "damping_modes", "is only used with damping \"rayleigh\"");
 }
 
-/* Reads a row; offsets are those of its element in hand.
+/* Reads a row; offsets are those of its current element.
  *
  * Test     unit_study_cases
  */

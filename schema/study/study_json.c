@@ -159,7 +159,7 @@ static void read_law(struct reader *r, const struct field *field, const cJSON *n
 static void read_own_law(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	((struct pound_study *)base)->scene.oscillators[0].has_law =
-	    true; // base is that of the oscillator in hand
+	    true; // base is that of the current oscillator
 	read_law(r, field, node, base);
 }
 

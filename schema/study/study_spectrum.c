@@ -13,7 +13,7 @@
 /* Frequencies times the sample step, at most: an oscillator then takes about 1000 steps in a sample. */
 static const double PITCH_MAX = 100;
 
-/* Whether a member of the object in hand was found wrong. */
+/* Whether a member of the current object was found wrong. */
 static bool wrong(struct reader *r, const char *name)
 {
 	size_t length = reader_enter(r, name);

@@ -142,7 +142,7 @@ void reader_ratios(struct reader *r, const struct field *field, const cJSON *nod
 	r->study->n_ratios = reader_each(r, field, node, read_ratio);
 }
 
-/* Reads the two paths of the ratio in hand. */
+/* Reads the two paths of the current ratio. */
 void reader_ratio(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	int n = reader_elements(r, field, node);
@@ -174,7 +174,7 @@ void reader_sweeps(struct reader *r, const struct field *field, const cJSON *nod
 	r->study->n_sweeps = reader_each(r, field, node, read_sweep);
 }
 
-/* Reads the values of the sweep in hand, each as the swept field itself is read.
+/* Reads the values of the current sweep, each as the swept field itself is read.
  *
  * Test     unit_study_cases
  */

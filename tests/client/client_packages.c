@@ -85,7 +85,7 @@ static void every_shell_completes_commands_options_names_and_ids(void **state)
 	free(study);
 }
 
-static void the_client_needs_no_library_of_the_server_and_none_of_curl_if_told_so(void **state)
+static void the_client_needs_no_library_of_the_server_and_none_of_curl_if_so_built(void **state)
 {
 	static const char *const mode = "mode=${POUND_BUILD:-build/release}; mode=${mode##*/}; ";
 	char script[1024];
@@ -196,7 +196,7 @@ static void packages_are_clean_and_their_program_gives_the_same_bytes(void **sta
 }
 
 /* Every library of the programs is in the container, every package of the Makefile that builds them is in its first stage,
- * and its health check tells a server from none. */
+ * and its health check distinguishes a running server from a missing one. */
 static void the_recipe_of_the_container_names_what_is_needed(void **state)
 {
 	struct service *service = *state;
@@ -241,7 +241,7 @@ static void the_recipe_of_the_container_names_what_is_needed(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
 CHECK_MAIN(TEST(every_shell_completes_commands_options_names_and_ids),
-           cmocka_unit_test(the_client_needs_no_library_of_the_server_and_none_of_curl_if_told_so),
+           cmocka_unit_test(the_client_needs_no_library_of_the_server_and_none_of_curl_if_so_built),
            cmocka_unit_test(the_tarball_has_every_source_and_the_same_bytes_each_time),
            cmocka_unit_test(packages_are_clean_and_their_program_gives_the_same_bytes),
            TEST(the_recipe_of_the_container_names_what_is_needed))

@@ -143,7 +143,7 @@ static void models_of(const struct field *field, char *text, size_t size)
 
 static const char STUDY[] = "schema/study.md";
 
-/* Whether a member of one contact is one of the scene's contact too, of which the page tells once. */
+/* Whether a member of one contact is one of the scene's contact too, of which the page has one line. */
 static bool of_contact(const struct field *field)
 {
 	static const char contacts[] = "/scene/contacts/*/";
@@ -154,7 +154,7 @@ static bool of_contact(const struct field *field)
 
 static void every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it(void **state)
 {
-	static const char same[] = "/scene/oscillators/*/law/"; // told once, for the scene's law
+	static const char same[] = "/scene/oscillators/*/law/"; // one line, for the scene's law
 	char *page = program_file(STUDY, NULL);
 	int missing = 0;
 	(void)state;

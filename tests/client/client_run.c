@@ -479,7 +479,7 @@ static int threads_of(pid_t pid)
 	return n;
 }
 
-static void a_file_that_cannot_be_written_is_told_before_the_study_runs(void **state)
+static void a_file_that_cannot_be_written_is_reported_before_the_study_runs(void **state)
 {
 	(void)state;
 	static const char *const files[][2] = {{"/nonexistent/x.csv", "No such file or directory"},
@@ -549,7 +549,7 @@ static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
 	unlink(study);
 }
 
-static void a_paper_study_is_valid_and_its_cost_is_told(void **state)
+static void a_paper_study_is_valid_and_its_cost_is_reported(void **state)
 {
 	struct program_outcome names = POUND("example", "--names");
 	int n = 0;
@@ -588,7 +588,7 @@ CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_
            cmocka_unit_test(one_table_of_a_result_is_shown_by_its_name),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),
            cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
-           cmocka_unit_test(a_file_that_cannot_be_written_is_told_before_the_study_runs),
+           cmocka_unit_test(a_file_that_cannot_be_written_is_reported_before_the_study_runs),
            cmocka_unit_test(ctrl_c_stops_histories_that_are_being_written),
            cmocka_unit_test(the_bar_keeps_within_its_terminal_and_clears_its_line),
-           SERVED(a_paper_study_is_valid_and_its_cost_is_told))
+           SERVED(a_paper_study_is_valid_and_its_cost_is_reported))

@@ -2,7 +2,7 @@
  *
  *   bench [ROWS]     ROWS of the paper campaign's design, 1000 unless for a trial
  *
- * Times are CPU time, the least of several runs; what is compared runs in turn.  A goal missed is told, not an error. */
+ * Times are CPU time, the least of several runs; what is compared runs in turn.  A goal missed is reported, not an error. */
 #include "tests/long/bench.h"
 
 #include <stdarg.h>

@@ -69,7 +69,7 @@ static double drift_error(const struct chain_bench *b, const double *drift, int 
 	return error / most;
 }
 
-/* The same with samples twice as dense on the same lines: other steps, other flights. */
+/* The same with samples twice as dense on the same lines: other steps, other free motion. */
 static double own_error(const struct chain_bench *b)
 {
 	static double ground[DENSER * (SAMPLES - 1) + 1], floors[ROW_FLOORS][POUND_FLOOR_MEASURES],

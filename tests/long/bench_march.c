@@ -245,7 +245,7 @@ void bench_reference(void)
 
 /* ---- the kernel by itself ---- */
 
-/* Time of a sample of two bodies apart for ever, of a sample with contacts, and what a contact adds, by lanes. */
+/* Time of a sample of two bodies always separated, of a sample with contacts, and what a contact adds, by lanes. */
 static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 {
 	static const int widths[] = {1, 4, 8};
@@ -352,8 +352,8 @@ static void variant_rows(const struct pound_scene *scene, const struct batch *li
 	    {"restitution 0", 1e2, 0, .faster = 1},
 	    {"no tension", 1e2, 0.6, true, .faster = 1},
 	    {"restitution 0 and no tension", 1e2, 0, true, .faster = 1},
-	    {"bodies apart", 1e2, 0.6, .apart = true, .faster = 1},
-	    {"bodies apart, of 16 and 24.8 Hz", 1e2, 0.6, .apart = true, .faster = 8},
+	    {"bodies separated", 1e2, 0.6, .apart = true, .faster = 1},
+	    {"bodies separated, of 16 and 24.8 Hz", 1e2, 0.6, .apart = true, .faster = 8},
 	};
 	enum { VARIANTS = sizeof variants / sizeof variants[0] };
 	struct batch batches[VARIANTS];

@@ -89,7 +89,7 @@ static struct cost study_cost(const struct pound_study *study, int threads)
 }
 
 /* The same in a process of its own, whose memory is its own. */
-static struct cost study_cost_apart(const struct pound_study *study, int threads)
+static struct cost study_cost_forked(const struct pound_study *study, int threads)
 {
 	struct cost cost;
 	int ends[2], status;
@@ -151,14 +151,14 @@ void bench_campaign(int rows)
 {
 	struct pound_study *study = bench_study(example_text("paper"));
 	study->design.rows = rows;
-	struct cost cost = study_cost_apart(study, THREADS);
+	struct cost cost = study_cost_forked(study, THREADS);
 	campaign_rows(&cost, rows);
 
 	study->design.rows = 20;
 	struct cost best[THREADS + 1] = {0};
 	for (int repeat = 0; repeat < REPEATS; repeat++)
 		for (int threads = 1; threads <= THREADS; threads++) {
-			cost = study_cost_apart(study, threads);
+			cost = study_cost_forked(study, threads);
 			if (repeat == 0 || cost.wall < best[threads].wall)
 				best[threads] = cost;
 		}

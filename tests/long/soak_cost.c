@@ -56,8 +56,8 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 		reading_close(result);
 		answer_free(&answer);
 	}
-	check_report("at most %.1f times the time told, at least 1/%.1f of it; bytes off by %.1f", late, early,
-	             bytes_off);
+	check_report("at most %.1f times the time estimated, at least 1/%.1f of it; bytes off by %.1f", late,
+	             early, bytes_off);
 	// within two where the units were measured; others may be twice as slow, and newer ones with more lanes take a quarter
 	assert_true(late < 4 && early < 8 && bytes_off < 2);
 }

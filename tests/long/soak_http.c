@@ -89,9 +89,9 @@ static void attacked(struct service *service, const char *what, const char *firs
 	    "after %.0f "
 	    "s; the machine was away for %.2f %%",
 	    what, SLOW, opened, seconds, answered, asked, latency_now() - closed, 100 * host_pauses_share());
-	latency_told("  fresh requests", &latencies);
+	latency_report("  fresh requests", &latencies);
 	latency_there(&latencies);
-	latency_told("  of them while the machine was there", &latencies);
+	latency_report("  of them while the machine was there", &latencies);
 	assert_true(asked > 0 && answered >= 0.99 * asked);
 	assert_true(latency_quantile(&latencies, 0.99) <= 1000);
 	assert_true(latency_now() < closed + 15);
@@ -207,7 +207,7 @@ static void a_million_requests_and_a_thousand_studies_leave_nothing_behind(void 
 	assert_true(about.st_size <= 64 << 20);
 }
 
-/* ---- what the time of an answer tells ---- */
+/* ---- what the time of an answer reveals ---- */
 
 enum { TIMINGS = 100000 };
 
@@ -231,7 +231,7 @@ static void trimmed(double *seconds, double *mean, double *variance)
 	*variance = squares / n / (n - 1);
 }
 
-static void the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is(void **state)
+static void the_time_a_wrong_token_takes_does_not_show_how_wrong_it_is(void **state)
 {
 	static const char right[] = "0123456789abcdef0123456789abcdef";
 	static double seconds[2][TIMINGS];
@@ -272,6 +272,6 @@ static void the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is(void **st
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
-CHECK_MAIN(cmocka_unit_test(the_time_a_wrong_token_takes_does_not_tell_how_wrong_it_is),
+CHECK_MAIN(cmocka_unit_test(the_time_a_wrong_token_takes_does_not_show_how_wrong_it_is),
            SERVED(slow_headers_bodies_and_readers_do_not_keep_others_out),
            SERVED(a_million_requests_and_a_thousand_studies_leave_nothing_behind))

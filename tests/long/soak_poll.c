@@ -187,9 +187,9 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 	qsort(dearer, ROUNDS, sizeof(double), ascending);
 	double there_s = wall_s * (1 - host_pauses_share()) * (double)sysconf(_SC_NPROCESSORS_ONLN);
 	double share = answers_s / there_s, slowed = 1 - (1 - share) / dearer[ROUNDS / 2];
-	latency_told("answers", &polls.answers);
+	latency_report("answers", &polls.answers);
 	latency_there(&polls.answers);
-	latency_told("of them while the machine was there", &polls.answers);
+	latency_report("of them while the machine was there", &polls.answers);
 	check_report("late %d, wrong %d; the machine was away for %.2f %% of %.0f s", polls.late, polls.wrong,
 	             100 * host_pauses_share(), 2 * wall_s);
 	// half of the rounds lie between the quartiles: the median's standard error from them

@@ -75,7 +75,7 @@ static void a_hundred_studies_a_second_are_accepted_from_sixteen_clients(void **
 	int64_t kept = service_number(service, "SELECT count(*) FROM study");
 	check_report("%d studies accepted from %d clients in %.0f s: %.0f a second; %d kept after kill -9", all.n,
 	             SUBMITTERS, seconds, all.n / seconds, (int)kept);
-	latency_told("  their answers", &all);
+	latency_report("  their answers", &all);
 	assert_true(all.n >= 100 * seconds);
 	assert_true(kept >= all.n && kept <= all.n + SUBMITTERS); // those whose answer was still on its way
 	free(all.answers);
@@ -105,9 +105,9 @@ static void ten_thousand_queued_studies_are_all_it_takes_until_it_has_run_some(v
 		answer_free(&answer);
 	}
 	assert_int_equal(answer.status, 201);
-	check_report("%d studies queued, then each of %d clients was told 503; accepted again %.1f s after the "
+	check_report("%d studies queued, then each of %d clients got 503; accepted again %.1f s after the "
 	             "first could "
-	             "run, told 503 %d times before",
+	             "run, got 503 %d times before",
 	             (int)queued, SUBMITTERS, latency_now() - start, refused);
 	answer_free(&answer);
 	service_kill(service);
@@ -147,7 +147,7 @@ static void a_study_of_a_trillion_runs_is_refused_in_no_time_and_no_memory(void 
 			fail_msg("not refused for its runs: %s", answer.body);
 		answer_free(&answer);
 	}
-	latency_told("a study of 1e12 runs refused", &all);
+	latency_report("a study of 1e12 runs refused", &all);
 	double grown = service_resident_mb(service) - before;
 	check_report("  resident memory grew by %.1f MB", grown);
 	assert_true(latency_quantile(&all, 0.99) < 50);

@@ -39,7 +39,7 @@ static void valid_studies_take_what_is_estimated_before(void **state)
 		struct pound_study *study = valid_study(seed, text, &drawn);
 		const struct cost cost = cost_of(study, 1);
 		if (cost.cpu_s <= CPU_MOST) {
-			// what takes less than the clock and the start of a study tells is nothing
+			// what takes less than the clock can resolve is nothing
 			const double s = fmax(valid_study_taken(study, 4 * CPU_MOST), 0.003),
 			             estimated = fmax(cost.cpu_s, 0.003), ratio = s / estimated;
 			const int bin = (int)floor(log2(ratio) + 0.5 * BINS), g = group_of(study);

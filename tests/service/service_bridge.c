@@ -317,7 +317,7 @@ static void evaluate_takes_milliseconds(void **state)
 		assert_int_equal(answer.status, 200);
 		answer_free(&answer);
 	}
-	latency_told("Evaluate of 5 signals of 8 s, a connection each", &latencies);
+	latency_report("Evaluate of 5 signals of 8 s, a connection each", &latencies);
 	if (check_soaks())
 		assert_true(latency_quantile(&latencies, 0.5) < 10);
 	free(latencies.answers);

@@ -66,7 +66,7 @@ static double compare(const char *name, const char *study)
 	char id[17];
 	struct service *service = service_new();
 	service_start(service, 2);
-	const double told = estimated(service, study, "estimated_memory_bytes"),
+	const double estimate = estimated(service, study, "estimated_memory_bytes"),
 	             before = status_bytes(service, "VmRSS:");
 	forget_peak(service);
 	service_submit(service, study, id);
@@ -74,8 +74,9 @@ static double compare(const char *name, const char *study)
 	const double took = status_bytes(service, "VmHWM:") - before;
 	service_stop(service);
 	service_free(service);
-	check_report("%-24s %8.1f MiB estimated, %8.1f taken: %.2f", name, told / MIB, took / MIB, told / took);
-	return fmax(took, told) < LEAST * MIB ? 1 : fmax(took / told, told / took);
+	check_report("%-24s %8.1f MiB estimated, %8.1f taken: %.2f", name, estimate / MIB, took / MIB,
+	             estimate / took);
+	return fmax(took, estimate) < LEAST * MIB ? 1 : fmax(took / estimate, estimate / took);
 }
 
 #define SCENE(excitation)                                                           \
@@ -173,9 +174,9 @@ static void two_studies_that_do_not_fit_together_run_one_after_the_other(void **
 	struct service *service = service_with((const char *const[][2]){{"POUNDD_MEMORY_MAX", "80"}, {NULL}}, 2);
 	char id[3][17];
 	(void)state;
-	const double told = estimated(service, large, "estimated_memory_bytes"),
+	const double estimate = estimated(service, large, "estimated_memory_bytes"),
 	             before = status_bytes(service, "VmRSS:");
-	assert_true(told > 40 * MIB && told < 80 * MIB);
+	assert_true(estimate > 40 * MIB && estimate < 80 * MIB);
 	forget_peak(service);
 	service_submit(service, large, id[0]);
 	service_submit(service, large, id[1]);
@@ -191,10 +192,10 @@ static void two_studies_that_do_not_fit_together_run_one_after_the_other(void **
 		assert_true(running <= 2);
 	}
 	const double took = status_bytes(service, "VmHWM:") - before;
-	check_report("two studies of %.0f MiB at most 80 together: %d at a time, %.0f MiB taken", told / MIB,
+	check_report("two studies of %.0f MiB at most 80 together: %d at a time, %.0f MiB taken", estimate / MIB,
 	             most, took / MIB);
 	assert_int_equal(most, 1);
-	assert_true(took < FACTOR * told);
+	assert_true(took < FACTOR * estimate);
 	// in their order
 	assert_int_equal(
 	    service_number(

@@ -21,7 +21,7 @@ enum { MEMORY_IS_OURS = 0 };
 enum { MEMORY_IS_OURS = 1 };
 #endif
 
-/* Studies a client was told are stored. */
+/* Studies a client knows to be stored. */
 struct accepted {
 	char (*ids)[17]; /* (n) */
 	int n, room, refused;
@@ -84,7 +84,7 @@ static void a_disk_that_fails_by_chance_loses_nothing_and_the_server_recovers_by
 	free(accepted.ids);
 }
 
-/* The end of a log, from its last line on that tells more than the version of SQLite. */
+/* The end of a log, from its last line on that says more than the version of SQLite. */
 static const char *said(const char *log)
 {
 	const char *line = "";
@@ -179,8 +179,9 @@ static void a_copy_that_fails_says_why_and_is_not_left(void **state)
 		failures += outcome.status;
 		program_free(&outcome);
 	}
-	check_report("the n-th call on the disk fails: at %d copies, of which %d failed, were told and not left",
-	             copies, failures);
+	check_report(
+	    "the n-th call on the disk fails: at %d copies, of which %d failed, were reported and removed",
+	    copies, failures);
 	assert_true(failures > 2);
 	// what was there, if only an empty file, is another's
 	assert_int_equal(truncate(path, 0), 0);
@@ -267,7 +268,7 @@ static void every_allocation_of_a_request_may_fail(void **state)
 	assert_true(service_wait(service, id[0], "succeeded", 0));
 	struct answer before = service_get(service, "/v1/studies/%s/results", id[0]);
 	int failed = starve(service, faults, &questions[0], id, 1, step);
-	// what was accepted meanwhile finishes; of these each is asked for the first time, as its status is kept when told
+	// what was accepted meanwhile finishes; of these each is asked for the first time, as its status is kept once reported
 	struct accepted accepted = {0};
 	for (int i = 0; i < FRESH; i++)
 		post(service, i, &accepted);

@@ -86,7 +86,7 @@ a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_block
 	service_free(service);
 }
 
-static void the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_took(void **state)
+static void the_status_of_a_study_that_grows_has_its_bound_and_then_what_it_took(void **state)
 {
 	struct service *service = *state;
 	char *study = growing_study(), id[17];
@@ -220,7 +220,7 @@ static void a_study_without_a_row_has_no_results_yet(void **state)
 CHECK_MAIN(
     cmocka_unit_test(a_study_that_grows_has_the_same_bytes_for_any_number_of_workers),
     cmocka_unit_test(a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_blocks_again),
-    SERVED(the_status_of_a_study_that_grows_tells_its_bound_and_then_what_it_took),
+    SERVED(the_status_of_a_study_that_grows_has_its_bound_and_then_what_it_took),
     cmocka_unit_test(samples_of_a_design_that_grew_are_all_of_them_or_an_error),
     SERVED(a_running_study_answers_with_the_indexes_of_its_whole_rows),
     SERVED(a_study_without_a_row_has_no_results_yet))

@@ -486,7 +486,7 @@ static void a_long_result_holds_nobody_up(void **state)
 	assert_non_null(strstr(answer.text, path));
 }
 
-static void more_connections_than_the_limit_are_told_503(void **state)
+static void more_connections_than_the_limit_get_503(void **state)
 {
 	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "3"}, {NULL}};
 	enum { N = 6 };
@@ -500,7 +500,7 @@ static void more_connections_than_the_limit_are_told_503(void **state)
 		raw_send(sockets[i], request, strlen(request));
 		raw_receive(sockets[i], 0.2, &answer);
 		served += answer.status == (i % 2 ? 200 : 422);
-		// whoever is refused does not keep the place of another
+		// a refused client does not keep the place of another
 		refused += answer.status == 503 && strstr(answer.text, "Retry-After: ") && answer.closed;
 	}
 	assert_int_equal(served, 3);
@@ -550,7 +550,7 @@ static double cpu_of(const struct service *service)
 }
 
 /* How often a word stands in a log. */
-static int told(const struct service *service, const char *word)
+static int logged(const struct service *service, const char *word)
 {
 	int n = 0;
 	char *log = program_file(service->log, NULL);
@@ -568,13 +568,13 @@ static void with_few_descriptors_fewer_are_served_and_nothing_spins(void **state
 	int sockets[N], served = 0, refused = 0;
 	struct service *service = with_files(FILES);
 	(void)state;
-	assert_int_equal(told(service, "only 64 files may be open"), 1);
+	assert_int_equal(logged(service, "only 64 files may be open"), 1);
 	for (int i = 0; i < N; i++)
 		sockets[i] = raw_open(service);
 	double before = cpu_of(service);
 	usleep(1000000);
 	double cpu = cpu_of(service) - before;
-	int lines = told(service, "Error accepting");
+	int lines = logged(service, "Error accepting");
 	for (int i = 0; i < N; i++)
 		close(sockets[i]);
 	check_report("%d idle connections with %d descriptors: %.2f s of a core in 1 s, %d lines of the log", N,
@@ -584,7 +584,7 @@ static void with_few_descriptors_fewer_are_served_and_nothing_spins(void **state
 	for (int i = 0; i < 100 && answer.status != 200; i++)
 		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.05, &answer);
 	assert_int_equal(answer.status, 200);
-	// some are served and the next told that there are as many as may be
+	// some are served and the next one learns that the limit is reached
 	for (int i = 0; i < N && refused == 0; i++, served++) {
 		sockets[i] = raw_open(service);
 		raw_send(sockets[i], GET "\r\n", strlen(GET "\r\n"));
@@ -601,7 +601,7 @@ static void with_few_descriptors_fewer_are_served_and_nothing_spins(void **state
 	service_free(service);
 }
 
-static void what_the_library_says_again_and_again_is_told_once_a_second(void **state)
+static void what_the_library_reports_again_and_again_is_logged_once_a_second(void **state)
 {
 	enum { N = 60 };
 	struct rlimit before, few;
@@ -617,13 +617,13 @@ static void what_the_library_says_again_and_again_is_told_once_a_second(void **s
 		sockets[i] = raw_open(service);
 	usleep(1500000);
 	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &before, NULL), 0);
-	int lines = told(service, "Error accepting");
+	int lines = logged(service, "Error accepting");
 	clock_gettime(CLOCK_MONOTONIC, &end);
 	for (int i = 0; i < N; i++)
 		close(sockets[i]);
 	// the seconds that were begun, and one more
 	assert_true(lines >= 1 && lines <= end.tv_sec - start.tv_sec + 2);
-	assert_true(told(service, " lines before that were not reported") >= 1);
+	assert_true(logged(service, " lines before that were not reported") >= 1);
 }
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
@@ -637,6 +637,6 @@ CHECK_MAIN(SERVED(a_request_of_doubtful_shape_has_one_answer_and_hides_no_other)
            cmocka_unit_test(who_is_slow_is_closed_and_others_are_served_meanwhile),
            SERVED(a_long_result_holds_nobody_up),
            SERVED(long_answers_wait_for_slow_readers_in_files_without_names),
-           cmocka_unit_test(more_connections_than_the_limit_are_told_503),
+           cmocka_unit_test(more_connections_than_the_limit_get_503),
            cmocka_unit_test(with_few_descriptors_fewer_are_served_and_nothing_spins),
-           SERVED(what_the_library_says_again_and_again_is_told_once_a_second))
+           SERVED(what_the_library_reports_again_and_again_is_logged_once_a_second))

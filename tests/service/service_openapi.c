@@ -177,11 +177,11 @@ static int ask(struct world *world, const char *method, const char *path, const 
 		const char *name, *value;
 	} heads[] = {{"Location", answer.location}, {"ETag", answer.etag}, {"Retry-After", answer.retry_after}};
 	for (int i = 0; i < 3; i++) {
-		bool told = reading_has(world->api, "%s/headers/%s", pointer, heads[i].name);
+		bool listed = reading_has(world->api, "%s/headers/%s", pointer, heads[i].name);
 		// a result that is not there yet may say when to come again; a missing study does not
-		if (told != (*heads[i].value != '\0') && status != 404)
+		if (listed != (*heads[i].value != '\0') && status != 404)
 			fail_msg("%s %s: %d, %s '%s' is%s in the document", method, target, status, heads[i].name,
-			         heads[i].value, told ? "" : " not");
+			         heads[i].value, listed ? "" : " not");
 	}
 	// the media type, and for JSON the schema
 	char media[96] = "";

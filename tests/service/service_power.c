@@ -1,10 +1,10 @@
-/* Power cuts: what a client was told is on the disk, whatever the disk makes of what was not synced.
+/* Power cuts: what a client was answered is on the disk, whatever the disk makes of what was not synced.
  *
  * A real poundd takes studies, runs them and hands out results while every write, sync, change of size, creation and
- * removal of its database is recorded (tests/support/preload.c), and with them what the client was told.  A cut is a place in
+ * removal of its database is recorded (tests/support/preload.c), and with them what the client was answered.  A cut is a place in
  * that record.  What was synced before it is there; of the rest, write by write, a part is lost, a part is there, and a
  * part is there in some of its 512-byte sectors, as disks may have it that keep no order.  The database is then opened
- * as after a restart: it must be whole, and have every study and result the client was told of, byte for byte.
+ * as after a restart: it must be whole, and have every study and result the client knows of, byte for byte.
  *
  * With synchronous=NORMAL the same test must fail, or it would not show anything. */
 #include <fcntl.h>
@@ -28,15 +28,15 @@ enum {
 	SYNC_MS = 100,    /* of the slow disk on which many blocks are committed together */
 };
 
-/* What the client was told: that study i is stored (number i), and its result (number STUDIES + i). */
-static struct told {
+/* What the client knows: that study i is stored (number i), and its result (number STUDIES + i). */
+static struct known_study {
 	char id[17];
 	char *bytes; /* the result */
 	size_t length;
-} told[STUDIES];
+} answered[STUDIES];
 
-/* Runs of its blocks, as the client was told (number 2 * STUDIES + i); 0: not asked. */
-static int64_t runs_told[LOOKS];
+/* Runs of its blocks, as the client knows (number 2 * STUDIES + i); 0: not asked. */
+static int64_t runs_answered[LOOKS];
 enum { N_TOLD = 2 * STUDIES + LOOKS };
 
 /* A file as it is, and as it would be after a cut. */
@@ -157,7 +157,7 @@ static void write_file(const char *path, const struct image *image)
 	close(file);
 }
 
-/* The blob a question about study `id` comes to; false: none, or the database cannot be read. */
+/* The blob that a query about study `id` gives; false: none, or the database cannot be read. */
 static bool has(sqlite3_stmt *question, int64_t id, const char *name, const char *bytes, size_t length)
 {
 	sqlite3_bind_int64(question, 1, id);
@@ -170,7 +170,7 @@ static bool has(sqlite3_stmt *question, int64_t id, const char *name, const char
 }
 
 struct damage {
-	int cuts, corrupt, lost; /* cuts, those with a database that is not whole, or not all that was told */
+	int cuts, corrupt, lost; /* cuts, those with a database that is not whole, or not all that was answered */
 	int opened;              /* by the server's code */
 	int syncs, checkpoints;  /* in the record: of any file, of the database */
 };
@@ -190,7 +190,7 @@ static int64_t blocks_runs(sqlite3 *db)
 	return runs;
 }
 
-/* Opens what a cut left, and compares it with what was told before. */
+/* Opens what a cut left, and compares it with what was answered before. */
 static void judge(const char *path, const bool known[N_TOLD], struct damage *damage)
 {
 	sqlite3 *db;
@@ -206,14 +206,14 @@ static void judge(const char *path, const bool known[N_TOLD], struct damage *dam
 	    db, "SELECT content FROM document JOIN study ON study = id WHERE id = ?1 AND document.name = ?2", -1,
 	    &document, NULL);
 	for (int i = 0; i < STUDIES; i++) {
-		int64_t id = (int64_t)strtoull(told[i].id, NULL, 16);
+		int64_t id = (int64_t)strtoull(answered[i].id, NULL, 16);
 		lost += known[i] && !(document && has(document, id, "request", NULL, 0));
-		lost +=
-		    known[STUDIES + i] && !(document && has(document, id, "result", told[i].bytes, told[i].length));
+		lost += known[STUDIES + i] &&
+		        !(document && has(document, id, "result", answered[i].bytes, answered[i].length));
 	}
 	sqlite3_finalize(document);
 	for (int i = 0; i < LOOKS; i++)
-		lost += known[2 * STUDIES + i] && blocks_runs(db) < runs_told[i];
+		lost += known[2 * STUDIES + i] && blocks_runs(db) < runs_answered[i];
 	sqlite3_close(db);
 	damage->corrupt += !whole;
 	damage->lost += lost > 0;
@@ -292,18 +292,18 @@ static struct record recorded(bool normal)
 		assert_non_null(study);
 		memset(study + n, ' ', BLANKS);
 		study[n + BLANKS] = '\0';
-		service_submit(service, study, told[i].id);
-		faults_told(faults, i);
+		service_submit(service, study, answered[i].id);
+		faults_answered(faults, i);
 		free(study);
 		if (i % 4 != 0)
 			continue;
-		assert_true(service_wait(service, told[i].id, "succeeded", 0));
-		struct answer result = service_get(service, "/v1/studies/%s/results", told[i].id);
+		assert_true(service_wait(service, answered[i].id, "succeeded", 0));
+		struct answer result = service_get(service, "/v1/studies/%s/results", answered[i].id);
 		assert_int_equal(result.status, 200);
-		faults_told(faults, STUDIES + i);
-		free(told[i].bytes);
-		told[i].bytes = result.body;
-		told[i].length = result.length;
+		faults_answered(faults, STUDIES + i);
+		free(answered[i].bytes);
+		answered[i].bytes = result.body;
+		answered[i].length = result.length;
 	}
 	service_kill(service);
 	snprintf(path, sizeof path, "%s/record", service->directory);
@@ -334,8 +334,8 @@ static struct record blocks_recorded(double *blocks_a_commit)
 		reading_close(status);
 		answer_free(&answer);
 		if (runs > before) {
-			runs_told[looks] = runs;
-			faults_told(faults, 2 * STUDIES + looks++);
+			runs_answered[looks] = runs;
+			faults_answered(faults, 2 * STUDIES + looks++);
 		}
 		usleep(1000);
 	}
@@ -383,7 +383,7 @@ static struct damage cut_of(bool normal, int n)
 	return damage;
 }
 
-static void what_a_client_was_told_is_on_the_disk_whatever_the_moment_of_a_power_cut(void **state)
+static void what_a_client_was_answered_is_on_the_disk_whatever_the_moment_of_a_power_cut(void **state)
 {
 	struct damage damage = cut_of(false, check_count(1000, 10000));
 	(void)state;
@@ -401,7 +401,7 @@ static void the_same_cuts_lose_studies_when_the_disk_is_not_synced_at_every_comm
 	assert_true(cut_of(true, N).lost > N / 4);
 }
 
-// first, for what the others are told stays known
+// first, for what the others are answered stays known
 CHECK_MAIN(cmocka_unit_test(a_cut_loses_no_block_of_a_commit_that_returned),
-           cmocka_unit_test(what_a_client_was_told_is_on_the_disk_whatever_the_moment_of_a_power_cut),
+           cmocka_unit_test(what_a_client_was_answered_is_on_the_disk_whatever_the_moment_of_a_power_cut),
            cmocka_unit_test(the_same_cuts_lose_studies_when_the_disk_is_not_synced_at_every_commit))

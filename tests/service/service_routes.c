@@ -245,7 +245,7 @@ static void unknown_paths_and_studies_are_404(void **state)
 	    "no such study");
 }
 
-static void validate_only_tells_the_cost_and_stores_nothing(void **state)
+static void validate_only_reports_the_cost_and_stores_nothing(void **state)
 {
 	struct service *service = *state;
 	char *study = service_study(4, 2, 1);
@@ -600,7 +600,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(every_fault_of_a_study_is_listed_with_its_pointer), SERVED(a_body_over_one_mebibyte_is_413),
            SERVED(a_study_that_is_not_declared_as_json_is_415), SERVED(every_route_answers_only_its_methods),
            SERVED(head_is_get_without_the_body), SERVED(unknown_paths_and_studies_are_404),
-           SERVED(validate_only_tells_the_cost_and_stores_nothing),
+           SERVED(validate_only_reports_the_cost_and_stores_nothing),
            SERVED(results_are_404_with_retry_after_until_they_are_there), SERVED(results_come_as_json_or_csv),
            SERVED(an_answer_is_kept_until_what_it_is_about_changes),
            SERVED(samples_come_as_csv_or_npy_with_a_row_per_run),

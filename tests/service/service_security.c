@@ -73,7 +73,7 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 		if (status == 401)
 			fail_msg("%s %s with the right token", operation->method, target);
 	}
-	// an unknown path tells a stranger nothing
+	// an unknown path reveals nothing to a stranger
 	assert_int_equal(status_of(service, "GET", "/nowhere", wrong[0], NULL), 401);
 	assert_int_equal(status_of(service, "GET", "/nowhere", right, NULL), 404);
 	// of two headers none counts: a proxy may have seen the other
@@ -162,9 +162,9 @@ static void a_port_that_another_server_has_is_refused(void **state)
 	struct program_outcome other = start_another(*state, "", database);
 	program_expect(&other, 1);
 	// in the last line, and in no other
-	const char *told = strstr(other.err, "Address already in use\n");
-	assert_non_null(told);
-	assert_string_equal(told, "Address already in use\n");
+	const char *message = strstr(other.err, "Address already in use\n");
+	assert_non_null(message);
+	assert_string_equal(message, "Address already in use\n");
 	assert_null(strstr(other.err, "http: "));
 	program_free(&other);
 }

@@ -38,18 +38,18 @@ static void close_many(const int *sockets, int n)
 /* How many of them are answered with a status within so many seconds, the others not at all. */
 static int answered(const int *sockets, int n, int status, double seconds)
 {
-	int told = 0;
+	int counted = 0;
 	static struct raw_answer answer;
 	double end = latency_now() + seconds;
 	for (int i = 0; i < n; i++) {
 		double left = end - latency_now();
 		raw_receive(sockets[i], left > 0.02 ? left : 0.02, &answer);
 		if (answer.status == status)
-			told++;
+			counted++;
 		else if (answer.status != 0)
 			fail_msg("%d: %s", answer.status, answer.text);
 	}
-	return told;
+	return counted;
 }
 
 static void who_asks_for_more_than_a_share_is_refused(void **state)
@@ -161,7 +161,7 @@ static void bodies_have_a_budget_and_their_memory_is_given_back(void **state)
 }
 
 /* A thousand connections of one client: bodies that do not end, polls that wait, samples and heads that do not come. */
-static void another_s_status_is_told_whatever_a_thousand_connections_do(void **state)
+static void another_s_status_is_counted_whatever_a_thousand_connections_do(void **state)
 {
 	enum { EACH = 250, KINDS = 4, ASKED = 200 };
 	static int sockets[KINDS * EACH];
@@ -203,4 +203,4 @@ CHECK_MAIN(SERVED(who_asks_for_more_than_a_share_is_refused),
            cmocka_unit_test(more_than_half_of_the_connections_do_not_wait_and_who_hangs_up_frees_his_place),
            cmocka_unit_test(a_probe_is_answered_when_no_more_connections_are_served),
            SERVED(bodies_have_a_budget_and_their_memory_is_given_back),
-           SERVED(another_s_status_is_told_whatever_a_thousand_connections_do))
+           SERVED(another_s_status_is_counted_whatever_a_thousand_connections_do))

@@ -7,7 +7,7 @@
 #include "tests/support/service.h"
 #include "tests/support/study_documents.h"
 
-static char *told(void)
+static char *document_text(void)
 {
 	return study_documents_with(study_documents_floor, "\"histories\": false", "\"histories\": true");
 }
@@ -58,7 +58,7 @@ static void spectra_come_as_json_and_csv(void **state)
 static void histories_are_those_of_a_run_without_a_server(void **state)
 {
 	struct service *service = *state;
-	char id[17], csv_path[120], npy_path[120], *document = told();
+	char id[17], csv_path[120], npy_path[120], *document = document_text();
 	size_t length;
 	snprintf(csv_path, sizeof csv_path, "%s/h.csv", service->directory);
 	snprintf(npy_path, sizeof npy_path, "%s/h.npy", service->directory);

@@ -39,7 +39,7 @@ static void judge(const char *what, double s, double s_max)
 		assert_true(s <= s_max);
 }
 
-static void an_idle_server_and_one_at_work_end_when_they_are_told(void **state)
+static void an_idle_server_and_one_at_work_end_when_they_are_stopped(void **state)
 {
 	struct service *service = *state;
 	char *study = service_study(ROWS, SIGNALS, 1), id[17];
@@ -200,7 +200,7 @@ static bool is_whole(const char *text)
 }
 
 /* What came of them: answered 503 in full, or closed without a byte. */
-static void waiters_end(int sockets[WAITERS], int *told, int *closed)
+static void waiters_end(int sockets[WAITERS], int *answered, int *closed)
 {
 	for (int i = 0; i < WAITERS; i++) {
 		static struct raw_answer answer;
@@ -208,9 +208,9 @@ static void waiters_end(int sockets[WAITERS], int *told, int *closed)
 		close(sockets[i]);
 		assert_true(answer.closed);
 		if (answer.status != 0 && (answer.status != 503 || answer.n != 1 || !is_whole(answer.text)))
-			fail_msg("a waiting client was told\n%s", answer.text);
+			fail_msg("a waiting client got\n%s", answer.text);
 		assert_true(answer.status != 0 || !answer.text[0]);
-		*told += answer.status != 0;
+		*answered += answer.status != 0;
 		*closed += answer.status == 0;
 	}
 }
@@ -218,7 +218,7 @@ static void waiters_end(int sockets[WAITERS], int *told, int *closed)
 static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **state)
 {
 	struct service *service = *state;
-	int n = check_count(3, 50), told = 0, closed = 0;
+	int n = check_count(3, 50), answered = 0, closed = 0;
 	double longest = 0;
 	char *study = service_study(2, 1, 0), id[17];
 	curl_global_init(CURL_GLOBAL_DEFAULT);
@@ -237,22 +237,22 @@ static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **stat
 		longest = s > longest ? s : longest;
 		for (int i = 0; i < CLIENTS; i++)
 			pthread_join(clients[i], NULL);
-		waiters_end(sockets, &told, &closed);
+		waiters_end(sockets, &answered, &closed);
 		service_start(service, 2);
 	}
 	for (int i = 0; i < load.n; i++)
 		assert_true(service_wait(service, load.ids[i], "succeeded", 0));
 	check_report("%d stops under %d clients who submit and %d who wait: studies accepted %d, lost 0; the "
 	             "port was closed for "
-	             "%d requests; who waited was told 503 %d times, and closed without a byte %d times",
-	             n, CLIENTS, WAITERS, load.n, load.unanswered, told, closed);
+	             "%d requests; waiting clients got 503 %d times, and closed without a byte %d times",
+	             n, CLIENTS, WAITERS, load.n, load.unanswered, answered, closed);
 	judge("under load, the longest of them", longest, 30);
 	assert_true(load.n >= n * CLIENTS);
-	assert_true(told > n * WAITERS / 2);
+	assert_true(answered > n * WAITERS / 2);
 	free(study);
 }
 
-/* Nearly two million lines would take seconds: who asked for them is told that the server stops. */
+/* Nearly two million lines would take seconds: the client that asked for them learns that the server stops. */
 static void a_history_that_is_being_computed_ends_with_the_server(void **state)
 {
 	struct service *service = *state;
@@ -290,8 +290,8 @@ static void twenty_more_servers_on_one_database_are_refused(void **state)
 	free(study);
 }
 
-/* What systemd is told next. */
-static void expect_told(int end, const char *want)
+/* The next message to systemd. */
+static void expect_notice(int end, const char *want)
 {
 	char text[64];
 	ssize_t n = recv(end, text, sizeof text - 1, 0);
@@ -300,7 +300,7 @@ static void expect_told(int end, const char *want)
 	assert_string_equal(text, want);
 }
 
-static void systemd_is_told_when_it_is_ready_alive_and_stopping(void **state)
+static void systemd_is_notified_when_it_is_ready_alive_and_stopping(void **state)
 {
 	struct service *service = service_new();
 	struct sockaddr_un at = {.sun_family = AF_UNIX};
@@ -314,9 +314,9 @@ static void systemd_is_told_when_it_is_ready_alive_and_stopping(void **state)
 	service_start(service, 1);
 	unsetenv("NOTIFY_SOCKET");
 	unsetenv("WATCHDOG_USEC");
-	expect_told(end, "READY=1");
-	expect_told(end, "WATCHDOG=1");
-	expect_told(end, "WATCHDOG=1");
+	expect_notice(end, "READY=1");
+	expect_notice(end, "WATCHDOG=1");
+	expect_notice(end, "WATCHDOG=1");
 	service_stop(service);
 	// more of the same may lie between
 	char last[64] = "";
@@ -329,8 +329,8 @@ static void systemd_is_told_when_it_is_ready_alive_and_stopping(void **state)
 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
-CHECK_MAIN(cmocka_unit_test(systemd_is_told_when_it_is_ready_alive_and_stopping),
-           SERVED(an_idle_server_and_one_at_work_end_when_they_are_told),
+CHECK_MAIN(cmocka_unit_test(systemd_is_notified_when_it_is_ready_alive_and_stopping),
+           SERVED(an_idle_server_and_one_at_work_end_when_they_are_stopped),
            cmocka_unit_test(it_ends_soon_whatever_runs_and_so_does_a_cancelled_study),
            SERVED(a_terminal_that_hangs_up_does_not_end_it),
            SERVED(a_second_signal_ends_it_at_once_and_nothing_is_lost),

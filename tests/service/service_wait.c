@@ -83,7 +83,7 @@ static void asked(const struct service *service, const char *method, const char 
 	assert_int_equal(answer->n, 1);
 }
 
-static void a_304_tells_of_no_body_and_of_no_other_length_than_that_of_the_200(void **state)
+static void a_304_has_no_body_and_no_other_length_than_that_of_the_200(void **state)
 {
 	static const char *const documents[] = {
 	    "", "/request", "/results", "/results?format=csv", "/samples", "/samples?format=npy"};
@@ -100,8 +100,8 @@ static void a_304_tells_of_no_body_and_of_no_other_length_than_that_of_the_200(v
 		asked(service, "GET", path, "*", &known);
 		assert_int_equal(whole.status, 200);
 		assert_int_equal(known.status, 304);
-		const char *told = strstr(known.text, length), *right = strstr(whole.text, length);
-		if (told && atoi(told + strlen(length)) != atoi(right + strlen(length)))
+		const char *status = strstr(known.text, length), *right = strstr(whole.text, length);
+		if (status && atoi(status + strlen(length)) != atoi(right + strlen(length)))
 			fail_msg("%s: %s\n%s", path, whole.text, known.text);
 		assert_null(strstr(known.text, "\r\nContent-Type:"));
 		assert_null(strstr(known.text, "\r\nTransfer-Encoding:"));
@@ -172,7 +172,7 @@ static void formats_of_one_result_have_tags_of_their_own(void **state)
 	answer_free(&csv);
 }
 
-static void who_waits_for_nothing_is_told_304_when_the_time_is_over(void **state)
+static void waiting_without_a_change_gets_304_when_the_time_is_over(void **state)
 {
 	struct service *service = *state;
 	char id[17], path[64];
@@ -249,7 +249,7 @@ struct waiter {
 	const struct service *service;
 	char path[64], tag[64];
 	struct answer answer;
-	double told;
+	double answered;
 	pthread_t thread;
 };
 
@@ -257,7 +257,7 @@ static void *wait_in_thread(void *of)
 {
 	struct waiter *waiter = of;
 	waiter->answer = conditional(waiter->service, waiter->path, waiter->tag, "wait=30");
-	waiter->told = now();
+	waiter->answered = now();
 	return NULL;
 }
 
@@ -280,7 +280,7 @@ static void waiters_start(struct waiter waiters[WAITERS], const struct service *
 	}
 }
 
-static void who_waits_for_a_change_is_told_of_it(void **state)
+static void a_waiting_client_is_answered_at_a_change(void **state)
 {
 	struct service *service = *state;
 	static struct waiter waiters[WAITERS];
@@ -296,10 +296,10 @@ static void who_waits_for_a_change_is_told_of_it(void **state)
 		pthread_join(waiters[i].thread, NULL);
 		assert_int_equal(waiters[i].answer.status, 200);
 		assert_non_null(strstr(waiters[i].answer.body, "\"cancelled\""));
-		latest = waiters[i].told - changed > latest ? waiters[i].told - changed : latest;
+		latest = waiters[i].answered - changed > latest ? waiters[i].answered - changed : latest;
 		answer_free(&waiters[i].answer);
 	}
-	check_report("%d told of a change, the last after %.0f ms", WAITERS, 1e3 * latest);
+	check_report("%d clients learned of a change, the last after %.0f ms", WAITERS, 1e3 * latest);
 }
 
 static void a_study_can_be_followed_to_its_end_by_waiting_alone(void **state)
@@ -307,12 +307,12 @@ static void a_study_can_be_followed_to_its_end_by_waiting_alone(void **state)
 	struct service *service = *state;
 	char id[17], path[64], tag[64] = "\"none\"";
 	char *study = service_study(SERVICE_ROWS, 5, 1);
-	int told = 0;
+	int changes = 0;
 	double done = -1;
 	service_submit(service, study, id);
 	free(study);
 	snprintf(path, sizeof path, "/v1/studies/%s", id);
-	for (bool over = false; !over; told++) {
+	for (bool over = false; !over; changes++) {
 		struct answer answer = conditional(service, path, tag, "wait=30");
 		assert_int_equal(answer.status, 200);
 		assert_string_not_equal(answer.etag, tag);
@@ -324,10 +324,10 @@ static void a_study_can_be_followed_to_its_end_by_waiting_alone(void **state)
 		reading_close(status);
 		answer_free(&answer);
 	}
-	assert_true(told >= 3);
+	assert_true(changes >= 3);
 }
 
-static void a_server_that_stops_tells_who_waits(void **state)
+static void a_server_that_stops_answers_waiting_clients(void **state)
 {
 	struct service *service = *state;
 	static struct waiter waiters[WAITERS];
@@ -362,8 +362,8 @@ static void a_client_that_waits_and_goes_away_is_no_harm(void **state)
 	service_stop(service);
 }
 
-/* How many requests for samples were told a status, by the server's own count. */
-static int told(const struct service *service, int status)
+/* How many requests for samples were answered with a status, by the server's own count. */
+static int answered(const struct service *service, int status)
 {
 	char line[128];
 	struct answer metrics = service_get(service, "/metrics");
@@ -399,9 +399,9 @@ static void ask_behind_who_has_gone(const struct service *service, const char *i
 	             took);
 	assert_true(took < 3 * one); // behind those of all of them it would be GONE / 2 + 1
 	// of some it may not even have seen the request
-	assert_in_range(told(service, 499), 1, GONE);
-	assert_int_equal(told(service, 200), 2);
-	assert_int_equal(told(service, 503), 0);
+	assert_in_range(answered(service, 499), 1, GONE);
+	assert_int_equal(answered(service, 200), 2);
+	assert_int_equal(answered(service, 503), 0);
 	assert_int_equal(again.status, 200);
 	assert_int_equal(again.length, whole.length);
 	assert_memory_equal(again.body, whole.body, whole.length);
@@ -428,14 +428,15 @@ static void samples_for_a_client_who_has_gone_are_given_up(void **state)
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(every_form_of_a_known_tag_is_304_on_every_document),
-           SERVED(a_304_tells_of_no_body_and_of_no_other_length_than_that_of_the_200),
+           SERVED(a_304_has_no_body_and_no_other_length_than_that_of_the_200),
            SERVED(a_connection_goes_on_after_a_304),
            SERVED(a_study_without_samples_is_409_whatever_tag_is_sent),
            SERVED(formats_of_one_result_have_tags_of_their_own),
-           SERVED(who_waits_for_nothing_is_told_304_when_the_time_is_over),
+           SERVED(waiting_without_a_change_gets_304_when_the_time_is_over),
            cmocka_unit_test(more_seconds_than_there_are_are_the_most_there_are),
-           SERVED(who_waits_for_a_change_is_told_of_it),
+           SERVED(a_waiting_client_is_answered_at_a_change),
            SERVED(a_study_can_be_followed_to_its_end_by_waiting_alone),
-           SERVED(a_server_that_stops_tells_who_waits), SERVED(a_client_that_waits_and_goes_away_is_no_harm),
+           SERVED(a_server_that_stops_answers_waiting_clients),
+           SERVED(a_client_that_waits_and_goes_away_is_no_harm),
            SERVED(histories_for_a_client_who_has_gone_are_given_up),
            SERVED(samples_for_a_client_who_has_gone_are_given_up))

@@ -1,7 +1,7 @@
 /* baseline_loop.c - central differences with a fixed step, one simulation at a time, at two levels of care:
  *
  * 1. plain: the force of every spring and dashpot at each step, as it is written first;
- * 2. tuned: all of it multiplied out before the loop into 2 x 2 products for apart and for touching, which is as fast
+ * 2. tuned: all of it multiplied out before the loop into 2 x 2 products without contact and in contact, which is as fast
  *    as one simulation at a time gets. */
 #include "tests/support/baseline_loop.h"
 

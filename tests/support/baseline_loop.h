@@ -2,8 +2,8 @@
  * measured against.
  *
  * Never linked into the product.  SI units; calls may run in any thread. */
-#ifndef YARDSTICK_H
-#define YARDSTICK_H
+#ifndef BASELINE_LOOP_H
+#define BASELINE_LOOP_H
 
 #include "engine/exact/task.h"
 

@@ -146,7 +146,7 @@ static struct reading *call(struct browser *browser, const char *method, const c
 	}
 }
 
-static void tell(struct browser *browser, const char *method, const char *parameters)
+static void command(struct browser *browser, const char *method, const char *parameters)
 {
 	reading_close(call(browser, method, parameters));
 }
@@ -184,14 +184,14 @@ struct browser *browser_new(const char *folder, bool dark, int width, int height
 	reading_close(session);
 	reading_close(target);
 	for (size_t i = 0; i < sizeof domains / sizeof domains[0]; i++)
-		tell(browser, domains[i], "{}");
+		command(browser, domains[i], "{}");
 	snprintf(parameters, sizeof parameters,
 	         "{\"features\": [{\"name\": \"prefers-color-scheme\", \"value\": \"%s\"}]}",
 	         dark ? "dark" : "light");
-	tell(browser, "Emulation.setEmulatedMedia", parameters);
+	command(browser, "Emulation.setEmulatedMedia", parameters);
 	snprintf(parameters, sizeof parameters,
 	         "{\"width\": %d, \"height\": %d, \"deviceScaleFactor\": 1, \"mobile\": false}", width, height);
-	tell(browser, "Emulation.setDeviceMetricsOverride", parameters);
+	command(browser, "Emulation.setDeviceMetricsOverride", parameters);
 	return browser;
 }
 
@@ -209,7 +209,7 @@ void browser_free(struct browser *browser)
 void browser_go(struct browser *browser, const char *url)
 {
 	char *parameters = with_text("url", url, "");
-	tell(browser, "Page.navigate", parameters);
+	command(browser, "Page.navigate", parameters);
 	free(parameters);
 }
 
@@ -251,7 +251,7 @@ void browser_press(struct browser *browser, const char *key)
 		snprintf(parameters, sizeof parameters,
 		         "{\"type\": \"%s\", \"key\": \"%s\", \"code\": \"%s\", \"windowsVirtualKeyCode\": %d%s}",
 		         types[i], key, key, enter ? 13 : 9, enter && i == 0 ? ", \"text\": \"\\r\"" : "");
-		tell(browser, "Input.dispatchKeyEvent", parameters);
+		command(browser, "Input.dispatchKeyEvent", parameters);
 	}
 }
 
@@ -272,7 +272,7 @@ void browser_tab(struct browser *browser, const char *id)
 void browser_type(struct browser *browser, const char *text)
 {
 	char *parameters = with_text("text", text, "");
-	tell(browser, "Input.insertText", parameters);
+	command(browser, "Input.insertText", parameters);
 	free(parameters);
 }
 

@@ -45,7 +45,7 @@ void faults_free(struct faults *faults)
 	munmap(faults, sizeof *faults);
 }
 
-void faults_told(const struct faults *faults, int64_t number)
+void faults_answered(const struct faults *faults, int64_t number)
 {
 	const struct faults_entry entry = {.event = FAULTS_TOLD, .offset = number};
 	char path[256];

@@ -16,7 +16,7 @@
 
 struct faults {
 	char folder[128]; /* of the database */
-	// each counts its calls down, and the one that comes to 0 fails; 0: none does
+	// each counts its calls down, and the one that reaches 0 fails; 0: none does
 	atomic_long disk_fails_in;   /* a write, sync or change of size: EIO */
 	atomic_long disk_kills_in;   /* likewise, but the process dies before it */
 	atomic_long memory_fails_in; /* an allocation: NULL */
@@ -51,8 +51,8 @@ struct __attribute__((packed)) faults_entry { // one after the other in a file
 	int64_t offset, size; /* the bytes of a write follow */
 };
 
-/* Adds to the record what a client was told. */
-void faults_told(const struct faults *faults, int64_t number);
+/* Adds to the record what a client was answered. */
+void faults_answered(const struct faults *faults, int64_t number);
 
 #define FAULTS_VARIABLE "POUND_FAULTS" /* the file that is shared */
 

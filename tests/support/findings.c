@@ -173,7 +173,7 @@ static struct pound_estimate interaction(const struct evidence *e, enum effect e
 	return difference(index[TOTAL][j], index[FIRST][j]);
 }
 
-static enum outcome totals_apart(const struct evidence *e, const struct finding *x, int law, int f)
+static enum outcome totals_differ(const struct evidence *e, const struct finding *x, int law, int f)
 {
 	enum outcome all = HOLDS;
 	for (int j = 0; j < INPUTS; j++)
@@ -282,7 +282,7 @@ const struct finding findings[] = {
      "these bounds are quite narrow and thus it is concluded that the accuracy of the results is quite satisfactory",
      5, AMPLIFICATION, TOTAL, narrow, EVERY_LAW, EVERY_F1, ALL},
     {"the total of every input is above its first-order index, by 0.05 or more", INTERACTIONS,
-     5, AMPLIFICATION, TOTAL, totals_apart, EVERY_LAW, EVERY_F1, GENERAL},
+     5, AMPLIFICATION, TOTAL, totals_differ, EVERY_LAW, EVERY_F1, GENERAL},
     {"interactions are important: the first-order indices add up to less than 0.75", INTERACTIONS,
      5, AMPLIFICATION, FIRST, interactions_important, EVERY_LAW, EVERY_F1, GENERAL},
     {"the frequency ratio is first", LEADERS,

@@ -1,6 +1,6 @@
 /* floor_tasks.h - tasks of specimens, for tests of what follows one floor. */
-#ifndef RIDING_H
-#define RIDING_H
+#ifndef FLOOR_TASKS_H
+#define FLOOR_TASKS_H
 
 #include "engine/floor/floor.h"
 #include "tests/support/scenes.h"

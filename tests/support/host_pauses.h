@@ -2,8 +2,8 @@
  *
  * A thread on each processor, before all others where it may (SCHED_FIFO), wakes every two milliseconds; when it was not
  * woken, nobody was. */
-#ifndef AWAY_H
-#define AWAY_H
+#ifndef HOST_PAUSES_H
+#define HOST_PAUSES_H
 
 #include <stdbool.h>
 

@@ -44,7 +44,7 @@ double latency_quantile(struct latencies *l, double part)
 	return 1e3 * (answer->came - answer->asked);
 }
 
-void latency_told(const char *what, struct latencies *l)
+void latency_report(const char *what, struct latencies *l)
 {
 	check_report("%s: %d, p50 %.2f ms, p99 %.2f ms, most %.1f ms", what, l->n, latency_quantile(l, 0.5),
 	             latency_quantile(l, 0.99), latency_quantile(l, 1));

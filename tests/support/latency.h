@@ -13,7 +13,7 @@ double latency_now(void); /* [s] of the wall clock */
 void latency_add(struct latencies *l, double asked, double came);
 double latency_quantile(struct latencies *l,
                         double part); /* what a part of them is below [ms]; 0: there are none */
-void latency_told(const char *what, struct latencies *l); /* prints their number, p50, p99 and maximum */
+void latency_report(const char *what, struct latencies *l); /* prints their number, p50, p99 and maximum */
 
 /* Leaves those out that came while the machine was away (tests/support/host_pauses.h), after host_pauses_stop. */
 void latency_there(struct latencies *l);

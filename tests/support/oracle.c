@@ -21,7 +21,7 @@ enum { U1, V1, U2, V2, IMPULSE, STATES };
 // cuts of one step; more are the rounding noise of a velocity that is zero
 enum { CUTS_MAX = 16 };
 
-// of a touching step: how near an event is located, and still wide enough to tell a grazing start from rounding
+// of a touching step: how near an event is located, and still wide enough to distinguish a grazing start from rounding
 static const real near_event = 1e-12L;
 
 static const real pi = 3.14159265358979323846264338327950288L;
@@ -44,7 +44,7 @@ struct interval {
 	real a, slope;
 };
 
-struct course {
+struct trajectory {
 	real y[STATES];
 	real time; // of the interval's start
 	real s;    // since then
@@ -129,7 +129,7 @@ static real bisected(const struct pair *pair, const struct interval *in, real s,
 	return h;
 }
 
-static void contact_starts(struct course *at)
+static void contact_starts(struct trajectory *at)
 {
 	at->contact_start = at->time + at->s;
 	at->approach = at->y[V1] - at->y[V2];
@@ -137,7 +137,7 @@ static void contact_starts(struct course *at)
 	at->contacts++;
 }
 
-static void contact_ends(struct course *at)
+static void contact_ends(struct trajectory *at)
 {
 	real duration = at->time + at->s - at->contact_start;
 	at->contact_time += duration;
@@ -155,7 +155,7 @@ static void contact_ends(struct course *at)
 }
 
 // what holds at the end of a step: memories, touching, largest values
-static void settle(struct pair *pair, struct course *at)
+static void settle(struct pair *pair, struct trajectory *at)
 {
 	for (int body = 0; body < 2; body++) {
 		real u = at->y[2 * body];
@@ -172,7 +172,7 @@ static void settle(struct pair *pair, struct course *at)
 }
 
 // one nominal step, in as many pieces as its branches need; ends early when the contact opens or closes
-static void step(struct pair *pair, const struct interval *in, real end_of_interval, struct course *at)
+static void step(struct pair *pair, const struct interval *in, real end_of_interval, struct trajectory *at)
 {
 	real h_whole = pair->touching ? pair->step_touching : pair->step_free;
 	// from rest everything starts with powers of time, of which one step sees nothing
@@ -190,7 +190,7 @@ static void step(struct pair *pair, const struct interval *in, real end_of_inter
 	}
 }
 
-static void march(struct pair *pair, const struct oracle_motion *motion, struct course *at)
+static void march(struct pair *pair, const struct oracle_motion *motion, struct trajectory *at)
 {
 	real dt = motion->time_step;
 	settle(pair, at);
@@ -252,12 +252,12 @@ static struct pair pair_of(const struct pound_scene *scene, const double yield[2
 	return pair;
 }
 
-static struct course course_of(const struct pound_scene *scene, const double yield[2],
-                               const struct oracle_motion *motion, const struct oracle_method *method,
-                               const struct oracle_start *start, struct oracle_trace *trace)
+static struct trajectory trajectory_of(const struct pound_scene *scene, const double yield[2],
+                                       const struct oracle_motion *motion, const struct oracle_method *method,
+                                       const struct oracle_start *start, struct oracle_trace *trace)
 {
 	struct pair pair = pair_of(scene, yield, method);
-	struct course at = {.trace = trace};
+	struct trajectory at = {.trace = trace};
 	if (start) {
 		at.y[U1] = start->u1;
 		at.y[V1] = start->v1;
@@ -285,7 +285,7 @@ static void yield_displacements(const struct pound_scene *scene, const struct or
 	struct pound_scene apart = *scene;
 	apart.contact.present = false;
 	const double none[2] = {0};
-	struct course elastic = course_of(&apart, none, motion, method, NULL, NULL);
+	struct trajectory elastic = trajectory_of(&apart, none, motion, method, NULL, NULL);
 	bool searched[2], corrected = false;
 	for (int body = 0; body < 2; body++) {
 		const struct pound_law *law = law_of(scene, body);
@@ -300,7 +300,7 @@ static void yield_displacements(const struct pound_scene *scene, const struct or
 	}
 	if (!corrected)
 		return;
-	struct course run = course_of(&apart, yield, motion, method, NULL, NULL);
+	struct trajectory run = trajectory_of(&apart, yield, motion, method, NULL, NULL);
 	for (int body = 0; body < 2; body++)
 		if (searched[body] && law_of(scene, body)->corrections == 1)
 			yield[body] = (double)run.u_max[body] / law_of(scene, body)->target_demand;
@@ -325,10 +325,10 @@ struct pound_response oracle_response(const struct pound_scene *scene, const str
 	apart.contact.present = false;
 	double yield[2];
 	yield_displacements(scene, motion, method, yield);
-	struct course free = course_of(&apart, yield, motion, method, start, NULL);
+	struct trajectory free = trajectory_of(&apart, yield, motion, method, start, NULL);
 	if (trace)
 		trace->n_contacts = 0;
-	struct course at = course_of(scene, yield, motion, method, start, trace);
+	struct trajectory at = trajectory_of(scene, yield, motion, method, start, trace);
 
 	bool yields[2] = {yield[0] > 0, yield[1] > 0}, wall = scene->oscillators[1].rigid_wall;
 	return (struct pound_response){

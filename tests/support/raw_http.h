@@ -1,8 +1,8 @@
 /* raw_http.h - bytes to a server and back, for what no HTTP library would send.
  *
  * What goes wrong in here fails the test. */
-#ifndef RAW_H
-#define RAW_H
+#ifndef RAW_HTTP_H
+#define RAW_HTTP_H
 
 #include "tests/support/service.h"
 

@@ -1,8 +1,8 @@
 /* scenes.h - response studies built in C, for tests of the engine without documents.
  *
  * SI units.  A specimen owns its record; the study inside points at it, so a specimen stays where it is. */
-#ifndef SPECIMEN_H
-#define SPECIMEN_H
+#ifndef SCENES_H
+#define SCENES_H
 
 #include <pthread.h>
 #include <time.h>

@@ -96,7 +96,7 @@ struct service_bytes {
 
 struct service_bytes service_bytes(const struct service *service,
                                    const char *id); /* of one that has succeeded */
-/* What a study comes to in a server of its own, with so many workers and nothing in between. */
+/* The result of a study in a server of its own, with so many workers and nothing in between. */
 struct service_bytes service_uninterrupted(const char *study, int n_workers);
 /* Fails the test unless they are the same; frees the first. */
 void service_bytes_compare(struct service_bytes *bytes, const struct service_bytes *reference);

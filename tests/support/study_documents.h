@@ -1,6 +1,6 @@
 /* study_documents.h - study documents for tests: complete ones, and copies with one piece of text replaced. */
-#ifndef DOCUMENTS_H
-#define DOCUMENTS_H
+#ifndef STUDY_DOCUMENTS_H
+#define STUDY_DOCUMENTS_H
 
 #include "engine/pound.h"
 #include "schema/json/problems.h"

@@ -244,7 +244,7 @@ static void a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_w
 	check_near(high, 5, 0);
 }
 
-static void lists_that_make_no_distribution_are_told_in_words(void **state)
+static void lists_that_make_no_distribution_are_reported_in_words(void **state)
 {
 	(void)state;
 	static const struct {
@@ -265,7 +265,7 @@ static void lists_that_make_no_distribution_are_told_in_words(void **state)
 	}
 }
 
-static void parameters_that_make_no_distribution_are_told_in_words(void **state)
+static void parameters_that_make_no_distribution_are_reported_in_words(void **state)
 {
 	(void)state;
 	static const struct {
@@ -300,7 +300,7 @@ static void parameters_that_make_no_distribution_are_told_in_words(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_weights),
-           cmocka_unit_test(lists_that_make_no_distribution_are_told_in_words),
+           cmocka_unit_test(lists_that_make_no_distribution_are_reported_in_words),
            cmocka_unit_test(every_quantile_inverts_its_distribution_function),
            cmocka_unit_test(quantiles_rise_with_the_probability),
            cmocka_unit_test(mass_ratio_quantiles_and_moments_are_those_of_the_closed_form),
@@ -308,4 +308,4 @@ CHECK_MAIN(cmocka_unit_test(a_discrete_quantile_is_a_staircase_with_its_edges_at
            cmocka_unit_test(beta_quantiles_end_for_any_allowed_exponents),
            cmocka_unit_test(a_truncated_normal_keeps_its_digits_far_in_the_tail),
            cmocka_unit_test(the_support_is_given_by_the_parameters),
-           cmocka_unit_test(parameters_that_make_no_distribution_are_told_in_words))
+           cmocka_unit_test(parameters_that_make_no_distribution_are_reported_in_words))

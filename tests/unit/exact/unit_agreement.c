@@ -2,7 +2,7 @@
  *
  *   1. Each seed is a random specimen.
  *   2. The oracle gives its answer with two step lengths, and with a motion whose samples are moved by 1e-9 of
- *      themselves at random: the first tells its own error, the second how much a rounding is amplified.
+ *      themselves at random: the first shows its own error, the second how much a rounding is amplified.
  *   3. The engine must agree within that error and that amplification times its roundings.  Where the motion is so
  *      chaotic that the oracle does not agree with itself to 1e-6, half the duration is tried. */
 #include "tests/support/check.h"

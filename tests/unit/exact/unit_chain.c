@@ -259,19 +259,19 @@ static void rows_have_the_same_bytes_at_every_lane_count(void **state)
 }
 
 /* Whole samples by modes against power series alone, which a balance of energy asks for. */
-static void flights_go_where_series_do(void **state)
+static void free_motion_agrees_with_series(void **state)
 {
 	(void)state;
-	static struct row flown, slow;
+	static struct row modal, slow;
 	double worst = 0, residual = 0;
 	const int rows = check_count(30, 2000);
 	for (int number = 0; number < rows; number++) {
-		const int n = row_random(&flown, (uint64_t)number);
-		slow = flown;
+		const int n = row_random(&modal, (uint64_t)number);
+		slow = modal;
 		const unsigned asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS;
-		const struct pound_chain_task task = row_task(&flown, n, 0.01, asked);
+		const struct pound_chain_task task = row_task(&modal, n, 0.01, asked);
 		const struct pound_chain_task same = row_task(&slow, n, 0.01, asked | POUND_CHAIN_ENERGY);
-		assert_int_equal(row_run(&flown, &task, 0).status, POUND_OK);
+		assert_int_equal(row_run(&modal, &task, 0).status, POUND_OK);
 		const struct pound_chain_result result = row_run(&slow, &same, 0);
 		assert_int_equal(result.status, POUND_OK);
 		residual = fmax(residual, result.energy_residual);
@@ -279,12 +279,13 @@ static void flights_go_where_series_do(void **state)
 			double top = 0, error = 0;
 			for (int i = 0; i < task.n_floors; i++) {
 				top = fmax(top, slow.floor_measures[i][m]);
-				error = fmax(error, fabs(slow.floor_measures[i][m] - flown.floor_measures[i][m]));
+				error = fmax(error, fabs(slow.floor_measures[i][m] - modal.floor_measures[i][m]));
 			}
 			worst = fmax(worst, error / top);
 		}
 	}
-	check_report("%d rows: flown off series by %.1e, energy residual %.1e at most", rows, worst, residual);
+	check_report("%d rows: free motion off series by %.1e, energy residual %.1e at most", rows, worst,
+	             residual);
 	assert_true(residual < 1e-11);
 	assert_true(worst < 1e-11); // impacts make an error grow
 }
@@ -476,7 +477,7 @@ CHECK_MAIN(cmocka_unit_test(two_and_two_stories_come_out),
            cmocka_unit_test(a_row_of_three_comes_out), cmocka_unit_test(a_wall_comes_out),
            cmocka_unit_test(levels_within_stories_come_out),
            cmocka_unit_test(rows_have_the_same_bytes_at_every_lane_count),
-           cmocka_unit_test(flights_go_where_series_do),
+           cmocka_unit_test(free_motion_agrees_with_series),
            cmocka_unit_test(a_mirrored_row_under_a_mirrored_ground_is_mirrored),
            cmocka_unit_test(equal_buildings_do_not_meet), cmocka_unit_test(a_linear_row_scales),
            cmocka_unit_test(an_observer_gets_the_whole_motion_of_a_floor),

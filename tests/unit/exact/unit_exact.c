@@ -135,7 +135,7 @@ static void wall_impacts_lose_speed_by_restitution_and_damping(void **state)
 		t += PI / wd, v *= exp(-xi * w * PI / wd);
 	}
 	assert_int_equal(r.contacts, contacts);
-	// last free flight, away from the wall
+	// last free motion, away from the wall
 	check_near(r.u[0], -v / wd * exp(-xi * w * (20 - t)) * sin(wd * (20 - t)), 1e-12);
 }
 
@@ -175,7 +175,7 @@ static void bodies_at_rest_without_ground_motion_stay_at_rest(void **state)
 
 /* ---- the same bits at every lane count ---- */
 
-enum { TASKS = 149, SAMPLES = 700 }; // more tasks than are in flight at once, at any lane count
+enum { TASKS = 149, SAMPLES = 700 }; // more tasks than are simulated at once, at any lane count
 
 static void tasks_fill(struct pound_task *tasks, double *ground, uint64_t seed)
 {
@@ -278,11 +278,11 @@ static void more_swings_than_can_be_noted_have_their_largest_displacement(void *
 	                                      .u = cos(PI / 12),
 	                                      .v = w * sin(PI / 12),
 	                                      .followed = true}}};
-	const double flown = march(&task).displacement_max[0];
+	const double mapped = march(&task).displacement_max[0];
 	task.accounted = true;
 	const double stepped = march(&task).displacement_max[0];
 	assert_true(stepped > 1.005);
-	check_near(flown / stepped, 1, 16 * 2.2e-16 * SWINGS);
+	check_near(mapped / stepped, 1, 16 * 2.2e-16 * SWINGS);
 }
 
 /* Energy is accounted for in single steps only: whole samples are to find what these do, on every law. */
@@ -292,7 +292,7 @@ static void whole_samples_find_the_largest_displacements_of_single_steps(void **
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	static double ground[TASKS * SAMPLES];
 	struct pound_task tasks[TASKS];
-	struct pound_task_result flown[TASKS], stepped[TASKS];
+	struct pound_task_result mapped[TASKS], stepped[TASKS];
 	static const double samples[] = {0.017, 0.052}; // up to 0.6 and 1.8 rad
 	for (int k = 0; k < 2; k++) {
 		tasks_fill(tasks, ground, 4);
@@ -301,13 +301,13 @@ static void whole_samples_find_the_largest_displacements_of_single_steps(void **
 			tasks[t].gap = 1e3;
 			tasks[t].bodies[1].followed = true;
 		}
-		pound_exact_lanes(0, tasks, flown, TASKS, scratch, NULL);
+		pound_exact_lanes(0, tasks, mapped, TASKS, scratch, NULL);
 		for (int t = 0; t < TASKS; t++)
 			tasks[t].accounted = true;
 		pound_exact_lanes(0, tasks, stepped, TASKS, scratch, NULL);
 		for (int t = 0; t < TASKS; t++)
 			for (int i = 0; i < 2; i++)
-				check_near(flown[t].displacement_max[i] / stepped[t].displacement_max[i], 1,
+				check_near(mapped[t].displacement_max[i] / stepped[t].displacement_max[i], 1,
 				           16 * 2.2e-16 * SAMPLES);
 	}
 }
@@ -351,7 +351,7 @@ static void a_run_does_not_depend_on_its_neighbours(void **state)
 	check_alone_as_together(tasks);
 }
 
-/* Apart and at rest in the end: when that is noticed is a simulation's own affair. */
+/* Separated and at rest in the end: when that is noticed is a simulation's own affair. */
 static void a_motion_that_dies_away_does_not_depend_on_its_neighbours(void **state)
 {
 	(void)state;

@@ -124,7 +124,7 @@ static const struct extreme extremes[] = {
 	{"pressed, K/k 1e8", {{WALL, 1}, {K_RATIO, 1e8}}, STEP, .samples = 31, .compared = 11, .contacts = 200},
 	{"pressed, K/k 1e8, eps 0", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 0}}, STEP, .samples = 31, .compared = 11, .contacts = 1},
 	{"pressed, K/k 1e8, eps 1", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 1}}, STEP, .samples = 31, .compared = 3, .contacts = 1},
-	// its velocity dies away to nothing, and no bound of it can tell that it still goes its way
+	// its velocity dies away to nothing, and no bound of it can prove that it still goes its way
 	{"creeping where it yielded, K/k 1e12, eps 0",
 	 {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-15}, {K_RATIO, 1e12}, {EPS, 0}}, STEP, .samples = 20, .step = 0.05, .contacts = 1},
 	// 9e15 cells of contact in a sample

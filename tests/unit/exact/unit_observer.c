@@ -1,4 +1,4 @@
-/* unit_observer.c - the instants that an observer is told: closed forms, another solver, no holes, the same bits anywhere. */
+/* unit_observer.c - the instants that an observer gets: closed forms, another solver, no holes, the same bits anywhere. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -12,7 +12,7 @@ static const double PI = 3.14159265358979323846;
 
 enum { INSTANTS_MAX = 1 << 15 };
 
-/* the instants of a task, in the order in which they were told */
+/* the instants of a task, in the order in which they were reported */
 struct story {
 	int n;
 	struct pound_instant_of_task at[INSTANTS_MAX];
@@ -72,7 +72,7 @@ static void an_isolated_impact_is_two_events(void **state)
 	}
 }
 
-/* Every sample is told, in the order of time, and between two of them what elapses is the sample step. */
+/* Every sample is reported, in the order of time, and between two of them what elapses is the sample step. */
 static void check_whole(const struct pound_task *task)
 {
 	const double h = task->time_step;
@@ -203,7 +203,7 @@ static void check_same(const struct story *a, const struct story *b)
 	}
 }
 
-static void every_lane_count_tells_the_same_bits(void **state)
+static void every_lane_count_reports_the_same_bits(void **state)
 {
 	(void)state;
 	for (int number = 0; number < 40; number++) {
@@ -261,5 +261,5 @@ CHECK_MAIN(cmocka_unit_test(an_isolated_impact_is_two_events), cmocka_unit_test(
            cmocka_unit_test(instants_go_on_in_silence),
            cmocka_unit_test(an_observed_motion_is_that_of_the_unobserved),
            cmocka_unit_test(an_observed_motion_is_that_of_the_adaptive_solver),
-           cmocka_unit_test(every_lane_count_tells_the_same_bits),
+           cmocka_unit_test(every_lane_count_reports_the_same_bits),
            cmocka_unit_test(an_observer_changes_nothing_for_others_nor_they_for_it))

@@ -89,7 +89,7 @@ static void an_oscillator_under_sampled_force_follows_the_textbook(void **state)
 /* One impact. */
 
 /* A mass on a spring too soft to matter ((2 pi 1e-7 Hz 1 s)^2 = 4e-13) is set moving at 1 m/s by a triangle of ground
- * acceleration and meets the wall in free flight. */
+ * acceleration and meets the wall in free motion. */
 static double rebound(double restitution, bool tension, double *duration)
 {
 	enum { SAMPLES = 101 };
@@ -146,7 +146,7 @@ static void a_plastic_impact_that_may_pull_stops_the_body(void **state)
 }
 
 /* With zero gap the wall only makes the oscillator stiffer and more damped while u > 0, so every half swing is a
- * damped half sine of its own frequency.  The state in flight after the pulse is the engine's own of a shorter run. */
+ * damped half sine of its own frequency.  The state of free motion after the pulse is the engine's own of a shorter run. */
 static void a_wall_without_gap_is_touched_every_two_half_swings(void **state)
 {
 	(void)state;
@@ -163,17 +163,18 @@ static void a_wall_without_gap_is_touched_every_two_half_swings(void **state)
 		a[1] = 100;
 		struct pound_response end = specimen_engine(&specimen);
 		scene->excitation.n_record = FROM;
-		struct pound_response flight = specimen_engine(&specimen);
+		struct pound_response free_motion = specimen_engine(&specimen);
 		specimen_free(&specimen);
-		assert_true(flight.contact_count == 0 && flight.end_u1 < 0);
+		assert_true(free_motion.contact_count == 0 && free_motion.end_u1 < 0);
 
 		double w = 2 * pi, xi = 0.05, wd = w * sqrt(1 - xi * xi), l = log(restitutions[k]);
 		double w2 = w * sqrt(1001), xi2 = (xi * w - l / hypot(pi, l) * sqrt(1000) * w) / w2;
 		double apart = pi / wd, together = pi / (w2 * sqrt(1 - xi2 * xi2));
 		double slower = exp(-pi * xi / sqrt(1 - xi * xi)), slower2 = exp(-pi * xi2 / sqrt(1 - xi2 * xi2));
 		// u = e^(-xi w t) (u0 cos + s sin): rises through 0 at wd t = atan2(-u0, s)
-		double s = (flight.end_v1 + xi * w * flight.end_u1) / wd, to = atan2(-flight.end_u1, s) / wd;
-		double t = (FROM - 1) * 0.01 + to, v = exp(-xi * w * to) * hypot(flight.end_u1, s) * wd;
+		double s = (free_motion.end_v1 + xi * w * free_motion.end_u1) / wd,
+		       to = atan2(-free_motion.end_u1, s) / wd;
+		double t = (FROM - 1) * 0.01 + to, v = exp(-xi * w * to) * hypot(free_motion.end_u1, s) * wd;
 		double impulse = 1000 / 1001.0 * v * (1 + slower2);
 		int contacts = 0;
 		while (t + together < (TO - 1) * 0.01) {

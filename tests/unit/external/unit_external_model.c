@@ -308,7 +308,7 @@ static void a_scene_without_random_signals_has_no_noise_to_share(void **state)
 	}
 }
 
-static void an_inert_input_has_no_total_once_replicates_tell_the_noise(void **state)
+static void an_inert_input_has_no_total_once_replicates_give_the_noise(void **state)
 {
 	(void)state;
 	enum { N = 1000, D = FUNCTION_INPUTS, SAMPLES = D + 2, R = 5 };
@@ -477,7 +477,7 @@ static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
 			check_near(index_of(result, o, j, "ST_raw"), cell->indices[o].index[POUND_ST_RAW][j].value,
 			           1e-12);
 		}
-		// its samples share their signals, of which the variances tell too little
+		// its samples share their signals, of which the variances are too uncertain
 		assert_non_null(strstr(reading_text(result, "/cells/0/outputs/%d/note", o), "share their noise"));
 	}
 	reading_close(result);
@@ -486,7 +486,7 @@ static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
 	study_free(study);
 }
 
-static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
+static void every_fault_of_the_outputs_is_reported_with_its_line(void **state)
 {
 	(void)state;
 	// a place has room for 159 bytes
@@ -551,11 +551,11 @@ static void every_fault_of_the_outputs_is_told_with_its_line(void **state)
 			strcat(csv, refused[i].line);
 		strcat(csv, refused[i].last);
 		assert_null(model_indices(study, csv, strlen(csv), &problems, &n));
-		bool told = false;
+		bool reported = false;
 		for (int k = 0; k < problems.n; k++)
-			told |= strcmp(problems.list[k].pointer, refused[i].pointer) == 0 &&
-			        strcmp(problems.list[k].detail, refused[i].detail) == 0;
-		if (!told)
+			reported |= strcmp(problems.list[k].pointer, refused[i].pointer) == 0 &&
+			            strcmp(problems.list[k].detail, refused[i].detail) == 0;
+		if (!reported)
 			fail_msg("%s: %s, not %s: %s", problems.list[0].pointer, problems.list[0].detail,
 			         refused[i].pointer, refused[i].detail);
 	}
@@ -662,12 +662,12 @@ CHECK_MAIN(cmocka_unit_test(every_spelling_of_a_decimal_number_is_one),
            cmocka_unit_test(a_variance_column_takes_independent_noise_out),
            cmocka_unit_test(indices_of_a_noisy_model_are_exact_or_null),
            cmocka_unit_test(a_scene_without_random_signals_has_no_noise_to_share),
-           cmocka_unit_test(an_inert_input_has_no_total_once_replicates_tell_the_noise),
+           cmocka_unit_test(an_inert_input_has_no_total_once_replicates_give_the_noise),
            cmocka_unit_test(a_run_without_a_number_takes_its_row_out_of_every_output),
            cmocka_unit_test(spelling_and_further_columns_do_not_change_the_result),
            cmocka_unit_test(the_samples_of_a_study_give_its_raw_indexes_again),
            cmocka_unit_test(a_quote_that_begins_the_text_is_the_first_of_its_cell),
            cmocka_unit_test(a_column_may_have_the_longest_name_of_an_input),
-           cmocka_unit_test(every_fault_of_the_outputs_is_told_with_its_line),
+           cmocka_unit_test(every_fault_of_the_outputs_is_reported_with_its_line),
            cmocka_unit_test(lines_in_another_order_are_noticed_by_the_inputs_in_them),
            cmocka_unit_test(outputs_of_a_sweep_are_refused))

@@ -318,13 +318,13 @@ static void a_floor_that_takes_hours_is_stopped(void **state)
 	_Alignas(64) static char memory[1 << 20];
 	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
 	struct pound_floor_answer answer = {.psa = {psa[0], psa[1]}};
-	for (int told = 0; told < 2; told++) {
+	for (int history = 0; history < 2; history++) {
 		atomic_bool stop = false;
 		const struct pound_floor_ask ask = {
 		    .task = &task, .n_drives = 1, .radians = 1.5, .stop = &stop, .scratch = scratch};
 		pthread_t thread = specimen_later(stop_set, &stop);
-		assert_int_equal(told ? pound_floor_history(floor, &ask, nothing_take, NULL)
-		                      : pound_floor_spectra(floor, &ask, &answer),
+		assert_int_equal(history ? pound_floor_history(floor, &ask, nothing_take, NULL)
+		                         : pound_floor_spectra(floor, &ask, &answer),
 		                 POUND_STOPPED);
 		pthread_join(thread, NULL);
 	}

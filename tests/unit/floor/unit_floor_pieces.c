@@ -12,9 +12,9 @@ struct followed {
 	const struct pound_task *task;
 	struct pound_task_result result;
 	enum pound_status status; /* of the pieces */
-	int pieces, flights, events, touching;
+	int pieces, maps, events, touching;
 	double time, gap;       /* total of the steps; largest break between two pieces [s] */
-	double impulse, pushed; /* largest of a contact, and of the one in hand [m/s] */
+	double impulse, pushed; /* largest of a contact, and of the current one [m/s] */
 	double largest;         /* acceleration [m/s2] */
 	struct {
 		double u, v; /* by the piece before [m], [m/s] */
@@ -81,7 +81,7 @@ static void pieces_take(void *of)
 			contact_end(f);
 		f->pushed -= h * sums[1][0];
 		f->touching += touches;
-		f->flights += p->map >= 0;
+		f->maps += p->map >= 0;
 		f->events += p->after_event;
 		f->time = p->start + p->step;
 		f->pieces++;
@@ -150,7 +150,7 @@ static void known_impacts_come_out_to_their_digits(void **state)
 static void every_piece_leads_to_the_next(void **state)
 {
 	(void)state;
-	int touched = 0, events = 0, flights = 0;
+	int touched = 0, events = 0, maps = 0;
 	for (int number = 0; number < check_count(200, 2000); number++) {
 		struct specimen specimen;
 		specimen_random(&specimen, number, 0.01, 401);
@@ -160,10 +160,10 @@ static void every_piece_leads_to_the_next(void **state)
 		assert_true(f.pieces >= 400);
 		touched += f.touching > 0;
 		events += f.events;
-		flights += f.flights;
+		maps += f.maps;
 		specimen_free(&specimen);
 	}
-	assert_true(touched > 100 && events > 200 * 10 && flights > 200 * 100);
+	assert_true(touched > 100 && events > 200 * 10 && maps > 200 * 100);
 }
 
 /* Ten thousand radians of the contact go by in every sample in which the bodies stay pressed on each other. */
@@ -298,7 +298,7 @@ static void a_motion_that_dies_away_in_silence_is_over(void **state)
 }
 
 /* At rest, then under a constant acceleration: undamped, a floor swings as 1 - cos. */
-static void a_floor_without_contact_is_all_flight(void **state)
+static void a_floor_without_contact_is_all_free_motion(void **state)
 {
 	(void)state;
 	enum { SAMPLES = 401 };
@@ -311,7 +311,7 @@ static void a_floor_without_contact_is_all_flight(void **state)
 	                                .time_step = h,
 	                                .bodies = {{.backbone = {.stiffness = w * w}, .drive = 1}}};
 	const struct followed f = check_followed(&task, 1e-14);
-	assert_int_equal(f.flights, 400);
+	assert_int_equal(f.maps, 400);
 	assert_int_equal(f.pieces, 400);
 	check_near(f.next.u, (1 - cos(w * 400 * h)) / (w * w), 400 * DBL_EPSILON / w);
 	check_near(f.largest, 2, 0.15); // a bound: of -w^2 u, by magnitudes of its terms
@@ -327,7 +327,7 @@ static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 	specimen_half_sine(&specimen, 1, 0.5, 1, 0.01);
 	const struct pound_task task = floor_task_task(&specimen, false);
 	const struct followed f = check_followed(&task, 1e-12);
-	assert_true(f.flights == 0 && f.pieces >= 3770);
+	assert_true(f.maps == 0 && f.pieces >= 3770);
 	specimen_free(&specimen);
 }
 
@@ -376,6 +376,6 @@ CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impac
            cmocka_unit_test(bodies_alike_but_for_roundings_are_followed),
            cmocka_unit_test(a_damped_body_pressed_on_a_wall_is_followed),
            cmocka_unit_test(a_motion_that_dies_away_in_silence_is_over),
-           cmocka_unit_test(a_floor_without_contact_is_all_flight),
+           cmocka_unit_test(a_floor_without_contact_is_all_free_motion),
            cmocka_unit_test(a_floor_too_fast_for_the_samples_is_followed),
            cmocka_unit_test(a_body_that_turns_between_two_samples_is_followed))

@@ -380,7 +380,7 @@ static void a_key_is_one_text_of_1_to_200_characters(void **state)
 	assert_int_equal(two.fault, API_BAD_REQUEST);
 }
 
-static void the_first_fault_is_told_in_visible_ascii(void **state)
+static void the_first_fault_is_reported_in_visible_ascii(void **state)
 {
 	struct head head = judged("/", (const char *const[]){"Host: localhost", NULL}, true);
 	(void)state;
@@ -409,7 +409,7 @@ static void the_lines_of_one_name_are_one_list(void **state)
 
 CHECK_MAIN(cmocka_unit_test(an_accept_names_the_types_in_its_list),
            cmocka_unit_test(a_key_is_one_text_of_1_to_200_characters),
-           cmocka_unit_test(the_first_fault_is_told_in_visible_ascii),
+           cmocka_unit_test(the_first_fault_is_reported_in_visible_ascii),
            cmocka_unit_test(the_lines_of_one_name_are_one_list),
            cmocka_unit_test(a_target_is_visible_ascii_and_its_escapes_are_whole),
            cmocka_unit_test(a_target_has_so_many_bytes_and_arguments),

@@ -217,17 +217,17 @@ static int ascending(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-struct told {
+struct kept {
 	int wanted, n;
 	double value[POUND_RESAMPLES + 1];
 };
 
 /* The first `wanted` values, the one of all rows among them, in no order; NAN afterwards. */
-static void tell(const void *subject, const double *mean, double *value)
+static void keep_mean(const void *subject, const double *mean, double *value)
 {
-	struct told *told = (struct told *)subject;
-	*value = told->n < told->wanted ? sin(1e3 * *mean) : NAN;
-	told->value[told->n++] = *value;
+	struct kept *kept = (struct kept *)subject;
+	*value = kept->n < kept->wanted ? sin(1e3 * *mean) : NAN;
+	kept->value[kept->n++] = *value;
 }
 
 static void uneven(const void *subject, int row, double *m)
@@ -241,13 +241,13 @@ static void however_many_values_there_are_the_ends_are_their_quantiles(void **st
 	(void)state;
 	static const int wanted[] = {2, 3, 4, 40, 41, 42, 43, 500, POUND_RESAMPLES + 1};
 	for (int k = 0; k < 9; k++) {
-		struct told told = {.wanted = wanted[k]};
+		struct kept kept = {.wanted = wanted[k]};
 		struct pound_estimate *e =
-		    estimates_of((struct pound_statistic){1, 1, uneven, tell, &told, NULL}, 100, k);
+		    estimates_of((struct pound_statistic){1, 1, uneven, keep_mean, &kept, NULL}, 100, k);
 		const int n = wanted[k] - 1;
-		qsort(told.value + 1, n, sizeof(double), ascending);
-		check_near(e->low, gsl_stats_quantile_from_sorted_data(told.value + 1, 1, n, 0.025), 1e-15);
-		check_near(e->high, gsl_stats_quantile_from_sorted_data(told.value + 1, 1, n, 0.975), 1e-15);
+		qsort(kept.value + 1, n, sizeof(double), ascending);
+		check_near(e->low, gsl_stats_quantile_from_sorted_data(kept.value + 1, 1, n, 0.025), 1e-15);
+		check_near(e->high, gsl_stats_quantile_from_sorted_data(kept.value + 1, 1, n, 0.975), 1e-15);
 		free(e);
 	}
 }

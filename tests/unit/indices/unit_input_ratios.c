@@ -139,7 +139,7 @@ static double noise(const double *x)
 	return sin(1e5 * x[0]) + 0.1 * x[2] / x[0];
 }
 
-static void what_ratios_explain_has_an_interval_or_cannot_be_told(void **state)
+static void what_ratios_explain_has_an_interval_or_is_not_estimated(void **state)
 {
 	(void)state;
 	for (int rows = 40; rows <= 640; rows *= 4)
@@ -176,5 +176,5 @@ static void only_power_laws_above_zero_are_taken(void **state)
 CHECK_MAIN(cmocka_unit_test(indexes_of_dependent_ratios_are_those_of_quadrature),
            cmocka_unit_test(a_sum_of_logarithms_shares_what_its_ratios_have_in_common),
            cmocka_unit_test(shapley_effects_add_up_to_one),
-           cmocka_unit_test(what_ratios_explain_has_an_interval_or_cannot_be_told),
+           cmocka_unit_test(what_ratios_explain_has_an_interval_or_is_not_estimated),
            cmocka_unit_test(only_power_laws_above_zero_are_taken))

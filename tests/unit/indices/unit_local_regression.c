@@ -200,7 +200,7 @@ static double waves(const double *u)
 	return sin(16.0 * M_PI * u[0]) + u[1];
 }
 
-static void what_neighbours_cannot_tell_is_in_the_interval(void **state)
+static void the_error_of_neighbours_is_in_the_interval(void **state)
 {
 	(void)state;
 	const double variance = 1.0 / 2.0 + 1.0 / 12.0;
@@ -264,6 +264,6 @@ CHECK_MAIN(cmocka_unit_test(the_golden_predictions_are_met),
            cmocka_unit_test(shift_and_scale_change_no_index),
            cmocka_unit_test(errors_over_designs_are_a_fraction_of_those_of_pick_freeze),
            cmocka_unit_test(a_jump_within_the_range_leaves_no_bias_and_the_interval_holds),
-           cmocka_unit_test(what_neighbours_cannot_tell_is_in_the_interval),
+           cmocka_unit_test(the_error_of_neighbours_is_in_the_interval),
            cmocka_unit_test(means_at_the_values_of_a_discrete_input_are_its_index),
            cmocka_unit_test(noise_of_few_signals_leaves_no_bias))

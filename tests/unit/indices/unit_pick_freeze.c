@@ -222,7 +222,7 @@ static void a_constant_output_has_undefined_indexes(void **state)
 	}
 }
 
-static void a_name_is_told_for_every_row_and_none_beyond(void **state)
+static void a_name_is_reported_for_every_row_and_none_beyond(void **state)
 {
 	(void)state;
 	int n = 0;
@@ -303,6 +303,6 @@ CHECK_MAIN(cmocka_unit_test(every_estimator_gives_its_golden_values),
            cmocka_unit_test(relabelling_the_inputs_relabels_the_indexes),
            cmocka_unit_test(noise_is_taken_off_every_product),
            cmocka_unit_test(a_constant_output_has_undefined_indexes),
-           cmocka_unit_test(a_name_is_told_for_every_row_and_none_beyond),
+           cmocka_unit_test(a_name_is_reported_for_every_row_and_none_beyond),
            cmocka_unit_test(errors_over_designs_are_those_measured_for_the_formulas),
            cmocka_unit_test(azzini_and_rosati_err_as_measured_at_six_thousand_runs))

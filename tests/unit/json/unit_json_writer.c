@@ -15,7 +15,7 @@ static void takes(struct writer *w, const char *wanted)
 	free(text);
 }
 
-static void a_document_comes_out_as_it_was_told(void **state)
+static void a_document_comes_out_as_it_was_put_in(void **state)
 {
 	(void)state;
 	struct writer w;
@@ -207,7 +207,7 @@ static void long_documents_grow_without_loss(void **state)
 	free(text);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_document_comes_out_as_it_was_told), cmocka_unit_test(texts_are_escaped),
+CHECK_MAIN(cmocka_unit_test(a_document_comes_out_as_it_was_put_in), cmocka_unit_test(texts_are_escaped),
            cmocka_unit_test(a_seed_past_2_to_the_53_is_text), cmocka_unit_test(plain_numbers_stay_plain),
            cmocka_unit_test(a_million_random_numbers_read_back_to_the_same_bits),
            cmocka_unit_test(a_cell_is_never_a_formula), cmocka_unit_test(out_of_memory_shows_only_at_the_end),

@@ -1,4 +1,4 @@
-/* unit_problems.c - the list of mistakes and the body that tells them. */
+/* unit_problems.c - the list of mistakes and the body that reports them. */
 #include <string.h>
 
 #include "schema/json/problems.h"

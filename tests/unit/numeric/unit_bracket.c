@@ -11,7 +11,7 @@ static double smooth(double x)
 	return 1 - x - 0.3 * sin(x);
 }
 
-static double bent(double x)
+static double kinked(double x)
 {
 	return x < 0.7 ? 40 * (0.7 - x) : 0.2 * (0.7 - x);
 }
@@ -57,7 +57,7 @@ static int evaluations(double (*f)(double), double x, double small, double *end,
 static void a_root_is_found_from_either_side_in_twice_the_time_of_bisection(void **state)
 {
 	(void)state;
-	static double (*const functions[])(double) = {smooth, bent, steep, wavy};
+	static double (*const functions[])(double) = {smooth, kinked, steep, wavy};
 	static const double slopes[] = {1.3, 40, 1e3, 4.3}, small = 1e-12;
 	for (int k = 0; k < 4; k++)
 		for (double start = -6; start <= 6; start += 0.37) {

@@ -96,7 +96,7 @@ static void a_csv_row_for_every_frequency(void **state)
 	study_free(study);
 }
 
-static void an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse(void **state)
+static void an_ordinate_has_its_frequency_and_its_correlation_with_the_impulse(void **state)
 {
 	(void)state;
 	char *document = study_documents_with(study_documents_sensitivity,
@@ -128,4 +128,4 @@ static void an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse(voi
 
 CHECK_MAIN(cmocka_unit_test(every_spectrum_has_a_number_for_every_frequency),
            cmocka_unit_test(a_csv_row_for_every_frequency),
-           cmocka_unit_test(an_ordinate_tells_its_frequency_and_how_it_goes_with_the_impulse))
+           cmocka_unit_test(an_ordinate_has_its_frequency_and_its_correlation_with_the_impulse))

@@ -10,7 +10,7 @@
 
 static const struct timing timing = {1.5, 2.75, 2};
 
-/* Measures that tell their own places: k + 0.5 for the k-th, but no yield displacement of the left oscillator. */
+/* Measures that show their own places: k + 0.5 for the k-th, but no yield displacement of the left oscillator. */
 static struct pound_response numbered(double first)
 {
 	struct pound_response response;
@@ -143,7 +143,7 @@ static void a_swept_law_stands_by_its_name(void **state)
 
 enum { ESTIMATES = 2 * POUND_N_INDICES }; /* of two inputs */
 
-/* Indices that tell their own places. */
+/* Indices that show their own places. */
 static void indices_fill(struct pound_indices *indices, struct pound_estimate *estimates, double first)
 {
 	*indices = (struct pound_indices){.mean = first - 1, .variance = first - 2, .noise_share = first - 3};

@@ -8,7 +8,7 @@
 #include "tests/support/floor_tasks.h"
 #include "tests/support/study_documents.h"
 
-/* All blocks, from the last to the first if told so, and all reductions. */
+/* All blocks, from the last to the first if `backwards`, and all reductions. */
 static struct pound_run *run_all(const struct pound_study *study, bool backwards)
 {
 	struct pound_run *run = pound_run_create(study, 1);
@@ -211,7 +211,7 @@ static void the_correlation_is_that_of_the_samples(void **state)
 }
 
 /* The half widths of the correlations are right if they are Student's over the scatter of the correlations that whole groups
- * leave out: told from the samples by hand. */
+ * leave out: known from the samples by hand. */
 static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
 {
 	(void)state;
@@ -255,7 +255,7 @@ static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
 
 /* ---- histories ---- */
 
-struct told {
+struct instants_seen {
 	int n, signal, doubled;
 	struct pound_instant last;
 	double impulse; /* of the contact force by straight lines, all contacts */
@@ -263,14 +263,14 @@ struct told {
 
 static void instant_take(void *into, int signal, const struct pound_instant *instant)
 {
-	struct told *told = into;
-	assert_true(told->n == 0 || instant->time >= told->last.time);
-	told->doubled += told->n && instant->time == told->last.time;
-	told->impulse +=
-	    told->n ? 0.5 * (instant->time - told->last.time) * (instant->force + told->last.force) : 0;
-	told->last = *instant;
-	told->signal = signal;
-	told->n++;
+	struct instants_seen *seen = into;
+	assert_true(seen->n == 0 || instant->time >= seen->last.time);
+	seen->doubled += seen->n && instant->time == seen->last.time;
+	seen->impulse +=
+	    seen->n ? 0.5 * (instant->time - seen->last.time) * (instant->force + seen->last.force) : 0;
+	seen->last = *instant;
+	seen->signal = signal;
+	seen->n++;
 }
 
 static void a_history_is_that_of_the_signal(void **state)
@@ -280,20 +280,20 @@ static void a_history_is_that_of_the_signal(void **state)
 	                   *response = study_of("response", 2, "\"name\": \"r\"");
 	struct pound_run *run = pound_run_create(spectra, 1), *reference = run_all(response, false);
 	for (int signal = 1; signal >= 0; signal--) {
-		struct told told = {0};
-		assert_int_equal(pound_run_history(run, signal, instant_take, &told), POUND_OK);
+		struct instants_seen seen = {0};
+		assert_int_equal(pound_run_history(run, signal, instant_take, &seen), POUND_OK);
 		const struct pound_response *r = &pound_run_result(reference)->cells[0].signals[signal];
-		assert_int_equal(told.signal, signal);
-		check_near(told.last.time, 3.2, 1e-12);
-		check_near(told.last.u[0], r->end_u1, 1e-9 * r->displacement_max_1);
-		check_near(told.last.v[0], r->end_v1, 1e-8 * r->displacement_max_1);
-		check_near(told.last.u[1], r->end_u2, 1e-9 * r->displacement_max_2);
-		check_near(told.last.v[1], r->end_v2, 1e-8 * r->displacement_max_2);
+		assert_int_equal(seen.signal, signal);
+		check_near(seen.last.time, 3.2, 1e-12);
+		check_near(seen.last.u[0], r->end_u1, 1e-9 * r->displacement_max_1);
+		check_near(seen.last.v[0], r->end_v1, 1e-8 * r->displacement_max_1);
+		check_near(seen.last.u[1], r->end_u2, 1e-9 * r->displacement_max_2);
+		check_near(seen.last.v[1], r->end_v2, 1e-8 * r->displacement_max_2);
 		// a contact that begins with the first sample has one row there, not two
-		int events = 2 * (int)r->contact_count - (told.last.force != 0);
-		assert_in_range(told.doubled, events - 1, events);
+		int events = 2 * (int)r->contact_count - (seen.last.force != 0);
+		assert_in_range(seen.doubled, events - 1, events);
 		// the momentum that contacts give, between none and the largest for each of them
-		assert_true(told.impulse > 0 && told.impulse < r->impulse_max * r->contact_count);
+		assert_true(seen.impulse > 0 && seen.impulse < r->impulse_max * r->contact_count);
 	}
 	pound_run_free(run);
 	pound_run_free(reference);

@@ -13,7 +13,7 @@ struct law {
 	const char *text;
 	int nonlinear;
 	bool given;
-	bool searched; /* each response tells how far the demand is off its target, the last too */
+	bool searched; /* each response reports how far the demand is off its target, the last too */
 };
 
 // the yield displacement is found in corrections + 1 responses, the last of which is the answer; in fewer by a search that ends

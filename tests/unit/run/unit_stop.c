@@ -1,4 +1,4 @@
-/* unit_stop.c - how soon a run ends when it is told to, whatever it is at: each of the long loops, cut short at many times. */
+/* unit_stop.c - how soon a run ends when it is stopped, whatever it is at: each of the long loops, cut short at many times. */
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -96,13 +96,13 @@ static double stopped_after(struct trial *trial, double delay)
 	trial->stop = false;
 	assert_int_equal(pthread_create(&thread, NULL, tried, trial), 0);
 	nanosleep(&(struct timespec){(time_t)whole, (long)(1e9 * (delay - whole))}, NULL);
-	double told = latency_now();
+	double stopped = latency_now();
 	trial->stop = true;
 	pthread_join(thread, NULL);
-	return trial->stopped ? latency_now() - told : -1;
+	return trial->stopped ? latency_now() - stopped : -1;
 }
 
-static void what_takes_long_ends_soon_when_it_is_told_to(void **state)
+static void what_takes_long_ends_soon_when_it_is_stopped(void **state)
 {
 	enum { TIMES = 6 };
 	(void)state;
@@ -139,4 +139,4 @@ static void what_takes_long_ends_soon_when_it_is_told_to(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(what_takes_long_ends_soon_when_it_is_told_to))
+CHECK_MAIN(cmocka_unit_test(what_takes_long_ends_soon_when_it_is_stopped))

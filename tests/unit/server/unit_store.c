@@ -179,12 +179,12 @@ static void blocks_are_kept_together_and_only_while_their_studies_run(void **sta
 
 static void a_failed_study_says_why(void **state)
 {
-	char told[128] = "";
+	char known[128] = "";
 	int64_t id = submitted(*state, "a");
 	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_int_equal(store_finish(*state, id, NULL, 0, "out of memory", 0), STORE_OK);
-	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
-	assert_string_equal(told, "a failed");
+	assert_int_equal(store_study(*state, id, name_keep, known), STORE_OK);
+	assert_string_equal(known, "a failed");
 }
 
 static void names_are_bytes_and_never_sql(void **state)
@@ -192,11 +192,11 @@ static void names_are_bytes_and_never_sql(void **state)
 	static const char *const names[] = {"'; DROP TABLE study; --", "\" OR 1=1", "\xc3\xa4\xe2\x82\xac",
 	                                    "%s%n", ""};
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-		char told[128] = "", want[128];
+		char known[128] = "", want[128];
 		int64_t id = submitted(*state, names[i]);
-		assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
+		assert_int_equal(store_study(*state, id, name_keep, known), STORE_OK);
 		snprintf(want, sizeof want, "%s queued", names[i]);
-		assert_string_equal(told, want);
+		assert_string_equal(known, want);
 	}
 }
 
@@ -259,21 +259,21 @@ static void a_store_whose_server_was_just_killed_is_opened(void **state)
 {
 	enum { LARGE = 256 << 20 };
 	char byte;
-	int told[2];
+	int ready[2];
 	store_close(*state);
 	*state = NULL;
-	assert_int_equal(pipe(told), 0);
+	assert_int_equal(pipe(ready), 0);
 	pid_t server = fork();
 	if (server == 0) {
 		char *memory = malloc(LARGE);
 		bool opened = store_open(path) != NULL;
-		if (memory && opened && write(told[1], memset(memory, 1, LARGE), 1) == 1)
+		if (memory && opened && write(ready[1], memset(memory, 1, LARGE), 1) == 1)
 			pause();
 		_exit(1);
 	}
-	close(told[1]);
-	assert_int_equal(read(told[0], &byte, 1), 1);
-	close(told[0]);
+	close(ready[1]);
+	assert_int_equal(read(ready[0], &byte, 1), 1);
+	close(ready[0]);
 	kill(server, SIGKILL);
 	*state = store_open(path);
 	assert_non_null(*state);
@@ -282,14 +282,14 @@ static void a_store_whose_server_was_just_killed_is_opened(void **state)
 
 static void a_running_study_is_queued_again_when_the_store_opens(void **state)
 {
-	char told[128];
+	char known[128];
 	int64_t id = submitted(*state, "a"), other = 0;
 	assert_int_equal(claim(*state, &id), STORE_OK);
 	store_close(*state);
 	*state = store_open(path);
 	assert_non_null(*state);
-	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
-	assert_string_equal(told, "a queued");
+	assert_int_equal(store_study(*state, id, name_keep, known), STORE_OK);
+	assert_string_equal(known, "a queued");
 	assert_int_equal(claim(*state, &other), STORE_OK);
 	assert_true(other == id);
 }
@@ -463,17 +463,17 @@ static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(vo
 {
 	const double value = 1;
 	const struct store_block block = {.number = 0, .runs = 5, .n = 1, .values = &value};
-	char told[128];
+	char known[128];
 	int64_t id = submitted(*state, "a");
 	// two crashes, one after a block, two: never three without a block between
 	for (int i = 0; i < 5; i++) {
 		crashed(state, id, i == 2 ? &block : NULL);
-		assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
-		assert_string_equal(told, "a queued");
+		assert_int_equal(store_study(*state, id, name_keep, known), STORE_OK);
+		assert_string_equal(known, "a queued");
 	}
 	crashed(state, id, NULL);
-	assert_int_equal(store_study(*state, id, name_keep, told), STORE_OK);
-	assert_string_equal(told, "a failed");
+	assert_int_equal(store_study(*state, id, name_keep, known), STORE_OK);
+	assert_string_equal(known, "a failed");
 }
 
 struct listed {
@@ -548,7 +548,7 @@ static void what_ended_too_long_ago_is_deleted_and_nothing_else(void **state)
 	enum { N = 5, DAYS = 3, DAYS_BLOCKS = 1 };
 	const double values[] = {1, 2, 3};
 	const struct store_block block = {.number = 0, .runs = 5, .n = 3, .values = values};
-	char told[128];
+	char known[128];
 	int64_t ids[N + 1], id = 0;
 	for (int i = 0; i <= N; i++) {
 		ids[i] = submitted(*state, "a");
@@ -569,7 +569,7 @@ static void what_ended_too_long_ago_is_deleted_and_nothing_else(void **state)
 	assert_int_equal(n, (N - DAYS) + (DAYS - DAYS_BLOCKS));
 	for (int i = 0; i <= N; i++) {
 		const bool there = i == N || i < DAYS, whole = i == N || i < DAYS_BLOCKS;
-		assert_int_equal(store_study(*state, ids[i], name_keep, told), there ? STORE_OK : STORE_NONE);
+		assert_int_equal(store_study(*state, ids[i], name_keep, known), there ? STORE_OK : STORE_NONE);
 		assert_int_equal(blocks_of(*state, ids[i]), whole);
 	}
 	char *result;

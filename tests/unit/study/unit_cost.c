@@ -147,7 +147,7 @@ static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void *
 	}
 }
 
-/* Short documents that take long: what they came to when they were run on one core, within three. */
+/* Short documents that take long: their time when they were run on one core, within three. */
 static void what_is_not_a_run_is_counted_too(void **state)
 {
 	(void)state;

@@ -38,7 +38,7 @@ struct cases {
 	char *changed;         /* with what the paragraph replaces in all of its cases; heap, NULL: nothing yet */
 	const char *field;     /* of the paragraph */
 	const char *from;      /* NULL: the next text is a whole document */
-	struct study_case now; /* the case in hand; document NULL: none */
+	struct study_case now; /* the current case; document NULL: none */
 	const char *expected[EXPECTED_MAX];
 	void (*show)(const struct study_case *of, void *context);
 	void *context;
@@ -59,7 +59,7 @@ static char *one_line(const char *document)
 	return copy;
 }
 
-/* Shows the case in hand, if there is one: all its problems are known now. */
+/* Shows the current case, if there is one: all its problems are known now. */
 static void finish(struct cases *cases)
 {
 	if (!cases->now.document)

@@ -91,7 +91,7 @@ struct change {
 	const char *from, *to, *pointer;
 };
 
-static void every_fault_is_told_whatever_else_is_wrong(void **state)
+static void every_fault_is_reported_whatever_else_is_wrong(void **state)
 {
 	(void)state;
 	static const char whole[] =
@@ -131,12 +131,12 @@ static void every_fault_is_told_whatever_else_is_wrong(void **state)
 			const bool swept = (i == 10 || j == 10) && (i == 4 || j == 4 || i == 5 || j == 5);
 			if (!swept &&
 			    (!problems_at(&problems, faults[i].pointer) || !problems_at(&problems, faults[j].pointer)))
-				fail_msg("%s beside %s is not told", faults[i].pointer, faults[j].pointer);
+				fail_msg("%s beside %s is not reported", faults[i].pointer, faults[j].pointer);
 			free(one), free(both);
 		}
 }
 
-CHECK_MAIN(cmocka_unit_test(every_fault_is_told_whatever_else_is_wrong),
+CHECK_MAIN(cmocka_unit_test(every_fault_is_reported_whatever_else_is_wrong),
            cmocka_unit_test(absent_outputs_are_all_that_apply_in_a_cell),
            cmocka_unit_test(what_is_too_large_is_reported_with_its_limit),
            cmocka_unit_test(cells_are_the_product_of_the_sweeps_the_last_one_fastest),

@@ -112,7 +112,7 @@ static void every_sample_of_a_record_counts(void **state)
 	free(record);
 }
 
-// results made by different builds are compared by their hashes: a new value here tells users that old hashes are void
+// results made by different builds are compared by their hashes: a new value here shows users that old hashes are void
 static void a_hash_stays_what_it_is(void **state)
 {
 	(void)state;

@@ -158,7 +158,7 @@ static void no_contact_is_null(void **state)
 	free(document);
 }
 
-static void broken_json_is_told_by_line_and_column(void **state)
+static void broken_json_is_reported_by_line_and_column(void **state)
 {
 	(void)state;
 	struct problems problems;
@@ -189,5 +189,5 @@ CHECK_MAIN(cmocka_unit_test(absent_settings_are_some_and_empty_ones_none),
            cmocka_unit_test(absent_members_have_the_defaults_of_the_contract),
            cmocka_unit_test(what_an_excitation_does_not_use_is_zero),
            cmocka_unit_test(a_rigid_wall_has_no_frequency), cmocka_unit_test(no_contact_is_null),
-           cmocka_unit_test(broken_json_is_told_by_line_and_column),
+           cmocka_unit_test(broken_json_is_reported_by_line_and_column),
            cmocka_unit_test(the_text_need_not_end_with_a_zero))

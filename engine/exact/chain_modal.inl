@@ -1,4 +1,4 @@
-/* chain_flight.inl - whole samples of a chain without contact, on elastic branches, by its modes.
+/* chain_modal.inl - whole samples of a chain without contact, on elastic branches, by its modes.
  *
  *   q'' + c q' + w^2 q = -G (a + d t/h)          of each mode of each building, exact over a sample for any w h
  *
@@ -10,7 +10,7 @@
 
 static const double REACH_SERIES = 0.8; /* (w + c) h of a map's series: 0.8^18/18! = 3e-18 */
 enum { ORDER_MAP = 18 };
-/* Highest over lowest frequency of a building that flies: shapes of low modes have roundings of the square of that. */
+/* Highest over lowest frequency of a building that moves by its modes: shapes of low modes have roundings of the square of that. */
 static const double STIFF = 90;
 
 /* response of a mode to an initial velocity of 1, its rate, and its integrals once and twice, after some time */
@@ -62,7 +62,7 @@ static struct impulse_response mode_response(double w, double c, double h)
  * What bounds the fourth derivative is that of the motion about its quasi-static part, whose energy does not grow.  Above some
  * 8 radians a sample the motion itself is a better bound.
  */
-static void mode_fill(struct flight *f, int i, double w, double c, double gain, double h)
+static void mode_fill(struct modal_motion *f, int i, double w, double c, double gain, double h)
 {
 	const struct impulse_response r = mode_response(w, c, h);
 	const double x = w * h, ratio = c / w;
@@ -127,9 +127,9 @@ static bool modes_damping(const struct pound_chain_floor *floor, int n, const st
 }
 
 /* Where a chain's modes are kept: of the vector of floors j those of its buildings, a row of coefficients for each. */
-static void flight_rows(struct chain *c)
+static void modal_rows(struct chain *c)
 {
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	int rows = 0;
 	for (int j = 0; j < c->wide; j += ROW) {
 		int first = j, last = j + ROW - 1 < c->n ? j + ROW : c->n;
@@ -146,10 +146,10 @@ static void flight_rows(struct chain *c)
 }
 
 /* Makes modes and maps of a chain. */
-static void flight_start(struct chain *c)
+static void modal_start(struct chain *c)
 {
 	const struct pound_chain_task *task = c->task;
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	f->wait = f->refused = f->notes = 0;
 	f->room = KEPT / (NOTE_COLUMNS * c->wide) < NOTES ? KEPT / (NOTE_COLUMNS * c->wide) : NOTES;
 	f->can = !(task->asked & POUND_CHAIN_ENERGY) && !task->observer;
@@ -158,7 +158,7 @@ static void flight_start(struct chain *c)
 	for (int k = 0; k < 2; k++) // what is behind the last floor
 		for (int i = c->n; i < c->wide; i++)
 			f->at[k].u.at[i] = f->at[k].w.at[i] = 0;
-	flight_rows(c);
+	modal_rows(c);
 	for (int j = 0; j < c->wide / ROW && f->can; j++)
 		memset(f->shape[f->row[j]], 0, sizeof(double) * ROW * (size_t)(f->upto[j] - f->from[j]));
 	for (int first = 0, n; first < c->n && f->can; first += n) {
@@ -188,7 +188,7 @@ static void flight_start(struct chain *c)
 /* ---- entering and leaving ---- */
 
 /* Whether every story is on an elastic branch, and nothing is about to touch. */
-static bool flight_clear(const struct chain *c)
+static bool modal_clear(const struct chain *c)
 {
 	for (int i = 0; c->edged && i < c->n; i++)
 		if (c->stiffness.at[i] != c->task->floors[i].story.stiffness || c->direction.at[i] != 0)
@@ -209,9 +209,9 @@ LANE_INLINE double row_sum(const double x[ROW])
 }
 
 /* Modal coordinates of the drifts off their elastic centers, q = 1/w^2 sum of k d times the shape's drift. */
-static void flight_enter(struct chain *c)
+static void modal_enter(struct chain *c)
 {
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	for (int i = 0; i < c->wide; i += W) {
 		const vd k = column_load(&c->initial, i);
 		const vd shift = i < c->n ? -column_load(&c->offset, i) * column_load(&c->pliancy, i) : vsplat(0);
@@ -235,13 +235,13 @@ static void flight_enter(struct chain *c)
 			f->v.at[r] += row_sum(v) * f->per_w2.at[r];
 		}
 	f->now = 0;
-	f->flown = false;
+	f->moved = false;
 }
 
 /* ---- a sample ---- */
 
 /* Modes over a sample, and what bounds their fourth derivatives. */
-LANE_INLINE void modes_move(struct flight *f, int wide, double ground, double rise)
+LANE_INLINE void modes_move(struct modal_motion *f, int wide, double ground, double rise)
 {
 	const vd a = vsplat(ground), d = vsplat(rise);
 	for (int i = 0; i < wide; i += W) {
@@ -265,7 +265,7 @@ struct drifts {
 	vd d, v, fourth_max;
 };
 
-LANE_INLINE struct drifts drifts_sum(const struct flight *f, int i)
+LANE_INLINE struct drifts drifts_sum(const struct modal_motion *f, int i)
 {
 	const int j = i / ROW, from = f->from[j], upto = f->upto[j];
 	const double *shape = &f->shape[f->row[j]][i % ROW];
@@ -291,7 +291,7 @@ LANE_INLINE struct drifts drifts_sum(const struct flight *f, int i)
 }
 
 /* Displacements and velocities at the end of the sample, and sums of bounds, from drifts. */
-static void displacements_sum(const struct chain *c, struct flight_place *at, struct column *fourth_max)
+static void displacements_sum(const struct chain *c, struct modal_place *at, struct column *fourth_max)
 {
 	double u = 0, w = 0, sum = 0;
 	for (int i = 0; i < c->n; i++) {
@@ -312,7 +312,7 @@ static void displacements_sum(const struct chain *c, struct flight_place *at, st
  *
  * Given    ground  acceleration there
  */
-LANE_INLINE void modes_force(struct flight *f, const struct column *q, const struct column *v, int wide,
+LANE_INLINE void modes_force(struct modal_motion *f, const struct column *q, const struct column *v, int wide,
                              double ground)
 {
 	for (int i = 0; i < wide; i += W) {
@@ -328,9 +328,9 @@ LANE_INLINE void modes_force(struct flight *f, const struct column *q, const str
 }
 
 /* Absolute accelerations of floors at a sample, and their rates: sums over stories of sums over modes. */
-LANE_INLINE void accelerations_sum(struct chain *c, struct flight_place *at)
+LANE_INLINE void accelerations_sum(struct chain *c, struct modal_place *at)
 {
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	for (int i = 0; i < c->wide; i += W) {
 		const int j = i / ROW, from = f->from[j], upto = f->upto[j];
 		const double *shape = &f->shape[f->row[j]][i % ROW];
@@ -381,8 +381,8 @@ LANE_INLINE unsigned sampled_peaks(const struct chain *c, const struct sampled *
 	return some;
 }
 
-/* Overlap of a link at a place of a flight, and its rate. */
-LANE_INLINE void link_at(const struct link *l, const struct flight_place *at, double *p, double *q)
+/* Overlap of a link at a sample, and its rate. */
+LANE_INLINE void link_at(const struct link *l, const struct modal_place *at, double *p, double *q)
 {
 	double overlap = -l->link->gap, rate = 0;
 	for (int k = 0; k < l->n_ends; k++) {
@@ -394,9 +394,9 @@ LANE_INLINE void link_at(const struct link *l, const struct flight_place *at, do
 }
 
 /* Whether a link may begin to touch inside the sample that leads to a place. */
-static bool links_risk(struct chain *c, const struct flight_place *to)
+static bool links_risk(struct chain *c, const struct modal_place *to)
 {
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	const double third = c->task->time_step / 3;
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
@@ -417,7 +417,7 @@ static bool links_risk(struct chain *c, const struct flight_place *to)
 
 LANE_INLINE double *note_column(struct chain *c, int k, int column)
 {
-	return &c->flight.kept[(k * NOTE_COLUMNS + column) * c->wide];
+	return &c->modal_motion.kept[(k * NOTE_COLUMNS + column) * c->wide];
 }
 
 /* Whether a sample may still hold a largest value. */
@@ -437,11 +437,11 @@ static bool note_stands(struct chain *c, int k)
  *
  * Returns  value  false: there is no room
  */
-LANE_SHARED bool note_keep(struct chain *c, const struct flight_place *from)
+LANE_SHARED bool note_keep(struct chain *c, const struct modal_place *from)
 {
 	static const unsigned asked[] = {POUND_CHAIN_DRIFTS, POUND_CHAIN_DISPLACEMENTS,
 	                                 POUND_CHAIN_ACCELERATIONS};
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	const size_t bytes = sizeof(double) * (size_t)c->wide;
 	if (f->notes == f->room) {
 		int kept = 0;
@@ -480,7 +480,7 @@ static void note_look(struct chain *c, int k)
 		c->stiffness.at[i] = c->initial.at[i];
 		c->offset.at[i] = -c->initial.at[i] * shift[i];
 	}
-	interval_set(c, c->flight.noted[k]);
+	interval_set(c, c->modal_motion.noted[k]);
 	while (c->remainder > 0) {
 		if (c->moving)
 			chain_displacements(c);
@@ -496,7 +496,7 @@ static void note_look(struct chain *c, int k)
 /* Looks into the samples noted, when a chain has come to its end. */
 static void notes_look(struct chain *c)
 {
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	if (f->notes == 0)
 		return;
 	const int n_links = c->n_links;
@@ -520,13 +520,13 @@ static void notes_look(struct chain *c)
  *
  * Returns  value  false: something may; nothing has changed
  */
-LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
+LANE_INLINE bool modal_sample(struct chain *c, bool edged, bool moving)
 {
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	const double *a = &c->task->ground[c->next];
 	const vd h = vsplat(c->task->time_step), one = vsplat(1);
-	const struct flight_place *from = &f->at[f->now];
-	struct flight_place *to = &f->at[1 - f->now];
+	const struct modal_place *from = &f->at[f->now];
+	struct modal_place *to = &f->at[1 - f->now];
 	modes_move(f, c->wide, a[-1], a[0] - a[-1]);
 	const bool drifts = c->task->asked & POUND_CHAIN_DRIFTS;
 	const bool displaced = c->task->asked & POUND_CHAIN_DISPLACEMENTS;
@@ -588,15 +588,15 @@ LANE_INLINE bool flight_sample(struct chain *c, bool edged, bool moving)
 		f->rate[j] = f->rate_next[j];
 	}
 	f->now = 1 - f->now;
-	f->flown = true;
+	f->moved = true;
 	return true;
 }
 
 /* Ends what is left of next to nothing while the ground is silent: below nothing could be proved, and every operation would take
  * a hundred times as long. */
-static void flight_settle(struct chain *c)
+static void modal_settle(struct chain *c)
 {
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	const double *a = &c->task->ground[c->next];
 	if (a[-1] != 0 || a[0] != 0)
 		return;
@@ -607,29 +607,29 @@ static void flight_settle(struct chain *c)
 	memset(&f->v, 0, sizeof f->v);
 }
 
-LANE_INLINE void flight_go(struct chain *c, const atomic_bool *stop, bool edged, bool moving)
+LANE_INLINE void modal_samples(struct chain *c, const atomic_bool *stop, bool edged, bool moving)
 {
 	for (; c->next < c->task->n_samples; c->next++) {
 		if (c->next % STOP_STEPS == 0 && pound_stopped(stop))
 			break;
-		flight_settle(c);
-		if (!flight_sample(c, edged, moving))
+		modal_settle(c);
+		if (!modal_sample(c, edged, moving))
 			break;
 	}
 }
 
-/* Flies from the sample before c->next as far as nothing happens.  One that went nowhere is not tried again at once. */
-static void flight(struct chain *c, const atomic_bool *stop)
+/* Moves from the sample before c->next by modes, as far as no event occurs.  After a try that went no sample the next one waits. */
+static void modal_advance(struct chain *c, const atomic_bool *stop)
 {
 	enum { WAIT_MAX = 8 };
-	struct flight *f = &c->flight;
+	struct modal_motion *f = &c->modal_motion;
 	if (f->wait > 0) {
 		f->wait--;
 		return;
 	}
-	if (!flight_clear(c))
+	if (!modal_clear(c))
 		return;
-	flight_enter(c);
+	modal_enter(c);
 	if (c->moving)
 		displacements_sum(c, &f->at[0], NULL);
 	for (int j = 0; j < c->n_links; j++)
@@ -639,12 +639,12 @@ static void flight(struct chain *c, const atomic_bool *stop)
 		accelerations_sum(c, &f->at[0]);
 	}
 	if (c->edged)
-		flight_go(c, stop, true, c->moving);
+		modal_samples(c, stop, true, c->moving);
 	else
-		flight_go(c, stop, false, c->moving);
-	f->refused = f->flown ? 0 : f->refused < WAIT_MAX ? 2 * f->refused + 1 : f->refused;
+		modal_samples(c, stop, false, c->moving);
+	f->refused = f->moved ? 0 : f->refused < WAIT_MAX ? 2 * f->refused + 1 : f->refused;
 	f->wait = f->refused / 2;
-	if (!f->flown)
+	if (!f->moved)
 		return;
 	for (int i = 0; i < c->wide; i += W) {
 		column_store(&c->d, i, column_load(&f->at[f->now].d, i));
