@@ -102,14 +102,15 @@ static void plant(char folder[32])
 {
 	static const char *const folders[] = {"engine", "engine/run", "engine/numeric", "schema",
 	                                      "server", "client",     "tests",          "build"};
-	char path[64];
+	char path[64], text[64];
 	strcpy(folder, "/tmp/pound-lint-XXXXXX");
 	assert_non_null(mkdtemp(folder));
 	for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
 		snprintf(path, sizeof path, "%s/%s", folder, folders[i]);
 		assert_int_equal(mkdir(path, 0700), 0);
 		snprintf(path, sizeof path, "%s/a%zu.h", folders[i], i);
-		write_file(folder, path, "#include <stddef.h>\n");
+		snprintf(text, sizeof text, "#ifndef A%zu_H\n#define A%zu_H\n#endif\n", i, i);
+		write_file(folder, path, text);
 	}
 	write_file(folder, "engine/run/run.c", "extern const int pound_run_one;\nconst int pound_run_one = 1;\n");
 	write_file(folder, "Makefile", "CFLAGS += -O2\n");
