@@ -2,9 +2,9 @@
  *
  * Operations are counted as the engine shares them, and each has its seconds.  How often bodies touch, yield and stay together
  * is not known before: it is taken from their frequencies, masses, gap and the peak ground acceleration, as it is in the mean of
- * many scenes.  soak_valid says how near this is, and unit_cost for a part of its studies: rows of buildings and contacts that
- * are not linear throughout scatter more than pairs in linear contact.  Two things are bounded and not predicted: a design that
- * grows counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
+ * many scenes.  soak_valid says how near this is, and unit_cost for a part of its studies: rows of buildings and nonlinear
+ * contacts scatter more than pairs in linear contact.  Two things are bounded, not predicted: a design that grows counts as grown
+ * to its end, and a run that ends as chatter, or fails, as a whole one. */
 #include "schema/study/cost.h"
 
 #include <assert.h>
@@ -542,11 +542,11 @@ static void count_row(const struct pound_study *study, double items, struct coun
 		c->of[BEGIN] += storeys > 0 ? marches : 0;
 		c->of[SHAPE] += marches * pow(storeys, 3);
 		c->of[CHAIN] += marches * samples * storeys;
-		const double yielding =
+		const double yield_steps =
 		    alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
 		    (yields > 0 ? pounded * steps : 0);
-		c->of[YIELD_STEP] += yielding * storeys;
-		c->of[FULL] += all[b].modal ? yielding * storeys * storeys : 0;
+		c->of[YIELD_STEP] += yield_steps * storeys;
+		c->of[FULL] += all[b].modal ? yield_steps * storeys * storeys : 0;
 	}
 }
 
