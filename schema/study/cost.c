@@ -542,11 +542,10 @@ static void count_row(const struct pound_study *study, double items, struct coun
 		c->of[BEGIN] += storeys > 0 ? marches : 0;
 		c->of[SHAPE] += marches * pow(storeys, 3);
 		c->of[CHAIN] += marches * samples * storeys;
-		const double yield_steps =
-		    alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
-		    (yields > 0 ? pounded * steps : 0);
-		c->of[YIELD_STEP] += yield_steps * storeys;
-		c->of[FULL] += all[b].modal ? yield_steps * storeys * storeys : 0;
+		const double flows = alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
+		                     (yields > 0 ? pounded * steps : 0);
+		c->of[YIELD_STEP] += flows * storeys;
+		c->of[FULL] += all[b].modal ? flows * storeys * storeys : 0;
 	}
 }
 
