@@ -33,6 +33,10 @@ struct pound_response {
 #define X(member, name, oscillator) double member;
 	POUND_MEASURES(X)
 #undef X
+	// of outputs that read them, else 0
+	double gap_needed;    /* largest u_1 - u_2 without contact [m] */
+	double relative_free; /* largest |u_1 - u_2| without contact [m] */
+	double approach;      /* largest speed at which a contact begins [m/s] */
 	double
 	    energy_residual; /* energy put in and not found again, over the most there was along the way; NAN: not computed */
 };

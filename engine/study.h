@@ -339,6 +339,7 @@ bool pound_solver_is_portable(int row);                         /* the same byte
 bool pound_floor_takes_force(enum pound_force force);           /* a floor can be followed under it */
 const char *pound_output_name(int row);
 const char *pound_output_needs(int row, const struct pound_scene *scene); /* from it, in words */
+bool pound_output_observes(int row);      /* it reads whole motions of the exact solver */
 bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */
 bool pound_output_has_places(int row, const struct pound_scene *scene); /* and once for each place */
 int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */

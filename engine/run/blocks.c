@@ -64,6 +64,7 @@ static void size_add(struct pound_request_size *block, struct pound_request_size
 	block->asks += times * item.asks;
 	block->motions += times * item.motions;
 	block->tasks += times * item.tasks;
+	block->peaks += times * item.peaks;
 	block->samples += (checked ? 3 : 1) * item.samples;
 	row_size_add(&block->rows, &item.rows, times);
 }
@@ -104,6 +105,7 @@ int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct poun
 		size_add(&block, item, pound_cells_checks(c, i) < pound_cells_checks(c, i + 1));
 		largest->asks = block.asks > largest->asks ? block.asks : largest->asks;
 		largest->motions = block.motions > largest->motions ? block.motions : largest->motions;
+		largest->peaks = block.peaks > largest->peaks ? block.peaks : largest->peaks;
 		largest->tasks = block.tasks > largest->tasks ? block.tasks : largest->tasks;
 		largest->samples = block.samples > largest->samples ? block.samples : largest->samples;
 		row_size_max(&largest->rows, &block.rows);

@@ -298,6 +298,34 @@ static double row_touches(const struct pound_row_response *row, const struct pou
 	return row_contact_count(row, scene, place) > 0;
 }
 
+static double gap_needed(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->gap_needed;
+}
+
+static double relative_free(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->relative_free;
+}
+
+static double approach(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->approach;
+}
+
+static bool is_pair(const struct pound_scene *scene)
+{
+	return scene->n_buildings == 0;
+}
+
+static bool pair_meets(const struct pound_scene *scene)
+{
+	return is_pair(scene) && bodies_meet(scene);
+}
+
 typedef double measure(const struct pound_response *, const struct pound_scene *);
 typedef double row_measure(const struct pound_row_response *, const struct pound_scene *,
                            const struct pound_storey_place *);
@@ -380,6 +408,12 @@ static const struct output {
      impulse_largest, one, row_impulse_largest, row_one, .asks = 0},
     {"peak_contact_force_n", "largest force that pushes in a contact [N]", "buildings with contact",
      "a contact", row_meets, NULL, NULL, row_force_largest, row_one, .asks = POUND_ASKS_FORCES},
+    {"gap_needed_m", "largest closing displacement u_1 - u_2 of the bodies without contact [m]",
+     "two oscillators", "two oscillators", is_pair, gap_needed, one, .asks = POUND_ASKS_APART},
+    {"peak_relative_displacement_free_m", "largest abs(u_1 - u_2) of the bodies without contact [m]",
+     "two oscillators", "two oscillators", is_pair, relative_free, one, .asks = POUND_ASKS_APART},
+    {"peak_approach_speed_m_s", "largest speed at which a contact begins [m/s]", "a contact",
+     "two oscillators", pair_meets, approach, one, .asks = POUND_ASKS_APPROACH},
 };
 
 const char *pound_output_name(int row)
@@ -395,6 +429,11 @@ const char *pound_output_text(int row)
 const char *pound_output_needs(int row, const struct pound_scene *scene)
 {
 	return scene->n_buildings > 0 ? outputs[row].row_needs : outputs[row].needs;
+}
+
+bool pound_output_observes(int row)
+{
+	return outputs[row].asks & (POUND_ASKS_APART | POUND_ASKS_APPROACH);
 }
 
 bool pound_output_has_ordinates(int row)
@@ -417,7 +456,7 @@ int pound_study_ordinate(const struct pound_study *study, int output)
 unsigned pound_outputs_asked(const struct pound_study *study)
 {
 	unsigned asked = 0;
-	for (int o = 0; o < study->n_outputs; o++)
+	for (int o = 0; o < study->n_outputs && !study->elsewhere; o++)
 		asked |= outputs[study->outputs[o]].asks;
 	return asked;
 }

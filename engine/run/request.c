@@ -19,6 +19,7 @@
 #include "engine/numeric/random.h"
 #include "engine/run/demand.h"
 #include "engine/run/outputs.h"
+#include "engine/run/pair_peaks.h"
 #include "engine/run/request_keys.h"
 #include "engine/run/request_motions.h"
 #include "engine/run/response.h"
@@ -49,6 +50,7 @@ struct ask {
 	bool balanced; /* with the energy balances of its runs */
 	struct body_ask bodies[POUND_OSCILLATORS];
 	int march; /* with pounding; -1: the responses without pounding are the answer */
+	int apart; /* both bodies without contact, observed; -1: no output reads it */
 };
 
 struct pound_request {
@@ -62,9 +64,10 @@ struct pound_request {
 	const struct pound_cells *campaign; /* of the last run */
 	struct pound_task *tasks;           /* (tasks) */
 	struct pound_task_result *results;  /* (tasks) */
-	void *scratch;                      /* of the march */
-	int n_before;                       /* marches without pounding, they are the first */
-	int n_asks, n_items;                /* of the last run; n_items without those of checks */
+	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; none: no output reads them) */
+	void *scratch;                  /* of the march */
+	int n_before;                   /* marches without pounding, they are the first */
+	int n_asks, n_items;            /* of the last run; n_items without those of checks */
 };
 
 /* ---- work space ---- */
@@ -86,6 +89,7 @@ static size_t request_carve(char *memory, struct pound_request *request, struct 
 	    {&request->asks, sizeof *request->asks * (size_t)size.asks},
 	    {&request->tasks, sizeof *request->tasks * (size_t)size.tasks},
 	    {&request->results, sizeof *request->results * (size_t)size.tasks},
+	    {&request->peaks, sizeof *request->peaks * (size_t)size.peaks},
 	    {&request->scratch, POUND_EXACT_SCRATCH},
 	    {&request->row_asks, sizeof *request->row_asks * (size_t)(rows->tasks ? size.asks : 0)},
 	    {&request->rows.tasks, sizeof *request->rows.tasks * (size_t)rows->tasks},
@@ -123,46 +127,13 @@ struct pound_request *pound_request_init(void *memory, struct pound_request_size
 	struct pound_request *request = memory;
 	memset(request, 0, sizeof *request);
 	request_carve(memory, request, size);
+	request->peaks = size.peaks ? request->peaks : NULL;
 	request->size = size;
 	request->motion_keys.n_slots = pound_hash_slots(size.motions);
 	request->march_keys.n_slots = pound_hash_slots(size.tasks);
 	request->rows.n_slots = size.rows.tasks ? pound_hash_slots(size.rows.tasks) : 0;
 	request->rows.scratch = request->scratch;
 	return request;
-}
-
-/* Gives a scene buildings that have the storeys of a cell. */
-static void storeys_put(const struct pound_cells *campaign, int cell,
-                        struct pound_building buildings[POUND_BUILDINGS_MAX], struct pound_scene *scene)
-{
-	memcpy(buildings, scene->buildings, sizeof *buildings * (size_t)scene->n_buildings);
-	scene->buildings = buildings;
-	for (int s = 0; s < campaign->study->n_sweeps; s++)
-		if (campaign->study->sweeps[s].field.part == POUND_PART_BUILDINGS)
-			pound_scene_assign(scene, campaign->study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
-}
-
-/* Upper bounds for the items of one row: whatever may differ between its samples counts as different. */
-struct pound_request_size pound_request_size(const struct pound_cells *campaign, int row)
-{
-	struct pound_request_size size = {0};
-	for (int cell = 0; cell < campaign->n_cells; cell++)
-		for (int sample = 0; sample < campaign->n_samples; sample++) {
-			struct pound_building buildings[POUND_BUILDINGS_MAX];
-			struct pound_scene scene = pound_cells_scene(campaign, cell, row, sample, NULL);
-			int marches = scene.n_buildings == 0;
-			for (int i = 0; i < POUND_OSCILLATORS && scene.n_buildings == 0; i++)
-				marches += 2 + pound_scene_law(&scene, i)->corrections;
-			if (scene.n_buildings) {
-				storeys_put(campaign, cell, buildings, &scene);
-				pound_row_size_add(&size.rows, &scene);
-			}
-			size.asks++;
-			size.motions++;
-			size.tasks += marches;
-			size.samples += pound_excitation_samples(&scene.excitation);
-		}
-	return size;
 }
 
 /* The ground motion of a sample: its excitation, and the noise of its row and signal, if it has any. */
@@ -270,19 +241,6 @@ static int body_march(struct pound_request *request, const struct ask *ask, int 
 	return march_ask(request, ask->motion, &task);
 }
 
-/* Reduction of the elastic displacement that gives the wanted demand, by the ratio of excitation to own frequency.
- *
- *   q_y = mu_d where f_e/f >= 1/6, else 1 + (mu_d - 1) 6 f_e/f
- *
- * Source   model.md 3; the paper, Figure 3
- */
-static double reduction(const struct pound_scene *scene, int i, double demand)
-{
-	double f_e = pound_excitation_frequency(&scene->excitation);
-	double rise = f_e > 0 ? 6 * f_e / scene->oscillators[i].frequency_hz : 1;
-	return 1 + (demand - 1) * fmin(rise, 1);
-}
-
 static bool searched(const struct pound_law *law)
 {
 	return !pound_law_linear(law->type) && !(law->yield_displacement > 0) && law->corrections >= SEARCH_MIN;
@@ -356,8 +314,11 @@ static bool body_stage(struct pound_request *request, const struct ask *ask, str
 			    fmax(ldexp(law->yield_displacement, -request->motions[ask->motion].exponent), DBL_MIN);
 		} else {
 			body->status = body->status ? body->status : before->status;
-			body->yield = before->displacement_max[0] /
-			              (stage == 1 ? reduction(&ask->scene, i, law->target_demand) : law->target_demand);
+			body->yield =
+			    before->displacement_max[0] /
+			    (stage == 1 ? pound_scene_reduction(&ask->scene, ask->scene.oscillators[i].frequency_hz,
+			                                        law->target_demand)
+			                : law->target_demand);
 		}
 		if (stage == last_stage && !body->wanted) {
 			work->nonlinear_unasked++;
@@ -375,6 +336,7 @@ static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 	const struct pound_scene *scene = &ask->scene;
 	bool response = ask->response = campaign->study->kind == POUND_KIND_RESPONSE;
 	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
+	ask->apart = -1;
 	bool right = response || may_miss || pound_outputs_asked(campaign->study) & POUND_ASKS_RIGHT;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
@@ -436,7 +398,21 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		work->never_touching++;
 		return;
 	}
+	const int known = request->march_keys.n;
 	ask->march = march_ask(request, ask->motion, &task);
+	if (pound_outputs_asked(request->campaign->study) & POUND_ASKS_APPROACH && ask->march == known)
+		pound_pair_peaks_start(&request->peaks[known], &request->tasks[known]);
+}
+
+/* Asks for both bodies without contact where an output reads how far they close a gap. */
+static void ask_apart(struct pound_request *request, struct ask *ask)
+{
+	const struct pound_task pair = pair_task(request, ask);
+	struct pound_task task = {.bodies = {pair.bodies[0], pair.bodies[1]}};
+	const int known = request->march_keys.n;
+	ask->apart = march_ask(request, ask->motion, &task);
+	if (ask->apart == known)
+		pound_pair_peaks_start(&request->peaks[known], &request->tasks[known]);
 }
 
 /* What was run of an ask. */
@@ -452,6 +428,11 @@ static struct pound_runs_known ask_known(const struct pound_request *request, co
 		                              .yield = body->yield,
 		                              .status = body->status};
 	}
+	if (ask->apart >= 0) {
+		known.apart = &request->results[ask->apart];
+		known.peaks_apart = &request->peaks[ask->apart];
+	}
+	known.peaks = request->peaks && ask->march >= 0 ? &request->peaks[ask->march] : NULL;
 	return known;
 }
 
@@ -463,23 +444,12 @@ static struct pound_scene row_scene(const struct pound_request *request, const s
 	return pound_cells_scene(request->campaign, ask->cell, ask->row, ask->sample, request->rows.memory);
 }
 
-/* What a row's chains are asked for: a response has all, of outputs accelerations are few. */
-static unsigned row_asked(const struct pound_study *study, bool balanced)
-{
-	const unsigned always = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
-	const unsigned asks = study->kind == POUND_KIND_RESPONSE ? ~0U : pound_outputs_asked(study);
-	unsigned asked = always | (balanced ? POUND_CHAIN_ENERGY : 0);
-	asked |= asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0;
-	asked |= asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0;
-	return asked;
-}
-
 static void row_free(struct pound_request *request, int a)
 {
 	const struct pound_study *study = request->campaign->study;
 	const struct pound_scene scene = row_scene(request, &request->asks[a]);
 	pound_row_ask_free(&request->rows, &scene, &request->row_asks[a], study->kind == POUND_KIND_RESPONSE,
-	                   row_asked(study, request->asks[a].balanced));
+	                   pound_row_asked(study) | (request->asks[a].balanced ? POUND_CHAIN_ENERGY : 0));
 }
 
 /* Marches registered so far, of both kinds. */
@@ -619,6 +589,13 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		status = marches_run(request, &solver, checks_end, &done, stop);
 		status = status ? status : pound_row_run(&request->rows, stop);
 	}
+	const unsigned asked = pound_outputs_asked(campaign->study);
+	const int apart = request->march_keys.n;
+	for (int a = n_asks - 1; a >= 0 && !status; a--) // the checks first
+		if (asked & POUND_ASKS_APART && !request->asks[a].scene.n_buildings)
+			ask_apart(request, &request->asks[a]);
+	work->free_runs.run += request->march_keys.n - apart;
+	status = status ? status : marches_run(request, &solver, request->march_keys.n, &done, stop);
 	if (status)
 		return status;
 	pounding_ask(request, n_items, n_asks, &work->checks, &of_checks);

@@ -39,6 +39,7 @@ struct pound_request_size {
 	int asks;                   /* runs asked for at most */
 	int motions;                /* ground motions at most */
 	int tasks;                  /* marches at most */
+	int peaks;                  /* of them whose pairs are observed */
 	int64_t samples;            /* of all ground motions at most */
 	struct pound_row_size rows; /* of rows of buildings */
 };

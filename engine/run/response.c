@@ -67,7 +67,16 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 	    .end_v2 = v[1],
 	    .energy_residual = residual,
 	};
-	bool beyond = false; // the motion in its own scale is finite, but not all that is made of it need be
+	if (known->apart && known->apart->status)
+		status = known->apart->status;
+	if (known->peaks_apart) {
+		out->gap_needed = ldexp(known->peaks_apart->closing, e);
+		out->relative_free = fmax(out->gap_needed, ldexp(known->peaks_apart->opening, e));
+	}
+	out->approach = known->peaks ? ldexp(known->peaks->approach, e) : 0;
+	bool beyond =
+	    isinf(out->relative_free) ||
+	    isinf(out->approach); // the motion in its own scale is finite, but not all that is made of it need be
 #define X(member, name, oscillator) beyond |= isinf(out->member) != 0;
 	POUND_MEASURES(X)
 #undef X

@@ -3,6 +3,7 @@
 #define RESPONSE_H
 
 #include "engine/exact/task.h"
+#include "engine/run/pair_peaks.h"
 
 struct pound_body_known {
 	const struct pound_task_result *free; /* without pounding; NULL: not run */
@@ -16,6 +17,8 @@ struct pound_runs_known {
 	int exponent;                             /* motions are times 2^-exponent */
 	const struct pound_task_result *pounding; /* NULL: the responses without pounding are the answer */
 	struct pound_body_known bodies[POUND_OSCILLATORS];
+	const struct pound_task_result *apart;              /* both without contact; NULL: no output reads it */
+	const struct pound_pair_peaks *peaks, *peaks_apart; /* of both runs; NULL likewise, or not run */
 };
 
 enum pound_status pound_response_of(const struct pound_runs_known *known, struct pound_response *out);

@@ -4,6 +4,7 @@
  * 2. The row with pounding, unless the responses without it never close a gap, or all that touches moves alike.
  * 3. Tasks are laid one after another into pools; one that is there already, bit by bit, is not run again. */
 #include "engine/run/row_asks.h"
+#include "engine/run/scene.h"
 
 #include <assert.h>
 #include <float.h>
@@ -167,6 +168,14 @@ static int building_march(struct pound_row_asks *asks, const struct pound_scene 
 
 /* ---- without pounding ---- */
 
+unsigned pound_row_asked(const struct pound_study *study)
+{
+	const unsigned asks = study->kind == POUND_KIND_RESPONSE ? ~0U : pound_outputs_asked(study);
+	unsigned asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
+	asked |= asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0;
+	return asked | (asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0);
+}
+
 double pound_row_yield_given(const struct pound_scene *scene, int b, int i)
 {
 	const struct pound_building *building = &scene->buildings[b];
@@ -228,14 +237,6 @@ int pound_row_stages(const struct pound_scene *scene)
 	return stages;
 }
 
-/* Reduction of the elastic drift that gives the wanted demand, by the ratio of excitation to own frequency: request.c. */
-static double reduction(const struct pound_scene *scene, int b, double frequency)
-{
-	const double f_e = pound_excitation_frequency(&scene->excitation);
-	const double rise = f_e > 0 ? 6 * f_e / (frequency / (2 * 3.14159265358979323846)) : 1;
-	return 1 + (pound_row_law(scene, b)->target_demand - 1) * fmin(rise, 1);
-}
-
 /* The yield drifts of a building, found from the march before or given. */
 static void yields_find(const struct pound_row_asks *asks, const struct pound_scene *scene, int b,
                         struct pound_row_ask *ask, int exponent, int stage)
@@ -250,8 +251,10 @@ static void yields_find(const struct pound_row_asks *asks, const struct pound_sc
 	}
 	pound_building_storeys(&scene->buildings[b], &storeys);
 	const struct pound_chain_result *before = &asks->results[building->march];
-	const double over =
-	    stage == 1 ? reduction(scene, b, storeys.frequency) : pound_row_law(scene, b)->target_demand;
+	const double over = stage == 1
+	                        ? pound_scene_reduction(scene, storeys.frequency / (2 * 3.14159265358979323846),
+	                                                pound_row_law(scene, b)->target_demand)
+	                        : pound_row_law(scene, b)->target_demand;
 	building->status = building->status ? building->status : before->status;
 	for (int i = 0; i < storeys.n; i++)
 		yields[i] = before->floors[i * POUND_FLOOR_MEASURES + POUND_FLOOR_DRIFT_MAX] / over;

@@ -32,6 +32,9 @@ struct pound_modal_known {
 	const double *matrix; /* NULL: none */
 };
 
+/* What the chains of a study are asked for: a response has all but energies, of outputs accelerations and forces are few. */
+unsigned pound_row_asked(const struct pound_study *study);
+
 /* The marches of a block; equal ones are run once. */
 struct pound_row_asks {
 	int n, done;                        /* marches asked, and run */

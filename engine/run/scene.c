@@ -1,5 +1,6 @@
 /* scene.c - reading and varying the scene of a study, and dividing it by masses for the march. */
 #include "engine/run/scene.h"
+#include "engine/ground/excitation.h"
 #include "engine/scene/contact.h"
 
 #include <math.h>
@@ -159,4 +160,17 @@ bool pound_scene_alike(const struct pound_scene *scene)
 	const struct pound_oscillator *o = scene->oscillators;
 	return !o[1].rigid_wall && laws_alike(pound_scene_law(scene, 0), pound_scene_law(scene, 1)) &&
 	       o[0].frequency_hz == o[1].frequency_hz && o[0].damping_ratio == o[1].damping_ratio;
+}
+
+/* Reduction of the elastic displacement that gives the wanted demand, by the ratio of excitation to own frequency.
+ *
+ *   q_y = mu_d where f_e/f >= 1/6, else 1 + (mu_d - 1) 6 f_e/f
+ *
+ * Source   model.md 3; the paper, Figure 3
+ */
+double pound_scene_reduction(const struct pound_scene *scene, double frequency_hz, double demand)
+{
+	const double f_e = pound_excitation_frequency(&scene->excitation);
+	const double rise = f_e > 0 ? 6 * f_e / frequency_hz : 1;
+	return 1 + (demand - 1) * fmin(rise, 1);
 }

@@ -359,6 +359,9 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 	for (int o = 0; o < study->n_outputs; o++) {
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
+		if (pound_output_observes(study->outputs[o]) && !problems_at(problems, "/solver") &&
+		    study->solver.method != POUND_SOLVER_EVENT)
+			problems_add(problems, pointer, "needs the solver \"event\", whose motions it is found from");
 		if (!study_check_applies(study, study->outputs[o]))
 			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
 			             pound_output_needs(study->outputs[o], &study->scene));
@@ -384,6 +387,14 @@ static bool follows_floors(const struct pound_study *study)
 	return follows;
 }
 
+static bool observes(const struct pound_study *study)
+{
+	bool observes = false;
+	for (int o = 0; o < study->n_outputs; o++)
+		observes |= pound_output_observes(study->outputs[o]);
+	return observes;
+}
+
 /* Every solver of the study must be able to integrate every contact model of its cells; what cannot is refused, as nothing
  * is computed by another model or solver than the study's. */
 static void check_forces(const struct pound_study *study, struct problems *problems)
@@ -403,6 +414,10 @@ static void check_forces(const struct pound_study *study, struct problems *probl
 			if (uses_solver(study, row) && !pound_solver_takes_force(row, force))
 				problems_add(problems, pointer, "the solver \"%s\" cannot integrate the contact model \"%s\"",
 				             pound_solver_name(row), pound_contact_name(scene.contact.model));
+		if (observes(study) && !pound_floor_takes_force(force))
+			problems_add(problems, pointer,
+			             "peak_approach_speed_m_s cannot be computed with the contact model \"%s\"",
+			             pound_contact_name(scene.contact.model));
 		if (follows_floors(study) && !pound_floor_takes_force(force))
 			problems_add(problems, pointer, "floor spectra cannot be computed with the contact model \"%s\"",
 			             pound_contact_name(scene.contact.model));
