@@ -335,11 +335,13 @@ bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
 bool pound_solver_takes_force(int row, enum pound_force force); /* can integrate it */
 bool pound_solver_takes_rows(int row);                          /* of buildings */
+bool pound_solver_is_observed(int row);                         /* outputs may read its whole motions */
 bool pound_solver_is_portable(int row);                         /* the same bytes on every processor */
 bool pound_floor_takes_force(enum pound_force force);           /* a floor can be followed under it */
 const char *pound_output_name(int row);
 const char *pound_output_needs(int row, const struct pound_scene *scene); /* from it, in words */
-bool pound_output_observes(int row);      /* it reads whole motions of the exact solver */
+bool pound_output_observes(int row);                                      /* it reads whole motions */
+bool pound_output_observes_contact(int row);                              /* with contact */
 bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */
 bool pound_output_has_places(int row, const struct pound_scene *scene); /* and once for each place */
 int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */

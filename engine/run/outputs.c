@@ -412,8 +412,9 @@ static const struct output {
      "two oscillators", "two oscillators", is_pair, gap_needed, one, .asks = POUND_ASKS_APART},
     {"peak_relative_displacement_free_m", "largest abs(u_1 - u_2) of the bodies without contact [m]",
      "two oscillators", "two oscillators", is_pair, relative_free, one, .asks = POUND_ASKS_APART},
-    {"peak_approach_speed_m_s", "largest speed at which a contact begins [m/s]", "a contact",
-     "two oscillators", pair_meets, approach, one, .asks = POUND_ASKS_APPROACH},
+    {"peak_approach_speed_m_s", "largest speed at which a contact begins [m/s]",
+     "two oscillators with contact", "two oscillators", pair_meets, approach, one,
+     .asks = POUND_ASKS_APPROACH},
 };
 
 const char *pound_output_name(int row)
@@ -434,6 +435,11 @@ const char *pound_output_needs(int row, const struct pound_scene *scene)
 bool pound_output_observes(int row)
 {
 	return outputs[row].asks & (POUND_ASKS_APART | POUND_ASKS_APPROACH);
+}
+
+bool pound_output_observes_contact(int row)
+{
+	return outputs[row].asks & POUND_ASKS_APPROACH;
 }
 
 bool pound_output_has_ordinates(int row)

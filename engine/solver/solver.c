@@ -27,13 +27,15 @@ static const struct solver {
 	            const atomic_bool *stop);
 	bool tolerance, step; /* the settings it takes */
 	bool rows;            /* it integrates rows of buildings */
+	bool observed;        /* what observes a motion can follow it */
 	bool portable;        /* the same bytes on every processor */
 	bool forces
 	    [POUND_FORCES]; /* forms of contact force that it can integrate; it takes every law, as branches */
 } solvers[] = {
     // many tasks at once
     [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
-                            .tolerance = true, .rows = true, .portable = true, .forces = EVERY},
+                            .tolerance = true, .rows = true, .observed = true, .portable = true,
+                            .forces = EVERY},
     {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true, .portable = true,
      .forces = BRANCHES},
     {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true,
@@ -72,6 +74,11 @@ bool pound_solver_takes_force(int row, enum pound_force force)
 bool pound_solver_takes_rows(int row)
 {
 	return solver_at(row)->rows;
+}
+
+bool pound_solver_is_observed(int row)
+{
+	return solver_at(row)->observed;
 }
 
 /* Whether its bytes depend on the study alone; GSL's solvers call functions that the C library chooses by processor. */

@@ -360,8 +360,9 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
 		if (pound_output_observes(study->outputs[o]) && !problems_at(problems, "/solver") &&
-		    study->solver.method != POUND_SOLVER_EVENT)
-			problems_add(problems, pointer, "needs the solver \"event\", whose motions it is found from");
+		    !pound_solver_is_observed(study->solver.method))
+			problems_add(problems, pointer, "cannot be computed with the solver \"%s\", only with \"event\"",
+			             pound_solver_name(study->solver.method));
 		if (!study_check_applies(study, study->outputs[o]))
 			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
 			             pound_output_needs(study->outputs[o], &study->scene));
@@ -387,11 +388,11 @@ static bool follows_floors(const struct pound_study *study)
 	return follows;
 }
 
-static bool observes(const struct pound_study *study)
+static bool observes_contact(const struct pound_study *study)
 {
 	bool observes = false;
 	for (int o = 0; o < study->n_outputs; o++)
-		observes |= pound_output_observes(study->outputs[o]);
+		observes |= pound_output_observes_contact(study->outputs[o]);
 	return observes;
 }
 
@@ -414,7 +415,7 @@ static void check_forces(const struct pound_study *study, struct problems *probl
 			if (uses_solver(study, row) && !pound_solver_takes_force(row, force))
 				problems_add(problems, pointer, "the solver \"%s\" cannot integrate the contact model \"%s\"",
 				             pound_solver_name(row), pound_contact_name(scene.contact.model));
-		if (observes(study) && !pound_floor_takes_force(force))
+		if (observes_contact(study) && !pound_floor_takes_force(force))
 			problems_add(problems, pointer,
 			             "peak_approach_speed_m_s cannot be computed with the contact model \"%s\"",
 			             pound_contact_name(scene.contact.model));

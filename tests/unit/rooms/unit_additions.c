@@ -13,7 +13,7 @@ static const struct addition {
     {"a law", "\"origin_oriented\""},
     {"a contact model", "\"rigid\""},
     {"an excitation", "\"white_noise\""},
-    {"an output", "\"peak_contact_force_n\""},
+    {"an output", "\"peak_approach_speed_m_s\""},
     {"a damping form", "\"modal\""},
     {"a floor spectrum", "\"dirac_peaks\""},
     {"an estimator, a distribution, a design", "\"azzini_rosati\""},

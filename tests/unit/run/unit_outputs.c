@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/run/pair_peaks.h"
 #include "schema/json/json_pointer.h"
 #include "schema/result/result_json.h"
 #include "schema/study/study_json.h"
@@ -176,6 +177,84 @@ static void outputs_of_rows_are_means_of_the_signals(void **state)
 	reading_close(r);
 }
 
-CHECK_MAIN(cmocka_unit_test(outputs_of_pairs_are_means_of_the_signals),
+/* A number of a study of one signal. */
+static double number_of(const char *scene, const char *law, double gap, int seed, const char *output)
+{
+	char document[1024], at[64];
+	snprintf(document, sizeof document,
+	         "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"%s\"}, %s, \"contact\": {\"gap_m\": "
+	         "%.17g}, \"excitation\": {\"signals\": 1}}, \"design\": {\"seed\": %d}, \"outputs\": [\"%s\"]}",
+	         law, scene, gap, seed, output);
+	struct reading *r = result_of(document);
+	snprintf(at, sizeof at, "/outputs/%s", output);
+	const double value = reading_number(r, "%s", at);
+	reading_close(r);
+	return value;
+}
+
+/* Brute force: the bodies touch with a gap smaller by parts in 1e9, and do not with one larger by as much. */
+static void the_gap_needed_decides_which_signals_pound(void **state)
+{
+	static const char *const laws[] = {"linear", "elastoplastic", "nonlinear_elastic", "origin_oriented"};
+	static const char *const scenes[] = {
+	    "\"oscillators\": [{\"mass_kg\": 3, \"frequency_hz\": 1}, {\"frequency_hz\": 1.7}]",
+	    "\"oscillators\": [{\"frequency_hz\": 2.5, \"damping_ratio\": 0}, {\"frequency_hz\": 0.6}]",
+	    "\"oscillators\": [{\"frequency_hz\": 0.8}, {\"rigid_wall\": true}]",
+	    "\"oscillators\": [{\"frequency_hz\": 60}, {\"frequency_hz\": 400, \"damping_ratio\": 0.5}]"};
+	(void)state;
+	for (int law = 0; law < 4; law++)
+		for (int k = 0; k < 4; k++)
+			for (int seed = 1; seed <= 4; seed++) {
+				const double gap = number_of(scenes[k], laws[law], 0, seed, "gap_needed_m");
+				assert_true(gap > 0);
+				check_near(number_of(scenes[k], laws[law], gap * (1 - 1e-9), seed, "pounding_probability"), 1,
+				           0);
+				check_near(number_of(scenes[k], laws[law], gap * (1 + 1e-9), seed, "pounding_probability"), 0,
+				           0);
+			}
+}
+
+/* Bodies exchanged close a gap where these open it. */
+static void the_relative_displacement_is_the_larger_of_both_directions(void **state)
+{
+	static const char here[] = "\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 1.7}]",
+	                  exchanged[] = "\"oscillators\": [{\"frequency_hz\": 1.7}, {\"frequency_hz\": 1}]";
+	int opening = 0;
+	(void)state;
+	for (int seed = 1; seed <= 8; seed++) {
+		const double closing[] = {number_of(here, "elastoplastic", 0, seed, "gap_needed_m"),
+		                          number_of(exchanged, "elastoplastic", 0, seed, "gap_needed_m")};
+		const double most = number_of(here, "elastoplastic", 0, seed, "peak_relative_displacement_free_m");
+		check_near(most / fmax(closing[0], closing[1]), 1, 1e-13);
+		opening += closing[1] > closing[0];
+	}
+	assert_true(opening > 0 && opening < 8);
+}
+
+/* Two free masses meet at 1.5 m/s. */
+static void the_largest_approach_speed_is_that_of_an_impact(void **state)
+{
+	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
+	(void)state;
+	struct pound_task task = specimen_impact(0.5, true, 100);
+	struct pound_task_result result;
+	struct pound_pair_peaks peaks;
+	pound_pair_peaks_start(&peaks, &task);
+	assert_true(pound_exact_lanes(0, &task, &result, 1, scratch, NULL));
+	assert_int_equal(result.contacts, 1);
+	check_near(peaks.approach, 1.5, 1e-12);
+	// until they meet they have closed the gap of 10 cm, and they separate for good
+	check_near(peaks.closing, 0.1, 1e-13);
+
+	// with several contacts none is faster; with none there is no speed
+	static const char scene[] = "\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 1.7}]";
+	assert_true(number_of(scene, "linear", 0, 1, "peak_approach_speed_m_s") > 0);
+	check_near(number_of(scene, "linear", 100, 1, "peak_approach_speed_m_s"), 0, 0);
+}
+
+CHECK_MAIN(cmocka_unit_test(the_gap_needed_decides_which_signals_pound),
+           cmocka_unit_test(the_relative_displacement_is_the_larger_of_both_directions),
+           cmocka_unit_test(the_largest_approach_speed_is_that_of_an_impact),
+           cmocka_unit_test(outputs_of_pairs_are_means_of_the_signals),
            cmocka_unit_test(the_right_body_is_run_where_an_output_reads_it),
            cmocka_unit_test(outputs_of_rows_are_means_of_the_signals))

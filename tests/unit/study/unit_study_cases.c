@@ -152,9 +152,9 @@ static const char *const files[] = {"tests/cases/study_fields.txt", "tests/cases
 enum { N_FILES = sizeof files / sizeof files[0], FIELDS_MAX = 200 };
 
 /* "POINTER: DETAIL", the shape in which a file has it. */
-static void line_of(const struct problem *problem, char line[640])
+static void line_of(const struct problem *problem, char line[1024])
 {
-	snprintf(line, 640, "%s: %s", problem->pointer, problem->detail);
+	snprintf(line, 1024, "%s: %s", problem->pointer, problem->detail);
 }
 
 static int n_wrong; // cases that were not as their file says
@@ -164,7 +164,7 @@ static void judge(const struct study_case *of, void *context)
 	static struct problems problems;
 	struct pound_study *study = study_from_json(of->document, strlen(of->document), &problems);
 	bool as_expected = problems.n == of->n && !problems.n_more && !study == (of->n > 0);
-	char line[640];
+	char line[1024];
 	(void)context;
 	for (int i = 0; i < problems.n && i < of->n; i++) {
 		line_of(&problems.list[i], line);
