@@ -64,6 +64,13 @@ static void axis_halve(struct axis *axis)
 	axis->half_span = axis->high / 2 - axis->low / 2;
 }
 
+struct axis axis_between(double low, double high)
+{
+	struct axis axis = {.low = low, .high = high};
+	axis_halve(&axis);
+	return axis;
+}
+
 /* An axis that ends at ticks.
  *
  * Test     unit_figure: ticks_of_any_range_are_few_and_inside
@@ -197,17 +204,27 @@ static void ticks_linear(const struct axis *axis, int most, struct ticks *ticks)
 	}
 }
 
+/* The decades between two ticks: 1, 2, 5, 10 ... from a number on. */
+static int stride_of(int least)
+{
+	static const int strides[] = {1, 2, 5, 10, 20, 50, 100, 200, 500};
+	size_t k = 0;
+	while (strides[k] < least && k + 1 < sizeof strides / sizeof strides[0])
+		k++;
+	return strides[k];
+}
+
 static void ticks_log(const struct axis *axis, int most, struct ticks *ticks)
 {
 	int from = decade(axis->low), to = decade(axis->high * 1.0001);
 	bool plain = axis->low > 0.9e-3 && axis->high < 1.1e5;
-	int decades = to - from + 1, stride = (decades + most - 1) / most;
+	int decades = to - from + 1, stride = stride_of((decades + most - 1) / most);
 	bool between = 3 * decades <= (most < TICKS_MAX - 3 ? most : TICKS_MAX - 3);
 	for (int e = from; e <= to; e++)
 		for (int k = 0; k < (between ? 3 : 1); k++) {
 			char text[32], raised[20];
 			double value = scaled(mantissas[k], e);
-			if (value < axis->low * 0.999 || value > axis->high * 1.001 || (e - from) % stride)
+			if (value < axis->low * 0.999 || value > axis->high * 1.001 || e % stride)
 				continue;
 			superscript(raised, sizeof raised, e);
 			if (plain)
@@ -218,6 +235,16 @@ static void ticks_log(const struct axis *axis, int most, struct ticks *ticks)
 				snprintf(text, sizeof text, "%.0f·10%.20s", mantissas[k], raised);
 			ticks_add(ticks, value, text);
 		}
+	if (ticks->n >= 2)
+		return;
+	// both ends and the power of ten between them tell how long a decade is
+	const struct ticks inner = *ticks;
+	char text[32];
+	*ticks = (struct ticks){0};
+	ticks_add(ticks, axis->low, draw_number(axis->low, text));
+	if (inner.n && inner.tick[0].value > 1.001 * axis->low && inner.tick[0].value < 0.999 * axis->high)
+		ticks_add(ticks, inner.tick[0].value, inner.tick[0].text);
+	ticks_add(ticks, axis->high, draw_number(axis->high, text));
 }
 
 void axis_ticks(const struct axis *axis, int most, struct ticks *ticks)
@@ -227,30 +254,26 @@ void axis_ticks(const struct axis *axis, int most, struct ticks *ticks)
 	(axis->log ? ticks_log : ticks_linear)(axis, most, ticks);
 }
 
-void axis_label(const struct ticks *ticks, const char *label, double room, char *text, size_t size)
+void axis_label(const struct ticks *ticks, const char *label, char *text, size_t size)
 {
 	char raised[20];
 	superscript(raised, sizeof raised, ticks->exponent);
-	snprintf(text, size, ticks->exponent ? "%s (10%s)" : "%s", label, raised);
-	// what is cut must not be the power
-	if (ticks->exponent && draw_width(text, DRAW_TEXT_SIZE) > room)
-		snprintf(text, size, "(10%s) %s", raised, label);
+	snprintf(text, size, ticks->exponent ? "%.170s (10%s)" : "%s", label, raised);
 }
 
-/* ---- panels ---- */
+enum { ACROSS_MOST = 14 };
 
-/* As many ticks across as fit side by side. */
-static void ticks_across(const struct panel *panel, struct ticks *ticks)
+void axis_ticks_across(const struct axis *axis, struct ticks *ticks)
 {
-	double inside = panel->right - panel->left, last;
-	int most = (int)(inside / 40);
+	double last;
+	int most = (int)fmin((axis->end - axis->start) / 30, ACROSS_MOST);
 	for (;;) {
 		bool collide = false;
-		axis_ticks(&panel->across, most, ticks);
+		axis_ticks(axis, most, ticks);
 		last = -INFINITY;
 		for (int k = 0; k < ticks->n; k++) {
 			double half = draw_width(ticks->tick[k].text, DRAW_TEXT_SIZE) / 2;
-			double at = axis_at(&panel->across, ticks->tick[k].value);
+			double at = axis_at(axis, ticks->tick[k].value);
 			collide = collide || at - half < last;
 			last = at + half + 8;
 		}
@@ -260,29 +283,39 @@ static void ticks_across(const struct panel *panel, struct ticks *ticks)
 	}
 }
 
+/* ---- panels ---- */
+
+/* The ticks up between top and bottom, and the room that they leave. */
+static void panel_ticks_up(struct panel *panel, struct ticks *up)
+{
+	axis_ticks(&panel->up, (int)((panel->bottom - panel->top) / 30), up);
+	panel->left = panel->x + fmax(up->widest, panel->room) + 10 + (panel->y_label ? 18 : 0);
+}
+
 void panel_draw(struct drawing *drawing, struct panel *panel)
 {
 	const struct pen grid = {.ink = INK_GRID}, axis = {.ink = INK_TEXT};
 	struct ticks across, up;
 	char label[200];
-	panel->top = panel->y + 8;
+	panel->bottom = panel->y + panel->height - (panel->x_label ? 40 : 24);
+	panel->right = panel->x + panel->width - 12;
+	panel->top = panel->y + (panel->title ? 21 : 8);
+	panel_ticks_up(panel, &up);
+	// the title begins where the frame does, and may take lines from it
 	if (panel->title)
 		panel->top = 8 +
 		             draw_prose(drawing,
-		                        &(struct label){.x = panel->x + fmax(panel->room, 40) + 8,
+		                        &(struct label){.x = panel->left,
 		                                        .y = panel->y + 13,
 		                                        .size = DRAW_TITLE_SIZE,
 		                                        .bold = true,
-		                                        .fit = panel->width - fmax(panel->room, 40) - 8},
+		                                        .fit = panel->right - panel->left},
 		                        panel->title, 3) -
 		             DRAW_TITLE_SIZE;
-	panel->bottom = panel->y + panel->height - (panel->x_label ? 40 : 24);
-	axis_ticks(&panel->up, (int)((panel->bottom - panel->top) / 30), &up);
-	panel->left = panel->x + fmax(up.widest, panel->room) + 10 + (panel->y_label ? 18 : 0);
-	panel->right = panel->x + panel->width - 12;
+	panel_ticks_up(panel, &up);
 	panel->up.start = panel->bottom, panel->up.end = panel->top;
 	panel->across.start = panel->left, panel->across.end = panel->right;
-	ticks_across(panel, &across);
+	axis_ticks_across(&panel->across, &across);
 	for (int k = 0; k < up.n; k++) {
 		double y = axis_at(&panel->up, up.tick[k].value);
 		draw_line(drawing, &grid, panel->left, y, panel->right, y);
@@ -299,7 +332,7 @@ void panel_draw(struct drawing *drawing, struct panel *panel)
 	draw_line(drawing, &axis, panel->left, panel->bottom, panel->right, panel->bottom);
 	draw_line(drawing, &axis, panel->left, panel->bottom, panel->left, panel->top);
 	if (panel->x_label) {
-		axis_label(&across, panel->x_label, panel->right - panel->left, label, sizeof label);
+		axis_label(&across, panel->x_label, label, sizeof label);
 		draw_text(drawing,
 		          &(struct label){.x = (panel->left + panel->right) / 2,
 		                          .y = panel->bottom + 35,
@@ -308,8 +341,7 @@ void panel_draw(struct drawing *drawing, struct panel *panel)
 		          label);
 	}
 	if (panel->y_label || up.exponent) {
-		axis_label(&up, panel->y_label ? panel->y_label : "", panel->bottom - panel->top, label,
-		           sizeof label);
+		axis_label(&up, panel->y_label ? panel->y_label : "", label, sizeof label);
 		draw_text(drawing,
 		          &(struct label){.x = panel->x + 12,
 		                          .y = (panel->top + panel->bottom) / 2,
@@ -318,6 +350,9 @@ void panel_draw(struct drawing *drawing, struct panel *panel)
 		                          .fit = panel->bottom - panel->top},
 		          label);
 	}
+	if (panel->bare)
+		draw_text(drawing, &(struct label){.x = panel->left + 8, .y = panel->top + 14, .ink = INK_MUTED},
+		          "no value");
 	drawing->height = fmax(drawing->height, panel->y + panel->height);
 }
 

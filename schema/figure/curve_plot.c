@@ -40,6 +40,9 @@ static void draw_curve_of(struct plot *plot, const cJSON *curve, const char *lab
 {
 	struct range across = RANGE_EMPTY;
 	int n, n_low, n_high, n_mean;
+	panel->bare = true;
+	const cJSON *value;
+	cJSON_ArrayForEach(value, plot_member(curve, "mean")) if (cJSON_IsNumber(value)) panel->bare = false;
 	range_list(&across, plot_member(curve, "x"));
 	panel->across = axis_linear(across);
 	panel->up = axis_linear(range);
@@ -51,12 +54,6 @@ static void draw_curve_of(struct plot *plot, const cJSON *curve, const char *lab
 	double *low = places(plot, &panel->up, plot_member(curve, "low"), &n_low);
 	double *high = places(plot, &panel->up, plot_member(curve, "high"), &n_high);
 	double at = axis_at(&panel->up, mean);
-	bool any = false;
-	for (int k = 0; y && k < n_mean; k++)
-		any = any || isfinite(y[k]);
-	if (!any)
-		draw_text(&plot->d, &(struct label){.x = panel->left + 8, .y = panel->top + 14, .ink = INK_MUTED},
-		          "no value");
 	draw_line(&plot->d, &(struct pen){.ink = INK_MUTED, .dash = "4 3"}, panel->left, at, panel->right, at);
 	if (!x || !y || !low || !high || n_mean != n || n_low != n || n_high != n)
 		return;
@@ -127,6 +124,9 @@ static double *costs_of(struct plot *plot, const cJSON *rows, int *n, bool *cpu)
 	return *cpu ? seconds : numbers;
 }
 
+static const struct pen GOAL = {
+    .ink = INK_TEXT, .width = 1.2, .dash = "2 3"}; // the half width that was asked for
+
 static void draw_widths(struct plot *plot, const cJSON *output, struct panel *panel)
 {
 	static const char *const members[] = {"S1_half_widths", "ST_half_widths"};
@@ -137,22 +137,23 @@ static void draw_widths(struct plot *plot, const cJSON *output, struct panel *pa
 	double *cost = costs_of(plot, plot_member(accuracy, "rows"), &n, &cpu);
 	double goal = plot_number(plot_member(plot->result, "stopping"), "half_width");
 	struct range across = RANGE_EMPTY, up = RANGE_EMPTY;
-	double *x = plot_memory(plot, sizeof *x * (size_t)(n + 1)),
-	       *widest = plot_memory(plot, sizeof *x * (size_t)(n + 1));
-	if (!cost || !x || !widest)
+	double *x = plot_memory(plot, 3 * sizeof *x * (size_t)(n + 1));
+	if (!cost || !x)
 		return;
+	double *y = x + n + 1, *widest = y + n + 1;
 	for (int k = 0; k < n; k++) {
 		range_add(&across, cost[k]);
 		widest[k] = NAN;
 	}
-	if (goal > 0)
-		range_add(&up, goal);
 	cJSON_ArrayForEach(input, plot_member(accuracy, "inputs")) for (int i = 0; i < 2; i++)
 	{
 		const cJSON *width;
 		cJSON_ArrayForEach(width, plot_member(input, members[i])) if (width->valuedouble > 0)
 		    range_add(&up, width->valuedouble);
 	}
+	panel->bare = up.low > up.high;
+	if (goal > 0)
+		range_add(&up, goal);
 	panel->title = plot_output_name(output, title);
 	panel->x_label = cpu ? "CPU time [s]" : "rows";
 	panel->y_label = "half width";
@@ -170,17 +171,21 @@ static void draw_widths(struct plot *plot, const cJSON *output, struct panel *pa
 				continue;
 			for (int k = 0; k < n; k++) {
 				widest[k] = fmax(widest[k], width[k]);
-				width[k] = axis_at(&panel->up, width[k]);
+				y[k] = axis_at(&panel->up, width[k]);
 			}
 			draw_curve(&plot->d,
 			           &(struct pen){.ink = (enum ink)(j % DRAW_SERIES),
 			                         .width = 1.2,
 			                         .dash = i ? NULL : "6 3",
 			                         .opacity = 0.85},
-			           n, x, width);
-			for (int k = 0; k < n; k++)
-				draw_mark(&plot->d, &(struct mark){.series = j, .hollow = i == 0, .size = 3}, x[k], width[k],
-				          NULL);
+			           n, x, y);
+			for (int k = 0; k < n; k++) {
+				snprintf(text, sizeof text, "%.100s: half width of %.2s %s at %s %s",
+				         plot_text(input, "name"), members[i], draw_number(width[k], number[0]),
+				         draw_number(cost[k], number[1]), cpu ? "s" : "rows");
+				draw_mark(&plot->d, &(struct mark){.series = j, .hollow = i == 0, .size = 3}, x[k], y[k],
+				          text);
+			}
 		}
 		j++;
 	}
@@ -188,19 +193,14 @@ static void draw_widths(struct plot *plot, const cJSON *output, struct panel *pa
 		widest[k] = axis_at(&panel->up, widest[k]);
 	draw_curve(&plot->d, &(struct pen){.ink = INK_TEXT, .width = 2.6, .opacity = 0.55}, n, x, widest);
 	double at = axis_at(&panel->up, goal);
-	draw_line(&plot->d, &(struct pen){.ink = INK_TEXT, .width = 1.2, .dash = "5 4"}, panel->left, at,
-	          panel->right, at);
-	if (isfinite(goal)) {
-		snprintf(text, sizeof text, "asked for: %s", draw_number(goal, number[0]));
-		draw_text(&plot->d,
-		          &(struct label){.x = panel->right - 4, .y = at - 5, .anchor = 'e', .ink = INK_MUTED}, text);
-	}
+	draw_line(&plot->d, &GOAL, panel->left, at, panel->right, at);
 }
 
 void plot_widths(struct plot *plot)
 {
-	char sweep[PLOT_TEXT], number[32];
-	struct key keys[INPUTS_MOST + 3];
+	char sweep[PLOT_TEXT], number[32], asked[64];
+	const double goal = plot_number(plot_member(plot->result, "stopping"), "half_width");
+	struct key keys[INPUTS_MOST + 4];
 	const cJSON *cell = plot_cell(plot), *outputs[WIDTH_OUTPUTS_MOST], *input;
 	int n = cell ? plot_outputs(plot, cell, WIDTH_OUTPUTS_MOST, outputs) : 0, n_keys = 0, j = 0;
 	if (n == 0)
@@ -211,6 +211,10 @@ void plot_widths(struct plot *plot)
 	keys[n_keys++] =
 	    (struct key){.name = "S1: hollow, dashed", .pen = {.ink = INK_MUTED, .width = 1.2, .dash = "6 3"}};
 	keys[n_keys++] = (struct key){.name = "ST: filled", .pen = {.ink = INK_MUTED, .width = 1.2}};
+	if (isfinite(goal)) {
+		snprintf(asked, sizeof asked, "asked for: %s", draw_number(goal, number));
+		keys[n_keys++] = (struct key){.name = asked, .pen = GOAL};
+	}
 	cJSON_ArrayForEach(input, plot_member(outputs[0], "inputs"))
 	{
 		if (j == INPUTS_MOST)
@@ -242,20 +246,27 @@ bool plot_has_errors(const cJSON *result)
 /* What is known of each row of a convergence study, and room for places. */
 struct points {
 	const double *cpu, *error; /* of all rows */
-	double *x, *y;
+	double *x, *y, *setting;
 };
+
+/* The step or the tolerance of a row. */
+static double setting_of(const cJSON *row)
+{
+	const double step = plot_number(row, "step_s");
+	return isfinite(step) ? step : plot_number(row, "tolerance");
+}
 
 static const char *method_text(const cJSON *row, double error, double cpu, char text[PLOT_TEXT])
 {
 	char number[3][32];
-	double step = plot_number(row, "step_s"), tolerance = plot_number(row, "tolerance");
 	snprintf(text, PLOT_TEXT, "%.60s, %s %s: error %s, %s s", plot_text(row, "method"),
-	         isfinite(step) ? "step" : "tolerance", draw_number(isfinite(step) ? step : tolerance, number[0]),
-	         draw_number(error, number[1]), draw_number(cpu, number[2]));
+	         isfinite(plot_number(row, "step_s")) ? "step" : "tolerance",
+	         draw_number(setting_of(row), number[0]), draw_number(error, number[1]),
+	         draw_number(cpu, number[2]));
 	return text;
 }
 
-/* The rows of a method, from the cheapest to the dearest. */
+/* The rows of a method from its largest step or tolerance on: in that order, as times of single runs cross. */
 static void draw_method(struct plot *plot, const struct panel *panel, const struct key *key,
                         const char *method, int series, const struct points *points)
 {
@@ -267,16 +278,18 @@ static void draw_method(struct plot *plot, const struct panel *panel, const stru
 		k++;
 		if (strcmp(method, plot_text(row, "method")) != 0)
 			continue;
-		double x = axis_at(&panel->across, points->cpu[k]), y = axis_at(&panel->up, points->error[k]);
 		int place = at++;
-		for (; place > 0 && points->x[place - 1] > x; place--) {
+		const double setting = setting_of(row);
+		for (; place > 0 && points->setting[place - 1] < setting; place--) {
 			points->x[place] = points->x[place - 1];
 			points->y[place] = points->y[place - 1];
+			points->setting[place] = points->setting[place - 1];
 		}
-		points->x[place] = x;
-		points->y[place] = y;
+		points->setting[place] = setting;
+		points->x[place] = axis_at(&panel->across, points->cpu[k]);
+		points->y[place] = axis_at(&panel->up, points->error[k]);
 		if (key->marked)
-			draw_mark(&plot->d, &(struct mark){.series = series}, x, y,
+			draw_mark(&plot->d, &(struct mark){.series = series}, points->x[place], points->y[place],
 			          method_text(row, points->error[k], points->cpu[k], text));
 	}
 	if (key->marked)
@@ -298,9 +311,8 @@ void plot_errors(struct plot *plot)
 	double *error = plot_column(plot, rows, name, &n);
 	double *timed = plot_numbers(plot, plot_member(plot_member(plot->result, "timing"), "run_cpu_s"), &n_cpu);
 	double *cpu = plot_memory(plot, sizeof *cpu * (size_t)(n + 1));
-	double *x = plot_memory(plot, sizeof *x * (size_t)(n + 1)),
-	       *y = plot_memory(plot, sizeof *y * (size_t)(n + 1));
-	if (!error || !timed || !cpu || !x || !y)
+	double *x = plot_memory(plot, 3 * sizeof *x * (size_t)(n + 1));
+	if (!error || !timed || !cpu || !x)
 		return;
 	for (int r = 0; r < n; r++)
 		cpu[r] = r < n_cpu ? timed[r] : NAN;
@@ -333,12 +345,14 @@ void plot_errors(struct plot *plot)
 	struct panel panel = {.height = 420,
 	                      .x_label = "CPU time of one run [s]",
 	                      .y_label = "relative error",
+	                      .bare = across.low > across.high || up.low > up.high,
 	                      .across = axis_log(across),
 	                      .up = axis_log(up)};
 	panel_place(&plot->d, 1, 0, top, &panel);
 	panel_draw(&plot->d, &panel);
 	for (int m = 0; m < n_methods; m++)
-		draw_method(plot, &panel, &keys[m], methods[m], m, &(struct points){cpu, error, x, y});
+		draw_method(plot, &panel, &keys[m], methods[m], m,
+		            &(struct points){cpu, error, x, x + n + 1, x + 2 * (n + 1)});
 	snprintf(plot->sentence, sizeof plot->sentence,
 	         "The event solver takes %s s of CPU time; errors from %s to %s.", draw_number(cpu[0], number[0]),
 	         draw_number(up.low, number[1]), draw_number(up.high, number[2]));

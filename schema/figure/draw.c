@@ -162,8 +162,11 @@ static const short WIDTHS[] = {
 
 static double width_of(const char *text, size_t n, double size)
 {
-	// other fonts are up to an eighth wider; of other characters the widest are squares
-	double em = n > 1 ? (n == 2 ? 650 : 1000) : *text >= ' ' && *text <= '~' ? WIDTHS[*text - ' '] : 600;
+	// other fonts are up to an eighth wider; of other characters the widest are squares, raised digits are small
+	double em = n == 3 && strncmp(text, "\xE2\x81", 2) == 0 ? 400
+	            : n > 1                                     ? (n == 2 ? 650 : 1000)
+	            : *text >= ' ' && *text <= '~'              ? WIDTHS[*text - ' ']
+	                                                        : 600;
 	return em * 1.125e-3 * size;
 }
 
@@ -178,7 +181,7 @@ double draw_width(const char *text, double size)
 /* Width of a bold text over that of a plain one, in the widest of common fonts (DejaVu Sans). */
 static const double BOLD = 1.12;
 
-/* The bytes of a text that fit in a width beside an ellipsis; all of them if it fits. */
+/* The first bytes of a text that fit in a width beside an ellipsis; all of them if it fits. */
 static size_t fitting(const char *text, double size, double fit)
 {
 	const char *at = text;
@@ -190,12 +193,33 @@ static size_t fitting(const char *text, double size, double fit)
 	return (size_t)(at - text);
 }
 
-/* Writes a text; one that was cut has the whole of it for its title. */
+/* The last bytes of a text that fit in a width. */
+static size_t fitting_last(const char *text, double size, double fit)
+{
+	size_t whole = strlen(text), from = whole;
+	double width = 0;
+	for (size_t at = whole; at > 0; from = at) {
+		do
+			at--;
+		while (at > 0 && ((unsigned char)text[at] & 0xC0) == 0x80);
+		width += width_of(text + at, character(text + at), size);
+		if (width > fit)
+			break;
+	}
+	return whole - from;
+}
+
+/* Writes a text; one whose middle is left out, as names often differ at their ends, has the whole of it for its title. */
 void draw_text(struct drawing *drawing, const struct label *label, const char *text)
 {
 	double size = label->size > 0 ? label->size : DRAW_TEXT_SIZE;
 	enum ink ink = label->ink ? label->ink : INK_TEXT;
-	size_t whole = strlen(text), n = fitting(text, label->bold ? BOLD * size : size, label->fit);
+	const double wide = label->bold ? BOLD * size : size;
+	size_t whole = strlen(text), n = fitting(text, wide, label->fit), last = 0;
+	if (n < whole) {
+		n = fitting(text, wide, 0.6 * (label->fit - size) + size);
+		last = fitting_last(text + n, wide, 0.4 * (label->fit - size));
+	}
 	put(drawing, "<text class=\"f%d\" fill=\"%s\"", ink, INKS[ink].light);
 	put_attribute(drawing, "x", label->x);
 	put_attribute(drawing, "y", label->y);
@@ -219,18 +243,12 @@ void draw_text(struct drawing *drawing, const struct label *label, const char *t
 		put(drawing, "</title>");
 	}
 	put_text(drawing, text, n);
-	put(drawing, n < whole ? "…</text>\n" : "</text>\n");
+	if (n < whole) {
+		put(drawing, "…");
+		put_text(drawing, text + whole - last, last);
+	}
+	put(drawing, "</text>\n");
 	grow(drawing, label->y + size / 3);
-}
-
-void draw_say(struct drawing *drawing, const struct label *label, const char *format, ...)
-{
-	char text[512];
-	va_list arguments;
-	va_start(arguments, format);
-	vsnprintf(text, sizeof text, format, arguments);
-	va_end(arguments);
-	draw_text(drawing, label, text);
 }
 
 double draw_prose(struct drawing *drawing, const struct label *label, const char *text, int lines)
@@ -309,20 +327,34 @@ static void put_point(struct drawing *drawing, char command, double x, double y)
 	grow(drawing, y);
 }
 
+/* Whether a point of a curve has no neighbor. */
+static bool dot_at(int n, const double *x, const double *y, int k)
+{
+	return (k == 0 || !isfinite(x[k - 1]) || !isfinite(y[k - 1])) &&
+	       (k == n - 1 || !isfinite(x[k + 1]) || !isfinite(y[k + 1]));
+}
+
 void draw_curve(struct drawing *drawing, const struct pen *pen, int n, const double *x, const double *y)
 {
-	bool inside = false, any = false;
-	for (int k = 0; k < n; k++)
-		any = any || (isfinite(x[k]) && isfinite(y[k]));
+	bool inside = false, any = false, dots = false;
+	for (int k = 0; k < n; k++) {
+		const bool here = isfinite(x[k]) && isfinite(y[k]);
+		any = any || here;
+		dots = dots || (here && dot_at(n, x, y, k));
+	}
 	if (!any)
 		return;
-	put(drawing, "<path fill=\"none\" stroke-linejoin=\"round\"");
+	// a line of no length shows by its round ends
+	put(drawing, dots ? "<path fill=\"none\" stroke-linecap=\"round\""
+	                  : "<path fill=\"none\" stroke-linejoin=\"round\"");
 	put_stroke(drawing, pen);
 	put(drawing, " d=\"");
 	for (int k = 0; k < n; k++) {
 		bool here = isfinite(x[k]) && isfinite(y[k]);
 		if (here)
 			put_point(drawing, inside ? 'L' : 'M', x[k], y[k]);
+		if (here && dots && dot_at(n, x, y, k))
+			put_point(drawing, 'L', x[k], y[k]);
 		inside = here;
 	}
 	put(drawing, "\"/>\n");

@@ -43,15 +43,13 @@ void draw_escaped(struct writer *writer, const char *text, size_t most);
 struct label {
 	double x, y;   /* of the baseline */
 	double size;   /* 0: DRAW_TEXT_SIZE */
-	double fit;    /* the width it may take, a longer text is cut with an ellipsis; 0: any */
+	double fit;    /* the width it may take, of a longer text the middle is left out; 0: any */
 	enum ink ink;  /* INK_SERIES is never that of a text: 0 is INK_TEXT */
 	char anchor;   /* 's'tart (also 0), 'm'iddle, 'e'nd of the text is at x */
 	bool bold, up; /* up: read from below */
 };
 
 void draw_text(struct drawing *drawing, const struct label *label, const char *text);
-void draw_say(struct drawing *drawing, const struct label *label, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
 /* The width that a text takes in common fonts, rather too much than too little. */
 double draw_width(const char *text, double size);
 /* A text of a document in lines of at most `width`, no more than `lines`; returns the baseline of the next line. */
@@ -67,7 +65,7 @@ struct pen {
 };
 
 void draw_line(struct drawing *drawing, const struct pen *pen, double x1, double y1, double x2, double y2);
-/* A line through the points that are finite; a point that is not is a gap. */
+/* A line through the points that are finite; a point that is not is a gap, one between two gaps a dot. */
 void draw_curve(struct drawing *drawing, const struct pen *pen, int n, const double *x, const double *y);
 /* The area between two curves, likewise. */
 void draw_band(struct drawing *drawing, const struct pen *pen, int n, const double *x, const double *low,
@@ -104,6 +102,7 @@ struct axis {
 /* An axis around all values of a range, which may be empty or one point; the logarithmic one around those > 0. */
 struct axis axis_linear(struct range range);
 struct axis axis_log(struct range range);
+struct axis axis_between(double low, double high);     /* linear, with these ends */
 double axis_at(const struct axis *axis, double value); /* NAN: it has no place */
 
 enum { TICKS_MAX = 24 };
@@ -120,8 +119,10 @@ struct ticks {
 
 /* Ticks at 1, 2 or 5 times a power of ten, at most `most` of them with a text. */
 void axis_ticks(const struct axis *axis, int most, struct ticks *ticks);
-/* "label [m] (10⁻³)", the power first when the whole is wider than `room` */
-void axis_label(const struct ticks *ticks, const char *label, double room, char *text, size_t size);
+/* As many of an axis from left to right as fit side by side. */
+void axis_ticks_across(const struct axis *axis, struct ticks *ticks);
+/* "label [m] (10⁻³)" */
+void axis_label(const struct ticks *ticks, const char *label, char *text, size_t size);
 /* a number in few digits, with superscripts for a power of ten: "0.25", "3.1·10⁻⁷"; "no value" */
 const char *draw_number(double value, char text[32]);
 
@@ -129,6 +130,7 @@ const char *draw_number(double value, char text[32]);
 struct panel {
 	double x, y, width, height; /* with labels */
 	const char *title, *x_label, *y_label;
+	bool bare; /* nothing of it has a value: it says so */
 	struct axis across, up;
 	double room;                     /* at least for the labels of ticks, so that stacked panels align */
 	double left, right, top, bottom; /* of the inside, set by panel_draw */

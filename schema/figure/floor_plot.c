@@ -132,6 +132,7 @@ void plot_spectra(struct plot *plot)
 	struct panel panel = {.height = 460,
 	                      .x_label = periods ? "period [s]" : "frequency [Hz]",
 	                      .y_label = "pseudo-acceleration [m/s²]",
+	                      .bare = up.low > up.high,
 	                      .across = axis_log(across),
 	                      .up = axis_log(up)};
 	panel_place(&plot->d, 1, 0, top, &panel);
@@ -314,8 +315,7 @@ void plot_history(struct plot *plot)
 	}
 	for (int k = 0; k < table.n; k++)
 		range_add(&times, time[k]);
-	snprintf(more, sizeof more, "ground motion %d; a tick above the displacement is the begin of a contact",
-	         signal);
+	snprintf(more, sizeof more, "ground motion %d; ticks above the displacement: a contact begins", signal);
 	plot_head(plot, "Motion of both oscillators, and their impacts", more);
 	const bool both = table_column(&table, "u_right_m");
 	const struct key keys[2] = {{.name = "left", .pen = {.width = 1.5}},
@@ -339,19 +339,16 @@ void plot_history(struct plot *plot)
 		                      .title = SERIES[s].title,
 		                      .y_label = SERIES[s].unit,
 		                      .x_label = s == N_SERIES - 1 ? "time [s]" : NULL};
-		panel.across = axis_linear(times);
-		if (panel.across.low < times.low || panel.across.high > times.high) {
-			panel.across.low = times.low,
-			panel.across.high = times.high > times.low ? times.high : times.low + 1;
-			panel.across.half_low = panel.across.low / 2;
-			panel.across.half_span = panel.across.high / 2 - panel.across.low / 2;
-		}
+		panel.across = times.low < times.high ? axis_between(times.low, times.high) : axis_linear(times);
 		panel.up = axis_linear(range);
 		panel_place(&plot->d, 1, 0, top, &panel);
 		panel_draw(&plot->d, &panel);
 		for (int l = 0; l < 2 && columns[l]; l++)
 			draw_dense(plot, &(struct pen){.ink = (enum ink)l, .width = 1.1, .dash = l ? RIGHT_DASH : NULL},
 			           &panel, time, columns[l], table.n);
+		for (int l = 0; table.n == 1 && l < 2 && columns[l]; l++)
+			draw_mark(&plot->d, &(struct mark){.series = l}, axis_at(&panel.across, time[0]),
+			          axis_at(&panel.up, columns[l][0]), NULL);
 		for (int k = 1; s == 0 && force && k < table.n; k++)
 			if (force[k] != 0 && force[k - 1] == 0) {
 				double x = axis_at(&panel.across, time[k]);

@@ -65,39 +65,48 @@ static int storeys_of(const cJSON *signals, int b)
 	return n < STOREYS_MOST ? n : STOREYS_MOST;
 }
 
+static double value_of(const cJSON *signals, int b, const struct quantity *quantity, int i, bool free)
+{
+	return mean_of(signals, b, quantity->list, i, free ? quantity->without : quantity->with);
+}
+
+/* The range of a quantity over all buildings, which share an axis to be compared. */
+static struct range range_of(const cJSON *signals, const struct quantity *quantity)
+{
+	struct range range = RANGE_EMPTY;
+	for (int b = 0; b < BUILDINGS_MOST; b++)
+		for (int i = 0; i < storeys_of(signals, b); i++)
+			for (int free = 0; free < 2; free++)
+				range_add(&range, value_of(signals, b, quantity, i, free));
+	return range;
+}
+
 /* One building: the stories from the ground up, without and with pounding. */
 static void draw_building(struct plot *plot, const cJSON *signals, int b, const struct quantity *quantity,
                           struct panel *panel)
 {
 	const int n = storeys_of(signals, b);
-	double value[2][STOREYS_MOST], x[STOREYS_MOST], y[STOREYS_MOST];
-	struct range range = {0, 0}, stories = {0.5, n + 0.5};
+	double value[STOREYS_MOST], x[STOREYS_MOST], y[STOREYS_MOST];
 	char label[PLOT_TEXT], title[PLOT_TEXT];
-	for (int free = 0; free < 2; free++)
-		for (int i = 0; i < n; i++) {
-			value[free][i] =
-			    mean_of(signals, b, quantity->list, i, free ? quantity->without : quantity->with);
-			range_add(&range, value[free][i]);
-		}
 	snprintf(label, sizeof label, "%s [%s]", quantity->label, quantity->unit);
 	snprintf(title, sizeof title, "building %d", b);
 	panel->title = title;
 	panel->x_label = label;
 	panel->y_label = "story";
-	panel->across = axis_linear(range.high > 0 ? range : (struct range){0, 1});
-	panel->up = axis_linear(stories);
+	panel->up = axis_between(0.5, n + 0.5);
 	panel->up.whole = true;
 	panel_draw(&plot->d, panel);
 	for (int free = 1; free >= 0; free--) {
 		for (int i = 0; i < n; i++) {
-			x[i] = axis_at(&panel->across, value[free][i]);
+			value[i] = value_of(signals, b, quantity, i, free);
+			x[i] = axis_at(&panel->across, value[i]);
 			y[i] = axis_at(&panel->up, i + 1);
 		}
 		draw_curve(&plot->d, &KEYS[free].pen, n, x, y);
 		for (int i = 0; i < n; i++) {
 			char text[PLOT_TEXT], number[32];
 			snprintf(text, sizeof text, "story %d, %s: %s %s", i + 1, KEYS[free].name,
-			         draw_number(value[free][i], number), quantity->unit);
+			         draw_number(value[i], number), quantity->unit);
 			draw_mark(&plot->d, &(struct mark){.series = KEYS[free].mark.series, .hollow = free, .size = 3.5},
 			          x[i], y[i], text);
 		}
@@ -109,19 +118,26 @@ void plot_heights(struct plot *plot)
 	const cJSON *cell = plot_member(plot->result, "cells") ? plot_cell(plot) : NULL;
 	const cJSON *signals = signals_of(plot->result, cell);
 	char sweep[PLOT_TEXT], number[2][32];
-	int buildings[BUILDINGS_MOST], n = 0;
+	int buildings[BUILDINGS_MOST], n = 0, tallest = 0;
 	if (*plot->fault)
 		return;
 	for (int b = 0; b < BUILDINGS_MOST; b++)
-		if (storeys_of(signals, b) > 0) // a wall has none
+		if (storeys_of(signals, b) > 0) { // a wall has none
 			buildings[n++] = b;
+			tallest = storeys_of(signals, b) > tallest ? storeys_of(signals, b) : tallest;
+		}
 	plot_head(plot, "Story drifts and floor accelerations over the height",
 	          cell ? plot_sweep_text(cell, 0, NULL, sweep) : "means over the signals");
 	double top = draw_legend(&plot->d, 2, KEYS, plot->y) + 6;
 	const int columns = panel_columns(&plot->d, n, 230);
 	for (size_t q = 0; q < sizeof QUANTITIES / sizeof QUANTITIES[0]; q++) {
+		struct range range = range_of(signals, &QUANTITIES[q]);
+		const bool bare = range.low > range.high;
+		range_add(&range, 0);
 		for (int k = 0; k < n; k++) {
-			struct panel panel = {.height = 300};
+			struct panel panel = {.height = fmin(150 + 25 * tallest, 300),
+			                      .bare = bare,
+			                      .across = axis_linear(range.high > 0 ? range : (struct range){0, 1})};
 			panel_place(&plot->d, columns, k, top, &panel);
 			draw_building(plot, signals, buildings[k], &QUANTITIES[q], &panel);
 		}

@@ -100,7 +100,7 @@ static void draw_output(struct plot *plot, const cJSON *output, struct panel *pa
 	axis.start = panel->x + names + 10;
 	axis.end = panel->x + panel->width - 12;
 	double top = panel->y + 22, bottom = top + (n + 1) * ROW + 4;
-	axis_ticks(&axis, (int)((axis.end - axis.start) / 55), &ticks);
+	axis_ticks_across(&axis, &ticks);
 	draw_text(&plot->d,
 	          &(struct label){.x = axis.start,
 	                          .y = panel->y + 13,
@@ -246,16 +246,21 @@ void plot_indices(struct plot *plot)
 	}
 	if (curves) {
 		y = n_rows ? plot->d.height + 16 : y;
-		snprintf(text, sizeof text, "%s", plot_text(outputs[n_plain], "name"));
+		snprintf(text, sizeof text, "indices of the %.100s against frequency, a panel for each input",
+		         plot_text(outputs[n_plain], "name"));
 		for (char *c = text; *c; c++)
 			*c = *c == '_' ? ' ' : *c;
-		draw_say(&plot->d,
-		         &(struct label){.x = PLOT_MARGIN, .y = y + 14, .size = DRAW_TITLE_SIZE, .bold = true},
-		         "indices of the %s against frequency, a panel for each input", text);
+		y = draw_prose(&plot->d,
+		               &(struct label){.x = PLOT_MARGIN,
+		                               .y = y + 14,
+		                               .size = DRAW_TITLE_SIZE,
+		                               .bold = true,
+		                               .fit = plot->d.width - 2 * PLOT_MARGIN},
+		               text, 3);
 		columns = panel_columns(&plot->d, inputs, 250);
 		for (int j = 0; j < inputs; j++) {
 			struct panel panel = {.height = 220};
-			panel_place(&plot->d, columns, j, y + 24, &panel);
+			panel_place(&plot->d, columns, j, y - 8, &panel);
 			draw_ordinates(plot, outputs + n_plain, n - n_plain, j, &panel);
 		}
 	}

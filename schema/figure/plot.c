@@ -144,8 +144,8 @@ const char *plot_output_name(const cJSON *output, char text[PLOT_TEXT])
 // the ends of names that are units
 static const struct {
 	const char *end, *unit;
-} UNITS[] = {{"_hz", "Hz"},   {"_kg", "kg"}, {"_m_s2", "m/s²"}, {"_m_s", "m/s"},
-             {"_n_s", "N s"}, {"_m", "m"},   {"_s", "s"},       {"_n", "N"}};
+} UNITS[] = {{"_hz", "Hz"},   {"_kg", "kg"}, {"_m_s2", "m/s²"}, {"_m_s", "m/s"}, {"_n_s", "N s"},
+             {"_n_m", "N/m"}, {"_m", "m"},   {"_s", "s"},       {"_n", "N"},     {"_n_m1_5", "N/m^1.5"}};
 
 /* The unit at the end of a name of n characters, and the characters before it. */
 static const char *unit_of(const char *name, size_t *n)
@@ -160,8 +160,20 @@ static const char *unit_of(const char *name, size_t *n)
 	return NULL;
 }
 
-static const char *body_of(const char *path)
+/* Of what a path is: "left ", "building 2 ". */
+static const char *body_of(const char *path, char text[32])
 {
+	static const struct {
+		const char *list, *name;
+	} lists[] = {{"/buildings/", "building"}, {"/contacts/", "contact"}};
+	for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++) {
+		const size_t n = strlen(lists[k].list),
+		             digits = strspn(path + n * !strncmp(path, lists[k].list, n), "0123456789");
+		if (strncmp(path, lists[k].list, n) == 0 && digits > 0 && digits < 8 && path[n + digits] == '/') {
+			snprintf(text, 32, "%s %.*s ", lists[k].name, (int)digits, path + n);
+			return text;
+		}
+	}
 	return strncmp(path, "/oscillators/0/", 15) == 0   ? "left "
 	       : strncmp(path, "/oscillators/1/", 15) == 0 ? "right "
 	       : strncmp(path, "/excitation/", 12) == 0    ? "ground motion "
@@ -174,7 +186,8 @@ static const char *words_of(const char *path, char text[PLOT_TEXT])
 	const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
 	size_t n = strlen(name);
 	const char *unit = unit_of(name, &n);
-	snprintf(text, PLOT_TEXT, "%s%.*s", strcmp(name, "type") == 0 ? "law " : body_of(path),
+	char body[32];
+	snprintf(text, PLOT_TEXT, "%s%.*s", strcmp(name, "type") == 0 ? "law " : body_of(path, body),
 	         (int)(n < 200 ? n : 200), name);
 	blanks(text);
 	return unit;
@@ -225,9 +238,11 @@ const char *plot_sweep_text(const cJSON *cell, int n_but, const char *const *but
 
 /* ---- the head ---- */
 
+enum { HEAD_LINES = 4 }; /* of the name of a study, and of what else is said above a figure */
+
 void plot_head(struct plot *plot, const char *title, const char *more)
 {
-	char line[2 * PLOT_TEXT];
+	char both[3 * PLOT_TEXT];
 	const char *name = plot_text(plot->result, "name");
 	const cJSON *partial = plot_member(plot->result, "partial");
 	double width = plot->d.width - 2 * PLOT_MARGIN;
@@ -236,11 +251,15 @@ void plot_head(struct plot *plot, const char *title, const char *more)
 	    &plot->d,
 	    &(struct label){.x = PLOT_MARGIN, .y = 28, .size = DRAW_HEAD_SIZE, .bold = true, .fit = width}, title,
 	    3);
-	snprintf(line, sizeof line, "%.200s%s%.220s", name, *name && *more ? "; " : "", more);
-	if (*line)
-		plot->y = draw_prose(&plot->d,
-		                     &(struct label){.x = PLOT_MARGIN, .y = plot->y, .fit = width, .ink = INK_MUTED},
-		                     line, 3);
+	snprintf(both, sizeof both, "%.400s%s%s", name, *name && *more ? "; " : "", more);
+	// in one line if that has room
+	const bool fits = draw_width(both, DRAW_TEXT_SIZE) <= width;
+	const char *lines[] = {fits ? both : name, fits ? "" : more};
+	for (int k = 0; k < 2; k++)
+		if (*lines[k])
+			plot->y = draw_prose(
+			    &plot->d, &(struct label){.x = PLOT_MARGIN, .y = plot->y, .fit = width, .ink = INK_MUTED},
+			    lines[k], HEAD_LINES);
 	if (partial) {
 		char rows[80];
 		snprintf(rows, sizeof rows, "INTERMEDIATE RESULT of %.0f rows of %.0f", plot_number(partial, "rows"),

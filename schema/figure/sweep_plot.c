@@ -273,9 +273,14 @@ void plot_swept(struct plot *plot)
 					snprintf(name, sizeof name, "%s_high", index);
 					range_add(&range, plot_number(input, name));
 				}
-		draw_say(&plot->d,
-		         &(struct label){.x = PLOT_MARGIN, .y = top + 12, .size = DRAW_TITLE_SIZE, .bold = true},
-		         "%s", row_name(plot, rows[o], text));
+		top = draw_prose(&plot->d,
+		                 &(struct label){.x = PLOT_MARGIN,
+		                                 .y = top + 12,
+		                                 .size = DRAW_TITLE_SIZE,
+		                                 .bold = true,
+		                                 .fit = plot->d.width - 2 * PLOT_MARGIN},
+		                 row_name(plot, rows[o], text), 2) -
+		      DRAW_TITLE_SIZE;
 		for (int c = 0; c < n_lines; c++) {
 			char column[PLOT_TEXT];
 			plot_sweep_text(lines[c].cells[0], n_same, same, column);
@@ -285,7 +290,7 @@ void plot_swept(struct plot *plot)
 			                      .y_label = index,
 			                      .across = axis_across(&lines[c]),
 			                      .up = axis_linear(range)};
-			panel_place(&plot->d, columns, c, top + 20, &panel);
+			panel_place(&plot->d, columns, c, top + 4, &panel);
 			panel_draw(&plot->d, &panel);
 			for (int j = 0; j < n_inputs; j++)
 				draw_input_line(plot, &panel, &lines[c], rows[o], j);
@@ -325,7 +330,7 @@ static const struct key PEAKS[] = {
 static void draw_signals(struct plot *plot, const cJSON *signals)
 {
 	const cJSON *signal;
-	struct range range = {0, 0}, numbers = RANGE_EMPTY;
+	struct range range = RANGE_EMPTY;
 	int n = cJSON_GetArraySize(signals), k = 0;
 	char text[PLOT_TEXT], number[2][32];
 	cJSON_ArrayForEach(signal, signals) for (int o = 0; o < 2; o++)
@@ -333,14 +338,14 @@ static void draw_signals(struct plot *plot, const cJSON *signals)
 		range_add(&range, peak_of(signal, o, true));
 		range_add(&range, peak_of(signal, o, false));
 	}
-	struct panel panel = {.height = 340, .x_label = "ground motion", .y_label = "peak displacement [m]"};
-	range_add(&numbers, 0);
-	range_add(&numbers, n > 1 ? n - 1 : 1);
+	struct panel panel = {.height = 340,
+	                      .x_label = "ground motion",
+	                      .y_label = "peak displacement [m]",
+	                      .bare = range.low > range.high};
+	range_add(&range, 0);
 	double top = draw_legend(&plot->d, 3, PEAKS, plot->y) + 6;
-	panel.across = axis_linear(numbers);
-	panel.across.low = -0.6, panel.across.high = n - 0.4;
+	panel.across = axis_between(-0.6, n - 0.4);
 	panel.across.whole = true;
-	panel.across.half_low = -0.3, panel.across.half_span = (n + 0.2) / 2;
 	panel.up = axis_linear(range.high > 0 ? range : (struct range){0, 1});
 	panel_place(&plot->d, 1, 0, top, &panel);
 	panel_draw(&plot->d, &panel);
@@ -390,13 +395,15 @@ static double mean_peak(const cJSON *cell, int oscillator, bool free)
 
 static void draw_means(struct plot *plot, const struct line *line, struct panel *panel)
 {
-	struct range range = {0, 0};
+	struct range range = RANGE_EMPTY;
 	double *x = plot_memory(plot, 2 * sizeof *x * (size_t)line->n), *y = x ? x + line->n : NULL;
 	if (!x)
 		return;
 	for (int k = 0; k < line->n; k++)
 		for (int o = 0; o < 4; o++)
 			range_add(&range, mean_peak(line->cells[k], o / 2, o % 2));
+	panel->bare = range.low > range.high;
+	range_add(&range, 0);
 	panel->across = axis_across(line);
 	panel->up = axis_linear(range.high > 0 ? range : (struct range){0, 1});
 	panel->y_label = "mean peak [m]";
@@ -472,7 +479,7 @@ static void draw_cells(struct plot *plot, const char *path)
 	     .mark = {.series = 1, .hollow = true},
 	     .pen = {.ink = 1, .width = 1.8, .dash = "6 3"},
 	     .marked = true},
-	    {.name = "part of the signals with contact, Wilson's 95 % interval",
+	    {.name = "share of signals with contact",
 	     .mark = {.series = 2},
 	     .pen = {.ink = 2, .width = 1.8},
 	     .marked = true},
