@@ -83,7 +83,8 @@ static int await(const struct server *server, const sigset_t *signals)
 static int serve(struct server *server, const sigset_t *signals)
 {
 	server->work = work_start(server->store, server->options->workers, server->options->time_max,
-	                          (int64_t)server->options->memory_max << 20, &server->options->launch);
+	                          server->options->cpu_max, (int64_t)server->options->memory_max << 20,
+	                          &server->options->launch);
 	if (!server->work)
 		return EXIT_FAILURE;
 	bool listens = daemon_start(server), ended = true;

@@ -48,7 +48,7 @@ const struct option_row options_table[] = {
 	{"wait-max",        0,   "S",       "seconds that Prefer: wait may wait", "30", AT(wait_max), 1, 3600},
 	{"runs-max",        0,   "N",       "pounding runs of one study", "10000000", AT(runs_max), 1, 10000000},
 	{"time-max",        0,   "S",       "seconds that one study may run; then it has failed as `timeout`", "172800", AT(time_max), 1, 100000000},
-	{"cpu-max",         0,   "S",       "estimated seconds of one core for one study", "86400", AT(cpu_max), 1, 100000000},
+	{"cpu-max",         0,   "S",       "estimated seconds of one core for one study; one that takes three times as many has failed as `cpu-limit`", "86400", AT(cpu_max), 1, 100000000},
 	{"result-max",      0,   "MIB",     "estimated MiB of one study in the database", "1024", AT(result_max), 1, 1000000},
 	{"memory-max",      0,   "MIB",     "estimated MiB of memory of the studies that run; half of what the machine or the control group has when absent", NULL, AT(memory_max), 1, 1000000000},
 };

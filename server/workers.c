@@ -92,7 +92,8 @@ struct work {
 	bool claiming;          /* a worker is about to bring the next study */
 	bool stopping;
 	bool drained;        /* the workers have ended */
-	double time_max;     /* that a study may run [s] */
+	double time_max;     /* that a study may run [s], */
+	double cpu_max;      /* ... and of CPU time, by its estimate [s] */
 	int64_t memory_left; /* of what studies may take at a time [bytes] */
 	bool watched;        /* there is ... */
 	pthread_t watch;     /* ... a thread that sees to that */
@@ -362,10 +363,16 @@ static bool take(struct work *work, const struct taker *taker, struct step *step
 	return true;
 }
 
-/* Lets the store know when a study has taken much longer than estimated: blocks do by themselves, reductions do not.  Under the
- * lock, which is free meanwhile. */
+/* Lets the store know when a study has taken much longer than estimated: blocks do by themselves, reductions do not.  Ends one that
+ * has taken much longer than any may.  Under the lock, which is free meanwhile.
+ *
+ * Test     service_queue: a_study_that_takes_far_more_than_the_cpu_limit_has_failed
+ */
 static void note_over(struct work *work, struct job *job)
 {
+	// estimates let it in: a limit that they miss by more than they may holds all the same
+	if (study_status_over(job->cpu_s, work->cpu_max))
+		end(job, "cpu-limit: it took three times the CPU time of the server's --cpu-max");
 	if (job->over || !study_status_over(job->cpu_s, job->cpu_s_estimated))
 		return;
 	job->over = true;
@@ -585,12 +592,13 @@ static void *watch(void *of)
  *
  * Given    n_workers   >= 1
  *          time_max    that a study may run [s]
+ *          cpu_max     of CPU time that it is estimated at, at most [s]; one that takes three times that has failed
  *          memory_max  that the studies which run at a time may take by their estimates [bytes]
  *          launch      of worker groups
  * Returns  value       for work_stop; NULL: no memory, or no threads
  */
-struct work *work_start(struct store *store, int n_workers, double time_max, int64_t memory_max,
-                        const struct launch *launch)
+struct work *work_start(struct store *store, int n_workers, double time_max, double cpu_max,
+                        int64_t memory_max, const struct launch *launch)
 {
 	struct work *work = calloc(1, sizeof *work + (size_t)n_workers * sizeof work->workers[0]);
 	if (!work) {
@@ -600,6 +608,7 @@ struct work *work_start(struct store *store, int n_workers, double time_max, int
 	watch_crashes(store);
 	work->store = store;
 	work->time_max = time_max;
+	work->cpu_max = cpu_max;
 	work->memory_left = memory_max;
 	work->n_workers = n_workers;
 	work->queued = true;

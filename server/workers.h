@@ -11,8 +11,8 @@
 struct work;
 
 /* the studies that run at a time take no more memory [bytes] by their estimates; NULL: no memory or no threads */
-struct work *work_start(struct store *store, int n_workers, double time_max, int64_t memory_max,
-                        const struct launch *launch);
+struct work *work_start(struct store *store, int n_workers, double time_max, double cpu_max,
+                        int64_t memory_max, const struct launch *launch);
 int work_groups(const struct work *work);        /* worker groups that are connected */
 long work_group_blocks(const struct work *work); /* blocks that they have run */
 void work_wake(struct work *work);               /* a study was queued */

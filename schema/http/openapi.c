@@ -35,7 +35,7 @@ static const struct member members[] = {
 	{"Status", "created",     "string",  "",     "time of submission, RFC 3339, UTC"},
 	{"Status", "started",     "string",  "null", "time of the start of computation, RFC 3339, UTC"},
 	{"Status", "finished",    "string",  "null", "time of the end, RFC 3339, UTC"},
-	{"Status", "error",       "string",  "null", "why the study failed: poison-study, timeout, or a sentence with another reason"},
+	{"Status", "error",       "string",  "null", "why the study failed: poison-study, out-of-memory-or-crash, timeout, cpu-limit, or a sentence with another reason"},
 	{"Status", "links",       "Links",   "",     "paths of related resources"},
 	{"Links",  "self",        "string",  "",     "path of this object"},
 	{"Links",  "request",     "string",  "",     "path of the study document as posted"},

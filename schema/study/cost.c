@@ -45,7 +45,6 @@ enum operation {
 	SHAPE,      /* march of a row, by the cube of the storeys of a building, */
 	CHAIN,      /* ... sample of a floor, */
 	YIELD_STEP, /* ... step of one whose story may yield, */
-	FULL,       /* ... by the square of the storeys where all are damped together, */
 	NEARBY,     /* ... or of all floors while two buildings are near each other, */
 	MEET,       /* ... radian of that, by contact and floor, */
 	JUMP,       /* ... if velocities jump there, */
@@ -95,7 +94,6 @@ static const double seconds_of[OPERATIONS][KINDS] = {
     [SHAPE] = {5e-8, 5e-8, 5e-8, 5e-8},
     [CHAIN] = {2.1e-7, 2.1e-7, 2.1e-7, 2.1e-7},
     [YIELD_STEP] = {1.4e-7, 1.4e-7, 1.4e-7, 1.4e-7},
-    [FULL] = {1.5e-8, 1.5e-8, 1.5e-8, 1.5e-8},
     [NEARBY] = {1.2e-7, 1.2e-7, 1.2e-7, 1.2e-7},
     [MEET] = {9.3e-8, 9.3e-8, 9.3e-8, 9.3e-8},
     [KEEP] = {1.24e-6, 1.24e-6, 1.24e-6, 1.24e-6},
@@ -154,8 +152,8 @@ static const double ADAPT_START = 0.55;
 /* [rad] of a step of a chain */
 static const double CHAIN_RADIANS = 4;
 
-/* floors of a chain that take as long as its step without them */
-static const double CHAIN_FLOORS = 8;
+/* floors of a chain that take as long as its step without them, and a part of the square of those that modes damp together */
+static const double CHAIN_FLOORS = 8, MODAL_FLOORS = 0.12;
 
 static const double RESTITUTION_LEAST = 1e-3, DASHPOT_MOST = 300;
 
@@ -309,7 +307,7 @@ struct storeys {
 	double mass; /* of a floor, of whatever unit */
 	double low;  /* [rad/s] of the first mode */
 	double high; /* ... of the last one, with what dashpots add to it */
-	bool modal;  /* every floor is damped by the rates of all */
+	double wide; /* floors that a step takes as long for: more than n where the rates of all damp every one */
 };
 
 /* How fast two neighbors may come back to each other: by the faster, and by the lighter one. */
@@ -351,8 +349,8 @@ static struct bodies bodies_of(const struct pound_study *study)
 			b.marches[i] = 1 + (law->yield_displacement > 0 ? 0 : fmin(corrections, SEARCH_MEAN));
 	}
 	const double soft = 2 * PI * (wall ? b.hz[0] : fmin(b.hz[0], b.hz[1]));
-	const struct storeys pair[] = {{1, MEAN(study, oscillators[0].mass, 1), b.hz[0], b.hz[0], false},
-	                               {!wall, MEAN(study, oscillators[1].mass, 1), b.hz[1], b.hz[1], false}};
+	const struct storeys pair[] = {{1, MEAN(study, oscillators[0].mass, 1), b.hz[0], b.hz[0], 1},
+	                               {!wall, MEAN(study, oscillators[1].mass, 1), b.hz[1], b.hz[1], 1}};
 	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
 	b.touching = touching(pair);
 	const double gap = MEAN(study, contact.gap, 1) * soft * soft / peak;
@@ -458,7 +456,7 @@ static int links_of(const struct pound_study *study, int building, const struct 
 /* of a chain with pounding */
 struct marches {
 	double n, steps; /* of each */
-	double floors;   /* of the chain */
+	double wide;     /* of the chain, in floors */
 };
 
 /* Adds what a building and its right neighbor take where they meet. */
@@ -472,12 +470,10 @@ static void count_meetings(const struct pound_study *study, int building, const 
 	const double soft = wall ? pair[0].low : fmin(pair[0].low, pair[1].low);
 	const double reach = MEAN(study, contact.gap, 1) * soft * soft / peak;
 	const double met = links ? m->n : 0, near = met / (1 + reach / NEAR), riding = met / (1 + reach / RIDING);
-	const double radians = duration_mean(study) * touching(pair) * links * (CHAIN_FLOORS + m->floors);
+	const double radians = duration_mean(study) * touching(pair) * links * (CHAIN_FLOORS + m->wide);
 	const double own = log1p(SWINGS * MEAN(study, contact.stiffness_ratio, 1) * masses(pair));
 	const enum pound_force force = pound_contact_force(study->scene.contact.model);
-	c->of[NEARBY] += near * m->steps * m->floors;
-	for (int side = 0; side < 2; side++)
-		c->of[FULL] += pair[side].modal ? near * m->steps * pair[side].n * pair[side].n : 0;
+	c->of[NEARBY] += near * m->steps * m->wide;
 	c->of[MEET] += near * radians;
 	c->of[JUMP] += force == POUND_FORCE_IMPACT ? near * radians : 0;
 	if (study->scene.n_buildings) {
@@ -498,7 +494,7 @@ static double count_chain(const struct pound_study *study, double pounded, const
 	struct marches m = {.n = pounded};
 	double high = 0;
 	for (int b = 0; b < n; b++)
-		m.floors += all[b].n, high = fmax(high, all[b].high);
+		m.wide += all[b].wide, high = fmax(high, all[b].high);
 	m.steps = samples_mean(study) + duration_mean(study) * high / CHAIN_RADIANS;
 	for (int b = 0; b + 1 < n; b++)
 		count_meetings(study, b, &all[b], &m, c);
@@ -511,7 +507,8 @@ static struct storeys storeys_of(const struct pound_building *of, int n)
 	struct pound_storeys laid;
 	building.storeys = n;
 	pound_building_storeys(&building, &laid);
-	struct storeys one = {.n = n, .mass = laid.mass[0], .low = laid.frequency, .modal = laid.modal};
+	struct storeys one = {.n = n, .mass = laid.mass[0], .low = laid.frequency};
+	one.wide = n + (laid.modal ? MODAL_FLOORS * n * n : 0);
 	for (int i = 0; i < n; i++)
 		one.high =
 		    fmax(one.high, 2 * sqrt(laid.stiffness[i] / laid.mass[i]) + 4 * laid.dashpot[i] / laid.mass[i]);
@@ -544,8 +541,7 @@ static void count_row(const struct pound_study *study, double items, struct coun
 		c->of[CHAIN] += marches * samples * storeys;
 		const double flows = alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
 		                     (yields > 0 ? pounded * steps : 0);
-		c->of[YIELD_STEP] += flows * storeys;
-		c->of[FULL] += all[b].modal ? flows * storeys * storeys : 0;
+		c->of[YIELD_STEP] += flows * all[b].wide;
 	}
 }
 
@@ -558,7 +554,7 @@ static void count_pair_chain(const struct pound_study *study, double items, stru
 	const double pounded = items * distinct(study, ALL);
 	for (int b = 0; b < POUND_OSCILLATORS; b++) {
 		const double w = 2 * PI * bodies.hz[b];
-		all[b] = (struct storeys){.n = w > 0, .mass = mass[b], .low = w, .high = w};
+		all[b] = (struct storeys){.n = w > 0, .mass = mass[b], .low = w, .high = w, .wide = w > 0};
 	}
 	c->of[BEGIN] += pounded;
 	count_free(study, &bodies, items, c);

@@ -60,7 +60,7 @@ static void serve(const char *path)
 	for (int i = 1; i < SIGRTMIN; i++)
 		signal(i, SIG_DFL);
 	struct store *store = store_open(path);
-	struct work *work = store ? work_start(store, 2, 3600, INT64_MAX) : NULL;
+	struct work *work = store ? work_start(store, 2, 3600, 3600, INT64_MAX, &(const struct launch){0}) : NULL;
 	int64_t queued = 1, running = 1;
 	while (work && queued + running > 0) {
 		store_count(store, "queued", &queued);

@@ -157,6 +157,17 @@ static void a_queued_study_has_its_place_in_the_queue(void **state)
 	answer_free(&answer);
 }
 
+/* Why a study has failed, as far as its first colon. */
+static void failed_as(const struct service *service, const char *id, const char *reason)
+{
+	assert_true(service_wait(service, id, "failed", 0));
+	struct answer answer = service_get(service, "/v1/studies/%s", id);
+	struct reading *status = answer_read(&answer);
+	assert_int_equal(strncmp(reading_text(status, "/error"), reason, strlen(reason)), 0);
+	reading_close(status);
+	answer_free(&answer);
+}
+
 static void a_study_that_runs_for_too_long_has_failed(void **state)
 {
 	(void)state;
@@ -168,14 +179,28 @@ static void a_study_that_runs_for_too_long_has_failed(void **state)
 		submit_long(service, ids[worker]);
 	service_submit(service, small, small_id);
 	for (int worker = 0; worker < 2; worker++) {
-		assert_true(service_wait(service, ids[worker], "failed", 0));
-		struct answer answer = service_get(service, "/v1/studies/%s", ids[worker]);
-		struct reading *status = answer_read(&answer);
-		assert_int_equal(strncmp(reading_text(status, "/error"), "timeout: ", 9), 0);
-		reading_close(status);
-		answer_free(&answer);
+		failed_as(service, ids[worker], "timeout: ");
 	}
 	assert_true(service_wait(service, small_id, "succeeded", 0));
+	free(small);
+	service_free(service);
+}
+
+static void a_study_that_takes_far_more_than_the_cpu_limit_has_failed(void **state)
+{
+	(void)state;
+	struct service *service = service_with((const char *const[][2]){{NULL}}, 1);
+	char id[17], small_id[17], *large = service_study(100000, 9, 1), *small = service_study(2, 1, 1);
+	// accepted under another limit, as one is whose estimate is too small
+	service_submit(service, large, id);
+	service_stop(service);
+	setenv("POUNDD_CPU_MAX", "1", 1);
+	service_start(service, 1);
+	unsetenv("POUNDD_CPU_MAX");
+	service_submit(service, small, small_id);
+	failed_as(service, id, "cpu-limit: ");
+	assert_true(service_wait(service, small_id, "succeeded", 0));
+	free(large);
 	free(small);
 	service_free(service);
 }
@@ -327,6 +352,7 @@ CHECK_MAIN(SERVED(two_hundred_queued_studies_all_finish), SERVED(a_study_can_be_
            SERVED(a_queued_study_has_its_place_in_the_queue),
            SERVED(one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_end),
            cmocka_unit_test(a_study_that_runs_for_too_long_has_failed),
+           cmocka_unit_test(a_study_that_takes_far_more_than_the_cpu_limit_has_failed),
            SERVED(a_cancelled_study_has_times_in_order_though_the_clock_went_back),
            SERVED(a_study_can_be_deleted_at_any_moment), SERVED(all_workers_run_the_blocks_of_one_study),
            SERVED(short_studies_end_soon_behind_a_long_one),
