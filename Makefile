@@ -1,4 +1,4 @@
-# make run, make test: all a fresh Debian 12 needs.  MODE=asan|tsan|debug, CC=clang, T=substring of test names.
+# make run, make test: all a fresh Debian 12 needs.  MODE=asan|tsan|debug, CC=clang, T=substring of test names, MPI=1: ranks.
 MODE ?= release
 # make's own rules would try to build march_*.d, which it includes, out of exact.inl
 MAKEFLAGS += --no-builtin-rules
@@ -33,6 +33,8 @@ LANES.w8 := -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512 -mtu
 PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libcjson-dev librandom123-dev \
             nettle-dev libcurl4-openssl-dev libcmocka-dev curl
 
+PACKAGES += $(if $(filter 1,$(MPI)),openmpi-bin libopenmpi-dev)
+
 LIBS.engine := -lgsl -lgslcblas -lm
 LIBS.schema := -lcjson -lnettle
 LIBS.server := -lmicrohttpd -lsqlite3 -lpthread
@@ -46,9 +48,11 @@ SCHEMA := $(call objs,schema) $(B)/schema/examples.o $(B)/schema/page.o
 SERVER := $(call objs,server,server/main.c)
 # one of these asks servers: the second says that it cannot (make client CURL=0)
 WIRE   := client/wire.c client/unwired.c
-# a program of its own: it runs blocks for other processes
+# programs of their own: they run blocks for other processes, the second as ranks of MPI (make MPI=1)
 WORKER := client/worker.c client/worker_crew.c
-CLIENT := $(call objs,client,$(WIRE) $(WORKER))
+RANKS  := client/worker_ranks.c client/worker_crew.c
+MPICC  ?= mpicc
+CLIENT := $(call objs,client,$(WIRE) $(WORKER) $(RANKS))
 # a program each; the files of tests/support serve them all
 TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/service/*.c tests/client/*.c))
 # what takes minutes is built with the tests, so that no change breaks it unseen
@@ -56,7 +60,7 @@ LONG    := $(patsubst %.c,$(B)/%,$(wildcard tests/long/soak_*.c)) $(addprefix $(
            $(call objs,tests/fuzz)
 FIXTURE := $(call objs,tests/support,tests/support/preload.c)
 
-all: $(B)/poundd $(B)/pound $(B)/pound-worker
+all: $(B)/poundd $(B)/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-worker-mpi)
 
 $(B)/libpound.a: $(ENGINE)
 	@rm -f $@; $(AR) rcs $@ $^
@@ -66,16 +70,19 @@ $(B)/pound: $(CLIENT) $(B)/client/wire.o $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.client) $(LIBS.schema) $(LIBS.engine)
 $(B)/pound-worker: $(WORKER:%.c=$(B)/%.o) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.schema) $(LIBS.engine) -lpthread
+$(B)/client/worker_ranks.o $(B)/pound-worker-mpi: override CC := $(MPICC)
+$(B)/pound-worker-mpi: $(RANKS:%.c=$(B)/%.o) $(SCHEMA) $(B)/libpound.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.schema) $(LIBS.engine) -lpthread
 $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS.tests) $(LIBS.server) $(LIBS.schema) $(LIBS.engine)
 
-# the command line alone, for clusters: GSL, cJSON, nettle and Random123; CURL=0: without libcurl
+# the command line and workers, for clusters: GSL, cJSON, nettle and Random123; CURL=0: without libcurl
 CURL ?= 1
 $(B)/client/pound: $(CLIENT) $(B)/client/$(if $(filter 0,$(CURL)),unwired.o,wire.o) $(SCHEMA) $(B)/libpound.a FORCE
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter-out FORCE,$^) $(if $(filter 0,$(CURL)),$(filter-out -lcurl,$(LIBS.client)),$(LIBS.client)) \
 	  $(LIBS.schema) $(LIBS.engine)
-client: $(B)/client/pound
-	@echo $<
+client: $(B)/client/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-worker-mpi)
+	@echo $^
 FORCE:
 
 # the test's own blocks crash in their place
@@ -207,7 +214,7 @@ FISHDIR   ?= $(PREFIX)/share/fish/vendor_completions.d
 install: all
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin share/man/man1 share/man/man8 lib/systemd/system) \
 	  $(addprefix $(DESTDIR),$(PYTHONDIR) $(BASHDIR) $(ZSHDIR) $(FISHDIR))
-	install $(B)/poundd $(B)/pound $(DESTDIR)$(PREFIX)/bin
+	install $(B)/poundd $(B)/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-worker-mpi) $(DESTDIR)$(PREFIX)/bin
 	client/manual $(B)/pound client/pound.1 >$(DESTDIR)$(PREFIX)/share/man/man1/pound.1
 	client/manual $(B)/poundd server/poundd.8 >$(DESTDIR)$(PREFIX)/share/man/man8/poundd.8
 	sed 's|@PREFIX@|$(PREFIX)|' server/poundd.service >$(DESTDIR)$(PREFIX)/lib/systemd/system/poundd.service

@@ -258,16 +258,11 @@ static void check_table(struct argp_state *state, const struct options *options)
 /* Several ranks of this program would each compute the whole study. */
 static void check_ranks(struct argp_state *state)
 {
-	// what Open MPI, MPICH and srun give to each of several
-	static const char *const counts[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
-	for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-		const char *n = getenv(counts[i]);
-		if (n && atoi(n) > 1)
-			argp_error(
-			    state,
-			    "this is one of %s ranks: start pound once, and its workers by --launcher '... pound-worker'",
-			    n);
-	}
+	if (launcher_ranks() > 1)
+		argp_error(
+		    state,
+		    "this is one of %d ranks: start pound once, and its workers by --launcher '... pound-worker'",
+		    launcher_ranks());
 }
 
 static error_t take_option(int key, char *value, struct argp_state *state)

@@ -1,10 +1,12 @@
 /* pound-worker: one process that runs blocks for a coordinator, until its connection ends. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include <gsl/gsl_errno.h>
 
 #include "client/worker_crew.h"
+#include "schema/message/launcher.h"
 
 static void send_answer(void *to, const struct message *message, const void *body)
 {
@@ -19,6 +21,14 @@ int main(int argc, char **argv)
 	struct message message;
 	char *body;
 	gsl_set_error_handler_off();
+	if (launcher_ranks() > 1) {
+		fprintf(stderr,
+		        "pound-worker: this is one of %d ranks, each of which would be a group: start one by -n 1, "
+		        "or all of "
+		        "them as one group by pound-worker-mpi (make MPI=1)\n",
+		        launcher_ranks());
+		return EXIT_FAILURE;
+	}
 	int connection = worker_connect(n_threads);
 	struct worker_crew *crew = worker_crew_start(n_threads, send_answer, &connection);
 	while (crew && message_take(connection, MESSAGE_OF_COORDINATOR, &message, &body))

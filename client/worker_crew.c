@@ -27,6 +27,7 @@ struct work_study {
 	size_t length;
 	struct pound_study *study;
 	struct pound_run *run; /* NULL: not yet, or it could not be made */
+	size_t values_most;    /* of a block */
 	atomic_bool stop;      /* it was dropped */
 	int n_orders;          /* in the queue, and at work */
 };
@@ -78,7 +79,11 @@ static void open_study(struct worker_crew *crew, struct work_study *s)
 		m.status = POUND_OK;
 		m.n = sizeof digest;
 	}
+	size_t most = 0;
+	for (int block = run ? pound_run_blocks_most(run) - 1 : -1; block >= 0; block--)
+		most = pound_run_block_size(run, block) > most ? pound_run_block_size(run, block) : most;
 	pthread_mutex_lock(&crew->lock);
+	s->values_most = most;
 	s->run = run;
 	pthread_mutex_unlock(&crew->lock);
 	give_answer(crew, &m, digest);
@@ -209,6 +214,37 @@ bool worker_crew_take(struct worker_crew *crew, const struct message *m, char *b
 	pthread_mutex_unlock(&crew->lock);
 	free(body);
 	return sense;
+}
+
+size_t worker_crew_values_most(struct worker_crew *crew, uint64_t study)
+{
+	size_t most = 0;
+	const struct work_study *s;
+	pthread_mutex_lock(&crew->lock);
+	TAILQ_FOREACH(s, &crew->studies, others)
+	most = s->id == study ? s->values_most : most;
+	pthread_mutex_unlock(&crew->lock);
+	return most;
+}
+
+void worker_crew_stop(struct worker_crew *crew)
+{
+	pthread_mutex_lock(&crew->lock);
+	for (struct work_study *s = TAILQ_FIRST(&crew->studies), *next; s; s = next) {
+		next = TAILQ_NEXT(s, others);
+		s->stop = true;
+		if (s->n_orders == 0)
+			study_end(crew, s);
+	}
+	pthread_mutex_unlock(&crew->lock);
+}
+
+bool worker_crew_idle(struct worker_crew *crew)
+{
+	pthread_mutex_lock(&crew->lock);
+	const bool idle = TAILQ_EMPTY(&crew->studies);
+	pthread_mutex_unlock(&crew->lock);
+	return idle;
 }
 
 int worker_threads(void)

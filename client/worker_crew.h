@@ -16,6 +16,10 @@ struct worker_crew *worker_crew_start(int n_threads, worker_answer *answer,
                                       void *to); /* NULL: no memory or threads */
 /* Does what a message of the coordinator says; takes the body, which is on the heap.  false: it makes no sense. */
 bool worker_crew_take(struct worker_crew *crew, const struct message *message, char *body);
+/* Doubles of the largest block of a study whose design was answered. */
+size_t worker_crew_values_most(struct worker_crew *crew, uint64_t study);
+void worker_crew_stop(struct worker_crew *crew); /* outstanding blocks return POUND_STOPPED */
+bool worker_crew_idle(struct worker_crew *crew); /* after that: all of them were answered */
 
 /* Connects as POUND_WORKER says and greets; ends the program when that is not possible. */
 int worker_connect(int n_threads);

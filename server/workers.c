@@ -99,6 +99,7 @@ struct work {
 	pthread_t watch;     /* ... a thread that sees to that */
 	bool commits;        /* there is ... */
 	pthread_t committer;
+	uint64_t n_opened;
 	int n_started;
 	int n_workers;
 	pthread_t workers[]; /* (n_workers) */
@@ -446,7 +447,7 @@ static void open_run(struct work *work, struct job *job)
 	else {
 		job->n_reductions = job->reductions_left = pound_run_reductions(opened.run);
 		job->movable = message_movable(opened.study);
-		job->known = (struct coordinator_study){(uint64_t)job->id, opened.study, opened.run, opened.document,
+		job->known = (struct coordinator_study){++work->n_opened, opened.study, opened.run, opened.document,
 		                                        opened.length};
 		coordinator_wake(work->coordinator);
 	}

@@ -22,6 +22,8 @@ struct launcher {
 	char token[MESSAGE_TOKEN_SIZE + 1];
 };
 
+int launcher_ranks(
+    void); /* that this process is one of, as Open MPI, MPICH or Slurm started it; 1: it is alone */
 /* NULL, or what failed */
 const char *launcher_start(struct launcher *launcher, const struct launch *launch);
 bool launcher_ended(struct launcher *launcher);

@@ -528,6 +528,12 @@ static void a_worker_that_no_launcher_started_says_so(void **state)
 	program_expect(&outcome, 1);
 	assert_non_null(strstr(outcome.err, "POUND_WORKER must be HOST:PORT:TOKEN"));
 	program_free(&outcome);
+	setenv("OMPI_COMM_WORLD_SIZE", "4", 1);
+	outcome = program_run((const char *const[]){"pound-worker", NULL}, NULL);
+	unsetenv("OMPI_COMM_WORLD_SIZE");
+	program_expect(&outcome, 1);
+	assert_non_null(strstr(outcome.err, "this is one of 4 ranks"));
+	program_free(&outcome);
 	outcome = program_run((const char *const[]){"pound-worker", "--version", NULL}, NULL);
 	program_expect(&outcome, 0);
 	assert_string_equal(outcome.out, "pound-worker " POUND_VERSION "\n");
