@@ -92,11 +92,14 @@ static void the_client_needs_no_library_of_the_server_and_none_of_curl_if_so_bui
 	(void)state;
 	snprintf(
 	    script, sizeof script,
-	    "%s client=$(make -s client MODE=$mode CURL=0); readelf -d $client | grep NEEDED; "
+	    "%s folder=$1; set -- $(make -s client MODE=$mode CURL=0); client=$1 worker=$2; readelf -d $client "
+	    "$worker | "
+	    "grep NEEDED; "
 	    "for d in build/$mode/client/*.d build/$mode/schema/*/*.d build/$mode/engine/*/*.d; do case $d in "
 	    "*/wire.d) ;; *) cat $d ;; esac; done | grep -oE '(curl|microhttpd|sqlite3)\\.h' || true; "
-	    "pound example response | $client run - | grep -v '^  \"timing\"' >$1/bare; "
-	    "pound example response | pound run - | grep -v '^  \"timing\"' >$1/whole; cmp $1/bare $1/whole; "
+	    "pound example response | $client run --launcher $worker - | grep -v '^  \"timing\"' >$folder/bare; "
+	    "pound example response | pound run - | grep -v '^  \"timing\"' >$folder/whole; cmp $folder/bare "
+	    "$folder/whole; "
 	    "! $client list 2>&1",
 	    mode);
 	char folder[] = "/tmp/pound-test-XXXXXX";
