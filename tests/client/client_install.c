@@ -48,7 +48,8 @@ static char *installed_file(const char *name)
 static void the_programs_the_manual_and_the_unit_are_installed(void **state)
 {
 	static const char want[] =
-	    "bin/pound\nbin/pound-worker\nbin/poundd\nlib/python3/dist-packages/pound.py\nlib/systemd/system/poundd.service\n"
+	    "bin/pound\nbin/pound-worker\nbin/poundd\nlib/python3/dist-packages/pound.py\nlib/systemd/system/"
+	    "poundd.service\n"
 	    "share/bash-completion/completions/pound\nshare/fish/vendor_completions.d/pound.fish\n"
 	    "share/man/man1/pound.1\nshare/man/man8/poundd.8\nshare/zsh/site-functions/_pound\n";
 	(void)state;
