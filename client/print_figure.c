@@ -20,7 +20,7 @@ static enum outcome figure_print(enum figure_status status, const struct figure 
 		fwrite(figure->svg, 1, figure->length, stdout);
 		return OUTCOME_OK;
 	}
-	command_complain("%s", status == FIGURE_NOMEM ? "out of memory" : figure->detail);
+	command_complain("%s", figure->detail);
 	return status == FIGURE_UNKNOWN || status == FIGURE_CHOICE ? OUTCOME_USAGE : OUTCOME_FAILED;
 }
 

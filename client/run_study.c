@@ -45,15 +45,18 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	const char *end = strrchr(path, '.');
 	bool npy = end && strcmp(end, ".npy") == 0;
 	size_t n;
+	const char *reason = NULL;
 	pound_run_stop_by(run, &interrupted); // the threads that looked for that have ended
-	char *bytes = study->spectrum.histories ? (npy ? histories_to_npy : histories_to_csv)(study, run, &n)
-	                                        : (npy ? samples_to_npy : samples_to_csv)(study, run, &n);
+	char *bytes = study->spectrum.histories
+	                  ? (npy ? histories_to_npy : histories_to_csv)(study, run, &n, &reason)
+	                  : (npy ? samples_to_npy : samples_to_csv)(study, run, &n);
 	FILE *file = bytes ? fopen(path, "wb") : NULL;
 	bool written = file && fwrite(bytes, 1, n, file) == n;
 	written = file && fclose(file) == 0 && written;
 	if (!written)
 		command_complain("cannot write '%s': %s", path,
 		                 bytes         ? strerror(errno)
+		                 : reason      ? reason
 		                 : interrupted ? pound_status_text(POUND_STOPPED)
 		                               : pound_status_text(POUND_NOMEM));
 	free(bytes);

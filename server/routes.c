@@ -481,12 +481,12 @@ static struct reply samples(struct request *request)
 			            ? problem(API_CONFLICT, "the samples of this study are no longer stored")
 			            : problem(API_CORRUPT, "stored blocks are damaged");
 	} else if (opened.study->spectrum.histories)
-		reply.body = (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, &reply.length);
+		reply.body =
+		    (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, &reply.length, &error);
 	else
-		reply =
-		    problem(API_CONFLICT, "only a sensitivity study has samples, and floor spectra with histories");
+		reply = problem(API_CONFLICT, "only a sensitivity study has samples, and spectra with histories");
 	stored_run_close(&opened);
-	return reply.body ? reply : no_memory();
+	return reply.body ? reply : error ? problem(API_CONFLICT, error) : no_memory();
 }
 
 /* The tag of what is drawn: of a version, and of so many rows while there are not all. */
@@ -514,13 +514,13 @@ static struct reply figures(struct request *request)
 	return reply;
 }
 
-/* The histories of a study as CSV, computed again; NULL: it has none, or they cannot be made. */
-static char *histories(const struct request *request, size_t *length)
+/* The histories of a study as CSV, computed again; NULL: it has none, or they cannot be made, and perhaps why. */
+static char *histories(const struct request *request, size_t *length, const char **reason)
 {
 	struct stored_run opened;
 	const char *error = answer_open(request, &opened);
 	char *csv = !error && opened.study->spectrum.histories
-	                ? histories_to_csv(opened.study, opened.run, length)
+	                ? histories_to_csv(opened.study, opened.run, length, reason)
 	                : NULL;
 	stored_run_close(&opened);
 	return csv;
@@ -538,20 +538,20 @@ static struct reply figure(struct request *request)
 	    FIGURE_ARGUMENTS(X)
 #undef X
 	};
-	const char *name = strrchr(request->path, '/') + 1;
+	const char *name = strrchr(request->path, '/') + 1, *reason = NULL;
 	struct figure drawn;
 	int rows;
 	struct reply json = result(request, &rows);
 	if (json.status != 200)
 		return json;
 	struct figure_source source = {.json = json.body, .length = json.length};
-	char *samples = figure_row(name)->sampled ? histories(request, &source.n_samples) : NULL;
+	char *samples = figure_row(name)->sampled ? histories(request, &source.n_samples, &reason) : NULL;
 	source.samples = samples;
 	enum figure_status status = figure_draw(name, &source, &choice, &drawn);
 	free(samples);
 	free(json.body);
 	if (status != FIGURE_DRAWN)
-		return problem(faults[status], status == FIGURE_NOMEM ? "out of memory" : drawn.detail);
+		return problem(faults[status], reason ? reason : drawn.detail);
 	struct reply reply = made("image/svg+xml", drawn.svg, drawn.length);
 	// its style is inside; by itself it may do nothing else
 	reply.policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";

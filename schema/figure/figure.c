@@ -20,8 +20,10 @@ const struct figure_row figure_rows[] = {
 	{"pairs",     "sensitivity",    " cell output width ",        "second_order",      false, "second-order indices of every two inputs"},
 	{"spectra",   "floor_spectrum", " axis spectra width ",         NULL,                false, "floor response spectra with and without pounding"},
 	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion, clear distance and contact force of both oscillators in time"},
+	{"force",     "floor_spectrum", " signal from to width ",     NULL,                true,  "contact force against overlap, a loop for each contact"},
 	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding"},
 	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding"},
+	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level"},
 	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time"},
 	{0},
 };
@@ -98,6 +100,12 @@ bool figure_shows(const struct figure_row *row, const cJSON *result)
 	return strcmp(row->kind, plot_text(result, "kind")) == 0 && functions[row - figure_rows].has(result);
 }
 
+static enum figure_status out_of_memory(struct figure *figure)
+{
+	snprintf(figure->detail, sizeof figure->detail, "out of memory");
+	return FIGURE_NOMEM;
+}
+
 static enum figure_status draw(const struct figure_row *row, struct plot *plot, struct figure *figure)
 {
 	const char *width = plot->choice->width;
@@ -109,7 +117,7 @@ static enum figure_status draw(const struct figure_row *row, struct plot *plot, 
 		return FIGURE_CHOICE;
 	}
 	figure->svg = draw_take(&plot->d, plot->title, plot->sentence, &figure->length);
-	return figure->svg ? FIGURE_DRAWN : FIGURE_NOMEM;
+	return figure->svg ? FIGURE_DRAWN : out_of_memory(figure);
 }
 
 /* Draws a figure of a parsed result, by choices that it takes. */
@@ -151,7 +159,7 @@ enum figure_status figure_draw(const char *name, const struct figure_source *sou
 		return FIGURE_CHOICE;
 	cJSON *result = json_parse(source->json, source->length, &fault);
 	if (!result && fault.line == 0)
-		return FIGURE_NOMEM;
+		return out_of_memory(figure);
 	enum figure_status status = FIGURE_RESULT;
 	// what is drawn from samples alone needs no result
 	if (plot_is_result(result) || (cJSON_IsObject(result) && row->sampled && source->samples))

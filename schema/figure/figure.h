@@ -16,7 +16,8 @@
 
 // clang-format off
 /* The figures: X(name). */
-#define FIGURES(X) X(indices) X(swept) X(given) X(widths) X(pairs) X(spectra) X(history) X(responses) X(heights) X(errors)
+#define FIGURES(X) X(indices) X(swept) X(given) X(widths) X(pairs) X(spectra) X(history) X(force) X(responses) \
+	X(heights) X(impacts) X(errors)
 
 /* What can be chosen of a figure: X(name, values between spaces or NULL, lowest, highest, text). */
 #define FIGURE_ARGUMENTS(X)                                                                                   \

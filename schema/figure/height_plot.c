@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { BUILDINGS_MOST = 8, STOREYS_MOST = 50 };
+enum { BUILDINGS_MOST = 8, STOREYS_MOST = 50, MARKS_MOST = 200 };
 
 /* a number of every storey, and how it is drawn */
 struct quantity {
@@ -81,11 +81,21 @@ static struct range range_of(const cJSON *signals, const struct quantity *quanti
 	return range;
 }
 
+/* Whether each story has a mark with its values; those of a whole street would be a file of their own. */
+static bool is_marked(const cJSON *signals)
+{
+	int n = 0;
+	for (int b = 0; b < BUILDINGS_MOST; b++)
+		n += storeys_of(signals, b);
+	return n <= MARKS_MOST;
+}
+
 /* One building: the stories from the ground up, without and with pounding. */
 static void draw_building(struct plot *plot, const cJSON *signals, int b, const struct quantity *quantity,
                           struct panel *panel)
 {
 	const int n = storeys_of(signals, b);
+	const bool marked = is_marked(signals);
 	double value[STOREYS_MOST], x[STOREYS_MOST], y[STOREYS_MOST];
 	char label[PLOT_TEXT], title[PLOT_TEXT];
 	snprintf(label, sizeof label, "%s [%s]", quantity->label, quantity->unit);
@@ -103,7 +113,7 @@ static void draw_building(struct plot *plot, const cJSON *signals, int b, const 
 			y[i] = axis_at(&panel->up, i + 1);
 		}
 		draw_curve(&plot->d, &KEYS[free].pen, n, x, y);
-		for (int i = 0; i < n; i++) {
+		for (int i = 0; i < n && marked; i++) {
 			char text[PLOT_TEXT], number[32];
 			snprintf(text, sizeof text, "story %d, %s: %s %s", i + 1, KEYS[free].name,
 			         draw_number(value[i], number), quantity->unit);

@@ -1,6 +1,7 @@
 /* histories.c - the motion of both oscillators in time, signal after signal, as CSV and as a NumPy file.
  *
  * Nothing of it is stored: the signals are run once more, to the same bits. */
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -31,9 +32,12 @@ enum {
 	ROWS_MAX = 16 * STUDY_HISTORIES_MAX, /* rows, twice what most contacts need: 800 MB as CSV */
 };
 
+static_assert(ROWS_MAX == 4000000, "a sentence below names it");
+
 struct rows {
 	struct writer w;
 	int64_t n;
+	const char *reason; /* why there are too many; NULL: there are not */
 };
 
 static void values_of(const struct pound_instant *instant, double values[N_COLUMNS])
@@ -48,7 +52,11 @@ static void values_of(const struct pound_instant *instant, double values[N_COLUM
 static void row_count(struct rows *rows)
 {
 	rows->n++;
-	rows->w.failed |= rows->n > ROWS_MAX;
+	if (rows->n > ROWS_MAX) {
+		rows->w.failed = true;
+		rows->reason =
+		    "the histories have more than 4000000 rows: ask for fewer signals or a shorter duration";
+	}
 }
 
 static void line_add(void *into, int signal, const struct pound_instant *instant)
@@ -91,11 +99,13 @@ static void rows_fill(const struct pound_study *study, struct pound_run *run, po
  *
  * Given    study, run  -         -       a study of spectra; blocks need not be run
  * Returns  value       (length)  -       NULL: out of memory or more than ROWS_MAX rows, or the run is stopped
+ *          reason      -         -       set where there are too many rows: a sentence
  * Memory   allocates; the caller frees
  *
  * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event, a_run_that_is_stopped_leaves_no_file
  */
-char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length)
+char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length,
+                       const char **reason)
 {
 	struct rows rows = {0};
 	writer_init(&rows.w);
@@ -106,6 +116,7 @@ char *histories_to_csv(const struct pound_study *study, struct pound_run *run, s
 	}
 	writer_raw(&rows.w, "\r\n", 2);
 	rows_fill(study, run, line_add, &rows);
+	*reason = rows.reason;
 	return writer_take(&rows.w, length);
 }
 
@@ -115,7 +126,8 @@ char *histories_to_csv(const struct pound_study *study, struct pound_run *run, s
  *
  * Test     unit_histories: a_numpy_file_holds_the_same_numbers
  */
-char *histories_to_npy(const struct pound_study *study, struct pound_run *run, size_t *length)
+char *histories_to_npy(const struct pound_study *study, struct pound_run *run, size_t *length,
+                       const char **reason)
 {
 	struct rows rows = {0};
 	struct writer file, fields;
@@ -125,6 +137,7 @@ char *histories_to_npy(const struct pound_study *study, struct pound_run *run, s
 	writer_init(&file);
 	writer_init(&fields);
 	rows_fill(study, run, record_add, &rows);
+	*reason = rows.reason;
 	npy_field(&fields, "signal", "", "<i4");
 	for (int j = 0; j < N_COLUMNS; j++)
 		npy_field(&fields, columns[j], "", "<f8");

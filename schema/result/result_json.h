@@ -40,10 +40,13 @@ bool samples_exist(const struct pound_study *study);
 char *samples_to_csv(const struct pound_study *study, const struct pound_run *run, size_t *length);
 char *samples_to_npy(const struct pound_study *study, const struct pound_run *run, size_t *length);
 
-/* The left floor's motion in every signal of a study of spectra (of no other), at the samples and on both sides of every
- * event.  Columns: signal, time_s, u_m, v_m_s, acceleration_m_s2, contact_force_n. */
-char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length);
-char *histories_to_npy(const struct pound_study *study, struct pound_run *run, size_t *length);
+/* The motion of both oscillators in every signal of a study of spectra (of no other), at the samples, on both sides of
+ * every event, and inside contacts.  NULL: out of memory, the run is stopped, or there are
+ * too many rows, which is a sentence in `reason`, else NULL. */
+char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length,
+                       const char **reason);
+char *histories_to_npy(const struct pound_study *study, struct pound_run *run, size_t *length,
+                       const char **reason);
 
 /* The ground motions of one sample of a study with a scene.  Columns: signal, time_s, acceleration_m_s2. */
 struct motion_choice {

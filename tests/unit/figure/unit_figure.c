@@ -187,7 +187,7 @@ static struct figure_source result_of(const char *document)
 	struct pound_run *run = specimen_run(study);
 	source.json = result_to_json(study, pound_run_result(run), &timing, &source.length);
 	if (study->spectrum.histories)
-		source.samples = histories_to_csv(study, run, &source.n_samples);
+		source.samples = histories_to_csv(study, run, &source.n_samples, &(const char *){NULL});
 	pound_run_free(run);
 	study_free(study);
 	assert_non_null(source.json);
@@ -290,10 +290,10 @@ static void the_golden_figures_have_not_changed(void **state)
 	// pound plot NAME tests/cases/figures/SOURCE >tests/cases/figures/NAME.svg, then look at it
 	static const struct {
 		const char *name, *source;
-	} golden[] = {{"indices", "indices.json"},     {"swept", "swept.json"},    {"given", "given.json"},
-	              {"widths", "given.json"},        {"pairs", "given.json"},    {"spectra", "spectra.json"},
-	              {"responses", "responses.json"}, {"history", "history.csv"}, {"errors", "errors.json"},
-	              {"heights", "heights.json"}};
+	} golden[] = {{"indices", "indices.json"},     {"swept", "swept.json"},     {"given", "given.json"},
+	              {"widths", "given.json"},        {"pairs", "given.json"},     {"spectra", "spectra.json"},
+	              {"responses", "responses.json"}, {"history", "history.csv"},  {"errors", "errors.json"},
+	              {"heights", "heights.json"},     {"impacts", "heights.json"}, {"force", "history.csv"}};
 	enum { GOLDEN = sizeof golden / sizeof golden[0] };
 	(void)state;
 	assert_null(figure_rows[GOLDEN].name); // every figure has one

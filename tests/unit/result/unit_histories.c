@@ -68,7 +68,8 @@ static void a_line_for_every_sample_and_both_sides_of_every_event(void **state)
 {
 	(void)state;
 	size_t length;
-	char *csv = histories_to_csv(study, run, &length), *at = csv;
+	const char *reason;
+	char *csv = histories_to_csv(study, run, &length, &reason), *at = csv;
 	assert_int_equal(strlen(csv), length);
 	static const char head[] =
 	    "signal,time_s,u_m,v_m_s,acceleration_m_s2,contact_force_n,u_right_m,v_right_m_s,"
@@ -90,7 +91,8 @@ static void a_numpy_file_holds_the_same_numbers(void **state)
 {
 	(void)state;
 	size_t length;
-	unsigned char *npy = (unsigned char *)histories_to_npy(study, run, &length);
+	const char *reason;
+	unsigned char *npy = (unsigned char *)histories_to_npy(study, run, &length, &reason);
 	assert_memory_equal(npy, "\x93NUMPY\x03\x00", 8);
 	size_t head = 12 + (npy[8] | (size_t)npy[9] << 8);
 	assert_int_equal(head % 64, 0);
@@ -114,8 +116,10 @@ static void a_run_that_is_stopped_leaves_no_file(void **state)
 	(void)state;
 	size_t length;
 	pound_run_stop(run);
-	assert_null(histories_to_csv(study, run, &length));
-	assert_null(histories_to_npy(study, run, &length));
+	const char *reason = NULL;
+	assert_null(histories_to_csv(study, run, &length, &reason));
+	assert_null(reason);
+	assert_null(histories_to_npy(study, run, &length, &reason));
 }
 
 #define WITH_RUN(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)

@@ -1,0 +1,337 @@
+/* history_plot.c - of the samples of a floor_spectrum: `history` of both oscillators, `force` of their contacts. */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/figure/plot.h"
+
+// what is drawn of a history, each in a panel: columns of the samples, those there are
+static const struct series {
+	const char *title, *unit;
+	double height;
+	struct {
+		const char *column, *text;
+	} lines[2];
+} SERIES[] = {
+    {"displacement", "[m]", 200, {{"u_m", "left"}, {"u_right_m", "right"}}},
+    {"clear distance", "[m]", 150, {{"gap_m", "clear distance"}}},
+    {"contact force", "[N]", 150, {{"contact_force_n", "contact force"}}},
+    {"absolute acceleration",
+     "[m/s²]",
+     200,
+     {{"acceleration_m_s2", "left"}, {"acceleration_right_m_s2", "right"}}},
+};
+
+static const char *const RIGHT_DASH = "5 2";
+
+enum { N_SERIES = sizeof SERIES / sizeof SERIES[0], COLUMNS_MOST = 24 };
+
+struct table {
+	int signal;       /* the chosen one */
+	int n_columns, n; /* rows of that signal and time */
+	const char *names[COLUMNS_MOST];
+	size_t lengths[COLUMNS_MOST];
+	double *values[COLUMNS_MOST]; /* (n) of one signal */
+};
+
+/* The rows of the signal in [from, to] s.  A sample is a number or empty; the first columns are signal and time_s. */
+static bool table_read(struct plot *plot, double from, double to, struct table *table)
+{
+	const char *at = plot->source->samples, *end = at + plot->source->n_samples;
+	size_t lines = 0;
+	table->n_columns = table->n = 0;
+	for (const char *c = at; c < end; c++)
+		lines += *c == '\n' || *c == '\r';
+	while (at < end && *at != '\r' && *at != '\n' && table->n_columns < COLUMNS_MOST) {
+		size_t n = 0;
+		while (at + n < end && !strchr(",\r\n", at[n]))
+			n++;
+		table->names[table->n_columns] = at;
+		table->lengths[table->n_columns] = n;
+		table->values[table->n_columns] = plot_memory(plot, sizeof(double) * (lines + 1));
+		if (!table->values[table->n_columns++])
+			return false;
+		at += n + (at + n < end && at[n] == ',');
+	}
+	if (table->n_columns < 3 || strncmp(table->names[0], "signal,time_s,", 14) != 0)
+		return false;
+	while (at < end) {
+		double row[COLUMNS_MOST] = {0};
+		at += strspn(at, "\r\n");
+		if (at >= end || !*at)
+			break;
+		// most rows are of other signals, and their numbers are not read
+		bool wanted = true;
+		for (int c = 0; c < table->n_columns && wanted; c++) {
+			// a number does not begin on the next line
+			char *after = (char *)at;
+			row[c] = isspace((unsigned char)*at) ? NAN : strtod(at, &after);
+			row[c] = after == at ? NAN : row[c];
+			at = after + strcspn(after, ",\r\n");
+			at += *at == ',';
+			wanted = c == 0 ? row[0] == table->signal : c > 1 || (row[1] >= from && row[1] <= to);
+		}
+		at += strcspn(at, "\r\n");
+		if (wanted && isfinite(row[1])) {
+			for (int c = 0; c < table->n_columns; c++)
+				table->values[c][table->n] = row[c];
+			table->n++;
+		}
+	}
+	return true;
+}
+
+static const double *table_column(const struct table *table, const char *name)
+{
+	for (int c = 0; c < table->n_columns; c++)
+		if (table->lengths[c] == strlen(name) && strncmp(table->names[c], name, table->lengths[c]) == 0)
+			return table->values[c];
+	return NULL;
+}
+
+/* A line through all points of a history: of each pixel across the first, lowest, highest and last. */
+static void draw_dense(struct plot *plot, const struct pen *pen, const struct panel *panel,
+                       const double *time, const double *value, int n)
+{
+	double *x = plot_memory(plot, 2 * sizeof *x * (size_t)(n + 1)), *y = x ? x + n + 1 : NULL;
+	int at = 0;
+	for (int k = 0; x && k < n;) {
+		double pixel = floor(axis_at(&panel->across, time[k]));
+		int low = k, high = k, last = k;
+		for (; last < n && floor(axis_at(&panel->across, time[last])) == pixel; last++) {
+			low = value[last] < value[low] ? last : low;
+			high = value[last] > value[high] ? last : high;
+		}
+		if (last == k) { // it has no place
+			k++;
+			continue;
+		}
+		int kept[] = {k, low < high ? low : high, low < high ? high : low, last - 1};
+		for (int i = 0; i < 4; i++)
+			if (i == 0 || kept[i] != kept[i - 1]) {
+				x[at] = axis_at(&panel->across, time[kept[i]]);
+				y[at++] = axis_at(&panel->up, value[kept[i]]);
+			}
+		k = last;
+	}
+	if (x)
+		draw_curve(&plot->d, pen, at, x, y);
+}
+
+static double second_of(struct plot *plot, const char *name, const char *text, double absent)
+{
+	char *end;
+	double value = text ? strtod(text, &end) : absent;
+	if (text && (!*text || *end || !isfinite(value) || isspace((unsigned char)*text)))
+		snprintf(plot->fault, sizeof plot->fault, "%s must be a time in s", name);
+	return value;
+}
+
+/* The chosen rows of the samples, at least one; false: a fault. */
+static bool table_chosen(struct plot *plot, struct table *table)
+{
+	const double from = second_of(plot, "from", plot->choice->from, 0);
+	const double to = second_of(plot, "to", plot->choice->to, INFINITY);
+	table->signal = plot->choice->signal ? atoi(plot->choice->signal) : 0;
+	if (*plot->fault)
+		return false;
+	if (!table_read(plot, from, to, table))
+		snprintf(plot->fault, sizeof plot->fault,
+		         "the samples are no histories: they begin with signal,time_s");
+	else if (table->n == 0)
+		snprintf(plot->fault, sizeof plot->fault, "no sample of signal %d lies between from and to",
+		         table->signal);
+	return !*plot->fault;
+}
+
+/* ---- history ---- */
+
+bool plot_has_history(const cJSON *result)
+{
+	return plot_has_spectra(result);
+}
+
+/* A tick at each begin of a contact, as far as they are pixels apart; how many begin. */
+static int draw_begins(struct plot *plot, const struct panel *panel, const struct table *table)
+{
+	const double *time = table_column(table, "time_s"), *force = table_column(table, "contact_force_n");
+	double last = -INFINITY;
+	int n = 0;
+	for (int k = 1; force && k < table->n; k++) {
+		const double x = axis_at(&panel->across, time[k]);
+		if (!(force[k] != 0 && force[k - 1] == 0))
+			continue;
+		n++;
+		if (x - last < 2)
+			continue;
+		draw_line(&plot->d, &(struct pen){.ink = INK_TEXT, .width = 1}, x, panel->top - 5, x, panel->top + 2);
+		last = x;
+	}
+	return n;
+}
+
+void plot_history(struct plot *plot)
+{
+	struct table table;
+	char more[PLOT_TEXT], number[2][32];
+	int impacts = 0;
+	struct range times = RANGE_EMPTY, ups = RANGE_EMPTY;
+	if (!table_chosen(plot, &table))
+		return;
+	const double *time = table_column(&table, "time_s");
+	for (int k = 0; k < table.n; k++)
+		range_add(&times, time[k]);
+	snprintf(more, sizeof more, "ground motion %d; ticks above the displacement: a contact begins",
+	         table.signal);
+	plot_head(plot, "Motion of both oscillators, and their impacts", more);
+	const bool both = table_column(&table, "u_right_m");
+	const struct key keys[2] = {{.name = "left", .pen = {.width = 1.5}},
+	                            {.name = "right", .pen = {.ink = 1, .width = 1.5, .dash = RIGHT_DASH}}};
+	double top = both ? draw_legend(&plot->d, 2, keys, plot->y) + 8 : plot->y + 4;
+	for (int s = 0; s < N_SERIES; s++) {
+		struct range range = {0, 0};
+		const double *columns[2] = {NULL, NULL};
+		int known = 0;
+		for (int l = 0; l < 2 && SERIES[s].lines[l].column; l++) {
+			columns[l] = table_column(&table, SERIES[s].lines[l].column);
+			for (int k = 0; columns[l] && k < table.n; k++)
+				range_add(&range, columns[l][k]), known += isfinite(columns[l][k]);
+		}
+		if (known == 0) // a scene without contact has no clear distance
+			continue;
+		if (s == 0)
+			ups = range;
+		struct panel panel = {.height = SERIES[s].height,
+		                      .room = 48,
+		                      .title = SERIES[s].title,
+		                      .y_label = SERIES[s].unit,
+		                      .x_label = s == N_SERIES - 1 ? "time [s]" : NULL};
+		panel.across = times.low < times.high ? axis_between(times.low, times.high) : axis_linear(times);
+		panel.up = axis_linear(range);
+		panel_place(&plot->d, 1, 0, top, &panel);
+		panel_draw(&plot->d, &panel);
+		for (int l = 0; l < 2 && columns[l]; l++)
+			draw_dense(plot, &(struct pen){.ink = (enum ink)l, .width = 1.1, .dash = l ? RIGHT_DASH : NULL},
+			           &panel, time, columns[l], table.n);
+		for (int l = 0; table.n == 1 && l < 2 && columns[l]; l++)
+			draw_mark(&plot->d, &(struct mark){.series = l}, axis_at(&panel.across, time[0]),
+			          axis_at(&panel.up, columns[l][0]), NULL);
+		if (s == 0)
+			impacts = draw_begins(plot, &panel, &table);
+		top = plot->d.height + 8;
+	}
+	snprintf(plot->sentence, sizeof plot->sentence, "%d impacts; displacements lie in [%s, %s] m.", impacts,
+	         draw_number(ups.low, number[0]), draw_number(ups.high, number[1]));
+}
+
+/* ---- force ---- */
+
+bool plot_has_force(const cJSON *result)
+{
+	return plot_has_spectra(result);
+}
+
+enum { LOOPS_MOST = 200, POINTS_MOST = 16000, SIDE_MOST = 640 };
+
+/* A contact: rows [first, last] of the samples. */
+struct loop {
+	int first, last;
+	double peak; /* largest force [N] */
+};
+
+static int by_peak(const void *one, const void *other)
+{
+	const struct loop *a = one, *b = other;
+	return a->peak != b->peak ? (a->peak < b->peak) - (a->peak > b->peak) : a->first - b->first;
+}
+
+/* The contacts, from that of the largest force on; each begins and ends with the rows without force beside it, at which the
+ * overlap is zero or the force has changed at once. */
+static int loops_of(const struct table *table, const double *gap, const double *force, struct loop *loops)
+{
+	int n = 0;
+	for (int k = 0; k < table->n; k++) {
+		if (!isfinite(force[k]) || !isfinite(gap[k]) || force[k] == 0)
+			continue;
+		struct loop *loop = &loops[n++];
+		*loop = (struct loop){k > 0 ? k - 1 : k, k, -INFINITY};
+		for (; k < table->n && isfinite(force[k]) && force[k] != 0; k++)
+			loop->peak = fmax(loop->peak, force[k]);
+		loop->last = k < table->n ? k : k - 1;
+	}
+	qsort(loops, (size_t)n, sizeof *loops, by_peak);
+	return n;
+}
+
+/* One contact, without the points that lie on the one before them; how many were drawn. */
+static int draw_loop(struct plot *plot, const struct panel *panel, const struct pen *pen,
+                     const struct loop *loop, const double *gap, const double *force)
+{
+	const int rows = loop->last - loop->first + 1;
+	double *x = plot_memory(plot, 2 * sizeof *x * (size_t)rows), *y = x ? x + rows : NULL;
+	int n = 0;
+	for (int k = loop->first; x && k <= loop->last; k++) {
+		// a row beside the contact may be before the bodies met
+		const double overlap = force[k] == 0 ? fmax(-gap[k], 0) : -gap[k];
+		const double at_x = axis_at(&panel->across, overlap), at_y = axis_at(&panel->up, force[k]);
+		if (n > 0 && k < loop->last && hypot(at_x - x[n - 1], at_y - y[n - 1]) < 0.8)
+			continue;
+		x[n] = at_x;
+		y[n++] = at_y;
+	}
+	if (x)
+		draw_curve(&plot->d, pen, n, x, y);
+	return n;
+}
+
+void plot_force(struct plot *plot)
+{
+	struct table table;
+	struct range across = {0, 0}, up = {0, 0};
+	char more[PLOT_TEXT], number[2][32];
+	int points = 0, drawn = 0;
+	if (!table_chosen(plot, &table))
+		return;
+	const double *gap = table_column(&table, "gap_m"), *force = table_column(&table, "contact_force_n");
+	struct loop *loops = plot_memory(plot, sizeof *loops * (size_t)(table.n + 1));
+	if (!gap || !force) {
+		snprintf(plot->fault, sizeof plot->fault, "the samples have no columns gap_m and contact_force_n");
+		return;
+	}
+	const int n = loops ? loops_of(&table, gap, force, loops) : 0;
+	for (int i = 0; i < n; i++)
+		for (int k = loops[i].first; k <= loops[i].last; k++) {
+			range_add(&across, force[k] == 0 ? 0 : -gap[k]);
+			range_add(&up, force[k]);
+		}
+	// what a contact ends with is zero up to rounding
+	across.low = across.low > -1e-6 * across.high ? 0 : across.low;
+	snprintf(more, sizeof more, "ground motion %d, %d contacts; the one of the largest force is thick",
+	         table.signal, n);
+	plot_head(plot, "Contact force against overlap", more);
+	struct panel panel = {.height = fmin(fmax(0.7 * plot->d.width, 300), 460),
+	                      .x_label = "overlap [m]",
+	                      .y_label = "contact force [N]",
+	                      .bare = n == 0,
+	                      .across = axis_linear(n ? across : (struct range){0, 1}),
+	                      .up = axis_linear(n ? up : (struct range){0, 1})};
+	panel_place(&plot->d, 1, 0, plot->y + 4, &panel);
+	panel.width = fmin(panel.width, SIDE_MOST);
+	panel_draw(&plot->d, &panel);
+	for (; drawn < n && drawn < LOOPS_MOST && points < POINTS_MOST; drawn++)
+		points += draw_loop(plot, &panel,
+		                    &(struct pen){.ink = drawn ? INK_MUTED : INK_SERIES,
+		                                  .width = drawn ? 0.9 : 2.2,
+		                                  .opacity = drawn ? 0.7 : 0},
+		                    &loops[drawn], gap, force);
+	if (drawn < n)
+		plot_note(plot, "Shown: the %d contacts with the largest forces, of %d.", drawn, n);
+	if (n)
+		snprintf(plot->sentence, sizeof plot->sentence,
+		         "%d contacts; the largest force is %s N, the largest overlap %s m.", n,
+		         draw_number(loops[0].peak, number[0]), draw_number(across.high, number[1]));
+	else
+		snprintf(plot->sentence, sizeof plot->sentence, "No contact.");
+}
