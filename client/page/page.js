@@ -75,7 +75,7 @@ async function seen() {
 }
 
 const ended = status => ["succeeded", "failed", "cancelled"].includes(status);
-const percent = study => `${Math.floor(100 * study.progress)} %`;
+const percent = study => `${Math.floor(100 * study.progress)}\u00a0%`;
 const time = text => text ? new Date(text).toLocaleString() : "";
 
 function duration(seconds) {
@@ -90,13 +90,15 @@ const queued = study => `${study.queue_position === 1 ? "next" : `number ${study
 function listed(study) {
 	const active = !ended(study.status);
 	const left = study.eta_s === null ? "" : `, ${duration(study.eta_s)} left`;
-	return element("tr", {},
-		element("td", { class: "name" }, element("a", { href: `/studies/${study.id}` }, study.name || study.id)),
-		element("td", {}, study.kind.replaceAll("_", " ")),
-		element("td", {}, study.status),
-		element("td", {}, ...(active ? [element("progress", { max: 1, value: study.progress, "aria-label": "progress" }), " "] : []),
+	// on a narrow screen a row is no row to the browser, unless its role says so
+	const cell = (...inside) => element("td", { role: "cell" }, ...inside);
+	return element("tr", { role: "row" },
+		element("td", { class: "name", role: "cell" }, element("a", { href: `/studies/${study.id}` }, study.name || study.id)),
+		cell(study.kind.replaceAll("_", " ")),
+		cell(study.status),
+		cell(...(active ? [element("progress", { max: 1, value: study.progress, "aria-label": "progress" }), " "] : []),
 			!active ? "" : study.queue_position ? queued(study) : percent(study) + left),
-		element("td", {}, time(study.created)));
+		cell(time(study.created)));
 }
 
 async function list() {
@@ -214,6 +216,7 @@ async function figures(result, partial) {
 	const rows = (await answer.json()).figures, chosen = Object.fromEntries(new URLSearchParams(location.search));
 	const draw = async () => {
 		$("figures-section").hidden = false;
+		if (!$("figures").childElementCount) $("figures").append(element("p", { class: "muted", role: "status" }, "drawing"));
 		$("figures").replaceChildren(...await Promise.all(rows.map(row => figure(row, chosen, partial))));
 	};
 	const all = Array.isArray(result?.cells) && result.kind === "sensitivity" ? result.cells : [];
@@ -221,7 +224,7 @@ async function figures(result, partial) {
 	const options = {
 		cell: all.length > 1 ? all.map((cell, k) => [k, Object.entries(cell.sweep).map(([path, value]) => `${path.split("/").pop()} ${value}`).join(", ")]) : [],
 		output: names.length > 1 ? [["", "all"], ...names.map(name => [name, name])] : [],
-		index: all.length ? [["", "both, or ST"], ["S1", "S1"], ["ST", "ST"]] : [],
+		index: all.length ? [["", "default"], ["S1", "S1"], ["ST", "ST"]] : [],
 	};
 	$("choices").replaceChildren(...Object.entries(options).filter(([, values]) => values.length).map(([name, values]) => {
 		const select = element("select", { name, onchange: () => {
@@ -262,7 +265,7 @@ function show(study) {
 	const running = study.status === "running";
 	document.title = `${running ? `${percent(study)} ` : ""}${study.name || study.id} - pound`;
 	$("name").textContent = study.name || study.id;
-	$("about").textContent = `${study.kind.replaceAll("_", " ")}, ${study.runs_total.toLocaleString("en")} runs, made ${time(study.created)}`;
+	$("about").textContent = `${study.kind.replaceAll("_", " ")}, ${study.runs_total.toLocaleString("en")} runs, created ${time(study.created)}`;
 	$("status").textContent = study.status;
 	$("progress").hidden = ended(study.status);
 	$("progress").value = study.progress;

@@ -288,7 +288,7 @@ void axis_ticks_across(const struct axis *axis, struct ticks *ticks)
 /* The ticks up between top and bottom, and the room that they leave. */
 static void panel_ticks_up(struct panel *panel, struct ticks *up)
 {
-	axis_ticks(&panel->up, (int)((panel->bottom - panel->top) / 30), up);
+	axis_ticks(&panel->up, (int)((panel->bottom - panel->top) / (panel->up.whole ? 22 : 30)), up);
 	panel->left = panel->x + fmax(up->widest, panel->room) + 10 + (panel->y_label ? 18 : 0);
 }
 

@@ -68,11 +68,8 @@ static void a_figure_of_a_file_has_the_bytes_of_the_server(void **state)
 	static const struct {
 		const char *example;
 		int figures;
-	} cases[] = {{"sensitivity_small", 1},
-	             {"until", 4},
-	             {"floor_spectrum", 2},
-	             {"response_sweep", 1},
-	             {"convergence", 1}};
+	} cases[] = {{"sensitivity_small", 1}, {"until", 4},           {"floor_spectrum", 3},
+	             {"response_sweep", 1},    {"unequal_heights", 2}, {"convergence", 1}};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		char id[32], result[32], samples[32];
 		submit(cases[i].example, id);
