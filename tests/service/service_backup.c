@@ -107,6 +107,9 @@ static void a_copy_can_be_copied(void **state)
 	                 service_number(service, "SELECT count(*) FROM study"));
 }
 
+static const char REPLACED[] =
+    "the database file was removed or replaced: nothing is accepted until the server is started again";
+
 /* The status of a POST of a small study, and of all else that changes something. */
 static void nothing_is_accepted(const struct service *service, const char *why)
 {
@@ -138,10 +141,10 @@ static void a_database_that_is_replaced_under_a_server_is_not_written_to(void **
 		snprintf(name, sizeof name, "%s%s", service->database, ends[i]);
 		snprintf(aside, sizeof aside, "%s-aside", name);
 		assert_int_equal(rename(name, aside), 0); // removed
-		nothing_is_accepted(service, "removed or replaced");
+		nothing_is_accepted(service, REPLACED);
 		FILE *other = fopen(name, "w"); // and replaced
 		fclose(other);
-		nothing_is_accepted(service, "removed or replaced");
+		nothing_is_accepted(service, REPLACED);
 		assert_int_equal(rename(aside, name), 0); // and put back
 		submit(service, 2);
 		assert_true(service_wait(service, ids[n_ids - 1], "succeeded", 0));
@@ -162,7 +165,7 @@ static void a_second_server_after_the_lock_is_removed_is_alone(void **state)
 	snprintf(second.log, sizeof second.log, "%s/second", service->directory);
 	second.pid = 0;
 	service_start(&second, 1);
-	nothing_is_accepted(service, "removed or replaced");
+	nothing_is_accepted(service, REPLACED);
 	submit(&second, 2);
 	service_kill(service);
 	assert_true(service_wait(&second, ids[n_ids - 1], "succeeded", 0));

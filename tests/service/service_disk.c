@@ -91,6 +91,7 @@ static void refuse(const struct service *service, const char *study)
 {
 	struct answer answer = service_post(service, study);
 	assert_int_equal(answer.status, 503);
+	assert_non_null(strstr(answer.body, "the disk has no room for new studies"));
 	assert_true(atoi(answer.retry_after) >= 1);
 	answer_free(&answer);
 	assert_int_equal(status_of(service, "GET", "/readyz", ""), 503);

@@ -1,4 +1,5 @@
 /* The limits of a server, each with the status and the words that server/server.md lists. */
+#include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +41,7 @@ static const struct {
 static void is_listed(const char *page, int status, const char *detail)
 {
 	char cells[256];
-	snprintf(cells, sizeof cells, "| %d | %s |\n", status, detail);
+	snprintf(cells, sizeof cells, "| %d | %s |", status, detail);
 	if (!strstr(page, cells))
 		fail_msg("server/server.md has no row with %s", cells);
 }
@@ -88,7 +89,78 @@ static void a_full_queue_is_answered_with_its_status_and_the_words_of_the_page(v
 	service_free(service);
 }
 
+/* The sources of the tests of servers, one after the other, with the parts of a string that was broken into lines put together. */
+static char *tests_of_servers(void)
+{
+	static const char *const patterns[] = {"tests/service/*.c", "tests/long/soak_*.c"};
+	char *all = calloc(1, 1), *to;
+	size_t n = 0;
+	for (int p = 0; p < 2; p++) {
+		glob_t found;
+		assert_int_equal(glob(patterns[p], 0, NULL, &found), 0);
+		for (size_t i = 0; i < found.gl_pathc; i++) {
+			size_t length;
+			char *text = program_file(found.gl_pathv[i], &length);
+			all = realloc(all, n + length + 1);
+			to = all + n;
+			for (const char *from = text; *from;) {
+				const size_t blank = *from == '"' ? strspn(from + 1, " \t\n") : 0;
+				if (blank && memchr(from + 1, '\n', blank) && from[1 + blank] == '"')
+					from += blank + 2;
+				else
+					*to++ = *from++;
+			}
+			*to = '\0';
+			n = (size_t)(to - all);
+			free(text);
+		}
+		globfree(&found);
+	}
+	return all;
+}
+
+/* The function of a test whose name has a text in it. */
+static const char *function_of(const char *tests, const char *name)
+{
+	static const char start[] = "\nstatic void ";
+	for (const char *at = tests; (at = strstr(at, start)); at++) {
+		const char *own = at + strlen(start), *found = strstr(own, name);
+		if (found && found < own + strcspn(own, "("))
+			return own;
+	}
+	return NULL;
+}
+
+/* Every row of the table names a test, and its words are in one. */
+static void every_limit_of_the_page_has_a_test(void **state)
+{
+	char *page = program_file("server/server.md", NULL), *tests = tests_of_servers();
+	char *table = strstr(page, "| limit | value | status | detail | by |\n");
+	int n = 0;
+	(void)state;
+	assert_non_null(table);
+	*strstr(table, "\n\n") = '\0';
+	for (char *row = strchr(strchr(table, '\n') + 1, '\n'); row; row = strchr(row + 1, '\n')) {
+		char status[8] = "", detail[200] = "", by[80] = "";
+		if (sscanf(row, "\n| %*[^|]| %*[^|]| %7[^ ] | %199[^|]| `T=%79[a-z0-9_]` |", status, detail, by) != 3)
+			fail_msg("not a row of limits: %.200s", row);
+		detail[strlen(detail) - 1] = '\0';
+		if (!function_of(tests, by))
+			fail_msg("there is no test with %s in its name", by);
+		// a page says of some in its own words what is answered
+		const bool quoted = atoi(status) >= 400 && !strstr(detail, "...") && strcmp(detail, "the same") != 0;
+		if (quoted && !strstr(tests, detail))
+			fail_msg("no test has the words: %s", detail);
+		n++;
+	}
+	check_report("%d limits of the page, each with a test", n);
+	assert_true(n > 20);
+	free(tests);
+	free(page);
+}
+
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(each_limit_is_answered_with_its_status_and_the_words_of_the_page),
-           cmocka_unit_test(a_full_queue_is_answered_with_its_status_and_the_words_of_the_page))
+           cmocka_unit_test(a_full_queue_is_answered_with_its_status_and_the_words_of_the_page),
+           cmocka_unit_test(every_limit_of_the_page_has_a_test))

@@ -64,7 +64,10 @@ static void studies_and_samples_are_deleted_when_their_time_is_up(void **state)
 	    "SELECT count(*) FROM study WHERE finished < (SELECT max(created) FROM study) - 30 * 86400000");
 	zero_await(service, "SELECT count(*) FROM block JOIN study ON study = id WHERE finished < "
 	                    "(SELECT max(created) FROM study) - 7 * 86400000");
-	assert_int_equal(status_of(service, "/v1/studies/%s", ids[2]), 404);
+	struct answer none = service_get(service, "/v1/studies/%s", ids[2]);
+	assert_int_equal(none.status, 404);
+	assert_non_null(strstr(none.body, "there is no such study"));
+	answer_free(&none);
 	assert_int_equal(
 	    service_number(service, "SELECT count(*) FROM document WHERE study NOT IN (SELECT id FROM study)"),
 	    0);
@@ -73,7 +76,7 @@ static void studies_and_samples_are_deleted_when_their_time_is_up(void **state)
 	assert_int_equal(status_of(service, "/v1/studies/%s/figures/indices", ids[1]), 200);
 	struct answer gone = service_get(service, "/v1/studies/%s/samples", ids[1]);
 	assert_int_equal(gone.status, 409);
-	assert_non_null(strstr(gone.body, "no longer stored"));
+	assert_non_null(strstr(gone.body, "the samples of this study are no longer stored"));
 	answer_free(&gone);
 	assert_int_equal(status_of(service, "/v1/studies/%s/samples", ids[0]), 200);
 	assert_true(service_wait(service, running, "succeeded", 0));

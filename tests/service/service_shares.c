@@ -1,5 +1,8 @@
 /* Shares: what many connections of one client may take, and what is left for others meanwhile. */
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -7,6 +10,9 @@
 #include "tests/support/raw_http.h"
 
 #define HOST "Host: localhost\r\n"
+
+static const char MANY_LONG[] =
+    "as many answers that take long are being made as this client, or all, may have";
 
 static void pause_ms(int ms)
 {
@@ -35,8 +41,8 @@ static void close_many(const int *sockets, int n)
 		close(sockets[i]);
 }
 
-/* How many of them are answered with a status within so many seconds, the others not at all. */
-static int answered(const int *sockets, int n, int status, double seconds)
+/* How many of them are answered with a status and a text within so many seconds, the others not at all. */
+static int answered(const int *sockets, int n, int status, const char *detail, double seconds)
 {
 	int counted = 0;
 	static struct raw_answer answer;
@@ -44,7 +50,7 @@ static int answered(const int *sockets, int n, int status, double seconds)
 	for (int i = 0; i < n; i++) {
 		double left = end - latency_now();
 		raw_receive(sockets[i], left > 0.02 ? left : 0.02, &answer);
-		if (answer.status == status)
+		if (answer.status == status && strstr(answer.text, detail))
 			counted++;
 		else if (answer.status != 0)
 			fail_msg("%d: %s", answer.status, answer.text);
@@ -63,7 +69,7 @@ static void who_asks_for_more_than_a_share_is_refused(void **state)
 	snprintf(get, sizeof get, "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
 	         long_id);
 	open_many(service, get, sockets, N);
-	int refused = answered(sockets, N, 503, 1);
+	int refused = answered(sockets, N, 503, MANY_LONG, 1);
 	// what is short does not stand in that queue
 	double start = latency_now();
 	struct answer csv = service_get(service, "/v1/studies/%s/results?format=csv", id);
@@ -79,6 +85,56 @@ static void who_asks_for_more_than_a_share_is_refused(void **state)
 		assert_true(s < 0.1);
 }
 
+static void long_answers_of_all_clients_are_64_at_a_time(void **state)
+{
+	enum { CLIENTS = 5, SHARE = 16, N = CLIENTS * SHARE, MOST = 64 };
+	struct service *service = service_new();
+	int sockets[N];
+	char path[128], id[17], get[256];
+	(void)state;
+	service_start(service, 2);
+	service_histories(service, 120, id);
+	service_stop(service);
+	snprintf(path, sizeof path, "%s/tokens", service->directory);
+	FILE *tokens = fopen(path, "w");
+	for (int c = 0; c < CLIENTS; c++)
+		fprintf(tokens, "%032d\n", c);
+	fchmod(fileno(tokens), 0600);
+	fclose(tokens);
+	setenv("POUNDD_TOKEN_FILE", path, 1);
+	service_start(service, 2);
+	unsetenv("POUNDD_TOKEN_FILE");
+	for (int c = 0; c < CLIENTS; c++) {
+		snprintf(get, sizeof get,
+		         "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "Authorization: Bearer %032d\r\n\r\n", id, c);
+		open_many(service, get, sockets + c * SHARE, SHARE);
+	}
+	assert_int_equal(answered(sockets, N, 503, MANY_LONG, 1), N - MOST);
+	close_many(sockets, N);
+	unlink(path);
+	service_free(service);
+}
+
+static void connections_of_one_address_are_64_on_a_server_that_others_reach(void **state)
+{
+	static const char *const settings[][2] = {{"POUNDD_LISTEN", "0.0.0.0"}, {"POUNDD_INSECURE", "1"}, {NULL}};
+	enum { N = 80, MOST = 64 };
+	int sockets[N], closed = 0;
+	static struct raw_answer answer;
+	struct service *service = service_with(settings, 1);
+	(void)state;
+	pause_ms(100); // for the connections before to be closed
+	open_many(service, "GET /livez HTTP/1.1\r\n", sockets, N);
+	for (int i = 0; i < N; i++) {
+		raw_receive(sockets[i], i ? 0.02 : 1, &answer);
+		closed += answer.closed;
+	}
+	close_many(sockets, N);
+	assert_int_equal(closed, N - MOST);
+	service_stop(service);
+	service_free(service);
+}
+
 static void more_than_half_of_the_connections_do_not_wait_and_who_hangs_up_frees_his_place(void **state)
 {
 	static const char *const settings[][2] = {{"POUNDD_CONNECTIONS_MAX", "20"}, {NULL}};
@@ -91,14 +147,14 @@ static void more_than_half_of_the_connections_do_not_wait_and_who_hangs_up_frees
 	snprintf(wait, sizeof wait,
 	         "GET /v1/studies/%s HTTP/1.1\r\n" HOST "If-None-Match: *\r\nPrefer: wait=30\r\n\r\n", id);
 	open_many(service, wait, sockets, N);
-	assert_int_equal(answered(sockets, N, 304, 0.5), N - MOST);
+	assert_int_equal(answered(sockets, N, 304, "", 0.5), N - MOST);
 	close_many(sockets, N);
 	int free_again = 0;
 	// a place is free within a second; each of these that finds one waits, and is let go
 	for (int try = 0; try < 100 && !free_again; try++) {
 		pause_ms(50);
 		open_many(service, wait, sockets, 1);
-		free_again = answered(sockets, 1, 304, 0.05) == 0;
+		free_again = answered(sockets, 1, 304, "", 0.05) == 0;
 		close_many(sockets, 1);
 	}
 	assert_true(free_again);
@@ -125,6 +181,7 @@ static void a_probe_is_answered_when_no_more_connections_are_served(void **state
 	raw_ask(service, list, strlen(list), 5, &answer);
 	assert_int_equal(answer.status, 503);
 	assert_non_null(strstr(answer.text, "Retry-After: "));
+	assert_non_null(strstr(answer.text, "the server has as many connections as it takes"));
 	close_many(sockets, N);
 	service_stop(service);
 	service_free(service);
@@ -145,7 +202,7 @@ static void bodies_have_a_budget_and_their_memory_is_given_back(void **state)
 		open_many(service, head, &sockets[i], 1);
 		raw_send(sockets[i], half, HALF);
 	}
-	assert_int_equal(answered(sockets, N, 503, 2), N - MOST);
+	assert_int_equal(answered(sockets, N, 503, "too many request bodies are being sent", 2), N - MOST);
 	const double during = service_resident_mb(service);
 	close_many(sockets, N);
 	double after = during;
@@ -200,6 +257,8 @@ static void another_s_status_is_counted_whatever_a_thousand_connections_do(void 
 #define SERVED(test) cmocka_unit_test_setup_teardown(test, service_setup, service_teardown)
 
 CHECK_MAIN(SERVED(who_asks_for_more_than_a_share_is_refused),
+           cmocka_unit_test(long_answers_of_all_clients_are_64_at_a_time),
+           cmocka_unit_test(connections_of_one_address_are_64_on_a_server_that_others_reach),
            cmocka_unit_test(more_than_half_of_the_connections_do_not_wait_and_who_hangs_up_frees_his_place),
            cmocka_unit_test(a_probe_is_answered_when_no_more_connections_are_served),
            SERVED(bodies_have_a_budget_and_their_memory_is_given_back),

@@ -110,7 +110,7 @@ int service_try(struct service *service, int n_workers)
 	FILE *lines = fdopen(out[0], "r");
 	assert_non_null(lines);
 	service->port = 0;
-	int matched = fscanf(lines, "listening on http://127.0.0.1:%d", &service->port), status = 0;
+	int matched = fscanf(lines, "listening on http://%*[0-9.]:%d", &service->port), status = 0;
 	fclose(lines);
 	if (matched != 1) {
 		status = exit_status(service->pid);
