@@ -20,11 +20,8 @@ const char *document_name(const char *path)
 	return strcmp(path, "-") == 0 ? "standard input" : path;
 }
 
-/* Reads a study document, whatever is in it.
- *
- * Memory   allocates; NULL when it cannot be read, said on stderr
- */
-char *document_read(const char *path, size_t *length)
+/* The whole file, or standard input for "-", ended by 0; NULL: errno says why. */
+static char *file_read(const char *path, size_t *length)
 {
 	FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
 	char *text = NULL, part[65536];
@@ -39,11 +36,67 @@ char *document_read(const char *path, size_t *length)
 	if (file && file != stdin)
 		fclose(file);
 	if (!good) {
-		command_complain("cannot read %s: %s", document_name(path), strerror(error));
 		free(text);
+		errno = error;
 		return NULL;
 	}
 	return text;
+}
+
+/* Reads a study document, whatever is in it.
+ *
+ * Memory   allocates; NULL when it cannot be read, said on stderr
+ */
+char *document_read(const char *path, size_t *length)
+{
+	char *text = file_read(path, length);
+	if (!text)
+		command_complain("cannot read %s: %s", document_name(path), strerror(errno));
+	return text;
+}
+
+/* The bytes of a file that a document names, from its folder. */
+static char *named_read(const void *with, const char *name, size_t *length, char why[STUDY_WHY_SIZE])
+{
+	const char *document = with, *end = strrchr(document, '/');
+	char *path = NULL;
+	const int folder = *name == '/' || !end ? 0 : (int)(end - document) + 1;
+	if (asprintf(&path, "%.*s%s%s", folder, document, !folder && *name == '-' ? "./" : "", name) < 0)
+		path = NULL;
+	char *text = path ? file_read(path, length) : NULL;
+	if (!text)
+		snprintf(why, STUDY_WHY_SIZE, "cannot be read: %s", strerror(path ? errno : ENOMEM));
+	free(path);
+	return text;
+}
+
+/* Reads a document, and puts in the samples of the files of recorded ground motions that it names.
+ *
+ * Returns  value    -   as document_read gives it, if it names none
+ *          outcome  -   OUTCOME_USAGE: a file, or anything else of such a document, is not as it should be
+ * Memory   allocates; NULL: said on stderr why
+ * Test     client_suite: a_suite_is_read_from_files_beside_the_study
+ */
+char *document_whole(const char *path, size_t *length, enum outcome *outcome)
+{
+	*outcome = OUTCOME_FAILED;
+	char *text = document_read(path, length);
+	if (!text || !study_names_files(text, *length))
+		return text;
+	const struct study_files files = {.read = named_read, .with = path};
+	const struct study_document document = {.text = text, .length = *length, .files = &files};
+	struct problems *problems = malloc(sizeof *problems);
+	struct pound_study *study = problems ? study_from_document(&document, problems) : NULL;
+	char *whole = study ? study_inline(&document, study, length) : NULL;
+	if (problems && !study)
+		*outcome = document_reject(path, problems);
+	else if (!whole)
+		command_complain("%s", pound_status_text(POUND_NOMEM));
+	if (study)
+		study_free(study);
+	free(problems);
+	free(text);
+	return whole;
 }
 
 /* Lists what is wrong with a document, in the order of the reply. */

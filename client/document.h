@@ -14,6 +14,10 @@ const char *document_name(const char *path);
 /* The whole file, or standard input for "-"; on the heap.  NULL: said on stderr why. */
 char *document_read(const char *path, size_t *length);
 
+/* The same with the samples of the files of ground motions that it names, their paths from its folder; NULL: with the outcome,
+ * said on stderr why. */
+char *document_whole(const char *path, size_t *length, enum outcome *outcome);
+
 /* Says what a problem body (RFC 9457) says, every error on its own line, `subject` in front. */
 void document_complain(const char *subject, const struct reading *problem);
 

@@ -17,12 +17,12 @@ struct pound_study *model_study(const char *path, enum outcome *outcome)
 {
 	size_t n;
 	struct problems problems;
-	char *document = document_read(path, &n);
-	*outcome = OUTCOME_FAILED;
+	char *document = document_whole(path, &n, outcome);
 	if (!document)
 		return NULL;
 	struct pound_study *study = study_design_from_json(document, n, &problems);
 	free(document);
+	*outcome = OUTCOME_FAILED;
 	if (!study) {
 		*outcome = document_reject(path, &problems);
 		return NULL;

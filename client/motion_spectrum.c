@@ -61,6 +61,7 @@ enum pound_status motion_spectrum(const struct record *motion, const struct peri
 			excitation->type = row;
 	excitation->time_step = motion->step;
 	excitation->signals = 1;
+	excitation->factor = 1;
 	excitation->n_record = motion->n;
 	excitation->record = motion->acceleration;
 	struct pound_run *run = pound_run_create(&study, 1);

@@ -124,13 +124,14 @@ static enum outcome run_and_print(const struct pound_study *study, const char *d
 enum outcome run_study(const struct options *options)
 {
 	size_t n;
-	char *document = document_read(options->argument, &n);
+	enum outcome outcome;
+	char *document = document_whole(options->argument, &n, &outcome);
 	if (!document)
-		return OUTCOME_FAILED;
+		return outcome;
 	struct problems problems;
 	struct pound_study *study = study_from_json(document, n, &problems);
 	if (!study) {
-		enum outcome outcome = document_reject(options->argument, &problems);
+		outcome = document_reject(options->argument, &problems);
 		document_hint(document, n);
 		free(document);
 		return outcome;
@@ -152,7 +153,7 @@ enum outcome run_study(const struct options *options)
 	const struct sigaction act = {.sa_handler = note_interrupt, .sa_flags = (int)SA_RESETHAND};
 	sigaction(SIGINT, &act, NULL);
 	sigaction(SIGTERM, &act, NULL);
-	enum outcome outcome = run_and_print(study, document, n, options);
+	outcome = run_and_print(study, document, n, options);
 	study_free(study);
 	free(document);
 	return outcome;

@@ -15,13 +15,14 @@ static bool choice_of(const struct options *options, const struct pound_study *s
                       const struct pound_run *run, struct motion_choice *choice)
 {
 	const int signals = study->scene.excitation.signals;
-	*choice =
-	    (struct motion_choice){.place = {.cell = options->choice.cell ? atoi(options->choice.cell) : 0,
-	                                     .row = options->row,
-	                                     .signal = options->choice.signal ? atoi(options->choice.signal) : 0},
-	                           .one = options->choice.signal,
-	                           .signals = signals,
-	                           .name = study->name ? study->name : "a ground motion"};
+	*choice = (struct motion_choice){
+	    .place = {.cell = options->choice.cell ? atoi(options->choice.cell) : 0,
+	              .row = options->row,
+	              .signal = options->choice.signal ? atoi(options->choice.signal) : 0},
+	    .one = options->choice.signal,
+	    .signals = signals,
+	    .records = study->scene.excitation.n_records ? study->scene.excitation.records : NULL,
+	    .name = study->name ? study->name : "a ground motion"};
 	const struct {
 		const char *option;
 		int value, n;
@@ -42,11 +43,13 @@ static bool choice_of(const struct options *options, const struct pound_study *s
 	return true;
 }
 
-/* Measures and pseudo-accelerations of each chosen signal, a row for each period. */
+/* Pseudo-accelerations of each chosen signal, a row for each period; of a suite with its record and factor. */
 static enum outcome spectra_print(const struct pound_run *run, const struct motion_choice *choice,
                                   const struct periods *periods)
 {
-	struct table *table = table_open((const char *const[]){"signal", "period_s", "psa_m_s2", NULL});
+	static const char *const names[] = {"signal", "record", "factor", "period_s", "psa_m_s2", NULL},
+	                         *const plain[] = {"signal", "period_s", "psa_m_s2", NULL};
+	struct table *table = table_open(choice->records ? names : plain);
 	struct pound_place place = choice->place;
 	enum pound_status status = POUND_OK;
 	const int end = choice->one ? place.signal + 1 : choice->signals;
@@ -61,6 +64,11 @@ static enum outcome spectra_print(const struct pound_run *run, const struct moti
 		record_free(&motion);
 		for (int k = 0; k < periods->n && status == POUND_OK; k++) {
 			table_number(table, place.signal);
+			if (choice->records) {
+				const struct pound_suite_signal signal = pound_run_motion_record(run, &place);
+				table_number(table, signal.record);
+				table_number(table, signal.factor);
+			}
 			table_number(table, periods->period[k]);
 			table_number(table, psa[k]);
 		}
@@ -105,15 +113,16 @@ enum outcome motion_show(const struct options *options)
 	struct motion_choice choice;
 	if (!motion_spectrum_periods(options->periods, &periods))
 		return OUTCOME_USAGE;
-	char *document = document_read(options->argument, &n);
+	enum outcome outcome;
+	char *document = document_whole(options->argument, &n, &outcome);
 	if (!document)
-		return OUTCOME_FAILED;
+		return outcome;
 	struct pound_study *study = study_from_json(document, n, &problems);
 	free(document);
 	if (!study)
 		return document_reject(options->argument, &problems);
 	struct pound_run *run = pound_run_create(study, 1);
-	enum outcome outcome = OUTCOME_FAILED;
+	outcome = OUTCOME_FAILED;
 	if (!run)
 		command_complain("%s", pound_status_text(POUND_NOMEM));
 	else if (!choice_of(options, study, run, &choice))

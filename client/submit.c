@@ -24,12 +24,13 @@ static enum outcome follow(struct wire *wire, const char *id)
 enum outcome submit_study(const struct options *options)
 {
 	size_t n;
-	char *document = document_read(options->argument, &n);
+	enum outcome outcome;
+	char *document = document_whole(options->argument, &n, &outcome);
 	if (!document)
-		return OUTCOME_FAILED;
+		return outcome;
 	struct wire *wire = wire_open(options->url);
 	struct wire_reply reply;
-	enum outcome outcome = answer_take(
+	outcome = answer_take(
 	    wire, &(struct wire_request){.method = "POST", .path = "/v1/studies", .body = document, .n_body = n},
 	    document_name(options->argument), &reply);
 	struct reading *status = outcome == OUTCOME_OK ? reading_open(reply.body, reply.n_body) : NULL;

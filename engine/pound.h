@@ -81,6 +81,9 @@ struct pound_place {
 
 int pound_run_motion_samples(const struct pound_run *run, const struct pound_place *place, double *step);
 void pound_run_motion(const struct pound_run *run, const struct pound_place *place, double *a);
+/* Which record of a suite it is. */
+struct pound_suite_signal pound_run_motion_record(const struct pound_run *run,
+                                                  const struct pound_place *place);
 
 /* Gives an output of a sample that was computed elsewhere, before the reductions: its value, and the variance of that
  * value over the model's randomness (NAN: not known).  A value that is not finite: a failed run. */

@@ -93,6 +93,12 @@ struct pound_row_response {
 	const struct pound_contact_response *contacts; /* (contacts) */
 };
 
+/* A signal of a suite: which record it is, and what all its samples are times; < 0: reversed. */
+struct pound_suite_signal {
+	int record;
+	double factor;
+};
+
 struct pound_estimate {
 	double value, low, high; /* low and high: 95 % interval; NAN: undefined */
 };
@@ -281,14 +287,15 @@ struct pound_trial {
 };
 
 struct pound_cell {
-	double sweep[POUND_SWEEPS_MAX];    /* the value of each sweep, (n_sweeps) used */
-	int64_t runs, runs_failed;         /* pounding runs asked, and those among them without a result */
-	int rows_dropped;                  /* rows of the design left out because one of their runs failed */
-	int n_signals;                     /* response: signals */
-	struct pound_response *signals;    /* response: (n_signals) */
-	struct pound_row_response *rows;   /* response of a row of buildings, instead: (n_signals) */
-	double outputs[POUND_OUTPUTS_MAX]; /* response: ratio of means of each asked output */
-	struct pound_indices *indices;     /* sensitivity: (n_outputs) */
+	double sweep[POUND_SWEEPS_MAX];     /* the value of each sweep, (n_sweeps) used */
+	int64_t runs, runs_failed;          /* pounding runs asked, and those among them without a result */
+	int rows_dropped;                   /* rows of the design left out because one of their runs failed */
+	int n_signals;                      /* response: signals */
+	struct pound_response *signals;     /* response: (n_signals) */
+	struct pound_row_response *rows;    /* response of a row of buildings, instead: (n_signals) */
+	struct pound_suite_signal *records; /* response under a suite: which record each signal is  (n_signals) */
+	double outputs[POUND_OUTPUTS_MAX];  /* response: ratio of means of each asked output */
+	struct pound_indices *indices;      /* sensitivity: (n_outputs) */
 };
 
 /* What was asked by the samples of the design and what was run after nothing is run twice. */
@@ -366,6 +373,9 @@ struct pound_result {
 	int rows;                 /* of the design, in this result */
 	int n_looks;              /* 0: the design does not grow */
 	struct pound_look *looks; /* (n_looks) */
+	const double *
+	    references; /* of the records of a suite: what their intensity is divided by [m/s2]  (n_records); NULL:
+	                             they are not scaled */
 	int n_cells;
 	struct pound_cell *cells; /* (n_cells) */
 	int n_trials;

@@ -154,6 +154,26 @@ struct pound_storey_place {
 	int storey;   /* from 1 */
 };
 
+/* A recorded ground motion among those of a suite. */
+struct pound_record {
+	const char *name; /* for people; NULL: none */
+	int n;            /* samples  >= 2 */
+	double time_step; /* between samples [s]  > 0 */
+	const double *a;  /* ground acceleration [m/s2]  (n), not owned */
+	double factor;    /* of the samples  > 0 */
+	bool reversed;    /* the other way round */
+};
+
+/* What the records of a suite are scaled to. */
+enum pound_scale_to { POUND_SCALE_NONE, POUND_SCALE_PGA, POUND_SCALE_SA, POUND_SCALE_MEDIAN_SA };
+
+struct pound_scale {
+	int to;               /* enum pound_scale_to, pound_scale_name */
+	double intensity;     /* [m/s2]  > 0 */
+	double period;        /* of the oscillator of the spectral acceleration [s]  > 0 */
+	double damping_ratio; /* of it  [0, 1) */
+};
+
 struct pound_excitation {
 	int type;               /* row of the excitations, pound_excitation_name */
 	double frequency_hz;    /* filter (Kanai-Tajimi) or sine  > 0 */
@@ -162,11 +182,19 @@ struct pound_excitation {
 	double cycles;          /* duration times filter frequency  > 0 */
 	double duration;        /* [s]  > 0 (white_noise, harmonic) */
 	double rise, fall;      /* fractions of the duration, rise + fall <= 1 */
-	double time_step;       /* between samples [s]  > 0 */
+	double time_step;       /* between samples [s]  > 0; of a suite that of the record with the longest */
 	double peak;            /* largest |a_g| of the samples [m/s2]  > 0 */
-	int signals;            /* random signals of each scene  >= 1; 1 for harmonic and record */
+	int signals;            /* of each scene  >= 1; 1 for harmonic and record */
+	double factor;          /* of the samples of a record or suite; < 0: reversed, too */
 	int n_record;           /* samples of the record, 0 for the other types */
 	const double *record;   /* ground acceleration [m/s2]  (n_record), not owned */
+	int number;             /* of a record that is a signal of a suite: its index there */
+	// of a suite
+	int n_records;
+	const struct pound_record *records; /* (n_records), not owned */
+	bool both;                          /* each record is two signals: as it is, and reversed */
+	int draw;                           /* signals are drawn among these, with replacement; 0: each is one */
+	struct pound_scale scale;
 };
 
 struct pound_scene {
@@ -321,6 +349,9 @@ const char *pound_damping_name(int row);
 bool pound_damping_takes_modes(int row); /* two modes have the damping ratio */
 bool pound_damping_takes_each(int row);  /* every storey may have its own */
 const char *pound_excitation_name(int row);
+const char *pound_scale_name(int row);
+int pound_suite_signals(const struct pound_excitation *suite); /* each record in each direction */
+void pound_suite_samples(const struct pound_excitation *suite, int *least, int *most); /* of its records */
 const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
 const char *pound_distribution_rule(int row, int k); /* "min must be less than max"; NULL past the last */

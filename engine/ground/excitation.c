@@ -4,7 +4,6 @@
 #include <assert.h>
 #include <limits.h>
 #include <math.h>
-#include <string.h>
 
 #include "engine/ground/kanai_tajimi.h"
 #include "engine/ground/normals.h"
@@ -34,6 +33,13 @@ static int cycles_samples(const struct pound_excitation *e)
 static int record_samples(const struct pound_excitation *e)
 {
 	return e->n_record;
+}
+
+static int suite_samples(const struct pound_excitation *e)
+{
+	int least, most;
+	pound_suite_samples(e, &least, &most);
+	return most;
 }
 
 /* a[i] times a trapezoid: up from 0 over the first `rise` of the time, down to 0 over the last `fall` */
@@ -131,7 +137,8 @@ static void record(const struct pound_signal *signal, int one)
 {
 	(void)one;
 	const struct pound_excitation *e = signal->excitation;
-	memcpy(signal->a, e->record, (size_t)e->n_record * sizeof *signal->a);
+	for (int i = 0; i < e->n_record; i++)
+		signal->a[i] = e->factor * e->record[i];
 }
 
 static const struct {
@@ -141,7 +148,7 @@ static const struct {
 	bool random;      /* one signal differs from the next */
 	int at_once;      /* signals that are made together */
 	int (*samples)(const struct pound_excitation *e);
-	void (*fill)(const struct pound_signal *signals, int n);
+	void (*fill)(const struct pound_signal *signals, int n); /* NULL: its signals are of another row */
 } excitations[] = {
     {"kanai_tajimi", "white noise through the Kanai-Tajimi filter and a high pass, a trapezoid in time", true,
      true, POUND_SIGNALS_MAX, cycles_samples, kanai_tajimi},
@@ -149,6 +156,7 @@ static const struct {
      white_noise},
     {"harmonic", "a sine", true, false, 1, duration_samples, harmonic},
     {"record", "given samples", false, false, 1, record_samples, record},
+    {"suite", "recorded ground motions, each a signal", false, false, 1, suite_samples, NULL},
 };
 
 enum { EXCITATIONS = sizeof excitations / sizeof excitations[0] };
@@ -165,7 +173,8 @@ const char *pound_excitation_name(int row)
 
 /* Number of samples of an excitation.
  *
- * Returns  value   n     from the first to the last is the duration rounded to whole steps, at least one
+ * Returns  value   n     from the first to the last is the duration rounded to whole steps, at least one; of a suite those
+ *                        of its longest record
  *
  * Valid    duration over step below 2^31 - 2
  * Test     unit_excitation: the_last_sample_is_the_one_nearest_to_the_end */
@@ -183,7 +192,7 @@ int pound_excitation_samples(const struct pound_excitation *e)
  *   kanai_tajimi   filtered noise, times the trapezoid, scaled to peak      (kanai_tajimi.c)
  *   white_noise    independent normal samples, times the trapezoid, scaled to peak
  *   harmonic       peak * sin 2 pi f t
- *   record         as given
+ *   record         times its factor
  *
  * Valid    Noise whose every sample is zero stays zero: two samples both at the feet of a trapezoid.
  *          A signal's bits do not depend on those beside it.
@@ -193,7 +202,7 @@ void pound_signals_fill(const struct pound_signal *signals, int n)
 {
 	for (int first = 0, end; first < n; first = end) {
 		const int type = signals[first].excitation->type;
-		assert(pound_excitation_name(type));
+		assert(pound_excitation_name(type) && excitations[type].fill);
 		for (end = first + 1; end < n && end - first < excitations[type].at_once; end++)
 			if (signals[end].excitation->type != type)
 				break;
@@ -209,10 +218,10 @@ double pound_excitation_frequency(const struct pound_excitation *e)
 	return excitations[e->type].tuned ? e->frequency_hz : 0;
 }
 
-/* Whether the signals of an excitation differ.
+/* Whether the signals of an excitation are random: those of a suite are where they are drawn.
  *
  * Test     unit_excitation: only_noise_differs_from_signal_to_signal */
 bool pound_excitation_random(const struct pound_excitation *e)
 {
-	return excitations[e->type].random;
+	return excitations[e->type].random || e->draw > 0;
 }

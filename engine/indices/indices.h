@@ -18,6 +18,7 @@
  * row: a failed run.  In what follows n_samples is pound_order_samples(order, n_inputs). */
 struct pound_sample_values {
 	int n_rows, n_inputs, n_signals;
+	bool same_signals;                     /* in every sample of every row: none is random */
 	const double *numerator, *denominator; /* (n_rows x n_samples x n_signals) each */
 	/* outputs computed elsewhere are numerators of one signal, without denominators; their variances  (as these), NAN:
 	 * not known; NULL: computed here */

@@ -141,8 +141,11 @@ static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *
 			plain[p] = ratio_of_means(values->numerator + sample * n_signals,
 			                          values->denominator + sample * n_signals, n_signals, deviation, &one);
 			deviations_scale(deviation, n_signals);
+			// a mean over given records is what is wanted, without bias or noise
+			for (int r = 0; r < n_signals && values->same_signals; r++)
+				deviation[r] = one = NAN;
 		}
-		y[p] = values->variance || n_signals == 1 ? plain[p] : plain[p] - one;
+		y[p] = values->variance || isnan(one) ? plain[p] : plain[p] - one;
 		row_largest = isfinite(y[p]) ? fmax(row_largest, fmax(fabs(y[p]), fabs(plain[p]))) : INFINITY;
 		biases += one;
 	}

@@ -12,7 +12,7 @@
 #include <Random123/philox.h>
 
 /* what a stream is drawn for  < 2^8 */
-enum { POUND_STREAM_NOISE = 1, POUND_STREAM_DESIGN, POUND_STREAM_BOOTSTRAP };
+enum { POUND_STREAM_NOISE = 1, POUND_STREAM_DESIGN, POUND_STREAM_BOOTSTRAP, POUND_STREAM_RECORD };
 
 struct pound_stream {
 	uint64_t seed;

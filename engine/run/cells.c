@@ -1,5 +1,7 @@
 /* cells.c - the scenes of a study: its cells (product of the sweeps), the rows of its design, a row's samples. */
 #include "engine/design/design.h"
+#include "engine/ground/excitation.h"
+#include "engine/ground/suite.h"
 #include "engine/run/request.h"
 
 /* The solver of a row. */
@@ -45,6 +47,22 @@ struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cel
 	return scene;
 }
 
+/* The record that a signal of a scene with a suite is. */
+struct pound_suite_signal pound_cells_record(const struct pound_cells *campaign,
+                                             const struct pound_scene *scene, const struct pound_place *place)
+{
+	return pound_suite_signal(&scene->excitation, campaign->references,
+	                          pound_cells_noise(campaign, place->row, place->sample, place->signal));
+}
+
+struct pound_excitation pound_cells_excitation(const struct pound_cells *campaign,
+                                               const struct pound_scene *scene,
+                                               const struct pound_place *place)
+{
+	const struct pound_excitation *e = &scene->excitation;
+	return e->n_records ? pound_suite_excitation(e, pound_cells_record(campaign, scene, place)) : *e;
+}
+
 /* The random numbers of a ground motion: samples of a row share theirs, or have their own. */
 struct pound_stream pound_cells_noise(const struct pound_cells *campaign, int row, int sample, int signal)
 {
@@ -78,6 +96,8 @@ struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n
 	return (struct pound_sample_values){.n_rows = n_rows,
 	                                    .n_inputs = c->study->n_inputs,
 	                                    .n_signals = c->n_signals,
+	                                    .same_signals = !c->study->elsewhere &&
+	                                                    !pound_excitation_random(&c->study->scene.excitation),
 	                                    .numerator = columns,
 	                                    .denominator = pound_cells_means(c) ? NULL : second,
 	                                    .variance = pound_cells_means(c) ? second : NULL,

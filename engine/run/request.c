@@ -489,8 +489,10 @@ static int item_write(struct pound_request *request, const struct pound_cells *c
 			ask->scene = pound_cells_scene(campaign, cell, row, sample, NULL);
 			ask->cell = cell, ask->row = row, ask->sample = sample;
 			ask->balanced = campaign->study->kind == POUND_KIND_RESPONSE && signal < POUND_BALANCED_SIGNALS;
-			ask->motion = motion_ask(request, &ask->scene.excitation,
-			                         pound_cells_noise(campaign, row, sample, signal), halved);
+			const struct pound_place place = {cell, row, sample, signal};
+			const struct pound_excitation excitation = pound_cells_excitation(campaign, &ask->scene, &place);
+			ask->motion =
+			    motion_ask(request, &excitation, pound_cells_noise(campaign, row, sample, signal), halved);
 			if (ask->scene.n_buildings)
 				row_free(request, a - 1);
 			else

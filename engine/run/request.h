@@ -19,14 +19,22 @@ struct pound_cells {
 	const struct pound_study *study;
 	const double *design; /* inputs of A and B  (rows x 2 x n_inputs) */
 	int n_cells, n_rows, n_samples, n_signals;
-	int check_every; /* items 0, check_every, ... are run again to check the integration; 0: none */
-	bool trials;     /* the rows are one scene under the same signals, each with a solver of its own */
+	int check_every;          /* items 0, check_every, ... are run again to check the integration; 0: none */
+	const double *references; /* of the records of a suite that are scaled  (suite_references.h) */
+	bool trials; /* the rows are one scene under the same signals, each with a solver of its own */
 };
 
 int pound_cells_checks(const struct pound_cells *campaign, int item); /* among the items before this */
 
 struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample,
                                      void *row_memory);
+/* The ground motion of a signal of that scene: the scene's excitation, or of a suite the record that the signal is. */
+struct pound_excitation pound_cells_excitation(const struct pound_cells *campaign,
+                                               const struct pound_scene *scene,
+                                               const struct pound_place *place);
+struct pound_suite_signal pound_cells_record(const struct pound_cells *campaign,
+                                             const struct pound_scene *scene,
+                                             const struct pound_place *place);
 struct pound_stream pound_cells_noise(const struct pound_cells *campaign, int row, int sample, int signal);
 struct pound_solver pound_cells_solver(const struct pound_cells *campaign, int row);
 double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep);

@@ -26,9 +26,10 @@ static int number_of(struct pound_keys *r, const double key[static POUND_KEY])
 int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e, struct pound_stream noise,
                       bool halved)
 {
-	const double key[POUND_KEY] = {
-	    e->type, e->frequency_hz, e->damping_ratio, e->high_pass_ratio, e->cycles,    e->duration,  e->rise,
-	    e->fall, e->time_step,    e->peak,          noise.row,          noise.sample, noise.signal, halved};
+	const double key[POUND_KEY] = {e->type,      e->frequency_hz, e->damping_ratio, e->high_pass_ratio,
+	                               e->cycles,    e->duration,     e->rise,          e->fall,
+	                               e->time_step, e->peak,         noise.row,        noise.sample,
+	                               noise.signal, halved,          e->factor,        e->number};
 	return number_of(keys, key);
 }
 

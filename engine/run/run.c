@@ -171,6 +171,8 @@ void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[P
 	    {&run->result.trials, sizeof *run->result.trials * (size_t)run->result.n_trials},
 	    {&run->spectra, sizeof *run->spectra * POUND_N_SPECTRA * 4 * (size_t)study->spectrum.n},
 	    {&run->result.looks, sizeof *run->result.looks * (size_t)pound_run_looks_most(study)},
+	    {&run->references, sizeof *run->references * (size_t)study->scene.excitation.n_records},
+	    {&run->records, sizeof *run->records * (pound_run_suite(study) ? n_cells * (size_t)c->n_signals : 0)},
 	};
 	memcpy(parts, all, sizeof all);
 }
@@ -194,6 +196,7 @@ static bool result_create(struct pound_run *run)
 		into->n_signals = c->n_signals;
 		into->signals = &run->responses[cell * c->n_signals];
 		into->rows = study->scene.n_buildings ? &run->row_responses[cell * c->n_signals] : NULL;
+		into->records = pound_run_suite(study) ? &run->records[cell * c->n_signals] : NULL;
 		into->indices = &run->indices[cell * study->n_outputs];
 		for (int o = 0; o < study->n_outputs; o++) {
 			size_t first = ((size_t)cell * n_outputs + (size_t)o) * COLUMNS;
@@ -206,6 +209,14 @@ static bool result_create(struct pound_run *run)
 		}
 	}
 	return true;
+}
+
+static bool suite_scale(struct pound_run *run, const atomic_bool *stop)
+{
+	void *scratch = piece(pound_run_scale_bytes(run->campaign.study)); // for this alone
+	const bool scaled = scratch && pound_run_scale(run, scratch, stop);
+	free(scratch);
+	return scaled;
 }
 
 struct pound_run *pound_run_create(const struct pound_study *study, int n_workers)
@@ -244,13 +255,12 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 	struct pound_request_size largest = {0};
 	run->layout.n_blocks = pound_blocks_cut(&run->campaign, NULL, &largest);
 	run->layout.first = piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
-	if (!run->layout.first)
-		goto fail;
-	if (pound_stopped(stop))
+	if (!run->layout.first || pound_stopped(stop))
 		goto fail;
 	pound_blocks_cut(&run->campaign, run->layout.first, &largest);
 	run->layout.values = piece(sizeof(double) * pound_blocks_doubles(&run->layout));
-	if (!run->layout.values || !workers_create(run, n_workers, largest) || !result_create(run))
+	if (!run->layout.values || !workers_create(run, n_workers, largest) || !result_create(run) ||
+	    !suite_scale(run, stop))
 		goto fail;
 	return run;
 fail:
@@ -281,6 +291,8 @@ void pound_run_free(struct pound_run *run)
 	                        run->result.looks,
 	                        run->responses,
 	                        run->row_responses,
+	                        run->references,
+	                        run->records,
 	                        run->indices,
 	                        run->estimates};
 	for (size_t j = 0; j < sizeof pieces / sizeof pieces[0]; j++)
@@ -667,6 +679,7 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 	const struct pound_cells *c = &run->campaign;
 	run->result.work = work_of(run);
 	run->result.rows = run->rows;
+	pound_run_records(run);
 	for (int cell = 0; cell < c->n_cells; cell++)
 		run->result.cells[cell].runs = (int64_t)run->rows * c->n_signals * c->n_samples;
 	for (int cell = 0; cell < c->n_cells && c->study->kind == POUND_KIND_RESPONSE; cell++) {

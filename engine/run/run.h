@@ -19,6 +19,8 @@ struct pound_run {
 	struct pound_indices *indices;            /* (n_cells x n_outputs) */
 	struct pound_response *responses;         /* (n_cells x n_signals) */
 	struct pound_row_response *row_responses; /* of a row of buildings likewise */
+	struct pound_suite_signal *records;       /* of the result  (n_cells x n_signals) */
+	double *references;                       /* of the records of a suite that are scaled  (n_records) */
 	double *spectra;                          /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
 	double (*cpu)(void);                      /* clock of the calling thread [s]; NULL: none */
 	atomic_bool stopped;                      /* by pound_run_stop ... */
@@ -30,12 +32,19 @@ struct pound_cells pound_run_campaign(const struct pound_study *study);
 struct pound_blocks pound_run_layout(const struct pound_cells *campaign);
 size_t pound_run_reduction_size(const struct pound_cells *campaign); /* doubles of a worker's scratch */
 
-enum { POUND_RUN_PARTS = 8 };
+enum { POUND_RUN_PARTS = 10 };
 struct pound_run_part {
 	void *into; /* the pointer to it */
 	size_t bytes;
 };
 void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[POUND_RUN_PARTS]);
+
+/* Suites of records: whether a result says which record each signal is; the records scaled, false: stop was set; and which record
+ * each signal is. */
+bool pound_run_suite(const struct pound_study *study);
+size_t pound_run_scale_bytes(const struct pound_study *study); /* of scratch; 0: they are not scaled */
+bool pound_run_scale(struct pound_run *run, void *scratch, const atomic_bool *stop);
+void pound_run_records(struct pound_run *run);
 
 int pound_run_looks_most(const struct pound_study *study); /* 0: the design does not grow */
 

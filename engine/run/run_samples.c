@@ -20,7 +20,9 @@ void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, d
 static struct pound_excitation excitation_of(const struct pound_run *run, const struct pound_place *place)
 {
 	assert(!run->campaign.study->elsewhere && place->signal < run->campaign.n_signals);
-	return pound_cells_scene(&run->campaign, place->cell, place->row, place->sample, NULL).excitation;
+	const struct pound_scene scene =
+	    pound_cells_scene(&run->campaign, place->cell, place->row, place->sample, NULL);
+	return pound_cells_excitation(&run->campaign, &scene, place);
 }
 
 int pound_run_motion_samples(const struct pound_run *run, const struct pound_place *place, double *step)
@@ -69,8 +71,9 @@ struct pound_sample_output pound_run_sample_output(const struct pound_run *run, 
 		double deviation = (values[0] - mean * values[1]) * c->n_signals / below;
 		sum += deviation * deviation;
 	}
-	return (struct pound_sample_output){
-	    mean, c->n_signals > 1 && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN};
+	const bool noisy = c->n_signals > 1 && pound_excitation_random(&c->study->scene.excitation);
+	return (struct pound_sample_output){mean,
+	                                    noisy && below > 0 ? sum / (c->n_signals - 1) / c->n_signals : NAN};
 }
 
 void pound_run_sample_assign(struct pound_run *run, int row, int sample, int output, double value,

@@ -50,7 +50,8 @@ struct pound_solver pound_convergence_solver(const struct pound_study *study, in
 	return setting(study, row, study->convergence.settings[row].values[k]);
 }
 
-/* Samples of the ground motion at which displacements are compared, evenly over the first seconds.
+/* Samples of the ground motion at which displacements are compared, evenly over the first seconds; of a suite of records by the
+ * longest time step, and within the shortest record.
  *
  * Returns  samples   (value)   rising, from 1
  */
@@ -58,7 +59,12 @@ int pound_convergence_times(const struct pound_study *study, int samples[static 
 {
 	const struct pound_excitation *e = &study->scene.excitation;
 	double asked = fmin(study->convergence.history / e->time_step, INT32_MAX);
-	int last = (int)fmin(fmax(floor(asked + 0.5), 1), pound_excitation_samples(e) - 1);
+	int least = 0, most = 0;
+	if (e->n_records)
+		pound_suite_samples(e, &least, &most);
+	else
+		least = pound_excitation_samples(e);
+	int last = (int)fmin(fmax(floor(asked + 0.5), 1), least - 1);
 	int n = last < POUND_HISTORY ? last : POUND_HISTORY;
 	for (int k = 0; k < n; k++)
 		samples[k] = (int)((int64_t)last * (k + 1) / n);

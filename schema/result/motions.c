@@ -106,7 +106,13 @@ char *motions_to_peer(const struct pound_run *run, const struct motion_choice *c
 	struct record motion;
 	if (!motion_of(run, &choice->place, &motion))
 		return NULL;
-	snprintf(motion.title, sizeof motion.title, "%s, signal %d", choice->name, choice->place.signal);
+	if (choice->records) {
+		const struct pound_suite_signal signal = pound_run_motion_record(run, &choice->place);
+		const char *name = choice->records[signal.record].name;
+		snprintf(motion.title, sizeof motion.title, "%s, record %d times %.15g", name ? name : choice->name,
+		         signal.record, signal.factor);
+	} else
+		snprintf(motion.title, sizeof motion.title, "%s, signal %d", choice->name, choice->place.signal);
 	char *text = record_to_peer(&motion, length);
 	record_free(&motion);
 	return text;

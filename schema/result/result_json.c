@@ -12,6 +12,7 @@
 #include "schema/result/result_floor.h"
 #include "schema/result/result_notes.h"
 #include "schema/result/result_row.h"
+#include "schema/result/result_suite.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
 #include "schema/study/study_spectrum.h"
@@ -44,10 +45,9 @@ static void write_measures(struct writer *w, const struct pound_response *respon
 			              *(const double *)(const void *)((const char *)response + measures[k].offset));
 }
 
-static void write_signal(struct writer *w, const struct pound_response *response, int index)
+static void write_signal(struct writer *w, const struct pound_cell *cell, int index)
 {
-	writer_object(w, NULL, WRITER_LINES);
-	writer_whole(w, "index", index);
+	const struct pound_response *response = &cell->signals[index];
 	writer_array(w, "oscillators", WRITER_LINES);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		writer_object(w, NULL, WRITER_LINE);
@@ -58,7 +58,6 @@ static void write_signal(struct writer *w, const struct pound_response *response
 	write_measures(w, response, -1, false);
 	writer_object(w, "end", WRITER_LINE);
 	write_measures(w, response, -1, true);
-	writer_end(w);
 	writer_end(w);
 }
 
@@ -85,10 +84,17 @@ static void write_response(struct writer *w, const struct pound_study *study, co
                            const struct pound_scene *scene)
 {
 	writer_array(w, "signals", WRITER_LINES);
-	for (int i = 0; i < cell->n_signals && cell->rows; i++)
-		result_row_signal(w, scene, &cell->rows[i], i);
-	for (int i = 0; i < cell->n_signals && !cell->rows; i++)
-		write_signal(w, &cell->signals[i], i);
+	for (int i = 0; i < cell->n_signals; i++) {
+		writer_object(w, NULL, WRITER_LINES);
+		writer_whole(w, "index", i);
+		if (cell->records)
+			result_suite_signal(w, &cell->records[i]);
+		if (cell->rows)
+			result_row_signal(w, scene, &cell->rows[i]);
+		else
+			write_signal(w, cell, i);
+		writer_end(w);
+	}
 	writer_end(w);
 	writer_object(w, "outputs", WRITER_LINES);
 	for (int o = 0; o < study->n_outputs; o++) {
@@ -624,6 +630,7 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 	writer_seed(&w, "seed", study->design.seed);
 	if (study->kind == POUND_KIND_SENSITIVITY)
 		result_design(&w, study, result);
+	result_suite(&w, study, result);
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		write_trials(&w, result);
 	else if (study->kind == POUND_KIND_FLOOR_SPECTRUM)

@@ -50,10 +50,11 @@ char *histories_to_npy(const struct pound_study *study, struct pound_run *run, s
 
 /* The ground motions of one sample of a study with a scene.  Columns: signal, time_s, acceleration_m_s2. */
 struct motion_choice {
-	struct pound_place place; /* its signal is read where one is chosen */
-	bool one;                 /* that signal alone; false: all */
-	int signals;              /* of the study */
-	const char *name;         /* of the study */
+	struct pound_place place;           /* its signal is read where one is chosen */
+	bool one;                           /* that signal alone; false: all */
+	int signals;                        /* of the study */
+	const char *name;                   /* of the study */
+	const struct pound_record *records; /* of its suite; NULL: it has none */
 };
 
 char *motions_to_csv(const struct pound_run *run, const struct motion_choice *choice, size_t *length);

@@ -69,15 +69,13 @@ static void write_contact(struct writer *w, const struct pound_scene *scene, int
 	writer_end(w);
 }
 
-/* The response to one signal.
+/* The members of the response to one signal.
  *
  * Test     unit_row_results: rows_have_their_known_answers
  */
 void result_row_signal(struct writer *w, const struct pound_scene *scene,
-                       const struct pound_row_response *row, int index)
+                       const struct pound_row_response *row)
 {
-	writer_object(w, NULL, WRITER_LINES);
-	writer_whole(w, "index", index);
 	writer_array(w, "buildings", WRITER_LINES);
 	for (int b = 0; b < scene->n_buildings; b++)
 		write_building(w, row->storeys + pound_row_first(scene, b), pound_row_storeys(scene, b));
@@ -85,7 +83,6 @@ void result_row_signal(struct writer *w, const struct pound_scene *scene,
 	writer_array(w, "contacts", WRITER_LINES);
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		write_contact(w, scene, k, &row->contacts[k]);
-	writer_end(w);
 	writer_end(w);
 }
 

@@ -7,7 +7,7 @@
 
 /* One signal; the scene has the buildings of its cell. */
 void result_row_signal(struct writer *w, const struct pound_scene *scene,
-                       const struct pound_row_response *row, int index);
+                       const struct pound_row_response *row);
 bool result_row_moves(const struct pound_row_response *row, const struct pound_scene *scene);
 
 /* Members of an output about its place, of all outputs where one of them has one. */

@@ -16,12 +16,12 @@
 #include "engine/scene/contact.h"
 #include "engine/solver/solver.h"
 #include "schema/study/fields.h"
+#include "schema/study/means.h"
 #include "schema/study/study_buildings.h"
 #include "schema/study/study_json.h"
 
 enum {
 	MIB = 1 << 20,
-	QUANTILES = 64,    /* of a distribution, for a mean */
 	HISTORIES = 32,    /* times at which a convergence study compares displacements */
 	CHECK_EVERY = 100, /* items between two that are run again to check them, ... */
 	CHECKS_LEAST = 8,  /* ... but at least so many runs */
@@ -178,54 +178,14 @@ static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, M
  * and is then put into the database */
 static const double STUDY_MEMORY = 1.5 * MIB, NUMBER_MEMORY = 100, RESULT_MEMORY = 2;
 
-/* Where a varied field is in the scene; SIZE_MAX: in its buildings or contacts. */
-static size_t scene_offset(struct pound_field field)
+/* Memory of the records that a study has: those that its document holds pass through a tree of their numbers. */
+static double record_memory(const struct pound_study *study)
 {
-	return field.part == POUND_PART_SCENE ? field.offset : SIZE_MAX;
-}
-
-/* The mean of a power of a field of the scene, over its distribution or its sweep. */
-static double mean(const struct pound_study *study, size_t offset, double power)
-{
-	double sum = 0;
-	for (int j = 0; j < study->n_inputs; j++) {
-		if (scene_offset(study->inputs[j].field) != offset)
-			continue;
-		for (int k = 0; k < QUANTILES; k++)
-			sum += pow(pound_distribution_quantile(&study->inputs[j].distribution, (k + 0.5) / QUANTILES),
-			           power);
-		return sum / QUANTILES;
-	}
-	for (int s = 0; s < study->n_sweeps; s++) {
-		const struct pound_sweep *sweep = &study->sweeps[s];
-		if (scene_offset(sweep->field) != offset)
-			continue;
-		for (int k = 0; k < sweep->n_values; k++)
-			sum += pow(sweep->values[k], power);
-		return sum / sweep->n_values;
-	}
-	const struct pound_field field = {.type = POUND_FIELD_REAL, .offset = offset};
-	return pow(pound_scene_field(&study->scene, field), power);
-}
-
-#define MEAN(study, member, power) mean((study), offsetof(struct pound_scene, member), (power))
-
-/* Seconds of a ground motion, in the mean. */
-static double duration_mean(const struct pound_study *study)
-{
-	const struct pound_excitation *excitation = &study->scene.excitation;
-	if (excitation->n_record)
-		return excitation->n_record * MEAN(study, excitation.time_step, 1);
-	return fields_used(fields_find("/scene/excitation/cycles"), NULL, pound_excitation_name(excitation->type),
-	                   NULL)
-	           ? MEAN(study, excitation.cycles, 1) * MEAN(study, excitation.frequency_hz, -1)
-	           : MEAN(study, excitation.duration, 1);
-}
-
-/* Samples of a ground motion, in the mean. */
-static double samples_mean(const struct pound_study *study)
-{
-	return duration_mean(study) * MEAN(study, excitation.time_step, -1) + 1;
+	const struct pound_excitation *e = &study->scene.excitation;
+	double bytes = NUMBER_MEMORY * e->n_record;
+	for (int k = 0; k < e->n_records; k++)
+		bytes += e->records[k].n * NUMBER_MEMORY;
+	return bytes;
 }
 
 /* What a part of the scene's members may be part of. */
@@ -254,7 +214,7 @@ static bool of_body(const struct pound_study *study, int body, size_t offset)
 /* Whether a response of a building of a row without pounding does. */
 static bool of_building(int building, struct pound_field field)
 {
-	const size_t at = scene_offset(field), law = offsetof(struct pound_scene, law);
+	const size_t at = means_offset(field), law = offsetof(struct pound_scene, law);
 	return of_motion(at) || (at >= law && at < law + sizeof(struct pound_law)) ||
 	       (field.part == POUND_PART_BUILDINGS &&
 	        field.offset / sizeof(struct pound_building) == (size_t)building);
@@ -266,9 +226,9 @@ enum { ALL = -2, MOTION = -1 /* or a body, or a building of a row */ };
 static bool depends(const struct pound_study *study, int what, struct pound_field field)
 {
 	return what == ALL                ? true
-	       : what == MOTION           ? of_motion(scene_offset(field))
+	       : what == MOTION           ? of_motion(means_offset(field))
 	       : study->scene.n_buildings ? of_building(what, field)
-	                                  : of_body(study, what, scene_offset(field));
+	                                  : of_body(study, what, means_offset(field));
 }
 
 /* How many of an item's ground motions, or responses of a body, differ from each other: it has samples in all cells. */
@@ -293,10 +253,10 @@ static double distinct(const struct pound_study *study, int what)
 static bool varies(const struct pound_study *study, size_t offset)
 {
 	for (int j = 0; j < study->n_inputs; j++)
-		if (scene_offset(study->inputs[j].field) == offset)
+		if (means_offset(study->inputs[j].field) == offset)
 			return true;
 	for (int s = 0; s < study->n_sweeps; s++)
-		if (scene_offset(study->sweeps[s].field) == offset)
+		if (means_offset(study->sweeps[s].field) == offset)
 			return true;
 	return false;
 }
@@ -343,7 +303,7 @@ static struct bodies bodies_of(const struct pound_study *study)
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_law *law = pound_scene_law(&study->scene, i);
 		const size_t at = law_offset(study, i), times = at + offsetof(struct pound_law, corrections);
-		const double corrections = varies(study, times) ? mean(study, times, 1) : law->corrections;
+		const double corrections = varies(study, times) ? means_power(study, times, 1) : law->corrections;
 		const bool linear = law->type == 0 && !varies(study, at + offsetof(struct pound_law, type));
 		if (b.hz[i] > 0 && !linear)
 			b.marches[i] = 1 + (law->yield_displacement > 0 ? 0 : fmin(corrections, SEARCH_MEAN));
@@ -373,7 +333,7 @@ static double turned(const struct bodies *b, double time_step)
 static void count_free(const struct pound_study *study, const struct bodies *b, double items,
                        struct counts *c)
 {
-	const double samples = samples_mean(study), radians = 2 * PI * duration_mean(study);
+	const double samples = means_samples(study), radians = 2 * PI * means_duration(study);
 	c->of[BEGIN] += items * distinct(study, MOTION);
 	c->of[GROUND] += items * distinct(study, MOTION) * samples;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -391,7 +351,7 @@ static void count_free(const struct pound_study *study, const struct bodies *b, 
 static void count_event(const struct pound_study *study, double items, struct counts *c)
 {
 	const struct bodies b = bodies_of(study);
-	const double samples = samples_mean(study), radians = 2 * PI * duration_mean(study);
+	const double samples = means_samples(study), radians = 2 * PI * means_duration(study);
 	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
 	count_free(study, &b, items, c);
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
@@ -410,7 +370,7 @@ static void count_steps(const struct pound_study *study, const struct pound_solv
                         struct counts *c)
 {
 	const struct bodies b = bodies_of(study);
-	const double samples = samples_mean(study), radians = 2 * PI * duration_mean(study);
+	const double samples = means_samples(study), radians = 2 * PI * means_duration(study);
 	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
 	c->of[GROUND] += items * distinct(study, MOTION) * samples;
 	double marches = pounded, turns = pounded * radians * fmax(b.hz[0], b.hz[1]);
@@ -470,7 +430,7 @@ static void count_meetings(const struct pound_study *study, int building, const 
 	const double soft = wall ? pair[0].low : fmin(pair[0].low, pair[1].low);
 	const double reach = MEAN(study, contact.gap, 1) * soft * soft / peak;
 	const double met = links ? m->n : 0, near = met / (1 + reach / NEAR), riding = met / (1 + reach / RIDING);
-	const double radians = duration_mean(study) * touching(pair) * links * (CHAIN_FLOORS + m->wide);
+	const double radians = means_duration(study) * touching(pair) * links * (CHAIN_FLOORS + m->wide);
 	const double own = log1p(SWINGS * MEAN(study, contact.stiffness_ratio, 1) * masses(pair));
 	const enum pound_force force = pound_contact_force(study->scene.contact.model);
 	c->of[NEARBY] += near * m->steps * m->wide;
@@ -481,7 +441,7 @@ static void count_meetings(const struct pound_study *study, int building, const 
 		return;
 	}
 	c->of[ROOT] += force == POUND_FORCE_POWER ? near * radians : 0;
-	c->of[DASH] += near * duration_mean(study) * dashpot_rate(study, pair);
+	c->of[DASH] += near * means_duration(study) * dashpot_rate(study, pair);
 	c->of[REST] += riding;
 	c->of[BLUNT] += force == POUND_FORCE_POWER ? riding : 0;
 	c->of[STICK] += riding * radians * own * -log(restitution);
@@ -495,7 +455,7 @@ static double count_chain(const struct pound_study *study, double pounded, const
 	double high = 0;
 	for (int b = 0; b < n; b++)
 		m.wide += all[b].wide, high = fmax(high, all[b].high);
-	m.steps = samples_mean(study) + duration_mean(study) * high / CHAIN_RADIANS;
+	m.steps = means_samples(study) + means_duration(study) * high / CHAIN_RADIANS;
 	for (int b = 0; b + 1 < n; b++)
 		count_meetings(study, b, &all[b], &m, c);
 	return m.steps;
@@ -520,7 +480,7 @@ static void count_row(const struct pound_study *study, double items, struct coun
 {
 	struct storeys all[POUND_BUILDINGS_MAX] = {{0}};
 	const int n = study->scene.n_buildings;
-	const double samples = samples_mean(study);
+	const double samples = means_samples(study);
 	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
 	for (int b = 0; b < n; b++) {
 		const struct pound_building *building = &study->scene.buildings[b];
@@ -539,8 +499,9 @@ static void count_row(const struct pound_study *study, double items, struct coun
 		c->of[BEGIN] += storeys > 0 ? marches : 0;
 		c->of[SHAPE] += marches * pow(storeys, 3);
 		c->of[CHAIN] += marches * samples * storeys;
-		const double flows = alone * yields * (samples + duration_mean(study) * all[b].high / CHAIN_RADIANS) +
-		                     (yields > 0 ? pounded * steps : 0);
+		const double flows =
+		    alone * yields * (samples + means_duration(study) * all[b].high / CHAIN_RADIANS) +
+		    (yields > 0 ? pounded * steps : 0);
 		c->of[YIELD_STEP] += flows * all[b].wide;
 	}
 }
@@ -579,8 +540,8 @@ static void count_runs(const struct pound_study *study, const struct pound_solve
 static void count_floors(const struct pound_study *study, double runs, struct counts *c)
 {
 	const struct bodies b = bodies_of(study);
-	const double radians = 2 * PI * duration_mean(study), fast = fmax(b.hz[0], b.hz[1]);
-	const double steps = samples_mean(study) + radians * fast / FLOOR_RADIANS;
+	const double radians = 2 * PI * means_duration(study), fast = fmax(b.hz[0], b.hz[1]);
+	const double steps = means_samples(study) + radians * fast / FLOOR_RADIANS;
 	const double touches = study->scene.contact.present ? runs * radians * b.touching * b.near : 0,
 	             rides = study->scene.contact.present
 	                         ? runs * radians * fast * b.riding * sqrt(b.ratio) / FLOOR_RADIANS
@@ -649,7 +610,7 @@ static void count(const struct pound_study *study, struct counts *c)
 static struct pound_run_shared shared_of(const struct pound_study *study)
 {
 	const struct bodies b = bodies_of(study);
-	struct pound_run_shared shared = {.samples = samples_mean(study),
+	struct pound_run_shared shared = {.samples = means_samples(study),
 	                                  .motions = distinct(study, MOTION),
 	                                  .marches = study->scene.contact.present ? distinct(study, ALL) : 0};
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
@@ -689,8 +650,8 @@ struct cost cost_of(const struct pound_study *study, int n_workers)
 		    runs * (SIGNAL_BYTES + of_row * MEASURE_BYTES) + cells * 20 * study->spectrum.n * NUMBER_BYTES;
 	}
 	const struct pound_run_shared shared = shared_of(study);
-	cost.memory = STUDY_MEMORY + NUMBER_MEMORY * study->scene.excitation.n_record +
-	              RESULT_MEMORY * cost.bytes + pound_run_bytes(study, n_workers, &shared);
+	cost.memory = STUDY_MEMORY + record_memory(study) + RESULT_MEMORY * cost.bytes +
+	              pound_run_bytes(study, n_workers, &shared);
 	cost.bytes += runs * numbers * sizeof(double);
 	return cost;
 }

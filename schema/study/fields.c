@@ -10,6 +10,7 @@
 #include "schema/study/field_types.h"
 #include "schema/study/near_name.h"
 #include "schema/study/study_json.h"
+#include "schema/study/study_suite.h"
 
 const char *study_kind_name(int kind)
 {
@@ -23,6 +24,11 @@ const char *study_kind_name(int kind)
 static const char *signals_name(int common)
 {
 	return common == 0 ? "independent" : common == 1 ? "common" : NULL;
+}
+
+static const char *directions_name(int both)
+{
+	return both == 0 ? "one" : both == 1 ? "both" : NULL;
 }
 
 #define AT(member)          offsetof(struct pound_study, member)
@@ -40,6 +46,10 @@ static const char *signals_name(int common)
 #define LASTING             .types = " white_noise harmonic "
 #define PITCHED             .types = " kanai_tajimi harmonic "
 #define SCALED              .types = " kanai_tajimi white_noise harmonic "
+#define STEPPED             .types = " kanai_tajimi white_noise harmonic record "
+#define RECORDED            .types = " suite "
+#define IN_RECORD(member)   offsetof(struct suite_record, member)
+#define FIXED_DATA          .fixed = "the samples of a record are fixed data"
 #define WITH_SCENE          .sceneless = FIELD_UNUSED
 #define LATER               .unwritten = true
 #define NOT_SCENE           .fixed = "only fields of the scene can vary"
@@ -202,7 +212,7 @@ const struct field fields[] = {
 	{"/scene/excitation/fall", FIELD_REAL, AT(scene.excitation.fall), 0.25, 0, 1, FIELD_CLOSED, "",
 	 .text = "fraction of the duration over which the envelope falls; rise + fall <= 1", RANDOM},
 	{"/scene/excitation/time_step_s", FIELD_REAL, AT(scene.excitation.time_step), 0.01, 0, INFINITY,
-	 FIELD_OPEN, "s", .text = "time between two samples; a ground motion may have 2 to 10000000 samples"},
+	 FIELD_OPEN, "s", .text = "time between two samples; a ground motion may have 2 to 10000000 samples", STEPPED},
 	{"/scene/excitation/peak_m_s2", FIELD_REAL, AT(scene.excitation.peak), 1, 0, INFINITY, FIELD_OPEN, "m/s2",
 	 .text = "peak ground acceleration", SCALED},
 	{"/scene/excitation/signals", FIELD_COUNT, AT(scene.excitation.signals), 5, 1, 100000, FIELD_CLOSED, "",
@@ -212,6 +222,48 @@ const struct field fields[] = {
 	 .text = "ground accelerations of a record, one per time step", .types = " record ", .fixed = "the samples of a record are fixed data"},
 	{"/scene/excitation/acceleration_m_s2/*", FIELD_REAL, 0, NAN, -INFINITY, INFINITY, FIELD_OPEN, "m/s2",
 	 .text = "one ground acceleration", .types = " record ", .fixed = "the samples of a record are fixed data"},
+	{"/scene/excitation/factor", FIELD_REAL, AT(scene.excitation.factor), 1, 0, INFINITY, FIELD_OPEN, "",
+	 .text = "factor of all ground accelerations", .types = " record suite ", LATER},
+	{"/scene/excitation/records", FIELD_LIST, 0, NAN, 1, STUDY_RECORDS_MAX, FIELD_CLOSED, "",
+	 .text = "recorded ground motions, each a signal; at most 20000000 samples in all", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one of them: file or acceleration_m_s2", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/name", FIELD_TEXT, IN_RECORD(record.name), 0, 1, 200, FIELD_CLOSED, "",
+	 .text = "display name (default: the file)", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/file", FIELD_TEXT, IN_RECORD(file), 0, 1, 200, FIELD_CLOSED, "",
+	 .text = "file of PEER, COSMOS, ESM or columns, its path from the folder of the study; `pound` puts its samples here", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/unit", FIELD_TEXT, IN_RECORD(unit), 0, 1, 16, FIELD_CLOSED, "",
+	 .text = "unit of a file that names none: g, cm/s2 or m/s2", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/channel", FIELD_COUNT, IN_RECORD(channel), 0, 0, 1000, FIELD_CLOSED, "",
+	 .text = "which acceleration of a file that has several, from 1; 0: it has one", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/time_step_s", FIELD_REAL, IN_RECORD(record.time_step), 0, 0, INFINITY, FIELD_OPEN_MIN, "s",
+	 .text = "time between two samples, of acceleration_m_s2 or of a file without times", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/acceleration_m_s2", FIELD_LIST, 0, 0, 2, STUDY_SAMPLES_MAX, FIELD_CLOSED, "",
+	 .text = "ground accelerations, one per time step", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/acceleration_m_s2/*", FIELD_REAL, 0, NAN, -INFINITY, INFINITY, FIELD_OPEN, "m/s2",
+	 .text = "one of them", RECORDED, FIXED_DATA},
+	{"/scene/excitation/records/*/factor", FIELD_REAL, IN_RECORD(record.factor), 1, 0, INFINITY, FIELD_OPEN, "",
+	 .text = "factor of this record, before it is scaled", RECORDED, .fixed = "it belongs to the record; vary /excitation/factor"},
+	{"/scene/excitation/records/*/reversed", FIELD_BOOL, IN_RECORD(record.reversed), 0, 0, 1, FIELD_CLOSED, "",
+	 .text = "true: the ground moves the other way, to the left where it moved to the right", RECORDED, .fixed = "it belongs to the record; use /excitation/directions"},
+	{"/scene/excitation/directions", FIELD_ALTERNATIVE, AT(scene.excitation.both), 0, 0, 1, FIELD_CLOSED, "",
+	 .text = "both: every record is two signals, as it is and reversed", .choice = directions_name, RECORDED,
+	 .fixed = "every sample has the same number of signals"},
+	{"/scene/excitation/draw", FIELD_COUNT, AT(scene.excitation.draw), 0, 0, 100000, FIELD_CLOSED, "",
+	 .text = "number of signals that are drawn at random for each scene, with replacement; 0: each record is a signal", RECORDED,
+	 .fixed = "every sample has the same number of signals"},
+	{"/scene/excitation/scale", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "what the records are scaled to; absent: they are not scaled", RECORDED},
+	{"/scene/excitation/scale/to", FIELD_CHOICE, AT(scene.excitation.scale.to), NAN, 0, 0, FIELD_CLOSED, "",
+	 .text = "every record to a peak (pga) or a spectral acceleration (sa), or all by one factor that makes the median spectral acceleration the intensity (median_sa)",
+	 .choice = pound_scale_name, RECORDED, .fixed = "it determines which other members apply"},
+	{"/scene/excitation/scale/intensity_m_s2", FIELD_REAL, AT(scene.excitation.scale.intensity), 0, 0, INFINITY, FIELD_OPEN_MIN, "m/s2",
+	 .text = "peak or spectral acceleration that the records are scaled to; required unless none", RECORDED},
+	{"/scene/excitation/scale/period_s", FIELD_REAL, AT(scene.excitation.scale.period), 0, 0, 1000, FIELD_OPEN_MIN, "s",
+	 .text = "period of the spectral acceleration; sa and median_sa need it", RECORDED, .fixed = "records are scaled once for all cells"},
+	{"/scene/excitation/scale/damping_ratio", FIELD_REAL, AT(scene.excitation.scale.damping_ratio), 0.05, 0, 1, FIELD_OPEN_MAX, "",
+	 .text = "damping of the spectral acceleration, as a fraction of critical; only sa and median_sa", RECORDED,
+	 .fixed = "records are scaled once for all cells"},
 
 	{"/inputs", FIELD_LIST, 0, NAN, 1, POUND_INPUTS_MAX, FIELD_CLOSED, "",
 	 .text = "random inputs; each varies one field of the scene", SENSITIVITY, NOT_SCENE},

@@ -15,6 +15,8 @@ struct reader {
 	const cJSON *sweeps;                    /* of the document; NULL: none */
 	double *number;                         /* next free place for a sample or a sweep value */
 	char *text;                             /* next free place for a text */
+	const struct study_files *files;        /* of recorded ground motions; NULL: cannot be read */
+	struct suite_source *suite;             /* of the records, in the study's block  (suite_room) */
 	int storeys;                            /* of the current building; 0: not known */
 	const struct field *swept; /* by the current sweep; NULL: its path names no field that varies */
 	char pointer[512];         /* of the current member */
@@ -48,6 +50,8 @@ bool reader_seen(const cJSON *object, const cJSON *member); /* an earlier member
 void reader_require(struct reader *reader, const cJSON *node, const char *pattern);
 bool reader_object(struct reader *reader, const char *pattern, const cJSON *node, char *base);
 void reader_value(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+/* Fills an element of a list with what its absent members mean. */
+void reader_defaults(const char *pattern, char *base);
 
 /* Members of what is a rigid wall, each refused; false: it is none. */
 bool reader_wall(struct reader *reader, const char *pattern, const cJSON *node, const char *refused);
@@ -74,6 +78,11 @@ void reader_ordinates(struct reader *reader, const cJSON *document);
 
 /* Members of a contact that its models do not read: study_contact.c. */
 void reader_contact(struct reader *reader, const cJSON *node, int model);
+
+/* Suites of recorded ground motions: study_suite.c. */
+void reader_records(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_samples(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_scale(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 
 /* Settings of solvers: study_settings.c. */
 void settings_default(struct pound_study *study);

@@ -20,19 +20,6 @@ enum { POINTER_SIZE = 80 };
 
 static const char BUILDING[] = "/scene/buildings/*", CONTACT[] = "/scene/contacts/*";
 
-/* Fills an element of a list with what its absent members mean. */
-static void element_default(const char *pattern, char *base)
-{
-	char within[64];
-	snprintf(within, sizeof within, "%s/", pattern);
-	for (int i = 0; i < fields_count; i++) {
-		void (*const store)(void *at, double value) = field_types[fields[i].type].store;
-		const char *const start = within;
-		if (store && fields_within(&fields[i], &start, 1))
-			store(base + fields[i].offset, isnan(fields[i].absent) ? 0 : fields[i].absent);
-	}
-}
-
 /* Notes a member that another one makes needless. */
 static void refuse(struct reader *r, const cJSON *object, const char *name, const char *why)
 {
@@ -48,7 +35,7 @@ static void read_building(struct reader *r, const cJSON *node, int i)
 	struct pound_building *building = &r->study->scene.buildings[i];
 	const cJSON *storeys = cJSON_GetObjectItemCaseSensitive(node, "storeys");
 	const struct field *count = fields_find("/scene/buildings/*/storeys");
-	element_default(BUILDING, (char *)building);
+	reader_defaults(BUILDING, (char *)building);
 	building->damping_modes[0] = 1;
 	building->damping_modes[1] = 3;
 	building->rigid_wall = reader_wall(
@@ -183,7 +170,7 @@ void reader_contacts(struct reader *r, const cJSON *document)
 
 static void read_place(struct reader *r, const cJSON *node, int i)
 {
-	element_default("/places/*", (char *)&r->study->scene.places[i]);
+	reader_defaults("/places/*", (char *)&r->study->scene.places[i]);
 	reader_object(r, "/places/*", node, (char *)&r->study->scene.places[i]);
 }
 

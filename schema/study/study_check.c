@@ -12,6 +12,7 @@
 #include "schema/study/study_json.h"
 #include "schema/study/study_size.h"
 #include "schema/study/study_spectrum.h"
+#include "schema/study/study_suite.h"
 
 enum { POINTER_SIZE = 64 };
 
@@ -283,12 +284,12 @@ static bool all_known(const struct pound_study *study, const char *const paths[]
 bool study_check_steps_known(const struct pound_study *study, const struct problems *problems)
 {
 	static const char *const all[] = {"/excitation/type", "/excitation/time_step_s",
-	                                  "/excitation/acceleration_m_s2", NULL},
+	                                  "/excitation/acceleration_m_s2", "/excitation/records", NULL},
 	                         *const by_cycles[] = {"/excitation/cycles", "/excitation/frequency_hz", NULL},
 	                         *const by_duration[] = {"/excitation/duration_s", NULL};
 	if (!all_known(study, all, problems))
 		return false;
-	return study->scene.excitation.n_record ||
+	return study->scene.excitation.n_record || study->scene.excitation.n_records ||
 	       all_known(study, study_check_uses(study, "/scene/excitation/cycles") ? by_cycles : by_duration,
 	                 problems);
 }
@@ -541,6 +542,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	// each as soon as what it reads is known, so that all is reported at once
 	check_supports(study, problems);
 	check_excitation(study, problems);
+	study_suite_check(study, problems);
 	if (problems_at(problems, "/sweep"))
 		return;
 	study_buildings_check(study, problems);

@@ -126,6 +126,38 @@ static void write_places(struct canon *c)
 		write_place(c, "place", &c->study->spectrum.place);
 }
 
+/* The SHA-256 of some bytes, in hexadecimal digits. */
+static void digest_of(const void *bytes, size_t n, char hex[STUDY_HASH_SIZE])
+{
+	struct sha256_ctx sha;
+	uint8_t digest[SHA256_DIGEST_SIZE];
+	sha256_init(&sha);
+	sha256_update(&sha, n, bytes);
+	sha256_digest(&sha, sizeof digest, digest);
+	for (int i = 0; i < SHA256_DIGEST_SIZE; i++)
+		snprintf(hex + 2 * i, 3, "%02x", digest[i]);
+}
+
+/* The records of a suite, their samples as a digest; where these came from is no part of the meaning. */
+static void write_suite(struct canon *c)
+{
+	const struct pound_excitation *e = &c->study->scene.excitation;
+	write_object(c, "scale", "/scene/excitation/scale", c->study);
+	writer_array(&c->w, "records", WRITER_LINES);
+	for (int k = 0; k < e->n_records; k++) {
+		const struct pound_record *record = &e->records[k];
+		char hex[STUDY_HASH_SIZE];
+		digest_of(record->a, sizeof *record->a * (size_t)record->n, hex);
+		writer_object(&c->w, NULL, WRITER_LINES);
+		writer_number(&c->w, "time_step_s", record->time_step);
+		writer_text(&c->w, "samples", hex);
+		writer_number(&c->w, "factor", record->factor);
+		writer_bool(&c->w, "reversed", record->reversed);
+		writer_end(&c->w);
+	}
+	writer_end(&c->w);
+}
+
 static void write_scene(struct canon *c)
 {
 	const struct pound_excitation *e = &c->study->scene.excitation;
@@ -144,6 +176,8 @@ static void write_scene(struct canon *c)
 	for (int i = 0; i < e->n_record; i++)
 		writer_number(&c->w, NULL, e->record[i]);
 	writer_end(&c->w);
+	if (e->n_records)
+		write_suite(c);
 	writer_end(&c->w);
 }
 
@@ -283,13 +317,7 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 	char *text = writer_take(&c.w, &length);
 	if (!text)
 		return false;
-	struct sha256_ctx sha;
-	uint8_t digest[SHA256_DIGEST_SIZE];
-	sha256_init(&sha);
-	sha256_update(&sha, length, (const uint8_t *)text);
-	sha256_digest(&sha, sizeof digest, digest);
+	digest_of(text, length, hex);
 	free(text);
-	for (int i = 0; i < SHA256_DIGEST_SIZE; i++)
-		snprintf(hex + 2 * i, 3, "%02x", digest[i]);
 	return true;
 }

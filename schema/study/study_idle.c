@@ -86,6 +86,9 @@ const char *study_idle(const struct pound_study *study, const struct field *fiel
 	const int oscillator = scene->n_buildings ? -1 : place.element;
 	if (oscillator == 1 && scene->oscillators[1].rigid_wall)
 		return "a rigid wall has no such field";
+	if (strncmp(field->pattern, "/scene/excitation/scale/", 24) == 0 &&
+	    scene->excitation.scale.to == POUND_SCALE_NONE)
+		return "has no effect: the records are not scaled";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
 		return "has no effect: there is no contact in this scene";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0)

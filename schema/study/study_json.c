@@ -19,6 +19,7 @@
 #include "schema/study/study_buildings.h"
 #include "schema/study/study_check.h"
 #include "schema/study/study_spectrum.h"
+#include "schema/study/study_suite.h"
 
 // rows of a quasi-random design when the document says nothing: powers of two; one that grows begins with few
 enum { ROWS_QUASI_RANDOM = 1024, ROWS_FIRST = 2 };
@@ -30,7 +31,8 @@ struct block {
 	struct pound_sweep sweeps[POUND_SWEEPS_MAX];
 	struct pound_building buildings[POUND_BUILDINGS_MAX];
 	struct pound_storey_place places[POUND_PLACES_MAX];
-	double numbers[]; /* samples and sweep values; contacts and texts follow them */
+	struct suite_source *suite; /* of the records of a suite */
+	double numbers[];           /* samples and sweep values; contacts, records and texts follow them */
 };
 
 /* ---- objects ---- */
@@ -143,6 +145,18 @@ bool reader_object(struct reader *r, const char *pattern, const cJSON *node, cha
 	}
 	reader_require(r, node, pattern);
 	return true;
+}
+
+void reader_defaults(const char *pattern, char *base)
+{
+	char within[64];
+	snprintf(within, sizeof within, "%s/", pattern);
+	for (int i = 0; i < fields_count; i++) {
+		void (*const store)(void *at, double value) = field_types[fields[i].type].store;
+		const char *const start = within;
+		if (store && fields_within(&fields[i], &start, 1))
+			store(base + fields[i].offset, isnan(fields[i].absent) ? 0 : fields[i].absent);
+	}
 }
 
 static void read_law(struct reader *r, const struct field *field, const cJSON *node, char *base)
@@ -284,6 +298,9 @@ static const struct {
     {"/scene/contacts/*/levels", reader_levels},
     {"/places", reader_places},
     {"/scene/excitation/acceleration_m_s2", read_record},
+    {"/scene/excitation/records", reader_records},
+    {"/scene/excitation/records/*/acceleration_m_s2", reader_samples},
+    {"/scene/excitation/scale", reader_scale},
     {"/inputs", reader_inputs},
     {"/inputs/*/distribution", reader_distribution},
     {"/ratios", reader_ratios},
@@ -315,8 +332,13 @@ void reader_value(struct reader *r, const struct field *field, const cJSON *node
 static void defaults(struct pound_study *study, const char *excitation)
 {
 	// whose elements are objects of their own
-	static const char *const elsewhere_kept[] = {"/inputs/",          "/sweep/",          "/ratios/",
-	                                             "/scene/buildings/", "/scene/contacts/", "/places/"};
+	static const char *const elsewhere_kept[] = {"/inputs/",
+	                                             "/sweep/",
+	                                             "/ratios/",
+	                                             "/scene/buildings/",
+	                                             "/scene/contacts/",
+	                                             "/places/",
+	                                             "/scene/excitation/records/"};
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		void (*const store)(void *at, double value) = field_types[field->type].store;
@@ -375,14 +397,18 @@ static size_t contacts_room(size_t length)
 static struct pound_study *block_create(size_t length)
 {
 	// an element takes two characters at least, and a text is never longer than its spelling
-	size_t numbers = length / 2 + 1;
+	const size_t numbers = length / 2 + 1, contacts = contacts_room(length),
+	             records = (size_t)suite_room(length);
+	const struct pound_excitation *e;
 	struct block *block =
-	    calloc(1, sizeof *block + numbers * sizeof(double) +
-	                  contacts_room(length) * sizeof *block->study.scene.contacts + length + 1);
+	    calloc(1, sizeof *block + numbers * sizeof(double) + contacts * sizeof(struct pound_row_contact) +
+	                  records * (sizeof *e->records + sizeof *block->suite) + length + 1);
 	if (!block)
 		return NULL;
 	block->study.scene.buildings = block->buildings;
 	block->study.scene.contacts = (struct pound_row_contact *)(block->numbers + numbers);
+	block->study.scene.excitation.records = (struct pound_record *)(block->study.scene.contacts + contacts);
+	block->suite = (struct suite_source *)(block->study.scene.excitation.records + records);
 	block->study.scene.places = block->places;
 	block->study.inputs = block->inputs;
 	block->study.sweeps = block->sweeps;
@@ -399,8 +425,27 @@ static void sceneless(struct reader *r)
 		r->kind = study_kind_name(POUND_KIND_SENSITIVITY);
 }
 
-static struct pound_study *study_read(const char *text, size_t length, bool design, struct problems *problems)
+/* The signals of a suite. */
+static void signals_count(struct pound_excitation *e)
 {
+	if (e->n_records)
+		e->signals = e->draw ? e->draw : pound_suite_signals(e);
+}
+
+/* Reads a study document.
+ *
+ * Given    document  -         -       its text may be any bytes
+ * Returns  value     -         -       the study; NULL: problems->status says why
+ *          problems  -         -       all that is wrong, in the order of the document, then between members
+ * Memory   allocates for study_free one block, about 5 bytes per byte of text, and the samples of files
+ *
+ * Test     unit_study_cases, unit_study_json, unit_suite
+ */
+struct pound_study *study_from_document(const struct study_document *source, struct problems *problems)
+{
+	const char *const text = source->text;
+	const size_t length = source->length;
+	const bool design = source->design;
 	struct json_fault fault;
 	problems_init(problems);
 	cJSON *document = json_parse(text, length, &fault);
@@ -417,8 +462,13 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 		cJSON_Delete(document);
 		return NULL;
 	}
-	struct reader r = {.problems = problems, .study = study, .number = ((struct block *)study)->numbers};
-	r.text = (char *)(study->scene.contacts + contacts_room(length));
+	struct block *block = (struct block *)study;
+	struct reader r = {.problems = problems,
+	                   .study = study,
+	                   .number = block->numbers,
+	                   .files = source->files,
+	                   .suite = block->suite};
+	r.text = (char *)(block->suite + suite_room(length));
 	foresee(&r, document);
 	defaults(study, r.excitation);
 	if (design && cJSON_IsObject(document) && !cJSON_HasObjectItem(document, "scene"))
@@ -427,6 +477,7 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 	reader_contacts(&r, document);
 	reader_ordinates(&r, document);
 	cJSON_Delete(document);
+	signals_count(&study->scene.excitation);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
 		problems_add(problems, "/kind", "must be \"%s\": no other kind has a design",
 		             study_kind_name(POUND_KIND_SENSITIVITY));
@@ -442,18 +493,13 @@ static struct pound_study *study_read(const char *text, size_t length, bool desi
 	return study;
 }
 
-/* Reads a study document.
- *
- * Given    text      (length)  bytes   need not end with a zero
- * Returns  value     -         -       the study; NULL: problems->status says why
- *          problems  -         -       all that is wrong, in the order of the document, then between members
- * Memory   allocates one block for study_free, about 5 bytes per byte of text
+/* Reads a study document that names no files.
  *
  * Test     unit_study_cases, unit_study_json
  */
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems)
 {
-	return study_read(text, length, false, problems);
+	return study_from_document(&(struct study_document){.text = text, .length = length}, problems);
 }
 
 /* Reads a document for its design alone: a sensitivity study, with a scene or of a model that is run elsewhere.
@@ -464,10 +510,14 @@ struct pound_study *study_from_json(const char *text, size_t length, struct prob
  */
 struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems)
 {
-	return study_read(text, length, true, problems);
+	return study_from_document(&(struct study_document){.text = text, .length = length, .design = true},
+	                           problems);
 }
 
 void study_free(struct pound_study *study)
 {
+	const struct block *block = (const struct block *)study;
+	for (int k = 0; k < study->scene.excitation.n_records; k++)
+		free(block->suite[k].samples);
 	free(study);
 }

@@ -27,14 +27,37 @@ enum {
 	STUDY_ORDINATES_MAX = 5000000, /* frequencies of the spectra of all signals */
 	STUDY_STEPS_MAX = 1000000,     /* of a solver in one sample interval */
 	STUDY_HASH_SIZE = 65,          /* characters of a study hash and its zero */
+	STUDY_RECORDS_MAX = 1000,      /* of a suite */
+	STUDY_SUITE_SAMPLES_MAX = 20000000, /* of all of them: 160 MB */
+	STUDY_WHY_SIZE = 256,
 };
 #define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
 
+/* How the files of recorded ground motions are read that a document names. */
+struct study_files {
+	/* The bytes, on the heap and with a 0 behind them; NULL: `why` says why there are none. */
+	char *(*read)(const void *with, const char *name, size_t *length, char why[STUDY_WHY_SIZE]);
+	const void *with;
+};
+
+struct study_document {
+	const char *text; /* need not end with a zero */
+	size_t length;
+	const struct study_files *files; /* NULL: cannot be read */
+	bool
+	    design; /* for its design alone: a sensitivity study, which may have no scene (then `elsewhere` is set) */
+};
+
 /* The study on the heap, one owner, for study_free; NULL: every problem is in `problems`, its status says why. */
+struct pound_study *study_from_document(const struct study_document *document, struct problems *problems);
 struct pound_study *study_from_json(const char *text, size_t length, struct problems *problems);
-/* The same for its design alone: a sensitivity study, which may have no scene (then `elsewhere` is set). */
 struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems);
 void study_free(struct pound_study *study);
+
+/* Whether a document names files of recorded ground motions; and the document, on the heap, with their samples in place of
+ * the names, for those who cannot read them (NULL: out of memory). */
+bool study_names_files(const char *text, size_t length);
+char *study_inline(const struct study_document *document, const struct pound_study *study, size_t *length);
 
 const char *study_kind_name(int kind);            /* "response", "sensitivity", ...; NULL past the last */
 int study_cells(const struct pound_study *study); /* combinations of sweep values, 1 without a sweep */

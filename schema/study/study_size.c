@@ -25,6 +25,13 @@ void study_size_steps(const struct pound_study *study, double *least, double *mo
 		*least = *most = study->scene.excitation.n_record - 1;
 		return;
 	}
+	if (study->scene.excitation.n_records) {
+		int fewest, longest;
+		pound_suite_samples(&study->scene.excitation, &fewest, &longest);
+		*least = fewest - 1;
+		*most = longest - 1;
+		return;
+	}
 	study_check_reach(study, "/excitation/time_step_s", &step_low, &step_high);
 	if (study_check_uses(study, "/scene/excitation/cycles")) {
 		study_check_reach(study, "/excitation/cycles", &low, &high);

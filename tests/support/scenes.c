@@ -92,6 +92,7 @@ double *specimen_record(struct specimen *specimen, double time_step, int n)
 	assert(specimen->record);
 	e->time_step = time_step;
 	e->n_record = n;
+	e->factor = 1;
 	e->record = specimen->record;
 	return specimen->record;
 }

@@ -9,6 +9,7 @@
 #include "engine/numeric/cpu_width.h"
 #include "tests/support/check.h"
 
+/* whose samples are made; those of a suite are records */
 enum { KANAI_TAJIMI, WHITE_NOISE, HARMONIC, RECORD, TYPES, MANY = 200000 };
 
 static const struct pound_stream noise = {
@@ -30,6 +31,7 @@ static struct pound_excitation excitation(int type)
 	                                 .time_step = 0.01,
 	                                 .peak = 1,
 	                                 .signals = 1,
+	                                 .factor = 1,
 	                                 .n_record = 5,
 	                                 .record = samples};
 }
@@ -47,13 +49,14 @@ static double largest(const double *x, int n)
 	return most;
 }
 
-static void the_table_has_the_four_excitations_of_a_study(void **state)
+static void the_table_has_the_excitations_of_a_study(void **state)
 {
 	(void)state;
-	static const char *const names[TYPES] = {"kanai_tajimi", "white_noise", "harmonic", "record"};
-	for (int i = 0; i < TYPES; i++)
+	static const char *const names[TYPES + 1] = {"kanai_tajimi", "white_noise", "harmonic", "record",
+	                                             "suite"};
+	for (int i = 0; i <= TYPES; i++)
 		assert_string_equal(pound_excitation_name(i), names[i]);
-	assert_null(pound_excitation_name(TYPES));
+	assert_null(pound_excitation_name(TYPES + 1));
 	assert_null(pound_excitation_name(-1));
 }
 
@@ -276,7 +279,7 @@ static void the_bits_are_the_same_everywhere(void **state)
 	assert_int_equal(hash, 0x15b8b840d3b7a712);
 }
 
-CHECK_MAIN(cmocka_unit_test(the_table_has_the_four_excitations_of_a_study),
+CHECK_MAIN(cmocka_unit_test(the_table_has_the_excitations_of_a_study),
            cmocka_unit_test(noise_without_colour_and_records_have_no_frequency),
            cmocka_unit_test(only_noise_differs_from_signal_to_signal),
            cmocka_unit_test(the_last_sample_is_the_one_nearest_to_the_end),

@@ -46,6 +46,7 @@ static void motions_are_those_of_the_runs(void **state)
 		    (struct pound_excitation){.type = fields_choice(pound_excitation_name, "record"),
 		                              .time_step = step,
 		                              .signals = 1,
+		                              .factor = 1,
 		                              .n_record = n,
 		                              .record = a};
 		struct pound_run *again = pound_run_create(&given, 1);

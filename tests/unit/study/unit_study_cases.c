@@ -159,10 +159,23 @@ static void line_of(const struct problem *problem, char line[1024])
 
 static int n_wrong; // cases that were not as their file says
 
+/* The files that documents name are those of tests/cases/records. */
+static char *record_file(const void *with, const char *name, size_t *length, char why[STUDY_WHY_SIZE])
+{
+	char path[256];
+	(void)with;
+	snprintf(path, sizeof path, "tests/cases/records/%s", name);
+	snprintf(why, STUDY_WHY_SIZE, "cannot be read: no such file");
+	return program_file(path, length);
+}
+
 static void judge(const struct study_case *of, void *context)
 {
 	static struct problems problems;
-	struct pound_study *study = study_from_json(of->document, strlen(of->document), &problems);
+	static const struct study_files records = {.read = record_file};
+	const struct study_document document = {
+	    .text = of->document, .length = strlen(of->document), .files = &records};
+	struct pound_study *study = study_from_document(&document, &problems);
 	bool as_expected = problems.n == of->n && !problems.n_more && !study == (of->n > 0);
 	char line[1024];
 	(void)context;

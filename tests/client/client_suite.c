@@ -1,0 +1,99 @@
+/* client_suite.c - `pound run`, `submit`, `motion` and `design` of a suite whose records are files beside the study. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/json/json_pointer.h"
+#include "tests/support/check.h"
+#include "tests/support/program.h"
+#include "tests/support/service.h"
+
+#define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
+
+static const char SUITE[] = "tests/cases/records/suite.json";
+
+/* The result without its last member, "timing". */
+static void untimed(char *result)
+{
+	char *timing = strstr(result, "\"timing\"");
+	assert_non_null(timing);
+	*timing = 0;
+}
+
+static void a_suite_is_read_from_files_beside_the_study(void **state)
+{
+	(void)state;
+	struct program_outcome ran = POUND("run", SUITE);
+	program_expect(&ran, 0);
+	struct reading *result = reading_open(ran.out, ran.n_out);
+	assert_int_equal(reading_count(result, "/suite/records"), 3);
+	assert_string_equal(reading_text(result, "/suite/records/0/name"), "nga_west2.AT2");
+	assert_string_equal(reading_text(result, "/suite/records/1/name"), "by another network");
+	// the files hold the same numbers, in g and in cm/s2
+	check_near(reading_number(result, "/suite/records/1/pga_m_s2") * 980.665,
+	           reading_number(result, "/suite/records/0/pga_m_s2"), 1e-15);
+	reading_close(result);
+	program_free(&ran);
+}
+
+static void a_server_gives_the_same_bytes(void **state)
+{
+	(void)state;
+	struct program_outcome ran = POUND("run", SUITE), sent = POUND("submit", "--wait", SUITE);
+	program_expect(&ran, 0);
+	program_expect(&sent, 0);
+	char *id = strtok(sent.out, "\n");
+	struct program_outcome result = POUND("results", id);
+	program_expect(&result, 0);
+	untimed(ran.out);
+	untimed(result.out);
+	assert_string_equal(result.out, ran.out);
+	program_free(&ran);
+	program_free(&sent);
+	program_free(&result);
+}
+
+static void spectra_name_the_records(void **state)
+{
+	(void)state;
+	struct program_outcome motion = POUND("motion", "--format", "csv", "--periods", "0.5", SUITE);
+	program_expect(&motion, 0);
+	assert_memory_equal(motion.out, "signal,record,factor,period_s,psa_m_s2\n0,0,", 42);
+	// every record is scaled to 3 m/s2 at 0.5 s
+	int lines = 0;
+	for (char *line = strchr(motion.out, '\n') + 1; *line; line = strchr(line, '\n') + 1, lines++) {
+		char *last = line;
+		for (char *c = line; *c != '\n'; c++)
+			last = *c == ',' ? c : last;
+		check_near(strtod(last + 1, NULL), 3, 1e-12);
+	}
+	assert_int_equal(lines, 6);
+	program_free(&motion);
+	motion = POUND("motion", "--format", "at2", "--signal", "3", SUITE);
+	program_expect(&motion, 0);
+	assert_non_null(strstr(motion.out, "by another network, record 1 times "));
+	program_free(&motion);
+}
+
+static void a_file_that_cannot_be_read_is_named(void **state)
+{
+	(void)state;
+	static const char missing[] =
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": "
+	    "2}], "
+	    "\"excitation\": {\"type\": \"suite\", \"records\": [{\"file\": \"no_such.AT2\"}]}}}";
+	static const char *const commands[] = {"run", "submit", "motion"};
+	for (int k = 0; k < 3; k++) {
+		struct program_outcome refused =
+		    program_run((const char *const[]){"pound", commands[k], "-", NULL}, missing);
+		program_expect(&refused, 2);
+		assert_non_null(strstr(
+		    refused.err, "/scene/excitation/records/0/file: cannot be read: No such file or directory"));
+		assert_string_equal(refused.out, "");
+		program_free(&refused);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(a_suite_is_read_from_files_beside_the_study),
+           cmocka_unit_test_setup_teardown(a_server_gives_the_same_bytes, program_setup, service_teardown),
+           cmocka_unit_test(spectra_name_the_records), cmocka_unit_test(a_file_that_cannot_be_read_is_named))
