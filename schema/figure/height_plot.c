@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { BUILDINGS_MOST = 8, STOREYS_MOST = 50, MARKS_MOST = 200 };
+enum { BUILDINGS_MOST = 8, STOREYS_MOST = 50, MARKS_MOST = 200, PANEL_NARROWEST = 200 };
 
 /* a number of every storey, and how it is drawn */
 struct quantity {
@@ -13,8 +13,8 @@ struct quantity {
 };
 
 static const struct quantity QUANTITIES[] = {
-    {"storeys", "drift_max_m", "drift_max_free_m", "peak story drift", "m"},
-    {"floors", "acceleration_max_m_s2", "acceleration_max_free_m_s2", "peak floor acceleration", "m/s²"},
+    {"storeys", "drift_max_m", "drift_max_free_m", "drift", "m"},
+    {"floors", "acceleration_max_m_s2", "acceleration_max_free_m_s2", "acceleration", "m/s²"},
 };
 
 static const struct key KEYS[] = {
@@ -136,16 +136,16 @@ void plot_heights(struct plot *plot)
 			buildings[n++] = b;
 			tallest = storeys_of(signals, b) > tallest ? storeys_of(signals, b) : tallest;
 		}
-	plot_head(plot, "Story drifts and floor accelerations over the height",
+	plot_head(plot, "Peak story drifts and floor accelerations over the height",
 	          cell ? plot_sweep_text(cell, 0, NULL, sweep) : "means over the signals");
 	double top = draw_legend(&plot->d, 2, KEYS, plot->y) + 6;
-	const int columns = panel_columns(&plot->d, n, 230);
+	const int columns = panel_columns(&plot->d, n, PANEL_NARROWEST);
 	for (size_t q = 0; q < sizeof QUANTITIES / sizeof QUANTITIES[0]; q++) {
 		struct range range = range_of(signals, &QUANTITIES[q]);
 		const bool bare = range.low > range.high;
 		range_add(&range, 0);
 		for (int k = 0; k < n; k++) {
-			struct panel panel = {.height = fmin(150 + 25 * tallest, 300),
+			struct panel panel = {.height = fmin(120 + 24 * tallest, 300),
 			                      .bare = bare,
 			                      .across = axis_linear(range.high > 0 ? range : (struct range){0, 1})};
 			panel_place(&plot->d, columns, k, top, &panel);

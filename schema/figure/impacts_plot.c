@@ -4,13 +4,13 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { PAIRS_MOST = 7, CONTACTS_MOST = 400, MARKS_MOST = 200 };
+enum { PAIRS_MOST = 7, CONTACTS_MOST = 400, MARKS_MOST = 200, PANEL_NARROWEST = 200 };
 
 static const struct quantity {
 	const char *member, *label, *unit;
 	bool once; /* only of signals with an impact */
 } QUANTITIES[] = {
-    {"first_time_s", "time of the first impact [s]", "s", true},
+    {"first_time_s", "first impact [s]", "s", true},
     {"contact_count", "number of impacts", "", false},
     {"impulse_max_n_s", "largest impulse [N s]", "N s", false},
 };
@@ -114,12 +114,12 @@ void plot_impacts(struct plot *plot)
 		}
 		const bool bare = range.low > range.high;
 		range_add(&range, 0);
-		const int columns = panel_columns(&plot->d, n_pairs, 230);
+		const int columns = panel_columns(&plot->d, n_pairs, PANEL_NARROWEST);
 		for (int from = 0, to, column = 0; from < n; from = to, column++) {
 			for (to = from; to < n && impacts[to].left == impacts[from].left; to++)
 				;
 			snprintf(title, sizeof title, "buildings %d and %d", impacts[from].left, impacts[from].left + 1);
-			struct panel panel = {.height = fmin(150 + 25 * fmax(levels.high, 1), 300),
+			struct panel panel = {.height = fmin(120 + 24 * fmax(levels.high, 1), 300),
 			                      .title = title,
 			                      .x_label = QUANTITIES[q].label,
 			                      .y_label = "level",

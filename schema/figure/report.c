@@ -25,23 +25,23 @@ struct report {
 };
 
 static const char STYLE[] =
-    ":root{color-scheme:light dark}body{font:16px/1.5 Helvetica,Arial,sans-serif;margin:0 "
-    "auto;max-width:1160px;"
-    "padding:1rem;color:#14171b;background:#fff}h1{font-size:1.5rem;line-height:1.25}h2{font-size:1.2rem;"
-    "margin-top:2rem}figure{margin:1rem 0;overflow-x:auto}figure svg{width:100%;min-width:44rem;height:auto;"
-    "display:block}table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}caption{"
-    "text-align:left;padding:.3rem 0}th,td{padding:.15rem .6rem;border-bottom:1px solid "
-    "#dfe3e8;text-align:right}"
-    "th:first-child,td:first-child{text-align:left}.wide{overflow-x:auto}summary{cursor:pointer;padding:."
-    "3rem 0}"
+    ":root{color-scheme:light dark}"
+    "body{font:16px/1.5 Helvetica,Arial,sans-serif;margin:0 "
+    "auto;max-width:1160px;padding:1rem;color:#14171b;background:#fff}"
+    "h1{font-size:1.5rem;line-height:1.25}h1,th:first-child,th+td{overflow-wrap:anywhere}th:first-child,th+"
+    "td{min-width:4em}"
+    "h2{font-size:1.2rem;margin-top:2rem}figure{margin:1rem 0;overflow-x:auto}"
+    "figure svg{width:100%;min-width:44rem;height:auto;display:block}"
+    "table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}"
+    "caption{text-align:left;padding:.3rem 0}"
+    "th,td{padding:.15rem .4rem;border-bottom:1px solid #dfe3e8;text-align:right}"
+    "th:first-child,td:first-child{text-align:left}.wide{overflow-x:auto}"
+    "summary{cursor:pointer;padding:.3rem 0}"
     "pre{overflow-x:auto;background:#f3f5f7;padding:.8rem;font-size:.85rem}.muted{color:#57606a}"
-    "@media screen and "
-    "(prefers-color-scheme:dark){body{color:#eceff2;background:#14171b}th,td{border-color:#323941}"
-    "pre{background:#1d2228}.muted{color:#9aa4af}}"
-    "@media "
-    "print{details:not([open])>*{display:revert}figure,tr{break-inside:avoid}h2{break-after:avoid}pre{white-"
-    "space:pre-wrap}"
-    "figure svg{min-width:0;max-height:85vh}}";
+    "@media screen and (prefers-color-scheme:dark){body{color:#eceff2;background:#14171b}"
+    "th,td{border-color:#323941}pre{background:#1d2228}.muted{color:#9aa4af}}"
+    "@media print{details:not([open])>*{display:revert}figure,tr{break-inside:avoid}"
+    "h2{break-after:avoid}pre{white-space:pre-wrap}figure svg{min-width:0;max-height:85vh}}";
 
 static void put(struct report *report, const char *html)
 {
