@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "tests/support/check.h"
+#include "tests/support/groups.h"
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
@@ -16,7 +17,6 @@
 enum {
 	ROWS = 4000, /* of the study that is disturbed */
 	GONE_MS = 5000,
-	PIDS_MAX = 64,
 	SHORT_STUDIES = 40, /* more than a group may know at a time */
 };
 
@@ -24,13 +24,6 @@ static struct {
 	char directory[32], study[64], pids[64], out[64], err[64]; /* files in it */
 	char *reference;
 } world;
-
-static double now_s(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static bool there_are_ranks(void)
 {
@@ -52,14 +45,6 @@ static const char *launcher(int n_ranks)
 	return command;
 }
 
-static void text_write(const char *path, const char *text)
-{
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs(text, file);
-	assert_int_equal(fclose(file), 0);
-}
-
 static int setup(void **state)
 {
 	(void)state;
@@ -73,7 +58,7 @@ static int setup(void **state)
 	snprintf(world.out, sizeof world.out, "%s/out", world.directory);
 	snprintf(world.err, sizeof world.err, "%s/err", world.directory);
 	char *study = service_study(ROWS, 5, 1);
-	text_write(world.study, study);
+	groups_write(world.study, study);
 	free(study);
 	struct program_outcome alone = POUND("run", "--threads", "1", world.study);
 	program_expect(&alone, 0);
@@ -92,50 +77,6 @@ static int teardown(void **state)
 	return rmdir(world.directory);
 }
 
-static int pids_read(pid_t pids[PIDS_MAX])
-{
-	int n = 0;
-	FILE *file = fopen(world.pids, "r");
-	while (file && n < PIDS_MAX && fscanf(file, "%d", &pids[n]) == 1)
-		n++;
-	if (file)
-		fclose(file);
-	return n;
-}
-
-static bool is_gone(pid_t pid)
-{
-	char path[64], state = 'X';
-	snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
-	FILE *file = fopen(path, "r");
-	if (file && fscanf(file, "%*d %*s %c", &state) != 1)
-		state = 'X';
-	if (file)
-		fclose(file);
-	return state == 'X' || state == 'Z';
-}
-
-/* Waits until all processes of launchers have ended; how long that took [s]. */
-static double all_gone(void)
-{
-	pid_t pids[PIDS_MAX];
-	const double start = now_s();
-	for (int i = pids_read(pids) - 1; i >= 0; i--)
-		while (!is_gone(pids[i])) {
-			if (now_s() - start > 1e-3 * GONE_MS)
-				fail_msg("process %d is there %d ms later", (int)pids[i], GONE_MS);
-			usleep(1000);
-		}
-	return now_s() - start;
-}
-
-static int blocks_elsewhere(const char *err)
-{
-	const char *line = strstr(err, "worker groups ran ");
-	assert_non_null(line);
-	return atoi(line + strlen("worker groups ran "));
-}
-
 static void one_two_and_four_ranks_give_the_same_bytes(void **state)
 {
 	static const char *const names[] = {"gap", "rigid_wall", "row_of_three", "sensitivity_small"};
@@ -151,13 +92,13 @@ static void one_two_and_four_ranks_give_the_same_bytes(void **state)
 		assert_string_equal(service_timeless(outcome.out), world.reference);
 		snprintf(words, sizeof words, "connected, %d thread", n);
 		assert_non_null(strstr(outcome.err, words));
-		n_blocks += blocks_elsewhere(outcome.err);
+		n_blocks += groups_blocks(outcome.err);
 		program_free(&outcome);
 	}
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		struct program_outcome document = POUND("example", names[i]);
 		if (document.status == 0) {
-			text_write(world.out, document.out);
+			groups_write(world.out, document.out);
 			struct program_outcome alone = POUND("run", "--threads", "1", world.out),
 			                       ranks =
 			                           POUND("run", "--threads", "1", "--launcher", launcher(4), world.out);
@@ -173,18 +114,18 @@ static void one_two_and_four_ranks_give_the_same_bytes(void **state)
 	             "processes left 0",
 	             n_blocks, n_examples);
 	assert_true(n_blocks > 0 && n_examples > 0);
-	all_gone();
+	groups_gone(world.pids, GONE_MS);
 }
 
 /* Kills process `which` of a group of four ranks (0: mpirun) after some time. */
 static void kill_one(int which, int *noticed, int *n_blocks)
 {
-	pid_t pids[PIDS_MAX];
+	pid_t pids[GROUPS_PIDS_MAX];
 	unlink(world.pids);
 	pid_t pid = program_start(
 	    (const char *const[]){"pound", "run", "--threads", "1", "--launcher", launcher(4), world.study, NULL},
 	    world.out, world.err);
-	while (pids_read(pids) < 5)
+	while (groups_pids(world.pids, pids) < 5)
 		usleep(1000);
 	usleep((useconds_t)(1000 * (rand() % 1500)));
 	kill(pids[which], SIGKILL);
@@ -193,7 +134,7 @@ static void kill_one(int which, int *noticed, int *n_blocks)
 	char *out = program_file(world.out, &n), *err = program_file(world.err, &n);
 	assert_string_equal(service_timeless(out), world.reference);
 	*noticed += strstr(err, "the connection ended") != NULL || strstr(err, "without a connection") != NULL;
-	*n_blocks += blocks_elsewhere(err);
+	*n_blocks += groups_blocks(err);
 	free(out);
 	free(err);
 }
@@ -209,7 +150,7 @@ static void a_killed_rank_ends_its_group_and_changes_no_byte(void **state)
 	srand(1);
 	for (int i = 0; i < n; i++) {
 		kill_one(i % 5, &noticed, &n_blocks);
-		const double gone = all_gone();
+		const double gone = groups_gone(world.pids, GONE_MS);
 		most = gone > most ? gone : most;
 	}
 	check_report("ranks or mpirun killed: %d, noticed %d; blocks run by ranks %d; results that differ 0; "
@@ -254,7 +195,7 @@ static void a_server_gives_many_studies_to_a_group_of_ranks(void **state)
 	    SHORT_STUDIES, atoi(blocks + strlen("\npound_worker_blocks_total ")));
 	answer_free(&answer);
 	service_stop(service);
-	all_gone();
+	groups_gone(world.pids, GONE_MS);
 	service_free(service);
 	free(reference.result);
 	free(reference.samples);

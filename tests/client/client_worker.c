@@ -11,6 +11,7 @@
 
 #include "engine/pound.h"
 #include "tests/support/check.h"
+#include "tests/support/groups.h"
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 #include "tests/support/study_documents.h"
@@ -21,7 +22,6 @@ enum {
 	ROWS = 1200,        /* of the study that is disturbed: a second of one core */
 	GONE_MS = 5000,     /* within which workers end after their coordinator */
 	KILLED_AT_MS = 300, /* at most, after the start */
-	BLOCKS_MAX = 1000,
 };
 
 static struct {
@@ -31,46 +31,6 @@ static struct {
 	char *reference;    /* the result without workers */
 	int n_blocks;
 } world;
-
-static double now_s(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void text_write(const char *path, const char *text)
-{
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs(text, file);
-	assert_int_equal(fclose(file), 0);
-}
-
-/* Records of the checkpoint: how many blocks have one, and how many have more. */
-static void records_count(int *n_once, int *n_more)
-{
-	int of_block[BLOCKS_MAX] = {0};
-	size_t n;
-	char *bytes = program_file(world.checkpoint, &n);
-	assert_non_null(bytes);
-	char *at = memchr(bytes, '\n', n);
-	assert_non_null(at);
-	for (at++; at < bytes + n;) {
-		uint32_t place[2]; // block, doubles
-		memcpy(place, at, sizeof place);
-		assert_true(place[0] < BLOCKS_MAX);
-		of_block[place[0]]++;
-		at += sizeof place + 32 + place[1] * sizeof(double);
-	}
-	assert_ptr_equal(at, bytes + n);
-	*n_once = *n_more = 0;
-	for (int block = 0; block < BLOCKS_MAX; block++) {
-		*n_once += of_block[block] == 1;
-		*n_more += of_block[block] > 1;
-	}
-	free(bytes);
-}
 
 static struct program_outcome run_with(const char *launcher, const char *launchers)
 {
@@ -85,7 +45,7 @@ static void check_same(struct program_outcome *outcome)
 	program_expect(outcome, 0);
 	if (strcmp(service_timeless(outcome->out), world.reference) != 0)
 		fail_msg("other bytes than without workers");
-	records_count(&n_once, &n_more);
+	groups_records(world.checkpoint, &n_once, &n_more);
 	assert_int_equal(n_more, 0);
 	assert_int_equal(n_once, world.n_blocks);
 }
@@ -105,7 +65,7 @@ static int setup(void **state)
 	snprintf(world.launcher, sizeof world.launcher, "echo $$ >>%s; exec %s/pound-worker --threads 1",
 	         world.pids, build ? build : "build/release");
 	char *study = service_study(ROWS, 5, 1);
-	text_write(world.study, study);
+	groups_write(world.study, study);
 	free(study);
 	struct program_outcome alone =
 	    POUND("run", "--threads", "1", "--checkpoint", world.checkpoint, world.study);
@@ -113,7 +73,7 @@ static int setup(void **state)
 	assert_string_equal(alone.err, "");
 	world.reference = strdup(service_timeless(alone.out));
 	program_free(&alone);
-	records_count(&world.n_blocks, &n_more);
+	groups_records(world.checkpoint, &world.n_blocks, &n_more);
 	assert_true(world.n_blocks >= 20 && n_more == 0);
 	unlink(world.checkpoint);
 	return 0;
@@ -127,14 +87,6 @@ static int teardown(void **state)
 		unlink(files[i]);
 	free(world.reference);
 	return rmdir(world.directory);
-}
-
-/* Blocks that workers ran, as the program reports. */
-static int blocks_elsewhere(const char *err)
-{
-	const char *line = strstr(err, "worker groups ran ");
-	assert_non_null(line);
-	return atoi(line + strlen("worker groups ran "));
 }
 
 /* The examples that are quick. */
@@ -151,7 +103,7 @@ static void every_example_gives_the_same_bytes_with_any_number_of_groups(void **
 	(void)state;
 	for (char *name = strtok(names.out, "\n"); name; name = strtok(NULL, "\n")) {
 		struct program_outcome document = POUND("example", name);
-		text_write(world.out, document.out);
+		groups_write(world.out, document.out);
 		const bool runs = !is_long(name) && strstr(document.out, "\"scene\"");
 		program_free(&document);
 		if (!runs)
@@ -168,7 +120,7 @@ static void every_example_gives_the_same_bytes_with_any_number_of_groups(void **
 				assert_non_null(strstr(outcome.err, "no workers are started"));
 			else {
 				assert_string_equal(service_timeless(outcome.out), alone.out);
-				n_blocks += blocks_elsewhere(outcome.err);
+				n_blocks += groups_blocks(outcome.err);
 				n_runs++;
 			}
 			program_free(&outcome);
@@ -181,18 +133,6 @@ static void every_example_gives_the_same_bytes_with_any_number_of_groups(void **
 	             "results that differ 0",
 	             n_examples, n_runs, n_blocks);
 	assert_true(n_examples > 10 && n_blocks > n_examples);
-}
-
-/* The processes that the launchers have started so far. */
-static int pids_read(pid_t pids[], int n_max)
-{
-	int n = 0;
-	FILE *file = fopen(world.pids, "r");
-	while (file && n < n_max && fscanf(file, "%d", &pids[n]) == 1)
-		n++;
-	if (file)
-		fclose(file);
-	return n;
 }
 
 static pid_t run_start(const char *launcher, const char *launchers)
@@ -219,17 +159,17 @@ static void killed_workers_lose_no_block_and_double_none(void **state)
 	(void)state;
 	srand(1);
 	for (int i = 0; i < n; i++) {
-		pid_t pids[16];
+		pid_t pids[GROUPS_PIDS_MAX];
 		unlink(world.pids);
 		unlink(world.checkpoint);
 		pid_t pid = run_start(world.launcher, "2");
-		while (pids_read(pids, 16) < 2)
+		while (groups_pids(world.pids, pids) < 2)
 			usleep(1000);
 		usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
 		kills += kill(pids[rand() % 2], SIGKILL) == 0;
 		struct program_outcome outcome = run_end(pid);
 		check_same(&outcome);
-		n_blocks += blocks_elsewhere(outcome.err);
+		n_blocks += groups_blocks(outcome.err);
 		noticed += strstr(outcome.err, "ended") != NULL;
 		program_free(&outcome);
 	}
@@ -238,18 +178,6 @@ static void killed_workers_lose_no_block_and_double_none(void **state)
 	             kills, noticed, n * world.n_blocks, n_blocks);
 	// on a machine that is busy many studies end before their workers are killed
 	assert_true(kills > 0 && noticed > 0 && n_blocks > 0);
-}
-
-static bool is_gone(pid_t pid)
-{
-	char path[64], state = 'X';
-	snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
-	FILE *file = fopen(path, "r");
-	if (file && fscanf(file, "%*d %*s %c", &state) != 1)
-		state = 'X';
-	if (file)
-		fclose(file);
-	return state == 'X' || state == 'Z';
 }
 
 static void a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end(void **state)
@@ -261,24 +189,18 @@ static void a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end
 	srand(2);
 	unlink(world.checkpoint);
 	while (kills < n || finished == 0) {
-		pid_t pids[16];
 		unlink(world.pids);
 		unlink(world.out); // the result, once it is there
 		pid_t pid = run_start(world.launcher, "2");
-		double until = now_s() + 1e-3 * (rand() % KILLED_AT_MS);
-		while (kills < n && now_s() < until)
+		double until = groups_now() + 1e-3 * (rand() % KILLED_AT_MS);
+		while (kills < n && groups_now() < until)
 			usleep(1000);
 		if (kills < n && kill(pid, SIGKILL) == 0)
 			kills++;
 		struct program_outcome outcome = run_end(pid);
-		const double killed = now_s();
-		for (int i = pids_read(pids, 16) - 1; i >= 0; i--)
-			while (!is_gone(pids[i])) {
-				if (now_s() - killed > 1e-3 * GONE_MS)
-					fail_msg("a worker is there %d ms after its coordinator", GONE_MS);
-				usleep(1000);
-			}
-		gone_most = now_s() - killed > gone_most ? now_s() - killed : gone_most;
+		const double killed = groups_now();
+		groups_gone(world.pids, GONE_MS);
+		gone_most = groups_now() - killed > gone_most ? groups_now() - killed : gone_most;
 		if (outcome.status == 0) {
 			check_same(&outcome);
 			finished++;
@@ -341,16 +263,16 @@ static void whatever_a_launcher_does_the_bytes_are_the_same(void **state)
 	(void)state;
 	for (size_t i = 0; i < sizeof launchers / sizeof launchers[0]; i++) {
 		char command[1024];
-		text_write(world.err, launchers[i].command);
+		groups_write(world.err, launchers[i].command);
 		snprintf(command, sizeof command, "exec bash %s", world.err);
 		unlink(world.checkpoint);
-		double start = now_s();
+		double start = groups_now();
 		struct program_outcome outcome = run_with(command, "1");
-		most = now_s() - start > most ? now_s() - start : most;
+		most = groups_now() - start > most ? groups_now() - start : most;
 		check_same(&outcome);
 		if (!strstr(outcome.err, launchers[i].reports))
 			fail_msg("%s: '%s' is not in\n%s", launchers[i].what, launchers[i].reports, outcome.err);
-		assert_int_equal(blocks_elsewhere(outcome.err), 0);
+		assert_int_equal(groups_blocks(outcome.err), 0);
 		program_free(&outcome);
 	}
 	check_report(
@@ -367,7 +289,7 @@ static void a_late_worker_takes_part(void **state)
 	struct program_outcome outcome = run_with(command, "2");
 	check_same(&outcome);
 	assert_non_null(strstr(outcome.err, "worker group 2: connected, 1 thread\n"));
-	assert_true(blocks_elsewhere(outcome.err) > 0);
+	assert_true(groups_blocks(outcome.err) > 0);
 	program_free(&outcome);
 }
 
@@ -391,21 +313,21 @@ static void workers_connect_to_the_host_that_the_user_names(void **state)
 
 static void blocks_of_a_worker_that_does_not_go_on_run_elsewhere(void **state)
 {
-	pid_t pids[2];
+	pid_t pids[GROUPS_PIDS_MAX];
 	(void)state;
 	unlink(world.pids);
 	unlink(world.checkpoint);
-	double start = now_s();
+	double start = groups_now();
 	pid_t pid = run_start(world.launcher, "1");
-	while (pids_read(pids, 2) < 1)
+	while (groups_pids(world.pids, pids) < 1)
 		usleep(1000);
 	usleep(100000);
 	assert_int_equal(kill(pids[0], SIGSTOP), 0);
 	struct program_outcome outcome = run_end(pid);
 	check_same(&outcome);
 	check_report("a worker that was stopped with blocks: the run ended after %.1f s, same bytes",
-	             now_s() - start);
-	assert_true(is_gone(pids[0]));
+	             groups_now() - start);
+	assert_true(groups_is_gone(pids[0]));
 	program_free(&outcome);
 }
 
@@ -431,7 +353,7 @@ static void a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_
 	// few blocks, whose last records are short: a response to 9 gaps
 	struct program_outcome document = POUND("example", "gap");
 	(void)state;
-	text_write(world.out, document.out);
+	groups_write(world.out, document.out);
 	program_free(&document);
 	unlink(world.checkpoint);
 	struct program_outcome whole =
@@ -492,7 +414,7 @@ static void a_checkpoint_of_another_study_or_program_is_refused(void **state)
 	}
 	unlink(world.checkpoint);
 	struct program_outcome document = POUND("example", "gap");
-	text_write(world.out, document.out);
+	groups_write(world.out, document.out);
 	program_free(&document);
 	struct program_outcome other = POUND("run", "--checkpoint", world.checkpoint, world.out);
 	program_expect(&other, 0);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "engine/pound.h"
+#include "tests/support/groups.h"
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
@@ -22,7 +23,6 @@ enum {
 	GONE_MS = 5000,     /* within which workers end after their server */
 	CANCEL_MS = 1000,   /* within which a cancelled study leaves its workers */
 	SOON_MS = 2000,     /* within which a short study ends behind a long one */
-	PIDS_MAX = 64,
 };
 
 static struct {
@@ -31,13 +31,6 @@ static struct {
 	char *study;
 	struct service_bytes reference;
 } world;
-
-static double now_s(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static int setup(void **state)
 {
@@ -62,44 +55,6 @@ static int teardown(void **state)
 	free(world.reference.result);
 	free(world.reference.samples);
 	return 0;
-}
-
-/* The processes that the launchers have started since the file was emptied. */
-static int pids_read(pid_t pids[PIDS_MAX])
-{
-	int n = 0;
-	FILE *file = fopen(world.pids, "r");
-	while (file && n < PIDS_MAX && fscanf(file, "%d", &pids[n]) == 1)
-		n++;
-	if (file)
-		fclose(file);
-	return n;
-}
-
-static bool is_gone(pid_t pid)
-{
-	char path[64], state = 'X';
-	snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
-	FILE *file = fopen(path, "r");
-	if (file && fscanf(file, "%*d %*s %c", &state) != 1)
-		state = 'X';
-	if (file)
-		fclose(file);
-	return state == 'X' || state == 'Z';
-}
-
-/* Waits for the end of all workers; returns how long that took [s]. */
-static double workers_gone(void)
-{
-	pid_t pids[PIDS_MAX];
-	const double start = now_s();
-	for (int i = pids_read(pids) - 1; i >= 0; i--)
-		while (!is_gone(pids[i])) {
-			if (now_s() - start > 1e-3 * GONE_MS)
-				fail_msg("a worker is there %d ms after its server", GONE_MS);
-			usleep(1000);
-		}
-	return now_s() - start;
 }
 
 /* Starts a server with worker groups and no worker of before. */
@@ -166,7 +121,7 @@ static void workers_run_blocks_into_the_database(void **state)
 	assert_true(n > 0);
 	assert_true(logged(service, "worker group 1: connected, 1 thread"));
 	service_stop(service);
-	workers_gone();
+	groups_gone(world.pids, GONE_MS);
 	service_free(service);
 }
 
@@ -178,12 +133,12 @@ static void killed_workers_lose_no_block_and_double_none(void **state)
 	(void)state;
 	srand(1);
 	for (int i = 0; i < n; i++) {
-		pid_t pids[PIDS_MAX];
+		pid_t pids[GROUPS_PIDS_MAX];
 		char id[17];
 		struct service *service = service_new();
 		start(service, world.launcher, "2");
 		service_submit(service, world.study, id);
-		while (pids_read(pids) < 2)
+		while (groups_pids(world.pids, pids) < 2)
 			usleep(1000);
 		usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
 		kills += kill(pids[rand() % 2], SIGKILL) == 0;
@@ -214,7 +169,7 @@ static void a_killed_server_goes_on_and_its_workers_end(void **state)
 		for (bool running = true; running && kills < n; kills++) {
 			usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
 			service_kill(service);
-			const double gone = workers_gone();
+			const double gone = groups_gone(world.pids, GONE_MS);
 			gone_most = gone > gone_most ? gone : gone_most;
 			running = service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'") == 0;
 			const int64_t done = service_number(service, "SELECT count(*) FROM block");
@@ -247,17 +202,17 @@ static void a_cancelled_study_leaves_its_workers(void **state)
 	assert_int_equal(answer.status, 200);
 	answer_free(&answer);
 	// the same workers run the next one: theirs have stopped, and are not taken for it
-	const double start_s = now_s();
+	const double start_s = groups_now();
 	char *small = service_study(SHORT_ROWS, SIGNALS, SEED);
 	service_submit(service, small, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	const double took = now_s() - start_s;
+	const double took = groups_now() - start_s;
 	check_report("a study after one that was cancelled ended after %.2f s", took);
 	assert_true(!check_soaks() || took < 1e-3 * CANCEL_MS);
 	assert_true(metric(service, "pound_worker_groups") == 2);
 	assert_false(logged(service, "the connection"));
 	service_stop(service);
-	workers_gone();
+	groups_gone(world.pids, GONE_MS);
 	service_free(service);
 	free(large);
 	free(small);
@@ -273,10 +228,10 @@ static void a_short_study_ends_soon_behind_a_long_one(void **state)
 	service_submit(service, large, long_id);
 	wait_groups(service, 2);
 	usleep(200000);
-	const double start_s = now_s();
+	const double start_s = groups_now();
 	service_submit(service, small, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	const double took = now_s() - start_s;
+	const double took = groups_now() - start_s;
 	check_report("a short study behind a long one ended after %.2f s", took);
 	assert_true(!check_soaks() || took < 1e-3 * SOON_MS);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'running'"), 1);
@@ -294,9 +249,9 @@ static void a_stopped_server_ends_its_workers_and_goes_on(void **state)
 	start(service, world.launcher, "2");
 	service_submit(service, world.study, id);
 	wait_groups(service, 2);
-	const double start_s = now_s();
+	const double start_s = groups_now();
 	service_stop(service);
-	const double stopped = now_s() - start_s, gone = workers_gone();
+	const double stopped = groups_now() - start_s, gone = groups_gone(world.pids, GONE_MS);
 	start(service, world.launcher, "1");
 	check_same(service, id);
 	service_stop(service);
@@ -309,19 +264,19 @@ static void a_stopped_server_ends_its_workers_and_goes_on(void **state)
 static void a_study_does_not_wait_for_a_worker_that_hangs(void **state)
 {
 	struct service *service = service_new();
-	pid_t pids[PIDS_MAX];
+	pid_t pids[GROUPS_PIDS_MAX];
 	char id[17], other[17];
 	(void)state;
 	start(service, world.launcher, "1");
 	service_submit(service, world.study, id);
 	wait_groups(service, 1);
-	assert_true(pids_read(pids) >= 1);
+	assert_true(groups_pids(world.pids, pids) >= 1);
 	usleep(50000);
 	assert_int_equal(kill(pids[0], SIGSTOP), 0);
-	const double start_s = now_s();
+	const double start_s = groups_now();
 	check_same(service, id);
 	check_report("a worker that was stopped with blocks: the study ended after %.1f s, same bytes",
-	             now_s() - start_s);
+	             groups_now() - start_s);
 	// nothing of the study is left in the way of the next one, whose blocks the group gets and loses, too
 	assert_int_equal(kill(pids[0], SIGCONT), 0);
 	service_submit(service, world.study, other);
@@ -364,9 +319,9 @@ static void launchers_that_fail_or_wait_delay_nothing(void **state)
 		service_submit(service, world.study, id);
 		check_same(service, id);
 		assert_true(metric(service, "pound_worker_groups") == 0);
-		const double start_s = now_s();
+		const double start_s = groups_now();
 		service_stop(service);
-		assert_true(now_s() - start_s < 1e-3 * GONE_MS);
+		assert_true(groups_now() - start_s < 1e-3 * GONE_MS);
 		service_free(service);
 	}
 }
