@@ -425,8 +425,8 @@ static void *answer_aside(void *of)
 	return NULL;
 }
 
-/* Gives a request to a thread of its own, if its client has not too many there. */
-static void put_aside(struct request *request)
+/* Gives a request to a thread of its own, which has it from then on; false: its reply is made, for its client has too many there. */
+static bool put_aside(struct request *request)
 {
 	pthread_t thread;
 	request->share = share_take(&request->server->shares, request->token ? request->token : request->client);
@@ -435,17 +435,18 @@ static void put_aside(struct request *request)
 		    API_UNAVAILABLE, "as many answers that take long are being made as this client, or all, may have",
 		    NULL);
 		request->replied = true;
-		return;
+		return false;
 	}
 	request->server->aside++;
 	connection_of(request->connection)->answering = true;
 	MHD_suspend_connection(request->connection);
 	if (pthread_create(&thread, NULL, answer_aside, request) == 0) {
 		pthread_detach(thread);
-		return;
+		return true;
 	}
 	request->reply = http_problem(API_UNAVAILABLE, "no thread can be had for this", NULL);
 	go_on(request);
+	return true;
 }
 
 /* Called with the headers, then with each part of the body, then without bytes for the answer. */
@@ -468,11 +469,9 @@ enum MHD_Result http_answer(void *of, struct MHD_Connection *connection, const c
 		head_refuse(&request->head, API_UNAVAILABLE, false, "the server stops");
 	if (request->head.fault == API_NO_FAULT && !request->replied)
 		request->replied = routes_kept(request, &request->reply);
-	if (request->head.fault == API_NO_FAULT && !request->replied && routes_slow(request)) {
-		put_aside(request);
-		if (!request->replied)
-			return MHD_YES;
-	}
+	if (request->head.fault == API_NO_FAULT && !request->replied && routes_slow(request) &&
+	    put_aside(request))
+		return MHD_YES;
 	struct reply reply = request->head.fault != API_NO_FAULT
 	                         ? http_problem(request->head.fault, request->head.detail, NULL)
 	                     : request->replied ? request->reply

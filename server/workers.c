@@ -371,7 +371,6 @@ static bool take(struct work *work, const struct taker *taker, struct step *step
  */
 static void note_over(struct work *work, struct job *job)
 {
-	// estimates let it in: a limit that they miss by more than they may holds all the same
 	if (study_status_over(job->cpu_s, work->cpu_max))
 		end(job, "cpu-limit: it took three times the CPU time of the server's --cpu-max");
 	if (job->over || !study_status_over(job->cpu_s, job->cpu_s_estimated))
@@ -678,15 +677,16 @@ bool work_stop(struct work *work)
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);
 	coordinator_stop(work->coordinator);
-	const struct timespec until = at(seconds(CLOCK_MONOTONIC) + STOP_MAX);
+	// by the wall's clock, as thread sanitizers know no other join; one that is set back meanwhile is left to the alarm
+	const struct timespec until = at(seconds(CLOCK_REALTIME) + STOP_MAX);
 	for (int w = 0; w < work->n_workers; w++)
-		if (pthread_clockjoin_np(work->workers[w], NULL, CLOCK_MONOTONIC, &until) != 0)
+		if (pthread_timedjoin_np(work->workers[w], NULL, &until) != 0)
 			return false;
 	pthread_mutex_lock(&work->lock);
 	work->drained = true;
 	pthread_cond_signal(&work->waits);
 	pthread_mutex_unlock(&work->lock);
-	if (work->commits && pthread_clockjoin_np(work->committer, NULL, CLOCK_MONOTONIC, &until) != 0)
+	if (work->commits && pthread_timedjoin_np(work->committer, NULL, &until) != 0)
 		return false;
 	if (work->watched)
 		pthread_join(work->watch, NULL);
