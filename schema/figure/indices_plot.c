@@ -380,6 +380,8 @@ void plot_pairs(struct plot *plot)
 	names = fmin(names, 140);
 	double side = fmax(fmin((plot->d.width - 3 * PLOT_MARGIN - names) / (n_inputs - 1), 72), PAIR);
 	double whole = names + (n_inputs - 1) * side + PLOT_MARGIN + 20, x = PLOT_MARGIN, y = plot->y + 8;
+	// squares below a size that holds their numbers are not drawn: a matrix of many inputs is wider than asked for
+	plot->d.width = fmax(plot->d.width, whole + PLOT_MARGIN);
 	for (int o = 0; o < n; o++) {
 		if (x > PLOT_MARGIN && x + whole > plot->d.width) {
 			x = PLOT_MARGIN;
@@ -388,6 +390,4 @@ void plot_pairs(struct plot *plot)
 		draw_pairs(plot, outputs[o], x, y, side, names);
 		x += whole;
 	}
-	if (whole + PLOT_MARGIN > plot->d.width)
-		plot->d.width = whole + PLOT_MARGIN;
 }

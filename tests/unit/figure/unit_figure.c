@@ -285,6 +285,98 @@ static void a_name_stays_text(void **state)
 	source_free(&asked);
 }
 
+static void a_long_name_keeps_its_beginning_and_its_end(void **state)
+{
+	struct drawing d;
+	size_t n;
+	(void)state;
+	draw_init(&d, 320);
+	draw_text(&d, &(struct label){.x = 10, .y = 20, .fit = 120},
+	          "the stiffness of the contact of building 11");
+	draw_text(&d, &(struct label){.x = 10, .y = 40, .fit = 60}, "ααααααααααααααααααααααααω");
+	char *svg = draw_take(&d, "title", "sentence", &n);
+	// its title is the whole
+	const char *text = strstr(svg, "<title>the stiffness of the contact of building 11</title>the s");
+	assert_non_null(text);
+	assert_non_null(strstr(text, "…"));
+	assert_non_null(strstr(text, "ng 11</text>"));
+	assert_non_null(strstr(text, "αω</text>"));
+	check_svg("a long name", svg, n);
+	free(svg);
+}
+
+static void a_curve_shows_points_without_neighbors(void **state)
+{
+	static const double x[] = {10, 20, 30, 40, 50}, y[] = {10, NAN, 15, NAN, 20};
+	struct drawing d;
+	size_t n;
+	(void)state;
+	draw_init(&d, 320);
+	draw_curve(&d, &(struct pen){.width = 2}, 5, x, y);
+	char *svg = draw_take(&d, "title", "sentence", &n);
+	assert_non_null(strstr(svg, "stroke-linecap=\"round\""));
+	assert_non_null(strstr(svg, "M10 10L10 10M30 15L30 15M50 20L50 20"));
+	free(svg);
+}
+
+static void a_short_logarithmic_axis_has_two_ticks_at_least(void **state)
+{
+	static const struct range ranges[] = {{0.03, 0.2}, {2, 3}, {1e-300, 4e-300}, {1e-250, 1e250}};
+	(void)state;
+	for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++)
+		for (int most = 2; most < 8; most++) {
+			struct ticks ticks;
+			struct axis axis = axis_log(ranges[i]);
+			axis.start = 0, axis.end = 200;
+			axis_ticks(&axis, most, &ticks);
+			if (ticks.n < 2)
+				fail_msg("range %zu, at most %d: %d ticks", i, most, ticks.n);
+		}
+}
+
+static void what_has_no_value_says_so(void **state)
+{
+	// results of which nothing but counts is left
+	static const char *const names[] = {"sensitivity_small", "floor_spectrum", "response", "street", "until"};
+	(void)state;
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+		struct figure_source source = result_of(example_text(names[i])), none = {0};
+		char *json = with_numbers(source.json, "null", &none.length);
+		none.json = json;
+		for (const struct figure_row *row = figure_rows; row->name; row++) {
+			if (row->sampled || strcmp(row->name, "pairs") == 0 || !figure_has(row, &none))
+				continue;
+			struct figure figure = drawn(row->name, &none, &(struct figure_choice){0});
+			if (!strstr(figure.svg, ">no value<"))
+				fail_msg("%s of %s is an empty frame", row->name, names[i]);
+			free(figure.svg);
+		}
+		free(json);
+		source_free(&source);
+	}
+}
+
+static void a_force_is_drawn_for_each_contact(void **state)
+{
+	static const char samples[] = "signal,time_s,contact_force_n,gap_m\r\n"
+	                              "0,0,0,0.1\r\n0,1,0,0\r\n0,1,2,0\r\n0,2,5,-0.2\r\n0,3,-1,0\r\n0,3,0,0\r\n"
+	                              "0,4,0,0.3\r\n0,5,0,0\r\n0,6,3,-0.1\r\n0,7,0,0\r\n1,7,9,-9\r\n";
+	const struct figure_source source = {
+	    .json = "{}", .length = 2, .samples = samples, .n_samples = sizeof samples - 1};
+	(void)state;
+	struct figure figure = drawn("force", &source, &(struct figure_choice){0});
+	assert_non_null(
+	    strstr(figure.svg, "<desc>2 contacts; the largest force is 5 N, the largest overlap 0.2 m.</desc>"));
+	int curves = 0;
+	for (const char *c = figure.svg; (c = strstr(c, "fill=\"none\"")); c++)
+		curves++;
+	assert_int_equal(curves, 2);
+	free(figure.svg);
+	figure = drawn("force", &source, &(struct figure_choice){.to = "0.5"});
+	assert_non_null(strstr(figure.svg, "no value"));
+	free(figure.svg);
+}
+
 static void the_golden_figures_have_not_changed(void **state)
 {
 	// pound plot NAME tests/cases/figures/SOURCE >tests/cases/figures/NAME.svg, then look at it
@@ -414,6 +506,11 @@ int main(void)
 	    cmocka_unit_test(every_figure_of_every_example_is_well_formed_and_within_its_view_box),
 	    cmocka_unit_test(a_figure_has_a_mark_for_each_index),
 	    cmocka_unit_test(a_name_stays_text),
+	    cmocka_unit_test(a_long_name_keeps_its_beginning_and_its_end),
+	    cmocka_unit_test(a_curve_shows_points_without_neighbors),
+	    cmocka_unit_test(a_short_logarithmic_axis_has_two_ticks_at_least),
+	    cmocka_unit_test(what_has_no_value_says_so),
+	    cmocka_unit_test(a_force_is_drawn_for_each_contact),
 	    cmocka_unit_test(the_golden_figures_have_not_changed),
 	    cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
 	    cmocka_unit_test(a_result_lists_the_figures_that_it_has),
