@@ -257,10 +257,22 @@ struct pound_sweep {
 	const double *values; /* (n_values) */
 };
 
-/* A design that grows until every interval of S1 and ST is narrow. */
+/* What a design grows for: X(enumerator, name). */
+#define POUND_GOALS(X)                                                       \
+	X(POUND_GOAL_WIDTH, "width") /* every interval of S1 and ST is narrow */ \
+	X(POUND_GOAL_ORDER,                                                      \
+	  "order") /* the order of the inputs by ST is certain: intervals that overlap are narrow */
+
+#define X(name, text) name,
+enum pound_goal { POUND_GOALS(X) POUND_N_GOALS };
+#undef X
+
+/* A design that grows until intervals are narrow. */
 struct pound_until {
 	double half_width; /* that each is to have at most; 0: the design does not grow */
 	int max_runs;      /* pounding runs at most */
+	int goal;          /* enum pound_goal: which intervals */
+	int output;        /* 0: of all outputs; else 1 + the row of the one that counts */
 };
 
 struct pound_design {

@@ -1,6 +1,7 @@
 /* run_growth.c - a design that grows until every interval that was asked for is narrow, and results of its first rows.
  *
- * 1. After each look's reductions the widest interval is sought, over all cells, outputs and inputs, of S1 and ST.
+ * 1. After each look's reductions the widest interval that counts is sought, over all cells, outputs and inputs: of S1 and
+ *    ST, or of an ST whose interval overlaps another input's, so that their order is not certain.
  * 2. It alone decides; growing further waits for it.
  *
  * Looking again and again at a design of 10 batches or more, or of nets that double, leaves the intervals at the stop the
@@ -21,21 +22,43 @@ int pound_run_looks_most(const struct pound_study *study)
 	return looks;
 }
 
-static void widen(struct pound_look *widest, int cell, int output, const struct pound_indices *indices,
-                  int n_inputs)
+/* Whether an interval of ST overlaps that of another input; one without an end does. */
+static bool overlaps(const struct pound_estimate *total, int n_inputs, int input)
+{
+	for (int j = 0; j < n_inputs; j++)
+		if (j != input && !(total[j].low > total[input].high || total[j].high < total[input].low))
+			return true;
+	return false;
+}
+
+static void widen(struct pound_look *widest, const struct pound_look *at, const struct pound_study *study,
+                  const struct pound_indices *indices)
 {
 	static const enum pound_index asked[] = {POUND_S1, POUND_ST};
-	for (int k = 0; k < 2; k++)
-		for (int j = 0; j < n_inputs; j++) {
+	const bool order = study->design.until.goal == POUND_GOAL_ORDER;
+	for (int k = order; k < 2; k++)
+		for (int j = 0; j < study->n_inputs; j++) {
 			const struct pound_estimate *e = &indices->index[asked[k]][j];
 			double width = e->high - e->low, half = isnan(width) ? INFINITY : 0.5 * width;
-			if (half > widest->half_width)
-				*widest = (struct pound_look){
-				    .half_width = half, .cell = cell, .output = output, .input = j, .index = asked[k]};
+			if (half > widest->half_width &&
+			    (!order || overlaps(indices->index[POUND_ST], study->n_inputs, j)))
+				*widest = (struct pound_look){.half_width = half,
+				                              .cell = at->cell,
+				                              .output = at->output,
+				                              .input = j,
+				                              .index = asked[k]};
 		}
 }
 
-/* The widest interval of an S1 or ST.
+/* Whether a design waits for an output of a scene. */
+static bool awaited(const struct pound_study *study, int output, const struct pound_scene *scene)
+{
+	const int one = study->design.until.output;
+	return study->elsewhere || (pound_output_applies(study->outputs[output], scene) &&
+	                            (one == 0 || study->outputs[output] == one - 1));
+}
+
+/* The widest interval that counts.
  *
  * Given    cells       (of the study)    reduced
  * Returns  value       -                 all but the rows; of several as wide the first
@@ -54,8 +77,8 @@ static struct pound_look widest_of(const struct pound_cells *campaign, const str
 		for (int output = 0; output < study->n_outputs; output++) {
 			const struct pound_indices *indices = &cells[cell].indices[output];
 			bool constant = indices->notes >> POUND_NOTE_CONSTANT & 1;
-			if (!constant && (study->elsewhere || pound_output_applies(study->outputs[output], &scene)))
-				widen(&widest, cell, output, indices, study->n_inputs);
+			if (!constant && awaited(study, output, &scene))
+				widen(&widest, &(struct pound_look){.cell = cell, .output = output}, study, indices);
 		}
 	}
 	return widest;

@@ -57,12 +57,16 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 	const struct pound_until *until = &study->design.until;
 	const struct pound_look *last = &result->looks[result->n_looks - 1];
 	const bool reached = last->half_width <= until->half_width;
-	char note[400], output[STUDY_OUTPUT_SIZE];
-	int n = snprintf(note, sizeof note,
-	                 reached ? "every interval of S1 and ST has a half-width of at most %.3g"
-	                         : "max_runs allows no more rows, and not every interval of S1 and ST has a "
-	                           "half-width of at most %.3g",
-	                 until->half_width);
+	const bool order = until->goal == POUND_GOAL_ORDER;
+	char note[500], output[STUDY_OUTPUT_SIZE], of[STUDY_OUTPUT_SIZE + 16] = "";
+	if (until->output)
+		snprintf(of, sizeof of, " of output %s", pound_output_name(until->output - 1));
+	const char *which = order ? "interval of ST that overlaps another input's" : "interval of S1 and ST";
+	int n =
+	    snprintf(note, sizeof note, "%s%severy %s%s has a half-width of at most %.3g",
+	             reached ? "" : "max_runs allows no more rows, and not ",
+	             reached && order && last->half_width < 0 ? "the order of the inputs by ST is certain: " : "",
+	             which, of, until->half_width);
 	if (last->half_width >= 0)
 		snprintf(note + n, sizeof note - (size_t)n, "; the widest is that of %s of input %s for output %s",
 		         index_names[last->index], study->inputs[last->input].name,
@@ -70,6 +74,10 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 	writer_object(w, "stopping", WRITER_LINES);
 	writer_number(w, "half_width", until->half_width);
 	writer_whole(w, "max_runs", until->max_runs);
+	if (order)
+		writer_text(w, "goal", "order");
+	if (until->output)
+		writer_text(w, "output", pound_output_name(until->output - 1));
 	writer_bool(w, "reached", reached);
 	writer_whole(w, "rows", last->rows);
 	writer_whole(w, "runs", runs_of(study, last->rows));

@@ -31,6 +31,19 @@ static const char *directions_name(int both)
 	return both == 0 ? "one" : both == 1 ? "both" : NULL;
 }
 
+static const char *goal_name(int goal)
+{
+#define X(name, text) text,
+	static const char *const names[] = {POUND_GOALS(X) NULL};
+#undef X
+	return names[goal];
+}
+
+static const char *until_output_name(int row)
+{
+	return row == 0 ? "all" : pound_output_name(row - 1);
+}
+
 #define AT(member)          offsetof(struct pound_study, member)
 #define LAW                 AT(scene.law)
 #define OWN                 AT(scene.oscillators[0].law)
@@ -321,6 +334,11 @@ const struct field fields[] = {
 	 .text = "largest accepted half-width of the 95 % intervals of all S1 and ST", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 200000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
 	 .text = "limit of pounding runs; at least those of the first rows", SENSITIVITY, WITH_SCENE, NOT_SCENE},
+	{"/design/until/goal", FIELD_CHOICE, AT(design.until.goal), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "width: all intervals of S1 and ST; order: only those of ST that overlap the interval of another input", .choice = goal_name, SENSITIVITY,
+	 WITH_SCENE, NOT_SCENE, LATER},
+	{"/design/until/output", FIELD_CHOICE, AT(design.until.output), 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "output whose intervals count, one of `outputs`", .choice = until_output_name, SENSITIVITY, WITH_SCENE, NOT_SCENE, LATER},
 	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
 	 .text = "seed of the random numbers; the same seed gives the same result", NOT_SCENE},
 	{"/design/signals", FIELD_ALTERNATIVE, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",

@@ -115,6 +115,12 @@ static void check_until(const struct pound_study *study, struct problems *proble
 		    problems, "/design/until",
 		    "needs /scene/excitation/signals of 2 or more, or \"independent\" /design/signals: ST cannot "
 		    "be estimated from one signal that the samples of a row share");
+	bool listed = study->design.until.output == 0;
+	for (int o = 0; o < study->n_outputs; o++)
+		listed |= study->outputs[o] == study->design.until.output - 1;
+	if (!listed && !problems_at(problems, "/outputs") && !problems_at(problems, "/design/until/output"))
+		problems_add(problems, "/design/until/output", "must be one of the study's outputs, got \"%s\"",
+		             pound_output_name(study->design.until.output - 1));
 }
 
 void study_size_check(const struct pound_study *study, struct problems *problems)

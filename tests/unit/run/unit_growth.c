@@ -346,7 +346,81 @@ static void a_study_finds_nothing_of_the_one_before_it_in_memory(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(a_study_finds_nothing_of_the_one_before_it_in_memory),
+/* Totals of x0 / 2 + 2 x1 / 3 + x2 + 2 x3 are as 9 : 16 : 36 : 144; two inputs with as many waves have the same ones, and
+ * no polynomial follows them. */
+static double four_effects(const double *x)
+{
+	return x[0] / 2 + 2 * x[1] / 3 + x[2] + 2 * x[3];
+}
+
+static double two_effects(const double *x)
+{
+	return sin(40 * M_PI * x[0]) + sin(40 * M_PI * x[1]);
+}
+
+static void a_design_stops_when_the_order_of_the_inputs_is_certain(void **state)
+{
+	(void)state;
+	static const struct function different = {.name = "different", .y = four_effects},
+	                             same = {.name = "same", .y = two_effects};
+	for (int k = 0; k < 2; k++) {
+		struct pound_study study = study_of("lhs", 1000, 3, 1e-6, 12000);
+		study.design.until.goal = POUND_GOAL_ORDER;
+		struct pound_run *run = pound_run_create(&study, 1);
+		int first = 0;
+		do {
+			assign(run, k ? &same : &different, first);
+			first = pound_run_rows(run);
+			assert_int_equal(pound_run_reduce(run, 0, 0), POUND_OK);
+		} while (pound_run_grow(run));
+		const struct pound_result *result = pound_run_result(run);
+		const struct pound_look *last = &result->looks[result->n_looks - 1];
+		if (k) {
+			// equal indices are never in order: max_runs ends it
+			assert_int_equal(last->rows, 2000);
+			assert_true(last->half_width > 1e-6 && last->index == POUND_ST);
+		} else {
+			assert_int_equal(result->n_looks, 1);
+			check_near(last->half_width, -1, 0);
+			for (int j = 1; j < D; j++)
+				assert_true(result->cells[0].indices[0].index[POUND_ST][j].low >
+				            result->cells[0].indices[0].index[POUND_ST][j - 1].high);
+		}
+		pound_run_free(run);
+	}
+}
+
+static void a_design_waits_for_one_output_alone(void **state)
+{
+	(void)state;
+	char *waiting =
+	    study_documents_with(study_documents_sensitivity, "\"rows\": 10",
+	                         "\"until\": {\"half_width\": 0.9, \"max_runs\": 4000, \"output\": \"impulse\"}");
+	struct pound_study *study = study_documents_study(waiting);
+	int impulse = 0;
+	while (impulse < study->n_outputs && strcmp(pound_output_name(study->outputs[impulse]), "impulse") != 0)
+		impulse++;
+	assert_true(impulse > 0 && impulse < study->n_outputs);
+	assert_int_equal(study->design.until.output, 1 + study->outputs[impulse]);
+	struct pound_run *run = pound_run_create(study, 1);
+	int block = 0;
+	do {
+		for (; block < pound_run_blocks(run); block++)
+			assert_int_equal(pound_run_block(run, block, 0), POUND_OK);
+		for (int k = 0; k < pound_run_reductions(run); k++)
+			assert_int_equal(pound_run_reduce(run, k, 0), POUND_OK);
+	} while (pound_run_grow(run));
+	const struct pound_result *result = pound_run_result(run);
+	assert_int_equal(result->n_looks, 1);
+	assert_int_equal(result->looks[0].output, impulse);
+	pound_run_free(run);
+	study_free(study);
+	free(waiting);
+}
+
+CHECK_MAIN(cmocka_unit_test(a_design_stops_when_the_order_of_the_inputs_is_certain),
+           cmocka_unit_test(a_design_waits_for_one_output_alone),
+           cmocka_unit_test(a_study_finds_nothing_of_the_one_before_it_in_memory),
            cmocka_unit_test(a_design_grows_by_whole_batches_and_by_doubling),
            cmocka_unit_test(a_grown_design_keeps_its_rows),
            cmocka_unit_test(a_design_stops_at_the_first_look_that_finds_every_interval_narrow),
