@@ -321,6 +321,11 @@ static void print_closed(const struct reading *result, const char *output)
 	print_estimates(result, output, "closed", "inputs", "");
 }
 
+static void print_groups(const struct reading *result, const char *output)
+{
+	print_estimates(result, output, "groups", "group", "");
+}
+
 static void print_ratios(const struct reading *result, const char *output)
 {
 	print_estimates(result, output, "ratios/variables", "variable", "");
@@ -374,6 +379,7 @@ static const struct {
 	{"excitation",        print_others},
 	{"second_order",      print_second_order},
 	{"closed",            print_closed},
+	{"groups",            print_groups},
 	{"ratios",            print_ratios},
 	{"conditional_means", print_curves},
 };

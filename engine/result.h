@@ -123,6 +123,12 @@ struct pound_ratio_indices {
 	    shapley[POUND_FACTORIAL_INPUTS_MAX]; /* (n) each */
 };
 
+/* Indices of the study's groups of inputs, each as of one input. */
+struct pound_group_indices {
+	int n; /* 0: none were asked, or too few rows */
+	struct pound_estimate first[POUND_GROUPS_MAX], total[POUND_GROUPS_MAX]; /* (n) each */
+};
+
 /* The mean output given an input: at every value of a discrete one of up to POUND_CURVE, of any other where its
  * probability is (k + 1/2) / POUND_CURVE; NAN: too few rows. */
 enum { POUND_CURVE = 50 };
@@ -244,7 +250,7 @@ struct pound_accuracy {
 	X(POUND_NOTE_NO_INTERVAL,                                                             \
 	  "too few rows for an interval of every index; indices without one are unreliable")    \
 	X(POUND_NOTE_FEW_DECIDE,                                                              \
-	  "one row contributes at least a fifth of the variance, so intervals may be too narrow: use more rows")
+	  "few rows hold most of the variance, so intervals are too narrow")
 // clang-format on
 
 #define X(name, text) name,
@@ -259,12 +265,15 @@ struct pound_indices {
 	double noise_share;    /* of the variance over all samples, due to the excitation; NAN: one signal */
 	double ratio_bias;     /* of the outputs as ratios of means of few signals, on average; NAN: one signal */
 	unsigned notes;        /* bits 1 << enum pound_note */
+	double
+	    rows_needed; /* for intervals wide enough, where few rows hold most of the variance; NAN: no more */
 	struct pound_estimate share[POUND_N_SHARES];
 	struct pound_estimate *index[POUND_N_INDICES]; /* (n_inputs) each */
 	struct pound_estimate
 	    *named[POUND_N_NAMED]; /* of the study's estimator, if it has one  (n_inputs) each */
 	struct pound_set_indices sets;
 	struct pound_ratio_indices ratios;
+	struct pound_group_indices groups;
 	struct pound_curve *curves;                /* (n_inputs); NULL: not wanted */
 	struct pound_estimate impulse_correlation; /* of an ordinate with the largest impulse; NAN: no ordinate */
 	struct pound_accuracy accuracy;

@@ -18,17 +18,18 @@ enum {
 	POUND_OUTPUTS_MAX = 8 + 3 * 64, /* outputs of one study, each ordinate and each place one of its own */
 	POUND_SWEEPS_MAX = 8,           /* swept fields of one study */
 	POUND_RATIOS_MAX = 3,           /* ratios of inputs of one study */
+	POUND_GROUPS_MAX = 8,           /* groups of inputs of one study */
 	POUND_SOLVERS = 4,              /* rows of the solvers */
 	POUND_CONTACT_MODELS = 10,      /* rows of the contact models */
 	POUND_SETTINGS_MAX = 16,        /* of one solver that are compared */
 	POUND_BALANCED_SIGNALS = 32, /* of each cell of a response study have energy balances: the first ones */
 	POUND_ROWS_MAX = 1 << 20,    /* rows of a design */
-	POUND_FACTORIAL_INPUTS_MAX = 5,               /* inputs whose every mixture of A and B is run */
-	POUND_SAMPLES_MAX = 2 * POUND_INPUTS_MAX + 2, /* of a row of the design */
-	POUND_BUILDINGS_MAX = 8,                      /* of a row of buildings */
-	POUND_STOREYS_MAX = 50,                       /* of a building */
-	POUND_CONTACTS_MAX = 400,                     /* between the buildings of a row */
-	POUND_PLACES_MAX = 64,                        /* storeys whose outputs are wanted */
+	POUND_FACTORIAL_INPUTS_MAX = 5, /* inputs whose every mixture of A and B is run */
+	POUND_SAMPLES_MAX = 2 * POUND_INPUTS_MAX + 2 + POUND_GROUPS_MAX, /* of a row of the design */
+	POUND_BUILDINGS_MAX = 8,                                         /* of a row of buildings */
+	POUND_STOREYS_MAX = 50,                                          /* of a building */
+	POUND_CONTACTS_MAX = 400,                                        /* between the buildings of a row */
+	POUND_PLACES_MAX = 64,                                           /* storeys whose outputs are wanted */
 };
 
 // why a run has no result
@@ -250,6 +251,14 @@ struct pound_ratio {
 	const char *of[2]; /* paths of the inputs above and below */
 };
 
+/* Inputs whose indices are wanted as of one. */
+struct pound_group {
+	const char *name; /* for people */
+	int n;
+	const char *of[POUND_INPUTS_MAX]; /* paths of the inputs  (n) */
+	unsigned inputs;                  /* bit j: input j */
+};
+
 struct pound_sweep {
 	const char *path;
 	struct pound_field field;
@@ -327,6 +336,8 @@ struct pound_study {
 	struct pound_input *inputs; /* (n_inputs) */
 	int n_ratios;
 	struct pound_ratio ratios[POUND_RATIOS_MAX]; /* (n_ratios) */
+	int n_groups;
+	struct pound_group groups[POUND_GROUPS_MAX]; /* (n_groups) */
 	int n_sweeps;
 	struct pound_sweep *sweeps; /* (n_sweeps); the cells are their product, the last sweep fastest */
 	struct pound_design design;
@@ -404,14 +415,16 @@ struct pound_solver pound_convergence_solver(const struct pound_study *study, in
 struct pound_trial;
 double pound_convergence_order(const struct pound_trial *trials, int n_trials, int method);
 
-/* Samples of a row of the study's design: A, B, A with column j from B for every j, ... (engine/design/row_samples.h). */
+/* Samples of a row of the study's design: A, B, A with column j from B for every j, ... (engine/design/row_samples.h), and then A
+ * with the columns of each group from B. */
 int pound_design_samples(const struct pound_study *study);
 int pound_design_order(const struct pound_study *study);
-unsigned pound_order_mask(int n_inputs, int sample); /* bit j: column j of the sample is from B */
+unsigned pound_design_mask(const struct pound_study *study,
+                           int sample); /* bit j: column j of the sample is from B */
 
-/* The input of a path, -1: none; how many variables ratios and the inputs in none are, and which inputs those are
+/* The input of a path, or of a name elsewhere, -1: none; how many variables ratios and the inputs in none are, and which inputs those are
  * (rest may be NULL); whether an input of this distribution may be in a ratio. */
-int pound_ratio_input(const struct pound_study *study, const char *path);
+int pound_study_input(const struct pound_study *study, const char *path);
 int pound_ratio_variables(const struct pound_study *study, int *rest);
 bool pound_ratio_takes(const struct pound_distribution *distribution);
 

@@ -130,7 +130,14 @@ int pound_design_order(const struct pound_study *study)
 /* Samples of a row. */
 int pound_design_samples(const struct pound_study *study)
 {
-	return pound_order_samples(pound_design_order(study), study->n_inputs);
+	return pound_order_samples(pound_design_order(study), study->n_inputs) + study->n_groups;
+}
+
+unsigned pound_design_mask(const struct pound_study *study, int sample)
+{
+	const int ungrouped = pound_design_samples(study) - study->n_groups;
+	return sample < ungrouped ? pound_order_mask(study->n_inputs, sample)
+	                          : study->groups[sample - ungrouped].inputs;
 }
 
 /* Whether rows that are near in one input are arranged in the others, not there by chance. */
@@ -271,8 +278,7 @@ void pound_design_values(const struct pound_study *study, const double *u, const
 		x[k] = pound_distribution_quantile(&study->inputs[k % (size_t)d].distribution, u[k]);
 }
 
-double pound_design_input(const double *x, int n_inputs, int row, int sample, int j)
+double pound_design_input(const double *x, int n_inputs, int row, unsigned from_b, int j)
 {
-	const unsigned from_b = pound_order_mask(n_inputs, sample) >> j & 1;
-	return x[((size_t)row * 2 + from_b) * n_inputs + j];
+	return x[((size_t)row * 2 + (from_b >> j & 1)) * n_inputs + j];
 }

@@ -20,7 +20,7 @@ struct pound_grouping {
 };
 struct pound_grouping pound_design_grouping(const struct pound_study *study);
 
-/* Input j of a sample of a row. */
-double pound_design_input(const double *x, int n_inputs, int row, int sample, int j);
+/* Input j of the sample of a row that has these columns from B. */
+double pound_design_input(const double *x, int n_inputs, int row, unsigned from_b, int j);
 
 #endif

@@ -1,7 +1,7 @@
 /* row_samples.h - which samples a row of the design has: mixtures of A and B, each a set of the columns that are from B.
  *
  * Samples come in one order for all: A, B, A with column j from B for every j, B with column j from A for every j,
- * and then all other mixtures; an order of the design is how far a row goes. */
+ * and then all other mixtures; an order of the design is how far a row goes.  A study's groups of inputs follow. */
 #ifndef ROW_SAMPLES_H
 #define ROW_SAMPLES_H
 
@@ -20,6 +20,7 @@ enum {
 };
 
 int pound_order_samples(int order, int n_inputs);    /* of a row */
+unsigned pound_order_mask(int n_inputs, int sample); /* bit j: column j is from B */
 int pound_order_sample(int n_inputs, unsigned mask); /* the first one with these columns from B */
 
 #endif

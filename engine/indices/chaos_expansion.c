@@ -56,9 +56,10 @@ struct fits {
 	int first[FOLDS + 1]; /* of each fold among them */
 };
 
-static size_t carve(struct fits *f, double *scratch, int n_rows, int n_inputs, int order)
+static size_t carve(struct fits *f, double *scratch, const struct pound_sample_values *shape)
 {
-	pound_closed_init(&f->closed, n_inputs, order);
+	const int n_rows = shape->n_rows, n_inputs = shape->n_inputs;
+	pound_closed_init(&f->closed, shape);
 	f->degree = pound_chaos_expansion_degree(n_rows, n_inputs, f->closed.n_samples);
 	f->terms = pound_legendre_terms(n_inputs, f->degree);
 	f->squares = pound_legendre_terms(n_inputs, 2 * f->degree);
@@ -195,7 +196,7 @@ static void kept_fill(const struct fits *f)
 
 size_t pound_chaos_expansion_kept_size(const struct pound_sample_values *shape)
 {
-	const int n_samples = pound_order_samples(shape->order, shape->n_inputs);
+	const int n_samples = pound_values_samples(shape);
 	const int degree = pound_chaos_expansion_degree(shape->n_rows, shape->n_inputs, n_samples);
 	const size_t terms = (size_t)pound_legendre_terms(shape->n_inputs, degree);
 	return FOLDS + FOLDS * terms * terms + (size_t)shape->n_rows;
@@ -365,7 +366,7 @@ static void curves_fill(struct fits *f, struct pound_curve *curves)
 size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape)
 {
 	struct fits fits;
-	return carve(&fits, NULL, shape->n_rows, shape->n_inputs, shape->order);
+	return carve(&fits, NULL, shape);
 }
 
 /* All indices and conditional means with a cross-fitted polynomial as control variate.
@@ -390,9 +391,10 @@ void pound_chaos_expansion_indices(const struct pound_rows *rows, const struct p
                                    struct pound_closed_results *results, struct pound_curve *curves)
 {
 	struct fits fits = {.rows = rows, .u = sampling->u, .kept = sampling->kept};
-	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
+	const struct pound_sample_values shape = pound_rows_shape(rows);
+	carve(&fits, scratch, &shape);
 	for (int sample = 0; sample < rows->n_samples; sample++)
-		fits.mask[sample] = pound_order_mask(rows->n_inputs, sample);
+		fits.mask[sample] = pound_rows_mask(rows, sample);
 	folds_fill(&fits);
 	fits_fill(&fits);
 	fits_shrink(&fits);
@@ -415,7 +417,8 @@ void pound_chaos_expansion_first_rows(const struct pound_rows *rows, int n, doub
 {
 	struct fits fits = {.rows = rows};
 	struct pound_rows part = *rows;
-	carve(&fits, scratch, rows->n_rows, rows->n_inputs, rows->order);
+	const struct pound_sample_values shape = pound_rows_shape(rows);
+	carve(&fits, scratch, &shape);
 	part.n_rows = n;
 	pound_closed_indices(&fits.closed, fits.estimates, &part, fits.rest, results);
 }

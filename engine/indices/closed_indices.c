@@ -23,26 +23,42 @@ static int column_of(const struct pound_closed *closed, unsigned set)
 	return -1;
 }
 
-/* Every set for few inputs; for many only those of no input, one, two, all but one, and all. */
-static bool wanted(int n_inputs, unsigned set)
+/* Every set for few inputs; for many only those of no input, one, two, all but one, and all, and groups and what is in none. */
+static bool wanted(const struct pound_closed *closed, unsigned set)
 {
-	int size = __builtin_popcount(set);
-	return n_inputs <= POUND_FACTORIAL_INPUTS_MAX || size <= 2 || size >= n_inputs - 1;
+	const int size = __builtin_popcount(set), n_inputs = closed->n_inputs;
+	bool is = n_inputs <= POUND_FACTORIAL_INPUTS_MAX || size <= 2 || size >= n_inputs - 1;
+	for (int g = 0; g < closed->n_groups; g++)
+		is |= set == closed->group[g] || set == (all_of(closed) ^ closed->group[g]);
+	return is;
+}
+
+static bool by_difference(const struct pound_closed *closed, unsigned set)
+{
+	bool is = __builtin_popcount(set) == closed->n_inputs - 1;
+	for (int g = 0; g < closed->n_groups; g++)
+		is |= set == (all_of(closed) ^ closed->group[g]);
+	return is;
+}
+
+static unsigned mask_of(const struct pound_closed *closed, int sample)
+{
+	const int ungrouped = closed->n_samples - closed->n_groups;
+	return sample < ungrouped ? pound_order_mask(closed->n_inputs, sample)
+	                          : closed->group[sample - ungrouped];
 }
 
 static void pairs_fill(struct pound_closed *closed)
 {
-	const int d = closed->n_inputs;
 	int count[POUND_CLOSED_COLUMNS_MAX] = {0};
 	for (int p = 0; p < closed->n_samples; p++)
 		for (int q = p + 1; q < closed->n_samples; q++) {
-			unsigned set = all_of(closed) & ~(pound_order_mask(d, p) ^ pound_order_mask(d, q));
+			unsigned set = all_of(closed) & ~(mask_of(closed, p) ^ mask_of(closed, q));
 			int column = column_of(closed, set);
 			if (set == all_of(closed) || column < 0)
 				continue;
 			assert(closed->n_pairs < POUND_CLOSED_PAIRS_MAX);
-			closed->pair[closed->n_pairs++] =
-			    (struct pound_closed_pair){p, q, column, __builtin_popcount(set) == d - 1, 0.0};
+			closed->pair[closed->n_pairs++] = (struct pound_closed_pair){p, q, column, 0.0};
 			count[column]++;
 		}
 	for (int k = 0; k < closed->n_pairs; k++)
@@ -55,12 +71,17 @@ static void pairs_fill(struct pound_closed *closed)
  *
  * Test     unit_closed_indices: four_inputs_have_every_set_in_the_plain_design
  */
-void pound_closed_init(struct pound_closed *closed, int n_inputs, int order)
+void pound_closed_init(struct pound_closed *closed, const struct pound_sample_values *shape)
 {
-	*closed = (struct pound_closed){.n_inputs = n_inputs, .n_samples = pound_order_samples(order, n_inputs)};
+	*closed = (struct pound_closed){
+	    .n_inputs = shape->n_inputs, .n_samples = pound_values_samples(shape), .n_groups = shape->n_groups};
+	for (int g = 0; g < shape->n_groups; g++)
+		closed->group[g] = shape->groups[g].inputs;
 	for (unsigned set = 0; set <= all_of(closed); set++)
-		if (wanted(n_inputs, set))
+		if (wanted(closed, set)) {
+			closed->difference[closed->n_columns] = by_difference(closed, set);
 			closed->set[closed->n_columns++] = set;
+		}
 	pairs_fill(closed);
 }
 
@@ -68,7 +89,7 @@ void pound_closed_init(struct pound_closed *closed, int n_inputs, int order)
  * samples say of the output y and do not say of g:
  *
  *   all inputs     C = G + mean over samples of y^2 - g^2
- *   all but one    C_u = C - (G - G_u) - mean over pairs of ((y_p - y_q)^2 - (g_p - g_q)^2) / 2
+ *   all but one, all but a group    C_u = C - (G - G_u) - mean over pairs of ((y_p - y_q)^2 - (g_p - g_q)^2) / 2
  *   other sets     C_u = G_u + mean over pairs of y_p y_q - g_p g_q
  *
  * Given    y          (n_samples)               outputs of the row
@@ -99,7 +120,7 @@ void pound_closed_row(const struct pound_closed *closed, const double *y,
 		const struct pound_closed_pair *pair = &closed->pair[k];
 		const int p = pair->p, q = pair->q, n = n_samples;
 		double *into = &estimate[pair->column];
-		if (pair->difference) {
+		if (closed->difference[pair->column]) {
 			double change = y[p] - y[q], g_change = g ? g[p] - g[q] : 0.0;
 			double square = change * change - g_change * g_change;
 			square -= noise ? noise[p * n + p] + noise[q * n + q] - 2.0 * noise[p * n + q] : 0.0;
@@ -111,7 +132,7 @@ void pound_closed_row(const struct pound_closed *closed, const double *y,
 	}
 	const double missed = estimate[last] - part[last];
 	for (int k = 0; k < last; k++)
-		if (__builtin_popcount(closed->set[k]) == closed->n_inputs - 1)
+		if (closed->difference[k])
 			estimate[k] += missed;
 }
 
@@ -264,6 +285,7 @@ size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows)
  *          rows       -                          how many, their groups, what is rounding
  * Returns  first, total, shapley   (n_inputs)    NAN where the design lacks a set of inputs
  *          sets       -                          second-order and closed indices of the sets that the design has
+ *          groups     -                          of each group as of one input
  * Memory   scratch    (pound_closed_scratch)
  *
  *   first S_j = C_j / C     total T_j = 1 - C_(all but j) / C     second order S_jk = (C_jk - C_j - C_k) / C
@@ -295,6 +317,15 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 		results->first[j] = ratio_interval(&first, &columns);
 		results->total[j] = ratio_interval(&total, &columns);
 		results->shapley[j] = ratio_interval(&effect, &columns);
+	}
+	results->groups.n = closed->n_groups;
+	for (int g = 0; g < closed->n_groups; g++) {
+		struct combination first = combination(&columns), total = first;
+		add_closed(&first, 1.0, closed->group[g]);
+		add_closed(&total, 1.0, all);
+		add_closed(&total, -1.0, all ^ closed->group[g]);
+		results->groups.first[g] = ratio_interval(&first, &columns);
+		results->groups.total[g] = ratio_interval(&total, &columns);
 	}
 	sets_fill(&columns, &results->sets);
 }

@@ -61,7 +61,7 @@ static void points_fill(struct points *points, const struct pound_conditional *g
 	points->n = 2 * rows->n_rows;
 	points->weight[0] = points->weight[1] = 0.0;
 	for (int p = 0; p < n_samples; p++) {
-		from_b[p] = pound_order_mask(d, p) >> input & 1;
+		from_b[p] = pound_rows_mask(rows, p) >> input & 1;
 		points->weight[from_b[p]]++;
 	}
 	for (int i = 0; i < rows->n_rows; i++) {

@@ -28,8 +28,7 @@ static void means(const struct pound_sample_values *values, const struct pound_c
                   double *below)
 {
 	const int n_signals = values->n_signals;
-	size_t at = ((size_t)check->row * pound_order_samples(values->order, values->n_inputs) + check->sample) *
-	            n_signals;
+	size_t at = ((size_t)check->row * pound_values_samples(values) + check->sample) * n_signals;
 	*above = *below = 0;
 	for (int r = 0; r < n_signals; r++) {
 		*above += values->numerator[at + r] / n_signals;

@@ -278,6 +278,10 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 		undefined(&indices->sets.second[k].estimate, 1);
 	for (int k = 0; k < indices->sets.n_closed && s->shared; k++)
 		undefined(&indices->sets.closed[k].estimate, 1);
+	for (int g = 0; g < indices->groups.n && s->shared; g++) {
+		undefined(&indices->groups.first[g], 1);
+		undefined(&indices->groups.total[g], 1);
+	}
 	for (int j = 0; j < d; j++)
 		for (int k = 0; k < POUND_N_INDICES && pound_rows_levels(s->rows, j) == 1; k++)
 			if (k != POUND_S1_RAW && k != POUND_ST_RAW && !isnan(indices->index[k][j].value))
@@ -433,12 +437,14 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 			levels_fill(&s, seed);
 		}
 		indices->sets = s.closed.sets;
+		indices->groups = s.closed.groups;
 		ratios_fill(&s, indices);
 		columns_fill(&s, seed, indices);
 		if (elsewhere) // the number of replicates is not known
 			undefined(&indices->share[POUND_SHARE_TOTAL_ONE], 1);
 	} else {
 		indices->sets = (struct pound_set_indices){0};
+		indices->groups.n = 0;
 		indices->ratios.n = 0;
 		for (int k = 0; k < POUND_N_INDICES; k++)
 			undefined(indices->index[k], d);

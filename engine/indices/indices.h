@@ -15,7 +15,7 @@
 #include "engine/numeric/stop.h"
 
 /* One output of one cell: a ratio of means over the signals, of every sample of every row.  NAN in any number of a
- * row: a failed run.  In what follows n_samples is pound_order_samples(order, n_inputs). */
+ * row: a failed run.  In what follows n_samples is pound_values_samples(). */
 struct pound_sample_values {
 	int n_rows, n_inputs, n_signals;
 	bool same_signals;                     /* in every sample of every row: none is random */
@@ -24,7 +24,9 @@ struct pound_sample_values {
 	 * not known; NULL: computed here */
 	const double *variance;
 	struct pound_grouping grouping; /* of the rows */
-	int order;                      /* row of the orders: which samples a row has */
+	int order;                      /* row of the orders: which samples a row has ... */
+	int n_groups;
+	const struct pound_group *groups; /* ... and then A with the columns of each from B  (n_groups) */
 	const struct pound_input
 	    *inputs;             /* how they are distributed  (n_inputs); NULL: without values that come often */
 	const atomic_bool *stop; /* when it is set nothing that comes out is to be used; NULL: never */
@@ -53,9 +55,11 @@ struct pound_scatter {
  * plain: as they come out; both centred by their mean of A and B.  deviation: what each signal adds to an output y, times the
  * root that makes their products add up to the covariance of outputs over draws of the signals. */
 struct pound_rows {
-	int n_rows, n_inputs, n_samples, n_signals, order;
-	double mean, plain_mean; /* of A and B */
-	double variance_floor;   /* a variance up to it is rounding */
+	int n_rows, n_inputs, n_samples, n_signals;
+	int order, n_groups;
+	const struct pound_group *groups; /* (n_groups) */
+	double mean, plain_mean;          /* of A and B */
+	double variance_floor;            /* a variance up to it is rounding */
 	double ratio_bias; /* of the outputs, mean over all samples: they are ratios of means of few signals */
 	int64_t *row;      /* which row of the design  (n_rows) */
 	struct pound_scatter scatter;
@@ -66,9 +70,13 @@ struct pound_rows {
 	const atomic_bool *stop;
 };
 
+int pound_values_samples(const struct pound_sample_values *shape);  /* of a row */
 size_t pound_rows_scratch(const struct pound_sample_values *shape); /* doubles */
 void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch);
 struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values, const int64_t *row);
+/* The shape that the rows came from, of those that count; bit j: column j of a sample is from B. */
+struct pound_sample_values pound_rows_shape(const struct pound_rows *rows);
+unsigned pound_rows_mask(const struct pound_rows *rows, int sample);
 /* How many values an input has, if each comes often; 0: as good as no value comes twice. */
 int pound_rows_levels(const struct pound_rows *rows, int input);
 /* Variance of all samples of the plain protocol, of y or of plain. */
@@ -165,22 +173,25 @@ void pound_local_regression_first_rows(const struct pound_rows *rows, int n, dou
 
 /* Closed parts of the variance: those that sets of inputs explain. */
 enum {
-	POUND_CLOSED_COLUMNS_MAX = 2 + 2 * POUND_INPUTS_MAX + POUND_PAIRS_MAX,
+	POUND_CLOSED_COLUMNS_MAX = 2 + 2 * POUND_INPUTS_MAX + POUND_PAIRS_MAX + 2 * POUND_GROUPS_MAX,
 	POUND_CLOSED_PAIRS_MAX = POUND_SAMPLES_MAX * (POUND_SAMPLES_MAX - 1) / 2,
 };
 
 struct pound_closed_pair {
-	int p, q;        /* samples of a row */
-	int column;      /* of the set of inputs that they share */
-	bool difference; /* estimated from the square of the difference, not from the product */
-	double weight;   /* one over the pairs of the column */
+	int p, q;      /* samples of a row */
+	int column;    /* of the set of inputs that they share */
+	double weight; /* one over the pairs of the column */
 };
 
 struct pound_closed {
 	int n_inputs, n_samples;
+	int n_groups;
+	unsigned group[POUND_GROUPS_MAX]; /* sets of inputs  (n_groups) */
 	int n_columns;
 	unsigned set[POUND_CLOSED_COLUMNS_MAX]; /* bit j: input j; ascending, none first and all last */
 	bool known[POUND_CLOSED_COLUMNS_MAX];   /* the design has a pair for it */
+	/* what the other inputs explain is wanted: estimated from squares of differences, not from products */
+	bool difference[POUND_CLOSED_COLUMNS_MAX];
 	int n_pairs;
 	struct pound_closed_pair pair[POUND_CLOSED_PAIRS_MAX];
 };
@@ -188,9 +199,10 @@ struct pound_closed {
 struct pound_closed_results {
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX], shapley[POUND_INPUTS_MAX];
 	struct pound_set_indices sets;
+	struct pound_group_indices groups;
 };
 
-void pound_closed_init(struct pound_closed *closed, int n_inputs, int order);
+void pound_closed_init(struct pound_closed *closed, const struct pound_sample_values *shape);
 /* A control variate of a row's outputs. */
 struct pound_control_variate {
 	const double *g;    /* its values  (n_samples); NULL: none */

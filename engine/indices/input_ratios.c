@@ -105,7 +105,7 @@ static bool is_called(const struct pound_input *input, const char *of)
 	return own && strcmp(own, of) == 0;
 }
 
-int pound_ratio_input(const struct pound_study *study, const char *of)
+int pound_study_input(const struct pound_study *study, const char *of)
 {
 	for (int j = 0; j < study->n_inputs; j++)
 		if (is_called(&study->inputs[j], of))
@@ -145,8 +145,8 @@ static struct variables variables_of(const struct pound_study *study)
 	v.n = pound_ratio_variables(study, v.rest);
 	v.n_rest = v.n - v.n_ratios;
 	for (int k = 0; k < v.n_ratios; k++) {
-		v.above[k] = pound_ratio_input(study, study->ratios[k].of[0]);
-		v.below[k] = pound_ratio_input(study, study->ratios[k].of[1]);
+		v.above[k] = pound_study_input(study, study->ratios[k].of[0]);
+		v.below[k] = pound_study_input(study, study->ratios[k].of[1]);
 		power_law_of(&study->inputs[v.above[k]].distribution, &v.upper[k]);
 		power_law_of(&study->inputs[v.below[k]].distribution, &v.lower[k]);
 		v.leader[k] = k;
@@ -223,7 +223,7 @@ struct fit {
 static size_t carve(struct fit *f, double *scratch, const struct pound_sample_values *shape,
                     const struct pound_study *study)
 {
-	const int n_samples = pound_order_samples(shape->order, shape->n_inputs), n = f->variables.n;
+	const int n_samples = pound_values_samples(shape), n = f->variables.n;
 	f->degree = pound_chaos_expansion_degree(shape->n_rows, n, n_samples);
 	f->terms = pound_legendre_terms(n, f->degree);
 	f->squares = pound_legendre_terms(n, 2 * f->degree);
@@ -312,7 +312,7 @@ static void sample_enter(struct fit *f, int point, int row, int sample)
 {
 	const struct variables *v = &f->variables;
 	const int d = f->rows->n_inputs;
-	const unsigned from_b = pound_order_mask(d, sample);
+	const unsigned from_b = pound_rows_mask(f->rows, sample);
 	const double *a = f->u + (size_t)f->rows->row[row] * 2 * d;
 	for (int j = 0; j < v->n_rest; j++) {
 		const int input = v->rest[j];

@@ -242,7 +242,7 @@ void pound_local_regression_first(const struct pound_rows *rows, const double *x
 		for (int matrix = 0; matrix < 2 && enough && !pound_stopped(rows->stop); matrix++) {
 			rows_sort(rows, x, matrix, j, levels, &at);
 			for (int p = 0; p < rows->n_samples; p++)
-				if ((pound_order_mask(d, p) >> j & 1) == (unsigned)matrix)
+				if ((pound_rows_mask(rows, p) >> j & 1) == (unsigned)matrix)
 					block_add(rows, p, grand, levels, &at);
 		}
 		enough &= !pound_stopped(rows->stop);

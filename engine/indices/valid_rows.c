@@ -117,9 +117,31 @@ static double centre(const struct pound_rows *rows, double *y)
 	return mean;
 }
 
+int pound_values_samples(const struct pound_sample_values *shape)
+{
+	return pound_order_samples(shape->order, shape->n_inputs) + shape->n_groups;
+}
+
+struct pound_sample_values pound_rows_shape(const struct pound_rows *rows)
+{
+	return (struct pound_sample_values){.n_rows = rows->n_rows,
+	                                    .n_inputs = rows->n_inputs,
+	                                    .n_signals = rows->n_signals,
+	                                    .order = rows->order,
+	                                    .n_groups = rows->n_groups,
+	                                    .groups = rows->groups};
+}
+
+unsigned pound_rows_mask(const struct pound_rows *rows, int sample)
+{
+	const int ungrouped = rows->n_samples - rows->n_groups;
+	return sample < ungrouped ? pound_order_mask(rows->n_inputs, sample)
+	                          : rows->groups[sample - ungrouped].inputs;
+}
+
 size_t pound_rows_scratch(const struct pound_sample_values *shape)
 {
-	const size_t samples = (size_t)shape->n_rows * pound_order_samples(shape->order, shape->n_inputs);
+	const size_t samples = (size_t)shape->n_rows * pound_values_samples(shape);
 	return samples * (2 + shape->n_signals) + shape->n_rows;
 }
 
@@ -181,11 +203,13 @@ struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values
  */
 void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *values, double *scratch)
 {
-	const int n_samples = pound_order_samples(values->order, values->n_inputs);
+	const int n_samples = pound_values_samples(values);
 	*rows = (struct pound_rows){.n_inputs = values->n_inputs,
 	                            .n_samples = n_samples,
 	                            .n_signals = values->n_signals,
 	                            .order = values->order,
+	                            .n_groups = values->n_groups,
+	                            .groups = values->groups,
 	                            .independent = values->variance,
 	                            .inputs = values->inputs,
 	                            .stop = values->stop,

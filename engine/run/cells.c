@@ -40,10 +40,11 @@ struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cel
 	for (int s = 0; s < study->n_sweeps; s++)
 		if (row_memory || study->sweeps[s].field.part == POUND_PART_SCENE)
 			pound_scene_assign(&scene, study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
+	const unsigned from_b = study->n_inputs > 0 ? pound_design_mask(study, sample) : 0;
 	for (int j = 0; j < study->n_inputs; j++)
 		if (row_memory || study->inputs[j].field.part == POUND_PART_SCENE)
 			pound_scene_assign(&scene, study->inputs[j].field,
-			                   pound_design_input(campaign->design, study->n_inputs, row, sample, j));
+			                   pound_design_input(campaign->design, study->n_inputs, row, from_b, j));
 	return scene;
 }
 
@@ -103,5 +104,7 @@ struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n
 	                                    .variance = pound_cells_means(c) ? second : NULL,
 	                                    .grouping = pound_design_grouping(c->study),
 	                                    .order = pound_design_order(c->study),
+	                                    .n_groups = c->study->n_groups,
+	                                    .groups = c->study->groups,
 	                                    .inputs = c->study->inputs};
 }

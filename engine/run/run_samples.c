@@ -13,8 +13,10 @@ int pound_run_samples(const struct pound_run *run)
 
 void pound_run_sample_inputs(const struct pound_run *run, int row, int sample, double *x)
 {
-	for (int j = 0; j < run->campaign.study->n_inputs; j++)
-		x[j] = pound_design_input(run->campaign.design, run->campaign.study->n_inputs, row, sample, j);
+	const struct pound_study *study = run->campaign.study;
+	const unsigned from_b = pound_design_mask(study, sample);
+	for (int j = 0; j < study->n_inputs; j++)
+		x[j] = pound_design_input(run->campaign.design, study->n_inputs, row, from_b, j);
 }
 
 static struct pound_excitation excitation_of(const struct pound_run *run, const struct pound_place *place)

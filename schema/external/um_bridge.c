@@ -184,7 +184,7 @@ static void respond(struct um_bridge *b)
 		}
 	b->n_inputs = study->n_inputs;
 	study->kind = POUND_KIND_RESPONSE;
-	study->n_inputs = study->n_ratios = study->spectrum.n = 0;
+	study->n_inputs = study->n_ratios = study->n_groups = study->spectrum.n = 0;
 	study->design.until.half_width = 0;
 	study->design.row = whole(b, "row", 0, 0, POUND_ROWS_MAX - 1);
 	const struct field *signals = fields_find("/scene/excitation/signals");

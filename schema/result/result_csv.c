@@ -124,6 +124,12 @@ static void put_set(struct lines *lines, const struct place *at)
 	put_scalars(lines, at->element, "");
 }
 
+static void put_group(struct lines *lines, const struct place *at)
+{
+	put_output(lines, at);
+	put_scalars(lines, at->element, "");
+}
+
 static void put_variable(struct lines *lines, const struct place *at)
 {
 	put_output(lines, at);
@@ -150,6 +156,7 @@ static const struct table {
     {"inputs", put_input, NULL, NULL},
     {"second_order", put_set, NULL, NULL},
     {"closed", put_set, NULL, NULL},
+    {"groups", put_group, NULL, NULL},
     {"ratios", put_variable, "variables", NULL},
     {"conditional_means", put_point, NULL, "x"},
 };

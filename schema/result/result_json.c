@@ -236,6 +236,30 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 	writer_end(w);
 }
 
+/* The indices of groups of inputs; nothing if none were requested. */
+static void write_groups(struct writer *w, const struct pound_study *study,
+                         const struct pound_indices *indices)
+{
+	const struct pound_group_indices *groups = &indices->groups;
+	const struct result_notes_source source = {.lost = lost_in_noise(indices)};
+	if (groups->n == 0)
+		return;
+	writer_array(w, "groups", WRITER_LINES);
+	for (int g = 0; g < groups->n; g++) {
+		struct result_notes said;
+		result_notes_init(&said);
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name", study->groups[g].name);
+		result_estimate(w, "S1", &groups->first[g]);
+		result_estimate(w, "ST", &groups->total[g]);
+		result_notes_add(&said, "S1", &groups->first[g], source);
+		result_notes_add(&said, "ST", &groups->total[g], source);
+		result_notes_write(w, &said);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
 /* The indices of ratios and of the remaining inputs; nothing if none were requested. */
 static void write_ratios(struct writer *w, const struct pound_study *study,
                          const struct pound_indices *indices)
@@ -337,6 +361,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	const struct result_notes_source source = {.lost = lost_in_noise(indices), .large_only = true};
 	write_sets(w, study, &(struct sets){"second_order", "S2", sets->second, sets->n_second, source});
 	write_sets(w, study, &(struct sets){"closed", "S_closed", sets->closed, sets->n_closed, source});
+	write_groups(w, study, indices);
 	write_ratios(w, study, indices);
 	result_curves(w, study, indices->curves);
 	result_accuracy_output(w, study, indices);

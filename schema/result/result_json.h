@@ -26,7 +26,8 @@ void result_estimate(struct writer *w, const char *name, const struct pound_esti
 void result_curves(struct writer *w, const struct pound_study *study, const struct pound_curve *curves);
 
 /* Tables of a sensitivity result: lists of every output of every cell, and the looks of a design that grew. */
-#define RESULT_TABLES(X) X(inputs) X(second_order) X(closed) X(ratios) X(conditional_means) X(stopping)
+#define RESULT_TABLES(X) \
+	X(inputs) X(second_order) X(closed) X(groups) X(ratios) X(conditional_means) X(stopping)
 
 /* The same result as CSV, from the bytes of result_to_json: the table of that name, empty when it has none; NULL: one row
  * per cell, output and input of a sensitivity study, per cell and signal of a response, ... */

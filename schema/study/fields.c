@@ -310,6 +310,17 @@ const struct field fields[] = {
 	{"/ratios/*/of/*", FIELD_TEXT, offsetof(struct pound_ratio, of), NAN, 1, 200, FIELD_CLOSED, "",
 	 .text = "path of an input that is uniform or log_uniform and > 0; in a study without scene its name", SENSITIVITY, NOT_SCENE},
 
+	{"/groups", FIELD_LIST, 0, 0, 0, POUND_GROUPS_MAX, FIELD_CLOSED, "",
+	 .text = "groups of inputs to report indices of, each as of one input; each adds a sample to every row", SENSITIVITY, NOT_SCENE},
+	{"/groups/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "one group", SENSITIVITY, NOT_SCENE},
+	{"/groups/*/name", FIELD_TEXT, offsetof(struct pound_group, name), NAN, 1, 100, FIELD_CLOSED, "",
+	 .text = "display name; unique among groups, ratios and inputs", SENSITIVITY, NOT_SCENE},
+	{"/groups/*/of", FIELD_LIST, 0, NAN, 2, POUND_INPUTS_MAX, FIELD_CLOSED, "",
+	 .text = "paths of its inputs, two or more but not all; groups may overlap", SENSITIVITY, NOT_SCENE},
+	{"/groups/*/of/*", FIELD_TEXT, offsetof(struct pound_group, of), NAN, 1, 200, FIELD_CLOSED, "",
+	 .text = "path of an input; in a study without scene its name", SENSITIVITY, NOT_SCENE},
+
 	{"/sweep", FIELD_LIST, 0, 0, 0, POUND_SWEEPS_MAX, FIELD_CLOSED, "",
 	 .text = "swept fields; a cell is one combination of their values; at most 10000 cells", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",

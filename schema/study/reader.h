@@ -67,6 +67,9 @@ void reader_places(struct reader *reader, const struct field *field, const cJSON
 /* What varies: study_varied.c. */
 void reader_distribution(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_inputs(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_groups(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_group(struct reader *reader, const struct field *field, const cJSON *node, char *base);
+void reader_groups_find(struct pound_study *study);
 void reader_ratios(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_ratio(struct reader *reader, const struct field *field, const cJSON *node, char *base);
 void reader_sweeps(struct reader *reader, const struct field *field, const cJSON *node, char *base);

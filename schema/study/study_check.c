@@ -127,18 +127,18 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 	}
 }
 
-/* Names of inputs and ratios are columns and rows of results: each must be unique.
+/* Names of inputs, ratios and groups are columns and rows of results: each must be unique.
  *
- * Given    list, n   of the name: "inputs" or "ratios", and its index there
+ * Given    list, n   of the name: "inputs", "ratios" or "groups", and its index there
  */
 static void check_name(const struct pound_study *study, const char *list, int n, const char *name,
                        struct problems *problems)
 {
 	char pointer[POINTER_SIZE];
-	const bool ratio = strcmp(list, "ratios") == 0;
-	const bool is_path = !ratio && name == study->inputs[n].path;
+	const bool group = strcmp(list, "groups") == 0, ratio = strcmp(list, "ratios") == 0;
+	const bool is_path = !group && !ratio && name == study->inputs[n].path;
 	snprintf(pointer, sizeof pointer, "/%s/%d/name", list, n);
-	for (int k = 0; name && k < (ratio ? study->n_inputs : n); k++) {
+	for (int k = 0; name && k < (group || ratio ? study->n_inputs : n); k++) {
 		const struct pound_input *other = &study->inputs[k];
 		// two absent names are alike where two paths are, which is reported by itself
 		if (other->name && strcmp(other->name, name) == 0 && !(is_path && other->name == other->path)) {
@@ -146,7 +146,12 @@ static void check_name(const struct pound_study *study, const char *list, int n,
 			return;
 		}
 	}
-	for (int k = 0; name && ratio && k < n; k++)
+	for (int k = 0; name && group && k < n; k++)
+		if (study->groups[k].name && strcmp(study->groups[k].name, name) == 0) {
+			problems_add(problems, pointer, "is already the name of /groups/%d", k);
+			return;
+		}
+	for (int k = 0; name && (group || ratio) && k < (group ? study->n_ratios : n); k++)
 		if (study->ratios[k].name && strcmp(study->ratios[k].name, name) == 0) {
 			problems_add(problems, pointer, "is already the name of /ratios/%d", k);
 			return;
@@ -158,6 +163,8 @@ static void check_names(const struct pound_study *study, struct problems *proble
 {
 	for (int k = 0; k < study->n_ratios; k++)
 		check_name(study, "ratios", k, study->ratios[k].name, problems);
+	for (int g = 0; g < study->n_groups; g++)
+		check_name(study, "groups", g, study->groups[g].name, problems);
 	for (int j = 0; j < study->n_inputs; j++) {
 		const char *name = study->inputs[j].name;
 		check_name(study, "inputs", j, name, problems);
@@ -478,7 +485,7 @@ static void check_ratio(const struct pound_study *study, int ratio, int side, st
 	const char *path = study->ratios[ratio].of[side];
 	if (!path)
 		return;
-	const int input = pound_ratio_input(study, path);
+	const int input = pound_study_input(study, path);
 	snprintf(pointer, sizeof pointer, "/ratios/%d/of/%d", ratio, side);
 	snprintf(distribution, sizeof distribution, "/inputs/%d/distribution", input);
 	if (input < 0 && !unread_input(study))
@@ -501,6 +508,33 @@ static void check_ratios(const struct pound_study *study, struct problems *probl
 	    pound_ratio_variables(study, NULL) > POUND_FACTORIAL_INPUTS_MAX)
 		problems_add(problems, "/ratios", "ratios plus remaining inputs: at most %d, got %d",
 		             POUND_FACTORIAL_INPUTS_MAX, pound_ratio_variables(study, NULL));
+}
+
+/* ---- groups ---- */
+
+static void check_group(const struct pound_study *study, int g, struct problems *problems)
+{
+	const struct pound_group *group = &study->groups[g];
+	unsigned seen = 0;
+	char pointer[POINTER_SIZE];
+	for (int k = 0; k < group->n; k++) {
+		const int input = group->of[k] ? pound_study_input(study, group->of[k]) : -1;
+		snprintf(pointer, sizeof pointer, "/groups/%d/of/%d", g, k);
+		if (group->of[k] && input < 0 && !unread_input(study))
+			problems_add(problems, pointer, "is not the path of an input of this study");
+		if (input >= 0 && seen >> input & 1)
+			problems_add(problems, pointer, "is in this group already");
+		seen |= input >= 0 ? 1u << input : 0u;
+	}
+	snprintf(pointer, sizeof pointer, "/groups/%d/of", g);
+	if (study->n_inputs > 0 && seen == (1u << study->n_inputs) - 1 && !problems_over(problems, "/inputs"))
+		problems_add(problems, pointer, "has every input, so its indices are 1: leave out one");
+}
+
+static void check_groups(const struct pound_study *study, struct problems *problems)
+{
+	for (int g = 0; g < study->n_groups; g++)
+		check_group(study, g, problems);
 }
 
 /* ---- all of it ---- */
@@ -534,6 +568,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
 		check_dimensions(study, problems);
 	check_ratios(study, problems);
+	check_groups(study, problems);
 	if (study->elsewhere) {
 		if (rows_known(problems))
 			study_size_check_rows(study, problems);

@@ -21,7 +21,7 @@ struct canon {
 static bool is_name(const struct field *field)
 {
 	return strcmp(field->pattern, "/name") == 0 || strcmp(field->pattern, "/ratios/*/name") == 0 ||
-	       strcmp(field->pattern, "/inputs/*/name") == 0;
+	       strcmp(field->pattern, "/groups/*/name") == 0 || strcmp(field->pattern, "/inputs/*/name") == 0;
 }
 
 /* Whether a member of the scene has its default value and came after hashes had been stored. */
@@ -220,6 +220,14 @@ static void write_ratios(struct canon *c)
 	writer_end(&c->w);
 }
 
+static void write_groups(struct canon *c)
+{
+	writer_array(&c->w, "groups", WRITER_LINES);
+	for (int g = 0; g < c->study->n_groups; g++)
+		writer_whole(&c->w, NULL, c->study->groups[g].inputs);
+	writer_end(&c->w);
+}
+
 static void write_sweeps(struct canon *c)
 {
 	writer_array(&c->w, "sweep", WRITER_LINES);
@@ -294,6 +302,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 	write_inputs(&c);
 	if (study->n_ratios)
 		write_ratios(&c);
+	if (study->n_groups)
+		write_groups(&c);
 	if (!study->elsewhere)
 		write_sweeps(&c);
 	write_object(&c, "design", "/design", study);

@@ -305,6 +305,8 @@ static const struct {
     {"/inputs/*/distribution", reader_distribution},
     {"/ratios", reader_ratios},
     {"/ratios/*/of", reader_ratio},
+    {"/groups", reader_groups},
+    {"/groups/*/of", reader_group},
     {"/sweep", reader_sweeps},
     {"/design", read_design},
     {"/sweep/*/values", reader_values},
@@ -332,13 +334,9 @@ void reader_value(struct reader *r, const struct field *field, const cJSON *node
 static void defaults(struct pound_study *study, const char *excitation)
 {
 	// whose elements are objects of their own
-	static const char *const elsewhere_kept[] = {"/inputs/",
-	                                             "/sweep/",
-	                                             "/ratios/",
-	                                             "/scene/buildings/",
-	                                             "/scene/contacts/",
-	                                             "/places/",
-	                                             "/scene/excitation/records/"};
+	static const char *const elsewhere_kept[] = {
+	    "/inputs/",          "/sweep/",          "/ratios/", "/groups/",
+	    "/scene/buildings/", "/scene/contacts/", "/places/", "/scene/excitation/records/"};
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		void (*const store)(void *at, double value) = field_types[field->type].store;
@@ -481,6 +479,7 @@ struct pound_study *study_from_document(const struct study_document *source, str
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
 		problems_add(problems, "/kind", "must be \"%s\": no other kind has a design",
 		             study_kind_name(POUND_KIND_SENSITIVITY));
+	reader_groups_find(study);
 	study_check(study, problems);
 	if (problems->n) {
 		study_free(study);

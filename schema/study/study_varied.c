@@ -154,6 +154,45 @@ void reader_ratio(struct reader *r, const struct field *field, const cJSON *node
 	}
 }
 
+static void read_group(struct reader *r, const cJSON *element, int k)
+{
+	reader_object(r, "/groups/*", element, (char *)&r->study->groups[k]);
+}
+
+/* Reads the groups of inputs; which inputs they are is for reader_groups_find.
+ *
+ * Test     unit_study_json: what_a_document_says_is_in_the_study
+ */
+void reader_groups(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	(void)base;
+	r->study->n_groups = reader_each(r, field, node, read_group);
+}
+
+/* Reads the paths of the group in hand. */
+void reader_group(struct reader *r, const struct field *field, const cJSON *node, char *base)
+{
+	struct pound_group *group = (struct pound_group *)base;
+	group->n = reader_elements(r, field, node);
+	const cJSON *element = group->n ? node->child : NULL;
+	for (int k = 0; k < group->n; k++, element = element->next) {
+		size_t length = reader_enter_element(r, k);
+		reader_text(r, fields_find("/groups/*/of/*"), element, &group->of[k]);
+		reader_leave(r, length);
+	}
+}
+
+/* Finds the inputs of the groups, once all are read; those that are none are for study_check.c. */
+void reader_groups_find(struct pound_study *study)
+{
+	for (int g = 0; g < study->n_groups; g++)
+		for (int k = 0; k < study->groups[g].n; k++) {
+			const char *of = study->groups[g].of[k];
+			const int input = of ? pound_study_input(study, of) : -1;
+			study->groups[g].inputs |= input >= 0 ? 1u << input : 0u;
+		}
+}
+
 static void read_sweep(struct reader *r, const cJSON *element, int s)
 {
 	struct pound_sweep *sweep = &r->study->sweeps[s];

@@ -35,7 +35,7 @@ static void outputs_fill(const struct function *f, const double *x, int n, doubl
 		for (int p = 0; p < SAMPLES; p++) {
 			double u[D];
 			for (int j = 0; j < D; j++)
-				u[j] = pound_design_input(x, D, i, p, j);
+				u[j] = pound_design_input(x, D, i, pound_order_mask(D, p), j);
 			y[i * SAMPLES + p] = f->y(u);
 			mean += p < 2 ? y[i * SAMPLES + p] / (2 * n) : 0.0;
 		}

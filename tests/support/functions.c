@@ -167,7 +167,7 @@ struct pound_sample_values function_values_of(const struct function *f, const st
 		for (int p = 0; p < n_samples; p++) {
 			double u[D];
 			for (int j = 0; j < D; j++)
-				u[j] = pound_design_input(x, D, i, p, j);
+				u[j] = pound_design_input(x, D, i, pound_order_mask(D, p), j);
 			double y = f->y(u);
 			for (int r = 0; r < noise.n_signals; r++) {
 				size_t k = ((size_t)i * n_samples + p) * noise.n_signals + r;

@@ -15,7 +15,7 @@ static struct pound_closed_results *plain(const double *y, int n_rows, int n_inp
 	const struct pound_rows rows = {.n_rows = n_rows};
 	struct pound_closed_results *results = malloc(sizeof *results);
 	struct pound_closed closed;
-	pound_closed_init(&closed, n_inputs, order);
+	pound_closed_init(&closed, &(struct pound_sample_values){.n_inputs = n_inputs, .order = order});
 	double *estimates = malloc(sizeof *estimates * (size_t)(n_rows * closed.n_columns));
 	double *scratch = malloc(sizeof *scratch * pound_closed_scratch(&closed, n_rows));
 	const struct pound_control_variate control = {.part = none};

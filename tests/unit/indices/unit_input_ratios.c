@@ -51,7 +51,7 @@ static struct pound_ratio_indices indices_of(output *y, int rows, int seed)
 	for (int k = 0; k < n; k++) {
 		double at[D];
 		for (int j = 0; j < D; j++)
-			at[j] = pound_design_input(x, D, k / n_samples, k % n_samples, j);
+			at[j] = pound_design_input(x, D, k / n_samples, pound_order_mask(D, k % n_samples), j);
 		values[k] = y(at);
 		values[n + k] = 1.0;
 	}
