@@ -373,6 +373,7 @@ struct pound_floor_spectrum {
 
 struct pound_floor_result {
 	struct pound_floor_spectrum spectra[POUND_N_SPECTRA];
+	double frequency_hz; /* first one of the body that the floor is of, without pounding */
 	int signals, signals_failed, signals_checked;
 	double impulse_mean; /* mean of the largest impulses [N s] */
 	double pulses_mean;  /* mean number of pulses of the idealised train */

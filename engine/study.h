@@ -391,7 +391,6 @@ bool pound_solver_takes_force(int row, enum pound_force force); /* can integrate
 bool pound_solver_takes_rows(int row);                          /* of buildings */
 bool pound_solver_is_observed(int row);                         /* outputs may read its whole motions */
 bool pound_solver_is_portable(int row);                         /* the same bytes on every processor */
-bool pound_floor_takes_force(enum pound_force force);           /* a floor can be followed under it */
 const char *pound_output_name(int row);
 const char *pound_output_needs(int row, const struct pound_scene *scene); /* from it, in words */
 bool pound_output_observes(int row);                                      /* it reads whole motions */

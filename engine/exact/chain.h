@@ -54,22 +54,34 @@ enum pound_chain_asked {
 	POUND_CHAIN_ENERGY = 16, /* no whole samples are passed at once: such a run takes longer */
 };
 
-/* The motion of an observed floor between two instants: nothing happens to the chain between them.
- *
- *   u(time + s length) = sum_n u[n] s^n,  0 <= s <= 1 */
+/* The motion of an observed floor over a piece, by the share s of it that is gone: coefficients of powers of s. */
+struct pound_chain_floor_motion {
+	double u, v; /* at the start, relative to the ground [m], [m/s] */
+	double jump; /* of v, just before: rigid impacts [m/s] */
+	// absolute acceleration, and the part of it that contacts give  [m/s2]  (order + 1)
+	double acceleration[POUND_CHAIN_ORDER + 1], push[POUND_CHAIN_ORDER + 1];
+};
+
+enum { POUND_CHAIN_OBSERVED = 2 };
+
+/* The motion of observed floors between two instants: nothing happens to the chain between them. */
 struct pound_chain_piece {
-	double time, length;  /* [s]  length 0: only a velocity or a force has changed */
-	double ground, slope; /* acceleration of the ground at the start and its growth [m/s2], [m/s3] */
-	double force;         /* of all contacts on the floor at the start, positive to the left [N] */
-	const double *u;      /* displacement relative to the ground [m]  (order + 1) */
+	double time, length;          /* [s] */
+	double ground, slope;         /* acceleration of the ground at the start and its growth [m/s2], [m/s3] */
+	double overlap, overlap_rate; /* of the observed link at the start [m], [m/s] */
 	int order;
-	bool sampled; /* it starts at a sample of the ground motion */
+	bool sampled, after_event; /* it starts at a sample of the ground motion, behind an event */
+	bool touching;             /* a contact has a force on the first floor */
+	bool warped; /* time is no multiple of s, but sum clock[n] s^n since the start [s]  (order + 1) */
+	double clock[POUND_CHAIN_ORDER + 1];
+	struct pound_chain_floor_motion floors[POUND_CHAIN_OBSERVED];
 };
 
 struct pound_chain_observer {
 	void (*observe)(void *into, const struct pound_chain_piece *piece);
 	void *into;
-	int floor;
+	int floors[POUND_CHAIN_OBSERVED]; /* POUND_CHAIN_GROUND: one that moves with the ground */
+	int link;                         /* -1: none */
 };
 
 struct pound_chain_task {

@@ -23,6 +23,7 @@ enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */
 #include "engine/exact/chain_peaks.inl"
 #include "engine/exact/chain_energy.inl"
 #include "engine/exact/touch_step.inl"
+#include "engine/exact/chain_observer.inl"
 #include "engine/exact/chain_step.inl"
 #include "engine/exact/chain_modal.inl"
 // clang-format on

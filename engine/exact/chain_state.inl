@@ -174,6 +174,9 @@ struct chain {
 	double overlaps[TERMS][LINKS];
 	double reach; /* longest step, of the links that touch now; 0: to be found [s] */
 	struct modal_motion modal_motion;
+	// since the last piece that was reported (chain_observer.inl)
+	bool after_event;
+	double jump[POUND_CHAIN_OBSERVED];
 	struct warp warp;
 	// energy
 	double work_in, work_gap, work_low, work_top;
@@ -360,6 +363,11 @@ static void chain_displacements(struct chain *c)
 		c->u.at[i] = u;
 		c->w.at[i] = w;
 	}
+}
+
+static double chain_time(const struct chain *c)
+{
+	return (double)c->next * c->task->time_step - c->remainder;
 }
 
 /* ---- the end ---- */

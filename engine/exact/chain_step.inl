@@ -105,11 +105,6 @@ static void contact_over(struct chain *c, struct link *l)
 	}
 }
 
-static double chain_time(const struct chain *c)
-{
-	return (double)c->next * c->task->time_step - c->remainder;
-}
-
 static void contact_begins(struct chain *c, struct link *l)
 {
 	double *m = l->measures;
@@ -268,31 +263,6 @@ static void overlap_enter(struct chain *c, const struct first *first)
 	l->q = link_sum(l, c->w.at);
 }
 
-/* Reports the motion of the observed floor up to a share of the step. */
-static void step_observe(const struct chain *c, double time)
-{
-	const struct pound_chain_observer *observer = c->task->observer;
-	const int i = observer->floor;
-	double u[TERMS], power = 1, force = 0;
-	for (int n = 0; n <= c->order; n++, power *= time)
-		u[n] = c->displacements[n].at[i] * power;
-	for (int j = 0; j < c->n_links; j++) {
-		const struct link *l = &c->link[j];
-		for (int k = 0; l->touching && k < l->n_ends; k++)
-			if (l->floor[k] == i)
-				force += l->weight[k] * pound_contact_force_on(&l->at.on, l->p, l->q);
-	}
-	const struct pound_chain_piece piece = {.time = chain_time(c),
-	                                        .length = time * c->dt,
-	                                        .ground = c->ground,
-	                                        .slope = c->slope,
-	                                        .force = force,
-	                                        .u = u,
-	                                        .order = c->order,
-	                                        .sampled = c->remainder == c->task->time_step};
-	observer->observe(observer->into, &piece);
-}
-
 /* One step: to the next event, or as far as it was meant to go. */
 static void chain_step(struct chain *c)
 {
@@ -308,7 +278,7 @@ static void chain_step(struct chain *c)
 	const struct first first = c->warp.on ? touch_events(c) : events_search(c);
 	if (first.time > 0) {
 		if (c->task->observer)
-			step_observe(c, first.time);
+			pieces_report(c, first.time);
 		if (c->task->asked & POUND_CHAIN_ENERGY)
 			energy_keep(c, first.time);
 		if (c->task->asked & POUND_CHAIN_ACCELERATIONS)
@@ -323,6 +293,7 @@ static void chain_step(struct chain *c)
 		chain_displacements(c);
 	overlap_enter(c, &first);
 	event_apply(c, &first);
+	c->after_event |= first.event > EVENT_CUT;
 	c->pace = first.event == EVENT_CUT ? fmax(c->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
 	                                   : fmin(c->pace * POUND_STEP_LONGER, 1);
 }

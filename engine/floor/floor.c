@@ -11,6 +11,7 @@
 
 #include "engine/numeric/cpu_width.h"
 #include "engine/numeric/elementary.h"
+#include "engine/solver/solver.h"
 
 struct pound_floor {
 	int n;         /* frequencies; arrays are in whole groups */
@@ -51,12 +52,6 @@ double pound_spectrum_frequency(const struct pound_spectrum *s, int k)
 	return s->min_hz * pound_elementary_exp(ratio * k / (s->n - 1));
 }
 
-/* Whether a floor can be followed under a form of contact force; where it cannot the study is refused where it is read. */
-bool pound_floor_takes_force(enum pound_force force)
-{
-	return force == POUND_FORCE_LINEAR;
-}
-
 /* ---- work space ---- */
 
 static int whole_groups(int n)
@@ -93,34 +88,109 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
 
 /* ---- the motion ---- */
 
-/* Follows a task to its end.
- *
- * Given    ask       its task, stop and scratch
- *          observer  passes every instant on to pound_floor_observe and floor->motion
- *          taker     called for every stretch of pieces: floor->stretch
- * Returns  result    of the exact solver
- * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
- *          POUND_STOPPED             stop was set
- */
-static enum pound_status floor_follow(struct pound_floor *floor, const struct pound_floor_ask *ask,
-                                      const struct pound_task_observer *observer,
-                                      const struct pound_floor_taker *taker, struct pound_task_result *result)
+/* how a motion is followed */
+struct follower {
+	struct pound_task_observer
+	    observer; /* of a pair: passes every instant on to pound_floor_observe and floor->motion */
+	struct pound_floor_taker taker;    /* called for every stretch of pieces: floor->stretch */
+	struct pound_floor_beside *beside; /* of a chain, as struct pound_floor_motion has it */
+};
+
+static void pair_follow(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                        const struct follower *follower, struct pound_task_result *result)
 {
-	struct pound_floor_motion *motion = &floor->motion;
 	struct pound_task observed = *ask->task;
-	observed.observer = observer;
+	observed.observer = &follower->observer;
 	// the largest displacements, where they are asked for
 	observed.bodies[0].followed = observed.bodies[1].followed = false;
-	*motion = (struct pound_floor_motion){
-	    .task = ask->task, .stretch = &floor->stretch, .taker = *taker, .stop = ask->stop};
-	pound_floor_start(motion);
+	floor->motion.task = ask->task;
+	pound_floor_start(&floor->motion);
 	// one task alone is done sooner in one lane than in many
 	bool followed = pound_exact_lanes(1, &observed, result, 1, ask->scratch, ask->stop);
 	assert(followed);
 	(void)followed;
+}
+
+static void chain_follow(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                         struct pound_chain_observer observer, const struct pound_floor_of_chain *chain)
+{
+	struct pound_chain_task observed = *chain->task;
+	observer.observe = pound_floor_observe_chain;
+	observer.into = &floor->motion;
+	observed.observer = &observer;
+	observed.asked = 0;
+	chain->result->status = POUND_OK; // stopped before it began it is not written
+	pound_floor_start_chain(&floor->motion);
+	pound_chain_lanes(0, &observed, chain->result, 1, ask->scratch, ask->stop);
+}
+
+/* Follows a pair whose contact force the march of pairs does not have. */
+static void pair_follow_as_chain(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                                 struct pound_task_result *result)
+{
+	struct pound_pair_chain pair;
+	pound_pair_chain(ask->task, &pair);
+	struct pound_chain_result rows = {.floors = pair.floor_measures[0], .links = pair.link_measures};
+	memset(pair.floor_measures, 0, sizeof pair.floor_measures);
+	memset(pair.link_measures, 0, sizeof pair.link_measures);
+	const struct pound_chain_observer observer = {.floors = {0, pair.link.floor[1][0]}, .link = 0};
+	chain_follow(floor, ask, observer, &(struct pound_floor_of_chain){&pair.task, 0, &rows});
+	*result = (struct pound_task_result){.status = rows.status,
+	                                     .impulse_max = rows.links[POUND_LINK_IMPULSE_MAX],
+	                                     .contacts = (int64_t)rows.links[POUND_LINK_CONTACTS]};
+	for (int i = 0; i < pair.task.n_floors; i++) {
+		result->u[i] = pair.floor_measures[i][POUND_FLOOR_END_U];
+		result->v[i] = pair.floor_measures[i][POUND_FLOOR_END_V];
+	}
+}
+
+/* Sets the largest impulse of a contact on a floor of a chain over its mass, and how many contacts there were. */
+static void impulses_fill(const struct pound_floor_of_chain *chain, struct pound_task_result *result)
+{
+	const struct pound_chain_task *task = chain->task;
+	for (int j = 0; j < task->n_links; j++) {
+		const double *link = chain->result->links + j * POUND_LINK_MEASURES;
+		for (int side = 0; side < 2; side++)
+			for (int w = 0; w < 2; w++) {
+				const double weight = task->links[j].weight[side][w] / task->floors[chain->floor].mass;
+				if (task->links[j].floor[side][w] != chain->floor || weight == 0)
+					continue;
+				result->impulse_max = fmax(result->impulse_max, weight * link[POUND_LINK_IMPULSE_MAX]);
+				result->contacts += (int64_t)link[POUND_LINK_CONTACTS];
+			}
+	}
+}
+
+/* Follows a task to its end.
+ *
+ * Given    ask       its task, or its chain, stop and scratch
+ * Returns  result    of the exact solver; of a chain its status, and the end of the floor in place of the left body's
+ * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ *          POUND_STOPPED             stop was set
+ */
+static enum pound_status floor_follow(struct pound_floor *floor, const struct pound_floor_ask *ask,
+                                      const struct follower *follower, struct pound_task_result *result)
+{
+	struct pound_floor_motion *motion = &floor->motion;
+	*motion = (struct pound_floor_motion){
+	    .stretch = &floor->stretch, .taker = follower->taker, .stop = ask->stop, .beside = follower->beside};
+	if (ask->chain.task) {
+		const struct pound_chain_observer observer = {.floors = {ask->chain.floor, POUND_CHAIN_GROUND},
+		                                              .link = -1};
+		const double *floors = ask->chain.result->floors + ask->chain.floor * POUND_FLOOR_MEASURES;
+		chain_follow(floor, ask, observer, &ask->chain);
+		*result = (struct pound_task_result){.status = ask->chain.result->status,
+		                                     .u = {floors[POUND_FLOOR_END_U]},
+		                                     .v = {floors[POUND_FLOOR_END_V]}};
+		impulses_fill(&ask->chain, result);
+	} else if (pound_runs_as_chain(ask->task)) {
+		pair_follow_as_chain(floor, ask, result);
+	} else {
+		pair_follow(floor, ask, follower, result);
+	}
 	if (pound_stopped(ask->stop))
 		return POUND_STOPPED;
-	taker->take(taker->into);
+	motion->taker.take(motion->taker.into);
 	return motion->status ? motion->status : result->status;
 }
 
@@ -162,20 +232,21 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 	                          .radians = ask->radians,
 	                          .kernel = &floor->kernel,
 	                          .omega = floor->omega};
-	struct bank_drive drive = {.bank = &bank,
-	                           .input = {.stretch = &floor->stretch,
-	                                     .time_step = ask->task->time_step,
-	                                     .damping = ask->task->bodies[0].damping},
-	                           .lanes = ask->lanes,
-	                           .scratch = floor->scratch};
+	struct bank_drive drive = {
+	    .bank = &bank,
+	    .input = {.stretch = &floor->stretch,
+	              .time_step = ask->chain.task ? ask->chain.task->time_step : ask->task->time_step,
+	              .damping = ask->chain.task ? 0 : ask->task->bodies[0].damping},
+	    .lanes = ask->lanes,
+	    .scratch = floor->scratch};
 	struct pound_task_result result = {0}; // stopped before it began it is not written
 	for (int d = 0; d < ask->n_drives; d++) {
 		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
 		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
 	}
-	const struct pound_floor_taker taker = {bank_take, &drive};
-	const struct pound_task_observer observer = {pound_floor_observe, &floor->motion};
-	enum pound_status status = floor_follow(floor, ask, &observer, &taker, &result);
+	const struct follower follower = {.observer = {pound_floor_observe, &floor->motion},
+	                                  .taker = {bank_take, &drive}};
+	enum pound_status status = floor_follow(floor, ask, &follower, &result);
 	for (int d = 0; d < ask->n_drives; d++)
 		for (int k = 0; k < floor->n; k++)
 			answer->psa[d][k] = floor->omega[k] * floor->omega[k] * floor->top[d][k];
@@ -228,7 +299,9 @@ struct chronicle {
 	struct pound_floor *floor;
 	pound_floor_take *take;
 	void *into;
-	double spacing;                    /* rows_spacing */
+	double spacing; /* rows_spacing */
+	bool of_chain;  /* what is beside the floor: */
+	struct pound_floor_beside beside;
 	struct pound_instant_of_task from; /* where this interval began */
 	struct pound_floor_instant last;   /* the end of the piece before */
 	double largest;                    /* acceleration in any piece without contact [m/s2] */
@@ -244,40 +317,22 @@ static double polynomial_at(const double *c, int order, double s)
 	return sum;
 }
 
-/* Both bodies over a piece of the left one's floor.
+/* The right body over a piece of the left one's floor, one order after the other.
  *
- * Given    start  both bodies where it begins
+ *   u2'' = -(c2 u2' + k2 u2 + o2) - r P - d2 g     gap'' = u2'' - u1''
  *
- *   u1'' = a - d1 g     u2'' = -(c2 u2' + k2 u2 + o2) - r P - d2 g     gap'' = u2'' - u1''
- *
- * | a, P | the piece's acceleration and push, -F/m1 |   | g | ground | | d | drive, 0: a rigid wall |   | r | m1/m2 |
+ * | P | the piece's push, -F/m1 |   | g | ground | | d | drive, 0: a rigid wall |   | r | m1/m2 |
  * | c2, k2, o2 | damping, stiffness and offset of the right body's branch, per mass |
  * Valid    to rounding, as the piece is: its step is within reach of the right body's rates, too
  */
-static void motion_fill(struct piece_motion *m, const struct chronicle *chronicle,
-                        const struct pound_floor_piece *p, const struct pound_floor_instant *start)
+static void right_fill(struct piece_motion *m, const struct chronicle *chronicle)
 {
-	const struct pound_floor *floor = chronicle->floor;
 	const struct pound_instant_of_task *at = &chronicle->from;
-	const struct pound_task *task = floor->motion.task;
+	const struct pound_task *task = chronicle->floor->motion.task;
 	const struct pound_task_body *right = &task->bodies[1];
-	const double h = p->step, h2 = h * h, *c;
-	double room[POUND_FLOOR_ORDER + 1];
-	*m = (struct piece_motion){.start = p->start, .step = h, .ground = {start->ground, at->slope * h}};
-	for (int d = 0; d < POUND_DRIVES; d++) {
-		const int order =
-		    pound_floor_drive(&floor->stretch, p, (enum pound_drive)d, task->bodies[0].damping, room, &c);
-		for (int n = 0; n <= order; n++)
-			(d == POUND_DRIVE_PUSH ? m->push : m->acceleration[0])[n] = c[n];
-	}
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		m->u[i][0] = start->u[i];
-		m->u[i][1] = start->v[i] * h;
-	}
-	m->gap[0] = start->gap;
-	m->gap[1] = start->gap_rate * h;
+	const double h = m->step;
 	for (int n = 0; n <= POUND_FLOOR_ORDER; n++) {
-		const double ground = n < 2 ? m->ground[n] : 0, per_step = h2 / ((n + 1) * (n + 2));
+		const double ground = n < 2 ? m->ground[n] : 0, per_step = h * h / ((n + 1) * (n + 2));
 		const double spring = at->stiffness[1] * m->u[1][n] + (n == 0 ? at->spring_offset[1] : 0);
 		const double pulled =
 		    -(right->damping * (n + 1) * m->u[1][n + 1] / h + spring) - task->mass_ratio * m->push[n];
@@ -288,6 +343,49 @@ static void motion_fill(struct piece_motion *m, const struct chronicle *chronicl
 		m->u[1][n + 2] = other * per_step;
 		m->gap[n + 2] = (other - left) * per_step;
 	}
+}
+
+/* The same of a floor of a chain. */
+static void beside_fill(struct piece_motion *m, const struct pound_floor_beside *beside)
+{
+	for (int n = 0; n <= POUND_FLOOR_ORDER; n++) {
+		const double ground = n < 2 ? m->ground[n] : 0, per_step = m->step * m->step / ((n + 1) * (n + 2));
+		const double other = n <= beside->order ? beside->right.c[n] : 0;
+		m->acceleration[1][n] = other;
+		m->u[0][n + 2] = (m->acceleration[0][n] - ground) * per_step;
+		m->u[1][n + 2] = (other - ground) * per_step;
+		m->gap[n + 2] = (other - m->acceleration[0][n]) * per_step;
+	}
+}
+
+/* Both bodies over a piece of the left one's floor.
+ *
+ * Given    start  both bodies where it begins
+ */
+static void motion_fill(struct piece_motion *m, const struct chronicle *chronicle,
+                        const struct pound_floor_piece *p, const struct pound_floor_instant *start)
+{
+	const struct pound_floor *floor = chronicle->floor;
+	const double h = p->step, *c;
+	const double slope = chronicle->of_chain ? chronicle->beside.slope : chronicle->from.slope;
+	const double damping = chronicle->of_chain ? 0 : floor->motion.task->bodies[0].damping;
+	double room[POUND_FLOOR_ORDER + 1];
+	*m = (struct piece_motion){.start = p->start, .step = h, .ground = {start->ground, slope * h}};
+	for (int d = 0; d < POUND_DRIVES; d++) {
+		const int order = pound_floor_drive(&floor->stretch, p, (enum pound_drive)d, damping, room, &c);
+		for (int n = 0; n <= order; n++)
+			(d == POUND_DRIVE_PUSH ? m->push : m->acceleration[0])[n] = c[n];
+	}
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		m->u[i][0] = start->u[i];
+		m->u[i][1] = start->v[i] * h;
+	}
+	m->gap[0] = start->gap;
+	m->gap[1] = start->gap_rate * h;
+	if (chronicle->of_chain)
+		beside_fill(m, &chronicle->beside);
+	else
+		right_fill(m, chronicle);
 }
 
 static double rate_at(const struct piece_motion *m, const double *c, double s)
@@ -318,10 +416,19 @@ static struct pound_floor_instant piece_start(const struct chronicle *chronicle,
                                               const struct pound_floor_piece *p)
 {
 	const struct pound_instant_of_task *at = &chronicle->from;
+	const struct pound_floor_beside *beside = &chronicle->beside;
 	struct pound_floor_instant start = chronicle->last;
 	start.time = p->start;
 	if (!p->sampled && !p->after_event)
 		return start;
+	if (chronicle->of_chain) {
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			start.u[i] = beside->u[i], start.v[i] = beside->v[i];
+		start.gap = -beside->overlap;
+		start.gap_rate = -beside->overlap_rate;
+		start.ground = beside->ground;
+		return start;
+	}
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		start.u[i] = at->u[i], start.v[i] = at->v[i];
 	start.gap = at->touching ? -at->overlap : chronicle->floor->motion.task->gap - (at->u[0] - at->u[1]);
@@ -338,7 +445,7 @@ static void chronicle_piece(struct chronicle *chronicle, const struct pound_floo
 	motion_fill(&m, chronicle, p, &start);
 	start.acceleration[0] = m.acceleration[0][0], start.acceleration[1] = m.acceleration[1][0];
 	start.push = m.push[0];
-	if (!chronicle->from.touching)
+	if (!(chronicle->of_chain ? chronicle->beside.touching : chronicle->from.touching))
 		chronicle->largest = fmax(chronicle->largest, p->floor.bound[0]);
 	const double size = chronicle->spacing * fmax(chronicle->largest, p->floor.bound[0]);
 	const double inside = size > 0 ? p->floor.bound[2] / size : 0; // over what one row for the piece allows
@@ -355,6 +462,10 @@ static void chronicle_piece(struct chronicle *chronicle, const struct pound_floo
 		struct pound_floor_instant before = start;
 		memcpy(before.acceleration, last->acceleration, sizeof before.acceleration);
 		before.push = last->push;
+		if (chronicle->of_chain) { // velocities may have jumped
+			memcpy(before.v, last->v, sizeof before.v);
+			before.gap_rate = last->gap_rate;
+		}
 		chronicle->take(chronicle->into, &before);
 	}
 	chronicle->take(chronicle->into, &start);
@@ -404,15 +515,21 @@ static void chronicle_observe(void *of, const struct pound_instant_of_task *inst
 enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       pound_floor_take *take, void *into)
 {
-	const struct pound_task *task = ask->task;
-	struct chronicle chronicle = {
-	    .floor = floor, .take = take, .into = into, .spacing = rows_spacing(floor->damping)};
-	const struct pound_floor_taker taker = {chronicle_take, &chronicle};
-	const struct pound_task_observer observer = {chronicle_observe, &chronicle};
+	const bool of_chain = ask->chain.task || pound_runs_as_chain(ask->task);
+	struct chronicle chronicle = {.floor = floor,
+	                              .take = take,
+	                              .into = into,
+	                              .spacing = rows_spacing(floor->damping),
+	                              .of_chain = of_chain};
+	const struct follower follower = {.observer = {chronicle_observe, &chronicle},
+	                                  .taker = {chronicle_take, &chronicle},
+	                                  .beside = of_chain ? &chronicle.beside : NULL};
 	struct pound_task_result result = {0};
-	enum pound_status status = floor_follow(floor, ask, &observer, &taker, &result);
+	enum pound_status status = floor_follow(floor, ask, &follower, &result);
+	const int n_samples = ask->chain.task ? ask->chain.task->n_samples : ask->task->n_samples;
+	const double time_step = ask->chain.task ? ask->chain.task->time_step : ask->task->time_step;
 	struct pound_floor_instant *last = &chronicle.last;
-	last->time = (task->n_samples - 1) * task->time_step;
+	last->time = (n_samples - 1) * time_step;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		last->u[i] = result.u[i], last->v[i] = result.v[i];
 	if (!status)

@@ -11,19 +11,28 @@ size_t pound_floor_bytes(int n_frequencies);
 struct pound_floor *pound_floor_init(void *memory,
                                      const struct pound_spectrum *spectrum); /* 64-byte aligned */
 
-/* what is asked of one task */
+/* a floor of a chain */
+struct pound_floor_of_chain {
+	const struct pound_chain_task *task;
+	int floor;
+	struct pound_chain_result *result; /* room for its measures */
+};
+
+/* what is asked of one task: of the left body of a pair, or of a floor of a chain */
 struct pound_floor_ask {
 	const struct pound_task *task;
-	int n_drives;            /* 1: the whole acceleration; 2: the contact's part of it too */
-	double radians;          /* an oscillator's longest step, at most 1.5 */
-	int lanes;               /* 0: the widest there are */
-	const atomic_bool *stop; /* looked at throughout; NULL: never */
-	void *scratch;           /* POUND_EXACT_SCRATCH bytes, 64-byte aligned */
+	struct pound_floor_of_chain chain; /* its task NULL: none */
+	int n_drives;                      /* 1: the whole acceleration; 2: the contact's part of it too */
+	double radians;                    /* an oscillator's longest step, at most 1.5 */
+	int lanes;                         /* 0: the widest there are */
+	const atomic_bool *stop;           /* looked at throughout; NULL: never */
+	void *scratch;                     /* POUND_EXACT_SCRATCH bytes, 64-byte aligned */
 };
 
 /* what comes out; psa: [m/s2]  (n_frequencies) each */
 struct pound_floor_answer {
 	double *psa[POUND_DRIVES];
+	// of a pair
 	double impulse_max; /* over the left mass [m/s] */
 	int64_t contacts;
 };
@@ -31,7 +40,7 @@ struct pound_floor_answer {
 enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       struct pound_floor_answer *answer);
 
-/* Both bodies at one time: left, right. */
+/* Both bodies at one time: left, right; of a chain the floor alone, and 0 in place of the other and of the gap. */
 struct pound_floor_instant {
 	double time;                                       /* [s] */
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS]; /* relative to the ground [m], [m/s] */

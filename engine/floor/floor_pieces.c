@@ -57,8 +57,35 @@ static int order_kept(const double *size, int order, double sum)
 	return order;
 }
 
-/* An acceleration over a step: without the terms that are rounding beside the others, bounded with two
- * derivatives.
+/* Bounds an acceleration over a step with two of its derivatives.
+ *
+ * Given    a  its coefficients  (order + 1)
+ * Returns  value  its order, without the terms that are rounding beside the others
+ */
+int pound_floor_bound(struct pound_polynomial *a, int order)
+{
+	double size[N + 2], bound[3][2] = {{0}};
+	for (int n = 0; n <= order; n++)
+		size[n] = fabs(a->c[n]);
+	size[order + 1] = 0;
+	// the even and the odd terms apart: sums need not wait for each other
+	for (int n = 0; n <= order; n += 2)
+		for (int j = 0; j < 2; j++)
+			bound[0][j] += size[n + j];
+	a->bound[0] = bound[0][0] + bound[0][1];
+	order = order_kept(size, order, a->bound[0]);
+	size[order + 1] = 0;
+	for (int n = 0; n <= order; n += 2)
+		for (int j = 0; j < 2; j++) {
+			bound[1][j] += (n + j) * size[n + j];
+			bound[2][j] += (double)((n + j) * (n + j - 1)) * size[n + j];
+		}
+	a->bound[1] = bound[1][0] + bound[1][1];
+	a->bound[2] = bound[2][0] + bound[2][1];
+	return order;
+}
+
+/* An acceleration over a step.
  *
  * Given    a  derivatives by the share of the step, times the step squared;  offset: besides
  * Returns  value  its order
@@ -67,28 +94,10 @@ static int polynomial_fill(struct pound_polynomial *into, const double *a, int o
                            double step)
 {
 	const double per_step = 1 / step;
-	double *const c = into->c, size[N + 2], bound[3][2] = {{0}};
-	c[0] = a[0] * per_step * per_step - offset;
+	into->c[0] = a[0] * per_step * per_step - offset;
 	for (int n = 1; n <= order; n++)
-		c[n] = a[n] * POUND_FACTOR[n] * per_step * per_step;
-	for (int n = 0; n <= order; n++)
-		size[n] = fabs(c[n]);
-	size[order + 1] = 0;
-	// the even and the odd terms apart: sums need not wait for each other
-	for (int n = 0; n <= order; n += 2)
-		for (int j = 0; j < 2; j++)
-			bound[0][j] += size[n + j];
-	into->bound[0] = bound[0][0] + bound[0][1];
-	order = order_kept(size, order, into->bound[0]);
-	size[order + 1] = 0;
-	for (int n = 0; n <= order; n += 2)
-		for (int j = 0; j < 2; j++) {
-			bound[1][j] += (n + j) * size[n + j];
-			bound[2][j] += (double)((n + j) * (n + j - 1)) * size[n + j];
-		}
-	into->bound[1] = bound[1][0] + bound[1][1];
-	into->bound[2] = bound[2][0] + bound[2][1];
-	return order;
+		into->c[n] = a[n] * POUND_FACTOR[n] * per_step * per_step;
+	return pound_floor_bound(into, order);
 }
 
 /* Coefficients of the absolute acceleration -(c v + r) of a body in free motion over a sample.
@@ -405,19 +414,28 @@ static void stretch_room(struct pound_floor_motion *motion)
 	stretch->n = stretch->n_maps = 0;
 }
 
-/* One more piece of the stretch, which has room. */
+struct pound_floor_piece *pound_floor_piece_add(struct pound_floor_motion *motion, double start, double step)
+{
+	stretch_room(motion);
+	struct pound_floor_piece *piece = &motion->stretch->piece[motion->stretch->n++];
+	piece->start = start;
+	piece->step = step;
+	piece->sampled = motion->sampled;
+	piece->after_event = motion->after_event;
+	piece->jump = motion->jump;
+	piece->map = -1;
+	motion->sampled = motion->after_event = false;
+	motion->jump = 0;
+	return piece;
+}
+
+/* One more piece of the left body. */
 static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
                                             const struct pound_instant_of_task *at, double step)
 {
-	struct pound_floor_piece *piece = &motion->stretch->piece[motion->stretch->n++];
-	piece->start = at->time;
-	piece->step = step;
+	struct pound_floor_piece *piece = pound_floor_piece_add(motion, at->time, step);
 	piece->u = at->u[0];
 	piece->v = at->v[0];
-	piece->sampled = motion->sampled;
-	piece->after_event = motion->after_event;
-	piece->map = -1;
-	motion->sampled = motion->after_event = false;
 	return piece;
 }
 
@@ -527,10 +545,9 @@ static double rate_touch(const struct pound_task *task, double rate)
 void pound_floor_start(struct pound_floor_motion *motion)
 {
 	const struct pound_task *task = motion->task;
-	assert(!task->contact ||
-	       task->force == POUND_FORCE_LINEAR); // its forms of force: pound_floor_takes_force
+	assert(!task->contact || task->force == POUND_FORCE_LINEAR); // others run as chains
 	motion->status = POUND_OK;
-	motion->rate = 0;
+	motion->rate = motion->jump = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &task->bodies[i];
 		motion->rate = fmax(motion->rate, fmax(sqrt(b->backbone.stiffness), b->damping));

@@ -5,6 +5,7 @@
 #ifndef FLOOR_PIECES_H
 #define FLOOR_PIECES_H
 
+#include "engine/exact/chain.h"
 #include "engine/exact/task.h"
 
 enum {
@@ -25,7 +26,8 @@ struct pound_polynomial {
 
 struct pound_floor_piece {
 	double start, step; /* [s] */
-	double u, v;        /* of the left body at the start [m], [m/s] */
+	double u, v;        /* of the left body at the start [m], [m/s]; of a floor of a chain not set */
+	double jump;        /* that v has just made: a rigid impact [m/s] */
 	int map;            /* free motion over a whole sample: number of its stiffness; -1: any other piece */
 	// of free motion: spring force, velocity, forcing and what that grows by  [m/s2], [m/s], [m/s2], [m/s2]
 	double state[4];
@@ -50,6 +52,16 @@ struct pound_floor_taker {
 	void *into;
 };
 
+/* What a history takes of a chain beside the pieces of its floor: of the piece in hand, and of where that of the chain began. */
+struct pound_floor_beside {
+	struct pound_polynomial right; /* absolute acceleration of the other floor [m/s2] */
+	int order;
+	double ground, slope;                                    /* at the start of the piece [m/s2], [m/s3] */
+	double u[POUND_CHAIN_OBSERVED], v[POUND_CHAIN_OBSERVED]; /* [m], [m/s] */
+	double overlap, overlap_rate;                            /* [m], [m/s] */
+	bool touching;
+};
+
 /* a motion, as far as it was reported */
 struct pound_floor_motion {
 	const struct pound_task *task;
@@ -60,6 +72,8 @@ struct pound_floor_motion {
 	double rate, rate_touch;           /* fastest of the bodies, of both in contact [rad/s] */
 	struct pound_instant_of_task from; /* where the next piece begins */
 	bool sampled, after_event;         /* as struct pound_floor_piece has them */
+	double jump;                       /* likewise */
+	struct pound_floor_beside *beside; /* of a chain: not NULL, every piece is taken at once */
 };
 
 /* Coefficients of free motion's acceleration from its state. */
@@ -72,9 +86,18 @@ int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct po
 /* Terms after which x^n/n! is below rounding, n <= POUND_FLOOR_TERMS. */
 int pound_floor_terms(double x);
 
+/* Bounds of an acceleration whose coefficients are set; returns its order without the terms that are rounding beside the others. */
+int pound_floor_bound(struct pound_polynomial *a, int order);
+/* One more piece, of which acceleration and push are to be filled. */
+struct pound_floor_piece *pound_floor_piece_add(struct pound_floor_motion *motion, double start, double step);
+
 /* A motion that no instant was reported of yet; task, stretch, taker and stop are set. */
 void pound_floor_start(struct pound_floor_motion *motion);
 /* Makes the pieces up to an instant; an observer of the exact solver. */
 void pound_floor_observe(void *motion, const struct pound_instant_of_task *instant);
+
+/* The same of a floor of a chain, the first that its observer has: chain_pieces.c. */
+void pound_floor_start_chain(struct pound_floor_motion *motion);
+void pound_floor_observe_chain(void *motion, const struct pound_chain_piece *piece);
 
 #endif

@@ -438,6 +438,8 @@ static void vector_move(const struct pound_bank *bank, const struct pound_bank_i
 	for (int i = 0; i < input->stretch->n; i++) {
 		const struct pound_floor_piece *piece = &input->stretch->piece[i];
 		struct segment_place place = {.input = input, .piece = piece, .n = segments};
+		for (int d = 0; d < bank->n_drives && piece->jump != 0; d++)
+			s[d].v = s[d].v - vsplat(piece->jump);
 		if (piece->map >= 0 && mapped) {
 			free_move(&scratch->maps, &sample, &place, POUND_DRIVE_FLOOR, &s[POUND_DRIVE_FLOOR]);
 			if (bank->n_drives > 1)

@@ -15,6 +15,7 @@
 #include <gsl/gsl_statistics_double.h>
 
 #include "engine/floor/pulse_train.h"
+#include "engine/scene/building.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -110,25 +111,26 @@ static enum pound_status spectra_fill(struct pound_ordinates *o, const struct po
 	int n = study->spectrum.n;
 	struct pound_floor_answer answer = {.psa = {o->psa[0], o->psa[1]}};
 	ask.task = request->free;
+	ask.chain = request->row.free;
 	enum pound_status status = pound_floor_spectra(o->floor, &ask, &answer);
 	if (status)
 		return status;
 	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_FREE * n);
 	memset(o->psa[POUND_DRIVE_PUSH], 0, sizeof(double) * (size_t)n);
 	ask.task = request->pounding;
+	ask.chain = request->row.pounding;
 	ask.n_drives = POUND_DRIVES;
-	if (request->pounding)
+	if (request->touches)
 		status = pound_floor_spectra(o->floor, &ask, &answer);
 	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_POUNDING * n);
 	scaled(o->psa[POUND_DRIVE_PUSH], n, request->exponent, values + POUND_SPECTRUM_IMPACT_ONLY * n);
-	const struct pound_oscillator *left = &request->scene->oscillators[0];
 	int pulses = study->spectrum.pulses;
 	const struct pound_pulse_train dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
-	                                        .spacing = 0.5 / left->frequency_hz,
+	                                        .spacing = 0.5 / request->frequency_hz,
 	                                        .pulses = pulses ? pulses : (double)answer.contacts,
 	                                        .stop = ask.stop};
 	dirac_fill(&study->spectrum, &dirac, values);
-	values[POUND_N_SPECTRA * n + IMPULSE] = left->mass * dirac.speed;
+	values[POUND_N_SPECTRA * n + IMPULSE] = request->mass * dirac.speed;
 	values[POUND_N_SPECTRA * n + PULSES] = dirac.pulses;
 	return status;
 }
@@ -139,7 +141,8 @@ static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct 
                                         const double *known, double *values)
 {
 	struct pound_floor_answer answer = {.psa = {o->psa[0]}};
-	ask.task = request->pounding ? request->pounding : request->free;
+	ask.task = request->touches ? request->pounding : request->free;
+	ask.chain = request->touches ? request->row.pounding : request->row.free;
 	enum pound_status status = known ? POUND_OK : pound_floor_spectra(o->floor, &ask, &answer);
 	for (int output = 0; output < study->n_outputs; output++) {
 		int k = pound_study_ordinate(study, output);
@@ -180,7 +183,7 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		struct followed *followed = &o->followed[floor.march];
 		const int before = has_spectra(study) ? 0 : followed->ask;
 		const double *known = before ? values - (size_t)(a + 1 - before) * (size_t)n : NULL;
-		int floors = has_spectra(study) && floor.pounding ? 2 : 1;
+		int floors = has_spectra(study) && floor.touches ? 2 : 1;
 		work->floors.asked += a < n_items ? floors : 0;
 		if (isnan(values[n - 1]))
 			continue;
@@ -251,6 +254,16 @@ static double mean_of(const double *value, int n)
 	return n ? sum / n : NAN;
 }
 
+/* First frequency of the body that the floor is of [Hz]. */
+static double body_frequency(const struct pound_study *study)
+{
+	struct pound_storeys storeys;
+	if (study->scene.n_buildings == 0)
+		return study->scene.oscillators[0].frequency_hz;
+	pound_building_storeys(&study->scene.buildings[study->spectrum.place.building], &storeys);
+	return storeys.frequency / (2 * PI);
+}
+
 /* Mean, 16 and 84 % over the signals of every spectrum, and what the checks say.
  *
  * Given    scratch  (pound_ordinate_scratch)
@@ -262,6 +275,7 @@ void pound_ordinate_reduce(const struct pound_run *run, double *scratch, struct 
 	const struct pound_cells *c = &run->campaign;
 	int n = c->study->spectrum.n;
 	result->signals = c->n_signals;
+	result->frequency_hz = body_frequency(c->study);
 	result->signals_checked = pound_cells_checks(c, c->n_signals);
 	for (int row = 0; row < POUND_N_SPECTRA; row++)
 		for (int k = 0; k < n && !pound_stopped(run->stop); k++) {
@@ -382,6 +396,7 @@ struct history {
 	pound_run_take *take;
 	void *into;
 	int signal, exponent;
+	bool row; /* of buildings: the floor alone */
 	bool contact;
 	double mass;
 };
@@ -399,9 +414,10 @@ static void history_take(void *of, const struct pound_floor_instant *instant)
 	                            .gap = to->contact ? history_scaled(to, instant->gap) : NAN,
 	                            .ground = history_scaled(to, instant->ground)};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		row.u[i] = history_scaled(to, instant->u[i]);
-		row.v[i] = history_scaled(to, instant->v[i]);
-		row.acceleration[i] = history_scaled(to, instant->acceleration[i]);
+		const bool has = i == 0 || !to->row;
+		row.u[i] = has ? history_scaled(to, instant->u[i]) : NAN;
+		row.v[i] = has ? history_scaled(to, instant->v[i]) : NAN;
+		row.acceleration[i] = has ? history_scaled(to, instant->acceleration[i]) : NAN;
 	}
 	to->take(to->into, to->signal, &row);
 }
@@ -430,13 +446,21 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 	if (status || left)
 		return status ? status : left;
 	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);
-	const struct pound_task pair = pound_request_pair(run->requests[0], 0);
+	const bool row = run->campaign.study->scene.n_buildings > 0;
 	struct history to = {.take = take,
 	                     .into = into,
 	                     .signal = signal,
 	                     .exponent = floor.exponent,
-	                     .contact = floor.scene->contact.present,
-	                     .mass = floor.scene->oscillators[0].mass};
-	const struct pound_floor_ask ask = {.task = &pair, .stop = run->stop, .scratch = floor.scratch};
+	                     .row = row,
+	                     .contact = floor.contact && !row,
+	                     .mass = floor.mass};
+	struct pound_floor_ask ask = {.stop = run->stop, .scratch = floor.scratch};
+	struct pound_task pair;
+	if (row) {
+		ask.chain = floor.touches ? floor.row.pounding : floor.row.free;
+	} else {
+		pair = pound_request_pair(run->requests[0], 0);
+		ask.task = &pair;
+	}
 	return pound_floor_history(run->floors[0]->floor, &ask, history_take, &to);
 }

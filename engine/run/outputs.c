@@ -352,7 +352,9 @@ static const struct output {
     {"impulse",
      "largest impulse of a contact over m_1 omega_1 times the largest displacement without pounding",
      "a contact", "a contact", bodies_meet, impulse, displacement_free, row_impulse, top_free, .asks = 0},
-    {"floor_spectrum", "mean ordinate of the left floor's response spectrum, one output for each frequency",
+    {"floor_spectrum",
+     "mean ordinate of the response spectrum of the left body, or of the floor at /spectrum/place: one for "
+     "each frequency",
      "a sensitivity study", "a sensitivity study", always, absent, one, row_absent, row_one,
      .ordinates = true},
     {"drift_amplification", "largest story drift at each place, with over without pounding", "buildings",

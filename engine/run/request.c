@@ -448,7 +448,8 @@ static void row_free(struct pound_request *request, int a)
 {
 	const struct pound_study *study = request->campaign->study;
 	const struct pound_scene scene = row_scene(request, &request->asks[a]);
-	pound_row_ask_free(&request->rows, &scene, &request->row_asks[a], study->kind == POUND_KIND_RESPONSE,
+	pound_row_ask_free(&request->rows, &scene, &request->row_asks[a],
+	                   study->kind == POUND_KIND_RESPONSE || study->spectrum.n > 0,
 	                   pound_row_asked(study) | (request->asks[a].balanced ? POUND_CHAIN_ENERGY : 0));
 }
 
@@ -656,13 +657,27 @@ int pound_request_count(const struct pound_request *request, int *n_items)
 struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask)
 {
 	const struct ask *a = &request->asks[ask];
-	int march = a->march < 0 ? a->bodies[0].march : a->march;
-	return (struct pound_request_floor){.scene = &a->scene,
-	                                    .pounding = a->march < 0 ? NULL : &request->tasks[a->march],
-	                                    .free = &request->tasks[a->bodies[0].march],
-	                                    .march = march,
+	struct pound_request_floor floor = {.contact = a->scene.contact.present,
 	                                    .exponent = request->motions[a->motion].exponent,
 	                                    .scratch = request->scratch};
+	if (a->scene.n_buildings) {
+		const struct pound_scene scene = row_scene(request, a);
+		floor.row = pound_row_floor(&request->rows, &scene, &request->row_asks[ask],
+		                            &request->campaign->study->spectrum.place);
+		floor.touches = floor.row.pounding.task;
+		const struct pound_floor_of_chain *of = floor.touches ? &floor.row.pounding : &floor.row.free;
+		floor.mass = of->task->floors[of->floor].mass;
+		floor.frequency_hz = floor.row.frequency_hz;
+		floor.march = (int)(of->task - request->rows.tasks);
+		return floor;
+	}
+	floor.mass = a->scene.oscillators[0].mass;
+	floor.frequency_hz = a->scene.oscillators[0].frequency_hz;
+	floor.touches = a->march >= 0;
+	floor.pounding = a->march < 0 ? NULL : &request->tasks[a->march];
+	floor.free = &request->tasks[a->bodies[0].march];
+	floor.march = a->march < 0 ? a->bodies[0].march : a->march;
+	return floor;
 }
 
 /* The two bodies of an ask together; without contact where the answer is the responses without it. */

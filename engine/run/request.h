@@ -79,10 +79,13 @@ enum pound_status pound_request_displacement(struct pound_request *request, cons
 /* After pound_request_run: its asks, of which the first n_items are those of the items and the others those of checks. */
 int pound_request_count(const struct pound_request *request, int *n_items);
 
-/* The floor of an ask; its motions are times 2^-exponent. */
+/* The floor of an ask: the left body, or of a row of buildings the place of the spectrum; its motions are times 2^-exponent. */
 struct pound_request_floor {
-	const struct pound_scene *scene;
-	const struct pound_task *pounding, *free; /* pounding NULL: the response without it is the answer */
+	bool contact;                             /* the scene has one */
+	bool touches;                             /* false: the response without pounding is the answer */
+	double mass, frequency_hz;                /* of the floor [kg]; first of the body without pounding */
+	const struct pound_task *pounding, *free; /* of two oscillators; pounding NULL: it does not touch */
+	struct pound_row_floor row;               /* of a row of buildings */
 	int march;                                /* number of the task that is the answer */
 	int exponent;
 	void *scratch; /* POUND_EXACT_SCRATCH bytes for who follows it */

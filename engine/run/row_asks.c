@@ -17,6 +17,8 @@
 #include "engine/scene/contact.h"
 #include "engine/scene/modes.h"
 
+static const double PI = 3.14159265358979323846;
+
 /* ---- sizes ---- */
 
 /* Adds what a sample of a scene takes at most. */
@@ -463,4 +465,31 @@ int64_t pound_row_contacts_run(const struct pound_row_asks *asks, int from)
 			         ? 0
 			         : (int64_t)asks->results[j].links[k * POUND_LINK_MEASURES + POUND_LINK_CONTACTS];
 	return n;
+}
+
+/* ---- floors ---- */
+
+static struct pound_floor_of_chain floor_of(const struct pound_row_asks *asks, int march, int floor)
+{
+	return (struct pound_floor_of_chain){&asks->tasks[march], floor, &asks->results[march]};
+}
+
+/* The floor at a place.
+ *
+ * Test     unit_row_floors
+ */
+struct pound_row_floor pound_row_floor(const struct pound_row_asks *asks, const struct pound_scene *scene,
+                                       const struct pound_row_ask *ask,
+                                       const struct pound_storey_place *place)
+{
+	struct pound_storeys storeys;
+	pound_building_storeys(&scene->buildings[place->building], &storeys);
+	assert(ask->buildings[place->building].finished);
+	struct pound_row_floor floor = {
+	    .frequency_hz = storeys.frequency / (2 * PI),
+	    .free = floor_of(asks, ask->buildings[place->building].march, place->storey - 1)};
+	if (ask->march >= 0)
+		floor.pounding =
+		    floor_of(asks, ask->march, pound_row_first(scene, place->building) + place->storey - 1);
+	return floor;
 }

@@ -3,6 +3,7 @@
 #define ROW_ASKS_H
 
 #include "engine/exact/chain.h"
+#include "engine/floor/floor.h"
 #include "engine/run/outputs.h"
 #include "engine/run/request_motions.h"
 #include "engine/scene/building.h"
@@ -88,6 +89,16 @@ double pound_row_yield_given(const struct pound_scene *scene, int b, int i);
 enum pound_status pound_row_run(struct pound_row_asks *asks, const atomic_bool *stop);
 
 int64_t pound_row_contacts_run(const struct pound_row_asks *asks, int from); /* in the marches from that on */
+
+/* The floor at a place of a sample, whose free response was wanted; pounding has no task where it is the answer. */
+struct pound_row_floor {
+	double frequency_hz; /* of the building's first mode */
+	struct pound_floor_of_chain free, pounding;
+};
+
+struct pound_row_floor pound_row_floor(const struct pound_row_asks *asks, const struct pound_scene *scene,
+                                       const struct pound_row_ask *ask,
+                                       const struct pound_storey_place *place);
 
 /* The response of a sample in the units of the study. */
 enum pound_status pound_row_response_of(const struct pound_row_asks *asks, const struct pound_scene *scene,

@@ -140,14 +140,15 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_re
 	run->floors = piece(sizeof *run->floors * (size_t)(n_workers + 1));
 	if (!run->requests || !run->scratch || !run->floors)
 		return false;
-	size_t spectra = pound_ordinate_bytes(run->campaign.study, largest.tasks);
+	const int tasks = largest.tasks + largest.rows.tasks;
+	size_t spectra = pound_ordinate_bytes(run->campaign.study, tasks);
 	for (int w = 0; w < n_workers; w++) {
 		void *memory = room(pound_request_bytes(largest));
 		run->requests[w] = memory ? pound_request_init(memory, largest) : NULL;
 		// cleared: it begins with what pound_chaos_expansion_kept_size() asks zeros for
 		run->scratch[w] = piece(sizeof(double) * pound_run_reduction_size(&run->campaign));
 		memory = spectra ? room(spectra) : NULL;
-		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, largest.tasks) : NULL;
+		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, tasks) : NULL;
 		if (!run->requests[w] || !run->scratch[w] || (spectra && !memory))
 			return false;
 	}

@@ -38,6 +38,6 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	const int n_busy = n_workers < run.layout.n_blocks ? n_workers : run.layout.n_blocks;
 	return bytes +
 	       n_busy * ((double)pound_request_bytes(largest) - POUND_EXACT_SCRATCH +
-	                 (double)pound_ordinate_bytes(study, largest.tasks)) +
+	                 (double)pound_ordinate_bytes(study, largest.tasks + largest.rows.tasks)) +
 	       n_workers * (double)sizeof(double) * (double)pound_run_reduction_size(c);
 }

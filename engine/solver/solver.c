@@ -108,40 +108,49 @@ struct pound_contact_law pound_task_law(const struct pound_task *task)
 
 /* ---- the exact solver ---- */
 
-/* Two oscillators as a chain of two one-story buildings, or of one beside a wall, over the left mass: for the forms of contact
- * force that the march of pairs does not have.
+/* Two oscillators as a chain of two one-story buildings, or of one beside a wall, over the left mass.
  *
- * Given    task     at rest at the start
+ * Given    task   at rest at the start
+ * Returns  chain  its task points into it
+ */
+void pound_pair_chain(const struct pound_task *task, struct pound_pair_chain *chain)
+{
+	const bool wall = task->mass_ratio == 0;
+	const double mass[POUND_OSCILLATORS] = {1, wall ? 1 : 1 / task->mass_ratio};
+	const int right = wall ? POUND_CHAIN_GROUND : 1, n = wall ? 1 : POUND_OSCILLATORS;
+	chain->link = (struct pound_link){.floor = {{0, 0}, {right, right}},
+	                                  .weight = {{1, 0}, {1, 0}},
+	                                  .law = pound_task_law(task),
+	                                  .gap = task->gap};
+	for (int i = 0; i < n; i++) {
+		const struct pound_task_body *body = &task->bodies[i];
+		assert(body->u == 0 && body->v == 0 && body->drive == 1);
+		chain->floors[i] = (struct pound_chain_floor){
+		    .mass = mass[i], .dashpot = body->damping * mass[i], .story = body->backbone, .base = true};
+		chain->floors[i].story.stiffness *= mass[i];
+	}
+	chain->task = (struct pound_chain_task){.ground = task->ground,
+	                                        .n_samples = task->n_samples,
+	                                        .time_step = task->time_step,
+	                                        .n_floors = n,
+	                                        .n_links = 1,
+	                                        .floors = chain->floors,
+	                                        .links = &chain->link};
+}
+
+/* Runs a pair as a chain.
+ *
  * Returns  result   as that of the march of pairs
  */
 static void chain_run(const struct pound_task *task, struct pound_task_result *result, void *scratch,
                       const atomic_bool *stop)
 {
-	const bool wall = task->mass_ratio == 0;
-	const double mass[POUND_OSCILLATORS] = {1, wall ? 1 : 1 / task->mass_ratio};
-	struct pound_chain_floor floors[POUND_OSCILLATORS];
-	const int right = wall ? POUND_CHAIN_GROUND : 1, n = wall ? 1 : POUND_OSCILLATORS;
-	const struct pound_link link = {
-	    .floor = {{0, 0}, {right, right}}, .weight = {{1, 0}, {1, 0}}, .law = task->law, .gap = task->gap};
-	double floor_rows[POUND_OSCILLATORS][POUND_FLOOR_MEASURES], row[POUND_LINK_MEASURES];
-	for (int i = 0; i < n; i++) {
-		const struct pound_task_body *body = &task->bodies[i];
-		assert(body->u == 0 && body->v == 0 && body->drive == 1);
-		floors[i] = (struct pound_chain_floor){
-		    .mass = mass[i], .dashpot = body->damping * mass[i], .story = body->backbone, .base = true};
-		floors[i].story.stiffness *= mass[i];
-	}
-	const struct pound_chain_task chain = {.ground = task->ground,
-	                                       .n_samples = task->n_samples,
-	                                       .time_step = task->time_step,
-	                                       .n_floors = n,
-	                                       .n_links = 1,
-	                                       .floors = floors,
-	                                       .links = &link,
-	                                       .asked = POUND_CHAIN_DRIFTS |
-	                                                (task->accounted ? POUND_CHAIN_ENERGY : 0)};
-	struct pound_chain_result rows = {.floors = floor_rows[0], .links = row};
-	pound_chain_lanes(0, &chain, &rows, 1, scratch, stop);
+	struct pound_pair_chain chain;
+	pound_pair_chain(task, &chain);
+	chain.task.asked = POUND_CHAIN_DRIFTS | (task->accounted ? POUND_CHAIN_ENERGY : 0);
+	const double *row = chain.link_measures;
+	struct pound_chain_result rows = {.floors = chain.floor_measures[0], .links = chain.link_measures};
+	pound_chain_lanes(0, &chain.task, &rows, 1, scratch, stop);
 	*result = (struct pound_task_result){.status = rows.status,
 	                                     .impulse_max = row[POUND_LINK_IMPULSE_MAX],
 	                                     .contact_time = row[POUND_LINK_TIME],
@@ -150,18 +159,19 @@ static void chain_run(const struct pound_task *task, struct pound_task_result *r
 	                                     .first_contact = row[POUND_LINK_FIRST_TIME],
 	                                     .first_speed = row[POUND_LINK_FIRST_SPEED]};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const bool moves = i < n;
+		const bool moves = i < chain.task.n_floors;
+		const double *floor = chain.floor_measures[i];
 		result->displacement_max[i] = !task->bodies[i].followed ? NAN
-		                              : moves                   ? floor_rows[i][POUND_FLOOR_DRIFT_MAX]
+		                              : moves                   ? floor[POUND_FLOOR_DRIFT_MAX]
 		                                                        : 0;
-		result->u[i] = moves ? floor_rows[i][POUND_FLOOR_END_U] : 0;
-		result->v[i] = moves ? floor_rows[i][POUND_FLOOR_END_V] : 0;
+		result->u[i] = moves ? floor[POUND_FLOOR_END_U] : 0;
+		result->v[i] = moves ? floor[POUND_FLOOR_END_V] : 0;
 	}
 }
 
-static bool runs_as_pair(const struct pound_task *task)
+bool pound_runs_as_chain(const struct pound_task *task)
 {
-	return !task->contact || task->force == POUND_FORCE_LINEAR;
+	return task->contact && task->force != POUND_FORCE_LINEAR;
 }
 
 /* Runs tasks from event to event: pairs many at once, in the order they are in, all others as chains. */
@@ -169,7 +179,7 @@ static void exact_run(const struct pound_task *tasks, struct pound_task_result *
                       const atomic_bool *stop)
 {
 	for (int j = 0, end; j < n && !pound_stopped(stop); j = end) {
-		for (end = j; end < n && runs_as_pair(&tasks[end]); end++)
+		for (end = j; end < n && !pound_runs_as_chain(&tasks[end]); end++)
 			continue;
 		if (end > j)
 			pound_exact_lanes(0, &tasks[j], &results[j], end - j, scratch, stop);

@@ -6,6 +6,7 @@
 
 #include <stdatomic.h>
 
+#include "engine/exact/chain.h"
 #include "engine/exact/task.h"
 #include "engine/pound.h"
 
@@ -17,6 +18,17 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
                                    const atomic_bool *stop);
 
 struct pound_contact_law pound_task_law(const struct pound_task *task); /* of its contact */
+
+/* A pair as a chain, for the forms of contact force that the march of pairs does not have; it stays where it is. */
+struct pound_pair_chain {
+	struct pound_chain_task task;
+	struct pound_chain_floor floors[POUND_OSCILLATORS];
+	struct pound_link link;
+	double floor_measures[POUND_OSCILLATORS][POUND_FLOOR_MEASURES], link_measures[POUND_LINK_MEASURES];
+};
+
+bool pound_runs_as_chain(const struct pound_task *task);
+void pound_pair_chain(const struct pound_task *task, struct pound_pair_chain *chain);
 
 /* fixed_step.c */
 double pound_fixed_step(double time_step, double step);

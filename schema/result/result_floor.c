@@ -48,7 +48,7 @@ static void write_peaks(struct writer *w, const struct pound_study *study,
 			continue;
 		writer_object(w, NULL, WRITER_LINE);
 		writer_number(w, "frequency_hz", frequency);
-		writer_number(w, "frequency_ratio", frequency / study->scene.oscillators[0].frequency_hz);
+		writer_number(w, "frequency_ratio", frequency / floor->frequency_hz);
 		writer_number(w, "mean_m_s2", mean[k]);
 		writer_number(w, "dirac_peaks_m_s2", train[k]);
 		writer_number(w, "ratio", mean[k] / train[k]);

@@ -539,7 +539,7 @@ static void count_runs(const struct pound_study *study, const struct pound_solve
 /* Adds what spectra of floors take. */
 static void count_floors(const struct pound_study *study, double runs, struct counts *c)
 {
-	const struct bodies b = bodies_of(study);
+	const struct bodies b = study->scene.n_buildings ? (struct bodies){.near = 0} : bodies_of(study);
 	const double radians = 2 * PI * means_duration(study), fast = fmax(b.hz[0], b.hz[1]);
 	const double steps = means_samples(study) + radians * fast / FLOOR_RADIANS;
 	const double touches = study->scene.contact.present ? runs * radians * b.touching * b.near : 0,
@@ -592,7 +592,7 @@ static void count(const struct pound_study *study, struct counts *c)
 	const double items = items_of(study);
 	c->of[STUDY] = 1;
 	if (study->kind != POUND_KIND_CONVERGENCE)
-		count_runs(study, &study->solver, items, c);
+		count_runs(study, &study->solver, items * (study->spectrum.n && study->scene.n_buildings ? 2 : 1), c);
 	else
 		for (int j = 0; j < pound_convergence_trials(study); j++) {
 			const struct pound_solver solver = pound_convergence_solver(study, j);

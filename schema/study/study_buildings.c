@@ -396,7 +396,7 @@ static void check_kind(const struct pound_study *study, struct problems *problem
 	static const bool kinds[] = {[POUND_KIND_RESPONSE] = true,
 	                             [POUND_KIND_SENSITIVITY] = true,
 	                             [POUND_KIND_CONVERGENCE] = false,
-	                             [POUND_KIND_FLOOR_SPECTRUM] = false};
+	                             [POUND_KIND_FLOOR_SPECTRUM] = true};
 	if (!kinds[study->kind])
 		problems_add(problems, "/scene/buildings",
 		             "kind \"%s\" cannot be computed of buildings, only of oscillators",
@@ -404,10 +404,6 @@ static void check_kind(const struct pound_study *study, struct problems *problem
 	else if (!problems_at(problems, "/solver") && !pound_solver_takes_rows(study->solver.method))
 		problems_add(problems, "/solver/method", "the solver \"%s\" cannot integrate rows of buildings",
 		             pound_solver_name(study->solver.method));
-	for (int o = 0; o < study->n_outputs && kinds[study->kind]; o++)
-		if (!problems_at(problems, "/outputs") && pound_output_has_ordinates(study->outputs[o]))
-			problems_add(problems, "/outputs",
-			             "floor_spectrum cannot be computed of buildings, only of oscillators");
 }
 
 /* Every place has outputs of its own; those of a study without places are all storeys of the left building. */
@@ -416,10 +412,13 @@ static void check_outputs_number(const struct pound_study *study, struct problem
 	const int places = study->scene.n_places ? study->scene.n_places : study_storeys_least(study, 0);
 	int n = 0;
 	for (int o = 0; o < study->n_outputs; o++)
-		n += pound_output_has_places(study->outputs[o], &study->scene) ? places : 1;
+		n += pound_output_has_places(study->outputs[o], &study->scene) ? places
+		     : pound_output_has_ordinates(study->outputs[o])           ? study->spectrum.n
+		                                                               : 1;
 	if (n > POUND_OUTPUTS_MAX)
 		problems_exceed(problems, "/outputs", n, POUND_OUTPUTS_MAX,
-		                "asks for %d outputs of all places, at most %d", n, POUND_OUTPUTS_MAX);
+		                "asks for %d outputs of all places and frequencies, at most %d", n,
+		                POUND_OUTPUTS_MAX);
 }
 
 /* Checks what the members of a row mean together, in every cell.

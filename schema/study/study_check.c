@@ -388,14 +388,6 @@ static bool uses_solver(const struct pound_study *study, int solver)
 	return uses;
 }
 
-static bool follows_floors(const struct pound_study *study)
-{
-	bool follows = study->kind == POUND_KIND_FLOOR_SPECTRUM;
-	for (int o = 0; o < study->n_outputs && !follows; o++)
-		follows = pound_output_has_ordinates(study->outputs[o]);
-	return follows;
-}
-
 static bool observes_contact(const struct pound_study *study)
 {
 	bool observes = false;
@@ -423,12 +415,9 @@ static void check_forces(const struct pound_study *study, struct problems *probl
 			if (uses_solver(study, row) && !pound_solver_takes_force(row, force))
 				problems_add(problems, pointer, "the solver \"%s\" cannot integrate the contact model \"%s\"",
 				             pound_solver_name(row), pound_contact_name(scene.contact.model));
-		if (observes_contact(study) && !pound_floor_takes_force(force))
+		if (observes_contact(study) && force != POUND_FORCE_LINEAR)
 			problems_add(problems, pointer,
 			             "peak_approach_speed_m_s cannot be computed with the contact model \"%s\"",
-			             pound_contact_name(scene.contact.model));
-		if (follows_floors(study) && !pound_floor_takes_force(force))
-			problems_add(problems, pointer, "floor spectra cannot be computed with the contact model \"%s\"",
 			             pound_contact_name(scene.contact.model));
 	}
 }

@@ -30,6 +30,7 @@ static char *made_up(struct pound_study *study, size_t *length)
 		result.floor.spectra[r] =
 		    (struct pound_floor_spectrum){numbers[r][0], numbers[r][1], numbers[r][2], numbers[r][3]};
 	}
+	result.floor.frequency_hz = 2;
 	result.floor.signals = 3;
 	result.floor.signals_failed = 1;
 	result.floor.signals_checked = 2;

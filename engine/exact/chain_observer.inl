@@ -1,0 +1,95 @@
+/* chain_observer.inl - reports the motion of floors, piece by piece, to the observer of a chain (chain.h).
+ *
+ * A piece is a step up to its event, and its series are those of the step.
+ *
+ * Included by chain.inl alone, once per lane count, after touch_step.inl. */
+
+/* Coefficient n of a contact's force over a step in time, or in the variable of touch.inl. */
+static double link_force_at(const struct chain *c, int j, int n)
+{
+	const struct link *l = &c->link[j];
+	const double per_h2 = 1 / (c->dt * c->dt);
+	if (l->held)
+		return c->overlaps[n][j] * per_h2;
+	return c->warp.on ? curve_force(c, j, n) : link_force(c, l, j, n) * per_h2;
+}
+
+/* Acceleration of the contacts on floor i of order n. */
+static double push_at(const struct chain *c, int i, int n)
+{
+	double sum = 0;
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		for (int k = 0; l->touching && k < l->n_ends; k++)
+			if (l->floor[k] == i)
+				sum -= l->weight[k] * c->inverse_mass.at[i] * link_force_at(c, j, n);
+	}
+	return sum;
+}
+
+/* Absolute acceleration of floor i of order n. */
+static double acceleration_at(const struct chain *c, int i, int n)
+{
+	const struct warp *x = &c->warp;
+	const double per_h2 = 1 / (c->dt * c->dt);
+	double sum = x->on    ? fma(c->slope, x->clock[n], n == 0 ? c->ground : 0)
+	             : n == 0 ? c->ground
+	             : n == 1 ? c->slope * c->dt
+	                      : 0;
+	if (i == POUND_CHAIN_GROUND)
+		return sum;
+	if (!x->on)
+		return fma((n + 1.0) * (n + 2.0) * per_h2, c->displacements[n + 2].at[i], sum);
+	double floor = 0;
+	for (int k = i; k >= 0; k = c->base.at[k] != 0 ? -1 : k - 1)
+		floor += x->accelerations[n].at[k];
+	return sum + floor;
+}
+
+/* Fills the motion of an observed floor up to a share of the step. */
+static void floor_report(const struct chain *c, int observed, double time, struct pound_chain_piece *piece)
+{
+	const int i = c->task->observer->floors[observed];
+	struct pound_chain_floor_motion *m = &piece->floors[observed];
+	const bool moves = i != POUND_CHAIN_GROUND;
+	double power = 1;
+	m->u = moves ? c->u.at[i] : 0;
+	m->v = moves ? c->w.at[i] : 0;
+	m->jump = c->jump[observed];
+	for (int n = 0; n <= piece->order; n++, power *= time) {
+		m->acceleration[n] = acceleration_at(c, i, n) * power;
+		m->push[n] = moves ? push_at(c, i, n) * power : 0;
+	}
+}
+
+/* Reports the motion of the observed floors up to a share of the step. */
+static void pieces_report(struct chain *c, double time)
+{
+	const struct pound_chain_observer *observer = c->task->observer;
+	const struct warp *x = &c->warp;
+	struct pound_chain_piece piece = {.time = chain_time(c),
+	                                  .ground = c->ground,
+	                                  .slope = c->slope,
+	                                  .order = x->on ? ORDER_HIGH : c->order - 2,
+	                                  .sampled = c->remainder == c->task->time_step,
+	                                  .after_event = c->after_event,
+	                                  .warped = x->on && x->power > 0};
+	double power = 1;
+	for (int n = 0; n <= ORDER_HIGH && x->on; n++, power *= time)
+		piece.clock[n] = x->clock[n] * power;
+	piece.length = !x->on ? time * c->dt : x->sampled ? c->remainder : series_at(x->clock, 1, time);
+	for (int j = 0; j < c->n_links; j++)
+		for (int k = 0; k < c->link[j].n_ends; k++)
+			piece.touching |= c->link[j].touching && c->link[j].floor[k] == observer->floors[0];
+	if (observer->link >= 0) {
+		const struct link *l = &c->link[observer->link];
+		piece.overlap = l->own ? l->p : link_sum(l, c->u.at) - l->link->gap;
+		piece.overlap_rate = l->own ? l->q : link_sum(l, c->w.at);
+	}
+	for (int o = 0; o < POUND_CHAIN_OBSERVED; o++) {
+		floor_report(c, o, time, &piece);
+		c->jump[o] = 0;
+	}
+	c->after_event = false;
+	observer->observe(observer->into, &piece);
+}
