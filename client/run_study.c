@@ -48,7 +48,7 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	const char *reason = NULL;
 	pound_run_stop_by(run, &interrupted); // the threads that looked for that have ended
 	char *bytes = study->spectrum.histories
-	                  ? (npy ? histories_to_npy : histories_to_csv)(study, run, &n, &reason)
+	                  ? (npy ? histories_to_npy : histories_to_csv)(study, run, -1, &n, &reason)
 	                  : (npy ? samples_to_npy : samples_to_csv)(study, run, &n);
 	FILE *file = bytes ? fopen(path, "wb") : NULL;
 	bool written = file && fwrite(bytes, 1, n, file) == n;

@@ -482,7 +482,7 @@ static struct reply samples(struct request *request)
 			            : problem(API_CORRUPT, "stored blocks are damaged");
 	} else if (opened.study->spectrum.histories)
 		reply.body =
-		    (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, &reply.length, &error);
+		    (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, -1, &reply.length, &error);
 	else
 		reply = problem(API_CONFLICT, "only a sensitivity study has samples, and spectra with histories");
 	stored_run_close(&opened);
@@ -514,14 +514,15 @@ static struct reply figures(struct request *request)
 	return reply;
 }
 
-/* The histories of a study as CSV, computed again; NULL: it has none, or they cannot be made, and perhaps why. */
-static char *histories(const struct request *request, size_t *length, const char **reason)
+/* The history of the chosen signal as CSV, computed again; NULL: there is none, or it cannot be made, and perhaps why. */
+static char *history(const struct request *request, size_t *length, const char **reason)
 {
 	struct stored_run opened;
-	const char *error = answer_open(request, &opened);
-	char *csv = !error && opened.study->spectrum.histories
-	                ? histories_to_csv(opened.study, opened.run, length, reason)
-	                : NULL;
+	const char *error = answer_open(request, &opened), *chosen = http_argument(request, "signal");
+	const int signal = chosen ? (int)fmin(fmax(strtod(chosen, NULL), 0), POUND_ROWS_MAX) : 0;
+	char *csv = NULL;
+	if (!error && opened.study->spectrum.histories)
+		csv = histories_to_csv(opened.study, opened.run, signal, length, reason);
 	stored_run_close(&opened);
 	return csv;
 }
@@ -545,10 +546,9 @@ static struct reply figure(struct request *request)
 	if (json.status != 200)
 		return json;
 	struct figure_source source = {.json = json.body, .length = json.length};
-	char *samples = figure_row(name)->sampled ? histories(request, &source.n_samples, &reason) : NULL;
-	source.samples = samples;
+	source.samples = figure_row(name)->sampled ? history(request, &source.n_samples, &reason) : NULL;
 	enum figure_status status = figure_draw(name, &source, &choice, &drawn);
-	free(samples);
+	free((char *)source.samples);
 	free(json.body);
 	if (status != FIGURE_DRAWN)
 		return problem(faults[status], reason ? reason : drawn.detail);

@@ -85,26 +85,28 @@ static void record_add(void *into, int signal, const struct pound_instant *insta
 	row_count(rows);
 }
 
-/* Every signal's history; of one that cannot be followed to its end there is what there is, and of a run that is stopped
+/* The history of a signal, or of every one; of one that cannot be followed to its end there is what there is, and of a run that is stopped
  * nothing at all. */
-static void rows_fill(const struct pound_study *study, struct pound_run *run, pound_run_take *take,
-                      struct rows *rows)
+static void rows_fill(const struct pound_study *study, struct pound_run *run, int signal,
+                      pound_run_take *take, struct rows *rows)
 {
-	for (int signal = 0; signal < study->scene.excitation.signals && !rows->w.failed; signal++)
-		if (pound_run_history(run, signal, take, rows) == POUND_STOPPED)
+	const int n = study->scene.excitation.signals, from = signal < 0 ? 0 : signal;
+	for (int k = from; k < n && (signal < 0 || k == signal) && !rows->w.failed; k++)
+		if (pound_run_history(run, k, take, rows) == POUND_STOPPED)
 			rows->w.failed = true;
 }
 
 /* Histories as CSV.
  *
  * Given    study, run  -         -       a study of spectra; blocks need not be run
+ *          signal      -         -       -1: every one
  * Returns  value       (length)  -       NULL: out of memory or more than ROWS_MAX rows, or the run is stopped
  *          reason      -         -       set where there are too many rows: a sentence
  * Memory   allocates; the caller frees
  *
  * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event, a_run_that_is_stopped_leaves_no_file
  */
-char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length,
+char *histories_to_csv(const struct pound_study *study, struct pound_run *run, int signal, size_t *length,
                        const char **reason)
 {
 	struct rows rows = {0};
@@ -115,7 +117,7 @@ char *histories_to_csv(const struct pound_study *study, struct pound_run *run, s
 		writer_cell(&rows.w, columns[j]);
 	}
 	writer_raw(&rows.w, "\r\n", 2);
-	rows_fill(study, run, line_add, &rows);
+	rows_fill(study, run, signal, line_add, &rows);
 	*reason = rows.reason;
 	return writer_take(&rows.w, length);
 }
@@ -126,7 +128,7 @@ char *histories_to_csv(const struct pound_study *study, struct pound_run *run, s
  *
  * Test     unit_histories: a_numpy_file_holds_the_same_numbers
  */
-char *histories_to_npy(const struct pound_study *study, struct pound_run *run, size_t *length,
+char *histories_to_npy(const struct pound_study *study, struct pound_run *run, int signal, size_t *length,
                        const char **reason)
 {
 	struct rows rows = {0};
@@ -136,7 +138,7 @@ char *histories_to_npy(const struct pound_study *study, struct pound_run *run, s
 	writer_init(&rows.w);
 	writer_init(&file);
 	writer_init(&fields);
-	rows_fill(study, run, record_add, &rows);
+	rows_fill(study, run, signal, record_add, &rows);
 	*reason = rows.reason;
 	npy_field(&fields, "signal", "", "<i4");
 	for (int j = 0; j < N_COLUMNS; j++)

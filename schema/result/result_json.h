@@ -41,12 +41,12 @@ bool samples_exist(const struct pound_study *study);
 char *samples_to_csv(const struct pound_study *study, const struct pound_run *run, size_t *length);
 char *samples_to_npy(const struct pound_study *study, const struct pound_run *run, size_t *length);
 
-/* The motion of both oscillators in every signal of a study of spectra (of no other), at the samples, on both sides of
- * every event, and inside contacts.  NULL: out of memory, the run is stopped, or there are
- * too many rows, which is a sentence in `reason`, else NULL. */
-char *histories_to_csv(const struct pound_study *study, struct pound_run *run, size_t *length,
+/* The motion of both oscillators in a signal of a study of spectra (of no other), or -1: in every one; at the samples, on
+ * both sides of every event, and inside contacts.  NULL: out of memory, the run is stopped, or there are too many rows,
+ * which is a sentence in `reason`, else NULL. */
+char *histories_to_csv(const struct pound_study *study, struct pound_run *run, int signal, size_t *length,
                        const char **reason);
-char *histories_to_npy(const struct pound_study *study, struct pound_run *run, size_t *length,
+char *histories_to_npy(const struct pound_study *study, struct pound_run *run, int signal, size_t *length,
                        const char **reason);
 
 /* The ground motions of one sample of a study with a scene.  Columns: signal, time_s, acceleration_m_s2. */

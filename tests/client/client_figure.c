@@ -33,6 +33,19 @@ static void keep(struct program_outcome *outcome, char path[32])
 	program_free(outcome);
 }
 
+/* A figure of one signal is drawn from the history of that signal. */
+static void expect_one_signal(const struct service *service, const char *link)
+{
+	struct answer answer = service_get(service, "%s?signal=3", link);
+	assert_int_equal(answer.status, 200);
+	assert_non_null(strstr(answer.body, "ground motion 3"));
+	answer_free(&answer);
+	answer = service_get(service, "%s?signal=99", link);
+	assert_int_equal(answer.status, 400);
+	assert_non_null(strstr(answer.body, "no sample of signal 99"));
+	answer_free(&answer);
+}
+
 /* The figures that a study lists, each drawn by the server and here. */
 static int figures_of(const struct service *service, const char *id, const char *result, const char *samples)
 {
@@ -51,6 +64,8 @@ static int figures_of(const struct service *service, const char *id, const char 
 		program_expect(&served, 0);
 		program_expect(&here, 0);
 		assert_string_equal(served.out, figure.body);
+		if (sampled)
+			expect_one_signal(service, reading_text(list, "/figures/%d/link", i));
 		// what is drawn from samples alone does not know the study's name
 		if (!sampled)
 			assert_string_equal(here.out, figure.body);

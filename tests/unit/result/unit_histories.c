@@ -69,7 +69,7 @@ static void a_line_for_every_sample_and_both_sides_of_every_event(void **state)
 	(void)state;
 	size_t length;
 	const char *reason;
-	char *csv = histories_to_csv(study, run, &length, &reason), *at = csv;
+	char *csv = histories_to_csv(study, run, -1, &length, &reason), *at = csv;
 	assert_int_equal(strlen(csv), length);
 	static const char head[] =
 	    "signal,time_s,u_m,v_m_s,acceleration_m_s2,contact_force_n,u_right_m,v_right_m_s,"
@@ -87,12 +87,29 @@ static void a_line_for_every_sample_and_both_sides_of_every_event(void **state)
 	free(csv);
 }
 
+static void the_history_of_one_signal_is_its_rows_of_all(void **state)
+{
+	(void)state;
+	size_t n_all, n;
+	const char *reason;
+	char *all = histories_to_csv(study, run, -1, &n_all, &reason);
+	char *one = histories_to_csv(study, run, 1, &n, &reason), *lines = strchr(one, '\n') + 1;
+	const char *from = strstr(all, "\r\n1,") + 2, *to = strstr(all, "\r\n2,") + 2;
+	assert_int_equal(strlen(lines), to - from);
+	assert_memory_equal(lines, from, (size_t)(to - from));
+	free(one);
+	one = histories_to_csv(study, run, 3, &n, &reason); // there are three
+	assert_int_equal(*(strchr(one, '\n') + 1), 0);
+	free(one);
+	free(all);
+}
+
 static void a_numpy_file_holds_the_same_numbers(void **state)
 {
 	(void)state;
 	size_t length;
 	const char *reason;
-	unsigned char *npy = (unsigned char *)histories_to_npy(study, run, &length, &reason);
+	unsigned char *npy = (unsigned char *)histories_to_npy(study, run, -1, &length, &reason);
 	assert_memory_equal(npy, "\x93NUMPY\x03\x00", 8);
 	size_t head = 12 + (npy[8] | (size_t)npy[9] << 8);
 	assert_int_equal(head % 64, 0);
@@ -117,12 +134,13 @@ static void a_run_that_is_stopped_leaves_no_file(void **state)
 	size_t length;
 	pound_run_stop(run);
 	const char *reason = NULL;
-	assert_null(histories_to_csv(study, run, &length, &reason));
+	assert_null(histories_to_csv(study, run, -1, &length, &reason));
 	assert_null(reason);
-	assert_null(histories_to_npy(study, run, &length, &reason));
+	assert_null(histories_to_npy(study, run, -1, &length, &reason));
 }
 
 #define WITH_RUN(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 CHECK_MAIN(WITH_RUN(a_line_for_every_sample_and_both_sides_of_every_event),
+           WITH_RUN(the_history_of_one_signal_is_its_rows_of_all),
            WITH_RUN(a_numpy_file_holds_the_same_numbers), WITH_RUN(a_run_that_is_stopped_leaves_no_file))
