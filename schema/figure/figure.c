@@ -19,7 +19,7 @@ const struct figure_row figure_rows[] = {
 	{"widths",    "sensitivity",    " cell output width ",        "stopping",          false, "half widths of the intervals against what they cost"},
 	{"pairs",     "sensitivity",    " cell output width ",        "second_order",      false, "second-order indices of every two inputs"},
 	{"spectra",   "floor_spectrum", " axis spectra width ",         NULL,                false, "floor response spectra with and without pounding"},
-	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion, clear distance and contact force of both oscillators in time"},
+	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion, clear distance and contact force in time"},
 	{"force",     "floor_spectrum", " signal from to width ",     NULL,                true,  "contact force against overlap, a loop for each contact"},
 	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding"},
 	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding"},

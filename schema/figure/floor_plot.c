@@ -116,8 +116,7 @@ void plot_spectra(struct plot *plot)
 			cJSON_ArrayForEach(value, spectrum_list(spectra[s], members[m])) if (cJSON_IsNumber(value) &&
 			                                                                     value->valuedouble > 0)
 			    range_add(&up, value->valuedouble);
-	snprintf(more, sizeof more,
-	         "left floor, damping ratio %s; bands from the 16th to the 84th percentile of the signals",
+	snprintf(more, sizeof more, "damping ratio %s; bands from the 16th to the 84th percentile of the signals",
 	         draw_number(plot_number(plot->result, "damping_ratio"), number[0]));
 	plot_head(plot, "Floor response spectra", more);
 	for (int s = 0; s < n_spectra; s++) {

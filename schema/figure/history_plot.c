@@ -146,6 +146,15 @@ static bool table_chosen(struct plot *plot, struct table *table)
 	return !*plot->fault;
 }
 
+static bool any_known(const struct table *table, const char *name)
+{
+	const double *values = table_column(table, name);
+	bool any = false;
+	for (int k = 0; values && k < table->n; k++)
+		any = any || isfinite(values[k]);
+	return any;
+}
+
 /* ---- history ---- */
 
 bool plot_has_history(const cJSON *result)
@@ -185,8 +194,9 @@ void plot_history(struct plot *plot)
 		range_add(&times, time[k]);
 	snprintf(more, sizeof more, "ground motion %d; ticks above the displacement: a contact begins",
 	         table.signal);
-	plot_head(plot, "Motion of both oscillators, and their impacts", more);
-	const bool both = table_column(&table, "u_right_m");
+	plot_head(plot, "Motion and impacts", more);
+	// of a row of buildings there is one floor
+	const bool both = any_known(&table, "u_right_m");
 	const struct key keys[2] = {{.name = "left", .pen = {.width = 1.5}},
 	                            {.name = "right", .pen = {.ink = 1, .width = 1.5, .dash = RIGHT_DASH}}};
 	double top = both ? draw_legend(&plot->d, 2, keys, plot->y) + 8 : plot->y + 4;
@@ -204,7 +214,7 @@ void plot_history(struct plot *plot)
 		if (s == 0)
 			ups = range;
 		struct panel panel = {.height = SERIES[s].height,
-		                      .room = 48,
+		                      .room = 58,
 		                      .title = SERIES[s].title,
 		                      .y_label = SERIES[s].unit,
 		                      .x_label = s == N_SERIES - 1 ? "time [s]" : NULL};
@@ -308,8 +318,12 @@ void plot_force(struct plot *plot)
 		}
 	// what a contact ends with is zero up to rounding
 	across.low = across.low > -1e-6 * across.high ? 0 : across.low;
-	snprintf(more, sizeof more, "ground motion %d, %d contacts; the one of the largest force is thick",
-	         table.signal, n);
+	if (n)
+		snprintf(more, sizeof more, "ground motion %d, %d contacts; the one of the largest force is thick",
+		         table.signal, n);
+	else
+		snprintf(more, sizeof more, "ground motion %d: no contact, or none of which the overlap is known",
+		         table.signal);
 	plot_head(plot, "Contact force against overlap", more);
 	struct panel panel = {.height = fmin(fmax(0.7 * plot->d.width, 300), 460),
 	                      .x_label = "overlap [m]",
