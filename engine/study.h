@@ -214,7 +214,7 @@ struct pound_scene {
 struct pound_distribution {
 	int type;              /* row of the distributions, pound_distribution_name */
 	double p[4];           /* parameters in the order of pound_distribution_parameter(type, k) */
-	int n_values;          /* of a discrete one  >= 1 */
+	int n_values;          /* of a discrete or an empirical one  >= 1 */
 	const double *values;  /* ascending  (n_values), not owned */
 	const double *weights; /* of the values, > 0; their sum may be any  (n_values), not owned; NULL: alike */
 };
@@ -379,6 +379,7 @@ const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
 const char *pound_distribution_rule(int row, int k); /* "min must be less than max"; NULL past the last */
 bool pound_distribution_lists_values(int row);       /* its parameters are values and weights instead */
+bool pound_distribution_steps(int row);              /* it takes these values alone */
 const char *pound_design_name(int row);
 bool pound_design_quasi_random(int row);
 const char *pound_order_name(int row);

@@ -8,6 +8,7 @@
 #include <float.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 
 enum { RULES_MAX = 3 };
@@ -23,6 +24,7 @@ struct distribution {
 	const char *parameters[5]; /* up to the first NULL */
 	struct rule rules[RULES_MAX + 1];
 	double (*quantile)(const double *p, double u);
+	double (*listed)(const struct pound_distribution *d, double u); /* instead, of one that lists its values */
 };
 
 static double within(double x, double low, double high)
@@ -131,6 +133,50 @@ static double lognormal(const double *p, double u)
 	return exp(normal(p, u));
 }
 
+static bool first_zero(const struct pound_distribution *d)
+{
+	return d->p[0] == 0.0;
+}
+
+static bool second_not_positive(const struct pound_distribution *d)
+{
+	return d->p[1] <= 0.0;
+}
+
+static double normal_cov(const double *p, double u)
+{
+	return normal((const double[]){p[0], fabs(p[0]) * p[1]}, u);
+}
+
+/* Quantile of a lognormal variable of a given mean and coefficient of variation.
+ *
+ *   s^2 = log(1 + V^2),  log-mean log(mean) - s^2 / 2
+ *
+ * Test     unit_distribution: other_parameters_of_a_distribution_are_its_moments
+ */
+static double lognormal_cov(const double *p, double u)
+{
+	const double variance = log1p(p[1] * p[1]);
+	return exp(normal((const double[]){log(p[0]) - 0.5 * variance, sqrt(variance)}, u));
+}
+
+static double lognormal_median(const double *p, double u)
+{
+	return p[0] * exp(p[1] * gsl_cdf_ugaussian_Pinv(u));
+}
+
+/* Largest of many: P(x) = exp(-exp(-(x - location) / scale)). */
+static double gumbel(const double *p, double u)
+{
+	return p[0] - p[1] * log(-log(u));
+}
+
+/* P(x) = 1 - exp(-(x / scale)^shape). */
+static double weibull(const double *p, double u)
+{
+	return p[0] * pow(-log1p(-u), 1.0 / p[1]);
+}
+
 static bool mode_outside(const struct pound_distribution *d)
 {
 	return d->p[0] < d->p[2] && (d->p[1] < d->p[0] || d->p[1] > d->p[2]);
@@ -155,30 +201,37 @@ static bool beta_outside(const struct pound_distribution *d)
 	return d->p[1] <= 0.0 || d->p[1] > BETA_MAX;
 }
 
-/* Quantile of the standard beta distribution.
+/* A distribution of x > 0 with two parameters: P, Q = 1 - P, and the density. */
+struct standard {
+	double (*below)(double x, double a, double b), (*above)(double x, double a, double b),
+	    (*density)(double x, double a, double b);
+	double a, b, most; /* most: x is at most this */
+};
+
+/* Quantile of a standard distribution.
  *
- * Given    a, b      -         -       exponents (0, BETA_MAX]
+ * Given    start     -         -       where to begin
  *          p, q      -         -       probability (0, 1) and its complement
- * Returns  value     x         -       (0, 1)
+ * Returns  value     x         -       (0, most)
  *
  * Newton on log P (or log Q, the smaller) against log x, where P is nearly straight (P ~ x^a), kept inside a
- * shrinking bracket.  gsl_cdf_beta_Pinv calls the error handler when its iteration does not converge; this
+ * shrinking bracket.  GSL's own inverses call the error handler when their iterations do not converge; this
  * one always ends.
  *
- * Valid    full relative accuracy for x <= 1/2; ask for 1 - x by (b, a, q, p) above
- * Test     unit_distribution: beta_quantiles_end_for_any_allowed_exponents
+ * Valid    full relative accuracy for x <= 1/2 of a beta distribution; ask for 1 - x by (b, a, q, p) above
+ * Test     unit_distribution: beta_quantiles_end_for_any_allowed_exponents, gamma_quantiles_end_for_any_allowed_shape
  */
-static double beta_standard(double a, double b, double p, double q)
+static double inverse(const struct standard *s, double start, double p, double q)
 {
-	double low = DBL_MIN, high = 1.0, x = a / (a + b);
+	double low = DBL_MIN, high = s->most, x = start;
 	for (int k = 0; k < 100; k++) {
-		double tail = p < q ? gsl_cdf_beta_P(x, a, b) : gsl_cdf_beta_Q(x, a, b);
+		double tail = p < q ? s->below(x, s->a, s->b) : s->above(x, s->a, s->b);
 		double excess = p < q ? log(tail / p) : log(q / tail); // > 0: x is too large
 		if (excess > 0.0)
 			high = x;
 		else
 			low = x;
-		double next = x * exp(-excess * tail / (x * gsl_ran_beta_pdf(x, a, b)));
+		double next = x * exp(-excess * tail / (x * s->density(x, s->a, s->b)));
 		if (!(next > low && next < high))
 			next = sqrt(low) * sqrt(high);
 		if (fabs(next - x) <= 4.0 * DBL_EPSILON * x)
@@ -186,6 +239,34 @@ static double beta_standard(double a, double b, double p, double q)
 		x = next;
 	}
 	return x;
+}
+
+/* Quantile of the standard beta distribution of exponents a and b. */
+static double beta_standard(double a, double b, double p, double q)
+{
+	const struct standard s = {gsl_cdf_beta_P, gsl_cdf_beta_Q, gsl_ran_beta_pdf, a, b, 1.0};
+	return inverse(&s, a / (a + b), p, q);
+}
+
+enum { SHAPE_MAX = 10000 };
+static const double SHAPE_MIN = 0.1; // below, quantiles near 0 are too small for a double
+
+static bool shape_outside(const struct pound_distribution *d)
+{
+	return d->p[0] < SHAPE_MIN || d->p[0] > SHAPE_MAX;
+}
+
+/* Quantile of a gamma distribution of shape a.
+ *
+ * Q(most) = 0 in doubles: Q(a, x) < exp(-(x - a)^2 / (2 x)) for x > a, below 5e-324 from a + sqrt(2 c (a + c)) + c on, c = 745
+ */
+static double gamma_quantile(const double *p, double u)
+{
+	const double c = 745.0, most = p[0] + sqrt(2.0 * c * (p[0] + c)) + c;
+	const struct standard s = {gsl_cdf_gamma_P, gsl_cdf_gamma_Q, gsl_ran_gamma_pdf, p[0], 1.0, most};
+	return u == 0.0   ? 0.0
+	       : u == 1.0 ? INFINITY
+	                  : p[1] * inverse(&s, p[0], u, 1.0 - u);
 }
 
 static double beta(const double *p, double u)
@@ -234,6 +315,39 @@ int pound_distribution_level(const struct pound_distribution *distribution, doub
 	return k;
 }
 
+static double discrete(const struct pound_distribution *d, double u)
+{
+	return d->values[pound_distribution_level(d, u)];
+}
+
+static bool descends(const struct pound_distribution *d)
+{
+	bool does = false;
+	for (int k = 1; k < d->n_values; k++)
+		does |= d->values[k] < d->values[k - 1];
+	return does;
+}
+
+static bool is_one_value(const struct pound_distribution *d)
+{
+	return d->n_values == 1 || (d->n_values > 1 && d->values[0] == d->values[d->n_values - 1]);
+}
+
+static bool has_weights(const struct pound_distribution *d)
+{
+	return d->weights;
+}
+
+/* Quantile of a sample: linear between its values, the first for u = 0 and the last for u = 1.
+ *
+ * Source   type 7 of Hyndman and Fan 1996, Am. Stat. 50, 361, as R, NumPy and GSL have it
+ * Test     unit_distribution: an_empirical_quantile_is_linear_between_the_values
+ */
+static double empirical(const struct pound_distribution *d, double u)
+{
+	return gsl_stats_quantile_from_sorted_data(d->values, 1, (size_t)d->n_values, u);
+}
+
 /* Probability of the values of a discrete variable before number k. */
 double pound_distribution_below(const struct pound_distribution *distribution, int k)
 {
@@ -243,24 +357,39 @@ double pound_distribution_below(const struct pound_distribution *distribution, i
 // clang-format off
 #define MIN_MAX    "min must be less than max"
 #define DEVIATION  "standard_deviation must be greater than 0"
+#define COV        "coefficient_of_variation"
 
 static const struct distribution distributions[] = {
-	{"uniform",            {"min", "max"},                               {{MIN_MAX, no_range}}, uniform},
+	{"uniform",            {"min", "max"},                               {{MIN_MAX, no_range}}, uniform, NULL},
 	{"log_uniform",        {"min", "max"},                               {{"min must be greater than 0", first_not_positive},
-	                                                                      {MIN_MAX, no_range}}, log_uniform},
+	                                                                      {MIN_MAX, no_range}}, log_uniform, NULL},
 	{"reciprocal_uniform", {"max"},                                      {{"max must be greater than 1", max_not_over_one}},
-	                                                                     reciprocal_uniform},
-	{"normal",             {"mean", "standard_deviation"},               {{DEVIATION, no_deviation}}, normal},
+	                                                                     reciprocal_uniform, NULL},
+	{"normal",             {"mean", "standard_deviation"},               {{DEVIATION, no_deviation}}, normal, NULL},
 	{"truncated_normal",   {"mean", "standard_deviation", "min", "max"}, {{DEVIATION, no_deviation}, {MIN_MAX, no_range_last},
-	                        {"min and max must not be too many standard deviations from the mean", too_far_out}}, truncated_normal},
-	{"lognormal",          {"log_mean", "log_standard_deviation"},       {{"log_" DEVIATION, no_deviation}}, lognormal},
+	                        {"min and max must not be too many standard deviations from the mean", too_far_out}}, truncated_normal, NULL},
+	{"lognormal",          {"log_mean", "log_standard_deviation"},       {{"log_" DEVIATION, no_deviation}}, lognormal, NULL},
 	{"triangular",         {"min", "mode", "max"},                       {{MIN_MAX, no_range_outer},
 	                                                                      {"mode must lie between min and max", mode_outside}},
-	                                                                     triangular},
+	                                                                     triangular, NULL},
 	{"beta",               {"alpha", "beta", "min", "max"},              {{"alpha must be in (0, 10000]", alpha_outside},
-	                        {"beta must be in (0, 10000]", beta_outside}, {MIN_MAX, no_range_last}}, beta},
+	                        {"beta must be in (0, 10000]", beta_outside}, {MIN_MAX, no_range_last}}, beta, NULL},
 	{"discrete",           {NULL},                                       {{"every value must be greater than the one before",
-	                                                                       not_ascending}}, NULL}, // of lists
+	                                                                       not_ascending}}, NULL, discrete},
+	{"normal_cov",         {"mean", COV},                                {{"mean must not be 0", first_zero},
+	                                                                      {COV " must be greater than 0", second_not_positive}}, normal_cov, NULL},
+	{"lognormal_cov",      {"mean", COV},                                {{"mean must be greater than 0", first_not_positive},
+	                                                                      {COV " must be greater than 0", second_not_positive}}, lognormal_cov, NULL},
+	{"lognormal_median",   {"median", "dispersion"},                     {{"median must be greater than 0", first_not_positive},
+	                                                                      {"dispersion must be greater than 0", second_not_positive}}, lognormal_median, NULL},
+	{"gumbel",             {"location", "scale"},                        {{"scale must be greater than 0", second_not_positive}}, gumbel, NULL},
+	{"gamma",              {"shape", "scale"},                           {{"shape must be in [0.1, 10000]", shape_outside},
+	                                                                      {"scale must be greater than 0", second_not_positive}}, gamma_quantile, NULL},
+	{"weibull",            {"scale", "shape"},                           {{"scale must be greater than 0", first_not_positive},
+	                                                                      {"shape must be greater than 0", second_not_positive}}, weibull, NULL},
+	{"empirical",          {NULL},                                       {{"no value may be less than the one before", descends},
+	                                                                      {"there must be two different values", is_one_value},
+	                                                                      {"an empirical distribution has no weights", has_weights}}, NULL, empirical},
 };
 // clang-format on
 
@@ -280,7 +409,12 @@ const char *pound_distribution_parameter(int row, int k)
 /* Whether a distribution is given by a list of values, not by numbers. */
 bool pound_distribution_lists_values(int row)
 {
-	return !distributions[row].quantile;
+	return distributions[row].listed;
+}
+
+bool pound_distribution_steps(int row)
+{
+	return distributions[row].listed == discrete;
 }
 
 const char *pound_distribution_rule(int row, int k)
@@ -307,8 +441,7 @@ double pound_distribution_quantile(const struct pound_distribution *distribution
 {
 	assert(u >= 0.0 && u <= 1.0);
 	const struct distribution *row = &distributions[distribution->type];
-	return row->quantile ? row->quantile(distribution->p, u)
-	                     : distribution->values[pound_distribution_level(distribution, u)];
+	return row->quantile ? row->quantile(distribution->p, u) : row->listed(distribution, u);
 }
 
 void pound_distribution_support(const struct pound_distribution *distribution, double *low, double *high)

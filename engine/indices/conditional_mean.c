@@ -164,7 +164,7 @@ double pound_conditional_place(int k)
 
 int pound_conditional_levels(const struct pound_distribution *distribution)
 {
-	const bool listed = pound_distribution_lists_values(distribution->type);
+	const bool listed = pound_distribution_steps(distribution->type);
 	return listed && distribution->n_values <= POUND_CURVE ? distribution->n_values : 0;
 }
 

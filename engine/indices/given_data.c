@@ -32,11 +32,11 @@ static const double EXPLAINED_LEAST = 0.9; // of the variance, for ST to be esti
 
 /* ---- the distributions ---- */
 
-/* Row of the distributions whose parameters are values. */
+/* Row of the distributions of few values. */
 static int discrete_row(void)
 {
 	int row = 0;
-	while (!pound_distribution_lists_values(row))
+	while (!pound_distribution_steps(row))
 		row++;
 	return row;
 }

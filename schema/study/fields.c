@@ -291,7 +291,7 @@ const struct field fields[] = {
 	{"/inputs/*/distribution/type", FIELD_CHOICE, offsetof(struct pound_input, distribution.type),
 	 NAN, 0, 0, FIELD_CLOSED, "", .text = "type of distribution", .choice = pound_distribution_name, SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/values", FIELD_LIST, 0, 0, 1, STUDY_VALUES_MAX, FIELD_CLOSED, "",
-	 .text = "values of a discrete distribution, in ascending order", SENSITIVITY, NOT_SCENE},
+	 .text = "values of a discrete distribution, or sample of an empirical one, in ascending order", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/values/*", FIELD_REAL, 0, NAN, -POUND_PARAMETER_MAX, POUND_PARAMETER_MAX, FIELD_CLOSED, "",
 	 .text = "one of them", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/weights", FIELD_LIST, 0, 0, 1, STUDY_VALUES_MAX, FIELD_CLOSED, "",

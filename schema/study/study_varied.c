@@ -14,6 +14,20 @@ static int read_list(struct reader *r, const char *pattern, const cJSON *node, c
 	return reader_numbers(r, list, list + 1, node, numbers); // its element is the next row
 }
 
+/* Refuses a parameter that a distribution does not have, and names a related one that has it: lognormal_cov for lognormal. */
+static void refuse_parameter(struct reader *r, int type, const char *parameter)
+{
+	const char *name = pound_distribution_name(type), *related = NULL;
+	for (int row = 0; pound_distribution_name(row); row++)
+		for (int k = 0; pound_distribution_parameter(row, k); k++)
+			if (strncmp(pound_distribution_name(row), name, strlen(name)) == 0 &&
+			    strcmp(pound_distribution_parameter(row, k), parameter) == 0)
+				related = pound_distribution_name(row);
+	problems_add(r->problems, r->pointer, related ? "is not used by distribution \"%s\"; \"%s\" has it"
+	                                              : "is not used by distribution \"%s\"",
+	             name, related);
+}
+
 static void read_parameter(struct reader *r, struct pound_distribution *distribution, const cJSON *member,
                            int *n_weights)
 {
@@ -27,8 +41,7 @@ static void read_parameter(struct reader *r, struct pound_distribution *distribu
 	else if (lists && strcmp(member->string, "weights") == 0)
 		*n_weights = read_list(r, "/inputs/*/distribution/weights", member, &distribution->weights);
 	else if (!name)
-		problems_add(r->problems, r->pointer, "is not used by distribution \"%s\"",
-		             pound_distribution_name(distribution->type));
+		refuse_parameter(r, distribution->type, member->string);
 	else if (!cJSON_IsNumber(member))
 		reader_mistyped(r, "a number", member);
 	else if (fabs(member->valuedouble) > POUND_PARAMETER_MAX)

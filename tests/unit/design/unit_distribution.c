@@ -5,6 +5,7 @@
 #include <float.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_integration.h>
+#include <gsl/gsl_randist.h>
 #include <math.h>
 #include <string.h>
 
@@ -70,6 +71,32 @@ static double beta_cdf(const double *p, double x)
 	return gsl_cdf_beta_P((x - p[2]) / (p[3] - p[2]), p[0], p[1]);
 }
 
+static double normal_cov_cdf(const double *p, double x)
+{
+	return 0.5 * erfc(-(x - p[0]) / (fabs(p[0]) * p[1]) / sqrt(2.0));
+}
+static double lognormal_cov_cdf(const double *p, double x)
+{
+	double s = sqrt(log(1.0 + p[1] * p[1]));
+	return 0.5 * erfc(-(log(x / p[0]) / s + 0.5 * s) / sqrt(2.0));
+}
+static double lognormal_median_cdf(const double *p, double x)
+{
+	return 0.5 * erfc(-log(x / p[0]) / p[1] / sqrt(2.0));
+}
+static double gumbel_cdf(const double *p, double x)
+{
+	return exp(-exp(-(x - p[0]) / p[1]));
+}
+static double gamma_cdf(const double *p, double x)
+{
+	return gsl_cdf_gamma_P(x, p[0], p[1]);
+}
+static double weibull_cdf(const double *p, double x)
+{
+	return 1.0 - exp(-pow(x / p[0], p[1]));
+}
+
 static const struct {
 	const char *name;
 	double p[4];
@@ -90,6 +117,14 @@ static const struct {
     {"beta", {2.0, 3.5, 0.0, 1.0}, beta_cdf},
     {"beta", {0.3, 0.7, 0.0, 3.0}, beta_cdf},
     {"beta", {400.0, 20.0, 0.0, 1.0}, beta_cdf},
+    {"normal_cov", {2.0, 0.25}, normal_cov_cdf},
+    {"normal_cov", {-2.0, 0.25}, normal_cov_cdf},
+    {"lognormal_cov", {3.0, 0.4}, lognormal_cov_cdf},
+    {"lognormal_median", {0.05, 0.6}, lognormal_median_cdf},
+    {"gumbel", {0.3, 0.1}, gumbel_cdf},
+    {"gamma", {0.5, 2.0}, gamma_cdf},
+    {"gamma", {12.0, 0.1}, gamma_cdf},
+    {"weibull", {0.2, 1.7}, weibull_cdf},
 };
 
 static void every_quantile_inverts_its_distribution_function(void **state)
@@ -176,6 +211,71 @@ static void beta_quantiles_end_for_any_allowed_exponents(void **state)
 			}
 }
 
+/* Mean of a power of a variable, by Gauss' rule over the normal deviate that its quantile is taken at. */
+static double moment(const char *name, const double *p, int power)
+{
+	gsl_integration_glfixed_table *gauss = gsl_integration_glfixed_table_alloc(200);
+	double sum = 0.0;
+	for (size_t k = 0; k < 200; k++) {
+		double z, w;
+		gsl_integration_glfixed_point(-8.0, 8.0, k, &z, &w, gauss);
+		sum += w * gsl_ran_ugaussian_pdf(z) * pow(quantile(name, p, gsl_cdf_ugaussian_P(z)), power);
+	}
+	gsl_integration_glfixed_table_free(gauss);
+	return sum;
+}
+
+static void other_parameters_of_a_distribution_are_its_moments(void **state)
+{
+	(void)state;
+	const struct {
+		const char *name;
+		double p[4], mean, cov;
+	} cases[] = {
+	    {"normal_cov", {2.0, 0.25}, 2.0, 0.25},
+	    {"lognormal_cov", {3.0, 0.4}, 3.0, 0.4},
+	    {"lognormal_median", {0.05, 0.6}, 0.05 * exp(0.18), sqrt(exp(0.36) - 1.0)},
+	    {"gumbel", {0.3, 0.1}, 0.3 + 0.1 * 0.57721566490153286, 0.1 * 1.2825498301618641 / 0.35772156649015329},
+	    {"gamma", {4.0, 0.5}, 2.0, 0.5},
+	    {"weibull", {0.2, 2.0}, 0.2 * 0.88622692545275801, 0.52272320087706049},
+	};
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		const double mean = moment(cases[k].name, cases[k].p, 1), square = moment(cases[k].name, cases[k].p, 2);
+		// beyond 8 deviations is 1e-15, times what a lognormal has there; near 8 a probability has 1 - P of one digit
+		check_near(mean, cases[k].mean, 1e-9 * cases[k].mean);
+		check_near(sqrt(square / (mean * mean) - 1.0), cases[k].cov, 1e-8);
+	}
+}
+
+static void gamma_quantiles_end_for_any_allowed_shape(void **state)
+{
+	(void)state;
+	for (double a = 0.1; a <= 1e4; a *= sqrt(10.0))
+		for (double u = 0x1p-50; u < 1.0; u = u < 0.1 ? 32.0 * u : u < 0.8 ? u + 0.1 : 1.0 - 0.1 * (1.0 - u)) {
+			double p[4] = {fmin(a, 1e4), 1.0}, x = quantile("gamma", p, u);
+			assert_true(x > 0.0 && x < INFINITY);
+			check_near(gsl_cdf_gamma_P(x, p[0], 1.0), u, 1e-11);
+		}
+}
+
+static void an_empirical_quantile_is_linear_between_the_values(void **state)
+{
+	(void)state;
+	static const double values[] = {-1, 2, 2, 5, 7}, u[] = {0, 0.125, 0.25, 0.4, 0.5, 0.625, 0.75, 0.875, 1},
+	                    x[] = {-1, 0.5, 2, 2, 2, 3.5, 5, 6, 7};
+	struct pound_distribution d = {.type = row_named("empirical"), .n_values = 5, .values = values};
+	for (int k = 0; k < 9; k++)
+		check_near(pound_distribution_quantile(&d, u[k]), x[k], 4 * DBL_EPSILON);
+	assert_string_equal(first_broken(&d), "");
+	d.weights = values;
+	assert_string_equal(first_broken(&d), "an empirical distribution has no weights");
+	d = (struct pound_distribution){.type = d.type, .n_values = 2, .values = values + 1};
+	assert_string_equal(first_broken(&d), "there must be two different values");
+	static const double falling[] = {1, 3, 2};
+	d = (struct pound_distribution){.type = d.type, .n_values = 3, .values = falling};
+	assert_string_equal(first_broken(&d), "no value may be less than the one before");
+}
+
 static void a_truncated_normal_keeps_its_digits_far_in_the_tail(void **state)
 {
 	(void)state;
@@ -204,6 +304,12 @@ static void the_support_is_given_by_the_parameters(void **state)
 	    {"lognormal", {1.0, 2.0}, 0.0, INFINITY},
 	    {"triangular", {0.1, 0.3, 0.7}, 0.1, 0.7},
 	    {"beta", {2.0, 3.0, 0.1, 0.7}, 0.1, 0.7},
+	    {"normal_cov", {1.0, 2.0}, -INFINITY, INFINITY},
+	    {"lognormal_cov", {1.0, 2.0}, 0.0, INFINITY},
+	    {"lognormal_median", {1.0, 2.0}, 0.0, INFINITY},
+	    {"gumbel", {1.0, 2.0}, -INFINITY, INFINITY},
+	    {"gamma", {2.0, 3.0}, 0.0, INFINITY},
+	    {"weibull", {2.0, 3.0}, 0.0, INFINITY},
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		struct pound_distribution distribution = {.type = row_named(cases[k].name)};
@@ -217,8 +323,8 @@ static void the_support_is_given_by_the_parameters(void **state)
 			assert_true(x >= low && x <= high && mirrored >= low && mirrored <= high);
 		}
 	}
-	// discrete has its own
-	assert_null(pound_distribution_name((int)(sizeof cases / sizeof cases[0]) + 1));
+	// discrete and empirical have their own
+	assert_null(pound_distribution_name((int)(sizeof cases / sizeof cases[0]) + 2));
 }
 
 static void a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_weights(void **state)
@@ -291,6 +397,13 @@ static void parameters_that_make_no_distribution_are_reported_in_words(void **st
 	    {"beta", {0.0, 1.0, 0.0, 1.0}, "alpha must be in (0, 10000]"},
 	    {"beta", {1.0, 1e5, 0.0, 1.0}, "beta must be in (0, 10000]"},
 	    {"beta", {1.0, 1.0, 1.0, 0.0}, "min must be less than max"},
+	    {"normal_cov", {0.0, 1.0}, "mean must not be 0"},
+	    {"normal_cov", {1.0, 0.0}, "coefficient_of_variation must be greater than 0"},
+	    {"lognormal_cov", {-1.0, 1.0}, "mean must be greater than 0"},
+	    {"lognormal_median", {1.0, 0.0}, "dispersion must be greater than 0"},
+	    {"gumbel", {1.0, 0.0}, "scale must be greater than 0"},
+	    {"gamma", {0.01, 1.0}, "shape must be in [0.1, 10000]"},
+	    {"weibull", {1.0, -1.0}, "shape must be greater than 0"},
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		struct pound_distribution distribution = {.type = row_named(cases[k].name)};
@@ -306,6 +419,9 @@ CHECK_MAIN(cmocka_unit_test(a_discrete_quantile_is_a_staircase_with_its_edges_at
            cmocka_unit_test(mass_ratio_quantiles_and_moments_are_those_of_the_closed_form),
            cmocka_unit_test(beta_quantiles_with_closed_forms_are_met),
            cmocka_unit_test(beta_quantiles_end_for_any_allowed_exponents),
+           cmocka_unit_test(other_parameters_of_a_distribution_are_its_moments),
+           cmocka_unit_test(gamma_quantiles_end_for_any_allowed_shape),
+           cmocka_unit_test(an_empirical_quantile_is_linear_between_the_values),
            cmocka_unit_test(a_truncated_normal_keeps_its_digits_far_in_the_tail),
            cmocka_unit_test(the_support_is_given_by_the_parameters),
            cmocka_unit_test(parameters_that_make_no_distribution_are_reported_in_words))
