@@ -55,11 +55,16 @@ char *document_read(const char *path, size_t *length)
 	return text;
 }
 
-/* The bytes of a file that a document names, from its folder. */
-static char *named_read(const void *with, const char *name, size_t *length, char why[STUDY_WHY_SIZE])
+/* The bytes of a file that a document names, its path from the folder of the document. */
+static char *named_read(const void *with, const struct study_source *of, size_t *length,
+                        char why[STUDY_WHY_SIZE])
 {
-	const char *document = with, *end = strrchr(document, '/');
+	const char *document = with, *name = of->file, *end = strrchr(document, '/');
 	char *path = NULL;
+	if (!name) {
+		snprintf(why, STUDY_WHY_SIZE, "is of a server: give the file, too");
+		return NULL;
+	}
 	const int folder = *name == '/' || !end ? 0 : (int)(end - document) + 1;
 	if (asprintf(&path, "%.*s%s%s", folder, document, !folder && *name == '-' ? "./" : "", name) < 0)
 		path = NULL;
@@ -68,6 +73,36 @@ static char *named_read(const void *with, const char *name, size_t *length, char
 		snprintf(why, STUDY_WHY_SIZE, "cannot be read: %s", strerror(path ? errno : ENOMEM));
 	free(path);
 	return text;
+}
+
+/* Reads a document, and one that names files of recorded ground motions as others may have it.
+ *
+ * Given    copy     -   what that is
+ * Returns  value    -   as document_read gives it, if it names none
+ *          study    -   for study_free; NULL: it names none, or is not as it should be
+ */
+static char *read_with_files(const char *path, size_t *length, enum outcome *outcome,
+                             char *(*copy)(const struct study_document *, const struct pound_study *,
+                                           size_t *),
+                             struct pound_study **study)
+{
+	*outcome = OUTCOME_FAILED;
+	*study = NULL;
+	char *text = document_read(path, length);
+	if (!text || !study_names_files(text, *length))
+		return text;
+	const struct study_files files = {.read = named_read, .with = path};
+	const struct study_document document = {.text = text, .length = *length, .files = &files};
+	struct problems *problems = malloc(sizeof *problems);
+	*study = problems ? study_from_document(&document, problems) : NULL;
+	char *copied = *study ? copy(&document, *study, length) : NULL;
+	if (problems && !*study)
+		*outcome = document_reject(path, problems);
+	else if (!copied)
+		command_complain("%s", pound_status_text(POUND_NOMEM));
+	free(problems);
+	free(text);
+	return copied;
 }
 
 /* Reads a document, and puts in the samples of the files of recorded ground motions that it names.
@@ -79,24 +114,31 @@ static char *named_read(const void *with, const char *name, size_t *length, char
  */
 char *document_whole(const char *path, size_t *length, enum outcome *outcome)
 {
-	*outcome = OUTCOME_FAILED;
-	char *text = document_read(path, length);
-	if (!text || !study_names_files(text, *length))
-		return text;
-	const struct study_files files = {.read = named_read, .with = path};
-	const struct study_document document = {.text = text, .length = *length, .files = &files};
-	struct problems *problems = malloc(sizeof *problems);
-	struct pound_study *study = problems ? study_from_document(&document, problems) : NULL;
-	char *whole = study ? study_inline(&document, study, length) : NULL;
-	if (problems && !study)
-		*outcome = document_reject(path, problems);
-	else if (!whole)
-		command_complain("%s", pound_status_text(POUND_NOMEM));
+	struct pound_study *study;
+	char *whole = read_with_files(path, length, outcome, study_inline, &study);
 	if (study)
 		study_free(study);
-	free(problems);
-	free(text);
 	return whole;
+}
+
+/* The same with the SHA-256 of these files beside their names, for a server that has the files.
+ *
+ * Returns  study    -   of which document_file gives the files, for study_free; NULL: it names none
+ * Test     client_suite: a_server_gives_the_same_bytes
+ */
+char *document_hashed(const char *path, size_t *length, enum outcome *outcome, struct pound_study **study)
+{
+	return read_with_files(path, length, outcome, study_name_hashes, study);
+}
+
+/* The bytes of a file that a document names. */
+char *document_file(const char *path, const struct study_source *of, size_t *length)
+{
+	char why[STUDY_WHY_SIZE];
+	char *bytes = named_read(path, of, length, why);
+	if (!bytes)
+		command_complain("%s %s", of->file, why);
+	return bytes;
 }
 
 /* Lists what is wrong with a document, in the order of the reply. */

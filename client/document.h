@@ -5,6 +5,7 @@
 #include "client/command.h"
 #include "schema/json/json_pointer.h"
 #include "schema/json/problems.h"
+#include "schema/study/study_json.h"
 
 #include <stddef.h>
 
@@ -17,6 +18,10 @@ char *document_read(const char *path, size_t *length);
 /* The same with the samples of the files of ground motions that it names, their paths from its folder; NULL: with the outcome,
  * said on stderr why. */
 char *document_whole(const char *path, size_t *length, enum outcome *outcome);
+
+/* The same with the SHA-256 of these files, for a server that has them, and the study (NULL: it names none); and such a file. */
+char *document_hashed(const char *path, size_t *length, enum outcome *outcome, struct pound_study **study);
+char *document_file(const char *path, const struct study_source *of, size_t *length);
 
 /* Says what a problem body (RFC 9457) says, every error on its own line, `subject` in front. */
 void document_complain(const char *subject, const struct reading *problem);

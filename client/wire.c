@@ -97,12 +97,14 @@ static void options_set(struct wire *wire, const struct wire_request *request, c
 		curl_easy_setopt(curl, CURLOPT_HTTPAUTH, (long)CURLAUTH_BEARER);
 		curl_easy_setopt(curl, CURLOPT_XOAUTH2_BEARER, token);
 	}
-	if (strcmp(request->method, "POST") == 0) {
+	if (strcmp(request->method, "HEAD") == 0)
+		curl_easy_setopt(curl, CURLOPT_NOBODY, 1L);
+	else if (request->body || strcmp(request->method, "POST") == 0) {
 		curl_easy_setopt(curl, CURLOPT_POST, 1L);
 		curl_easy_setopt(curl, CURLOPT_POSTFIELDS, request->body ? request->body : "");
 		curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)request->n_body);
-	} else
-		curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method);
+	}
+	curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method);
 }
 
 /* Whether a request failed because the URL is none that can be asked: it failed before any connection. */
@@ -122,8 +124,12 @@ static void request_begin(struct wire *wire, const struct wire_request *request,
 	char *url = command_text("%.*s%s", (int)wire->n_url, wire->url, request->path);
 	char *accept = command_text("Accept: %s", request->accept ? request->accept : "*/*");
 	wire->headers = curl_slist_append(NULL, accept);
-	wire->headers =
-	    curl_slist_append(wire->headers, request->body ? "Content-Type: application/json" : "Content-Type:");
+	char *type = command_text("Content-Type:%s%s", request->body ? " " : "",
+	                          !request->body  ? ""
+	                          : request->type ? request->type
+	                                          : "application/json");
+	wire->headers = curl_slist_append(wire->headers, type);
+	free(type);
 	// no pause for "100 Continue" before a long body
 	wire->headers = curl_slist_append(wire->headers, "Expect:");
 	options_set(wire, request, url);

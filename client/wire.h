@@ -14,9 +14,10 @@ struct wire_request {
 	const char *method;
 	const char *path;   /* from the root, with its query */
 	const char *accept; /* media type wanted; NULL: any */
-	const char *body;   /* JSON of n_body bytes; NULL: none */
+	const char *body;   /* n_body bytes; NULL: none */
 	size_t n_body;
-	bool made; /* the server computes the answer, which may take minutes, before its first byte */
+	const char *type; /* media type of the body; NULL: JSON */
+	bool made;        /* the server computes the answer, which may take minutes, before its first byte */
 };
 
 struct wire_reply {

@@ -21,7 +21,7 @@ static const char schema_text[] =
 
 enum {
 	APPLICATION_ID = 0x706f756e, /* as in store.sql */
-	USER_VERSION = 6,            /* as in store.sql */
+	USER_VERSION = 7,            /* as in store.sql */
 	PAGE = 4096,                 /* [bytes] */
 	BUSY_MS = 5000,              /* [ms] */
 	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
@@ -48,6 +48,14 @@ static const char *const steps[USER_VERSION] = {
           "WHERE client IS NULL AND idempotency_key NOT GLOB ' *'",
     [5] = "ALTER TABLE study ADD COLUMN cpu_s_estimated REAL NOT NULL DEFAULT 0;"
           "ALTER TABLE study ADD COLUMN memory INTEGER NOT NULL DEFAULT 0",
+    [6] = "CREATE TABLE record (sha256 TEXT PRIMARY KEY, created INTEGER NOT NULL, content BLOB NOT NULL) "
+          "STRICT;"
+          "CREATE TABLE study_record (study INTEGER NOT NULL REFERENCES study ON DELETE CASCADE, "
+          "record TEXT NOT NULL REFERENCES record, PRIMARY KEY (study, record)) STRICT, WITHOUT ROWID;"
+          "CREATE INDEX study_record_names ON study_record (record);"
+          "CREATE TRIGGER record_unnamed AFTER DELETE ON study_record "
+          "WHEN NOT EXISTS (SELECT 1 FROM study_record WHERE record = OLD.record) "
+          "BEGIN DELETE FROM record WHERE sha256 = OLD.record; END",
 };
 
 static bool done(const struct database *d, const char *sql)

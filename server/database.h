@@ -9,7 +9,7 @@
 
 #include <sqlite3.h>
 
-enum { DATABASE_STATEMENTS_MAX = 32 };
+enum { DATABASE_STATEMENTS_MAX = 48 };
 
 struct database {
 	pthread_mutex_t lock; /* of the users */

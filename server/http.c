@@ -414,7 +414,7 @@ static void *answer_aside(void *of)
 		spool_reply(&server->spools, reply);
 		sem_post(&server->turns);
 	}
-	if (*request->unwanted && reply->status != 200) {
+	if (*request->unwanted && reply->status / 100 != 2) {
 		drop_body(server, reply);
 		*reply = http_problem(
 		    API_UNAVAILABLE,

@@ -20,6 +20,8 @@
 #include "server/bridge.h"
 #include "server/http.h"
 #include "server/pages.h"
+#include "server/records.h"
+#include "server/refusal.h"
 #include "server/store.h"
 #include "server/stored_run.h"
 #include "server/token.h"
@@ -56,26 +58,9 @@ static struct reply written(struct writer *writer)
 	return made("application/json", body, length);
 }
 
-/* What the store says no with. */
 static struct reply refusal(enum store_status status)
 {
-	static const struct {
-		enum api_fault fault;
-		const char *detail;
-	} refusals[] = {
-	    [STORE_NONE] = {API_NOT_FOUND, "there is no such study"},
-	    [STORE_CORRUPT] = {API_CORRUPT, "the stored bytes are damaged"},
-	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
-	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key came with another body before"},
-	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
-	    [STORE_REPLACED] =
-	        {API_UNAVAILABLE,
-	         "the database file was removed or replaced: nothing is accepted until the server is "
-	         "started again"},
-	    [STORE_CROWDED] = {API_UNAVAILABLE, "the queue is full"},
-	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY, "the share of this token in the queue is full"},
-	};
-	return problem(refusals[status].fault, refusals[status].detail);
+	return refusal_of(status, "there is no such study");
 }
 
 /* Studies being written, one after the other. */
@@ -162,6 +147,7 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 	snprintf(own_key, sizeof own_key, "%s %s", client ? client : "", key ? key : "");
 	if (!study_hash(study, hash))
 		return no_memory();
+	const char *records[STUDY_RECORDS_MAX];
 	const struct store_study row = {.kind = study_kind_name(study->kind),
 	                                .name = study->name,
 	                                .runs = cost->runs,
@@ -170,6 +156,8 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 	                                .hash = hash,
 	                                .key = key ? own_key : NULL,
 	                                .client = client,
+	                                .records = records,
+	                                .n_records = records_named(study, records),
 	                                .queue_max = options->queue_max,
 	                                .own_max = client ? options->queue_token_max : 0};
 	enum store_status submitted = store_submit(store, &row, request->body, request->length, &id);
@@ -187,7 +175,8 @@ static struct reply queue(struct request *request, const struct pound_study *stu
 static struct reply submit(struct request *request)
 {
 	struct problems problems;
-	struct pound_study *study = study_from_json(request->body, request->length, &problems);
+	struct pound_study *study =
+	    records_study(request->server->store, request->body, request->length, &problems);
 	if (!study)
 		return invalid(&problems);
 	const struct options *options = request->server->options;
@@ -435,7 +424,7 @@ static bool sampled(const struct request *request, bool ours)
 	size_t length;
 	if (store_document(request->server->store, request->id, "request", &text, &length) != STORE_OK)
 		return false;
-	struct pound_study *study = study_from_json(text, length, &problems);
+	struct pound_study *study = records_study(request->server->store, text, length, &problems);
 	// histories are computed again, by any version
 	bool has = study && samples_exist(study) && (ours || study->kind != POUND_KIND_SENSITIVITY);
 	if (study)
@@ -652,6 +641,9 @@ bool routes_slow(const struct request *request)
 	if (request->operation == API_samples || request->operation == API_figures ||
 	    request->operation == API_figure || request->operation == API_bridge_evaluate)
 		return true;
+	// records of 20,000,000 samples take seconds to read
+	if (request->operation == API_submit)
+		return memmem(request->body, request->length, "\"sha256\"", strlen("\"sha256\""));
 	if (request->operation != API_results && request->operation != API_posted)
 		return false;
 	const bool result = request->operation == API_results;

@@ -1,10 +1,10 @@
 /* The statements of the database, a name and a text each.  Included by server/store.c, before all else of it. */
 // clang-format off
 enum statement {
-	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE, EXPIRED, EXPIRED_BLOCKS,
+	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE, EXPIRED, EXPIRED_BLOCKS, RECORD, RECORDS_EXPIRED,
 	BEGIN, // the first of those that the writer alone has
 	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, SHED, RECOUNT, SPENT, FINISH, REQUEUE,
-	STOPPED, VAIN, POISON,
+	STOPPED, VAIN, POISON, REPLACE_RECORD, ADD_RECORD, NAME_RECORD, FORGET_RECORDS,
 	N_STATEMENTS
 };
 
@@ -36,6 +36,9 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 // one that ended more than ?1 milliseconds ago
 #define EXPIRY "SELECT id FROM study WHERE finished < " NOW " - ?1 "
 
+// a record that no study names, sent more than ?1 milliseconds ago
+#define UNNAMED "created < " NOW " - ?1 AND NOT EXISTS (SELECT 1 FROM study_record WHERE record = record.sha256) "
+
 static const char *const statement_text[] = {
 	[STUDY]    = STUDY_ROW "WHERE id = ?1",
 	[LIST]     = STUDY_ROW "WHERE id < ?1" ALIKE "ORDER BY id DESC LIMIT ?2",
@@ -49,6 +52,8 @@ static const char *const statement_text[] = {
 	[REUSABLE] = "SELECT freelist_count * page_size FROM pragma_freelist_count(), pragma_page_size()",
 	[EXPIRED]  = EXPIRY "LIMIT 1",
 	[EXPIRED_BLOCKS] = EXPIRY "AND EXISTS (SELECT 1 FROM block WHERE study = id) LIMIT 1",
+	[RECORD]   = "SELECT content, sha256 = lower(hex(digest('', content))) FROM record WHERE sha256 = ?1",
+	[RECORDS_EXPIRED] = "SELECT 1 FROM record WHERE " UNNAMED "LIMIT 1",
 	[BEGIN]    = "BEGIN IMMEDIATE",
 	[COMMIT]   = "COMMIT",
 	[ROLLBACK] = "ROLLBACK",
@@ -87,5 +92,10 @@ static const char *const statement_text[] = {
 	[POISON]   = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
 	              "error = 'poison-study: the server crashed three times while it ran this study' "
 	              "WHERE status = 'queued' AND crashes >= 3",
+	[REPLACE_RECORD] = "UPDATE record SET created = " NOW ", content = ?2 WHERE sha256 = ?1",
+	[ADD_RECORD]     = "INSERT INTO record (sha256, created, content) VALUES (?1, " NOW ", ?2)",
+	[NAME_RECORD]    = "INSERT INTO study_record (study, record) SELECT ?1, sha256 FROM record WHERE sha256 = ?2 "
+	                    "ON CONFLICT DO UPDATE SET record = excluded.record",
+	[FORGET_RECORDS] = "DELETE FROM record WHERE " UNNAMED,
 };
 // clang-format on

@@ -281,6 +281,8 @@ static enum store_status room_of(struct database *c, const struct store_study *s
 	return STORE_OK;
 }
 
+#include "server/store_records.inl"
+
 /* Queues a new study; it is on the disk when this returns.
  *
  * Given    request   (length) bytes   as the client sent them
@@ -289,6 +291,7 @@ static enum store_status room_of(struct database *c, const struct store_study *s
  *          STORE_CLASH    other bytes were
  *          STORE_CROWDED, STORE_CLIENT_CROWDED: a limit of the study is reached
  *          STORE_FULL     the disk has no room for new studies
+ *          STORE_UNRECORDED   a record that it names is not there any more
  *          STORE_FAILED   nothing is stored
  * Test     service_resume: accepted_studies_survive_sigkill, unit_store: no_more_are_queued_than_may_be
  */
@@ -306,10 +309,7 @@ enum store_status store_submit(struct store *store, const struct store_study *st
 	if (status == STORE_OK)
 		status = run(c, bound(c, NEXT, ""), id);
 	if (status == STORE_OK)
-		status = both(c,
-		              bound(c, SUBMIT, "ittitttdi", *id, study->kind, study->name, study->runs, study->hash,
-		                    study->key, study->client, study->cpu_s, study->memory),
-		              bound(c, ADD, "itb", *id, "request", request, length));
+		status = study_add(c, study, *id, request, length);
 	return changed(store, *id, status);
 }
 
@@ -516,6 +516,7 @@ bool store_expire(struct store *store, int days, int days_blocks)
 		const char *what;
 	} rules[] = {{days, EXPIRED, DELETE, "deleted"},
 	             {days_blocks, EXPIRED_BLOCKS, SHED, "its samples are deleted"}};
+	records_expire(store);
 	for (int i = 0; i < 2; i++) {
 		int64_t id = 0;
 		struct database *c = reader(store);

@@ -21,6 +21,7 @@ enum store_status {
 	STORE_REPLACED,       /* the database file is another: what was changed is lost; logged */
 	STORE_CROWDED,        /* as many studies are queued as there may be */
 	STORE_CLIENT_CROWDED, /* as many of its client are as there may be */
+	STORE_UNRECORDED,     /* a record that it names is not there any more */
 };
 
 struct store;
@@ -38,6 +39,8 @@ struct store_study {
 	const char *client; /* name of the token it was submitted with, NULL: there are none */
 	int64_t queue_max;  /* studies that may be queued, 0: any number */
 	int64_t own_max;    /* of them its client's, 0: any number */
+	int n_records;
+	const char *const *records; /* that it names  (n_records) SHA-256, hexadecimal */
 };
 typedef void store_study_reader(void *to,
                                 const struct study_status *study); /* of texts that end with the call */
@@ -74,6 +77,12 @@ enum store_status store_delete(struct store *store, int64_t id);
 /* Deletes one study that ended more than `days` ago, or the blocks of one that ended more than `days_blocks` ago; 0: never.
  * false: there is none. */
 bool store_expire(struct store *store, int days, int days_blocks);
+
+/* A file of a recorded ground motion, by its SHA-256 (hexadecimal): REPEATED if it was there; and its bytes, a zero behind them, on
+ * the heap. */
+enum store_status store_put_record(struct store *store, const char *sha256, const char *content,
+                                   size_t length);
+enum store_status store_record(struct store *store, const char *sha256, char **content, size_t *length);
 
 struct store_claimed {
 	int64_t id, memory;             /* estimated [bytes] */

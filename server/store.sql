@@ -2,7 +2,7 @@
 -- (PRAGMA user_version counts the steps, server/database.c has them).  Times are milliseconds since 1970, UTC.
 
 PRAGMA application_id = 0x706f756e; -- "poun"
-PRAGMA user_version = 6;
+PRAGMA user_version = 7;
 
 CREATE TABLE study (
 	id              INTEGER PRIMARY KEY, -- milliseconds << 20 | random bits: a newer study has a larger id
@@ -54,3 +54,26 @@ CREATE TABLE block (
 
 -- sums over them, without a look at their contents
 CREATE INDEX block_progress ON block (study, attempt, runs, cpu_s);
+
+-- files of recorded ground motions, as they came
+CREATE TABLE record (
+	sha256  TEXT    PRIMARY KEY, -- of the content, hex
+	created INTEGER NOT NULL,    -- when it was sent last
+	content BLOB    NOT NULL
+) STRICT;
+
+-- which of them a study names
+CREATE TABLE study_record (
+	study  INTEGER NOT NULL REFERENCES study ON DELETE CASCADE,
+	record TEXT    NOT NULL REFERENCES record,
+	PRIMARY KEY (study, record)
+) STRICT, WITHOUT ROWID;
+
+CREATE INDEX study_record_names ON study_record (record);
+
+-- a record lives while a study names it
+CREATE TRIGGER record_unnamed AFTER DELETE ON study_record
+WHEN NOT EXISTS (SELECT 1 FROM study_record WHERE record = OLD.record)
+BEGIN
+	DELETE FROM record WHERE sha256 = OLD.record;
+END;

@@ -6,6 +6,7 @@
 
 #include "schema/json/problems.h"
 #include "schema/study/study_json.h"
+#include "server/records.h"
 
 /* CPU time of this thread [s]. */
 double stored_run_clock(void)
@@ -47,10 +48,18 @@ const char *stored_run_open(struct store *store, int64_t id, int n_workers, cons
 	if (found != STORE_OK)
 		return "the stored study could not be read";
 	struct problems problems;
-	opened->study = study_from_json(opened->document, opened->length, &problems);
+	opened->study = records_study(store, opened->document, opened->length, &problems);
 	if (!opened->study && problems.status != PROBLEMS_NOMEM)
 		return "this version does not accept the study";
 	opened->passing = true;
+	if (opened->study && study_names_files(opened->document, opened->length)) {
+		// worker groups do not have the files
+		char *whole = records_inline(store, opened->document, &opened->length, opened->study);
+		free(opened->document);
+		opened->document = whole;
+		if (!whole)
+			return "out of memory";
+	}
 	opened->run = opened->study ? pound_run_create_by(opened->study, n_workers, stop) : NULL;
 	if (!opened->run)
 		return "out of memory";

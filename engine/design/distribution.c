@@ -24,7 +24,8 @@ struct distribution {
 	const char *parameters[5]; /* up to the first NULL */
 	struct rule rules[RULES_MAX + 1];
 	double (*quantile)(const double *p, double u);
-	double (*listed)(const struct pound_distribution *d, double u); /* instead, of one that lists its values */
+	double (*listed)(const struct pound_distribution *d,
+	                 double u); /* instead, of one that lists its values */
 };
 
 static double within(double x, double low, double high)
@@ -264,9 +265,7 @@ static double gamma_quantile(const double *p, double u)
 {
 	const double c = 745.0, most = p[0] + sqrt(2.0 * c * (p[0] + c)) + c;
 	const struct standard s = {gsl_cdf_gamma_P, gsl_cdf_gamma_Q, gsl_ran_gamma_pdf, p[0], 1.0, most};
-	return u == 0.0   ? 0.0
-	       : u == 1.0 ? INFINITY
-	                  : p[1] * inverse(&s, p[0], u, 1.0 - u);
+	return u == 0.0 ? 0.0 : u == 1.0 ? INFINITY : p[1] * inverse(&s, p[0], u, 1.0 - u);
 }
 
 static double beta(const double *p, double u)

@@ -47,6 +47,9 @@ const struct api_operation api_operations[] = {
 	                 "a figure of the result", " 200 304 ", .media = " image/svg+xml ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_cancel]  = {"POST", "/v1/studies/{id}/cancel", "cancel",
 	                 "cancels a queued or running study", " 200=Status ", .faults = F(NOT_FOUND) | F(CONFLICT) | F(FOREIGN)},
+	[API_records_put] = {"PUT", "/v1/records/{sha256}", "records_put",
+	                    "stores a file of a recorded ground motion, until the last study that names it is deleted; without one for an hour", " 201 204 ", .faults = F(FOREIGN)},
+	[API_records_get] = {"GET", "/v1/records/{sha256}", "records_get", "a stored file of a recorded ground motion", " 200 304 ", .media = " application/octet-stream ", .faults = STORED},
 	[API_live]    = {"GET", "/livez", "live", "liveness: the process answers", " 200=Version ", .open = true},
 	[API_ready]   = {"GET", "/readyz", "ready", "readiness: the server accepts studies", " 200=Version ", .open = true},
 	[API_metrics] = {"GET", "/metrics", "metrics", "counters and gauges in the Prometheus text format", " 200 ", .media = " text/plain "},
@@ -72,6 +75,9 @@ const struct api_operation api_operations[] = {
 
 const struct api_argument api_arguments[] = {
 	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "id of the study: 16 hexadecimal digits", .digits = 16},
+	{"records_put", "sha256",      "path",   NULL, 0, 0, NULL, .text = "SHA-256 of the body: 64 hexadecimal digits", .digits = 64},
+	{"records_get", "sha256",         "path",   NULL, 0, 0, NULL, .text = "SHA-256 of the file: 64 hexadecimal digits", .digits = 64},
+	{"records_get", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", .text = "true: checks the study and estimates its cost; nothing is stored"},
 	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, .text = "1 to 200 characters of UTF-8; repeating a request with the same key and body returns the first study"},
 	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies with this status", .blank = true},
@@ -176,9 +182,11 @@ static bool matches(const char *path, int operation, long long *id)
 		form += head + strlen("{id}");
 		head = strcspn(form, "{");
 	}
-	return !form[head] ? !strcmp(path, form)
-	                   : !strncmp(path, form, head) &&
-	                         api_takes(api_argument(operation, "name", "path"), path + head);
+	if (!form[head])
+		return !strcmp(path, form);
+	char name[16];
+	snprintf(name, sizeof name, "%.*s", (int)strcspn(form + head + 1, "}"), form + head + 1);
+	return !strncmp(path, form, head) && api_takes(api_argument(operation, name, "path"), path + head);
 }
 
 /* Finds the operation of a request.

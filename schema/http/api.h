@@ -37,7 +37,7 @@
 /* What can be asked for: X(operation, which is a row of api_operations and a function of routes.c). */
 #define API_OPERATIONS(X)                                                                 \
 	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(figures) \
-	X(figure) X(cancel)        \
+	X(figure) X(cancel) X(records_put) X(records_get) \
 	X(live) X(ready) X(metrics) X(version) X(openapi) \
 	X(bridge_info) X(bridge_model) X(bridge_inputs) X(bridge_outputs) \
 	X(bridge_evaluate) X(bridge_gradient) X(bridge_jacobian) X(bridge_hessian) \
@@ -65,7 +65,7 @@ struct api_fault_row {
 
 struct api_operation {
 	const char *method, *path, *name; /* {id} in a path is 16 hexadecimal digits,
-	                                     {name} at its end one of the choices of that argument */
+	                                     another name at its end what that argument takes */
 	const char *text;                 /* one line for people */
 	const char *
 	    answers; /* of success, between spaces: "200=Page", its status and its object in the document, "204" */

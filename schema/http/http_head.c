@@ -238,7 +238,7 @@ void head_end(struct head *head, bool needs_host, const char *names)
 	if (head->encoded)
 		head_refuse(head, API_NOT_JSON, false, "the only supported Content-Encoding is identity");
 	if (head->length > HEAD_BODY_MAX)
-		head_refuse(head, API_TOO_LARGE, false, "a study document may have at most 1 MiB");
+		head_refuse(head, API_TOO_LARGE, false, "a body may have at most 1 MiB");
 }
 
 /* Judges where a request that changes something comes from: a page of the web names its own origin, and its browser says

@@ -328,7 +328,7 @@ static void success(struct writer *w, const struct api_operation *operation, cha
 	object(w, answer);
 	writer_text(w, "description", !strcmp(answer, "304") ? "not modified" : operation->text);
 	success_headers(w, operation, answer, object_name);
-	if (*answer == '2' && strcmp(answer, "204") != 0) {
+	if (*answer == '2' && (object_name || operation->media)) {
 		object(w, "content");
 		if (object_name)
 			media(w, "application/json", object_name);

@@ -127,7 +127,7 @@ static void write_places(struct canon *c)
 }
 
 /* The SHA-256 of some bytes, in hexadecimal digits. */
-static void digest_of(const void *bytes, size_t n, char hex[STUDY_HASH_SIZE])
+void study_digest(const void *bytes, size_t n, char hex[STUDY_HASH_SIZE])
 {
 	struct sha256_ctx sha;
 	uint8_t digest[SHA256_DIGEST_SIZE];
@@ -147,7 +147,7 @@ static void write_suite(struct canon *c)
 	for (int k = 0; k < e->n_records; k++) {
 		const struct pound_record *record = &e->records[k];
 		char hex[STUDY_HASH_SIZE];
-		digest_of(record->a, sizeof *record->a * (size_t)record->n, hex);
+		study_digest(record->a, sizeof *record->a * (size_t)record->n, hex);
 		writer_object(&c->w, NULL, WRITER_LINES);
 		writer_number(&c->w, "time_step_s", record->time_step);
 		writer_text(&c->w, "samples", hex);
@@ -327,7 +327,7 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 	char *text = writer_take(&c.w, &length);
 	if (!text)
 		return false;
-	digest_of(text, length, hex);
+	study_digest(text, length, hex);
 	free(text);
 	return true;
 }

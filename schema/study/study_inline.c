@@ -14,14 +14,19 @@ static cJSON *records_of(const cJSON *document)
 	return cJSON_GetObjectItemCaseSensitive(excitation, "records");
 }
 
+static bool is_file(const cJSON *record)
+{
+	return cJSON_GetObjectItemCaseSensitive(record, "file") ||
+	       cJSON_GetObjectItemCaseSensitive(record, "sha256");
+}
+
 bool study_names_files(const char *text, size_t length)
 {
 	struct json_fault fault;
 	bool names = false;
 	cJSON *document = json_parse(text, length, &fault);
 	const cJSON *record;
-	cJSON_ArrayForEach(record, records_of(document)) names |=
-	    cJSON_GetObjectItemCaseSensitive(record, "file") != NULL;
+	cJSON_ArrayForEach(record, records_of(document)) names |= is_file(record);
 	cJSON_Delete(document);
 	return names;
 }
@@ -29,15 +34,17 @@ bool study_names_files(const char *text, size_t length)
 struct copy {
 	struct writer w;
 	const cJSON *records; /* of the suite */
-	const struct pound_record *read;
+	const struct pound_study *read;
+	bool hashes; /* instead of samples */
 };
 
 static void write_value(struct copy *copy, const char *name, const cJSON *value);
 
-/* Writes a record, the samples of its file in place of what is said about that. */
-static void write_record(struct copy *copy, const cJSON *record, const struct pound_record *read)
+/* Writes a record, the samples of its file in place of what is said about that, or that and its SHA-256. */
+static void write_record(struct copy *copy, const cJSON *record, int k)
 {
-	static const char of_file[] = " file unit channel time_step_s name ";
+	const struct pound_record *read = &copy->read->scene.excitation.records[k];
+	const char *const of_file = copy->hashes ? " sha256 " : " file sha256 unit channel time_step_s name ";
 	writer_object(&copy->w, NULL, WRITER_LINE);
 	const cJSON *member;
 	cJSON_ArrayForEach(member, record)
@@ -47,7 +54,13 @@ static void write_record(struct copy *copy, const cJSON *record, const struct po
 		if (!strstr(of_file, word))
 			write_value(copy, member->string, member);
 	}
-	writer_text(&copy->w, "name", read->name);
+	if (copy->hashes) {
+		writer_text(&copy->w, "sha256", study_source_of(copy->read, k)->sha256);
+		writer_end(&copy->w);
+		return;
+	}
+	if (read->name)
+		writer_text(&copy->w, "name", read->name);
 	writer_number(&copy->w, "time_step_s", read->time_step);
 	writer_array(&copy->w, "acceleration_m_s2", WRITER_LINE);
 	for (int i = 0; i < read->n; i++)
@@ -64,8 +77,8 @@ static void write_value(struct copy *copy, const char *name, const cJSON *value)
 		int k = 0;
 		(cJSON_IsObject(value) ? writer_object : writer_array)(w, name, WRITER_LINE);
 		for (const cJSON *child = value->child; child; child = child->next, k++)
-			if (value == copy->records && cJSON_GetObjectItemCaseSensitive(child, "file"))
-				write_record(copy, child, &copy->read[k]);
+			if (value == copy->records && is_file(child))
+				write_record(copy, child, k);
 			else
 				write_value(copy, child->string, child);
 		writer_end(w);
@@ -75,6 +88,20 @@ static void write_value(struct copy *copy, const char *name, const cJSON *value)
 		writer_bool(w, name, cJSON_IsTrue(value));
 	else
 		writer_text(w, name, value->valuestring); // null has none
+}
+
+static char *copied(const struct study_document *document, const struct pound_study *study, bool hashes,
+                    size_t *length)
+{
+	struct json_fault fault;
+	cJSON *root = json_parse(document->text, document->length, &fault);
+	if (!root)
+		return NULL;
+	struct copy copy = {.records = records_of(root), .read = study, .hashes = hashes};
+	writer_init(&copy.w);
+	write_value(&copy, NULL, root);
+	cJSON_Delete(root);
+	return writer_take(&copy.w, length);
 }
 
 /* Puts samples in place of the files that a document names.
@@ -88,13 +115,15 @@ static void write_value(struct copy *copy, const char *name, const cJSON *value)
  */
 char *study_inline(const struct study_document *document, const struct pound_study *study, size_t *length)
 {
-	struct json_fault fault;
-	cJSON *root = json_parse(document->text, document->length, &fault);
-	if (!root)
-		return NULL;
-	struct copy copy = {.records = records_of(root), .read = study->scene.excitation.records};
-	writer_init(&copy.w);
-	write_value(&copy, NULL, root);
-	cJSON_Delete(root);
-	return writer_take(&copy.w, length);
+	return copied(document, study, false, length);
+}
+
+/* Puts the SHA-256 of every file beside its name, as study_inline puts samples in its place.
+ *
+ * Test     unit_suite: a_file_is_known_by_its_hash
+ */
+char *study_name_hashes(const struct study_document *document, const struct pound_study *study,
+                        size_t *length)
+{
+	return copied(document, study, true, length);
 }

@@ -513,6 +513,12 @@ struct pound_study *study_design_from_json(const char *text, size_t length, stru
 	                           problems);
 }
 
+const struct study_source *study_source_of(const struct pound_study *study, int record)
+{
+	const struct suite_source *source = &((const struct block *)study)->suite[record];
+	return source->samples ? &source->named : NULL;
+}
+
 void study_free(struct pound_study *study)
 {
 	const struct block *block = (const struct block *)study;

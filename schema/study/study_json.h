@@ -33,10 +33,16 @@ enum {
 };
 #define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
 
+/* A file of a recorded ground motion. */
+struct study_source {
+	const char *file;             /* its path, from the folder of the study; NULL: not known */
+	char sha256[STUDY_HASH_SIZE]; /* of its bytes, hexadecimal; "": not known */
+};
+
 /* How the files of recorded ground motions are read that a document names. */
 struct study_files {
 	/* The bytes, on the heap and with a 0 behind them; NULL: `why` says why there are none. */
-	char *(*read)(const void *with, const char *name, size_t *length, char why[STUDY_WHY_SIZE]);
+	char *(*read)(const void *with, const struct study_source *of, size_t *length, char why[STUDY_WHY_SIZE]);
 	const void *with;
 };
 
@@ -54,10 +60,14 @@ struct pound_study *study_from_json(const char *text, size_t length, struct prob
 struct pound_study *study_design_from_json(const char *text, size_t length, struct problems *problems);
 void study_free(struct pound_study *study);
 
-/* Whether a document names files of recorded ground motions; and the document, on the heap, with their samples in place of
- * the names, for those who cannot read them (NULL: out of memory). */
+/* Whether a document names files of recorded ground motions.  Of one that does, for others who cannot read them: the document
+ * with their samples in place of the names, or with their SHA-256 beside these; on the heap (NULL: out of memory). */
 bool study_names_files(const char *text, size_t length);
 char *study_inline(const struct study_document *document, const struct pound_study *study, size_t *length);
+char *study_name_hashes(const struct study_document *document, const struct pound_study *study,
+                        size_t *length);
+/* The file that a record of a suite was read from; NULL: its samples are in the document. */
+const struct study_source *study_source_of(const struct pound_study *study, int record);
 
 const char *study_kind_name(int kind);            /* "response", "sensitivity", ...; NULL past the last */
 int study_cells(const struct pound_study *study); /* combinations of sweep values, 1 without a sweep */
@@ -78,6 +88,7 @@ void study_value(struct writer *writer, const char *name, const char *path, doub
 const char *study_choice(const char *path, double value); /* its name, or "true", "false"; NULL: a number */
 
 /* SHA-256 in hex over the study's meaning: all defaults filled in; names, order and spelling do not count. */
+void study_digest(const void *bytes, size_t n, char hex[STUDY_HASH_SIZE]);   /* SHA-256, hexadecimal digits */
 bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE]); /* false: out of memory */
 
 #endif

@@ -48,13 +48,13 @@ static bool has(const cJSON *object, const char *name)
 }
 
 /* Reports what the reader of a file says, where in the file it is in front. */
-static void complain_of_file(struct reader *r, const struct problems *of_file)
+static void complain_of_file(struct reader *r, const char *name, const struct problems *of_file)
 {
 	char what[sizeof of_file->list[0].detail + sizeof of_file->list[0].pointer];
 	for (int k = 0; k < of_file->n; k++) {
 		const struct problem *p = &of_file->list[k];
 		snprintf(what, sizeof what, "%s%s%s", p->pointer, *p->pointer ? ": " : "", p->detail);
-		complain(r, "file", what);
+		complain(r, name, what);
 	}
 	if (of_file->status == PROBLEMS_NOMEM)
 		r->problems->status = PROBLEMS_NOMEM;
@@ -79,13 +79,22 @@ static void compare(struct reader *r, const struct suite_record *of, const struc
 /* Reads the samples of a file. */
 static void read_file(struct reader *r, struct suite_record *of, struct suite_source *source)
 {
-	char why[STUDY_WHY_SIZE] = "is read by `pound' only: give acceleration_m_s2";
+	char why[STUDY_WHY_SIZE] = "cannot be read here: give acceleration_m_s2", sha256[STUDY_HASH_SIZE];
+	const char *name = of->file ? "file" : "sha256";
 	size_t n;
-	char *text = r->files ? r->files->read(r->files->with, of->file, &n, why) : NULL;
+	snprintf(source->named.sha256, sizeof source->named.sha256, "%s", of->sha256 ? of->sha256 : "");
+	source->named.file = of->file;
+	char *text = r->files ? r->files->read(r->files->with, &source->named, &n, why) : NULL;
 	if (!text) {
-		complain(r, "file", why);
+		complain(r, name, why);
 		return;
 	}
+	study_digest(text, n, sha256);
+	if (of->sha256 && strcmp(of->sha256, sha256) != 0) {
+		snprintf(why, sizeof why, "is not that of the file, which has %s", sha256);
+		complain(r, "sha256", why);
+	}
+	memcpy(source->named.sha256, sha256, sizeof sha256);
 	const struct record_choice choice = {
 	    .unit = of->unit, .step = of->record.time_step, .channel = of->channel};
 	struct problems *problems = malloc(sizeof *problems);
@@ -98,7 +107,7 @@ static void read_file(struct reader *r, struct suite_record *of, struct suite_so
 		of->record.time_step = record.step;
 		of->record.a = source->samples = record.acceleration;
 	} else
-		complain_of_file(r, problems);
+		complain_of_file(r, name, problems);
 	free(problems);
 	free(text);
 }
@@ -111,6 +120,15 @@ static bool is_unit(const char *name)
 	return record_unit_name(row);
 }
 
+/* Samples of the records before one. */
+static double samples_before(const struct reader *r, int k)
+{
+	double samples = 0;
+	for (int j = 0; j < k; j++)
+		samples += r->study->scene.excitation.records[j].n;
+	return samples;
+}
+
 static void read_record(struct reader *r, const cJSON *node, int k)
 {
 	struct suite_record got = {0};
@@ -119,18 +137,20 @@ static void read_record(struct reader *r, const cJSON *node, int k)
 	if (!reader_object(r, RECORD, node, (char *)&got))
 		return;
 	const bool inside = has(node, "acceleration_m_s2");
-	if (inside == has(node, "file"))
+	if (inside == (has(node, "file") || has(node, "sha256")))
 		problems_add(r->problems, r->pointer, "must have one of file and acceleration_m_s2");
 	else if (inside && !has(node, "time_step_s"))
 		complain(r, "time_step_s", "is required with acceleration_m_s2: a number greater than 0 s");
 	else if (got.unit && !is_unit(got.unit))
 		complain(r, "unit", "must be one of \"g\", \"cm/s2\", \"m/s2\"");
+	if (got.sha256 && strspn(got.sha256, "0123456789abcdef") != STUDY_HASH_SIZE - 1)
+		complain(r, "sha256", "must be 64 hexadecimal digits, 0 to 9 and a to f");
 	for (int m = 0; m < 2; m++) {
 		static const char *const of_files[] = {"unit", "channel"};
 		if (inside && has(node, of_files[m]))
 			complain(r, of_files[m], "is only used with file");
 	}
-	if (!inside && r->problems->n == before)
+	if (!inside && r->problems->n == before && samples_before(r, k) <= STUDY_SUITE_SAMPLES_MAX)
 		read_file(r, &got, &r->suite[k]);
 	if (!got.record.name)
 		got.record.name = got.file;

@@ -23,8 +23,9 @@ static void refuse_parameter(struct reader *r, int type, const char *parameter)
 			if (strncmp(pound_distribution_name(row), name, strlen(name)) == 0 &&
 			    strcmp(pound_distribution_parameter(row, k), parameter) == 0)
 				related = pound_distribution_name(row);
-	problems_add(r->problems, r->pointer, related ? "is not used by distribution \"%s\"; \"%s\" has it"
-	                                              : "is not used by distribution \"%s\"",
+	problems_add(r->problems, r->pointer,
+	             related ? "is not used by distribution \"%s\"; \"%s\" has it"
+	                     : "is not used by distribution \"%s\"",
 	             name, related);
 }
 

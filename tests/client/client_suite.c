@@ -53,6 +53,31 @@ static void a_server_gives_the_same_bytes(void **state)
 	program_free(&result);
 }
 
+static void files_that_the_server_has_are_not_sent_again(void **state)
+{
+	const struct service *service = *state;
+	static const char created[] =
+	    "SELECT group_concat(created) FROM (SELECT created FROM record ORDER BY sha256)";
+	char *first = NULL;
+	for (int k = 0; k < 2; k++) {
+		struct program_outcome sent = POUND("submit", "--wait", SUITE);
+		program_expect(&sent, 0);
+		program_free(&sent);
+		char *now = service_text(service, created);
+		// a record that is sent again has a new time
+		if (first)
+			assert_string_equal(now, first);
+		free(first);
+		first = now;
+	}
+	free(first);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM record"), 3);
+	assert_int_equal(service_number(service, "SELECT count(*) FROM study_record"), 6);
+	// the document that the server has is small
+	assert_true(service_number(service, "SELECT max(length(content)) FROM document WHERE name = 'request'") <
+	            2000);
+}
+
 static void spectra_name_the_records(void **state)
 {
 	(void)state;
@@ -96,4 +121,6 @@ static void a_file_that_cannot_be_read_is_named(void **state)
 
 CHECK_MAIN(cmocka_unit_test(a_suite_is_read_from_files_beside_the_study),
            cmocka_unit_test_setup_teardown(a_server_gives_the_same_bytes, program_setup, service_teardown),
+           cmocka_unit_test_setup_teardown(files_that_the_server_has_are_not_sent_again, program_setup,
+                                           service_teardown),
            cmocka_unit_test(spectra_name_the_records), cmocka_unit_test(a_file_that_cannot_be_read_is_named))

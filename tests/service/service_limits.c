@@ -30,7 +30,7 @@ static const struct {
      "the request line and the headers have at most 16384 bytes"},
     {POST "Transfer-Encoding: chunked\r\n", "", "\r\n2\r\n{}\r\n0\r\n\r\n", 0, 411,
      "a body needs a Content-Length; Transfer-Encoding is not supported"},
-    {POST "Content-Length: 1048577\r\n", "", "\r\n", 0, 413, "a study document may have at most 1 MiB"},
+    {POST "Content-Length: 1048577\r\n", "", "\r\n", 0, 413, "a body may have at most 1 MiB"},
     {POST "Content-Length: 2\r\nIdempotency-Key: ", "k", "\r\n\r\n{}", 201, 400,
      "an Idempotency-Key must have 1 to 200 characters"},
     {POST "Content-Length: 2\r\nOrigin: http://", "e", ".example\r\n\r\n{}", 1, 403,

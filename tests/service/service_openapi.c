@@ -67,6 +67,54 @@ static const struct {
     {PLAIN, "GET", "/v1/studies/{new}/figures/indices", {0}, NULL, 409},
     {PLAIN, "DELETE", "/v1/studies/{new}", {0}, NULL, 204},
     {PLAIN, "DELETE", "/v1/studies/{none}", {0}, NULL, 404},
+    {PLAIN,
+     "PUT",
+     "/v1/records/2cf24dba5fb0a30e26e83b2ac5b9e29e1b161e5c1fa7425e73043362938b9824",
+     {0},
+     "hello",
+     201},
+    {PLAIN,
+     "PUT",
+     "/v1/records/2cf24dba5fb0a30e26e83b2ac5b9e29e1b161e5c1fa7425e73043362938b9824",
+     {0},
+     "hello",
+     204},
+    {PLAIN,
+     "PUT",
+     "/v1/records/2cf24dba5fb0a30e26e83b2ac5b9e29e1b161e5c1fa7425e73043362938b9824",
+     {0},
+     "other",
+     400},
+    {PLAIN,
+     "PUT",
+     "/v1/records/2cf24dba5fb0a30e26e83b2ac5b9e29e1b161e5c1fa7425e73043362938b9824",
+     {"Origin: null"},
+     "hello",
+     403},
+    {PLAIN,
+     "GET",
+     "/v1/records/2cf24dba5fb0a30e26e83b2ac5b9e29e1b161e5c1fa7425e73043362938b9824",
+     {0},
+     NULL,
+     200},
+    {PLAIN,
+     "GET",
+     "/v1/records/2cf24dba5fb0a30e26e83b2ac5b9e29e1b161e5c1fa7425e73043362938b9824",
+     {"If-None-Match: *"},
+     NULL,
+     304},
+    {PLAIN,
+     "GET",
+     "/v1/records/0000000000000000000000000000000000000000000000000000000000000000",
+     {0},
+     NULL,
+     404},
+    {DAMAGED,
+     "GET",
+     "/v1/records/2cf24dba5fb0a30e26e83b2ac5b9e29e1b161e5c1fa7425e73043362938b9824",
+     {0},
+     NULL,
+     500},
     {PLAIN, "GET", "/livez", {0}, NULL, 200},
     {PLAIN, "GET", "/readyz", {0}, NULL, 200},
     {PLAIN, "GET", "/metrics", {0}, NULL, 200},
@@ -169,6 +217,7 @@ static int ask(struct world *world, const char *method, const char *path, const 
 	snprintf(pointer, sizeof pointer, "/paths/%s/%s/responses/%d", escaped,
 	         !strcmp(method, "GET")    ? "get"
 	         : !strcmp(method, "POST") ? "post"
+	         : !strcmp(method, "PUT")  ? "put"
 	                                   : "delete",
 	         status);
 	if (!reading_has(world->api, "%s", pointer))
@@ -233,6 +282,11 @@ static void ask_each(struct world *world, const char *header, int status, bool o
 			memmove(named + strlen("swept"), named + strlen("{name}"), strlen(named + strlen("{name}")) + 1);
 			memcpy(named, "swept", strlen("swept"));
 		}
+		char *hash = strstr(path, "{sha256}");
+		if (hash) {
+			memmove(hash + 64, hash + strlen("{sha256}"), strlen(hash + strlen("{sha256}")) + 1);
+			memset(hash, '0', 64);
+		}
 		const char *const headers[] = {"Content-Type: application/json", header};
 		if (operation->open && !open_too)
 			continue;
@@ -285,7 +339,8 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 	ask_each(&world, world.large, 431, true);
 	service_stop(world.service);
 
-	service_change(world.service, "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB)");
+	service_change(world.service, "UPDATE document SET content = CAST(replace(content, '1', '2') AS BLOB);"
+	                              "UPDATE record SET content = x'00'");
 	begin(&world);
 	ask_all(&world, DAMAGED);
 	service_stop(world.service);
@@ -337,6 +392,7 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 		snprintf(path, sizeof path, "/paths/%s/%s/responses", escaped,
 		         !strcmp(method, "GET")    ? "get"
 		         : !strcmp(method, "POST") ? "post"
+		         : !strcmp(method, "PUT")  ? "put"
 		                                   : "delete");
 		for (int i = 0; (key = reading_member(world.api, i, "%s", path)); i++, documented++) {
 			seen += world.seen[o][atoi(key)];

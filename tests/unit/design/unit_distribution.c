@@ -235,12 +235,16 @@ static void other_parameters_of_a_distribution_are_its_moments(void **state)
 	    {"normal_cov", {2.0, 0.25}, 2.0, 0.25},
 	    {"lognormal_cov", {3.0, 0.4}, 3.0, 0.4},
 	    {"lognormal_median", {0.05, 0.6}, 0.05 * exp(0.18), sqrt(exp(0.36) - 1.0)},
-	    {"gumbel", {0.3, 0.1}, 0.3 + 0.1 * 0.57721566490153286, 0.1 * 1.2825498301618641 / 0.35772156649015329},
+	    {"gumbel",
+	     {0.3, 0.1},
+	     0.3 + 0.1 * 0.57721566490153286,
+	     0.1 * 1.2825498301618641 / 0.35772156649015329},
 	    {"gamma", {4.0, 0.5}, 2.0, 0.5},
 	    {"weibull", {0.2, 2.0}, 0.2 * 0.88622692545275801, 0.52272320087706049},
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-		const double mean = moment(cases[k].name, cases[k].p, 1), square = moment(cases[k].name, cases[k].p, 2);
+		const double mean = moment(cases[k].name, cases[k].p, 1),
+		             square = moment(cases[k].name, cases[k].p, 2);
 		// beyond 8 deviations is 1e-15, times what a lognormal has there; near 8 a probability has 1 - P of one digit
 		check_near(mean, cases[k].mean, 1e-9 * cases[k].mean);
 		check_near(sqrt(square / (mean * mean) - 1.0), cases[k].cov, 1e-8);
@@ -251,7 +255,9 @@ static void gamma_quantiles_end_for_any_allowed_shape(void **state)
 {
 	(void)state;
 	for (double a = 0.1; a <= 1e4; a *= sqrt(10.0))
-		for (double u = 0x1p-50; u < 1.0; u = u < 0.1 ? 32.0 * u : u < 0.8 ? u + 0.1 : 1.0 - 0.1 * (1.0 - u)) {
+		for (double u = 0x1p-50; u < 1.0; u = u < 0.1   ? 32.0 * u
+		                                      : u < 0.8 ? u + 0.1
+		                                                : 1.0 - 0.1 * (1.0 - u)) {
 			double p[4] = {fmin(a, 1e4), 1.0}, x = quantile("gamma", p, u);
 			assert_true(x > 0.0 && x < INFINITY);
 			check_near(gsl_cdf_gamma_P(x, p[0], 1.0), u, 1e-11);

@@ -362,7 +362,8 @@ static void keys_of_every_version_stand_for_their_studies(void **state)
 	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
 	assert_int_equal(sqlite3_exec(db,
 	                              "PRAGMA user_version = 4; ALTER TABLE study DROP COLUMN cpu_s_estimated; "
-	                              "ALTER TABLE study DROP COLUMN memory",
+	                              "ALTER TABLE study DROP COLUMN memory; DROP TABLE study_record; "
+	                              "DROP TABLE record",
 	                              NULL, NULL, NULL),
 	                 SQLITE_OK);
 	assert_int_equal(sqlite3_close(db), SQLITE_OK);

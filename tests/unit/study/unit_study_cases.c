@@ -160,8 +160,10 @@ static void line_of(const struct problem *problem, char line[1024])
 static int n_wrong; // cases that were not as their file says
 
 /* The files that documents name are those of tests/cases/records. */
-static char *record_file(const void *with, const char *name, size_t *length, char why[STUDY_WHY_SIZE])
+static char *record_file(const void *with, const struct study_source *of, size_t *length,
+                         char why[STUDY_WHY_SIZE])
 {
+	const char *name = of->file ? of->file : of->sha256;
 	char path[256];
 	(void)with;
 	snprintf(path, sizeof path, "tests/cases/records/%s", name);

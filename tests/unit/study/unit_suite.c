@@ -225,8 +225,10 @@ static void a_record_of_a_suite_gives_what_it_gives_alone(void **state)
 	}
 }
 
-static char *record_file(const void *with, const char *name, size_t *length, char why[STUDY_WHY_SIZE])
+static char *record_file(const void *with, const struct study_source *of, size_t *length,
+                         char why[STUDY_WHY_SIZE])
 {
+	const char *name = of->file ? of->file : of->sha256;
 	char path[256];
 	snprintf(path, sizeof path, "%s/%s", (const char *)with, name);
 	snprintf(why, STUDY_WHY_SIZE, "cannot be read");
@@ -273,10 +275,48 @@ static void files_and_their_samples_are_the_same_study(void **state)
 	assert_string_equal(problems.list[0].pointer, "/scene/excitation/records/0/file");
 }
 
+static void a_file_is_known_by_its_hash(void **state)
+{
+	(void)state;
+	static const char text[] = SCENE "\"excitation\": {\"type\": \"suite\", \"records\": ["
+	                                 "{\"file\": \"esm.ASC\", \"reversed\": true}, "
+	                                 "{\"time_step_s\": 0.3, \"acceleration_m_s2\": [0.1, 0.3]}]}}}",
+	                  hash[] = "e9995d64fa82210428f6e1ce07f0c3c94da3e0a92533dd012e675c04a252638b";
+	const struct study_files files = {.read = record_file, .with = "tests/cases/records"};
+	const struct study_document document = {.text = text, .length = strlen(text), .files = &files};
+	struct problems problems;
+	struct pound_study *study = study_from_document(&document, &problems);
+	assert_non_null(study);
+	assert_string_equal(study_source_of(study, 0)->file, "esm.ASC");
+	assert_string_equal(study_source_of(study, 0)->sha256, hash);
+	assert_null(study_source_of(study, 1));
+	size_t length;
+	char *named = study_name_hashes(&document, study, &length);
+	assert_non_null(named);
+	struct reading *read = reading_open(named, length);
+	assert_string_equal(reading_text(read, "/scene/excitation/records/0/sha256"), hash);
+	assert_string_equal(reading_text(read, "/scene/excitation/records/0/file"), "esm.ASC");
+	assert_int_equal(reading_count(read, "/scene/excitation/records/1/acceleration_m_s2"), 2);
+	assert_null(reading_text(read, "/scene/excitation/records/1/sha256"));
+	reading_close(read);
+	study_free(study);
+	// with its hash it is the same study, and with another it is refused
+	study = study_from_document(&(struct study_document){.text = named, .length = length, .files = &files},
+	                            &problems);
+	assert_non_null(study);
+	study_free(study);
+	*strstr(named, hash) ^= 1;
+	assert_null(study_from_document(
+	    &(struct study_document){.text = named, .length = length, .files = &files}, &problems));
+	assert_string_equal(problems.list[0].pointer, "/scene/excitation/records/0/sha256");
+	free(named);
+}
+
 CHECK_MAIN(cmocka_unit_test(factors_are_those_of_their_definition),
            cmocka_unit_test(a_scaled_record_has_its_spectral_acceleration),
            cmocka_unit_test(factors_come_back_in_the_result),
            cmocka_unit_test(a_drawn_record_is_any_with_the_same_probability),
            cmocka_unit_test(a_signal_is_its_record_times_its_factor),
            cmocka_unit_test(a_record_of_a_suite_gives_what_it_gives_alone),
+           cmocka_unit_test(a_file_is_known_by_its_hash),
            cmocka_unit_test(files_and_their_samples_are_the_same_study))
