@@ -6,7 +6,10 @@
  *
  * Included by chain.inl alone, once per lane count, after touch.inl. */
 
-enum { SWEEPS = 60 };
+enum {
+	REFINEMENTS = 2, /* solutions for what the one before left */
+	ROUNDS_A_LINK = 4,
+};
 
 static const double HOPS_END =
     1e-12; /* of a sample: hops that are over in so short a time are no hops any more */
@@ -47,32 +50,86 @@ static double floor_acceleration(const struct chain *c, int i, int n, double gro
 	return fma(force, c->inverse_mass.at[i], -c->push.at[i] - damping - ground);
 }
 
-/* Adds the forces of order n that hold bodies together: sums over links that share floors are found by sweeps, each of which
- * leaves at most half of what the one before left.
+/* Relative acceleration, or velocity, that what pushes on all held links gives to the sides of each of them. */
+static void held_apply(const struct chain *c, const double *push, double *apart)
+{
+	double floors[POUND_CHAIN_FLOORS];
+	memset(floors, 0, sizeof *floors * (size_t)c->task->n_floors);
+	for (int j = 0; j < c->n_links; j++)
+		for (int k = 0; c->link[j].held && k < c->link[j].n_ends; k++) {
+			const int i = c->link[j].floor[k];
+			floors[i] = fma(c->link[j].weight[k] * c->inverse_mass.at[i], push[j], floors[i]);
+		}
+	for (int j = 0; j < c->n_links; j++) {
+		apart[j] = 0;
+		for (int k = 0; c->link[j].held && k < c->link[j].n_ends; k++)
+			apart[j] = fma(c->link[j].weight[k], floors[c->link[j].floor[k]], apart[j]);
+	}
+}
+
+/* Solves J M^-1 J^T f = b for the links that are held, by conjugate gradients over 1/m of each: links that share no floor, or
+ * only heavy ones, are done in few rounds, and levels that are nearly the same do no harm.
+ *
+ * Given    b    (n_links)
+ * Returns  f    (n_links), 0 of links that are not held
+ * Source   Hestenes and Stiefel 1952, J. Res. NBS 49, 409-436
+ */
+static void held_solve(const struct chain *c, const double *b, double *f)
+{
+	double left[LINKS], way[LINKS], apart[LINKS], size = 0;
+	int held = 0;
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		left[j] = l->held ? b[j] : 0;
+		way[j] = left[j] / l->inverse_mass;
+		f[j] = 0;
+		size = fma(left[j], way[j], size);
+		held += l->held;
+	}
+	const double least = DBL_EPSILON * DBL_EPSILON * size;
+	for (int round = 0; round < ROUNDS_A_LINK * held && size > least; round++) {
+		double along = 0, next = 0;
+		held_apply(c, way, apart);
+		for (int j = 0; j < c->n_links; j++)
+			along = fma(way[j], apart[j], along);
+		if (!(along > 0))
+			break;
+		const double share = size / along;
+		for (int j = 0; j < c->n_links; j++) {
+			f[j] = fma(share, way[j], f[j]);
+			left[j] = fma(-share, apart[j], left[j]);
+			next = fma(left[j], left[j] / c->link[j].inverse_mass, next);
+		}
+		for (int j = 0; j < c->n_links; j++)
+			way[j] = fma(next / size, way[j], left[j] / c->link[j].inverse_mass);
+		size = next;
+	}
+}
+
+/* Adds the forces of order n that hold bodies together.
  *
  * Given    ground  of order n
  * Returns  overlaps  of these links: their forces, for they have no overlap
  */
 static void held_push(struct chain *c, int n, double ground)
 {
-	bool shared = false;
+	double apart[LINKS] = {0}, force[LINKS];
 	for (int j = 0; j < c->n_links; j++)
 		c->overlaps[n][j] = c->link[j].held ? 0 : c->overlaps[n][j];
-	for (int sweep = 0; sweep < (shared || sweep == 0 ? SWEEPS : 2); sweep++) {
-		int held = 0;
+	for (int k = 0; k < REFINEMENTS; k++) {
 		for (int j = 0; j < c->n_links; j++) {
 			const struct link *l = &c->link[j];
-			if (!l->held)
-				continue;
-			double sum = 0;
-			for (int k = 0; k < l->n_ends; k++)
-				sum = fma(l->weight[k], floor_acceleration(c, l->floor[k], n, ground), sum);
-			sum /= l->inverse_mass;
-			c->overlaps[n][j] += sum;
-			push_add(c, l, sum);
-			held++;
+			apart[j] = 0;
+			for (int e = 0; l->held && e < l->n_ends; e++)
+				apart[j] = fma(l->weight[e], floor_acceleration(c, l->floor[e], n, ground), apart[j]);
 		}
-		shared = held > 1;
+		held_solve(c, apart, force);
+		for (int j = 0; j < c->n_links; j++) {
+			if (!c->link[j].held)
+				continue;
+			c->overlaps[n][j] += force[j];
+			push_add(c, &c->link[j], force[j]);
+		}
 	}
 }
 
@@ -116,20 +173,20 @@ static void impulse_apply(struct chain *c, const struct link *by, double impulse
 	}
 }
 
-/* Gives all bodies that are held together one velocity, with their momentum: by sweeps, as the forces (held_push). */
+/* Gives all bodies that are held together one velocity, with their momentum. */
 static void held_merge(struct chain *c)
 {
-	for (int sweep = 0; sweep < SWEEPS; sweep++)
-		for (int j = 0; j < c->n_links; j++) {
-			struct link *l = &c->link[j];
-			if (!l->held || l->q == 0)
-				continue;
-			const double q = l->q, impulse = q / l->inverse_mass;
-			impulse_apply(c, l, impulse);
-			l->q = 0;
-			l->impulse += impulse;
-			c->work_gap += 0.5 * q * q / l->inverse_mass;
-		}
+	double apart[LINKS] = {0}, impulse[LINKS];
+	for (int j = 0; j < c->n_links; j++)
+		apart[j] = c->link[j].held ? c->link[j].q : 0;
+	held_solve(c, apart, impulse);
+	for (int j = 0; j < c->n_links; j++) {
+		if (!c->link[j].held)
+			continue;
+		impulse_apply(c, &c->link[j], impulse[j]);
+		c->link[j].impulse += impulse[j];
+		c->work_gap += 0.5 * impulse[j] * apart[j];
+	}
 	for (int j = 0; j < c->n_links; j++)
 		if (c->link[j].held)
 			c->link[j].q = 0;

@@ -20,6 +20,18 @@ static int law_row(const char *name)
 	return row_of;
 }
 
+static void contact_model(const char *name, double restitution)
+{
+	row.contact.model = 0;
+	while (strcmp(pound_contact_name(row.contact.model), name) != 0)
+		row.contact.model++;
+	row.contact.restitution = restitution;
+	row.contact.second_stiffness_ratio = 0.3;
+	row.contact.yield_overlap = 2e-4;
+	row.contact.reference_speed = 0.1;
+	row.contact.speed_floor = 0.001;
+}
+
 /* Two buildings that meet at all floors under 1.5 s of a sine that both yield to. */
 static void pair_of_buildings(int left, int right)
 {
@@ -190,6 +202,94 @@ static void stories_that_yield_at_once(void **state)
 	scene_check("equal buildings side by side");
 }
 
+static void every_contact_model(void **state)
+{
+	(void)state;
+	for (int model = 0; pound_contact_name(model); model++) {
+		char name[64];
+		for (double ratio = 1e2; ratio < 2e6; ratio *= 1e4) {
+			pair_of_buildings(5, 8);
+			contact_model(pound_contact_name(model), 0.65);
+			row.contact.stiffness_ratio = ratio;
+			snprintf(name, sizeof name, "%s, K/k = %.0e", pound_contact_name(model), ratio);
+			scene_check(name);
+		}
+		pair_of_buildings(3, 4);
+		contact_model(pound_contact_name(model), 0.65);
+		row.n_contacts = 4;
+		for (int j = 0; j < 4; j++)
+			row.contacts[j] = (struct row_contact){0, {0.7 + 0.7 * j, 0.5 + 0.9 * j}};
+		snprintf(name, sizeof name, "%s, levels within stories", pound_contact_name(model));
+		scene_check(name);
+	}
+}
+
+/* Hops that get shorter and shorter until bodies stay together, and part again when the ground turns. */
+static void rigid_impacts_that_end_in_sticking(void **state)
+{
+	(void)state;
+	static const double restitutions[] = {0, 0.3, 0.6, 0.9, 0.97};
+	for (size_t k = 0; k < sizeof restitutions / sizeof restitutions[0]; k++) {
+		for (int wall = 0; wall < 2; wall++) {
+			pair_of_buildings(3, 2);
+			contact_model("rigid", restitutions[k]);
+			row.contact.gap = 0.001;
+			if (wall)
+				row.n_buildings = 1, row.wall = true;
+			else
+				row.buildings[1].frequency_hz = 9;
+			for (int i = 0; i < SAMPLES; i++)
+				row.ground[i] = i < 100 ? -3 : 3;
+			row.buildings[0].damping_ratio = 0.1;
+			scene_check(text(wall ? "rigid, pressed to a wall, restitution %.2g"
+			                      : "rigid, pressed to a stiffer building, restitution %.2g",
+			                 restitutions[k]));
+		}
+		pair_of_buildings(4, 1);
+		contact_model("rigid", restitutions[k]);
+		row.n_buildings = 1;
+		row.wall = true;
+		for (int i = 1; i < 4; i++)
+			row.buildings[0].stiffness[i] = 1e4;
+		scene_check(text("rigid, a stiff block meets a wall, restitution %.2g", restitutions[k]));
+	}
+}
+
+static void rigid_impacts_while_all_stories_yield(void **state)
+{
+	(void)state;
+	pair_of_buildings(6, 6);
+	contact_model("rigid", 0.6);
+	for (int b = 0; b < 2; b++) {
+		for (int i = 0; i < 6; i++)
+			row.buildings[b].stiffness[i] = 42 - i * (i + 1);
+		row.buildings[b].damping = ROW_STIFFNESS;
+		row.buildings[b].law =
+		    (struct pound_backbone){.law = law_row("elastoplastic"), .hardening = 0, .yield = 0.002};
+	}
+	row.buildings[1].law.yield = 0.004;
+	row_harmonic(&row, 1.4, 1.5, -4);
+	scene_check("rigid, elastoplastic, straight modes, no hardening");
+}
+
+static void streets_of_every_length(void **state)
+{
+	(void)state;
+	for (int n = 3; n <= 8; n += 5) {
+		row_init(&row);
+		row.n_buildings = n;
+		row.contact.gap = 0.004;
+		for (int b = 0; b < n; b++) {
+			row.buildings[b] = row_building(2 + b % 5, 1e5, 1);
+			row.buildings[b].frequency_hz = 1.2 + 0.4 * (b * 3 % 7);
+		}
+		row_harmonic(&row, 1.4, 1.5, 4);
+		scene_check(text("%.0f buildings", n));
+		contact_model("rigid", 0.6);
+		scene_check(text("%.0f buildings, rigid", n));
+	}
+}
+
 static void what_takes_too_many_steps_has_a_name(void **state)
 {
 	(void)state;
@@ -207,4 +307,6 @@ CHECK_MAIN(cmocka_unit_test(any_number_of_stories), cmocka_unit_test(contacts_of
            cmocka_unit_test(stories_a_million_times_stiffer), cmocka_unit_test(masses_of_any_ratio),
            cmocka_unit_test(all_floors_at_once), cmocka_unit_test(bodies_pressed_on_each_other),
            cmocka_unit_test(levels_within_stories), cmocka_unit_test(stories_that_yield_at_once),
+           cmocka_unit_test(every_contact_model), cmocka_unit_test(rigid_impacts_that_end_in_sticking),
+           cmocka_unit_test(rigid_impacts_while_all_stories_yield), cmocka_unit_test(streets_of_every_length),
            cmocka_unit_test(what_takes_too_many_steps_has_a_name))
