@@ -187,6 +187,8 @@ SOAK ?= 60
 MORE ?= 100
 soak: all $(filter $(B)/tests/long/soak_%,$(LONG)) $(filter $(B)/tests/service/%,$(TESTS))
 	@KINDS='soak service' SOAK=$(SOAK) POUND_SOAK=$(MORE) tests/run-tests $(B) $(T)
+# threads that have ended when a server does not wait for those that have not are no leak
+tsan: export TSAN_OPTIONS ?= report_thread_leaks=0
 asan tsan:
 	@$(MAKE) --no-print-directory -j$$(nproc) MODE=$@ -s check
 

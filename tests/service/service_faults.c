@@ -14,13 +14,6 @@
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
-// the sanitizers have their own allocator
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-enum { MEMORY_IS_OURS = 0 };
-#else
-enum { MEMORY_IS_OURS = 1 };
-#endif
-
 /* Studies a client knows to be stored. */
 struct accepted {
 	char (*ids)[17]; /* (n) */
@@ -256,7 +249,7 @@ static void every_allocation_of_a_request_may_fail(void **state)
 	    {"metrics", "GET", "/metrics", false},
 	};
 	enum { QUESTIONS = sizeof questions / sizeof questions[0], FRESH = 100 };
-	if (!MEMORY_IS_OURS)
+	if (!SERVICE_MEMORY)
 		skip();
 	struct service *service = service_new();
 	struct faults *faults = faults_new(service->directory);
@@ -305,7 +298,7 @@ static void every_allocation_of_a_request_may_fail(void **state)
 
 static void every_allocation_of_the_start_may_fail(void **state)
 {
-	if (!MEMORY_IS_OURS)
+	if (!SERVICE_MEMORY)
 		skip();
 	struct service *service = service_new();
 	struct faults *faults = faults_new(service->directory);

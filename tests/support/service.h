@@ -16,11 +16,12 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-/* Rows of a study that runs long enough to be asked about, cancelled or killed meanwhile. */
+/* Rows of a study that runs long enough to be asked about, cancelled or killed meanwhile; whether the memory of a process is its
+ * own: the sanitizers have their own allocator. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-enum { SERVICE_ROWS = 200 };
+enum { SERVICE_ROWS = 200, SERVICE_MEMORY = 0 };
 #else
-enum { SERVICE_ROWS = 900 };
+enum { SERVICE_ROWS = 900, SERVICE_MEMORY = 1 };
 #endif
 
 struct service {
