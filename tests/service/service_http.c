@@ -381,7 +381,7 @@ static int files_unnamed_become(const struct service *service, int wanted)
 
 static void long_answers_wait_for_slow_readers_in_files_without_names(void **state)
 {
-	enum { SIGNALS = 50, READERS = 4 };
+	enum { SIGNALS = 4, READERS = 4 };
 	struct service *service = *state;
 	char id[17], get[256];
 	service_histories(service, SIGNALS, id);

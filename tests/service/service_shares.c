@@ -64,7 +64,7 @@ static void who_asks_for_more_than_a_share_is_refused(void **state)
 	struct service *service = *state;
 	int sockets[N];
 	char long_id[17], id[17], get[128];
-	service_histories(service, 120, long_id); // seconds each
+	service_histories(service, 20, long_id); // seconds each
 	finished_study(service, id);
 	snprintf(get, sizeof get, "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
 	         long_id);
@@ -93,7 +93,7 @@ static void long_answers_of_all_clients_are_64_at_a_time(void **state)
 	char path[128], id[17], get[256];
 	(void)state;
 	service_start(service, 2);
-	service_histories(service, 120, id);
+	service_histories(service, 20, id);
 	service_stop(service);
 	snprintf(path, sizeof path, "%s/tokens", service->directory);
 	FILE *tokens = fopen(path, "w");
@@ -226,7 +226,7 @@ static void another_s_status_is_counted_whatever_a_thousand_connections_do(void 
 	struct service *service = *state;
 	struct latencies latencies = {0};
 	char long_id[17], id[17], bytes[KINDS][256];
-	service_histories(service, 120, long_id);
+	service_histories(service, 20, long_id);
 	finished_study(service, id);
 	snprintf(bytes[0], sizeof bytes[0], "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "\r\n", long_id);
 	snprintf(bytes[1], sizeof bytes[1],

@@ -258,7 +258,7 @@ static void a_history_that_is_being_computed_ends_with_the_server(void **state)
 	struct service *service = *state;
 	static struct raw_answer answer;
 	char id[17], bytes[128];
-	service_histories(service, 120, id);
+	service_histories(service, 20, id);
 	int socket = raw_open(service);
 	raw_send(socket, bytes,
 	         (size_t)snprintf(bytes, sizeof bytes,

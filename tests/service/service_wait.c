@@ -412,7 +412,7 @@ static void ask_behind_who_has_gone(const struct service *service, const char *i
 static void histories_for_a_client_who_has_gone_are_given_up(void **state)
 {
 	char id[17];
-	service_histories(*state, SERVICE_ROWS / 9, id);
+	service_histories(*state, SERVICE_ROWS / 60, id);
 	ask_behind_who_has_gone(*state, id);
 }
 
