@@ -348,6 +348,7 @@ struct pound_study {
 	struct pound_solver solver;
 	struct pound_convergence convergence;
 	struct pound_spectrum spectrum;
+	bool unbalanced; /* a response study whose runs need no energy balances */
 };
 
 /* Lines of documentation of the tables' rows. */

@@ -489,7 +489,8 @@ static int item_write(struct pound_request *request, const struct pound_cells *c
 			struct ask *ask = &request->asks[a++];
 			ask->scene = pound_cells_scene(campaign, cell, row, sample, NULL);
 			ask->cell = cell, ask->row = row, ask->sample = sample;
-			ask->balanced = campaign->study->kind == POUND_KIND_RESPONSE && signal < POUND_BALANCED_SIGNALS;
+			ask->balanced = campaign->study->kind == POUND_KIND_RESPONSE && !campaign->study->unbalanced &&
+			                signal < POUND_BALANCED_SIGNALS;
 			const struct pound_place place = {cell, row, sample, signal};
 			const struct pound_excitation excitation = pound_cells_excitation(campaign, &ask->scene, &place);
 			ask->motion =

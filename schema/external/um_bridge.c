@@ -184,6 +184,7 @@ static void respond(struct um_bridge *b)
 		}
 	b->n_inputs = study->n_inputs;
 	study->kind = POUND_KIND_RESPONSE;
+	study->unbalanced = true; // four fifths of its time, and no client sees them
 	study->n_inputs = study->n_ratios = study->n_groups = study->spectrum.n = 0;
 	study->design.until.half_width = 0;
 	study->design.row = whole(b, "row", 0, 0, POUND_ROWS_MAX - 1);

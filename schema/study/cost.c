@@ -634,7 +634,9 @@ struct cost cost_of(const struct pound_study *study, int n_workers)
 	count(study, &counts);
 	const bool response = study->kind == POUND_KIND_RESPONSE;
 	const double signals = fmax(study->scene.excitation.signals, 1),
-	             balanced = response ? fmin(POUND_BALANCED_SIGNALS / signals, 1) : 1;
+	             balanced = !response           ? 1
+	                        : study->unbalanced ? 0
+	                                            : fmin(POUND_BALANCED_SIGNALS / signals, 1);
 	const enum pound_kind other = response ? POUND_KIND_SENSITIVITY : study->kind;
 	for (int k = 0; k < OPERATIONS; k++)
 		cost.cpu_s +=

@@ -204,6 +204,7 @@ static void evaluate_gives_the_numbers_of_the_response_study(void **state)
 {
 	enum { POINTS = 20 };
 	struct service *service = *state;
+	double largest = 0;
 	for (int i = 0; i < POINTS; i++) {
 		// points of a lattice in the ranges of the inputs
 		const double x[4] = {0.5 + 4.5 * fmod(0.618 * (i + 1), 1), 0.5 + 4.5 * fmod(0.445 * (i + 1), 1),
@@ -219,16 +220,18 @@ static void evaluate_gives_the_numbers_of_the_response_study(void **state)
 		program_expect(&run, 0);
 		digits_behind(answer.body, "{\"output\": [[", got);
 		digits_behind(run.out, "\"force_amplification\": ", wanted);
-		assert_string_equal(got, wanted);
+		largest = fmax(largest, fabs(strtod(got, NULL) / strtod(wanted, NULL) - 1));
 		snprintf(impulse, sizeof impulse, "%s, ", got);
 		digits_behind(answer.body, impulse, got);
 		digits_behind(run.out, "\"impulse\": ", wanted);
-		assert_string_equal(got, wanted);
+		largest = fmax(largest, fabs(strtod(got, NULL) / strtod(wanted, NULL) - 1));
 		program_free(&run);
 		answer_free(&answer);
 		free(study);
 	}
-	check_report("%d points: the digits of pound run", POINTS);
+	// without energy balances an interval is passed in one step where nothing happens in it
+	assert_true(largest < 1e-12);
+	check_report("%d points: largest relative difference to pound run %.1e", POINTS, largest);
 }
 
 /* Samples of a study and its model in the same rows: the same scenes and noise, run in another company. */
@@ -319,7 +322,7 @@ static void evaluate_takes_milliseconds(void **state)
 	}
 	latency_report("Evaluate of 5 signals of 8 s, a connection each", &latencies);
 	if (check_soaks())
-		assert_true(latency_quantile(&latencies, 0.5) < 10);
+		assert_true(latency_quantile(&latencies, 0.5) < 2);
 	free(latencies.answers);
 }
 
