@@ -58,7 +58,7 @@ TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/service/*.c t
 # what takes minutes is built with the tests, so that no change breaks it unseen
 LONG    := $(patsubst %.c,$(B)/%,$(wildcard tests/long/soak_*.c)) $(addprefix $(B)/tests/long/,bench paper statistics) \
            $(call objs,tests/fuzz)
-FIXTURE := $(call objs,tests/support,tests/support/preload.c)
+FIXTURE := $(call objs,tests/support,tests/support/preload.c tests/support/instant.c)
 
 all: $(B)/poundd $(B)/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-worker-mpi)
 
@@ -85,6 +85,14 @@ client: $(B)/client/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-w
 	@echo $^
 FORCE:
 
+# workers whose blocks take no time
+INSTANT := $(B)/tests/worker-instant $(if $(filter 1,$(MPI)),$(B)/tests/ranks-instant)
+$(B)/tests/ranks-instant: override CC := $(MPICC)
+$(B)/tests/worker-instant: $(WORKER:%.c=$(B)/%.o)
+$(B)/tests/ranks-instant: $(RANKS:%.c=$(B)/%.o)
+$(B)/tests/worker-instant $(B)/tests/ranks-instant: $(B)/tests/support/instant.o $(SCHEMA) $(B)/libpound.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -Wl,--wrap=pound_run_block -o $@ $^ $(LIBS.schema) $(LIBS.engine) -lpthread
+$(B)/tests/long/soak_limits: | $(INSTANT)
 # the test's own blocks crash in their place
 $(B)/tests/service/service_poison: LDFLAGS += -Wl,--wrap=pound_run_create_by,--wrap=pound_run_block
 # GSL's memory is that of the test
