@@ -40,6 +40,32 @@ static int peek(const struct scan *scan)
 	return scan->at < scan->length ? (unsigned char)scan->text[scan->at] : -1;
 }
 
+static bool is_digit(int c)
+{
+	return c >= '0' && c <= '9';
+}
+
+/* What people write at the current place who know other languages than JSON; "": nothing that is known. */
+static const char *habit(const struct scan *scan)
+{
+	static const char *const words[] = {"NaN", "nan", "Infinity", "inf"};
+	const char *at = scan->text + scan->at;
+	const size_t left = scan->length - scan->at;
+	size_t before = scan->at;
+	while (before > 0 && strchr(" \t\r\n", scan->text[before - 1]))
+		before--;
+	const bool comma = before > 0 && scan->text[before - 1] == ',';
+	for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
+		if (left >= strlen(words[k]) && memcmp(at, words[k], strlen(words[k])) == 0)
+			return ": JSON has no such number";
+	return left == 0                             ? ""
+	       : comma && (*at == '}' || *at == ']') ? ": the comma before it is one too many"
+	       : *at == '/' || *at == '#'            ? ": JSON has no comments"
+	       : comma && before > 1 && before == scan->at && is_digit(scan->text[before - 2]) && is_digit(*at)
+	           ? ": a decimal comma? JSON has a decimal point"
+	           : "";
+}
+
 static bool refuse_expected(struct scan *scan, const char *expected)
 {
 	char detail[sizeof scan->fault->detail];
@@ -47,7 +73,7 @@ static bool refuse_expected(struct scan *scan, const char *expected)
 	if (c < 0)
 		snprintf(detail, sizeof detail, "the text ends where %s is expected", expected);
 	else if (c > ' ' && c < 0x7F)
-		snprintf(detail, sizeof detail, "expected %s, found %c", expected, c);
+		snprintf(detail, sizeof detail, "expected %s, found %c%s", expected, c, habit(scan));
 	else
 		snprintf(detail, sizeof detail, "expected %s, found the byte 0x%02X", expected, (unsigned)c);
 	return refuse(scan, detail);
@@ -57,11 +83,6 @@ static void space(struct scan *scan)
 {
 	for (int c = peek(scan); c == ' ' || c == '\t' || c == '\n' || c == '\r'; c = peek(scan))
 		scan->at++;
-}
-
-static bool is_digit(int c)
-{
-	return c >= '0' && c <= '9';
 }
 
 static bool digits(struct scan *scan, const char *expected)

@@ -16,6 +16,7 @@
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
 #include "schema/study/study_spectrum.h"
+#include "schema/study/warnings.h"
 
 /* ---- response ---- */
 
@@ -655,6 +656,7 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 	writer_seed(&w, "seed", study->design.seed);
 	if (study->kind == POUND_KIND_SENSITIVITY)
 		result_design(&w, study, result);
+	warnings_write(&w, study, result);
 	result_suite(&w, study, result);
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		write_trials(&w, result);

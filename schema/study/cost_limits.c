@@ -4,6 +4,7 @@
 #include "schema/json/json_writer.h"
 #include "schema/study/cost.h"
 #include "schema/study/study_json.h"
+#include "schema/study/warnings.h"
 
 enum { MIB = 1 << 20 };
 
@@ -48,6 +49,7 @@ char *cost_to_json(const struct cost *cost, const struct pound_study *study, siz
 	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
 	writer_number(&w, "estimated_bytes", ceil(cost->bytes));
 	writer_number(&w, "estimated_memory_bytes", ceil(cost->memory));
+	warnings_write(&w, study, NULL);
 	writer_end(&w);
 	return writer_take(&w, length);
 }

@@ -190,11 +190,33 @@ static void each_openapi(struct writer *w, const struct field *field)
 
 /* ---- names of a table's rows ---- */
 
-/* The nearest of the names that `choice` gives, NULL when none is near. */
+/* Names that others use for what is one of ours: the first is no choice where it is meant for the second. */
+static const char *const synonyms[][2] = {
+    {"bilinear", "elastoplastic"},
+    {"elastic", "linear"},
+    {"sine", "harmonic"},
+    {"sinusoidal", "harmonic"},
+    {"accelerogram", "record"},
+    {"records", "suite"},
+    {"monte_carlo", "random"},
+    {"latin_hypercube", "lhs"},
+    {"exact", "event"},
+    {"hertz_mindlin", "hertz"},
+    {"gaussian", "normal"},
+    {"log_normal", "lognormal"},
+    {"pounding", "response"},
+    {"sobol_indices", "sensitivity"},
+};
+
+/* The one of the names that `choice` gives which was probably meant; NULL: not known. */
 static const char *nearest_choice(const char *(*choice)(int row), const char *name)
 {
 	const char *nearest = NULL;
 	int best = 1000;
+	for (size_t k = 0; k < sizeof synonyms / sizeof synonyms[0]; k++)
+		for (int row = 0; choice(row); row++)
+			if (strcmp(name, synonyms[k][0]) == 0 && strcmp(choice(row), synonyms[k][1]) == 0)
+				return choice(row);
 	for (int row = 0; choice(row); row++) {
 		int distance = near_name_distance(name, choice(row));
 		if (distance < best) {

@@ -45,6 +45,28 @@ static const struct field *member_field(const char *pattern, const char *name)
 	return NULL;
 }
 
+/* What is written here for a quantity that others give; NULL: not known. */
+static const char *instead_of(const char *name)
+{
+	static const char *const known[][2] = {
+	    {"period_s", "frequency_hz = 1/period_s"},
+	    {"period", "frequency_hz = 1/period"},
+	    {"frequency_rad_s", "frequency_hz = frequency_rad_s/(2 pi)"},
+	    {"omega_rad_s", "frequency_hz = omega_rad_s/(2 pi)"},
+	    {"stiffness", "frequency_hz = sqrt(stiffness/mass_kg)/(2 pi)"},
+	    {"gap_mm", "gap_m = gap_mm/1000"},
+	    {"gap_cm", "gap_m = gap_cm/100"},
+	    {"peak_g", "peak_m_s2 = 9.80665 peak_g"},
+	    {"pga_g", "peak_m_s2 = 9.80665 pga_g"},
+	    {"damping_percent", "damping_ratio = damping_percent/100"},
+	    {"ductility", "target_demand, the ductility demand without pounding"},
+	};
+	for (size_t k = 0; k < sizeof known / sizeof known[0]; k++)
+		if (strcmp(name, known[k][0]) == 0)
+			return known[k][1];
+	return NULL;
+}
+
 static void unknown(struct reader *r, const char *pattern, const char *name)
 {
 	const struct field *nearest = NULL;
@@ -60,7 +82,13 @@ static void unknown(struct reader *r, const char *pattern, const char *name)
 			nearest = &fields[i];
 		}
 	}
-	if (nearest && near_name(best, name))
+	char within[80];
+	snprintf(within, sizeof within, "/scene/%.64s", name);
+	if (instead_of(name))
+		problems_add(r->problems, r->pointer, "unknown member: write %s", instead_of(name));
+	else if (!*pattern && fields_find(within))
+		problems_add(r->problems, r->pointer, "unknown member: it belongs in \"scene\"");
+	else if (nearest && near_name(best, name))
 		problems_add(r->problems, r->pointer, "unknown member, did you mean \"%s\"?", fields_name(nearest));
 	else
 		problems_add(r->problems, r->pointer, "unknown member");

@@ -1,0 +1,187 @@
+/* warnings.c - what is valid in a study and probably not meant: a mass left out, g in place of m/s2, a gap that nothing reaches. */
+#include "schema/study/warnings.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/study/study_check.h"
+
+static const double G = 9.80665, PGA_MOST = 3, PGA_LEAST = 0.001; /* [m/s2], [g] */
+
+enum { MASSES_APART = 1000, STEPS_LEAST = 10 };
+
+struct warnings {
+	struct writer *w;
+	bool open;
+};
+
+static void __attribute__((format(printf, 3, 4)))
+warn(struct warnings *all, const char *pointer, const char *format, ...)
+{
+	char detail[256];
+	va_list values;
+	va_start(values, format);
+	vsnprintf(detail, sizeof detail, format, values);
+	va_end(values);
+	if (!all->open)
+		writer_array(all->w, "warnings", WRITER_LINES);
+	all->open = true;
+	writer_object(all->w, NULL, WRITER_LINE);
+	writer_text(all->w, "pointer", pointer);
+	writer_text(all->w, "detail", detail);
+	writer_end(all->w);
+}
+
+/* ---- before it is run ---- */
+
+static void look_at_masses(struct warnings *all, const struct pound_study *study)
+{
+	static const char *const paths[] = {"/oscillators/0/mass_kg", "/oscillators/1/mass_kg"};
+	const struct pound_oscillator *both = study->scene.oscillators;
+	double low[2], high[2];
+	if (both[1].rigid_wall)
+		return;
+	for (int i = 0; i < 2; i++)
+		study_check_reach(study, paths[i], &low[i], &high[i]);
+	for (int i = 0; i < 2; i++) {
+		char pointer[40];
+		snprintf(pointer, sizeof pointer, "/scene%s", paths[i]);
+		if (low[i] == 1 && high[i] == 1 && low[1 - i] >= MASSES_APART)
+			warn(all, pointer, "is 1 kg beside %.6g kg: was it left out?", low[1 - i]);
+	}
+}
+
+/* The interval of the peaks of the ground motions [m/s2]; false: not known. */
+static bool peaks_of(const struct pound_study *study, double *low, double *high)
+{
+	const struct pound_excitation *e = &study->scene.excitation;
+	double least = 1, most = 1;
+	*low = INFINITY, *high = 0;
+	if (study_check_uses(study, "/scene/excitation/peak_m_s2")) {
+		study_check_reach(study, "/excitation/peak_m_s2", low, high);
+		return true;
+	}
+	if (e->scale.to > POUND_SCALE_PGA)
+		return false;
+	const struct pound_record one = {.n = e->n_record, .a = e->record, .factor = 1};
+	for (int k = 0; k < (e->n_records ? e->n_records : 1); k++) {
+		const struct pound_record *record = e->n_records ? &e->records[k] : &one;
+		double peak = 0;
+		for (int i = 0; i < record->n; i++)
+			peak = fmax(peak, fabs(record->a[i]));
+		*low = fmin(*low, peak * record->factor);
+		*high = fmax(*high, peak * record->factor);
+	}
+	if (e->scale.to == POUND_SCALE_PGA)
+		study_check_reach(study, "/excitation/scale/intensity_m_s2", low, high);
+	study_check_reach(study, "/excitation/factor", &least, &most);
+	*low *= least;
+	*high *= most;
+	return true;
+}
+
+static void look_at_peaks(struct warnings *all, const struct pound_study *study)
+{
+	const char *pointer = study_check_uses(study, "/scene/excitation/peak_m_s2")
+	                          ? "/scene/excitation/peak_m_s2"
+	                          : "/scene/excitation";
+	double low, high;
+	if (!peaks_of(study, &low, &high))
+		return;
+	if (high > PGA_MOST * G)
+		warn(all, pointer, "has a peak of %.4g m/s2, %.4g g: is its unit m/s2?", high, high / G);
+	if (low < PGA_LEAST * G)
+		warn(all, pointer, "has a peak of %.4g m/s2, %.4g g: is its unit m/s2?", low, low / G);
+}
+
+static void look_at_steps(struct warnings *all, const struct pound_study *study)
+{
+	static const char *const paths[] = {"/oscillators/0/frequency_hz", "/oscillators/1/frequency_hz"};
+	double fastest = 0, low, high, step = study->scene.excitation.time_step;
+	for (int i = 0; i < 2; i++) {
+		if (study->scene.oscillators[i].rigid_wall)
+			continue;
+		study_check_reach(study, paths[i], &low, &high);
+		fastest = fmax(fastest, high);
+	}
+	if (study_check_uses(study, "/scene/excitation/time_step_s"))
+		study_check_reach(study, "/excitation/time_step_s", &low, &step);
+	if (step * fastest > 1.0 / STEPS_LEAST)
+		warn(all,
+		     study->scene.excitation.n_records ? "/scene/excitation/records"
+		                                       : "/scene/excitation/time_step_s",
+		     "%.4g s is more than a tenth of the shortest period, %.4g s: linear interpolation weakens what "
+		     "the body "
+		     "resounds to",
+		     step, 1 / fastest);
+}
+
+/* ---- when it has been run ---- */
+
+static void look_at_gap(struct warnings *all, const struct pound_study *study,
+                        const struct pound_result *result)
+{
+	const bool touches = study->scene.contact.present || study->scene.n_contacts > 0;
+	if (!touches || result->work.contacts > 0 || result->work.pounding_runs.asked == 0)
+		return;
+	double needed = 0;
+	for (int cell = 0; cell < result->n_cells && study->kind == POUND_KIND_RESPONSE; cell++)
+		for (int s = 0; s < result->cells[cell].n_signals && !study->scene.n_buildings; s++)
+			needed = fmax(needed, result->cells[cell].signals[s].gap_needed);
+	if (needed > 0)
+		warn(all, "/scene/contact/gap_m", "no run has a contact: the largest closing is %.4g m", needed);
+	else
+		warn(all, study->scene.n_buildings ? "/scene/contacts" : "/scene/contact/gap_m",
+		     "no run has a contact");
+}
+
+/* A yield displacement that is given and that no run comes to. */
+static void look_at_yield(struct warnings *all, const struct pound_study *study,
+                          const struct pound_result *result)
+{
+	for (int i = 0; i < POUND_OSCILLATORS && study->kind == POUND_KIND_RESPONSE; i++) {
+		const struct pound_law *law = pound_scene_law(&study->scene, i);
+		double demand = 0;
+		char pointer[64];
+		if (!(law->yield_displacement > 0) || study->scene.n_buildings ||
+		    study->scene.oscillators[i].rigid_wall)
+			continue;
+		for (int cell = 0; cell < result->n_cells; cell++)
+			for (int s = 0; s < result->cells[cell].n_signals; s++) {
+				const struct pound_response *one = &result->cells[cell].signals[s];
+				const double of[] = {i ? one->demand_2 : one->demand_1,
+				                     i ? one->demand_free_2 : one->demand_free_1};
+				demand = fmax(demand, fmax(of[0], of[1]));
+			}
+		snprintf(pointer, sizeof pointer,
+		         law == &study->scene.law ? "/scene/law/yield_displacement_m"
+		                                  : "/scene/oscillators/%d/law/yield_displacement_m",
+		         i);
+		if (demand > 0 && demand < 1)
+			warn(all, pointer, "is never reached by oscillator %d: its largest demand is %.4g", i, demand);
+	}
+}
+
+/* Writes what is valid and probably not meant.
+ *
+ * Test     unit_warnings
+ */
+void warnings_write(struct writer *w, const struct pound_study *study, const struct pound_result *result)
+{
+	struct warnings all = {.w = w};
+	if (study->elsewhere)
+		return;
+	if (study->scene.n_buildings == 0) {
+		look_at_masses(&all, study);
+		look_at_steps(&all, study);
+	}
+	look_at_peaks(&all, study);
+	if (result) {
+		look_at_gap(&all, study, result);
+		look_at_yield(&all, study, result);
+	}
+	if (all.open)
+		writer_end(w);
+}

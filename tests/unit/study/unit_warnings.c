@@ -1,0 +1,118 @@
+/* unit_warnings.c - what is valid in a study and probably not meant, before and after its run. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/pound.h"
+#include "schema/json/json_pointer.h"
+#include "schema/result/result_json.h"
+#include "schema/study/cost.h"
+#include "schema/study/study_json.h"
+#include "tests/support/check.h"
+#include "tests/support/scenes.h"
+#include "tests/support/study_documents.h"
+
+#define SCENE(oscillators, contact, excitation)                                                       \
+	"{\"kind\": \"response\", \"scene\": {\"oscillators\": [" oscillators "], \"contact\": {" contact \
+	"}, \"excitation\": {" excitation "}}}"
+#define BODIES "{\"frequency_hz\": 2}, {\"frequency_hz\": 3}"
+#define SHORT  "\"type\": \"white_noise\", \"duration_s\": 2, \"time_step_s\": 0.01, \"signals\": 2"
+
+/* What is said of each; NULL pointer: nothing. */
+static const struct {
+	const char *study, *pointer, *detail;
+	bool run; /* it is known after its run alone */
+} cases[] = {
+    {SCENE(BODIES, "", SHORT), NULL, NULL, false},
+    {SCENE("{\"frequency_hz\": 2, \"mass_kg\": 2e5}, {\"frequency_hz\": 3}", "", SHORT),
+     "/scene/oscillators/1/mass_kg", "is 1 kg beside 200000 kg: was it left out?", false},
+    {SCENE("{\"frequency_hz\": 2}, {\"frequency_hz\": 3, \"mass_kg\": 5e4}", "", SHORT),
+     "/scene/oscillators/0/mass_kg", "is 1 kg beside 50000 kg: was it left out?", false},
+    {SCENE(BODIES, "", SHORT ", \"peak_m_s2\": 98.0665"), "/scene/excitation/peak_m_s2",
+     "has a peak of 98.07 m/s2, 10 g: is its unit m/s2?", false},
+    {SCENE(BODIES, "", SHORT ", \"peak_m_s2\": 0.005"), "/scene/excitation/peak_m_s2",
+     "has a peak of 0.005 m/s2, 0.0005099 g: is its unit m/s2?", false},
+    {SCENE(BODIES, "", "\"type\": \"record\", \"time_step_s\": 0.01, \"acceleration_m_s2\": [0, -40, 1]"),
+     "/scene/excitation", "has a peak of 40 m/s2, 4.079 g: is its unit m/s2?", false},
+    {SCENE(BODIES, "",
+           "\"type\": \"suite\", \"factor\": 20, \"records\": [{\"time_step_s\": 0.01, "
+           "\"acceleration_m_s2\": [0, "
+           "-2]}]"),
+     "/scene/excitation", "has a peak of 40 m/s2, 4.079 g: is its unit m/s2?", false},
+    {SCENE("{\"frequency_hz\": 2}, {\"frequency_hz\": 20}", "", SHORT), "/scene/excitation/time_step_s",
+     "0.01 s is more than a tenth of the shortest period, 0.05 s: linear interpolation weakens what the body "
+     "resounds to",
+     false},
+    {SCENE(BODIES, "\"gap_m\": 5", SHORT), "/scene/contact/gap_m", "no run has a contact", true},
+};
+
+static struct reading *estimate_of(const struct pound_study *study)
+{
+	const struct cost cost = cost_of(study, 1);
+	size_t length;
+	char *json = cost_to_json(&cost, study, &length);
+	struct reading *read = reading_open(json, length);
+	assert_non_null(read);
+	free(json);
+	return read;
+}
+
+static struct reading *result_of(const struct pound_study *study)
+{
+	struct pound_run *run = specimen_run(study);
+	size_t length;
+	char *json = result_to_json(study, pound_run_result(run), NULL, &length);
+	struct reading *read = reading_open(json, length);
+	assert_non_null(read);
+	free(json);
+	pound_run_free(run);
+	return read;
+}
+
+static void what_was_probably_not_meant_is_said_before_and_after_the_run(void **state)
+{
+	(void)state;
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		struct pound_study *study = study_documents_study(cases[k].study);
+		struct reading *read[] = {estimate_of(study), result_of(study)};
+		for (int j = 0; j < 2; j++) {
+			if (!cases[k].pointer || (j == 0 && cases[k].run)) {
+				assert_false(reading_has(read[j], "/warnings"));
+				continue;
+			}
+			if (!reading_has(read[j], "/warnings/0"))
+				fail_msg("nothing is said of %s", cases[k].study);
+			assert_int_equal(reading_count(read[j], "/warnings"), 1);
+			assert_string_equal(reading_text(read[j], "/warnings/0/pointer"), cases[k].pointer);
+			const char *detail = reading_text(read[j], "/warnings/0/detail");
+			if (cases[k].run)
+				assert_memory_equal(detail, cases[k].detail, strlen(cases[k].detail));
+			else
+				assert_string_equal(detail, cases[k].detail);
+		}
+		reading_close(read[0]);
+		reading_close(read[1]);
+		study_free(study);
+	}
+}
+
+/* A yield displacement above all that happens, for the left body and not for the right one. */
+static void a_yield_displacement_that_is_never_reached_is_named(void **state)
+{
+	(void)state;
+	static const char text[] =
+	    SCENE("{\"frequency_hz\": 2, \"law\": {\"type\": \"elastoplastic\", \"yield_displacement_m\": 10}}, "
+	          "{\"frequency_hz\": 3, \"law\": {\"type\": \"elastoplastic\", \"yield_displacement_m\": 1e-4}}",
+	          "", SHORT);
+	struct pound_study *study = study_documents_study(text);
+	struct reading *result = result_of(study);
+	assert_int_equal(reading_count(result, "/warnings"), 1);
+	assert_string_equal(reading_text(result, "/warnings/0/pointer"),
+	                    "/scene/oscillators/0/law/yield_displacement_m");
+	assert_memory_equal(reading_text(result, "/warnings/0/detail"), "is never reached by oscillator 0", 32);
+	reading_close(result);
+	study_free(study);
+}
+
+CHECK_MAIN(cmocka_unit_test(what_was_probably_not_meant_is_said_before_and_after_the_run),
+           cmocka_unit_test(a_yield_displacement_that_is_never_reached_is_named))
