@@ -226,6 +226,7 @@ install: all
 	  $(addprefix $(DESTDIR),$(PYTHONDIR) $(BASHDIR) $(ZSHDIR) $(FISHDIR))
 	install $(B)/poundd $(B)/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-worker-mpi) $(DESTDIR)$(PREFIX)/bin
 	client/manual $(B)/pound client/pound.1 >$(DESTDIR)$(PREFIX)/share/man/man1/pound.1
+	client/manual $(B)/pound-worker client/pound-worker.1 >$(DESTDIR)$(PREFIX)/share/man/man1/pound-worker.1
 	client/manual $(B)/poundd server/poundd.8 >$(DESTDIR)$(PREFIX)/share/man/man8/poundd.8
 	sed 's|@PREFIX@|$(PREFIX)|' server/poundd.service >$(DESTDIR)$(PREFIX)/lib/systemd/system/poundd.service
 	install -m 644 client/pound.py $(DESTDIR)$(PYTHONDIR)

@@ -51,7 +51,8 @@ static void the_programs_the_manual_and_the_unit_are_installed(void **state)
 	    "bin/pound\nbin/pound-worker\nbin/poundd\nlib/python3/dist-packages/pound.py\nlib/systemd/system/"
 	    "poundd.service\n"
 	    "share/bash-completion/completions/pound\nshare/fish/vendor_completions.d/pound.fish\n"
-	    "share/man/man1/pound.1\nshare/man/man8/poundd.8\nshare/zsh/site-functions/_pound\n";
+	    "share/man/man1/pound-worker.1\nshare/man/man1/pound.1\nshare/man/man8/poundd.8\nshare/zsh/"
+	    "site-functions/_pound\n";
 	(void)state;
 	struct program_outcome files = program_run(
 	    (const char *const[]){"sh", "-c", "cd \"$1\" && find . -type f | sed 's|^./||' | LC_ALL=C sort", "sh",
@@ -133,13 +134,14 @@ static bool have(const char *program)
 
 static void the_manual_is_sound_roff(void **state)
 {
-	static const char *const pages[] = {"share/man/man1/pound.1", "share/man/man8/poundd.8"};
+	static const char *const pages[] = {"share/man/man1/pound.1", "share/man/man1/pound-worker.1",
+	                                    "share/man/man8/poundd.8"};
 	(void)state;
 	if (!have("groff")) {
 		check_report("there is no groff to read the manual");
 		skip();
 	}
-	for (int i = 0; i < 2; i++) {
+	for (int i = 0; i < 3; i++) {
 		char path[160];
 		snprintf(path, sizeof path, "%s/%s", prefix, pages[i]);
 		struct program_outcome outcome =
