@@ -386,6 +386,10 @@ struct pound_result {
 	const double *
 	    references; /* of the records of a suite: what their intensity is divided by [m/s2]  (n_records); NULL:
 	                             they are not scaled */
+	const double *
+	    differences; /* of the records of a suite: largest displacement of a body over that on the record's band-limited
+	                              interpolation at twice its rate, less 1, of both bodies the larger one; NAN: of a row of
+	                              buildings  (n_records); NULL: there are no records */
 	int n_cells;
 	struct pound_cell *cells; /* (n_cells) */
 	int n_trials;

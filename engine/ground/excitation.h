@@ -21,4 +21,7 @@ double pound_excitation_largest(int n, const double *a);             /* |a| */
 double pound_excitation_frequency(const struct pound_excitation *e); /* [Hz], 0: none of its own */
 bool pound_excitation_random(const struct pound_excitation *e);
 
+/* A record of n samples as 2n - 1, band-limited. */
+void pound_interpolation_twice(int n, const double *a, double *twice);
+
 #endif

@@ -172,7 +172,7 @@ void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[P
 	    {&run->result.trials, sizeof *run->result.trials * (size_t)run->result.n_trials},
 	    {&run->spectra, sizeof *run->spectra * POUND_N_SPECTRA * 4 * (size_t)study->spectrum.n},
 	    {&run->result.looks, sizeof *run->result.looks * (size_t)pound_run_looks_most(study)},
-	    {&run->references, sizeof *run->references * (size_t)study->scene.excitation.n_records},
+	    {&run->references, sizeof *run->references * 2 * (size_t)study->scene.excitation.n_records},
 	    {&run->records, sizeof *run->records * (pound_run_suite(study) ? n_cells * (size_t)c->n_signals : 0)},
 	};
 	memcpy(parts, all, sizeof all);

@@ -20,11 +20,11 @@ struct pound_run {
 	struct pound_response *responses;         /* (n_cells x n_signals) */
 	struct pound_row_response *row_responses; /* of a row of buildings likewise */
 	struct pound_suite_signal *records;       /* of the result  (n_cells x n_signals) */
-	double *references;                       /* of the records of a suite that are scaled  (n_records) */
-	double *spectra;                          /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
-	double (*cpu)(void);                      /* clock of the calling thread [s]; NULL: none */
-	atomic_bool stopped;                      /* by pound_run_stop ... */
-	const atomic_bool *stop;                  /* ... which this is, or what the caller has */
+	double *references;      /* of the records of a suite, then their differences  (2 x n_records) */
+	double *spectra;         /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
+	double (*cpu)(void);     /* clock of the calling thread [s]; NULL: none */
+	atomic_bool stopped;     /* by pound_run_stop ... */
+	const atomic_bool *stop; /* ... which this is, or what the caller has */
 };
 
 /* How it is laid out, before anything is allocated. */

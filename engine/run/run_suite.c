@@ -10,22 +10,44 @@ bool pound_run_suite(const struct pound_study *study)
 size_t pound_run_scale_bytes(const struct pound_study *study)
 {
 	const struct pound_excitation *suite = &study->scene.excitation;
-	return suite->scale.to == POUND_SCALE_NONE ? 0 : pound_suite_scratch(suite);
+	return suite->n_records ? pound_suite_scratch(suite) : 0;
 }
 
-/* Scales the records of a suite that is to be scaled.
+/* The scene of the first cell, every input at its median. */
+static struct pound_scene middle_scene(const struct pound_study *study)
+{
+	struct pound_scene scene = study->scene;
+	for (int s = 0; s < study->n_sweeps; s++)
+		if (study->sweeps[s].field.part == POUND_PART_SCENE)
+			pound_scene_assign(&scene, study->sweeps[s].field, study->sweeps[s].values[0]);
+	for (int j = 0; j < study->n_inputs; j++)
+		if (study->inputs[j].field.part == POUND_PART_SCENE)
+			pound_scene_assign(&scene, study->inputs[j].field,
+			                   pound_distribution_quantile(&study->inputs[j].distribution, 0.5));
+	return scene;
+}
+
+/* Scales the records of a suite, if they are to be scaled, and looks how well they are sampled.
  *
  * Given    scratch   (pound_run_scale_bytes)
- * Returns  run       references, also of its result
+ * Returns  run       references, also of its result, and differences
  *          value     false: stop was set
  */
 bool pound_run_scale(struct pound_run *run, void *scratch, const atomic_bool *stop)
 {
-	const struct pound_excitation *suite = &run->campaign.study->scene.excitation;
-	if (suite->scale.to == POUND_SCALE_NONE)
+	const struct pound_study *study = run->campaign.study;
+	const struct pound_excitation *suite = &study->scene.excitation;
+	if (suite->n_records == 0)
 		return true;
-	run->campaign.references = run->result.references = run->references;
-	return pound_suite_references(suite, scratch, stop, run->references) == POUND_OK;
+	double *differences = run->references + suite->n_records;
+	run->result.differences = differences;
+	const struct pound_scene scene = middle_scene(study);
+	if (suite->scale.to != POUND_SCALE_NONE) {
+		run->campaign.references = run->result.references = run->references;
+		if (pound_suite_references(suite, scratch, stop, run->references))
+			return false;
+	}
+	return pound_suite_differences(&scene, scratch, stop, differences) == POUND_OK;
 }
 
 struct pound_suite_signal pound_run_motion_record(const struct pound_run *run,

@@ -27,7 +27,7 @@ static double peak_of(const struct pound_record *record)
 }
 
 static void write_record(struct writer *w, const struct pound_excitation *suite, int k, double reference,
-                         double factor)
+                         double factor, double difference)
 {
 	const struct pound_record *record = &suite->records[k];
 	writer_object(w, NULL, WRITER_LINE);
@@ -40,10 +40,11 @@ static void write_record(struct writer *w, const struct pound_excitation *suite,
 	writer_bool(w, "reversed", record->reversed);
 	writer_number(w, "reference_m_s2", reference);
 	writer_number(w, "factor", factor);
+	writer_number(w, "interpolation_difference", difference);
 	writer_end(w);
 }
 
-/* The records of a suite: of each its peak as given, the peak or spectral acceleration that its intensity is divided by (null: not
+/* The records of a suite: of each its peak as given, what linear interpolation between its samples costs, the peak or spectral acceleration that its intensity is divided by (null: not
  * scaled), and the factor of its samples (null: it varies, and signals of a response have it).
  *
  * Test     unit_suite: factors_come_back_in_the_result
@@ -60,7 +61,8 @@ void result_suite(struct writer *w, const struct pound_study *study, const struc
 		const double reference = result->references ? result->references[k] : NAN;
 		const double scaled = result->references ? suite->scale.intensity / reference : 1;
 		write_record(w, suite, k, reference,
-		             varies(study) ? NAN : suite->factor * suite->records[k].factor * scaled);
+		             varies(study) ? NAN : suite->factor * suite->records[k].factor * scaled,
+		             result->differences[k]);
 	}
 	writer_end(w);
 	writer_end(w);

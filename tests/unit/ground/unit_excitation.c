@@ -279,7 +279,25 @@ static void the_bits_are_the_same_everywhere(void **state)
 	assert_int_equal(hash, 0x15b8b840d3b7a712);
 }
 
-CHECK_MAIN(cmocka_unit_test(the_table_has_the_excitations_of_a_study),
+/* Below 90 % of the Nyquist frequency, away from the ends, where the sine begins and ends at once. */
+static void a_sine_is_interpolated_as_a_sine(void **state)
+{
+	(void)state;
+	enum { N = 400 };
+	double sine[N], twice[2 * N - 1];
+	for (double cycles = 0; cycles <= 0.45; cycles += 0.01) { // per sample
+		for (int i = 0; i < N; i++)
+			sine[i] = cos(2 * 3.14159265358979323846 * cycles * i + 0.3);
+		pound_interpolation_twice(N, sine, twice);
+		for (int i = 0; i < 2 * N - 1; i += 2)
+			check_near(twice[i], sine[i / 2], 0);
+		for (int i = 81; i < 2 * N - 81; i += 2)
+			check_near(twice[i], cos(2 * 3.14159265358979323846 * cycles * 0.5 * i + 0.3), 2e-5);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(a_sine_is_interpolated_as_a_sine),
+           cmocka_unit_test(the_table_has_the_excitations_of_a_study),
            cmocka_unit_test(noise_without_colour_and_records_have_no_frequency),
            cmocka_unit_test(only_noise_differs_from_signal_to_signal),
            cmocka_unit_test(the_last_sample_is_the_one_nearest_to_the_end),

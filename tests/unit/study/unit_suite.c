@@ -312,7 +312,36 @@ static void a_file_is_known_by_its_hash(void **state)
 	free(named);
 }
 
-CHECK_MAIN(cmocka_unit_test(factors_are_those_of_their_definition),
+/* Oscillators at the frequency of a sine of 10 samples per cycle: the interpolation times sinc^2 of the frequency. */
+static void the_cost_of_linear_interpolation_is_that_of_its_closed_form(void **state)
+{
+	(void)state;
+	enum { CYCLES = 60, PER_CYCLE = 10 };
+	char *text = NULL;
+	size_t n;
+	FILE *out = open_memstream(&text, &n);
+	assert_non_null(out);
+	fputs(
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, "
+	    "{\"rigid_wall\": true}], \"excitation\": {\"type\": \"suite\", \"records\": [{\"time_step_s\": 0.1, "
+	    "\"acceleration_m_s2\": [",
+	    out);
+	for (int i = 0; i <= CYCLES * PER_CYCLE; i++)
+		fprintf(out, "%s%.17g", i ? ", " : "", sin(2 * PI * i / PER_CYCLE));
+	fputs("]}]}}}", out);
+	fclose(out);
+	struct pound_study *study = study_documents_study(text);
+	struct reading *result = result_of(study);
+	const double want = cos(PI / 20) * cos(PI / 20) - 1;
+	// the images of the sine at 9 and 19 times its frequency move the oscillator by 2e-5 of its amplitude
+	check_near(reading_number(result, "/suite/records/0/interpolation_difference"), want, 1e-4);
+	reading_close(result);
+	study_free(study);
+	free(text);
+}
+
+CHECK_MAIN(cmocka_unit_test(the_cost_of_linear_interpolation_is_that_of_its_closed_form),
+           cmocka_unit_test(factors_are_those_of_their_definition),
            cmocka_unit_test(a_scaled_record_has_its_spectral_acceleration),
            cmocka_unit_test(factors_come_back_in_the_result),
            cmocka_unit_test(a_drawn_record_is_any_with_the_same_probability),
