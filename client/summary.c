@@ -370,21 +370,24 @@ static void print_accuracy(const struct reading *result)
 static void print_numbers(const struct reading *result)
 {
 	const char *name = reading_text(result, "/name");
-	double failed = 0, runs = 0;
+	double failed = 0, dropped = 0, runs = 0;
 	for (int c = 0; c < reading_count(result, "/cells"); c++) {
 		double of_cell = reading_number(result, "/cells/%d/runs_failed", c);
+		const double rows = reading_number(result, "/cells/%d/rows_dropped", c);
 		failed += isfinite(of_cell) ? of_cell : 0;
+		dropped += isfinite(rows) ? rows : 0;
 		runs += reading_number(result, "/cells/%d/runs", c);
 	}
 	table_prose(0, name ? name : "a study without a name");
 	fputs("sensitivity study: ", stdout);
 	if (reading_count(result, "/cells") > 1)
 		printf("%d cells, ", reading_count(result, "/cells"));
-	printf("%.0f rows (%s)", reading_number(result, "/design/rows"), reading_text(result, "/design/method"));
-	if (runs > 0)
-		printf(", %.0f runs", runs);
+	if (reading_has(result, "/design"))
+		printf("%.0f rows (%s), ", reading_number(result, "/design/rows"),
+		       reading_text(result, "/design/method"));
+	printf("%.0f runs", runs);
 	if (failed > 0)
-		printf(", %.0f failed", failed);
+		printf(", %.0f failed and %.0f rows left out with them", failed, dropped);
 	if (reading_has(result, "/timing"))
 		printf(", %.3g s with %.0f threads", reading_number(result, "/timing/wall_s"),
 		       reading_number(result, "/timing/threads"));

@@ -89,16 +89,23 @@ static void finish(const struct pound_excitation *e, int n, double *a)
 static void kanai_tajimi(const struct pound_signal *signals, int n)
 {
 	struct pound_filtered coloured[POUND_SIGNALS_MAX];
+	struct pound_filter filter;
+	double made[3] = {-1, -1, -1}; /* what the filter is made of: signals of a row of the design share it */
 	for (int j = 0; j < n; j++) {
 		const struct pound_excitation *e = signals[j].excitation;
-		const int samples = cycles_samples(e);
+		const double asked[3] = {2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
+		                         e->high_pass_ratio};
+		if (memcmp(made, asked, sizeof made) != 0) {
+			memcpy(made, asked, sizeof made);
+			pound_filter_init(&filter, made[0], made[1], made[2]);
+		}
 		// by their length, so that those side by side end together
+		const int samples = cycles_samples(e);
 		int at = j;
 		for (; at > 0 && coloured[at - 1].n > samples; at--)
 			coloured[at] = coloured[at - 1];
-		coloured[at] = (struct pound_filtered){.noise = signals[j].noise, .n = samples, .a = signals[j].a};
-		pound_filter_init(&coloured[at].filter, 2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
-		                  e->high_pass_ratio);
+		coloured[at] = (struct pound_filtered){
+		    .filter = filter, .noise = signals[j].noise, .n = samples, .a = signals[j].a};
 	}
 	pound_filtered_noise_fill(pound_dispatch_width(0), coloured, n);
 	for (int j = 0; j < n; j++)

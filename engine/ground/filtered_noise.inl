@@ -9,30 +9,26 @@
 #include "engine/ground/normals.h"
 #include "engine/numeric/lanes.h"
 
-enum { N = FILTER_STATES };
+enum { N = FILTER_STATES, NUMBERS = NOISE_WORDS * NOISE_CHUNK };
+
+static_assert((int)N <= (int)ROW, "the state before the first sample comes from one row of numbers");
 
 /* the filters of the lanes: struct pound_filter, in vectors */
 struct filters {
-	vd transition[N][N], step[N][N], start[N][N], output[2];
+	vd pole[N], zero[N], start[N][N];
 };
 
 static_assert(sizeof(struct filters) == W * sizeof(struct pound_filter),
               "a filter is doubles and nothing else");
 
-LANE_INLINE vd combined(const vd row[N], const vd x[N])
+/* One sample of every lane; kanai_tajimi.h has the recurrence. */
+LANE_INLINE vd sample_next(const struct filters *f, vd z, vd x[N])
 {
-	return (row[0] * x[0] + row[1] * x[1]) + (row[2] * x[2] + row[3] * x[3]);
-}
-
-/* One sample of every lane. */
-LANE_INLINE vd sample_next(const struct filters *f, const vd added[N][N], const vd z[N], vd x[N])
-{
-	vd next[N];
-	for (int i = 0; i < N; i++)
-		next[i] = combined(added[i], z) + combined(f->transition[i], x);
-	for (int i = 0; i < N; i++)
-		x[i] = next[i];
-	return f->output[0] * x[0] + f->output[1] * x[1];
+	const vd old = x[0];
+	for (int i = 0; i < N - 1; i++)
+		x[i] = (x[i] + x[i + 1] + f->zero[N - 1 - i] * z) - f->pole[N - 1 - i] * old;
+	x[N - 1] = (x[N - 1] + f->zero[0] * z) - f->pole[0] * old;
+	return x[0];
 }
 
 /* Up to W signals, as far as the longest goes. */
@@ -48,41 +44,47 @@ static void group_run(const struct pound_filtered *signals, int n_signals)
 	int longest = 0;
 	for (int l = 0; l < n_signals; l++)
 		longest = signals[l].n > longest ? signals[l].n : longest;
-	double z[W][NOISE_WORDS][NOISE_CHUNK], a[W][NOISE_CHUNK];
+	double z[W][NOISE_WORDS][NOISE_CHUNK], a[W][NUMBERS];
 	memset(z, 0, sizeof z);
 	vd x[N] = {vsplat(0), vsplat(0), vsplat(0), vsplat(0)};
-	for (int first = 0; first < longest; first += NOISE_CHUNK) {
+	// number k of the chunks' numbers, in the order they lie in, makes sample k - N; the first N make the state before
+	for (int first = 0; first < longest + N; first += NUMBERS) {
 		for (int l = 0; l < n_signals; l++)
-			if (first < signals[l].n)
-				POUND_NORMALS(signals[l].noise, (uint32_t)first, z[l]);
-		for (int k = 0; k < NOISE_CHUNK; k += ROW) {
-			vd noise[NOISE_WORDS][ROW], out[ROW];
-			for (int w = 0; w < NOISE_WORDS; w++) {
-				const double *row[W];
-				for (int l = 0; l < W; l++)
-					row[l] = z[l][w];
-				rows_load(noise[w], row, k);
+			if (first < signals[l].n + N)
+				POUND_NORMALS(signals[l].noise, (uint32_t)(first / NOISE_WORDS), z[l]);
+		for (int k = 0; k < NUMBERS; k += ROW) {
+			vd noise[ROW], out[ROW];
+			const double *from[W];
+			double *to[W];
+			for (int l = 0; l < W; l++) {
+				from[l] = z[l][0];
+				to[l] = a[l];
 			}
-			for (int j = 0; j < ROW; j++)
-				out[j] = sample_next(&f, first + k + j ? f.step : f.start,
-				                     (vd[]){noise[0][j], noise[1][j], noise[2][j], noise[3][j]}, x);
-			double *row[W];
-			for (int l = 0; l < W; l++)
-				row[l] = a[l];
-			rows_store(out, row, k);
+			rows_load(noise, from, k);
+			int j = 0;
+			if (first + k == 0)
+				for (; j < N; j++) {
+					for (int i = 0; i < N; i++)
+						x[i] += f.start[i][j] * noise[j];
+					out[j] = vsplat(0);
+				}
+			for (; j < ROW; j++)
+				out[j] = sample_next(&f, noise[j], x);
+			rows_store(out, to, k);
 		}
+		const int skipped = first == 0 ? N : 0;
 		for (int l = 0; l < n_signals; l++) {
-			int left = signals[l].n - first;
+			const int left = signals[l].n + N - first;
+			const int made = (left < NUMBERS ? left : NUMBERS) - skipped;
 			if (left > 0)
-				memcpy(signals[l].a + first, a[l],
-				       sizeof(double) * (size_t)(left < NOISE_CHUNK ? left : NOISE_CHUNK));
+				memcpy(signals[l].a + first + skipped - N, a[l] + skipped, sizeof(double) * (size_t)made);
 		}
 	}
 }
 
 /* Samples of the stationary outputs of filters.
  *
- * Given    signals  (n)  sample k of one takes draw k of its stream; of about one length, or lanes wait for the longest
+ * Given    signals  (n)  of about one length, or lanes wait for the longest
  * Returns  signals  a
  *
  * Test     unit_kanai_tajimi

@@ -6,12 +6,16 @@
 
 enum { FILTER_STATES = 4 };
 
-/* x_0 = start z_0,  x_k = transition x_k-1 + step z_k,  a_k = output x_k,  z_k: four normals of draw k */
+/* One normal number z a sample, and the first four for the state before the first sample:  x = start (z_0, z_1, z_2, z_3),
+ *
+ *   x_0 += x_1 - pole_3 x_0 + zero_3 z     x_1 += x_2 - pole_2 x_0 + zero_2 z
+ *   x_2 += x_3 - pole_1 x_0 + zero_1 z     x_3 += - pole_0 x_0 + zero_0 z     with the old x_0; the sample is the new x_0
+ *
+ * The transfer function is  z sum of zero_j d^j  over  d^4 + sum of pole_j d^j,  d = z - 1. */
 struct pound_filter {
-	double transition[FILTER_STATES][FILTER_STATES];
-	double step[FILTER_STATES][FILTER_STATES];  /* lower triangle, zeros above */
+	double pole[FILTER_STATES];
+	double zero[FILTER_STATES];
 	double start[FILTER_STATES][FILTER_STATES]; /* lower triangle, zeros above */
-	double output[2];                           /* of the first two states */
 };
 
 /* theta: 2 pi filter frequency * sample step; white noise of intensity 1 per sample step */

@@ -58,7 +58,7 @@ static const struct script SCRIPTS[] = {
                      "\"rows_dropped\": 1}]}")},
      {"results", "--format=table", "1"},
      0,
-     "2 of 90 runs failed; 1 rows",
+     "sensitivity study: 90 runs, 2 failed and 1 rows left out with them",
      NULL},
     {{JSON("200 OK", "{\"status\": \"running\", \"id\": \"7\", \"runs_done\": 3}")},
      {"status", "--format=csv", "7"},

@@ -54,18 +54,24 @@ static void the_paper_s_study_asks_for_what_the_paper_ran(void **state)
 	study_free(study);
 }
 
+/* or, of the lossless and stiffest contact alone, ends with the status of a motion that chatters: extremes.md */
 static void every_extreme_of_the_example_has_a_result_that_balances(void **state)
 {
 	(void)state;
 	struct pound_study *study = study_documents_study(example_text("extremes"));
 	struct pound_run *run = specimen_run(study);
 	const struct pound_result *result = pound_run_result(run);
+	int64_t chattered = 0;
 	for (int c = 0; c < result->n_cells; c++) {
 		const struct pound_cell *cell = &result->cells[c];
-		assert_int_equal(cell->runs_failed, 0);
-		check_near(cell->signals[0].energy_residual, 0, 1e-10);
 		struct pound_scene scene;
 		study_cell(study, c, &scene);
+		if (cell->runs_failed && scene.contact.restitution == 1 && scene.contact.stiffness_ratio == 1e8) {
+			chattered += cell->runs_failed;
+			continue;
+		}
+		assert_int_equal(cell->runs_failed, 0);
+		check_near(cell->signals[0].energy_residual, 0, 1e-10);
 		// a metre is never gone
 		const bool meet = scene.contact.gap < 1;
 		assert_int_equal(cell->signals[0].contact_count > 0, meet);
@@ -75,6 +81,7 @@ static void every_extreme_of_the_example_has_a_result_that_balances(void **state
 				assert_int_equal(cell->outputs[o] > 0, meet || !impulse);
 		}
 	}
+	assert_int_equal(result->work.failed[POUND_CHATTER_RUNS], chattered);
 	pound_run_free(run);
 	study_free(study);
 }
