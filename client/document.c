@@ -196,7 +196,7 @@ enum outcome document_reject(const char *path, const struct problems *problems)
 void document_advise(const struct pound_study *study)
 {
 	char note[RESULT_NOTE_SIZE];
-	if (study->kind == POUND_KIND_SENSITIVITY && result_design_note(study, note, sizeof note))
+	if (pound_study_sampled(study) && result_design_note(study, note, sizeof note))
 		command_complain("note: %s", note);
 }
 

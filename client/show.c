@@ -216,6 +216,91 @@ static void floor_spectrum(const struct reading *result)
 		       reading_number(result, "/accuracy/spectra/%d/relative_error_max", row));
 }
 
+/* How wide the gap of a cell has to be, and what rules ask for. */
+static void print_needs(const struct reading *result, const char *at)
+{
+	static const char *const columns[] = {"gap_m", "P(pounding)", "95 % from", "to", NULL};
+	static const char *const wanted[] = {"P(pounding)", "gap_m", "95 % from", "to", NULL};
+	static const char *const rules[] = {"rule", "gap_m", "over mean", "P(pounding)", "95 % from", "to", NULL};
+	static const char *const members[] = {"gap_m", "probability", "low", "high"};
+	static const char *const gap_members[] = {"probability", "gap_m", "low_m", "high_m"};
+	static const char *const rule_members[] = {"gap_m", "over_mean", "probability", "low", "high"};
+	cell_failed(result, at);
+	printf("\ngap needed: mean %.4g m, standard deviation %.4g m, largest %.4g m of %.0f runs\n\n",
+	       reading_number(result, "%s/gap_needed/mean_m", at),
+	       reading_number(result, "%s/gap_needed/standard_deviation_m", at),
+	       reading_number(result, "%s/gap_needed/largest_m", at),
+	       reading_number(result, "%s/gap_needed/runs", at));
+	struct table *table = table_open(columns);
+	for (int k = 0; k < reading_count(result, "%s/pounding", at); k++)
+		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
+			table_number(table, reading_number(result, "%s/pounding/%d/%s", at, k, members[m]));
+	table_print(table, 2);
+	table_close(table);
+	putchar('\n');
+	table = table_open(wanted);
+	for (int k = 0; k < reading_count(result, "%s/gaps", at); k++)
+		for (size_t m = 0; m < sizeof gap_members / sizeof gap_members[0]; m++)
+			table_number(table, reading_number(result, "%s/gaps/%d/%s", at, k, gap_members[m]));
+	table_print(table, 2);
+	table_close(table);
+	putchar('\n');
+	table = table_open(rules);
+	for (int k = 0; k < reading_count(result, "%s/rules", at); k++) {
+		table_text(table, reading_text(result, "%s/rules/%d/name", at, k));
+		for (size_t m = 0; m < sizeof rule_members / sizeof rule_members[0]; m++)
+			table_number(table, reading_number(result, "%s/rules/%d/%s", at, k, rule_members[m]));
+	}
+	table_print(table, 2);
+	table_close(table);
+	if (!reading_has(result, "%s/outputs/0", at))
+		print_outputs(result, at);
+}
+
+static void print_fragility(const struct reading *result)
+{
+	static const char *const columns[] = {"gap_m",     "median", "95 % from", "to", "dispersion",
+	                                      "95 % from", "to",     "per year",  NULL};
+	static const char *const members[] = {"gap_m",      "median",         "median_low",      "median_high",
+	                                      "dispersion", "dispersion_low", "dispersion_high", "annual_rate"};
+	for (int k = 0; k < reading_count(result, "/fragility"); k++) {
+		const char *path;
+		printf("\nfragility over %s", reading_text(result, "/fragility/%d/intensity", k));
+		for (int s = 0; (path = reading_member(result, s, "/fragility/%d/sweep", k)); s++)
+			printf(", %s", path);
+		putchar('\n');
+		struct table *table = table_open(columns);
+		for (int g = 0; g < reading_count(result, "/fragility/%d/curves", k); g++)
+			for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
+				table_number(table, reading_number(result, "/fragility/%d/curves/%d/%s", k, g, members[m]));
+		table_print(table, 2);
+		table_close(table);
+		for (int p = 0; p < reading_count(result, "/fragility/%d/return_periods", k); p++)
+			printf("return period %.6g years: gap %.4g m (95 %%: %.4g to %.4g m)\n",
+			       reading_number(result, "/fragility/%d/return_periods/%d/return_period_years", k, p),
+			       reading_number(result, "/fragility/%d/return_periods/%d/gap_m", k, p),
+			       reading_number(result, "/fragility/%d/return_periods/%d/low_m", k, p),
+			       reading_number(result, "/fragility/%d/return_periods/%d/high_m", k, p));
+	}
+}
+
+/* The gaps needed; with inputs their indices, too. */
+static void separation(const struct reading *result)
+{
+	char at[32];
+	for (int cell = 0; cell < reading_count(result, "/cells"); cell++) {
+		snprintf(at, sizeof at, "/cells/%d", cell);
+		if (reading_has(result, "/cells/1"))
+			cell_sweep(result, cell);
+		print_needs(result, at);
+	}
+	print_fragility(result);
+	if (reading_has(result, "/cells/0/outputs/0")) {
+		putchar('\n');
+		summary_print(result);
+	}
+}
+
 /* What was asked and what was run, and why not all of it. */
 static void print_work(const struct reading *result)
 {
@@ -277,6 +362,7 @@ static const struct {
 	{"response",       response,         false},
 	{"convergence",    convergence,      false},
 	{"floor_spectrum", floor_spectrum,   false},
+	{"separation",     separation,       false},
 };
 // clang-format on
 

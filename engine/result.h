@@ -295,6 +295,50 @@ struct pound_trial {
 	double cpu;   /* of a run [s]; NAN: there is no clock */
 };
 
+enum { POUND_RULES = 3 };
+
+/* What a rule asks for. */
+struct pound_rule {
+	double gap;                        /* [m] */
+	double over;                       /* over the mean gap needed */
+	struct pound_estimate probability; /* to pound with it */
+};
+
+/* How wide the gap of a scene has to be: from its runs, those of matrices A and B of a design. */
+struct pound_needs {
+	int64_t runs;                           /* that have a result */
+	int clusters;                           /* of runs that are independent of each other's */
+	double mean, deviation, largest;        /* of the gap needed [m] */
+	double displacement[POUND_OSCILLATORS]; /* means of the largest without contact [m] */
+	double correlation;                     /* of both in white noise, by frequencies and damping */
+	struct pound_rule rules[POUND_RULES];
+	struct pound_estimate *probability; /* to pound with each gap of the result  (n_gaps) */
+	struct pound_estimate *gap;         /* for each probability of the study [m]  (n_probabilities) */
+	double *needed;                     /* by each run without a design, NAN: failed [m]  (n_signals) */
+};
+
+/* The fragility curve of a gap: lognormal over the intensity. */
+struct pound_fragility {
+	struct pound_estimate median, dispersion; /* NAN: the counts have none */
+	struct pound_estimate rate;               /* mean annual rate of pounding [1/a]; NAN: no hazard curve */
+};
+
+/* The fragility curves of the cells that differ in their intensity alone. */
+struct pound_stripe_set {
+	int cell;                          /* the first of them */
+	struct pound_fragility *curves;    /* of each gap of the result  (n_gaps) */
+	struct pound_estimate *return_gap; /* of each return period [m]  (n_periods) */
+	double beyond;                     /* annual rate of earthquakes beyond the intensities */
+};
+
+struct pound_separation_result {
+	int n_gaps;
+	double gaps[POUND_GAPS_MAX]; /* [m] */
+	struct pound_needs *needs;   /* of each cell  (n_cells) */
+	int n_sets;
+	struct pound_stripe_set *sets; /* (n_sets) */
+};
+
 struct pound_cell {
 	double sweep[POUND_SWEEPS_MAX];     /* the value of each sweep, (n_sweeps) used */
 	int64_t runs, runs_failed;          /* pounding runs asked, and those among them without a result */
@@ -303,7 +347,7 @@ struct pound_cell {
 	struct pound_response *signals;     /* response: (n_signals) */
 	struct pound_row_response *rows;    /* response of a row of buildings, instead: (n_signals) */
 	struct pound_suite_signal *records; /* response under a suite: which record each signal is  (n_signals) */
-	double outputs[POUND_OUTPUTS_MAX];  /* response: ratio of means of each asked output */
+	double outputs[POUND_OUTPUTS_MAX];  /* without a design: ratio of means of each asked output */
 	struct pound_indices *indices;      /* sensitivity: (n_outputs) */
 };
 
@@ -326,8 +370,9 @@ struct pound_work {
 #define X(member, text) struct pound_stage_work member;
 	POUND_STAGES(X)
 #undef X
-	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
-	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
+	struct pound_stage_work apart_runs; /* both bodies together without pounding, with their checks */
+	int64_t never_touching;             /* pounding runs not made: the free responses never close the gap */
+	int64_t moving_alike;               /* pounding runs not made: equal oscillators never touch with force */
 	int64_t yield_given;    /* linear responses not made: the yield displacement they would give is known */
 	int64_t linear_unasked; /* linear responses of the right oscillator not made: no output needs them */
 	int64_t nonlinear_unasked; /* its nonlinear ones likewise */
@@ -396,6 +441,7 @@ struct pound_result {
 	struct pound_trial
 	    *trials; /* convergence: the event solver, the second opinion, the settings  (n_trials) */
 	struct pound_floor_result floor; /* floor_spectrum */
+	struct pound_separation_result separation;
 	struct pound_work work;
 };
 

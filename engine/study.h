@@ -30,6 +30,10 @@ enum {
 	POUND_STOREYS_MAX = 50,                                          /* of a building */
 	POUND_CONTACTS_MAX = 400,                                        /* between the buildings of a row */
 	POUND_PLACES_MAX = 64,                                           /* storeys whose outputs are wanted */
+	POUND_GAPS_MAX = 200,         /* gaps whose probability to pound is wanted */
+	POUND_PROBABILITIES_MAX = 20, /* whose gaps are wanted */
+	POUND_STRIPES_MAX = 100,      /* intensities of a fragility curve, points of a hazard curve */
+	POUND_PERIODS_MAX = 20,       /* return periods whose gaps are wanted */
 };
 
 // why a run has no result
@@ -67,7 +71,8 @@ enum pound_kind {
 	POUND_KIND_RESPONSE,
 	POUND_KIND_SENSITIVITY,
 	POUND_KIND_CONVERGENCE,
-	POUND_KIND_FLOOR_SPECTRUM
+	POUND_KIND_FLOOR_SPECTRUM,
+	POUND_KIND_SEPARATION
 };
 
 /* Forms of contact force, by what a solver has to be able to do with them. */
@@ -326,6 +331,22 @@ struct pound_spectrum {
 	struct pound_storey_place place; /* the floor, of a row of buildings */
 };
 
+/* How wide a gap has to be. */
+struct pound_separation {
+	int n_gaps;         /* 0: round ones up to the largest that a run needs */
+	const double *gaps; /* whose probability to pound is wanted [m]  ascending  (n_gaps) */
+	int n_probabilities;
+	const double *probabilities; /* to pound, whose gaps are wanted  (0, 1)  (n_probabilities) */
+	const char *intensity;       /* path of a sweep: the intensity of fragility curves; NULL: none */
+	int stripes;                 /* that sweep; -1: none */
+	int n_intensities, n_rates;  /* of the hazard curve, alike; 0: none */
+	const double *intensities;   /* > 0, ascending  (n_intensities) */
+	const double *rates;         /* > 0, descending: exceedances [1/a]  (n_rates) */
+	int n_periods;
+	const double *periods; /* whose gaps are wanted [a]  (n_periods) */
+	int n_own;             /* outputs that are read from the runs without contact: the first ones */
+};
+
 struct pound_study {
 	enum pound_kind kind;
 	const char *name; /* NULL: none */
@@ -349,7 +370,11 @@ struct pound_study {
 	struct pound_convergence convergence;
 	struct pound_spectrum spectrum;
 	bool unbalanced; /* a response study whose runs need no energy balances */
+	struct pound_separation separation;
 };
+
+bool pound_study_sampled(const struct pound_study *study); /* its runs are those of a design */
+bool pound_study_pounds(const struct pound_study *study);  /* its outputs need runs with contact */
 
 /* Lines of documentation of the tables' rows. */
 const char *pound_law_text(int row);
@@ -358,6 +383,7 @@ const char *pound_damping_text(int row);
 const char *pound_excitation_text(int row);
 const char *pound_solver_text(int row);
 const char *pound_output_text(int row);
+const char *pound_rule_text(int row);
 
 double pound_spectrum_frequency(const struct pound_spectrum *spectrum, int k); /* [Hz] */
 
@@ -376,6 +402,7 @@ const char *pound_excitation_name(int row);
 const char *pound_scale_name(int row);
 int pound_suite_signals(const struct pound_excitation *suite); /* each record in each direction */
 void pound_suite_samples(const struct pound_excitation *suite, int *least, int *most); /* of its records */
+const char *pound_rule_name(int row);
 const char *pound_distribution_name(int row);
 const char *pound_distribution_parameter(int row, int k); /* "min", "max", ...; NULL past the last */
 const char *pound_distribution_rule(int row, int k); /* "min must be less than max"; NULL past the last */

@@ -335,7 +335,7 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 	struct stored_run opened;
 	struct reply reply;
 	const char *error = answer_open(request, &opened);
-	bool sampled = !error && opened.study->kind == POUND_KIND_SENSITIVITY;
+	bool sampled = !error && pound_study_sampled(opened.study);
 	*rows = sampled ? pound_run_rows_done(opened.run, opened.stored) : 0;
 	if (*rows > 0) {
 		enum pound_status status = POUND_OK;
@@ -426,7 +426,7 @@ static bool sampled(const struct request *request, bool ours)
 		return false;
 	struct pound_study *study = records_study(request->server->store, text, length, &problems);
 	// histories are computed again, by any version
-	bool has = study && samples_exist(study) && (ours || study->kind != POUND_KIND_SENSITIVITY);
+	bool has = study && samples_exist(study) && (ours || !pound_study_sampled(study));
 	if (study)
 		study_free(study);
 	free(text);
@@ -456,11 +456,11 @@ static struct reply samples(struct request *request)
 	const char *error = answer_open(request, &opened);
 	if (error)
 		reply = unopened(request, &opened, error);
-	else if (opened.study->kind == POUND_KIND_SENSITIVITY && !ours)
+	else if (pound_study_sampled(opened.study) && !ours)
 		reply =
 		    problem(API_CONFLICT, "another version of poundd computed the study; only that has its samples: "
 		                          "submit it again");
-	else if (opened.study->kind == POUND_KIND_SENSITIVITY) {
+	else if (pound_study_sampled(opened.study)) {
 		pound_run_rows_take(opened.run, (int)rows);
 		const int left = stored_run_left(&opened);
 		if (left == 0)

@@ -83,7 +83,7 @@ static void size_add(struct pound_request_size *block, struct pound_request_size
 int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct pound_request_size *largest)
 {
 	const struct pound_cells *c = campaign;
-	const bool sampled = c->study->kind == POUND_KIND_SENSITIVITY;
+	const bool sampled = pound_study_sampled(c->study);
 	struct pound_request_size block = {0}, item = {0};
 	int n_blocks = c->study->elsewhere, n_items = pound_blocks_items(c), look = 0;
 	int look_end = sampled ? pound_design_rows(c->study, 0) : c->n_rows;

@@ -108,3 +108,14 @@ struct pound_sample_values pound_cells_values(const struct pound_cells *c, int n
 	                                    .groups = c->study->groups,
 	                                    .inputs = c->study->inputs};
 }
+
+bool pound_study_sampled(const struct pound_study *study)
+{
+	return study->kind == POUND_KIND_SENSITIVITY ||
+	       (study->kind == POUND_KIND_SEPARATION && study->n_inputs > 0);
+}
+
+bool pound_study_pounds(const struct pound_study *study)
+{
+	return study->kind != POUND_KIND_SEPARATION || study->n_outputs > study->separation.n_own;
+}

@@ -22,6 +22,7 @@
 #include "engine/run/pair_peaks.h"
 #include "engine/run/request_keys.h"
 #include "engine/run/request_motions.h"
+#include "engine/run/request_parts.h"
 #include "engine/run/response.h"
 #include "engine/run/row_asks.h"
 #include "engine/run/scene.h"
@@ -30,111 +31,6 @@
 enum {
 	SEARCH_MIN = 2, /* corrections from which on they are those of a search */
 };
-
-/* what is known of one body without pounding */
-struct body_ask {
-	int march;                /* the last one asked, -1: none */
-	double yield;             /* [m] scaled; 0: the law has none, or the body never moves */
-	enum pound_status status; /* of the marches its yield displacement comes from */
-	bool wanted;   /* its response without pounding is needed, beyond finding its yield displacement */
-	bool finished; /* the last march is that response */
-	bool found;    /* the search for the target demand is over */
-	struct pound_demand demand;
-};
-
-struct ask {
-	struct pound_scene scene;
-	int cell, row, sample; /* of it */
-	int motion;
-	bool response; /* all of the response is wanted */
-	bool balanced; /* with the energy balances of its runs */
-	struct body_ask bodies[POUND_OSCILLATORS];
-	int march; /* with pounding; -1: the responses without pounding are the answer */
-	int apart; /* both bodies without contact, observed; -1: no output reads it */
-};
-
-struct pound_request {
-	struct pound_request_size size;
-	struct pound_keys motion_keys, march_keys;
-	struct pound_motion *motions;       /* (motions) */
-	double *ground;                     /* (samples) */
-	struct ask *asks;                   /* (asks) */
-	struct pound_row_ask *row_asks;     /* of a row of buildings, instead of their bodies and march  (asks) */
-	struct pound_row_asks rows;         /* the marches of these */
-	const struct pound_cells *campaign; /* of the last run */
-	struct pound_task *tasks;           /* (tasks) */
-	struct pound_task_result *results;  /* (tasks) */
-	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; none: no output reads them) */
-	void *scratch;                  /* of the march */
-	int n_before;                   /* marches without pounding, they are the first */
-	int n_asks, n_items;            /* of the last run; n_items without those of checks */
-};
-
-/* ---- work space ---- */
-
-/* Carves a request out of memory, or with memory NULL only counts the bytes. */
-static size_t request_carve(char *memory, struct pound_request *request, struct pound_request_size size)
-{
-	const struct pound_row_size *rows = &size.rows;
-	const struct {
-		void *into;
-		size_t bytes;
-	} parts[] = {
-	    {&request->motion_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.motions},
-	    {&request->march_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.tasks},
-	    {&request->motion_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.motions)},
-	    {&request->march_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.tasks)},
-	    {&request->motions, sizeof *request->motions * (size_t)size.motions},
-	    {&request->ground, sizeof(double) * (size_t)size.samples},
-	    {&request->asks, sizeof *request->asks * (size_t)size.asks},
-	    {&request->tasks, sizeof *request->tasks * (size_t)size.tasks},
-	    {&request->results, sizeof *request->results * (size_t)size.tasks},
-	    {&request->peaks, sizeof *request->peaks * (size_t)size.peaks},
-	    {&request->scratch, POUND_EXACT_SCRATCH},
-	    {&request->row_asks, sizeof *request->row_asks * (size_t)(rows->tasks ? size.asks : 0)},
-	    {&request->rows.tasks, sizeof *request->rows.tasks * (size_t)rows->tasks},
-	    {&request->rows.results, sizeof *request->rows.results * (size_t)rows->tasks},
-	    {&request->rows.motions, sizeof(int) * (size_t)rows->tasks},
-	    {&request->rows.slots, sizeof(int) * (size_t)(rows->tasks ? pound_hash_slots(rows->tasks) : 0)},
-	    {&request->rows.floors, sizeof *request->rows.floors * (size_t)rows->floors},
-	    {&request->rows.links, sizeof *request->rows.links * (size_t)rows->links},
-	    {&request->rows.floor_results, sizeof(double) * POUND_FLOOR_MEASURES * (size_t)rows->floors},
-	    {&request->rows.link_results, sizeof(double) * POUND_LINK_MEASURES * (size_t)rows->links},
-	    {&request->rows.yields, sizeof(double) * (size_t)rows->yields},
-	    {&request->rows.modal, sizeof(double) * (size_t)rows->modal},
-	    {&request->rows.memory, rows->memory},
-	    {&request->rows.storeys, sizeof *request->rows.storeys * (size_t)rows->storeys},
-	    {&request->rows.contacts, sizeof *request->rows.contacts * (size_t)rows->contacts},
-	};
-	size_t at = (sizeof *request + 63) / 64 * 64;
-	for (size_t j = 0; j < sizeof parts / sizeof parts[0]; j++) {
-		if (memory)
-			*(void **)parts[j].into = memory + at;
-		at += (parts[j].bytes + 63) / 64 * 64;
-	}
-	return at;
-}
-
-/* Bytes of a request's work space, to be 64-byte aligned. */
-size_t pound_request_bytes(struct pound_request_size size)
-{
-	struct pound_request request;
-	return request_carve(NULL, &request, size);
-}
-
-struct pound_request *pound_request_init(void *memory, struct pound_request_size size)
-{
-	struct pound_request *request = memory;
-	memset(request, 0, sizeof *request);
-	request_carve(memory, request, size);
-	request->peaks = size.peaks ? request->peaks : NULL;
-	request->size = size;
-	request->motion_keys.n_slots = pound_hash_slots(size.motions);
-	request->march_keys.n_slots = pound_hash_slots(size.tasks);
-	request->rows.n_slots = size.rows.tasks ? pound_hash_slots(size.rows.tasks) : 0;
-	request->rows.scratch = request->scratch;
-	return request;
-}
 
 /* The ground motion of a sample: its excitation, and the noise of its row and signal, if it has any. */
 static int motion_ask(struct pound_request *request, const struct pound_excitation *e,
@@ -386,7 +282,7 @@ static struct pound_task pair_task(const struct pound_request *request, const st
 static void ask_pounding(struct pound_request *request, struct ask *ask, struct pound_work *work)
 {
 	ask->march = -1;
-	if (!ask->scene.contact.present)
+	if (!ask->scene.contact.present || !pound_study_pounds(request->campaign->study))
 		return;
 	if (pound_scene_alike(&ask->scene)) {
 		work->moving_alike++;
@@ -404,15 +300,28 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		pound_pair_peaks_start(&request->peaks[known], &request->tasks[known]);
 }
 
-/* Asks for both bodies without contact where an output reads how far they close a gap. */
-static void ask_apart(struct pound_request *request, struct ask *ask)
+/* Follows both bodies without contact, or asks for that, where an output reads how far they close a gap.
+ *
+ * Returns  value   false: it was asked for
+ */
+static bool follow_apart(struct pound_request *request, int a)
 {
+	struct ask *ask = &request->asks[a];
+	const struct pound_motion *m = &request->motions[ask->motion];
 	const struct pound_task pair = pair_task(request, ask);
-	struct pound_task task = {.bodies = {pair.bodies[0], pair.bodies[1]}};
+	struct pound_task task = {.bodies = {pair.bodies[0], pair.bodies[1]},
+	                          .ground = m->ground,
+	                          .n_samples = m->n_samples,
+	                          .time_step = m->time_step};
+	if (pound_pair_peaks_linear(&request->pair_maps, &task, request->apart[a]))
+		return true;
+	// a body beside a wall without contact is not the same run as that body alone, which nothing observes
 	const int known = request->march_keys.n;
+	task.observer = &request->peaks[known].observer;
 	ask->apart = march_ask(request, ask->motion, &task);
 	if (ask->apart == known)
 		pound_pair_peaks_start(&request->peaks[known], &request->tasks[known]);
+	return false;
 }
 
 /* What was run of an ask. */
@@ -428,10 +337,11 @@ static struct pound_runs_known ask_known(const struct pound_request *request, co
 		                              .yield = body->yield,
 		                              .status = body->status};
 	}
-	if (ask->apart >= 0) {
+	if (ask->apart >= 0)
 		known.apart = &request->results[ask->apart];
-		known.peaks_apart = &request->peaks[ask->apart];
-	}
+	known.peaks_apart = !request->peaks   ? NULL
+	                    : ask->apart >= 0 ? request->peaks[ask->apart].peak
+	                                      : request->apart[ask - request->asks];
 	known.peaks = request->peaks && ask->march >= 0 ? &request->peaks[ask->march] : NULL;
 	return known;
 }
@@ -594,11 +504,15 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		status = status ? status : pound_row_run(&request->rows, stop);
 	}
 	const unsigned asked = pound_outputs_asked(campaign->study);
-	const int apart = request->march_keys.n;
-	for (int a = n_asks - 1; a >= 0 && !status; a--) // the checks first
-		if (asked & POUND_ASKS_APART && !request->asks[a].scene.n_buildings)
-			ask_apart(request, &request->asks[a]);
-	work->free_runs.run += request->march_keys.n - apart;
+	for (int a = n_asks - 1; a >= 0 && !status && asked & POUND_ASKS_APART; a--) { // the checks first
+		if (pound_stopped(stop))
+			return POUND_STOPPED;
+		const int known = request->march_keys.n;
+		if (request->asks[a].scene.n_buildings)
+			continue;
+		work->apart_runs.run += follow_apart(request, a) + request->march_keys.n - known;
+		work->apart_runs.asked++;
+	}
 	status = status ? status : marches_run(request, &solver, request->march_keys.n, &done, stop);
 	if (status)
 		return status;

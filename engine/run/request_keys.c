@@ -39,7 +39,7 @@ enum { LAW_KEY = 15 }; /* numbers of a contact */
 int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_task *task)
 {
 	double key[POUND_KEY] = {motion,
-	                         task->contact + 2.0 * task->accounted,
+	                         task->contact + 2.0 * task->accounted + 4.0 * (task->observer != NULL),
 	                         task->gap,
 	                         task->contact_stiffness,
 	                         task->contact_damping,

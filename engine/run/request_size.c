@@ -1,8 +1,9 @@
-/* request_size.c - how much work space an item of a study takes at most. */
+/* request_size.c - the work space of a request, and how much of it an item of a study takes at most. */
 #include <string.h>
 
 #include "engine/ground/excitation.h"
-#include "engine/run/request.h"
+#include "engine/numeric/hash.h"
+#include "engine/run/request_parts.h"
 
 /* Gives a scene buildings that have the storeys of a cell. */
 static void storeys_put(const struct pound_cells *campaign, int cell,
@@ -39,4 +40,71 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 			size.samples += pound_excitation_samples(&scene.excitation);
 		}
 	return size;
+}
+
+/* ---- work space ---- */
+
+/* Carves a request out of memory, or with memory NULL only counts the bytes. */
+static size_t request_carve(char *memory, struct pound_request *request, struct pound_request_size size)
+{
+	const struct pound_row_size *rows = &size.rows;
+	const struct {
+		void *into;
+		size_t bytes;
+	} parts[] = {
+	    {&request->motion_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.motions},
+	    {&request->march_keys.keys, sizeof(double) * POUND_KEY * (size_t)size.tasks},
+	    {&request->motion_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.motions)},
+	    {&request->march_keys.slots, sizeof(int) * (size_t)pound_hash_slots(size.tasks)},
+	    {&request->motions, sizeof *request->motions * (size_t)size.motions},
+	    {&request->ground, sizeof(double) * (size_t)size.samples},
+	    {&request->asks, sizeof *request->asks * (size_t)size.asks},
+	    {&request->tasks, sizeof *request->tasks * (size_t)size.tasks},
+	    {&request->results, sizeof *request->results * (size_t)size.tasks},
+	    {&request->peaks, sizeof *request->peaks * (size_t)size.peaks},
+	    {&request->apart, sizeof *request->apart * (size_t)(size.peaks ? size.asks : 0)},
+	    {&request->scratch, POUND_EXACT_SCRATCH},
+	    {&request->row_asks, sizeof *request->row_asks * (size_t)(rows->tasks ? size.asks : 0)},
+	    {&request->rows.tasks, sizeof *request->rows.tasks * (size_t)rows->tasks},
+	    {&request->rows.results, sizeof *request->rows.results * (size_t)rows->tasks},
+	    {&request->rows.motions, sizeof(int) * (size_t)rows->tasks},
+	    {&request->rows.slots, sizeof(int) * (size_t)(rows->tasks ? pound_hash_slots(rows->tasks) : 0)},
+	    {&request->rows.floors, sizeof *request->rows.floors * (size_t)rows->floors},
+	    {&request->rows.links, sizeof *request->rows.links * (size_t)rows->links},
+	    {&request->rows.floor_results, sizeof(double) * POUND_FLOOR_MEASURES * (size_t)rows->floors},
+	    {&request->rows.link_results, sizeof(double) * POUND_LINK_MEASURES * (size_t)rows->links},
+	    {&request->rows.yields, sizeof(double) * (size_t)rows->yields},
+	    {&request->rows.modal, sizeof(double) * (size_t)rows->modal},
+	    {&request->rows.memory, rows->memory},
+	    {&request->rows.storeys, sizeof *request->rows.storeys * (size_t)rows->storeys},
+	    {&request->rows.contacts, sizeof *request->rows.contacts * (size_t)rows->contacts},
+	};
+	size_t at = (sizeof *request + 63) / 64 * 64;
+	for (size_t j = 0; j < sizeof parts / sizeof parts[0]; j++) {
+		if (memory)
+			*(void **)parts[j].into = memory + at;
+		at += (parts[j].bytes + 63) / 64 * 64;
+	}
+	return at;
+}
+
+/* Bytes of a request's work space, to be 64-byte aligned. */
+size_t pound_request_bytes(struct pound_request_size size)
+{
+	struct pound_request request;
+	return request_carve(NULL, &request, size);
+}
+
+struct pound_request *pound_request_init(void *memory, struct pound_request_size size)
+{
+	struct pound_request *request = memory;
+	memset(request, 0, sizeof *request);
+	request_carve(memory, request, size);
+	request->peaks = size.peaks ? request->peaks : NULL;
+	request->size = size;
+	request->motion_keys.n_slots = pound_hash_slots(size.motions);
+	request->march_keys.n_slots = pound_hash_slots(size.tasks);
+	request->rows.n_slots = size.rows.tasks ? pound_hash_slots(size.rows.tasks) : 0;
+	request->rows.scratch = request->scratch;
+	return request;
 }

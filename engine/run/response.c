@@ -70,8 +70,8 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 	if (known->apart && known->apart->status)
 		status = known->apart->status;
 	if (known->peaks_apart) {
-		out->gap_needed = ldexp(known->peaks_apart->closing, e);
-		out->relative_free = fmax(out->gap_needed, ldexp(known->peaks_apart->opening, e));
+		out->gap_needed = ldexp(known->peaks_apart[0], e);
+		out->relative_free = fmax(out->gap_needed, ldexp(known->peaks_apart[1], e));
 	}
 	out->approach = known->peaks ? ldexp(known->peaks->approach, e) : 0;
 	bool beyond =

@@ -17,8 +17,10 @@ struct pound_runs_known {
 	int exponent;                             /* motions are times 2^-exponent */
 	const struct pound_task_result *pounding; /* NULL: the responses without pounding are the answer */
 	struct pound_body_known bodies[POUND_OSCILLATORS];
-	const struct pound_task_result *apart;              /* both without contact; NULL: no output reads it */
-	const struct pound_pair_peaks *peaks, *peaks_apart; /* of both runs; NULL likewise, or not run */
+	const struct pound_task_result
+	    *apart;                /* both without contact, where the solver followed them; else NULL */
+	const double *peaks_apart; /* their closing and opening displacement  (2); NULL: no output reads it */
+	const struct pound_pair_peaks *peaks; /* of the run with pounding; NULL likewise, or not run */
 };
 
 enum pound_status pound_response_of(const struct pound_runs_known *known, struct pound_response *out);

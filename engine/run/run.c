@@ -17,7 +17,8 @@
 #include "engine/run/outputs.h"
 #include "engine/run/row_response.h"
 #include "engine/run/run.h"
-#include "engine/solver/convergence.h"
+#include "engine/run/separation_outputs.h"
+#include "engine/run/trials.h"
 
 enum {
 	MEASURES = sizeof(struct pound_response) / sizeof(double),
@@ -25,11 +26,7 @@ enum {
 	CHECK_EVERY = 100, /* items between two checked ones */
 	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
 	COLUMNS = POUND_N_INDICES + POUND_N_NAMED + POUND_CURVE, /* of estimates for each input */
-	TRIAL_MEASURES = sizeof(struct pound_trial_run) / sizeof(double),
 };
-
-/* CPU time that a run is timed over at least [s]. */
-static const double CLOCK_LEAST = 0.02;
 
 /* ---- life ---- */
 
@@ -42,7 +39,7 @@ static int response_measures(const struct pound_study *study)
 /* The scenes of a study; its design is not drawn yet. */
 struct pound_cells pound_run_campaign(const struct pound_study *study)
 {
-	bool sampled = study->kind == POUND_KIND_SENSITIVITY, trials = study->kind == POUND_KIND_CONVERGENCE;
+	bool sampled = pound_study_sampled(study), trials = study->kind == POUND_KIND_CONVERGENCE;
 	struct pound_cells c = {.study = study,
 	                        .n_cells = 1,
 	                        .n_rows = sampled  ? pound_design_rows_most(study)
@@ -69,8 +66,9 @@ struct pound_blocks pound_run_layout(const struct pound_cells *campaign)
 	return (struct pound_blocks){.campaign = campaign,
 	                             .n_measures =
 	                                 pound_ordinate_measures(study) +
-	                                 (study->kind == POUND_KIND_SENSITIVITY   ? 2 * study->n_outputs
-	                                  : study->kind == POUND_KIND_CONVERGENCE ? (int)TRIAL_MEASURES
+	                                 (pound_study_sampled(study) || study->kind == POUND_KIND_SEPARATION
+	                                      ? 2 * study->n_outputs
+	                                  : study->kind == POUND_KIND_CONVERGENCE ? (int)POUND_TRIAL_MEASURES
 	                                  : study->kind == POUND_KIND_RESPONSE    ? response_measures(study)
 	                                                                          : 0),
 	                             .n_counts = COUNTS};
@@ -105,9 +103,9 @@ size_t pound_run_reduction_size(const struct pound_cells *c)
 	if (c->study->n_outputs == 0)
 		return 0;
 	if (c->trials)
-		return (size_t)pound_blocks_items(c) * TRIAL_MEASURES;
-	if (c->study->kind != POUND_KIND_SENSITIVITY)
-		return 0;
+		return (size_t)pound_blocks_items(c) * POUND_TRIAL_MEASURES;
+	if (!pound_study_sampled(c->study))
+		return pound_separation_scratch(c);
 	const struct pound_sample_values shape = pound_cells_values(c, c->n_rows, NULL);
 	const struct pound_sampling wanted = {.estimator = c->study->design.estimator,
 	                                      .ratios = c->study->n_ratios ? c->study : NULL};
@@ -115,8 +113,11 @@ size_t pound_run_reduction_size(const struct pound_cells *c)
 	size_t accuracy = (size_t)checks_of(c);
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
-	return kept_size(c) + 2 * pound_cells_values_size(c, c->n_rows) + checks_size(c) +
-	       (most > ordinates ? most : ordinates);
+	// what is kept is not to be written over
+	const size_t whole = 2 * pound_cells_values_size(c, c->n_rows) + checks_size(c) +
+	                     (most > ordinates ? most : ordinates),
+	             separation = pound_separation_scratch(c);
+	return kept_size(c) + (whole > separation ? whole : separation);
 }
 
 /* Allocates work space, 64-byte aligned; NULL: out of memory.  It is not cleared, as a small study touches little of it: for
@@ -174,6 +175,7 @@ void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[P
 	    {&run->result.looks, sizeof *run->result.looks * (size_t)pound_run_looks_most(study)},
 	    {&run->references, sizeof *run->references * 2 * (size_t)study->scene.excitation.n_records},
 	    {&run->records, sizeof *run->records * (pound_run_suite(study) ? n_cells * (size_t)c->n_signals : 0)},
+	    {&run->separation, pound_separation_bytes(c)},
 	};
 	memcpy(parts, all, sizeof all);
 }
@@ -190,6 +192,7 @@ static bool result_create(struct pound_run *run)
 		if (!(*(void **)parts[j].into = piece(parts[j].bytes)))
 			return false;
 	pound_ordinate_layout(study, run->spectra, &run->result.floor);
+	pound_separation_layout(c, run->separation, &run->result.separation);
 	for (int cell = 0; cell < c->n_cells; cell++) {
 		struct pound_cell *into = &run->result.cells[cell];
 		for (int s = 0; s < study->n_sweeps; s++)
@@ -239,7 +242,7 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 		return NULL;
 	run->stop = &run->stopped;
 	run->campaign = pound_run_campaign(study);
-	run->rows = study->kind == POUND_KIND_SENSITIVITY ? pound_design_rows(study, 0) : run->campaign.n_rows;
+	run->rows = pound_study_sampled(study) ? pound_design_rows(study, 0) : run->campaign.n_rows;
 	run->layout = pound_run_layout(&run->campaign);
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
 	double *design = piece(sizeof(double) * n_design);
@@ -247,7 +250,7 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 	run->u = piece(sizeof(double) * n_design);
 	if (!design || !run->u)
 		goto fail;
-	if (study->kind == POUND_KIND_SENSITIVITY) {
+	if (pound_study_sampled(study)) {
 		pound_design_probabilities(study, stop, run->u);
 		pound_design_values(study, run->u, stop, design);
 	}
@@ -295,7 +298,8 @@ void pound_run_free(struct pound_run *run)
 	                        run->references,
 	                        run->records,
 	                        run->indices,
-	                        run->estimates};
+	                        run->estimates,
+	                        run->separation};
 	for (size_t j = 0; j < sizeof pieces / sizeof pieces[0]; j++)
 		free(pieces[j]);
 	free(run);
@@ -378,7 +382,7 @@ static void response_keep(void *into, const struct pound_outcome *outcome)
 		                                  .demand = status ? NAN : response->demand_1,
 		                                  .impulse = status ? NAN : response->impulse_max,
 		                                  .cpu = NAN};
-		slice->at += TRIAL_MEASURES;
+		slice->at += POUND_TRIAL_MEASURES;
 		return;
 	}
 	if (slice->study->kind == POUND_KIND_RESPONSE && scene->n_buildings) {
@@ -407,53 +411,6 @@ static void response_keep(void *into, const struct pound_outcome *outcome)
 		                                    : response->impulse_max / scene->oscillators[0].mass;
 }
 
-/* CPU time of a run in the request's last block, NAN without a clock: as many rounds as its ticks can resolve. */
-static enum pound_status run_time(const struct pound_run *run, struct pound_request *request,
-                                  const struct pound_solver *solver, double *cpu)
-{
-	*cpu = NAN;
-	if (!run->cpu)
-		return POUND_OK;
-	double start = run->cpu(), now;
-	int n = 0, more;
-	do {
-		enum pound_status status = pound_request_repeat(request, solver, run->stop, &more);
-		if (status)
-			return status;
-		n += more;
-		now = run->cpu();
-	} while (now - start < CLOCK_LEAST && n > 0);
-	if (n > 0)
-		*cpu = (now - start) / n;
-	return POUND_OK;
-}
-
-/* Adds to a block of one trial the histories and the time of a run. */
-static enum pound_status trial_block(const struct pound_run *run, struct pound_request *request, int first,
-                                     int n, struct pound_trial_run *runs)
-{
-	const struct pound_cells *c = &run->campaign;
-	const struct pound_solver solver = pound_cells_solver(c, first / c->n_signals);
-	int samples[POUND_HISTORY], n_times = pound_convergence_times(c->study, samples);
-	enum pound_status status = POUND_OK;
-	for (int item = 0; item < n; item++) {
-		double *history = runs[item].history;
-		for (int k = 0; k < n_times && !status; k++) {
-			if (k > 0 && isnan(history[k - 1]))
-				history[k] = NAN; // it ended before that
-			else
-				status =
-				    pound_request_displacement(request, &solver, item, samples[k], run->stop, &history[k]);
-		}
-	}
-	double cpu = NAN;
-	if (!status)
-		status = run_time(run, request, &solver, &cpu);
-	for (int item = 0; item < n; item++)
-		runs[item].cpu = cpu;
-	return status;
-}
-
 /* Computes a block into its slice of the values.
  *
  * Status   POUND_STOPPED  pound_run_stop was called; the block's values are not to be used
@@ -468,8 +425,8 @@ enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 	    pound_request_run(run->requests[worker], (struct pound_items){&run->campaign, first, n}, run->stop,
 	                      &work, response_keep, &slice);
 	if (!status && run->campaign.trials)
-		status = trial_block(run, run->requests[worker], first, n,
-		                     (struct pound_trial_run *)pound_blocks_block(&run->layout, block));
+		status = pound_trials_block(run, run->requests[worker], first, n,
+		                            (struct pound_trial_run *)pound_blocks_block(&run->layout, block));
 	if (!status && run->floors[worker])
 		status = pound_ordinate_block(run->floors[worker], run->campaign.study, run->requests[worker],
 		                              pound_blocks_block(&run->layout, block), run->stop, &work);
@@ -485,15 +442,18 @@ enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 
 static bool has_indices(const struct pound_run *run)
 {
-	return run->campaign.study->kind == POUND_KIND_SENSITIVITY;
+	return pound_study_sampled(run->campaign.study);
 }
 
-/* One for each output of each cell; one for all trials, one for all spectra. */
+/* One for each output of each cell; one for all trials, one for all spectra, one for all gaps needed, which is the last. */
 int pound_run_reductions(const struct pound_run *run)
 {
 	if (run->campaign.trials || run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		return 1;
-	return run->campaign.n_cells * run->campaign.study->n_outputs;
+	const int indices = run->campaign.n_cells * run->campaign.study->n_outputs;
+	if (run->campaign.study->kind == POUND_KIND_SEPARATION)
+		return (has_indices(run) ? indices : 0) + 1;
+	return indices;
 }
 
 /* The measures of an output in a cell as columns (rows x samples x signals); returns the failed runs. */
@@ -608,19 +568,6 @@ static void responses_reduce(struct pound_run *run, int cell, int output, void *
 	into->outputs[output] = below > 0 ? above / below : NAN;
 }
 
-static void trials_reduce(struct pound_run *run, double *scratch)
-{
-	int n = pound_blocks_items(&run->campaign);
-	for (int item = 0; item < n; item++)
-		memcpy(scratch + (size_t)item * TRIAL_MEASURES, pound_blocks_run(&run->layout, item, 0, 0),
-		       sizeof(double) * TRIAL_MEASURES);
-	pound_convergence_reduce(run->campaign.study, (const struct pound_trial_run *)scratch,
-	                         run->result.trials);
-	run->result.cells[0].runs_failed = 0;
-	for (int j = 0; j < run->result.n_trials; j++)
-		run->result.cells[0].runs_failed += run->result.trials[j].runs_failed;
-}
-
 /* The work of the current blocks. */
 static struct pound_work work_of(const struct pound_run *run)
 {
@@ -664,9 +611,12 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 	if (status)
 		return status;
 	if (run->campaign.trials)
-		trials_reduce(run, run->scratch[worker]);
+		pound_trials_reduce(run, run->scratch[worker]);
 	else if (run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		pound_ordinate_reduce(run, run->scratch[worker], &run->result.floor);
+	else if (run->campaign.study->kind == POUND_KIND_SEPARATION && reduction == pound_run_reductions(run) - 1)
+		pound_separation_reduce(run,
+		                        run->scratch[worker] + (has_indices(run) ? kept_size(&run->campaign) : 0));
 	else if (has_indices(run))
 		indices_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
 	else

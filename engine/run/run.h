@@ -21,6 +21,7 @@ struct pound_run {
 	struct pound_row_response *row_responses; /* of a row of buildings likewise */
 	struct pound_suite_signal *records;       /* of the result  (n_cells x n_signals) */
 	double *references;      /* of the records of a suite, then their differences  (2 x n_records) */
+	void *separation;        /* of the result */
 	double *spectra;         /* of the result  (POUND_N_SPECTRA x 4 x frequencies) */
 	double (*cpu)(void);     /* clock of the calling thread [s]; NULL: none */
 	atomic_bool stopped;     /* by pound_run_stop ... */
@@ -32,7 +33,7 @@ struct pound_cells pound_run_campaign(const struct pound_study *study);
 struct pound_blocks pound_run_layout(const struct pound_cells *campaign);
 size_t pound_run_reduction_size(const struct pound_cells *campaign); /* doubles of a worker's scratch */
 
-enum { POUND_RUN_PARTS = 10 };
+enum { POUND_RUN_PARTS = 11 };
 struct pound_run_part {
 	void *into; /* the pointer to it */
 	size_t bytes;

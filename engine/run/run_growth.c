@@ -15,7 +15,7 @@
 int pound_run_looks_most(const struct pound_study *study)
 {
 	int looks = 0, most = pound_design_rows_most(study);
-	if (study->kind != POUND_KIND_SENSITIVITY || !(study->design.until.half_width > 0))
+	if (!pound_study_sampled(study) || !(study->design.until.half_width > 0))
 		return 0;
 	while (pound_design_rows(study, looks++) < most)
 		;
@@ -119,7 +119,7 @@ int pound_run_rows_done(const struct pound_run *run, const bool *done)
 /* Takes the first rows of the design for the design, in the reductions and the result to come. */
 void pound_run_rows_take(struct pound_run *run, int rows)
 {
-	assert(run->campaign.study->kind == POUND_KIND_SENSITIVITY && rows <= run->campaign.n_rows);
+	assert(pound_study_sampled(run->campaign.study) && rows <= run->campaign.n_rows);
 	run->rows = rows;
 }
 

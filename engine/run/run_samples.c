@@ -52,7 +52,7 @@ struct pound_sample_output pound_run_sample_output(const struct pound_run *run, 
                                                    int output)
 {
 	const struct pound_cells *c = &run->campaign;
-	assert(c->study->kind == POUND_KIND_SENSITIVITY);
+	assert(pound_study_sampled(c->study));
 	if (pound_cells_means(c)) {
 		const double *values = pound_blocks_run(&run->layout, row, cell, sample) + 2 * output;
 		return (struct pound_sample_output){values[0], values[1]};

@@ -25,6 +25,8 @@ const struct figure_row figure_rows[] = {
 	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding"},
 	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level"},
 	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time"},
+	{"separation", "separation",    " cell width ",               NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for"},
+	{"fragility", "separation",     " cell width ",               NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares"},
 	{0},
 };
 

@@ -159,7 +159,7 @@ bool message_design(const struct pound_study *study, struct pound_run *run,
 		all[block] = true;
 	}
 	// every value of a design is in one of its first two samples; those of a design that grows are all drawn at the start
-	const int rows = all && study->kind == POUND_KIND_SENSITIVITY ? pound_run_rows_done(run, all) : 0;
+	const int rows = all && pound_study_sampled(study) ? pound_run_rows_done(run, all) : 0;
 	for (int row = 0; x && row < rows; row++)
 		for (int sample = 0; sample < 2; sample++) {
 			pound_run_sample_inputs(run, row, sample, x);

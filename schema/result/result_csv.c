@@ -1,7 +1,7 @@
 /* result_csv.c - a result -> CSV, from its JSON: whatever members a result has become columns.
  *
  * Sensitivity: the table that is asked for by name, of all cells and outputs.  Response: one row per cell and signal.
- * Convergence: one row per setting, its time beside it.  Floor spectra: one row per frequency. */
+ * Separation: one row per cell and gap.  Convergence: one row per setting, its time beside it.  Floor spectra: one row per frequency. */
 #include <stdio.h>
 #include <string.h>
 
@@ -289,6 +289,18 @@ static void put_signals(struct lines *lines, const cJSON *cell)
 	}
 }
 
+/* The probability to pound with each gap. */
+static void put_gaps(struct lines *lines, const cJSON *cell)
+{
+	const cJSON *gap;
+	cJSON_ArrayForEach(gap, member(cell, "pounding")) for (int header = lines->header; header >= 0; header--)
+	{
+		put_scalars(lines, member(cell, "sweep"), "");
+		put_scalars(lines, gap, "");
+		put_end(lines);
+	}
+}
+
 static void put_trial(struct lines *lines, const cJSON *row, const cJSON *time)
 {
 	put_scalars(lines, row, "");
@@ -367,6 +379,8 @@ static void put_result(struct lines *lines, const cJSON *result)
 		put_spectra(lines->w, result);
 	else if (cJSON_IsArray(member(result, "signals")))
 		put_signals(lines, result);
+	else if (cells && member(first(cells), "pounding"))
+		cJSON_ArrayForEach(cell, cells) put_gaps(lines, cell);
 	else if (cells && member(first(cells), "signals"))
 		cJSON_ArrayForEach(cell, cells) put_signals(lines, cell);
 	else

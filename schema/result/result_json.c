@@ -12,6 +12,7 @@
 #include "schema/result/result_floor.h"
 #include "schema/result/result_notes.h"
 #include "schema/result/result_row.h"
+#include "schema/result/result_separation.h"
 #include "schema/result/result_suite.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
@@ -81,6 +82,18 @@ static void write_balance(struct writer *w, const struct pound_cell *cells, int 
 	writer_end(w);
 }
 
+static void write_outputs(struct writer *w, const struct pound_study *study, const struct pound_cell *cell,
+                          const struct pound_scene *scene)
+{
+	writer_object(w, "outputs", WRITER_LINES);
+	for (int o = 0; o < study->n_outputs; o++) {
+		char name[STUDY_OUTPUT_SIZE];
+		if (pound_output_applies(study->outputs[o], scene))
+			writer_number(w, study_output_name(study, o, name), cell->outputs[o]);
+	}
+	writer_end(w);
+}
+
 static void write_response(struct writer *w, const struct pound_study *study, const struct pound_cell *cell,
                            const struct pound_scene *scene)
 {
@@ -97,13 +110,7 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 		writer_end(w);
 	}
 	writer_end(w);
-	writer_object(w, "outputs", WRITER_LINES);
-	for (int o = 0; o < study->n_outputs; o++) {
-		char name[STUDY_OUTPUT_SIZE];
-		if (pound_output_applies(study->outputs[o], scene))
-			writer_number(w, study_output_name(study, o, name), cell->outputs[o]);
-	}
-	writer_end(w);
+	write_outputs(w, study, cell, scene);
 	bool moves = false;
 	for (int i = 0; i < cell->n_signals; i++)
 		moves |= cell->rows ? result_row_moves(&cell->rows[i], scene)
@@ -481,12 +488,16 @@ static void write_cell(struct writer *w, const struct pound_study *study, const 
 	}
 	writer_whole(w, "runs", cell->runs);
 	writer_whole(w, "runs_failed", cell->runs_failed);
-	if (study->kind == POUND_KIND_SENSITIVITY) {
+	if (pound_study_sampled(study))
 		writer_whole(w, "rows_dropped", cell->rows_dropped);
+	if (study->kind == POUND_KIND_SEPARATION)
+		result_separation_cell(w, study, result, c);
+	if (pound_study_sampled(study))
 		write_sensitivity(w, study, cell, &scene);
-	} else {
+	else if (study->kind == POUND_KIND_SEPARATION)
+		write_outputs(w, study, cell, &scene);
+	else
 		write_response(w, study, cell, &scene);
-	}
 	if (!study->elsewhere)
 		write_not_applicable(w, study, &scene);
 	free(row);
@@ -548,7 +559,9 @@ static void write_left_out(struct writer *w, const struct pound_study *study, co
 	leave_out(w, work->moving_alike, with,
 	          row ? "equal buildings move together and never touch with force"
 	              : "equal oscillators move together and never touch with force");
-	if (study->scene.contact.present)
+	if (!pound_study_pounds(study))
+		writer_text(w, NULL, "all responses with pounding: no output needs them");
+	else if (study->scene.contact.present)
 		leave_out(w, work->pounding_runs.asked - made, with, repeated);
 	else
 		writer_text(w, NULL, "all responses with pounding: the scene has no contact");
@@ -602,6 +615,9 @@ static void write_work(struct writer *w, const struct pound_study *study, const 
 	writer_whole(w, "run", work->member.run);     \
 	writer_end(w);
 	POUND_STAGES(X)
+	if (work->apart_runs.asked) {
+		X(apart_runs, "responses of both bodies together without pounding")
+	}
 #undef X
 	writer_whole(w, "never_touching", work->never_touching);
 	writer_whole(w, "moving_alike", work->moving_alike);
@@ -621,7 +637,7 @@ static void write_timing(struct writer *w, const struct pound_study *study, cons
 	writer_number(w, "wall_s", timing->wall_s);
 	writer_number(w, "cpu_s", timing->cpu_s);
 	writer_whole(w, "threads", timing->threads);
-	if (study->kind == POUND_KIND_SENSITIVITY)
+	if (pound_study_sampled(study))
 		result_accuracy_timing(w, result, timing->cpu_s);
 	if (result->n_trials)
 		write_run_times(w, result);
@@ -654,7 +670,7 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 	writer_text(&w, "engine_version", POUND_VERSION);
 	writer_text(&w, "study_hash", hash);
 	writer_seed(&w, "seed", study->design.seed);
-	if (study->kind == POUND_KIND_SENSITIVITY)
+	if (pound_study_sampled(study))
 		result_design(&w, study, result);
 	warnings_write(&w, study, result);
 	result_suite(&w, study, result);
@@ -666,9 +682,11 @@ char *result_to_json(const struct pound_study *study, const struct pound_result 
 		write_cell(&w, study, result, 0);
 	else
 		write_cells(&w, study, result);
+	if (study->kind == POUND_KIND_SEPARATION)
+		result_separation_fragility(&w, study, result);
 	if (!study->elsewhere)
 		write_work(&w, study, &result->work);
-	if (study->kind == POUND_KIND_SENSITIVITY)
+	if (pound_study_sampled(study))
 		result_accuracy_study(&w, study, result);
 	else if (study->kind == POUND_KIND_RESPONSE && study->n_sweeps > 0)
 		write_balance(&w, result->cells, result->n_cells);

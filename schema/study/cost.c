@@ -620,17 +620,17 @@ static struct pound_run_shared shared_of(const struct pound_study *study)
 
 /* What a study will take.
  *
- * Given    study       valid
+ * Given    asked       valid
  *          n_workers   that run its blocks, each in work space of its own
  * Returns  value       runs exactly; time, bytes and memory as above
  * Test     unit_cost: what_is_asked_twice_costs_twice; soak_cost: an_estimate_is_near_what_a_study_takes
  */
-struct cost cost_of(const struct pound_study *study, int n_workers)
+struct cost cost_of(const struct pound_study *asked, int n_workers)
 {
-	struct cost cost = {.runs = study_runs(study), .bytes = DOCUMENT_BYTES};
+	const struct pound_study like = study_separation_like(asked), *study = &like;
+	struct cost cost = {.runs = study_runs(study), .bytes = DOCUMENT_BYTES + study_separation_bytes(asked)};
 	struct counts counts = {0};
-	double cells = study_cells(study), runs = (double)cost.runs;
-	double numbers; // doubles that are stored of a run
+	double cells = study_cells(study), runs = (double)cost.runs, numbers; // doubles that are stored of a run
 	count(study, &counts);
 	const bool response = study->kind == POUND_KIND_RESPONSE;
 	const double signals = fmax(study->scene.excitation.signals, 1),
@@ -653,7 +653,7 @@ struct cost cost_of(const struct pound_study *study, int n_workers)
 	}
 	const struct pound_run_shared shared = shared_of(study);
 	cost.memory = STUDY_MEMORY + record_memory(study) + RESULT_MEMORY * cost.bytes +
-	              pound_run_bytes(study, n_workers, &shared);
+	              pound_run_bytes(asked, n_workers, &shared);
 	cost.bytes += runs * numbers * sizeof(double);
 	return cost;
 }

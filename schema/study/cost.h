@@ -17,6 +17,11 @@ struct cost {
 };
 
 struct cost cost_of(const struct pound_study *study, int n_workers); /* that run its blocks */
+
+/* Of a study of separation: one of another kind that takes as long, and the bytes of a result that only such a study has; of other
+ * kinds the study itself, and 0. */
+struct pound_study study_separation_like(const struct pound_study *study);
+double study_separation_bytes(const struct pound_study *study);
 bool cost_allowed(const struct cost *cost, const struct cost *most, struct problems *problems);
 char *cost_to_json(const struct cost *cost, const struct pound_study *study,
                    size_t *length); /* NULL: no memory */

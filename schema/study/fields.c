@@ -17,7 +17,8 @@ const char *study_kind_name(int kind)
 	static const char *const names[] = {[POUND_KIND_RESPONSE] = "response",
 	                                    [POUND_KIND_SENSITIVITY] = "sensitivity",
 	                                    [POUND_KIND_CONVERGENCE] = "convergence",
-	                                    [POUND_KIND_FLOOR_SPECTRUM] = "floor_spectrum"};
+	                                    [POUND_KIND_FLOOR_SPECTRUM] = "floor_spectrum",
+	                                    [POUND_KIND_SEPARATION] = "separation"};
 	return kind >= 0 && kind < (int)(sizeof names / sizeof names[0]) ? names[kind] : NULL;
 }
 
@@ -44,16 +45,19 @@ static const char *until_output_name(int row)
 	return row == 0 ? "all" : pound_output_name(row - 1);
 }
 
-#define AT(member)          offsetof(struct pound_study, member)
-#define LAW                 AT(scene.law)
-#define OWN                 AT(scene.oscillators[0].law)
-#define IN_LAW(member)      offsetof(struct pound_law, member)
-#define CONTACT(member)     AT(scene.contact.member)
-#define SENSITIVITY         .kinds = " sensitivity "
-#define CONVERGENCE         .kinds = " convergence "
-#define SPECTRAL            .kinds = " floor_spectrum sensitivity "
-#define FLOORED             .kinds = " floor_spectrum "
-#define SOLVED              .kinds = " response sensitivity "
+#define AT(member)      offsetof(struct pound_study, member)
+#define LAW             AT(scene.law)
+#define OWN             AT(scene.oscillators[0].law)
+#define IN_LAW(member)  offsetof(struct pound_law, member)
+#define CONTACT(member) AT(scene.contact.member)
+#define SENSITIVITY     .kinds = " sensitivity separation "
+#define CONVERGENCE     .kinds = " convergence "
+#define SPECTRAL        .kinds = " floor_spectrum sensitivity "
+#define FLOORED         .kinds = " floor_spectrum "
+#define SOLVED          .kinds = " response sensitivity "
+#define SWEPT           .kinds = " response sensitivity separation "
+#define SEPARATION \
+	.kinds = " separation ", .sceneless = FIELD_UNUSED, .fixed = "only fields of the scene can vary"
 #define FILTERED            .types = " kanai_tajimi "
 #define RANDOM              .types = " kanai_tajimi white_noise "
 #define LASTING             .types = " white_noise harmonic "
@@ -281,7 +285,7 @@ const struct field fields[] = {
 	 .fixed = "records are scaled once for all cells"},
 
 	{"/inputs", FIELD_LIST, 0, NAN, 1, POUND_INPUTS_MAX, FIELD_CLOSED, "",
-	 .text = "random inputs; each varies one field of the scene", SENSITIVITY, NOT_SCENE},
+	 .text = "random inputs; each varies one field of the scene; a study of separation may have none", SENSITIVITY, .optional = " separation ", NOT_SCENE},
 	{"/inputs/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one random input", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/path", FIELD_TEXT, offsetof(struct pound_input, path), NAN, 1, 200, FIELD_CLOSED, "",
@@ -324,13 +328,13 @@ const struct field fields[] = {
 	 .text = "path of an input; in a study without scene its name", SENSITIVITY, NOT_SCENE},
 
 	{"/sweep", FIELD_LIST, 0, 0, 0, POUND_SWEEPS_MAX, FIELD_CLOSED, "",
-	 .text = "swept fields; a cell is one combination of their values; at most 10000 cells", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "swept fields; a cell is one combination of their values; at most 10000 cells", SWEPT, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one swept field", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "one swept field", SWEPT, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*/path", FIELD_TEXT, offsetof(struct pound_sweep, path), NAN, 1, 200, FIELD_CLOSED, "",
-	 .text = "JSON Pointer into \"scene\"", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "JSON Pointer into \"scene\"", SWEPT, WITH_SCENE, NOT_SCENE},
 	{"/sweep/*/values", FIELD_LIST, 0, NAN, 1, STUDY_CELLS_MAX, FIELD_CLOSED, "",
-	 .text = "values of the swept field, all different", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "values of the swept field, all different", SWEPT, WITH_SCENE, NOT_SCENE},
 
 	{"/design", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "sampling: which rows are run, and the seed", NOT_SCENE},
@@ -365,9 +369,9 @@ const struct field fields[] = {
 	 .choice = pound_estimator_name, SENSITIVITY, NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
-	 .text = "outputs to compute, all different (default: the amplifications that apply and, with contact, the impulse)", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "outputs to compute, all different (default: the amplifications that apply and, with contact, the impulse; of separation none with pounding)", SWEPT, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one output: its name; guide.md has the formula of each, its unit and what it needs: a body, a law, a contact or buildings", .choice = pound_output_name, SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "one output: its name; guide.md has the formula of each, its unit and what it needs: a body, a law, a contact or buildings", .choice = pound_output_name, SWEPT, WITH_SCENE, NOT_SCENE},
 
 	{"/places", FIELD_LIST, 0, 0, 1, POUND_PLACES_MAX, FIELD_CLOSED, "",
 	 .text = "storeys of a row of buildings for which outputs are computed, all different (default: all of building 0)", SOLVED, WITH_SCENE, NOT_SCENE},
@@ -414,6 +418,33 @@ const struct field fields[] = {
 	 .text = "storey, from 1", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/histories", FIELD_BOOL, AT(spectrum.histories), 0, 0, 1, FIELD_CLOSED, "",
 	 .text = "true: samples have the time histories of both oscillators, or of the floor at /spectrum/place; at most 250000 ground motion samples over all signals", FLOORED, WITH_SCENE, NOT_SCENE},
+
+	{"/separation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "what is wanted of the gap needed", SEPARATION},
+	{"/separation/gaps_m", FIELD_LIST, 0, 0, 1, POUND_GAPS_MAX, FIELD_CLOSED, "",
+	 .text = "gaps whose probability to pound is computed, ascending (default: up to 41 round ones)", SEPARATION},
+	{"/separation/gaps_m/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_CLOSED, "m",
+	 .text = "one of them", SEPARATION},
+	{"/separation/probabilities", FIELD_LIST, 0, 0, 1, POUND_PROBABILITIES_MAX, FIELD_CLOSED, "",
+	 .text = "probabilities to pound whose gaps are computed (default: 0.5, 0.16, 0.1, 0.05, 0.02, 0.01)", SEPARATION},
+	{"/separation/probabilities/*", FIELD_REAL, 0, NAN, 0, 1, FIELD_OPEN, "",
+	 .text = "one of them", SEPARATION},
+	{"/separation/intensity", FIELD_TEXT, AT(separation.intensity), 0, 1, 200, FIELD_CLOSED, "",
+	 .text = "path of the sweep whose values are intensities of the ground motion: fragility curves are fitted over them", SEPARATION},
+	{"/separation/hazard", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
+	 .text = "hazard curve: how often a year intensities are exceeded", SEPARATION},
+	{"/separation/hazard/intensities", FIELD_LIST, 0, NAN, 2, POUND_STRIPES_MAX, FIELD_CLOSED, "",
+	 .text = "intensities in the unit of the sweep, ascending", SEPARATION},
+	{"/separation/hazard/intensities/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_OPEN, "",
+	 .text = "one of them", SEPARATION},
+	{"/separation/hazard/annual_rates", FIELD_LIST, 0, NAN, 2, POUND_STRIPES_MAX, FIELD_CLOSED, "",
+	 .text = "mean annual rates of exceedance, one per intensity, descending", SEPARATION},
+	{"/separation/hazard/annual_rates/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_OPEN, "1/year",
+	 .text = "one of them", SEPARATION},
+	{"/separation/return_periods_years", FIELD_LIST, 0, 0, 1, POUND_PERIODS_MAX, FIELD_CLOSED, "",
+	 .text = "return periods of pounding whose gaps are computed; needs hazard", SEPARATION},
+	{"/separation/return_periods_years/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_OPEN, "years",
+	 .text = "one of them", SEPARATION},
 
 	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "solver settings to compare with the event solver; at most 100000 runs in all", CONVERGENCE, NOT_SCENE},

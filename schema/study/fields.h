@@ -40,8 +40,10 @@ struct field {
 	const char *unit;     /* "": none */
 	const char *text;     /* one line for people */
 	const char *(*choice)(int row);
-	const char *kinds;        /* names of the kinds that use it, between spaces; NULL: all */
-	const char *types;        /* names of the excitations that use it, likewise */
+	const char *kinds; /* names of the kinds that use it, between spaces; NULL: all */
+	const char
+	    *optional;     /* names of those that can do without it though others cannot, likewise; NULL: none */
+	const char *types; /* names of the excitations that use it, likewise */
 	bool (*solvers)(int row); /* whether the solver of that row uses it; NULL: all */
 	enum field_sceneless sceneless;
 	bool

@@ -396,7 +396,8 @@ static void check_kind(const struct pound_study *study, struct problems *problem
 	static const bool kinds[] = {[POUND_KIND_RESPONSE] = true,
 	                             [POUND_KIND_SENSITIVITY] = true,
 	                             [POUND_KIND_CONVERGENCE] = false,
-	                             [POUND_KIND_FLOOR_SPECTRUM] = true};
+	                             [POUND_KIND_FLOOR_SPECTRUM] = true,
+	                             [POUND_KIND_SEPARATION] = false};
 	if (!kinds[study->kind])
 		problems_add(problems, "/scene/buildings",
 		             "kind \"%s\" cannot be computed of buildings, only of oscillators",

@@ -10,6 +10,7 @@
 #include "schema/study/field_types.h"
 #include "schema/study/study_buildings.h"
 #include "schema/study/study_json.h"
+#include "schema/study/study_separation.h"
 #include "schema/study/study_size.h"
 #include "schema/study/study_spectrum.h"
 #include "schema/study/study_suite.h"
@@ -427,7 +428,7 @@ static void check_forces(const struct pound_study *study, struct problems *probl
 static void check_order(const struct pound_study *study, struct problems *problems)
 {
 	const char *order = pound_order_name(study->design.order);
-	if (study->kind == POUND_KIND_SENSITIVITY && strcmp(order, "factorial") == 0 &&
+	if (pound_study_sampled(study) && strcmp(order, "factorial") == 0 &&
 	    study->n_inputs > POUND_FACTORIAL_INPUTS_MAX)
 		problems_add(
 		    problems, "/design/order",
@@ -438,7 +439,7 @@ static void check_order(const struct pound_study *study, struct problems *proble
 /* The sequence behind a quasi-random design has so many dimensions. */
 static void check_dimensions(const struct pound_study *study, struct problems *problems)
 {
-	if (study->kind == POUND_KIND_SENSITIVITY && pound_design_quasi_random(study->design.method) &&
+	if (pound_study_sampled(study) && pound_design_quasi_random(study->design.method) &&
 	    study->n_inputs > POUND_QUASI_INPUTS_MAX)
 		problems_add(problems, "/design/method", "\"%s\" takes at most %d inputs, got %d",
 		             pound_design_name(study->design.method), POUND_QUASI_INPUTS_MAX, study->n_inputs);
@@ -582,6 +583,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	study_contact_check(study, problems);
 	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
 		study_spectrum_check(study, problems);
+	study_separation_check(study, problems);
 	if (rows_known(problems) && study_check_known(study, "/excitation/signals", problems) &&
 	    !problems_at(problems, "/convergence"))
 		study_size_check(study, problems);

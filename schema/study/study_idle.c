@@ -91,6 +91,9 @@ const char *study_idle(const struct pound_study *study, const struct field *fiel
 		return "has no effect: the records are not scaled";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
 		return "has no effect: there is no contact in this scene";
+	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && study->kind == POUND_KIND_SEPARATION &&
+	    study->n_outputs == 0)
+		return "has no effect: without \"outputs\" a study of separation runs nothing with contact";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0)
 		return study_contact_idle(study, fields_name(field));
 	if (strstr(field->pattern, "/law/") && !strstr(field->pattern, "/buildings/"))

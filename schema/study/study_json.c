@@ -18,6 +18,7 @@
 #include "schema/study/reader.h"
 #include "schema/study/study_buildings.h"
 #include "schema/study/study_check.h"
+#include "schema/study/study_separation.h"
 #include "schema/study/study_spectrum.h"
 #include "schema/study/study_suite.h"
 
@@ -128,7 +129,8 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 		bool needed = isnan(field->absent) && fields_child(field, pattern) && kind_known &&
 		              (r->excitation || !field->types) &&
 		              fields_used(field, r->kind, r->excitation, r->solver) &&
-		              !(r->study->elsewhere && field->sceneless);
+		              !(r->study->elsewhere && field->sceneless) &&
+		              !(r->kind && fields_listed(field->optional, r->kind));
 		if (!needed || cJSON_GetObjectItemCaseSensitive(node, fields_name(field)) ||
 		    (field->instead && cJSON_GetObjectItemCaseSensitive(node, field->instead)))
 			continue;
@@ -225,7 +227,8 @@ static void unneeded(struct reader *r, const cJSON *object, const char *name, co
 static void read_design(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	struct pound_design *design = &r->study->design;
-	if (!reader_object(r, field->pattern, node, base) || !r->kind || strcmp(r->kind, "sensitivity") != 0)
+	const struct field *rows = fields_find("/design/rows");
+	if (!reader_object(r, field->pattern, node, base) || !r->kind || !fields_listed(rows->kinds, r->kind))
 		return;
 	if (!pound_design_quasi_random(design->method))
 		unneeded(r, node, "randomisations", pound_design_name(design->method));
@@ -340,6 +343,11 @@ static const struct {
     {"/sweep/*/values", reader_values},
     {"/outputs", read_outputs},
     {"/spectrum/frequencies_hz", reader_frequencies},
+    {"/separation/gaps_m", reader_separation},
+    {"/separation/probabilities", reader_separation},
+    {"/separation/hazard/intensities", reader_separation},
+    {"/separation/hazard/annual_rates", reader_separation},
+    {"/separation/return_periods_years", reader_separation},
     {"/convergence/newmark/steps_s", reader_settings},
     {"/convergence/central_difference/steps_s", reader_settings},
     {"/convergence/adaptive/tolerances", reader_settings},
@@ -502,6 +510,7 @@ struct pound_study *study_from_document(const struct study_document *source, str
 	reader_object(&r, "", document, (char *)study);
 	reader_contacts(&r, document);
 	reader_ordinates(&r, document);
+	reader_undesigned(&r, document);
 	cJSON_Delete(document);
 	signals_count(&study->scene.excitation);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
@@ -513,8 +522,10 @@ struct pound_study *study_from_document(const struct study_document *source, str
 		study_free(study);
 		return NULL;
 	}
-	if (study->n_outputs == 0 && study->kind != POUND_KIND_FLOOR_SPECTRUM && !study->elsewhere)
+	if (study->n_outputs == 0 && study->kind != POUND_KIND_FLOOR_SPECTRUM &&
+	    study->kind != POUND_KIND_SEPARATION && !study->elsewhere)
 		outputs_default(study);
+	study_separation_lay(study);
 	study_places_lay(study);
 	study_spectrum_lay(study);
 	return study;

@@ -47,7 +47,7 @@ void study_size_steps(const struct pound_study *study, double *least, double *mo
 
 static const char *size_pointer(const struct pound_study *study)
 {
-	return study->kind == POUND_KIND_SENSITIVITY ? "/design/rows" : "/scene/excitation/signals";
+	return pound_study_sampled(study) ? "/design/rows" : "/scene/excitation/signals";
 }
 
 /* Runs of one cell for one signal. */
@@ -55,9 +55,8 @@ static double design_runs(const struct pound_study *study)
 {
 	if (study->kind == POUND_KIND_CONVERGENCE)
 		return pound_convergence_trials(study);
-	return study->kind != POUND_KIND_SENSITIVITY
-	           ? 1
-	           : (double)pound_design_rows_most(study) * pound_design_samples(study);
+	return !pound_study_sampled(study) ? 1
+	                                   : (double)pound_design_rows_most(study) * pound_design_samples(study);
 }
 
 /* Steps of the longest sample interval; those of an adaptive solver are not known, its samples count as one each. */
@@ -126,7 +125,7 @@ static void check_until(const struct pound_study *study, struct problems *proble
 void study_size_check(const struct pound_study *study, struct problems *problems)
 {
 	const char *pointer = size_pointer(study);
-	bool sampled = study->kind == POUND_KIND_SENSITIVITY;
+	bool sampled = pound_study_sampled(study);
 	int most = study->kind == POUND_KIND_CONVERGENCE ? STUDY_TRIALS_MAX : STUDY_RUNS_MAX;
 	double runs = study_size_cells(study) * design_runs(study) * study->scene.excitation.signals;
 	if (sampled)

@@ -72,6 +72,14 @@ const char study_documents_floor[] =
     "\"pulses\": 15},\n"
     " \"histories\": false, \"design\": {\"seed\": 7}}\n";
 
+const char study_documents_separation[] =
+    "{\"kind\": \"separation\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], "
+    "\"excitation\": {\"signals\": 4}}, \"sweep\": [{\"path\": \"/excitation/peak_m_s2\", \"values\": [1, "
+    "2]}], "
+    "\"separation\": {\"gaps_m\": [0, 0.01], \"probabilities\": [0.5, 0.1], \"intensity\": "
+    "\"/excitation/peak_m_s2\", \"hazard\": {\"intensities\": [0.1, 5], \"annual_rates\": [0.1, 0.001]}, "
+    "\"return_periods_years\": [475]}, \"design\": {\"seed\": 7}}";
+
 const char *documents_named(const char *name)
 {
 	static const struct {
@@ -80,7 +88,8 @@ const char *documents_named(const char *name)
 	           {"response", study_documents_response},
 	           {"row", study_documents_row},
 	           {"convergence", study_documents_convergence},
-	           {"floor", study_documents_floor}};
+	           {"floor", study_documents_floor},
+	           {"separation", study_documents_separation}};
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
 		if (strcmp(all[i].name, name) == 0)
 			return all[i].document;

@@ -13,9 +13,11 @@ extern const char study_documents_response[]; /* the least response: two frequen
 extern const char
     study_documents_convergence[]; /* a short convergence study, every member of it written out */
 
+extern const char
+    study_documents_separation[];          /* how wide a gap has to be, every member of that written out */
 extern const char study_documents_floor[]; /* a floor spectrum study, every member of it written out */
 
-/* One of these by its name: "sensitivity", "row", "response", "convergence", "floor". */
+/* One of these by its name: "sensitivity", "row", "response", "convergence", "floor", "separation". */
 const char *documents_named(const char *name);
 
 /* A copy with the first `from` replaced, which must be there; the caller frees it. */

@@ -1,0 +1,53 @@
+/* request_parts.h - the inside of a request.  For request.c and request_size.c. */
+#ifndef REQUEST_PARTS_H
+#define REQUEST_PARTS_H
+
+#include "engine/run/demand.h"
+#include "engine/run/pair_peaks.h"
+#include "engine/run/request.h"
+#include "engine/run/request_keys.h"
+#include "engine/run/request_motions.h"
+
+/* what is known of one body without pounding */
+struct body_ask {
+	int march;                /* the last one asked, -1: none */
+	double yield;             /* [m] scaled; 0: the law has none, or the body never moves */
+	enum pound_status status; /* of the marches its yield displacement comes from */
+	bool wanted;   /* its response without pounding is needed, beyond finding its yield displacement */
+	bool finished; /* the last march is that response */
+	bool found;    /* the search for the target demand is over */
+	struct pound_demand demand;
+};
+
+struct ask {
+	struct pound_scene scene;
+	int cell, row, sample; /* of it */
+	int motion;
+	bool response; /* all of the response is wanted */
+	bool balanced; /* with the energy balances of its runs */
+	struct body_ask bodies[POUND_OSCILLATORS];
+	int march; /* with pounding; -1: the responses without pounding are the answer */
+	int apart; /* both bodies without contact, observed; -1: not run */
+};
+
+struct pound_request {
+	struct pound_request_size size;
+	struct pound_keys motion_keys, march_keys;
+	struct pound_motion *motions;       /* (motions) */
+	double *ground;                     /* (samples) */
+	struct ask *asks;                   /* (asks) */
+	struct pound_row_ask *row_asks;     /* of a row of buildings, instead of their bodies and march  (asks) */
+	struct pound_row_asks rows;         /* the marches of these */
+	const struct pound_cells *campaign; /* of the last run */
+	struct pound_task *tasks;           /* (tasks) */
+	struct pound_task_result *results;  /* (tasks) */
+	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; none: no output reads them) */
+	double (*apart)
+	    [2]; /* closing and opening displacement of both bodies without contact, by ask  (asks; likewise) */
+	struct pound_pair_maps pair_maps; /* of the last two linear bodies that were followed without contact */
+	void *scratch;                    /* of the march */
+	int n_before;                     /* marches without pounding, they are the first */
+	int n_asks, n_items;              /* of the last run; n_items without those of checks */
+};
+
+#endif

@@ -1,0 +1,340 @@
+/* separation_outputs.c - from the runs of a study of separation to the gaps needed.
+ *
+ * A run counts as often as it is one of matrix A or B of a design, or a signal without a design: only these are drawn at random.
+ * Runs of a row of the design are a cluster, as they share ground motions or structures; without a design every signal is one. */
+#include "engine/run/separation_outputs.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/separation/separation.h"
+
+enum {
+	GAPS_ROUND = 40, /* gaps at most that the study does not name, beside 0 */
+	MATRICES = 2,    /* A and B */
+	GAP = 0,
+	LEFT = 1,
+	RIGHT = 2, /* the study's own outputs; without the last the right body is a wall */
+};
+
+/* ---- memory ---- */
+
+static bool separates(const struct pound_cells *c)
+{
+	return c->study->kind == POUND_KIND_SEPARATION;
+}
+
+static int clusters_of(const struct pound_cells *c, int rows)
+{
+	return pound_study_sampled(c->study) ? rows : c->n_signals;
+}
+
+static int cluster_size(const struct pound_cells *c)
+{
+	return pound_study_sampled(c->study) ? MATRICES * c->n_signals : 1;
+}
+
+static size_t runs_of(const struct pound_cells *c)
+{
+	return (size_t)clusters_of(c, c->n_rows) * (size_t)cluster_size(c);
+}
+
+static int stripes_of(const struct pound_study *study)
+{
+	return study->separation.stripes < 0 ? 1 : study->sweeps[study->separation.stripes].n_values;
+}
+
+static int sets_of(const struct pound_cells *c)
+{
+	return c->study->separation.stripes < 0 ? 0 : c->n_cells / stripes_of(c->study);
+}
+
+static int gaps_most(const struct pound_study *study)
+{
+	return study->separation.n_gaps ? study->separation.n_gaps : GAPS_ROUND + 1;
+}
+
+/* The runs of all stripes, and as many sorted. */
+size_t pound_separation_scratch(const struct pound_cells *campaign)
+{
+	return separates(campaign) ? 2 * runs_of(campaign) * (size_t)stripes_of(campaign->study) : 0;
+}
+
+/* Carves the parts of the result out of memory, or with memory NULL only counts the bytes. */
+static size_t carve(const struct pound_cells *c, char *memory, struct pound_separation_result *result)
+{
+	const struct pound_separation *asked = &c->study->separation;
+	const size_t gaps = (size_t)gaps_most(c->study), cells = (size_t)c->n_cells, sets = (size_t)sets_of(c);
+	const size_t values = pound_study_sampled(c->study) ? 0 : (size_t)c->n_signals;
+	size_t at = 0;
+	struct pound_separation_result none, *into = memory ? result : &none;
+	into->needs = memory ? (struct pound_needs *)(void *)memory : NULL;
+	at += sizeof *into->needs * cells;
+	into->sets = memory ? (struct pound_stripe_set *)(void *)(memory + at) : NULL;
+	at += sizeof *into->sets * sets;
+	for (size_t k = 0; k < cells; k++) {
+		if (memory) {
+			into->needs[k].probability = (struct pound_estimate *)(void *)(memory + at);
+			into->needs[k].gap = into->needs[k].probability + gaps;
+			into->needs[k].needed = (double *)(into->needs[k].gap + asked->n_probabilities);
+		}
+		at +=
+		    sizeof(struct pound_estimate) * (gaps + (size_t)asked->n_probabilities) + sizeof(double) * values;
+	}
+	for (size_t k = 0; k < sets; k++) {
+		if (memory) {
+			into->sets[k].curves = (struct pound_fragility *)(void *)(memory + at);
+			into->sets[k].return_gap = (struct pound_estimate *)(void *)(into->sets[k].curves + gaps);
+		}
+		at +=
+		    sizeof(struct pound_fragility) * gaps + sizeof(struct pound_estimate) * (size_t)asked->n_periods;
+	}
+	return at;
+}
+
+size_t pound_separation_bytes(const struct pound_cells *campaign)
+{
+	return separates(campaign) ? carve(campaign, NULL, NULL) : 0;
+}
+
+void pound_separation_layout(const struct pound_cells *campaign, void *memory,
+                             struct pound_separation_result *result)
+{
+	if (separates(campaign))
+		carve(campaign, memory, result);
+}
+
+/* ---- gaps needed ---- */
+
+/* Two numbers of a run whose ratio of means an output is. */
+static const double *run_values(const struct pound_run *run, int cell, int row, int sample, int signal,
+                                int output)
+{
+	return pound_blocks_run(&run->layout, row * run->campaign.n_signals + signal, cell, sample) + 2 * output;
+}
+
+static int samples_counted(const struct pound_run *run)
+{
+	return pound_study_sampled(run->campaign.study) ? MATRICES : 1;
+}
+
+/* The gaps needed in a cell. */
+static struct pound_needed needed_of(const struct pound_run *run, int cell, double *gap)
+{
+	const struct pound_cells *c = &run->campaign;
+	double *at = gap;
+	for (int row = 0; row < run->rows; row++)
+		for (int sample = 0; sample < samples_counted(run); sample++)
+			for (int signal = 0; signal < c->n_signals; signal++)
+				*at++ = *run_values(run, cell, row, sample, signal, GAP);
+	return (struct pound_needed){clusters_of(c, run->rows), cluster_size(c), gap};
+}
+
+/* Mean, scatter and the largest of the gaps needed. */
+static void moments(const struct pound_needed *needed, struct pound_needs *needs)
+{
+	const size_t n = (size_t)needed->n_clusters * (size_t)needed->size;
+	const struct pound_needed_count count = pound_needed_count(needed, 0);
+	double sum = 0, squares = 0;
+	needs->runs = count.runs;
+	needs->clusters = (int)count.clusters;
+	needs->largest = NAN;
+	for (size_t k = 0; k < n; k++) {
+		sum += isnan(needed->gap[k]) ? 0 : needed->gap[k];
+		needs->largest = fmax(needs->largest, needed->gap[k]);
+	}
+	needs->mean = sum / (double)count.runs;
+	for (size_t k = 0; k < n; k++) {
+		const double off = needed->gap[k] - needs->mean;
+		squares += isnan(off) ? 0 : off * off;
+	}
+	needs->deviation = count.runs > 1 ? sqrt(squares / (double)(count.runs - 1)) : NAN;
+}
+
+/* ---- rules ---- */
+
+/* Means over the signals of a structure of both bodies' largest displacements; how many signals have a result. */
+static int displacements_of(const struct pound_run *run, int cell, int row, int sample,
+                            double mean[POUND_OSCILLATORS])
+{
+	const bool wall = run->campaign.study->separation.n_own <= RIGHT;
+	double sum[POUND_OSCILLATORS] = {0};
+	int n = 0;
+	for (int signal = 0; signal < run->campaign.n_signals; signal++) {
+		const double left = *run_values(run, cell, row, sample, signal, LEFT);
+		if (isnan(left))
+			continue;
+		sum[0] += left;
+		sum[1] += wall ? 0 : *run_values(run, cell, row, sample, signal, RIGHT);
+		n++;
+	}
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		mean[i] = sum[i] / n;
+	return n;
+}
+
+/* What the rules ask for: of each structure by the means over its signals, and the mean of that over the structures. */
+static void rules_apply(const struct pound_run *run, int cell, const struct pound_needed *needed,
+                        struct pound_needs *needs)
+{
+	double displacement[POUND_OSCILLATORS] = {0}, gaps[POUND_RULES] = {0}, correlation = 0, n = 0;
+	for (int row = 0; row < run->rows; row++)
+		for (int sample = 0; sample < samples_counted(run); sample++) {
+			const struct pound_scene scene = pound_cells_scene(&run->campaign, cell, row, sample, NULL);
+			double frequency[POUND_OSCILLATORS], damping[POUND_OSCILLATORS], mean[POUND_OSCILLATORS];
+			if (!displacements_of(run, cell, row, sample, mean))
+				continue;
+			for (int i = 0; i < POUND_OSCILLATORS; i++) {
+				const struct pound_oscillator *o = &scene.oscillators[i];
+				frequency[i] = o->rigid_wall ? 0 : o->frequency_hz;
+				damping[i] = o->damping_ratio;
+				displacement[i] += mean[i];
+			}
+			const double rho = pound_rule_correlation(frequency, damping);
+			correlation += rho;
+			for (int k = 0; k < POUND_RULES; k++)
+				gaps[k] += pound_rule_gap(k, mean, rho);
+			n++;
+		}
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		needs->displacement[i] = displacement[i] / n;
+	needs->correlation = correlation / n;
+	for (int k = 0; k < POUND_RULES; k++)
+		needs->rules[k] = (struct pound_rule){.gap = gaps[k] / n,
+		                                      .over = gaps[k] / n / needs->mean,
+		                                      .probability = pound_needed_probability(needed, gaps[k] / n)};
+}
+
+/* ---- a study ---- */
+
+/* A whole number times a power of ten, rounded once. */
+static double decimal(double whole, int exponent)
+{
+	double power = 1;
+	for (int k = abs(exponent); k > 0; k--)
+		power *= 10;
+	return exponent < 0 ? whole / power : whole * power;
+}
+
+/* Round gaps from 0 to the largest that a run needs, or above: whole multiples of 1, 2 or 5 times a power of ten. */
+static int gaps_round(double largest, double *gaps)
+{
+	static const double factors[] = {1, 2, 5};
+	int exponent = 0, k = 0, n = 0;
+	gaps[0] = 0;
+	if (!(largest > 0x1p-1000) || !(largest < 0x1p1000))
+		return 1;
+	while (decimal(GAPS_ROUND, exponent) >= largest)
+		exponent--;
+	while (decimal(GAPS_ROUND * factors[k], exponent) < largest)
+		if (++k == 3) {
+			k = 0;
+			exponent++;
+		}
+	while (n < GAPS_ROUND && gaps[n] < largest) {
+		n++;
+		gaps[n] = decimal(n * factors[k], exponent);
+	}
+	return n + 1;
+}
+
+/* The outputs of a cell of a study without a design, with pounding or without. */
+static void outputs_reduce(struct pound_run *run, int cell)
+{
+	struct pound_cell *into = &run->result.cells[cell];
+	into->runs_failed = 0;
+	for (int signal = 0; signal < run->campaign.n_signals; signal++)
+		into->runs_failed += isnan(*run_values(run, cell, 0, 0, signal, GAP));
+	for (int o = 0; o < run->campaign.study->n_outputs; o++) {
+		double above = 0, below = 0;
+		for (int signal = 0; signal < run->campaign.n_signals; signal++) {
+			const double *values = run_values(run, cell, 0, 0, signal, o);
+			above += isnan(values[0]) ? 0 : values[0];
+			below += isnan(values[0]) ? 0 : values[1];
+		}
+		into->outputs[o] = below > 0 ? above / below : NAN;
+	}
+}
+
+static void needs_reduce(struct pound_run *run, int cell, double *scratch)
+{
+	const struct pound_separation *asked = &run->campaign.study->separation;
+	const struct pound_separation_result *result = &run->result.separation;
+	struct pound_needs *needs = &result->needs[cell];
+	const struct pound_needed needed = needed_of(run, cell, scratch);
+	const size_t runs = (size_t)needed.n_clusters * (size_t)needed.size;
+	double *sorted = scratch + runs;
+	moments(&needed, needs);
+	rules_apply(run, cell, &needed, needs);
+	for (int g = 0; g < result->n_gaps; g++)
+		needs->probability[g] = pound_needed_probability(&needed, result->gaps[g]);
+	const int64_t n = pound_needed_sort(&needed, sorted);
+	for (int k = 0; k < asked->n_probabilities; k++)
+		needs->gap[k] = pound_needed_gap(&needed, sorted, n, asked->probabilities[k]);
+	for (size_t k = 0; k < runs && !pound_study_sampled(run->campaign.study); k++)
+		needs->needed[k] = needed.gap[k];
+}
+
+/* The cells that differ from one in a sweep alone are so far from each other. */
+static int stride_of(const struct pound_study *study, int sweep)
+{
+	int stride = 1;
+	for (int s = study->n_sweeps - 1; s > sweep; s--)
+		stride *= study->sweeps[s].n_values;
+	return stride;
+}
+
+static void set_reduce(struct pound_run *run, struct pound_stripe_set *set, double *scratch)
+{
+	const struct pound_separation *asked = &run->campaign.study->separation;
+	const struct pound_separation_result *result = &run->result.separation;
+	const struct pound_sweep *sweep = &run->campaign.study->sweeps[asked->stripes];
+	const int stride = stride_of(run->campaign.study, asked->stripes);
+	struct pound_needed needed[POUND_STRIPES_MAX];
+	double weights[POUND_STRIPES_MAX];
+	const struct pound_stripes stripes = {sweep->n_values, sweep->values, needed};
+	const struct pound_hazard hazard = {asked->n_intensities, asked->intensities, asked->rates};
+	const size_t runs = runs_of(&run->campaign);
+	for (int i = 0; i < stripes.n; i++)
+		needed[i] = needed_of(run, set->cell + i * stride, scratch + (size_t)i * runs);
+	set->beyond = hazard.n ? pound_hazard_weights(&hazard, &stripes, weights) : NAN;
+	for (int g = 0; g < result->n_gaps; g++) {
+		set->curves[g] = pound_fragility_fit(&stripes, result->gaps[g]);
+		set->curves[g].rate = hazard.n ? pound_hazard_rate(&stripes, weights, set->beyond, result->gaps[g])
+		                               : (struct pound_estimate){NAN, NAN, NAN};
+	}
+	for (int k = 0; k < asked->n_periods; k++)
+		set->return_gap[k] = pound_hazard_gap(&stripes, weights, set->beyond, 1 / asked->periods[k],
+		                                      scratch + (size_t)stripes.n * runs);
+}
+
+/* Test     unit_separation_result */
+void pound_separation_reduce(struct pound_run *run, double *scratch)
+{
+	const struct pound_cells *c = &run->campaign;
+	const struct pound_separation *asked = &c->study->separation;
+	struct pound_separation_result *result = &run->result.separation;
+	double largest = 0;
+	for (int cell = 0; cell < c->n_cells && !asked->n_gaps; cell++) {
+		struct pound_needs needs;
+		const struct pound_needed needed = needed_of(run, cell, scratch);
+		moments(&needed, &needs);
+		largest = fmax(largest, needs.largest);
+	}
+	result->n_gaps = asked->n_gaps ? asked->n_gaps : gaps_round(largest, result->gaps);
+	for (int g = 0; g < asked->n_gaps; g++)
+		result->gaps[g] = asked->gaps[g];
+	for (int cell = 0; cell < c->n_cells; cell++) {
+		needs_reduce(run, cell, scratch);
+		if (!pound_study_sampled(c->study))
+			outputs_reduce(run, cell);
+	}
+	result->n_sets = 0;
+	const int stride = asked->stripes < 0 ? 0 : stride_of(c->study, asked->stripes);
+	for (int cell = 0; cell < c->n_cells && asked->stripes >= 0; cell++)
+		if (cell / stride % stripes_of(c->study) == 0) {
+			struct pound_stripe_set *set = &result->sets[result->n_sets++];
+			set->cell = cell;
+			set_reduce(run, set, scratch);
+		}
+}

@@ -1,0 +1,70 @@
+/* rules.c - rules of codes and papers for the gap of two buildings, from the largest displacement of each alone.
+ *
+ * Adding one: a row in rules[]. */
+#include <assert.h>
+#include <math.h>
+
+#include "engine/separation/separation.h"
+
+static const struct {
+	const char *name, *text; /* the source, in a line */
+	bool summed;             /* displacements add up; else their squares, less what correlation takes off */
+	bool correlated;
+} rules[] = {
+    {"absolute_sum", "sum of both displacements: no rule asks for more", .summed = true},
+    {"srss", "root of the sum of squares: Eurocode 8 part 1, 4.4.2.7; ASCE 7-16, 12.12.3", .summed = false},
+    {"double_difference", "double difference combination by the CQC coefficient: Jeng, Kasai and Maison 1992",
+     .summed = false, .correlated = true},
+};
+
+static_assert(sizeof rules / sizeof rules[0] == POUND_RULES, "a row for each rule");
+
+const char *pound_rule_name(int row)
+{
+	return row >= 0 && row < POUND_RULES ? rules[row].name : NULL;
+}
+
+const char *pound_rule_text(int row)
+{
+	return rules[row].text;
+}
+
+/* Correlation of the displacements of two linear oscillators under the same stationary white noise.
+ *
+ * Given    frequency   w     any unit   of both, > 0
+ *          damping     xi    -          > 0 of one at least
+ * Returns  value       rho   -          1: they move alike; 0: a wall, which does not move
+ *
+ *   rho = 8 (xi_1 xi_2)^1/2 (r xi_1 + xi_2) r^3/2 / ((1 - r^2)^2 + 4 xi_1 xi_2 r (1 + r^2) + 4 (xi_1^2 + xi_2^2) r^2)
+ *   r = w_1 / w_2
+ *
+ * Valid    exact for white noise; near for ground motions that are broad beside both frequencies
+ * Source   Der Kiureghian 1981, Earthquake Eng. Struct. Dyn. 9, 419-435
+ * Test     unit_separation: the_correlation_is_that_of_white_noise
+ */
+double pound_rule_correlation(const double frequency[POUND_OSCILLATORS],
+                              const double damping[POUND_OSCILLATORS])
+{
+	if (!(frequency[0] > 0) || !(frequency[1] > 0))
+		return 0;
+	const double r = frequency[0] / frequency[1], a = damping[0], b = damping[1];
+	if (r == 1 && a == b)
+		return 1;
+	const double below =
+	    (1 - r * r) * (1 - r * r) + 4 * a * b * r * (1 + r * r) + 4 * (a * a + b * b) * r * r;
+	return 8 * sqrt(a * b) * (r * a + b) * r * sqrt(r) / below;
+}
+
+/* The gap that a rule asks for.
+ *
+ * Given    displacement  the largest of each body without the other one [m]
+ *          correlation   of both
+ */
+double pound_rule_gap(int rule, const double displacement[POUND_OSCILLATORS], double correlation)
+{
+	const double u = displacement[0], v = displacement[1];
+	if (rules[rule].summed)
+		return u + v;
+	const double squared = u * u + v * v - (rules[rule].correlated ? 2 * correlation * u * v : 0);
+	return sqrt(fmax(squared, 0));
+}

@@ -1,0 +1,203 @@
+/* separation_plot.c - how wide a gap has to be: `separation` over the gap, `fragility` over a swept intensity. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "schema/figure/plot.h"
+
+enum { CURVES_MOST = 5, POINTS = 80, RULES_MOST = 3 };
+
+/* ---- separation ---- */
+
+bool plot_has_separation(const cJSON *result)
+{
+	const cJSON *cell = plot_first(plot_member(result, "cells"));
+	return plot_first(plot_member(cell, "pounding")) != NULL;
+}
+
+static const cJSON *rule_at(const cJSON *cell, int k)
+{
+	return cJSON_GetArrayItem(plot_member(cell, "rules"), k);
+}
+
+/* "absolute_sum" -> "absolute sum", "srss" -> "SRSS" */
+static const char *spaced(const char *name, char text[PLOT_TEXT])
+{
+	snprintf(text, PLOT_TEXT, "%s", strcmp(name, "srss") == 0 ? "SRSS" : name);
+	for (char *c = text; *c; c++)
+		*c = *c == '_' ? ' ' : *c;
+	return text;
+}
+
+static void draw_probability(struct plot *plot, const cJSON *cell, struct panel *panel)
+{
+	const cJSON *pounding = plot_member(cell, "pounding");
+	struct range gaps = RANGE_EMPTY, whole = {0, 1};
+	int n, n_p, n_low, n_high;
+	double *gap = plot_column(plot, pounding, "gap_m", &n),
+	       *p = plot_column(plot, pounding, "probability", &n_p),
+	       *low = plot_column(plot, pounding, "low", &n_low),
+	       *high = plot_column(plot, pounding, "high", &n_high);
+	if (!gap || !p || !low || !high)
+		return;
+	for (int k = 0; k < n; k++)
+		range_add(&gaps, gap[k]);
+	for (int k = 0; k < RULES_MOST; k++)
+		range_add(&gaps, plot_number(rule_at(cell, k), "gap_m"));
+	panel->x_label = "gap [m]";
+	panel->y_label = "probability of pounding";
+	panel->across = axis_linear(gaps);
+	panel->up = axis_linear(whole);
+	panel_draw(&plot->d, panel);
+	for (int k = 0; k < n; k++) {
+		gap[k] = axis_at(&panel->across, gap[k]);
+		p[k] = axis_at(&panel->up, p[k]);
+		low[k] = axis_at(&panel->up, low[k]);
+		high[k] = axis_at(&panel->up, high[k]);
+	}
+	draw_band(&plot->d, &(struct pen){.ink = 0, .opacity = 0.2}, n, gap, low, high);
+	draw_curve(&plot->d, &(struct pen){.ink = 0, .width = 2}, n, gap, p);
+	for (int k = 0; k < n; k++) {
+		char text[PLOT_TEXT], number[2][32];
+		const cJSON *point = cJSON_GetArrayItem(pounding, k);
+		snprintf(text, sizeof text, "gap %s m: %s", draw_number(plot_number(point, "gap_m"), number[0]),
+		         draw_number(plot_number(point, "probability"), number[1]));
+		draw_mark(&plot->d, &(struct mark){.series = 0, .size = 3}, gap[k], p[k], text);
+	}
+	for (int k = 0; k < RULES_MOST; k++) {
+		const double at = axis_at(&panel->across, plot_number(rule_at(cell, k), "gap_m"));
+		if (isfinite(at))
+			draw_line(&plot->d,
+			          &(struct pen){.ink = (enum ink)(k + 1), .width = 1.8, .dash = draw_dash(k + 1)}, at,
+			          panel->top, at, panel->bottom);
+	}
+}
+
+void plot_separation(struct plot *plot)
+{
+	char sweep[PLOT_TEXT], names[RULES_MOST][PLOT_TEXT], number[3][32];
+	struct key keys[1 + RULES_MOST] = {{.name = "share of the runs that pound, with its 95 % band",
+	                                    .pen = {.ink = 0, .width = 2},
+	                                    .band = true}};
+	const cJSON *cell = plot_cell(plot), *at_5 = NULL, *gap;
+	if (!cell)
+		return;
+	for (int k = 0; k < RULES_MOST; k++)
+		keys[1 + k] = (struct key){.name = spaced(plot_text(rule_at(cell, k), "name"), names[k]),
+		                           .pen = {.ink = (enum ink)(k + 1), .width = 1.8, .dash = draw_dash(k + 1)}};
+	plot_head(plot, "How wide a gap", plot_sweep_text(cell, 0, NULL, sweep));
+	const double top = draw_legend(&plot->d, 1 + RULES_MOST, keys, plot->y) + 8;
+	struct panel panel = {.height = 360};
+	panel_place(&plot->d, 1, 0, top, &panel);
+	draw_probability(plot, cell, &panel);
+	cJSON_ArrayForEach(gap, plot_member(cell, "gaps")) if (plot_number(gap, "probability") == 0.05) at_5 =
+	    gap;
+	const cJSON *needed = plot_member(cell, "gap_needed");
+	snprintf(plot->sentence, sizeof plot->sentence, "Mean gap needed %s m, largest %s m of %.0f runs%s%s%s.",
+	         draw_number(plot_number(needed, "mean_m"), number[0]),
+	         draw_number(plot_number(needed, "largest_m"), number[1]), plot_number(needed, "runs"),
+	         at_5 ? "; 5 % need more than " : "",
+	         at_5 ? draw_number(plot_number(at_5, "gap_m"), number[2]) : "", at_5 ? " m" : "");
+}
+
+/* ---- fragility ---- */
+
+bool plot_has_fragility(const cJSON *result)
+{
+	return plot_first(plot_member(result, "fragility")) != NULL;
+}
+
+/* Whether a cell is one of the set's: it has all that the set does not vary. */
+static bool in_set(const cJSON *set, const cJSON *cell)
+{
+	const cJSON *value;
+	cJSON_ArrayForEach(
+	    value,
+	    plot_member(set, "sweep")) if (!cJSON_Compare(value,
+	                                                  plot_member(plot_member(cell, "sweep"), value->string),
+	                                                  true)) return false;
+	return true;
+}
+
+/* Draws a gap's curve and what the runs counted. */
+static void draw_fragility(struct plot *plot, const cJSON *set, int g, int series, const struct panel *panel)
+{
+	const cJSON *curve = cJSON_GetArrayItem(plot_member(set, "curves"), g), *cell;
+	const double median = plot_number(curve, "median"), dispersion = plot_number(curve, "dispersion");
+	double x[POINTS], y[POINTS];
+	for (int k = 0; k < POINTS; k++) {
+		const double at = panel->across.low * pow(panel->across.high / panel->across.low, k / (POINTS - 1.0));
+		x[k] = axis_at(&panel->across, at);
+		y[k] = axis_at(&panel->up, 0.5 * erfc(-log(at / median) / (dispersion * sqrt(2))));
+	}
+	draw_curve(&plot->d, &(struct pen){.ink = (enum ink)series, .width = 2}, POINTS, x, y);
+	cJSON_ArrayForEach(cell, plot_member(plot->result, "cells"))
+	{
+		if (!in_set(set, cell))
+			continue;
+		const cJSON *point = cJSON_GetArrayItem(plot_member(cell, "pounding"), g);
+		const double at = plot_number(plot_member(cell, "sweep"), plot_text(set, "intensity"));
+		char text[PLOT_TEXT], number[3][32];
+		snprintf(text, sizeof text, "gap %s m, intensity %s: %s",
+		         draw_number(plot_number(point, "gap_m"), number[0]), draw_number(at, number[1]),
+		         draw_number(plot_number(point, "probability"), number[2]));
+		draw_mark(&plot->d, &(struct mark){.series = series, .size = 3.5}, axis_at(&panel->across, at),
+		          axis_at(&panel->up, plot_number(point, "probability")), text);
+	}
+}
+
+void plot_fragility(struct plot *plot)
+{
+	const cJSON *chosen = plot_cell(plot), *set = plot_first(plot_member(plot->result, "fragility")), *cell,
+	            *curve;
+	char label[PLOT_TEXT], names[CURVES_MOST][PLOT_TEXT], sweep[PLOT_TEXT], number[2][32];
+	struct range across = RANGE_EMPTY, whole = {0, 1};
+	struct key keys[CURVES_MOST];
+	int with[CURVES_MOST], n_curves = 0, n = 0, g = 0;
+	if (!chosen)
+		return;
+	while (set && !in_set(set, chosen))
+		set = set->next;
+	const char *intensity = plot_text(set, "intensity");
+	cJSON_ArrayForEach(cell, plot_member(plot->result, "cells")) if (in_set(set, cell))
+	    range_add(&across, plot_number(plot_member(cell, "sweep"), intensity));
+	cJSON_ArrayForEach(curve, plot_member(set, "curves")) n_curves += isfinite(plot_number(curve, "median"));
+	// as many as colors tell apart, evenly among those that have a curve
+	int seen = 0;
+	cJSON_ArrayForEach(curve, plot_member(set, "curves"))
+	{
+		if (isfinite(plot_number(curve, "median"))) {
+			const int most = n_curves < CURVES_MOST ? n_curves : CURVES_MOST;
+			if (n < most && seen * (most > 1 ? most - 1 : 1) >= n * (n_curves - 1)) {
+				snprintf(names[n], PLOT_TEXT, "gap %s m",
+				         draw_number(plot_number(curve, "gap_m"), number[0]));
+				keys[n] = (struct key){.name = names[n],
+				                       .mark = {.series = n},
+				                       .pen = {.ink = (enum ink)n, .width = 2},
+				                       .marked = true};
+				with[n++] = g;
+			}
+			seen++;
+		}
+		g++;
+	}
+	plot_path_name(intensity, label);
+	plot_head(plot, "Fragility curves", plot_sweep_text(chosen, 1, &intensity, sweep));
+	const double top = draw_legend(&plot->d, n, keys, plot->y) + 8;
+	struct panel panel = {.height = 360, .x_label = label, .y_label = "probability of pounding"};
+	panel_place(&plot->d, 1, 0, top, &panel);
+	panel.across = axis_log(across);
+	panel.up = axis_linear(whole);
+	panel_draw(&plot->d, &panel);
+	for (int k = 0; k < n; k++)
+		draw_fragility(plot, set, with[k], k, &panel);
+	const cJSON *first = n ? cJSON_GetArrayItem(plot_member(set, "curves"), with[0]) : NULL;
+	if (first)
+		snprintf(
+		    plot->sentence, sizeof plot->sentence,
+		    "%.100s: half of the motions of intensity %s pound, dispersion %s. Marks: what the runs counted.",
+		    names[0], draw_number(plot_number(first, "median"), number[0]),
+		    draw_number(plot_number(first, "dispersion"), number[1]));
+	else
+		snprintf(plot->sentence, sizeof plot->sentence, "No gap has a curve.");
+}

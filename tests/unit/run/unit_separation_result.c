@@ -1,0 +1,197 @@
+/* unit_separation_result.c - studies of separation: the gaps that runs without contact need, against runs with contact. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/json/json_pointer.h"
+#include "schema/result/result_json.h"
+#include "schema/study/study_json.h"
+#include "tests/support/check.h"
+#include "tests/support/scenes.h"
+#include "tests/support/study_documents.h"
+
+static struct reading *result_of(const char *document)
+{
+	static const struct timing timing = {1, 1, 1};
+	struct pound_study *study = study_documents_study(document);
+	struct pound_run *run = pound_run_create(study, 1);
+	size_t length;
+	assert_non_null(run);
+	assert_int_equal(specimen_compute(run), POUND_OK);
+	char *json = result_to_json(study, pound_run_result(run), &timing, &length);
+	struct reading *result = reading_open(json, length);
+	assert_non_null(result);
+	free(json);
+	pound_run_free(run);
+	study_free(study);
+	return result;
+}
+
+enum { SIGNALS = 60 };
+
+/* Brute force: every signal with contact, at every gap and peak acceleration. */
+static void the_result_is_what_brute_force_counts(void **state)
+{
+	static const char *const laws[] = {"linear", "elastoplastic"};
+	static const char *const rights[] = {"{\"frequency_hz\": 1.7}", "{\"rigid_wall\": true}"};
+	(void)state;
+	for (int law = 0; law < 2; law++)
+		for (int right = 0; right < 2; right++) {
+			char scene[512], document[1024];
+			int between = 0;
+			snprintf(
+			    scene, sizeof scene,
+			    "\"law\": {\"type\": \"%s\"}, \"oscillators\": [{\"mass_kg\": 3, \"frequency_hz\": 1}, %s], "
+			    "\"excitation\": {\"signals\": %d}",
+			    laws[law], rights[right], SIGNALS);
+			snprintf(document, sizeof document,
+			         "{\"kind\": \"separation\", \"scene\": {%s}, \"sweep\": [{\"path\": "
+			         "\"/excitation/peak_m_s2\", \"values\": [0.5, 1]}]}",
+			         scene);
+			struct reading *r = result_of(document);
+			// nothing is run with contact
+			check_near(reading_number(r, "/work/pounding_runs/run"), 0, 0);
+			assert_true(reading_count(r, "/cells/1/pounding") >= 15);
+			for (int cell = 0; cell < 2; cell++)
+				for (int g = 0; g < reading_count(r, "/cells/%d/pounding", cell); g += 3) {
+					const double gap = reading_number(r, "/cells/%d/pounding/%d/gap_m", cell, g);
+					const double p = reading_number(r, "/cells/%d/pounding/%d/probability", cell, g);
+					snprintf(document, sizeof document,
+					         "{\"kind\": \"response\", \"scene\": {%.*s, \"peak_m_s2\": %g}, \"contact\": "
+					         "{\"gap_m\": %.17g}}, \"outputs\": [\"pounding_probability\"]}",
+					         (int)strlen(scene) - 1, scene, cell ? 1 : 0.5, gap);
+					struct reading *brute = result_of(document);
+					check_near(reading_number(brute, "/outputs/pounding_probability"), p, 0);
+					reading_close(brute);
+					between += p > 0 && p < 1;
+				}
+			assert_true(between > 5);
+			reading_close(r);
+		}
+}
+
+/* Pounding at listed gaps in the same study; the gaps needed do not change. */
+static void outputs_with_pounding_are_those_of_a_response(void **state)
+{
+	static const char scene[] = "\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 1.7}], "
+	                            "\"excitation\": {\"signals\": 40}";
+	static const char outputs[] = "[\"pounding_probability\", \"peak_impulse_n_s\", \"peak_displacement_m\"]";
+	char document[1024];
+	(void)state;
+	snprintf(document, sizeof document,
+	         "{\"kind\": \"separation\", \"scene\": {%s, \"contact\": {}}, \"outputs\": %s, \"sweep\": "
+	         "[{\"path\": "
+	         "\"/contact/gap_m\", \"values\": [0.01, 0.02, 0.03]}], \"separation\": {\"gaps_m\": [0.01, "
+	         "0.02, 0.03]}}",
+	         scene, outputs);
+	struct reading *r = result_of(document);
+	for (int cell = 0; cell < 3; cell++) {
+		snprintf(
+		    document, sizeof document,
+		    "{\"kind\": \"response\", \"scene\": {%s, \"contact\": {\"gap_m\": 0.0%d}}, \"outputs\": %s}",
+		    scene, cell + 1, outputs);
+		struct reading *response = result_of(document);
+		static const char *const names[] = {"pounding_probability", "peak_impulse_n_s",
+		                                    "peak_displacement_m"};
+		for (int k = 0; k < 3; k++)
+			check_near(reading_number(r, "/cells/%d/outputs/%s", cell, names[k]),
+			           reading_number(response, "/outputs/%s", names[k]), 1e-14);
+		check_near(reading_number(r, "/cells/%d/outputs/pounding_probability", cell),
+		           reading_number(r, "/cells/0/pounding/%d/probability", cell), 0);
+		check_near(reading_number(r, "/cells/%d/gap_needed/mean_m", cell),
+		           reading_number(r, "/cells/0/gap_needed/mean_m"), 0);
+		reading_close(response);
+	}
+	reading_close(r);
+}
+
+/* A step of ground acceleration a to the left, undamped, w_2 = 2 w_1: u_i = |a|/w_i^2 (1 - cos w_i t), so that
+ * u_1 - u_2 = |a|/w_1^2 (1 - cos w_1 t - (1 - cos 2 w_1 t)/4), whose extremes are at multiples of pi: 2 |a|/w_1^2. */
+static void a_step_of_acceleration_needs_its_closed_form(void **state)
+{
+	(void)state;
+	const double pi = 3.14159265358979323846, w = 2 * pi;
+	struct reading *r = result_of("{\"kind\": \"separation\", \"scene\": {\"oscillators\": "
+	                              "[{\"frequency_hz\": 1, \"damping_ratio\": 0}, "
+	                              "{\"frequency_hz\": 2, \"damping_ratio\": 0}], \"excitation\": {\"type\": "
+	                              "\"record\", \"time_step_s\": 0.3, "
+	                              "\"acceleration_m_s2\": [-0.7, -0.7, -0.7, -0.7, -0.7]}}}");
+	check_near(reading_number(r, "/cells/0/gap_needed/largest_m") / (2 * 0.7 / (w * w)), 1, 1e-13);
+	// u_1 reaches 2 |a|/w_1^2 and u_2 a quarter of that: the sum of both is 1.25 times the gap needed
+	check_near(reading_number(r, "/cells/0/rules/0/over_mean"), 1.25, 1e-12);
+	check_near(reading_number(r, "/cells/0/rules/1/over_mean"), sqrt(1 + 1.0 / 16), 1e-12);
+	check_near(reading_number(r, "/cells/0/correlation"), 0, 0);
+	reading_close(r);
+}
+
+/* With uncertain structures the runs are those of A and B, and the gap needed has indices. */
+static void with_inputs_the_runs_are_those_of_the_design(void **state)
+{
+	(void)state;
+	static const char head[] = "\"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": "
+	                           "1.7}], \"excitation\": {\"signals\": "
+	                           "2}}, \"inputs\": [{\"path\": \"/oscillators/1/frequency_hz\", \"name\": "
+	                           "\"f\", \"distribution\": {\"type\": "
+	                           "\"uniform\", \"min\": 1.2, \"max\": 2}}], \"design\": {\"rows\": 64}";
+	char document[1024];
+	snprintf(document, sizeof document,
+	         "{\"kind\": \"separation\", %s, \"separation\": {\"gaps_m\": [0.01, 0.02]}}", head);
+	struct reading *r = result_of(document);
+	snprintf(document, sizeof document, "{\"kind\": \"sensitivity\", %s, \"outputs\": [\"gap_needed_m\"]}",
+	         head);
+	struct reading *indices = result_of(document);
+	check_near(reading_number(r, "/cells/0/gap_needed/runs"), 64 * 2 * 2, 0);
+	check_near(reading_number(r, "/cells/0/gap_needed/independent"), 64, 0);
+	// the mean over A and B is the same in both
+	check_near(reading_number(r, "/cells/0/gap_needed/mean_m") /
+	               reading_number(indices, "/cells/0/outputs/0/mean"),
+	           1, 1e-13);
+	check_near(reading_number(r, "/cells/0/outputs/0/inputs/0/ST_raw"),
+	           reading_number(indices, "/cells/0/outputs/0/inputs/0/ST_raw"), 0);
+	const double p = reading_number(r, "/cells/0/pounding/1/probability");
+	assert_true(p > 0 && p < 1 && fmod(p * 256, 1) == 0);
+	reading_close(r);
+	reading_close(indices);
+}
+
+/* Linear bodies: gaps grow with the intensity, so a curve over ln x is that of the gaps over ln g. */
+static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
+{
+	(void)state;
+	struct reading *r = result_of(
+	    "{\"kind\": \"separation\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": "
+	    "1.7}], "
+	    "\"excitation\": {\"signals\": 100}}, \"sweep\": [{\"path\": \"/oscillators/0/damping_ratio\", "
+	    "\"values\": "
+	    "[0.05, 0.02]}, {\"path\": \"/excitation/peak_m_s2\", \"values\": [0.5, 1, 2, 4]}], \"separation\": "
+	    "{\"gaps_m\": [0.02, 0.04], \"intensity\": \"/excitation/peak_m_s2\", \"hazard\": {\"intensities\": "
+	    "[0.1, 5], "
+	    "\"annual_rates\": [0.1, 0.00004]}, \"return_periods_years\": [475]}}");
+	assert_int_equal(reading_count(r, "/fragility"), 2);
+	for (int set = 0; set < 2; set++) {
+		const double median = reading_number(r, "/fragility/%d/curves/0/median", set);
+		const double twice = reading_number(r, "/fragility/%d/curves/1/median", set);
+		// intensities go in steps of 2: twice the gap has the same counts one step on, but for those at the ends
+		assert_true(twice / median > 1.9 && twice / median < 2.1);
+		const double low = reading_number(r, "/fragility/%d/curves/0/median_low", set),
+		             high = reading_number(r, "/fragility/%d/curves/0/median_high", set);
+		assert_true(low < median && median < high && high / low < 1.5);
+		const double rate = reading_number(r, "/fragility/%d/curves/0/annual_rate", set);
+		assert_true(rate > reading_number(r, "/fragility/%d/curves/1/annual_rate", set));
+		const double gap = reading_number(r, "/fragility/%d/return_periods/0/gap_m", set);
+		assert_true(gap > 0.005 && gap < 0.2);
+		assert_true(reading_number(r, "/fragility/%d/return_periods/0/low_m", set) <= gap);
+	}
+	// less damping, larger gaps: weaker motions pound
+	assert_true(reading_number(r, "/fragility/1/curves/0/median") <
+	            reading_number(r, "/fragility/0/curves/0/median"));
+	check_near(reading_number(r, "/fragility/1/sweep/~1oscillators~10~1damping_ratio"), 0.02, 0);
+	reading_close(r);
+}
+
+CHECK_MAIN(cmocka_unit_test(the_result_is_what_brute_force_counts),
+           cmocka_unit_test(outputs_with_pounding_are_those_of_a_response),
+           cmocka_unit_test(a_step_of_acceleration_needs_its_closed_form),
+           cmocka_unit_test(with_inputs_the_runs_are_those_of_the_design),
+           cmocka_unit_test(a_swept_intensity_has_fragility_curves_and_rates))
