@@ -50,7 +50,7 @@ struct fits {
 	double *coefficients; /* of each fold's fit to the other folds  (FOLDS x terms) */
 	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
 	struct pound_closed closed;
-	double *estimates;    /* (n_rows x closed.n_columns) */
+	double *estimates;    /* (n_rows x 2 x closed.n_columns) */
 	double *rest;         /* for closed_indices.c and conditional_mean.c */
 	double *sorted;       /* the rows by fold, as whole numbers  (n_rows) */
 	int first[FOLDS + 1]; /* of each fold among them */
@@ -78,7 +78,7 @@ static size_t carve(struct fits *f, double *scratch, const struct pound_sample_v
 	    {&f->gram, (size_t)f->terms * f->terms},
 	    {&f->coefficients, (size_t)FOLDS * f->terms},
 	    {&f->fit, (size_t)n_rows * f->closed.n_samples},
-	    {&f->estimates, (size_t)n_rows * f->closed.n_columns},
+	    {&f->estimates, (size_t)n_rows * 2 * f->closed.n_columns},
 	    {&f->rest, rest > smooth ? rest : smooth},
 	    {&f->sorted, n_rows},
 	};
@@ -293,7 +293,7 @@ static void estimates_fill(const struct fits *f, bool corrected)
 			const struct pound_control_variate control = {f->fit + first,
 			                                              f->coefficients[(size_t)fold * f->terms], part};
 			pound_closed_row(&f->closed, f->rows->y + first, &control, corrected ? noise : NULL,
-			                 f->estimates + (size_t)row * f->closed.n_columns);
+			                 f->estimates + (size_t)row * 2 * f->closed.n_columns);
 		}
 	}
 }

@@ -8,6 +8,7 @@
 #include "engine/indices/indices.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 static unsigned all_of(const struct pound_closed *closed)
@@ -95,7 +96,7 @@ void pound_closed_init(struct pound_closed *closed, const struct pound_sample_va
  * Given    y          (n_samples)               outputs of the row
  *          control    -                         g, the mean, and as `part` the closed parts G_u
  *          noise      (n_samples x n_samples)   covariances of the outputs' noise, to take off; NULL: none
- * Returns  estimate   (n_columns)
+ * Returns  estimate   (2 x n_columns)           then, for each set, C from the samples of its pairs alone
  *
  * With all mixtures of A and B (a factorial design) sums and differences of these are the contrasts of the factorial
  * design: the part of a set alone is the sum over its subsets v of (-1)^(|u| - |v|) C_v.
@@ -108,23 +109,27 @@ void pound_closed_row(const struct pound_closed *closed, const double *y,
 {
 	const double *g = control->g, *part = control->part, mean = control->mean;
 	const int n_samples = closed->n_samples, last = closed->n_columns - 1;
-	double squares = 0.0;
+	double squares = 0.0, square[POUND_SAMPLES_MAX], *own = estimate + closed->n_columns;
 	for (int p = 0; p < n_samples; p++) {
-		squares += g ? (y[p] - g[p]) * (y[p] + g[p] - 2.0 * mean) : (y[p] - mean) * (y[p] - mean);
-		squares -= noise ? noise[p * n_samples + p] : 0.0;
+		square[p] = g ? (y[p] - g[p]) * (y[p] + g[p] - 2.0 * mean) : (y[p] - mean) * (y[p] - mean);
+		square[p] -= noise ? noise[p * n_samples + p] : 0.0;
+		squares += square[p];
 	}
-	for (int k = 0; k <= last; k++)
+	for (int k = 0; k <= last; k++) {
 		estimate[k] = part[k];
+		own[k] = part[last] + (k < last && closed->known[k] ? 0.0 : squares / n_samples);
+	}
 	estimate[last] += squares / n_samples;
 	for (int k = 0; k < closed->n_pairs; k++) {
 		const struct pound_closed_pair *pair = &closed->pair[k];
 		const int p = pair->p, q = pair->q, n = n_samples;
 		double *into = &estimate[pair->column];
+		own[pair->column] += 0.5 * pair->weight * (square[p] + square[q]);
 		if (closed->difference[pair->column]) {
 			double change = y[p] - y[q], g_change = g ? g[p] - g[q] : 0.0;
-			double square = change * change - g_change * g_change;
-			square -= noise ? noise[p * n + p] + noise[q * n + q] - 2.0 * noise[p * n + q] : 0.0;
-			*into -= 0.5 * pair->weight * square;
+			double difference = change * change - g_change * g_change;
+			difference -= noise ? noise[p * n + p] + noise[q * n + q] - 2.0 * noise[p * n + q] : 0.0;
+			*into -= 0.5 * pair->weight * difference;
 		} else {
 			double product = (y[p] - mean) * (y[q] - mean) - (g ? (g[p] - mean) * (g[q] - mean) : 0.0);
 			*into += pair->weight * (product - (noise ? noise[p * n + q] : 0.0));
@@ -142,15 +147,15 @@ void pound_closed_row(const struct pound_closed *closed, const double *y,
 struct columns {
 	const struct pound_closed *closed;
 	const struct pound_rows *rows;
-	const double *estimate; /* (n_rows x n_columns) */
-	double *mean;           /* (n_columns) */
+	const double *estimate; /* (n_rows x 2 x n_columns) */
+	double *mean;           /* (2 x n_columns) */
 	double *influence;      /* of the rows on an index  (n_rows) */
 	double *groups;         /* (groups, at most n_rows) */
 };
 
 static void means_fill(const struct columns *columns)
 {
-	const int n = columns->closed->n_columns, n_rows = columns->rows->n_rows;
+	const int n = 2 * columns->closed->n_columns, n_rows = columns->rows->n_rows;
 	for (int k = 0; k < n; k++)
 		columns->mean[k] = 0.0;
 	for (int i = 0; i < n_rows && !pound_stopped(columns->rows->stop); i++)
@@ -192,41 +197,111 @@ static void add(struct combination *c, double weight, unsigned set)
 	c->known &= c->closed->known[column];
 }
 
-/* Adds the closed part of a set less that of no input.  The latter is 0, but its estimate errs with the others: over
- * three test functions, n = 1000, first-order indices err by 0.8 of what they do without, by half under noise. */
+/* Adds the closed part of a set less that of no input.  The latter is 0, but its estimate errs with the others. */
 static void add_closed(struct combination *c, double weight, unsigned set)
 {
 	add(c, weight, set);
 	add(c, -weight, 0);
 }
 
-/* The ratio of a combination to the whole variance, with the interval of its linearisation. */
-static struct pound_estimate ratio_interval(const struct combination *c, const struct columns *columns)
+/* The ratio of a combination N to the whole variance C,
+ *
+ *   (N - v C_0) / (C + w (C_own - C))
+ *
+ * C_0 is the closed part of no input, which is 0 but for errors that it has in common with N and C; C_own is C from the samples
+ * of the pairs that N is made of, which have its large outputs and no others, so that where few are large the ratio errs by
+ * less.  Without an own column w is 0, and C_0 is taken off C as off the sets of N, v being the sum of their weights. */
+struct ratio {
+	const struct columns *columns;
+	const struct combination *combination;
+	int own;     /* column whose pairs the numerator is made of; -1: of many */
+	double v, w; /* weights */
+};
+
+/* What a row adds to N and C, and to the two controls. */
+struct row_terms {
+	double above, below, none, change;
+};
+
+static struct row_terms row_terms(const struct ratio *r, const double *estimate)
+{
+	const int n = r->columns->closed->n_columns;
+	struct row_terms t = {.below = estimate[n - 1], .none = estimate[0]};
+	for (int k = 0; k < n; k++)
+		t.above += r->combination->weight[k] != 0.0 ? r->combination->weight[k] * estimate[k] : 0.0;
+	if (r->own >= 0)
+		t.change = estimate[n + r->own] - estimate[n - 1];
+	else
+		t.below -= t.none;
+	return t;
+}
+
+/* Chooses the weights: v is that of the regression of N - ratio C on C_0 and ratio (C_own - C) over the rows, in [-1, 1], so that
+ * as it is best; w lies halfway between 1 and that of the regression, if it is in [0, 1], which a few large outputs mislead.
+ *
+ * Source   w = 1: Janon et al. 2014, ESAIM: Probab. Stat. 18, 342-364; w = 0: Jansen 1999; the regression: control variates
+ *          with estimated coefficients, Glasserman 2003, Monte Carlo methods in financial engineering, section 4.1
+ */
+static void ratio_weigh(struct ratio *r, const struct row_terms *mean)
+{
+	const struct columns *columns = r->columns;
+	const int n_rows = columns->rows->n_rows;
+	const double ratio = mean->above / mean->below;
+	double nn = 0.0, nc = 0.0, cc = 0.0, zn = 0.0, zc = 0.0, squares = 0.0;
+	for (int i = 0; i < n_rows; i++) {
+		const struct row_terms t =
+		    row_terms(r, columns->estimate + (size_t)i * 2 * columns->closed->n_columns);
+		const double none = t.none - mean->none, change = ratio * (t.change - mean->change);
+		const double z = t.above - ratio * t.below;
+		nn += none * none;
+		nc += none * change;
+		cc += change * change;
+		zn += z * none;
+		zc += z * change;
+		squares += ratio * ratio * t.below * t.below;
+	}
+	// of two inputs the pairs of a set are all samples: what then changes is rounding
+	const bool changes = cc > DBL_EPSILON * squares;
+	const double both = nn * cc - nc * nc;
+	double v = nn > 0.0 ? zn / nn : 0.0, w = changes ? zc / cc : 0.0;
+	if (changes && both > DBL_EPSILON * nn * cc) {
+		v = (zn * cc - zc * nc) / both;
+		w = (zc * nn - zn * nc) / both;
+	}
+	r->v = v < -1.0 ? -1.0 : v > 1.0 ? 1.0 : v;
+	r->w = 0.5 + 0.5 * (w > 0.0 ? fmin(w, 1.0) : 0.0);
+	if (!(mean->below + r->w * mean->change > columns->rows->variance_floor))
+		r->w = 0.0;
+}
+
+/* The ratio of a combination to the whole variance, with the interval of its linearisation.
+ *
+ * Given    own       column whose pairs the combination is made of; -1: of many
+ * Returns  behind    rows behind the interval; NULL: not wanted
+ */
+static struct pound_estimate ratio_interval(const struct combination *c, const struct columns *columns,
+                                            int own, double *behind)
 {
 	const int n = columns->closed->n_columns, n_rows = columns->rows->n_rows;
-	const double *mean = columns->mean, floor = columns->rows->variance_floor;
-	const double below = mean[n - 1] - mean[0];
-	double above = 0.0, weight[POUND_CLOSED_COLUMNS_MAX];
-	int used[POUND_CLOSED_COLUMNS_MAX], n_used = 0;
+	// few rows do not tell weights, and parts of no input or of all are the controls themselves
+	const bool weighed = n_rows >= POUND_ROWS_MIN && own > 0 && own < n - 1;
+	struct ratio r = {.columns = columns, .combination = c, .own = weighed ? own : -1};
 	for (int k = 0; k < n; k++)
-		above += c->weight[k] * mean[k];
-	if (!(below > floor && mean[n - 1] > floor) || !c->known || pound_stopped(columns->rows->stop))
+		r.v += c->weight[k];
+	const struct row_terms mean = row_terms(&r, columns->mean);
+	if (!(mean.below > columns->rows->variance_floor) || !c->known || pound_stopped(columns->rows->stop))
 		return (struct pound_estimate){NAN, NAN, NAN};
-	const double ratio = above / below;
-	for (int k = 0; k < n; k++) {
-		double whole = k == 0 ? -1.0 : k == n - 1 ? 1.0 : 0.0;
-		weight[n_used] = (c->weight[k] - ratio * whole) / below;
-		used[n_used] = k;
-		n_used += weight[n_used] != 0.0;
-	}
+	if (weighed)
+		ratio_weigh(&r, &mean);
+	const double below = mean.below + r.w * mean.change, ratio = (mean.above - r.v * mean.none) / below;
 	for (int i = 0; i < n_rows; i++) {
-		const double *row = columns->estimate + (size_t)i * n;
-		columns->influence[i] = 0.0;
-		for (int k = 0; k < n_used; k++)
-			columns->influence[i] += weight[k] * row[used[k]];
+		const struct row_terms t = row_terms(&r, columns->estimate + (size_t)i * 2 * n);
+		columns->influence[i] = (t.above - r.v * t.none - ratio * (t.below + r.w * t.change)) / below;
 	}
 	const double half_width =
 	    pound_jackknife_half_width(columns->influence, n_rows, &columns->rows->scatter, columns->groups);
+	if (behind)
+		*behind = pound_jackknife_rows(columns->influence, n_rows);
 	return (struct pound_estimate){ratio, ratio - half_width, ratio + half_width};
 }
 
@@ -254,7 +329,25 @@ static struct combination shapley(const struct columns *columns, int j)
 	return c;
 }
 
-/* Closed indices of the proper sets, and what a set of two explains beyond its inputs alone. */
+/* What a set explains alone, and what it does with the others. */
+static struct pound_estimate closed_of(const struct columns *columns, unsigned set, double *behind)
+{
+	struct combination c = combination(columns);
+	add(&c, 1.0, set);
+	return ratio_interval(&c, columns, column_for(&c, set), behind);
+}
+
+static struct pound_estimate total_of(const struct columns *columns, unsigned set, double *behind)
+{
+	const unsigned all = all_of(columns->closed);
+	struct combination c = combination(columns);
+	add(&c, 1.0, all);
+	add(&c, -1.0, all ^ set);
+	return ratio_interval(&c, columns, column_for(&c, all ^ set), behind);
+}
+
+/* Closed indices of the proper sets, and what a set of two explains beyond its inputs alone: all over one denominator, so that
+ * they add up. */
 static void sets_fill(const struct columns *columns, struct pound_set_indices *sets)
 {
 	const struct pound_closed *closed = columns->closed;
@@ -264,19 +357,21 @@ static void sets_fill(const struct columns *columns, struct pound_set_indices *s
 		struct combination c = combination(columns);
 		add_closed(&c, 1.0, set);
 		if (c.known && set != all_of(closed) && closed->n_inputs <= POUND_FACTORIAL_INPUTS_MAX)
-			sets->closed[sets->n_closed++] = (struct pound_set_index){set, ratio_interval(&c, columns)};
+			sets->closed[sets->n_closed++] =
+			    (struct pound_set_index){set, ratio_interval(&c, columns, -1, NULL)};
 		if (__builtin_popcount(set) != 2)
 			continue;
 		add_closed(&c, -1.0, set & (set - 1));
 		add_closed(&c, -1.0, set & -set);
 		if (c.known)
-			sets->second[sets->n_second++] = (struct pound_set_index){set, ratio_interval(&c, columns)};
+			sets->second[sets->n_second++] =
+			    (struct pound_set_index){set, ratio_interval(&c, columns, -1, NULL)};
 	}
 }
 
 size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows)
 {
-	return (size_t)closed->n_columns + 2 * (size_t)n_rows;
+	return 2 * (size_t)closed->n_columns + 2 * (size_t)n_rows;
 }
 
 /* All indices from the rows' estimates of closed parts, with 95 % intervals.
@@ -290,7 +385,7 @@ size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows)
  *
  *   first S_j = C_j / C     total T_j = 1 - C_(all but j) / C     second order S_jk = (C_jk - C_j - C_k) / C
  *
- * With C_0, the mean over pairs that share nothing, taken off every closed part.
+ * With C_0, the mean over pairs that share nothing, taken off every closed part of S_jk.
  *
  * Test     unit_closed_indices
  */
@@ -302,30 +397,23 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 	                                .rows = rows,
 	                                .estimate = estimates,
 	                                .mean = scratch,
-	                                .influence = scratch + closed->n_columns,
-	                                .groups = scratch + closed->n_columns + rows->n_rows};
-	const unsigned all = all_of(closed);
+	                                .influence = scratch + 2 * closed->n_columns,
+	                                .groups = scratch + 2 * closed->n_columns + rows->n_rows};
 	means_fill(&columns);
+	*results = (struct pound_closed_results){0};
 	for (int j = 0; j < closed->n_inputs; j++) {
-		struct combination first = combination(&columns), total = first, effect = first;
-		add_closed(&first, 1.0, 1u << j);
-		add_closed(&total, 1.0, all);
-		add_closed(&total, -1.0, all ^ 1u << j);
+		struct combination effect = combination(&columns);
 		effect.known = closed->n_inputs <= POUND_FACTORIAL_INPUTS_MAX;
 		if (effect.known)
 			effect = shapley(&columns, j);
-		results->first[j] = ratio_interval(&first, &columns);
-		results->total[j] = ratio_interval(&total, &columns);
-		results->shapley[j] = ratio_interval(&effect, &columns);
+		results->first[j] = closed_of(&columns, 1u << j, &results->first_rows[j]);
+		results->total[j] = total_of(&columns, 1u << j, &results->total_rows[j]);
+		results->shapley[j] = ratio_interval(&effect, &columns, -1, NULL);
 	}
 	results->groups.n = closed->n_groups;
 	for (int g = 0; g < closed->n_groups; g++) {
-		struct combination first = combination(&columns), total = first;
-		add_closed(&first, 1.0, closed->group[g]);
-		add_closed(&total, 1.0, all);
-		add_closed(&total, -1.0, all ^ closed->group[g]);
-		results->groups.first[g] = ratio_interval(&first, &columns);
-		results->groups.total[g] = ratio_interval(&total, &columns);
+		results->groups.first[g] = closed_of(&columns, closed->group[g], NULL);
+		results->groups.total[g] = total_of(&columns, closed->group[g], NULL);
 	}
 	sets_fill(&columns, &results->sets);
 }

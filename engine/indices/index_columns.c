@@ -6,6 +6,8 @@
  *    of each input the one with the narrower interval: polynomials are best for smooth outputs, the others elsewhere.
  *    Local regression has a bias where the output changes within its reach; it is refused where it disagrees with the
  *    polynomial, whose estimate has none.
+ *    Where few rows hold most of the variance, and few are behind an index, it is that of chaos_expansion.c, whose denominator
+ *    has the same large outputs as its numerator: the narrower of several intervals is too narrow there.
  * 3. Interactions and conditional means are those of chaos_expansion.c.
  * 4. A column that cannot be made is a copy of the next best, and a note says so.  Nothing is clipped.
  * 5. Samples of a row that share their noise are alike in it.  Where the covariance of that noise is unknown, products and
@@ -25,7 +27,10 @@ struct level {
 	} closed, pick_freeze; /* with the polynomials of all rows, and by few resamples */
 };
 
-enum { RESAMPLES_FEW = 400 }; /* half widths to 5 % */
+enum {
+	RESAMPLES_FEW = 400, /* half widths to 5 % */
+	ROWS_BEHIND = 5,     /* an interval at least, or it holds too seldom: make statistics */
+};
 
 /* What the columns are made from. */
 struct sources {
@@ -37,6 +42,7 @@ struct sources {
 	bool variance_known;                /* at least the variances are */
 	bool shared;                        /* samples of a row share noise of unknown covariance */
 	double *scratch;
+	double *behind; /* the fewest rows behind an interval that is used, pound_jackknife_rows */
 	struct level level[POUND_LEVELS];
 	struct pound_accuracy *accuracy;
 };
@@ -167,9 +173,37 @@ static void undefined(struct pound_estimate *estimates, int n)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
 }
 
+/* Rows that the variance is made of: (sum v)^2 / sum v^2, v the squares of each. */
+static double rows_of_variance(const struct pound_rows *rows)
+{
+	double sum = 0.0, squares = 0.0;
+	for (int i = 0; i < rows->n_rows; i++) {
+		const double *y = rows->y + (size_t)i * rows->n_samples;
+		double v = 0.0;
+		for (int p = 0; p < rows->n_samples; p++)
+			v += y[p] * y[p];
+		sum += v;
+		squares += v * v;
+	}
+	return sum * sum / squares;
+}
+
+/* Whether the squares of outputs are those of less than a quarter of the rows; of a normal law they are those of more. */
+static bool few_hold_most(const struct pound_rows *rows)
+{
+	return rows_of_variance(rows) < 0.25 * rows->n_rows;
+}
+
+/* Notes how many rows are behind an interval that is used, unless it is so narrow that it hardly matters. */
+static void behind_take(const struct sources *s, struct pound_estimate estimate, double rows)
+{
+	const double narrow = 0.005;
+	if (half(estimate) > narrow && rows < *s->behind)
+		*s->behind = rows;
+}
+
 static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 {
-	const struct pound_pick_freeze *p = &s->pick_freeze;
 	const int d = s->rows->n_inputs;
 	struct pound_estimate local[POUND_INPUTS_MAX];
 	// neighbours in one input say nothing where they are arranged in the others
@@ -187,7 +221,22 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 	if (s->shared)
 		copy(s, local, into);
 	else
-		narrower(s, neighbours ? local : s->corrected ? p->first : p->first_raw, s->closed.first, into);
+		narrower(s,
+		         neighbours     ? local
+		         : s->corrected ? s->pick_freeze.first
+		                        : s->pick_freeze.first_raw,
+		         s->closed.first, into);
+	const bool heavy = few_hold_most(s->rows);
+	double behind[POUND_INPUTS_MAX];
+	if (neighbours)
+		pound_local_regression_behind(s->rows, s->scratch, behind);
+	for (int j = 0; j < d && !s->shared; j++) {
+		// of few rows neighbors say little: the mean of ten of them is not yet the conditional one
+		if (heavy && s->closed.first_rows[j] < ROWS_BEHIND)
+			into[j] = s->closed.first[j];
+		behind_take(s, into[j],
+		            neighbours && !same(into[j], s->closed.first[j]) ? behind[j] : s->closed.first_rows[j]);
+	}
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
 		double other[POUND_INPUTS_MAX];
@@ -203,13 +252,24 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 	}
 }
 
+/* Totals by the polynomial or by pick-freeze; where few rows decide, which make plain intervals too narrow by chance, by the
+ * former. */
 static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
-	narrower(s, s->corrected ? p->total : p->total_raw, s->closed.total, into);
+	const struct pound_estimate *plain = s->corrected ? p->total : p->total_raw;
+	const int d = s->rows->n_inputs;
+	const bool heavy = few_hold_most(s->rows);
+	narrower(s, plain, s->closed.total, into);
+	for (int j = 0; j < d; j++) {
+		if (heavy && plain[j].high > plain[j].low && s->closed.total_rows[j] < ROWS_BEHIND)
+			into[j] = s->closed.total[j];
+		if (plain[j].high > plain[j].low)
+			behind_take(s, into[j], s->closed.total_rows[j]);
+	}
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
-		for (int j = 0; j < s->rows->n_inputs && level->kept >= POUND_ROWS_MIN; j++)
+		for (int j = 0; j < d && level->kept >= POUND_ROWS_MIN; j++)
 			s->accuracy->inputs[j].total_half[k] =
 			    same(into[j], s->closed.total[j]) ? level->closed.total[j] : level->pick_freeze.total[j];
 	}
@@ -259,16 +319,30 @@ static void named_fill(const struct sources *s, uint64_t seed, struct pound_indi
 	}
 }
 
+/* An index of an input that changes no output of any row is 0, with an interval of no width.  If the variance is that of m rows,
+ * and few, as many as are missed by all m once in forty times may depend on the input: (1 - t)^m = 1/40, t <= ln 40 / m. */
+static void unseen_widen(const struct sources *s, struct pound_indices *indices)
+{
+	static const enum pound_index headline[] = {POUND_S1, POUND_ST};
+	const double missed = 3.6888794541139363;
+	for (size_t k = 0; k < sizeof headline / sizeof headline[0]; k++)
+		for (int j = 0; j < s->rows->n_inputs; j++) {
+			struct pound_estimate *e = &indices->index[headline[k]][j];
+			if (e->value == 0.0 && e->high == 0.0 && pound_rows_levels(s->rows, j) != 1)
+				e->high = fmin(1.0, missed / rows_of_variance(s->rows));
+		}
+}
+
 static void columns_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
 {
 	const int d = s->rows->n_inputs;
 	for (int k = 0; k < POUND_N_INDICES && !pound_stopped(s->rows->stop); k++) {
 		const struct index_column *column = &columns[k];
 		struct pound_estimate *into = indices->index[column->index];
-		const bool separable = column->shared || !s->shared;
-		if (separable && column->possible(s))
+		const bool told = column->shared || !s->shared;
+		if (told && column->possible(s))
 			column->make(s, into);
-		else if (!separable || column->instead == POUND_N_INDICES)
+		else if (!told || column->instead == POUND_N_INDICES)
 			undefined(into, d);
 		else
 			copy(s, indices->index[column->instead], into);
@@ -346,22 +420,20 @@ static bool lacks_interval(const struct pound_indices *indices, int n_inputs)
 	return false;
 }
 
-/* Whether a few rows hold so much of the variance that their scatter does not show how indices err: of an output that is
- * 0 but for one sample, say, an interval has no width.  They count for (sum v)^2 / sum v^2 rows, v the squares of each:
- * of fewer than five, one has a fifth of the sum. */
-static bool few_decide(const struct pound_rows *rows)
+/* Whether so few rows hold the variance that their scatter does not show how indices err: one has a fifth of it, or an interval
+ * is made by few of them and they hold most of it. */
+static bool few_decide(const struct sources *s)
 {
-	const double least = 5.0;
-	double sum = 0.0, squares = 0.0;
-	for (int i = 0; i < rows->n_rows; i++) {
-		const double *y = rows->y + (size_t)i * rows->n_samples;
-		double v = 0.0;
-		for (int p = 0; p < rows->n_samples; p++)
-			v += y[p] * y[p];
-		sum += v;
-		squares += v * v;
-	}
-	return sum * sum < least * squares;
+	return rows_of_variance(s->rows) < ROWS_BEHIND || (*s->behind < ROWS_BEHIND && few_hold_most(s->rows));
+}
+
+/* Rows that intervals would be wide enough with: rows behind them grow as rows do, or slower.  Two digits, upwards. */
+static double rows_needed(double n, double behind)
+{
+	double needed = n * ROWS_BEHIND / fmax(behind, 1.0), digits = 1.0;
+	while (needed / digits > 100.0)
+		digits *= 10.0;
+	return ceil(needed / digits) * digits;
 }
 
 static unsigned notes_of(const bool said[POUND_N_NOTES])
@@ -391,7 +463,7 @@ size_t pound_index_columns_scratch(const struct pound_sample_values *shape,
 /* All sensitivity indices of one output, with 95 % intervals, and what there is to say about them.
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
- *          sampling  -                                       the design, and whether the share of noise can be estimated
+ *          sampling  -                                       the design, and whether noise can be told apart
  *          seed      -                                       of the resamples
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   all, and of the accuracy the half widths from the first rows; indices (n_inputs) each, NAN with a note
@@ -409,12 +481,14 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 {
 	const int d = values->n_inputs;
 	struct pound_rows rows;
+	double behind = INFINITY;
 	pound_rows_init(&rows, values, scratch);
 	struct sources s = {.rows = &rows,
 	                    .sampling = sampling,
 	                    .corrected = values->n_signals > 1 && sampling->random,
 	                    .scratch = scratch + pound_rows_scratch(values),
-	                    .accuracy = &indices->accuracy};
+	                    .accuracy = &indices->accuracy,
+	                    .behind = &behind};
 	// of outputs computed elsewhere the noise is known by its variances, which are all there is if samples do not share it;
 	// whether they have noise is not known
 	const bool elsewhere = values->variance, fresh = sampling->fresh_signals;
@@ -452,7 +526,10 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 			undefined(indices->named[k], d);
 		undefined(indices->share, POUND_N_SHARES);
 	}
-	const bool few = !rows_enough(&s);
+	const bool few = !rows_enough(&s), decided = varies && !few && few_decide(&s);
+	indices->rows_needed = decided ? rows_needed(values->n_rows, fmin(behind, rows_of_variance(&rows))) : NAN;
+	if (decided)
+		unseen_widen(&s, indices);
 	indices->notes = notes_of((const bool[POUND_N_NOTES]){
 	    [POUND_NOTE_NO_ROWS] = rows.n_rows == 0,
 	    [POUND_NOTE_ONE_ROW] = rows.n_rows == 1,
@@ -468,7 +545,7 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 	    [POUND_NOTE_FEW_ROWS] = varies && few && !s.shared,
 	    [POUND_NOTE_NOISE] = varies && lost_in_noise(&s, indices),
 	    [POUND_NOTE_NO_INTERVAL] = varies && lacks_interval(indices, d),
-	    [POUND_NOTE_FEW_DECIDE] = varies && !few && few_decide(&rows),
+	    [POUND_NOTE_FEW_DECIDE] = decided,
 	});
 	const int dropped = values->n_rows - rows.n_rows;
 	pound_failed_rows_changes(&rows, dropped, &indices->accuracy);

@@ -143,6 +143,8 @@ double pound_jackknife_student(int freedom); /* 97.5 % quantile of Student's law
 /* Half of the 95 % interval of a mean over rows, with groups or without.  sums: (groups) */
 double pound_jackknife_half_width(const double *value, int n_rows, const struct pound_scatter *scatter,
                                   double *sums);
+/* Rows that the scatter of a mean is made of: n / 3 of the normal law's, few where few are large. */
+double pound_jackknife_rows(const double *value, int n_rows);
 
 /* Pick-freeze indices of a model with random signals. */
 struct pound_pick_freeze {
@@ -167,6 +169,8 @@ size_t pound_local_regression_scratch(const struct pound_sample_values *shape); 
 void pound_local_regression_fit(const double *y, int n, int reach, double *fit);
 void pound_local_regression_first(const struct pound_rows *rows, const double *x, enum pound_noise noise,
                                   double *scratch, struct pound_estimate *first);
+/* Rows behind the intervals, pound_jackknife_rows; the scratch as it was left.  (n_inputs) */
+void pound_local_regression_behind(const struct pound_rows *rows, double *scratch, double *behind);
 /* Half widths of the intervals from the first n of those rows alone, with the neighbours of all; the scratch as it was left.
  * half: (n_inputs) */
 void pound_local_regression_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half);
@@ -198,6 +202,8 @@ struct pound_closed {
 
 struct pound_closed_results {
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX], shapley[POUND_INPUTS_MAX];
+	double first_rows[POUND_INPUTS_MAX],
+	    total_rows[POUND_INPUTS_MAX]; /* behind the intervals, pound_jackknife_rows */
 	struct pound_set_indices sets;
 	struct pound_group_indices groups;
 };

@@ -4,7 +4,7 @@
  *    2 K nearest ranks on either side, itself left out.
  * 2. The mean product of output and prediction estimates the variance of the conditional mean, but for what the latter
  *    changes between a row and its neighbours: where it jumps that goes as the mean distance between them, so that the two
- *    reaches estimate what reach 0 would give.
+ *    reaches tell what none would have.
  * 3. The step from the nearer reach to none is in the interval, for where the change goes as no straight line.
  *
  * Every sample block of a Latin hypercube or random design serves, so that all runs count for each input.
@@ -248,6 +248,13 @@ void pound_local_regression_first(const struct pound_rows *rows, const double *x
 		enough &= !pound_stopped(rows->stop);
 		first[j] = enough ? influence_interval(rows, j, &at) : (struct pound_estimate){NAN, NAN, NAN};
 	}
+}
+
+void pound_local_regression_behind(const struct pound_rows *rows, double *scratch, double *behind)
+{
+	const struct space at = carve(scratch, rows->n_rows, rows->n_inputs);
+	for (int j = 0; j < rows->n_inputs && !pound_stopped(rows->stop); j++)
+		behind[j] = pound_jackknife_rows(at.influence + (size_t)j * rows->n_rows, rows->n_rows);
 }
 
 /* Half widths of the intervals that the first rows' influences give.

@@ -153,6 +153,9 @@ static void write_notes(struct writer *w, const struct pound_indices *indices)
 	for (int k = 0; k < POUND_N_NOTES; k++)
 		if (indices->notes >> k & 1)
 			n += snprintf(text + n, sizeof text - (size_t)n, "%s%s", n ? "; " : "", notes[k]);
+	if (indices->notes >> POUND_NOTE_FEW_DECIDE & 1)
+		n += snprintf(text + n, sizeof text - (size_t)n, ": %.15g rows or more are needed",
+		              indices->rows_needed);
 	if (n)
 		writer_text(w, "note", text);
 }

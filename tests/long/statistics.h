@@ -41,7 +41,7 @@ struct pound_design statistics_design(int method, int rows, uint64_t seed);
 /* A study of four uniform inputs and one output that is run here, in this program. */
 struct pound_study statistics_study(const struct pound_design *design);
 
-/* Gives a run of such a study the outputs of its rows [first, current rows); they are also put into y
+/* Gives a run of such a study the outputs of its rows [first, rows in hand); they are also put into y
  * (rows x samples) unless that is NULL. */
 void statistics_assign(struct pound_run *run, const struct function *f, int first, double *y);
 
@@ -54,5 +54,6 @@ void statistics_designs(int n_seeds); /* errors and coverage by design and numbe
 void statistics_named(int n_seeds);   /* errors of the estimators by name */
 void statistics_noise(int n_seeds);   /* bias, errors and coverage under noise */
 void statistics_growth(int n_seeds);  /* designs that grow until their intervals are narrow */
+void statistics_tails(int n_seeds);   /* where few samples decide, and many inputs */
 
 #endif

@@ -209,7 +209,7 @@ static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
 	static const double shares[] = {1e-4, 4};
 	for (int k = 0; k < 2; k++) {
 		struct pound_sample_values values = function_values(
-		    function_named("ishigami"), 200, 7, (struct function_noise){.n_signals = 4, .share = shares[k]});
+		    function_named("ishigami"), 800, 7, (struct function_noise){.n_signals = 4, .share = shares[k]});
 		struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 7);
 		const double *errors = e->of.accuracy.errors;
 		assert_int_equal(pound_accuracy_dominant(errors), k ? POUND_ERROR_EXCITATION : POUND_ERROR_SAMPLING);
@@ -307,7 +307,7 @@ static const struct pound_result *reduced(struct pound_run *run)
 	return pound_run_result(run);
 }
 
-static void checked_runs_agree_and_are_counted_separately(void **state)
+static void checked_runs_agree_and_are_counted_apart(void **state)
 {
 	(void)state;
 	// 50 items of 4 runs in each of 2 cells, so that 8 runs are every 25th item
@@ -376,6 +376,6 @@ CHECK_MAIN(cmocka_unit_test(differences_of_runs_come_out_relative_and_as_a_varia
            cmocka_unit_test(few_rows_and_constant_outputs_have_no_slope),
            cmocka_unit_test(noise_adds_no_more_to_an_interval_than_there_is),
            cmocka_unit_test(the_dominant_error_is_larger_than_the_others_together),
-           cmocka_unit_test(checked_runs_agree_and_are_counted_separately),
+           cmocka_unit_test(checked_runs_agree_and_are_counted_apart),
            cmocka_unit_test(restored_blocks_bring_their_checks),
            cmocka_unit_test(a_coarse_solver_shows_its_error))

@@ -132,7 +132,7 @@ static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
 	free(got);
 }
 
-static void a_signal_of_each_sample_s_own_leaves_the_raw_indices_and_differs_from_no_randomness(void **state)
+static void a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_from_no_randomness(void **state)
 {
 	(void)state;
 	for (int random = 0; random < 2; random++) {
@@ -445,7 +445,7 @@ CHECK_MAIN(
     cmocka_unit_test(an_index_without_an_interval_is_noted),
     cmocka_unit_test(every_column_comes_from_its_function),
     cmocka_unit_test(raw_indexes_are_the_golden_ones_of_the_plain_protocol),
-    cmocka_unit_test(a_signal_of_each_sample_s_own_leaves_the_raw_indices_and_differs_from_no_randomness),
+    cmocka_unit_test(a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_from_no_randomness),
     cmocka_unit_test(fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_ones),
     cmocka_unit_test(with_few_rows_the_corrected_indexes_stand_in),
     cmocka_unit_test(what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left),

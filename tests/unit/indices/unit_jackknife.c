@@ -144,7 +144,29 @@ static void rows_in_groups_are_never_resampled(void **state)
 	free(scratch);
 }
 
-CHECK_MAIN(cmocka_unit_test(student_quantiles_are_those_of_the_tables),
+/* Of n rows with k ones the kurtosis is ((1 - p)^3 + p^3) / (p (1 - p)), p = k / n. */
+static void few_rows_are_behind_a_rare_event(void **state)
+{
+	(void)state;
+	enum { N = 1000, ONES = 10 };
+	double value[N] = {0};
+	const double p = (double)ONES / N, behind = N * p * (1 - p) / (pow(1 - p, 3) + pow(p, 3));
+	for (int k = 0; k < ONES; k++)
+		value[97 * k] = 1;
+	check_near(pound_jackknife_rows(value, N), behind, 1e-9);
+	// 21.05 degrees of freedom, by the quantiles of 21 and 22: 2.0796 and 2.0739
+	const struct pound_scatter alone = {{0, 0}, NULL};
+	const double error = sqrt(p * (1 - p) / (N - 1));
+	check_near(pound_jackknife_half_width(value, N, &alone, NULL) / error, 2.0793, 1e-3);
+	for (int i = 0; i < N; i++)
+		value[i] = i % 2;
+	check_near(pound_jackknife_rows(value, N), N, 1e-9);
+	check_near(pound_jackknife_half_width(value, N, &alone, NULL), POUND_NORMAL_95 * sqrt(0.25 / (N - 1)),
+	           1e-12);
+}
+
+CHECK_MAIN(cmocka_unit_test(few_rows_are_behind_a_rare_event),
+           cmocka_unit_test(student_quantiles_are_those_of_the_tables),
            cmocka_unit_test(the_interval_of_a_mean_is_students),
            cmocka_unit_test(a_ratio_has_the_interval_of_its_pseudo_values),
            cmocka_unit_test(rows_left_out_stay_in_their_groups),

@@ -298,13 +298,14 @@ static void all_there_is_to_say_has_room(void **state)
 	for (int o = 0; o < 4; o++) {
 		indices_fill(&indices[o], estimates, 10);
 		indices[o].notes = (1u << POUND_N_NOTES) - 1;
+		indices[o].rows_needed = 1200;
 	}
 	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
 	struct pound_result result = {.n_cells = 2, .cells = cells};
 	struct reading *r = result_of(study_documents_sensitivity, &result);
 	const char *note = reading_text(r, "/cells/0/outputs/0/note");
-	assert_string_equal(strrchr(note, ';'), "; few rows hold most of the variance, so intervals are "
-	                                        "too narrow");
+	assert_string_equal(strrchr(note, ';'), "; few rows hold most of the variance, so intervals are too "
+	                                        "narrow: 1200 rows or more are needed");
 	reading_close(r);
 }
 
