@@ -18,7 +18,7 @@ struct tail {
 	int n_inputs;
 	double (*y)(const double *u);
 	void (*exact)(const struct tail *tail, double *value); /* first-order, then total  (2 x n_inputs) */
-	double factor[INPUTS];                                 /* of a product: mean square over squared mean  (n_inputs) */
+	double factor[INPUTS]; /* of a product: mean square over squared mean  (n_inputs) */
 };
 
 /* A product of independent factors with ratios r_j of mean square to squared mean:
@@ -110,7 +110,8 @@ static void touch_exact(const struct tail *tail, double *value)
 	const double s = reach, m = pow(s, 4) / 12.0, q = pow(s, 6) / 30.0, one = pow(s, 7) / 63.0;
 	const double all = q * 7.0 / 3.0 - m * m * 9.0 / 4.0;
 	const double first = (one - m * m) * 9.0 / 4.0 / all, third = m * m / 12.0 / all;
-	const double with_third = (one * 7.0 / 3.0 - m * m * 9.0 / 4.0) / all, pair = (q - m * m) * 9.0 / 4.0 / all;
+	const double with_third = (one * 7.0 / 3.0 - m * m * 9.0 / 4.0) / all,
+	             pair = (q - m * m) * 9.0 / 4.0 / all;
 	(void)tail;
 	memcpy(value, (double[]){first, first, third, 0.0, 1.0 - with_third, 1.0 - with_third, 1.0 - pair, 0.0},
 	       8 * sizeof *value);
@@ -291,7 +292,8 @@ static void score(struct tail_cell *cell, int estimator, const double *value, co
 static void named_values(int row, const double *y, int n, int d, double *value)
 {
 	const struct pound_estimator *e = pound_estimator_row(row);
-	double mean[POUND_MOMENTS_MAX] = {0}, centre = 0.0, *centred = statistics_sure(malloc(sizeof *y * (size_t)n * (size_t)(d + 2)));
+	double mean[POUND_MOMENTS_MAX] = {0}, centre = 0.0,
+	       *centred = statistics_sure(malloc(sizeof *y * (size_t)n * (size_t)(d + 2)));
 	for (int k = 0; k < n * (d + 2); k++)
 		centre += y[k] / (n * (d + 2));
 	for (int k = 0; k < n * (d + 2); k++)
@@ -424,8 +426,9 @@ static void print_cell(const struct tail_cell *cell)
 	double points = 0.0;
 	for (int k = 0; k < 2 * cell->tail->n_inputs; k++)
 		points += cell->points[k];
-	printf(" %.2f %.2f | %.2f | %.2f %.2f | %.0f | %.0f |\n", least(cell, cell->holds, 0), least(cell, cell->holds, 1), cell->noted / cell->n,
-	       least(cell, cell->covered, 0), least(cell, cell->covered, 1), cell->noted > 0 ? cell->needed / cell->noted : 0.0, points);
+	printf(" %.2f %.2f | %.2f | %.2f %.2f | %.0f | %.0f |\n", least(cell, cell->holds, 0),
+	       least(cell, cell->holds, 1), cell->noted / cell->n, least(cell, cell->covered, 0),
+	       least(cell, cell->covered, 1), cell->noted > 0 ? cell->needed / cell->noted : 0.0, points);
 }
 
 /* Prints, of every function, design and number of rows: root mean square errors in thousandths over the inputs of S1 and then of
@@ -441,7 +444,8 @@ void statistics_tails(int n_seeds)
 		for (int design = 0; pound_design_name(design); design++)
 			for (int k = 0; k < TAILS; k++)
 				if (strcmp(pound_design_name(design), "random") != 0)
-					c.cells[c.n_cells++] = (struct tail_cell){.tail = &tails[k], .design = design, .size = size};
+					c.cells[c.n_cells++] =
+					    (struct tail_cell){.tail = &tails[k], .design = design, .size = size};
 	statistics_jobs(c.n_cells, cell_run, &c);
 	printf("| function | rows |");
 	for (int total = 0; total < 2; total++) {
