@@ -167,7 +167,7 @@ static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *
 			for (int r = 0; r < n_signals && values->same_signals; r++)
 				deviation[r] = one = NAN;
 		}
-		y[p] = values->variance || isnan(one) ? plain[p] : plain[p] - one;
+		y[p] = values->variance || values->same_signals || n_signals == 1 ? plain[p] : plain[p] - one;
 		row_largest = isfinite(y[p]) ? fmax(row_largest, fmax(fabs(y[p]), fabs(plain[p]))) : INFINITY;
 		biases += one;
 	}

@@ -32,6 +32,7 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	run.layout = pound_run_layout(c);
 	if (!study->elsewhere)
 		run.layout.n_blocks = pound_blocks_alike(c, item, &largest);
+	bytes += (double)pound_run_scale_bytes(study);
 	bytes += (double)sizeof(int) * run.layout.n_blocks +
 	         (double)sizeof(double) * (double)pound_blocks_doubles(&run.layout);
 	// who has no block does not touch its request

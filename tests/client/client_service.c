@@ -44,7 +44,7 @@ static void a_study_that_has_succeeded_has_status_results_and_samples(void **sta
 	expect_words(POUND("status", "--format", "table", id), 0, WORDS("runs_total", "succeeded", id));
 	expect_words(POUND("wait", id), 0, WORDS("\"status\": \"succeeded\""));
 	expect_words(POUND("results", id), 0, WORDS("\"kind\": \"sensitivity\"", "\"ST_high\""));
-	expect_words(POUND("results", "--format", "table", id), 0, WORDS("  ST  0.457 +-0.455", "variance"));
+	expect_words(POUND("results", "--format", "table", id), 0, WORDS("  ST  0.329 +-0.374", "variance"));
 	expect_words(POUND("results", "--format", "csv", id), 0, WORDS("ST_high"));
 	expect_words(POUND("results", "--partial", "--format", "csv", "--table", "inputs", id), 0,
 	             WORDS("S1,S1_low,S1_high"));

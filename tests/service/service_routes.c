@@ -179,11 +179,17 @@ static void every_route_answers_only_its_methods(void **state)
 	static const char *const methods[] = {"GET", "POST", "DELETE", "PUT", "PATCH", "OPTIONS", "BREW"};
 	struct service *service = *state;
 	for (int o = 0; o < API_N_OPERATIONS; o++) {
-		char path[96], allow[64];
-		const char *form = api_operations[o].path, *id = strstr(form, "{id}");
+		char path[128], allow[64];
+		const char *form = api_operations[o].path, *id = strstr(form, "{id}"),
+		           *hash = strstr(form, "{sha256}");
 		long long number;
-		snprintf(path, sizeof path, "%.*s%s%s", (int)(id ? id - form : (long)strlen(form)), form,
-		         id ? "0123456789abcdef" : "", id ? id + 4 : "");
+		snprintf(path, sizeof path, "%.*s%s%s",
+		         (int)(id     ? id - form
+		               : hash ? hash - form
+		                      : (long)strlen(form)),
+		         form, id || hash ? "0123456789abcdef" : "", id ? id + 4 : "");
+		for (int more = 0; hash && more < 3; more++)
+			strcat(path, "0123456789abcdef");
 		char *named = strstr(path, "{name}");
 		if (named)
 			strcpy(named, "swept");

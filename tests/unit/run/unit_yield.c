@@ -138,7 +138,7 @@ static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void 
 		pound_run_free(run);
 		study_free(study);
 	}
-	assert_true(mean[0] == mean[1]);
+	check_near(mean[1], mean[0], 64 * 0x1p-52 * mean[0]); // steps to the gap round otherwise
 }
 
 static void a_body_that_never_moves_is_not_searched_for(void **state)
