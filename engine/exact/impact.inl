@@ -51,7 +51,7 @@ static double floor_acceleration(const struct chain *c, int i, int n, double gro
 }
 
 /* Relative acceleration, or velocity, that what pushes on all held links gives to the sides of each of them. */
-static void held_apply(const struct chain *c, const double *push, double *apart)
+static void held_apply(const struct chain *c, const double *push, double *closing)
 {
 	double floors[POUND_CHAIN_FLOORS];
 	memset(floors, 0, sizeof *floors * (size_t)c->task->n_floors);
@@ -61,9 +61,9 @@ static void held_apply(const struct chain *c, const double *push, double *apart)
 			floors[i] = fma(c->link[j].weight[k] * c->inverse_mass.at[i], push[j], floors[i]);
 		}
 	for (int j = 0; j < c->n_links; j++) {
-		apart[j] = 0;
+		closing[j] = 0;
 		for (int k = 0; c->link[j].held && k < c->link[j].n_ends; k++)
-			apart[j] = fma(c->link[j].weight[k], floors[c->link[j].floor[k]], apart[j]);
+			closing[j] = fma(c->link[j].weight[k], floors[c->link[j].floor[k]], closing[j]);
 	}
 }
 
@@ -76,7 +76,7 @@ static void held_apply(const struct chain *c, const double *push, double *apart)
  */
 static void held_solve(const struct chain *c, const double *b, double *f)
 {
-	double left[LINKS], way[LINKS], apart[LINKS], size = 0;
+	double left[LINKS], way[LINKS], closing[LINKS], size = 0;
 	int held = 0;
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
@@ -89,15 +89,15 @@ static void held_solve(const struct chain *c, const double *b, double *f)
 	const double least = DBL_EPSILON * DBL_EPSILON * size;
 	for (int round = 0; round < ROUNDS_A_LINK * held && size > least; round++) {
 		double along = 0, next = 0;
-		held_apply(c, way, apart);
+		held_apply(c, way, closing);
 		for (int j = 0; j < c->n_links; j++)
-			along = fma(way[j], apart[j], along);
+			along = fma(way[j], closing[j], along);
 		if (!(along > 0))
 			break;
 		const double share = size / along;
 		for (int j = 0; j < c->n_links; j++) {
 			f[j] = fma(share, way[j], f[j]);
-			left[j] = fma(-share, apart[j], left[j]);
+			left[j] = fma(-share, closing[j], left[j]);
 			next = fma(left[j], left[j] / c->link[j].inverse_mass, next);
 		}
 		for (int j = 0; j < c->n_links; j++)
@@ -113,17 +113,17 @@ static void held_solve(const struct chain *c, const double *b, double *f)
  */
 static void held_push(struct chain *c, int n, double ground)
 {
-	double apart[LINKS] = {0}, force[LINKS];
+	double closing[LINKS] = {0}, force[LINKS];
 	for (int j = 0; j < c->n_links; j++)
 		c->overlaps[n][j] = c->link[j].held ? 0 : c->overlaps[n][j];
 	for (int k = 0; k < REFINEMENTS; k++) {
 		for (int j = 0; j < c->n_links; j++) {
 			const struct link *l = &c->link[j];
-			apart[j] = 0;
+			closing[j] = 0;
 			for (int e = 0; l->held && e < l->n_ends; e++)
-				apart[j] = fma(l->weight[e], floor_acceleration(c, l->floor[e], n, ground), apart[j]);
+				closing[j] = fma(l->weight[e], floor_acceleration(c, l->floor[e], n, ground), closing[j]);
 		}
-		held_solve(c, apart, force);
+		held_solve(c, closing, force);
 		for (int j = 0; j < c->n_links; j++) {
 			if (!c->link[j].held)
 				continue;
@@ -176,16 +176,16 @@ static void impulse_apply(struct chain *c, const struct link *by, double impulse
 /* Gives all bodies that are held together one velocity, with their momentum. */
 static void held_merge(struct chain *c)
 {
-	double apart[LINKS] = {0}, impulse[LINKS];
+	double closing[LINKS] = {0}, impulse[LINKS];
 	for (int j = 0; j < c->n_links; j++)
-		apart[j] = c->link[j].held ? c->link[j].q : 0;
-	held_solve(c, apart, impulse);
+		closing[j] = c->link[j].held ? c->link[j].q : 0;
+	held_solve(c, closing, impulse);
 	for (int j = 0; j < c->n_links; j++) {
 		if (!c->link[j].held)
 			continue;
 		impulse_apply(c, &c->link[j], impulse[j]);
 		c->link[j].impulse += impulse[j];
-		c->work_gap += 0.5 * impulse[j] * apart[j];
+		c->work_gap += 0.5 * impulse[j] * closing[j];
 	}
 	for (int j = 0; j < c->n_links; j++)
 		if (c->link[j].held)

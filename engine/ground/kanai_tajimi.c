@@ -147,13 +147,13 @@ static bool doubled(double d[N][N], double q[N][N])
 	return grows;
 }
 
-/* d^2 - sum d + product for the poles d = exp(p) - 1 of a step,  p^2 + b p + c = 0. */
+/* d^2 - sum d + product: a pair of roots */
 struct pair {
 	double sum, product;
 };
 
-/* The poles of h by the power series of exp(A h) - 1,  A (x0, x1) = (-b x0 - c x1, x0),  whose determinant cancels nothing;
- * from there  d -> 2 d + d^2  over twice the time.
+/* The poles d = exp(p) - 1 of a step,  p^2 + b p + c = 0:  those of h by the power series of exp(A h) - 1,
+ * A (x0, x1) = (-b x0 - c x1, x0),  whose determinant cancels nothing; from there  d -> 2 d + d^2  over twice the time.
  *
  * Valid    h times the largest pole <= 1 */
 static struct pair poles_of(double b, double c, double h, int doublings)
@@ -244,20 +244,16 @@ static double root_of(const double q[N])
 	}
 }
 
-/* d^2 - sum d + product for the zeros d in the unit circle |1 + d| < 1 that a pair of v stands for:  d^2 + v d + v = 0.
- *
- * Given    a, b    -   the pair: a + i b and a - i b, or a and b where both are real
- *
- * The two d of a v multiply to v: the larger one cancels nothing and gives the other. */
-static void zeros_of(bool real, double a, double b, double *sum, double *product_of)
+/* The zero d of a real v:  d^2 + v d + v = 0,  |1 + d| < 1.  The two d of a v multiply to v: the larger one cancels nothing and
+ * gives the other. */
+static double zero_of(double v)
 {
-	if (real) {
-		const double da = 2 * a / (-a - copysign(sqrt(a * (a - 4)), a));
-		const double db = 2 * b / (-b - copysign(sqrt(b * (b - 4)), b));
-		*sum = da + db;
-		*product_of = da * db;
-		return;
-	}
+	return 2 * v / (-v - copysign(sqrt(v * (v - 4)), v));
+}
+
+/* The zeros of the pair v = a + i b and a - i b */
+static struct pair zeros_of(double a, double b)
+{
 	// s = sqrt(v (v - 4)), on the side of -v
 	const double x = (a - b) * (a + b) - 4 * a, y = 2 * b * (a - 2), size = sqrt(x * x + y * y);
 	double re = sqrt(0.5 * (size + fabs(x))), im = re > 0 ? 0.5 * y / re : 0;
@@ -268,8 +264,7 @@ static void zeros_of(bool real, double a, double b, double *sum, double *product
 	}
 	const double side = -a * re - b * im < 0 ? -1 : 1;
 	const double p = 0.5 * (side * re - a), q = 0.5 * (side * im - b), r = p * p + q * q;
-	*sum = 2 * (a * p + b * q) / r;
-	*product_of = (a * a + b * b) / r;
+	return (struct pair){2 * (a * p + b * q) / r, (a * a + b * b) / r};
 }
 
 /* The cubic polynomial in d whose modulus on the unit circle is the density and whose zeros lie in it.
@@ -288,21 +283,19 @@ static void factor_of(const double density[N], double b[N])
 	const double e0 = -q[0] / v;
 	const double e1 =
 	    fabs(q[2]) + fabs(q[3] * v) < (fabs(e0) + fabs(q[1])) / fabs(v) ? q[2] + q[3] * v : (e0 - q[1]) / v;
-	const double half = -0.5 * e1 / q[3], apart = half * half - e0 / q[3];
-	double sum, rest;
-	const double far = half + copysign(sqrt(fmax(apart, 0)), half);
-	// by rounding alone may two roots that are nearly one lie where the density is positive
-	if (apart < 0 || (far > 0 && far < 4))
-		zeros_of(false, half, sqrt(fmax(-apart, 0)), &sum, &rest);
-	else
-		zeros_of(true, far, e0 / q[3] / far, &sum, &rest);
-	const double d = 2 * v / (-v - copysign(sqrt(v * (v - 4)), v));
+	const double half = -0.5 * e1 / q[3], discriminant = half * half - e0 / q[3];
+	const double far = half + copysign(sqrt(fmax(discriminant, 0)), half), near = e0 / q[3] / far;
+	// two roots that are nearly one can lie where the density is positive by rounding alone
+	const struct pair zeros = discriminant < 0 || (far > 0 && far < 4)
+	                              ? zeros_of(half, sqrt(fmax(-discriminant, 0)))
+	                              : (struct pair){zero_of(far) + zero_of(near), zero_of(far) * zero_of(near)};
+	const double d = zero_of(v);
 	// at v = 4, d = -2
-	const double gain = sqrt(nyquist) / ((2 + d) * (4 + 2 * sum + rest));
+	const double gain = sqrt(nyquist) / ((2 + d) * (4 + 2 * zeros.sum + zeros.product));
 	b[3] = gain;
-	b[2] = -gain * (sum + d);
-	b[1] = gain * (rest + sum * d);
-	b[0] = -gain * rest * d;
+	b[2] = -gain * (zeros.sum + d);
+	b[1] = gain * (zeros.product + zeros.sum * d);
+	b[0] = -gain * zeros.product * d;
 }
 
 /* Factor of a covariance, l l^T = q, l lower triangular; what is left of a variance below its rounding is none. */

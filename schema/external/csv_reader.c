@@ -141,6 +141,26 @@ bool csv_number(const struct csv *csv, double *value)
 	return isfinite(*value);
 }
 
+/* Reports what is wrong with the name of column c, the current cell; same: an earlier column of that name, or -1. */
+void csv_name_check(const struct csv *csv, int c, int same)
+{
+	char what[CSV_CELL_SIZE + 80];
+	double number;
+	snprintf(what, sizeof what, "column %d has no name; pandas writes its index this way unless index=False",
+	         c + 1);
+	if (!*csv->cell)
+		csv_complain(csv, NULL, what);
+	snprintf(what, sizeof what, "must be the name of a column, got \"%.40s\"", csv->cell);
+	if (*csv->cell && csv_number(csv, &number) && !isnan(number))
+		csv_complain(csv, NULL, what);
+	snprintf(what, sizeof what, "must be shorter than %d bytes", CSV_CELL_SIZE);
+	if (csv->cut)
+		csv_complain(csv, csv->cell, what);
+	snprintf(what, sizeof what, "is already the name of column %d", same + 1);
+	if (same >= 0 && *csv->cell)
+		csv_complain(csv, csv->cell, what);
+}
+
 /* Whether the text is UTF-8; the current line is the first that is not. */
 bool csv_is_text(struct csv *csv)
 {

@@ -41,6 +41,7 @@ bool csv_blank(const char *at, const char *end);
 
 /* Reports a fault of the current line; `column` may be NULL. */
 void csv_complain(const struct csv *csv, const char *column, const char *what);
+void csv_name_check(const struct csv *csv, int c, int same);
 
 /* Keeps a fault of the current line, to be reported with those of the other lines. */
 void csv_fault_note(struct csv_fault *fault, const struct csv *csv, const char *format, ...)

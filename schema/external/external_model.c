@@ -205,10 +205,8 @@ static void columns_join(struct outputs *outputs, struct csv *csv)
 
 static void column_read(struct outputs *outputs, struct csv *csv)
 {
-	double number;
 	int c = outputs->n_columns;
 	struct column *column = &outputs->columns[c];
-	char what[CSV_CELL_SIZE + 80];
 	csv_read(csv);
 	column->name = strdup(csv->cell);
 	if (!column->name) {
@@ -217,20 +215,7 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	}
 	outputs->n_columns++;
 	column_role(outputs, column);
-	int same = column_named(outputs, c, column->name, strlen(column->name));
-	snprintf(what, sizeof what, "column %d has no name; pandas writes its index this way unless index=False",
-	         c + 1);
-	if (!*csv->cell)
-		csv_complain(csv, NULL, what);
-	snprintf(what, sizeof what, "must be the name of a column, got \"%.40s\"", csv->cell);
-	if (*csv->cell && csv_number(csv, &number) && !isnan(number))
-		csv_complain(csv, NULL, what);
-	snprintf(what, sizeof what, "must be shorter than %d bytes", CSV_CELL_SIZE);
-	if (csv->cut)
-		csv_complain(csv, column->name, what);
-	snprintf(what, sizeof what, "is already the name of column %d", same + 1);
-	if (same >= 0)
-		csv_complain(csv, column->name, what);
+	csv_name_check(csv, c, column_named(outputs, c, column->name, strlen(column->name)));
 }
 
 /* The first line: what each column is. */

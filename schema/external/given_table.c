@@ -30,26 +30,6 @@ static int column_named(const struct given_table *table, int n, const char *name
 	return -1;
 }
 
-static void name_check(const struct given_table *table, const struct csv *csv, int c)
-{
-	char what[CSV_CELL_SIZE + 80];
-	double number;
-	const int same = column_named(table, c, table->names[c]);
-	snprintf(what, sizeof what, "column %d has no name; pandas writes its index this way unless index=False",
-	         c + 1);
-	if (!*csv->cell)
-		csv_complain(csv, NULL, what);
-	snprintf(what, sizeof what, "must be the name of a column, got \"%.40s\"", csv->cell);
-	if (*csv->cell && csv_number(csv, &number) && !isnan(number))
-		csv_complain(csv, NULL, what);
-	snprintf(what, sizeof what, "must be shorter than %d bytes", CSV_CELL_SIZE);
-	if (csv->cut)
-		csv_complain(csv, csv->cell, what);
-	snprintf(what, sizeof what, "is already the name of column %d", same + 1);
-	if (same >= 0 && *csv->cell)
-		csv_complain(csv, csv->cell, what);
-}
-
 static void header_read(struct given_table *table, struct csv *csv)
 {
 	const char *newline = memchr(csv->at, '\n', (size_t)(csv->end - csv->at));
@@ -74,7 +54,8 @@ static void header_read(struct given_table *table, struct csv *csv)
 			return;
 		}
 		table->names[table->n_columns++] = name;
-		name_check(table, csv, table->n_columns - 1);
+		const int c = table->n_columns - 1;
+		csv_name_check(csv, c, column_named(table, c, table->names[c]));
 	} while (!csv->ended);
 }
 
