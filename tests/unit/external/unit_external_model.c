@@ -12,6 +12,7 @@
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
+#include "tests/support/results.h"
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
 
@@ -20,15 +21,6 @@
 static const char two_inputs[] =
     "{\"inputs\": [{\"name\": \"p\", " UNIFORM ", {\"name\": \"q, r\", " UNIFORM "],"
     " \"design\": {\"rows\": 6}}";
-
-static struct pound_study *study_of(const char *document)
-{
-	struct problems problems;
-	struct pound_study *study = study_design_from_json(document, strlen(document), &problems);
-	if (!study)
-		fail_msg("%s: %s", problems.list[0].pointer, problems.list[0].detail);
-	return study;
-}
 
 static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 {
@@ -62,7 +54,7 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 		assert_string_equal(problems.list[0].pointer, refused[i].pointer);
 		assert_string_equal(problems.list[0].detail, refused[i].detail);
 	}
-	struct pound_study *study = study_of(two_inputs);
+	struct pound_study *study = results_design(two_inputs);
 	assert_true(study->elsewhere && study->kind == POUND_KIND_SENSITIVITY && study->n_inputs == 2);
 	assert_int_equal(study->design.rows, 6);
 	study_free(study);
@@ -70,7 +62,7 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 	struct problems problems;
 	study_documents_refused(two_inputs, &problems);
 	// a study with a scene has a design too
-	study = study_of(study_documents_sensitivity);
+	study = results_design(study_documents_sensitivity);
 	assert_false(study->elsewhere);
 	study_free(study);
 }
@@ -78,7 +70,7 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 static void rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers(void **state)
 {
 	(void)state;
-	struct pound_study *study = study_of(two_inputs);
+	struct pound_study *study = results_design(two_inputs);
 	struct pound_run *run = pound_run_create(study, 1);
 	size_t n, n_rest;
 	char *head = model_rows(study, run, 0, 2, &n), *rest = model_rows(study, run, 2, 4, &n_rest);
@@ -114,22 +106,6 @@ static const double golden[6][4] = {{3.3, 3.13, 3.25, 3.65},  {1.96, 2.68, 2.88,
                                     {3.75, 2.98, 3.6, 3.27},  {3.94, 2.15, 2.62, 2.7},
                                     {1.05, 3.88, 2.65, 3.08}, {1.7, 3.78, 2.26, 2.66}};
 
-/* The result of a text that must be right. */
-static struct reading *indices_of(const char *document, const char *csv)
-{
-	struct problems problems;
-	size_t n;
-	struct pound_study *study = study_of(document);
-	char *json = model_indices(study, csv, strlen(csv), &problems, &n);
-	if (!json)
-		fail_msg("%s: %s", problems.list[0].pointer, problems.list[0].detail);
-	struct reading *result = reading_open(json, n);
-	assert_non_null(result);
-	free(json);
-	study_free(study);
-	return result;
-}
-
 static double index_of(const struct reading *result, int output, int input, const char *name)
 {
 	return reading_number(result, "/cells/0/outputs/%d/inputs/%d/%s", output, input, name);
@@ -153,7 +129,7 @@ static void outputs_computed_elsewhere_give_the_golden_indexes(void **state)
 {
 	(void)state;
 	char *csv = golden_csv("y\n", "%.17g\n", 0.0);
-	struct reading *result = indices_of(two_inputs, csv);
+	struct reading *result = results_of_lines(two_inputs, csv);
 	check_near(index_of(result, 0, 0, "S1_raw"), 0.572576783750673, 1e-12);
 	check_near(index_of(result, 0, 1, "S1_raw"), 0.755503894911683, 1e-12);
 	check_near(index_of(result, 0, 0, "ST_raw"), 0.880662387875659, 1e-12);
@@ -198,7 +174,7 @@ static void a_variance_column_takes_independent_noise_out(void **state)
 	double wanted[4];
 	corrected(v, wanted);
 	char *csv = golden_csv("y,y.variance\n", "%.17g,%.17g\n", v);
-	struct reading *result = indices_of(two_inputs, csv);
+	struct reading *result = results_of_lines(two_inputs, csv);
 	for (int j = 0; j < 2; j++) {
 		check_near(index_of(result, 0, j, "S1_pick_freeze"), wanted[j], 1e-12);
 		check_near(index_of(result, 0, j, "ST_pick_freeze"), wanted[2 + j], 1e-12);
@@ -210,7 +186,7 @@ static void a_variance_column_takes_independent_noise_out(void **state)
 	reading_close(result);
 	// a row whose samples share their noise needs covariances, which are not there
 	char *document = study_documents_with(two_inputs, "\"rows\": 6", "\"rows\": 6, \"signals\": \"common\"");
-	result = indices_of(document, csv);
+	result = results_of_lines(document, csv);
 	check_near(index_of(result, 0, 0, "S1_raw"), 0.572576783750673, 1e-12);
 	assert_true(isnan(index_of(result, 0, 0, "S1_pick_freeze")));
 	assert_true(isnan(index_of(result, 0, 0, "ST")));
@@ -224,7 +200,7 @@ static void a_variance_column_takes_independent_noise_out(void **state)
  * each; with its variance in a column of its own, or without. */
 static char *noisy_csv(const char *document, bool shared, bool variance)
 {
-	struct pound_study *study = study_of(document);
+	struct pound_study *study = results_design(document);
 	double *x = malloc(sizeof *x * (size_t)study->design.rows * 4);
 	char *csv = NULL;
 	size_t n;
@@ -264,7 +240,7 @@ static void indices_of_a_noisy_model_are_exact_or_null(void **state)
 		                                      cases[k].shared ? "\"rows\": 400, \"signals\": \"common\""
 		                                                      : "\"rows\": 400");
 		char *csv = noisy_csv(document, cases[k].shared, cases[k].variance);
-		struct reading *result = indices_of(document, csv);
+		struct reading *result = results_of_lines(document, csv);
 		for (int j = 0; j < 2; j++) {
 			const double first = index_of(result, 0, j, "S1"), total = index_of(result, 0, j, "ST");
 			// twice half an interval of 95 %: four standard errors
@@ -299,7 +275,7 @@ static void a_scene_without_random_signals_has_no_noise_to_share(void **state)
 		snprintf(document, sizeof document, form, excitations[random]);
 		positive = study_documents_with(document, "\"min\": 0", "\"min\": 0.5"); // of the mass
 		char *csv = noisy_csv(positive, true, false);
-		struct reading *result = indices_of(positive, csv);
+		struct reading *result = results_of_lines(positive, csv);
 		assert_int_equal(isnan(index_of(result, 0, 0, "ST")), random);
 		assert_int_equal(isnan(index_of(result, 0, 0, "S1_pick_freeze")), random);
 		assert_true(isfinite(index_of(result, 0, 0, "S1")));
@@ -328,9 +304,9 @@ static void an_inert_input_has_no_total_once_replicates_give_the_noise(void **st
 	}
 	fclose(out);
 	struct reading *result =
-	    indices_of("{\"inputs\": [{\"name\": \"a\", " UNIFORM ", {\"name\": \"b\", " UNIFORM
-	               ", {\"name\": \"c\", " UNIFORM ", {\"name\": \"d\", " UNIFORM "]}",
-	               csv);
+	    results_of_lines("{\"inputs\": [{\"name\": \"a\", " UNIFORM ", {\"name\": \"b\", " UNIFORM
+	                     ", {\"name\": \"c\", " UNIFORM ", {\"name\": \"d\", " UNIFORM "]}",
+	                     csv);
 	// nu = sigma^2 / (R V) = 0.2: raw T -> nu / (1 + nu); corrected RMSE 0.0097 of an inert input of this function
 	check_near(index_of(result, 0, 3, "ST_raw"), 0.2 / 1.2, 4 * 0.0097);
 	check_near(index_of(result, 0, 3, "ST_pick_freeze"), 0.0, 4 * 0.0097);
@@ -356,7 +332,7 @@ static void a_run_without_a_number_takes_its_row_out_of_every_output(void **stat
 			for (int p = 0; p < 4; p++)
 				fprintf(out, i == 2 && p == 3 ? "%.17g,%s\n" : "%.17g,1\n", golden[i][p], missing[k]);
 		fclose(out);
-		struct reading *result = indices_of(two_inputs, csv);
+		struct reading *result = results_of_lines(two_inputs, csv);
 		check_near(reading_number(result, "/cells/0/runs_failed"), 1.0, 0.0);
 		check_near(reading_number(result, "/cells/0/rows_dropped"), 1.0, 0.0);
 		// as from five rows; centred Saltelli by hand
@@ -382,7 +358,7 @@ static void spelling_and_further_columns_do_not_change_the_result(void **state)
 	(void)state;
 	size_t n, n_other, n_rows;
 	struct problems problems;
-	struct pound_study *study = study_of(two_inputs);
+	struct pound_study *study = results_design(two_inputs);
 	struct pound_run *run = pound_run_create(study, 1);
 	char *plain = golden_csv("y\n", "%.17g\n", 0.0), *rows = model_rows(study, run, 0, 6, &n_rows);
 	// the design's own columns, quotes, spaces, the line ends and the mark of a spreadsheet
@@ -411,7 +387,7 @@ static void a_quote_that_begins_the_text_is_the_first_of_its_cell(void **state)
 {
 	(void)state;
 	char *plain = golden_csv("y\n", "%.17g\n", 0.0), *quoted = golden_csv("\"\"y\"\n", "%.17g\n", 0.0);
-	struct pound_study *study = study_of(two_inputs);
+	struct pound_study *study = results_design(two_inputs);
 	struct problems problems;
 	size_t n, n_quoted;
 	char *json = model_indices(study, plain, strlen(plain), &problems, &n);
@@ -433,7 +409,7 @@ static void a_column_may_have_the_longest_name_of_an_input(void **state)
 	snprintf(document, sizeof document,
 	         "{\"inputs\": [{\"name\": \"%s\", " UNIFORM "], \"design\": {\"rows\": 6}}", name);
 	snprintf(header, sizeof header, "%s,y\n", name);
-	struct pound_study *study = study_of(document);
+	struct pound_study *study = results_design(document);
 	struct pound_run *run = pound_run_create(study, 1);
 	char *csv = NULL;
 	size_t n;
@@ -446,7 +422,7 @@ static void a_column_may_have_the_longest_name_of_an_input(void **state)
 			fprintf(out, "%.17g,%.17g\n", x, x * x);
 		}
 	fclose(out);
-	struct reading *result = indices_of(document, csv);
+	struct reading *result = results_of_lines(document, csv);
 	assert_int_equal(reading_count(result, "/cells/0/outputs"), 1);
 	assert_string_equal(reading_text(result, "/cells/0/outputs/0/name"), "y");
 	reading_close(result);
@@ -461,7 +437,7 @@ static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
 	struct problems problems;
 	size_t n_csv, n;
 	const char *document = example_text("sensitivity_small");
-	struct pound_study *study = study_of(document);
+	struct pound_study *study = results_design(document);
 	struct pound_run *run = specimen_run(study);
 	const struct pound_cell *cell = &pound_run_result(run)->cells[0];
 	char *csv = samples_to_csv(study, run, &n_csv);
@@ -541,7 +517,7 @@ static void every_fault_of_the_outputs_is_reported_with_its_line(void **state)
 	    {"y\n", "nan\n", "\n", "", "no row of the design has all its outputs, so there are no indices"},
 	    {"", "", "\n\n", "", "is empty; expected a header and one line per sample of the design"},
 	};
-	struct pound_study *study = study_of(two_inputs);
+	struct pound_study *study = results_design(two_inputs);
 	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
 		struct problems problems;
 		char csv[800] = "";
@@ -572,7 +548,7 @@ static void every_spelling_of_a_decimal_number_is_one(void **state)
 	             {"1e-999", true}, {".", false},        {"-", false},   {"+-1", false},   {"1e", false},
 	             {"1e+", false},   {"e1", false},       {"1 2", false}, {"1_0", false},   {"nan(1)", false},
 	             {"-nan", false},  {"infinity", false}, {"0b1", false}, {"1.2.3", false}, {"0x1p3", false}};
-	struct pound_study *study = study_of(two_inputs);
+	struct pound_study *study = results_design(two_inputs);
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		struct problems problems;
 		char csv[400] = "y\n";
@@ -596,7 +572,7 @@ static void a_design_that_grows_is_that_of_its_first_look(void **state)
 	struct problems problems;
 	size_t n, n_csv;
 	char *csv = NULL;
-	struct pound_study *study = study_of(example_text("until"));
+	struct pound_study *study = results_design(example_text("until"));
 	struct pound_run *run = pound_run_create(study, 1);
 	assert_int_equal(pound_run_rows(run), pound_design_rows(study, 0));
 	FILE *out = open_memstream(&csv, &n_csv);
@@ -628,7 +604,7 @@ static void lines_in_another_order_are_noticed_by_the_inputs_in_them(void **stat
 	struct problems problems;
 	size_t n, n_csv;
 	char *csv = NULL;
-	struct pound_study *study = study_of(two_inputs);
+	struct pound_study *study = results_design(two_inputs);
 	FILE *out = open_memstream(&csv, &n_csv);
 	fputs("p,y\n", out);
 	for (int k = 0; k < 24; k++)
@@ -647,7 +623,7 @@ static void outputs_of_a_sweep_are_refused(void **state)
 	(void)state;
 	struct problems problems;
 	size_t n;
-	struct pound_study *study = study_of(study_documents_sensitivity);
+	struct pound_study *study = results_design(study_documents_sensitivity);
 	assert_int_equal(study->n_sweeps, 1);
 	assert_null(model_indices(study, "y\n", 2, &problems, &n));
 	assert_string_equal(problems.list[0].pointer, "/sweep");

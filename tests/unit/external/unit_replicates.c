@@ -6,36 +6,12 @@
 #include "schema/json/json_pointer.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
+#include "tests/support/results.h"
 
 #define UNIFORM     "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 1}}"
 #define INPUTS      "{\"inputs\": [{\"name\": \"p\", " UNIFORM ", {\"name\": \"q\", " UNIFORM "], "
 #define INDEPENDENT INPUTS "\"design\": {\"rows\": 1000}}"
 #define COMMON      INPUTS "\"design\": {\"rows\": 1000, \"signals\": \"common\"}}"
-
-static struct pound_study *study_of(const char *document)
-{
-	struct problems problems;
-	struct pound_study *study = study_design_from_json(document, strlen(document), &problems);
-	if (!study)
-		fail_msg("%s: %s", problems.list[0].pointer, problems.list[0].detail);
-	return study;
-}
-
-/* The result of a text that must be right. */
-static struct reading *indices_of(const char *document, const char *csv)
-{
-	struct problems problems;
-	size_t n;
-	struct pound_study *study = study_of(document);
-	char *json = model_indices(study, csv, strlen(csv), &problems, &n);
-	if (!json)
-		fail_msg("%s: %s", problems.list[0].pointer, problems.list[0].detail);
-	struct reading *result = reading_open(json, n);
-	assert_non_null(result);
-	free(json);
-	study_free(study);
-	return result;
-}
 
 static double index_of(const struct reading *result, int input, const char *name)
 {
@@ -75,9 +51,9 @@ static void replicates_take_their_noise_out_of_the_indices(void **state)
 	(void)state;
 	static const char *const documents[] = {INDEPENDENT, COMMON};
 	for (int common = 0; common < 2; common++) {
-		struct pound_study *study = study_of(documents[common]);
+		struct pound_study *study = results_design(documents[common]);
 		char *csv = noisy_csv(study, common, 0.5);
-		struct reading *result = indices_of(documents[common], csv);
+		struct reading *result = results_of_lines(documents[common], csv);
 		assert_string_equal(reading_text(result, "/cells/0/outputs/0/name"), "z");
 		check_near(reading_number(result, "/cells/0/runs"), 4 * 4 * 1000, 0);
 		for (int j = 0; j < 2; j++) {
@@ -107,7 +83,7 @@ static void replicates_take_their_noise_out_of_the_indices(void **state)
 static void replicates_without_noise_are_the_output_itself(void **state)
 {
 	(void)state;
-	struct pound_study *study = study_of(INDEPENDENT);
+	struct pound_study *study = results_design(INDEPENDENT);
 	char *copies = noisy_csv(study, false, 0), *csv = strdup(copies), *to = csv;
 	// the first column alone
 	for (const char *from = copies; *from; from = strchr(from, '\n') + 1) {
@@ -118,7 +94,7 @@ static void replicates_without_noise_are_the_output_itself(void **state)
 	}
 	*to = 0;
 	memset(csv + 1, ' ', strlen("z.replicate1") - 1);
-	struct reading *one = indices_of(INDEPENDENT, csv), *two = indices_of(INDEPENDENT, copies);
+	struct reading *one = results_of_lines(INDEPENDENT, csv), *two = results_of_lines(INDEPENDENT, copies);
 	for (int j = 0; j < 2; j++) {
 		check_near(index_of(two, j, "S1_raw"), index_of(one, j, "S1_raw"), 0);
 		check_near(index_of(two, j, "ST_raw"), index_of(one, j, "ST_raw"), 0);
@@ -136,7 +112,7 @@ static void replicates_must_be_complete(void **state)
 	static const char *const headers[] = {"y.replicate1\n", "y.replicate1,y.replicate3\n",
 	                                      "y.replicate1,y.replicate2,z.replicate1\n",
 	                                      "y.replicate1,y.replicate2,y\n", "y.replicate0,y.replicate1\n"};
-	struct pound_study *study = study_of(INDEPENDENT);
+	struct pound_study *study = results_design(INDEPENDENT);
 	for (size_t k = 0; k < sizeof headers / sizeof headers[0]; k++) {
 		struct problems problems;
 		size_t n;

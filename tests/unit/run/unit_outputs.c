@@ -10,6 +10,7 @@
 #include "schema/result/result_json.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
+#include "tests/support/results.h"
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
 
@@ -31,23 +32,6 @@ static const struct {
                 {"ductility_demand_right", "oscillators/1/demand"}};
 
 enum { SIGNALS = 8 };
-
-static struct reading *result_of(const char *document)
-{
-	static const struct timing timing = {1, 1, 1};
-	struct pound_study *study = study_documents_study(document);
-	struct pound_run *run = pound_run_create(study, 1);
-	size_t length;
-	assert_non_null(run);
-	assert_int_equal(specimen_compute(run), POUND_OK);
-	char *json = result_to_json(study, pound_run_result(run), &timing, &length);
-	struct reading *result = reading_open(json, length);
-	assert_non_null(result);
-	free(json);
-	pound_run_free(run);
-	study_free(study);
-	return result;
-}
 
 /* Mean over the signals of a number of theirs. */
 static double mean_of(struct reading *result, const char *measure)
@@ -71,7 +55,7 @@ static void outputs_of_pairs_are_means_of_the_signals(void **state)
 		         "0.02}, \"excitation\": {\"signals\": %d}}, %s\"%s\", \"%s\"]}",
 		         laws[law], SIGNALS, pair_outputs, law ? "ductility_demand" : "force_amplification",
 		         law ? "ductility_demand_right" : "force_amplification_right");
-		struct reading *r = result_of(document);
+		struct reading *r = results_of_study(document);
 		for (size_t k = 0; k < sizeof of_pairs / sizeof of_pairs[0]; k++) {
 			char at[64];
 			snprintf(at, sizeof at, "/outputs/%s", of_pairs[k].output);
@@ -111,7 +95,7 @@ static void the_right_body_is_run_where_an_output_reads_it(void **state)
 		         "\"uniform\", \"min\": 1.2, \"max\": 2}}], \"design\": {\"rows\": 16}, \"outputs\": "
 		         "[\"%s\"]}",
 		         outputs[k]);
-		struct reading *r = result_of(document);
+		struct reading *r = results_of_study(document);
 		run[k] = reading_number(r, "/work/free_runs/run");
 		assert_true(reading_number(r, "/cells/0/outputs/0/mean") > 0);
 		assert_true(reading_number(r, "/cells/0/outputs/0/accuracy/difference_largest") < 1e-10);
@@ -149,7 +133,7 @@ static void outputs_of_rows_are_means_of_the_signals(void **state)
 	for (size_t k = 0; k < sizeof of_rows / sizeof of_rows[0]; k++)
 		n += snprintf(document + n, sizeof document - (size_t)n, ", \"%s\"", of_rows[k].output);
 	snprintf(document + n, sizeof document - (size_t)n, "]}");
-	struct reading *r = result_of(document);
+	struct reading *r = results_of_study(document);
 	double force = 0, impulse = 0, count = 0, time = 0, touched = 0, residual = 0;
 	for (int i = 0; i < SIGNALS; i++) {
 		double contacts = 0, most[2] = {0}, times = 0;
@@ -185,7 +169,7 @@ static double number_of(const char *scene, const char *law, double gap, int seed
 	         "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"%s\"}, %s, \"contact\": {\"gap_m\": "
 	         "%.17g}, \"excitation\": {\"signals\": 1}}, \"design\": {\"seed\": %d}, \"outputs\": [\"%s\"]}",
 	         law, scene, gap, seed, output);
-	struct reading *r = result_of(document);
+	struct reading *r = results_of_study(document);
 	snprintf(at, sizeof at, "/outputs/%s", output);
 	const double value = reading_number(r, "%s", at);
 	reading_close(r);

@@ -8,25 +8,9 @@
 #include "schema/result/result_json.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
+#include "tests/support/results.h"
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
-
-static struct reading *result_of(const char *document)
-{
-	static const struct timing timing = {1, 1, 1};
-	struct pound_study *study = study_documents_study(document);
-	struct pound_run *run = pound_run_create(study, 1);
-	size_t length;
-	assert_non_null(run);
-	assert_int_equal(specimen_compute(run), POUND_OK);
-	char *json = result_to_json(study, pound_run_result(run), &timing, &length);
-	struct reading *result = reading_open(json, length);
-	assert_non_null(result);
-	free(json);
-	pound_run_free(run);
-	study_free(study);
-	return result;
-}
 
 enum { SIGNALS = 60 };
 
@@ -49,7 +33,7 @@ static void the_result_is_what_brute_force_counts(void **state)
 			         "{\"kind\": \"separation\", \"scene\": {%s}, \"sweep\": [{\"path\": "
 			         "\"/excitation/peak_m_s2\", \"values\": [0.5, 1]}]}",
 			         scene);
-			struct reading *r = result_of(document);
+			struct reading *r = results_of_study(document);
 			// nothing is run with contact
 			check_near(reading_number(r, "/work/pounding_runs/run"), 0, 0);
 			assert_true(reading_count(r, "/cells/1/pounding") >= 15);
@@ -61,7 +45,7 @@ static void the_result_is_what_brute_force_counts(void **state)
 					         "{\"kind\": \"response\", \"scene\": {%.*s, \"peak_m_s2\": %g}, \"contact\": "
 					         "{\"gap_m\": %.17g}}, \"outputs\": [\"pounding_probability\"]}",
 					         (int)strlen(scene) - 1, scene, cell ? 1 : 0.5, gap);
-					struct reading *brute = result_of(document);
+					struct reading *brute = results_of_study(document);
 					check_near(reading_number(brute, "/outputs/pounding_probability"), p, 0);
 					reading_close(brute);
 					between += p > 0 && p < 1;
@@ -85,13 +69,13 @@ static void outputs_with_pounding_are_those_of_a_response(void **state)
 	         "\"/contact/gap_m\", \"values\": [0.01, 0.02, 0.03]}], \"separation\": {\"gaps_m\": [0.01, "
 	         "0.02, 0.03]}}",
 	         scene, outputs);
-	struct reading *r = result_of(document);
+	struct reading *r = results_of_study(document);
 	for (int cell = 0; cell < 3; cell++) {
 		snprintf(
 		    document, sizeof document,
 		    "{\"kind\": \"response\", \"scene\": {%s, \"contact\": {\"gap_m\": 0.0%d}}, \"outputs\": %s}",
 		    scene, cell + 1, outputs);
-		struct reading *response = result_of(document);
+		struct reading *response = results_of_study(document);
 		static const char *const names[] = {"pounding_probability", "peak_impulse_n_s",
 		                                    "peak_displacement_m"};
 		for (int k = 0; k < 3; k++)
@@ -112,11 +96,12 @@ static void a_step_of_acceleration_needs_its_closed_form(void **state)
 {
 	(void)state;
 	const double pi = 3.14159265358979323846, w = 2 * pi;
-	struct reading *r = result_of("{\"kind\": \"separation\", \"scene\": {\"oscillators\": "
-	                              "[{\"frequency_hz\": 1, \"damping_ratio\": 0}, "
-	                              "{\"frequency_hz\": 2, \"damping_ratio\": 0}], \"excitation\": {\"type\": "
-	                              "\"record\", \"time_step_s\": 0.3, "
-	                              "\"acceleration_m_s2\": [-0.7, -0.7, -0.7, -0.7, -0.7]}}}");
+	struct reading *r =
+	    results_of_study("{\"kind\": \"separation\", \"scene\": {\"oscillators\": "
+	                     "[{\"frequency_hz\": 1, \"damping_ratio\": 0}, "
+	                     "{\"frequency_hz\": 2, \"damping_ratio\": 0}], \"excitation\": {\"type\": "
+	                     "\"record\", \"time_step_s\": 0.3, "
+	                     "\"acceleration_m_s2\": [-0.7, -0.7, -0.7, -0.7, -0.7]}}}");
 	check_near(reading_number(r, "/cells/0/gap_needed/largest_m") / (2 * 0.7 / (w * w)), 1, 1e-13);
 	// u_1 reaches 2 |a|/w_1^2 and u_2 a quarter of that: the sum of both is 1.25 times the gap needed
 	check_near(reading_number(r, "/cells/0/rules/0/over_mean"), 1.25, 1e-12);
@@ -137,10 +122,10 @@ static void with_inputs_the_runs_are_those_of_the_design(void **state)
 	char document[1024];
 	snprintf(document, sizeof document,
 	         "{\"kind\": \"separation\", %s, \"separation\": {\"gaps_m\": [0.01, 0.02]}}", head);
-	struct reading *r = result_of(document);
+	struct reading *r = results_of_study(document);
 	snprintf(document, sizeof document, "{\"kind\": \"sensitivity\", %s, \"outputs\": [\"gap_needed_m\"]}",
 	         head);
-	struct reading *indices = result_of(document);
+	struct reading *indices = results_of_study(document);
 	check_near(reading_number(r, "/cells/0/gap_needed/runs"), 64 * 2 * 2, 0);
 	check_near(reading_number(r, "/cells/0/gap_needed/independent"), 64, 0);
 	// the mean over A and B is the same in both
@@ -159,7 +144,7 @@ static void with_inputs_the_runs_are_those_of_the_design(void **state)
 static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
 {
 	(void)state;
-	struct reading *r = result_of(
+	struct reading *r = results_of_study(
 	    "{\"kind\": \"separation\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": "
 	    "1.7}], "
 	    "\"excitation\": {\"signals\": 100}}, \"sweep\": [{\"path\": \"/oscillators/0/damping_ratio\", "
