@@ -370,9 +370,9 @@ struct pound_work {
 #define X(member, text) struct pound_stage_work member;
 	POUND_STAGES(X)
 #undef X
-	struct pound_stage_work apart_runs; /* both bodies together without pounding, with their checks */
-	int64_t never_touching;             /* pounding runs not made: the free responses never close the gap */
-	int64_t moving_alike;               /* pounding runs not made: equal oscillators never touch with force */
+	struct pound_stage_work free_pair_runs; /* both bodies together without pounding, with their checks */
+	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
+	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
 	int64_t yield_given;    /* linear responses not made: the yield displacement they would give is known */
 	int64_t linear_unasked; /* linear responses of the right oscillator not made: no output needs them */
 	int64_t nonlinear_unasked; /* its nonlinear ones likewise */

@@ -411,9 +411,9 @@ static const struct output {
     {"peak_contact_force_n", "largest force that pushes in a contact [N]", "buildings with contact",
      "a contact", row_meets, NULL, NULL, row_force_largest, row_one, .asks = POUND_ASKS_FORCES},
     {"gap_needed_m", "largest closing displacement u_1 - u_2 of the bodies without contact [m]",
-     "two oscillators", "two oscillators", is_pair, gap_needed, one, .asks = POUND_ASKS_APART},
+     "two oscillators", "two oscillators", is_pair, gap_needed, one, .asks = POUND_ASKS_FREE_PAIR},
     {"peak_relative_displacement_free_m", "largest abs(u_1 - u_2) of the bodies without contact [m]",
-     "two oscillators", "two oscillators", is_pair, relative_free, one, .asks = POUND_ASKS_APART},
+     "two oscillators", "two oscillators", is_pair, relative_free, one, .asks = POUND_ASKS_FREE_PAIR},
     {"peak_approach_speed_m_s", "largest speed at which a contact begins [m/s]",
      "two oscillators with contact", "two oscillators", pair_meets, approach, one,
      .asks = POUND_ASKS_APPROACH},
@@ -436,7 +436,7 @@ const char *pound_output_needs(int row, const struct pound_scene *scene)
 
 bool pound_output_observes(int row)
 {
-	return outputs[row].asks & (POUND_ASKS_APART | POUND_ASKS_APPROACH);
+	return outputs[row].asks & (POUND_ASKS_FREE_PAIR | POUND_ASKS_APPROACH);
 }
 
 bool pound_output_observes_contact(int row)

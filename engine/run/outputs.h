@@ -17,7 +17,7 @@ enum pound_output_ask {
 	POUND_ASKS_RIGHT = 1,         /* the right body's displacements, with and without pounding */
 	POUND_ASKS_ACCELERATIONS = 2, /* of floors */
 	POUND_ASKS_FORCES = 4,        /* of contacts */
-	POUND_ASKS_APART = 8,         /* both oscillators together without contact, observed */
+	POUND_ASKS_FREE_PAIR = 8,     /* both oscillators together without contact, observed */
 	POUND_ASKS_APPROACH = 16,     /* both with contact, observed */
 };
 

@@ -232,7 +232,7 @@ static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 	const struct pound_scene *scene = &ask->scene;
 	bool response = ask->response = campaign->study->kind == POUND_KIND_RESPONSE;
 	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
-	ask->apart = -1;
+	ask->free_pair = -1;
 	bool right = response || may_miss || pound_outputs_asked(campaign->study) & POUND_ASKS_RIGHT;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
@@ -304,7 +304,7 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
  *
  * Returns  value   false: it was asked for
  */
-static bool follow_apart(struct pound_request *request, int a)
+static bool follow_free_pair(struct pound_request *request, int a)
 {
 	struct ask *ask = &request->asks[a];
 	const struct pound_motion *m = &request->motions[ask->motion];
@@ -313,13 +313,13 @@ static bool follow_apart(struct pound_request *request, int a)
 	                          .ground = m->ground,
 	                          .n_samples = m->n_samples,
 	                          .time_step = m->time_step};
-	if (pound_pair_peaks_linear(&request->pair_maps, &task, request->apart[a]))
+	if (pound_pair_peaks_linear(&request->pair_maps, &task, request->free_pair[a]))
 		return true;
 	// a body beside a wall without contact is not the same run as that body alone, which nothing observes
 	const int known = request->march_keys.n;
 	task.observer = &request->peaks[known].observer;
-	ask->apart = march_ask(request, ask->motion, &task);
-	if (ask->apart == known)
+	ask->free_pair = march_ask(request, ask->motion, &task);
+	if (ask->free_pair == known)
 		pound_pair_peaks_start(&request->peaks[known], &request->tasks[known]);
 	return false;
 }
@@ -337,11 +337,11 @@ static struct pound_runs_known ask_known(const struct pound_request *request, co
 		                              .yield = body->yield,
 		                              .status = body->status};
 	}
-	if (ask->apart >= 0)
-		known.apart = &request->results[ask->apart];
-	known.peaks_apart = !request->peaks   ? NULL
-	                    : ask->apart >= 0 ? request->peaks[ask->apart].peak
-	                                      : request->apart[ask - request->asks];
+	if (ask->free_pair >= 0)
+		known.free_pair = &request->results[ask->free_pair];
+	known.peaks_free = !request->peaks       ? NULL
+	                   : ask->free_pair >= 0 ? request->peaks[ask->free_pair].peak
+	                                         : request->free_pair[ask - request->asks];
 	known.peaks = request->peaks && ask->march >= 0 ? &request->peaks[ask->march] : NULL;
 	return known;
 }
@@ -504,14 +504,14 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		status = status ? status : pound_row_run(&request->rows, stop);
 	}
 	const unsigned asked = pound_outputs_asked(campaign->study);
-	for (int a = n_asks - 1; a >= 0 && !status && asked & POUND_ASKS_APART; a--) { // the checks first
+	for (int a = n_asks - 1; a >= 0 && !status && asked & POUND_ASKS_FREE_PAIR; a--) { // the checks first
 		if (pound_stopped(stop))
 			return POUND_STOPPED;
 		const int known = request->march_keys.n;
 		if (request->asks[a].scene.n_buildings)
 			continue;
-		work->apart_runs.run += follow_apart(request, a) + request->march_keys.n - known;
-		work->apart_runs.asked++;
+		work->free_pair_runs.run += follow_free_pair(request, a) + request->march_keys.n - known;
+		work->free_pair_runs.asked++;
 	}
 	status = status ? status : marches_run(request, &solver, request->march_keys.n, &done, stop);
 	if (status)

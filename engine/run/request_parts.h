@@ -26,8 +26,8 @@ struct ask {
 	bool response; /* all of the response is wanted */
 	bool balanced; /* with the energy balances of its runs */
 	struct body_ask bodies[POUND_OSCILLATORS];
-	int march; /* with pounding; -1: the responses without pounding are the answer */
-	int apart; /* both bodies without contact, observed; -1: not run */
+	int march;     /* with pounding; -1: the responses without pounding are the answer */
+	int free_pair; /* both bodies without contact, observed; -1: not run */
 };
 
 struct pound_request {
@@ -42,7 +42,7 @@ struct pound_request {
 	struct pound_task *tasks;           /* (tasks) */
 	struct pound_task_result *results;  /* (tasks) */
 	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; none: no output reads them) */
-	double (*apart)
+	double (*free_pair)
 	    [2]; /* closing and opening displacement of both bodies without contact, by ask  (asks; likewise) */
 	struct pound_pair_maps pair_maps; /* of the last two linear bodies that were followed without contact */
 	void *scratch;                    /* of the march */

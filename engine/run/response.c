@@ -67,11 +67,11 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 	    .end_v2 = v[1],
 	    .energy_residual = residual,
 	};
-	if (known->apart && known->apart->status)
-		status = known->apart->status;
-	if (known->peaks_apart) {
-		out->gap_needed = ldexp(known->peaks_apart[0], e);
-		out->relative_free = fmax(out->gap_needed, ldexp(known->peaks_apart[1], e));
+	if (known->free_pair && known->free_pair->status)
+		status = known->free_pair->status;
+	if (known->peaks_free) {
+		out->gap_needed = ldexp(known->peaks_free[0], e);
+		out->relative_free = fmax(out->gap_needed, ldexp(known->peaks_free[1], e));
 	}
 	out->approach = known->peaks ? ldexp(known->peaks->approach, e) : 0;
 	bool beyond =

@@ -18,8 +18,8 @@ struct pound_runs_known {
 	const struct pound_task_result *pounding; /* NULL: the responses without pounding are the answer */
 	struct pound_body_known bodies[POUND_OSCILLATORS];
 	const struct pound_task_result
-	    *apart;                /* both without contact, where the solver followed them; else NULL */
-	const double *peaks_apart; /* their closing and opening displacement  (2); NULL: no output reads it */
+	    *free_pair;           /* both without contact, where the solver followed them; else NULL */
+	const double *peaks_free; /* their closing and opening displacement  (2); NULL: no output reads it */
 	const struct pound_pair_peaks *peaks; /* of the run with pounding; NULL likewise, or not run */
 };
 

@@ -26,7 +26,7 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	// a row of buildings has tasks of its own
 	if (study->scene.n_buildings)
 		item.tasks = 0;
-	item.peaks = pound_outputs_asked(study) & (POUND_ASKS_APART | POUND_ASKS_APPROACH) ? item.tasks : 0;
+	item.peaks = pound_outputs_asked(study) & (POUND_ASKS_FREE_PAIR | POUND_ASKS_APPROACH) ? item.tasks : 0;
 	for (int k = 0; k < item.asks && study->scene.n_buildings; k++)
 		pound_row_size_add(&item.rows, &study->scene);
 	run.layout = pound_run_layout(c);

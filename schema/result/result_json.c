@@ -618,8 +618,8 @@ static void write_work(struct writer *w, const struct pound_study *study, const 
 	writer_whole(w, "run", work->member.run);     \
 	writer_end(w);
 	POUND_STAGES(X)
-	if (work->apart_runs.asked) {
-		X(apart_runs, "responses of both bodies together without pounding")
+	if (work->free_pair_runs.asked) {
+		X(free_pair_runs, "responses of both bodies together without pounding")
 	}
 #undef X
 	writer_whole(w, "never_touching", work->never_touching);
