@@ -102,7 +102,7 @@ static const char *file_take(struct checkpoint *c, checkpoint_restored *restored
 	if (strncmp(head, "pound checkpoint ", 17) != 0)
 		return "it is no checkpoint";
 	if (memcmp(head, c->head, n) != 0)
-		return "it is of another study, or of another version of pound; give another file";
+		return "it belongs to another study or another version of pound; name another file";
 	off_t end = records_read(c, restored, to);
 	if (end < 0)
 		return pound_status_text(POUND_NOMEM);
@@ -171,7 +171,7 @@ bool checkpoint_close(struct checkpoint *c)
 	checkpoint_sync(c);
 	bool whole = !c->error;
 	if (!whole)
-		command_complain("checkpoint '%s' has not all blocks: %s", c->path, strerror(c->error));
+		command_complain("checkpoint '%s' is incomplete: %s", c->path, strerror(c->error));
 	close(c->file);
 	free(c);
 	return whole;

@@ -60,7 +60,7 @@ struct options {
 
 enum outcome run_study(const struct options *options);
 enum outcome model_design(const struct options *options);
-enum outcome model_indexes(const struct options *options);
+enum outcome model_print_indices(const struct options *options);
 enum outcome evaluate_model(const struct options *options);
 enum outcome submit_study(const struct options *options);
 enum outcome query_status(const struct options *options);

@@ -200,7 +200,7 @@ static bool remote_start(struct crew *crew)
 		return true;
 	if (!message_movable(of->study)) {
 		remote_log(
-		    "no workers are started: the bytes or times of this study depend on the processor, so all blocks "
+		    "no workers are started: results or times of this study depend on the processor, so all blocks "
 		    "run in this process");
 		return true;
 	}

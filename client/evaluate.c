@@ -566,8 +566,9 @@ enum outcome evaluate_model(const struct options *options)
 	                         .design = command_sure(pound_run_create(study, 1))};
 	e->n_samples = pound_run_samples(e->design);
 	e->n = (long)pound_run_rows(e->design) * e->n_samples * e->n_replicates;
-	outcome = study->n_sweeps ? MISTAKEN("/sweep: a study of an external model has one cell, so no sweep")
-	                          : evaluate(e);
+	outcome = study->n_sweeps
+	              ? MISTAKEN("/sweep: a study of an external model has one cell, so it cannot have a sweep")
+	              : evaluate(e);
 	if (e->journal)
 		journal_close(e->journal);
 	for (int o = 0; e->names && o < e->outputs.all; o++)

@@ -473,7 +473,7 @@ static void print_design(const struct reading *result)
 		table_prose(0, reading_text(result, "/design/note"));
 }
 
-void indexes_print(const struct reading *result)
+void indices_print(const struct reading *result)
 {
 	print_design(result);
 	print_partial(result);
@@ -503,7 +503,7 @@ void given_data_print(const struct reading *result)
 	print_outputs(result, NULL);
 }
 
-bool indexes_print_table(const struct reading *result, const char *table)
+bool indices_print_table(const struct reading *result, const char *table)
 {
 	print_partial(result);
 	if (strcmp(table, "stopping") == 0) {

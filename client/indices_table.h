@@ -5,10 +5,10 @@
 #include "schema/json/json_pointer.h"
 
 /* All of them: the design, every table of every output, and what more rows cost. */
-void indexes_print(const struct reading *result);
+void indices_print(const struct reading *result);
 void given_data_print(const struct reading *result);
 
 /* One of RESULT_TABLES, of every output that has it; false: none has. */
-bool indexes_print_table(const struct reading *result, const char *table);
+bool indices_print_table(const struct reading *result, const char *table);
 
 #endif

@@ -107,15 +107,15 @@ static enum outcome given_print(const struct options *options)
 
 /* `pound indices STUDY.json Y.csv`: the indices of outputs computed elsewhere.
  *
- * Test     client_model: indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv
+ * Test     client_model: indices_of_outputs_computed_elsewhere_come_as_json_table_and_csv
  */
-enum outcome model_indexes(const struct options *options)
+enum outcome model_print_indices(const struct options *options)
 {
 	enum outcome outcome = OUTCOME_USAGE;
 	size_t n_csv, n;
 	struct problems problems;
 	if (strcmp(options->argument, "-") == 0 && strcmp(options->second, "-") == 0) {
-		command_complain("the two files cannot both be standard input");
+		command_complain("only one of the two files can be standard input");
 		return OUTCOME_USAGE;
 	}
 	if (options->given)

@@ -62,7 +62,7 @@ static const struct command COMMANDS[] = {
 	 "print the rows of a study's design, to evaluate with a model of your own",
 	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
 	 "column j from B_i for every j.  A study without \"scene\" describes the inputs of your own model."},
-	{"indices", "STUDY.json Y.csv", "gfT", false, {"json", "table", "csv"}, model_indexes,
+	{"indices", "STUDY.json Y.csv", "gfT", false, {"json", "table", "csv"}, model_print_indices,
 	 "sensitivity indices of the outputs of a model of your own",
 	 "Y.csv has a header and a line for each of `pound design', in its order: a column for every output and, where "
 	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number; or a column for each "
@@ -72,7 +72,7 @@ static const struct command COMMANDS[] = {
 	{"evaluate", "STUDY.json", "mNjJOGKSWfT", false, {"json", "table", "csv"}, evaluate_model,
 	 "run a model of your own on a study's design by UM-Bridge and print its indices",
 	 "Runs every row of `pound design' on the model at --model, several at a time, and prints what `pound indices' prints.  "
-	 "With --journal, a command that was stopped goes on where it was.  A run that the model refuses or fails is "
+	 "With --journal, a command that was stopped continues where it stopped.  A run that the model refuses or fails is "
 	 "left out with its row."},
 	{"submit", "STUDY.json", "wu", false, {0}, submit_study,
 	 "submit a study to the server and print its id",
@@ -108,7 +108,7 @@ static const struct command COMMANDS[] = {
 	 "print a complete study document to start from",
 	 "Without NAME, the paper's study.  --names lists the examples."},
 	{"record", "FILE...", "UdCPf", true, {"json", "table", "csv"}, record_show,
-	 "what is in files of recorded ground motions",
+	 "contents of files of recorded ground motions",
 	 "Reads PEER NGA (.AT2), COSMOS (.V1, .V2), ESM and ITACA (.ASC), and columns: time and acceleration, or "
 	 "accelerations with --step.  Shows samples, step, PGA, PGV, PGD, Arias intensity, 5-95 % duration, and with "
 	 "--periods pseudo-accelerations at 5 % damping.  Nothing is filtered or corrected."},
@@ -132,23 +132,23 @@ static const struct argp_option OPTIONS[] = {
 	{"limit",   'l', "N",      0, "at most N studies", 0},
 	{"cursor",  'c', "CURSOR", 0, "continue an earlier list", 0},
 	{"names",   'n', NULL,     0, "print the available names", 0},
-	{"given",   'g', NULL,     0, "the first file has samples of the inputs as CSV, and is not a study", 0},
+	{"given",   'g', NULL,     0, "the first file has samples of the inputs as CSV, in place of a study", 0},
 	{"url",     'u', "URL",    0, "URL of the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "format of the output", 0},
-	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES ", or all as a table; without it, a summary as a table and inputs as csv", 0},
-	{"unit",    'U', "UNIT",   0, "unit of files that name none: g, cm/s2 or m/s2", 0},
-	{"step",    'd', "S",      0, "time step of files with accelerations alone, in s", 0},
+	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES "; or all (only --format table); default: a summary (table), inputs (csv)", 0},
+	{"unit",    'U', "UNIT",   0, "unit of accelerations, for files that do not name it: g, cm/s2 or m/s2", 0},
+	{"step",    'd', "S",      0, "time step in s, for files that have accelerations alone", 0},
 	{"row",     'R', "N",      0, "row of the design, from 1 (default: 1)", 0},
-	{"channel", 'C', "N",      0, "channel of files that have several", 0},
-	{"periods", 'P', "LIST",   0, "periods of a response spectrum, in s, between commas", 0},
+	{"channel", 'C', "N",      0, "channel to read, for files that have several", 0},
+	{"periods", 'P', "LIST",   0, "comma-separated periods of a response spectrum, in s", 0},
 	{"partial", 'p', NULL,     0, "intermediate result of the completed rows, if the study is still running", 0},
 	{"model",   'm', "URL",    0, "URL of the model's server", 0},
 	{"name",    'N', "NAME",   0, "name of the model there (default: the first)", 0},
-	{"jobs",    'j', "N",      0, "runs at a time (default: 8)", 0},
+	{"jobs",    'j', "N",      0, "runs at the same time (default: 8)", 0},
 	{"journal", 'J', "FILE",   0, "keep every run in FILE, and do not repeat those that are in it", 0},
-	{"outputs", 'O', "NAMES",  0, "names of the outputs, between commas (default: y1,y2,...)", 0},
+	{"outputs", 'O', "NAMES",  0, "comma-separated names of the outputs (default: y1,y2,...)", 0},
 	{"config",  'G', "JSON",   0, "configuration of the model, an object", 0},
-	{"replicates", 'K', "N",   0, "runs of a random model for each row; their mean and its variance are used; needs --seed-member", 0},
+	{"replicates", 'K', "N",   0, "runs of a random model at each point; their mean and the variance of that mean are used; needs --seed-member", 0},
 	{"seed-member", 'S', "NAME", 0, "member of the configuration that is set to the number of a run: 0, 1, ...", 0},
 	{"timeout", 'W', "S",      0, "seconds for one run (default: no limit)", 0},
 #define X(name, values, lowest, highest, text) {#name, FIGURE_KEY_##name, "VALUE", 0, text, 0},

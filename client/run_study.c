@@ -138,7 +138,8 @@ enum outcome run_study(const struct options *options)
 	}
 	document_advise(study);
 	if (options->samples && !samples_exist(study)) {
-		command_complain("only sensitivity studies have samples, and floor spectra with \"histories\": true");
+		command_complain(
+		    "only sensitivity studies, and floor spectra with \"histories\": true, have samples");
 		study_free(study);
 		free(document);
 		return OUTCOME_USAGE;

@@ -385,11 +385,11 @@ static bool print_kind(const struct reading *result, const char *kind)
 static bool print_table(const struct reading *result, const char *kind, const char *table)
 {
 	if (strcmp(table, "all") != 0)
-		return indexes_print_table(result, table);
+		return indices_print_table(result, table);
 	if (strcmp(kind, "sensitivity") != 0)
 		return print_kind(result, kind);
 	print_head(result, kind);
-	indexes_print(result);
+	indices_print(result);
 	print_work(result);
 	return true;
 }

@@ -21,7 +21,7 @@ enum outcome example_print(const struct options *options)
 		fputs(text, stdout);
 		return OUTCOME_OK;
 	}
-	command_complain("no example is called '%s'; there are:", name);
+	command_complain("no example '%s'; there are:", name);
 	for (int i = 0; example_name(i); i++)
 		command_complain("  %-24s %s", example_name(i), example_title(i));
 	return OUTCOME_USAGE;

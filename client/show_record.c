@@ -1,4 +1,4 @@
-/* show_record.c - `pound record`: what is in files of recorded ground motions. */
+/* show_record.c - `pound record`: contents of files of recorded ground motions. */
 #include "client/command.h"
 #include "client/document.h"
 #include "client/motion_spectrum.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char FAILURE[] = "this build of pound has no libcurl, so it cannot ask a server";
+static const char FAILURE[] = "this build of pound has no libcurl, so it cannot reach a server";
 
 struct wire {
 	const char *url;

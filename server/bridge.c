@@ -36,7 +36,8 @@ static bool allowed(const struct request *request, struct um_bridge *bridge, con
 	problems_init(&problems);
 	if (cpu_s > limit) {
 		problems_add(&problems, "",
-		             "asks for %.6g estimated seconds of one core, a call may take %.0f: submit a study",
+		             "needs %.6g estimated seconds of one core, but a call may take at most %.0f: submit it "
+		             "as a study",
 		             cpu_s, limit);
 		um_bridge_refuse(bridge, UM_BRIDGE_ERROR_INPUT, &problems);
 	}

@@ -91,7 +91,7 @@ static int share_files(struct server *server, int wanted)
 	connections->most_probed = MIN(connections->most + PROBES, all - 1 - all / 64);
 	connections->most_waiting = (connections->most + 1) / 2;
 	if (all < CONNECTIONS_MIN)
-		log_line("only %d files may be open, which is too few: ulimit -n", (int)files.rlim_cur);
+		log_line("only %d files may be open (ulimit -n), which is too few", (int)files.rlim_cur);
 	else if (connections->most < wanted)
 		log_line("only %d files may be open (ulimit -n): %d connections are served at a time, not %d",
 		         (int)files.rlim_cur, connections->most, wanted);

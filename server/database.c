@@ -205,7 +205,7 @@ static bool versioned(const struct database *d, const char *sql, int version)
 	snprintf(end, sizeof end, "PRAGMA user_version = %d; COMMIT", version);
 	bool made = done(d, "BEGIN IMMEDIATE") && done(d, sql) && done(d, end);
 	if (!made)
-		log_line("cannot make the database one of version %d: %s", version, sqlite3_errmsg(d->db));
+		log_line("cannot convert the database to version %d: %s", version, sqlite3_errmsg(d->db));
 	return made;
 }
 

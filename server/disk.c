@@ -49,7 +49,7 @@ static const char *identify(struct disk *disk, const char *path)
 		return strerror(errno);
 	return !S_ISREG(about.st_mode) ? "it is not a file"
 	       : about.st_nlink > 1
-	           ? "the file has another name (a hard link), by which a second server could use it"
+	           ? "the file has a second name (a hard link), through which a second server could use it"
 	           : NULL;
 }
 

@@ -243,15 +243,16 @@ static void judge(struct request *request, bool needs_host)
 		request->token = tokens_name(server->tokens, head->authorization.value);
 	const struct connection *connection = connection_of(request->connection);
 	if (!connection->served && !(connection->probed && operation && operation->open))
-		head_refuse(head, API_UNAVAILABLE, true, "the server has as many connections as it takes");
+		head_refuse(head, API_UNAVAILABLE, true, "all connections of the server are in use");
 	if (server->tokens && !request->token && !(operation && operation->open))
 		head_refuse(head, API_UNAUTHORIZED, false,
-		            "this needs the header Authorization: Bearer, and a token of this server");
+		            "expected the header Authorization: Bearer with a valid token of this server");
 	if (!request->allow[0])
 		head_refuse(head, API_NOT_FOUND, false,
-		            "there is no such path; see /v1/openapi.json (study ids are 16 hexadecimal digits)");
+		            "no such path; see /v1/openapi.json (study ids are 16 hexadecimal digits)");
 	if (!operation)
-		head_refuse(head, API_NOT_ALLOWED, false, "this path does not support this method");
+		head_refuse(head, API_NOT_ALLOWED, false,
+		            "this path does not support this method; the header Allow lists those it supports");
 	else if (operation->takes_study && !head->json)
 		head_refuse(head, API_NOT_JSON, false, "Content-Type must be application/json");
 	else if (operation->takes_study)
@@ -302,7 +303,7 @@ static enum MHD_Result refuse_head(struct request *request)
 {
 	char text[512];
 	head_refuse(&request->head, API_HEAD_LARGE, true,
-	            "the request line and the headers have at most %d bytes", HEAD_BYTES_MAX);
+	            "request line and headers together may have at most %d bytes", HEAD_BYTES_MAX);
 	const enum api_fault fault = request->head.fault;
 	struct reply reply = http_problem(fault, request->head.detail, NULL);
 	int n =
@@ -361,7 +362,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	// one NUL each ends the method and the target, where they are in the head
 	if (request->target != method + strlen(method) + 1 || version != request->target_end + 1)
 		head_refuse(&request->head, API_BAD_REQUEST, true,
-		            "a request line is a method, a target and a version with one blank between them");
+		            "a request line must be method, target and version, separated by one space");
 	else
 		head_bytes(&request->head, version + strlen(version),
 		           n - (size_t)(version + strlen(version) - method),
@@ -416,9 +417,10 @@ static void *answer_aside(void *of)
 	}
 	if (*request->unwanted && reply->status / 100 != 2) {
 		drop_body(server, reply);
-		*reply = http_problem(
-		    API_UNAVAILABLE,
-		    server->stopping ? "the server stops" : "the client has closed its side of the connection", NULL);
+		*reply = http_problem(API_UNAVAILABLE,
+		                      server->stopping ? "the server is stopping"
+		                                       : "the client has closed its side of the connection",
+		                      NULL);
 		reply->gone = !server->stopping;
 	}
 	go_on(request);
@@ -432,8 +434,8 @@ static bool put_aside(struct request *request)
 	request->share = share_take(&request->server->shares, request->token ? request->token : request->client);
 	if (request->share < 0) {
 		request->reply = http_problem(
-		    API_UNAVAILABLE, "as many answers that take long are being made as this client, or all, may have",
-		    NULL);
+		    API_UNAVAILABLE,
+		    "too many slow answers are being prepared, for this client or in all; please try again", NULL);
 		request->replied = true;
 		return false;
 	}
@@ -444,7 +446,8 @@ static bool put_aside(struct request *request)
 		pthread_detach(thread);
 		return true;
 	}
-	request->reply = http_problem(API_UNAVAILABLE, "no thread can be had for this", NULL);
+	request->reply =
+	    http_problem(API_UNAVAILABLE, "no thread could be started for this request; please try again", NULL);
 	go_on(request);
 	return true;
 }
@@ -466,7 +469,7 @@ enum MHD_Result http_answer(void *of, struct MHD_Connection *connection, const c
 	}
 	allow(connection, INFINITY);
 	if (server->stopping && !request->replied)
-		head_refuse(&request->head, API_UNAVAILABLE, false, "the server stops");
+		head_refuse(&request->head, API_UNAVAILABLE, false, "the server is stopping");
 	if (request->head.fault == API_NO_FAULT && !request->replied)
 		request->replied = routes_kept(request, &request->reply);
 	if (request->head.fault == API_NO_FAULT && !request->replied && routes_slow(request) &&

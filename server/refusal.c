@@ -13,7 +13,7 @@ struct reply refusal_of(enum store_status status, const char *absent)
 	    [STORE_NONE] = {API_NOT_FOUND, NULL},
 	    [STORE_CORRUPT] = {API_CORRUPT, "the stored bytes are damaged"},
 	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
-	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key came with another body before"},
+	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key was used before with another body"},
 	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
 	    [STORE_REPLACED] =
 	        {API_UNAVAILABLE,
@@ -22,7 +22,7 @@ struct reply refusal_of(enum store_status status, const char *absent)
 	    [STORE_CROWDED] = {API_UNAVAILABLE, "the queue is full"},
 	    [STORE_UNRECORDED] = {API_UNAVAILABLE,
 	                          "a record that the study names was just deleted: PUT it again"},
-	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY, "the share of this token in the queue is full"},
+	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY, "the queue has no room for more studies of this token"},
 	};
 	return http_problem(refusals[status].fault, status == STORE_NONE ? absent : refusals[status].detail,
 	                    NULL);

@@ -132,7 +132,7 @@ static struct reply invalid(const struct problems *problems)
 	return problems->status == PROBLEMS_NOMEM ? no_memory()
 	       : problems->status == PROBLEMS_MALFORMED
 	           ? http_problem(API_MALFORMED, place, problems)
-	           : http_problem(API_INVALID, "the study has faults, listed in errors", problems);
+	           : http_problem(API_INVALID, "the study is invalid; the list `errors` says why", problems);
 }
 
 /* Queues a study for a client, if there is room for one more. */
@@ -186,7 +186,7 @@ static struct reply submit(struct request *request)
 	struct reply reply;
 	size_t length;
 	if (!cost_allowed(&cost, &most, &problems))
-		reply = http_problem(API_TOO_COSTLY, "the study is over limits of this server, listed in errors",
+		reply = http_problem(API_TOO_COSTLY, "the study exceeds limits of this server, listed in `errors`",
 		                     &problems);
 	else if (!strcmp(http_argument(request, "validate_only"), "true")) {
 		char *body = cost_to_json(&cost, study, &length);
@@ -349,7 +349,7 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 		reply = body ? made("application/json", body, length)
 		        : !status || status == POUND_NOMEM || status == POUND_STOPPED
 		            ? no_memory()
-		            : problem(API_CONFLICT, "none of the runs so far has a result");
+		            : problem(API_CONFLICT, "all runs so far failed, so there is no result yet");
 	} else if (error)
 		reply = unopened(request, &opened, error);
 	else {
@@ -394,7 +394,7 @@ static struct reply results(struct request *request)
 {
 	const char *table = http_argument(request, "table"), *format = http_argument(request, "format");
 	if (table && format && strcmp(format, "csv") != 0)
-		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv, or left out");
+		return problem(API_BAD_REQUEST, "a table is CSV: format must be csv or absent");
 	struct reply reply;
 	int rows = 0;
 	const bool csv = second(request, result_formats, table, rows, &reply);
@@ -457,9 +457,9 @@ static struct reply samples(struct request *request)
 	if (error)
 		reply = unopened(request, &opened, error);
 	else if (pound_study_sampled(opened.study) && !ours)
-		reply =
-		    problem(API_CONFLICT, "another version of poundd computed the study; only that has its samples: "
-		                          "submit it again");
+		reply = problem(API_CONFLICT,
+		                "another version of poundd computed the study; only that one has its samples: "
+		                "submit it again");
 	else if (pound_study_sampled(opened.study)) {
 		pound_run_rows_take(opened.run, (int)rows);
 		const int left = stored_run_left(&opened);
@@ -618,7 +618,7 @@ static struct reply example_list(struct request *request)
 static struct reply example(struct request *request)
 {
 	struct reply reply = pages_example(strrchr(request->path, '/') + 1);
-	return reply.body ? reply : problem(API_NOT_FOUND, "there is no such example; /v1/examples lists them");
+	return reply.body ? reply : problem(API_NOT_FOUND, "no such example; /v1/examples lists them");
 }
 
 #define PAGE(name)                                    \

@@ -626,7 +626,7 @@ struct work *work_start(struct store *store, int n_workers, double time_max, dou
 		started++;
 	if (started == n_workers)
 		return work;
-	log_line("cannot start more than %d of %d workers: no thread can be had", started, n_workers);
+	log_line("cannot start more than %d of %d workers: the system gives no more threads", started, n_workers);
 	work->n_workers = started;
 	work_stop(work);
 	return NULL;

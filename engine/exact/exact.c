@@ -7,7 +7,8 @@
  * A task is a scene under a ground motion (task.h).  exact.inl runs the lanes and includes, in this order:
  *
  *   simulation.inl    one simulation, as it waits in a queue
- *   free_motion.inl   whole samples without contact, and whole contact substeps, by precomputed maps
+ *   free_motion.inl   whole samples without contact, by precomputed maps
+ *   contact_substep.inl   whole substeps of contact, by precomputed maps
  *   series.inl        motion between two events as power series in time; first roots of a guard on it
  *   contact_map.inl   maps over many contact substeps at once
  *   energy.inl        the work done in a step

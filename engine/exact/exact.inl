@@ -2,7 +2,7 @@
  *
  * Between events a pair of oscillators is linear and the ground motion a straight line, so:
  * 1. whole samples without contact, eight of them before their proofs, and whole substeps of contact, go by precomputed exact maps,
- *    where a bound proves that nothing lies inside (free_motion.inl);
+ *    where a bound proves that nothing lies inside (free_motion.inl, contact_substep.inl);
  * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (step.inl);
  * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
  *    lanes, goes on until half of it is done with that kind of step (of free motion: a quarter), and is carried out to the next
@@ -28,6 +28,7 @@ enum {
 // clang-format off
 #include "engine/exact/simulation.inl"
 #include "engine/exact/free_motion.inl"
+#include "engine/exact/contact_substep.inl"
 #include "engine/exact/series.inl"
 #include "engine/exact/contact_map.inl"
 #include "engine/exact/energy.inl"

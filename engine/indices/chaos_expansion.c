@@ -410,7 +410,7 @@ void pound_chaos_expansion_indices(const struct pound_rows *rows, const struct p
  *          scratch    as pound_chaos_expansion_indices left it
  * Returns  results    -
  *
- * Test     unit_error_budget: half_widths_of_all_rows_are_those_of_the_indexes
+ * Test     unit_error_budget: half_widths_of_all_rows_are_those_of_the_indices
  */
 void pound_chaos_expansion_first_rows(const struct pound_rows *rows, int n, double *scratch,
                                       struct pound_closed_results *results)

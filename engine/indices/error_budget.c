@@ -84,7 +84,7 @@ static double differences(const struct pound_sample_values *values, struct pound
  *   S: q S / (1 - q)          T: q |1 - T| / (1 - q)
  *
  * Source   the error adds q to the variance, nothing to the covariance of B and C, and itself to half of (A - C)^2
- * Test     unit_error_budget: indexes_move_no_more_than_stated_when_noise_is_added
+ * Test     unit_error_budget: indices_move_no_more_than_stated_when_noise_is_added
  */
 static double first_shift(double q, double first)
 {
@@ -105,7 +105,7 @@ static double total_shift(double q, double total)
  * Source   to first order in the errors: b (c - a) changes by e_b (c - a) + b (e_c - e_a), the variance by 2 mean(a e_a),
  *          half of (c - a)^2 by (c - a) (e_c - e_a); variances of sums of independent terms, deviations of quotients added
  * Valid    Pick-freeze estimates; those of S1 and ST are moved less.
- * Test     unit_error_budget: indexes_move_no_more_than_stated_when_noise_is_added
+ * Test     unit_error_budget: indices_move_no_more_than_stated_when_noise_is_added
  */
 static double first_spread(double q, double n, double first, double total_high)
 {

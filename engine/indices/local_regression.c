@@ -263,7 +263,7 @@ void pound_local_regression_behind(const struct pound_rows *rows, double *scratc
  *          scratch    as pound_local_regression_first left it
  * Returns  half       (n_inputs)
  *
- * Test     unit_error_budget: half_widths_of_all_rows_are_those_of_the_indexes
+ * Test     unit_error_budget: half_widths_of_all_rows_are_those_of_the_indices
  */
 void pound_local_regression_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half)
 {

@@ -383,7 +383,8 @@ static void lines_read(const struct outputs *outputs, struct csv *csv, struct po
 static void check_study(const struct pound_study *study, struct problems *problems)
 {
 	if (study->n_sweeps)
-		problems_add(problems, "/sweep", "a study of an external model has one cell, so no sweep");
+		problems_add(problems, "/sweep",
+		             "a study of an external model has one cell, so it cannot have a sweep");
 }
 
 static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t *length)

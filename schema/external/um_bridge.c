@@ -95,7 +95,7 @@ static void check_config(struct um_bridge *b)
 		char pointer[160];
 		snprintf(pointer, sizeof pointer, "/config/%s", member->string);
 		if (!fields_listed(" study row signals ", member->string) || strchr(member->string, ' '))
-			REFUSE(b, INPUT, pointer, "unknown member; there are study, row and signals");
+			REFUSE(b, INPUT, pointer, "unknown member; expected study, row or signals");
 		else if (!strcmp(member->string, "study") && um_bridge_id(b))
 			REFUSE(b, INPUT, pointer, "is not used: the model is a stored study");
 	}

@@ -49,7 +49,8 @@ size_t head_target(struct head *head, const char *target)
 	int n_arguments = target[n_path] == '?';
 	*head = (struct head){.fault = API_NO_FAULT};
 	if (n > HEAD_TARGET_MAX)
-		head_refuse(head, API_TARGET_LONG, true, "a target has at most %d bytes", HEAD_TARGET_MAX);
+		head_refuse(head, API_TARGET_LONG, true, "the request target may have at most %d bytes",
+		            HEAD_TARGET_MAX);
 	for (const char *c = target; *c; c++) {
 		if (*c <= ' ' || *c > '~')
 			head_refuse(head, API_BAD_REQUEST, true,
@@ -65,7 +66,8 @@ size_t head_target(struct head *head, const char *target)
 	for (const char *c = target + n_path; *c; c++)
 		n_arguments += *c == '&';
 	if (n_arguments > HEAD_ARGUMENTS_MAX)
-		head_refuse(head, API_BAD_REQUEST, true, "a target has at most %d arguments", HEAD_ARGUMENTS_MAX);
+		head_refuse(head, API_BAD_REQUEST, true, "the request target may have at most %d query parameters",
+		            HEAD_ARGUMENTS_MAX);
 	return n > HEAD_TARGET_MAX || n_arguments > HEAD_ARGUMENTS_MAX ? n_path : n;
 }
 
@@ -83,10 +85,10 @@ void head_bytes(struct head *head, const char *bytes, size_t n, int n_lines)
 	for (size_t i = 0; i < n; i++)
 		n_ends += bytes[i] == '\0';
 	if (n_lines > HEAD_LINES_MAX)
-		head_refuse(head, API_HEAD_LARGE, true, "a request has at most %d headers", HEAD_LINES_MAX);
+		head_refuse(head, API_HEAD_LARGE, true, "a request may have at most %d headers", HEAD_LINES_MAX);
 	if (n_ends != 3 * n_lines + 4)
 		head_refuse(head, API_BAD_REQUEST, true,
-		            "a header is a line with a name, ended by CR LF, and there is no NUL in it");
+		            "a header must be a line NAME: VALUE that ends with CR LF and has no NUL");
 }
 
 static bool is_token(const char *name, size_t n)

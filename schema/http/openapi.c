@@ -27,8 +27,8 @@ static const struct member members[] = {
 	{"Status", "runs_done",   "integer", "",     "pounding runs computed and stored"},
 	{"Status", "runs_total",  "integer", "",     "pounding runs requested"},
 	{"Status", "eta_s",       "number",  "null", "estimated time to the end of a running study [s]"},
-	{"Status", "cpu_s",       "number",  "",     "CPU time taken so far, by its stored runs [s of one core]"},
-	{"Status", "estimated_cpu_s", "number", "null", "CPU time estimated at submission [s of one core]; null: by a version that did not store it"},
+	{"Status", "cpu_s",       "number",  "",     "CPU time of its stored runs so far [s of one core]"},
+	{"Status", "estimated_cpu_s", "number", "null", "CPU time estimated at submission [s of one core]; null: submitted to a version that did not store it"},
 	{"Status", "over_estimate", "boolean", "",   "whether cpu_s is three times estimated_cpu_s or more"},
 	{"Status", "queue_position", "integer", "null", "place of a queued study in the queue, 1: the next to run"},
 	{"Status", "expected_start", "string", "null", "when a queued study is expected to start, by the estimates of those before it, RFC 3339, UTC"},
@@ -93,7 +93,7 @@ static const struct member members[] = {
 	{"BridgeOutput",  "output",      "[array]", "", "that vector; means over the signals"},
 	{"BridgeFault",   "error",       "BridgeError", "", "what is wrong with the call"},
 	{"BridgeError",   "type",        "string", "", "InvalidInput, ModelNotFound, UnsupportedFeature or InvalidOutput"},
-	{"BridgeError",   "message",     "string", "", "all errors, each with its place"},
+	{"BridgeError",   "message",     "string", "", "all errors, each with its JSON Pointer"},
 	{"OpenAPI", "openapi",    "string",  "",     "version of OpenAPI"},
 };
 

@@ -232,7 +232,7 @@ static const char *take_design(struct group *g, const struct message *m, const c
 	if (m->status != POUND_OK)
 		refuse(g, k, pound_status_text((enum pound_status)m->status));
 	else if (memcmp(body, k->digest, sizeof k->digest) != 0)
-		refuse(g, k, "its design differs, as its processor or its GSL gives other quantiles");
+		refuse(g, k, "its design differs, because its processor or its GSL computes other quantiles");
 	else {
 		k->standing = AGREED;
 		for (int i = 0; i < g->n_out; i++)
@@ -296,7 +296,7 @@ static bool greet(struct group *g)
 	bool ready = message_take(g->socket, MESSAGE_OF_WORKER, &m, &version) && m.type == MESSAGE_READY;
 	bool same = ready && m.n == strlen(POUND_VERSION) && memcmp(version, POUND_VERSION, m.n) == 0;
 	if (!ready)
-		say(g, "refused: its first message is no greeting of a pound-worker");
+		say(g, "refused: its first message is not the greeting of a pound-worker");
 	else if (!same)
 		say(g,
 		    "refused: pound-worker has version %.*s, this program " POUND_VERSION "; both must be the same",
@@ -331,7 +331,7 @@ static void serve(struct group *g)
 		if (g->n_out > 0)
 			busy = now_s();
 		else if (now_s() - busy > IDLE_MAX) {
-			say(g, "ended, as there were no blocks for %d s", IDLE_MAX);
+			say(g, "ended, because there were no blocks for %d s", IDLE_MAX);
 			break;
 		}
 		if (pause_for(g, g->socket, LOOK_MS))

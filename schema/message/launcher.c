@@ -111,9 +111,9 @@ const char *launcher_start(struct launcher *l, const struct launch *launch)
 	int port = 0;
 	*l = (struct launcher){.listens = listen_on(launch->host ? ALL_ADDRESSES : LOOPBACK, &port)};
 	if (l->listens < 0)
-		return "no port can be listened on";
+		return "no free port to listen on";
 	if (getrandom(secret, sizeof secret, 0) != sizeof secret)
-		return "there are no random numbers";
+		return "the system gave no random numbers";
 	for (size_t i = 0; i < sizeof secret; i++)
 		snprintf(l->token + 2 * i, 3, "%02x", secret[i]);
 	snprintf(entry, sizeof entry, "POUND_WORKER=%s:%d:%s", launch->host ? launch->host : "127.0.0.1", port,

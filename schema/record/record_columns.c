@@ -62,7 +62,8 @@ static double factor_of(struct record_text *text, const char *header, struct rec
 	if (!header || chosen) {
 		const double factor = record_unit_chosen(text, &record->unit);
 		if (factor > 0 && header && strcmp(header, record->unit) != 0) {
-			record_text_complain(text, -1, "the header says %s, asked was for %s", header, record->unit);
+			record_text_complain(text, -1, "the header has the unit %s, but %s was given", header,
+			                     record->unit);
 			return 0;
 		}
 		return factor;
@@ -115,7 +116,7 @@ static bool numbers_add(struct record_text *text, struct numbers *numbers, doubl
 		numbers->size = size;
 	}
 	if (numbers->n >= PAIR * STUDY_SAMPLES_MAX) {
-		record_text_complain(text, 0, "a record may have %d samples at most", STUDY_SAMPLES_MAX);
+		record_text_complain(text, 0, "a record may have at most %d samples", STUDY_SAMPLES_MAX);
 		return false;
 	}
 	numbers->line[numbers->n] = text->line.number;
@@ -245,7 +246,7 @@ static bool take_all(struct record_text *text, const struct numbers *numbers, st
 	if (numbers->columns == PAIR && numbers->n >= 6 && t[2] - t[0] > 0 &&
 	    fabs(t[2] - t[0] - step) <= numbers->interval && fabs(t[4] - t[2] - step) <= numbers->interval) {
 		record_text_complain(text, -1,
-		                     "the first column looks like times of the step given: leave the step out");
+		                     "the first column looks like times with the given step: omit the step");
 		return false;
 	}
 	if (!record_sized(text, numbers->n, step, record))

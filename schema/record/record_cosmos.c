@@ -156,7 +156,7 @@ bool record_cosmos_read(struct record_text *text, struct record *record)
 		record_text_complain(text, -1,
 		                     "the file has no accelerations; a V3 file has spectra only: use the V2 file");
 	else if (wanted > all.n)
-		record_text_complain(text, -1, "channel %d: the file has %d", wanted, all.n);
+		record_text_complain(text, -1, "no channel %d: the file has %d", wanted, all.n);
 	else if (wanted == 0 && all.n > 1)
 		record_text_complain(text, -1, "the file has %d channels with accelerations: choose one, 1 to %d",
 		                     all.n, all.n);

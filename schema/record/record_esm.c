@@ -49,7 +49,7 @@ bool record_esm_read(struct record_text *text, struct record *record)
 		else if (record_text_begins(text, "NDATA:") || record_text_begins(text, "NPTS:"))
 			record_text_value(text, value, &n);
 		else if (record_text_begins(text, "DATA_TYPE:") && record_text_find(text, "ACCELERATION") < 0) {
-			record_text_complain(text, value + 1, "needed is DATA_TYPE: ACCELERATION, got%s", word);
+			record_text_complain(text, value + 1, "expected DATA_TYPE: ACCELERATION, got%s", word);
 			return false;
 		} else if (record_text_begins(text, "UNITS:")) {
 			factor = record_unit(word + strspn(word, " "), &record->unit);
@@ -73,7 +73,7 @@ bool record_esm_read(struct record_text *text, struct record *record)
 		return false;
 	while (record_text_next(text))
 		if (!record_text_blank(text)) {
-			record_text_complain(text, 1, "there are more samples than the %d of NDATA", (int)n);
+			record_text_complain(text, 1, "the file has more samples than NDATA = %d", (int)n);
 			return false;
 		}
 	record_scale(record, factor);

@@ -64,7 +64,7 @@ bool record_peer_read(struct record_text *text, struct record *record)
 	for (int k = 0; k < 2; k++)
 		if (record_text_begins(text, others[k])) {
 			record_text_complain(
-			    text, 1, "this is a %s series (%s); needed is the acceleration of the same record (.AT2)",
+			    text, 1, "this is a %s series (%s); expected the acceleration of the same record (.AT2)",
 			    k ? "displacement" : "velocity", k ? ".DT2" : ".VT2");
 			return false;
 		}
@@ -83,7 +83,7 @@ bool record_peer_read(struct record_text *text, struct record *record)
 		return false;
 	while (record_text_next(text))
 		if (!record_text_blank(text)) {
-			record_text_complain(text, 1, "there are more samples than the %d of the header", (int)n);
+			record_text_complain(text, 1, "the file has more samples than the %d of the header", (int)n);
 			return false;
 		}
 	record_scale(record, factor);

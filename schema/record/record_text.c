@@ -188,7 +188,8 @@ static bool line_samples(struct record_text *text, int width, int expected, stru
 			record_text_complain(text, column, "expected a number, got `%.*s'",
 			                     (int)(end - from < 20 ? end - from : 20), from);
 		else if (record->n == expected)
-			record_text_complain(text, column, "there are more samples than the %d of the header", expected);
+			record_text_complain(text, column, "the file has more samples than the %d of the header",
+			                     expected);
 		else {
 			record->acceleration[record->n++] = value;
 			c = width ? stop : from + length;
@@ -206,8 +207,8 @@ bool record_text_samples(struct record_text *text, int width, int expected, stru
 			return false;
 	if (record->n < expected) {
 		record_text_complain(text, -1,
-		                     "the header gives %d samples, the file ends after %d: it is cut off; "
-		                     "get it whole, or correct the header",
+		                     "the header announces %d samples, but the file ends after %d: it is truncated; "
+		                     "get the complete file, or correct the header",
 		                     expected, record->n);
 		return false;
 	}
@@ -262,8 +263,8 @@ double record_unit_chosen(struct record_text *text, const char **name)
 	const char *unit = text->choice->unit;
 	const double factor = unit ? record_unit(unit, name) : 0;
 	if (!unit)
-		record_text_complain(text, -1,
-		                     "the file does not name the unit of its accelerations: give g, cm/s2 or m/s2");
+		record_text_complain(
+		    text, -1, "the file does not name the unit of its accelerations: specify g, cm/s2 or m/s2");
 	else if (factor == 0)
 		record_text_complain(text, -1, "the unit must be g, cm/s2 or m/s2, got `%.40s'", unit);
 	return factor;

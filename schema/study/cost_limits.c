@@ -29,7 +29,7 @@ bool cost_allowed(const struct cost *cost, const struct cost *most, struct probl
 	for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
 		if (limits[i].asked > limits[i].most)
 			problems_exceed(problems, "", limits[i].asked, limits[i].most,
-			                "asks for %.6g %s, this server accepts at most %.6g (--%s)", limits[i].asked,
+			                "needs %.6g %s, but this server accepts at most %.6g (--%s)", limits[i].asked,
 			                limits[i].what, limits[i].most, limits[i].option);
 	return problems->n == 0;
 }

@@ -86,8 +86,8 @@ static const char *until_output_name(int row)
 	{pattern "/yield_displacement_m", FIELD_REAL, law + IN_LAW(yield_displacement), 0, 0, INFINITY,       \
 	 FIELD_OPEN_MIN, "m", .text = "yield displacement, instead of target_demand"},                       \
 	{pattern "/corrections", FIELD_COUNT, law + IN_LAW(corrections), 1, 0, 100, FIELD_CLOSED, "",         \
-	 .text = "times the yield displacement found from target_demand is corrected; from 2 on, at most in a search "    \
-	         "that ends at that demand"}
+	 .text = "number of corrections of the yield displacement found from target_demand; 2 or more: largest number of steps of a "  \
+	         "search that ends at that demand"}
 
 #define CONTACT_ROWS(pattern, at)                                                                        \
 	{pattern "/model", FIELD_CHOICE, at(model), 0, 0, 0, FIELD_CLOSED, "",                                \
@@ -97,24 +97,24 @@ static const char *until_output_name(int row)
 	{pattern "/stiffness_n_m", FIELD_REAL, at(stiffness), 0, 0, INFINITY, FIELD_OPEN_MIN, "N/m",              \
 	 .text = "K, instead of stiffness_ratio", LATER},                                                     \
 	{pattern "/hertz_stiffness_n_m1_5", FIELD_REAL, at(hertz_stiffness), 0, 0, INFINITY, FIELD_OPEN_MIN,    \
-	 "N/m^1.5", .text = "K of p^1.5; absent: that whose largest overlap at reference_speed_m_s is that of the linear K", LATER}, \
+	 "N/m^1.5", .text = "K of F = K p^1.5 (default: such that the largest overlap at reference_speed_m_s equals that of the linear K)", LATER}, \
 	{pattern "/reference_speed_m_s", FIELD_REAL, at(reference_speed), 0.1, 0, INFINITY, FIELD_OPEN, "m/s", \
 	 .text = "approach speed at which K p^1.5 and K p have the same largest overlap", LATER},              \
 	{pattern "/restitution", FIELD_REAL, at(restitution), 0.6, 0, 1, FIELD_CLOSED, "",                    \
 	 .text = "coefficient of restitution: relative speed after over before an isolated impact"},          \
 	{pattern "/calibration", FIELD_CHOICE, at(calibration), 0, 0, 0, FIELD_CLOSED, "",                    \
-	 .text = "dashpot from restitution: by the papers' formulas, or such that an isolated impact has it exactly", \
+	 .text = "how the dashpot follows from restitution: classic: by the formula of the model's paper; exact: an isolated impact has exactly that restitution", \
 	 .choice = pound_calibration_name, LATER},                                                            \
 	{pattern "/gap_m", FIELD_REAL, at(gap), 0, 0, INFINITY, FIELD_CLOSED, "m",                            \
 	 .text = "clear distance between the bodies at rest"},                                                \
 	{pattern "/tension", FIELD_BOOL, at(tension), 1, 0, 1, FIELD_CLOSED, "",                              \
 	 .text = "true: the dashpot may pull just before separation, and contact ends when the overlap does; false: contact ends when its force falls to 0"}, \
 	{pattern "/second_stiffness_ratio", FIELD_REAL, at(second_stiffness_ratio), 0.3, 0, 1, FIELD_CLOSED, "", \
-	 .text = "stiffness of the bilinear model beyond its yield overlap over K", LATER},                   \
+	 .text = "post-yield stiffness of the bilinear model over K", LATER},                   \
 	{pattern "/yield_overlap_m", FIELD_REAL, at(yield_overlap), 0, 0, INFINITY, FIELD_OPEN_MIN, "m",         \
-	 .text = "yield overlap of the bilinear model, which needs it", LATER},                               \
+	 .text = "yield overlap of the bilinear model; required there", LATER},                               \
 	{pattern "/speed_floor_m_s", FIELD_REAL, at(speed_floor), 0.001, 0, INFINITY, FIELD_OPEN, "m/s",      \
-	 .text = "least approach speed that a dashpot of D p'/v is divided by, or that a rigid impact counts with", LATER}
+	 .text = "lower bound of v in a dashpot D p'/v; rigid: lowest approach speed of an impact that is counted as a contact", LATER}
 
 #define SETTING_ROWS(solver, name, row, most, unit, what)                                                \
 	{"/convergence/" solver, FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",                                  \
@@ -138,7 +138,7 @@ const struct field fields[] = {
 	LAW_ROWS("/scene/law", LAW),
 
 	{"/scene/oscillators", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
-	 .text = "left oscillator, right oscillator; this or buildings", .instead = "buildings"},
+	 .text = "left and right oscillator; required unless buildings are given", .instead = "buildings"},
 	{"/scene/oscillators/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one oscillator"},
 	{"/scene/oscillators/*/mass_kg", FIELD_REAL, AT(scene.oscillators[0].mass), 1, 0, INFINITY,
@@ -166,17 +166,17 @@ const struct field fields[] = {
 	{"/scene/buildings/*/mass_kg", FIELD_EACH, BUILDING(mass), 1, 0, INFINITY, FIELD_OPEN, "kg",
 	 .text = "masses of the floors"},
 	{"/scene/buildings/*/stiffness_n_m", FIELD_EACH, BUILDING(stiffness), NAN, 0, INFINITY, FIELD_OPEN, "N/m",
-	 .text = "initial stiffness of the storeys; this or frequency_hz", .instead = "frequency_hz"},
+	 .text = "initial stiffness of the storeys; required unless frequency_hz is given", .instead = "frequency_hz"},
 	{"/scene/buildings/*/frequency_hz", FIELD_REAL, BUILDING(frequency_hz), 0, 0, INFINITY, FIELD_OPEN_MIN, "Hz",
-	 .text = "undamped natural frequency of the first mode, which the stiffness of the storeys is scaled to"},
+	 .text = "undamped natural frequency of the first mode; the stiffness of the storeys is scaled to give it"},
 	{"/scene/buildings/*/stiffness_profile", FIELD_EACH, BUILDING(profile), 1, 0, INFINITY, FIELD_OPEN, "",
 	 .text = "initial stiffness of the storeys relative to each other; only with frequency_hz"},
 	{"/scene/buildings/*/height_m", FIELD_EACH, BUILDING(height), 3, 0, INFINITY, FIELD_OPEN, "m",
-	 .text = "heights of the storeys, for drift ratios", .fixed = "only drift ratios depend on it, no output does"},
+	 .text = "heights of the storeys, for drift ratios", .fixed = "no output depends on it, only drift ratios do"},
 	{"/scene/buildings/*/damping", FIELD_CHOICE, BUILDING(damping), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "form of damping, of the initial stiffness", .choice = pound_damping_name},
+	 .text = "damping model, built with the initial stiffness", .choice = pound_damping_name},
 	{"/scene/buildings/*/damping_ratio", FIELD_EACH, BUILDING(damping_ratio), 0.05, 0, 1,
-	 FIELD_OPEN_MAX, "", .text = "fraction of critical damping; an array only with damping storey"},
+	 FIELD_OPEN_MAX, "", .text = "fraction of critical damping; may be an array if damping is \"storey\""},
 	{"/scene/buildings/*/damping_modes", FIELD_LIST, 0, 0, 2, 2, FIELD_CLOSED, "",
 	 .text = "modes that have the damping ratio, ascending (default: 1, 3; at most the number of storeys); only with damping rayleigh",
 	 .fixed = "it is a choice of two modes"},
@@ -187,7 +187,7 @@ const struct field fields[] = {
 	{"/scene/buildings/*/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "law of every storey of this building, instead of the scene's"},
 	{"/scene/buildings/*/law/type", FIELD_CHOICE, BUILDING(law.type), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "constitutive law: storey shear over drift", .choice = pound_law_name, .fixed = "vary /law/type, or describe two studies"},
+	 .text = "constitutive law: storey shear over drift", .choice = pound_law_name, .fixed = "vary /law/type, or write two studies"},
 	{"/scene/buildings/*/law/hardening_ratio", FIELD_REAL, BUILDING(law.hardening_ratio), 0.05, 0, 1, FIELD_CLOSED, "",
 	 .text = "post-yield stiffness over initial stiffness"},
 	{"/scene/buildings/*/law/target_demand", FIELD_REAL, BUILDING(law.target_demand), 2, 1, INFINITY, FIELD_CLOSED, "",
@@ -195,18 +195,18 @@ const struct field fields[] = {
 	{"/scene/buildings/*/law/yield_displacement_m", FIELD_EACH, BUILDING(yield_drift), 0, 0, INFINITY,
 	 FIELD_OPEN_MIN, "m", .text = "yield drift, instead of target_demand"},
 	{"/scene/buildings/*/law/corrections", FIELD_COUNT, BUILDING(law.corrections), 1, 0, 100, FIELD_CLOSED, "",
-	 .text = "times the yield drifts found from target_demand are corrected"},
+	 .text = "number of corrections of the yield drifts found from target_demand"},
 
 	{"/scene/contacts", FIELD_LIST, 0, 0, 1, POUND_CONTACTS_MAX, FIELD_CLOSED, "",
 	 .text = "contacts between the buildings; absent: floor i with floor i, in every gap"},
 	{"/scene/contacts/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one contact; what it does not say is that of /scene/contact"},
+	 .text = "one contact; an absent member has the value of /scene/contact"},
 	{"/scene/contacts/*/left_building", FIELD_COUNT, IN_CONTACTS(left_building), 0, 0, POUND_BUILDINGS_MAX - 2, FIELD_CLOSED, "",
-	 .text = "index of the building on its left", .fixed = "it determines which levels there are"},
+	 .text = "index of the building on its left, from 0", .fixed = "it determines which levels there are"},
 	{"/scene/contacts/*/levels", FIELD_LIST, 0, NAN, 2, 2, FIELD_CLOSED, "",
-	 .text = "where it touches the left and the right building, floor 2 being 2; 2.6 is the column 0.6 of the way from floor 2 to floor 3; of a wall any"},
+	 .text = "levels of the contact on the left and the right building: 2 is floor 2, 2.6 is the column 0.6 of the way from floor 2 to floor 3; any level on a rigid wall"},
 	{"/scene/contacts/*/levels/*", FIELD_REAL, IN_CONTACTS(levels[0]), NAN, 0, POUND_STOREYS_MAX, FIELD_OPEN_MIN, "",
-	 .text = "one of them, at most the number of storeys"},
+	 .text = "one level, at most the number of storeys of its building"},
 	CONTACT_ROWS("/scene/contacts/*", OWN_CONTACT),
 
 	{"/scene/excitation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
@@ -341,7 +341,7 @@ const struct field fields[] = {
 	{"/design/method", FIELD_CHOICE, AT(design.method), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "sampling method: Latin hypercube, random, or Sobol' points", .choice = pound_design_name, SENSITIVITY, NOT_SCENE},
 	{"/design/rows", FIELD_COUNT, AT(design.rows), 1000, 2, POUND_ROWS_MAX, FIELD_CLOSED, "",
-	 .text = "base samples n: rows of the matrices A and B; for sobol the default is 1024, at least 2 per randomisation, best a power of two of them; at most 10000000 pounding runs in all", SENSITIVITY, NOT_SCENE},
+	 .text = "base samples n: rows of the matrices A and B; sobol: default 1024, at least 2 per randomisation, best a power of two per randomisation; at most 10000000 pounding runs in all", SENSITIVITY, NOT_SCENE},
 	{"/design/randomisations", FIELD_COUNT, AT(design.randomisations), 8, 4, 32, FIELD_CLOSED, "",
 	 .text = "number of independent scrambles of the Sobol' points, from which intervals are estimated; only with method sobol", SENSITIVITY,
 	 NOT_SCENE},
@@ -350,7 +350,7 @@ const struct field fields[] = {
 	{"/design/until/half_width", FIELD_REAL, AT(design.until.half_width), NAN, 0, 1, FIELD_OPEN, "",
 	 .text = "largest accepted half-width of the 95 % intervals of all S1 and ST", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 200000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
-	 .text = "limit of pounding runs; at least those of the first rows", SENSITIVITY, WITH_SCENE, NOT_SCENE},
+	 .text = "largest number of pounding runs; at least that of the first rows", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/goal", FIELD_CHOICE, AT(design.until.goal), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "width: all intervals of S1 and ST; order: only those of ST that overlap the interval of another input", .choice = goal_name, SENSITIVITY,
 	 WITH_SCENE, NOT_SCENE, LATER},
@@ -365,16 +365,16 @@ const struct field fields[] = {
 	 .text = "samples per row, mixtures of A and B: total n_inputs + 2, second 2 n_inputs + 2, factorial 2^n_inputs (at most 5 inputs)",
 	 .choice = pound_order_name, SENSITIVITY, NOT_SCENE},
 	{"/design/estimator", FIELD_CHOICE, AT(design.estimator), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "estimator whose indices are reported in addition; azzini_rosati implies order second",
+	 .text = "additional estimator of S1 and ST, reported in columns of its own; azzini_rosati implies order second",
 	 .choice = pound_estimator_name, SENSITIVITY, NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
 	 .text = "outputs to compute, all different (default: the amplifications that apply and, with contact, the impulse; of separation none with pounding)", SWEPT, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one output: its name; guide.md has the formula of each, its unit and what it needs: a body, a law, a contact or buildings", .choice = pound_output_name, SWEPT, WITH_SCENE, NOT_SCENE},
+	 .text = "name of an output; schema/guide.md has its formula, its unit and what it needs: a body, a law, a contact or buildings", .choice = pound_output_name, SWEPT, WITH_SCENE, NOT_SCENE},
 
 	{"/places", FIELD_LIST, 0, 0, 1, POUND_PLACES_MAX, FIELD_CLOSED, "",
-	 .text = "storeys of a row of buildings for which outputs are computed, all different (default: all of building 0)", SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "storeys of a row of buildings for which outputs are computed, all different (default: every storey of building 0)", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/places/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "one storey and the floor above it", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/places/*/building", FIELD_COUNT, IN_PLACES(building), 0, 0, POUND_BUILDINGS_MAX - 1, FIELD_CLOSED, "",
@@ -385,7 +385,7 @@ const struct field fields[] = {
 	{"/solver", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "numerical solver of the equations of motion", SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/method", FIELD_CHOICE, AT(solver.method), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "solver: exact from event to event, fixed step, or adaptive step", .choice = pound_solver_name, SOLVED, WITH_SCENE, NOT_SCENE},
+	 .text = "solver: event (exact), newmark and central_difference (fixed step) or adaptive (adaptive step)", .choice = pound_solver_name, SOLVED, WITH_SCENE, NOT_SCENE},
 	{"/solver/tolerance", FIELD_REAL, AT(solver.tolerance), 1e-9, 0, 1, FIELD_OPEN, "",
 	 .text = "relative error allowed per step; no effect on event, which is exact", .solvers = pound_solver_takes_tolerance,
 	 SOLVED, WITH_SCENE, NOT_SCENE},
@@ -447,7 +447,7 @@ const struct field fields[] = {
 	 .text = "one of them", SEPARATION},
 
 	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "solver settings to compare with the event solver; at most 100000 runs in all", CONVERGENCE, NOT_SCENE},
+	 .text = "solver settings whose results are compared with the event solver; at most 100000 runs in all", CONVERGENCE, NOT_SCENE},
 	SETTING_ROWS("newmark", "steps_s", 1, INFINITY, "s", "steps"),
 	SETTING_ROWS("central_difference", "steps_s", 2, INFINITY, "s", "steps"),
 	SETTING_ROWS("adaptive", "tolerances", 3, 1, "", "tolerances"),
@@ -582,7 +582,7 @@ static bool path_pattern(const char *path, char *pattern, size_t size, int indic
 }
 
 /* Whether an index is one of a list's elements at most. */
-static bool indexes(const struct field *list, int index)
+static bool within_list(const struct field *list, int index)
 {
 	return list && index >= 0 && index < list->max;
 }
@@ -612,7 +612,7 @@ const struct field *fields_scene(const char *path, struct field_place *place)
 	if (!path_pattern(path, pattern, sizeof pattern, indices))
 		return NULL;
 	const struct field *field = fields_find(pattern);
-	if (indices[0] >= 0 && !indexes(list_of(pattern), indices[0]))
+	if (indices[0] >= 0 && !within_list(list_of(pattern), indices[0]))
 		return NULL;
 	*place = (struct field_place){indices[0], indices[1]};
 	if (field)

@@ -400,7 +400,7 @@ static void check_kind(const struct pound_study *study, struct problems *problem
 	                             [POUND_KIND_SEPARATION] = false};
 	if (!kinds[study->kind])
 		problems_add(problems, "/scene/buildings",
-		             "kind \"%s\" cannot be computed of buildings, only of oscillators",
+		             "kind \"%s\" cannot be computed for buildings, only for oscillators",
 		             study_kind_name(study->kind));
 	else if (!problems_at(problems, "/solver") && !pound_solver_takes_rows(study->solver.method))
 		problems_add(problems, "/solver/method", "the solver \"%s\" cannot integrate rows of buildings",

@@ -180,7 +180,8 @@ static void check_names(const struct pound_study *study, struct problems *proble
 		snprintf(pointer, sizeof pointer, "/inputs/%d/name", j);
 		if (taken)
 			problems_add(problems, pointer,
-			             "is already the name of a column of the samples: row, sample or an output");
+			             "is already the name of a column of the samples (row, sample or an output); "
+			             "expected another name");
 		else if (study->elsewhere && !name && !study->inputs[j].path)
 			problems_add(problems, pointer, "is required: a string of 1 to 100 characters");
 	}

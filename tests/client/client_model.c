@@ -60,7 +60,7 @@ static void a_design_has_its_header_and_its_samples(void **state)
 	program_free(&document);
 }
 
-static void indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv(void **state)
+static void indices_of_outputs_computed_elsewhere_come_as_json_table_and_csv(void **state)
 {
 	(void)state;
 	// closed form of the Ishigami function; four times the error over designs of n = 1000
@@ -202,5 +202,5 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 CHECK_MAIN(cmocka_unit_test(given_samples_have_indices_without_a_study),
            cmocka_unit_test(what_there_is_to_say_about_a_design_is_said_on_stderr),
            cmocka_unit_test(a_design_has_its_header_and_its_samples),
-           cmocka_unit_test(indexes_of_outputs_computed_elsewhere_come_as_json_table_and_csv),
+           cmocka_unit_test(indices_of_outputs_computed_elsewhere_come_as_json_table_and_csv),
            cmocka_unit_test(what_is_wrong_is_said_and_ends_with_2))

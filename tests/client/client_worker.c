@@ -248,7 +248,7 @@ static const struct {
      "token=$(printf %064d 7);" CONNECT "token=$(printf %064d 7);" READY(POUND_VERSION) "cat <&3",
      "worker groups ran 0 of"},
     {"no greeting", CONNECT "printf \"$token\" >&3; head -c 1000 /dev/urandom >&3; cat <&3",
-     "its first message is no greeting"},
+     "its first message is not the greeting"},
     {"another design", CONNECT READY(POUND_VERSION) DESIGN "cat <&3 >/dev/null",
      "refused for this study: its design differs"},
     {"bytes without sense", CONNECT READY(POUND_VERSION) "head -c 5000 /dev/urandom >&3; cat <&3 >/dev/null",
@@ -399,7 +399,7 @@ static void a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_
 static void a_checkpoint_of_another_study_or_program_is_refused(void **state)
 {
 	static const char *const others[] = {"pound checkpoint 0.0.1 0123456789abcdef\n", "something else\n"};
-	static const char *const words[] = {"another study, or of another version", "no checkpoint"};
+	static const char *const words[] = {"another study or another version", "no checkpoint"};
 	(void)state;
 	for (int i = 0; i < 2; i++) {
 		bytes_write(others[i], strlen(others[i]));

@@ -194,7 +194,7 @@ static void event_rows(const struct pound_scene *scene, const struct batch *exac
 	    .what = bench_text("reference scene, %d signals of 20 s: a run by the event solver", exact->n),
 	    .value = 1e6 * seconds,
 	    .unit = "us"});
-	bench_print((struct bench_row){.what = "its error by itself, with samples twice as dense",
+	bench_print((struct bench_row){.what = "its own error, with samples twice as dense",
 	                               .error = own,
 	                               .goal = "below 1e-9",
 	                               .met = own < 1e-9});

@@ -73,7 +73,7 @@ static void one_signal(void)
 	                               .goal = "at most 5 ms",
 	                               .met = jobs[0].seconds <= GOAL});
 	bench_print((struct bench_row){
-	    .what = "and that of the contact force alone", .value = 1e3 * jobs[1].seconds, .unit = "ms"});
+	    .what = "the spectrum of the contact force alone", .value = 1e3 * jobs[1].seconds, .unit = "ms"});
 	bench_print((struct bench_row){.what = "without pounding", .value = 1e3 * jobs[2].seconds, .unit = "ms"});
 	for (int d = 0; d < POUND_DRIVES; d++)
 		free(with.psa[d]);

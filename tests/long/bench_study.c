@@ -120,7 +120,7 @@ static void campaign_rows(const struct cost *cost, int rows)
 	    .goal = rows == 1000 ? bench_text("5 s: %s, at most 10 s", cost->wall <= 5 ? "yes" : "no") : NULL,
 	    .met = cost->wall <= 10});
 	bench_print((struct bench_row){.what = "its CPU time", .value = cost->cpu, .unit = "s"});
-	bench_print((struct bench_row){.what = "of it the indices and their intervals",
+	bench_print((struct bench_row){.what = "of which the indices and their intervals",
 	                               .value = cost->cpu_reductions,
 	                               .unit = "s",
 	                               .ratio = cost->cpu_reductions / cost->cpu,

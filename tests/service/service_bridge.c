@@ -118,7 +118,7 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 		        "/config: must be");
 		refused(service, calls[i], "{\"name\": \"pound\", \"config\": {\"rows\": 1, \"signals\": 0}}",
 		        "InvalidInput",
-		        "/config/rows: unknown member; there are study, row and signals; /config/signals: must be a "
+		        "/config/rows: unknown member; expected study, row or signals; /config/signals: must be a "
 		        "whole number in [1, 100000]");
 	}
 	refused(service, "/Evaluate", "{\"name\": \"pound\", \"input\": [[1, 2, 3]]}", "InvalidInput",
@@ -172,7 +172,7 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	snprintf(body, sizeof body,
 	         "{\"name\": \"pound\", \"input\": [[0.001, 2, 1, 0.5]], \"config\": {\"signals\": "
 	         "100000}}");
-	refused(service, "/Evaluate", body, "InvalidInput", "a call may take 60: submit a study");
+	refused(service, "/Evaluate", body, "InvalidInput", "a call may take at most 60: submit it as a study");
 }
 
 /* The paper's study with the values of its inputs put in, as a response study. */

@@ -138,7 +138,7 @@ static void samples_of_a_design_that_grew_are_all_of_them_or_an_error(void **sta
 	free(study);
 }
 
-static void a_running_study_answers_with_the_indexes_of_its_whole_rows(void **state)
+static void a_running_study_answers_with_the_indices_of_its_whole_rows(void **state)
 {
 	// long enough for some questions while it runs
 	enum { ROWS = 3 * SERVICE_ROWS };
@@ -222,5 +222,5 @@ CHECK_MAIN(
     cmocka_unit_test(a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_blocks_again),
     SERVED(the_status_of_a_study_that_grows_has_its_bound_and_then_what_it_took),
     cmocka_unit_test(samples_of_a_design_that_grew_are_all_of_them_or_an_error),
-    SERVED(a_running_study_answers_with_the_indexes_of_its_whole_rows),
+    SERVED(a_running_study_answers_with_the_indices_of_its_whole_rows),
     SERVED(a_study_without_a_row_has_no_results_yet))

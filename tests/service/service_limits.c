@@ -22,12 +22,12 @@ static const struct {
 	const char *detail;
 } heads[] = {
     {"GET /v1/studies?status=", "a", " HTTP/1.1\r\n" HOST "\r\n", 4096, 414,
-     "a target has at most 4096 bytes"},
+     "the request target may have at most 4096 bytes"},
     {"GET /v1/studies?limit=1", "&a=1", " HTTP/1.1\r\n" HOST "\r\n", 16, 400,
-     "a target has at most 16 arguments"},
-    {"GET /livez HTTP/1.1\r\n" HOST, "X-A: 1\r\n", "\r\n", 64, 431, "a request has at most 64 headers"},
+     "the request target may have at most 16 query parameters"},
+    {"GET /livez HTTP/1.1\r\n" HOST, "X-A: 1\r\n", "\r\n", 64, 431, "a request may have at most 64 headers"},
     {"GET /livez HTTP/1.1\r\n" HOST "X-A: ", "a", "\r\n\r\n", 17000, 431,
-     "the request line and the headers have at most 16384 bytes"},
+     "request line and headers together may have at most 16384 bytes"},
     {POST "Transfer-Encoding: chunked\r\n", "", "\r\n2\r\n{}\r\n0\r\n\r\n", 0, 411,
      "a body needs a Content-Length; Transfer-Encoding is not supported"},
     {POST "Content-Length: 1048577\r\n", "", "\r\n", 0, 413, "a body may have at most 1 MiB"},

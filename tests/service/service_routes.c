@@ -242,7 +242,7 @@ static void unknown_paths_and_studies_are_404(void **state)
 	};
 	struct service *service = *state;
 	for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++)
-		problem_is(service_get(service, "%s", paths[i]), 404, "there is no such");
+		problem_is(service_get(service, "%s", paths[i]), 404, "no such");
 	problem_is(
 	    service_ask(service, &(struct ask){.method = "POST", .path = "/v1/studies/0123456789abcdef/cancel"}),
 	    404, "no such study");

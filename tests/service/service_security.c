@@ -282,7 +282,7 @@ static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
 			fail_msg("post %zu: %d %s", i, answer.status, answer.body);
 		assert_true(answer.status == 201 || atoi(answer.retry_after) >= 1);
 		assert_true(answer.status == 201 ||
-		            strstr(answer.body, "the share of this token in the queue is full"));
+		            strstr(answer.body, "the queue has no room for more studies of this token"));
 		if (i == AGAIN)
 			assert_string_equal(answer.location, locations[0]);
 		if (posts[i].keyed)

@@ -12,7 +12,7 @@
 #define HOST "Host: localhost\r\n"
 
 static const char MANY_LONG[] =
-    "as many answers that take long are being made as this client, or all, may have";
+    "too many slow answers are being prepared, for this client or in all; please try again";
 
 static void pause_ms(int ms)
 {
@@ -181,7 +181,7 @@ static void a_probe_is_answered_when_no_more_connections_are_served(void **state
 	raw_ask(service, list, strlen(list), 5, &answer);
 	assert_int_equal(answer.status, 503);
 	assert_non_null(strstr(answer.text, "Retry-After: "));
-	assert_non_null(strstr(answer.text, "the server has as many connections as it takes"));
+	assert_non_null(strstr(answer.text, "all connections of the server are in use"));
 	close_many(sockets, N);
 	service_stop(service);
 	service_free(service);

@@ -7,6 +7,8 @@
 // clang-format off
 #include "engine/exact/simulation.inl"
 #include "engine/exact/free_motion.inl"
+
+#include "engine/exact/contact_substep.inl"
 // clang-format on
 #include "tests/support/scenes.h"
 

@@ -274,7 +274,7 @@ static void energy_only_falls_once_the_ground_is_still(void **state)
 {
 	(void)state;
 	enum { STILL = 101, STEP = 10 };
-	for (int k = 4; k < 4 * SCENES; k += 8) {
+	for (int k = SPECIMEN_LAWS; k < SPECIMEN_LAWS * SCENES; k += 2 * SPECIMEN_LAWS) {
 		// linear, with a contact that may pull: all its energy is in the springs
 		struct specimen specimen;
 		specimen_random(&specimen, k, 0.01, SAMPLES);

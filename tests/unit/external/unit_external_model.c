@@ -31,7 +31,7 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 	    {"{}", "/inputs", "is required: an array of 1 to 20 elements"},
 	    {"{\"inputs\": [{" UNIFORM "]}", "/inputs/0/name", "is required: a string of 1 to 100 characters"},
 	    {"{\"inputs\": [{\"name\": \"row\", " UNIFORM "]}", "/inputs/0/name",
-	     "is already the name of a column of the samples: row, sample or an output"},
+	     "is already the name of a column of the samples (row, sample or an output); expected another name"},
 	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"sweep\": []}", "/sweep",
 	     "is not used without a scene"},
 	    {"{\"inputs\": [{\"name\": \"p\", " UNIFORM "], \"solver\": {}}", "/solver",
@@ -125,7 +125,7 @@ static char *golden_csv(const char *header, const char *format, double variance)
 	return csv;
 }
 
-static void outputs_computed_elsewhere_give_the_golden_indexes(void **state)
+static void outputs_computed_elsewhere_give_the_golden_indices(void **state)
 {
 	(void)state;
 	char *csv = golden_csv("y\n", "%.17g\n", 0.0);
@@ -431,7 +431,7 @@ static void a_column_may_have_the_longest_name_of_an_input(void **state)
 	study_free(study);
 }
 
-static void the_samples_of_a_study_give_its_raw_indexes_again(void **state)
+static void the_samples_of_a_study_give_its_raw_indices_again(void **state)
 {
 	(void)state;
 	struct problems problems;
@@ -634,14 +634,14 @@ CHECK_MAIN(cmocka_unit_test(every_spelling_of_a_decimal_number_is_one),
            cmocka_unit_test(a_design_that_grows_is_that_of_its_first_look),
            cmocka_unit_test(a_study_without_a_scene_is_inputs_and_a_design),
            cmocka_unit_test(rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers),
-           cmocka_unit_test(outputs_computed_elsewhere_give_the_golden_indexes),
+           cmocka_unit_test(outputs_computed_elsewhere_give_the_golden_indices),
            cmocka_unit_test(a_variance_column_takes_independent_noise_out),
            cmocka_unit_test(indices_of_a_noisy_model_are_exact_or_null),
            cmocka_unit_test(a_scene_without_random_signals_has_no_noise_to_share),
            cmocka_unit_test(an_inert_input_has_no_total_once_replicates_give_the_noise),
            cmocka_unit_test(a_run_without_a_number_takes_its_row_out_of_every_output),
            cmocka_unit_test(spelling_and_further_columns_do_not_change_the_result),
-           cmocka_unit_test(the_samples_of_a_study_give_its_raw_indexes_again),
+           cmocka_unit_test(the_samples_of_a_study_give_its_raw_indices_again),
            cmocka_unit_test(a_quote_that_begins_the_text_is_the_first_of_its_cell),
            cmocka_unit_test(a_column_may_have_the_longest_name_of_an_input),
            cmocka_unit_test(every_fault_of_the_outputs_is_reported_with_its_line),

@@ -302,7 +302,7 @@ static void a_signal_is_stationary_from_its_first_sample(void **state)
 }
 
 /* the correlation of n pairs of independent numbers has standard error 1/sqrt n */
-static void signals_of_other_rows_samples_and_indexes_are_uncorrelated(void **state)
+static void signals_of_other_rows_samples_and_indices_are_uncorrelated(void **state)
 {
 	(void)state;
 	enum { PAIRS = 8000, SHORT = 20 };
@@ -372,5 +372,5 @@ CHECK_MAIN(cmocka_unit_test(a_signal_has_the_same_bits_whatever_is_beside_it),
            cmocka_unit_test(the_spectrum_is_the_analytic_one),
            cmocka_unit_test(the_variance_and_autocovariance_are_the_analytic_ones),
            cmocka_unit_test(a_signal_is_stationary_from_its_first_sample),
-           cmocka_unit_test(signals_of_other_rows_samples_and_indexes_are_uncorrelated),
+           cmocka_unit_test(signals_of_other_rows_samples_and_indices_are_uncorrelated),
            cmocka_unit_test(the_length_of_a_signal_does_not_change_its_samples))

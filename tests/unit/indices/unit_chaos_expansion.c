@@ -7,7 +7,7 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
 
-static struct pound_closed_results indexes_kept(const struct pound_sample_values *values, const double *u,
+static struct pound_closed_results indices_kept(const struct pound_sample_values *values, const double *u,
                                                 bool corrected, double *kept)
 {
 	struct pound_closed_results result;
@@ -22,10 +22,10 @@ static struct pound_closed_results indexes_kept(const struct pound_sample_values
 	return result;
 }
 
-static struct pound_closed_results indexes_of(const struct pound_sample_values *values, const double *u,
+static struct pound_closed_results indices_of(const struct pound_sample_values *values, const double *u,
                                               bool corrected)
 {
-	return indexes_kept(values, u, corrected, NULL);
+	return indices_kept(values, u, corrected, NULL);
 }
 
 static const struct function_noise noiseless = {1, 0.0, true};
@@ -48,7 +48,7 @@ static void a_polynomial_within_the_degree_is_met_exactly(void **state)
 	const struct function f = {.name = "cubic", .y = cubic, .variance = 8.8};
 	struct pound_sample_values values = function_values(&f, 200, 1, noiseless);
 	double *u = function_design(200, 1);
-	struct pound_closed_results got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indices_of(&values, u, false);
 	for (int j = 0; j < D; j++) {
 		// rounding of normal equations of 126 terms, whose condition is some tens
 		check_near(got.first[j].value, first[j], 1e-11);
@@ -75,10 +75,10 @@ static void shift_and_scale_change_no_index(void **state)
 	(void)state;
 	struct pound_sample_values values = function_values(function_named("cusp"), 300, 2, noiseless);
 	double *u = function_design(300, 2);
-	struct pound_closed_results want = indexes_of(&values, u, false);
+	struct pound_closed_results want = indices_of(&values, u, false);
 	for (int k = 0; k < 300 * SAMPLES; k++)
 		((double *)values.numerator)[k] = 1e6 + 3.0 * values.numerator[k];
-	struct pound_closed_results got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indices_of(&values, u, false);
 	for (int j = 0; j < D; j++) {
 		check_near(got.first[j].value, want.first[j].value, 1e-9);
 		check_near(got.total[j].value, want.total[j].value, 1e-9);
@@ -98,10 +98,10 @@ static void rows_left_out_do_not_shift_the_inputs_of_the_others(void **state)
 	                                  .n_signals = 1,
 	                                  .numerator = y + 50 * SAMPLES,
 	                                  .denominator = values.denominator + 50 * SAMPLES};
-	struct pound_closed_results want = indexes_of(&cut, u + 50 * 2 * D, false);
+	struct pound_closed_results want = indices_of(&cut, u + 50 * 2 * D, false);
 	for (int i = 0; i < 50; i++)
 		y[i * SAMPLES + i % SAMPLES] = NAN;
-	struct pound_closed_results got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indices_of(&values, u, false);
 	for (int j = 0; j < D; j++)
 		check_near(got.total[j].value, want.total[j].value, 0.0);
 	free(u);
@@ -115,7 +115,7 @@ static void nothing_is_defined_where_nothing_varies(void **state)
 	double *u = function_design(60, 4);
 	for (int k = 0; k < 60 * SAMPLES; k++)
 		((double *)values.numerator)[k] = 4.2;
-	struct pound_closed_results got = indexes_of(&values, u, false);
+	struct pound_closed_results got = indices_of(&values, u, false);
 	for (int j = 0; j < D; j++)
 		assert_true(isnan(got.first[j].value) && isnan(got.total[j].value) && isnan(got.total[j].low));
 	free(u);
@@ -137,7 +137,7 @@ static struct performance performance_of(const struct function *f, struct functi
 	for (int seed = 0; seed < SEEDS; seed++) {
 		struct pound_sample_values values = function_values(f, N, seed, noise);
 		double *u = function_design(N, seed);
-		struct pound_closed_results got = indexes_of(&values, u, noise.n_signals > 1);
+		struct pound_closed_results got = indices_of(&values, u, noise.n_signals > 1);
 		for (int k = 0; k < 2 * D; k++) {
 			const struct pound_estimate *x = k < D ? &got.first[k] : &got.total[k - D];
 			double error = x->value - f->index[k];
@@ -204,7 +204,7 @@ static void a_polynomial_that_cannot_follow_does_no_harm(void **state)
 	for (uint64_t seed = 0; seed < DESIGNS; seed++) {
 		struct pound_sample_values values = function_values(&f, FEW, seed, noiseless);
 		double *u = function_design(FEW, seed), above, below = 0.0;
-		struct pound_closed_results got = indexes_of(&values, u, false);
+		struct pound_closed_results got = indices_of(&values, u, false);
 		for (int i = 0; i < FEW; i++)
 			for (int p = 0; p < 2; p++)
 				below += pow(values.numerator[i * SAMPLES + p] - 0.5, 2) / (2 * FEW);
@@ -244,9 +244,9 @@ static void what_is_kept_of_a_design_changes_no_bit(void **state)
 		values.grouping = (struct pound_grouping){cases[k].groups, 1};
 		if (cases[k].failed >= 0)
 			((double *)values.numerator)[cases[k].failed * SAMPLES] = NAN;
-		const struct pound_closed_results want = indexes_of(&values, u, false);
+		const struct pound_closed_results want = indices_of(&values, u, false);
 		for (int again = 0; again < 2; again++) {
-			const struct pound_closed_results got = indexes_kept(&values, u, false, kept);
+			const struct pound_closed_results got = indices_kept(&values, u, false, kept);
 			assert_memory_equal(got.first, want.first, sizeof want.first[0] * D);
 			assert_memory_equal(got.total, want.total, sizeof want.total[0] * D);
 		}

@@ -81,7 +81,7 @@ static void four_inputs_have_every_set_in_the_plain_design(void **state)
 	free(got);
 }
 
-static struct pound_closed_results *indexes_of(const struct function *f, int n_rows, int seed, int order,
+static struct pound_closed_results *indices_of(const struct function *f, int n_rows, int seed, int order,
                                                struct function_noise noise)
 {
 	struct pound_closed_results *results = malloc(sizeof *results);
@@ -107,7 +107,7 @@ static void shapley_effects_add_up_to_one(void **state)
 	(void)state;
 	for (int order = POUND_ORDER_TOTAL; order <= POUND_ORDER_FACTORIAL; order++) {
 		struct pound_closed_results *got =
-		    indexes_of(function_named("steps"), 120, 3, order, (struct function_noise){3, 0.5, true});
+		    indices_of(function_named("steps"), 120, 3, order, (struct function_noise){3, 0.5, true});
 		double sum = 0.0;
 		for (int j = 0; j < D; j++)
 			sum += got->shapley[j].value;
@@ -116,11 +116,11 @@ static void shapley_effects_add_up_to_one(void **state)
 	}
 }
 
-static void second_order_indexes_and_shapley_effects_follow_from_the_closed_ones(void **state)
+static void second_order_indices_and_shapley_effects_follow_from_the_closed_ones(void **state)
 {
 	(void)state;
 	struct pound_closed_results *got =
-	    indexes_of(function_named("cusp"), 100, 4, POUND_ORDER_TOTAL, noiseless);
+	    indices_of(function_named("cusp"), 100, 4, POUND_ORDER_TOTAL, noiseless);
 	double closed[1 << D] = {0.0}, shapley[D] = {0.0};
 	closed[(1 << D) - 1] = 1.0;
 	for (int k = 0; k < got->sets.n_closed; k++)
@@ -159,7 +159,7 @@ static void errors_of(const struct function *f, int n_rows, int order, struct fu
 {
 	rms[0] = rms[1] = coverage[0] = coverage[1] = 0.0;
 	for (int seed = 0; seed < SEEDS; seed++) {
-		struct pound_closed_results *got = indexes_of(f, n_rows, seed, order, noise);
+		struct pound_closed_results *got = indices_of(f, n_rows, seed, order, noise);
 		for (int k = 0; k < FUNCTION_PAIRS + D; k++) {
 			static const int place[FUNCTION_PAIRS] = {0, 1, 3, 2, 4, 5}; // of sets in ascending order
 			bool pair = k < FUNCTION_PAIRS;
@@ -198,5 +198,5 @@ static void errors_at_six_thousand_runs_are_those_measured_for_the_formulas(void
 CHECK_MAIN(cmocka_unit_test(contrasts_of_the_factorial_design_have_their_golden_values),
            cmocka_unit_test(four_inputs_have_every_set_in_the_plain_design),
            cmocka_unit_test(shapley_effects_add_up_to_one),
-           cmocka_unit_test(second_order_indexes_and_shapley_effects_follow_from_the_closed_ones),
+           cmocka_unit_test(second_order_indices_and_shapley_effects_follow_from_the_closed_ones),
            cmocka_unit_test(errors_at_six_thousand_runs_are_those_measured_for_the_formulas))

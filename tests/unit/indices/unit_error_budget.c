@@ -125,7 +125,7 @@ static int moved_further(const struct function *f, int n_rows, double share, uin
 	return further;
 }
 
-static void indexes_move_no_more_than_stated_when_noise_is_added(void **state)
+static void indices_move_no_more_than_stated_when_noise_is_added(void **state)
 {
 	(void)state;
 	enum { SEEDS = 40, N = 100 };
@@ -165,7 +165,7 @@ static double half(struct pound_estimate estimate)
 }
 
 /* Of rows and of groups of rows, in a design with neighbours and in a quasi-random one. */
-static void half_widths_of_all_rows_are_those_of_the_indexes(void **state)
+static void half_widths_of_all_rows_are_those_of_the_indices(void **state)
 {
 	(void)state;
 	enum { N = 256 };
@@ -369,9 +369,9 @@ static void a_coarse_solver_shows_its_error(void **state)
 
 CHECK_MAIN(cmocka_unit_test(differences_of_runs_come_out_relative_and_as_a_variance),
            cmocka_unit_test(runs_that_agree_move_no_index),
-           cmocka_unit_test(indexes_move_no_more_than_stated_when_noise_is_added),
+           cmocka_unit_test(indices_move_no_more_than_stated_when_noise_is_added),
            cmocka_unit_test(half_widths_fall_with_the_root_of_the_rows),
-           cmocka_unit_test(half_widths_of_all_rows_are_those_of_the_indexes),
+           cmocka_unit_test(half_widths_of_all_rows_are_those_of_the_indices),
            cmocka_unit_test(noise_of_few_signals_is_an_error_in_the_intervals),
            cmocka_unit_test(few_rows_and_constant_outputs_have_no_slope),
            cmocka_unit_test(noise_adds_no_more_to_an_interval_than_there_is),

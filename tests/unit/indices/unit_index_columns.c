@@ -22,7 +22,7 @@ struct indices {
 	int dropped;
 };
 
-static struct indices *indexes_of(const struct pound_sample_values *values, struct pound_sampling sampling)
+static struct indices *indices_of(const struct pound_sample_values *values, struct pound_sampling sampling)
 {
 	struct indices *result = calloc(1, sizeof *result);
 	size_t n = pound_index_columns_scratch(values, &sampling);
@@ -37,12 +37,12 @@ static struct indices *indexes_of(const struct pound_sample_values *values, stru
 	return result;
 }
 
-static struct indices *function_indexes(const char *name, int n_rows, struct function_noise noise,
+static struct indices *function_indices(const char *name, int n_rows, struct function_noise noise,
                                         bool random)
 {
 	struct pound_sample_values values = function_values(function_named(name), n_rows, 7, noise);
 	double *u = function_design(n_rows, 7);
-	struct indices *got = indexes_of(
+	struct indices *got = indices_of(
 	    &values, (struct pound_sampling){.u = u, .random = random, .fresh_signals = !noise.common});
 	free(u);
 	function_values_free(&values);
@@ -66,7 +66,7 @@ static void every_column_comes_from_its_function(void **state)
 	struct pound_sample_values values =
 	    function_values(function_named("cusp"), N, 7, (struct function_noise){5, 1.0, true});
 	double *u = function_design(N, 7);
-	struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+	struct indices *got = indices_of(&values, (struct pound_sampling){.u = u, .random = true});
 	struct pound_rows rows;
 	struct pound_pick_freeze pick_freeze;
 	struct pound_estimate local[D], first[D], total[D];
@@ -109,7 +109,7 @@ static void every_column_comes_from_its_function(void **state)
 	function_values_free(&values);
 }
 
-static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
+static void raw_indices_are_the_golden_ones_of_the_plain_protocol(void **state)
 {
 	(void)state;
 	// statistics_golden.json, estimators_d2_n6: A, B, AB1, AB2 of each row
@@ -122,7 +122,7 @@ static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
 		one[k] = 1;
 	struct pound_sample_values values = {
 	    .n_rows = 6, .n_inputs = 2, .n_signals = 1, .numerator = y, .denominator = one};
-	struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+	struct indices *got = indices_of(&values, (struct pound_sampling){.u = u, .random = true});
 	check_near(got->estimates[POUND_S1_RAW][0].value, 0.572576783750673, 1e-12);
 	check_near(got->estimates[POUND_S1_RAW][1].value, 0.755503894911683, 1e-12);
 	check_near(got->estimates[POUND_ST_RAW][0].value, 0.880662387875659, 1e-12);
@@ -132,11 +132,11 @@ static void raw_indexes_are_the_golden_ones_of_the_plain_protocol(void **state)
 	free(got);
 }
 
-static void a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_from_no_randomness(void **state)
+static void a_signal_of_each_sample_s_own_leaves_the_raw_indices_and_differs_from_no_randomness(void **state)
 {
 	(void)state;
 	for (int random = 0; random < 2; random++) {
-		struct indices *got = function_indexes("cusp", 100, (struct function_noise){1, 0.0, !random}, random);
+		struct indices *got = function_indices("cusp", 100, (struct function_noise){1, 0.0, !random}, random);
 		check_same(got, POUND_S1_PICK_FREEZE, POUND_S1_RAW);
 		check_same(got, POUND_ST_PICK_FREEZE, POUND_ST_RAW);
 		for (int j = 0; j < D; j++) {
@@ -150,10 +150,10 @@ static void a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_fro
 	}
 }
 
-static void fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_ones(void **state)
+static void fresh_signals_hide_the_indices_of_the_excitation_that_need_shared_ones(void **state)
 {
 	(void)state;
-	struct indices *got = function_indexes("cusp", 100, (struct function_noise){5, 1.0, false}, true);
+	struct indices *got = function_indices("cusp", 100, (struct function_noise){5, 1.0, false}, true);
 	assert_true(isnan(got->estimates[POUND_S2_EXCITATION][0].value));
 	assert_true(isnan(got->of.share[POUND_SHARE_FIRST_ONE].high));
 	// half of the variance of single runs, known to some 10 % of it by 100 rows
@@ -162,12 +162,12 @@ static void fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_on
 	free(got);
 }
 
-static void with_few_rows_the_corrected_indexes_stand_in(void **state)
+static void with_few_rows_the_corrected_indices_stand_in(void **state)
 {
 	(void)state;
 	static const int rows[] = {4, POUND_ROWS_MIN - 1, POUND_ROWS_MIN};
 	for (int k = 0; k < 3; k++) {
-		struct indices *got = function_indexes("cusp", rows[k], (struct function_noise){5, 0.1, true}, true);
+		struct indices *got = function_indices("cusp", rows[k], (struct function_noise){5, 0.1, true}, true);
 		bool few = rows[k] < POUND_ROWS_MIN;
 		assert_int_equal(got->of.notes, few ? 1 << POUND_NOTE_FEW_ROWS : 0);
 		bool first = true, total = true;
@@ -181,7 +181,7 @@ static void with_few_rows_the_corrected_indexes_stand_in(void **state)
 	}
 }
 
-static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left(void **state)
+static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indices_are_left(void **state)
 {
 	(void)state;
 	// the outputs differ by their signals alone, and by chance less than those do
@@ -195,7 +195,7 @@ static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left
 	struct pound_sample_values values = {
 	    .n_rows = N, .n_inputs = D, .n_signals = 2, .numerator = numerator, .denominator = one};
 	double *u = function_design(N, 7);
-	struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+	struct indices *got = indices_of(&values, (struct pound_sampling){.u = u, .random = true});
 	assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOISE);
 	for (int j = 0; j < D; j++) {
 		assert_true(isfinite(got->estimates[POUND_ST_RAW][j].value));
@@ -219,7 +219,7 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 		}
 		struct pound_sample_values values = {
 		    .n_rows = N, .n_inputs = D, .n_signals = 3, .numerator = numerator, .denominator = denominator};
-		struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u, .random = true});
+		struct indices *got = indices_of(&values, (struct pound_sampling){.u = u, .random = true});
 		assert_int_equal(got->of.notes, 1 << notes[k]);
 		assert_int_equal(got->dropped, N - kept[k]);
 		for (int c = 0; c < POUND_N_INDICES; c++)
@@ -246,7 +246,7 @@ static void an_output_that_few_rows_decide_is_noted(void **state)
 		}
 		struct pound_sample_values values = {
 		    .n_rows = N, .n_inputs = D, .n_signals = 1, .numerator = numerator, .denominator = denominator};
-		struct indices *got = indexes_of(&values, (struct pound_sampling){.u = u});
+		struct indices *got = indices_of(&values, (struct pound_sampling){.u = u});
 		const int few = rare == 1 ? 1 << POUND_NOTE_FEW_DECIDE : 0;
 		assert_int_equal(got->of.notes, 1 << POUND_NOTE_NOT_RANDOM | few);
 		free(got);
@@ -330,7 +330,7 @@ static void a_study_s_result_holds_what_its_samples_give(void **state)
 			u[2 * i] = (x[0] - 1) / 4, u[2 * i + 1] = (x[1] - 0.1) / 0.9;
 		}
 		struct indices *want =
-		    indexes_of(&values, (struct pound_sampling){.u = u, .random = random, .fresh_signals = true});
+		    indices_of(&values, (struct pound_sampling){.u = u, .random = random, .fresh_signals = true});
 		for (int c = 0; c < POUND_N_INDICES; c++)
 			for (int j = 0; j < 2; j++)
 				assert_true(c == POUND_S2_EXCITATION || isfinite(want->estimates[c][j].value));
@@ -388,7 +388,7 @@ static void an_input_of_one_value_explains_exactly_nothing(void **state)
 			    function_values(function_named("ishigami"), n, 7, (struct function_noise){5, 0.5, common});
 			values.inputs = inputs;
 			double *u = function_design(n, 7);
-			struct indices *got = indexes_of(
+			struct indices *got = indices_of(
 			    &values, (struct pound_sampling){.u = u, .random = true, .fresh_signals = !common});
 			check_zero(got->estimates[POUND_S1][3]);
 			check_zero(got->estimates[POUND_ST][3]);
@@ -444,11 +444,11 @@ static void an_index_without_an_interval_is_noted(void **state)
 CHECK_MAIN(
     cmocka_unit_test(an_index_without_an_interval_is_noted),
     cmocka_unit_test(every_column_comes_from_its_function),
-    cmocka_unit_test(raw_indexes_are_the_golden_ones_of_the_plain_protocol),
-    cmocka_unit_test(a_signal_of_each_sample_s_own_leaves_the_raw_indexes_and_is_told_from_no_randomness),
-    cmocka_unit_test(fresh_signals_hide_the_indexes_of_the_excitation_that_need_shared_ones),
-    cmocka_unit_test(with_few_rows_the_corrected_indexes_stand_in),
-    cmocka_unit_test(what_is_lost_in_noise_is_undefined_and_only_the_raw_indexes_are_left),
+    cmocka_unit_test(raw_indices_are_the_golden_ones_of_the_plain_protocol),
+    cmocka_unit_test(a_signal_of_each_sample_s_own_leaves_the_raw_indices_and_differs_from_no_randomness),
+    cmocka_unit_test(fresh_signals_hide_the_indices_of_the_excitation_that_need_shared_ones),
+    cmocka_unit_test(with_few_rows_the_corrected_indices_stand_in),
+    cmocka_unit_test(what_is_lost_in_noise_is_undefined_and_only_the_raw_indices_are_left),
     cmocka_unit_test(nothing_is_defined_where_nothing_varies_or_nothing_is_left),
     cmocka_unit_test(an_output_that_few_rows_decide_is_noted),
     cmocka_unit_test(an_input_of_one_value_explains_exactly_nothing),

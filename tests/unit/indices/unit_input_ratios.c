@@ -75,7 +75,7 @@ static double cusp(const double *x)
 	                 (b > 1.0 ? 1.0 : 0.45);
 }
 
-static void indexes_of_dependent_ratios_are_those_of_quadrature(void **state)
+static void indices_of_dependent_ratios_are_those_of_quadrature(void **state)
 {
 	(void)state;
 	// S, T and Shapley effects of a, b, r, eps by quadrature, to three digits
@@ -173,7 +173,7 @@ static void only_power_laws_above_zero_are_taken(void **state)
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(indexes_of_dependent_ratios_are_those_of_quadrature),
+CHECK_MAIN(cmocka_unit_test(indices_of_dependent_ratios_are_those_of_quadrature),
            cmocka_unit_test(a_sum_of_logarithms_shares_what_its_ratios_have_in_common),
            cmocka_unit_test(shapley_effects_add_up_to_one),
            cmocka_unit_test(what_ratios_explain_has_an_interval_or_is_not_estimated),

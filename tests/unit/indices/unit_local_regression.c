@@ -85,7 +85,7 @@ static void rows_left_out_do_not_shift_the_inputs_of_the_others(void **state)
 	function_values_free(&values);
 }
 
-static void too_few_rows_or_a_constant_output_have_no_indexes(void **state)
+static void too_few_rows_or_a_constant_output_have_no_indices(void **state)
 {
 	(void)state;
 	struct pound_estimate first[D];
@@ -260,7 +260,7 @@ static void noise_of_few_signals_leaves_no_bias(void **state)
 CHECK_MAIN(cmocka_unit_test(the_golden_predictions_are_met),
            cmocka_unit_test(a_straight_line_is_predicted_exactly),
            cmocka_unit_test(rows_left_out_do_not_shift_the_inputs_of_the_others),
-           cmocka_unit_test(too_few_rows_or_a_constant_output_have_no_indexes),
+           cmocka_unit_test(too_few_rows_or_a_constant_output_have_no_indices),
            cmocka_unit_test(shift_and_scale_change_no_index),
            cmocka_unit_test(errors_over_designs_are_a_fraction_of_those_of_pick_freeze),
            cmocka_unit_test(a_jump_within_the_range_leaves_no_bias_and_the_interval_holds),

@@ -173,7 +173,7 @@ static void check_noise(bool common, const double *raw_bias, double raw_spread, 
 	assert_true(raw.covered < corrected.covered);
 }
 
-static void common_signals_shrink_raw_indexes_and_corrected_ones_are_unbiased(void **state)
+static void common_signals_shrink_raw_indices_and_corrected_ones_are_unbiased(void **state)
 {
 	(void)state;
 	// with nu = 1/5 of the variance as noise of the means, S -> S / (1 + nu) and T -> T / (1 + nu)
@@ -217,7 +217,7 @@ an_input_without_effect_has_a_raw_total_of_a_sixth_under_fresh_signals_and_none_
 CHECK_MAIN(cmocka_unit_test(the_golden_row_set_is_met), cmocka_unit_test(a_single_signal_cannot_be_corrected),
            cmocka_unit_test(raw_and_corrected_agree_without_noise),
            cmocka_unit_test(an_input_without_effect_keeps_a_total_of_zero_under_common_signals),
-           cmocka_unit_test(common_signals_shrink_raw_indexes_and_corrected_ones_are_unbiased),
+           cmocka_unit_test(common_signals_shrink_raw_indices_and_corrected_ones_are_unbiased),
            cmocka_unit_test(fresh_signals_inflate_raw_totals_and_corrected_ones_are_unbiased),
            cmocka_unit_test(
                an_input_without_effect_has_a_raw_total_of_a_sixth_under_fresh_signals_and_none_corrected))

@@ -105,7 +105,7 @@ static void azzini_rosati_gives_its_golden_values_from_four_samples(void **state
 	check_near(value[2], value[0], 0.0);
 }
 
-static void the_only_input_with_an_effect_has_indexes_of_one(void **state)
+static void the_only_input_with_an_effect_has_indices_of_one(void **state)
 {
 	(void)state;
 	// the output depends on the second of three inputs: A or B decide it alone
@@ -161,7 +161,7 @@ static void shift_and_scale_change_no_index(void **state)
 	}
 }
 
-static void relabelling_the_inputs_relabels_the_indexes(void **state)
+static void relabelling_the_inputs_relabels_the_indices(void **state)
 {
 	(void)state;
 	static const int label[4] = {2, 0, 3, 1};
@@ -209,7 +209,7 @@ static void noise_is_taken_off_every_product(void **state)
 	}
 }
 
-static void a_constant_output_has_undefined_indexes(void **state)
+static void a_constant_output_has_undefined_indices(void **state)
 {
 	(void)state;
 	double y[40 * 10], value[8];
@@ -297,12 +297,12 @@ static void azzini_and_rosati_err_as_measured_at_six_thousand_runs(void **state)
 CHECK_MAIN(cmocka_unit_test(every_estimator_gives_its_golden_values),
            cmocka_unit_test(estimators_without_golden_values_are_their_formulas),
            cmocka_unit_test(azzini_rosati_gives_its_golden_values_from_four_samples),
-           cmocka_unit_test(the_only_input_with_an_effect_has_indexes_of_one),
+           cmocka_unit_test(the_only_input_with_an_effect_has_indices_of_one),
            cmocka_unit_test(an_input_without_effect_has_a_total_of_exactly_zero),
            cmocka_unit_test(shift_and_scale_change_no_index),
-           cmocka_unit_test(relabelling_the_inputs_relabels_the_indexes),
+           cmocka_unit_test(relabelling_the_inputs_relabels_the_indices),
            cmocka_unit_test(noise_is_taken_off_every_product),
-           cmocka_unit_test(a_constant_output_has_undefined_indexes),
+           cmocka_unit_test(a_constant_output_has_undefined_indices),
            cmocka_unit_test(a_name_is_reported_for_every_row_and_none_beyond),
            cmocka_unit_test(errors_over_designs_are_those_measured_for_the_formulas),
            cmocka_unit_test(azzini_and_rosati_err_as_measured_at_six_thousand_runs))

@@ -14,7 +14,7 @@ struct indices {
 	int dropped;
 };
 
-static struct indices *indexes_of(const struct pound_sample_values *values, uint64_t seed)
+static struct indices *indices_of(const struct pound_sample_values *values, uint64_t seed)
 {
 	struct indices *result = calloc(1, sizeof *result);
 	size_t n = pound_plain_scratch(values);
@@ -48,7 +48,7 @@ static void golden_values_come_out_of_sample_values(void **state)
 	                                     .n_signals = 2,
 	                                     .numerator = &numerator[0][0][0],
 	                                     .denominator = &denominator[0][0][0]};
-	struct indices *got = indexes_of(&values, 1);
+	struct indices *got = indices_of(&values, 1);
 	check_near(got->first[0].value, 0.572576783750673, 1e-12);
 	check_near(got->first[1].value, 0.755503894911683, 1e-12);
 	check_near(got->total[0].value, 0.880662387875659, 1e-12);
@@ -62,7 +62,7 @@ static void ishigami_comes_out_within_its_sampling_error(void **state)
 	(void)state;
 	const struct function *f = function_named("ishigami");
 	struct pound_sample_values values = function_values(f, 4000, 11, noiseless);
-	struct indices *got = indexes_of(&values, 1);
+	struct indices *got = indices_of(&values, 1);
 	for (int j = 0; j < 3; j++) {
 		// four deviations, half of those at n = 1000
 		check_near(got->first[j].value, f->index[j], 4.0 * 0.5 * f->error[j]);
@@ -79,14 +79,14 @@ static void ishigami_comes_out_within_its_sampling_error(void **state)
 	function_values_free(&values);
 }
 
-static void fresh_noise_moves_ishigamis_indexes_where_theory_says(void **state)
+static void fresh_noise_moves_ishigamis_indices_where_theory_says(void **state)
 {
 	(void)state;
 	// known_answers 5.11: noise of variance 0.1 V fresh in every run
 	static const double first[3] = {.2854, .4022, 0.0}, total[3] = {.5978, .4931, .3124};
 	const struct function *f = function_named("ishigami");
 	struct pound_sample_values values = function_values(f, 4000, 12, (struct function_noise){1, 0.1, false});
-	struct indices *got = indexes_of(&values, 1);
+	struct indices *got = indices_of(&values, 1);
 	for (int j = 0; j < 3; j++) {
 		check_near(got->first[j].value, first[j], 4.0 * 0.5 * f->error[j]);
 		check_near(got->total[j].value, total[j], 4.0 * 0.5 * f->error[D + j]);
@@ -102,7 +102,7 @@ static void the_noise_share_is_that_of_the_signals_mean(void **state)
 	for (int common = 0; common < 2; common++) {
 		struct pound_sample_values values =
 		    function_values(f, 1000, 13, (struct function_noise){5, 1.0, common});
-		struct indices *got = indexes_of(&values, 1);
+		struct indices *got = indices_of(&values, 1);
 		// 1/5 of the noise is left in a mean of five: (1/5) / (1 + 1/5).  With common noise 1000 rows of 4 degrees of
 		// freedom know its variance to sqrt(2 / 4000) = 2 %, the outputs' variance to some 3 %
 		check_near(got->of.noise_share, 1.0 / 6.0, 4.0 * 0.04 / 6.0);
@@ -128,7 +128,7 @@ static void rows_with_a_failed_run_are_left_out_whole(void **state)
 	numerator[0] = NAN;
 	numerator[size * 17 + size - 1] = NAN;
 	denominator[size * 299 + 3] = NAN;
-	struct indices *got = indexes_of(&values, 2), *want = indexes_of(&shorter, 2);
+	struct indices *got = indices_of(&values, 2), *want = indices_of(&shorter, 2);
 	assert_int_equal(got->dropped, 3);
 	assert_memory_equal(got->first, want->first, sizeof got->first);
 	assert_memory_equal(got->total, want->total, sizeof got->total);
@@ -149,7 +149,7 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 		}
 		struct pound_sample_values values = {
 		    .n_rows = 8, .n_inputs = D, .n_signals = 3, .numerator = numerator, .denominator = denominator};
-		struct indices *got = indexes_of(&values, 3);
+		struct indices *got = indices_of(&values, 3);
 		assert_int_equal(got->dropped, failed ? 8 : 0);
 		for (int j = 0; j < D; j++) {
 			assert_true(isnan(got->first[j].value) && isnan(got->first[j].low) && isnan(got->first[j].high));
@@ -167,13 +167,13 @@ static void the_order_of_the_rows_does_not_matter(void **state)
 	(void)state;
 	enum { N = 500 };
 	struct pound_sample_values values = function_values(function_named("g_b"), N, 15, noiseless);
-	struct indices *want = indexes_of(&values, 4);
+	struct indices *want = indices_of(&values, 4);
 	double *y = (double *)values.numerator, row[SAMPLES];
 	for (int i = 0; i < N; i++) {
 		double *a = y + SAMPLES * i, *b = y + SAMPLES * ((i * 7919) % N);
 		memcpy(row, a, sizeof row), memcpy(a, b, sizeof row), memcpy(b, row, sizeof row);
 	}
-	struct indices *got = indexes_of(&values, 4);
+	struct indices *got = indices_of(&values, 4);
 	for (int j = 0; j < D; j++) {
 		check_near(got->first[j].value, want->first[j].value, 1e-12);
 		check_near(got->total[j].value, want->total[j].value, 1e-12);
@@ -185,14 +185,14 @@ static void the_order_of_the_rows_does_not_matter(void **state)
 	function_values_free(&values);
 }
 
-static void shift_and_scale_of_the_output_leave_indexes_and_intervals(void **state)
+static void shift_and_scale_of_the_output_leave_indices_and_intervals(void **state)
 {
 	(void)state;
 	struct pound_sample_values values = function_values(function_named("cusp"), 500, 16, noiseless);
-	struct indices *want = indexes_of(&values, 4);
+	struct indices *want = indices_of(&values, 4);
 	for (int k = 0; k < 500 * SAMPLES; k++)
 		((double *)values.numerator)[k] = 1e6 + 3.0 * values.numerator[k];
-	struct indices *got = indexes_of(&values, 4);
+	struct indices *got = indices_of(&values, 4);
 	for (int j = 0; j < D; j++) {
 		check_near(got->first[j].value, want->first[j].value, 1e-9);
 		check_near(got->first[j].low, want->first[j].low, 1e-9);
@@ -215,7 +215,7 @@ static void intervals_cover_the_truth_about_as_often_as_they_say(void **state)
 		int covered[2 * D] = {0};
 		for (int seed = 0; seed < SEEDS; seed++) {
 			struct pound_sample_values values = function_values(f, N, 1000 + seed, noiseless);
-			struct indices *got = indexes_of(&values, seed);
+			struct indices *got = indices_of(&values, seed);
 			for (int j = 0; j < D; j++) {
 				covered[j] += got->first[j].low <= f->index[j] && f->index[j] <= got->first[j].high;
 				covered[D + j] +=
@@ -239,10 +239,10 @@ static void intervals_cover_the_truth_about_as_often_as_they_say(void **state)
 
 CHECK_MAIN(cmocka_unit_test(golden_values_come_out_of_sample_values),
            cmocka_unit_test(ishigami_comes_out_within_its_sampling_error),
-           cmocka_unit_test(fresh_noise_moves_ishigamis_indexes_where_theory_says),
+           cmocka_unit_test(fresh_noise_moves_ishigamis_indices_where_theory_says),
            cmocka_unit_test(the_noise_share_is_that_of_the_signals_mean),
            cmocka_unit_test(rows_with_a_failed_run_are_left_out_whole),
            cmocka_unit_test(nothing_is_defined_where_nothing_varies_or_nothing_is_left),
            cmocka_unit_test(the_order_of_the_rows_does_not_matter),
-           cmocka_unit_test(shift_and_scale_of_the_output_leave_indexes_and_intervals),
+           cmocka_unit_test(shift_and_scale_of_the_output_leave_indices_and_intervals),
            cmocka_unit_test(intervals_cover_the_truth_about_as_often_as_they_say))

@@ -72,7 +72,7 @@ static double noise_of(uint64_t seed, int row, int sample)
 	return standard(pound_random_uniform(stream, 0));
 }
 
-static struct indices *indexes_of(const struct model *model, struct noise noise, uint64_t seed)
+static struct indices *indices_of(const struct model *model, struct noise noise, uint64_t seed)
 {
 	const int n = noise.rows * SAMPLES;
 	double *numerator = malloc(3 * sizeof *numerator * (size_t)n), *one = numerator + n, *variance = one + n;
@@ -156,7 +156,7 @@ static void S1_is_a_share_of_the_variance_with_the_noise_in_it(void **state)
 		struct score score = {0};
 		for (uint64_t seed = 0; seed < SEEDS; seed++) {
 			// outputs of the engine, and of a program of the user's
-			struct indices *got = indexes_of(&models[m], (struct noise){.elsewhere = m, .rows = ROWS}, seed);
+			struct indices *got = indices_of(&models[m], (struct noise){.elsewhere = m, .rows = ROWS}, seed);
 			score_add(&score, got->estimates[POUND_S1], models[m].first);
 			free(got);
 		}
@@ -174,7 +174,7 @@ static void S1_is_one_of_the_mean_response_where_the_variance_of_the_noise_is_kn
 		for (int j = 0; j < D; j++)
 			exact[j] = models[m].first[j] * 4 / (4 - models[m].noise);
 		for (uint64_t seed = 0; seed < SEEDS; seed++) {
-			struct indices *got = indexes_of(
+			struct indices *got = indices_of(
 			    &models[m], (struct noise){.elsewhere = true, .variance = true, .rows = ROWS}, seed);
 			score_add(&score, got->estimates[POUND_S1], exact);
 			free(got);
@@ -205,7 +205,7 @@ static void every_column_estimates_what_its_name_says_or_is_null(void **state)
 			struct score scores[sizeof columns / sizeof columns[0]] = {{0}};
 			for (uint64_t seed = 0; seed < SEEDS; seed++) {
 				struct indices *got =
-				    indexes_of(&models[m], (struct noise){.fresh = fresh, .rows = ROWS}, seed);
+				    indices_of(&models[m], (struct noise){.fresh = fresh, .rows = ROWS}, seed);
 				for (int k = 0; k < 7; k++) {
 					const bool first = k < 3, raw = columns[k] == POUND_S1_RAW || columns[k] == POUND_ST_RAW;
 					const double *exact = first ? models[m].first : models[m].total;
@@ -257,7 +257,7 @@ static void a_note_says_which_indices_shared_noise_leaves(void **state)
 	    {{.elsewhere = true, .fresh = true, .variance = true, .rows = ROWS}, 0, true, true},
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-		struct indices *got = indexes_of(&models[0], cases[k].noise, 1);
+		struct indices *got = indices_of(&models[0], cases[k].noise, 1);
 		assert_int_equal(got->of.notes, cases[k].notes);
 		for (int j = 0; j < D; j++) {
 			assert_int_equal(!isnan(got->estimates[POUND_S1][j].value), cases[k].first);

@@ -155,7 +155,7 @@ static void indices_fill(struct pound_indices *indices, struct pound_estimate *e
 		indices->share[k] = (struct pound_estimate){k, k - 0.25, k + 0.25};
 }
 
-static void indexes_stand_by_output_and_input(void **state)
+static void indices_stand_by_output_and_input(void **state)
 {
 	(void)state;
 	struct pound_estimate estimates[2 * ESTIMATES];
@@ -244,7 +244,7 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 	reading_close(r);
 }
 
-static void undefined_indexes_are_null_and_say_why(void **state)
+static void undefined_indices_are_null_and_say_why(void **state)
 {
 	(void)state;
 	struct pound_estimate none[2] = {{NAN, NAN, NAN}, {NAN, NAN, NAN}};
@@ -471,9 +471,9 @@ CHECK_MAIN(cmocka_unit_test(points_that_do_not_fill_their_nets_are_noted),
            cmocka_unit_test(a_response_is_written_whole),
            cmocka_unit_test(timing_is_the_last_line_but_one_and_all_that_differs),
            cmocka_unit_test(a_swept_law_stands_by_its_name),
-           cmocka_unit_test(indexes_stand_by_output_and_input),
+           cmocka_unit_test(indices_stand_by_output_and_input),
            cmocka_unit_test(every_output_says_how_far_it_may_be_off),
-           cmocka_unit_test(undefined_indexes_are_null_and_say_why),
+           cmocka_unit_test(undefined_indices_are_null_and_say_why),
            cmocka_unit_test(a_negative_index_is_not_clipped_but_explained),
            cmocka_unit_test(all_there_is_to_say_has_room),
            cmocka_unit_test(failed_runs_are_counted_by_reason),

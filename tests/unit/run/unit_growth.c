@@ -175,7 +175,7 @@ static double constant(const double *u)
 	return 1.5;
 }
 
-static void nobody_waits_for_the_indexes_of_a_constant(void **state)
+static void nobody_waits_for_the_indices_of_a_constant(void **state)
 {
 	(void)state;
 	const struct function flat = {.name = "flat", .y = constant};
@@ -188,7 +188,7 @@ static void nobody_waits_for_the_indexes_of_a_constant(void **state)
 	pound_run_free(run);
 }
 
-static void a_grown_sobol_design_has_the_indexes_of_one_of_that_size_from_the_start(void **state)
+static void a_grown_sobol_design_has_the_indices_of_one_of_that_size_from_the_start(void **state)
 {
 	(void)state;
 	const struct pound_study grown = study_of("sobol", 2, 9, 0.03, 60000);
@@ -276,7 +276,7 @@ static void a_block_ends_where_the_design_is_looked_at(void **state)
 	}
 }
 
-static void check_same_indexes(const struct pound_study *study, const struct pound_result *p,
+static void check_same_indices(const struct pound_study *study, const struct pound_result *p,
                                const struct pound_result *q)
 {
 	for (int cell = 0; cell < p->n_cells; cell++)
@@ -317,7 +317,7 @@ static void an_intermediate_result_has_whole_rows_only(void **state)
 	struct pound_study *shorter = study_with("\"method\": \"random\", \"rows\": 150");
 	shorter->design.rows = rows;
 	struct pound_run *whole = specimen_run(shorter);
-	check_same_indexes(study, result, pound_run_result(whole));
+	check_same_indices(study, result, pound_run_result(whole));
 	pound_run_free(run), pound_run_free(whole);
 	study_free(study), study_free(shorter);
 	free(done);
@@ -425,8 +425,8 @@ CHECK_MAIN(cmocka_unit_test(a_design_stops_when_the_order_of_the_inputs_is_certa
            cmocka_unit_test(a_grown_design_keeps_its_rows),
            cmocka_unit_test(a_design_stops_at_the_first_look_that_finds_every_interval_narrow),
            cmocka_unit_test(max_runs_ends_a_design_that_is_not_narrow_yet),
-           cmocka_unit_test(nobody_waits_for_the_indexes_of_a_constant),
-           cmocka_unit_test(a_grown_sobol_design_has_the_indexes_of_one_of_that_size_from_the_start),
+           cmocka_unit_test(nobody_waits_for_the_indices_of_a_constant),
+           cmocka_unit_test(a_grown_sobol_design_has_the_indices_of_one_of_that_size_from_the_start),
            cmocka_unit_test(intervals_cover_where_a_design_has_stopped),
            cmocka_unit_test(a_block_ends_where_the_design_is_looked_at),
            cmocka_unit_test(an_intermediate_result_has_whole_rows_only))
