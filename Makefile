@@ -47,7 +47,7 @@ ENGINE := $(call objs,engine)
 SCHEMA := $(call objs,schema) $(B)/schema/examples.o $(B)/schema/page.o
 SERVER := $(call objs,server,server/main.c)
 # one of these asks servers: the second says that it cannot (make client CURL=0)
-WIRE   := client/wire.c client/unwired.c
+WIRE   := client/wire.c client/offline.c
 # programs of their own: they run blocks for other processes, the second as ranks of MPI (make MPI=1)
 WORKER := client/worker.c client/worker_crew.c
 RANKS  := client/worker_ranks.c client/worker_crew.c
@@ -58,7 +58,7 @@ TESTS   := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/service/*.c t
 # what takes minutes is built with the tests, so that no change breaks it unseen
 LONG    := $(patsubst %.c,$(B)/%,$(wildcard tests/long/soak_*.c)) $(addprefix $(B)/tests/long/,bench paper statistics) \
            $(call objs,tests/fuzz)
-FIXTURE := $(call objs,tests/support,tests/support/preload.c tests/support/instant.c)
+FIXTURE := $(call objs,tests/support,tests/support/preload.c tests/support/instant_blocks.c)
 
 all: $(B)/poundd $(B)/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-worker-mpi)
 
@@ -78,7 +78,7 @@ $(B)/tests/%: $(B)/tests/%.o $(FIXTURE) $(SERVER) $(SCHEMA) $(B)/libpound.a
 
 # the command line and workers, for clusters: GSL, cJSON, nettle and Random123; CURL=0: without libcurl
 CURL ?= 1
-$(B)/client/pound: $(CLIENT) $(B)/client/$(if $(filter 0,$(CURL)),unwired.o,wire.o) $(SCHEMA) $(B)/libpound.a FORCE
+$(B)/client/pound: $(CLIENT) $(B)/client/$(if $(filter 0,$(CURL)),offline.o,wire.o) $(SCHEMA) $(B)/libpound.a FORCE
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter-out FORCE,$^) $(if $(filter 0,$(CURL)),$(filter-out -lcurl,$(LIBS.client)),$(LIBS.client)) \
 	  $(LIBS.schema) $(LIBS.engine)
 client: $(B)/client/pound $(B)/pound-worker $(if $(filter 1,$(MPI)),$(B)/pound-worker-mpi)
@@ -90,7 +90,7 @@ INSTANT := $(B)/tests/worker-instant $(if $(filter 1,$(MPI)),$(B)/tests/ranks-in
 $(B)/tests/ranks-instant: override CC := $(MPICC)
 $(B)/tests/worker-instant: $(WORKER:%.c=$(B)/%.o)
 $(B)/tests/ranks-instant: $(RANKS:%.c=$(B)/%.o)
-$(B)/tests/worker-instant $(B)/tests/ranks-instant: $(B)/tests/support/instant.o $(SCHEMA) $(B)/libpound.a
+$(B)/tests/worker-instant $(B)/tests/ranks-instant: $(B)/tests/support/instant_blocks.o $(SCHEMA) $(B)/libpound.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -Wl,--wrap=pound_run_block -o $@ $^ $(LIBS.schema) $(LIBS.engine) -lpthread
 $(B)/tests/long/soak_limits: | $(INSTANT)
 # the test's own blocks crash in their place

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "client/bar.h"
 #include "client/command.h"
+#include "client/progress_bar.h"
 #include "schema/message/assignment.h"
 #include "schema/message/coordinator.h"
 #include "schema/study/study_json.h"

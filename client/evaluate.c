@@ -6,11 +6,11 @@
  *    `pound indices` reads.
  *
  * Source   UM-Bridge, https://um-bridge-benchmarks.readthedocs.io, protocol 1.0 */
-#include "client/bar.h"
 #include "client/command.h"
 #include "client/document.h"
 #include "client/journal.h"
 #include "client/model.h"
+#include "client/progress_bar.h"
 #include "client/show.h"
 #include "client/wire.h"
 #include "schema/external/external_model.h"

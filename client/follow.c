@@ -2,7 +2,7 @@
 #include "client/follow.h"
 
 #include "client/answer.h"
-#include "client/bar.h"
+#include "client/progress_bar.h"
 #include "schema/json/json_pointer.h"
 
 #include <stdlib.h>

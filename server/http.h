@@ -10,11 +10,11 @@
 
 #include "schema/http/api.h"
 #include "schema/http/http_head.h"
+#include "server/answer_cache.h"
 #include "server/deadlines.h"
-#include "server/kept.h"
+#include "server/fair_share.h"
 #include "server/metrics.h"
 #include "server/options.h"
-#include "server/share.h"
 #include "server/spool.h"
 
 /* What every request can reach. */
@@ -25,7 +25,7 @@ struct server {
 	struct tokens *tokens; /* NULL: there are none */
 	char *document; /* (document_length) bytes, the OpenAPI document: made once, it takes milliseconds */
 	size_t document_length;
-	struct kept kept;
+	struct answer_cache answers;
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;
@@ -51,13 +51,13 @@ struct request {
 	const char *target, *target_end; /* as it came; taken apart in its place by libmicrohttpd */
 	const char *method, *path;       /* path without arguments, decoded; NULL: the headers are not all here */
 	struct head head;
-	int operation;                     /* row of api_operations, -1: none */
-	long long id;                      /* of the study in the path, 0: none */
-	char question[KEPT_QUESTION_SIZE]; /* target and Accept; "": it does not fit */
-	char client[SHARE_CLIENT_SIZE];    /* its address in digits */
-	const char *token;                 /* name of the one it was sent with; NULL: there are none */
-	char allow[64];                    /* methods of the path */
-	char *body;                        /* (length) bytes */
+	int operation;                             /* row of api_operations, -1: none */
+	long long id;                              /* of the study in the path, 0: none */
+	char question[ANSWER_CACHE_QUESTION_SIZE]; /* target and Accept; "": it does not fit */
+	char client[SHARE_CLIENT_SIZE];            /* its address in digits */
+	const char *token;                         /* name of the one it was sent with; NULL: there are none */
+	char allow[64];                            /* methods of the path */
+	char *body;                                /* (length) bytes */
 	size_t length;
 	long long taken;             /* [bytes] of bodies that its own counts for */
 	int share;                   /* of its client, when it is in a thread of its own */

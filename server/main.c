@@ -142,7 +142,7 @@ int main(int argc, char **argv)
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.options = &options, .kept.lock = PTHREAD_MUTEX_INITIALIZER};
+	struct server server = {.options = &options, .answers.lock = PTHREAD_MUTEX_INITIALIZER};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
@@ -152,7 +152,7 @@ int main(int argc, char **argv)
 	int status = server.store ? serve(&server, &signals) : EXIT_FAILURE;
 	if (server.store)
 		store_close(server.store);
-	kept_free(&server.kept);
+	answer_cache_free(&server.answers);
 	free(server.document);
 	free(server.tokens);
 	return status;

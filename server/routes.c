@@ -666,8 +666,8 @@ static bool is_of_store(const struct request *request)
 bool routes_kept(const struct request *request, struct reply *reply)
 {
 	struct server *server = request->server;
-	return is_of_store(request) &&
-	       kept_take(&server->kept, request->question, store_changes(server->store, request->id), reply);
+	return is_of_store(request) && answer_cache_take(&server->answers, request->question,
+	                                                 store_changes(server->store, request->id), reply);
 }
 
 /* Answers a request.
@@ -687,6 +687,6 @@ struct reply routes_answer(struct request *request)
 	unsigned changes = store_changes(server->store, request->id);
 	struct reply reply = answers[request->operation](request);
 	if (is_of_store(request))
-		kept_give(&server->kept, request->question, changes, &reply);
+		answer_cache_give(&server->answers, request->question, changes, &reply);
 	return reply;
 }

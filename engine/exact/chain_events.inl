@@ -160,7 +160,7 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 		const struct link *link = &c->link[j + l];
 		const unsigned bit = 1u << l;
 		if (link_curved(link) || link->held)
-			continue; // touch_step.inl looks at them
+			continue; // nonlinear_contact_step.inl looks at them
 		x->open |= link->touching || link->released ? 0 : bit;
 		x->released |= link->released ? bit : 0;
 		x->touching |= link->touching ? bit : 0;
@@ -180,7 +180,7 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 }
 
 /* Rates of overlaps of a vector of links, over the step: their derivatives by its share; where the step is no share of time, the
- * rates themselves (touch.inl), as the share stands still where a power begins or ends. */
+ * rates themselves (nonlinear_contact.inl), as the share stands still where a power begins or ends. */
 static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap, int j)
 {
 	if (!c->warp.on) {
@@ -253,7 +253,7 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 	overlaps_fill(c, vbits(begins), j);
 	for (int n = 0; n <= ORDER_HIGH; n++)
 		x.overlap.u.c[n] = n <= c->order ? lanes_load(&c->overlaps[n][j]) : zero;
-	x.overlap.end = (struct place){x.enclosure.u1, x.enclosure.v1};
+	x.overlap.end = (struct kinematics){x.enclosure.u1, x.enclosure.v1};
 	x.overlap.fourth_max = x.enclosure.fourth_max;
 	const struct power *p = &x.overlap.u;
 	if (vany(begins))

@@ -2,9 +2,9 @@
  *
  * A piece is a step up to its event, and its series are those of the step.
  *
- * Included by chain.inl alone, once per lane count, after touch_step.inl. */
+ * Included by chain.inl alone, once per lane count, after nonlinear_contact_step.inl. */
 
-/* Coefficient n of a contact's force over a step in time, or in the variable of touch.inl. */
+/* Coefficient n of a contact's force over a step in time, or in the variable of nonlinear_contact.inl. */
 static double link_force_at(const struct chain *c, int j, int n)
 {
 	const struct link *l = &c->link[j];

@@ -7,7 +7,8 @@
 
 enum {
 	REVERSALS = 16, /* of one motion in a step, at most looked for */
-	LEADING = 4,    /* zeros that a rate may start with: touch.inl has three where a contact begins */
+	LEADING =
+	    4, /* zeros that a rate may start with: nonlinear_contact.inl has three where a contact begins */
 };
 
 /* Bound of |u| inside a step, apart from its ends. */

@@ -282,7 +282,7 @@ LANE_INLINE void motion_load(struct motion *m, const struct chain *c, const stru
                              const struct enclosures *enclosure, int i)
 {
 	power_load(&m->u, c->order, series, i);
-	m->end = (struct place){column_load(&enclosure->u1, i), column_load(&enclosure->v1, i)};
+	m->end = (struct kinematics){column_load(&enclosure->u1, i), column_load(&enclosure->v1, i)};
 	m->fourth_max = column_load(&enclosure->fourth_max, i);
 }
 

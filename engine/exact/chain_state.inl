@@ -124,7 +124,7 @@ struct curve {
 	double ratio[TERMS], ratio_power[TERMS], ratio_quarter[TERMS];
 };
 
-/* the series of a step while the force of a contact is no straight line (touch.inl) */
+/* the series of a step while the force of a contact is no straight line (nonlinear_contact.inl) */
 struct warp {
 	bool on;       /* the current step is one */
 	bool still;    /* a contact begins without speed: its force waits for a moment */

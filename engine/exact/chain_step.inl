@@ -178,11 +178,11 @@ static void step_arrive(struct chain *c, double time)
 	const vd per_dt = vsplat(1 / c->dt);
 	const bool whole = time == 1;
 	for (int i = 0; i < c->wide; i += W) {
-		struct place at = {column_load(&c->drift.u1, i), column_load(&c->drift.v1, i)};
+		struct kinematics at = {column_load(&c->drift.u1, i), column_load(&c->drift.v1, i)};
 		if (!whole) {
 			struct power x;
 			power_load(&x, c->order, c->drifts, i);
-			at = place_at(&x, c->order, vsplat(time));
+			at = kinematics_at(&x, c->order, vsplat(time));
 		}
 		column_store(&c->d, i, at.u);
 		column_store(&c->v, i, at.v * per_dt);
@@ -270,12 +270,12 @@ static void chain_step(struct chain *c)
 		chain_displacements(c);
 	c->warp.on = chain_curved(c);
 	if (c->warp.on) {
-		touch_series(c);
+		nonlinear_series(c);
 	} else {
 		step_choose(c);
 		series_chain(c);
 	}
-	const struct first first = c->warp.on ? touch_events(c) : events_search(c);
+	const struct first first = c->warp.on ? nonlinear_events(c) : events_search(c);
 	if (first.time > 0) {
 		if (c->task->observer)
 			pieces_report(c, first.time);
@@ -284,7 +284,7 @@ static void chain_step(struct chain *c)
 		if (c->task->asked & POUND_CHAIN_ACCELERATIONS)
 			accelerations_keep(c, first.time);
 		if (c->warp.on)
-			touch_arrive(c, first.time);
+			nonlinear_arrive(c, first.time);
 		else
 			step_arrive(c, first.time);
 		step_tops(c, first.time);

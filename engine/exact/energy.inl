@@ -21,7 +21,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, struct 
 		vd t = vsplat(0.5 + 0.5 * node) * time;
 		vd ground = vfma(g->slope, t * dt, g->ground), moving = vsplat(0);
 		for (int i = 0; i < (scope.paired ? 2 : 1); i++) {
-			struct place at = place_at(&s->body[i].u, s->order, t);
+			struct kinematics at = kinematics_at(&s->body[i].u, s->order, t);
 			vd u = at.u, v = at.v / dt;
 			vd spring = vfma(g->body[i].stiffness, u, g->body[i].offset);
 			in = vfma(weight * mass[i] * v, -g->body[i].drive * ground, in);
@@ -32,7 +32,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, struct 
 		top = vmax(top, moving);
 		if (!scope.touching)
 			continue;
-		struct place at = place_at(&s->overlap.u, s->order, t);
+		struct kinematics at = kinematics_at(&s->overlap.u, s->order, t);
 		vd p = at.u, q = at.v / dt;
 		out = vfma(weight * q, vfma(g->contact_stiffness, p, g->contact_damping * q), out);
 	}
@@ -43,7 +43,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, struct 
 	g->work_gap = sum;
 	vd moving = vsplat(0);
 	for (int i = 0; i < (scope.paired ? 2 : 1); i++) {
-		vd v = place_at(&s->body[i].u, s->order, time).v / dt;
+		vd v = kinematics_at(&s->body[i].u, s->order, time).v / dt;
 		moving = vfma(0.5 * mass[i] * v, v, moving);
 	}
 	g->work_top = vmax(g->work_top, vmax(vabs(g->work_in), vmax(top, moving)));

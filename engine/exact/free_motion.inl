@@ -10,7 +10,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "engine/exact/place.h"
+#include "engine/exact/kinematics.h"
 #include "engine/exact/tolerances.h"
 #include "engine/numeric/lanes.h"
 
@@ -117,12 +117,12 @@ LANE_INLINE struct free_map free_map_of(const struct lanes *g, int i)
  * Given    f             its map
  *          ground, next  acceleration at both ends [m/s2]
  */
-LANE_INLINE struct place free_move(const struct free_map *f, struct place from, vd ground, vd next)
+LANE_INLINE struct kinematics free_move(const struct free_map *f, struct kinematics from, vd ground, vd next)
 {
 	vd u_force = vfma(f->u_ground, ground, vfma(f->u_next, next, f->u_force));
 	vd v_force = vfma(f->v_ground, ground, vfma(f->v_next, next, f->v_force));
-	return (struct place){.u = vfma(f->uu, from.u, vfma(f->uv, from.v, u_force)),
-	                      .v = vfma(f->vv, from.v, vfma(f->vu, from.u, v_force))};
+	return (struct kinematics){.u = vfma(f->uu, from.u, vfma(f->uv, from.v, u_force)),
+	                           .v = vfma(f->vv, from.v, vfma(f->vu, from.u, v_force))};
 }
 
 /* What is known of the way there.
@@ -131,8 +131,8 @@ LANE_INLINE struct place free_move(const struct free_map *f, struct place from, 
  *          forcing  bound of |ground| + |next - ground|
  *          third  of the sample
  */
-LANE_INLINE struct cubic cubic_of(const struct free_map *f, struct place from, struct place to, vd forcing,
-                                  vd third)
+LANE_INLINE struct cubic cubic_of(const struct free_map *f, struct kinematics from, struct kinematics to,
+                                  vd forcing, vd third)
 {
 	vd error = vfma(f->error_ground, forcing, f->error_force);
 	return (struct cubic){.u = to.u,
@@ -199,7 +199,7 @@ LANE_INLINE struct edges edges_of(const struct lanes *g, int i)
 /* samples of free motion of lanes, one after the other */
 struct stretch {
 	vd ground[ROW + 1]; /* acceleration at them [m/s2] */
-	struct place at[2][ROW + 1];
+	struct kinematics at[2][ROW + 1];
 	vd top[2][ROW + 1];    /* the largest displacement up to there */
 	vd bound[2][ROW];      /* of |u| inside a sample */
 	unsigned edge[ROW];    /* lanes in which an edge of a branch may be reached inside a sample */
@@ -253,7 +253,7 @@ LANE_INLINE void stretch_run(struct stretch *s, const struct lanes *g, const str
                              const struct scope *scope)
 {
 	for (int i = 0; i < (scope->paired ? 2 : 1); i++) {
-		s->at[i][0] = (struct place){g->u[i], g->v[i]};
+		s->at[i][0] = (struct kinematics){g->u[i], g->v[i]};
 		s->top[i][0] = g->top[i];
 	}
 	if (W == 8) {

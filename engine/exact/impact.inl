@@ -4,7 +4,7 @@
  *   staying together p'' = 0: forces f of each order from J M^-1 J^T f = relative accelerations without them, until one falls
  *                    through 0
  *
- * Included by chain.inl alone, once per lane count, after touch.inl. */
+ * Included by chain.inl alone, once per lane count, after nonlinear_contact.inl. */
 
 enum {
 	REFINEMENTS = 2, /* solutions for what the one before left */

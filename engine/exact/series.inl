@@ -5,7 +5,7 @@
 
 #include <float.h>
 
-#include "engine/exact/place.h"
+#include "engine/exact/kinematics.h"
 #include "engine/exact/tolerances.h"
 #include "engine/numeric/lanes.h"
 
@@ -37,8 +37,8 @@ struct power {
 /* A motion over a step of time 0 .. 1: its displacement. */
 struct motion {
 	struct power u;
-	struct place end; /* displacement, and velocity times the step */
-	vd fourth_max;    /* bound of the fourth derivative over the step */
+	struct kinematics end; /* displacement, and velocity times the step */
+	vd fourth_max;         /* bound of the fourth derivative over the step */
 };
 
 /* Both bodies and the overlap over a step.  The overlap is integrated in its own right: the difference u1 - u2 - gap
@@ -57,13 +57,13 @@ LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 }
 
 /* Value and derivative: with x = t^2 of even(x) + t odd(x), by Horner's rule for the derivatives of both as well. */
-LANE_INLINE struct place place_at(const struct power *s, int order, vd t)
+LANE_INLINE struct kinematics kinematics_at(const struct power *s, int order, vd t)
 {
 	vd t2 = t * t, even_rate = s->c[order - 1], odd_rate = s->c[order];
 	vd even = vfma(even_rate, t2, s->c[order - 3]), odd = vfma(odd_rate, t2, s->c[order - 2]);
 	ORDERS_ODD(n, order, 4, even_rate = vfma(even_rate, t2, even); odd_rate = vfma(odd_rate, t2, odd);
 	           even = vfma(even, t2, s->c[n - 1]); odd = vfma(odd, t2, s->c[n]);)
-	return (struct place){vfma(odd, t, even), vfma(2.0 * t, vfma(odd_rate, t, even_rate), odd)};
+	return (struct kinematics){vfma(odd, t, even), vfma(2.0 * t, vfma(odd_rate, t, even_rate), odd)};
 }
 
 /* Factor of coefficient n in the bound of the fourth derivative. */
@@ -77,7 +77,7 @@ LANE_INLINE void motion_end(struct motion *m, int order)
 {
 	vd u = m->u.c[0], v = vsplat(0);
 	ORDERS_UP(n, 1, order, u = u + m->u.c[n]; v = n < 2 ? m->u.c[n] : vfma(vsplat(n), m->u.c[n], v);)
-	m->end = (struct place){u, v};
+	m->end = (struct kinematics){u, v};
 }
 
 /* Bounds the fourth derivative of a motion by the magnitudes of its terms. */
@@ -207,7 +207,7 @@ LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active,
 	*t = limit * vmin(vselect(up, -2.0 * g0, root - d) / vselect(up, d + root, 2.0 * c), vsplat(1));
 	vm settled = vless(zero, zero);
 	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
-		struct place at = place_at(u, order, *t);
+		struct kinematics at = kinematics_at(u, order, *t);
 		vd value = sign * (at.u - g->level), curvature = sign * curvature_at(u, order, *t);
 		slope = vselect(settled, slope, sign * at.v);
 		vd fall = vfma(slope, slope, vsplat(-0.5) * value * curvature);
@@ -247,7 +247,7 @@ LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, 
 	*unsure = found;
 	*t = vselect(active, zero, *t);
 	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
-		struct place at = place_at(g, order, *t);
+		struct kinematics at = kinematics_at(g, order, *t);
 		vd slope = at.v, below = vmin(at.u, zero);
 		vd root = vsqrt(vfma(slope, slope, -2.0 * curvature_max * below));
 		vm rises = vless(zero, slope);

@@ -25,9 +25,9 @@ struct terms {
 	vd spring, dash;          /* of the contact */
 	vm still[2];              /* lanes in which a body has no velocity */
 	// where bodies are level
-	vm level;                /* lanes in which they are, and nothing has decided yet */
-	struct place by_time[2]; /* derivatives n and n + 1 by time */
-	vd per_time;             /* the step to the power of n + 2 */
+	vm level;                     /* lanes in which they are, and nothing has decided yet */
+	struct kinematics by_time[2]; /* derivatives n and n + 1 by time */
+	vd per_time;                  /* the step to the power of n + 2 */
 };
 
 /* Derivatives 0 and 1: where a step starts. */
@@ -81,7 +81,7 @@ LANE_SHARED vd separation_settle(struct terms *t, const struct lanes *g, vd sepa
 			offset = g->body[i].offset;
 		a[i] = -(damping + spring + (drive + offset));
 		made = made + (vabs(damping) + vabs(spring)) + (vabs(drive) + vabs(offset));
-		t->by_time[i] = (struct place){t->by_time[i].v, a[i]};
+		t->by_time[i] = (struct kinematics){t->by_time[i].v, a[i]};
 	}
 	vd separating_by_time = a[0] - a[1];
 	vm was = t->level;
@@ -262,7 +262,7 @@ LANE_INLINE void series_cut(struct series *s, vm event, vd time, const struct sc
 {
 	struct motion *m[3] = {&s->body[0], &s->body[1], &s->overlap};
 	for (int j = 0; j < (scope->paired ? 3 : 1); j++) {
-		struct place at = place_at(&m[j]->u, s->order, time);
+		struct kinematics at = kinematics_at(&m[j]->u, s->order, time);
 		m[j]->end.u = vselect(event, at.u, m[j]->end.u);
 		m[j]->end.v = vselect(event, at.v, m[j]->end.v);
 	}
@@ -299,7 +299,7 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 		t.level = *level;
 		t.per_time = g->dt * g->dt;
 		for (int i = 0; i < 2; i++)
-			t.by_time[i] = (struct place){g->u[i], g->v[i]};
+			t.by_time[i] = (struct kinematics){g->u[i], g->v[i]};
 	}
 	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions);
 	          if (n < order) terms_next(&t, g, n, scope, level != NULL);)

@@ -1,7 +1,7 @@
 /* chain_pieces.c - the motion of a floor of a chain, step by step from the exact solver, as pieces.
  *
  * 1. A step in time is a piece as it is.
- * 2. A step in the variable of touch.inl, in which a contact has powers of its overlap, is no polynomial in time.  It is halved
+ * 2. A step in the variable of nonlinear_contact.inl, in which a contact has powers of its overlap, is no polynomial in time.  It is halved
  *    until the interpolation at Chebyshev's nodes is one to rounding: near where the contact begins or ends, at t = 0,
  *    accelerations have terms of t^1.5, so that what a piece misses fades by 2^2.5 with every halving.
  * 3. A rigid impact is a jump of the velocity at the start of a piece. */

@@ -24,7 +24,7 @@
 #include "engine/run/request_motions.h"
 #include "engine/run/request_parts.h"
 #include "engine/run/response.h"
-#include "engine/run/row_asks.h"
+#include "engine/run/row_runs.h"
 #include "engine/run/scene.h"
 #include "engine/solver/solver.h"
 

@@ -12,7 +12,7 @@
 #include "engine/numeric/random.h"
 #include "engine/pound.h"
 #include "engine/run/outputs.h"
-#include "engine/run/row_asks.h"
+#include "engine/run/row_runs.h"
 
 /* the scenes of a study by cell, row of the design and sample of the row */
 struct pound_cells {

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/row_asks.h"
+#include "engine/run/row_runs.h"
 
 /* before the storeys */
 enum { HEAD_IMPULSE_SCALE, HEAD_ENERGY, HEAD };

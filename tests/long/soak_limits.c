@@ -1,6 +1,6 @@
 /* What limits worker groups: blocks a second into the database, up to 1,024 threads whose blocks sleep, CPU time of blocks by ranks.
  *
- * The sleeping workers are pound-worker and pound-worker-mpi with tests/support/instant.c in the place of a block. */
+ * The sleeping workers are pound-worker and pound-worker-mpi with tests/support/instant_blocks.c in the place of a block. */
 #include <string.h>
 #include <unistd.h>
 

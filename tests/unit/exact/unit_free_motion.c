@@ -44,7 +44,8 @@ static struct cubic sample_move(const struct sample *s, double share)
 	memcpy(&part.g.map[0], &map, sizeof map);
 	const struct free_map free = free_map_of(&part.g, 0);
 	const double ground = s->g.ground, grown = share * (s->next - ground);
-	const struct place from = {s->g.u[0], s->g.v[0]}, to = free_move(&free, from, ground, ground + grown);
+	const struct kinematics from = {s->g.u[0], s->g.v[0]},
+	                        to = free_move(&free, from, ground, ground + grown);
 	return cubic_of(&free, from, to, fabs(ground) + fabs(grown), share * s->h / 3);
 }
 

@@ -6,8 +6,8 @@
 #include "tests/support/check.h"
 #include "tests/support/program.h"
 
-#define LLVMFuzzerTestOneInput fuzz_gate
-#include "tests/fuzz/fuzz_gate.c"
+#define LLVMFuzzerTestOneInput fuzz_json
+#include "tests/fuzz/fuzz_json.c"
 #undef LLVMFuzzerTestOneInput
 #define LLVMFuzzerTestOneInput fuzz_study
 #include "tests/fuzz/fuzz_study.c"
@@ -51,9 +51,9 @@ static void the_corpora_of_the_fuzzers_pass_their_targets(void **state)
 		const char *folder;
 		int (*target)(const uint8_t *bytes, size_t length);
 	} corpora[] = {
-	    {"tests/corpus/gate", fuzz_gate},     {"tests/corpus/study", fuzz_study},
+	    {"tests/corpus/json", fuzz_json},     {"tests/corpus/study", fuzz_study},
 	    {"tests/corpus/head", fuzz_head},     {"tests/corpus/path", fuzz_path},
-	    {"tests/corpus/figure", fuzz_figure}, {"schema/examples", fuzz_gate},
+	    {"tests/corpus/figure", fuzz_figure}, {"schema/examples", fuzz_json},
 	    {"schema/examples", fuzz_study},
 	};
 	(void)state;

@@ -1,4 +1,4 @@
-/* needed.c - the probability that bodies with a gap pound, and the gap for a probability, from the gaps that runs need. */
+/* gap_needed.c - the probability that bodies with a gap pound, and the gap for a probability, from the gaps that runs need. */
 #include "engine/separation/separation.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* touch.inl - steps of a chain while the force of a contact is no straight line: products p q and powers of p.
+/* nonlinear_contact.inl - steps of a chain while the force of a contact is no straight line: products p q and powers of p.
  *
  * 1. p^1.5 has a branch point where a contact begins and ends, so time is a bad variable there.  Such a step goes in s with
  *    dt = g ds, g = w = p^(1/2), or g = w^3, w = p^(1/4), where a dashpot has p^(1/4):
@@ -472,7 +472,7 @@ static void warp_scale(struct chain *c, double ratio)
 }
 
 /* Makes the series of a step as long as it may be. */
-static void touch_series(struct chain *c)
+static void nonlinear_series(struct chain *c)
 {
 	enum { TRIES = 8 };
 	struct warp *x = &c->warp;

@@ -1,6 +1,6 @@
-/* share.h - answers that take long, of which each client has a share.  Any thread. */
-#ifndef SHARE_H
-#define SHARE_H
+/* fair_share.h - at most so many answers that take long at once, of one client and in all.  Any thread. */
+#ifndef FAIR_SHARE_H
+#define FAIR_SHARE_H
 
 #include <pthread.h>
 #include <stdbool.h>

@@ -1,5 +1,5 @@
-/* Shares of what takes long. */
-#include "server/share.h"
+/* fair_share.c - which client each answer that takes long is for. */
+#include "server/fair_share.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,9 +1,9 @@
-/* row_asks.c - the runs that samples of a row of buildings need, each once.
+/* row_runs.c - the runs that samples of a row of buildings need, each once.
  *
  * 1. Every building alone: linear, then with the yield drifts found by then, storey by storey.
  * 2. The row with pounding, unless the responses without it never close a gap, or all that touches moves alike.
  * 3. Tasks are laid one after another into pools; one that is there already, bit by bit, is not run again. */
-#include "engine/run/row_asks.h"
+#include "engine/run/row_runs.h"
 #include "engine/run/scene.h"
 
 #include <assert.h>

@@ -1,6 +1,6 @@
-/* row_asks.h - the runs that samples of a row of buildings need, each once: of every building alone, and with pounding. */
-#ifndef ROW_ASKS_H
-#define ROW_ASKS_H
+/* row_runs.h - the runs that samples of a row of buildings need, each once: of every building alone, and with pounding. */
+#ifndef ROW_RUNS_H
+#define ROW_RUNS_H
 
 #include "engine/exact/chain.h"
 #include "engine/floor/floor.h"

@@ -1,4 +1,4 @@
-/* study_idle.c - fields of a scene that nothing depends on, so that varying them would be a mistake. */
+/* study_unused.c - fields of a scene that nothing depends on, so that varying them would be a mistake. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* fuzz_gate.c - any bytes at the gate: whatever passes must be JSON to the parser behind it too, and numbers finite.
+/* fuzz_json.c - any bytes to the strict check of JSON: what passes must be JSON to the parser behind it, too, with finite numbers.
  *
  * libFuzzer: make fuzz. */
 #include <math.h>

@@ -1,4 +1,4 @@
-/* touch_step.inl - the step of touch.inl up to its first event.
+/* nonlinear_contact_step.inl - the step of nonlinear_contact.inl up to its first event.
  *
  * Included by chain.inl alone, once per lane count, after chain_step.inl's arrival of other steps is known: before it. */
 
@@ -67,7 +67,7 @@ static void curved_search(struct first *first, const struct chain *c, int j)
 }
 
 /* The first event of a step; its time is that of the sample at the end of the interval where that comes first. */
-static struct first touch_events(struct chain *c)
+static struct first nonlinear_events(struct chain *c)
 {
 	struct warp *x = &c->warp;
 	struct first first = events_search(c);
@@ -112,7 +112,7 @@ static double curve_impulse(const struct chain *c, int j, double time)
 }
 
 /* Where the floors and links are at a share of the step. */
-static void touch_arrive(struct chain *c, double time)
+static void nonlinear_arrive(struct chain *c, double time)
 {
 	struct warp *x = &c->warp;
 	for (int i = 0; i < c->wide; i += W) {

@@ -1,4 +1,4 @@
-/* unit_touch.c - contacts of every model on chains: isolated impacts and rest against closed forms and known answers of other
+/* unit_nonlinear_contact.c - contacts of every model on chains: isolated impacts and rest against closed forms and known answers of other
  * programs, rows of buildings by their balance of energy, and the same bits at every lane count. */
 #include <float.h>
 #include <math.h>

@@ -1,5 +1,5 @@
-/* bar.c - one line of stderr:  [##########------------]  43 %  12,900 / 30,000 runs  1:05 left */
-#include "client/bar.h"
+/* progress_bar.c - one line of stderr:  [##########------------]  43 %  12,900 / 30,000 runs  1:05 left */
+#include "client/progress_bar.h"
 
 #include <math.h>
 #include <stdbool.h>

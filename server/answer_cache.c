@@ -1,0 +1,69 @@
+/* answer_cache.c - small answers, each in the slot of its hash.  Making an answer takes 2 to 100 times as long as sending it. */
+#include "server/answer_cache.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct cached_answer *slot_of(struct answer_cache *cache, const char *question)
+{
+	unsigned hash = 2166136261u; // FNV-1a
+	for (const char *c = question; *c; c++)
+		hash = (hash ^ (unsigned char)*c) * 16777619u;
+	return &cache->slot[hash % ANSWER_CACHE_SLOTS];
+}
+
+/* The same reply with a body of its own; NULL: no memory. */
+static struct reply copied(const struct reply *reply)
+{
+	struct reply copy = *reply;
+	copy.body = malloc(reply->length + 1);
+	if (copy.body)
+		memcpy(copy.body, reply->body, reply->length);
+	return copy;
+}
+
+/* Finds the answer to a question.
+ *
+ * Given    question   all that the answer depends on, besides what is stored; "": an answer that is not cached
+ *          changes    store_changes() of what it is about
+ * Returns  reply      with a body of its own
+ *          value      false: there is none
+ * Test     service_routes: an_answer_is_kept_until_what_it_is_about_changes
+ */
+bool answer_cache_take(struct answer_cache *cache, const char *question, unsigned changes,
+                       struct reply *reply)
+{
+	struct cached_answer *answer = slot_of(cache, question);
+	bool found = false;
+	pthread_mutex_lock(&cache->lock);
+	if (*question && answer->reply.body && answer->changes == changes &&
+	    !strcmp(answer->question, question)) {
+		*reply = copied(&answer->reply);
+		found = reply->body;
+	}
+	pthread_mutex_unlock(&cache->lock);
+	return found;
+}
+
+/* Stores a copy of an answer in its slot, in place of the answer that was there. */
+void answer_cache_give(struct answer_cache *cache, const char *question, unsigned changes,
+                       const struct reply *reply)
+{
+	struct cached_answer *answer = slot_of(cache, question);
+	if (!*question || reply->status != 200 || !reply->body || reply->lasts ||
+	    reply->length > ANSWER_CACHE_BYTES_MAX)
+		return;
+	struct reply copy = copied(reply);
+	pthread_mutex_lock(&cache->lock);
+	free(answer->reply.body);
+	strcpy(answer->question, question);
+	answer->changes = changes;
+	answer->reply = copy;
+	pthread_mutex_unlock(&cache->lock);
+}
+
+void answer_cache_free(struct answer_cache *cache)
+{
+	for (int i = 0; i < ANSWER_CACHE_SLOTS; i++)
+		free(cache->slot[i].reply.body);
+}

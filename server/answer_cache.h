@@ -1,0 +1,34 @@
+/* answer_cache.h - small answers, cached until what they describe changes.  Any thread. */
+#ifndef ANSWER_CACHE_H
+#define ANSWER_CACHE_H
+
+#include <pthread.h>
+#include <stddef.h>
+
+#include "server/reply.h"
+
+enum {
+	ANSWER_CACHE_SLOTS = 61,             /* a prime, so that the hashes of similar questions spread */
+	ANSWER_CACHE_BYTES_MAX = 256 * 1024, /* of one answer: all of them are 16 MB */
+	ANSWER_CACHE_QUESTION_SIZE = 512,    /* [bytes] answers to longer questions are not cached */
+};
+
+struct cached_answer {
+	char question[ANSWER_CACHE_QUESTION_SIZE];
+	unsigned changes;   /* store_changes() from before the answer was made */
+	struct reply reply; /* body NULL: none */
+};
+
+struct answer_cache {
+	pthread_mutex_t lock;
+	struct cached_answer slot[ANSWER_CACHE_SLOTS]; /* a question is in the slot of its hash */
+};
+
+/* Whether the answer to this question is there, made after `changes` changes; its body is a copy for the caller. */
+bool answer_cache_take(struct answer_cache *cache, const char *question, unsigned changes,
+                       struct reply *reply);
+void answer_cache_give(struct answer_cache *cache, const char *question, unsigned changes,
+                       const struct reply *reply);
+void answer_cache_free(struct answer_cache *cache);
+
+#endif
