@@ -207,18 +207,23 @@ async function figure(row, choice, partial) {
 	return box;
 }
 
-async function figures(result, partial) {
+// The figures are drawn while the result, a promise, is still on its way.
+async function figures(coming, partial) {
 	const answer = await ask(`${base}/figures${partial ? "?partial=true" : ""}`);
 	if (!answer.ok) {
 		$("server").textContent = await reason(answer);
 		return;
 	}
 	const rows = (await answer.json()).figures, chosen = Object.fromEntries(new URLSearchParams(location.search));
+	let latest = 0;
 	const draw = async () => {
+		const number = ++latest;
 		$("figures-section").hidden = false;
 		if (!$("figures").childElementCount) $("figures").append(element("p", { class: "muted", role: "status" }, "drawing"));
-		$("figures").replaceChildren(...await Promise.all(rows.map(row => figure(row, chosen, partial))));
+		const made = await Promise.all(rows.map(row => figure(row, chosen, partial)));
+		if (number === latest) $("figures").replaceChildren(...made);
 	};
+	const drawn = draw(), result = await coming;
 	const all = Array.isArray(result?.cells) && result.kind === "sensitivity" ? result.cells : [];
 	const names = [...new Set(all.flatMap(cell => cell.outputs.map(output => output.name)))];
 	const options = {
@@ -237,7 +242,7 @@ async function figures(result, partial) {
 		return element("label", {}, `${name} `, select);
 	}));
 	$("choices").hidden = !$("choices").childElementCount;
-	await draw();
+	await drawn;
 }
 
 function notesOf(value, found = new Map()) {
@@ -283,10 +288,13 @@ function show(study) {
 	data(study);
 }
 
-async function finished() {
-	const answer = await ask(`${base}/results`);
-	if (!answer.ok) return;
-	const result = await answer.json(), items = texts => texts.map(text => element("li", {}, text));
+const items = texts => texts.map(text => element("li", {}, text));
+
+async function noted(coming) {
+	const result = await coming;
+	if (!result) return;
+	$("warnings").replaceChildren(...items((result.warnings ?? []).map(warning => `${warning.pointer}: ${warning.detail}`)));
+	$("warnings-section").hidden = !$("warnings").childElementCount;
 	const whole = ["partial", "stopping", "design", "accuracy"].map(part => result[part]?.note).filter(Boolean);
 	const others = [...notesOf(result)].filter(([text]) => !whole.includes(text)).map(([text, n]) => n > 1 ? `${text} (${n} times)` : text);
 	$("notes").replaceChildren(...items(whole.length ? whole : others.splice(0, 5)));
@@ -294,7 +302,11 @@ async function finished() {
 	$("more").hidden = !others.length;
 	$("left-out").replaceChildren(...items(result.work?.left_out ?? []));
 	$("notes-section").hidden = false;
-	await figures(result, false);
+}
+
+async function finished() {
+	const coming = ask(`${base}/results`).then(answer => answer.ok ? answer.json() : null);
+	await Promise.all([noted(coming), figures(coming, false)]);
 }
 
 async function study() {
@@ -385,10 +397,10 @@ async function judge(number) {
 	$("submit").disabled = !answer.ok;
 	$("verdict").className = answer.ok ? "" : "fault";
 	$("verdict").textContent = answer.ok
-		? `valid: ${reply.runs_total.toLocaleString("en")} runs, about ${Number(reply.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(reply.estimated_bytes)} stored, ${size(reply.estimated_memory_bytes)} of memory`
+		? `valid: ${reply.runs_total.toLocaleString("en")} runs, about ${Number(reply.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(reply.estimated_bytes)} stored, ${size(reply.estimated_memory_bytes)} of memory${reply.warnings ? "; warnings, each a button that leads to its place:" : ""}`
 		: `${reply.errors ? "faults, each a button that leads to its place:" : reply.detail}${reply.errors_not_listed ? `, and ${reply.errors_not_listed} more` : ""}`;
-	const problems = reply.errors ?? (reply.line ? [{ pointer: "", ...reply }] : []);
-	$("faults").replaceChildren(...(answer.ok ? [] : problems.map(problem => fault(reply.line ? { ...problem, line: reply.line, column: reply.column } : problem))));
+	const problems = (answer.ok ? reply.warnings : reply.errors) ?? (reply.line ? [{ pointer: "", ...reply }] : []);
+	$("faults").replaceChildren(...problems.map(problem => fault(reply.line ? { ...problem, line: reply.line, column: reply.column } : problem)));
 }
 judge.number = 0;
 
@@ -440,6 +452,7 @@ async function make() {
 		$("example").append(...(await answer.json()).examples.map(one => element("option", { value: one.name }, one.title)));
 }
 
-const answer = await fetch("/version", { headers: headers() }).catch(() => null);
-if (answer?.ok) $("server").textContent = `poundd ${(await answer.json()).version}`;
+fetch("/version", { headers: headers() }).then(async answer => {
+	if (answer.ok && reached) $("server").textContent = `poundd ${(await answer.json()).version}`;
+}).catch(() => {});
 await { list, study, new: make }[document.body.dataset.page]();

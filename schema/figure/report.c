@@ -1,6 +1,6 @@
 /* report.c - a result as one HTML page.
  *
- * 1. what study it is, and the notes of its result;
+ * 1. what study it is, warnings, and the notes of its result;
  * 2. its figures, those of single cells for each cell;
  * 3. its tables, read from the CSV that the result has;
  * 4. accuracy, what was run and what was left out; the study document. */
@@ -26,10 +26,9 @@ struct report {
 
 static const char STYLE[] =
     ":root{color-scheme:light dark}"
-    "body{font:16px/1.5 Helvetica,Arial,sans-serif;margin:0 "
-    "auto;max-width:1160px;padding:1rem;color:#14171b;background:#fff}"
-    "h1{font-size:1.5rem;line-height:1.25}h1,th:first-child,th+td{overflow-wrap:anywhere}th:first-child,th+"
-    "td{min-width:4em}"
+    "body{font:1rem/1.5 Helvetica,Arial,sans-serif;margin:0 "
+    "auto;max-width:1160px;padding:1rem;color:#14171b;background:#fff;overflow-wrap:break-word}"
+    "h1{font-size:1.5rem;line-height:1.25}"
     "h2{font-size:1.2rem;margin-top:2rem}figure{margin:1rem 0;overflow-x:auto}"
     "figure svg{width:100%;min-width:44rem;height:auto;display:block}"
     "table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}"
@@ -64,6 +63,20 @@ static void put_element(struct report *report, const char *name, const char *tex
 	put(report, tag);
 }
 
+/* A table up to its first row, in a box of its own that scrolls where the page is narrow. */
+static void table_begin(struct report *report, const char *title, const char *head)
+{
+	put(report, "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"");
+	put_text(report, title);
+	put(report, "\">\n<table>\n");
+	put(report, head);
+}
+
+static void table_end(struct report *report)
+{
+	put(report, "</tbody>\n</table>\n</div>\n");
+}
+
 static void put_member(struct report *report, const cJSON *object, const char *name, const char *label)
 {
 	char text[80];
@@ -94,7 +107,7 @@ static void put_head(struct report *report)
 	put_element(report, "h1", name);
 	if (plot_member(result, "partial"))
 		put_element(report, "p", plot_text(plot_member(result, "partial"), "note"));
-	put(report, "<table>\n<caption>What was computed</caption>\n<tbody>\n");
+	table_begin(report, "What was computed", "<caption>What was computed</caption>\n<tbody>\n");
 	put_member(report, result, "kind", "kind of study");
 	put_member(report, plot_member(result, "design"), "method", "design");
 	put_member(report, plot_member(result, "design"), "rows", "rows");
@@ -104,7 +117,7 @@ static void put_head(struct report *report)
 	put_member(report, timing, "cpu_s", "CPU time, s");
 	put_member(report, result, "engine_version", "version of pound");
 	put_member(report, result, "study_hash", "hash of the study");
-	put(report, "</tbody>\n</table>\n");
+	table_end(report);
 }
 
 /* ---- notes ---- */
@@ -135,6 +148,23 @@ static void notes_collect(const cJSON *value, struct notes *notes)
 		notes->text[k] = inside->valuestring;
 		notes->n += k == notes->n;
 	}
+}
+
+/* What is valid in the study and probably not meant. */
+static void put_warnings(struct report *report)
+{
+	const cJSON *warnings = plot_member(report->result, "warnings"), *warning;
+	char text[512];
+	if (!plot_first(warnings))
+		return;
+	put(report, "<h2>Warnings</h2>\n<ul>\n");
+	cJSON_ArrayForEach(warning, warnings)
+	{
+		snprintf(text, sizeof text, "%.200s: %.300s", plot_text(warning, "pointer"),
+		         plot_text(warning, "detail"));
+		put_element(report, "li", text);
+	}
+	put(report, "</ul>\n");
 }
 
 /* Notes of the whole result, then, closed, those of its outputs and inputs. */
@@ -276,11 +306,11 @@ static void put_cell(struct report *report, const char *text, bool head)
 }
 
 /* CSV as a table of HTML. */
-static void put_csv(struct report *report, const char *csv, size_t length)
+static void put_csv(struct report *report, const char *title, const char *csv, size_t length)
 {
 	const char *at = csv, *end = csv + length;
 	bool shown[COLUMNS_MOST] = {false}, head = true;
-	put(report, "<div class=\"wide\" tabindex=\"0\">\n<table>\n<thead>\n");
+	table_begin(report, title, "<thead>\n");
 	while (at < end) {
 		char cell[512], sign = ',';
 		put(report, "<tr>");
@@ -294,7 +324,7 @@ static void put_csv(struct report *report, const char *csv, size_t length)
 		put(report, head ? "</tr>\n</thead>\n<tbody>\n" : "</tr>\n");
 		head = false;
 	}
-	put(report, "</tbody>\n</table>\n</div>\n");
+	table_end(report);
 }
 
 static void put_table(struct report *report, const char *table, const char *title)
@@ -305,7 +335,7 @@ static void put_table(struct report *report, const char *table, const char *titl
 	if (csv && n > 0) {
 		put(report, "<details>\n");
 		put_element(report, "summary", title);
-		put_csv(report, csv, n);
+		put_csv(report, title, csv, n);
 		put(report, "</details>\n");
 	}
 	free(csv);
@@ -331,7 +361,8 @@ static void put_accuracy(struct report *report)
 	const cJSON *accuracy = plot_member(report->result, "accuracy"), *value;
 	if (!accuracy)
 		return;
-	put(report, "<h2>Accuracy</h2>\n<table>\n<tbody>\n");
+	put(report, "<h2>Accuracy</h2>\n");
+	table_begin(report, "Accuracy", "<tbody>\n");
 	cJSON_ArrayForEach(value, accuracy) if (strcmp(value->string, "note") != 0)
 	    put_member(report, accuracy, value->string, value->string);
 	const cJSON *errors = plot_member(accuracy, "errors");
@@ -341,7 +372,7 @@ static void put_accuracy(struct report *report)
 		snprintf(label, sizeof label, "error by %.60s", value->string);
 		put_member(report, errors, value->string, label);
 	}
-	put(report, "</tbody>\n</table>\n");
+	table_end(report);
 }
 
 static void put_work(struct report *report)
@@ -349,9 +380,10 @@ static void put_work(struct report *report)
 	const cJSON *work = plot_member(report->result, "work"), *stage, *line;
 	if (!work)
 		return;
-	put(report,
-	    "<h2>What was run, and what was left out</h2>\n<table>\n<thead><tr><th scope=\"col\">of what</th>"
-	    "<th scope=\"col\">asked for</th><th scope=\"col\">run</th></tr></thead>\n<tbody>\n");
+	put(report, "<h2>What was run, and what was left out</h2>\n");
+	table_begin(report, "What was run",
+	            "<thead><tr><th scope=\"col\">of what</th><th scope=\"col\">asked for</th>"
+	            "<th scope=\"col\">run</th></tr></thead>\n<tbody>\n");
 	cJSON_ArrayForEach(stage, work)
 	{
 		char numbers[96];
@@ -363,7 +395,8 @@ static void put_work(struct report *report)
 		         plot_number(stage, "asked"), plot_number(stage, "run"));
 		put(report, numbers);
 	}
-	put(report, "</tbody>\n</table>\n<ul>\n");
+	table_end(report);
+	put(report, "<ul>\n");
 	cJSON_ArrayForEach(line, plot_member(work, "failures"))
 	{
 		char text[200];
@@ -413,6 +446,7 @@ char *report_html(const struct figure_source *source, const char *study, size_t 
 	}
 	writer_init(&report.w);
 	put_head(&report);
+	put_warnings(&report);
 	put_notes(&report);
 	put_figures(&report);
 	put_tables(&report);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "schema/examples/examples.h"
+#include "schema/figure/report.h"
 #include "schema/http/page.h"
 #include "schema/json/json_pointer.h"
 #include "tests/support/browser.h"
@@ -184,6 +185,67 @@ static void a_study_is_shown_in_both_schemes_and_widths_without_a_fault(void **s
 	}
 }
 
+static void a_report_does_not_scroll_sideways_however_narrow_or_large_its_text(void **state)
+{
+	const struct service *service = *state;
+	char id[17], path[200], url[220];
+	size_t n;
+	if (!browser_there())
+		skip();
+	finished(service, id);
+	struct answer result = service_get(service, "/v1/studies/%s/results", id),
+	              study = service_get(service, "/v1/studies/%s/request", id);
+	const struct figure_source source = {.json = result.body, .length = strlen(result.body)};
+	char *page = report_html(&source, study.body, strlen(study.body), &n);
+	snprintf(path, sizeof path, "%s/report.html", service->directory);
+	FILE *file = fopen(path, "w");
+	assert_true(page && file && fwrite(page, 1, n, file) == n && fclose(file) == 0);
+	snprintf(url, sizeof url, "file://%s", path);
+	for (int way = 0; way < 2; way++) {
+		struct browser *browser = opened(service, way, way ? 320 : 1280);
+		browser_go(browser, url);
+		browser_wait(browser, "document.querySelectorAll('figure svg').length === 1");
+		expect_no_sideways_scroll(browser);
+		// with everything open, too
+		free(browser_text(browser, "document.querySelectorAll('details').forEach(one => one.open = true)"));
+		expect_no_sideways_scroll(browser);
+		expect_no_fault(browser);
+		browser_free(browser);
+	}
+	free(page);
+	answer_free(&result);
+	answer_free(&study);
+}
+
+static void warnings_are_shown_while_typing_and_with_the_result(void **state)
+{
+	const struct service *service = *state;
+	static const char study[] =
+	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"mass_kg\": 50000, \"frequency_hz\": 1}, "
+	    "{\"frequency_hz\": 2}], \"contact\": {\"gap_m\": 90, \"restitution\": 0.6}, \"excitation\": "
+	    "{\"type\": "
+	    "\"kanai_tajimi\", \"frequency_hz\": 2, \"signals\": 2}}}";
+	char id[17], path[40];
+	struct browser *browser = opened(service, false, 1280);
+	go(browser, service, "/new");
+	browser_wait(browser, "document.querySelectorAll('#example option').length > 10");
+	browser_tab(browser, "text");
+	browser_type(browser, study);
+	browser_wait(browser,
+	             "document.getElementById('verdict').textContent.includes('warnings') && "
+	             "document.querySelector('#faults button').textContent.includes('was it left out?')");
+	assert_true(number(browser, "document.getElementById('submit').disabled ? 1 : 0") == 0);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	snprintf(path, sizeof path, "/studies/%s", id);
+	go(browser, service, path);
+	browser_wait(browser, "document.getElementById('warnings-section').hidden === false && "
+	                      "document.querySelectorAll('#warnings li').length === 2 && "
+	                      "document.getElementById('warnings').textContent.includes('no run has a contact')");
+	expect_no_fault(browser);
+	browser_free(browser);
+}
+
 static void a_campaign_is_shown_in_a_second_and_2000_nodes(void **state)
 {
 	const struct service *service = *state;
@@ -274,5 +336,7 @@ CHECK_MAIN(SERVED(every_page_has_its_type_its_policy_and_its_tag),
            cmocka_unit_test(pages_are_small_and_have_nothing_inline),
            SERVED(examples_are_listed_and_given_as_they_are),
            SERVED(a_study_is_shown_in_both_schemes_and_widths_without_a_fault),
+           SERVED(a_report_does_not_scroll_sideways_however_narrow_or_large_its_text),
+           SERVED(warnings_are_shown_while_typing_and_with_the_result),
            SERVED(a_campaign_is_shown_in_a_second_and_2000_nodes),
            SERVED(a_study_is_made_followed_cancelled_and_deleted_by_keys_while_the_server_is_killed))

@@ -83,6 +83,8 @@ static void a_report_has_every_figure_table_note_and_what_was_left_out(void **st
 			assert_non_null(strstr(page, reading_text(result, "/work/left_out/%d", k)));
 		if (reading_text(result, "/accuracy/note"))
 			assert_non_null(strstr(page, reading_text(result, "/accuracy/note")));
+		// every table scrolls in a box of its own
+		assert_int_equal(count(page, "<div class=\"wide\""), count(page, "<table>"));
 		assert_non_null(strstr(page, "&quot;kind&quot;: &quot;"));
 		reading_close(result);
 		free(page);
@@ -103,6 +105,23 @@ static void a_report_of_a_swept_study_has_the_indices_of_each_cell(void **state)
 	assert_int_equal(count(page, "<figure "), 1 + 3);
 	assert_non_null(strstr(page, "<summary>cell 2: left frequency 4 Hz</summary>"));
 	assert_non_null(strstr(page, "It was not given"));
+	free(page);
+	source_free(&source);
+	free(document);
+}
+
+static void warnings_are_said_first(void **state)
+{
+	size_t n;
+	char *document = study_documents_with(example_text("response"), "\"gap_m\": 0", "\"gap_m\": 9");
+	struct figure_source source = result_of(document);
+	char *page = report_html(&source, document, strlen(document), &n);
+	(void)state;
+	check_page(page);
+	const char *warning =
+	    strstr(page, "<h2>Warnings</h2>\n<ul>\n<li>/scene/contact/gap_m: no run has a contact</li>");
+	assert_non_null(warning);
+	assert_true(warning < strstr(page, "<h2>Figures</h2>"));
 	free(page);
 	source_free(&source);
 	free(document);
@@ -136,4 +155,5 @@ static void what_is_no_result_has_no_report(void **state)
 
 CHECK_MAIN(cmocka_unit_test(a_report_has_every_figure_table_note_and_what_was_left_out),
            cmocka_unit_test(a_report_of_a_swept_study_has_the_indices_of_each_cell),
-           cmocka_unit_test(a_hostile_name_stays_text), cmocka_unit_test(what_is_no_result_has_no_report))
+           cmocka_unit_test(warnings_are_said_first), cmocka_unit_test(a_hostile_name_stays_text),
+           cmocka_unit_test(what_is_no_result_has_no_report))
