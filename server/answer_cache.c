@@ -1,15 +1,20 @@
-/* answer_cache.c - small answers, each in the slot of its hash.  Making an answer takes 2 to 100 times as long as sending it. */
+/* answer_cache.c - small answers; the one used longest ago makes room.  Making an answer takes 2 to 100 times as long as sending it. */
 #include "server/answer_cache.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* The slot of a question, else the one that was used longest ago. */
 static struct cached_answer *slot_of(struct answer_cache *cache, const char *question)
 {
-	unsigned hash = 2166136261u; // FNV-1a
-	for (const char *c = question; *c; c++)
-		hash = (hash ^ (unsigned char)*c) * 16777619u;
-	return &cache->slot[hash % ANSWER_CACHE_SLOTS];
+	struct cached_answer *oldest = &cache->slot[0];
+	for (int i = 0; i < ANSWER_CACHE_SLOTS; i++) {
+		struct cached_answer *slot = &cache->slot[i];
+		if (slot->reply.body && !strcmp(slot->question, question))
+			return slot;
+		oldest = slot->used < oldest->used ? slot : oldest;
+	}
+	return oldest;
 }
 
 /* The same reply with a body of its own; NULL: no memory. */
@@ -33,32 +38,34 @@ static struct reply copied(const struct reply *reply)
 bool answer_cache_take(struct answer_cache *cache, const char *question, unsigned changes,
                        struct reply *reply)
 {
-	struct cached_answer *answer = slot_of(cache, question);
 	bool found = false;
 	pthread_mutex_lock(&cache->lock);
+	struct cached_answer *answer = slot_of(cache, question);
 	if (*question && answer->reply.body && answer->changes == changes &&
 	    !strcmp(answer->question, question)) {
 		*reply = copied(&answer->reply);
+		answer->used = ++cache->uses;
 		found = reply->body;
 	}
 	pthread_mutex_unlock(&cache->lock);
 	return found;
 }
 
-/* Stores a copy of an answer in its slot, in place of the answer that was there. */
+/* Stores a copy of an answer, in place of the one that was used longest ago. */
 void answer_cache_give(struct answer_cache *cache, const char *question, unsigned changes,
                        const struct reply *reply)
 {
-	struct cached_answer *answer = slot_of(cache, question);
 	if (!*question || reply->status != 200 || !reply->body || reply->lasts ||
 	    reply->length > ANSWER_CACHE_BYTES_MAX)
 		return;
 	struct reply copy = copied(reply);
 	pthread_mutex_lock(&cache->lock);
+	struct cached_answer *answer = slot_of(cache, question);
 	free(answer->reply.body);
 	strcpy(answer->question, question);
 	answer->changes = changes;
 	answer->reply = copy;
+	answer->used = ++cache->uses;
 	pthread_mutex_unlock(&cache->lock);
 }
 

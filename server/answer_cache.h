@@ -4,11 +4,12 @@
 
 #include <pthread.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "server/reply.h"
 
 enum {
-	ANSWER_CACHE_SLOTS = 61,             /* a prime, so that the hashes of similar questions spread */
+	ANSWER_CACHE_SLOTS = 61,             /* answers */
 	ANSWER_CACHE_BYTES_MAX = 256 * 1024, /* of one answer: all of them are 16 MB */
 	ANSWER_CACHE_QUESTION_SIZE = 512,    /* [bytes] answers to longer questions are not cached */
 };
@@ -17,11 +18,13 @@ struct cached_answer {
 	char question[ANSWER_CACHE_QUESTION_SIZE];
 	unsigned changes;   /* store_changes() from before the answer was made */
 	struct reply reply; /* body NULL: none */
+	uint64_t used;      /* struct answer_cache's uses when it was last given or taken; 0: never */
 };
 
 struct answer_cache {
 	pthread_mutex_t lock;
-	struct cached_answer slot[ANSWER_CACHE_SLOTS]; /* a question is in the slot of its hash */
+	uint64_t uses;
+	struct cached_answer slot[ANSWER_CACHE_SLOTS];
 };
 
 /* Whether the answer to this question is there, made after `changes` changes; its body is a copy for the caller. */
