@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-/* A member's name as it stands in a JSON Pointer: ~ is ~0, / is ~1. */
+/* A member's name as written in a JSON Pointer: ~ is ~0, / is ~1. */
 static void pointer_token(char *token, size_t size, const char *name)
 {
 	size_t n = 0;

@@ -19,8 +19,8 @@ enum outcome {
 };
 
 struct options {
-	const char *argument; /* what stands after the subcommand: a file, an id or a name; NULL: none */
-	const char *second;   /* indices, plot, report, archive: what stands behind that */
+	const char *argument; /* the first argument of the subcommand: a file, an id or a name; NULL: none */
+	const char *second;   /* indices, plot, report, archive: the second argument */
 	const char **files;   /* of a subcommand that takes any number of them  (n_files) */
 	int n_files;
 	const char *unit;       /* record: of a file that names none; NULL: not known */

@@ -22,7 +22,7 @@ enum {
 	LATE_LOOK_MS = 500, /* between two looks whether a block that is out is late */
 };
 
-struct crew {
+struct pool {
 	struct compute *of;
 	struct pound_run *run;
 	struct checkpoint *checkpoint;
@@ -41,7 +41,7 @@ struct crew {
 
 struct member {
 	pthread_t thread;
-	struct crew *crew;
+	struct pool *pool;
 	int worker;
 };
 
@@ -53,35 +53,35 @@ static double seconds(void)
 }
 
 /* Under the lock. */
-static void block_end(struct crew *crew, int block, enum pound_status status)
+static void block_end(struct pool *pool, int block, enum pound_status status)
 {
 	if (status == POUND_OK) {
-		crew->n_done++;
-		crew->runs_done += pound_run_block_runs(crew->run, block);
-	} else if (crew->status == POUND_OK)
-		crew->status = status;
-	pthread_cond_broadcast(&crew->changed);
+		pool->n_done++;
+		pool->runs_done += pound_run_block_runs(pool->run, block);
+	} else if (pool->status == POUND_OK)
+		pool->status = status;
+	pthread_cond_broadcast(&pool->changed);
 }
 
 /* Takes the next block for a thread (ASSIGNMENT_HERE) or a worker group, -1: there is none now.  Under the lock. */
-static int block_take(struct crew *crew, int taker)
+static int block_take(struct pool *pool, int taker)
 {
 	const double now = seconds();
-	int block = assignment_next(&crew->blocks, crew->n_blocks, taker, now);
+	int block = assignment_next(&pool->blocks, pool->n_blocks, taker, now);
 	if (block >= 0)
-		assignment_take(&crew->blocks, block, taker, now);
+		assignment_take(&pool->blocks, block, taker, now);
 	return block;
 }
 
 /* The next step of a thread, -1: there will be none.  Under the lock. */
-static int step_take(struct crew *crew)
+static int step_take(struct pool *pool)
 {
-	if (crew->status != POUND_OK)
+	if (pool->status != POUND_OK)
 		return -1;
-	if (crew->reducing)
-		return crew->next < crew->n_reductions ? crew->next++ : -1;
-	while (crew->n_done < crew->n_blocks && crew->status == POUND_OK) {
-		int block = block_take(crew, ASSIGNMENT_HERE);
+	if (pool->reducing)
+		return pool->next < pool->n_reductions ? pool->next++ : -1;
+	while (pool->n_done < pool->n_blocks && pool->status == POUND_OK) {
+		int block = block_take(pool, ASSIGNMENT_HERE);
 		if (block >= 0)
 			return block;
 		struct timespec until;
@@ -89,7 +89,7 @@ static int step_take(struct crew *crew)
 		until.tv_nsec += LATE_LOOK_MS * 1000000L;
 		until.tv_sec += until.tv_nsec / 1000000000L;
 		until.tv_nsec %= 1000000000L;
-		pthread_cond_clockwait(&crew->changed, &crew->lock, CLOCK_MONOTONIC, &until);
+		pthread_cond_clockwait(&pool->changed, &pool->lock, CLOCK_MONOTONIC, &until);
 	}
 	return -1;
 }
@@ -97,23 +97,23 @@ static int step_take(struct crew *crew)
 static void *member_work(void *of)
 {
 	struct member *member = of;
-	struct crew *crew = member->crew;
-	pthread_mutex_lock(&crew->lock);
-	for (int i; (i = step_take(crew)) >= 0;) {
-		const bool reducing = crew->reducing;
-		pthread_mutex_unlock(&crew->lock);
-		enum pound_status status = reducing ? pound_run_reduce(crew->run, i, member->worker)
-		                                    : pound_run_block(crew->run, i, member->worker);
+	struct pool *pool = member->pool;
+	pthread_mutex_lock(&pool->lock);
+	for (int i; (i = step_take(pool)) >= 0;) {
+		const bool reducing = pool->reducing;
+		pthread_mutex_unlock(&pool->lock);
+		enum pound_status status = reducing ? pound_run_reduce(pool->run, i, member->worker)
+		                                    : pound_run_block(pool->run, i, member->worker);
 		if (!reducing && status == POUND_OK)
-			checkpoint_add(crew->checkpoint, i, pound_run_block_values(crew->run, i));
-		pthread_mutex_lock(&crew->lock);
+			checkpoint_add(pool->checkpoint, i, pound_run_block_values(pool->run, i));
+		pthread_mutex_lock(&pool->lock);
 		if (!reducing && status == POUND_OK)
-			assignment_done(&crew->blocks, i, ASSIGNMENT_HERE, seconds());
+			assignment_done(&pool->blocks, i, ASSIGNMENT_HERE, seconds());
 		if (!reducing || status != POUND_OK)
-			block_end(crew, i, status);
+			block_end(pool, i, status);
 	}
-	pthread_mutex_unlock(&crew->lock);
-	sem_post(&crew->finished);
+	pthread_mutex_unlock(&pool->lock);
+	sem_post(&pool->finished);
 	return NULL;
 }
 
@@ -121,62 +121,62 @@ static void *member_work(void *of)
 
 static bool remote_wanted(void *of)
 {
-	struct crew *crew = of;
-	pthread_mutex_lock(&crew->lock);
-	bool wanted = !crew->reducing && crew->status == POUND_OK && crew->n_done < crew->n_blocks;
-	pthread_mutex_unlock(&crew->lock);
+	struct pool *pool = of;
+	pthread_mutex_lock(&pool->lock);
+	bool wanted = !pool->reducing && pool->status == POUND_OK && pool->n_done < pool->n_blocks;
+	pthread_mutex_unlock(&pool->lock);
 	return wanted;
 }
 
 static bool remote_lives(void *of, uint64_t study)
 {
-	struct crew *crew = of;
+	struct pool *pool = of;
 	(void)study;
-	pthread_mutex_lock(&crew->lock);
-	bool lives = crew->status == POUND_OK;
-	pthread_mutex_unlock(&crew->lock);
+	pthread_mutex_lock(&pool->lock);
+	bool lives = pool->status == POUND_OK;
+	pthread_mutex_unlock(&pool->lock);
 	return lives;
 }
 
 static bool remote_take(void *of, int group, const uint64_t refused[], int n_refused,
                         struct coordinator_block *block)
 {
-	struct crew *crew = of;
+	struct pool *pool = of;
 	(void)refused;
 	if (n_refused)
 		return false;
-	pthread_mutex_lock(&crew->lock);
-	block->number = crew->reducing || crew->status != POUND_OK ? -1 : block_take(crew, group);
-	pthread_mutex_unlock(&crew->lock);
-	block->study = &crew->study;
+	pthread_mutex_lock(&pool->lock);
+	block->number = pool->reducing || pool->status != POUND_OK ? -1 : block_take(pool, group);
+	pthread_mutex_unlock(&pool->lock);
+	block->study = &pool->study;
 	return block->number >= 0;
 }
 
 static void remote_back(void *of, int group, const struct coordinator_block *block)
 {
-	struct crew *crew = of;
-	pthread_mutex_lock(&crew->lock);
-	assignment_back(&crew->blocks, block->number, group);
-	pthread_cond_broadcast(&crew->changed);
-	pthread_mutex_unlock(&crew->lock);
+	struct pool *pool = of;
+	pthread_mutex_lock(&pool->lock);
+	assignment_back(&pool->blocks, block->number, group);
+	pthread_cond_broadcast(&pool->changed);
+	pthread_mutex_unlock(&pool->lock);
 }
 
 static void remote_done(void *of, int group, const struct coordinator_block *block, const struct message *m,
                         const double *values)
 {
-	struct crew *crew = of;
+	struct pool *pool = of;
 	const enum pound_status status = (enum pound_status)m->status;
-	pthread_mutex_lock(&crew->lock);
-	crew->of->elsewhere_s += m->cpu_s;
+	pthread_mutex_lock(&pool->lock);
+	pool->of->elsewhere_s += m->cpu_s;
 	if (status != POUND_OK) {
-		assignment_back(&crew->blocks, block->number, group);
-		block_end(crew, block->number, status);
-	} else if (assignment_done(&crew->blocks, block->number, group, seconds())) {
-		pound_run_block_restore(crew->run, block->number, values);
-		checkpoint_add(crew->checkpoint, block->number, values);
-		block_end(crew, block->number, POUND_OK);
+		assignment_back(&pool->blocks, block->number, group);
+		block_end(pool, block->number, status);
+	} else if (assignment_done(&pool->blocks, block->number, group, seconds())) {
+		pound_run_block_restore(pool->run, block->number, values);
+		checkpoint_add(pool->checkpoint, block->number, values);
+		block_end(pool, block->number, POUND_OK);
 	}
-	pthread_mutex_unlock(&crew->lock);
+	pthread_mutex_unlock(&pool->lock);
 }
 
 static void remote_log(const char *line)
@@ -185,17 +185,17 @@ static void remote_log(const char *line)
 	command_complain("%s", line);
 }
 
-static bool remote_start(struct crew *crew)
+static bool remote_start(struct pool *pool)
 {
-	const struct compute *of = crew->of;
-	const struct coordinator_source source = {.of = crew,
+	const struct compute *of = pool->of;
+	const struct coordinator_source source = {.of = pool,
 	                                          .wanted = remote_wanted,
 	                                          .take = remote_take,
 	                                          .back = remote_back,
 	                                          .done = remote_done,
 	                                          .lives = remote_lives,
 	                                          .log = remote_log};
-	crew->study = (struct coordinator_study){1, of->study, of->run, of->document, of->length};
+	pool->study = (struct coordinator_study){1, of->study, of->run, of->document, of->length};
 	if (!of->launch->command)
 		return true;
 	if (!message_movable(of->study)) {
@@ -204,70 +204,70 @@ static bool remote_start(struct crew *crew)
 		    "run in this process");
 		return true;
 	}
-	crew->coordinator = coordinator_start(of->launch, &source);
-	return crew->coordinator;
+	pool->coordinator = coordinator_start(of->launch, &source);
+	return pool->coordinator;
 }
 
 /* ---- one phase after the other ---- */
 
 /* Watches n threads until all have ended. */
-static void watch(struct crew *crew, int n, double start)
+static void watch(struct pool *pool, int n, double start)
 {
-	const double total = (double)study_runs(crew->of->study);
+	const double total = (double)study_runs(pool->of->study);
 	for (int redraws = 1; n > 0; redraws++) {
 		struct timespec until;
 		clock_gettime(CLOCK_REALTIME, &until);
 		until.tv_nsec += REDRAW_MS * 1000000L;
 		until.tv_sec += until.tv_nsec / 1000000000L;
 		until.tv_nsec %= 1000000000L;
-		if (sem_timedwait(&crew->finished, &until) == 0)
+		if (sem_timedwait(&pool->finished, &until) == 0)
 			n--;
-		pthread_mutex_lock(&crew->lock);
-		if (*crew->of->interrupted && crew->status == POUND_OK) {
-			crew->status = POUND_STOPPED;
-			pthread_cond_broadcast(&crew->changed);
+		pthread_mutex_lock(&pool->lock);
+		if (*pool->of->interrupted && pool->status == POUND_OK) {
+			pool->status = POUND_STOPPED;
+			pthread_cond_broadcast(&pool->changed);
 		}
-		const bool stop = crew->status != POUND_OK;
-		const double done = (double)crew->runs_done;
-		pthread_mutex_unlock(&crew->lock);
+		const bool stop = pool->status != POUND_OK;
+		const double done = (double)pool->runs_done;
+		pthread_mutex_unlock(&pool->lock);
 		if (stop)
-			pound_run_stop(crew->run);
+			pound_run_stop(pool->run);
 		if (redraws % SYNC_EVERY == 0)
-			checkpoint_sync(crew->checkpoint);
+			checkpoint_sync(pool->checkpoint);
 		double spent = seconds() - start;
 		bar_draw(done, total, done > 0.0 ? spent * (total - done) / done : -1.0);
 	}
 }
 
 /* Runs the blocks that are left, or all reductions, in n threads. */
-static void crew_run(struct crew *crew, struct member *members, int n, double start)
+static void pool_run(struct pool *pool, struct member *members, int n, double start)
 {
 	int started = 0;
-	coordinator_wake(crew->coordinator);
+	coordinator_wake(pool->coordinator);
 	for (; started < n; started++) {
-		members[started] = (struct member){.crew = crew, .worker = started};
+		members[started] = (struct member){.pool = pool, .worker = started};
 		if (pthread_create(&members[started].thread, NULL, member_work, &members[started]) != 0)
 			break;
 	}
 	if (started == 0)
-		crew->status = POUND_NOMEM;
-	watch(crew, started, start);
+		pool->status = POUND_NOMEM;
+	watch(pool, started, start);
 	for (int i = 0; i < started; i++)
 		pthread_join(members[i].thread, NULL);
 }
 
 static void restored(void *to, int block)
 {
-	struct crew *crew = to;
-	assignment_restore(&crew->blocks, block);
+	struct pool *pool = to;
+	assignment_restore(&pool->blocks, block);
 }
 
 /* Blocks that are done of the first n. */
-static int done_of(const struct crew *crew, int n)
+static int done_of(const struct pool *pool, int n)
 {
 	int done = 0;
 	for (int block = 0; block < n; block++)
-		done += assignment_is_done(&crew->blocks, block);
+		done += assignment_is_done(&pool->blocks, block);
 	return done;
 }
 
@@ -279,52 +279,52 @@ static int done_of(const struct crew *crew, int n)
 enum pound_status compute_run(struct compute *of)
 {
 	const double start = seconds();
-	struct crew crew = {
+	struct pool pool = {
 	    .of = of, .run = of->run, .lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 	struct member *members = calloc((size_t)of->n_threads, sizeof *members);
-	if (!members || !assignment_init(&crew.blocks, pound_run_blocks_most(of->run))) {
+	if (!members || !assignment_init(&pool.blocks, pound_run_blocks_most(of->run))) {
 		free(members);
 		return POUND_NOMEM;
 	}
 	if (of->checkpoint)
-		crew.checkpoint = checkpoint_open(of->checkpoint, of->study, of->run, restored, &crew);
-	of->refused = of->checkpoint && !crew.checkpoint;
-	crew.reducing = true; // nothing is taken yet
+		pool.checkpoint = checkpoint_open(of->checkpoint, of->study, of->run, restored, &pool);
+	of->refused = of->checkpoint && !pool.checkpoint;
+	pool.reducing = true; // nothing is taken yet
 	if (of->refused)
-		crew.status = POUND_STOPPED;
-	else if (!remote_start(&crew))
-		crew.status = POUND_NOMEM;
-	sem_init(&crew.finished, 0, 0);
-	while (crew.status == POUND_OK) {
-		pthread_mutex_lock(&crew.lock);
-		crew.reducing = false;
-		crew.n_blocks = pound_run_blocks(of->run);
-		crew.n_done = done_of(&crew, crew.n_blocks);
-		crew.runs_done = 0;
-		for (int block = 0; block < crew.n_blocks; block++)
-			crew.runs_done +=
-			    assignment_is_done(&crew.blocks, block) ? pound_run_block_runs(of->run, block) : 0;
-		pthread_mutex_unlock(&crew.lock);
-		crew_run(&crew, members, of->n_threads, start);
-		if (crew.status != POUND_OK)
+		pool.status = POUND_STOPPED;
+	else if (!remote_start(&pool))
+		pool.status = POUND_NOMEM;
+	sem_init(&pool.finished, 0, 0);
+	while (pool.status == POUND_OK) {
+		pthread_mutex_lock(&pool.lock);
+		pool.reducing = false;
+		pool.n_blocks = pound_run_blocks(of->run);
+		pool.n_done = done_of(&pool, pool.n_blocks);
+		pool.runs_done = 0;
+		for (int block = 0; block < pool.n_blocks; block++)
+			pool.runs_done +=
+			    assignment_is_done(&pool.blocks, block) ? pound_run_block_runs(of->run, block) : 0;
+		pthread_mutex_unlock(&pool.lock);
+		pool_run(&pool, members, of->n_threads, start);
+		if (pool.status != POUND_OK)
 			break;
-		pthread_mutex_lock(&crew.lock);
-		crew.reducing = true;
-		crew.next = 0;
-		crew.n_reductions = pound_run_reductions(of->run);
-		pthread_mutex_unlock(&crew.lock);
-		crew_run(&crew, members, of->n_threads, start);
-		if (crew.status != POUND_OK || !pound_run_grow(of->run))
+		pthread_mutex_lock(&pool.lock);
+		pool.reducing = true;
+		pool.next = 0;
+		pool.n_reductions = pound_run_reductions(of->run);
+		pthread_mutex_unlock(&pool.lock);
+		pool_run(&pool, members, of->n_threads, start);
+		if (pool.status != POUND_OK || !pound_run_grow(of->run))
 			break;
 	}
 	bar_clear();
-	if (crew.coordinator && crew.status == POUND_OK)
-		command_complain("worker groups ran %ld of %d blocks", coordinator_blocks(crew.coordinator),
-		                 crew.n_blocks);
-	coordinator_stop(crew.coordinator);
-	checkpoint_close(crew.checkpoint);
-	sem_destroy(&crew.finished);
-	assignment_free(&crew.blocks);
+	if (pool.coordinator && pool.status == POUND_OK)
+		command_complain("worker groups ran %ld of %d blocks", coordinator_blocks(pool.coordinator),
+		                 pool.n_blocks);
+	coordinator_stop(pool.coordinator);
+	checkpoint_close(pool.checkpoint);
+	sem_destroy(&pool.finished);
+	assignment_free(&pool.blocks);
 	free(members);
-	return crew.status;
+	return pool.status;
 }

@@ -7,7 +7,7 @@
  *     f_e       0.101 [ 0.021,  0.180]   0.412 [ 0.351,  0.472]  |########            |
  *     widest interval: +-0.22 of 125 rows, +-0.16 of 250, +-0.11 of 500, +-0.081 of 1000
  *     twice the rows leave 0.71 of it, 4000 rows half of it
- *     300 runs checked, apart by 1e-14 (median) to 2e-13: no index moves by over 3e-15
+ *     300 runs checked, differences 1e-14 (median) to 2e-13: no index moves by over 3e-15
  *
  * and then a table for each other list of estimates, which have the names there that they have in the JSON. */
 #include "client/indices_table.h"
@@ -21,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 128 };     /* of where a value stands in a result */
+enum { PATH_SIZE = 128 };     /* of the JSON Pointer of a value in a result */
 enum { CHART = 20 };          /* columns of the chart of total indices */
 enum { ESTIMATE_WIDTH = 20 }; /* columns of "-0.123 [-0.12,-0.12]" */
 enum { ESTIMATES_MAX = 32 };  /* of one list */
@@ -85,7 +85,7 @@ static void print_quoted(const struct reading *result, const char *output)
 /* A list in a result, or one object, whose numbers have intervals. */
 struct estimates {
 	const struct reading *result;
-	const char *at;    /* where it stands */
+	const char *at;    /* its JSON Pointer in the result */
 	const char *about; /* what its elements are */
 	int n_rows;        /* 0: it is an object */
 	int n;

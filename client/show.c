@@ -26,7 +26,7 @@ static void print_outputs(const struct reading *result, const char *at)
 	}
 }
 
-/* The signals and outputs of a cell of two oscillators; `at` is where it stands in the result. */
+/* The signals and outputs of a cell of two oscillators; `at` is its JSON Pointer in the result. */
 static void print_pairs(const struct reading *result, const char *at)
 {
 	static const char *const columns[] = {"signal",      "oscillator", "u_max_m",   "u_free_m",
@@ -118,7 +118,7 @@ static void print_contacts(const struct reading *result, const char *at)
 	table_close(table);
 }
 
-/* The signals and outputs of a cell; `at` is where it stands in the result. */
+/* The signals and outputs of a cell; `at` is its JSON Pointer in the result. */
 static void print_responses(const struct reading *result, const char *at)
 {
 	if (!reading_has(result, "%s/signals/0/buildings", at)) {

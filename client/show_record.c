@@ -61,7 +61,7 @@ static double significant(const struct shown *shown)
 	return shown->measures.duration;
 }
 
-/* What is shown of a file besides its path, format and title. */
+/* What is shown of a file in addition to its path, format and title. */
 static const struct {
 	const char *name;
 	double (*value)(const struct shown *shown);

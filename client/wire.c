@@ -19,7 +19,7 @@ struct wire {
 	const char *url;
 	size_t n_url; /* of url without the slashes it ends in */
 	char *direct; /* hosts that no proxy is asked for */
-	bool in_time; /* a request may take timeout_s, 0: for ever, whether bytes come or not */
+	bool in_time; /* a request may take timeout_s, 0: without limit, whether bytes come or not */
 	int timeout_s;
 	FILE *body; /* of the reply that is coming */
 	struct curl_slist *headers;

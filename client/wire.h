@@ -38,7 +38,7 @@ const char *wire_url(const struct wire *wire);
 const char *wire_failure(const struct wire *wire);
 void wire_reply_free(struct wire_reply *reply);
 
-/* `text` made fit to stand in a path or a query; the caller frees it. */
+/* `text` percent-encoded for a path or a query; the caller frees it. */
 char *wire_escape(struct wire *wire, const char *text);
 
 /* Several requests to one server at a time, each by a job: a number from 0. */

@@ -5,7 +5,7 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "client/worker_crew.h"
+#include "client/thread_pool.h"
 #include "schema/message/launcher.h"
 
 static void send_answer(void *to, const struct message *message, const void *body)
@@ -30,10 +30,10 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	}
 	int connection = worker_connect(n_threads);
-	struct worker_crew *crew = worker_crew_start(n_threads, send_answer, &connection);
-	while (crew && message_take(connection, MESSAGE_OF_COORDINATOR, &message, &body))
-		if (!worker_crew_take(crew, &message, body))
+	struct thread_pool *pool = thread_pool_start(n_threads, send_answer, &connection);
+	while (pool && message_take(connection, MESSAGE_OF_COORDINATOR, &message, &body))
+		if (!thread_pool_take(pool, &message, body))
 			_exit(EXIT_FAILURE);
 	// threads are at work
-	_exit(crew ? EXIT_SUCCESS : EXIT_FAILURE);
+	_exit(pool ? EXIT_SUCCESS : EXIT_FAILURE);
 }

@@ -19,7 +19,7 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "client/worker_crew.h"
+#include "client/thread_pool.h"
 
 enum {
 	TAG_END = 0,      /* the last message of rank 0 */
@@ -67,7 +67,7 @@ struct ranks {
 	int *threads, *out; /* (n) of each rank: how many, blocks that it has */
 	int connection;
 	pthread_mutex_t sending; /* to it */
-	struct worker_crew *crew;
+	struct thread_pool *pool;
 	struct mailbox mailbox;
 	MPI_Request *requests;
 	struct posted *posted; /* (n_posted), as requests */
@@ -286,7 +286,7 @@ static bool obey(struct ranks *r, const struct packet *p)
 	char *body = n ? must(malloc(n)) : NULL;
 	if (n)
 		memcpy(body, p->wire.body, n);
-	return worker_crew_take(r->crew, &p->wire.head, body);
+	return thread_pool_take(r->pool, &p->wire.head, body);
 }
 
 static void study_begin(struct ranks *r, uint64_t id)
@@ -317,7 +317,7 @@ static void pass_on(struct ranks *r, struct packet *p)
 	if (p->over) {
 		r->ending = true;
 		alarm(END_MAX);
-		worker_crew_stop(r->crew);
+		thread_pool_stop(r->pool);
 		for (int rank = 1; rank < r->n; rank++)
 			send_packet(r, rank, p, TAG_END);
 		return;
@@ -328,7 +328,7 @@ static void pass_on(struct ranks *r, struct packet *p)
 		to = rank_next(r);
 		r->out[to]++;
 		if (to > 0)
-			expect(r, to, study, worker_crew_values_most(r->crew, study) * sizeof(double));
+			expect(r, to, study, thread_pool_values_most(r->pool, study) * sizeof(double));
 	}
 	for (int rank = 1; rank < r->n; rank++)
 		if (p->wire.head.type != MESSAGE_BLOCK || rank == to)
@@ -342,7 +342,7 @@ static void coordinate(struct ranks *r)
 	pthread_t reader;
 	if (pthread_create(&reader, NULL, connection_read, r) != 0)
 		fail("no thread to read the connection");
-	while (!r->ending || r->n_posted > 0 || !worker_crew_idle(r->crew)) {
+	while (!r->ending || r->n_posted > 0 || !thread_pool_idle(r->pool)) {
 		bool idle = !progress(r);
 		for (struct packet *p; (p = mail_take(&r->mailbox)); idle = false)
 			if (p->rank == CONNECTION) {
@@ -377,7 +377,7 @@ static bool question_take(struct ranks *r)
 	if (status.MPI_TAG == TAG_END) {
 		r->ending = true;
 		alarm(END_MAX);
-		worker_crew_stop(r->crew);
+		thread_pool_stop(r->pool);
 	} else if (!obey(r, p))
 		fail("a message of rank 0 makes no sense");
 	packet_free(p);
@@ -388,7 +388,7 @@ static void work(struct ranks *r)
 {
 	for (bool more = true; more;) {
 		// in this order: a thread leaves its answer before it is idle
-		more = !r->ending || !worker_crew_idle(r->crew);
+		more = !r->ending || !thread_pool_idle(r->pool);
 		bool idle = !question_take(r);
 		for (struct packet *p; (p = mail_take(&r->mailbox)); idle = false) {
 			send_packet(r, 0, p, tag_of(p->wire.head.study));
@@ -422,7 +422,7 @@ int main(int argc, char **argv)
 		fail("the ranks have more than 4096 threads: start several groups by --launchers");
 	if (r.rank == 0)
 		r.connection = worker_connect(all);
-	r.crew = must(worker_crew_start(n_threads, r.rank == 0 ? answer_own : answer_queue, &r));
+	r.pool = must(thread_pool_start(n_threads, r.rank == 0 ? answer_own : answer_queue, &r));
 	(r.rank == 0 ? coordinate : work)(&r);
 	MPI_Finalize();
 	// threads wait for blocks

@@ -19,7 +19,7 @@
  *
  * Of a model that is run elsewhere there are no blocks: create -> sample_inputs ... sample_assign ... -> reduce -> result.
  *
- * A finished block is pound_run_block_size() doubles at pound_run_block_values(); restoring them stands for
+ * A finished block is pound_run_block_size() doubles at pound_run_block_values(); restoring them replaces
  * running the block, so a caller can store blocks and go on after a restart with the same bytes. */
 struct pound_run;
 

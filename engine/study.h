@@ -1,7 +1,7 @@
 /* study.h - a study: what the engine takes.
  *
  * Units are SI: m, kg, s, N, rad/s; a name that ends in a unit (_hz) is the exception it states.  Arrays are row-major, the
- * shape stands behind the field. */
+ * shape is in the comment of the field. */
 #ifndef STUDY_H
 #define STUDY_H
 
@@ -97,7 +97,7 @@ struct pound_oscillator {
 	double mass;          /* [kg]  > 0 */
 	double frequency_hz;  /* undamped, of the initial stiffness  > 0 */
 	double damping_ratio; /* fraction of critical  [0, 1) */
-	bool rigid_wall;      /* follows the ground for ever; only the right one may be */
+	bool rigid_wall;      /* moves with the ground; only the right body may */
 	bool has_law;         /* law below instead of the scene's */
 	struct pound_law law;
 };
@@ -138,7 +138,7 @@ struct pound_building {
 	struct pound_each
 	    damping_ratio;    /* fraction of critical; of storeys where the form has them alone  [0, 1) */
 	int damping_modes[2]; /* of Rayleigh damping, ascending, from 1 */
-	bool rigid_wall;      /* follows the ground for ever; only the last one may be */
+	bool rigid_wall;      /* moves with the ground; only the last building may */
 	bool has_law;         /* law below instead of the scene's */
 	struct pound_law law; /* of every story, yield displacement beside it */
 	struct pound_each
@@ -250,7 +250,7 @@ struct pound_input {
 	struct pound_distribution distribution;
 };
 
-/* The quotient of two inputs, as a variable whose indices are wanted besides. */
+/* The ratio of two inputs, as a variable whose indices are reported as well. */
 struct pound_ratio {
 	const char *name;  /* for people */
 	const char *of[2]; /* paths of the inputs above and below */
@@ -424,7 +424,7 @@ const char *pound_output_name(int row);
 const char *pound_output_needs(int row, const struct pound_scene *scene); /* from it, in words */
 bool pound_output_observes(int row);                                      /* it reads whole motions */
 bool pound_output_observes_contact(int row);                              /* with contact */
-bool pound_output_has_ordinates(int row); /* stands once for each frequency of the spectrum */
+bool pound_output_has_ordinates(int row); /* has a value for each frequency of the spectrum */
 bool pound_output_has_places(int row, const struct pound_scene *scene); /* and once for each place */
 int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */
 int pound_study_place(const struct pound_study *study, int output);    /* number of its place; -1: none */

@@ -28,7 +28,7 @@ enum {
 	STOP_TICK_NS = 10000000, /* [ns] */
 };
 
-static const double STOP_ASIDE_S = 0.3; /* [s] for answers that are given up */
+static const double STOP_ASIDE_S = 0.3; /* [s] for answers that are abandoned */
 
 static void notice(void *of, struct MHD_Connection *connection, void **context,
                    enum MHD_ConnectionNotificationCode code)
@@ -41,7 +41,7 @@ static void notice(void *of, struct MHD_Connection *connection, void **context,
 		connection_closed(&server->connections, *context);
 }
 
-/* Who comes while the server stops is hung up on: else the clients who keep coming would keep it up. */
+/* Connections that arrive while the server stops are closed: else clients that keep connecting would keep it running. */
 static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen_t n)
 {
 	const struct server *server = of;
@@ -157,7 +157,7 @@ int daemon_port(const struct server *server)
 }
 
 /* Stops answering.  Clients that wait for a study get 503; requests under way have a few seconds to end, and answers that
- * take long, which are given up, less.
+ * take long, which are abandoned, less.
  *
  * Returns  value   false: one of these was not given up in time, and nothing that it may use may be given up but by the end
  *                  of the program

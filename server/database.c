@@ -167,7 +167,7 @@ void database_truncate(const struct database *d)
 	sqlite3_busy_timeout(d->db, BUSY_MS);
 }
 
-/* Writes a copy of the database as it stands now, while others go on; it is on the disk when this returns.
+/* Writes a copy of the database as it is now, while others go on; it is on the disk when this returns.
  *
  * Given    path    of the copy, which must not exist
  * Returns  value   false: logged, and what was written of it is removed

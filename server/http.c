@@ -5,7 +5,7 @@
  *    socket with unread bytes is reset, and the reset overtakes our answer.
  * 2. The body is collected, up to its limit.
  * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What
- *    takes long is answered in a thread of its own, while the connection is suspended, or given up when the client has gone
+ *    takes long is answered in a thread of its own, while the connection is suspended, or abandoned when the client has closed it
  *    or the server stops.
  * 4. What is long is put into a file without a name, by that thread, so that no client who reads slowly keeps it in memory
  *    and no other client waits for it. */
@@ -35,7 +35,7 @@ enum {
 	SEND_RATE = 16 * 1024,    /* [bytes/s] that a client takes at least */
 };
 
-/* An argument of the request's target, or what stands for an absent or an empty one. */
+/* An argument of the request's target, or the value for an absent or an empty one. */
 const char *http_argument(const struct request *request, const char *name)
 {
 	const char *value = MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
@@ -292,7 +292,7 @@ void *http_begin(void *of, const char *target, struct MHD_Connection *connection
 	request->target_end = request->target + strlen(request->target);
 	snprintf(request->question, sizeof request->question, "%s", request->target);
 	size_t n = head_target(&request->head, request->target);
-	// arguments that are not to be taken apart end where they begin; this is libmicrohttpd's memory, and it looks next
+	// arguments that are not to be parsed end where they begin; this is libmicrohttpd's memory, and it looks next
 	if (request->target[n] == '?')
 		((char *)request->target)[n + 1] = '\0';
 	return request;

@@ -48,7 +48,7 @@ struct MHD_Connection;
 struct request {
 	struct server *server;
 	struct MHD_Connection *connection;
-	const char *target, *target_end; /* as it came; taken apart in its place by libmicrohttpd */
+	const char *target, *target_end; /* as received; parsed in place by libmicrohttpd */
 	const char *method, *path;       /* path without arguments, decoded; NULL: the headers are not all here */
 	struct head head;
 	int operation;                             /* row of api_operations, -1: none */

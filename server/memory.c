@@ -42,7 +42,7 @@ static double group_least(const char *root, const char *mount, const char *file,
 
 /* Half of the memory that this process may have: that of the machine, or of a control group (version 1 or 2) when that is less.
  *
- * Given    root    ""; a folder that stands for / in tests
+ * Given    root    ""; a folder that replaces / in tests
  * Returns  value   MiB   at least 1
  * Test     unit_server_memory: half_of_the_machine_or_of_the_least_control_group
  */

@@ -2,7 +2,6 @@
 #ifndef MEMORY_H
 #define MEMORY_H
 
-int memory_share(
-    const char *root); /* [MiB] half of it, at least 1; root: "", or a folder that stands for / */
+int memory_share(const char *root); /* [MiB] half of it, at least 1; root: "", or a folder that replaces / */
 
 #endif

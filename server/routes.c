@@ -102,7 +102,7 @@ static struct reply page_drop(struct page *page, enum store_status status)
 	return refusal(status);
 }
 
-/* The status object of the request's study, and what is known of it besides. */
+/* The status object of the request's study, and what else is known of it. */
 static struct reply look(const struct request *request, struct page *page)
 {
 	page_init(page, request, 1);

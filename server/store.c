@@ -503,7 +503,7 @@ enum store_status store_delete(struct store *store, int64_t id)
 
 /* Deletes one study that ended too long ago, or else the blocks of one.  One at a time, so that no other change waits for long.
  *
- * Given    days          that an ended study is kept; 0: for ever
+ * Given    days          that an ended study is kept; 0: without limit
  *          days_blocks   that its blocks are kept, of which its samples are made; 0: as long as the study
  * Returns  value         whether there was one: call again
  * Test     unit_store: what_ended_too_long_ago_is_deleted_and_nothing_else

@@ -8,7 +8,7 @@
 #include "engine/pound.h"
 #include "server/store.h"
 
-/* A study as it stands in the store: its document read, its run made, its stored blocks restored. */
+/* A study as stored: its document read, its run made, its stored blocks restored. */
 struct stored_run {
 	char *document; /* (length) bytes */
 	size_t length;

@@ -60,7 +60,7 @@ struct job {
 	bool movable;                   /* worker groups may run its blocks */
 	struct coordinator_study known; /* to them */
 	int n_out;                      /* blocks that they have */
-	int reduction;                  /* next to hand out */
+	int reduction;                  /* the next to assign */
 	int n_reductions, reductions_left;
 	int n_inside;      /* workers in one of its steps, and finished blocks that are not committed yet */
 	bool ended;        /* gives no more steps, ... */
@@ -661,7 +661,7 @@ void work_drop(struct work *work, int64_t id)
 	pthread_mutex_unlock(&work->lock);
 }
 
-/* Stops the workers; studies that were running are taken up again at the next start.
+/* Stops the workers; studies that were running continue at the next start.
  *
  * Returns  value   false: a worker is at something that cannot be stopped, such as bytes on their way to a slow disk, and
  *                  nothing of work and its store may be given up but by the end of the program

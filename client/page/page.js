@@ -339,7 +339,7 @@ async function study() {
 
 // ---- a new study ----
 
-// Where the value of a JSON Pointer stands in a text: [start, end], of the nearest value around it that is there.
+// Position of a JSON Pointer's value in a text: [start, end], or of the innermost enclosing value that exists.
 function place(text, pointer) {
 	const parts = pointer.split("/").slice(1).map(part => part.replaceAll("~1", "/").replaceAll("~0", "~"));
 	const blank = at => { while (/\s/.test(text[at] ?? "")) at++; return at; };

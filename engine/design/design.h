@@ -8,7 +8,7 @@
 #include "engine/design/row_samples.h"
 #include "engine/numeric/stop.h"
 
-/* as probabilities, and what they stand for; `stop` is looked at throughout, NULL: never  (rows x 2 x n_inputs) each */
+/* as probabilities, and as values of the inputs; `stop` is looked at throughout, NULL: never  (rows x 2 x n_inputs) each */
 void pound_design_probabilities(const struct pound_study *study, const atomic_bool *stop, double *u);
 void pound_design_values(const struct pound_study *study, const double *u, const atomic_bool *stop,
                          double *x);

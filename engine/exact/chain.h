@@ -30,7 +30,7 @@ struct pound_chain_floor {
 	struct pound_backbone story; /* in forces: stiffness [N/m], yield displacement: a drift [m] */
 	const double *modal; /* force on this floor, against the rates of the drifts of its building's stories
 	                                 * [N s/m]  (stories of the building); NULL: none */
-	bool base;           /* the story stands on the ground: a building begins */
+	bool base;           /* the lowest story: a building begins */
 };
 
 /* A contact between a level of a building and one of its right neighbor.

@@ -11,7 +11,7 @@ enum {
 	    4, /* zeros that a rate may start with: nonlinear_contact.inl has three where a contact begins */
 };
 
-/* Bound of |u| inside a step, apart from its ends. */
+/* Bound of |u| inside a step, its ends excluded. */
 LANE_INLINE vd enclosure_reach(const struct enclosure *c)
 {
 	const vd third = vsplat(1.0 / 3), b1 = vfma(third, c->v0, c->u0), b2 = vfma(-third, c->v1, c->u1);

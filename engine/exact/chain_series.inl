@@ -119,7 +119,7 @@ static double floor_terms(const struct chain *c, int i, int n)
 
 /* Floors that touch without overlap, at one velocity, part or press by the difference of their accelerations.  Where that is
  * no more than the rounding of what these are made of it is nothing, and the next derivative decides: else they would part and
- * meet for ever.
+ * meet without end.
  *
  * Given    ground  of order n
  */

@@ -178,12 +178,12 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	return risk;
 }
 
-/* What the bounds of a doubled map make of the roundings of a body that stands, over where it is: a few dozen.  Less than this is no
+/* What the bounds of a doubled map make of the roundings of a body at rest, over its displacement: a few dozen.  Less than this is no
  * motion, and none is looked for. */
 static const double SUSTAINED_ROUNDING = 64 * DBL_EPSILON;
 
 /* Lanes in which a body's velocity keeps its sign over many substeps, but for times in which it goes back by less than the rounding
- * of where it is: pressed from rest by a load that grows, it stands still once in every swing, and rounding would decide.
+ * of where it is: pressed from rest by a load that grows, it is at rest once in every swing, and rounding would decide.
  *
  * All rates are times a third of the doubled map.  Where the swing is ahead of the slow motion by a small share of itself it is so for
  * 2 acos(1 - share) of its radians, for a share up to 1 at most pi share^1/2.
@@ -262,7 +262,7 @@ LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s,
 	vd a = vabs(vfma(omega, x[3], -drift));
 	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_TWO_ZETA], drift, -closing)));
 	// the root of both squares, in their scale, raised by no more than its rounding: a coarser bound would stay above the
-	// largest displacement of a contact that swings for ever, and refuse every doubled map
+	// largest displacement of a contact that swings without end, and refuse every doubled map
 	vd larger = vmax(vmax(a, c), vsplat(DBL_MIN)), lesser = vmin(a, c) / larger;
 	vd swung = vsplat(1 + 4 * DBL_EPSILON) * larger * vsqrt(vfma(lesser, lesser, one));
 	vd grown = vabs(change) + vabs(drift), curvature, swing;

@@ -147,7 +147,7 @@ struct edges {
 	vd low, high, direction;
 };
 
-/* How far a body may go inside a sample or substep, apart from its ends. */
+/* Bound of |u| inside a sample or substep, its ends excluded. */
 LANE_INLINE vd cubic_reach(const struct cubic *f)
 {
 	return vmax(vabs(f->b1), vabs(f->b2)) + f->error;

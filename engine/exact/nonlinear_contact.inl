@@ -405,7 +405,7 @@ enum { LAST = 3 }; /* terms that are looked at: of some series every other one v
 
 static const double TAIL = 1e-16; /* of the last terms, over the first ones */
 
-/* Largest of the last terms of a series, some numbers apart, over its first ones. */
+/* Largest of the last terms of a series, with a stride, over its first terms. */
 static void tail_keep(double most[LAST], const double *series, size_t stride, double least)
 {
 	const double first = fmax(fabs(series[0]) + fabs(series[stride]), least);

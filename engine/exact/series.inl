@@ -48,7 +48,7 @@ struct series {
 	struct motion body[2], overlap;
 };
 
-/* Value of a series at time t, the even and the odd terms apart: half the latency of Horner's rule. */
+/* Value of a series at time t, even and odd terms summed separately: half the latency of Horner's rule. */
 LANE_INLINE vd power_at(const struct power *s, int order, vd t)
 {
 	vd t2 = t * t, even = s->c[order - 1], odd = s->c[order];
@@ -134,7 +134,7 @@ LANE_INLINE vd enclosure_slowest(const struct enclosure *c)
 	return vmin(vmin(c->v0, c->v1), middle) - vsplat(0.00802) * c->fourth_max;
 }
 
-/* Bound of |u| inside a step, apart from its ends. */
+/* Bound of |u| inside a step, its ends excluded. */
 LANE_INLINE vd reach_of(const struct motion *m)
 {
 	vd third = vsplat(1.0 / 3);

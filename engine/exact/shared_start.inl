@@ -52,7 +52,7 @@ static bool tasks_same(const struct pound_task *a, const struct pound_task *b)
 	       bodies_same(&a->bodies[1], &b->bodies[1]);
 }
 
-/* The slot in which the search for those that are kin to a task begins. */
+/* The slot in which the search for tasks of the same scene begins. */
 static int task_slot(const struct pound_task *task, int slots)
 {
 	const struct pound_task_body *body = task->bodies;

@@ -1,6 +1,6 @@
 /* simulation.inl - one simulation of the march as it stays_in_contact between its turns in the lanes.
  *
- * Its numbers stand in rows of a cache line each, columns of which become vectors: a batch of simulations is carried
+ * Its numbers are stored in rows of a cache line each, columns of which become vectors: a batch of simulations is carried
  * into lanes and out by whole rows.  next_step.inl has what is done to one at a time.
  *
  * Included by exact.inl, first. */

@@ -62,7 +62,7 @@ LANE_INLINE vm bodies_level(const struct lanes *g)
 
 /* Bodies that are level part or press by the difference of their accelerations.  Where that is no more than the rounding of
  * what these are made of it is nothing, and the next derivative decides: else bodies that are all but alike would part and
- * meet for ever.  Derivatives by time decide: those by the share of a step have other roundings in contact than without, where
+ * meet without end.  Derivatives by time decide: those by the share of a step have other roundings in contact than without, where
  * steps are of another length.
  *
  * Given    separating  the difference of the accelerations' derivative n, scaled to the step
@@ -91,9 +91,9 @@ LANE_SHARED vd separation_settle(struct terms *t, const struct lanes *g, vd sepa
 	return vselect(t->level, vsplat(0), separating);
 }
 
-/* A body that stands still where its branch ends goes on to the next or back by its acceleration.  Where that is no more than
+/* A body at rest where its branch ends goes on to the next branch or back, as its acceleration decides.  Where that is no more than
  * the rounding of what it is made of it is nothing, and what differs in its later enclosure decides: else each of two branches,
- * with a rounding of its own, would send the body to the other for ever.
+ * with a rounding of its own, would send the body to the other branch without end.
  *
  * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while separated
  *          still  lanes in which it has no velocity
@@ -227,7 +227,7 @@ LANE_SHARED void force_search(const struct series *s, const struct lanes *g, con
 	for (int n = 0; n <= s->order; n++)
 		guard.c[n] = sign * vfma(phase_lead, rate.c[n], p->u.c[n]);
 	// where the force has just passed 0 it is beyond by the rounding of the overlap and of its acceleration, or
-	// bodies that are alike would turn to and fro at one instant for ever
+	// equal bodies would reverse at one instant without end
 	vd acceleration = 2.0 * (vabs(s->body[0].u.c[2]) + vabs(s->body[1].u.c[2]));
 	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(phase_lead, acceleration, p->u.c[0]));
 	guard.c[0] = vselect(e->fresh, below, guard.c[0]);

@@ -261,7 +261,7 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
  * one of the contact force alone may be for that (impact_only over pounding in a result; 16 at 0.1 Hz in the example). */
 static const double ROWS_ERROR = 0.005, ROWS_DRIFT = 60;
 
-/* How far apart rows may be: h^2 |a''| over the size of a, between straight lines.
+/* Largest spacing of rows: h^2 |a''| over the size of a, between straight lines.
  *
  *   theta^2 = min(12 E/D, max((pi E)^2, 4 pi^2 xi E))
  *

@@ -1,6 +1,6 @@
 /* floor_pieces.c - one floor's motion, instant by instant from the exact solver, as pieces.
  *
- * 1. Of free motion over a whole sample the state is handed out, of which a polynomial is made where one is asked for.
+ * 1. Of free motion over a whole sample the state is given, and a polynomial is made of it where one is needed.
  * 2. Any other interval between two instants is a power series in time, or several where one does not reach: the floor's
  *    absolute acceleration -(c v + r + F)/m1 and its part -F/m1.
  * 3. A contact whose own swing has died away is a series as long as the bodies' own motion allows, however stiff it is.
@@ -68,7 +68,7 @@ int pound_floor_bound(struct pound_polynomial *a, int order)
 	for (int n = 0; n <= order; n++)
 		size[n] = fabs(a->c[n]);
 	size[order + 1] = 0;
-	// the even and the odd terms apart: sums need not wait for each other
+	// even and odd terms summed separately: the sums need not wait for each other
 	for (int n = 0; n <= order; n += 2)
 		for (int j = 0; j < 2; j++)
 			bound[0][j] += size[n + j];
@@ -240,7 +240,7 @@ static void series_contact(struct body_series *s, struct body_terms m)
 
 /* How large the acceleration of a contact's own swing may be, over what the bodies' are made of, to be left out: a rounding.
  *
- * Where its losses do not end it within a sample, rounding keeps it alive for ever, and more is left out.  A swing adds to
+ * Where its losses do not end it within a sample, rounding keeps it alive without end, and more is left out.  A swing adds to
  * velocities by 1/rate_touch, where the bodies' own accelerations add by 1/rate: what is left out of these is a rounding, and
  * omega/rate times that of an oscillator of omega on the floor. */
 static double swing_nothing(const struct pound_floor_motion *motion)

@@ -11,7 +11,7 @@
 enum {
 	POUND_FLOOR_ORDER = 21,   /* of a piece's power series, at most */
 	POUND_FLOOR_TERMS = 23,   /* of any motion it drives: 1.5^23/23! is below rounding */
-	POUND_FLOOR_PIECES = 512, /* handed out at once */
+	POUND_FLOOR_PIECES = 512, /* given to the observer at once */
 	POUND_FLOOR_MAPS = 4,     /* different stiffnesses of free motion among them */
 };
 

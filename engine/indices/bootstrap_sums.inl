@@ -1,4 +1,4 @@
-/* resample.inl - rows drawn with replacement, and the sums of what stands in them.
+/* bootstrap_sums.inl - rows drawn with replacement, and sums over them.
  *
  * 1. Which segment of rows each draw falls into comes first, then the rows within the segments: the same law as drawing
  *    from all rows, and a segment is read from memory once for a group of resamples, however many rows there are.
@@ -71,7 +71,7 @@ static void draws_fill(struct draws *draws, int wanted, uint32_t *draw)
 typedef double columns __attribute__((vector_size(W > 1 ? 8 * W : 16), may_alias));
 enum { VECTORS = POUND_TILE * sizeof(double) / sizeof(columns) };
 
-/* Adds the drawn rows of one tile to a sum; even and odd draws are added up apart, to hide the adder's latency. */
+/* Adds the drawn rows of one tile to a sum; even and odd draws are summed separately, to hide the adder's latency. */
 static void tile_add(const double *tile, const uint32_t *draw, int n, double *sum)
 {
 	const columns *row = (const columns *)tile;

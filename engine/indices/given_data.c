@@ -183,7 +183,7 @@ static bool uneven(const struct space *s, int n, int d, int i, int j)
 	return chi / freedom > root * root * root;
 }
 
-/* Sum of the products of ranks of an input, of samples that are a lag apart in the order. */
+/* Sum of the products of ranks of an input, of samples at a lag in the order. */
 static double lagged(const struct space *s, int n, int d, int j, int lag)
 {
 	double sum = 0.0;

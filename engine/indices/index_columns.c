@@ -280,13 +280,13 @@ static void shapley(const struct sources *s, struct pound_estimate *into)
 	copy(s, s->closed.shapley, into);
 }
 
-// in the order in which they are made: a stand-in comes before the column it stands in for
+// in the order in which they are made: a substitute comes before the column that it replaces
 // clang-format off
 static const struct index_column {
 	enum pound_index index;
 	bool (*possible)(const struct sources *s);
 	void (*make)(const struct sources *s, struct pound_estimate *into);
-	enum pound_index instead; /* the column that stands in, POUND_N_INDICES: none, undefined */
+	enum pound_index instead; /* the substitute column, POUND_N_INDICES: none, undefined */
 	bool shared; /* is what its name says even if the samples of a row share noise of unknown covariance */
 } columns[] = {
 	{POUND_S1_RAW,         always,         first_raw,       POUND_N_INDICES,      true},
@@ -463,7 +463,7 @@ size_t pound_index_columns_scratch(const struct pound_sample_values *shape,
 /* All sensitivity indices of one output, with 95 % intervals, and what there is to say about them.
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
- *          sampling  -                                       the design, and whether noise can be told apart
+ *          sampling  -                                       the design, and whether noise can be distinguished
  *          seed      -                                       of the resamples
  * Returns  value     rows dropped: one of their runs has no output
  *          indices   all, and of the accuracy the half widths from the first rows; indices (n_inputs) each, NAN with a note

@@ -40,7 +40,7 @@ struct pound_sampling {
 	int n_resamples;    /* behind an interval, at most POUND_RESAMPLES; 0: as many */
 	bool quasi_random;  /* the design: rows that are near in one input are not near by chance in the others */
 	const struct pound_study *ratios; /* study with ratios whose indices are wanted; NULL: none */
-	int estimator; /* row of the estimators whose indices are wanted besides; 0: none but the plain protocol's */
+	int estimator; /* row of the estimators whose indices are reported as well; 0: the plain protocol's alone */
 	double
 	    *kept; /* of the fits, from one output of the design to the next: chaos_expansion.c; NULL: nothing */
 };

@@ -5,7 +5,7 @@
  * 2. What a set of variables explains, Var E[g | X_u], follows from the coefficients and from the means E[p(X) q(X')] of
  *    products of terms, where X' shares X_u and is drawn anew given it.  These means are of the inputs alone.
  * 3. Eight groups of rows, each left out in turn, give the bias, that of fitting noise above all, and the interval.
- * 4. What all variables explain is what the fits without a group foretell of its outputs.
+ * 4. What all variables explain is what the fits without a group predict of its outputs (cross-validated R2).
  *
  * With dependent variables Shapley effects add up to 1 and first-order indices do not; one may be above its total. */
 #include "engine/design/design.h"
@@ -159,7 +159,7 @@ static struct variables variables_of(const struct pound_study *study)
 	return v;
 }
 
-/* Where a ratio stands among all, in [0, 1]: its probability, by a rule of PLACES points. */
+/* The rank of a ratio among all, in [0, 1]: its probability, by a rule of PLACES points. */
 static double ratio_place(const struct variables *v, int k, double ratio)
 {
 	double sum = 0.0;
@@ -485,7 +485,7 @@ static struct pound_estimate jackknife(const double value[GROUPS + 1][KINDS * VA
 	return (struct pound_estimate){middle, middle - half, middle + half};
 }
 
-/* The share of the outputs' squares that fits foretell which have not seen them, of which noise is a part; none, where the
+/* Cross-validated R2: the share of the outputs' squares that fits without them predict, of which noise is a part; none, where the
  * interval says next to nothing.  It errs to the low side, by the square of what the fits err by, and stays below 1. */
 static struct pound_estimate explained_of(const struct fit *f, const double of_group[GROUPS], double noise)
 {

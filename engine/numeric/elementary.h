@@ -82,7 +82,7 @@ static inline double pound_elementary_exp(double x)
 	double sum = 1;
 	for (int n = 0; n < 12; n++)
 		sum = 1 + r * share[n] * sum;
-	// the whole number stands in the last bits of `shifted`
+	// the whole number is in the last bits of `shifted`
 	const uint64_t power = (pound_elementary_bits(shifted) + 1023) << 52;
 	return pound_elementary_double(power) * (1 + r * sum);
 }

@@ -2,7 +2,7 @@
  *
  * Every operation acts on each lane alone and rounds once, so the bits of a lane do not depend on W.
  * Arithmetic is the vector types' own; comparisons give a mask, which has & | ~ and the functions below.  The few
- * operations that the types do not have stand here for each width as the one instruction it has for them: left to be
+ * operations that the types do not have are here for each width as the one instruction it has for them: left to be
  * recognised from a loop over the lanes they came out as dozens. */
 #ifndef LANES_H
 #define LANES_H

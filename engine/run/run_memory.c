@@ -35,7 +35,7 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	bytes += (double)pound_run_scale_bytes(study);
 	bytes += (double)sizeof(int) * run.layout.n_blocks +
 	         (double)sizeof(double) * (double)pound_blocks_doubles(&run.layout);
-	// who has no block does not touch its request
+	// a worker without a block does not touch its request
 	const int n_busy = n_workers < run.layout.n_blocks ? n_workers : run.layout.n_blocks;
 	return bytes +
 	       n_busy * ((double)pound_request_bytes(largest) - POUND_EXACT_SCRATCH +

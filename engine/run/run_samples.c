@@ -57,7 +57,7 @@ struct pound_sample_output pound_run_sample_output(const struct pound_run *run, 
 		const double *values = pound_blocks_run(&run->layout, row, cell, sample) + 2 * output;
 		return (struct pound_sample_output){values[0], values[1]};
 	}
-	// the runs of a row's signals are one item apart, but a block may end between them
+	// the runs of a row's signals are one item from each other, but a block may end between them
 	double above = 0, below = 0;
 	for (int r = 0; r < c->n_signals; r++) {
 		const double *values =

@@ -13,7 +13,7 @@ const char *pound_status_text(enum pound_status status)
 	return "unknown status";
 }
 
-/* Why a study ended without a result: a status of runs stands for all of them. */
+/* Why a study ended without a result: a status of runs covers all of them. */
 const char *pound_status_error(enum pound_status status)
 {
 	static const char *const none[] = {

@@ -124,7 +124,7 @@ const char *pound_law_name(int row)
 	return row >= 0 && row < (int)(sizeof laws / sizeof laws[0]) ? laws[row].name : NULL;
 }
 
-/* Whether a law has one branch for ever, so that no yield displacement is needed. */
+/* Whether a law has one branch at all times, so that no yield displacement is needed. */
 bool pound_law_linear(int law)
 {
 	return laws[law].linear;

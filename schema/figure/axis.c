@@ -237,7 +237,7 @@ static void ticks_log(const struct axis *axis, int most, struct ticks *ticks)
 		}
 	if (ticks->n >= 2)
 		return;
-	// both ends and the power of ten between them tell how long a decade is
+	// both ends and the power of ten between them show how long a decade is
 	const struct ticks inner = *ticks;
 	char text[32];
 	*ticks = (struct ticks){0};

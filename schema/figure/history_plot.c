@@ -162,7 +162,7 @@ bool plot_has_history(const cJSON *result)
 	return plot_has_spectra(result);
 }
 
-/* A tick at each begin of a contact, as far as they are pixels apart; how many begin. */
+/* A tick at each begin of a contact, at most one per pixel; returns the number of contacts. */
 static int draw_begins(struct plot *plot, const struct panel *panel, const struct table *table)
 {
 	const double *time = table_column(table, "time_s"), *force = table_column(table, "contact_force_n");

@@ -162,7 +162,7 @@ void plot_fragility(struct plot *plot)
 	cJSON_ArrayForEach(cell, plot_member(plot->result, "cells")) if (in_set(set, cell))
 	    range_add(&across, plot_number(plot_member(cell, "sweep"), intensity));
 	cJSON_ArrayForEach(curve, plot_member(set, "curves")) n_curves += isfinite(plot_number(curve, "median"));
-	// as many as colors tell apart, evenly among those that have a curve
+	// as many as there are distinct colors, evenly among those that have a curve
 	int seen = 0;
 	cJSON_ArrayForEach(curve, plot_member(set, "curves"))
 	{

@@ -92,7 +92,7 @@ static int lines_of(struct plot *plot, const char *path, int most, struct line *
 	return n;
 }
 
-/* The axis of the swept number: logarithmic when its values are far apart. */
+/* The axis of the swept number: logarithmic when its values span decades. */
 static struct axis axis_across(const struct line *line)
 {
 	struct range range = RANGE_EMPTY;

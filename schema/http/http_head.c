@@ -39,7 +39,7 @@ void head_refuse(struct head *head, enum api_fault fault, bool close, const char
 /* Starts with the request's target as it came.
  *
  * Given    target   path and arguments, not decoded
- * Returns  value    bytes of it that are to be taken apart: without the arguments when these are too many, for which
+ * Returns  value    bytes of it to parse: without the arguments when these are too many, for which
  *                   libmicrohttpd has no room
  * Test     unit_http_head: a_target_is_visible_ascii_and_its_escapes_are_whole; a_target_has_so_many_bytes_and_arguments
  */
@@ -213,7 +213,7 @@ void head_argument(struct head *head, int operation, const char *name, const cha
 /* Judges the whole head.
  *
  * Given    needs_host   HTTP/1.1 and later
- *          names        hosts, between commas, besides localhost and addresses; NULL: none
+ *          names        comma-separated hosts accepted in addition to localhost and addresses; NULL: none
  * Returns  head         its fault, API_NO_FAULT: none
  * Test     unit_http_head: what_leaves_a_request_s_end_in_doubt_is_refused
  */

@@ -42,12 +42,12 @@ struct head {
 	bool close;                    /* it leaves in doubt where the request ends */
 };
 
-/* the first, with the raw target; its bytes that are to be taken apart: all, or none of its arguments when they are refused */
+/* the first, with the raw target; its bytes to parse: all, or without the arguments when they are refused */
 size_t head_target(struct head *head, const char *target);
 /* what follows the target, as libmicrohttpd has left it when it has found so many headers in it */
 void head_bytes(struct head *head, const char *bytes, size_t n, int n_lines);
 void head_header(struct head *head, const char *name, size_t n_name, const char *value, size_t n_value);
-/* the last; `names` are hosts, between commas, besides localhost and addresses (NULL: none) */
+/* the last; `names`: comma-separated hosts accepted in addition to localhost and addresses (NULL: none) */
 void head_end(struct head *head, bool needs_host, const char *names);
 
 void head_origin(struct head *head); /* after that, if the request changes something */

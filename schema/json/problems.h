@@ -44,7 +44,7 @@ bool problems_at(const struct problems *problems, const char *pointer);
 /* Whether something that a pointer is in, or it itself, is known to be wrong as a whole. */
 bool problems_over(const struct problems *problems, const char *pointer);
 
-/* What a problem body says besides its list of errors. */
+/* What a problem body says in addition to its list of errors. */
 struct problem_head {
 	int status;         /* of HTTP */
 	const char *type;   /* short name such as "invalid-study"; NULL: about:blank */

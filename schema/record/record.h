@@ -11,7 +11,7 @@
 
 enum { RECORD_TITLE = 200 };
 
-/* What the reader of a file knows besides the file. */
+/* What the reader of a file knows in addition to the file. */
 struct record_choice {
 	const char *unit; /* of a file that names none: a name of record_unit_name; NULL: not known */
 	double step;      /* of a file without times [s]; 0: not known */

@@ -11,7 +11,7 @@
 
 enum { POINTER_SIZE = 64 };
 
-/* which of the members that stand for a stiffness are given */
+/* which of the members that determine a stiffness are given */
 struct stiffness_given {
 	bool linear; /* stiffness_n_m */
 	bool power;  /* hertz_stiffness_n_m1_5 */

@@ -137,7 +137,7 @@ static void look_at_gap(struct warnings *all, const struct pound_study *study,
 		     "no run has a contact");
 }
 
-/* A yield displacement that is given and that no run comes to. */
+/* A yield displacement that is given and that no run reaches. */
 static void look_at_yield(struct warnings *all, const struct pound_study *study,
                           const struct pound_result *result)
 {

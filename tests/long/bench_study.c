@@ -16,7 +16,7 @@ enum { THREADS = 2, REPEATS = 3 };
 
 /* ---- a study run ---- */
 
-struct crew {
+struct pool {
 	struct pound_run *run;
 	enum pound_status (*step)(struct pound_run *run, int index, int worker);
 	int n_steps;
@@ -25,21 +25,21 @@ struct crew {
 
 static void *crew_work(void *of)
 {
-	struct crew *crew = of;
-	int worker = atomic_fetch_add(&crew->worker, 1);
-	for (int i; (i = atomic_fetch_add(&crew->next, 1)) < crew->n_steps;)
-		if (crew->step(crew->run, i, worker) != POUND_OK)
+	struct pool *pool = of;
+	int worker = atomic_fetch_add(&pool->worker, 1);
+	for (int i; (i = atomic_fetch_add(&pool->next, 1)) < pool->n_steps;)
+		if (pool->step(pool->run, i, worker) != POUND_OK)
 			bench_fail("a block of a study failed");
 	return NULL;
 }
 
-static void crew_run(struct crew *crew, int threads)
+static void pool_run(struct pool *pool, int threads)
 {
 	pthread_t thread[THREADS];
-	atomic_store(&crew->next, 0);
-	atomic_store(&crew->worker, 0);
+	atomic_store(&pool->next, 0);
+	atomic_store(&pool->worker, 0);
 	for (int w = 0; w < threads; w++)
-		if (pthread_create(&thread[w], NULL, crew_work, crew) != 0)
+		if (pthread_create(&thread[w], NULL, crew_work, pool) != 0)
 			bench_fail("no thread");
 	for (int w = 0; w < threads; w++)
 		pthread_join(thread[w], NULL);
@@ -69,22 +69,22 @@ static double peak_memory(void)
 static struct cost study_cost(const struct pound_study *study, int threads)
 {
 	double wall = bench_seconds(CLOCK_MONOTONIC), cpu = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
-	struct crew crew = {.run = pound_run_create(study, threads)};
-	if (!crew.run)
+	struct pool pool = {.run = pound_run_create(study, threads)};
+	if (!pool.run)
 		bench_fail("out of memory");
-	crew.step = pound_run_block;
-	crew.n_steps = pound_run_blocks(crew.run);
-	crew_run(&crew, threads);
+	pool.step = pound_run_block;
+	pool.n_steps = pound_run_blocks(pool.run);
+	pool_run(&pool, threads);
 	double blocks = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
-	crew.step = pound_run_reduce;
-	crew.n_steps = pound_run_reductions(crew.run);
-	crew_run(&crew, threads);
-	struct cost cost = {.work = pound_run_result(crew.run)->work, .runs = study_runs(study)};
+	pool.step = pound_run_reduce;
+	pool.n_steps = pound_run_reductions(pool.run);
+	pool_run(&pool, threads);
+	struct cost cost = {.work = pound_run_result(pool.run)->work, .runs = study_runs(study)};
 	cost.wall = bench_seconds(CLOCK_MONOTONIC) - wall;
 	cost.cpu = bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
 	cost.cpu_reductions = bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - blocks;
 	cost.memory = peak_memory();
-	pound_run_free(crew.run);
+	pound_run_free(pool.run);
 	return cost;
 }
 

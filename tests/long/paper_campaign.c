@@ -23,7 +23,7 @@ static void fail(const char *text)
 
 /* ---- running ---- */
 
-struct crew {
+struct pool {
 	const struct campaign_plan *plan;
 	struct pound_run *run;
 	enum pound_status (*step)(struct pound_run *run, int number, int worker);
@@ -38,25 +38,25 @@ static const char *noise_name(bool noise)
 
 static void *crew_work(void *argument)
 {
-	struct crew *crew = argument;
-	int worker = atomic_fetch_add(&crew->worker, 1);
-	for (int j; (j = atomic_fetch_add(&crew->next, 1)) < crew->n_steps;) {
-		enum pound_status status = crew->step(crew->run, j, worker);
+	struct pool *pool = argument;
+	int worker = atomic_fetch_add(&pool->worker, 1);
+	for (int j; (j = atomic_fetch_add(&pool->next, 1)) < pool->n_steps;) {
+		enum pound_status status = pool->step(pool->run, j, worker);
 		if (status)
 			fail(pound_status_text(status));
-		int tenth = 10 * (j + 1) / crew->n_steps;
-		if (crew->step == pound_run_block && tenth > 10 * j / crew->n_steps)
-			fprintf(stderr, "f_e T = %g, %s the noise: %d %%\n", crew->plan->cycles,
-			        noise_name(crew->plan->noise), 10 * tenth);
+		int tenth = 10 * (j + 1) / pool->n_steps;
+		if (pool->step == pound_run_block && tenth > 10 * j / pool->n_steps)
+			fprintf(stderr, "f_e T = %g, %s the noise: %d %%\n", pool->plan->cycles,
+			        noise_name(pool->plan->noise), 10 * tenth);
 	}
 	return NULL;
 }
 
-static void crew_run(struct crew *crew, int n_workers)
+static void pool_run(struct pool *pool, int n_workers)
 {
 	pthread_t threads[THREADS_MAX];
 	for (int j = 0; j < n_workers; j++)
-		if (pthread_create(&threads[j], NULL, crew_work, crew))
+		if (pthread_create(&threads[j], NULL, crew_work, pool))
 			fail("no thread");
 	for (int j = 0; j < n_workers; j++)
 		pthread_join(threads[j], NULL);
@@ -180,8 +180,8 @@ void campaign_run(const struct campaign_plan *plan, struct campaign *campaign)
 	struct pound_run *run = pound_run_create(study, n_workers);
 	if (!run)
 		fail("out of memory");
-	crew_run(&(struct crew){plan, run, pound_run_block, pound_run_blocks(run), 0, 0}, n_workers);
-	crew_run(&(struct crew){plan, run, pound_run_reduce, pound_run_reductions(run), 0, 0}, n_workers);
+	pool_run(&(struct pool){plan, run, pound_run_block, pound_run_blocks(run), 0, 0}, n_workers);
+	pool_run(&(struct pool){plan, run, pound_run_reduce, pound_run_reductions(run), 0, 0}, n_workers);
 	const struct pound_result *result = pound_run_result(run);
 	assert(result->n_cells == LAWS * FREQUENCIES);
 	campaign->plan = *plan;

@@ -39,7 +39,7 @@ int __wrap_pound_dispatch_width(int lanes)
 	return __real_pound_dispatch_width(lanes ? lanes : asked_lanes);
 }
 
-struct crew {
+struct pool {
 	struct pound_run *run;
 	enum pound_status (*job)(struct pound_run *run, int index, int worker);
 	int n_jobs;
@@ -49,52 +49,52 @@ struct crew {
 
 struct member {
 	pthread_t thread;
-	struct crew *crew;
+	struct pool *pool;
 	int worker;
 };
 
 static void *member_work(void *of)
 {
 	const struct member *member = of;
-	struct crew *crew = member->crew;
-	pthread_barrier_wait(&crew->ready);
-	for (int i; (i = atomic_fetch_add(&crew->next, 1)) < crew->n_jobs;)
-		if (crew->job(crew->run, i, member->worker) != POUND_OK)
+	struct pool *pool = member->pool;
+	pthread_barrier_wait(&pool->ready);
+	for (int i; (i = atomic_fetch_add(&pool->next, 1)) < pool->n_jobs;)
+		if (pool->job(pool->run, i, member->worker) != POUND_OK)
 			abort();
 	return NULL;
 }
 
-static void all_jobs(struct crew *crew, int first, int n_threads)
+static void all_jobs(struct pool *pool, int first, int n_threads)
 {
 	struct member members[THREADS_MAX];
-	atomic_store(&crew->next, first);
-	pthread_barrier_init(&crew->ready, NULL, (unsigned)n_threads);
+	atomic_store(&pool->next, first);
+	pthread_barrier_init(&pool->ready, NULL, (unsigned)n_threads);
 	for (int i = 0; i < n_threads; i++) {
-		members[i] = (struct member){.crew = crew, .worker = i};
+		members[i] = (struct member){.pool = pool, .worker = i};
 		assert_int_equal(pthread_create(&members[i].thread, NULL, member_work, &members[i]), 0);
 	}
 	for (int i = 0; i < n_threads; i++)
 		pthread_join(members[i].thread, NULL);
-	pthread_barrier_destroy(&crew->ready);
+	pthread_barrier_destroy(&pool->ready);
 }
 
 /* The SHA-256 of a study's result by so many threads, in hexadecimal digits. */
 static void hash_result(const struct pound_study *study, int n_threads, char hash[static HASH_TEXT])
 {
-	struct crew crew = {.run = pound_run_create(study, n_threads)};
-	assert_non_null(crew.run);
+	struct pool pool = {.run = pound_run_create(study, n_threads)};
+	assert_non_null(pool.run);
 	int done = 0;
 	do {
-		crew.job = pound_run_block;
-		crew.n_jobs = pound_run_blocks(crew.run);
-		all_jobs(&crew, done, n_threads);
-		done = crew.n_jobs;
-		crew.job = pound_run_reduce;
-		crew.n_jobs = pound_run_reductions(crew.run);
-		all_jobs(&crew, 0, n_threads);
-	} while (pound_run_grow(crew.run));
+		pool.job = pound_run_block;
+		pool.n_jobs = pound_run_blocks(pool.run);
+		all_jobs(&pool, done, n_threads);
+		done = pool.n_jobs;
+		pool.job = pound_run_reduce;
+		pool.n_jobs = pound_run_reductions(pool.run);
+		all_jobs(&pool, 0, n_threads);
+	} while (pound_run_grow(pool.run));
 	size_t n;
-	char *json = result_to_json(study, pound_run_result(crew.run), NULL, &n);
+	char *json = result_to_json(study, pound_run_result(pool.run), NULL, &n);
 	assert_non_null(json);
 	struct sha256_ctx context;
 	uint8_t digest[SHA256_DIGEST_SIZE];
@@ -104,7 +104,7 @@ static void hash_result(const struct pound_study *study, int n_threads, char has
 	for (int i = 0; i < SHA256_DIGEST_SIZE; i++)
 		snprintf(hash + 2 * i, 3, "%02x", digest[i]);
 	free(json);
-	pound_run_free(crew.run);
+	pound_run_free(pool.run);
 }
 
 /* The study of an example that this program can run, NULL for a model that is run elsewhere; cut: of few rows. */

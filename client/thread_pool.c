@@ -1,7 +1,7 @@
 /* The threads take orders from a queue: to make the run of a study and answer with the digest of its design, or to run a
  * block.  Who receives messages never sends, so that a coordinator which sends much cannot wait for itself.  A study that was
  * dropped is stopped, its orders are answered as such, and the last who is at it frees it. */
-#include "client/worker_crew.h"
+#include "client/thread_pool.h"
 
 #include <argp.h>
 #include <assert.h>
@@ -38,7 +38,7 @@ struct order {
 	int block; /* -1: make the run */
 };
 
-struct worker_crew {
+struct thread_pool {
 	pthread_mutex_t lock;
 	pthread_cond_t ordered;
 	TAILQ_HEAD(, work_study) studies;
@@ -56,15 +56,15 @@ static double thread_cpu(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static void give_answer(struct worker_crew *crew, const struct message *message, const void *body)
+static void give_answer(struct thread_pool *pool, const struct message *message, const void *body)
 {
-	pthread_mutex_lock(&crew->answers);
-	crew->answer(crew->to, message, body);
-	pthread_mutex_unlock(&crew->answers);
+	pthread_mutex_lock(&pool->answers);
+	pool->answer(pool->to, message, body);
+	pthread_mutex_unlock(&pool->answers);
 }
 
 /* Makes the run of a study and answers with the digest. */
-static void open_study(struct worker_crew *crew, struct work_study *s)
+static void open_study(struct thread_pool *pool, struct work_study *s)
 {
 	struct message m = {.type = MESSAGE_DESIGN, .study = s->id, .status = POUND_NOMEM};
 	uint8_t digest[MESSAGE_DIGEST_SIZE];
@@ -72,7 +72,7 @@ static void open_study(struct worker_crew *crew, struct work_study *s)
 	s->study = study_from_json(s->document, s->length, &problems);
 	free(s->document);
 	s->document = NULL;
-	struct pound_run *run = s->study ? pound_run_create_by(s->study, crew->n_threads, &s->stop) : NULL;
+	struct pound_run *run = s->study ? pound_run_create_by(s->study, pool->n_threads, &s->stop) : NULL;
 	if (run)
 		pound_run_stop_by(run, &s->stop);
 	if (run && message_design(s->study, run, digest)) {
@@ -82,14 +82,14 @@ static void open_study(struct worker_crew *crew, struct work_study *s)
 	size_t most = 0;
 	for (int block = run ? pound_run_blocks_most(run) - 1 : -1; block >= 0; block--)
 		most = pound_run_block_size(run, block) > most ? pound_run_block_size(run, block) : most;
-	pthread_mutex_lock(&crew->lock);
+	pthread_mutex_lock(&pool->lock);
 	s->values_most = most;
 	s->run = run;
-	pthread_mutex_unlock(&crew->lock);
-	give_answer(crew, &m, digest);
+	pthread_mutex_unlock(&pool->lock);
+	give_answer(pool, &m, digest);
 }
 
-static void run_block(struct worker_crew *crew, struct work_study *s, int block, int worker)
+static void run_block(struct thread_pool *pool, struct work_study *s, int block, int worker)
 {
 	struct message m = {.type = MESSAGE_VALUES, .study = s->id, .block = block, .status = POUND_STOPPED};
 	double cpu_s = thread_cpu();
@@ -98,12 +98,12 @@ static void run_block(struct worker_crew *crew, struct work_study *s, int block,
 	m.cpu_s = thread_cpu() - cpu_s;
 	if (m.status == POUND_OK)
 		m.n = (uint32_t)pound_run_block_size(s->run, block);
-	give_answer(crew, &m, m.n ? pound_run_block_values(s->run, block) : NULL);
+	give_answer(pool, &m, m.n ? pound_run_block_values(s->run, block) : NULL);
 }
 
-static void study_end(struct worker_crew *crew, struct work_study *s)
+static void study_end(struct thread_pool *pool, struct work_study *s)
 {
-	TAILQ_REMOVE(&crew->studies, s, others);
+	TAILQ_REMOVE(&pool->studies, s, others);
 	if (s->run)
 		pound_run_free(s->run);
 	if (s->study)
@@ -114,67 +114,67 @@ static void study_end(struct worker_crew *crew, struct work_study *s)
 
 static void *thread(void *of)
 {
-	struct worker_crew *crew = of;
-	pthread_mutex_lock(&crew->lock);
-	const int worker = crew->n_numbered++;
+	struct thread_pool *pool = of;
+	pthread_mutex_lock(&pool->lock);
+	const int worker = pool->n_numbered++;
 	for (;;) {
-		struct order *order = STAILQ_FIRST(&crew->orders);
+		struct order *order = STAILQ_FIRST(&pool->orders);
 		if (!order) {
-			pthread_cond_wait(&crew->ordered, &crew->lock);
+			pthread_cond_wait(&pool->ordered, &pool->lock);
 			continue;
 		}
-		STAILQ_REMOVE_HEAD(&crew->orders, next);
-		pthread_mutex_unlock(&crew->lock);
+		STAILQ_REMOVE_HEAD(&pool->orders, next);
+		pthread_mutex_unlock(&pool->lock);
 		struct work_study *s = order->study;
 		if (order->block < 0)
-			open_study(crew, s);
+			open_study(pool, s);
 		else
-			run_block(crew, s, order->block, worker);
+			run_block(pool, s, order->block, worker);
 		free(order);
-		pthread_mutex_lock(&crew->lock);
+		pthread_mutex_lock(&pool->lock);
 		if (--s->n_orders == 0 && s->stop)
-			study_end(crew, s);
+			study_end(pool, s);
 	}
 	return NULL;
 }
 
-struct worker_crew *worker_crew_start(int n_threads, worker_answer *answer, void *to)
+struct thread_pool *thread_pool_start(int n_threads, worker_answer *answer, void *to)
 {
-	struct worker_crew *crew = calloc(1, sizeof *crew);
-	if (!crew)
+	struct thread_pool *pool = calloc(1, sizeof *pool);
+	if (!pool)
 		return NULL;
-	*crew = (struct worker_crew){.lock = PTHREAD_MUTEX_INITIALIZER,
+	*pool = (struct thread_pool){.lock = PTHREAD_MUTEX_INITIALIZER,
 	                             .ordered = PTHREAD_COND_INITIALIZER,
 	                             .answers = PTHREAD_MUTEX_INITIALIZER,
 	                             .answer = answer,
 	                             .to = to,
 	                             .n_threads = n_threads};
-	TAILQ_INIT(&crew->studies);
-	STAILQ_INIT(&crew->orders);
+	TAILQ_INIT(&pool->studies);
+	STAILQ_INIT(&pool->orders);
 	for (int i = 0; i < n_threads; i++) {
 		pthread_t id;
-		if (pthread_create(&id, NULL, thread, crew) != 0)
+		if (pthread_create(&id, NULL, thread, pool) != 0)
 			return NULL; // the program ends
 		pthread_detach(id);
 	}
-	return crew;
+	return pool;
 }
 
 /* Under the lock. */
-static bool put(struct worker_crew *crew, struct work_study *s, int block)
+static bool put(struct thread_pool *pool, struct work_study *s, int block)
 {
 	struct order *order = malloc(sizeof *order);
 	if (!order)
 		return false;
 	*order = (struct order){.study = s, .block = block};
 	s->n_orders++;
-	STAILQ_INSERT_TAIL(&crew->orders, order, next);
-	pthread_cond_signal(&crew->ordered);
+	STAILQ_INSERT_TAIL(&pool->orders, order, next);
+	pthread_cond_signal(&pool->ordered);
 	return true;
 }
 
 /* What a message means for the study it names (NULL: there is none). */
-static bool obey(struct worker_crew *crew, const struct message *m, struct work_study *s, char **body)
+static bool obey(struct thread_pool *pool, const struct message *m, struct work_study *s, char **body)
 {
 	switch ((enum message_type)m->type) {
 	case MESSAGE_STUDY:
@@ -184,16 +184,16 @@ static bool obey(struct worker_crew *crew, const struct message *m, struct work_
 		s->document = *body;
 		s->length = m->n;
 		*body = NULL;
-		TAILQ_INSERT_TAIL(&crew->studies, s, others);
-		return put(crew, s, -1);
+		TAILQ_INSERT_TAIL(&pool->studies, s, others);
+		return put(pool, s, -1);
 	case MESSAGE_BLOCK:
-		return s && s->run && m->block < pound_run_blocks_most(s->run) && put(crew, s, m->block);
+		return s && s->run && m->block < pound_run_blocks_most(s->run) && put(pool, s, m->block);
 	case MESSAGE_DROP:
 		if (!s)
 			return false;
 		s->stop = true;
 		if (s->n_orders == 0)
-			study_end(crew, s);
+			study_end(pool, s);
 		return true;
 	case MESSAGE_READY:
 	case MESSAGE_DESIGN:
@@ -203,47 +203,47 @@ static bool obey(struct worker_crew *crew, const struct message *m, struct work_
 	return false;
 }
 
-bool worker_crew_take(struct worker_crew *crew, const struct message *m, char *body)
+bool thread_pool_take(struct thread_pool *pool, const struct message *m, char *body)
 {
 	struct work_study *s;
-	pthread_mutex_lock(&crew->lock);
-	TAILQ_FOREACH(s, &crew->studies, others)
+	pthread_mutex_lock(&pool->lock);
+	TAILQ_FOREACH(s, &pool->studies, others)
 	if (s->id == m->study && !s->stop)
 		break;
-	bool sense = obey(crew, m, s, &body);
-	pthread_mutex_unlock(&crew->lock);
+	bool sense = obey(pool, m, s, &body);
+	pthread_mutex_unlock(&pool->lock);
 	free(body);
 	return sense;
 }
 
-size_t worker_crew_values_most(struct worker_crew *crew, uint64_t study)
+size_t thread_pool_values_most(struct thread_pool *pool, uint64_t study)
 {
 	size_t most = 0;
 	const struct work_study *s;
-	pthread_mutex_lock(&crew->lock);
-	TAILQ_FOREACH(s, &crew->studies, others)
+	pthread_mutex_lock(&pool->lock);
+	TAILQ_FOREACH(s, &pool->studies, others)
 	most = s->id == study ? s->values_most : most;
-	pthread_mutex_unlock(&crew->lock);
+	pthread_mutex_unlock(&pool->lock);
 	return most;
 }
 
-void worker_crew_stop(struct worker_crew *crew)
+void thread_pool_stop(struct thread_pool *pool)
 {
-	pthread_mutex_lock(&crew->lock);
-	for (struct work_study *s = TAILQ_FIRST(&crew->studies), *next; s; s = next) {
+	pthread_mutex_lock(&pool->lock);
+	for (struct work_study *s = TAILQ_FIRST(&pool->studies), *next; s; s = next) {
 		next = TAILQ_NEXT(s, others);
 		s->stop = true;
 		if (s->n_orders == 0)
-			study_end(crew, s);
+			study_end(pool, s);
 	}
-	pthread_mutex_unlock(&crew->lock);
+	pthread_mutex_unlock(&pool->lock);
 }
 
-bool worker_crew_idle(struct worker_crew *crew)
+bool thread_pool_idle(struct thread_pool *pool)
 {
-	pthread_mutex_lock(&crew->lock);
-	const bool idle = TAILQ_EMPTY(&crew->studies);
-	pthread_mutex_unlock(&crew->lock);
+	pthread_mutex_lock(&pool->lock);
+	const bool idle = TAILQ_EMPTY(&pool->studies);
+	pthread_mutex_unlock(&pool->lock);
 	return idle;
 }
 
