@@ -23,7 +23,7 @@ struct pool {
 	atomic_int next, worker;
 };
 
-static void *crew_work(void *of)
+static void *pool_work(void *of)
 {
 	struct pool *pool = of;
 	int worker = atomic_fetch_add(&pool->worker, 1);
@@ -39,7 +39,7 @@ static void pool_run(struct pool *pool, int threads)
 	atomic_store(&pool->next, 0);
 	atomic_store(&pool->worker, 0);
 	for (int w = 0; w < threads; w++)
-		if (pthread_create(&thread[w], NULL, crew_work, pool) != 0)
+		if (pthread_create(&thread[w], NULL, pool_work, pool) != 0)
 			bench_fail("no thread");
 	for (int w = 0; w < threads; w++)
 		pthread_join(thread[w], NULL);

@@ -36,7 +36,7 @@ static const char *noise_name(bool noise)
 	return noise ? "with" : "without";
 }
 
-static void *crew_work(void *argument)
+static void *pool_work(void *argument)
 {
 	struct pool *pool = argument;
 	int worker = atomic_fetch_add(&pool->worker, 1);
@@ -56,7 +56,7 @@ static void pool_run(struct pool *pool, int n_workers)
 {
 	pthread_t threads[THREADS_MAX];
 	for (int j = 0; j < n_workers; j++)
-		if (pthread_create(&threads[j], NULL, crew_work, pool))
+		if (pthread_create(&threads[j], NULL, pool_work, pool))
 			fail("no thread");
 	for (int j = 0; j < n_workers; j++)
 		pthread_join(threads[j], NULL);
