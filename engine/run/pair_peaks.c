@@ -72,20 +72,26 @@ static void series_search(const struct series *s, double middle, double half, in
 	series_search(s, middle - next, 0.5 * half, depth + 1, peak);
 }
 
-/* Raises the peak to the largest value of a series times sign. */
+/* Raises the peak to the largest value of a series times sign.
+ *
+ *   p(x) = c_0 + x^k (c_k + c_k+1 x + ...) <= c_0 + max(c_k + max(c_k+1 + ..., 0), 0)     for 0 <= x <= 1
+ *
+ * with c_k the first coefficient behind c_0 that is not 0.  Bodies leave their rest like x^4: no halving would find that flat start
+ * below the peak before its steps are as short as roundings. */
 static void series_peak(const struct series *s, double sign, double *peak)
 {
 	struct series signed_series = {.bend = s->bend, .twist = s->twist, .rounding = s->rounding};
-	double most = 0;
-	for (int n = 0; n <= ORDER; n++) {
-		const double c = sign * s->c[n];
-		signed_series.c[n] = c;
-		most += n == 0 ? c : fmax(c, 0);
+	double rise = 0;
+	for (int n = ORDER; n >= 0; n--) {
+		signed_series.c[n] = sign * s->c[n];
+		if (n > 0 && signed_series.c[n] != 0)
+			rise = fmax(rise, 0) + signed_series.c[n];
 	}
-	if (!(most > *peak + s->rounding))
+	if (!(signed_series.c[0] + fmax(rise, 0) > *peak + s->rounding))
 		return;
 	*peak = fmax(*peak, signed_series.c[0]);
-	series_search(&signed_series, 0.5, 0.5, 0, peak);
+	if (rise > 0)
+		series_search(&signed_series, 0.5, 0.5, 0, peak);
 }
 
 /* Adds a body's series, and moves its state to the end of the step.
