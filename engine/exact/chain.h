@@ -58,7 +58,8 @@ enum pound_chain_asked {
 struct pound_chain_floor_motion {
 	double u, v; /* at the start, relative to the ground [m], [m/s] */
 	double jump; /* of v, just before: rigid impacts [m/s] */
-	// absolute acceleration, and the part of it that contacts give  [m/s2]  (order + 1)
+	// absolute acceleration, and the part of it that contacts give, or the observed link alone where there is one
+	// [m/s2]  (order + 1)
 	double acceleration[POUND_CHAIN_ORDER + 1], push[POUND_CHAIN_ORDER + 1];
 };
 
@@ -80,8 +81,8 @@ struct pound_chain_piece {
 struct pound_chain_observer {
 	void (*observe)(void *into, const struct pound_chain_piece *piece);
 	void *into;
-	int floors[POUND_CHAIN_OBSERVED]; /* POUND_CHAIN_GROUND: one that moves with the ground */
-	int link;                         /* -1: none */
+	int floor; /* the first that is observed */
+	int link; /* the other one is the level at its right side; -1: none, the other one moves with the ground */
 };
 
 struct pound_chain_task {

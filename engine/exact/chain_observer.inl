@@ -14,13 +14,15 @@ static double link_force_at(const struct chain *c, int j, int n)
 	return c->warp.on ? curve_force(c, j, n) : link_force(c, l, j, n) * per_h2;
 }
 
-/* Acceleration of the contacts on floor i of order n. */
+/* Acceleration of the contacts, or of the observed one, on floor i of order n. */
 static double push_at(const struct chain *c, int i, int n)
 {
+	const int observed = c->task->observer->link;
 	double sum = 0;
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
-		for (int k = 0; l->touching && k < l->n_ends; k++)
+		const bool pushes = l->touching && (observed < 0 || j == observed);
+		for (int k = 0; pushes && k < l->n_ends; k++)
 			if (l->floor[k] == i)
 				sum -= l->weight[k] * c->inverse_mass.at[i] * link_force_at(c, j, n);
 	}
@@ -46,19 +48,32 @@ static double acceleration_at(const struct chain *c, int i, int n)
 	return sum + floor;
 }
 
-/* Fills the motion of an observed floor up to a share of the step. */
-static void floor_report(const struct chain *c, int observed, double time, struct pound_chain_piece *piece)
+/* Fills the motion of the observed floor, and of the level opposite it, up to a share of the step. */
+static void floors_report(const struct chain *c, double time, struct pound_chain_piece *piece)
 {
-	const int i = c->task->observer->floors[observed];
-	struct pound_chain_floor_motion *m = &piece->floors[observed];
-	const bool moves = i != POUND_CHAIN_GROUND;
+	static const int ground[2] = {POUND_CHAIN_GROUND, POUND_CHAIN_GROUND};
+	static const double whole[2] = {1, 0};
+	const struct pound_chain_observer *observer = c->task->observer;
+	const struct pound_link *link = observer->link >= 0 ? &c->task->links[observer->link] : NULL;
+	const int *floor = link ? link->floor[1] : ground;
+	const double *weight = link ? link->weight[1] : whole;
+	struct pound_chain_floor_motion *own = &piece->floors[0], *other = &piece->floors[1];
 	double power = 1;
-	m->u = moves ? c->u.at[i] : 0;
-	m->v = moves ? c->w.at[i] : 0;
-	m->jump = c->jump[observed];
+	own->u = c->u.at[observer->floor];
+	own->v = c->w.at[observer->floor];
+	own->jump = c->jump;
+	memset(other, 0, sizeof *other);
+	for (int k = 0; k < 2; k++)
+		if (floor[k] != POUND_CHAIN_GROUND) {
+			other->u += weight[k] * c->u.at[floor[k]];
+			other->v += weight[k] * c->w.at[floor[k]];
+		}
 	for (int n = 0; n <= piece->order; n++, power *= time) {
-		m->acceleration[n] = acceleration_at(c, i, n) * power;
-		m->push[n] = moves ? push_at(c, i, n) * power : 0;
+		own->acceleration[n] = acceleration_at(c, observer->floor, n) * power;
+		own->push[n] = push_at(c, observer->floor, n) * power;
+		for (int k = 0; k < 2; k++)
+			if (weight[k] != 0)
+				other->acceleration[n] += weight[k] * acceleration_at(c, floor[k], n) * power;
 	}
 }
 
@@ -80,16 +95,14 @@ static void pieces_report(struct chain *c, double time)
 	piece.length = !x->on ? time * c->dt : x->sampled ? c->remainder : series_at(x->clock, 1, time);
 	for (int j = 0; j < c->n_links; j++)
 		for (int k = 0; k < c->link[j].n_ends; k++)
-			piece.touching |= c->link[j].touching && c->link[j].floor[k] == observer->floors[0];
+			piece.touching |= c->link[j].touching && c->link[j].floor[k] == observer->floor;
 	if (observer->link >= 0) {
 		const struct link *l = &c->link[observer->link];
 		piece.overlap = l->own ? l->p : link_sum(l, c->u.at) - l->link->gap;
 		piece.overlap_rate = l->own ? l->q : link_sum(l, c->w.at);
 	}
-	for (int o = 0; o < POUND_CHAIN_OBSERVED; o++) {
-		floor_report(c, o, time, &piece);
-		c->jump[o] = 0;
-	}
+	floors_report(c, time, &piece);
+	c->jump = 0;
 	c->after_event = false;
 	observer->observe(observer->into, &piece);
 }

@@ -176,7 +176,7 @@ struct chain {
 	struct modal_motion modal_motion;
 	// since the last piece that was reported (chain_observer.inl)
 	bool after_event;
-	double jump[POUND_CHAIN_OBSERVED];
+	double jump; /* of the observed floor */
 	struct warp warp;
 	// energy
 	double work_in, work_gap, work_low, work_top;

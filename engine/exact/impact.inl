@@ -161,9 +161,8 @@ static void impulse_apply(struct chain *c, const struct link *by, double impulse
 		c->v.at[i] += change;
 		if (c->inverse_above.at[i] != 0)
 			c->v.at[i + 1] -= change;
-		for (int o = 0; c->task->observer && o < POUND_CHAIN_OBSERVED; o++)
-			if (c->task->observer->floors[o] == i)
-				c->jump[o] += change;
+		if (c->task->observer && c->task->observer->floor == i)
+			c->jump += change;
 		for (int j = 0; j < c->n_links; j++) {
 			struct link *l = &c->link[j];
 			for (int e = 0; l->own && e < l->n_ends; e++)

@@ -133,7 +133,7 @@ static void pair_follow_as_chain(struct pound_floor *floor, const struct pound_f
 	struct pound_chain_result rows = {.floors = pair.floor_measures[0], .links = pair.link_measures};
 	memset(pair.floor_measures, 0, sizeof pair.floor_measures);
 	memset(pair.link_measures, 0, sizeof pair.link_measures);
-	const struct pound_chain_observer observer = {.floors = {0, pair.link.floor[1][0]}, .link = 0};
+	const struct pound_chain_observer observer = {.floor = 0, .link = 0};
 	chain_follow(floor, ask, observer, &(struct pound_floor_of_chain){&pair.task, 0, &rows});
 	*result = (struct pound_task_result){.status = rows.status,
 	                                     .impulse_max = rows.links[POUND_LINK_IMPULSE_MAX],
@@ -142,6 +142,33 @@ static void pair_follow_as_chain(struct pound_floor *floor, const struct pound_f
 		result->u[i] = pair.floor_measures[i][POUND_FLOOR_END_U];
 		result->v[i] = pair.floor_measures[i][POUND_FLOOR_END_V];
 	}
+}
+
+/* Test     unit_row_floors: a_history_has_the_contact_of_its_floor */
+int pound_floor_contact(const struct pound_floor_of_chain *chain)
+{
+	const struct pound_link *links = chain->task->links;
+	for (int j = 0; j < chain->task->n_links; j++)
+		for (int k = 0; k < 2; k++)
+			if (links[j].floor[0][k] == chain->floor && links[j].weight[0][k] == 1)
+				return j;
+	return -1;
+}
+
+/* Where a level of a chain is at the end.
+ *
+ * Given    measure  POUND_FLOOR_END_U or POUND_FLOOR_END_V
+ */
+static double level_end(const struct pound_floor_of_chain *chain, int link, enum pound_floor_measure measure)
+{
+	double sum = 0;
+	for (int k = 0; link >= 0 && k < 2; k++) {
+		const int floor = chain->task->links[link].floor[1][k];
+		if (floor != POUND_CHAIN_GROUND)
+			sum += chain->task->links[link].weight[1][k] *
+			       chain->result->floors[floor * POUND_FLOOR_MEASURES + measure];
+	}
+	return sum;
 }
 
 /* Sets the largest impulse of a contact on a floor of a chain over its mass, and how many contacts there were. */
@@ -175,13 +202,15 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 	*motion = (struct pound_floor_motion){
 	    .stretch = &floor->stretch, .taker = follower->taker, .stop = ask->stop, .beside = follower->beside};
 	if (ask->chain.task) {
-		const struct pound_chain_observer observer = {.floors = {ask->chain.floor, POUND_CHAIN_GROUND},
-		                                              .link = -1};
+		// a history is of one contact, spectra are of all
+		const int link = follower->beside ? pound_floor_contact(&ask->chain) : -1;
+		const struct pound_chain_observer observer = {.floor = ask->chain.floor, .link = link};
 		const double *floors = ask->chain.result->floors + ask->chain.floor * POUND_FLOOR_MEASURES;
 		chain_follow(floor, ask, observer, &ask->chain);
-		*result = (struct pound_task_result){.status = ask->chain.result->status,
-		                                     .u = {floors[POUND_FLOOR_END_U]},
-		                                     .v = {floors[POUND_FLOOR_END_V]}};
+		*result = (struct pound_task_result){
+		    .status = ask->chain.result->status,
+		    .u = {floors[POUND_FLOOR_END_U], level_end(&ask->chain, link, POUND_FLOOR_END_U)},
+		    .v = {floors[POUND_FLOOR_END_V], level_end(&ask->chain, link, POUND_FLOOR_END_V)}};
 		impulses_fill(&ask->chain, result);
 	} else if (pound_runs_as_chain(ask->task)) {
 		pair_follow_as_chain(floor, ask, result);

@@ -18,6 +18,9 @@ struct pound_floor_of_chain {
 	struct pound_chain_result *result; /* room for its measures */
 };
 
+/* The contact between this floor and a level of the right neighbor; -1: it has none. */
+int pound_floor_contact(const struct pound_floor_of_chain *chain);
+
 /* what is asked of one task: of the left body of a pair, or of a floor of a chain */
 struct pound_floor_ask {
 	const struct pound_task *task;
@@ -40,14 +43,16 @@ struct pound_floor_answer {
 enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       struct pound_floor_answer *answer);
 
-/* Both bodies at one time: left, right; of a chain the floor alone, and 0 in place of the other and of the gap. */
+/* Both bodies at one time: left, right; of a chain the floor and the level of its contact, without one 0 in place of that and
+ * of the gap. */
 struct pound_floor_instant {
 	double time;                                       /* [s] */
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS]; /* relative to the ground [m], [m/s] */
 	double acceleration[POUND_OSCILLATORS];            /* absolute [m/s2] */
 	double gap, gap_rate;                              /* clear distance, < 0: overlap [m], [m/s] */
 	double ground;                                     /* acceleration [m/s2] */
-	double push; /* of the contact: force over the left mass, < 0 pushes away [m/s2] */
+	double
+	    push; /* of the contact, without one of all on the floor: force over the left mass, < 0 pushes away [m/s2] */
 };
 
 /* Hands every row of a task's history to `take`: at the samples, on both sides of every event, and between them as often as

@@ -396,7 +396,7 @@ struct history {
 	pound_run_take *take;
 	void *into;
 	int signal, exponent;
-	bool row; /* of buildings: the floor alone */
+	bool both; /* there is another body */
 	bool contact;
 	double mass;
 };
@@ -414,7 +414,7 @@ static void history_take(void *of, const struct pound_floor_instant *instant)
 	                            .gap = to->contact ? history_scaled(to, instant->gap) : NAN,
 	                            .ground = history_scaled(to, instant->ground)};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const bool has = i == 0 || !to->row;
+		const bool has = i == 0 || to->both;
 		row.u[i] = has ? history_scaled(to, instant->u[i]) : NAN;
 		row.v[i] = has ? history_scaled(to, instant->v[i]) : NAN;
 		row.acceleration[i] = has ? history_scaled(to, instant->acceleration[i]) : NAN;
@@ -446,18 +446,18 @@ enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run
 	if (status || left)
 		return status ? status : left;
 	const struct pound_request_floor floor = pound_request_floor(run->requests[0], 0);
-	const bool row = run->campaign.study->scene.n_buildings > 0;
 	struct history to = {.take = take,
 	                     .into = into,
 	                     .signal = signal,
 	                     .exponent = floor.exponent,
-	                     .row = row,
-	                     .contact = floor.contact && !row,
+	                     .both = true,
+	                     .contact = floor.contact,
 	                     .mass = floor.mass};
 	struct pound_floor_ask ask = {.stop = run->stop, .scratch = floor.scratch};
 	struct pound_task pair;
-	if (row) {
+	if (run->campaign.study->scene.n_buildings > 0) {
 		ask.chain = floor.touches ? floor.row.pounding : floor.row.free;
+		to.both = to.contact = pound_floor_contact(&ask.chain) >= 0;
 	} else {
 		pair = pound_request_pair(run->requests[0], 0);
 		ask.task = &pair;

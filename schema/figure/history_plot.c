@@ -318,6 +318,7 @@ void plot_force(struct plot *plot)
 		}
 	// what a contact ends with is zero up to rounding
 	across.low = across.low > -1e-6 * across.high ? 0 : across.low;
+	up.low = up.low > -1e-6 * up.high ? 0 : up.low;
 	if (n)
 		snprintf(more, sizeof more, "ground motion %d, %d contacts; the one of the largest force is thick",
 		         table.signal, n);

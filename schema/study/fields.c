@@ -417,7 +417,7 @@ const struct field fields[] = {
 	{"/spectrum/place/storey", FIELD_COUNT, AT(spectrum.place.storey), NAN, 1, POUND_STOREYS_MAX, FIELD_CLOSED, "",
 	 .text = "storey, from 1", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/histories", FIELD_BOOL, AT(spectrum.histories), 0, 0, 1, FIELD_CLOSED, "",
-	 .text = "true: samples have the time histories of both oscillators, or of the floor at /spectrum/place; at most 250000 ground motion samples over all signals", FLOORED, WITH_SCENE, NOT_SCENE},
+	 .text = "true: samples have the time histories of both oscillators, or of the floor at /spectrum/place and its contact with the right neighbor; at most 250000 ground motion samples over all signals", FLOORED, WITH_SCENE, NOT_SCENE},
 
 	{"/separation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "what is wanted of the gap needed", SEPARATION},

@@ -13,4 +13,13 @@ struct pound_floor_answer floor_task_spectra(const struct pound_task *task,
                                              const struct pound_spectrum *spectrum, int n_drives,
                                              double radians, int lanes, double *psa[POUND_DRIVES]);
 
+/* a row of a history, of one floor */
+struct floor_line {
+	double time, v, acceleration; /* [s], relative to the ground [m/s], absolute [m/s2] */
+};
+
+/* Largest w^2 |z| of an oscillator on a floor whose acceleration is straight between n rows and whose velocity may jump where
+ * two rows have one time. */
+double floor_task_lines(int n, const struct floor_line *rows, double w, double damping_ratio);
+
 #endif

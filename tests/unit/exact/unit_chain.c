@@ -399,8 +399,8 @@ static void an_observer_gets_the_whole_motion_of_a_floor(void **state)
 		const int n = row_random(&r, (uint64_t)number);
 		struct story story = {0};
 		struct pound_chain_task task = row_task(&r, n, 0.01, ALL);
-		const struct pound_chain_observer observer = {
-		    story_add, &story, {task.n_floors - 1, POUND_CHAIN_GROUND}, -1};
+		const struct pound_chain_observer observer = {story_add, &story, .floor = task.n_floors - 1,
+		                                              .link = -1};
 		task.observer = &observer;
 		assert_int_equal(row_run(&r, &task, 0).status, POUND_OK);
 		const double *floor = r.floor_measures[task.n_floors - 1];

@@ -1,8 +1,6 @@
 /* unit_floor_history.c - rows of a history: the spectrum that they give by straight lines, and the motion of both bodies.
  *
- * The oracle is the textbook's own: an oscillator under straight lines of acceleration (Nigam and Jennings 1969), which
- * has no code in common with the floor's oscillators.  Between rows its motion is looked at 160 times a period: its largest
- * displacement is found to 2e-4. */
+ * The oracle is floor_task_lines(): the textbook's own, which has no code in common with the floor's oscillators. */
 #include <math.h>
 #include <string.h>
 
@@ -34,27 +32,12 @@ static void rows_take(const struct pound_task *task, const struct pound_spectrum
 	assert_int_equal(pound_floor_history(floor, &ask, row_take, NULL), POUND_OK);
 }
 
-/* Largest w^2 |z| of z'' + 2 xi w z' + w^2 z = -(a0 + s t) from row to row. */
 static double spectrum_of_rows(double w, double xi)
 {
-	const double wd = w * sqrt(1 - xi * xi);
-	double z = 0, v = 0, most = 0;
-	for (int i = 1; i < n_rows; i++) {
-		const double h = rows[i].time - rows[i - 1].time, a0 = rows[i - 1].acceleration[0];
-		if (!(h > 0))
-			continue;
-		const double s = (rows[i].acceleration[0] - a0) / h;
-		const double p0 = -a0 / (w * w) + 2 * xi * s / (w * w * w), p1 = -s / (w * w);
-		const double c = z - p0, d = (v - p1 + xi * w * c) / wd;
-		const int parts = (int)ceil(w * h / (2 * pi / 160));
-		for (int k = 1; k <= parts; k++) {
-			const double t = h * k / parts, decay = exp(-xi * w * t), co = cos(wd * t), si = sin(wd * t);
-			z = p0 + p1 * t + decay * (c * co + d * si);
-			v = p1 + decay * ((d * wd - xi * w * c) * co - (c * wd + xi * w * d) * si);
-			most = fmax(most, fabs(z));
-		}
-	}
-	return w * w * most;
+	static struct floor_line lines[ROWS];
+	for (int i = 0; i < n_rows; i++)
+		lines[i] = (struct floor_line){rows[i].time, rows[i].v[0], rows[i].acceleration[0]};
+	return floor_task_lines(n_rows, lines, w, xi);
 }
 
 /* A long noisy motion of two oscillators of the paper, without a gap: tens of contacts, large and small. */

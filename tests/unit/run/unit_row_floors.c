@@ -1,13 +1,15 @@
 /* unit_row_floors.c - floor spectra and histories of rows of buildings, from documents.
  *
  * 1. One-story rows beside two oscillators, which another march follows.
- * 2. Mirrored rows; a place of a study of spectra and of a sensitivity study; the end of a history. */
+ * 2. Mirrored rows; a place of a study of spectra and of a sensitivity study; the end of a history and its contact.
+ * 3. Spectra from histories of every contact model. */
 #include <math.h>
 #include <string.h>
 
 #include "engine/pound.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
+#include "tests/support/floor_tasks.h"
 #include "tests/support/study_documents.h"
 
 static struct pound_run *run_all(const struct pound_study *study)
@@ -190,7 +192,7 @@ static void instant_take(void *of, int signal, const struct pound_instant *insta
 	assert_int_equal(signal, 0);
 	assert_true(last->rows == 0 || instant->time >= last->at.time);
 	assert_true(isnan(instant->u[1]) && isnan(instant->v[1]) && isnan(instant->acceleration[1]) &&
-	            isnan(instant->gap));
+	            isnan(instant->gap)); // the last building has no right neighbor
 	if (last->rows++)
 		last->impulse += 0.5 * (instant->time - last->at.time) * (instant->force + last->at.force);
 	last->at = *instant;
@@ -226,8 +228,144 @@ static void a_history_ends_where_the_response_does(void **state)
 	study_free(study);
 }
 
+/* What a history says of the contact of its floor. */
+struct contact_history {
+	double gap;           /* of the document [m] */
+	double off, size;     /* largest |gap_m - (gap + u_right - u)|, and displacement [m] */
+	double force, impact; /* largest force [N], and impulse of one contact by the trapezium rule [N s] */
+	double wrong;         /* largest force where there can be none [N] */
+	double now;
+	struct pound_instant at;
+};
+
+static void contact_take(void *of, int signal, const struct pound_instant *i)
+{
+	struct contact_history *h = of;
+	(void)signal;
+	h->size = fmax(h->size, fmax(fabs(i->u[0]), fabs(i->u[1])));
+	h->off = fmax(h->off, fabs(i->gap - (h->gap + i->u[1] - i->u[0])));
+	h->force = fmax(h->force, i->force);
+	// of an elastic contact: none pulls, and none is without overlap
+	h->wrong = fmax(h->wrong, i->gap > 0 ? fabs(i->force) : -i->force);
+	h->now = i->force == 0 && h->at.force == 0
+	             ? 0
+	             : h->now + 0.5 * (i->time - h->at.time) * (i->force + h->at.force);
+	h->impact = fmax(h->impact, h->now);
+	h->at = *i;
+}
+
+static void a_history_has_the_contact_of_its_floor(void **state)
+{
+	(void)state;
+	static const char bodies[] =
+	    "\"buildings\": [" TALL ", " LOW ", " TALL "], \"contacts\": ["
+	    "{\"left_building\": 0, \"levels\": [1, 1]}, {\"left_building\": 0, \"levels\": [2, 1.5]}, "
+	    "{\"left_building\": 0, \"levels\": [3, 3]}, {\"left_building\": 1, \"levels\": [3, 3.25]}]",
+	                  contact[] = "\"gap_m\": 0.005, \"restitution\": 1", ground[] = WAVE "4";
+	static const struct {
+		int contact, building, storey, right[2]; /* floors of the right level in the response */
+		double weight[2];
+	} places[] = {{0, 0, 1, {4, 4}, {1, 0}},
+	              {1, 0, 2, {4, 5}, {0.5, 0.5}},
+	              {2, 0, 3, {6, 6}, {1, 0}},
+	              {3, 1, 3, {9, 10}, {0.75, 0.25}}};
+	char document[2000];
+	snprintf(document, sizeof document,
+	         "{\"kind\": \"response\", \"scene\": {%s, \"contact\": {%s}, \"excitation\": {%s}}}", bodies,
+	         contact, ground);
+	struct pound_study *study = study_documents_study(document);
+	struct pound_run *run = run_all(study);
+	const struct pound_row_response *row = &pound_run_result(run)->cells[0].rows[0];
+	for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
+		char place[60];
+		struct contact_history h = {.gap = 0.005};
+		const struct pound_contact_response *of = &row->contacts[places[k].contact];
+		double end = 0;
+		snprintf(place, sizeof place, ", \"place\": {\"building\": %d, \"storey\": %d}", places[k].building,
+		         places[k].storey);
+		struct spectra s = spectra_of(bodies, contact, ground, place);
+		assert_int_equal(pound_run_history(s.run, 0, contact_take, &h), POUND_OK);
+		for (int i = 0; i < 2; i++)
+			end += places[k].weight[i] * row->storeys[places[k].right[i]].end_u;
+		assert_true(of->contact_count > 1);
+		check_near(h.at.u[1], end, 1e-13);
+		check_near(h.off, 0, 64 * 2.2e-16 * (h.size + 0.005));
+		check_near(h.wrong, 0, 1e-9 * h.force);
+		check_near(h.force, of->force_max, 0.005 * of->force_max);
+		check_near(h.impact, of->impulse_max, 0.005 * of->impulse_max);
+		spectra_free(&s);
+	}
+	pound_run_free(run);
+	study_free(study);
+}
+
+/* ---- spectra from histories ---- */
+
+enum { LINES_MAX = 1 << 18 };
+
+struct lines {
+	int n;
+	struct floor_line line[LINES_MAX];
+};
+
+static void line_take(void *of, int signal, const struct pound_instant *instant)
+{
+	struct lines *lines = of;
+	(void)signal;
+	assert_true(lines->n < LINES_MAX);
+	lines->line[lines->n++] = (struct floor_line){instant->time, instant->v[0], instant->acceleration[0]};
+}
+
+/* With the jumps that rigid impacts make of the velocity. */
+static void histories_of_every_contact_model_give_the_spectrum_within_half_a_percent(void **state)
+{
+	(void)state;
+	static const char lossy[] = ", \"restitution\": 0.6",
+	                  yields[] = ", \"second_stiffness_ratio\": 0.4, \"yield_overlap_m\": 2e-4";
+	static const struct {
+		const char *name, *members;
+	} models[] = {{"kelvin_voigt", lossy},  {"linear", ""},          {"modified_kelvin_voigt", lossy},
+	              {"hunt_crossley", lossy}, {"hertz", ""},           {"hertz_damp", lossy},
+	              {"viscoelastic", lossy},  {"damped_hertz", lossy}, {"bilinear", yields},
+	              {"rigid", lossy}};
+	static const char *const bodies[] = {"\"oscillators\": [{\"mass_kg\": 1e5, \"frequency_hz\": 2}, "
+	                                     "{\"mass_kg\": 1.7e5, \"frequency_hz\": 3.1}]",
+	                                     "\"buildings\": [" TALL ", " LOW "]"};
+	static const char *const places[] = {"", ", \"place\": {\"building\": 0, \"storey\": 3}"};
+	static struct lines lines;
+	static const double PI = 3.14159265358979323846;
+	double most[2] = {0, 0};
+	for (size_t m = 0; m < sizeof models / sizeof models[0]; m++)
+		for (int b = 0; b < 2; b++) {
+			char contact[200];
+			snprintf(contact, sizeof contact, "\"model\": \"%s\", \"gap_m\": 0.004%s", models[m].name,
+			         models[m].members);
+			struct spectra s = spectra_of(bodies[b], contact, WAVE "4", places[b]);
+			const struct pound_floor_spectrum *with = &s.floor->spectra[POUND_SPECTRUM_POUNDING],
+			                                  *impacts = &s.floor->spectra[POUND_SPECTRUM_IMPACT_ONLY];
+			lines.n = 0;
+			assert_int_equal(pound_run_history(s.run, 0, line_take, &lines), POUND_OK);
+			assert_true(s.floor->pulses_mean > 1);
+			for (int k = 0; k < s.study->spectrum.n; k++) {
+				const double psa =
+				    floor_task_lines(lines.n, lines.line, 2 * PI * s.study->spectrum.frequencies_hz[k],
+				                     s.study->spectrum.damping_ratio);
+				assert_true(impacts->mean[k] < 60 * with->mean[k]);
+				most[b] = fmax(most[b], fabs(psa / with->mean[k] - 1));
+				if (!(fabs(psa / with->mean[k] - 1) < 0.005))
+					fail_msg("%s of %s: %.17g beside %.17g at %g Hz", models[m].name, b ? "a row" : "a pair",
+					         psa, with->mean[k], s.study->spectrum.frequencies_hz[k]);
+			}
+			spectra_free(&s);
+		}
+	check_report("spectra by straight lines between rows, ten contact models: pairs %.2e off, rows %.2e",
+	             most[0], most[1]);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_row_of_one_story_buildings_is_two_oscillators),
            cmocka_unit_test(a_mirrored_row_has_mirrored_floors),
            cmocka_unit_test(a_place_without_a_name_is_the_top_of_the_left_building),
            cmocka_unit_test(an_ordinate_of_a_row_is_that_of_a_study_of_spectra),
-           cmocka_unit_test(a_history_ends_where_the_response_does))
+           cmocka_unit_test(a_history_ends_where_the_response_does),
+           cmocka_unit_test(a_history_has_the_contact_of_its_floor),
+           cmocka_unit_test(histories_of_every_contact_model_give_the_spectrum_within_half_a_percent))
