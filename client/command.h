@@ -20,7 +20,7 @@ enum outcome {
 
 struct options {
 	const char *argument; /* the first argument of the subcommand: a file, an id or a name; NULL: none */
-	const char *second;   /* indices, plot, report, archive: the second argument */
+	const char *second;   /* indices, plot, report, archive, example: the second argument */
 	const char **files;   /* of a subcommand that takes any number of them  (n_files) */
 	int n_files;
 	const char *unit;       /* record: of a file that names none; NULL: not known */

@@ -104,9 +104,10 @@ static const struct command COMMANDS[] = {
 	 "cancel a queued or running study", ""},
 	{"delete", "ID", "u", false, {0}, query_delete,
 	 "delete a study and its result from the server", ""},
-	{"example", "[NAME]", "n", false, {0}, example_print,
+	{"example", "[NAME] [FOLDER]", "n", false, {0}, example_print,
 	 "print a complete study document to start from",
-	 "Without NAME, the paper's study.  --names lists the examples."},
+	 "Without NAME, the paper's study.  With FOLDER writes it as NAME.json into that folder, and recorded ground motions as "
+	 "files beside it.  --names lists the examples."},
 	{"record", "FILE...", "UdCPf", true, {"json", "table", "csv"}, record_show,
 	 "contents of files of recorded ground motions",
 	 "Reads PEER NGA (.AT2), COSMOS (.V1, .V2), ESM and ITACA (.ASC), and columns: time and acceleration, or "

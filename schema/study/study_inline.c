@@ -1,4 +1,5 @@
-/* study_inline.c - a document that names files of recorded ground motions -> the same with their samples in it. */
+/* study_inline.c - copies of a document of recorded ground motions: samples in place of files, files with their SHA-256, files in
+ * place of samples. */
 #include <cjson/cJSON.h>
 #include <stdio.h>
 #include <string.h>
@@ -31,42 +32,64 @@ bool study_names_files(const char *text, size_t length)
 	return names;
 }
 
+/* What a copy has of a record, and which records it is about. */
+enum form { SAMPLES, HASHES, FILES };
+
+static const struct {
+	bool of_file;        /* records that name a file; else those that have samples */
+	const char *dropped; /* members, each between blanks */
+} forms[] = {
+    [SAMPLES] = {true, " file sha256 unit channel time_step_s name "},
+    [HASHES] = {true, " sha256 "},
+    [FILES] = {false, " time_step_s acceleration_m_s2 "},
+};
+
 struct copy {
 	struct writer w;
 	const cJSON *records; /* of the suite */
 	const struct pound_study *read;
-	bool hashes; /* instead of samples */
+	enum form form;
 };
 
 static void write_value(struct copy *copy, const char *name, const cJSON *value);
 
-/* Writes a record, the samples of its file in place of what is said about that, or that and its SHA-256. */
+/* Writes a record in the form of the copy. */
 static void write_record(struct copy *copy, const cJSON *record, int k)
 {
 	const struct pound_record *read = &copy->read->scene.excitation.records[k];
-	const char *const of_file = copy->hashes ? " sha256 " : " file sha256 unit channel time_step_s name ";
 	writer_object(&copy->w, NULL, WRITER_LINE);
 	const cJSON *member;
 	cJSON_ArrayForEach(member, record)
 	{
 		char word[32];
 		snprintf(word, sizeof word, " %s ", member->string);
-		if (!strstr(of_file, word))
+		if (!strstr(forms[copy->form].dropped, word))
 			write_value(copy, member->string, member);
 	}
-	if (copy->hashes) {
+	if (copy->form == HASHES)
 		writer_text(&copy->w, "sha256", study_source_of(copy->read, k)->sha256);
+	else if (copy->form == FILES) {
+		char file[STUDY_FILE_SIZE];
+		study_record_file(k, file);
+		writer_text(&copy->w, "file", file);
+	} else {
+		if (read->name)
+			writer_text(&copy->w, "name", read->name);
+		writer_number(&copy->w, "time_step_s", read->time_step);
+		writer_array(&copy->w, "acceleration_m_s2", WRITER_LINE);
+		for (int i = 0; i < read->n; i++)
+			writer_number(&copy->w, NULL, read->a[i]);
 		writer_end(&copy->w);
-		return;
 	}
-	if (read->name)
-		writer_text(&copy->w, "name", read->name);
-	writer_number(&copy->w, "time_step_s", read->time_step);
-	writer_array(&copy->w, "acceleration_m_s2", WRITER_LINE);
-	for (int i = 0; i < read->n; i++)
-		writer_number(&copy->w, NULL, read->a[i]);
 	writer_end(&copy->w);
-	writer_end(&copy->w);
+}
+
+/* What holds no other object or array is on one line. */
+static enum writer_layout layout_of(const cJSON *value)
+{
+	const cJSON *child;
+	cJSON_ArrayForEach(child, value) if (cJSON_IsObject(child) || cJSON_IsArray(child)) return WRITER_LINES;
+	return WRITER_LINE;
 }
 
 /* Writes a value as it is; numbers read back to the same doubles. */
@@ -75,9 +98,9 @@ static void write_value(struct copy *copy, const char *name, const cJSON *value)
 	struct writer *w = &copy->w;
 	if (cJSON_IsObject(value) || cJSON_IsArray(value)) {
 		int k = 0;
-		(cJSON_IsObject(value) ? writer_object : writer_array)(w, name, WRITER_LINE);
+		(cJSON_IsObject(value) ? writer_object : writer_array)(w, name, layout_of(value));
 		for (const cJSON *child = value->child; child; child = child->next, k++)
-			if (value == copy->records && is_file(child))
+			if (value == copy->records && is_file(child) == forms[copy->form].of_file)
 				write_record(copy, child, k);
 			else
 				write_value(copy, child->string, child);
@@ -90,14 +113,14 @@ static void write_value(struct copy *copy, const char *name, const cJSON *value)
 		writer_text(w, name, value->valuestring); // null has none
 }
 
-static char *copied(const struct study_document *document, const struct pound_study *study, bool hashes,
+static char *copied(const struct study_document *document, const struct pound_study *study, enum form form,
                     size_t *length)
 {
 	struct json_fault fault;
 	cJSON *root = json_parse(document->text, document->length, &fault);
 	if (!root)
 		return NULL;
-	struct copy copy = {.records = records_of(root), .read = study, .hashes = hashes};
+	struct copy copy = {.records = records_of(root), .read = study, .form = form};
 	writer_init(&copy.w);
 	write_value(&copy, NULL, root);
 	cJSON_Delete(root);
@@ -115,7 +138,7 @@ static char *copied(const struct study_document *document, const struct pound_st
  */
 char *study_inline(const struct study_document *document, const struct pound_study *study, size_t *length)
 {
-	return copied(document, study, false, length);
+	return copied(document, study, SAMPLES, length);
 }
 
 /* Puts the SHA-256 of every file beside its name, as study_inline puts samples in its place.
@@ -125,5 +148,19 @@ char *study_inline(const struct study_document *document, const struct pound_stu
 char *study_name_hashes(const struct study_document *document, const struct pound_study *study,
                         size_t *length)
 {
-	return copied(document, study, true, length);
+	return copied(document, study, HASHES, length);
+}
+
+/* Puts names of files in place of samples: study_record_file of each.  The files are for the caller to write.
+ *
+ * Test     client_suite: from_files_to_a_figure_in_three_commands
+ */
+char *study_with_files(const struct study_document *document, const struct pound_study *study, size_t *length)
+{
+	return copied(document, study, FILES, length);
+}
+
+void study_record_file(int k, char file[STUDY_FILE_SIZE])
+{
+	snprintf(file, STUDY_FILE_SIZE, "record_%02d.AT2", k + 1);
 }

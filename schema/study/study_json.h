@@ -30,6 +30,7 @@ enum {
 	STUDY_RECORDS_MAX = 1000,      /* of a suite */
 	STUDY_SUITE_SAMPLES_MAX = 20000000, /* of all of them: 160 MB */
 	STUDY_WHY_SIZE = 256,
+	STUDY_FILE_SIZE = 32, /* of study_record_file */
 };
 #define STUDY_WORK_MAX 1e12 /* samples of ground motion of all runs, about a day on one core */
 
@@ -66,6 +67,12 @@ bool study_names_files(const char *text, size_t length);
 char *study_inline(const struct study_document *document, const struct pound_study *study, size_t *length);
 char *study_name_hashes(const struct study_document *document, const struct pound_study *study,
                         size_t *length);
+
+/* The reverse: names of files in place of samples; and the name of the file of record k. */
+char *study_with_files(const struct study_document *document, const struct pound_study *study,
+                       size_t *length);
+void study_record_file(int k, char file[STUDY_FILE_SIZE]);
+
 /* The file that a record of a suite was read from; NULL: its samples are in the document. */
 const struct study_source *study_source_of(const struct pound_study *study, int record);
 

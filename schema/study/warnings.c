@@ -124,7 +124,8 @@ static void look_at_gap(struct warnings *all, const struct pound_study *study,
                         const struct pound_result *result)
 {
 	const bool touches = study->scene.contact.present || study->scene.n_contacts > 0;
-	if (!touches || result->work.contacts > 0 || result->work.pounding_runs.asked == 0)
+	if (!touches || !pound_study_pounds(study) || result->work.contacts > 0 ||
+	    result->work.pounding_runs.asked == 0)
 		return;
 	double needed = 0;
 	for (int cell = 0; cell < result->n_cells && study->kind == POUND_KIND_RESPONSE; cell++)

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "schema/json/json_pointer.h"
 #include "tests/support/check.h"
@@ -119,8 +120,71 @@ static void a_file_that_cannot_be_read_is_named(void **state)
 	}
 }
 
+/* A path in a folder, valid until the next call. */
+static const char *in(const char *folder, const char *name)
+{
+	static char path[256];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	return path;
+}
+
+static void from_files_to_a_figure_in_three_commands(void **state)
+{
+	(void)state;
+	char folder[] = "/tmp/pound_suite_XXXXXX";
+	assert_non_null(mkdtemp(folder));
+	assert_int_equal(rmdir(folder), 0); // it is made with its files
+	for (int again = 0; again < 2; again++) {
+		struct program_outcome made = POUND("example", "separation", folder);
+		program_expect(&made, again ? 1 : 0); // files are not overwritten
+		assert_int_equal(strstr(made.err, "separation.json: File exists") != NULL, again);
+		assert_string_equal(made.out, "");
+		program_free(&made);
+	}
+	struct program_outcome ran = POUND("run", in(folder, "separation.json"));
+	program_expect(&ran, 0);
+	FILE *file = fopen(in(folder, "gap.json"), "w");
+	assert_non_null(file);
+	fputs(ran.out, file);
+	fclose(file);
+	struct program_outcome plot = POUND("plot", "separation", in(folder, "gap.json"));
+	program_expect(&plot, 0);
+	assert_memory_equal(plot.out, "<svg ", 5);
+	program_free(&plot);
+
+	// as the samples in the document, but for the rounding of g in the files
+	struct program_outcome text = POUND("example", "separation");
+	program_expect(&text, 0);
+	struct program_outcome inside = program_run((const char *const[]){"pound", "run", "-", NULL}, text.out);
+	program_expect(&inside, 0);
+	struct reading *files = reading_open(ran.out, ran.n_out),
+	               *samples = reading_open(inside.out, inside.n_out);
+	assert_int_equal(reading_count(files, "/suite/records"), 20);
+	assert_string_equal(reading_text(files, "/suite/records/19/name"),
+	                    reading_text(samples, "/suite/records/19/name"));
+	for (int k = 0; k < 20; k++)
+		check_near(reading_number(files, "/cells/0/gap_needed/signals_m/%d", k),
+		           reading_number(samples, "/cells/0/gap_needed/signals_m/%d", k), 1e-12);
+	reading_close(files);
+	reading_close(samples);
+	program_free(&ran);
+	program_free(&text);
+	program_free(&inside);
+
+	// and these are all the files
+	for (int k = 1; k <= 20; k++) {
+		char name[32];
+		snprintf(name, sizeof name, "record_%02d.AT2", k);
+		assert_int_equal(unlink(in(folder, name)), 0);
+	}
+	assert_int_equal(unlink(in(folder, "separation.json")), 0);
+	assert_int_equal(unlink(in(folder, "gap.json")), 0);
+	assert_int_equal(rmdir(folder), 0);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_suite_is_read_from_files_beside_the_study),
            cmocka_unit_test_setup_teardown(a_server_gives_the_same_bytes, program_setup, service_teardown),
            cmocka_unit_test_setup_teardown(files_that_the_server_has_are_not_sent_again, program_setup,
                                            service_teardown),
-           cmocka_unit_test(spectra_name_the_records), cmocka_unit_test(a_file_that_cannot_be_read_is_named))
+           cmocka_unit_test(spectra_name_the_records), cmocka_unit_test(a_file_that_cannot_be_read_is_named),
+           cmocka_unit_test(from_files_to_a_figure_in_three_commands))

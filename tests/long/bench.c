@@ -144,5 +144,6 @@ int main(int argc, char **argv)
 	bench_growth();
 	bench_indices();
 	bench_spectra();
+	bench_separation();
 	return 0;
 }

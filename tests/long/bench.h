@@ -49,5 +49,6 @@ void bench_growth(void);
 void bench_indices(void);
 void bench_spectra(void);
 void bench_chains(void);
+void bench_separation(void);
 
 #endif

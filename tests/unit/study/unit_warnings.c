@@ -44,6 +44,9 @@ static const struct {
      "resounds to",
      false},
     {SCENE(BODIES, "\"gap_m\": 5", SHORT), "/scene/contact/gap_m", "no run has a contact", true},
+    // nothing is run with pounding
+    {"{\"kind\": \"separation\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT "}}}",
+     NULL, NULL, false},
 };
 
 static struct reading *estimate_of(const struct pound_study *study)
