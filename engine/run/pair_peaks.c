@@ -5,13 +5,14 @@
  * 2. In the end the notes that are still above are searched: u_1 - u_2 as a power series in time, or several where one does
  *    not reach, is halved until what it may exceed the largest value by is rounding.
  *
- * Two linear bodies go from sample to sample by their exact maps; others are followed by the exact solver. */
+ * Two linear bodies go from sample to sample by their exact maps (pair_peaks.inl); others are followed by the exact solver. */
 #include "engine/run/pair_peaks.h"
 
 #include <float.h>
 #include <math.h>
 
 #include "engine/exact/tolerances.h"
+#include "engine/numeric/cpu_width.h"
 
 enum { ORDER = 21, HALVINGS = 30, NEWTON = 20 };
 
@@ -239,19 +240,6 @@ void pound_pair_peaks_start(struct pound_pair_peaks *peaks, struct pound_task *t
 
 /* ---- linear bodies ---- */
 
-/* a number of each body */
-typedef double bodies __attribute__((vector_size(sizeof(double) * POUND_OSCILLATORS)));
-
-static double difference(bodies x)
-{
-	return x[0] - x[1];
-}
-
-static bodies magnitude(bodies x)
-{
-	return (bodies){fabs(x[0]), fabs(x[1])};
-}
-
 /* A body over one sample, from its displacement, velocity and the ground acceleration and its growth over the sample: their
  * columns, and by how much of each the cubic of its displacement may err. */
 static void map_fill(struct pound_pair_maps *maps, int i, const struct pound_task_body *b, double step)
@@ -264,95 +252,93 @@ static void map_fill(struct pound_pair_maps *maps, int i, const struct pound_tas
 		                                   .stiffness = {b->backbone.stiffness}};
 		struct series s = {0};
 		body_add(b, &at, 0, step, &s);
-		maps->u[j][i] = at.u[0], maps->v[j][i] = at.v[0], maps->error[j][i] = 0;
+		maps->u[i][j] = at.u[0], maps->v[i][j] = at.v[0], maps->error[i][j] = 0;
 		for (int n = 4; n <= ORDER; n++)
-			maps->error[j][i] += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * fabs(s.c[n]) / 384;
+			maps->error[i][j] += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * fabs(s.c[n]) / 384;
 	}
 }
 
-/* The maps of a task's bodies, which may be those of the task before; false: there are none. */
-static bool maps_of(struct pound_pair_maps *maps, const struct pound_task *task)
+typedef void width_pairs(const struct pound_pairs *, struct pound_pair_peaks *);
+
+static bool has_maps(const struct pound_task *task)
 {
-	bool same = maps->step == task->time_step;
+	bool has = true;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &task->bodies[i];
-		const double w = sqrt(b->backbone.stiffness);
-		if (!pound_law_linear(b->backbone.law) || !(fmax(w, b->damping) * task->time_step <= REACH))
-			return false;
-		same &= maps->stiffness[i] == b->backbone.stiffness && maps->damping[i] == b->damping &&
-		        maps->drive[i] == b->drive;
+		has &= pound_law_linear(b->backbone.law) &&
+		       fmax(sqrt(b->backbone.stiffness), b->damping) * task->time_step <= REACH;
 	}
-	for (int i = 0; i < POUND_OSCILLATORS && !same; i++) {
-		const struct pound_task_body *b = &task->bodies[i];
-		maps->stiffness[i] = b->backbone.stiffness, maps->damping[i] = b->damping, maps->drive[i] = b->drive;
-		map_fill(maps, i, b, task->time_step);
-	}
-	maps->step = task->time_step;
-	return true;
+	return has;
 }
 
-static bodies column(const double of[POUND_OSCILLATORS])
+/* Whether a task has the maps of another one, and as many samples. */
+static bool goes_with(const struct pound_task *task, const struct pound_task *other)
 {
-	return (bodies){of[0], of[1]};
+	bool same = task->n_samples == other->n_samples && task->time_step == other->time_step;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_task_body *a = &task->bodies[i], *b = &other->bodies[i];
+		same &= a->backbone.stiffness == b->backbone.stiffness && a->damping == b->damping &&
+		        a->drive == b->drive;
+	}
+	return same;
 }
 
 /* Notes a sample of two linear bodies.
  *
- * Given    most  closing and opening displacement inside, at most
+ * Given    note   their state at its start, and what is possible inside
+ *          peak   closing and opening displacement so far
  */
-static void sample_note(struct pound_pair_peaks *peaks, const struct pound_task *task, int s, bodies u,
-                        bodies v, const double most[2])
+void pound_pair_sample(struct pound_pair_peaks *peaks, const struct pound_task *task, int s,
+                       struct pound_pair_note *note, const double peak[2])
 {
-	struct pound_pair_note note = {.length = task->time_step, .most = {most[0], most[1]}};
-	note.from.ground = task->ground[s];
-	note.from.slope = (task->ground[s + 1] - task->ground[s]) / task->time_step;
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		note.from.u[i] = u[i], note.from.v[i] = v[i];
-		note.from.stiffness[i] = task->bodies[i].backbone.stiffness;
-	}
-	note_add(peaks, &note);
+	for (int k = 0; k < 2; k++)
+		peaks->peak[k] = peak[k] > peaks->peak[k] ? peak[k] : peaks->peak[k];
+	note->length = task->time_step;
+	note->from.ground = task->ground[s];
+	note->from.slope = (task->ground[s + 1] - task->ground[s]) / task->time_step;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		note->from.stiffness[i] = task->bodies[i].backbone.stiffness;
+	note_add(peaks, note);
 }
 
-/* The closing and opening displacement of two linear bodies that start at rest, without contact.
- *
- * Given    maps   of the task before, all 0 at first
- * Returns  value  false: they are to be observed, as their steps are too long or a law is not linear
- * Test     unit_outputs: two_linear_bodies_have_the_peaks_that_an_observer_finds
- */
-bool pound_pair_peaks_linear(struct pound_pair_maps *maps, const struct pound_task *task, double peak[2])
+/* Follows the pairs at hand, and writes the closing and opening displacement of each. */
+void pound_pairs_finish(struct pound_pairs *all)
 {
-	struct pound_pair_peaks peaks;
-	if (!maps_of(maps, task))
-		return false;
-	start(&peaks, task);
-	const bodies uu = column(maps->u[0]), uv = column(maps->u[1]), ua = column(maps->u[2]),
-	             ud = column(maps->u[3]), vu = column(maps->v[0]), vv = column(maps->v[1]),
-	             va = column(maps->v[2]), vd = column(maps->v[3]), eu = column(maps->error[0]),
-	             ev = column(maps->error[1]);
-	const double ea = maps->error[2][0] + maps->error[2][1], ed = maps->error[3][0] + maps->error[3][1],
-	             third = task->time_step / 3;
-	bodies u = {0, 0}, v = {0, 0};
-	double p = 0, inner = 0, top = 0, bottom = 0; // inner: p + third q
-	for (int s = 0; s + 1 < task->n_samples; s++) {
-		const double a = task->ground[s], d = task->ground[s + 1] - a;
-		const bodies u1 = uu * u + (uv * v + (ua * a + ud * d)), v1 = vv * v + (vu * u + (va * a + vd * d));
-		const bodies off = eu * magnitude(u) + ev * magnitude(v);
-		const double error = (off[0] + off[1]) + (ea * fabs(a) + ed * fabs(d));
-		const double p1 = difference(u1), step = third * difference(v1), b2 = p1 - step;
-		const double high = (inner > b2 ? inner : b2) + error, low = (inner < b2 ? inner : b2) - error;
-		top = p1 > top ? p1 : top;
-		bottom = p1 < bottom ? p1 : bottom;
-		// few samples may hold more than their ends
-		if (high > top || low < bottom) {
-			peaks.peak[0] = top > peaks.peak[0] ? top : peaks.peak[0];
-			peaks.peak[1] = -bottom > peaks.peak[1] ? -bottom : peaks.peak[1];
-			sample_note(&peaks, task, s, u, v, (const double[2]){high, -low});
-		}
-		u = u1, v = v1, p = p1, inner = p + step;
+	static width_pairs *const run[POUND_WIDTHS] = {pound_pairs_w8, pound_pairs_w4, pound_pairs_w1,
+	                                               pound_pairs_portable};
+	struct pound_pair_peaks peaks[POUND_PAIRS];
+	if (all->n == 0)
+		return;
+	for (int k = 0; k < all->n; k++)
+		start(&peaks[k], &all->tasks[k]);
+	run[pound_dispatch_width(0)](all, peaks);
+	for (int k = 0; k < all->n; k++) {
+		notes_search(&peaks[k]);
+		all->peak[k][0] = peaks[k].peak[0], all->peak[k][1] = peaks[k].peak[1];
 	}
-	peaks.peak[0] = top > peaks.peak[0] ? top : peaks.peak[0];
-	peaks.peak[1] = -bottom > peaks.peak[1] ? -bottom : peaks.peak[1];
-	notes_search(&peaks);
-	peak[0] = peaks.peak[0], peak[1] = peaks.peak[1];
+	all->n = 0;
+}
+
+/* Adds the closing and opening displacement of two linear bodies that start at rest, without contact.
+ *
+ * Given    pairs  all 0 at first
+ *          task   its ground motion stays where it is until the pairs are finished
+ * Returns  value  false: they are to be observed, as their steps are too long or a law is not linear
+ *          peak   when the pairs are finished, which they also are when there are enough or this one has other maps
+ * Test     unit_outputs: linear_bodies_have_the_peaks_that_an_observer_finds
+ */
+bool pound_pairs_add(struct pound_pairs *all, const struct pound_task *task, double peak[2])
+{
+	if (!has_maps(task))
+		return false;
+	if (all->n > 0 && !goes_with(task, &all->tasks[0]))
+		pound_pairs_finish(all);
+	// the first one of those before is still at hand
+	for (int i = 0; i < POUND_OSCILLATORS && all->n == 0 && !goes_with(task, &all->tasks[0]); i++)
+		map_fill(&all->maps, i, &task->bodies[i], task->time_step);
+	all->tasks[all->n] = *task;
+	all->peak[all->n++] = peak;
+	if (all->n == POUND_PAIRS)
+		pound_pairs_finish(all);
 	return true;
 }

@@ -31,14 +31,32 @@ struct pound_pair_peaks {
 /* Begins to observe a task, whose observer it becomes. */
 void pound_pair_peaks_start(struct pound_pair_peaks *peaks, struct pound_task *task);
 
-/* Both bodies over a sample. */
+/* Bodies of a pair over a sample. */
 enum { POUND_PAIR_COLUMNS = 4 };
 struct pound_pair_maps {
-	double step, stiffness[POUND_OSCILLATORS], damping[POUND_OSCILLATORS], drive[POUND_OSCILLATORS];
-	double u[POUND_PAIR_COLUMNS][POUND_OSCILLATORS], v[POUND_PAIR_COLUMNS][POUND_OSCILLATORS],
-	    error[POUND_PAIR_COLUMNS][POUND_OSCILLATORS];
+	double u[POUND_OSCILLATORS][POUND_PAIR_COLUMNS], v[POUND_OSCILLATORS][POUND_PAIR_COLUMNS],
+	    error[POUND_OSCILLATORS][POUND_PAIR_COLUMNS];
 };
 
-bool pound_pair_peaks_linear(struct pound_pair_maps *maps, const struct pound_task *task, double peak[2]);
+/* Pairs of linear bodies that are followed side by side, as they differ in their ground motions alone. */
+enum { POUND_PAIRS = 8 };
+struct pound_pairs {
+	int n; /* at hand */
+	struct pound_pair_maps maps;
+	struct pound_task tasks[POUND_PAIRS];
+	double *peak[POUND_PAIRS]; /* closing and opening displacement  (2 each) */
+};
+
+bool pound_pairs_add(struct pound_pairs *pairs, const struct pound_task *task, double peak[2]);
+void pound_pairs_finish(struct pound_pairs *pairs);
+
+/* pair_peaks.inl: from sample to sample, without a search inside those that it notes  (n of both) */
+void pound_pairs_w8(const struct pound_pairs *pairs, struct pound_pair_peaks *peaks);
+void pound_pairs_w4(const struct pound_pairs *pairs, struct pound_pair_peaks *peaks);
+void pound_pairs_w1(const struct pound_pairs *pairs, struct pound_pair_peaks *peaks);
+void pound_pairs_portable(const struct pound_pairs *pairs, struct pound_pair_peaks *peaks);
+
+void pound_pair_sample(struct pound_pair_peaks *peaks, const struct pound_task *task, int s,
+                       struct pound_pair_note *note, const double peak[2]);
 
 #endif

@@ -313,7 +313,7 @@ static bool follow_free_pair(struct pound_request *request, int a)
 	                          .ground = m->ground,
 	                          .n_samples = m->n_samples,
 	                          .time_step = m->time_step};
-	if (pound_pair_peaks_linear(&request->pair_maps, &task, request->free_pair[a]))
+	if (pound_pairs_add(&request->pairs, &task, request->free_pair[a]))
 		return true;
 	// a body beside a wall without contact is not the same run as that body alone, which nothing observes
 	const int known = request->march_keys.n;
@@ -504,6 +504,7 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		status = status ? status : pound_row_run(&request->rows, stop);
 	}
 	const unsigned asked = pound_outputs_asked(campaign->study);
+	request->pairs.n = 0;
 	for (int a = n_asks - 1; a >= 0 && !status && asked & POUND_ASKS_FREE_PAIR; a--) { // the checks first
 		if (pound_stopped(stop))
 			return POUND_STOPPED;
@@ -513,6 +514,7 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		work->free_pair_runs.run += follow_free_pair(request, a) + request->march_keys.n - known;
 		work->free_pair_runs.asked++;
 	}
+	pound_pairs_finish(&request->pairs);
 	status = status ? status : marches_run(request, &solver, request->march_keys.n, &done, stop);
 	if (status)
 		return status;

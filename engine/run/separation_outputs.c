@@ -127,7 +127,8 @@ static struct pound_needed needed_of(const struct pound_run *run, int cell, doub
 		for (int sample = 0; sample < samples_counted(run); sample++)
 			for (int signal = 0; signal < c->n_signals; signal++)
 				*at++ = *run_values(run, cell, row, sample, signal, GAP);
-	return (struct pound_needed){clusters_of(c, run->rows), cluster_size(c), gap};
+	return (struct pound_needed){
+	    .n_clusters = clusters_of(c, run->rows), .size = cluster_size(c), .gap = gap};
 }
 
 /* Mean, scatter and the largest of the gaps needed. */
@@ -261,16 +262,17 @@ static void needs_reduce(struct pound_run *run, int cell, double *scratch)
 	const struct pound_separation *asked = &run->campaign.study->separation;
 	const struct pound_separation_result *result = &run->result.separation;
 	struct pound_needs *needs = &result->needs[cell];
-	const struct pound_needed needed = needed_of(run, cell, scratch);
+	struct pound_needed needed = needed_of(run, cell, scratch);
 	const size_t runs = (size_t)needed.n_clusters * (size_t)needed.size;
 	double *sorted = scratch + runs;
+	needed.n_sorted = pound_needed_sort(&needed, sorted);
+	needed.sorted = sorted;
 	moments(&needed, needs);
 	rules_apply(run, cell, &needed, needs);
 	for (int g = 0; g < result->n_gaps; g++)
 		needs->probability[g] = pound_needed_probability(&needed, result->gaps[g]);
-	const int64_t n = pound_needed_sort(&needed, sorted);
 	for (int k = 0; k < asked->n_probabilities; k++)
-		needs->gap[k] = pound_needed_gap(&needed, sorted, n, asked->probabilities[k]);
+		needs->gap[k] = pound_needed_gap(&needed, sorted, needed.n_sorted, asked->probabilities[k]);
 	for (size_t k = 0; k < runs && !pound_study_sampled(run->campaign.study); k++)
 		needs->needed[k] = needed.gap[k];
 }

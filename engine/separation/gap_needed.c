@@ -14,10 +14,27 @@ static const double RUNS_COUNTED = 1e5;
 /* on either side of a 95 % interval */
 static const double TAIL = 0.025;
 
+/* Sorted gaps that are larger than a gap. */
+static int64_t count_above(const double *sorted, int64_t n, double gap)
+{
+	int64_t low = -1, high = n;
+	while (high - low > 1) {
+		const int64_t middle = low + (high - low) / 2;
+		if (sorted[middle] > gap)
+			high = middle;
+		else
+			low = middle;
+	}
+	return n - high;
+}
+
 /* Test     unit_separation: pounding_is_counted_run_by_run */
 struct pound_needed_count pound_needed_count(const struct pound_needed *needed, double gap)
 {
 	struct pound_needed_count count = {0};
+	if (needed->sorted && needed->size == 1)
+		return (struct pound_needed_count){count_above(needed->sorted, needed->n_sorted, gap),
+		                                   needed->n_sorted, needed->n_sorted};
 	for (int c = 0; c < needed->n_clusters; c++) {
 		bool any = false;
 		for (int k = 0; k < needed->size; k++) {
@@ -60,7 +77,8 @@ static double runs_effective(const struct pound_needed *needed, double gap,
 	const double n = (double)count->runs, p = (double)count->pounding / n, m = (double)count->clusters;
 	double sum = 0;
 	for (int c = 0; c < needed->n_clusters; c++) {
-		const struct pound_needed one = {1, needed->size, needed->gap + (size_t)c * (size_t)needed->size};
+		const struct pound_needed one = {
+		    .n_clusters = 1, .size = needed->size, .gap = needed->gap + (size_t)c * (size_t)needed->size};
 		const struct pound_needed_count of = pound_needed_count(&one, gap);
 		const double off = (double)of.pounding - p * (double)of.runs;
 		sum += off * off;

@@ -9,6 +9,9 @@
 struct pound_needed {
 	int n_clusters, size; /* runs of each */
 	const double *gap;    /* [m], NAN: the run has no result  (n_clusters x size) */
+	const double *
+	    sorted; /* by pound_needed_sort, for clusters of one run; NULL: each count looks at all  (n_sorted) */
+	int64_t n_sorted;
 };
 
 /* Runs whose gap needed is larger than a gap: they pound. */

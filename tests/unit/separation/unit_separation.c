@@ -14,14 +14,14 @@ static struct pound_needed whole(double *gap, int n)
 {
 	for (int k = 0; k < n; k++)
 		gap[k] = 1 + (k * 7) % n; // n is no multiple of 7
-	return (struct pound_needed){n, 1, gap};
+	return (struct pound_needed){.n_clusters = n, .size = 1, .gap = gap};
 }
 
 static void pounding_is_counted_run_by_run(void **state)
 {
 	(void)state;
 	const double gap[] = {1, 2, NAN, 3, NAN, NAN};
-	const struct pound_needed needed = {3, 2, gap};
+	const struct pound_needed needed = {.n_clusters = 3, .size = 2, .gap = gap};
 	const struct pound_needed_count count = pound_needed_count(&needed, 1.5),
 	                                at = pound_needed_count(&needed, 2);
 	assert_int_equal(count.pounding, 2);
@@ -29,8 +29,22 @@ static void pounding_is_counted_run_by_run(void **state)
 	assert_int_equal(count.clusters, 2);
 	// the bodies that just touch do not press each other
 	assert_int_equal(at.pounding, 1);
+	// of sorted gaps by bisection
+	double sorted[6];
+	struct pound_needed single = {.n_clusters = 6, .size = 1, .gap = gap};
+	for (int k = 0; k < 8; k++) {
+		single.sorted = NULL;
+		const struct pound_needed_count all = pound_needed_count(&single, 0.5 * k);
+		single.sorted = sorted;
+		single.n_sorted = pound_needed_sort(&single, sorted);
+		const struct pound_needed_count found = pound_needed_count(&single, 0.5 * k);
+		assert_int_equal(found.pounding, all.pounding);
+		assert_int_equal(found.runs, all.runs);
+		assert_int_equal(found.clusters, all.clusters);
+	}
 	const double none[] = {NAN};
-	assert_true(isnan(pound_needed_probability(&(struct pound_needed){1, 1, none}, 0).value));
+	assert_true(isnan(
+	    pound_needed_probability(&(struct pound_needed){.n_clusters = 1, .size = 1, .gap = none}, 0).value));
 }
 
 /* Closed forms: none of n has (0.025)^(1/n) above, and the limits are where tails of the binomial sum are 0.025. */
@@ -68,7 +82,7 @@ static void clusters_of_equal_runs_count_once(void **state)
 {
 	(void)state;
 	double gap[40], twice[80];
-	const struct pound_needed needed = whole(gap, 40), pairs = {40, 2, twice};
+	const struct pound_needed needed = whole(gap, 40), pairs = {.n_clusters = 40, .size = 2, .gap = twice};
 	for (int k = 0; k < 80; k++)
 		twice[k] = gap[k / 2];
 	const struct pound_estimate one = pound_needed_probability(&needed, 30.5),
@@ -104,7 +118,7 @@ static void the_gap_for_a_probability_has_the_interval_of_order_statistics(void 
 		double u[60], s[60];
 		for (int k = 0; k < 60; k++)
 			u[k] = specimen_uniform(&stream, 0, 1);
-		const struct pound_needed of = {60, 1, u};
+		const struct pound_needed of = {.n_clusters = 60, .size = 1, .gap = u};
 		g = pound_needed_gap(&of, s, pound_needed_sort(&of, s), 0.1);
 		covered += g.low <= 0.9 && !(g.high < 0.9);
 	}
@@ -189,7 +203,7 @@ static void stripes_make(struct pound_stripes *stripes, struct pound_needed need
 				                        cos(2 * PI * specimen_uniform(stream, 0, 1)));
 			gaps[i * RECORDS + r] = intensity[i] / capacity[r];
 		}
-		needed[i] = (struct pound_needed){RECORDS, 1, gaps + i * RECORDS};
+		needed[i] = (struct pound_needed){.n_clusters = RECORDS, .size = 1, .gap = gaps + i * RECORDS};
 	}
 	*stripes = (struct pound_stripes){LEVELS, intensity, needed};
 }
@@ -220,15 +234,20 @@ static void a_fragility_curve_is_found_again_its_intervals_cover(void **state)
 	}
 }
 
+static struct pound_needed of_ten(const double *gap)
+{
+	return (struct pound_needed){.n_clusters = 10, .size = 1, .gap = gap};
+}
+
 /* Two intensities have a curve through both points. */
 static void two_points_are_on_the_curve_and_counts_without_one_have_none(void **state)
 {
 	(void)state;
 	const double intensity[2] = {1, 2}, weak[] = {2, 0, 0, 0, 0, 0, 0, 0, 0, 0},
 	             strong[] = {2, 2, 2, 2, 2, 2, 2, 0, 0, 0}, all[] = {2, 2, 2, 2, 2, 2, 2, 2, 2, 2};
-	const struct pound_needed needed[] = {{10, 1, weak}, {10, 1, strong}},
-	                          steep[] = {{10, 1, weak}, {10, 1, all}},
-	                          falling[] = {{10, 1, strong}, {10, 1, weak}};
+	const struct pound_needed needed[] = {of_ten(weak), of_ten(strong)},
+	                          steep[] = {of_ten(weak), of_ten(all)},
+	                          falling[] = {of_ten(strong), of_ten(weak)};
 	struct pound_stripes stripes = {2, intensity, needed};
 	const struct pound_fragility fit = pound_fragility_fit(&stripes, 1);
 	check_near(0.5 * erfc(-log(1 / fit.median.value) / fit.dispersion.value / sqrt(2)), 0.1, 1e-9);
@@ -252,7 +271,7 @@ static void the_rate_over_a_power_law_is_its_closed_form(void **state)
 		x[i] = 0.1 * pow(100, (double)i / (N - 1));
 		gap[i] = x[i];
 		lambda[i] = 0.01 * pow(x[i], -2);
-		needed[i] = (struct pound_needed){1, 1, &gap[i]};
+		needed[i] = (struct pound_needed){.n_clusters = 1, .size = 1, .gap = &gap[i]};
 	}
 	const struct pound_stripes stripes = {N, x, needed};
 	// points of the hazard that are not the stripes
