@@ -110,7 +110,7 @@ static void overlaps_enclose(struct chain *c)
 		const struct link *l = &c->link[j];
 		if (l->own)
 			continue;
-		x->u0.at[j] = fmin(link_sum(l, c->u.at) - l->link->gap, 0); // a rounding must not make it overlap
+		x->u0.at[j] = smaller(link_sum(l, c->u.at) - l->link->gap, 0); // a rounding must not make it overlap
 		x->v0.at[j] = link_sum(l, c->displacement.v0.at);
 		x->u1.at[j] = link_sum(l, c->displacement.u1.at) - l->link->gap;
 		x->v1.at[j] = link_sum(l, c->displacement.v1.at);
@@ -119,16 +119,15 @@ static void overlaps_enclose(struct chain *c)
 			x->fourth_max.at[j] =
 			    fma(fabs(l->weight[k]), c->displacement.fourth_max.at[l->floor[k]], x->fourth_max.at[j]);
 	}
-	for (int j = 0; j < c->n_links; j++) {
-		if (!c->link[j].own)
-			continue;
+	for (int k = 0; k < c->own.n; k++) {
+		const int j = c->own.link[k];
 		double u = c->overlaps[0][j], v = 0, fourth_max = 0;
 		x->u0.at[j] = u;
 		x->v0.at[j] = c->overlaps[1][j];
 		for (int n = 1; n <= c->order; n++) {
 			u += c->overlaps[n][j];
-			v = fma(n, c->overlaps[n][j], v);
-			fourth_max = fma(fourth(n), fabs(c->overlaps[n][j]), fourth_max);
+			v = fma(TERM_OF[n].rate, c->overlaps[n][j], v);
+			fourth_max = fma(TERM_OF[n].fourth, fabs(c->overlaps[n][j]), fourth_max);
 		}
 		x->u1.at[j] = u;
 		x->v1.at[j] = v;

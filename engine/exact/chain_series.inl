@@ -10,6 +10,15 @@
  *
  * Included by chain.inl alone, once per lane count, after series.inl. */
 
+/* factors of coefficient n: in the rate at the end, in the bound of the fourth derivative, and 1/((n + 1)(n + 2)) */
+struct term {
+	double rate, fourth, share;
+};
+#define TERM(n) {(n), (n) * ((n)-1.0) * ((n)-2.0) * ((n)-3.0), 1 / (((n) + 1.0) * ((n) + 2.0))}
+static const struct term TERM_OF[TERMS] = {
+    TERM(0),  TERM(1),  TERM(2),  TERM(3),  TERM(4),  TERM(5),  TERM(6),  TERM(7),  TERM(8),  TERM(9),  TERM(10),
+    TERM(11), TERM(12), TERM(13), TERM(14), TERM(15), TERM(16), TERM(17), TERM(18), TERM(19), TERM(20), TERM(21)};
+
 LANE_INLINE vd column_load(const struct column *x, int j)
 {
 	return lanes_load(&x->at[j]);
@@ -54,14 +63,30 @@ LANE_SHARED void modal_add(struct chain *c, int n)
 	}
 }
 
+/* Lists the links that act in a step. */
+static void links_list(struct chain *c)
+{
+	c->touching.n = c->own.n = 0;
+	c->held = false;
+	for (int j = 0; j < c->n_links; j++) {
+		const struct link *l = &c->link[j];
+		if (l->touching)
+			c->touching.link[c->touching.n++] = (uint16_t)j;
+		if (l->own)
+			c->own.link[c->own.n++] = (uint16_t)j;
+		c->held |= l->held;
+	}
+}
+
 /* Sets what acts on floors from outside at order n. */
 static void pushes_set(struct chain *c, int n)
 {
 	for (int i = 0; i < c->wide; i += W)
 		column_store(&c->push, i, vsplat(0));
-	for (int j = 0; j < c->n_links; j++)
-		if (c->link[j].touching)
-			push_add(c, &c->link[j], link_force(c, &c->link[j], j, n));
+	for (int k = 0; k < c->touching.n; k++) {
+		const int j = c->touching.link[k];
+		push_add(c, &c->link[j], link_force(c, &c->link[j], j, n));
+	}
 	if (c->modal)
 		modal_add(c, n);
 }
@@ -80,7 +105,7 @@ LANE_INLINE vd story_force(const struct chain *c, int i, int n)
  */
 LANE_INLINE void floors_next(struct chain *c, int n, double ground, bool pushed, bool moving)
 {
-	const vd zero = vsplat(0), share = vsplat(1.0 / ((n + 1.0) * (n + 2.0)));
+	const vd zero = vsplat(0), share = vsplat(TERM_OF[n].share);
 	vd s = story_force(c, 0, n), below = zero;
 	for (int i = 0; i < c->wide; i += W) {
 		const vd next = i + W < c->wide ? story_force(c, i + W, n) : zero;
@@ -152,6 +177,7 @@ static void story_settle(struct chain *c, int i, double ground)
 static void series_start(struct chain *c)
 {
 	const vd h = vsplat(c->dt), h2 = h * h;
+	links_list(c);
 	for (int i = 0; i < c->wide; i += W) {
 		column_store(&c->spring, i, column_load(&c->stiffness, i) * h2);
 		column_store(&c->dash, i, column_load(&c->dashpot, i) * h);
@@ -162,10 +188,9 @@ static void series_start(struct chain *c)
 		column_store(&c->displacements[0], i, column_load(&c->u, i));
 		column_store(&c->displacements[1], i, column_load(&c->w, i) * h);
 	}
-	for (int j = 0; j < c->n_links; j++) {
+	for (int o = 0; o < c->own.n; o++) {
+		const int j = c->own.link[o];
 		struct link *l = &c->link[j];
-		if (!l->own)
-			continue;
 		c->overlaps[0][j] = l->p;
 		c->overlaps[1][j] = l->q * c->dt;
 		double alike = 0;
@@ -178,10 +203,9 @@ static void series_start(struct chain *c)
 /* Orders of overlaps that are integrated in their own right. */
 static void overlaps_next(struct chain *c, int n, double ground)
 {
-	for (int j = 0; j < c->n_links; j++) {
+	for (int k = 0; k < c->own.n; k++) {
+		const int j = c->own.link[k];
 		struct link *l = &c->link[j];
-		if (!l->own)
-			continue;
 		if (l->held) {
 			c->overlaps[n + 2][j] = 0;
 			continue;
@@ -192,7 +216,7 @@ static void overlaps_next(struct chain *c, int n, double ground)
 	}
 }
 
-LANE_INLINE void series_orders(struct chain *c, bool pushed, bool owned)
+LANE_INLINE void series_orders(struct chain *c, bool pushed)
 {
 	const double h2 = c->dt * c->dt, ground[2] = {c->ground * h2, c->slope * c->dt * h2};
 	for (int n = 0; n + 2 <= c->order; n++) {
@@ -208,34 +232,50 @@ LANE_INLINE void series_orders(struct chain *c, bool pushed, bool owned)
 				for (unsigned still = vbits(vequal(column_load(&c->v, i), vsplat(0))); still;
 				     still &= still - 1)
 					story_settle(c, i + __builtin_ctz(still), g);
-		if (owned)
+		if (c->own.n > 0)
 			overlaps_next(c, n, g);
 	}
 }
 
-/* What a column of series does over a step. */
-LANE_INLINE void enclosures_make(const struct chain *c, const struct column series[TERMS],
+/* What some vectors of a column of series do over a step. */
+LANE_INLINE void enclosures_of(const struct column series[TERMS], int order, struct enclosures *to, int i,
+                               const int vectors)
+{
+	vd u[4], v[4], fourth_max[4];
+	for (int k = 0; k < vectors; k++) {
+		u[k] = column_load(&series[0], i + k * W);
+		v[k] = fourth_max[k] = vsplat(0);
+		column_store(&to->u0, i + k * W, u[k]);
+		column_store(&to->v0, i + k * W, column_load(&series[1], i + k * W));
+	}
+	for (int n = 1; n <= order; n++) {
+		const vd rate = vsplat(TERM_OF[n].rate), fourth = vsplat(TERM_OF[n].fourth);
+		for (int k = 0; k < vectors; k++) {
+			const vd x = column_load(&series[n], i + k * W);
+			u[k] = u[k] + x;
+			v[k] = vfma(rate, x, v[k]);
+			if (n >= 4)
+				fourth_max[k] = vfma(fourth, vabs(x), fourth_max[k]);
+		}
+	}
+	for (int k = 0; k < vectors; k++) {
+		column_store(&to->u1, i + k * W, u[k]);
+		column_store(&to->v1, i + k * W, v[k]);
+		column_store(&to->fourth_max, i + k * W, fourth_max[k]);
+	}
+}
+
+/* What a column of series does over a step: sums of several vectors at once, as each waits for itself. */
+LANE_SHARED void enclosures_make(const struct chain *c, const struct column series[TERMS],
                                  struct enclosures *to)
 {
-	for (int i = 0; i < c->wide; i += W) {
-		vd u = column_load(&series[0], i), v = vsplat(0), fourth_max = vsplat(0);
-		column_store(&to->u0, i, u);
-		column_store(&to->v0, i, column_load(&series[1], i));
-		for (int n = 1; n < 4; n++) {
-			const vd x = column_load(&series[n], i);
-			u = u + x;
-			v = vfma(vsplat(n), x, v);
-		}
-		for (int n = 4; n <= c->order; n++) {
-			const vd x = column_load(&series[n], i);
-			u = u + x;
-			v = vfma(vsplat(n), x, v);
-			fourth_max = vfma(vsplat(fourth(n)), vabs(x), fourth_max);
-		}
-		column_store(&to->u1, i, u);
-		column_store(&to->v1, i, v);
-		column_store(&to->fourth_max, i, fourth_max);
-	}
+	int i = 0;
+	for (; i + 4 * W <= c->wide; i += 4 * W)
+		enclosures_of(series, c->order, to, i, 4);
+	for (; i + 2 * W <= c->wide; i += 2 * W)
+		enclosures_of(series, c->order, to, i, 2);
+	for (; i < c->wide; i += W)
+		enclosures_of(series, c->order, to, i, 1);
 }
 
 /* What a series does over a step. */
@@ -244,9 +284,9 @@ static struct enclosure enclosure_make(const struct power *x, int order)
 	vd u = x->c[0], v = vsplat(0), fourth_max = vsplat(0);
 	for (int n = 1; n <= order; n++) {
 		u = u + x->c[n];
-		v = vfma(vsplat(n), x->c[n], v);
+		v = vfma(vsplat(TERM_OF[n].rate), x->c[n], v);
 		if (n >= 4)
-			fourth_max = vfma(vsplat(fourth(n)), vabs(x->c[n]), fourth_max);
+			fourth_max = vfma(vsplat(TERM_OF[n].fourth), vabs(x->c[n]), fourth_max);
 	}
 	return (struct enclosure){x->c[0], x->c[1], u, v, fourth_max};
 }
@@ -254,18 +294,11 @@ static struct enclosure enclosure_make(const struct power *x, int order)
 /* Makes the series of a step of c->dt. */
 static void series_chain(struct chain *c)
 {
-	bool touching = c->modal, owned = false;
-	c->held = false;
-	for (int j = 0; j < c->n_links; j++) {
-		touching |= c->link[j].touching;
-		c->held |= c->link[j].held;
-		owned |= c->link[j].own;
-	}
 	series_start(c);
-	if (touching)
-		series_orders(c, true, owned);
+	if (c->modal || c->touching.n > 0)
+		series_orders(c, true);
 	else
-		series_orders(c, false, owned);
+		series_orders(c, false);
 	enclosures_make(c, c->drifts, &c->drift);
 	if (c->moving)
 		enclosures_make(c, c->displacements, &c->displacement);

@@ -137,6 +137,12 @@ struct warp {
 	struct curve links[POUND_CHAIN_LINKS];
 };
 
+/* some of the links, ascending */
+struct link_list {
+	int n;
+	uint16_t link[POUND_CHAIN_LINKS];
+};
+
 struct chain {
 	const struct pound_chain_task *task;
 	struct pound_chain_result *result;
@@ -158,6 +164,7 @@ struct chain {
 	struct column d, v; /* drifts and their rates */
 	struct column top_drift, top_displacement, top_acceleration;
 	struct link link[POUND_CHAIN_LINKS];
+	struct link_list touching, own; /* of the current step */
 	// interval and step
 	int64_t next;         /* sample at the end of the interval */
 	double ground, slope; /* [m/s2], [m/s3] */
