@@ -37,9 +37,9 @@ static void first_take(struct first *first, double time, int event, int index)
 
 /* Takes what a search found in some lanes.
  *
- * Given    index  of the first lane
+ * Given    index  of the story or link in each lane  (W)
  */
-static void search_take(struct first *first, const struct search *search, vm lanes, int index)
+static void search_take(struct first *first, const struct search *search, vm lanes, const int *index)
 {
 	double time[W], event[W];
 	lanes_store(time, search->time);
@@ -47,13 +47,13 @@ static void search_take(struct first *first, const struct search *search, vm lan
 	for (unsigned some = vbits(lanes); some; some &= some - 1) {
 		const int l = __builtin_ctz(some);
 		if (event[l] != EVENT_NONE)
-			first_take(first, time[l], (int)event[l], index + l);
+			first_take(first, time[l], (int)event[l], index[l]);
 	}
 }
 
 /* Looks for where a guard becomes positive in some lanes of a vector. */
 static void guard_search(struct first *first, const struct chain *c, struct guard guard, vm lanes, int event,
-                         int index)
+                         const int *index)
 {
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
 	search_crossing(&guard, c->order, lanes, vsplat(event), &search);
@@ -71,14 +71,17 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	vm reversals = ~vequal(direction, zero);
 	if (!vany(past_high | past_low | reversals))
 		return;
+	int index[W];
+	for (int l = 0; l < W; l++)
+		index[l] = i + l;
 	struct motion m;
 	motion_load(&m, c, c->drifts, &c->drift, i);
 	if (vany(past_low))
 		guard_search(first, c, guard_of(&m.u, &enclosure, low, -one), past_low, EVENT_STORY + POUND_EDGE_LOW,
-		             i);
+		             index);
 	if (vany(past_high))
 		guard_search(first, c, guard_of(&m.u, &enclosure, high, one), past_high,
-		             EVENT_STORY + POUND_EDGE_HIGH, i);
+		             EVENT_STORY + POUND_EDGE_HIGH, index);
 	if (!vany(reversals))
 		return;
 	struct power velocity;
@@ -93,7 +96,7 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	if (!c->warp.on)
 		motion_velocity(&velocity, &m, c->order);
 	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), reversals,
-	             EVENT_STORY + POUND_EDGE_REVERSAL, i);
+	             EVENT_STORY + POUND_EDGE_REVERSAL, index);
 }
 
 /* Whether a contact ends where its force does, which may be before its overlap does. */
@@ -102,42 +105,70 @@ static bool link_forced(const struct link *l)
 	return !l->link->law.tension && l->at.on.damping > 0;
 }
 
-/* What overlaps do over a step: those that are integrated in their own right by their series, others by their floors'. */
-static void overlaps_enclose(struct chain *c)
+/* Bounds the overlap of a link over a step by those of its floors.
+ *
+ * Returns  value  whether it may begin to touch: the first half of may_cross (series.inl)
+ */
+LANE_INLINE bool overlap_enclose(struct enclosures *x, const struct chain *c, int j)
 {
-	struct enclosures *x = &c->overlap;
-	for (int j = 0; j < c->n_links; j++) {
-		const struct link *l = &c->link[j];
-		if (l->own)
-			continue;
-		x->u0.at[j] = smaller(link_sum(l, c->u.at) - l->link->gap, 0); // a rounding must not make it overlap
-		x->v0.at[j] = link_sum(l, c->displacement.v0.at);
-		x->u1.at[j] = link_sum(l, c->displacement.u1.at) - l->link->gap;
-		x->v1.at[j] = link_sum(l, c->displacement.v1.at);
-		x->fourth_max.at[j] = 0;
-		for (int k = 0; k < l->n_ends; k++)
-			x->fourth_max.at[j] =
-			    fma(fabs(l->weight[k]), c->displacement.fourth_max.at[l->floor[k]], x->fourth_max.at[j]);
+	const struct link *l = &c->link[j];
+	const struct enclosures *floors = &c->displacement;
+	double u0 = 0, v0 = 0, u1 = 0, v1 = 0, fourth_max = 0;
+	for (int k = 0; k < l->n_ends; k++) {
+		const int i = l->floor[k];
+		const double weight = l->weight[k];
+		u0 = fma(weight, c->u.at[i], u0);
+		v0 = fma(weight, floors->v0.at[i], v0);
+		u1 = fma(weight, floors->u1.at[i], u1);
+		v1 = fma(weight, floors->v1.at[i], v1);
+		fourth_max = fma(fabs(weight), floors->fourth_max.at[i], fourth_max);
 	}
-	for (int k = 0; k < c->own.n; k++) {
-		const int j = c->own.link[k];
-		double u = c->overlaps[0][j], v = 0, fourth_max = 0;
-		x->u0.at[j] = u;
-		x->v0.at[j] = c->overlaps[1][j];
-		for (int n = 1; n <= c->order; n++) {
-			u += c->overlaps[n][j];
-			v = fma(TERM_OF[n].rate, c->overlaps[n][j], v);
-			fourth_max = fma(TERM_OF[n].fourth, fabs(c->overlaps[n][j]), fourth_max);
-		}
-		x->u1.at[j] = u;
-		x->v1.at[j] = v;
-		x->fourth_max.at[j] = fourth_max;
+	u0 = smaller(u0 - l->gap, 0); // a rounding must not make it overlap
+	u1 -= l->gap;
+	const double b1 = fma(1.0 / 3, v0, u0), b2 = fma(-1.0 / 3, v1, u1);
+	const double top = larger(larger(b1, b2), u1);
+	if (fma(POUND_CUBIC_ERROR, fourth_max, top) < 0)
+		return false;
+	x->u0.at[j] = u0;
+	x->v0.at[j] = v0;
+	x->u1.at[j] = u1;
+	x->v1.at[j] = v1;
+	x->fourth_max.at[j] = fourth_max;
+	return true;
+}
+
+/* What an overlap that is integrated in its own right does over a step. */
+LANE_INLINE void own_enclose(struct enclosures *x, const struct chain *c, int j)
+{
+	double u = c->overlaps[0][j], v = 0, fourth_max = 0;
+	x->u0.at[j] = u;
+	x->v0.at[j] = c->overlaps[1][j];
+	for (int n = 1; n <= c->order; n++) {
+		u += c->overlaps[n][j];
+		v = fma(TERM_OF[n].rate, c->overlaps[n][j], v);
+		fourth_max = fma(TERM_OF[n].fourth, fabs(c->overlaps[n][j]), fourth_max);
+	}
+	x->u1.at[j] = u;
+	x->v1.at[j] = v;
+	x->fourth_max.at[j] = fourth_max;
+}
+
+/* What overlaps do over a step, and a list of the links to look at. */
+static void overlaps_enclose(struct chain *c, struct link_list *some)
+{
+	some->n = 0;
+	for (int j = 0; j < c->n_links; j++) {
+		const bool own = c->link[j].own;
+		if (own)
+			own_enclose(&c->overlap, c, j);
+		if (own || overlap_enclose(&c->overlap, c, j))
+			some->link[some->n++] = (uint16_t)j;
 	}
 }
 
 /* a vector of links */
 struct link_lanes {
-	struct motion overlap;
+	int index[W]; /* -1: none */
 	struct enclosure enclosure;
 	unsigned open, released, touching;    /* which of the three */
 	unsigned forced;                      /* touching, and ends with its force */
@@ -148,15 +179,25 @@ struct link_lanes {
 	unsigned fresh;
 };
 
-static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
+/* Values of the links of a vector, 0 where there is none. */
+LANE_INLINE vd links_load(const int index[W], const double *from)
 {
-	memset(x, 0, sizeof *x);
-	x->enclosure = enclosure_load(&c->overlap, j);
+	double x[W];
+	for (int l = 0; l < W; l++)
+		x[l] = index[l] < 0 ? 0 : from[index[l]];
+	return lanes_of(x);
+}
+
+static void link_lanes_make(struct link_lanes *x, const struct chain *c, const struct link_list *some, int from)
+{
+	x->open = x->released = x->touching = x->forced = x->fresh = 0;
 	for (int l = 0; l < W; l++) {
 		x->low[l] = -DBL_MAX, x->high[l] = DBL_MAX;
-		if (j + l >= c->n_links)
+		x->direction[l] = x->phase_lead[l] = x->acceleration[l] = 0;
+		x->index[l] = from + l < some->n ? some->link[from + l] : -1;
+		if (x->index[l] < 0)
 			continue;
-		const struct link *link = &c->link[j + l];
+		const struct link *link = &c->link[x->index[l]];
 		const unsigned bit = 1u << l;
 		if (link_curved(link) || link->held)
 			continue; // nonlinear_contact_step.inl looks at them
@@ -176,11 +217,15 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, int j)
 		for (int k = 0; k < link->n_ends; k++)
 			x->acceleration[l] += 2 * fabs(link->weight[k] * c->displacements[2].at[link->floor[k]]);
 	}
+	const struct enclosures *overlap = &c->overlap;
+	x->enclosure = (struct enclosure){links_load(x->index, overlap->u0.at), links_load(x->index, overlap->v0.at),
+	                                  links_load(x->index, overlap->u1.at), links_load(x->index, overlap->v1.at),
+	                                  links_load(x->index, overlap->fourth_max.at)};
 }
 
 /* Rates of overlaps of a vector of links, over the step: their derivatives by its share; where the step is no share of time, the
  * rates themselves (nonlinear_contact.inl), as the share stands still where a power begins or ends. */
-static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap, int j)
+static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap, const int *index)
 {
 	if (!c->warp.on) {
 		motion_velocity(rate, overlap, c->order);
@@ -189,7 +234,7 @@ static void link_rates(struct power *rate, const struct chain *c, const struct m
 	for (int n = 0; n <= ORDER_HIGH; n++) {
 		double value[W];
 		for (int l = 0; l < W; l++)
-			value[l] = n <= c->order && j + l < c->n_links ? c->warp.links[j + l].rate[n] : 0;
+			value[l] = n <= c->order && index[l] >= 0 ? c->warp.links[index[l]].rate[n] : 0;
 		rate->c[n] = lanes_load(value);
 	}
 }
@@ -197,49 +242,50 @@ static void link_rates(struct power *rate, const struct chain *c, const struct m
 /* Looks for where forces fall through 0, of those that touch, or rise through it again, of those whose force is gone before
  * their overlap, and for where these clear. */
 static void forces_search(struct first *first, const struct chain *c, const struct link_lanes *x,
-                          unsigned lanes, int j)
+                          const struct motion *overlap, unsigned lanes)
 {
 	const vm touching = vmask(x->touching), some = vmask(lanes), fresh = vmask(x->fresh);
 	const vd sign = vselect(touching, vsplat(-1), vsplat(1)), phase_lead = lanes_load(x->phase_lead);
 	struct power guard = {0}, rate;
-	link_rates(&rate, c, &x->overlap, j);
+	link_rates(&rate, c, overlap, x->index);
 	for (int n = 0; n <= c->order; n++)
-		guard.c[n] = sign * vfma(phase_lead, rate.c[n], x->overlap.u.c[n]);
+		guard.c[n] = sign * vfma(phase_lead, rate.c[n], overlap->u.c[n]);
 	// where the force has just passed 0 it is beyond by a rounding (step.inl: force_search)
 	const vd below =
-	    vmin(guard.c[0], -DBL_EPSILON * vfma(phase_lead, lanes_load(x->acceleration), x->overlap.u.c[0]));
+	    vmin(guard.c[0], -DBL_EPSILON * vfma(phase_lead, lanes_load(x->acceleration), overlap->u.c[0]));
 	guard.c[0] = vselect(fresh, below, guard.c[0]);
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
 	search_safe(&guard, c->order, some, vselect(touching, vsplat(EVENT_ENDS), vsplat(EVENT_BEGINS)), &search);
-	search_take(first, &search, some, j);
+	search_take(first, &search, some, x->index);
 	const vm released = some & ~touching;
 	if (!vany(released))
 		return;
 	for (int n = 0; n <= c->order; n++)
-		guard.c[n] = -x->overlap.u.c[n];
+		guard.c[n] = -overlap->u.c[n];
 	search = (struct search){.time = vsplat(1), .event = vsplat(EVENT_NONE)};
 	search_safe(&guard, c->order, released, vsplat(EVENT_CLEARS), &search);
-	search_take(first, &search, released, j);
+	search_take(first, &search, released, x->index);
 }
 
 /* The overlaps of links that are not integrated in their own right. */
-static void overlaps_fill(struct chain *c, unsigned lanes, int j)
+static void overlaps_fill(struct chain *c, unsigned lanes, const int *index)
 {
 	for (; lanes; lanes &= lanes - 1) {
-		const int l = j + __builtin_ctz(lanes);
-		if (c->link[l].own)
+		const int j = index[__builtin_ctz(lanes)];
+		if (c->link[j].own)
 			continue;
 		for (int n = 1; n <= c->order; n++)
-			c->overlaps[n][l] = link_sum(&c->link[l], c->displacements[n].at);
-		c->overlaps[0][l] = c->overlap.u0.at[l];
+			c->overlaps[n][j] = link_sum(&c->link[j], c->displacements[n].at);
+		c->overlaps[0][j] = c->overlap.u0.at[j];
 	}
 }
 
-LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
+/* A vector of the links to look at. */
+static void links_search(struct first *first, struct chain *c, const struct link_list *some, int from)
 {
 	const vd zero = vsplat(0), one = vsplat(1);
 	struct link_lanes x;
-	link_lanes_make(&x, c, j);
+	link_lanes_make(&x, c, some, from);
 	const vm open = vmask(x.open), touching = vmask(x.touching);
 	const vd low = lanes_load(x.low), high = lanes_load(x.high), direction = lanes_load(x.direction);
 	const vm begins = open & may_cross(&x.enclosure, zero, one);
@@ -249,32 +295,33 @@ LANE_INLINE void links_search(struct first *first, struct chain *c, int j)
 	const unsigned by_force = x.forced | x.released;
 	if (!vany(begins | past_low | past_high | reversals) && by_force == 0)
 		return;
-	overlaps_fill(c, vbits(begins), j);
+	overlaps_fill(c, vbits(begins), x.index);
+	struct motion overlap;
 	for (int n = 0; n <= ORDER_HIGH; n++)
-		x.overlap.u.c[n] = n <= c->order ? lanes_load(&c->overlaps[n][j]) : zero;
-	x.overlap.end = (struct kinematics){x.enclosure.u1, x.enclosure.v1};
-	x.overlap.fourth_max = x.enclosure.fourth_max;
-	const struct power *p = &x.overlap.u;
+		overlap.u.c[n] = n <= c->order ? links_load(x.index, c->overlaps[n]) : zero;
+	overlap.end = (struct kinematics){x.enclosure.u1, x.enclosure.v1};
+	overlap.fourth_max = x.enclosure.fourth_max;
+	const struct power *p = &overlap.u;
 	if (vany(begins))
-		guard_search(first, c, guard_of(p, &x.enclosure, zero, one), begins, EVENT_BEGINS, j);
+		guard_search(first, c, guard_of(p, &x.enclosure, zero, one), begins, EVENT_BEGINS, x.index);
 	if (vany(past_low))
 		guard_search(first, c, guard_of(p, &x.enclosure, low, -one), past_low, EVENT_LINK + POUND_EDGE_LOW,
-		             j);
+		             x.index);
 	if (vany(past_high))
 		guard_search(first, c, guard_of(p, &x.enclosure, high, one), past_high, EVENT_LINK + POUND_EDGE_HIGH,
-		             j);
+		             x.index);
 	if (by_force)
-		forces_search(first, c, &x, by_force, j);
+		forces_search(first, c, &x, &overlap, by_force);
 	if (!vany(reversals))
 		return;
 	struct power velocity;
-	link_rates(&velocity, c, &x.overlap, j);
+	link_rates(&velocity, c, &overlap, x.index);
 	const struct enclosure enclosure = enclosure_make(&velocity, c->order);
 	reversals &= may_cross(&enclosure, zero, -direction);
 	if (!vany(reversals))
 		return;
 	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), reversals,
-	             EVENT_LINK + POUND_EDGE_REVERSAL, j);
+	             EVENT_LINK + POUND_EDGE_REVERSAL, x.index);
 }
 
 /* Looks for where the force that holds the sides of a rigid contact together falls through 0. */
@@ -288,18 +335,19 @@ static void held_search(struct first *first, const struct chain *c, int j)
 		guard.c[0] = vsplat(0);
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};
 	search_safe(&guard, c->order, vmask(1), vsplat(EVENT_ENDS), &search);
-	search_take(first, &search, vmask(1), j);
+	int index[W] = {j};
+	search_take(first, &search, vmask(1), index);
 }
 
 /* The first event of a step. */
 static struct first events_search(struct chain *c)
 {
 	struct first first = {.time = 1, .event = EVENT_NONE, .index = -1};
-	if (c->n_links > 0)
-		overlaps_enclose(c);
-	for (int j = 0; j < c->n_links; j += W)
-		links_search(&first, c, j);
-	for (int j = 0; j < c->n_links; j++)
+	struct link_list some;
+	overlaps_enclose(c, &some);
+	for (int k = 0; k < some.n; k += W)
+		links_search(&first, c, &some, k);
+	for (int j = 0; c->held && j < c->n_links; j++)
 		if (c->link[j].held)
 			held_search(&first, c, j);
 	for (int i = 0; c->edged && i < c->n; i += W)

@@ -384,7 +384,7 @@ LANE_INLINE unsigned sampled_peaks(const struct chain *c, const struct sampled *
 /* Overlap of a link at a sample, and its rate. */
 LANE_INLINE void link_at(const struct link *l, const struct modal_place *at, double *p, double *q)
 {
-	double overlap = -l->link->gap, rate = 0;
+	double overlap = -l->gap, rate = 0;
 	for (int k = 0; k < l->n_ends; k++) {
 		overlap = fma(l->weight[k], at->u.at[l->floor[k]], overlap);
 		rate = fma(l->weight[k], at->w.at[l->floor[k]], rate);

@@ -46,6 +46,7 @@ struct enclosures {
 /* one contact, or what may become one */
 struct link {
 	const struct pound_link *link;
+	double gap; /* [m] */
 	int n_ends; /* floors that move */
 	int floor[ENDS];
 	double weight
@@ -208,6 +209,7 @@ static void link_start(struct link *l, const struct pound_chain_task *task, int 
 			l->inverse_mass += weight * weight / task->floors[floor].mass;
 		}
 	l->own = true;
+	l->gap = link->gap;
 	l->p = -link->gap;
 }
 

@@ -8,7 +8,9 @@
  */
 static double reach_touching(struct chain *c)
 {
-	double spring = 0, dash = 0, load[2][LONG] = {{0}};
+	double spring = 0, dash = 0, load[2][LONG];
+	for (int s = 0; s < 2; s++)
+		memset(load[s], 0, sizeof(double) * (size_t)c->wide);
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
 		for (int k = 0; l->touching && k < l->n_ends; k++) {
@@ -24,8 +26,8 @@ static double reach_touching(struct chain *c)
 		for (int k = 0; l->touching && k < l->n_ends; k++)
 			for (int s = 0; s < 2; s++)
 				sum[s] = fma(fabs(l->weight[k]), load[s][l->floor[k]], sum[s]);
-		spring = fmax(spring, sum[0]);
-		dash = fmax(dash, sum[1]);
+		spring = larger(spring, sum[0]);
+		dash = larger(dash, sum[1]);
 	}
 	const double rate =
 	    rate_of(sqrt(c->rate_separated * c->rate_separated + spring), c->damping_separated + dash);
@@ -80,7 +82,7 @@ static struct pound_counts_body side_of(const struct chain *c, const struct link
 		b.offset += weight * m * fabs(fma(c->stiffness.at[i], c->d.at[i], c->offset.at[i]));
 		if (c->inverse_above.at[i] > 0)
 			b.offset += weight * m * fabs(fma(c->stiffness.at[i + 1], c->d.at[i + 1], c->offset.at[i + 1]));
-		damping = fmin(damping, c->mass_damping.at[i] + c->dashpot.at[i] * m);
+		damping = smaller(damping, c->mass_damping.at[i] + c->dashpot.at[i] * m);
 	}
 	b.damping = damping == DBL_MAX ? 0 : damping;
 	return b;
@@ -91,7 +93,7 @@ static void contact_over(struct chain *c, struct link *l)
 {
 	double *m = l->measures;
 	const double changed = l->inverse_mass * l->impulse + fabs(l->q), h = c->task->time_step;
-	m[POUND_LINK_IMPULSE_MAX] = fmax(m[POUND_LINK_IMPULSE_MAX], l->impulse);
+	m[POUND_LINK_IMPULSE_MAX] = larger(m[POUND_LINK_IMPULSE_MAX], l->impulse);
 	chain_displacements(c);
 	const struct pound_counts counts = {.body = {side_of(c, l, 0), side_of(c, l, 1)},
 	                                    .time = (double)c->next * h,
@@ -129,7 +131,7 @@ static void contact_begins(struct chain *c, struct link *l)
 static void contact_ends(struct chain *c, struct link *l)
 {
 	if (l->held) {
-		l->measures[POUND_LINK_IMPULSE_MAX] = fmax(l->measures[POUND_LINK_IMPULSE_MAX], l->impulse);
+		l->measures[POUND_LINK_IMPULSE_MAX] = larger(l->measures[POUND_LINK_IMPULSE_MAX], l->impulse);
 		held_end(l);
 		c->reach = 0;
 		return;
@@ -188,10 +190,9 @@ static void step_arrive(struct chain *c, double time)
 		column_store(&c->v, i, at.v * per_dt);
 	}
 	const double elapsed = time * c->dt;
-	for (int j = 0; j < c->n_links; j++) {
+	for (int o = 0; o < c->own.n; o++) {
+		const int j = c->own.link[o];
 		struct link *l = &c->link[j];
-		if (!l->own)
-			continue;
 		if (l->held) {
 			double sum = 0;
 			for (int n = c->order - 2; n >= 0; n--)
@@ -216,7 +217,7 @@ static void step_arrive(struct chain *c, double time)
 		l->fresh = false;
 	}
 	c->ground = fma(c->slope, elapsed, c->ground);
-	c->remainder = fmax(c->remainder - elapsed, 0);
+	c->remainder = larger(c->remainder - elapsed, 0);
 }
 
 /* Largest values on the way of a step to a share of it. */
@@ -294,6 +295,6 @@ static void chain_step(struct chain *c)
 	overlap_enter(c, &first);
 	event_apply(c, &first);
 	c->after_event |= first.event > EVENT_CUT;
-	c->pace = first.event == EVENT_CUT ? fmax(c->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
-	                                   : fmin(c->pace * POUND_STEP_LONGER, 1);
+	c->pace = first.event == EVENT_CUT ? larger(c->pace * POUND_STEP_SHORTER, POUND_STEP_SHORTEST)
+	                                   : smaller(c->pace * POUND_STEP_LONGER, 1);
 }

@@ -12,8 +12,9 @@ static void curve_search(struct first *first, const struct chain *c, const doubl
 	const struct enclosure enclosure = enclosure_make(&g, c->order);
 	const vd zero = vsplat(0), one = vsplat(1);
 	const vm lane = vmask(1) & may_cross(&enclosure, zero, one);
+	const int lanes[W] = {index};
 	if (vany(lane))
-		guard_search(first, c, guard_of(&g, &enclosure, zero, one), lane, event, index);
+		guard_search(first, c, guard_of(&g, &enclosure, zero, one), lane, event, lanes);
 }
 
 /* A series as a guard, times a sign. */
