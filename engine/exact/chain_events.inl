@@ -137,33 +137,19 @@ LANE_INLINE bool overlap_enclose(struct enclosures *x, const struct chain *c, in
 	return true;
 }
 
-/* What an overlap that is integrated in its own right does over a step. */
-LANE_INLINE void own_enclose(struct enclosures *x, const struct chain *c, int j)
-{
-	double u = c->overlaps[0][j], v = 0, fourth_max = 0;
-	x->u0.at[j] = u;
-	x->v0.at[j] = c->overlaps[1][j];
-	for (int n = 1; n <= c->order; n++) {
-		u += c->overlaps[n][j];
-		v = fma(TERM_OF[n].rate, c->overlaps[n][j], v);
-		fourth_max = fma(TERM_OF[n].fourth, fabs(c->overlaps[n][j]), fourth_max);
-	}
-	x->u1.at[j] = u;
-	x->v1.at[j] = v;
-	x->fourth_max.at[j] = fourth_max;
-}
-
 /* What overlaps do over a step, and a list of the links to look at. */
 static void overlaps_enclose(struct chain *c, struct link_list *some)
 {
-	some->n = 0;
-	for (int j = 0; j < c->n_links; j++) {
-		const bool own = c->link[j].own;
-		if (own)
-			own_enclose(&c->overlap, c, j);
-		if (own || overlap_enclose(&c->overlap, c, j))
-			some->link[some->n++] = (uint16_t)j;
+	for (int k = 0, next = 0; k < c->own.n; k++) { // those that are integrated in their own right
+		const int j = c->own.link[k] / W * W;
+		if (j >= next)
+			enclosures_of(c->overlaps[0], LINKS, c->order, &c->overlap, j, 1);
+		next = j + W;
 	}
+	some->n = 0;
+	for (int j = 0; j < c->n_links; j++)
+		if (c->link[j].own || overlap_enclose(&c->overlap, c, j))
+			some->link[some->n++] = (uint16_t)j;
 }
 
 /* a vector of links */
@@ -188,7 +174,8 @@ LANE_INLINE vd links_load(const int index[W], const double *from)
 	return lanes_of(x);
 }
 
-static void link_lanes_make(struct link_lanes *x, const struct chain *c, const struct link_list *some, int from)
+static void link_lanes_make(struct link_lanes *x, const struct chain *c, const struct link_list *some,
+                            int from)
 {
 	x->open = x->released = x->touching = x->forced = x->fresh = 0;
 	for (int l = 0; l < W; l++) {
@@ -218,14 +205,16 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, const s
 			x->acceleration[l] += 2 * fabs(link->weight[k] * c->displacements[2].at[link->floor[k]]);
 	}
 	const struct enclosures *overlap = &c->overlap;
-	x->enclosure = (struct enclosure){links_load(x->index, overlap->u0.at), links_load(x->index, overlap->v0.at),
-	                                  links_load(x->index, overlap->u1.at), links_load(x->index, overlap->v1.at),
-	                                  links_load(x->index, overlap->fourth_max.at)};
+	x->enclosure =
+	    (struct enclosure){links_load(x->index, overlap->u0.at), links_load(x->index, overlap->v0.at),
+	                       links_load(x->index, overlap->u1.at), links_load(x->index, overlap->v1.at),
+	                       links_load(x->index, overlap->fourth_max.at)};
 }
 
 /* Rates of overlaps of a vector of links, over the step: their derivatives by its share; where the step is no share of time, the
  * rates themselves (nonlinear_contact.inl), as the share stands still where a power begins or ends. */
-static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap, const int *index)
+static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap,
+                       const int *index)
 {
 	if (!c->warp.on) {
 		motion_velocity(rate, overlap, c->order);

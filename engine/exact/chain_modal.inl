@@ -290,23 +290,6 @@ LANE_INLINE struct drifts drifts_sum(const struct modal_motion *f, int i)
 	return (struct drifts){even.d + odd.d, even.v + odd.v, even.fourth_max + odd.fourth_max};
 }
 
-/* Displacements and velocities at the end of the sample, and sums of bounds, from drifts. */
-static void displacements_sum(const struct chain *c, struct modal_place *at, struct column *fourth_max)
-{
-	double u = 0, w = 0, sum = 0;
-	for (int i = 0; i < c->n; i++) {
-		const double inner = c->inner.at[i];
-		u = fma(inner, u, at->d.at[i]);
-		w = fma(inner, w, at->v.at[i]);
-		at->u.at[i] = u;
-		at->w.at[i] = w;
-		if (fourth_max) {
-			sum = fma(inner, sum, fourth_max->at[i]);
-			fourth_max->at[i] = sum;
-		}
-	}
-}
-
 /* Elastic and damping forces of modes per modal mass at a sample, -(c q' + w^2 q), of which absolute accelerations are sums, their
  * rates, and what bounds their fourth derivatives over the sample before.
  *
@@ -345,16 +328,9 @@ LANE_INLINE void accelerations_sum(struct chain *c, struct modal_place *at)
 		column_store(&at->jerk, i, jerk);
 		column_store(&f->fourth_force, i, bound);
 	}
-	double a = 0, jerk = 0, bound = 0;
-	for (int i = 0; i < c->n; i++) {
-		const double inner = c->inner.at[i];
-		a = fma(inner, a, at->a.at[i]);
-		jerk = fma(inner, jerk, at->jerk.at[i]);
-		bound = fma(inner, bound, f->fourth_force.at[i]);
-		at->a.at[i] = a;
-		at->jerk.at[i] = jerk;
-		f->fourth_force.at[i] = bound;
-	}
+	double *bound = f->fourth_force.at;
+	floors_sum(c, 3,
+	           (const struct summed[]){{at->a.at, at->a.at}, {at->jerk.at, at->jerk.at}, {bound, bound}});
 }
 
 /* a quantity of floors over a sample: values and rates at both ends, the bound of its fourth derivative, its largest values */
@@ -555,7 +531,8 @@ LANE_INLINE bool modal_sample(struct chain *c, bool edged, bool moving)
 	if (vany(risk))
 		return false;
 	if (moving) {
-		displacements_sum(c, to, &f->fourth_drift);
+		double *bound = f->fourth_drift.at;
+		floors_sum(c, 3, (const struct summed[]){{to->d.at, to->u.at}, {to->v.at, to->w.at}, {bound, bound}});
 		if (c->n_links > 0 && links_risk(c, to))
 			return false;
 	}
@@ -630,8 +607,9 @@ static void modal_advance(struct chain *c, const atomic_bool *stop)
 	if (!modal_clear(c))
 		return;
 	modal_enter(c);
+	struct modal_place *at = &f->at[0];
 	if (c->moving)
-		displacements_sum(c, &f->at[0], NULL);
+		floors_sum(c, 2, (const struct summed[]){{at->d.at, at->u.at}, {at->v.at, at->w.at}});
 	for (int j = 0; j < c->n_links; j++)
 		link_at(&c->link[j], &f->at[0], &f->overlap[j], &f->rate[j]);
 	if (c->task->asked & POUND_CHAIN_ACCELERATIONS) {

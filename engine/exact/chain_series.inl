@@ -14,10 +14,14 @@
 struct term {
 	double rate, fourth, share;
 };
-#define TERM(n) {(n), (n) * ((n)-1.0) * ((n)-2.0) * ((n)-3.0), 1 / (((n) + 1.0) * ((n) + 2.0))}
-static const struct term TERM_OF[TERMS] = {
-    TERM(0),  TERM(1),  TERM(2),  TERM(3),  TERM(4),  TERM(5),  TERM(6),  TERM(7),  TERM(8),  TERM(9),  TERM(10),
-    TERM(11), TERM(12), TERM(13), TERM(14), TERM(15), TERM(16), TERM(17), TERM(18), TERM(19), TERM(20), TERM(21)};
+#define TERM(n)                                                                       \
+	{                                                                                 \
+		(n), (n) * ((n)-1.0) * ((n)-2.0) * ((n)-3.0), 1 / (((n) + 1.0) * ((n) + 2.0)) \
+	}
+static const struct term TERM_OF[TERMS] = {TERM(0),  TERM(1),  TERM(2),  TERM(3),  TERM(4),  TERM(5),
+                                           TERM(6),  TERM(7),  TERM(8),  TERM(9),  TERM(10), TERM(11),
+                                           TERM(12), TERM(13), TERM(14), TERM(15), TERM(16), TERM(17),
+                                           TERM(18), TERM(19), TERM(20), TERM(21)};
 
 LANE_INLINE vd column_load(const struct column *x, int j)
 {
@@ -237,21 +241,24 @@ LANE_INLINE void series_orders(struct chain *c, bool pushed)
 	}
 }
 
-/* What some vectors of a column of series do over a step. */
-LANE_INLINE void enclosures_of(const struct column series[TERMS], int order, struct enclosures *to, int i,
+/* What some vectors of series do over a step.
+ *
+ * Given    series  coefficients of order n from n strides on
+ */
+LANE_INLINE void enclosures_of(const double *series, size_t stride, int order, struct enclosures *to, int i,
                                const int vectors)
 {
 	vd u[4], v[4], fourth_max[4];
 	for (int k = 0; k < vectors; k++) {
-		u[k] = column_load(&series[0], i + k * W);
+		u[k] = lanes_load(series + i + k * W);
 		v[k] = fourth_max[k] = vsplat(0);
 		column_store(&to->u0, i + k * W, u[k]);
-		column_store(&to->v0, i + k * W, column_load(&series[1], i + k * W));
+		column_store(&to->v0, i + k * W, lanes_load(series + stride + i + k * W));
 	}
 	for (int n = 1; n <= order; n++) {
 		const vd rate = vsplat(TERM_OF[n].rate), fourth = vsplat(TERM_OF[n].fourth);
 		for (int k = 0; k < vectors; k++) {
-			const vd x = column_load(&series[n], i + k * W);
+			const vd x = lanes_load(series + (size_t)n * stride + i + k * W);
 			u[k] = u[k] + x;
 			v[k] = vfma(rate, x, v[k]);
 			if (n >= 4)
@@ -269,13 +276,14 @@ LANE_INLINE void enclosures_of(const struct column series[TERMS], int order, str
 LANE_SHARED void enclosures_make(const struct chain *c, const struct column series[TERMS],
                                  struct enclosures *to)
 {
+	const double *first = series[0].at;
 	int i = 0;
 	for (; i + 4 * W <= c->wide; i += 4 * W)
-		enclosures_of(series, c->order, to, i, 4);
+		enclosures_of(first, LONG, c->order, to, i, 4);
 	for (; i + 2 * W <= c->wide; i += 2 * W)
-		enclosures_of(series, c->order, to, i, 2);
+		enclosures_of(first, LONG, c->order, to, i, 2);
 	for (; i < c->wide; i += W)
-		enclosures_of(series, c->order, to, i, 1);
+		enclosures_of(first, LONG, c->order, to, i, 1);
 }
 
 /* What a series does over a step. */

@@ -149,10 +149,13 @@ struct chain {
 	struct pound_chain_result *result;
 	int n, wide; /* floors, and as many as whole vectors have */
 	int n_links, wide_links;
-	bool edged;  /* a law has more than one branch */
-	bool held;   /* a rigid contact holds in the current step */
-	bool modal;  /* a building has a damping matrix */
-	bool moving; /* displacements are looked at */
+	int buildings;
+	uint16_t first[POUND_CHAIN_FLOORS + 1]; /* floor of each building, and what follows the last */
+	bool edged;                             /* a law has more than one branch */
+	bool held;                              /* a rigid contact holds in the current step */
+	bool modal;                             /* a building has a damping matrix */
+	bool moving;                            /* displacements are looked at */
+	bool curved;                            /* a contact's force may be no straight line */
 	double rate_separated,
 	    damping_separated; /* fastest that floors do without contact, and the damping of that [1/s] */
 	// what does not change: 1/m, the same where there is a floor above, whether there is one below, whether there is not,
@@ -350,10 +353,16 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 		c->low.at[i] = -DBL_MAX;
 		c->high.at[i] = DBL_MAX;
 	}
-	for (int i = 0; i < c->n; i++)
+	for (int i = 0; i < c->n; i++) {
 		floor_start(c, i);
+		if (task->floors[i].base)
+			c->first[c->buildings++] = (uint16_t)i;
+	}
+	c->first[c->buildings] = (uint16_t)c->n;
 	chain_rates(c);
 	for (int j = 0; j < c->n_links; j++) {
+		const int force = pound_contact_force(task->links[j].law.model);
+		c->curved |= force == POUND_FORCE_PRODUCT || force == POUND_FORCE_POWER;
 		link_start(&c->link[j], task, j);
 		c->link[j].measures = &result->links[j * POUND_LINK_MEASURES];
 		memset(c->link[j].measures, 0, sizeof(double) * POUND_LINK_MEASURES);
@@ -362,16 +371,37 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	            (task->asked & (POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_ENERGY));
 }
 
+/* a column of drifts, and what floors do */
+struct summed {
+	const double *drift;
+	double *floor;
+};
+
+/* Sums over the stories below: what floors do, from drifts.  A sum waits for itself, so two buildings go side by side. */
+LANE_INLINE void floors_sum(const struct chain *c, const int n, const struct summed *x)
+{
+	for (int b = 0; b < c->buildings; b += 2) {
+		int i = c->first[b], k = c->first[b + 1];
+		const int end = k, last = b + 1 < c->buildings ? c->first[b + 2] : k;
+		double left[3] = {0, 0, 0}, right[3] = {0, 0, 0};
+		for (; i < end && k < last; i++, k++)
+			for (int s = 0; s < n; s++) {
+				x[s].floor[i] = left[s] += x[s].drift[i];
+				x[s].floor[k] = right[s] += x[s].drift[k];
+			}
+		for (; i < end; i++)
+			for (int s = 0; s < n; s++)
+				x[s].floor[i] = left[s] += x[s].drift[i];
+		for (; k < last; k++)
+			for (int s = 0; s < n; s++)
+				x[s].floor[k] = right[s] += x[s].drift[k];
+	}
+}
+
 /* Displacements and velocities of floors, from the drifts of their stories. */
 static void chain_displacements(struct chain *c)
 {
-	double u = 0, w = 0;
-	for (int i = 0; i < c->n; i++) {
-		u = fma(c->inner.at[i], u, c->d.at[i]);
-		w = fma(c->inner.at[i], w, c->v.at[i]);
-		c->u.at[i] = u;
-		c->w.at[i] = w;
-	}
+	floors_sum(c, 2, (const struct summed[]){{c->d.at, c->u.at}, {c->v.at, c->w.at}});
 }
 
 static double chain_time(const struct chain *c)

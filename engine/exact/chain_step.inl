@@ -174,6 +174,49 @@ static void story_leave(struct chain *c, int i, enum pound_edge edge, bool moved
 
 /* ---- the step ---- */
 
+/* Value and rate of a vector of floors at a share of the step: kinematics_at (series.inl), out of memory. */
+LANE_INLINE struct kinematics column_kinematics(const struct column series[TERMS], int order, int i, vd t)
+{
+	const vd t2 = t * t;
+	vd even_rate = column_load(&series[order - 1], i), odd_rate = column_load(&series[order], i);
+	vd even = vfma(even_rate, t2, column_load(&series[order - 3], i));
+	vd odd = vfma(odd_rate, t2, column_load(&series[order - 2], i));
+	for (int n = order - 4; n > 0; n -= 2) {
+		even_rate = vfma(even_rate, t2, even), odd_rate = vfma(odd_rate, t2, odd);
+		even = vfma(even, t2, column_load(&series[n - 1], i));
+		odd = vfma(odd, t2, column_load(&series[n], i));
+	}
+	return (struct kinematics){vfma(odd, t, even), vfma(2.0 * t, vfma(odd_rate, t, even_rate), odd)};
+}
+
+/* overlaps at a share of a step, their rates and their integrals up to there, by shares of it */
+struct overlaps_at {
+	struct column p, rate, area;
+};
+
+/* Where the links of the current step are at a share of it. */
+LANE_INLINE void overlaps_place(const struct chain *c, double time, struct overlaps_at *at)
+{
+	const vd t = vsplat(time);
+	for (int k = 0, next = 0; k < c->own.n; k++) {
+		const int j = c->own.link[k] / W * W;
+		if (j < next)
+			continue;
+		next = j + W;
+		vd p = lanes_load(&c->overlaps[c->order][j]), rate = vsplat(0),
+		   area = p * vsplat(POUND_SHARE[c->order]);
+		for (int n = c->order - 1; n >= 0; n--) {
+			const vd x = lanes_load(&c->overlaps[n][j]);
+			rate = vfma(rate, t, p);
+			p = vfma(p, t, x);
+			area = vfma(area, t, x * vsplat(POUND_SHARE[n]));
+		}
+		column_store(&at->p, j, p);
+		column_store(&at->rate, j, rate);
+		column_store(&at->area, j, area);
+	}
+}
+
 /* Where the floors and links are at a share of the step. */
 static void step_arrive(struct chain *c, double time)
 {
@@ -181,15 +224,14 @@ static void step_arrive(struct chain *c, double time)
 	const bool whole = time == 1;
 	for (int i = 0; i < c->wide; i += W) {
 		struct kinematics at = {column_load(&c->drift.u1, i), column_load(&c->drift.v1, i)};
-		if (!whole) {
-			struct power x;
-			power_load(&x, c->order, c->drifts, i);
-			at = kinematics_at(&x, c->order, vsplat(time));
-		}
+		if (!whole)
+			at = column_kinematics(c->drifts, c->order, i, vsplat(time));
 		column_store(&c->d, i, at.u);
 		column_store(&c->v, i, at.v * per_dt);
 	}
 	const double elapsed = time * c->dt;
+	struct overlaps_at at;
+	overlaps_place(c, time, &at);
 	for (int o = 0; o < c->own.n; o++) {
 		const int j = c->own.link[o];
 		struct link *l = &c->link[j];
@@ -202,15 +244,11 @@ static void step_arrive(struct chain *c, double time)
 			l->p = l->q = 0;
 			continue;
 		}
-		double q = c->overlap.v1.at[j], p = c->overlap.u1.at[j], area = 0, slope;
-		if (!whole)
-			p = column_at(&c->overlaps[0][j], LINKS, c->order, time, &q);
-		l->q = q / c->dt;
+		const double p = whole ? c->overlap.u1.at[j] : at.p.at[j];
+		l->q = (whole ? c->overlap.v1.at[j] : at.rate.at[j]) / c->dt;
 		if (l->touching) {
-			for (int n = c->order; n >= 0; n--)
-				area = fma(area, time, c->overlaps[n][j] * POUND_SHARE[n]);
-			slope = fma(l->at.on.stiffness, area, l->at.on.offset) * elapsed;
-			l->impulse += fma(l->at.on.damping, p - l->p, slope);
+			const double spring = fma(l->at.on.stiffness, at.area.at[j], l->at.on.offset) * elapsed;
+			l->impulse += fma(l->at.on.damping, p - l->p, spring);
 			l->time += elapsed;
 		}
 		l->p = p;

@@ -311,16 +311,6 @@ LANE_INLINE void warp_integrate(struct chain *c, int n, int i)
 	column_store(&x->rates[n + 1], i, share * (rate[0] + rate[1]));
 }
 
-/* Sums over the stories below: what floors do, from drifts. */
-static void floors_sum(const struct chain *c, const struct column *drifts, struct column *floors)
-{
-	double sum = 0;
-	for (int i = 0; i < c->n; i++) {
-		sum = fma(c->inner.at[i], sum, drifts->at[i]);
-		floors->at[i] = sum;
-	}
-}
-
 /* Order n of g and of the time, out of w. */
 static void warp_gauge(struct warp *x, int n)
 {
@@ -338,7 +328,7 @@ static void warp_links(struct chain *c, int n)
 {
 	struct warp *x = &c->warp;
 	struct column floors;
-	floors_sum(c, &x->rates[n + 1], &floors);
+	floors_sum(c, 1, &(const struct summed){x->rates[n + 1].at, floors.at});
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
 		if (!l->own)
@@ -493,7 +483,7 @@ static void nonlinear_series(struct chain *c)
 		x->length *= ratio;
 	}
 	for (int n = 0; n <= ORDER_HIGH; n++)
-		floors_sum(c, &c->drifts[n], &c->displacements[n]);
+		floors_sum(c, 1, &(const struct summed){c->drifts[n].at, c->displacements[n].at});
 	for (int j = 0; j < c->n_links; j++)
 		for (int n = 0; c->link[j].own && !c->link[j].held && n <= ORDER_HIGH; n++)
 			c->overlaps[n][j] = x->links[j].overlap[n];
@@ -504,7 +494,7 @@ static void nonlinear_series(struct chain *c)
 /* Whether a contact's force is no straight line. */
 static bool chain_curved(const struct chain *c)
 {
-	for (int j = 0; j < c->n_links; j++)
+	for (int j = 0; c->curved && j < c->n_links; j++)
 		if (link_curved(&c->link[j]))
 			return true;
 	return false;
@@ -516,7 +506,7 @@ static void warp_floor_accelerations(struct chain *c)
 	struct warp *x = &c->warp;
 	for (int n = 0; n <= ORDER_HIGH; n++) {
 		struct column floors;
-		floors_sum(c, &x->accelerations[n], &floors);
+		floors_sum(c, 1, &(const struct summed){x->accelerations[n].at, floors.at});
 		const double ground = fma(c->slope, x->clock[n], n == 0 ? c->ground : 0);
 		for (int i = 0; i < c->n; i++)
 			x->accelerations[n].at[i] = floors.at[i] + ground;
