@@ -36,6 +36,16 @@ static void series_at(const struct series *s, double x, double at[3])
 	}
 }
 
+/* A bound of the second derivative from 0 to a share of the step: less than that of all of it where terms of high order are most of
+ * it, as they are of bodies that leave their rest, like x^4. */
+static double series_bend(const struct series *s, double share)
+{
+	double sum = 0;
+	for (int n = ORDER; n >= 2; n--)
+		sum = sum * share + n * (n - 1) * fabs(s->c[n]);
+	return sum;
+}
+
 /* The largest value of a series that is concave between two points, by Newton's method on its slope. */
 static double series_crest(const struct series *s, double low, double high, const double middle[3])
 {
@@ -60,8 +70,9 @@ static void series_search(const struct series *s, double middle, double half, in
 	double at[3];
 	series_at(s, middle, at);
 	*peak = fmax(*peak, at[0]);
-	const double above = at[0] + fabs(at[1]) * half + 0.5 * s->bend * half * half - *peak;
-	if (depth == HALVINGS || !(above > s->rounding))
+	const double line = at[0] + fabs(at[1]) * half - *peak, square = 0.5 * half * half;
+	if (depth == HALVINGS || !(line + square * s->bend > s->rounding) ||
+	    !(line + square * series_bend(s, middle + half) > s->rounding))
 		return;
 	if (2 * at[2] + s->twist * half < 0) {
 		*peak = fmax(*peak, series_crest(s, middle - half, middle + half, at));
@@ -73,26 +84,20 @@ static void series_search(const struct series *s, double middle, double half, in
 	series_search(s, middle - next, 0.5 * half, depth + 1, peak);
 }
 
-/* Raises the peak to the largest value of a series times sign.
- *
- *   p(x) = c_0 + x^k (c_k + c_k+1 x + ...) <= c_0 + max(c_k + max(c_k+1 + ..., 0), 0)     for 0 <= x <= 1
- *
- * with c_k the first coefficient behind c_0 that is not 0.  Bodies leave their rest like x^4: no halving would find that flat start
- * below the peak before its steps are as short as roundings. */
+/* Raises the peak to the largest value of a series times sign. */
 static void series_peak(const struct series *s, double sign, double *peak)
 {
 	struct series signed_series = {.bend = s->bend, .twist = s->twist, .rounding = s->rounding};
-	double rise = 0;
-	for (int n = ORDER; n >= 0; n--) {
-		signed_series.c[n] = sign * s->c[n];
-		if (n > 0 && signed_series.c[n] != 0)
-			rise = fmax(rise, 0) + signed_series.c[n];
+	double most = 0;
+	for (int n = 0; n <= ORDER; n++) {
+		const double c = sign * s->c[n];
+		signed_series.c[n] = c;
+		most += n == 0 ? c : fmax(c, 0);
 	}
-	if (!(signed_series.c[0] + fmax(rise, 0) > *peak + s->rounding))
+	if (!(most > *peak + s->rounding))
 		return;
 	*peak = fmax(*peak, signed_series.c[0]);
-	if (rise > 0)
-		series_search(&signed_series, 0.5, 0.5, 0, peak);
+	series_search(&signed_series, 0.5, 0.5, 0, peak);
 }
 
 /* Adds a body's series, and moves its state to the end of the step.
