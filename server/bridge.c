@@ -19,10 +19,10 @@ static bool look_up(struct request *request, struct um_bridge *bridge, struct re
 	    store_document(request->server->store, um_bridge_id(bridge), "request", &document, &length);
 	if (found == STORE_OK || found == STORE_NONE)
 		um_bridge_stored(bridge, document, length);
-	else if (found == STORE_CORRUPT)
-		*reply = http_problem(API_CORRUPT, "the stored bytes are damaged", NULL);
-	else
-		*reply = http_problem(API_UNAVAILABLE, "the database does not answer; please try again", NULL);
+	else {
+		free(reply->body);
+		*reply = http_refusal(found, "");
+	}
 	free(document);
 	return found == STORE_OK || found == STORE_NONE;
 }

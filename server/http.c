@@ -69,6 +69,31 @@ struct reply http_problem(enum api_fault fault, const char *detail, const struct
 	return reply;
 }
 
+/* What the store says no with; `absent`: what there is none of. */
+struct reply http_refusal(enum store_status status, const char *absent)
+{
+	static const struct {
+		enum api_fault fault;
+		const char *detail;
+	} refusals[] = {
+	    [STORE_NONE] = {API_NOT_FOUND, NULL},
+	    [STORE_CORRUPT] = {API_CORRUPT, "the stored bytes are damaged"},
+	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
+	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key was used before with another body"},
+	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
+	    [STORE_REPLACED] =
+	        {API_UNAVAILABLE,
+	         "the database file was removed or replaced: nothing is accepted until the server is "
+	         "started again"},
+	    [STORE_CROWDED] = {API_UNAVAILABLE, "the queue is full"},
+	    [STORE_UNRECORDED] = {API_UNAVAILABLE,
+	                          "a record that the study names was just deleted: PUT it again"},
+	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY, "the queue has no room for more studies of this token"},
+	};
+	return http_problem(refusals[status].fault, status == STORE_NONE ? absent : refusals[status].detail,
+	                    NULL);
+}
+
 static struct connection *connection_of(struct MHD_Connection *connection)
 {
 	return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context;

@@ -16,6 +16,7 @@
 #include "server/metrics.h"
 #include "server/options.h"
 #include "server/spool.h"
+#include "server/store.h"
 
 /* What every request can reach. */
 struct server {
@@ -75,6 +76,9 @@ bool http_known(const struct request *request,
 
 /* an application/problem+json reply; `problems` may be NULL */
 struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);
+
+/* the same of a status of the store, which has none of what is absent: a sentence */
+struct reply http_refusal(enum store_status status, const char *absent);
 
 /* routes.c: answers a request whose head is right and whose body is read */
 struct reply routes_answer(struct request *request);

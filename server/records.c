@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "schema/study/study_json.h"
-#include "server/refusal.h"
 #include "server/store.h"
 
 /* ---- studies ---- */
@@ -83,7 +82,7 @@ struct reply records_put(struct request *request)
 	    store_put_record(request->server->store, sha256, request->body, request->length);
 	return status == STORE_OK         ? (struct reply){.status = 201}
 	       : status == STORE_REPEATED ? (struct reply){.status = 204}
-	                                  : refusal_of(status, "");
+	                                  : http_refusal(status, "");
 }
 
 struct reply records_get(struct request *request)
@@ -93,5 +92,5 @@ struct reply records_get(struct request *request)
 	    store_record(request->server->store, sha256_of(request), &reply.body, &reply.length);
 	// the first digits are enough: an answer has the bytes of its path
 	snprintf(reply.etag, sizeof reply.etag, "\"%.32s\"", sha256_of(request));
-	return status == STORE_OK ? reply : refusal_of(status, "there is no such record");
+	return status == STORE_OK ? reply : http_refusal(status, "there is no such record");
 }

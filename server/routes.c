@@ -21,7 +21,6 @@
 #include "server/http.h"
 #include "server/pages.h"
 #include "server/records.h"
-#include "server/refusal.h"
 #include "server/store.h"
 #include "server/stored_run.h"
 #include "server/token.h"
@@ -60,7 +59,7 @@ static struct reply written(struct writer *writer)
 
 static struct reply refusal(enum store_status status)
 {
-	return refusal_of(status, "there is no such study");
+	return http_refusal(status, "there is no such study");
 }
 
 /* Studies being written, one after the other. */
@@ -180,9 +179,10 @@ static struct reply submit(struct request *request)
 	if (!study)
 		return invalid(&problems);
 	const struct options *options = request->server->options;
-	const struct cost cost = cost_of(study, options->workers),
-	                  most = {options->runs_max, options->cpu_max, MIB * options->result_max,
-	                          MIB * options->memory_max};
+	const struct cost cost = cost_of(study, options->workers), most = {.runs = options->runs_max,
+	                                                                   .cpu_s = options->cpu_max,
+	                                                                   .bytes = MIB * options->result_max,
+	                                                                   .memory = MIB * options->memory_max};
 	struct reply reply;
 	size_t length;
 	if (!cost_allowed(&cost, &most, &problems))
@@ -236,44 +236,41 @@ static struct reply not_ready(struct request *request)
 	return reply;
 }
 
-/* A stored document as it is; its status when that is not 200. */
+/* Why a stored document cannot be replied. */
+static struct reply unread(struct request *request, enum store_status found)
+{
+	return found == STORE_NONE ? not_ready(request) : refusal(found);
+}
+
+/* A stored document as it is. */
 static struct reply document(struct request *request, const char *name)
 {
 	char *content;
 	size_t length;
 	enum store_status found = store_document(request->server->store, request->id, name, &content, &length);
-	return found == STORE_OK     ? made("application/json", content, length)
-	       : found == STORE_NONE ? not_ready(request)
-	                             : refusal(found);
-}
-
-/* What is reported of a stored document without reading it. */
-static struct reply document_head(struct request *request, const char *name)
-{
-	size_t length;
-	enum store_status found = store_length(request->server->store, request->id, name, &length);
-	return found == STORE_OK     ? (struct reply){.status = 200, .type = "application/json", .length = length}
-	       : found == STORE_NONE ? not_ready(request)
-	                             : refusal(found);
+	return found == STORE_OK ? made("application/json", content, length) : unread(request, found);
 }
 
 /* A stored document as it is, a long one in a file, if there may be one; for a HEAD, or a client who has it, its length. */
 static struct reply document_whole(struct request *request, const char *name, bool known)
 {
 	struct server *server = request->server;
-	struct reply reply = document_head(request, name);
-	if (reply.status != 200 || known || !strcmp(request->method, "HEAD"))
+	struct reply reply = {.status = 200, .type = "application/json"};
+	enum store_status found = store_length(server->store, request->id, name, &reply.length);
+	if (found != STORE_OK)
+		return unread(request, found);
+	if (known || !strcmp(request->method, "HEAD"))
 		return reply;
 	const int file = reply.length >= SPOOL_LONG ? spool_open(&server->spools, reply.length) : -1;
 	if (file < 0)
 		return document(request, name);
-	enum store_status copied = store_document_to(server->store, request->id, name, file);
-	if (copied == STORE_OK) {
+	found = store_document_to(server->store, request->id, name, file);
+	if (found == STORE_OK) {
 		reply.file = file;
 		return reply;
 	}
 	spool_close(&server->spools, file);
-	return copied == STORE_NONE ? not_ready(request) : refusal(copied);
+	return unread(request, found);
 }
 
 static struct reply posted(struct request *request)

@@ -35,6 +35,8 @@ enum {
 
 #include "server/statements.inl"
 
+#define DOCUMENT_NAMED "study %016llx: its %s"
+
 struct store {
 	struct disk disk;
 	struct database writer, readers[READERS]; /* readers have the statements before BEGIN */
@@ -247,6 +249,27 @@ static enum store_status checked(sqlite3_stmt *row, char **content, size_t *leng
 	return STORE_OK;
 }
 
+/* Lets go of a connection after a row was read, or found damaged. */
+static enum store_status content_read(struct database *c, sqlite3_stmt *row, const char *place,
+                                      enum store_status status)
+{
+	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
+		status = STORE_FAILED;
+	if (status == STORE_CORRUPT)
+		log_line("%s is damaged", place);
+	return released(c, status);
+}
+
+/* The content of the one row of a question, whose place the log names when it is damaged; lets go of the connection. */
+static enum store_status content_of(struct database *c, sqlite3_stmt *row, const char *place, char **content,
+                                    size_t *length)
+{
+	enum store_status status = STORE_NONE;
+	if (sqlite3_step(row) == SQLITE_ROW)
+		status = checked(row, content, length);
+	return content_read(c, row, place, status);
+}
+
 /* What was submitted with a key before; STORE_NONE: nothing, or there is no key. */
 static enum store_status keyed(struct database *c, const char *key, const char *request, size_t length,
                                int64_t *id)
@@ -375,16 +398,10 @@ enum store_status store_list(struct store *store, const struct store_filter *fil
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length)
 {
+	char place[64];
+	snprintf(place, sizeof place, DOCUMENT_NAMED, (unsigned long long)id, name);
 	struct database *c = reader(store);
-	sqlite3_stmt *row = bound(c, DOCUMENT, "it", id, name);
-	enum store_status status = STORE_NONE;
-	if (sqlite3_step(row) == SQLITE_ROW)
-		status = checked(row, content, length);
-	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
-		status = STORE_FAILED;
-	if (status == STORE_CORRUPT)
-		log_line("study %016llx: its %s is damaged", (unsigned long long)id, name);
-	return released(c, status);
+	return content_of(c, bound(c, DOCUMENT, "it", id, name), place, content, length);
 }
 
 /* How long a document is, without a look at its content. */
@@ -425,11 +442,11 @@ enum store_status store_document_to(struct store *store, int64_t id, const char 
 	struct database *c = reader(store);
 	sqlite3_stmt *row = bound(c, LENGTH, "it", id, name);
 	sqlite3_blob *blob = NULL;
+	char place[64];
 	enum store_status status = STORE_NONE;
 	if (sqlite3_step(row) == SQLITE_ROW) {
 		struct sha256_ctx hash;
 		uint8_t sha256[SHA256_DIGEST_SIZE];
-		char place[64];
 		// as DOCUMENT_DIGEST has it
 		const int n_place = snprintf(place, sizeof place, "%s %lld ", name, (long long)id);
 		sha256_init(&hash);
@@ -443,11 +460,8 @@ enum store_status store_document_to(struct store *store, int64_t id, const char 
 		status = !copied ? STORE_FAILED : same ? STORE_OK : STORE_CORRUPT;
 	}
 	sqlite3_blob_close(blob);
-	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
-		status = STORE_FAILED;
-	if (status == STORE_CORRUPT)
-		log_line("study %016llx: its %s is damaged", (unsigned long long)id, name);
-	return released(c, status);
+	snprintf(place, sizeof place, DOCUMENT_NAMED, (unsigned long long)id, name);
+	return content_read(c, row, place, status);
 }
 
 /* Counts the studies of a status. */

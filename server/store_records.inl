@@ -31,16 +31,10 @@ enum store_status store_put_record(struct store *store, const char *sha256, cons
  */
 enum store_status store_record(struct store *store, const char *sha256, char **content, size_t *length)
 {
+	char place[80];
+	snprintf(place, sizeof place, "record %.64s", sha256);
 	struct database *c = reader(store);
-	sqlite3_stmt *row = bound(c, RECORD, "t", sha256);
-	enum store_status status = STORE_NONE;
-	if (sqlite3_step(row) == SQLITE_ROW)
-		status = checked(row, content, length);
-	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
-		status = STORE_FAILED;
-	if (status == STORE_CORRUPT)
-		log_line("record %s is damaged", sha256);
-	return released(c, status);
+	return content_of(c, bound(c, RECORD, "t", sha256), place, content, length);
 }
 
 /* Adds a study, its document and the records that it names, all or none. */
