@@ -35,6 +35,8 @@ PACKAGES := gcc make pkg-config libgsl-dev libmicrohttpd-dev libsqlite3-dev libc
 
 PACKAGES += $(if $(filter 1,$(MPI)),openmpi-bin libopenmpi-dev)
 
+PACKAGES += $(if $(filter simgrid,$(MAKECMDGOALS)),libsimgrid-dev)
+
 LIBS.engine := -lgsl -lgslcblas -lm
 LIBS.schema := -lcjson -lnettle
 LIBS.server := -lmicrohttpd -lsqlite3 -lpthread
@@ -195,6 +197,12 @@ SOAK ?= 60
 MORE ?= 100
 soak: all $(filter $(B)/tests/long/soak_%,$(LONG)) $(filter $(B)/tests/service/%,$(TESTS))
 	@KINDS='soak service' SOAK=$(SOAK) POUND_SOAK=$(MORE) tests/run-tests $(B) $(T)
+# a study on up to 1,000 threads of a cluster, simulated by SimGrid with block times measured here: a minute
+simgrid: deps
+	@$(MAKE) --no-print-directory -s $(B)/tests/long/simgrid
+	@$(B)/tests/long/simgrid --log=root.thres:error
+$(B)/tests/long/simgrid: $(B)/tests/long/simgrid.o $(SCHEMA) $(B)/libpound.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lsimgrid $(LIBS.schema) $(LIBS.engine)
 # threads that have ended when a server does not wait for those that have not are no leak
 tsan: export TSAN_OPTIONS ?= report_thread_leaks=0
 asan tsan:
@@ -258,6 +266,6 @@ clean:
 	$(RM) -r build
 
 # .dockerignore keeps what is built out of a container's build (server/Dockerfile)
-.PHONY: all browser client dist deb deps run test check soak install bench golden paper extremes yield statistics asan tsan lint fuzz fmt clean
+.PHONY: all browser client dist deb deps run test check soak install bench golden paper extremes yield statistics simgrid asan tsan lint fuzz fmt clean
 .SECONDARY:
 -include $(shell find build -path build/dist -prune -o -name '*.d' -type f -print 2>/dev/null)
