@@ -443,7 +443,7 @@ static void a_long_result_holds_nobody_up(void **state)
 	         "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
 	         "{\"frequency_hz\": 3}], "
 	         "\"excitation\": {\"frequency_hz\": 5, \"cycles\": 2, \"signals\": %d}}}",
-	         check_soaks() ? 95000 : 10000);
+	         check_soaks() ? 117000 : 10000);
 	service_submit(service, document, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	snprintf(path, sizeof path, "/v1/studies/%s/results", id);

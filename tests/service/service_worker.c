@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "engine/pound.h"
+#include "schema/json/json_pointer.h"
 #include "tests/support/groups.h"
 #include "tests/support/program.h"
 #include "tests/support/service.h"
@@ -339,18 +340,64 @@ static void options_of_workers_without_a_launcher_are_an_error(void **state)
 	}
 }
 
+/* CPU time of a server's process so far [s]. */
+static double own_cpu(const struct service *service)
+{
+	char path[64], text[1024] = "";
+	unsigned long user = 0, kernel = 0;
+	snprintf(path, sizeof path, "/proc/%d/stat", (int)service->pid);
+	FILE *stat = fopen(path, "r");
+	assert_non_null(stat);
+	assert_non_null(fgets(text, sizeof text, stat));
+	fclose(stat);
+	assert_int_equal(
+	    sscanf(strrchr(text, ')'), ") %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &kernel),
+	    2);
+	return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
+}
+
+static void cpu_time_of_worker_groups_counts_toward_the_cpu_limit(void **state)
+{
+	struct service *service = service_new();
+	char id[17], *large = service_study(100000, 9, 1);
+	(void)state;
+	// accepted under another limit
+	service_start(service, 1);
+	service_submit(service, large, id);
+	service_stop(service);
+	setenv("POUNDD_CPU_MAX", "1", 1);
+	start(service, world.launcher, "3");
+	unsetenv("POUNDD_CPU_MAX");
+	assert_true(service_wait(service, id, "failed", 0));
+	const double own = own_cpu(service);
+	struct answer answer = service_get(service, "/v1/studies/%s", id);
+	struct reading *status = answer_read(&answer);
+	const double all = reading_number(status, "/cpu_s");
+	assert_int_equal(strncmp(reading_text(status, "/error"), "cpu-limit: ", strlen("cpu-limit: ")), 0);
+	check_report("failed as cpu-limit of 3 s after %.2f s, of which the server took %.2f", all, own);
+	assert_true(all >= 3 && own < 0.9 * all);
+	reading_close(status);
+	answer_free(&answer);
+	service_stop(service);
+	groups_gone(world.pids, GONE_MS);
+	service_free(service);
+	free(large);
+}
+
 int main(int argc, char **argv)
 {
-	const struct CMUnitTest tests[] = {cmocka_unit_test(workers_run_blocks_into_the_database),
-	                                   cmocka_unit_test(killed_workers_lose_no_block_and_double_none),
-	                                   cmocka_unit_test(a_killed_server_goes_on_and_its_workers_end),
-	                                   cmocka_unit_test(a_cancelled_study_leaves_its_workers),
-	                                   cmocka_unit_test(a_short_study_ends_soon_behind_a_long_one),
-	                                   cmocka_unit_test(a_stopped_server_ends_its_workers_and_goes_on),
-	                                   cmocka_unit_test(a_study_does_not_wait_for_a_worker_that_hangs),
-	                                   cmocka_unit_test(a_worker_of_another_version_is_refused),
-	                                   cmocka_unit_test(launchers_that_fail_or_wait_delay_nothing),
-	                                   cmocka_unit_test(options_of_workers_without_a_launcher_are_an_error)};
+	const struct CMUnitTest tests[] = {
+	    cmocka_unit_test(cpu_time_of_worker_groups_counts_toward_the_cpu_limit),
+	    cmocka_unit_test(workers_run_blocks_into_the_database),
+	    cmocka_unit_test(killed_workers_lose_no_block_and_double_none),
+	    cmocka_unit_test(a_killed_server_goes_on_and_its_workers_end),
+	    cmocka_unit_test(a_cancelled_study_leaves_its_workers),
+	    cmocka_unit_test(a_short_study_ends_soon_behind_a_long_one),
+	    cmocka_unit_test(a_stopped_server_ends_its_workers_and_goes_on),
+	    cmocka_unit_test(a_study_does_not_wait_for_a_worker_that_hangs),
+	    cmocka_unit_test(a_worker_of_another_version_is_refused),
+	    cmocka_unit_test(launchers_that_fail_or_wait_delay_nothing),
+	    cmocka_unit_test(options_of_workers_without_a_launcher_are_an_error)};
 	(void)argc;
 	setup(NULL);
 	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
