@@ -442,8 +442,9 @@ static void a_long_result_holds_nobody_up(void **state)
 	snprintf(document, sizeof document,
 	         "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
 	         "{\"frequency_hz\": 3}], "
-	         "\"excitation\": {\"frequency_hz\": 5, \"cycles\": 2, \"signals\": %d}}}",
-	         check_soaks() ? 117000 : 10000);
+	         "\"excitation\": {\"frequency_hz\": 5, \"cycles\": 2, \"signals\": %d}}, "
+	         "\"sweep\": [{\"path\": \"/contact/restitution\", \"values\": [0.4, 0.8]}]}",
+	         check_soaks() ? 58000 : 5000);
 	service_submit(service, document, id);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	snprintf(path, sizeof path, "/v1/studies/%s/results", id);
