@@ -48,6 +48,7 @@ static const struct member members[] = {
 	{"Estimate", "study_hash",      "string",  "", "hash of the study's meaning, as in its result; the list takes it as `hash`"},
 	{"Estimate", "runs_total",      "integer", "", "pounding runs requested"},
 	{"Estimate", "estimated_cpu_s", "number",  "", "estimated CPU time [s of one core]"},
+	{"Estimate", "estimated_cpu_s_high", "number", "", "CPU time that 97 of 100 studies with such contacts do not exceed [s of one core]"},
 	{"Estimate", "estimated_bytes", "number",  "", "estimated size in the database [bytes]"},
 	{"Estimate", "estimated_memory_bytes", "number", "", "estimated memory while it runs [bytes]"},
 	{"Estimate", "warnings", "[Fault]", "absent", "what is valid in the study and probably not meant"},
@@ -111,7 +112,7 @@ static const struct {
 	           "\"error\": null, \"links\": {\"self\": \"/v1/studies/0019c5a0b1c2d3e4\", "
 	           "\"request\": \"/v1/studies/0019c5a0b1c2d3e4/request\", \"results\": \"/v1/studies/0019c5a0b1c2d3e4/results\", "
 	           "\"samples\": \"/v1/studies/0019c5a0b1c2d3e4/samples\", \"cancel\": \"/v1/studies/0019c5a0b1c2d3e4/cancel\"}}"},
-	{"Estimate", "{\"kind\": \"sensitivity\", \"study_hash\": \"0f343b0931126a20f133d67c2b018a3b5d1b0e2f7c7c2e6c9b0a4d3e5f60718a\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_bytes\": 960000, \"estimated_memory_bytes\": 24000000}"},
+	{"Estimate", "{\"kind\": \"sensitivity\", \"study_hash\": \"0f343b0931126a20f133d67c2b018a3b5d1b0e2f7c7c2e6c9b0a4d3e5f60718a\", \"runs_total\": 30000, \"estimated_cpu_s\": 3.5, \"estimated_cpu_s_high\": 10.5, \"estimated_bytes\": 960000, \"estimated_memory_bytes\": 24000000}"},
 	{"Problem", "{\"type\": \"invalid-study\", \"title\": \"Invalid Study\", \"status\": 422, "
 	            "\"detail\": \"the study has errors, see the list\", \"errors\": "
 	            "[{\"pointer\": \"/scene/contact/gap_m\", \"detail\": \"must be at least 0, got -0.1\"}]}"},

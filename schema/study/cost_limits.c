@@ -47,6 +47,7 @@ char *cost_to_json(const struct cost *cost, const struct pound_study *study, siz
 	writer_text(&w, "study_hash", hash);
 	writer_whole(&w, "runs_total", cost->runs);
 	writer_number(&w, "estimated_cpu_s", cost->cpu_s);
+	writer_number(&w, "estimated_cpu_s_high", cost->cpu_s_high);
 	writer_number(&w, "estimated_bytes", ceil(cost->bytes));
 	writer_number(&w, "estimated_memory_bytes", ceil(cost->memory));
 	warnings_write(&w, study, NULL);

@@ -176,6 +176,7 @@ struct pound_study study_separation_like(const struct pound_study *study)
 	struct pound_study like = *study;
 	if (study->kind == POUND_KIND_SEPARATION)
 		like.kind = pound_study_sampled(study) ? POUND_KIND_SENSITIVITY : POUND_KIND_RESPONSE;
+	like.unbalanced = study->unbalanced || study->kind == POUND_KIND_SEPARATION;
 	like.scene.contact.present = study->scene.contact.present && pound_study_pounds(study);
 	return like;
 }

@@ -1,6 +1,7 @@
 /* Valid studies drawn at random.
  *
- * Kinds: response and sensitivity 3 of 8 each, floor_spectrum and convergence 1 of 8 each.  Drawn with equal chances in the
+ * Kinds: response and sensitivity 3 of 8 each, floor_spectrum and convergence 1 of 8 each; a quarter of the responses of two
+ * oscillators are of kind separation instead.  Drawn with equal chances in the
  * logarithm: frequencies 0.3 to 20 Hz, damping 0.01 to 0.2, mass 0.01 to 100, stiffness ratio 1 to 10^6, gap 10^-4 to 0.1 m (half: 0),
  * duration 1 to 40 s or 2 to 40 cycles of 0.5 to 10 Hz, sample step 0.002 to 0.02 s, signals 1 to 500 (sensitivity: 20, floor
  * spectrum: 50, convergence: 10), rows 16 to 32,000, frequencies of spectra 2 to 1,000, pulses (half: 0) 1 to 10^6, steps of solvers
@@ -8,7 +9,7 @@
  * contact, a third a linear law, 3 of 8 another solver, a quarter a sweep, where the kind allows it.
  *
  * Half have the default contact model, the others each of them with equal chances, calibrated either way, a third without tension.
- * A third of responses and sensitivities is of a row of 2 to 8 buildings of 1 to 50 storeys, every form of damping; a quarter of
+ * A third of responses, sensitivities and floor spectra is of a row of 2 to 8 buildings of 1 to 50 storeys, every form of damping; a quarter of
  * the buildings have a law of their own, a third of the rows have one contact at levels of its own. */
 #include "tests/support/valid_studies.h"
 
@@ -216,9 +217,9 @@ static void draw(struct text *text)
 {
 	const int kind = below(8);
 	text->n = 0;
-	const bool row = kind < 6 && below(3) == 0;
+	const bool row = kind < 7 && below(3) == 0;
 	if (kind < 3) {
-		say(text, "{\"kind\": \"response\", ");
+		say(text, "{\"kind\": \"%s\", ", !row && below(4) == 0 ? "separation" : "response");
 		if (row)
 			say_row(text, 100);
 		else
@@ -228,7 +229,10 @@ static void draw(struct text *text)
 		say_sensitivity(text, row);
 	} else if (kind < 7) {
 		say(text, "{\"kind\": \"floor_spectrum\", ");
-		say_scene(text, 50);
+		if (row)
+			say_row(text, 10);
+		else
+			say_scene(text, 50);
 		say(text, ", \"spectrum\": {\"frequencies_hz\": {\"count\": %d}, \"pulses\": %d}",
 		    2 + (int)between(1, 1000), below(2) ? 0 : (int)between(1, 1e6));
 	} else {

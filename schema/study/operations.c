@@ -1,0 +1,541 @@
+/* What a study does, counted before any of it is run, as the engine shares it.
+ *
+ * How often bodies touch, yield and stay together is not known before: it is taken from their frequencies, masses, gap and the
+ * peak ground acceleration, as it is in the mean of many scenes.  Two things are bounded, not predicted: a design that grows
+ * counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
+#include "schema/study/operations.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/ground/excitation.h"
+#include "engine/run/outputs.h"
+#include "engine/scene/building.h"
+#include "engine/scene/contact.h"
+#include "engine/solver/solver.h"
+#include "schema/study/means.h"
+#include "schema/study/study_buildings.h"
+#include "schema/study/study_json.h"
+
+enum {
+	HISTORIES = 32,    /* times at which a convergence study compares displacements */
+	CHECK_EVERY = 100, /* items between two that are run again to check them, ... */
+	CHECKS_LEAST = 8,  /* ... but at least so many runs */
+};
+
+static const double PI = 3.14159265358979323846;
+
+// the step of a solver, in the order of the solvers: event, newmark, central_difference, adaptive
+static const enum operation step_of[] = {MARCH, NEWMARK, CENTRAL, ADAPT};
+
+static_assert(sizeof step_of / sizeof step_of[0] == POUND_SOLVERS, "a row for each solver");
+
+/* radians of a sample that go by maps, and with more than which a run ends as chatter */
+static const double MAPPED = 2, TURNED_MOST = 5e5;
+
+/* The logarithm of a contact's frequency counts from here: square of it over that of the stiffer body. */
+static const double SWINGS = 0.003;
+
+/* runs more whose time the lanes take that are not all filled to the end */
+static const double TAIL = 2.7;
+
+/* how much finer checks are than the runs that they check */
+static const double CHECKED = 2;
+
+/* How far bodies come towards each other, over the peak ground acceleration and the square of the softer one's frequency; and
+ * with what gap they do not stay together any more. */
+static const double NEAR = 0.4, RIDING = 0.01;
+
+/* radians of the adaptive solver that take as long as to start again at a sample */
+static const double ADAPT_START = 0.55;
+
+/* [rad] of a step of a chain */
+static const double CHAIN_RADIANS = 4;
+
+/* floors of a chain that take as long as its step without them, and a part of the square of those that modes damp together */
+static const double CHAIN_FLOORS = 8, MODAL_FLOORS = 0.12;
+
+static const double RESTITUTION_LEAST = 1e-3, DASHPOT_MOST = 300;
+
+/* [rad] of a step of a floor */
+static const double FLOOR_RADIANS = 1.5;
+
+/* how many floors and spectra a run has: with pounding and without, and the contact's own part */
+static const struct {
+	int floors, spectra;
+} ridden[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
+
+enum { RESAMPLES = 2000, MOMENTS = 10, MOMENTS_INPUT = 7, TILE_COLUMNS = 16 };
+
+/* Corrections that a search takes where it may, in the mean. */
+static const double SEARCH_MEAN = 6;
+
+/* What a part of the scene's members may be part of. */
+static bool of_motion(size_t offset)
+{
+	const size_t first = offsetof(struct pound_scene, excitation);
+	return offset >= first && offset < first + sizeof(struct pound_excitation);
+}
+
+static size_t law_offset(const struct pound_study *study, int body)
+{
+	return (size_t)((const char *)pound_scene_law(&study->scene, body) - (const char *)&study->scene);
+}
+
+/* Whether a response without pounding depends on a member: all of its body but the mass. */
+static bool of_body(const struct pound_study *study, int body, size_t offset)
+{
+	const size_t first = offsetof(struct pound_scene, oscillators) +
+	                     (size_t)body * sizeof(struct pound_oscillator),
+	             law = law_offset(study, body);
+	return of_motion(offset) || (offset >= law && offset < law + sizeof(struct pound_law)) ||
+	       (offset >= first && offset < first + sizeof(struct pound_oscillator) &&
+	        offset != first + offsetof(struct pound_oscillator, mass));
+}
+
+/* Whether a response of a building of a row without pounding does. */
+static bool of_building(int building, struct pound_field field)
+{
+	const size_t at = means_offset(field), law = offsetof(struct pound_scene, law);
+	return of_motion(at) || (at >= law && at < law + sizeof(struct pound_law)) ||
+	       (field.part == POUND_PART_BUILDINGS &&
+	        field.offset / sizeof(struct pound_building) == (size_t)building);
+}
+
+enum { ALL = -2, MOTION = -1 /* or a body, or a building of a row */ };
+
+/* Whether a part of what an item has depends on a member that varies. */
+static bool depends(const struct pound_study *study, int what, struct pound_field field)
+{
+	return what == ALL                ? true
+	       : what == MOTION           ? of_motion(means_offset(field))
+	       : study->scene.n_buildings ? of_building(what, field)
+	                                  : of_body(study, what, means_offset(field));
+}
+
+/* How many of an item's ground motions, or responses of a body, differ from each other: it has samples in all cells. */
+static double distinct(const struct pound_study *study, int what)
+{
+	const int samples = study->kind == POUND_KIND_SENSITIVITY ? pound_design_samples(study) : 1;
+	int n_inputs = 0;
+	double cells = 1;
+	for (int j = 0; j < study->n_inputs; j++)
+		n_inputs += depends(study, what, study->inputs[j].field);
+	for (int s = 0; s < study->n_sweeps; s++)
+		cells *= depends(study, what, study->sweeps[s].field) ? study->sweeps[s].n_values : 1;
+	const bool common = study->design.common_signals || !pound_excitation_random(&study->scene.excitation);
+	// A, B, and A with each column of B that matters, which is B where there is one alone; with interactions B with those of A, too,
+	// which are the same where there are two
+	const bool second = samples > 2 + study->n_inputs;
+	const int columns = n_inputs < 2 ? 0 : second && n_inputs > 2 ? 2 * n_inputs : n_inputs;
+	const int some = n_inputs ? (int)fmin(2 + columns, samples) : 1;
+	return cells * (common ? some : samples);
+}
+
+static bool varies(const struct pound_study *study, size_t offset)
+{
+	for (int j = 0; j < study->n_inputs; j++)
+		if (means_offset(study->inputs[j].field) == offset)
+			return true;
+	for (int s = 0; s < study->n_sweeps; s++)
+		if (means_offset(study->sweeps[s].field) == offset)
+			return true;
+	return false;
+}
+
+/* A building of a chain in the mean; one of two oscillators is of one storey. */
+struct storeys {
+	int n;       /* 0: a wall */
+	double mass; /* of a floor, of whatever unit */
+	double low;  /* [rad/s] of the first mode */
+	double high; /* ... of the last one, with what dashpots add to it */
+	double wide; /* floors that a step takes as long for: more than n where the rates of all damp every one */
+};
+
+/* How fast two neighbors may come back to each other: by the faster, and by the lighter one. */
+static double touching(const struct storeys pair[static 2])
+{
+	const double ratio = pair[1].n ? pair[1].mass / pair[0].mass : 1;
+	return pair[1].n ? 0.5 * fmax(pair[0].low, pair[1].low) +
+	                       0.5 * (pair[0].low * ratio + pair[1].low) / (1 + ratio)
+	                 : pair[0].low;
+}
+
+static double masses(const struct storeys pair[static 2])
+{
+	return pair[1].n ? fmax(pair[0].mass / pair[1].mass, pair[1].mass / pair[0].mass) : 1;
+}
+
+/* What is known of the bodies in the mean. */
+struct bodies {
+	double hz[POUND_OSCILLATORS];      /* 0: a wall */
+	double marches[POUND_OSCILLATORS]; /* of one that may yield, for its demand, 0: of one that does not */
+	double near;                       /* part of the time in which they may touch */
+	double riding;                     /* ... and in which they may stay together */
+	double ratio;                      /* largest square of the contact's frequency over the faster one's */
+	double
+	    touching; /* [Hz] how fast they may come back to each other: by the faster, and by the lighter one */
+};
+
+static struct bodies bodies_of(const struct pound_study *study)
+{
+	const bool wall = study->scene.oscillators[1].rigid_wall;
+	struct bodies b = {.hz = {MEAN(study, oscillators[0].frequency_hz, 1),
+	                          wall ? 0 : MEAN(study, oscillators[1].frequency_hz, 1)}};
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_law *law = pound_scene_law(&study->scene, i);
+		const size_t at = law_offset(study, i), times = at + offsetof(struct pound_law, corrections);
+		const double corrections = varies(study, times) ? means_power(study, times, 1) : law->corrections;
+		const bool linear = law->type == 0 && !varies(study, at + offsetof(struct pound_law, type));
+		if (b.hz[i] > 0 && !linear)
+			b.marches[i] = 1 + (law->yield_displacement > 0 ? 0 : fmin(corrections, SEARCH_MEAN));
+	}
+	const double soft = 2 * PI * (wall ? b.hz[0] : fmin(b.hz[0], b.hz[1]));
+	const struct storeys pair[] = {{1, MEAN(study, oscillators[0].mass, 1), b.hz[0], b.hz[0], 1},
+	                               {!wall, MEAN(study, oscillators[1].mass, 1), b.hz[1], b.hz[1], 1}};
+	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
+	b.touching = touching(pair);
+	const double gap = MEAN(study, contact.gap, 1) * soft * soft / peak;
+	b.near = 1 / (1 + gap / NEAR);
+	b.riding = 1 / (1 + gap / RIDING);
+	b.ratio = MEAN(study, contact.stiffness_ratio, 1) * masses(pair);
+	return b;
+}
+
+/* Radians of a sample that oscillators turn by, beyond those that go by maps. */
+static double turned(const struct bodies *b, double time_step)
+{
+	double sum = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		sum += fmax(0, 2 * PI * b->hz[i] * time_step - MAPPED);
+	return fmin(sum, TURNED_MOST);
+}
+
+/* Adds what so many items take by the event-driven solver before and without pounding. */
+static void count_free(const struct pound_study *study, const struct bodies *b, double items,
+                       struct counts *c)
+{
+	const double samples = means_samples(study), radians = 2 * PI * means_duration(study);
+	c->of[BEGIN] += items * distinct(study, MOTION);
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		if (b->hz[i] == 0)
+			continue;
+		const double free = items * distinct(study, i);
+		c->of[BEGIN] += free * (1 + b->marches[i]);
+		c->of[FREE] += free * samples;
+		c->of[YIELD] += free * b->marches[i] * samples;
+		c->of[FLOW] += free * b->marches[i] * radians * b->hz[i];
+	}
+}
+
+/* Adds what so many items take by the event-driven solver. */
+static void count_event(const struct pound_study *study, double items, struct counts *c)
+{
+	const struct bodies b = bodies_of(study);
+	const double samples = means_samples(study), radians = 2 * PI * means_duration(study);
+	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
+	count_free(study, &b, items, c);
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		c->of[POUNDED] += b.marches[i] > 0 ? pounded * radians * b.hz[i] : 0;
+	const double touches = pounded * b.near * radians * b.touching;
+	c->of[BEGIN] += pounded;
+	c->of[MARCH] += pounded * samples;
+	c->of[TOUCH] += touches;
+	c->of[SWING] += touches * log1p(SWINGS * b.ratio);
+	c->of[TURN] +=
+	    (pounded > 0 ? pounded : items) * samples * turned(&b, MEAN(study, excitation.time_step, 1));
+}
+
+/* The same by a solver of a fixed step, or the adaptive one, which run one thing at a time. */
+static void count_steps(const struct pound_study *study, const struct pound_solver *solver, double items,
+                        struct counts *c)
+{
+	const struct bodies b = bodies_of(study);
+	const double samples = means_samples(study), radians = 2 * PI * means_duration(study);
+	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	double marches = pounded, turns = pounded * radians * fmax(b.hz[0], b.hz[1]);
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const double free = b.hz[i] > 0 ? items * distinct(study, i) * (1 + b.marches[i]) : 0;
+		marches += free;
+		turns += free * radians * b.hz[i];
+	}
+	c->of[BEGIN] += marches + items * distinct(study, MOTION);
+	if (pound_solver_takes_step(solver->method)) {
+		c->of[START] += marches * samples;
+		c->of[step_of[solver->method]] +=
+		    marches * samples * fmax(1, MEAN(study, excitation.time_step, 1) / solver->step);
+	} else {
+		// a sample starts a step as half a radian does
+		c->of[ADAPT] += turns * pow(solver->tolerance, -1. / 12) + ADAPT_START * marches * samples;
+		c->of[FOLLOW] += pounded * b.near * radians * b.touching * pow(b.ratio, 0.25);
+		c->of[TURN] += pounded * samples * turned(&b, MEAN(study, excitation.time_step, 1));
+	}
+}
+
+/* [rad/s] at which a contact's dashpot acts, in the mean. */
+static double dashpot_rate(const struct pound_study *study, const struct storeys pair[static 2])
+{
+	const struct pound_contact_place place = {1, 1, 1};
+	struct pound_contact contact = study->scene.contact;
+	contact.restitution = fmax(MEAN(study, contact.restitution, 1), RESTITUTION_LEAST);
+	contact.stiffness = contact.hertz_stiffness = 0;
+	contact.stiffness_ratio = 1;
+	return fmin(pound_contact_law(&contact, &place).dashpot, DASHPOT_MOST) *
+	       fmax(pair[0].high, pair[1].high) * sqrt(MEAN(study, contact.stiffness_ratio, 1) * masses(pair));
+}
+
+/* Contacts between a building and its right neighbor. */
+static int links_of(const struct pound_study *study, int building, const struct storeys pair[static 2])
+{
+	int links = 0;
+	for (int k = 0; k < study->scene.n_contacts; k++)
+		links += study->scene.contacts[k].left_building == building;
+	return study->scene.n_contacts ? links : pair[1].n == 0 || pair[0].n < pair[1].n ? pair[0].n : pair[1].n;
+}
+
+/* of a chain with pounding */
+struct marches {
+	double n, steps; /* of each */
+	double wide;     /* of the chain, in floors */
+	double near;     /* radians of all in which neighbors are near each other */
+};
+
+/* Adds what a building and its right neighbor take where they meet. */
+static void count_meetings(const struct pound_study *study, int building, const struct storeys pair[static 2],
+                           struct marches *m, struct counts *c)
+{
+	const int links = links_of(study, building, pair);
+	const double asked = MEAN(study, excitation.peak, 1), peak = asked > 0 ? asked : 1;
+	const double restitution = fmax(MEAN(study, contact.restitution, 1), RESTITUTION_LEAST);
+	const bool wall = pair[1].n == 0;
+	const double soft = wall ? pair[0].low : fmin(pair[0].low, pair[1].low);
+	const double shaken = 2 * PI * MEAN(study, excitation.frequency_hz, 1);
+	const double reach = MEAN(study, contact.gap, 1) * soft * fmax(soft, shaken) / peak;
+	const double met = links ? m->n : 0, near = met / (1 + reach / NEAR), riding = met / (1 + reach / RIDING);
+	const double radians = means_duration(study) * touching(pair) * links * (CHAIN_FLOORS + m->wide);
+	const double own = log1p(SWINGS * MEAN(study, contact.stiffness_ratio, 1) * masses(pair));
+	const enum pound_force force = pound_contact_force(study->scene.contact.model);
+	m->near += near * means_duration(study) * touching(pair) * links;
+	c->of[NEARBY] += near * m->steps * m->wide;
+	c->of[MEET] += near * radians;
+	c->of[JUMP] += force == POUND_FORCE_IMPACT ? near * radians : 0;
+	c->of[SUSTAINED] += riding * radians * own;
+	c->of[ROOT] += force == POUND_FORCE_POWER ? near * radians : 0;
+	c->of[DASH] += near * means_duration(study) * dashpot_rate(study, pair);
+	c->of[REST] += riding;
+	c->of[POWER_FORCE] += force == POUND_FORCE_POWER ? riding : 0;
+	c->of[STICK] += riding * radians * own * -log(restitution);
+}
+
+/* Steps of a march of so many floors. */
+static double chain_steps(const struct pound_study *study, double high)
+{
+	return means_samples(study) + means_duration(study) * high / CHAIN_RADIANS;
+}
+
+/* Adds where the neighbors of a chain meet. */
+static struct marches count_chain(const struct pound_study *study, double pounded, const struct storeys *all,
+                                  int n, struct counts *c)
+{
+	struct marches m = {.n = pounded};
+	double high = 0;
+	for (int b = 0; b < n; b++)
+		m.wide += all[b].wide, high = fmax(high, all[b].high);
+	m.steps = chain_steps(study, high);
+	c->of[BALANCE] += pounded * m.steps * m.wide;
+	for (int b = 0; b + 1 < n; b++)
+		count_meetings(study, b, &all[b], &m, c);
+	return m;
+}
+
+static struct storeys storeys_of(const struct pound_building *of, int n)
+{
+	struct pound_building building = *of;
+	struct pound_storeys laid;
+	building.storeys = n;
+	pound_building_storeys(&building, &laid);
+	struct storeys one = {.n = n, .mass = laid.mass[0], .low = laid.frequency};
+	one.wide = n + (laid.modal ? MODAL_FLOORS * n * n : 0);
+	for (int i = 0; i < n; i++)
+		one.high =
+		    fmax(one.high, 2 * sqrt(laid.stiffness[i] / laid.mass[i]) + 4 * laid.dashpot[i] / laid.mass[i]);
+	return one;
+}
+
+/* The same of a row of buildings. */
+static struct marches count_row(const struct pound_study *study, double items, struct counts *c)
+{
+	struct storeys all[POUND_BUILDINGS_MAX] = {{0}};
+	const int n = study->scene.n_buildings;
+	const double samples = means_samples(study);
+	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
+	for (int b = 0; b < n; b++) {
+		const struct pound_building *building = &study->scene.buildings[b];
+		const int storeys = building->rigid_wall ? 0 : study_storeys_most(study, b);
+		all[b] = storeys ? storeys_of(building, storeys) : (struct storeys){.n = 0};
+	}
+	const struct marches m = count_chain(study, pounded, all, n, c);
+	c->of[BEGIN] += items * distinct(study, MOTION);
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	for (int b = 0; b < n; b++) {
+		const struct pound_law *law = pound_row_law(&study->scene, b);
+		const bool linear = law->type == 0 && !varies(study, offsetof(struct pound_scene, law.type));
+		const double yields = linear ? 0 : 1 + fmin(law->corrections, SEARCH_MEAN),
+		             alone = items * distinct(study, b);
+		const double marches = alone * (1 + yields) + pounded, storeys = all[b].n;
+		c->of[BEGIN] += storeys > 0 ? marches : 0;
+		c->of[SHAPE] += marches * pow(storeys, 3);
+		c->of[CHAIN] += marches * samples * storeys;
+		const double steps = alone * chain_steps(study, all[b].high);
+		c->of[YIELD_STEP] += (steps * yields + (yields > 0 ? pounded * m.steps : 0)) * all[b].wide;
+		c->of[BALANCE] += steps * (1 + yields) * all[b].wide;
+	}
+	return m;
+}
+
+/* The same of two oscillators whose contact the march of pairs does not have. */
+static struct marches count_pair_chain(const struct pound_study *study, double items, struct counts *c)
+{
+	struct storeys all[POUND_OSCILLATORS];
+	const struct bodies bodies = bodies_of(study);
+	const double mass[] = {MEAN(study, oscillators[0].mass, 1), MEAN(study, oscillators[1].mass, 1)};
+	const double pounded = items * distinct(study, ALL);
+	for (int b = 0; b < POUND_OSCILLATORS; b++) {
+		const double w = 2 * PI * bodies.hz[b];
+		all[b] = (struct storeys){.n = w > 0, .mass = mass[b], .low = w, .high = w, .wide = w > 0};
+	}
+	c->of[BEGIN] += pounded;
+	count_free(study, &bodies, items, c);
+	return count_chain(study, pounded, all, POUND_OSCILLATORS, c);
+}
+
+bool operations_chained(const struct pound_study *study, const struct pound_solver *solver)
+{
+	return study->scene.n_buildings > 0 ||
+	       (solver->method == POUND_SOLVER_EVENT && study->scene.contact.present &&
+	        pound_contact_force(study->scene.contact.model) != POUND_FORCE_LINEAR);
+}
+
+/* Adds runs of both oscillators together without contact, where an output reads them. */
+static void count_free_pairs(const struct pound_study *study, double items, struct counts *c)
+{
+	const struct bodies b = bodies_of(study);
+	const double pairs = items * distinct(study, ALL), samples = pairs * means_samples(study);
+	if (study->scene.n_buildings || !(pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR))
+		return;
+	if (b.marches[0] + b.marches[1] > 0) {
+		c->of[PAIR] += samples;
+		c->of[PAIR_TURN] += pairs * 2 * PI * means_duration(study) * fmax(b.hz[0], b.hz[1]);
+	} else
+		c->of[PAIR_MAPS] += samples;
+}
+
+/* Returns the marches of chains, if there are any. */
+static struct marches count_runs(const struct pound_study *study, const struct pound_solver *solver,
+                                 double items, struct counts *c)
+{
+	if (study->scene.n_buildings)
+		return count_row(study, items, c);
+	if (operations_chained(study, solver))
+		return count_pair_chain(study, items, c);
+	if (solver->method == POUND_SOLVER_EVENT)
+		count_event(study, items, c);
+	else
+		count_steps(study, solver, items, c);
+	return (struct marches){.n = 0};
+}
+
+/* Adds what spectra of floors take; those of chains have their marches. */
+static void count_floors(const struct pound_study *study, double runs, const struct marches *m,
+                         struct counts *c)
+{
+	const struct bodies b = m->steps > 0 ? (struct bodies){.near = 0} : bodies_of(study);
+	const double radians = 2 * PI * means_duration(study), fast = fmax(b.hz[0], b.hz[1]);
+	const double steps = m->steps > 0 ? m->steps : means_samples(study) + radians * fast / FLOOR_RADIANS;
+	const double touches = study->scene.contact.present ? runs * radians * b.touching * b.near : 0,
+	             rides = study->scene.contact.present
+	                         ? runs * radians * fast * b.riding * sqrt(b.ratio) / FLOOR_RADIANS
+	                         : 0;
+	const int floors = ridden[study->kind].floors, spectra = ridden[study->kind].spectra,
+	          n = study->spectrum.n;
+	const double near = m->n > 0 ? runs * m->near / m->n : 0;
+	c->of[m->steps > 0 ? FOLLOWED : FLOOR] += runs * floors * steps;
+	c->of[FOLLOWED_NEAR] += near;
+	c->of[PART] += touches;
+	c->of[FLOOR_DRIVEN] += rides;
+	c->of[ORDINATE] += runs * n * spectra * steps;
+	c->of[BOUNCE] += n * (touches + near);
+	c->of[SHAKE] += n * rides;
+	if (study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		c->of[PULSE] += runs * n * study->spectrum.pulses;
+}
+
+/* Adds the reductions of a sensitivity study. */
+static void count_reductions(const struct pound_study *study, struct counts *c)
+{
+	const double outputs = (double)study_cells(study) * study->n_outputs,
+	             rows = pound_design_rows_most(study);
+	const int tiles = (MOMENTS + MOMENTS_INPUT * study->n_inputs + TILE_COLUMNS - 1) / TILE_COLUMNS;
+	// where rows come in groups, these are left out one by one instead
+	const bool grouped =
+	    study->design.until.half_width > 0 || pound_design_quasi_random(study->design.method);
+	const double draws =
+	    grouped ? 0 : outputs * rows * RESAMPLES * (study->design.estimator ? 3 : 1); // the one named twice
+	c->of[DRAW] += draws;
+	c->of[TILE] += draws * tiles;
+	c->of[FIT] += outputs * rows * pound_design_samples(study);
+}
+
+/* Items and, counted as such, those that are run again to check them and what lanes leave unfilled. */
+static double items_of(const struct pound_study *study)
+{
+	const bool sampled = study->kind == POUND_KIND_SENSITIVITY;
+	const double items =
+	                 (sampled ? pound_design_rows_most(study) : 1) * (double)study->scene.excitation.signals,
+	             asks = distinct(study, ALL);
+	double checks = 0;
+	if (sampled || study->kind == POUND_KIND_FLOOR_SPECTRUM)
+		checks = fmax(items / CHECK_EVERY, fmin(items, ceil(CHECKS_LEAST / asks)));
+	return items + CHECKED * checks + TAIL / asks;
+}
+
+/* Counts what a study does.
+ *
+ * Test     unit_cost: what_is_asked_twice_costs_twice
+ */
+void operations_count(const struct pound_study *study, struct counts *c)
+{
+	const double items = items_of(study);
+	struct marches m = {.n = 0};
+	c->of[STUDY] = 1;
+	count_free_pairs(study, items, c);
+	// the floors of chains are followed by marches of their own
+	if (study->kind != POUND_KIND_CONVERGENCE)
+		m = count_runs(study, &study->solver,
+		               items * (study->spectrum.n && operations_chained(study, &study->solver) ? 2 : 1), c);
+	else
+		for (int j = 0; j < pound_convergence_trials(study); j++) {
+			const struct pound_solver solver = pound_convergence_solver(study, j);
+			// twice, to be timed, and for each point of a history up to that
+			count_runs(study, &solver, items * (2 + HISTORIES / 2), c);
+			c->of[CLOCK]++;
+		}
+	if (study->spectrum.n)
+		count_floors(study, (double)study_runs(study), &m, c);
+	if (study->kind == POUND_KIND_SENSITIVITY)
+		count_reductions(study, c);
+}
+
+struct pound_run_shared operations_shared(const struct pound_study *study)
+{
+	const struct bodies b = bodies_of(study);
+	struct pound_run_shared shared = {.samples = means_samples(study),
+	                                  .motions = distinct(study, MOTION),
+	                                  .marches = study->scene.contact.present ? distinct(study, ALL) : 0};
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		shared.marches += b.hz[i] > 0 ? distinct(study, i) * (1 + b.marches[i]) : 0;
+	return shared;
+}
