@@ -15,6 +15,8 @@ MODE.tsan    := -O1 -g -fsanitize=thread
 MARCH.release := -O3 -fno-tree-vectorize -fno-stack-protector
 # a floor is followed by short loops over the orders of a series
 FLOOR.release := -O3 -funroll-loops
+# rotations of two rows of a building's shapes
+MODES.release := -O3
 WARN     := -Wall -Wextra -Werror -Wmissing-prototypes -Wshadow -Wvla -Wno-psabi
 CPPFLAGS += -I. -D_GNU_SOURCE $(CPPFLAGS.$(MODE))
 LDFLAGS  += $(LDFLAGS.$(MODE))
@@ -119,6 +121,7 @@ $(B)/engine/exact/exact_%.o: CFLAGS += $(MARCH.$(MODE))
 $(B)/engine/exact/chain_%.o: CFLAGS += $(MARCH.$(MODE))
 $(B)/engine/floor/oscillator_bank_%.o: CFLAGS += $(FLOOR.$(MODE))
 $(B)/engine/floor/floor_pieces.o: CFLAGS += $(FLOOR.$(MODE))
+$(B)/engine/scene/modes.o: CFLAGS += $(MODES.$(MODE))
 
 # the database's schema is built into the server, as a C string
 $(B)/server/store.sql.inc: server/store.sql

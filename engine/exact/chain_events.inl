@@ -105,51 +105,54 @@ static bool link_forced(const struct link *l)
 	return !l->link->law.tension && l->at.on.damping > 0;
 }
 
-/* Bounds the overlap of a link over a step by those of its floors.
+/* Bounds the overlaps of a vector of links over a step: of those that are integrated in their own right by their series, of others
+ * by their floors'.
  *
- * Returns  value  whether it may begin to touch: the first half of may_cross (series.inl)
+ * Returns  value  bits of the links to look at: those, and others that may begin to touch
  */
-LANE_INLINE bool overlap_enclose(struct enclosures *x, const struct chain *c, int j)
+LANE_INLINE unsigned overlaps_bound(struct enclosures *x, const struct chain *c, int j)
 {
-	const struct link *l = &c->link[j];
+	const struct link_ends *ends = &c->ends;
 	const struct enclosures *floors = &c->displacement;
-	double u0 = 0, v0 = 0, u1 = 0, v1 = 0, fourth_max = 0;
-	for (int k = 0; k < l->n_ends; k++) {
-		const int i = l->floor[k];
-		const double weight = l->weight[k];
-		u0 = fma(weight, c->u.at[i], u0);
-		v0 = fma(weight, floors->v0.at[i], v0);
-		u1 = fma(weight, floors->u1.at[i], u1);
-		v1 = fma(weight, floors->v1.at[i], v1);
-		fourth_max = fma(fabs(weight), floors->fourth_max.at[i], fourth_max);
+	const unsigned own = c->own_bits[j / ROW] >> j % ROW & ((1u << W) - 1);
+	const vd zero = vsplat(0), gap = lanes_load(&ends->gap[j]);
+	vd u0 = zero, v0 = zero, u1 = zero, v1 = zero, fourth_max = zero;
+	for (int k = 0; k < ends->n[j / ROW]; k++) {
+		const vd weight = lanes_load(&ends->weight[k][j]);
+		u0 = vfma(weight, ends_load(ends, k, j, c->u.at), u0);
+		v0 = vfma(weight, ends_load(ends, k, j, floors->v0.at), v0);
+		u1 = vfma(weight, ends_load(ends, k, j, floors->u1.at), u1);
+		v1 = vfma(weight, ends_load(ends, k, j, floors->v1.at), v1);
+		fourth_max = vfma(vabs(weight), ends_load(ends, k, j, floors->fourth_max.at), fourth_max);
 	}
-	u0 = smaller(u0 - l->gap, 0); // a rounding must not make it overlap
-	u1 -= l->gap;
-	const double b1 = fma(1.0 / 3, v0, u0), b2 = fma(-1.0 / 3, v1, u1);
-	const double top = larger(larger(b1, b2), u1);
-	if (fma(POUND_CUBIC_ERROR, fourth_max, top) < 0)
-		return false;
-	x->u0.at[j] = u0;
-	x->v0.at[j] = v0;
-	x->u1.at[j] = u1;
-	x->v1.at[j] = v1;
-	x->fourth_max.at[j] = fourth_max;
-	return true;
+	u0 = vmin(u0 - gap, zero); // a rounding must not make it overlap
+	u1 = u1 - gap;
+	const struct enclosure enclosure = {u0, v0, u1, v1, fourth_max};
+	const unsigned some = vbits(may_cross(&enclosure, zero, vsplat(1))) & ~own;
+	if (own) {
+		enclosures_of(c->overlaps[0], LINKS, c->order, x, j, 1);
+		const vm mask = vmask(own);
+		u0 = vselect(mask, column_load(&x->u0, j), u0);
+		v0 = vselect(mask, column_load(&x->v0, j), v0);
+		u1 = vselect(mask, column_load(&x->u1, j), u1);
+		v1 = vselect(mask, column_load(&x->v1, j), v1);
+		fourth_max = vselect(mask, column_load(&x->fourth_max, j), fourth_max);
+	}
+	column_store(&x->u0, j, u0);
+	column_store(&x->v0, j, v0);
+	column_store(&x->u1, j, u1);
+	column_store(&x->v1, j, v1);
+	column_store(&x->fourth_max, j, fourth_max);
+	return some | own;
 }
 
 /* What overlaps do over a step, and a list of the links to look at. */
 static void overlaps_enclose(struct chain *c, struct link_list *some)
 {
-	for (int k = 0, next = 0; k < c->own.n; k++) { // those that are integrated in their own right
-		const int j = c->own.link[k] / W * W;
-		if (j >= next)
-			enclosures_of(c->overlaps[0], LINKS, c->order, &c->overlap, j, 1);
-		next = j + W;
-	}
 	some->n = 0;
-	for (int j = 0; j < c->n_links; j++)
-		if (c->link[j].own || overlap_enclose(&c->overlap, c, j))
-			some->link[some->n++] = (uint16_t)j;
+	for (int j = 0; j < c->wide_links; j += W)
+		for (unsigned bits = overlaps_bound(&c->overlap, c, j); bits; bits &= bits - 1)
+			some->link[some->n++] = (uint16_t)(j + __builtin_ctz(bits));
 }
 
 /* a vector of links */

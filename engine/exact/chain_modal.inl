@@ -357,36 +357,39 @@ LANE_INLINE unsigned sampled_peaks(const struct chain *c, const struct sampled *
 	return some;
 }
 
-/* Overlap of a link at a sample, and its rate. */
-LANE_INLINE void link_at(const struct link *l, const struct modal_place *at, double *p, double *q)
+/* Overlaps of a vector of links at a sample, and their rates. */
+LANE_INLINE struct kinematics links_at(const struct chain *c, const struct modal_place *at, int j)
 {
-	double overlap = -l->gap, rate = 0;
-	for (int k = 0; k < l->n_ends; k++) {
-		overlap = fma(l->weight[k], at->u.at[l->floor[k]], overlap);
-		rate = fma(l->weight[k], at->w.at[l->floor[k]], rate);
+	const struct link_ends *ends = &c->ends;
+	struct kinematics x = {-lanes_load(&ends->gap[j]), vsplat(0)};
+	for (int k = 0; k < ends->n[j / ROW]; k++) {
+		const vd weight = lanes_load(&ends->weight[k][j]);
+		x.u = vfma(weight, ends_load(ends, k, j, at->u.at), x.u);
+		x.v = vfma(weight, ends_load(ends, k, j, at->w.at), x.v);
 	}
-	*p = overlap;
-	*q = rate;
+	return x;
 }
 
 /* Whether a link may begin to touch inside the sample that leads to a place. */
 static bool links_risk(struct chain *c, const struct modal_place *to)
 {
 	struct modal_motion *f = &c->modal_motion;
-	const double third = c->task->time_step / 3;
-	for (int j = 0; j < c->n_links; j++) {
-		const struct link *l = &c->link[j];
-		double p, q, fourth_max = 0;
-		link_at(l, to, &p, &q);
-		f->overlap_next[j] = p;
-		f->rate_next[j] = q;
-		for (int k = 0; k < l->n_ends; k++)
-			fourth_max = fma(fabs(l->weight[k]), f->fourth_drift.at[l->floor[k]], fourth_max);
-		const double b1 = fma(third, f->rate[j], f->overlap[j]), b2 = fma(-third, q, p);
-		if (!(fma(POUND_CUBIC_ERROR, fourth_max, larger(larger(b1, b2), p)) < 0))
-			return true;
+	const struct link_ends *ends = &c->ends;
+	const vd zero = vsplat(0), third = vsplat(c->task->time_step / 3);
+	vm risk = vmask(0);
+	for (int j = 0; j < c->wide_links; j += W) {
+		const struct kinematics x = links_at(c, to, j);
+		vd fourth_max = zero;
+		for (int k = 0; k < ends->n[j / ROW]; k++)
+			fourth_max = vfma(vabs(lanes_load(&ends->weight[k][j])),
+			                  ends_load(ends, k, j, f->fourth_drift.at), fourth_max);
+		const vd b1 = vfma(third, lanes_load(&f->rate[j]), lanes_load(&f->overlap[j]));
+		const vd b2 = vfma(-third, x.v, x.u), top = vmax(vmax(b1, b2), x.u);
+		lanes_store(&f->overlap_next[j], x.u);
+		lanes_store(&f->rate_next[j], x.v);
+		risk |= ~vless(vfma(vsplat(POUND_CUBIC_ERROR), fourth_max, top), zero);
 	}
-	return false;
+	return vany(risk);
 }
 
 /* ---- samples that may hold largest values ---- */
@@ -560,9 +563,9 @@ LANE_INLINE bool modal_sample(struct chain *c, bool edged, bool moving)
 		if (accelerated)
 			column_store(&c->top_acceleration, i, column_load(&f->top_acceleration, i));
 	}
-	for (int j = 0; j < c->n_links; j++) {
-		f->overlap[j] = f->overlap_next[j];
-		f->rate[j] = f->rate_next[j];
+	for (int j = 0; j < c->wide_links; j += W) {
+		lanes_store(&f->overlap[j], lanes_load(&f->overlap_next[j]));
+		lanes_store(&f->rate[j], lanes_load(&f->rate_next[j]));
 	}
 	f->now = 1 - f->now;
 	f->moved = true;
@@ -610,8 +613,11 @@ static void modal_advance(struct chain *c, const atomic_bool *stop)
 	struct modal_place *at = &f->at[0];
 	if (c->moving)
 		floors_sum(c, 2, (const struct summed[]){{at->d.at, at->u.at}, {at->v.at, at->w.at}});
-	for (int j = 0; j < c->n_links; j++)
-		link_at(&c->link[j], &f->at[0], &f->overlap[j], &f->rate[j]);
+	for (int j = 0; j < c->wide_links; j += W) {
+		const struct kinematics x = links_at(c, at, j);
+		lanes_store(&f->overlap[j], x.u);
+		lanes_store(&f->rate[j], x.v);
+	}
 	if (c->task->asked & POUND_CHAIN_ACCELERATIONS) {
 		modes_force(f, &f->q, &f->v, c->wide, c->task->ground[c->next - 1]);
 		accelerations_sum(c, &f->at[0]);

@@ -32,6 +32,17 @@ LANE_INLINE void column_store(struct column *x, int j, vd value)
 	lanes_store(&x->at[j], value);
 }
 
+/* What is in a column at end k of a vector of links. */
+LANE_INLINE vd ends_load(const struct link_ends *x, int k, int j, const double *column)
+{
+	if (x->follows[k][j / ROW])
+		return lanes_load(column + x->floor[k][j]);
+	double at[W];
+	for (int l = 0; l < W; l++)
+		at[l] = column[x->floor[k][j + l]];
+	return lanes_of(at);
+}
+
 /* Adds a contact's force, or what else acts on a floor from outside, of order n. */
 static void push_add(struct chain *c, const struct link *l, double force)
 {
@@ -67,17 +78,31 @@ LANE_SHARED void modal_add(struct chain *c, int n)
 	}
 }
 
+/* Whether the sides of a link that is followed meet without overlap, at one velocity but for a rounding. */
+LANE_INLINE bool link_level(const struct chain *c, const struct link *l)
+{
+	if (!l->own || l->p != 0)
+		return false;
+	double alike = 0;
+	for (int k = 0; k < l->n_ends; k++)
+		alike += fabs(l->weight[k] * c->w.at[l->floor[k]]);
+	return fabs(l->q) <= DBL_EPSILON * alike;
+}
+
 /* Lists the links that act in a step. */
 static void links_list(struct chain *c)
 {
 	c->touching.n = c->own.n = 0;
 	c->held = false;
+	memset(c->own_bits, 0, sizeof c->own_bits);
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
 		if (l->touching)
 			c->touching.link[c->touching.n++] = (uint16_t)j;
-		if (l->own)
+		if (l->own) {
 			c->own.link[c->own.n++] = (uint16_t)j;
+			c->own_bits[j / ROW] |= (uint8_t)(1u << j % ROW);
+		}
 		c->held |= l->held;
 	}
 }
@@ -197,10 +222,7 @@ static void series_start(struct chain *c)
 		struct link *l = &c->link[j];
 		c->overlaps[0][j] = l->p;
 		c->overlaps[1][j] = l->q * c->dt;
-		double alike = 0;
-		for (int k = 0; k < l->n_ends; k++)
-			alike += fabs(l->weight[k] * c->w.at[l->floor[k]]);
-		l->level = l->p == 0 && fabs(l->q) <= DBL_EPSILON * alike;
+		l->level = link_level(c, l);
 	}
 }
 

@@ -138,6 +138,14 @@ struct warp {
 	struct curve links[POUND_CHAIN_LINKS];
 };
 
+/* what links join, for vectors of them; behind the last one are links that are open for good */
+struct link_ends {
+	int n[LINKS / ROW];                     /* ends of the links of a row of ROW, at most */
+	bool follows[ENDS][LINKS / ROW];        /* these are on floors that follow each other */
+	uint16_t floor[ENDS][LINKS];            /* any where a link has fewer */
+	double weight[ENDS][LINKS], gap[LINKS]; /* 0 where it has fewer; [m] */
+};
+
 /* some of the links, ascending */
 struct link_list {
 	int n;
@@ -169,6 +177,8 @@ struct chain {
 	struct column top_drift, top_displacement, top_acceleration;
 	struct link link[POUND_CHAIN_LINKS];
 	struct link_list touching, own; /* of the current step */
+	uint8_t own_bits[LINKS / ROW];  /* those of a row of ROW */
+	struct link_ends ends;
 	// interval and step
 	int64_t next;         /* sample at the end of the interval */
 	double ground, slope; /* [m/s2], [m/s3] */
@@ -214,6 +224,30 @@ static void link_start(struct link *l, const struct pound_chain_task *task, int 
 	l->own = true;
 	l->gap = link->gap;
 	l->p = -link->gap;
+}
+
+/* Puts the ends of all links where vectors find them. */
+static void link_ends_start(struct chain *c)
+{
+	struct link_ends *x = &c->ends;
+	for (int j = 0; j < c->wide_links; j++) {
+		const struct link *l = &c->link[j];
+		const int n_ends = j < c->n_links ? l->n_ends : 0, row = j / ROW, first = row * ROW;
+		if (j == first) {
+			x->n[row] = 0;
+			for (int k = 0; k < ENDS; k++)
+				x->follows[k][row] = true;
+		}
+		x->n[row] = n_ends > x->n[row] ? n_ends : x->n[row];
+		x->gap[j] = j < c->n_links ? l->gap : DBL_MAX;
+		for (int k = 0; k < ENDS; k++) {
+			const int next = j == first ? 0 : x->floor[k][first] + j - first;
+			const int floor = k < n_ends ? l->floor[k] : next < c->wide ? next : 0;
+			x->weight[k][j] = k < n_ends ? l->weight[k] : 0;
+			x->floor[k][j] = (uint16_t)floor;
+			x->follows[k][row] &= j == first || floor == next;
+		}
+	}
 }
 
 /* Sum over the floors of a link of its weights and what is in a column. */
@@ -367,6 +401,7 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 		c->link[j].measures = &result->links[j * POUND_LINK_MEASURES];
 		memset(c->link[j].measures, 0, sizeof(double) * POUND_LINK_MEASURES);
 	}
+	link_ends_start(c);
 	c->moving = c->n_links > 0 || task->observer ||
 	            (task->asked & (POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_ENERGY));
 }

@@ -53,10 +53,7 @@ static void step_choose(struct chain *c)
 	bool level = false;
 	for (int j = 0; j < c->n_links; j++) {
 		struct link *l = &c->link[j];
-		double alike = 0;
-		for (int k = 0; k < l->n_ends; k++)
-			alike += fabs(l->weight[k] * c->w.at[l->floor[k]]);
-		l->level = l->own && l->p == 0 && fabs(l->q) <= DBL_EPSILON * alike;
+		l->level = link_level(c, l);
 		level |= l->level;
 	}
 	// derivatives by the share of a step that is a power of two have the same roundings with and without contact
