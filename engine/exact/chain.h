@@ -101,9 +101,9 @@ enum pound_floor_measure {
 	POUND_FLOOR_DISPLACEMENT_MAX, /* largest |u| [m] */
 	POUND_FLOOR_ACCELERATION_MAX, /* largest |u'' + ground|, on both sides of events [m/s2] */
 	POUND_FLOOR_SHEAR_MAX,        /* largest spring force of the story below [N]; goes with the drift */
-	POUND_FLOOR_CENTER, /* of the story's elastic range at the end, of an elastoplastic law; else 0 [m] */
-	POUND_FLOOR_END_U,  /* [m] */
-	POUND_FLOOR_END_V,  /* [m/s] */
+	POUND_FLOOR_RESIDUAL,         /* drift at which the story's force is 0 on the way back from the end [m] */
+	POUND_FLOOR_END_U,            /* [m] */
+	POUND_FLOOR_END_V,            /* [m/s] */
 	POUND_FLOOR_MEASURES
 };
 

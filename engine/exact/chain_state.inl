@@ -454,10 +454,10 @@ static double chain_kinetic(const struct chain *c)
 	return sum;
 }
 
-/* Center of a story's elastic range: where its force would be 0 but for what hardening adds. */
-static double story_center(const struct chain *c, int i)
+/* Drift at which a story's force is 0 on the way back. */
+static double story_residual(const struct chain *c, int i)
 {
-	return pound_law_center(&c->task->floors[i].story, &c->laws[i], c->d.at[i]);
+	return pound_law_residual(&c->task->floors[i].story, &c->laws[i], c->d.at[i]);
 }
 
 static void chain_write(struct chain *c, enum pound_status status)
@@ -474,7 +474,7 @@ static void chain_write(struct chain *c, enum pound_status status)
 		m[POUND_FLOOR_SHEAR_MAX] = asked & POUND_CHAIN_DRIFTS
 		                               ? pound_law_envelope(&c->task->floors[i].story, c->top_drift.at[i])
 		                               : NAN;
-		m[POUND_FLOOR_CENTER] = story_center(c, i);
+		m[POUND_FLOOR_RESIDUAL] = story_residual(c, i);
 		m[POUND_FLOOR_END_U] = c->u.at[i];
 		m[POUND_FLOOR_END_V] = c->w.at[i];
 		finite &= isfinite(c->d.at[i]) && isfinite(c->v.at[i]);

@@ -78,29 +78,12 @@ double pound_row_impulse(const struct pound_outcome *outcome)
 
 /* ---- from marches ---- */
 
-/* The drift at which a storey's force is 0 on the way back.
- *
- * Given    center   c of its elastic range
- *
- *   (1 - r) c;  where r |c| > d_y: (1 - r) d_y/r with the sign of c
- *
- * Source   the project's design pages, buildings.md 2
- * Test     unit_row_results: rows_have_their_known_answers
- */
-static double residual(double center, double hardening, double yield)
-{
-	if (hardening * fabs(center) > yield)
-		return copysign((1 - hardening) * yield / hardening, center);
-	return (1 - hardening) * center;
-}
-
 /* What a storey is known by: rows of measures of its marches. */
 struct storey_known {
 	const double *with, *free; /* (POUND_FLOOR_MEASURES); free NULL: not run */
 	double yield;              /* [m] scaled; 0: none */
 	double given;              /* by the document [m]; 0: it is found */
 	double height;             /* [m] */
-	double hardening;
 	int exponent;
 };
 
@@ -120,7 +103,7 @@ static struct pound_storey_response storey_of(const struct storey_known *k)
 	                                  : ldexp(k->yield, e),
 	    .demand = ldexp(with[POUND_FLOOR_DRIFT_MAX] / per_yield, per),
 	    .demand_free = free ? ldexp(free[POUND_FLOOR_DRIFT_MAX] / per_yield, per) : NAN,
-	    .residual_drift = ldexp(residual(with[POUND_FLOOR_CENTER], k->hardening, k->yield), e),
+	    .residual_drift = ldexp(with[POUND_FLOOR_RESIDUAL], e),
 	    .displacement_max = ldexp(with[POUND_FLOOR_DISPLACEMENT_MAX], e),
 	    .displacement_max_free = free ? ldexp(free[POUND_FLOOR_DISPLACEMENT_MAX], e) : NAN,
 	    .acceleration_max = ldexp(with[POUND_FLOOR_ACCELERATION_MAX], e),
@@ -164,7 +147,6 @@ static enum pound_status building_of(const struct pound_row_asks *asks, const st
 		                                    .yield = ask->yields[first + i],
 		                                    .given = pound_row_yield_given(scene, b, i),
 		                                    .height = pound_each_of(&building->height, i),
-		                                    .hardening = pound_row_law(scene, b)->hardening_ratio,
 		                                    .exponent = exponent};
 		asks->storeys[first + i] = storey_of(&storey);
 	}

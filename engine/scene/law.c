@@ -1,7 +1,14 @@
 /* law.c - the constitutive laws, one function and one row each.
  *
- * A law's function makes the next branch out of the branch, the edge that was reached and the displacement there.
- * Adding a law: its function, its row in laws[], its known answers in tests/unit/scene/unit_law.c. */
+ * A law's function makes the next branch out of the branch, the edge that was reached and the displacement u there:
+ *
+ *   - Every law starts on the elastic branch of the first slope between -d_y and d_y, as shared_start.inl takes for granted.
+ *   - An edge at which a branch begins is u itself to the last bit, or the solver would reach it at once.
+ *   - Force is continuous over edges, to 4e-16 of its size (unit_law).  A branch may have no width.
+ *   - |force| is at most that of the backbone at the largest |u| so far: pound_law_envelope() is the largest shear.
+ *   - number, branch and memory may be read back; nothing else of a run may decide.
+ *
+ * Adding a law: the row 'a law' of the table of additions in engine/rooms.md. */
 #include "engine/scene/law.h"
 
 #include <float.h>
@@ -51,6 +58,22 @@ static void elastoplastic(const struct pound_backbone *s, struct pound_law_state
 	                                   .high = high};
 }
 
+/* (1 - r) c of the center c of the elastic range; where r |c| > d_y: (1 - r) d_y/r with the sign of c.
+ *
+ * Source   the project's design pages, buildings.md 2
+ * Test     unit_row_results: rows_have_their_known_answers
+ */
+static double elastoplastic_residual(const struct pound_backbone *s, const struct pound_law_state *at,
+                                     double u)
+{
+	const double center = at->number == CENTER  ? at->memory[0]
+	                      : at->number == RIGHT ? u - s->yield
+	                                            : u + s->yield;
+	if (s->hardening * fabs(center) > s->yield)
+		return copysign((1 - s->hardening) * s->yield / s->hardening, center);
+	return (1 - s->hardening) * center;
+}
+
 /* Loads and unloads on the backbone curve. */
 static void nonlinear_elastic(const struct pound_backbone *s, struct pound_law_state *at,
                               enum pound_edge edge, double u)
@@ -98,20 +121,21 @@ static void origin_oriented(const struct pound_backbone *s, struct pound_law_sta
 static const struct law {
 	const char *name;
 	const char *text; /* one line of documentation */
-	bool linear;
-	bool kinematic; /* yields for good: memory[0] is the center of its elastic range */
+	bool linear;      /* has one branch */
 	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
 	void (*leave)(const struct pound_backbone *, struct pound_law_state *, enum pound_edge, double u);
+	/* where the force is 0 on the way back from u; NULL: at the origin */
+	double (*residual)(const struct pound_backbone *, const struct pound_law_state *, double u);
 } laws[] = {
-    {"linear", "a spring", true, false, false, linear},
+    {"linear", "a spring", true, false, linear, NULL},
     {"elastoplastic",
-     "bilinear with kinematic hardening: unloads with the first slope, yields again after 2 d_y", false, true,
-     false, elastoplastic},
-    {"nonlinear_elastic", "bilinear, loads and unloads on the same curve", false, false, false,
-     nonlinear_elastic},
+     "bilinear with kinematic hardening: unloads with the first slope, yields again after 2 d_y", false,
+     false, elastoplastic, elastoplastic_residual},
+    {"nonlinear_elastic", "bilinear, loads and unloads on the same curve", false, false, nonlinear_elastic,
+     NULL},
     {"origin_oriented",
      "bilinear, unloads toward the origin and reloads to the farthest point reached on that side", false,
-     false, true, origin_oriented},
+     true, origin_oriented, NULL},
 };
 
 const char *pound_law_text(int row)
@@ -172,10 +196,9 @@ double pound_law_envelope(const struct pound_backbone *s, double u)
 	return s->stiffness * (s->hardening * u + (1 - s->hardening) * s->yield);
 }
 
-/* Center of the elastic range, were the oscillator to turn at u [m]; 0 for laws whose range stays. */
-double pound_law_center(const struct pound_backbone *s, const struct pound_law_state *at, double u)
+/* The displacement at which the force is 0 on the way back, were the oscillator to turn at u [m]; 0 for laws that always come
+ * back to the origin. */
+double pound_law_residual(const struct pound_backbone *s, const struct pound_law_state *at, double u)
 {
-	if (!laws[s->law].kinematic)
-		return 0;
-	return at->number == CENTER ? at->memory[0] : at->number == RIGHT ? u - s->yield : u + s->yield;
+	return laws[s->law].residual ? laws[s->law].residual(s, at, u) : 0;
 }

@@ -35,6 +35,6 @@ void pound_law_start(const struct pound_backbone *backbone, struct pound_law_sta
 void pound_law_leave(const struct pound_backbone *backbone, struct pound_law_state *at, enum pound_edge edge,
                      double u);
 double pound_law_envelope(const struct pound_backbone *backbone, double u);
-double pound_law_center(const struct pound_backbone *backbone, const struct pound_law_state *at, double u);
+double pound_law_residual(const struct pound_backbone *backbone, const struct pound_law_state *at, double u);
 
 #endif

@@ -410,8 +410,13 @@ static void object_read(struct reader *r, const struct field *field, const cJSON
 
 static void object_expected(const struct field *field, char *text, size_t size)
 {
-	(void)field;
-	snprintf(text, size, "an object");
+	char type[128];
+	snprintf(type, sizeof type, "%s/type", field->pattern);
+	const struct field *choice = fields_find(type);
+	if (choice && choice->type == FIELD_CHOICE)
+		snprintf(text, size, "an object such as {\"type\": \"%s\"}", choice->choice(0));
+	else
+		snprintf(text, size, "an object");
 }
 
 static void object_openapi(struct writer *w, const struct field *field)

@@ -76,6 +76,15 @@ void reader_mistyped(struct reader *r, const char *expected, const cJSON *node)
 	problems_add(r->problems, r->pointer, "must be %s, got %s", expected, got);
 }
 
+/* The same for a field, by its type and range; NULL: the whole document. */
+void reader_mistyped_field(struct reader *r, const struct field *field, const cJSON *node)
+{
+	char expected[256] = "an object";
+	if (field)
+		fields_expected(field, expected, sizeof expected);
+	reader_mistyped(r, expected, node);
+}
+
 /* The same, with what was probably meant. */
 void reader_misspelt(struct reader *r, const char *expected, const cJSON *node, const char *nearest)
 {
@@ -102,16 +111,15 @@ static int characters(const char *text)
  */
 void reader_text(struct reader *r, const struct field *field, const cJSON *node, const char **at)
 {
-	char expected[80];
+	char length[80];
+	fields_span(field, length, sizeof length);
 	int n = cJSON_IsString(node) ? characters(node->valuestring) : 0;
-	fields_expected(field, expected, sizeof expected);
 	if (!cJSON_IsString(node)) {
-		reader_mistyped(r, expected, node);
+		reader_mistyped_field(r, field, node);
 	} else if (n < 0) {
 		problems_add(r->problems, r->pointer, "must not contain control characters");
 	} else if (n < field->min || n > field->max) {
-		fields_span(field, expected, sizeof expected);
-		problems_add(r->problems, r->pointer, "must have %s characters, has %d", expected, n);
+		problems_add(r->problems, r->pointer, "must have %s characters, has %d", length, n);
 	} else {
 		*at = strcpy(r->text, node->valuestring);
 		r->text += strlen(r->text) + 1;
@@ -121,16 +129,15 @@ void reader_text(struct reader *r, const struct field *field, const cJSON *node,
 /* The number of elements to read, 0 when it is no list or too long; any wrong number is a problem. */
 int reader_elements(struct reader *r, const struct field *field, const cJSON *node)
 {
-	char expected[80];
-	fields_expected(field, expected, sizeof expected);
 	if (!cJSON_IsArray(node)) {
-		reader_mistyped(r, expected, node);
+		reader_mistyped_field(r, field, node);
 		return 0;
 	}
+	char length[80];
+	fields_span(field, length, sizeof length);
 	int n = cJSON_GetArraySize(node);
-	fields_span(field, expected, sizeof expected);
 	if (n < field->min || n > field->max)
-		problems_add(r->problems, r->pointer, "must have %s elements, has %d", expected, n);
+		problems_add(r->problems, r->pointer, "must have %s elements, has %d", length, n);
 	return n <= field->max ? n : 0;
 }
 

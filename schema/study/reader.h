@@ -29,6 +29,7 @@ void reader_leave(struct reader *reader, size_t length);
 
 /* Notes that something else was expected here. */
 void reader_mistyped(struct reader *reader, const char *expected, const cJSON *node);
+void reader_mistyped_field(struct reader *reader, const struct field *field, const cJSON *node);
 void reader_misspelt(struct reader *reader, const char *expected, const cJSON *node, const char *nearest);
 
 /* A text; other values: field_types.c. */

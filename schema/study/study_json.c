@@ -68,6 +68,25 @@ static const char *instead_of(const char *name)
 	return NULL;
 }
 
+enum { OBJECTS_MOST = 3 }; // a name that more objects have (type, name) shows nothing
+
+/* The first object of such a study that has a member of that name, as its pattern; false: none, or too many have one. */
+static bool other_object(const struct reader *r, const char *name, char text[80])
+{
+	const struct field *first = NULL;
+	int n = 0;
+	for (int i = 0; i < fields_count; i++)
+		if (strcmp(fields_name(&fields[i]), name) == 0 &&
+		    fields_used(&fields[i], r->kind, r->excitation, r->solver)) {
+			first = first ? first : &fields[i];
+			n++;
+		}
+	if (n == 0 || n > OBJECTS_MOST)
+		return false;
+	snprintf(text, 80, "%.*s", (int)(fields_name(first) - 1 - first->pattern), first->pattern);
+	return *text;
+}
+
 static void unknown(struct reader *r, const char *pattern, const char *name)
 {
 	const struct field *nearest = NULL;
@@ -83,14 +102,16 @@ static void unknown(struct reader *r, const char *pattern, const char *name)
 			nearest = &fields[i];
 		}
 	}
-	char within[80];
+	char within[80], other[80];
 	snprintf(within, sizeof within, "/scene/%.64s", name);
 	if (instead_of(name))
 		problems_add(r->problems, r->pointer, "unknown member: write %s", instead_of(name));
 	else if (!*pattern && fields_find(within))
-		problems_add(r->problems, r->pointer, "unknown member: it belongs in \"scene\"");
+		problems_add(r->problems, r->pointer, "unknown member: it belongs in /scene");
 	else if (nearest && near_name(best, name))
 		problems_add(r->problems, r->pointer, "unknown member, did you mean \"%s\"?", fields_name(nearest));
+	else if (other_object(r, name, other))
+		problems_add(r->problems, r->pointer, "unknown member: it belongs in %s", other);
 	else
 		problems_add(r->problems, r->pointer, "unknown member");
 }
@@ -153,7 +174,7 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 bool reader_object(struct reader *r, const char *pattern, const cJSON *node, char *base)
 {
 	if (!cJSON_IsObject(node)) {
-		reader_mistyped(r, "an object", node);
+		reader_mistyped_field(r, fields_find(pattern), node);
 		return false;
 	}
 	const cJSON *member;

@@ -101,7 +101,7 @@ void reader_distribution(struct reader *r, const struct field *field, const cJSO
 	struct pound_distribution *distribution = &((struct pound_input *)base)->distribution;
 	const cJSON *type = cJSON_GetObjectItemCaseSensitive(node, "type");
 	if (!cJSON_IsObject(node)) {
-		reader_mistyped(r, "an object", node);
+		reader_mistyped_field(r, field, node);
 	} else if (!type) {
 		reader_require(r, node, field->pattern);
 	} else {
