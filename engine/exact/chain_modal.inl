@@ -4,7 +4,7 @@
  *
  * Drifts and their rates at the samples are sums over modes.  The cubic through both ends of a sample, widened by the bound of its
  * error, proves that nothing lies between: no contact, no edge of a branch, no new largest value.  Where it cannot, the sample
- * goes by power series.
+ * goes by power series, and so does a row in which a story yields: speed.md says what modes of the tangent stiffness would cost.
  *
  * Included by chain.inl alone, once per lane count, after chain_step.inl. */
 
