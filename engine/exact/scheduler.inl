@@ -117,10 +117,20 @@ LANE_INLINE bool batch_again(struct work *work, struct batch *b)
 	return true;
 }
 
+/* An idle simulation, with the places of its maps: written here and not for the whole pool, as a page that is written to is memory
+ * that the system has to clear. */
+static struct simulation *idle_take(struct work *work)
+{
+	struct simulation *sim = pop(&work->idle);
+	for (int m = 0; m < POUND_CONTACT_MAPS; m++)
+		sim->own_maps[m].doubled = &work->doubled[sim - work->pool][m];
+	return sim;
+}
+
 /* Starts a task, with those that go along with it. */
 static void task_start(struct work *work, int j)
 {
-	struct simulation *sim = pop(&work->idle);
+	struct simulation *sim = idle_take(work);
 	enum pound_stage stage = simulation_start(sim, &work->tasks[j], &work->results[j]);
 	shared_gather(&work->shared_starts, work->tasks, work->results, j, sim);
 	common_join(&work->common, sim);
@@ -132,7 +142,7 @@ static void task_start(struct work *work, int j)
 static void tasks_start(struct work *work)
 {
 	while (work->n_waiting > 0 && work->idle.n > 0) {
-		struct simulation *sim = pop(&work->idle);
+		struct simulation *sim = idle_take(work);
 		shared_resume(sim, &work->waiting[--work->n_waiting]);
 		push(&work->queues[sim->stage], sim);
 	}
@@ -166,9 +176,6 @@ static void work_init(struct work *work, const struct pound_task *tasks, struct 
 	work->filler.x.dt = 1;
 	work->filler.x.gap = 0;
 	work->common.maps.doubled = &work->common_doubled;
-	for (int j = 0; j < POOL; j++) {
-		for (int m = 0; m < POUND_CONTACT_MAPS; m++)
-			work->pool[j].own_maps[m].doubled = &work->doubled[j][m];
+	for (int j = 0; j < POOL; j++)
 		push(&work->idle, &work->pool[j]);
-	}
 }
