@@ -216,71 +216,89 @@ static void floor_spectrum(const struct reading *result)
 		       reading_number(result, "/accuracy/spectra/%d/relative_error_max", row));
 }
 
+/* A table of a result of separation: an array and, column by column, what each element has. */
+struct list {
+	const char *members; /* the array, from the cell or the curves on */
+	struct {
+		const char *head, *member;
+	} columns[9]; /* ends with NULLs; the first may be a text */
+};
+
+static const struct list NEEDS[] = {
+    {"pounding", {{"gap_m", "gap_m"}, {"P(pounding)", "probability"}, {"95 % from", "low"}, {"to", "high"}}},
+    {"gaps", {{"P(pounding)", "probability"}, {"gap_m", "gap_m"}, {"95 % from", "low_m"}, {"to", "high_m"}}},
+    {"rules",
+     {{"rule", "name"},
+      {"gap_m", "gap_m"},
+      {"over mean", "over_mean"},
+      {"P(pounding)", "probability"},
+      {"95 % from", "low"},
+      {"to", "high"}}},
+};
+static const struct list FRAGILITY = {"curves",
+                                      {{"gap_m", "gap_m"},
+                                       {"median", "median"},
+                                       {"95 % from", "median_low"},
+                                       {"to", "median_high"},
+                                       {"dispersion", "dispersion"},
+                                       {"95 % from", "dispersion_low"},
+                                       {"to", "dispersion_high"},
+                                       {"per year", "annual_rate"}}};
+
+static void print_list(const struct reading *result, const char *at, const struct list *list)
+{
+	const char *heads[sizeof list->columns / sizeof list->columns[0]], *text;
+	int n = 0;
+	for (; list->columns[n].head; n++)
+		heads[n] = list->columns[n].head;
+	heads[n] = NULL;
+	struct table *table = table_open(heads);
+	for (int k = 0; k < reading_count(result, "%s/%s", at, list->members); k++)
+		for (int j = 0; j < n; j++) {
+			const char *member = list->columns[j].member;
+			if ((text = reading_text(result, "%s/%s/%d/%s", at, list->members, k, member)))
+				table_text(table, text);
+			else
+				table_number(table, reading_number(result, "%s/%s/%d/%s", at, list->members, k, member));
+		}
+	table_print(table, 2);
+	table_close(table);
+}
+
 /* How wide the gap of a cell has to be, and what rules ask for. */
 static void print_needs(const struct reading *result, const char *at)
 {
-	static const char *const columns[] = {"gap_m", "P(pounding)", "95 % from", "to", NULL};
-	static const char *const wanted[] = {"P(pounding)", "gap_m", "95 % from", "to", NULL};
-	static const char *const rules[] = {"rule", "gap_m", "over mean", "P(pounding)", "95 % from", "to", NULL};
-	static const char *const members[] = {"gap_m", "probability", "low", "high"};
-	static const char *const gap_members[] = {"probability", "gap_m", "low_m", "high_m"};
-	static const char *const rule_members[] = {"gap_m", "over_mean", "probability", "low", "high"};
 	cell_failed(result, at);
-	printf("\ngap needed: mean %.4g m, standard deviation %.4g m, largest %.4g m of %.0f runs\n\n",
+	printf("\ngap needed: mean %.4g m, standard deviation %.4g m, largest %.4g m of %.0f runs\n",
 	       reading_number(result, "%s/gap_needed/mean_m", at),
 	       reading_number(result, "%s/gap_needed/standard_deviation_m", at),
 	       reading_number(result, "%s/gap_needed/largest_m", at),
 	       reading_number(result, "%s/gap_needed/runs", at));
-	struct table *table = table_open(columns);
-	for (int k = 0; k < reading_count(result, "%s/pounding", at); k++)
-		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
-			table_number(table, reading_number(result, "%s/pounding/%d/%s", at, k, members[m]));
-	table_print(table, 2);
-	table_close(table);
-	putchar('\n');
-	table = table_open(wanted);
-	for (int k = 0; k < reading_count(result, "%s/gaps", at); k++)
-		for (size_t m = 0; m < sizeof gap_members / sizeof gap_members[0]; m++)
-			table_number(table, reading_number(result, "%s/gaps/%d/%s", at, k, gap_members[m]));
-	table_print(table, 2);
-	table_close(table);
-	putchar('\n');
-	table = table_open(rules);
-	for (int k = 0; k < reading_count(result, "%s/rules", at); k++) {
-		table_text(table, reading_text(result, "%s/rules/%d/name", at, k));
-		for (size_t m = 0; m < sizeof rule_members / sizeof rule_members[0]; m++)
-			table_number(table, reading_number(result, "%s/rules/%d/%s", at, k, rule_members[m]));
+	for (size_t k = 0; k < sizeof NEEDS / sizeof NEEDS[0]; k++) {
+		putchar('\n');
+		print_list(result, at, &NEEDS[k]);
 	}
-	table_print(table, 2);
-	table_close(table);
 	if (!reading_has(result, "%s/outputs/0", at))
 		print_outputs(result, at);
 }
 
 static void print_fragility(const struct reading *result)
 {
-	static const char *const columns[] = {"gap_m",     "median", "95 % from", "to", "dispersion",
-	                                      "95 % from", "to",     "per year",  NULL};
-	static const char *const members[] = {"gap_m",      "median",         "median_low",      "median_high",
-	                                      "dispersion", "dispersion_low", "dispersion_high", "annual_rate"};
+	char at[32];
 	for (int k = 0; k < reading_count(result, "/fragility"); k++) {
 		const char *path;
-		printf("\nfragility over %s", reading_text(result, "/fragility/%d/intensity", k));
-		for (int s = 0; (path = reading_member(result, s, "/fragility/%d/sweep", k)); s++)
+		snprintf(at, sizeof at, "/fragility/%d", k);
+		printf("\nfragility over %s", reading_text(result, "%s/intensity", at));
+		for (int s = 0; (path = reading_member(result, s, "%s/sweep", at)); s++)
 			printf(", %s", path);
 		putchar('\n');
-		struct table *table = table_open(columns);
-		for (int g = 0; g < reading_count(result, "/fragility/%d/curves", k); g++)
-			for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
-				table_number(table, reading_number(result, "/fragility/%d/curves/%d/%s", k, g, members[m]));
-		table_print(table, 2);
-		table_close(table);
-		for (int p = 0; p < reading_count(result, "/fragility/%d/return_periods", k); p++)
+		print_list(result, at, &FRAGILITY);
+		for (int p = 0; p < reading_count(result, "%s/return_periods", at); p++)
 			printf("return period %.6g years: gap %.4g m (95 %%: %.4g to %.4g m)\n",
-			       reading_number(result, "/fragility/%d/return_periods/%d/return_period_years", k, p),
-			       reading_number(result, "/fragility/%d/return_periods/%d/gap_m", k, p),
-			       reading_number(result, "/fragility/%d/return_periods/%d/low_m", k, p),
-			       reading_number(result, "/fragility/%d/return_periods/%d/high_m", k, p));
+			       reading_number(result, "%s/return_periods/%d/return_period_years", at, p),
+			       reading_number(result, "%s/return_periods/%d/gap_m", at, p),
+			       reading_number(result, "%s/return_periods/%d/low_m", at, p),
+			       reading_number(result, "%s/return_periods/%d/high_m", at, p));
 	}
 }
 

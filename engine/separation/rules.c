@@ -11,8 +11,11 @@ static const struct {
 	bool summed;             /* displacements add up; else their squares, less what correlation takes off */
 	bool correlated;
 } rules[] = {
-    {"absolute_sum", "sum of both displacements: no rule asks for more", .summed = true},
-    {"srss", "root of the sum of squares: Eurocode 8 part 1, 4.4.2.7; ASCE 7-16, 12.12.3", .summed = false},
+    {"absolute_sum", "sum of both displacements, the most that a run may need: IS 1893 part 1 (2016), 7.11.3",
+     .summed = true},
+    {"srss",
+     "root of the sum of squares: Eurocode 8 part 1 (2004), 4.4.2.7 (2); ASCE 7-16, 12.12.3, Eq. (12.12-2)",
+     .summed = false},
     {"double_difference", "double difference combination by the CQC coefficient: Jeng, Kasai and Maison 1992",
      .summed = false, .correlated = true},
 };

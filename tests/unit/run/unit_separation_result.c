@@ -110,6 +110,59 @@ static void a_step_of_acceleration_needs_its_closed_form(void **state)
 	reading_close(r);
 }
 
+/* A cycle of a sin W t under factors 1 to 20, undamped, w_1 = 2 W, w_2 = 3 W.  With x = W t
+ *
+ *   u_i = -a/(w_i^2 - W^2) (sin x - W/w_i sin (w_i x/W))
+ *   u_1 - u_2 = -a/W^2 s ((1 - c)/3 - s^2/6),   s = sin x, c = cos x
+ *
+ * is largest where 3 c^2 - c - 2 = 0: c = -2/3, s^2 = 5/9; u_1 where c = -1/2, u_2 where s = 1.  A line between samples has the share
+ * (sin(pi/n)/(pi/n))^2 of the sine, and harmonics from n - 1 on that move no body by more than 4/n^3 of it. */
+static void a_suite_of_sines_needs_its_closed_forms(void **state)
+{
+	(void)state;
+	enum { RECORDS = 20, N = 200 };
+	const double pi = 3.14159265358979323846, step = 0.005, w = 2 * pi / (N * step), near = 4.0 / (N * N * N);
+	const double share = sin(pi / N) / (pi / N), a = share * share / (w * w);
+	const double one = 25 * sqrt(5) / 162 * a, left = sqrt(3) / 4 * a, right = a / 6,
+	             mean = 0.5 * (RECORDS + 1);
+	char *document;
+	size_t length;
+	FILE *out = open_memstream(&document, &length);
+	fprintf(out,
+	        "{\"kind\": \"separation\", \"scene\": {\"oscillators\": [{\"frequency_hz\": %.17g, "
+	        "\"damping_ratio\": 0}, "
+	        "{\"frequency_hz\": %.17g, \"damping_ratio\": 0}], \"excitation\": {\"type\": \"suite\", "
+	        "\"records\": [",
+	        2 / (N * step), 3 / (N * step));
+	for (int k = 1; k <= RECORDS; k++) {
+		fprintf(out, "%s{\"factor\": %d, \"time_step_s\": %g, \"acceleration_m_s2\": [0", k > 1 ? ", " : "",
+		        k, step);
+		for (int i = 1; i <= N; i++)
+			fprintf(out, ", %.17g", sin(2 * pi * i / N));
+		fputs("]}", out);
+	}
+	fputs("]}}, \"separation\": {\"gaps_m\": [", out);
+	for (int k = 0; k <= RECORDS; k++)
+		fprintf(out, "%s%.17g", k ? ", " : "", (k + 0.5) * one);
+	fputs("], \"probabilities\": [0.5, 0.05]}}", out);
+	fclose(out);
+	struct reading *r = results_of_study(document);
+	free(document);
+	for (int k = 0; k < RECORDS; k++)
+		check_near(reading_number(r, "/cells/0/gap_needed/signals_m/%d", k) / ((k + 1) * one), 1, near);
+	check_near(reading_number(r, "/cells/0/gap_needed/mean_m") / (mean * one), 1, near);
+	check_near(reading_number(r, "/cells/0/gap_needed/standard_deviation_m") / (sqrt(35) * one), 1, near);
+	// with a gap between those that records k and k + 1 need, all behind k pound
+	for (int k = 0; k <= RECORDS; k++)
+		check_near(reading_number(r, "/cells/0/pounding/%d/probability", k), (double)(RECORDS - k) / RECORDS,
+		           1e-15);
+	check_near(reading_number(r, "/cells/0/gaps/0/gap_m") / (10 * one), 1, near);
+	check_near(reading_number(r, "/cells/0/gaps/1/gap_m") / (19 * one), 1, near);
+	check_near(reading_number(r, "/cells/0/rules/0/gap_m") / (mean * (left + right)), 1, near);
+	check_near(reading_number(r, "/cells/0/rules/1/gap_m") / (mean * hypot(left, right)), 1, near);
+	reading_close(r);
+}
+
 /* With uncertain structures the runs are those of A and B, and the gap needed has indices. */
 static void with_inputs_the_runs_are_those_of_the_design(void **state)
 {
@@ -178,5 +231,6 @@ static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
 CHECK_MAIN(cmocka_unit_test(the_result_is_what_brute_force_counts),
            cmocka_unit_test(outputs_with_pounding_are_those_of_a_response),
            cmocka_unit_test(a_step_of_acceleration_needs_its_closed_form),
+           cmocka_unit_test(a_suite_of_sines_needs_its_closed_forms),
            cmocka_unit_test(with_inputs_the_runs_are_those_of_the_design),
            cmocka_unit_test(a_swept_intensity_has_fragility_curves_and_rates))
