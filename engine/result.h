@@ -230,9 +230,9 @@ struct pound_accuracy {
 	X(POUND_NOTE_NOT_RANDOM,                                                              \
 	  "the excitation is not random, so there is no noise to correct for")                \
 	X(POUND_NOTE_ONE_SIGNAL,                                                              \
-	  "with one signal its noise cannot be estimated, so all indices include it")          \
+	  "with one signal its noise cannot be estimated, so all indices are those of single responses and include it; for those of the mean response use 2 signals or more, or \"auto\"")          \
 	X(POUND_NOTE_SHARED_SIGNAL,                                                           \
-	  "the samples of a row share one signal: besides the raw indices only S1 can be estimated; for all others use 2 signals or more") \
+	  "the samples of a row share one signal: besides the raw indices only S1 can be estimated; for all others, and for indices of the mean response, use 2 signals or more, or \"auto\"") \
 	X(POUND_NOTE_NO_VARIANCE,                                                             \
 	  "no variance of the output is given, so all indices include the noise of the model") \
 	X(POUND_NOTE_SHARED_NOISE,                                                            \
@@ -424,7 +424,29 @@ struct pound_floor_result {
 	double pulses_mean;  /* mean number of pulses of the idealised train */
 };
 
+/* How many signals a row has, and why: choices of that number, and of the one taken the index that decided. */
+enum { POUND_SPLITS = 12 };
+
+struct pound_split_choice {
+	int signals, rows;
+	double half_width, bias; /* foreseen of the worst index; the bias is in the half width */
+	int64_t runs;            /* without the pilot's */
+};
+
+struct pound_split {
+	int signals;    /* of each row; 0: the study says how many */
+	int rows;       /* of the design, or to begin with */
+	int pilot_rows; /* of six signals each */
+	int64_t pilot_runs;
+	int n_choices;
+	struct pound_split_choice choices[POUND_SPLITS];
+	struct pound_look decided_by; /* half width and rows as foreseen; negative: the pilot saw no variance */
+	double between, within,
+	    pairs; /* parts of that index' variance, of one row: rows + signals / R + pairs / (R (R - 1)) */
+};
+
 struct pound_result {
+	struct pound_split split;
 	int rows;                 /* of the design, in this result */
 	int n_looks;              /* 0: the design does not grow */
 	struct pound_look *looks; /* (n_looks) */

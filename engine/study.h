@@ -298,7 +298,11 @@ struct pound_design {
 	int randomisations;  /* of a quasi-random design, independent of each other; 0: as many as is best */
 	int resamples;       /* behind an interval, of a design without groups of rows; 0: 2000 */
 	struct pound_until until;
-	int order;     /* row of the orders, pound_order_name: which samples a row has at least */
+	bool
+	    split; /* how many signals a row has follows from a pilot (pound_study_split): the study has their least
+	               number, and the rows of that */
+	int runs;  /* of a design that is split and does not grow: pounding runs to spend, the pilot's included */
+	int order; /* row of the orders, pound_order_name: which samples a row has at least */
 	int estimator; /* row of the estimators, pound_estimator_name; 0: only those of every study */
 };
 
@@ -372,6 +376,13 @@ struct pound_study {
 	bool unbalanced; /* a response study whose runs need no energy balances */
 	struct pound_separation separation;
 };
+
+/* A design that is split: rows and pounding runs of its pilot, and the study with so many signals in each row, which is not
+ * split any more. */
+enum { POUND_SPLIT_LEAST = 2, POUND_SPLIT_PILOT_LEAST = 32 /* rows */ };
+int pound_study_pilot_rows(const struct pound_study *study);
+int64_t pound_study_pilot_runs(const struct pound_study *study);
+void pound_study_split(const struct pound_study *study, int signals, struct pound_study *settled);
 
 bool pound_study_sampled(const struct pound_study *study); /* its runs are those of a design */
 bool pound_study_pounds(const struct pound_study *study);  /* its outputs need runs with contact */

@@ -15,6 +15,7 @@
 #include "server/fair_share.h"
 #include "server/metrics.h"
 #include "server/options.h"
+#include "server/partial_results.h"
 #include "server/spool.h"
 #include "server/store.h"
 
@@ -27,6 +28,7 @@ struct server {
 	char *document; /* (document_length) bytes, the OpenAPI document: made once, it takes milliseconds */
 	size_t document_length;
 	struct answer_cache answers;
+	struct partial_results partials;
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;

@@ -142,7 +142,9 @@ int main(int argc, char **argv)
 	sigaddset(&signals, SIGINT);
 	pthread_sigmask(SIG_BLOCK, &signals, NULL);
 
-	struct server server = {.options = &options, .answers.lock = PTHREAD_MUTEX_INITIALIZER};
+	struct server server = {.options = &options,
+	                        .answers.lock = PTHREAD_MUTEX_INITIALIZER,
+	                        .partials.lock = PTHREAD_MUTEX_INITIALIZER};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
@@ -153,6 +155,7 @@ int main(int argc, char **argv)
 	if (server.store)
 		store_close(server.store);
 	answer_cache_free(&server.answers);
+	partial_results_free(&server.partials);
 	free(server.document);
 	free(server.tokens);
 	return status;

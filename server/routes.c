@@ -29,6 +29,7 @@
 enum {
 	RETRY_AFTER = 1,        /* [s] */
 	RETRY_AFTER_MAX = 60,   /* [s] */
+	RESULT_HEAD = 4096,     /* [bytes] of a result, with its version and rows */
 	TABLE_LONG = 64 * 1024, /* [bytes] of a result of which a table takes milliseconds */
 };
 
@@ -331,18 +332,24 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 {
 	struct stored_run opened;
 	struct reply reply;
+	size_t length = 0;
+	char *body = partial_results_take(&request->server->partials, request->id, &length, rows);
+	if (body)
+		return made("application/json", body, length);
+	const double start = stored_run_clock();
 	const char *error = answer_open(request, &opened);
 	bool sampled = !error && pound_study_sampled(opened.study);
 	*rows = sampled ? pound_run_rows_done(opened.run, opened.stored) : 0;
 	if (*rows > 0) {
 		enum pound_status status = POUND_OK;
-		size_t length = 0;
-		char *body = NULL;
 		pound_run_rows_take(opened.run, *rows);
 		for (int k = 0; k < pound_run_reductions(opened.run) && !status; k++)
 			status = pound_run_reduce(opened.run, k, 0);
 		if (!status)
 			body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &length);
+		const struct partial_result last = {.id = request->id, .rows = *rows, .body = body, .length = length};
+		if (body)
+			partial_results_give(&request->server->partials, &last, stored_run_clock() - start);
 		reply = body ? made("application/json", body, length)
 		        : !status || status == POUND_NOMEM || status == POUND_STOPPED
 		            ? no_memory()
@@ -433,19 +440,16 @@ static bool sampled(const struct request *request, bool ours)
 static struct reply samples(struct request *request)
 {
 	static const struct format formats[] = {{"csv", "text/csv"}, {"npy", "application/octet-stream"}};
-	// a result says that all blocks are there
-	struct reply reply, json = document(request, "result");
-	if (json.status != 200)
-		return json;
-	struct reading *result = reading_open(json.body, json.length);
-	free(json.body);
-	if (!result)
-		return no_memory();
-	const char *version = reading_text(result, "/engine_version");
-	const bool ours = version && !strcmp(version, POUND_VERSION);
-	const double rows =
-	    reading_number(result, "/design/rows"); // a design that grew has more than it began with
-	reading_close(result);
+	// a result says that all blocks are there; its start says the version and the rows, of a design that grew, too
+	struct reply reply = document_head(request, "result");
+	if (reply.status != 200)
+		return reply;
+	char head[RESULT_HEAD];
+	if (store_start(request->server->store, request->id, "result", head, sizeof head) != STORE_OK)
+		return document(request, "result");
+	const bool ours = strstr(head, "\n  \"engine_version\": \"" POUND_VERSION "\",");
+	const char *at = strstr(head, "\"rows\": ");
+	const int rows = at ? atoi(at + strlen("\"rows\": ")) : 0;
 	bool npy = second(request, formats, NULL, 0, &reply);
 	if (http_known(request, reply.etag) && sampled(request, ours))
 		return reply;
@@ -458,7 +462,7 @@ static struct reply samples(struct request *request)
 		                "another version of poundd computed the study; only that one has its samples: "
 		                "submit it again");
 	else if (pound_study_sampled(opened.study)) {
-		pound_run_rows_take(opened.run, (int)rows);
+		pound_run_rows_take(opened.run, rows);
 		const int left = stored_run_left(&opened);
 		if (left == 0)
 			reply.body = (npy ? samples_to_npy : samples_to_csv)(opened.study, opened.run, &reply.length);

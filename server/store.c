@@ -414,6 +414,27 @@ enum store_status store_length(struct store *store, int64_t id, const char *name
 	return released(c, status);
 }
 
+enum store_status store_start(struct store *store, int64_t id, const char *name, char *into, size_t size)
+{
+	struct database *c = reader(store);
+	sqlite3_stmt *row = bound(c, LENGTH, "it", id, name);
+	sqlite3_blob *blob = NULL;
+	enum store_status status = STORE_NONE;
+	if (sqlite3_step(row) == SQLITE_ROW) {
+		const int64_t length = sqlite3_column_int64(row, 0);
+		const int n = length < (int64_t)size - 1 ? (int)length : (int)size - 1;
+		const bool read = sqlite3_blob_open(c->db, "main", "document", "content",
+		                                    sqlite3_column_int64(row, 1), 0, &blob) == SQLITE_OK &&
+		                  sqlite3_blob_read(blob, into, n, 0) == SQLITE_OK;
+		into[n] = '\0';
+		status = read ? STORE_OK : STORE_FAILED;
+	}
+	sqlite3_blob_close(blob);
+	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
+		status = STORE_FAILED;
+	return released(c, status);
+}
+
 /* Copies a blob's bytes to a file, a piece at a time; false: the database does not give them, or the file does not take
  * them. */
 static bool pieces_copy(sqlite3_blob *blob, struct sha256_ctx *hash, int file)

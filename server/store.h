@@ -67,6 +67,8 @@ enum store_status store_list(struct store *store, const struct store_filter *fil
 enum store_status store_document(struct store *store, int64_t id, const char *name, char **content,
                                  size_t *length); /* on the heap, for the caller to free */
 enum store_status store_length(struct store *store, int64_t id, const char *name, size_t *length);
+/* its first bytes, zero-terminated, fewer than size; what they say is not checked against its digest */
+enum store_status store_start(struct store *store, int64_t id, const char *name, char *into, size_t size);
 /* copies one by pieces; STORE_FAILED: the file does not take it, or the database does not give it */
 enum store_status store_document_to(struct store *store, int64_t id, const char *name, int file);
 enum store_status store_count(struct store *store, const char *status, int64_t *n);

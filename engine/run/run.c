@@ -223,6 +223,20 @@ static bool suite_scale(struct pound_run *run, const atomic_bool *stop)
 	return scaled;
 }
 
+/* The number of signals of a study that leaves it open; false: no memory, or stop was set. */
+static bool pilot_run(struct pound_run *run, const atomic_bool *stop)
+{
+	const struct pound_study study = pound_pilot_study(&run->study);
+	struct pound_run *pilot = pound_run_create_by(&study, 1, stop);
+	double *scratch = pilot ? room(sizeof *scratch * pound_pilot_scratch(pilot)) : NULL;
+	if (pilot && stop)
+		pilot->stop = stop;
+	const bool done = scratch && !pound_pilot_run(run, pilot, scratch);
+	free(scratch);
+	pound_run_free(pilot);
+	return done;
+}
+
 struct pound_run *pound_run_create(const struct pound_study *study, int n_workers)
 {
 	return pound_run_create_by(study, n_workers, NULL);
@@ -241,6 +255,10 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 	if (!run)
 		return NULL;
 	run->stop = &run->stopped;
+	run->study = *study;
+	study = &run->study;
+	if (study->design.split && !pilot_run(run, stop))
+		goto fail;
 	run->campaign = pound_run_campaign(study);
 	run->rows = pound_study_sampled(study) ? pound_design_rows(study, 0) : run->campaign.n_rows;
 	run->layout = pound_run_layout(&run->campaign);
@@ -457,8 +475,8 @@ int pound_run_reductions(const struct pound_run *run)
 }
 
 /* The measures of an output in a cell as columns (rows x samples x signals); returns the failed runs. */
-static int64_t columns_fill(const struct pound_run *run, int cell, int output, double *numerator,
-                            double *denominator)
+int64_t pound_run_columns(const struct pound_run *run, int cell, int output, double *numerator,
+                          double *denominator)
 {
 	const struct pound_cells *c = &run->campaign;
 	int64_t failed = 0;
@@ -501,6 +519,21 @@ static bool any_known(const double *variance, size_t n)
 	return false;
 }
 
+struct pound_sampling pound_run_sampling(const struct pound_run *run)
+{
+	const struct pound_study *study = run->campaign.study;
+	const bool random = pound_excitation_random(&study->scene.excitation);
+	return (struct pound_sampling){
+	    .u = run->u,
+	    .random = study->elsewhere || random,
+	    // in a scene without random signals samples of a row have no noise to share, in whatever order they are run
+	    .fresh_signals = !study->design.common_signals || (study->elsewhere && !random),
+	    .n_resamples = study->design.resamples,
+	    .quasi_random = pound_design_quasi_random(study->design.method),
+	    .estimator = study->design.estimator,
+	    .ratios = study->n_ratios ? study : NULL};
+}
+
 static void indices_reduce(struct pound_run *run, int cell, int output, double *kept)
 {
 	const struct pound_cells *c = &run->campaign;
@@ -508,21 +541,12 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	struct pound_sample_values values = pound_cells_values(c, run->rows, scratch);
 	values.stop = run->stop;
 	const size_t n = pound_cells_values_size(c, run->rows);
-	const bool elsewhere = c->study->elsewhere;
 	struct pound_cell *into = &run->result.cells[cell];
-	int64_t failed = columns_fill(run, cell, output, scratch, scratch + n);
-	const struct pound_sampling sampling = {
-	    .u = run->u,
-	    .random = pound_cells_means(c) ? any_known(values.variance, n)
-	                                   : elsewhere || pound_excitation_random(&c->study->scene.excitation),
-	    // in a scene without random signals samples of a row have no noise to share, in whatever order they are run
-	    .fresh_signals = !c->study->design.common_signals ||
-	                     (elsewhere && !pound_excitation_random(&c->study->scene.excitation)),
-	    .n_resamples = c->study->design.resamples,
-	    .quasi_random = pound_design_quasi_random(c->study->design.method),
-	    .estimator = c->study->design.estimator,
-	    .kept = kept,
-	    .ratios = c->study->n_ratios ? c->study : NULL};
+	int64_t failed = pound_run_columns(run, cell, output, scratch, scratch + n);
+	struct pound_sampling sampling = pound_run_sampling(run);
+	if (pound_cells_means(c))
+		sampling.random = any_known(values.variance, n);
+	sampling.kept = kept;
 	struct pound_checks checks = {.check = (struct pound_check *)(scratch + 2 * n)};
 	checks.n = checks_fill(run, cell, output, checks.check);
 	double *rest = scratch + 2 * n + checks_size(c);

@@ -7,6 +7,7 @@
 #include "engine/run/blocks.h"
 
 struct pound_run {
+	struct pound_study study; /* as it was given, or with the split that the pilot found */
 	struct pound_cells campaign;
 	struct pound_blocks layout;
 	int rows;                        /* current: of the look, or taken for an intermediate result */
@@ -46,6 +47,15 @@ bool pound_run_suite(const struct pound_study *study);
 size_t pound_run_scale_bytes(const struct pound_study *study); /* of scratch; 0: they are not scaled */
 bool pound_run_scale(struct pound_run *run, void *scratch, const atomic_bool *stop);
 void pound_run_records(struct pound_run *run);
+
+/* The measures of an output in a cell as columns (rows x samples x signals), and how they came about; returns the failed runs. */
+int64_t pound_run_columns(const struct pound_run *run, int cell, int output, double *numerator,
+                          double *denominator);
+struct pound_sampling pound_run_sampling(const struct pound_run *run);
+/* A study whose design is split: the study of its pilot, and that run, with scratch, into run->study and the result. */
+struct pound_study pound_pilot_study(const struct pound_study *study);
+size_t pound_pilot_scratch(const struct pound_run *pilot); /* doubles */
+enum pound_status pound_pilot_run(struct pound_run *run, struct pound_run *pilot, double *scratch);
 
 int pound_run_looks_most(const struct pound_study *study); /* 0: the design does not grow */
 

@@ -11,6 +11,15 @@
 static const char *const index_names[] = {POUND_INDICES(X)};
 #undef X
 
+/* The study that was run, where the engine chose the number of signals. */
+static struct pound_study settled(const struct pound_study *study, const struct pound_result *result)
+{
+	struct pound_study as_run = *study;
+	if (result->split.signals)
+		pound_study_split(study, result->split.signals, &as_run);
+	return as_run;
+}
+
 static bool grows(const struct pound_study *study)
 {
 	return study->design.until.half_width > 0;
@@ -50,9 +59,57 @@ static void write_look(struct writer *w, const char *name, const struct pound_st
 	writer_end(w);
 }
 
+/* Why rows have so many signals: what the pilot saw, what each number of signals was foreseen to give. */
+static void write_split(struct writer *w, const struct pound_study *study, const struct pound_result *result)
+{
+	const struct pound_split *split = &result->split;
+	char note[600], output[STUDY_OUTPUT_SIZE];
+	writer_object(w, "signals", WRITER_LINES);
+	writer_whole(w, "signals", split->signals);
+	writer_object(w, "pilot", WRITER_LINE);
+	writer_whole(w, "rows", split->pilot_rows);
+	writer_whole(w, "runs", split->pilot_runs);
+	writer_end(w);
+	writer_object(w, "variance", WRITER_LINE);
+	writer_number(w, "between_rows", split->between);
+	writer_number(w, "within_rows", split->within);
+	writer_number(w, "pairs_of_signals", split->pairs);
+	writer_end(w);
+	if (split->decided_by.half_width >= 0)
+		write_look(w, "decided_by", study, result, &split->decided_by);
+	writer_array(w, "choices", WRITER_LINES);
+	for (int k = 0; k < split->n_choices; k++) {
+		const struct pound_split_choice *choice = &split->choices[k];
+		writer_object(w, NULL, WRITER_LINE);
+		writer_whole(w, "signals", choice->signals);
+		writer_whole(w, "rows", choice->rows);
+		writer_whole(w, "runs", choice->runs);
+		writer_number(w, "half_width", choice->half_width);
+		writer_number(w, "bias", choice->bias);
+		writer_end(w);
+	}
+	writer_end(w);
+	if (split->decided_by.half_width < 0)
+		snprintf(
+		    note, sizeof note,
+		    "the pilot saw no variance without the noise of its signals: the number of signals is a guess");
+	else
+		snprintf(
+		    note, sizeof note,
+		    "with %d signals %s; the widest interval foreseen is that of %s of input %s for output %s. Its "
+		    "variance from n rows of R signals is (between_rows + within_rows / R + pairs_of_signals / (R (R "
+		    "- 1))) / n",
+		    split->signals,
+		    grows(study) ? "every interval is foreseen to be narrow enough at the least cost"
+		                 : "the widest interval is foreseen to be the narrowest for these runs",
+		    index_names[split->decided_by.index], study->inputs[split->decided_by.input].name,
+		    study_output_name(study, split->decided_by.output, output));
+	writer_text(w, "note", note);
+	writer_end(w);
+}
+
 /* Why the design grew no further, and which interval was the widest then. */
-static void write_stopping(struct writer *w, const struct pound_study *study,
-                           const struct pound_result *result)
+static void write_growth(struct writer *w, const struct pound_study *study, const struct pound_result *result)
 {
 	const struct pound_until *until = &study->design.until;
 	const struct pound_look *last = &result->looks[result->n_looks - 1];
@@ -71,7 +128,6 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 		snprintf(note + n, sizeof note - (size_t)n, "; the widest is that of %s of input %s for output %s",
 		         index_names[last->index], study->inputs[last->input].name,
 		         study_output_name(study, last->output, output));
-	writer_object(w, "stopping", WRITER_LINES);
 	writer_number(w, "half_width", until->half_width);
 	writer_whole(w, "max_runs", until->max_runs);
 	if (order)
@@ -87,7 +143,6 @@ static void write_stopping(struct writer *w, const struct pound_study *study,
 		write_look(w, NULL, study, result, &result->looks[k]);
 	writer_end(w);
 	writer_text(w, "note", note);
-	writer_end(w);
 }
 
 /* What there is to say about a design: points of a net are even for a power of two in each scramble.
@@ -118,13 +173,16 @@ bool result_design_note(const struct pound_study *study, char *text, size_t size
  *
  * Test     unit_result_json: a_result_says_why_its_design_grew_no_further
  */
-void result_design(struct writer *w, const struct pound_study *study, const struct pound_result *result)
+void result_design(struct writer *w, const struct pound_study *asked, const struct pound_result *result)
 {
+	const struct pound_study as_run = settled(asked, result), *study = &as_run;
 	const bool nets = pound_design_quasi_random(study->design.method);
 	char note[RESULT_NOTE_SIZE];
 	writer_object(w, "design", WRITER_LINE);
 	writer_text(w, "method", pound_design_name(study->design.method));
 	writer_whole(w, "rows", result->rows);
+	if (result->split.signals)
+		writer_whole(w, "signals", result->split.signals);
 	if (nets)
 		writer_whole(w, "randomisations", study->design.randomisations);
 	if (result_design_note(study, note, sizeof note))
@@ -136,7 +194,12 @@ void result_design(struct writer *w, const struct pound_study *study, const stru
 		writer_whole(w, "rows_most", pound_design_rows_most(study));
 		writer_text(w, "note", "result of the rows completed so far; the study is still running");
 		writer_end(w);
-	} else if (result->n_looks) {
-		write_stopping(w, study, result);
+	} else if (result->n_looks || result->split.signals) {
+		writer_object(w, "stopping", WRITER_LINES);
+		if (result->split.signals)
+			write_split(w, study, result);
+		if (result->n_looks)
+			write_growth(w, study, result);
+		writer_end(w);
 	}
 }

@@ -45,6 +45,18 @@ static bool count_number(struct reader *r, const struct field *field, const cJSO
 	return number_in_range(r, field, node, whole ? NULL : "a whole number", value);
 }
 
+/* 0: "auto" */
+static bool auto_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
+{
+	*value = 0.0;
+	if (cJSON_IsString(node) && strcmp(node->valuestring, "auto") == 0)
+		return true;
+	if (!cJSON_IsString(node))
+		return count_number(r, field, node, value);
+	reader_mistyped(r, "a whole number or \"auto\"", node);
+	return false;
+}
+
 static void real_store(void *at, double value)
 {
 	*(double *)at = value;
@@ -102,6 +114,21 @@ static void number_openapi(struct writer *w, const struct field *field, const ch
 	}
 }
 
+static void auto_write(struct writer *w, const struct field *field, const char *name, const void *at)
+{
+	if (*(const int *)at == 0)
+		writer_text(w, name, "auto");
+	else
+		count_write(w, field, name, at);
+}
+
+static void auto_expected(const struct field *field, char *text, size_t size)
+{
+	count_expected(field, text, size);
+	const size_t n = strlen(text);
+	snprintf(text + n, size - n, ", or \"auto\"");
+}
+
 static void real_openapi(struct writer *w, const struct field *field)
 {
 	number_openapi(w, field, "number");
@@ -110,6 +137,16 @@ static void real_openapi(struct writer *w, const struct field *field)
 static void count_openapi(struct writer *w, const struct field *field)
 {
 	number_openapi(w, field, "integer");
+}
+
+static void auto_openapi(struct writer *w, const struct field *field)
+{
+	writer_array(w, "oneOf", WRITER_LINES);
+	writer_object(w, NULL, WRITER_LINE);
+	count_openapi(w, field);
+	writer_end(w);
+	writer_json(w, NULL, "{\"type\": \"string\", \"enum\": [\"auto\"]}");
+	writer_end(w);
 }
 
 /* ---- a number of every storey ---- */
@@ -438,6 +475,8 @@ const struct field_type_row field_types[] = {
 	[FIELD_EACH]   = {each_read, real_number, each_store, each_write, NULL, each_expected, each_openapi,
 	                  POUND_FIELD_EACH},
 	[FIELD_COUNT]  = {read_number, count_number, int_store, count_write, NULL, count_expected, count_openapi,
+	                  POUND_FIELD_COUNT},
+	[FIELD_COUNT_OR_AUTO] = {read_number, auto_number, int_store, auto_write, NULL, auto_expected, auto_openapi,
 	                  POUND_FIELD_COUNT},
 	[FIELD_CHOICE] = {read_number, choice_number, int_store, choice_write, choice_word, choice_expected, choice_openapi,
 	                  POUND_FIELD_CHOICE},

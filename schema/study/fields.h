@@ -11,16 +11,17 @@
 
 /* What a field can be: a row each in field_types.c. */
 enum field_type {
-	FIELD_REAL,        /* double */
-	FIELD_EACH,        /* struct pound_each: a number, or an array of one for each storey */
-	FIELD_COUNT,       /* int */
-	FIELD_CHOICE,      /* int: row of the table that `choice` names */
-	FIELD_ALTERNATIVE, /* bool: row 0 or 1 of that table */
-	FIELD_BOOL,        /* bool */
-	FIELD_SEED,        /* uint64_t: a number below 2^53 or its decimal digits as text */
-	FIELD_TEXT,        /* const char *; min and max are its length in characters */
-	FIELD_OBJECT,      /* its members are rows of their own */
-	FIELD_LIST,        /* its element is a row of its own; min and max are their number */
+	FIELD_REAL,          /* double */
+	FIELD_EACH,          /* struct pound_each: a number, or an array of one for each storey */
+	FIELD_COUNT,         /* int */
+	FIELD_COUNT_OR_AUTO, /* int; 0: "auto" */
+	FIELD_CHOICE,        /* int: row of the table that `choice` names */
+	FIELD_ALTERNATIVE,   /* bool: row 0 or 1 of that table */
+	FIELD_BOOL,          /* bool */
+	FIELD_SEED,          /* uint64_t: a number below 2^53 or its decimal digits as text */
+	FIELD_TEXT,          /* const char *; min and max are its length in characters */
+	FIELD_OBJECT,        /* its members are rows of their own */
+	FIELD_LIST,          /* its element is a row of its own; min and max are their number */
 	FIELD_N_TYPES
 };
 

@@ -17,6 +17,7 @@ struct reader {
 	char *text;                             /* next free place for a text */
 	const struct study_files *files;        /* of recorded ground motions; NULL: cannot be read */
 	struct suite_source *suite;             /* of the records, in the study's block  (suite_room) */
+	bool designed;                          /* the document is read for its design alone */
 	int storeys;                            /* of the current building; 0: not known */
 	const struct field *swept; /* by the current sweep; NULL: its path names no field that varies */
 	char pointer[512];         /* of the current member */

@@ -307,6 +307,8 @@ bool study_hash(const struct pound_study *study, char hex[STUDY_HASH_SIZE])
 	if (!study->elsewhere)
 		write_sweeps(&c);
 	write_object(&c, "design", "/design", study);
+	if (study->design.split)
+		writer_text(&c.w, "signals", "auto");
 	if (study->design.until.half_width > 0)
 		write_object(&c, "until", "/design/until", study);
 	if (!study->elsewhere) {

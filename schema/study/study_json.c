@@ -20,6 +20,7 @@
 #include "schema/study/study_check.h"
 #include "schema/study/study_separation.h"
 #include "schema/study/study_spectrum.h"
+#include "schema/study/study_split.h"
 #include "schema/study/study_suite.h"
 
 // rows of a quasi-random design when the document says nothing: powers of two; one that grows begins with few
@@ -522,6 +523,7 @@ struct pound_study *study_from_document(const struct study_document *source, str
 	                   .study = study,
 	                   .number = block->numbers,
 	                   .files = source->files,
+	                   .designed = source->design,
 	                   .suite = block->suite};
 	r.text = (char *)(block->suite + suite_room(length));
 	foresee(&r, document);
@@ -532,12 +534,14 @@ struct pound_study *study_from_document(const struct study_document *source, str
 	reader_contacts(&r, document);
 	reader_ordinates(&r, document);
 	reader_undesigned(&r, document);
-	cJSON_Delete(document);
 	signals_count(&study->scene.excitation);
+	reader_split(&r, document);
+	cJSON_Delete(document);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
 		problems_add(problems, "/kind", "must be \"%s\": no other kind has a design",
 		             study_kind_name(POUND_KIND_SENSITIVITY));
 	reader_groups_find(study);
+	study_split_lay(study, problems);
 	study_check(study, problems);
 	if (problems->n) {
 		study_free(study);

@@ -54,6 +54,8 @@ void statistics_designs(int n_seeds); /* errors and coverage by design and numbe
 void statistics_named(int n_seeds);   /* errors of the estimators by name */
 void statistics_noise(int n_seeds);   /* bias, errors and coverage under noise */
 void statistics_growth(int n_seeds);  /* designs that grow until their intervals are narrow */
-void statistics_tails(int n_seeds);   /* where few samples decide, and many inputs */
+void statistics_signals(
+    int n_seeds);                   /* CPU time to a half width with signals "auto" and with fixed numbers */
+void statistics_tails(int n_seeds); /* where few samples decide, and many inputs */
 
 #endif

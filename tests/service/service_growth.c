@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "schema/json/json_pointer.h"
+#include "server/partial_results.h"
 #include "tests/support/service.h"
 #include "tests/support/study_documents.h"
 
@@ -187,6 +188,40 @@ static void a_running_study_answers_with_the_indices_of_its_whole_rows(void **st
 	free(study);
 }
 
+static void results_so_far_come_at_once_when_asked_for_again(void **state)
+{
+	(void)state;
+	static char text[] = "a result";
+	struct partial_results results = {.lock = PTHREAD_MUTEX_INITIALIZER};
+	struct partial_result made = {.id = 7, .rows = 5, .body = text, .length = strlen(text)};
+	size_t length;
+	int rows;
+	assert_null(partial_results_take(&results, 7, &length, &rows));
+	partial_results_give(&results, &made, 10.0);
+	assert_null(partial_results_take(&results, 8, &length, &rows));
+	char *again = partial_results_take(&results, 7, &length, &rows);
+	assert_string_equal(again, text);
+	assert_int_equal(length, strlen(text));
+	assert_int_equal(rows, 5);
+	free(again);
+	// a later one of the study takes its place; one that took no time is too old at once
+	made.rows = 6;
+	partial_results_give(&results, &made, -1.0);
+	assert_null(partial_results_take(&results, 7, &length, &rows));
+	// the one that ends first makes room
+	for (int k = 0; k <= PARTIAL_RESULTS; k++) {
+		made.id = 100 + k;
+		partial_results_give(&results, &made, 10.0 + k);
+	}
+	assert_null(partial_results_take(&results, 100, &length, &rows));
+	for (int k = 1; k <= PARTIAL_RESULTS; k++) {
+		char *kept = partial_results_take(&results, 100 + k, &length, &rows);
+		assert_non_null(kept);
+		free(kept);
+	}
+	partial_results_free(&results);
+}
+
 static void a_study_without_a_row_has_no_results_yet(void **state)
 {
 	struct service *service = *state;
@@ -223,4 +258,5 @@ CHECK_MAIN(
     SERVED(the_status_of_a_study_that_grows_has_its_bound_and_then_what_it_took),
     cmocka_unit_test(samples_of_a_design_that_grew_are_all_of_them_or_an_error),
     SERVED(a_running_study_answers_with_the_indices_of_its_whole_rows),
+    cmocka_unit_test(results_so_far_come_at_once_when_asked_for_again),
     SERVED(a_study_without_a_row_has_no_results_yet))

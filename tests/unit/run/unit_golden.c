@@ -117,6 +117,8 @@ static struct pound_study *study_of(const char *text, bool cut)
 			study->design.rows = ROWS_CUT;
 		if (study->design.until.max_runs > RUNS_CUT)
 			study->design.until.max_runs = RUNS_CUT;
+		if (study->design.runs > RUNS_CUT)
+			study->design.runs = RUNS_CUT;
 	}
 	return study;
 }

@@ -1,0 +1,60 @@
+/* A result so far is given again for SHARE times as long as it took to make: one who asks all the time has a new one as often as a
+ * twentieth of one core makes them, and each of the others at once.  Larger ones than a few MB are not kept. */
+#include "server/partial_results.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { SHARE = 20, BYTES_MAX = 4 << 20 };
+
+static double now_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Test     service_growth: results_so_far_come_at_once_when_asked_for_again */
+char *partial_results_take(struct partial_results *results, int64_t id, size_t *length, int *rows)
+{
+	char *copy = NULL;
+	pthread_mutex_lock(&results->lock);
+	for (int i = 0; i < PARTIAL_RESULTS && !copy; i++) {
+		const struct partial_result *r = &results->result[i];
+		if (r->id != id || !r->body || now_s() > r->until || !(copy = malloc(r->length + 1)))
+			continue;
+		memcpy(copy, r->body, r->length + 1);
+		*length = r->length;
+		*rows = r->rows;
+	}
+	pthread_mutex_unlock(&results->lock);
+	return copy;
+}
+
+/* In the place of the study's last one, else of the one that ends first. */
+void partial_results_give(struct partial_results *results, const struct partial_result *made, double took)
+{
+	char *copy = made->length < BYTES_MAX ? malloc(made->length + 1) : NULL;
+	if (!copy)
+		return;
+	memcpy(copy, made->body, made->length);
+	copy[made->length] = '\0';
+	pthread_mutex_lock(&results->lock);
+	struct partial_result *into = &results->result[0];
+	for (int i = 1; i < PARTIAL_RESULTS && into->id != made->id; i++) {
+		struct partial_result *r = &results->result[i];
+		into = r->id == made->id || r->until < into->until ? r : into;
+	}
+	free(into->body);
+	*into = *made;
+	into->body = copy;
+	into->until = now_s() + SHARE * took;
+	pthread_mutex_unlock(&results->lock);
+}
+
+void partial_results_free(struct partial_results *results)
+{
+	for (int i = 0; i < PARTIAL_RESULTS; i++)
+		free(results->result[i].body);
+}
