@@ -374,7 +374,8 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	assert(task->n_floors >= 1 && task->n_floors <= POUND_CHAIN_FLOORS);
 	assert(task->n_links >= 0 && task->n_links <= POUND_CHAIN_LINKS);
 	memset(c, 0, offsetof(struct chain, modal_motion));
-	c->work_in = c->work_gap = c->work_low = c->work_top = 0;
+	c->work_in = c->work_gap = c->work_low = c->work_top = c->jump = 0;
+	c->after_event = false;
 	c->task = task;
 	c->result = result;
 	c->n = task->n_floors;
