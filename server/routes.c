@@ -441,12 +441,11 @@ static struct reply samples(struct request *request)
 {
 	static const struct format formats[] = {{"csv", "text/csv"}, {"npy", "application/octet-stream"}};
 	// a result says that all blocks are there; its start says the version and the rows, of a design that grew, too
-	struct reply reply = document_head(request, "result");
-	if (reply.status != 200)
-		return reply;
 	char head[RESULT_HEAD];
-	if (store_start(request->server->store, request->id, "result", head, sizeof head) != STORE_OK)
-		return document(request, "result");
+	struct reply reply;
+	enum store_status found = store_start(request->server->store, request->id, "result", head, sizeof head);
+	if (found != STORE_OK)
+		return unread(request, found);
 	const bool ours = strstr(head, "\n  \"engine_version\": \"" POUND_VERSION "\",");
 	const char *at = strstr(head, "\"rows\": ");
 	const int rows = at ? atoi(at + strlen("\"rows\": ")) : 0;

@@ -419,20 +419,16 @@ enum store_status store_start(struct store *store, int64_t id, const char *name,
 	struct database *c = reader(store);
 	sqlite3_stmt *row = bound(c, LENGTH, "it", id, name);
 	sqlite3_blob *blob = NULL;
-	enum store_status status = STORE_NONE;
-	if (sqlite3_step(row) == SQLITE_ROW) {
-		const int64_t length = sqlite3_column_int64(row, 0);
-		const int n = length < (int64_t)size - 1 ? (int)length : (int)size - 1;
-		const bool read = sqlite3_blob_open(c->db, "main", "document", "content",
-		                                    sqlite3_column_int64(row, 1), 0, &blob) == SQLITE_OK &&
-		                  sqlite3_blob_read(blob, into, n, 0) == SQLITE_OK;
-		into[n] = '\0';
-		status = read ? STORE_OK : STORE_FAILED;
-	}
+	const bool there = sqlite3_step(row) == SQLITE_ROW;
+	const int64_t length = there ? sqlite3_column_int64(row, 0) : 0, rowid = sqlite3_column_int64(row, 1);
+	const int n = length < (int64_t)size ? (int)length : (int)size - 1;
+	const bool read = there &&
+	                  sqlite3_blob_open(c->db, "main", "document", "content", rowid, 0, &blob) == SQLITE_OK &&
+	                  sqlite3_blob_read(blob, into, n, 0) == SQLITE_OK;
 	sqlite3_blob_close(blob);
-	if (ended(c, row, 1) == STORE_FAILED && status == STORE_NONE)
-		status = STORE_FAILED;
-	return released(c, status);
+	into[read ? n : 0] = '\0';
+	const bool failed = ended(c, row, 1) == STORE_FAILED;
+	return released(c, read ? STORE_OK : there || failed ? STORE_FAILED : STORE_NONE);
 }
 
 /* Copies a blob's bytes to a file, a piece at a time; false: the database does not give them, or the file does not take
