@@ -121,6 +121,10 @@ enum outcome model_print_indices(const struct options *options)
 	if (options->given)
 		return given_print(options);
 	struct pound_study *study = model_study(options->argument, &outcome);
+	const char *ending = strrchr(options->argument, '.');
+	if (!study && ending && strcmp(ending, ".csv") == 0)
+		command_complain("is %s a table of inputs? pound indices --given %s %s", options->argument,
+		                 options->argument, options->second);
 	char *csv = study ? document_read(options->second, &n_csv) : NULL;
 	if (csv) {
 		char *json = model_indices(study, csv, n_csv, &problems, &n);

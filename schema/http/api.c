@@ -127,6 +127,18 @@ const struct api_argument *api_argument(int operation, const char *name, const c
 	return NULL;
 }
 
+void api_names(int operation, const char *place, char *text, size_t size)
+{
+	size_t n = 0;
+	*text = '\0';
+	for (int i = 0; i < api_arguments_count && n < size; i++) {
+		const struct api_argument *argument = &api_arguments[i];
+		if (argument->operation && !strcmp(argument->operation, api_operations[operation].name) &&
+		    !strcmp(argument->place, place))
+			n += (size_t)snprintf(text + n, size - n, "%s%s", n ? ", " : "", argument->name);
+	}
+}
+
 void api_expected(const struct api_argument *argument, char *text, size_t size)
 {
 	if (argument->max > 0)

@@ -97,6 +97,9 @@ extern const int api_arguments_count;
 /* The argument of that name, NULL: the operation has none. */
 const struct api_argument *api_argument(int operation, const char *name, const char *place);
 
+/* The names of an operation's arguments of a place, between commas. */
+void api_names(int operation, const char *place, char *text, size_t size);
+
 /* What an argument takes, in words that fit behind "must be". */
 void api_expected(const struct api_argument *argument, char *text, size_t size);
 bool api_takes(const struct api_argument *argument, const char *value); /* a query argument's value */

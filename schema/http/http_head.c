@@ -201,10 +201,11 @@ void head_argument(struct head *head, int operation, const char *name, const cha
 {
 	const struct api_argument *argument = api_argument(operation, name, "query");
 	char expected[128];
-	if (*name && !argument)
-		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not a query parameter of %s", name,
-		            api_operations[operation].path);
-	else if (*name && !api_takes(argument, value)) {
+	if (*name && !argument) {
+		api_names(operation, "query", expected, sizeof expected);
+		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not a query parameter of %s%s%s", name,
+		            api_operations[operation].path, *expected ? ", which has " : "", expected);
+	} else if (*name && !api_takes(argument, value)) {
 		api_expected(argument, expected, sizeof expected);
 		head_refuse(head, API_BAD_REQUEST, false, "%s must be %s", name, expected);
 	}

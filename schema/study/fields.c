@@ -629,7 +629,9 @@ const struct field *fields_scene(const char *path, struct field_place *place)
 
 bool fields_nearest_path(const char *path, char *nearest, size_t size)
 {
-	int best = INT32_MAX;
+	int best = INT32_MAX - 1;
+	// an index counted from 1 is that of the last
+	const bool beyond = path[strcspn(path, "23456789")];
 	if (strncmp(path, "/scene/", 7) == 0) // the usual slip: the path is one into the scene already
 		path += strlen("/scene");
 	for (int i = 0; i < fields_count; i++) {
@@ -643,7 +645,7 @@ bool fields_nearest_path(const char *path, char *nearest, size_t size)
 			for (int k = 0; k < 2 && stars[0]; k++)
 				*stars[k] = (char)('0' + (index >> k & 1));
 			int distance = near_name_distance(path, candidate);
-			if (distance < best) {
+			if (distance < best + (beyond && index > 0)) {
 				best = distance;
 				snprintf(nearest, size, "%s", candidate);
 			}

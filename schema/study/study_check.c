@@ -227,8 +227,9 @@ static void check_supports(const struct pound_study *study, struct problems *pro
 			continue;
 		pound_distribution_support(&input->distribution, &low, &high);
 		fields_range(field, range, sizeof range);
-		problems_add(problems, pointer, "gives values from %.15g to %.15g, but %s must be %s", low, high,
-		             input->path, range);
+		problems_add(problems, pointer, "gives values from %.15g to %.15g, but %s must be %s%s", low, high,
+		             input->path, range,
+		             isinf(low) ? ": truncated_normal, lognormal_median and uniform have bounds" : "");
 	}
 }
 

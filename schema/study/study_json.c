@@ -585,6 +585,8 @@ const struct study_source *study_source_of(const struct pound_study *study, int 
 
 void study_free(struct pound_study *study)
 {
+	if (!study)
+		return;
 	const struct block *block = (const struct block *)study;
 	for (int k = 0; k < study->scene.excitation.n_records; k++)
 		free(block->suite[k].samples);

@@ -99,11 +99,15 @@ static void look_at_peaks(struct warnings *all, const struct pound_study *study)
 static void look_at_steps(struct warnings *all, const struct pound_study *study)
 {
 	static const char *const paths[] = {"/oscillators/0/frequency_hz", "/oscillators/1/frequency_hz"};
+	// what one in a thousand scenes exceeds: a distribution without an upper end has no shortest period
 	double fastest = 0, low, high, step = study->scene.excitation.time_step;
 	for (int i = 0; i < 2; i++) {
 		if (study->scene.oscillators[i].rigid_wall)
 			continue;
 		study_check_reach(study, paths[i], &low, &high);
+		for (int j = 0; j < study->n_inputs && isinf(high); j++)
+			if (study->inputs[j].path && strcmp(study->inputs[j].path, paths[i]) == 0)
+				high = pound_distribution_quantile(&study->inputs[j].distribution, 0.999);
 		fastest = fmax(fastest, high);
 	}
 	if (study_check_uses(study, "/scene/excitation/time_step_s"))
@@ -124,8 +128,8 @@ static void look_at_gap(struct warnings *all, const struct pound_study *study,
                         const struct pound_result *result)
 {
 	const bool touches = study->scene.contact.present || study->scene.n_contacts > 0;
-	if (!touches || !pound_study_pounds(study) || result->work.contacts > 0 ||
-	    result->work.pounding_runs.asked == 0)
+	if (!touches || !pound_study_pounds(study) || study->kind == POUND_KIND_SEPARATION ||
+	    result->work.contacts > 0 || result->work.pounding_runs.asked == 0)
 		return;
 	double needed = 0;
 	for (int cell = 0; cell < result->n_cells && study->kind == POUND_KIND_RESPONSE; cell++)

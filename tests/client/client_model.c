@@ -164,6 +164,16 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 	struct program_outcome lost = POUND("indices", study, "/no/such/file");
 	program_expect(&lost, 1);
 	program_free(&lost);
+	lost = POUND("indices", "/no/such/study", outputs);
+	program_expect(&lost, 1);
+	program_free(&lost);
+	char inputs[32];
+	file_of("f,g\n1,2\n", inputs);
+	struct program_outcome table = POUND("indices", inputs, outputs);
+	program_expect(&table, 2);
+	assert_non_null(strstr(table.err, ": expected a value, found f\n"));
+	program_free(&table);
+	unlink(inputs);
 	unlink(study);
 	unlink(outputs);
 }

@@ -156,7 +156,7 @@ static void every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it(vo
 {
 	static const char same[] = "/scene/oscillators/*/law/"; // one line, for the scene's law
 	char *page = program_file(STUDY, NULL);
-	int missing = 0;
+	int missing = 0, listed = 0, lines = 0;
 	(void)state;
 	assert_non_null(page);
 	for (int i = 0; i < fields_count; i++) {
@@ -172,12 +172,16 @@ static void every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it(vo
 		only(solvers_of(field, solvers, sizeof solvers), meaning, sizeof meaning);
 		models_of(field, meaning, sizeof meaning);
 		snprintf(line, sizeof line, "| `%s` | %s | %s | %s |\n", field->pattern, absent, takes, meaning);
+		listed++;
 		if (strstr(page, line))
 			continue;
 		print_error("%s has no line\n%s", STUDY, line);
 		missing++;
 	}
 	assert_int_equal(missing, 0);
+	for (const char *row = page; (row = strstr(row, "\n| `/")); row++)
+		lines++;
+	assert_int_equal(lines, listed); // each has one line and no other
 	free(page);
 }
 

@@ -47,6 +47,15 @@ static const struct {
     // nothing is run with pounding
     {"{\"kind\": \"separation\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT "}}}",
      NULL, NULL, false},
+    {"{\"kind\": \"separation\", \"scene\": {\"oscillators\": [" BODIES
+     "], \"contact\": {}, \"excitation\": {" SHORT "}}}",
+     NULL, NULL, false},
+    // a distribution without an upper end: what one scene in a thousand exceeds
+    {"{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT
+     "}}, \"inputs\": [{\"path\": \"/oscillators/0/frequency_hz\", \"distribution\": {\"type\": "
+     "\"lognormal_cov\", \"mean\": 2, \"coefficient_of_variation\": 0.1}}, {\"path\": \"/contact/gap_m\", "
+     "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 0.01}}], \"design\": {\"rows\": 4}}",
+     NULL, NULL, false},
 };
 
 static struct reading *estimate_of(const struct pound_study *study)
