@@ -1,7 +1,8 @@
 /* separation_outputs.c - from the runs of a study of separation to the gaps needed.
  *
  * A run counts as often as it is one of matrix A or B of a design, or a signal without a design: only these are drawn at random.
- * Runs of a row of the design are a cluster, as they share ground motions or structures; without a design every signal is one. */
+ * Runs of a row of the design are a cluster, as they share ground motions or structures; without a design every signal is one, and
+ * both directions of a record together are. */
 #include "engine/run/separation_outputs.h"
 
 #include <math.h>
@@ -24,14 +25,17 @@ static bool separates(const struct pound_cells *c)
 	return c->study->kind == POUND_KIND_SEPARATION;
 }
 
-static int clusters_of(const struct pound_cells *c, int rows)
-{
-	return pound_study_sampled(c->study) ? rows : c->n_signals;
-}
-
 static int cluster_size(const struct pound_cells *c)
 {
-	return pound_study_sampled(c->study) ? MATRICES * c->n_signals : 1;
+	const struct pound_excitation *e = &c->study->scene.excitation;
+	if (pound_study_sampled(c->study))
+		return MATRICES * c->n_signals;
+	return e->n_records && e->both && !e->draw ? 2 : 1; // signals 2 k and 2 k + 1 are record k
+}
+
+static int clusters_of(const struct pound_cells *c, int rows)
+{
+	return pound_study_sampled(c->study) ? rows : c->n_signals / cluster_size(c);
 }
 
 static size_t runs_of(const struct pound_cells *c)

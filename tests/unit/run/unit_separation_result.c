@@ -12,7 +12,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
 
-enum { SIGNALS = 60 };
+enum { SIGNALS = 60, RECORDS = 20 };
 
 /* Brute force: every signal with contact, at every gap and peak acceleration. */
 static void the_result_is_what_brute_force_counts(void **state)
@@ -117,10 +117,9 @@ static void a_step_of_acceleration_needs_its_closed_form(void **state)
  *
  * is largest where 3 c^2 - c - 2 = 0: c = -2/3, s^2 = 5/9; u_1 where c = -1/2, u_2 where s = 1.  A line between samples has the share
  * (sin(pi/n)/(pi/n))^2 of the sine, and harmonics from n - 1 on that move no body by more than 4/n^3 of it. */
-static void a_suite_of_sines_needs_its_closed_forms(void **state)
+static void suite_of_sines_check(const char *directions, int each, double width[RECORDS + 1])
 {
-	(void)state;
-	enum { RECORDS = 20, N = 200 };
+	enum { N = 200 };
 	const double pi = 3.14159265358979323846, step = 0.005, w = 2 * pi / (N * step), near = 4.0 / (N * N * N);
 	const double share = sin(pi / N) / (pi / N), a = share * share / (w * w);
 	const double one = 25 * sqrt(5) / 162 * a, left = sqrt(3) / 4 * a, right = a / 6,
@@ -132,8 +131,8 @@ static void a_suite_of_sines_needs_its_closed_forms(void **state)
 	        "{\"kind\": \"separation\", \"scene\": {\"oscillators\": [{\"frequency_hz\": %.17g, "
 	        "\"damping_ratio\": 0}, "
 	        "{\"frequency_hz\": %.17g, \"damping_ratio\": 0}], \"excitation\": {\"type\": \"suite\", "
-	        "\"records\": [",
-	        2 / (N * step), 3 / (N * step));
+	        "\"directions\": \"%s\", \"records\": [",
+	        2 / (N * step), 3 / (N * step), directions);
 	for (int k = 1; k <= RECORDS; k++) {
 		fprintf(out, "%s{\"factor\": %d, \"time_step_s\": %g, \"acceleration_m_s2\": [0", k > 1 ? ", " : "",
 		        k, step);
@@ -148,19 +147,39 @@ static void a_suite_of_sines_needs_its_closed_forms(void **state)
 	fclose(out);
 	struct reading *r = results_of_study(document);
 	free(document);
-	for (int k = 0; k < RECORDS; k++)
-		check_near(reading_number(r, "/cells/0/gap_needed/signals_m/%d", k) / ((k + 1) * one), 1, near);
+	const double runs = each * RECORDS;
+	for (int j = 0; j < runs; j++)
+		check_near(reading_number(r, "/cells/0/gap_needed/signals_m/%d", j) / ((j / each + 1) * one), 1,
+		           near);
+	check_near(reading_number(r, "/cells/0/gap_needed/runs"), runs, 0);
+	check_near(reading_number(r, "/cells/0/gap_needed/independent"), RECORDS, 0);
 	check_near(reading_number(r, "/cells/0/gap_needed/mean_m") / (mean * one), 1, near);
-	check_near(reading_number(r, "/cells/0/gap_needed/standard_deviation_m") / (sqrt(35) * one), 1, near);
+	check_near(reading_number(r, "/cells/0/gap_needed/standard_deviation_m") /
+	               (sqrt((RECORDS * RECORDS - 1) / 12.0 * runs / (runs - 1)) * one),
+	           1, near);
 	// with a gap between those that records k and k + 1 need, all behind k pound
-	for (int k = 0; k <= RECORDS; k++)
+	for (int k = 0; k <= RECORDS; k++) {
 		check_near(reading_number(r, "/cells/0/pounding/%d/probability", k), (double)(RECORDS - k) / RECORDS,
 		           1e-15);
+		width[k] = reading_number(r, "/cells/0/pounding/%d/high", k) -
+		           reading_number(r, "/cells/0/pounding/%d/low", k);
+	}
 	check_near(reading_number(r, "/cells/0/gaps/0/gap_m") / (10 * one), 1, near);
 	check_near(reading_number(r, "/cells/0/gaps/1/gap_m") / (19 * one), 1, near);
 	check_near(reading_number(r, "/cells/0/rules/0/gap_m") / (mean * (left + right)), 1, near);
 	check_near(reading_number(r, "/cells/0/rules/1/gap_m") / (mean * hypot(left, right)), 1, near);
 	reading_close(r);
+}
+
+static void a_suite_of_sines_needs_its_closed_forms(void **state)
+{
+	(void)state;
+	double one[RECORDS + 1], both[RECORDS + 1];
+	suite_of_sines_check("one", 1, one);
+	suite_of_sines_check("both", 2, both);
+	// both directions need the same gap: they say no more than one
+	for (int k = 0; k <= RECORDS; k++)
+		assert_true(both[k] >= one[k] * (1 - 1e-12));
 }
 
 /* With uncertain structures the runs are those of A and B, and the gap needed has indices. */
