@@ -351,6 +351,19 @@ static void print_work(const struct reading *result)
 	}
 }
 
+/* What is valid in the study and probably not meant. */
+static void print_warnings(const struct reading *result)
+{
+	const char *what;
+	for (int i = 0; (what = reading_text(result, "/warnings/%d/detail", i)); i++) {
+		char *line = command_text("warning: %s: %s", reading_text(result, "/warnings/%d/pointer", i), what);
+		if (i == 0)
+			putchar('\n');
+		table_prose(0, line);
+		free(line);
+	}
+}
+
 /* What study it is, and what it took. */
 static void print_head(const struct reading *result, const char *kind)
 {
@@ -394,6 +407,7 @@ static bool print_kind(const struct reading *result, const char *kind)
 			KINDS[i].print(result);
 			if (!KINDS[i].alone)
 				print_work(result);
+			print_warnings(result);
 			return true;
 		}
 	return false;
@@ -409,6 +423,7 @@ static bool print_table(const struct reading *result, const char *kind, const ch
 	print_head(result, kind);
 	indices_print(result);
 	print_work(result);
+	print_warnings(result);
 	return true;
 }
 

@@ -1,11 +1,11 @@
 /* show_record.c - `pound record`: contents of files of recorded ground motions. */
 #include "client/command.h"
 #include "client/document.h"
-#include "client/motion_spectrum.h"
 #include "client/table.h"
 #include "engine/pound.h"
 #include "schema/json/json_writer.h"
 #include "schema/record/record.h"
+#include "schema/result/motion_spectrum.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -18,7 +18,8 @@ struct shown {
 	const char *path;
 	struct record record;
 	struct pound_motion_measures measures;
-	double *psa; /* pseudo-accelerations at the periods asked [m/s2]  (n_periods) */
+	double *psa;  /* pseudo-accelerations at the periods asked [m/s2]  (n_periods) */
+	double *fine; /* the same on the band-limited interpolation at twice the rate */
 };
 
 static double samples(const struct shown *shown)
@@ -89,6 +90,12 @@ static enum outcome read_file(const struct options *options, struct shown *shown
 	return OUTCOME_OK;
 }
 
+/* What linear interpolation between the samples costs an oscillator: as the result of a suite has it. */
+static double interpolation(const struct shown *shown, int k)
+{
+	return shown->fine[k] > 0 ? shown->psa[k] / shown->fine[k] - 1 : 0;
+}
+
 static void print_json(int n, const struct shown *shown, const struct periods *periods)
 {
 	struct writer w;
@@ -110,6 +117,7 @@ static void print_json(int n, const struct shown *shown, const struct periods *p
 			writer_number(&w, "period_s", periods->period[k]);
 			writer_number(&w, "damping_ratio", motion_spectrum_damping);
 			writer_number(&w, "psa_m_s2", shown[i].psa[k]);
+			writer_number(&w, "interpolation_difference", interpolation(&shown[i], k));
 			writer_end(&w);
 		}
 		writer_end(&w);
@@ -128,13 +136,15 @@ static void print_tables(int n, const struct shown *shown, const struct periods 
 	const char *names[COLUMNS + 4] = {"file", "format", "unit"};
 	for (int c = 0; c < COLUMNS; c++)
 		names[3 + c] = columns[c].name;
-	struct table *table =
-	    table_open(periods->n ? (const char *const[]){"file", "period_s", "psa_m_s2", NULL} : names);
+	struct table *table = table_open(
+	    periods->n ? (const char *const[]){"file", "period_s", "psa_m_s2", "interpolation_difference", NULL}
+	               : names);
 	for (int i = 0; i < n; i++) {
 		for (int k = 0; k < periods->n; k++) {
 			table_text(table, shown[i].path);
 			table_number(table, periods->period[k]);
 			table_number(table, shown[i].psa[k]);
+			table_number(table, interpolation(&shown[i], k));
 		}
 		if (periods->n)
 			continue;
@@ -159,17 +169,21 @@ static void print_tables(int n, const struct shown *shown, const struct periods 
 enum outcome record_show(const struct options *options)
 {
 	struct periods periods;
-	if (!motion_spectrum_periods(options->periods, &periods))
+	if (!motion_spectrum_periods(options->periods, &periods)) {
+		command_complain("--periods takes %s, got '%s'", motion_spectrum_expected, options->periods);
 		return OUTCOME_USAGE;
+	}
 	struct shown *shown = command_sure(calloc((size_t)options->n_files, sizeof *shown));
 	enum outcome outcome = OUTCOME_OK;
 	for (int i = 0; i < options->n_files; i++) {
 		shown[i].path = options->files[i];
 		shown[i].psa = command_sure(calloc((size_t)periods.n + 1, sizeof *shown[i].psa));
+		shown[i].fine = command_sure(calloc((size_t)periods.n + 1, sizeof *shown[i].fine));
 		const enum outcome read = read_file(options, &shown[i]);
 		outcome = read == OUTCOME_OK ? outcome : read;
 		if (read == OUTCOME_OK && periods.n &&
-		    motion_spectrum(&shown[i].record, &periods, shown[i].psa) != POUND_OK) {
+		    (motion_spectrum(&shown[i].record, &periods, shown[i].psa) != POUND_OK ||
+		     motion_spectrum_finer(&shown[i].record, &periods, shown[i].fine) != POUND_OK)) {
 			command_complain("%s: the response spectrum cannot be computed", shown[i].path);
 			outcome = OUTCOME_FAILED;
 		}
@@ -181,6 +195,7 @@ enum outcome record_show(const struct options *options)
 	for (int i = 0; i < options->n_files; i++) {
 		record_free(&shown[i].record);
 		free(shown[i].psa);
+		free(shown[i].fine);
 	}
 	free(shown);
 	return outcome;

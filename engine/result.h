@@ -28,6 +28,16 @@
 	X(end_v2,                  "v2_m_s",                 -1)
 // clang-format on
 
+/* What two oscillators have as a row of one-story buildings, where an output reads it; a wall has 0. */
+struct pound_pair_floors {
+	double acceleration[POUND_OSCILLATORS]; /* largest absolute one [m/s2] */
+	double acceleration_free[POUND_OSCILLATORS];
+	double residual[POUND_OSCILLATORS]; /* displacement at which the spring has no force, at the end [m] */
+	double lost[POUND_OSCILLATORS];     /* by the laws [J] */
+	double lost_contact, work_in;       /* in contacts, and put in by the ground [J] */
+	double force, approach;             /* largest of a contact [N], and speed at which one begins [m/s] */
+};
+
 /* One signal's response.  NAN where the scene has no such value (the yield displacement of a linear law). */
 struct pound_response {
 #define X(member, name, oscillator) double member;
@@ -36,9 +46,9 @@ struct pound_response {
 	// of outputs that read them, else 0
 	double gap_needed;    /* largest u_1 - u_2 without contact [m] */
 	double relative_free; /* largest |u_1 - u_2| without contact [m] */
-	double approach;      /* largest speed at which a contact begins [m/s] */
 	double
 	    energy_residual; /* energy put in and not found again, over the most there was along the way; NAN: not computed */
+	struct pound_pair_floors floors;
 };
 
 // one row per quantity of one storey, and of the floor above it, of a row of buildings: X(member, name in a result)
@@ -77,17 +87,21 @@ struct pound_storey_response {
 	POUND_STOREY_MEASURES(X)
 	POUND_FLOOR_MEASURES(X)
 #undef X
+	double lost; /* by the story's law [J]; NAN: no output reads energies */
 };
 
 struct pound_contact_response {
 #define X(member, name) double member;
 	POUND_CONTACT_MEASURES(X)
 #undef X
+	double speed_max; /* largest speed at which a contact begins [m/s] */
+	double lost;      /* in contacts [J]; NAN as above */
 };
 
 /* One signal's response of a row of buildings. */
 struct pound_row_response {
 	double energy_residual;
+	double work_in;       /* by the ground [J]; NAN as above */
 	double impulse_scale; /* mass of building 0 times the frequency of its first mode [kg/s] */
 	const struct pound_storey_response *storeys;   /* by pound_row_first  (floors) */
 	const struct pound_contact_response *contacts; /* (contacts) */
@@ -371,6 +385,7 @@ struct pound_work {
 	POUND_STAGES(X)
 #undef X
 	struct pound_stage_work free_pair_runs; /* both bodies together without pounding, with their checks */
+	struct pound_stage_work chain_runs;     /* both bodies as one-story buildings, likewise */
 	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
 	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
 	int64_t yield_given;    /* linear responses not made: the yield displacement they would give is known */
@@ -455,8 +470,7 @@ struct pound_result {
 	                             they are not scaled */
 	const double *
 	    differences; /* of the records of a suite: largest displacement of a body over that on the record's band-limited
-	                              interpolation at twice its rate, less 1, of both bodies the larger one; NAN: of a row of
-	                              buildings  (n_records); NULL: there are no records */
+	                              interpolation at twice its rate, less 1, of all bodies the largest one  (n_records); NULL: there are no records */
 	int n_cells;
 	struct pound_cell *cells; /* (n_cells) */
 	int n_trials;

@@ -10,10 +10,9 @@
 #include <stdint.h>
 
 enum {
-	POUND_OSCILLATORS = 2,          /* left, right */
-	POUND_INPUTS_MAX = 20,          /* inputs of one sensitivity study */
-	POUND_QUASI_INPUTS_MAX = 16,    /* with a quasi-random design */
-	POUND_ORDINATES_MAX = 64,       /* frequencies of a sensitivity study's floor spectrum */
+	POUND_OSCILLATORS = 2,    /* left, right */
+	POUND_INPUTS_MAX = 32,    /* inputs of one sensitivity study; sets of them are the bits of an unsigned */
+	POUND_ORDINATES_MAX = 64, /* frequencies of a sensitivity study's floor spectrum */
 	POUND_OUTPUTS_ASKED_MAX = 24,   /* names in the outputs of one study */
 	POUND_OUTPUTS_MAX = 8 + 3 * 64, /* outputs of one study, each ordinate and each place one of its own */
 	POUND_SWEEPS_MAX = 8,           /* swept fields of one study */
@@ -433,8 +432,8 @@ bool pound_solver_is_observed(int row);                         /* outputs may r
 bool pound_solver_is_portable(int row);                         /* the same bytes on every processor */
 const char *pound_output_name(int row);
 const char *pound_output_needs(int row, const struct pound_scene *scene); /* from it, in words */
-bool pound_output_observes(int row);                                      /* it reads whole motions */
-bool pound_output_observes_contact(int row);                              /* with contact */
+bool pound_output_observes(int row,
+                           const struct pound_scene *scene); /* it reads more than every solver gives */
 bool pound_output_has_ordinates(int row); /* has a value for each frequency of the spectrum */
 bool pound_output_has_places(int row, const struct pound_scene *scene); /* and once for each place */
 int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */
@@ -458,6 +457,7 @@ double pound_convergence_order(const struct pound_trial *trials, int n_trials, i
  * with the columns of each group from B. */
 int pound_design_samples(const struct pound_study *study);
 int pound_design_order(const struct pound_study *study);
+unsigned pound_inputs_all(int n); /* the set of n inputs  [1, POUND_INPUTS_MAX] */
 unsigned pound_design_mask(const struct pound_study *study,
                            int sample); /* bit j: column j of the sample is from B */
 

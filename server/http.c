@@ -48,6 +48,14 @@ bool http_known(const struct request *request, const char *etag)
 	       head_has_etag(request->head.etags.value, etag);
 }
 
+bool http_asks_second(const struct request *request, const struct format formats[2], const char *table)
+{
+	const char *name = http_argument(request, "format"), *accept = request->head.accept.value;
+	return table  ? true
+	       : name ? !strcmp(name, formats[1].name)
+	              : head_names(accept, formats[1].type) && !head_names(accept, formats[0].type);
+}
+
 static double wait_until(const struct request *request)
 {
 	int seconds = head_wait(request->head.prefer.value), most = request->server->options->wait_max;
@@ -263,6 +271,7 @@ static void judge(struct request *request, bool needs_host)
 	const struct api_operation *operation =
 	    request->operation < 0 ? NULL : &api_operations[request->operation];
 	MHD_get_connection_values_n(request->connection, MHD_HEADER_KIND, take_header, head);
+	head->of_record = request->operation == API_records_put;
 	head_end(head, needs_host, server->options->host);
 	if (server->tokens)
 		request->token = tokens_name(server->tokens, head->authorization.value);

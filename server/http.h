@@ -77,6 +77,14 @@ bool http_known(const struct request *request,
                 const char *etag); /* a GET with an If-None-Match that has it */
 
 /* an application/problem+json reply; `problems` may be NULL */
+struct format {
+	const char *name, *type;
+};
+
+/* Whether the second of two formats is asked for: by a table that only that has, by ?format=, or by an Accept that names it
+ * and not the first. */
+bool http_asks_second(const struct request *request, const struct format formats[2], const char *table);
+
 struct reply http_problem(enum api_fault fault, const char *detail, const struct problems *problems);
 
 /* the same of a status of the store, which has none of what is absent: a sentence */

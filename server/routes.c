@@ -19,6 +19,7 @@
 #include "schema/study/study_status.h"
 #include "server/bridge.h"
 #include "server/http.h"
+#include "server/motion_reply.h"
 #include "server/pages.h"
 #include "server/records.h"
 #include "server/store.h"
@@ -282,26 +283,14 @@ static struct reply posted(struct request *request)
 	return reply;
 }
 
-static const struct format {
-	const char *name, *type;
-} result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
+static const struct format result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
 
-/* Whether the second of two formats is asked for: by a table that only that has, by ?format=, or by an Accept that names it
- * and not the first. */
-static bool asks_second(const struct request *request, const struct format formats[2], const char *table)
-{
-	const char *name = http_argument(request, "format"), *accept = request->head.accept.value;
-	return table  ? true
-	       : name ? !strcmp(name, formats[1].name)
-	              : head_names(accept, formats[1].type) && !head_names(accept, formats[0].type);
-}
-
-/* The same, and the reply that a body of it will be.  A result never changes, so that format and version are its tag; one
+/* Whether the second of two formats is asked for, and the reply that a body of it will be.  A result never changes, so that format and version are its tag; one
  * of so many rows alone has these, too. */
 static bool second(const struct request *request, const struct format formats[2], const char *table, int rows,
                    struct reply *reply)
 {
-	bool is = asks_second(request, formats, table);
+	bool is = http_asks_second(request, formats, table);
 	*reply = (struct reply){.status = 200, .type = formats[is].type};
 	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%s-%d\"" : "\"%s-%s\"",
 	         table ? table : formats[is].name, POUND_VERSION, rows);
@@ -478,6 +467,15 @@ static struct reply samples(struct request *request)
 	return reply.body ? reply : error ? problem(API_CONFLICT, error) : no_memory();
 }
 
+static struct reply motions(struct request *request)
+{
+	struct stored_run opened;
+	const char *error = answer_open(request, &opened);
+	struct reply reply = error ? unopened(request, &opened, error) : motions_of(request, &opened);
+	stored_run_close(&opened);
+	return reply;
+}
+
 /* The tag of what is drawn: of a version, and of so many rows while there are not all. */
 static void tag(struct reply *reply, int rows)
 {
@@ -638,8 +636,9 @@ PAGE(icon)
 bool routes_slow(const struct request *request)
 {
 	size_t length = 0;
-	if (request->operation == API_samples || request->operation == API_figures ||
-	    request->operation == API_figure || request->operation == API_bridge_evaluate)
+	if (request->operation == API_samples || request->operation == API_motions ||
+	    request->operation == API_figures || request->operation == API_figure ||
+	    request->operation == API_bridge_evaluate)
 		return true;
 	// records of 20,000,000 samples take seconds to read
 	if (request->operation == API_submit)
@@ -651,7 +650,7 @@ bool routes_slow(const struct request *request)
 	    store_length(request->server->store, request->id, result ? "result" : "request", &length) == STORE_OK;
 	if (result && !there)
 		return !strcmp(http_argument(request, "partial"), "true");
-	if (result && asks_second(request, result_formats, http_argument(request, "table")))
+	if (result && http_asks_second(request, result_formats, http_argument(request, "table")))
 		return length >= TABLE_LONG;
 	return strcmp(request->method, "HEAD") != 0 && length >= SPOOL_LONG;
 }

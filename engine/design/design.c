@@ -111,7 +111,7 @@ static const struct design designs[] = {
     {"sobol", net_column, true},
 };
 
-static_assert(POUND_SEQUENCE_COLUMNS >= 2 * POUND_QUASI_INPUTS_MAX, "every column of A and B has its own");
+static_assert(POUND_SEQUENCE_COLUMNS >= 2 * POUND_INPUTS_MAX, "every column of A and B has its own");
 
 enum { DESIGNS = sizeof designs / sizeof designs[0] };
 

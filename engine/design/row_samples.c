@@ -3,6 +3,14 @@
 
 #include <assert.h>
 
+unsigned pound_inputs_all(int n)
+{
+	assert(n >= 1 && n <= POUND_INPUTS_MAX);
+	return ~0u >> (POUND_INPUTS_MAX - n);
+}
+
+static_assert(POUND_INPUTS_MAX == 8 * sizeof(unsigned), "a bit for each input");
+
 static int total(int n_inputs)
 {
 	return n_inputs + 2;
@@ -57,7 +65,7 @@ static bool is_other(int n_inputs, unsigned mask)
  */
 unsigned pound_order_mask(int n_inputs, int sample)
 {
-	const unsigned all = (1u << n_inputs) - 1;
+	const unsigned all = pound_inputs_all(n_inputs);
 	if (sample < 2)
 		return sample == POUND_SAMPLE_B ? all : 0;
 	if (sample < 2 + n_inputs)
@@ -76,7 +84,7 @@ unsigned pound_order_mask(int n_inputs, int sample)
  */
 int pound_order_sample(int n_inputs, unsigned mask)
 {
-	const unsigned all = (1u << n_inputs) - 1;
+	const unsigned all = pound_inputs_all(n_inputs);
 	if (mask == 0 || mask == all)
 		return mask ? POUND_SAMPLE_B : POUND_SAMPLE_A;
 	if (__builtin_popcount(mask) == 1)

@@ -5,7 +5,7 @@
 #include "engine/numeric/random.h"
 
 enum {
-	POUND_SEQUENCE_COLUMNS = 32,
+	POUND_SEQUENCE_COLUMNS = 64,
 	POUND_SEQUENCE_DIGITS = 32, /* binary digits of a point, and of its number */
 };
 

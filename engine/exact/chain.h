@@ -51,7 +51,8 @@ enum pound_chain_asked {
 	POUND_CHAIN_DISPLACEMENTS = 2,
 	POUND_CHAIN_ACCELERATIONS = 4,
 	POUND_CHAIN_FORCES = 8,
-	POUND_CHAIN_ENERGY = 16, /* no whole samples are passed at once: such a run takes longer */
+	POUND_CHAIN_ENERGY =
+	    16, /* balance and losses; no whole samples are passed at once: such a run takes longer */
 };
 
 /* The motion of an observed floor over a piece, by the share s of it that is gone: coefficients of powers of s. */
@@ -104,6 +105,7 @@ enum pound_floor_measure {
 	POUND_FLOOR_RESIDUAL,         /* drift at which the story's force is 0 on the way back from the end [m] */
 	POUND_FLOOR_END_U,            /* [m] */
 	POUND_FLOOR_END_V,            /* [m/s] */
+	POUND_FLOOR_LOST, /* work on the story's spring less what it gives back on the way to force 0 [J] */
 	POUND_FLOOR_MEASURES
 };
 
@@ -114,6 +116,8 @@ enum pound_link_measure {
 	POUND_LINK_TIME,        /* in contact [s] */
 	POUND_LINK_FIRST_TIME,  /* of the first contact; 0: none [s] */
 	POUND_LINK_FIRST_SPEED, /* of approach there; 0: none [m/s] */
+	POUND_LINK_SPEED_MAX,   /* largest one of all contacts [m/s] */
+	POUND_LINK_LOST,        /* work on the contact; one still open at the end counts with what it holds [J] */
 	POUND_LINK_MEASURES
 };
 
@@ -124,6 +128,8 @@ struct pound_chain_result {
 	double *links;  /* (n_links x POUND_LINK_MEASURES) */
 	// |kinetic + absorbed - put in| over the most along the way of what was put in and of kinetic energy; NAN: not asked
 	double energy_residual;
+	double
+	    work_in; /* by the ground: -sum of masses times its acceleration times velocities [J]; NAN: not asked */
 };
 
 bool pound_chain_lanes(int lanes, const struct pound_chain_task *tasks, struct pound_chain_result *results,

@@ -36,7 +36,11 @@ struct powers {
 	double in, out, moving;
 };
 
-static struct powers powers_at(const struct chain *c, double t)
+/* Adds the works on springs and contacts at that time.
+ *
+ * Given    weight  of that time in the step [s]
+ */
+static struct powers powers_at(struct chain *c, double t, double weight)
 {
 	const struct warp *x = &c->warp;
 	double pace = 1; // of time by the share of the step, over c->dt
@@ -60,8 +64,9 @@ static struct powers powers_at(const struct chain *c, double t)
 		}
 		rates[i] = v;
 		p.in -= m * ground * w;
-		p.out += (fma(c->stiffness.at[i], d, c->offset.at[i]) + c->dashpot.at[i] * v) * v +
-		         c->mass_damping.at[i] * m * w * w;
+		const double spring = fma(c->stiffness.at[i], d, c->offset.at[i]);
+		p.out += (spring + c->dashpot.at[i] * v) * v + c->mass_damping.at[i] * m * w * w;
+		c->work_story.at[i] += weight * pace * spring * v;
 		p.moving += 0.5 * m * w * w;
 	}
 	for (int first = 0, stories; c->modal && first < c->n; first += stories) {
@@ -75,16 +80,18 @@ static struct powers powers_at(const struct chain *c, double t)
 	}
 	for (int j = 0; j < c->n_links; j++) {
 		const struct pound_touch_branch *on = &c->link[j].at.on;
-		double q;
+		double q, power;
 		if (!c->link[j].touching)
 			continue;
 		const double overlap = column_at(&c->overlaps[0][j], LINKS, c->order, t, &q);
 		q /= h;
 		if (x->on) {
 			q = series_at(x->links[j].rate, 1, t);
-			p.out += pound_contact_force_on(on, j == x->master ? warp_overlap(x, t) : overlap, q) * q;
+			power = pound_contact_force_on(on, j == x->master ? warp_overlap(x, t) : overlap, q) * q;
 		} else
-			p.out += fma(on->stiffness, overlap, fma(on->damping, q, on->offset)) * q;
+			power = fma(on->stiffness, overlap, fma(on->damping, q, on->offset)) * q;
+		p.out += power;
+		c->work_link[j] += weight * pace * power;
 	}
 	p.in *= pace, p.out *= pace;
 	return p;
@@ -94,18 +101,19 @@ static struct powers powers_at(const struct chain *c, double t)
  * at the end: what there is at the nodes counts. */
 static void energy_keep(struct chain *c, double time)
 {
+	const double elapsed = time * c->dt;
 	double in = 0, out = 0, most = 0;
 	for (int k = 0; k < POUND_GAUSS; k++) {
 		const double node = k % 2 ? POUND_GAUSS_NODE[k / 2] : -POUND_GAUSS_NODE[k / 2];
-		const struct powers p = powers_at(c, (0.5 + 0.5 * node) * time);
-		in += 0.5 * POUND_GAUSS_WEIGHT[k / 2] * p.in;
-		out += 0.5 * POUND_GAUSS_WEIGHT[k / 2] * p.out;
+		const double weight = 0.5 * POUND_GAUSS_WEIGHT[k / 2];
+		const struct powers p = powers_at(c, (0.5 + 0.5 * node) * time, weight * elapsed);
+		in += weight * p.in;
+		out += weight * p.out;
 		most = fmax(most, p.moving);
 	}
-	const double elapsed = time * c->dt;
 	c->work_in = fma(elapsed, in, c->work_in);
 	const double gap = fma(elapsed, out - in, c->work_low), sum = c->work_gap + gap;
 	c->work_low = gap - (sum - c->work_gap);
 	c->work_gap = sum;
-	c->work_top = fmax(c->work_top, fmax(fabs(c->work_in), fmax(most, powers_at(c, time).moving)));
+	c->work_top = fmax(c->work_top, fmax(fabs(c->work_in), fmax(most, powers_at(c, time, 0).moving)));
 }

@@ -201,6 +201,8 @@ struct chain {
 	struct warp warp;
 	// energy
 	double work_in, work_gap, work_low, work_top;
+	struct column work_story; /* on the springs of stories */
+	double work_link[LINKS];
 };
 
 /* ---- links ---- */
@@ -376,6 +378,8 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	memset(c, 0, offsetof(struct chain, modal_motion));
 	c->work_in = c->work_gap = c->work_low = c->work_top = c->jump = 0;
 	c->after_event = false;
+	memset(&c->work_story, 0, sizeof c->work_story);
+	memset(c->work_link, 0, sizeof c->work_link);
 	c->task = task;
 	c->result = result;
 	c->n = task->n_floors;
@@ -461,6 +465,12 @@ static double story_residual(const struct chain *c, int i)
 	return pound_law_residual(&c->task->floors[i].story, &c->laws[i], c->d.at[i]);
 }
 
+/* What the law of a story has taken for good. */
+static double story_lost(const struct chain *c, int i)
+{
+	return c->work_story.at[i] - pound_law_given_back(&c->task->floors[i].story, &c->laws[i], c->d.at[i]);
+}
+
 static void chain_write(struct chain *c, enum pound_status status)
 {
 	struct pound_chain_result *r = c->result;
@@ -478,6 +488,7 @@ static void chain_write(struct chain *c, enum pound_status status)
 		m[POUND_FLOOR_RESIDUAL] = story_residual(c, i);
 		m[POUND_FLOOR_END_U] = c->u.at[i];
 		m[POUND_FLOOR_END_V] = c->w.at[i];
+		m[POUND_FLOOR_LOST] = asked & POUND_CHAIN_ENERGY ? story_lost(c, i) : NAN;
 		finite &= isfinite(c->d.at[i]) && isfinite(c->v.at[i]);
 	}
 	for (int j = 0; j < c->n_links; j++) {
@@ -486,12 +497,14 @@ static void chain_write(struct chain *c, enum pound_status status)
 		if (!(asked & POUND_CHAIN_FORCES))
 			m[POUND_LINK_FORCE_MAX] = NAN;
 		if (m[POUND_LINK_CONTACTS] == 0)
-			m[POUND_LINK_FIRST_TIME] = m[POUND_LINK_FIRST_SPEED] = 0;
+			m[POUND_LINK_FIRST_TIME] = m[POUND_LINK_FIRST_SPEED] = m[POUND_LINK_SPEED_MAX] = 0;
+		m[POUND_LINK_LOST] = asked & POUND_CHAIN_ENERGY ? c->work_link[j] : NAN;
 	}
-	r->energy_residual = NAN;
+	r->energy_residual = r->work_in = NAN;
 	if (asked & POUND_CHAIN_ENERGY) {
 		const double missing = fabs(chain_kinetic(c) + (c->work_gap + c->work_low));
 		r->energy_residual = c->work_top > 0 ? missing / c->work_top : 0;
+		r->work_in = c->work_in;
 	}
 	r->status = finite ? status : POUND_OVERFLOW;
 }

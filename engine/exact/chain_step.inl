@@ -115,6 +115,8 @@ static void contact_begins(struct chain *c, struct link *l)
 		l->p = 0; // from here exactly
 		pound_contact_begin(&l->link->law, &l->at, l->q);
 	}
+	if (!l->released)
+		m[POUND_LINK_SPEED_MAX] = fmax(m[POUND_LINK_SPEED_MAX], l->q);
 	l->touching = l->own = true;
 	l->released = l->fresh = false;
 	l->impulse = 0;

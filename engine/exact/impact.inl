@@ -185,6 +185,7 @@ static void held_merge(struct chain *c)
 		impulse_apply(c, &c->link[j], impulse[j]);
 		c->link[j].impulse += impulse[j];
 		c->work_gap += 0.5 * impulse[j] * closing[j];
+		c->work_link[j] += 0.5 * impulse[j] * closing[j];
 	}
 	for (int j = 0; j < c->n_links; j++)
 		if (c->link[j].held)
@@ -245,9 +246,11 @@ static void impact(struct chain *c, struct link *l, double time)
 		impulse_apply(c, l, impulse);
 		l->q = -e * q;
 		c->work_gap += 0.5 * (1 - e * e) * q * q / l->inverse_mass;
+		c->work_link[l - c->link] += 0.5 * (1 - e * e) * q * q / l->inverse_mass;
 		held_separate(c);
 	}
 	m[POUND_LINK_IMPULSE_MAX] = fmax(m[POUND_LINK_IMPULSE_MAX], impulse);
+	m[POUND_LINK_SPEED_MAX] = fmax(m[POUND_LINK_SPEED_MAX], q);
 	if (q >= law->speed_floor) {
 		if (m[POUND_LINK_CONTACTS]++ == 0) {
 			m[POUND_LINK_FIRST_TIME] = time;

@@ -13,7 +13,7 @@
 
 static unsigned all_of(const struct pound_closed *closed)
 {
-	return (1u << closed->n_inputs) - 1;
+	return pound_inputs_all(closed->n_inputs);
 }
 
 static int column_of(const struct pound_closed *closed, unsigned set)
@@ -24,14 +24,37 @@ static int column_of(const struct pound_closed *closed, unsigned set)
 	return -1;
 }
 
-/* Every set for few inputs; for many only those of no input, one, two, all but one, and all, and groups and what is in none. */
-static bool wanted(const struct pound_closed *closed, unsigned set)
+/* Adds a set, which may be there already, at its place in ascending order. */
+static void set_add(struct pound_closed *closed, unsigned set)
 {
-	const int size = __builtin_popcount(set), n_inputs = closed->n_inputs;
-	bool is = n_inputs <= POUND_FACTORIAL_INPUTS_MAX || size <= 2 || size >= n_inputs - 1;
-	for (int g = 0; g < closed->n_groups; g++)
-		is |= set == closed->group[g] || set == (all_of(closed) ^ closed->group[g]);
-	return is;
+	int at = closed->n_columns;
+	if (column_of(closed, set) >= 0)
+		return;
+	assert(at < POUND_CLOSED_COLUMNS_MAX);
+	for (; at > 0 && closed->set[at - 1] > set; at--)
+		closed->set[at] = closed->set[at - 1];
+	closed->set[at] = set;
+	closed->n_columns++;
+}
+
+/* Every set for few inputs; for many only those of no input, one, two, all but one, and all, and groups and what is in none. */
+static void sets_lay(struct pound_closed *closed)
+{
+	const unsigned all = all_of(closed);
+	const int n = closed->n_inputs;
+	for (unsigned set = 0; set <= all && n <= POUND_FACTORIAL_INPUTS_MAX; set++)
+		set_add(closed, set);
+	set_add(closed, 0);
+	for (int j = 0; j < n; j++)
+		for (int k = 0; k <= j; k++)
+			set_add(closed, 1u << j | 1u << k);
+	for (int j = 0; j < n; j++)
+		set_add(closed, all ^ 1u << j);
+	for (int g = 0; g < closed->n_groups; g++) {
+		set_add(closed, closed->group[g]);
+		set_add(closed, all ^ closed->group[g]);
+	}
+	set_add(closed, all);
 }
 
 static bool by_difference(const struct pound_closed *closed, unsigned set)
@@ -78,11 +101,9 @@ void pound_closed_init(struct pound_closed *closed, const struct pound_sample_va
 	    .n_inputs = shape->n_inputs, .n_samples = pound_values_samples(shape), .n_groups = shape->n_groups};
 	for (int g = 0; g < shape->n_groups; g++)
 		closed->group[g] = shape->groups[g].inputs;
-	for (unsigned set = 0; set <= all_of(closed); set++)
-		if (wanted(closed, set)) {
-			closed->difference[closed->n_columns] = by_difference(closed, set);
-			closed->set[closed->n_columns++] = set;
-		}
+	sets_lay(closed);
+	for (int k = 0; k < closed->n_columns; k++)
+		closed->difference[k] = by_difference(closed, closed->set[k]);
 	pairs_fill(closed);
 }
 

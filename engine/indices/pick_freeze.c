@@ -116,7 +116,7 @@ static void full_moments(const struct pound_outputs *row, double *m)
 /* The same with the sample B with a column from A. */
 static void double_moments(const struct pound_outputs *row, double *m)
 {
-	const unsigned all = (1u << row->n_inputs) - 1;
+	const unsigned all = pound_inputs_all(row->n_inputs);
 	shared_moments(row, m);
 	for (int j = 0; j < row->n_inputs; j++) {
 		const int c = POUND_SAMPLE_MIXED + j, e = pound_order_sample(row->n_inputs, all ^ 1u << j);

@@ -181,11 +181,6 @@ static bool right_yields(const struct pound_scene *scene)
 	return right_moves(scene) && !right_is_linear(scene);
 }
 
-static bool row_meets(const struct pound_scene *scene)
-{
-	return is_row(scene) && bodies_meet(scene);
-}
-
 static double displacement_right(const struct pound_response *r, const struct pound_scene *scene)
 {
 	(void)scene;
@@ -313,17 +308,89 @@ static double relative_free(const struct pound_response *r, const struct pound_s
 static double approach(const struct pound_response *r, const struct pound_scene *scene)
 {
 	(void)scene;
-	return r->approach;
+	return r->floors.approach;
+}
+
+static double force(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->floors.force;
+}
+
+static double lost_contact(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->floors.lost_contact;
+}
+
+static double work_in(const struct pound_response *r, const struct pound_scene *scene)
+{
+	(void)scene;
+	return r->floors.work_in;
+}
+
+/* of either body as a one-story building */
+#define OF_FLOOR(name, member, body)                                                    \
+	static double name(const struct pound_response *r, const struct pound_scene *scene) \
+	{                                                                                   \
+		(void)scene;                                                                    \
+		return fabs(r->floors.member[body]);                                            \
+	}
+OF_FLOOR(acceleration_left, acceleration, 0)
+OF_FLOOR(acceleration_right, acceleration, 1)
+OF_FLOOR(acceleration_free_left, acceleration_free, 0)
+OF_FLOOR(acceleration_free_right, acceleration_free, 1)
+OF_FLOOR(residual_left, residual, 0)
+OF_FLOOR(residual_right, residual, 1)
+OF_FLOOR(lost_left, lost, 0)
+OF_FLOOR(lost_right, lost, 1)
+#undef OF_FLOOR
+
+static double floor_residual(const struct pound_row_response *row, const struct pound_scene *scene,
+                             const struct pound_storey_place *place)
+{
+	double sum = 0;
+	for (int i = 1; i <= place->storey; i++)
+		sum += storey_of(row, scene, &(struct pound_storey_place){place->building, i})->residual_drift;
+	return fabs(sum);
+}
+
+static double storey_lost(const struct pound_row_response *row, const struct pound_scene *scene,
+                          const struct pound_storey_place *place)
+{
+	return storey_of(row, scene, place)->lost;
+}
+
+static double row_lost_contact(const struct pound_row_response *row, const struct pound_scene *scene,
+                               const struct pound_storey_place *place)
+{
+	(void)place;
+	double sum = 0;
+	for (int k = 0; k < pound_row_contacts(scene); k++)
+		sum += row->contacts[k].lost;
+	return sum;
+}
+
+static double row_work_in(const struct pound_row_response *row, const struct pound_scene *scene,
+                          const struct pound_storey_place *place)
+{
+	(void)scene, (void)place;
+	return row->work_in;
+}
+
+static double row_approach(const struct pound_row_response *row, const struct pound_scene *scene,
+                           const struct pound_storey_place *place)
+{
+	(void)place;
+	double most = 0;
+	for (int k = 0; k < pound_row_contacts(scene); k++)
+		most = fmax(most, row->contacts[k].speed_max);
+	return most;
 }
 
 static bool is_pair(const struct pound_scene *scene)
 {
 	return scene->n_buildings == 0;
-}
-
-static bool pair_meets(const struct pound_scene *scene)
-{
-	return is_pair(scene) && bodies_meet(scene);
 }
 
 typedef double measure(const struct pound_response *, const struct pound_scene *);
@@ -360,9 +427,10 @@ static const struct output {
     {"drift_amplification", "largest story drift at each place, with over without pounding", "buildings",
      "buildings", is_row, NULL, NULL, drift, drift_free, .places = true},
     {"acceleration_amplification",
-     "largest absolute acceleration of the floor at each place, with over without pounding", "buildings",
-     "buildings", is_row, NULL, NULL, acceleration, acceleration_free, .places = true,
-     .asks = POUND_ASKS_ACCELERATIONS},
+     "largest absolute acceleration of the left body, or of the floor at each place, with over without "
+     "pounding",
+     "", "", always, acceleration_left, acceleration_free_left, acceleration, acceleration_free,
+     .places = true, .asks = POUND_ASKS_ACCELERATIONS | POUND_ASKS_FREE_FLOORS},
     // the right body's amplifications
     {"force_amplification_right", "largest displacement of the right body, with over without pounding",
      "a right oscillator with a linear law", "two oscillators", right_is_linear, displacement_right,
@@ -393,13 +461,13 @@ static const struct output {
      "buildings", is_row, NULL, NULL, drift_free, row_one, .places = true},
     {"residual_drift_m", "magnitude of the residual drift of the story at each place [m]", "buildings",
      "buildings", is_row, NULL, NULL, residual_drift, row_one, .places = true},
-    {"peak_acceleration_m_s2", "largest absolute acceleration of the floor at each place [m/s2]", "buildings",
-     "buildings", is_row, NULL, NULL, acceleration, row_one, .places = true,
-     .asks = POUND_ASKS_ACCELERATIONS},
+    {"peak_acceleration_m_s2",
+     "largest absolute acceleration of the left body, or of the floor at each place [m/s2]", "", "", always,
+     acceleration_left, one, acceleration, row_one, .places = true, .asks = POUND_ASKS_ACCELERATIONS},
     {"peak_acceleration_free_m_s2",
-     "largest absolute acceleration of the floor at each place, without pounding [m/s2]", "buildings",
-     "buildings", is_row, NULL, NULL, acceleration_free, row_one, .places = true,
-     .asks = POUND_ASKS_ACCELERATIONS},
+     "largest absolute acceleration of the left body, or of the floor at each place, without pounding [m/s2]",
+     "", "", always, acceleration_free_left, one, acceleration_free, row_one, .places = true,
+     .asks = POUND_ASKS_ACCELERATIONS | POUND_ASKS_FREE_FLOORS},
     {"pounding_probability", "share of the signals in which bodies touch: 1 or 0 for each", "a contact",
      "a contact", bodies_meet, touches, one, row_touches, row_one, .asks = 0},
     {"contact_count", "number of contacts, of all gaps", "a contact", "a contact", bodies_meet, contact_count,
@@ -408,15 +476,45 @@ static const struct output {
      contact_time, one, row_contact_time, row_one, .asks = 0},
     {"peak_impulse_n_s", "largest impulse of one contact [N s]", "a contact", "a contact", bodies_meet,
      impulse_largest, one, row_impulse_largest, row_one, .asks = 0},
-    {"peak_contact_force_n", "largest force that pushes in a contact [N]", "buildings with contact",
-     "a contact", row_meets, NULL, NULL, row_force_largest, row_one, .asks = POUND_ASKS_FORCES},
+    {"peak_contact_force_n", "largest force that pushes in a contact [N]", "a contact", "a contact",
+     bodies_meet, force, one, row_force_largest, row_one, .asks = POUND_ASKS_FORCES},
     {"gap_needed_m", "largest closing displacement u_1 - u_2 of the bodies without contact [m]",
      "two oscillators", "two oscillators", is_pair, gap_needed, one, .asks = POUND_ASKS_FREE_PAIR},
     {"peak_relative_displacement_free_m", "largest abs(u_1 - u_2) of the bodies without contact [m]",
      "two oscillators", "two oscillators", is_pair, relative_free, one, .asks = POUND_ASKS_FREE_PAIR},
-    {"peak_approach_speed_m_s", "largest speed at which a contact begins [m/s]",
-     "two oscillators with contact", "two oscillators", pair_meets, approach, one,
-     .asks = POUND_ASKS_APPROACH},
+    {"peak_approach_speed_m_s", "largest speed at which a contact begins [m/s]", "a contact", "a contact",
+     bodies_meet, approach, one, row_approach, row_one, .asks = POUND_ASKS_STILL},
+    {"acceleration_amplification_right",
+     "largest absolute acceleration of the right body, with over without pounding", "a right oscillator",
+     "two oscillators", right_moves, acceleration_right, acceleration_free_right,
+     .asks = POUND_ASKS_ACCELERATIONS | POUND_ASKS_FREE_FLOORS},
+    {"peak_acceleration_right_m_s2", "largest absolute acceleration of the right body [m/s2]",
+     "a right oscillator", "two oscillators", right_moves, acceleration_right, one,
+     .asks = POUND_ASKS_ACCELERATIONS},
+    {"peak_acceleration_free_right_m_s2",
+     "largest absolute acceleration of the right body without pounding [m/s2]", "a right oscillator",
+     "two oscillators", right_moves, acceleration_free_right, one,
+     .asks = POUND_ASKS_ACCELERATIONS | POUND_ASKS_FREE_FLOORS},
+    {"residual_displacement_m",
+     "magnitude of the residual displacement of the left body, or of the floor at each place [m]",
+     "a nonlinear law of the left oscillator", "a nonlinear law of every building that has a place",
+     bodies_yield, residual_left, one, floor_residual, row_one, .places = true, .asks = POUND_ASKS_STILL},
+    {"residual_displacement_right_m", "magnitude of the residual displacement of the right body [m]",
+     "a right oscillator with a nonlinear law", "two oscillators", right_yields, residual_right, one,
+     .asks = POUND_ASKS_STILL},
+    {"contact_energy_ratio", "energy lost in contacts over the energy that the ground puts in", "a contact",
+     "a contact", bodies_meet, lost_contact, work_in, row_lost_contact, row_work_in,
+     .asks = POUND_ASKS_ENERGIES},
+    {"hysteresis_energy_ratio",
+     "energy lost by the law of the left body, or of the story at each place, over the energy that the "
+     "ground "
+     "puts in",
+     "a nonlinear law of the left oscillator", "a nonlinear law of every building that has a place",
+     bodies_yield, lost_left, work_in, storey_lost, row_work_in, .places = true, .asks = POUND_ASKS_ENERGIES},
+    {"hysteresis_energy_ratio_right",
+     "energy lost by the law of the right body over the energy that the ground puts in",
+     "a right oscillator with a nonlinear law", "two oscillators", right_yields, lost_right, work_in,
+     .asks = POUND_ASKS_ENERGIES},
 };
 
 const char *pound_output_name(int row)
@@ -434,14 +532,9 @@ const char *pound_output_needs(int row, const struct pound_scene *scene)
 	return scene->n_buildings > 0 ? outputs[row].row_needs : outputs[row].needs;
 }
 
-bool pound_output_observes(int row)
+bool pound_output_observes(int row, const struct pound_scene *scene)
 {
-	return outputs[row].asks & (POUND_ASKS_FREE_PAIR | POUND_ASKS_APPROACH);
-}
-
-bool pound_output_observes_contact(int row)
-{
-	return outputs[row].asks & POUND_ASKS_APPROACH;
+	return is_pair(scene) && outputs[row].asks & (POUND_ASKS_FREE_PAIR | POUND_ASKS_CHAIN);
 }
 
 bool pound_output_has_ordinates(int row)

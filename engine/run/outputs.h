@@ -18,7 +18,11 @@ enum pound_output_ask {
 	POUND_ASKS_ACCELERATIONS = 2, /* of floors */
 	POUND_ASKS_FORCES = 4,        /* of contacts */
 	POUND_ASKS_FREE_PAIR = 8,     /* both oscillators together without contact, observed */
-	POUND_ASKS_APPROACH = 16,     /* both with contact, observed */
+	POUND_ASKS_ENERGIES = 16,     /* put in and lost */
+	POUND_ASKS_STILL = 32,        /* approach speeds and residual displacements, which every chain has */
+	POUND_ASKS_FREE_FLOORS = 64,  /* accelerations without pounding */
+	// of these two oscillators are run as a row of one-story buildings
+	POUND_ASKS_CHAIN = POUND_ASKS_ACCELERATIONS | POUND_ASKS_FORCES | POUND_ASKS_ENERGIES | POUND_ASKS_STILL,
 };
 
 unsigned pound_outputs_asked(const struct pound_study *study); /* bits */

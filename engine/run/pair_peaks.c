@@ -1,4 +1,4 @@
-/* pair_peaks.c - the largest displacements of two bodies against each other, and the fastest approach of a contact.
+/* pair_peaks.c - the largest displacements of two bodies against each other.
  *
  * 1. Between two instants outside of contacts a cubic and the bound of its error show how large u_1 - u_2 may be; where that
  *    is more than at any instant so far, the interval is noted.
@@ -218,8 +218,6 @@ static void observe(void *into, const struct pound_instant_of_task *instant)
 		interval_look(peaks, &note, (const double[2]){from->u[0] - from->u[1], instant->u[0] - instant->u[1]},
 		              (const double[2]){from->v[0] - from->v[1], instant->v[0] - instant->v[1]}, error);
 	}
-	if (instant->touching && !from->touching)
-		peaks->approach = fmax(peaks->approach, instant->overlap_rate);
 	peaks->from = *instant;
 	peaks->samples_left -= instant->sampled;
 	if (peaks->samples_left <= 0)

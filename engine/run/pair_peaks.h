@@ -24,8 +24,7 @@ struct pound_pair_peaks {
 	int n_notes;
 	struct pound_pair_note notes[POUND_PAIR_NOTES];
 	// so far
-	double peak[2];  /* largest u_1 - u_2 and u_2 - u_1 outside of contacts, 0 at rest [m] */
-	double approach; /* largest rate of u_1 - u_2 at the start of a contact [m/s] */
+	double peak[2]; /* largest u_1 - u_2 and u_2 - u_1 outside of contacts, 0 at rest [m] */
 };
 
 /* Begins to observe a task, whose observer it becomes. */

@@ -232,7 +232,7 @@ static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 	const struct pound_scene *scene = &ask->scene;
 	bool response = ask->response = campaign->study->kind == POUND_KIND_RESPONSE;
 	bool may_miss = !scene->contact.present || scene->contact.gap > 0;
-	ask->free_pair = -1;
+	ask->free_pair = ask->chain = ask->chain_free = -1;
 	bool right = response || may_miss || pound_outputs_asked(campaign->study) & POUND_ASKS_RIGHT;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
@@ -294,10 +294,7 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		work->never_touching++;
 		return;
 	}
-	const int known = request->march_keys.n;
 	ask->march = march_ask(request, ask->motion, &task);
-	if (pound_outputs_asked(request->campaign->study) & POUND_ASKS_APPROACH && ask->march == known)
-		pound_pair_peaks_start(&request->peaks[known], &request->tasks[known]);
 }
 
 /* Follows both bodies without contact, or asks for that, where an output reads how far they close a gap.
@@ -324,6 +321,29 @@ static bool follow_free_pair(struct pound_request *request, int a)
 	return false;
 }
 
+/* Asks for both bodies as one-story buildings, where an output reads what these have. */
+static void follow_chain(struct pound_request *request, struct ask *ask)
+{
+	const unsigned asks = pound_outputs_asked(request->campaign->study);
+	const struct pound_motion *m = &request->motions[ask->motion];
+	const unsigned asked = (asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0) |
+	                       (asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0) |
+	                       (asks & POUND_ASKS_ENERGIES ? POUND_CHAIN_ENERGY : 0);
+	struct pound_task pair = pair_task(request, ask);
+	pair.contact = ask->march >= 0;
+	ask->chain = pound_row_ask_pair(&request->rows, &pair, m, asked);
+	ask->chain_free = ask->chain;
+	if (!pair.contact || !(asks & POUND_ASKS_FREE_FLOORS))
+		return;
+	pair.contact = false;
+	ask->chain_free = pound_row_ask_pair(&request->rows, &pair, m, POUND_CHAIN_ACCELERATIONS);
+}
+
+static const struct pound_chain_result *chain_result(const struct pound_request *request, int march)
+{
+	return march < 0 ? NULL : &request->rows.results[march];
+}
+
 /* What was run of an ask. */
 static struct pound_runs_known ask_known(const struct pound_request *request, const struct ask *ask)
 {
@@ -342,7 +362,8 @@ static struct pound_runs_known ask_known(const struct pound_request *request, co
 	known.peaks_free = !request->peaks       ? NULL
 	                   : ask->free_pair >= 0 ? request->peaks[ask->free_pair].peak
 	                                         : request->free_pair[ask - request->asks];
-	known.peaks = request->peaks && ask->march >= 0 ? &request->peaks[ask->march] : NULL;
+	known.chain = chain_result(request, ask->chain);
+	known.chain_free = chain_result(request, ask->chain_free);
 	return known;
 }
 
@@ -528,6 +549,17 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	for (int j = before; j < done; j++)
 		work->contacts += request->results[j].contacts;
 	work->contacts += pound_row_contacts_run(&request->rows, rows_before);
+	for (int a = 0; a < n_asks && asked & POUND_ASKS_CHAIN; a++) {
+		const int known = request->rows.n;
+		if (request->asks[a].scene.n_buildings)
+			continue;
+		follow_chain(request, &request->asks[a]);
+		work->chain_runs.run += request->rows.n - known;
+		work->chain_runs.asked += 1 + (request->asks[a].chain_free != request->asks[a].chain);
+	}
+	status = pound_row_run(&request->rows, stop);
+	if (status)
+		return status;
 	for (int a = 0; a < n_asks; a++) {
 		struct pound_scene scene;
 		struct pound_response pair;

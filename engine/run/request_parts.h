@@ -26,8 +26,9 @@ struct ask {
 	bool response; /* all of the response is wanted */
 	bool balanced; /* with the energy balances of its runs */
 	struct body_ask bodies[POUND_OSCILLATORS];
-	int march;     /* with pounding; -1: the responses without pounding are the answer */
-	int free_pair; /* both bodies without contact, observed; -1: not run */
+	int march;             /* with pounding; -1: the responses without pounding are the answer */
+	int free_pair;         /* both bodies without contact, observed; -1: not run */
+	int chain, chain_free; /* both bodies as one-story buildings: the answer, and without contact; likewise */
 };
 
 struct pound_request {

@@ -34,9 +34,11 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 			}
 			size.asks++;
 			size.motions++;
+			if (scene.n_buildings == 0 && asked & POUND_ASKS_CHAIN)
+				pound_row_size_add_pair(&size.rows);
 			marches += scene.n_buildings == 0 && asked & POUND_ASKS_FREE_PAIR;
 			size.tasks += marches;
-			size.peaks += asked & (POUND_ASKS_FREE_PAIR | POUND_ASKS_APPROACH) ? marches : 0;
+			size.peaks += asked & POUND_ASKS_FREE_PAIR ? marches : 0;
 			size.samples += pound_excitation_samples(&scene.excitation);
 		}
 	return size;
@@ -64,7 +66,7 @@ static size_t request_carve(char *memory, struct pound_request *request, struct 
 	    {&request->peaks, sizeof *request->peaks * (size_t)size.peaks},
 	    {&request->free_pair, sizeof *request->free_pair * (size_t)(size.peaks ? size.asks : 0)},
 	    {&request->scratch, POUND_EXACT_SCRATCH},
-	    {&request->row_asks, sizeof *request->row_asks * (size_t)(rows->tasks ? size.asks : 0)},
+	    {&request->row_asks, sizeof *request->row_asks * (size_t)(rows->storeys ? size.asks : 0)},
 	    {&request->rows.tasks, sizeof *request->rows.tasks * (size_t)rows->tasks},
 	    {&request->rows.results, sizeof *request->rows.results * (size_t)rows->tasks},
 	    {&request->rows.motions, sizeof(int) * (size_t)rows->tasks},

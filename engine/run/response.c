@@ -6,6 +6,28 @@
 #include "engine/run/scene.h"
 #include "engine/scene/law.h"
 
+/* What two bodies have as one-story buildings. */
+static void floors_of(const struct pound_runs_known *known, struct pound_pair_floors *out)
+{
+	const struct pound_scene *scene = known->scene;
+	const double *floor = known->chain->floors, *free = known->chain_free->floors,
+	             *link = known->pounding ? known->chain->links : NULL, mass = scene->oscillators[0].mass;
+	const int e = known->exponent;
+	for (int i = 0; i < POUND_OSCILLATORS && !scene->oscillators[i].rigid_wall; i++) {
+		const double *m = floor + i * POUND_FLOOR_MEASURES;
+		out->acceleration[i] = ldexp(m[POUND_FLOOR_ACCELERATION_MAX], e);
+		out->acceleration_free[i] = ldexp(free[i * POUND_FLOOR_MEASURES + POUND_FLOOR_ACCELERATION_MAX], e);
+		out->residual[i] = ldexp(m[POUND_FLOOR_RESIDUAL], e);
+		out->lost[i] = ldexp(mass * m[POUND_FLOOR_LOST], 2 * e);
+	}
+	out->work_in = ldexp(mass * known->chain->work_in, 2 * e);
+	if (!link)
+		return;
+	out->lost_contact = ldexp(mass * link[POUND_LINK_LOST], 2 * e);
+	out->force = ldexp(mass * link[POUND_LINK_FORCE_MAX], e);
+	out->approach = ldexp(link[POUND_LINK_SPEED_MAX], e);
+}
+
 /* The response of a sample in the units of the study.
  *
  * Returns  response  NAN where the scene has no such value
@@ -73,10 +95,14 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		out->gap_needed = ldexp(known->peaks_free[0], e);
 		out->relative_free = fmax(out->gap_needed, ldexp(known->peaks_free[1], e));
 	}
-	out->approach = known->peaks ? ldexp(known->peaks->approach, e) : 0;
-	bool beyond =
-	    isinf(out->relative_free) ||
-	    isinf(out->approach); // the motion in its own scale is finite, but not all that is made of it need be
+	if (known->chain) {
+		status = status ? status : known->chain->status ? known->chain->status : known->chain_free->status;
+		floors_of(known, &out->floors);
+	}
+	// the motion in its own scale is finite, but not all that is made of it need be
+	bool beyond = isinf(out->relative_free);
+	for (size_t k = 0; k < sizeof out->floors / sizeof(double); k++)
+		beyond |= isinf(((const double *)(const void *)&out->floors)[k]) != 0;
 #define X(member, name, oscillator) beyond |= isinf(out->member) != 0;
 	POUND_MEASURES(X)
 #undef X

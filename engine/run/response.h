@@ -2,8 +2,8 @@
 #ifndef RESPONSE_H
 #define RESPONSE_H
 
+#include "engine/exact/chain.h"
 #include "engine/exact/task.h"
-#include "engine/run/pair_peaks.h"
 
 struct pound_body_known {
 	const struct pound_task_result *free; /* without pounding; NULL: not run */
@@ -20,7 +20,8 @@ struct pound_runs_known {
 	const struct pound_task_result
 	    *free_pair;           /* both without contact, where the solver followed them; else NULL */
 	const double *peaks_free; /* their closing and opening displacement  (2); NULL: no output reads it */
-	const struct pound_pair_peaks *peaks; /* of the run with pounding; NULL likewise, or not run */
+	const struct pound_chain_result *chain,
+	    *chain_free; /* both as one-story buildings, over the left mass; NULL: likewise */
 };
 
 enum pound_status pound_response_of(const struct pound_runs_known *known, struct pound_response *out);

@@ -5,9 +5,10 @@
 #include <string.h>
 
 #include "engine/run/row_runs.h"
+#include "engine/scene/law.h"
 
 /* before the storeys */
-enum { HEAD_IMPULSE_SCALE, HEAD_ENERGY, HEAD };
+enum { HEAD_IMPULSE_SCALE, HEAD_ENERGY, HEAD_WORK_IN, HEAD };
 
 enum {
 	STOREY_DOUBLES = sizeof(struct pound_storey_response) / sizeof(double),
@@ -52,6 +53,7 @@ void pound_row_keep(const struct pound_outcome *outcome, int n, double *kept)
 		return;
 	kept[HEAD_IMPULSE_SCALE] = row->impulse_scale;
 	kept[HEAD_ENERGY] = row->energy_residual;
+	kept[HEAD_WORK_IN] = row->work_in;
 	memcpy(kept + HEAD, row->storeys, sizeof *row->storeys * (size_t)floors);
 	memcpy(kept + HEAD + floors * STOREY_DOUBLES, row->contacts, sizeof *row->contacts * (size_t)contacts);
 }
@@ -61,6 +63,7 @@ struct pound_row_response pound_row_kept(const struct pound_scene *scene, const 
 	const double *storeys = kept + HEAD, *contacts = storeys + pound_row_floors(scene) * STOREY_DOUBLES;
 	return (struct pound_row_response){.impulse_scale = kept[HEAD_IMPULSE_SCALE],
 	                                   .energy_residual = kept[HEAD_ENERGY],
+	                                   .work_in = kept[HEAD_WORK_IN],
 	                                   .storeys = (const struct pound_storey_response *)(const void *)storeys,
 	                                   .contacts =
 	                                       (const struct pound_contact_response *)(const void *)contacts};
@@ -110,6 +113,7 @@ static struct pound_storey_response storey_of(const struct storey_known *k)
 	    .acceleration_max_free = free ? ldexp(free[POUND_FLOOR_ACCELERATION_MAX], e) : NAN,
 	    .end_u = ldexp(with[POUND_FLOOR_END_U], e),
 	    .end_v = ldexp(with[POUND_FLOOR_END_V], e),
+	    .lost = ldexp(with[POUND_FLOOR_LOST], 2 * e),
 	};
 	r.drift_ratio_max = r.drift_max / k->height;
 	return r;
@@ -122,20 +126,25 @@ static struct pound_contact_response contact_of(const double *link, int e)
 	                                       .contact_count = link[POUND_LINK_CONTACTS],
 	                                       .contact_time = link[POUND_LINK_TIME],
 	                                       .first_time = link[POUND_LINK_FIRST_TIME],
-	                                       .first_speed = ldexp(link[POUND_LINK_FIRST_SPEED], e)};
+	                                       .first_speed = ldexp(link[POUND_LINK_FIRST_SPEED], e),
+	                                       .speed_max = ldexp(link[POUND_LINK_SPEED_MAX], e),
+	                                       .lost = ldexp(link[POUND_LINK_LOST], 2 * e)};
 }
 
 /* The storeys of one building; adds what is wrong with its marches. */
 static enum pound_status building_of(const struct pound_row_asks *asks, const struct pound_scene *scene,
-                                     const struct pound_row_ask *ask, int b, int exponent, double *energy)
+                                     const struct pound_row_ask *ask, int b, int exponent,
+                                     struct pound_row_response *row)
 {
 	static const double still[POUND_FLOOR_MEASURES] = {0};
 	const struct pound_building *building = &scene->buildings[b];
 	const struct pound_building_ask *known = &ask->buildings[b];
 	const struct pound_chain_result *free = known->finished ? &asks->results[known->march] : NULL;
 	const int first = pound_row_first(scene, b);
-	if (ask->march < 0 && free)
-		*energy = fmax(*energy, free->energy_residual);
+	if (ask->march < 0 && free) {
+		row->energy_residual = fmax(row->energy_residual, free->energy_residual);
+		row->work_in += ldexp(free->work_in, 2 * exponent);
+	}
 	for (int i = 0; i < pound_row_storeys(scene, b); i++) {
 		const double *alone = free ? free->floors + i * POUND_FLOOR_MEASURES : NULL;
 		const double *with = ask->march >= 0
@@ -170,17 +179,17 @@ enum pound_status pound_row_response_of(const struct pound_row_asks *asks, const
 	const struct pound_chain_result *with = ask->march < 0 ? NULL : &asks->results[ask->march];
 	const int floors = pound_row_floors(scene), contacts = pound_row_contacts(scene);
 	enum pound_status status = with ? with->status : POUND_OK;
-	double energy = with ? with->energy_residual : NAN;
+	*response = (struct pound_row_response){.impulse_scale = ask->impulse_scale,
+	                                        .energy_residual = with ? with->energy_residual : NAN,
+	                                        .work_in = with ? ldexp(with->work_in, 2 * exponent) : 0,
+	                                        .storeys = asks->storeys,
+	                                        .contacts = asks->contacts};
 	for (int b = 0; b < scene->n_buildings; b++) {
-		const enum pound_status of_building = building_of(asks, scene, ask, b, exponent, &energy);
+		const enum pound_status of_building = building_of(asks, scene, ask, b, exponent, response);
 		status = status ? status : of_building;
 	}
 	for (int k = 0; k < contacts; k++)
 		asks->contacts[k] = contact_of(with ? with->links + k * POUND_LINK_MEASURES : open, exponent);
-	*response = (struct pound_row_response){.impulse_scale = ask->impulse_scale,
-	                                        .energy_residual = energy,
-	                                        .storeys = asks->storeys,
-	                                        .contacts = asks->contacts};
 	// the motion in its own scale is finite, but not all that is made of it need be
 	const bool over = beyond(&asks->storeys->drift_max, floors * STOREY_DOUBLES) ||
 	                  (contacts && beyond(&asks->contacts->impulse_max, contacts * CONTACT_DOUBLES));

@@ -16,6 +16,7 @@
 #include "engine/scene/building.h"
 #include "engine/scene/contact.h"
 #include "engine/scene/modes.h"
+#include "engine/solver/solver.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -40,6 +41,14 @@ void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *s
 	size->memory = memory > size->memory ? memory : size->memory;
 	size->storeys = floors > size->storeys ? floors : size->storeys;
 	size->contacts = links > size->contacts ? links : size->contacts;
+}
+
+/* Adds what two oscillators take at most: with and without contact. */
+void pound_row_size_add_pair(struct pound_row_size *size)
+{
+	size->tasks += 2;
+	size->floors += 2 * POUND_OSCILLATORS;
+	size->links += 1;
 }
 
 void pound_row_clear(struct pound_row_asks *asks)
@@ -95,6 +104,23 @@ static int task_ask(struct pound_row_asks *asks, const struct pound_motion *moti
 	asks->n_floors += task->n_floors;
 	asks->n_links += task->n_links;
 	return j;
+}
+
+/* Test     unit_losses */
+int pound_row_ask_pair(struct pound_row_asks *asks, const struct pound_task *pair,
+                       const struct pound_motion *motion, unsigned asked)
+{
+	struct pound_pair_chain chain;
+	pound_pair_chain(pair, &chain);
+	struct pound_chain_task task = {.n_floors = chain.task.n_floors,
+	                                .n_links = pair->contact,
+	                                .floors = asks->floors + asks->n_floors,
+	                                .links = asks->links + asks->n_links,
+	                                .asked = asked};
+	memcpy(asks->floors + asks->n_floors, chain.floors, sizeof *chain.floors * (size_t)task.n_floors);
+	if (task.n_links)
+		asks->links[asks->n_links] = chain.link;
+	return task_ask(asks, motion, &task);
 }
 
 /* Longest length that is nothing beside the motion [m], scaled as the ground motion is. */
@@ -172,8 +198,10 @@ static int building_march(struct pound_row_asks *asks, const struct pound_scene 
 
 unsigned pound_row_asked(const struct pound_study *study)
 {
-	const unsigned asks = study->kind == POUND_KIND_RESPONSE ? ~0U : pound_outputs_asked(study);
+	const unsigned outputs = pound_outputs_asked(study),
+	               asks = study->kind == POUND_KIND_RESPONSE ? ~0U : outputs;
 	unsigned asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS;
+	asked |= outputs & POUND_ASKS_ENERGIES ? POUND_CHAIN_ENERGY : 0;
 	asked |= asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0;
 	return asked | (asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0);
 }

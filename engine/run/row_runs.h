@@ -67,7 +67,12 @@ struct pound_row_size {
 };
 
 void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *scene);
+void pound_row_size_add_pair(struct pound_row_size *size);
 void pound_row_clear(struct pound_row_asks *asks);
+
+/* Two oscillators as a row of one-story buildings, over the left mass; touching: with their contact.  Returns the march. */
+int pound_row_ask_pair(struct pound_row_asks *asks, const struct pound_task *pair,
+                       const struct pound_motion *motion, unsigned asked);
 
 /* A sample's needs without pounding, to begin with; which stages it has; and one stage of all its buildings: 0 is linear,
  * each later one has the yield drifts found by then.  False: nothing is needed. */

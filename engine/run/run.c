@@ -21,7 +21,7 @@
 #include "engine/run/trials.h"
 
 enum {
-	MEASURES = sizeof(struct pound_response) / sizeof(double),
+	MEASURES = offsetof(struct pound_response, floors) / sizeof(double),
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
 	CHECK_EVERY = 100, /* items between two checked ones */
 	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
@@ -33,7 +33,10 @@ enum {
 /* Doubles kept of a response. */
 static int response_measures(const struct pound_study *study)
 {
-	return study->scene.n_buildings ? pound_row_measures(study) : (int)MEASURES;
+	const size_t all = sizeof(struct pound_response) / sizeof(double);
+	return study->scene.n_buildings                        ? pound_row_measures(study)
+	       : pound_outputs_asked(study) & POUND_ASKS_CHAIN ? (int)all
+	                                                       : (int)MEASURES;
 }
 
 /* The scenes of a study; its design is not drawn yet. */
@@ -409,10 +412,11 @@ static void response_keep(void *into, const struct pound_outcome *outcome)
 		return;
 	}
 	if (slice->study->kind == POUND_KIND_RESPONSE) {
-		memcpy(slice->at, response, sizeof *response);
-		for (size_t j = 0; j < MEASURES && status; j++)
+		const int n = response_measures(slice->study);
+		memcpy(slice->at, response, sizeof(double) * (size_t)n);
+		for (int j = 0; j < n && status; j++)
 			slice->at[j] = NAN;
-		slice->at += MEASURES;
+		slice->at += n;
 		return;
 	}
 	for (int o = 0; o < slice->study->n_outputs; o++, slice->at += 2) {
@@ -579,7 +583,7 @@ static void responses_reduce(struct pound_run *run, int cell, int output, void *
 		if (scene.n_buildings)
 			row = pound_row_kept(&scene, kept);
 		else
-			memcpy(&response, kept, sizeof response);
+			memcpy(&response, kept, sizeof(double) * (size_t)response_measures(c->study));
 		if (isnan(*kept))
 			continue;
 		const struct pound_outcome outcome = {.scene = &scene, .pair = &response, .row = &row};
@@ -666,7 +670,7 @@ const struct pound_result *pound_run_result(struct pound_run *run)
 				const struct pound_scene scene = pound_cells_scene(c, cell, 0, 0, run->scratch[0]);
 				into->rows[signal] = pound_row_kept(&scene, kept);
 			} else
-				memcpy(&into->signals[signal], kept, sizeof into->signals[signal]);
+				memcpy(&into->signals[signal], kept, sizeof(double) * (size_t)response_measures(c->study));
 			into->runs_failed += isnan(*kept);
 		}
 	}

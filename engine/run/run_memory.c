@@ -19,6 +19,7 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	                                  .tasks = (int)shared->marches,
 	                                  .samples = (int64_t)(shared->motions * shared->samples)},
 	                          largest = {0};
+	const unsigned asked = pound_outputs_asked(study);
 	double bytes = sizeof(double) * 4.0 * c->n_rows * study->n_inputs; // the design and its probabilities
 	pound_run_result_parts(&run, parts);
 	for (int j = 0; j < POUND_RUN_PARTS; j++)
@@ -26,7 +27,9 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	// a row of buildings has tasks of its own
 	if (study->scene.n_buildings)
 		item.tasks = 0;
-	item.peaks = pound_outputs_asked(study) & (POUND_ASKS_FREE_PAIR | POUND_ASKS_APPROACH) ? item.tasks : 0;
+	item.peaks = asked & POUND_ASKS_FREE_PAIR ? item.tasks : 0;
+	for (int k = 0; k < item.asks && !study->scene.n_buildings && asked & POUND_ASKS_CHAIN; k++)
+		pound_row_size_add_pair(&item.rows);
 	for (int k = 0; k < item.asks && study->scene.n_buildings; k++)
 		pound_row_size_add(&item.rows, &study->scene);
 	run.layout = pound_run_layout(c);

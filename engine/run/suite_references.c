@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "engine/ground/excitation.h"
+#include "engine/scene/building.h"
 #include "engine/solver/solver.h"
 
 static const double PI = 3.14159265358979323846;
@@ -19,7 +20,7 @@ static double median(const double *sorted, int n)
 enum {
 	PAIRS =
 	    2 *
-	    POUND_OSCILLATORS /* tasks of a record that is looked at: each body on it and on its interpolation */
+	    POUND_BUILDINGS_MAX /* tasks of a record that is looked at: each body on it and on its interpolation */
 };
 
 #define TASKS(suite) ((size_t)((suite)->n_records > PAIRS ? (suite)->n_records : PAIRS))
@@ -107,11 +108,27 @@ enum pound_status pound_suite_references(const struct pound_excitation *suite, v
 	return status;
 }
 
+/* The oscillator that stands for a body: a building's first mode with the damping of its first story; false: it is a wall. */
+static bool body_of(const struct pound_scene *scene, int i, double *w, double *damping_ratio)
+{
+	if (!scene->n_buildings) {
+		const struct pound_oscillator *body = &scene->oscillators[i];
+		*w = 2 * PI * body->frequency_hz, *damping_ratio = body->damping_ratio;
+		return !body->rigid_wall;
+	}
+	struct pound_storeys storeys;
+	if (pound_row_storeys(scene, i) == 0)
+		return false;
+	pound_building_storeys(&scene->buildings[i], &storeys);
+	*w = storeys.frequency, *damping_ratio = pound_each_of(&scene->buildings[i].damping_ratio, 0);
+	return true;
+}
+
 /* What linear interpolation between samples costs: u of a body on the record over u on its band-limited interpolation at twice the
  * rate, which is linear between samples, too, less 1.
  *
- * Given    scene        -            -   of two oscillators, taken as linear and without contact; of a row of buildings nothing is run
- * Returns  differences  (n_records)  -   of both bodies the one that is larger; NAN: of a row of buildings
+ * Given    scene        -            -   its bodies taken as linear and without contact, of a building its first mode
+ * Returns  differences  (n_records)  -   of all bodies the largest one; NAN: of walls alone
  * Status   POUND_STOPPED  stop was set
  * Memory   scratch      (pound_suite_scratch)
  *
@@ -133,12 +150,12 @@ enum pound_status pound_suite_differences(const struct pound_scene *scene, void 
 		    .n = 2 * record->n - 1, .time_step = record->time_step / 2, .a = twice};
 		int n = 0;
 		pound_interpolation_twice(record->n, record->a, twice);
-		for (int i = 0; i < POUND_OSCILLATORS && scene->n_buildings == 0; i++) {
-			const struct pound_oscillator *body = &scene->oscillators[i];
-			if (body->rigid_wall)
+		for (int i = 0; i < (scene->n_buildings ? scene->n_buildings : POUND_OSCILLATORS); i++) {
+			double w, damping_ratio;
+			if (!body_of(scene, i, &w, &damping_ratio))
 				continue;
-			tasks[n++] = oscillator(record, 2 * PI * body->frequency_hz, body->damping_ratio);
-			tasks[n++] = oscillator(&finer, 2 * PI * body->frequency_hz, body->damping_ratio);
+			tasks[n++] = oscillator(record, w, damping_ratio);
+			tasks[n++] = oscillator(&finer, w, damping_ratio);
 		}
 		status = n ? pound_solver_run(&exact, tasks, results, n, scratch, stop) : POUND_OK;
 		differences[k] = n ? 0 : NAN;

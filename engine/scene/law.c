@@ -19,6 +19,8 @@
 
 enum { CENTER, RIGHT, LEFT, RIGHT_SECANT, LEFT_SECANT };
 
+enum { BRANCHES_BACK = 8 /* on the way to force 0, more than any law has */ };
+
 /* The branch of the backbone curve beyond the yield point on one side (+1 right, -1 left). */
 static struct pound_branch hardened(const struct pound_backbone *s, double side)
 {
@@ -201,4 +203,30 @@ double pound_law_envelope(const struct pound_backbone *s, double u)
 double pound_law_residual(const struct pound_backbone *s, const struct pound_law_state *at, double u)
 {
 	return laws[s->law].residual ? laws[s->law].residual(s, at, u) : 0;
+}
+
+/* Work that the law gives back on the way from u to force 0, per mass [m2/s2]: the area under its branches.
+ *
+ * So elastoplastic, first slope k: r^2/(2 k) where |r| <= 2 k d_y (Uang and Bertero 1990); towards the origin: r u/2.
+ *
+ * Test     unit_law: a_law_gives_back_what_it_does_on_the_way_to_no_force
+ */
+double pound_law_given_back(const struct pound_backbone *s, const struct pound_law_state *from, double u)
+{
+	struct pound_law_state at = *from;
+	double work = 0, r = at.branch.stiffness * u + at.branch.offset;
+	const double way = r > 0 ? -1 : 1;
+	if (at.branch.direction * way < 0)
+		pound_law_leave(s, &at, POUND_EDGE_REVERSAL, u);
+	for (int branch = 0; branch < BRANCHES_BACK && r != 0; branch++) {
+		const double edge = way > 0 ? at.branch.high : at.branch.low,
+		             zero = at.branch.stiffness > 0 ? -at.branch.offset / at.branch.stiffness : way * DBL_MAX;
+		const bool ends = (zero - edge) * way <= 0;
+		const double to = ends ? zero : edge, force = ends ? 0 : at.branch.stiffness * to + at.branch.offset;
+		work += 0.5 * (r + force) * (u - to);
+		u = to, r = force;
+		if (!ends)
+			pound_law_leave(s, &at, way > 0 ? POUND_EDGE_HIGH : POUND_EDGE_LOW, u);
+	}
+	return work;
 }

@@ -36,5 +36,7 @@ void pound_law_leave(const struct pound_backbone *backbone, struct pound_law_sta
                      double u);
 double pound_law_envelope(const struct pound_backbone *backbone, double u);
 double pound_law_residual(const struct pound_backbone *backbone, const struct pound_law_state *at, double u);
+double pound_law_given_back(const struct pound_backbone *backbone, const struct pound_law_state *at,
+                            double u);
 
 #endif

@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 // forms of contact force that have branches: all but velocities that jump
 #define BRANCHES                                                                                  \
@@ -118,16 +119,21 @@ void pound_pair_chain(const struct pound_task *task, struct pound_pair_chain *ch
 	const bool wall = task->mass_ratio == 0;
 	const double mass[POUND_OSCILLATORS] = {1, wall ? 1 : 1 / task->mass_ratio};
 	const int right = wall ? POUND_CHAIN_GROUND : 1, n = wall ? 1 : POUND_OSCILLATORS;
-	chain->link = (struct pound_link){.floor = {{0, 0}, {right, right}},
-	                                  .weight = {{1, 0}, {1, 0}},
-	                                  .law = pound_task_law(task),
-	                                  .gap = task->gap};
+	memset(chain, 0, sizeof *chain); // chains are compared byte by byte
+	for (int w = 0; w < 2; w++)
+		chain->link.floor[1][w] = right;
+	chain->link.weight[0][0] = chain->link.weight[1][0] = 1;
+	chain->link.law = pound_task_law(task);
+	chain->link.gap = task->gap;
 	for (int i = 0; i < n; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
 		assert(body->u == 0 && body->v == 0 && body->drive == 1);
-		chain->floors[i] = (struct pound_chain_floor){
-		    .mass = mass[i], .dashpot = body->damping * mass[i], .story = body->backbone, .base = true};
-		chain->floors[i].story.stiffness *= mass[i];
+		struct pound_chain_floor *floor = &chain->floors[i];
+		floor->mass = mass[i];
+		floor->dashpot = body->damping * mass[i];
+		floor->story = body->backbone;
+		floor->story.stiffness *= mass[i];
+		floor->base = true;
 	}
 	chain->task = (struct pound_chain_task){.ground = task->ground,
 	                                        .n_samples = task->n_samples,

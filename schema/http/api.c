@@ -8,6 +8,7 @@
 #include "schema/figure/figure.h"
 #include "schema/result/result_json.h"
 #include "schema/study/fields.h"
+#include "schema/study/study_json.h"
 
 const struct api_fault_row api_faults[] = {
 #define X(name, status, type, title) [API_##name] = {status, type, title},
@@ -41,6 +42,9 @@ const struct api_operation api_operations[] = {
 	[API_samples] = {"GET", "/v1/studies/{id}/samples", "samples",
 	                 "all rows of inputs with their outputs, enough to recompute the raw indices", " 200 304 ",
 	                 .media = " text/csv application/octet-stream ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	[API_motions] = {"GET", "/v1/studies/{id}/motions", "motions",
+	                 "the ground motions of a study, made once more, or their response spectra", " 200 304 ",
+	                 .media = " text/csv application/octet-stream text/plain ", .faults = STORED | F(CONFLICT)},
 	[API_figures] = {"GET", "/v1/studies/{id}/figures", "figures",
 	                 "the figures that the result has", " 200=Figures 304 ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_figure]  = {"GET", "/v1/studies/{id}/figures/{name}", "figure",
@@ -94,6 +98,12 @@ const struct api_argument api_arguments[] = {
 	{"results", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"samples", "format",          "query",  " csv npy ", 0, 0, NULL, .text = "format of the answer; takes precedence over Accept"},
 	{"samples", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"motions", "format",          "query",  " csv npy at2 ", 0, 0, NULL, .text = "format of the answer; takes precedence over Accept; at2: one signal as a PEER file"},
+	{"motions", "cell",            "query",  NULL, 0, STUDY_CELLS_MAX - 1, "0", .text = "cell of the sweeps"},
+	{"motions", "row",             "query",  NULL, 1, POUND_ROWS_MAX, "1", .text = "row of the design"},
+	{"motions", "signal",          "query",  NULL, 0, POUND_ROWS_MAX, NULL, .text = "one signal (default: all; of at2 the first)"},
+	{"motions", "periods",         "query",  NULL, 0, 0, NULL, .text = "response spectra instead, as CSV: up to 100 periods in seconds between commas, of oscillators with 5 % damping"},
+	{"motions", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"figures", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: if there is no result yet, that of the rows completed so far"},
 	{"figures", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"figure",  "name",            "path",   NAMES, 0, 0, NULL, .text = "name of the figure"},

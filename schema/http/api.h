@@ -36,7 +36,7 @@
 
 /* What can be asked for: X(operation, which is a row of api_operations and a function of routes.c). */
 #define API_OPERATIONS(X)                                                                 \
-	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(figures) \
+	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(motions) X(figures) \
 	X(figure) X(cancel) X(records_put) X(records_get) \
 	X(live) X(ready) X(metrics) X(version) X(openapi) \
 	X(bridge_info) X(bridge_model) X(bridge_inputs) X(bridge_outputs) \

@@ -240,8 +240,10 @@ void head_end(struct head *head, bool needs_host, const char *names)
 		            "this server does not accept that Host; poundd --host adds names");
 	if (head->encoded)
 		head_refuse(head, API_NOT_JSON, false, "the only supported Content-Encoding is identity");
-	if (head->length > HEAD_BODY_MAX)
+	if (!head->of_record && head->length > HEAD_BODY_MAX)
 		head_refuse(head, API_TOO_LARGE, false, "a body may have at most 1 MiB");
+	if (head->of_record && head->length > HEAD_RECORD_MAX)
+		head_refuse(head, API_TOO_LARGE, false, "the file of a record may have at most 8 MiB");
 }
 
 /* Judges where a request that changes something comes from: a page of the web names its own origin, and its browser says

@@ -10,10 +10,11 @@
 #include "schema/http/api.h"
 
 enum {
-	HEAD_BODY_MAX = 1 << 20, /* [bytes] */
-	HEAD_TEXT_SIZE = 1024,   /* of a value that is kept [bytes] */
-	HEAD_KEY_MAX = 200,      /* characters of an Idempotency-Key */
-	HEAD_TARGET_MAX = 4096,  /* [bytes] */
+	HEAD_BODY_MAX = 1 << 20,   /* [bytes] */
+	HEAD_RECORD_MAX = 8 << 20, /* of a file of a recorded ground motion */
+	HEAD_TEXT_SIZE = 1024,     /* of a value that is kept [bytes] */
+	HEAD_KEY_MAX = 200,        /* characters of an Idempotency-Key */
+	HEAD_TARGET_MAX = 4096,    /* [bytes] */
 	HEAD_ARGUMENTS_MAX = 16,
 	HEAD_LINES_MAX = 64,      /* headers */
 	HEAD_BYTES_MAX = 1 << 14, /* of the request line and the headers */
@@ -31,7 +32,8 @@ struct head {
 	bool encoded;                       /* the body is compressed or the like */
 	bool json;                          /* the body is declared as JSON */
 	bool has_body;
-	size_t length; /* of the body, as it is declared */
+	bool of_record; /* the body is a file of a recorded ground motion; set before head_end */
+	size_t length;  /* of the body, as it is declared */
 	char host[256];
 	struct head_text authorization, key; /* key: Idempotency-Key */
 	struct head_text etags;              /* If-None-Match */

@@ -18,7 +18,7 @@ enum problems_status {
 
 struct problem {
 	char pointer[160];       /* JSON Pointer (RFC 6901) into the document; "" is the whole document */
-	char detail[1024];       /* "must be in [0, 1], got 1.4" */
+	char detail[2048];       /* "must be in [0, 1], got 1.4" */
 	double requested, limit; /* of what there may not be so much of; limit 0: it is no such problem */
 };
 

@@ -3,10 +3,49 @@
  * Nothing of them is stored: they are made once more, to the same bits. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "schema/record/record.h"
+#include "schema/result/motion_spectrum.h"
 #include "schema/result/npy.h"
 #include "schema/result/result_json.h"
+#include "schema/study/study_json.h"
+
+bool motions_choose(const struct pound_study *study, const struct pound_run *run, struct pound_place place,
+                    struct motion_choice *choice, char why[static 100])
+{
+	const int signals = study->scene.excitation.signals;
+	const struct {
+		const char *what;
+		int least, value, most;
+	} limits[] = {{"cell", 0, place.cell, study_cells(study) - 1},
+	              {"row", 1, place.row + 1, pound_run_rows(run)},
+	              {"signal", 0, place.signal < 0 ? 0 : place.signal, signals - 1}};
+	for (int k = 0; k < 3; k++)
+		if (limits[k].value < limits[k].least || limits[k].value > limits[k].most) {
+			snprintf(why, 100, "%s must be a whole number from %d to %d, got %d", limits[k].what,
+			         limits[k].least, limits[k].most, limits[k].value);
+			return false;
+		}
+	*choice = (struct motion_choice){
+	    .place = place,
+	    .one = place.signal >= 0,
+	    .signals = signals,
+	    .records = study->scene.excitation.n_records ? study->scene.excitation.records : NULL,
+	    .name = study->name ? study->name : "a ground motion"};
+	choice->place.signal = choice->one ? place.signal : 0;
+	return true;
+}
+
+int64_t motions_samples(const struct pound_run *run, const struct motion_choice *choice)
+{
+	struct pound_place place = choice->place;
+	const int end = choice->one ? place.signal + 1 : choice->signals;
+	int64_t n = 0;
+	for (double step; place.signal < end; place.signal++)
+		n += pound_run_motion_samples(run, &place, &step);
+	return n;
+}
 
 /* A ground motion; false: out of memory. */
 static bool motion_of(const struct pound_run *run, const struct pound_place *place, struct record *motion)
@@ -116,4 +155,53 @@ char *motions_to_peer(const struct pound_run *run, const struct motion_choice *c
 	char *text = record_to_peer(&motion, length);
 	record_free(&motion);
 	return text;
+}
+
+/* Adds the rows of a ground motion; false: out of memory. */
+static bool spectrum_add(struct writer *w, const struct pound_run *run, const struct motion_choice *choice,
+                         const struct pound_place *place, const struct periods *periods)
+{
+	double psa[PERIODS_MAX];
+	struct record motion;
+	const bool has = motion_of(run, place, &motion) && motion_spectrum(&motion, periods, psa) == POUND_OK;
+	record_free(&motion);
+	for (int k = 0; k < periods->n && has; k++) {
+		char text[4 * WRITER_NUMBER_SIZE];
+		const double values[] = {periods->period[k], psa[k]};
+		writer_raw(w, text, (size_t)snprintf(text, sizeof text, "%d", place->signal));
+		if (choice->records) {
+			const struct pound_suite_signal signal = pound_run_motion_record(run, place);
+			writer_raw(w, text, (size_t)snprintf(text, sizeof text, ",%d,", signal.record));
+			writer_raw(w, text, (size_t)writer_digits(signal.factor, text));
+		}
+		for (int j = 0; j < 2; j++) {
+			writer_raw(w, ",", 1);
+			writer_raw(w, text, (size_t)writer_digits(values[j], text));
+		}
+		writer_raw(w, "\n", 1);
+	}
+	return has;
+}
+
+/* Response spectra as CSV.
+ *
+ * Given    periods  at least one
+ * Returns  value    (length)   NULL: out of memory
+ * Memory   allocates; the caller frees
+ *
+ * Test     client_suite: spectra_name_the_records
+ */
+char *motions_to_spectra(const struct pound_run *run, const struct motion_choice *choice,
+                         const struct periods *periods, size_t *length)
+{
+	struct writer w;
+	struct pound_place place = choice->place;
+	const int end = choice->one ? place.signal + 1 : choice->signals;
+	const char *head =
+	    choice->records ? "signal,record,factor,period_s,psa_m_s2\n" : "signal,period_s,psa_m_s2\n";
+	writer_init(&w);
+	writer_raw(&w, head, strlen(head));
+	for (; place.signal < end && !w.failed; place.signal++)
+		w.failed |= !spectrum_add(&w, run, choice, &place, periods);
+	return writer_take(&w, length);
 }

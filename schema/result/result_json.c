@@ -571,26 +571,6 @@ static void write_left_out(struct writer *w, const struct pound_study *study, co
 	writer_end(w);
 }
 
-/* Why runs have no result, the reasons that there are. */
-static void write_failures(struct writer *w, const struct pound_work *work)
-{
-	static const char *const reasons[] = {
-#define X(name, value, text) [name##_RUNS] = text,
-	    POUND_FAILURES(X)
-#undef X
-	};
-	writer_array(w, "failures", WRITER_LINES);
-	for (int k = 0; k < POUND_N_FAILURES; k++) {
-		if (!work->failed[k])
-			continue;
-		writer_object(w, NULL, WRITER_LINE);
-		writer_text(w, "reason", reasons[k]);
-		writer_whole(w, "runs", work->failed[k]);
-		writer_end(w);
-	}
-	writer_end(w);
-}
-
 /* How the searches for yield displacements ended; nothing where there were none. */
 static void write_searches(struct writer *w, const struct pound_work *work)
 {
@@ -621,12 +601,16 @@ static void write_work(struct writer *w, const struct pound_study *study, const 
 	if (work->free_pair_runs.asked) {
 		X(free_pair_runs, "responses of both bodies together without pounding")
 	}
+	if (work->chain_runs.asked) {
+		X(chain_runs,
+		  "responses of both bodies again, for accelerations, forces, speeds, residuals or energies")
+	}
 #undef X
 	writer_whole(w, "never_touching", work->never_touching);
 	writer_whole(w, "moving_alike", work->moving_alike);
 	writer_whole(w, "contacts", work->contacts);
 	write_searches(w, work);
-	write_failures(w, work);
+	result_failures(w, work);
 	write_left_out(w, study, work);
 	writer_end(w);
 }

@@ -58,8 +58,18 @@ struct motion_choice {
 	const struct pound_record *records; /* of its suite; NULL: it has none */
 };
 
+/* The motions of a place; one without a signal (-1) has all of them.  false: there is no such place, and why. */
+bool motions_choose(const struct pound_study *study, const struct pound_run *run, struct pound_place place,
+                    struct motion_choice *choice, char why[static 100]);
+int64_t motions_samples(const struct pound_run *run,
+                        const struct motion_choice *choice); /* of all that are chosen */
+
 char *motions_to_csv(const struct pound_run *run, const struct motion_choice *choice, size_t *length);
 char *motions_to_npy(const struct pound_run *run, const struct motion_choice *choice, size_t *length);
 char *motions_to_peer(const struct pound_run *run, const struct motion_choice *choice, size_t *length);
+/* Their pseudo-accelerations, a row for each signal and period; of a suite with its record and factor. */
+struct periods;
+char *motions_to_spectra(const struct pound_run *run, const struct motion_choice *choice,
+                         const struct periods *periods, size_t *length);
 
 #endif

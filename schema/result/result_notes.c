@@ -106,3 +106,23 @@ void result_notes_write(struct writer *w, const struct result_notes *notes)
 	if (n)
 		writer_text(w, "note", text);
 }
+
+/* Why runs have no result, the reasons that there are. */
+void result_failures(struct writer *w, const struct pound_work *work)
+{
+	static const char *const reasons[] = {
+#define X(name, value, text) [name##_RUNS] = text,
+	    POUND_FAILURES(X)
+#undef X
+	};
+	writer_array(w, "failures", WRITER_LINES);
+	for (int k = 0; k < POUND_N_FAILURES; k++) {
+		if (!work->failed[k])
+			continue;
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "reason", reasons[k]);
+		writer_whole(w, "runs", work->failed[k]);
+		writer_end(w);
+	}
+	writer_end(w);
+}

@@ -23,4 +23,6 @@ void result_notes_add(struct result_notes *notes, const char *name, const struct
                       struct result_notes_source source);
 void result_notes_write(struct writer *w, const struct result_notes *notes);
 
+void result_failures(struct writer *w, const struct pound_work *work); /* why runs have no result */
+
 #endif

@@ -92,7 +92,7 @@ static void put_header(struct writer *w, const struct pound_study *study)
 static void put_sample_name(struct writer *w, const struct pound_study *study, int sample)
 {
 	char name[2 + POUND_INPUTS_MAX * 128];
-	const unsigned from_b = pound_design_mask(study, sample), all = (1u << study->n_inputs) - 1;
+	const unsigned from_b = pound_design_mask(study, sample), all = pound_inputs_all(study->n_inputs);
 	const bool mostly_b =
 	    sample == 1 || (sample >= 2 + study->n_inputs && 2 * __builtin_popcount(from_b) > study->n_inputs);
 	const unsigned named = mostly_b ? all ^ from_b : from_b;

@@ -433,6 +433,15 @@ static void count_free_pairs(const struct pound_study *study, double items, stru
 		c->of[PAIR_MAPS] += samples;
 }
 
+/* Adds what outputs take that a pair gives as a chain, run once more. */
+static struct marches count_again(const struct pound_study *study, double items, struct counts *c)
+{
+	const unsigned asked = pound_outputs_asked(study);
+	if (study->scene.n_buildings || !(asked & POUND_ASKS_CHAIN))
+		return (struct marches){.n = 0};
+	return count_pair_chain(study, items * (asked & POUND_ASKS_FREE_FLOORS ? 2 : 1), c);
+}
+
 /* Returns the marches of chains, if there are any. */
 static struct marches count_runs(const struct pound_study *study, const struct pound_solver *solver,
                                  double items, struct counts *c)
@@ -523,6 +532,10 @@ void operations_count(const struct pound_study *study, struct counts *c)
 			count_runs(study, &solver, items * (2 + HISTORIES / 2), c);
 			c->of[CLOCK]++;
 		}
+	const struct marches again = count_again(study, items, c), *lost = study->scene.n_buildings ? &m : &again;
+	// no whole samples are passed at once
+	if (pound_outputs_asked(study) & POUND_ASKS_ENERGIES)
+		c->of[YIELD_STEP] += lost->n * lost->steps * lost->wide;
 	if (study->spectrum.n)
 		count_floors(study, (double)study_runs(study), &m, c);
 	if (study->kind == POUND_KIND_SENSITIVITY)

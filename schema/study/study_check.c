@@ -370,7 +370,7 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 	for (int o = 0; o < study->n_outputs; o++) {
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
-		if (pound_output_observes(study->outputs[o]) && !problems_at(problems, "/solver") &&
+		if (pound_output_observes(study->outputs[o], &study->scene) && !problems_at(problems, "/solver") &&
 		    !pound_solver_is_observed(study->solver.method))
 			problems_add(problems, pointer, "cannot be computed with the solver \"%s\", only with \"event\"",
 			             pound_solver_name(study->solver.method));
@@ -389,14 +389,6 @@ static bool uses_solver(const struct pound_study *study, int solver)
 	for (int j = 0; study->kind == POUND_KIND_CONVERGENCE && j < pound_convergence_trials(study); j++)
 		uses |= pound_convergence_solver(study, j).method == solver;
 	return uses;
-}
-
-static bool observes_contact(const struct pound_study *study)
-{
-	bool observes = false;
-	for (int o = 0; o < study->n_outputs; o++)
-		observes |= pound_output_observes_contact(study->outputs[o]);
-	return observes;
 }
 
 /* Every solver of the study must be able to integrate every contact model of its cells; what cannot is refused, as nothing
@@ -418,10 +410,6 @@ static void check_forces(const struct pound_study *study, struct problems *probl
 			if (uses_solver(study, row) && !pound_solver_takes_force(row, force))
 				problems_add(problems, pointer, "the solver \"%s\" cannot integrate the contact model \"%s\"",
 				             pound_solver_name(row), pound_contact_name(scene.contact.model));
-		if (observes_contact(study) && force != POUND_FORCE_LINEAR)
-			problems_add(problems, pointer,
-			             "peak_approach_speed_m_s cannot be computed with the contact model \"%s\"",
-			             pound_contact_name(scene.contact.model));
 	}
 }
 
@@ -436,15 +424,6 @@ static void check_order(const struct pound_study *study, struct problems *proble
 		    problems, "/design/order",
 		    "\"factorial\" runs all 2^n_inputs mixtures of A and B, so it takes at most %d inputs, got %d",
 		    POUND_FACTORIAL_INPUTS_MAX, study->n_inputs);
-}
-
-/* The sequence behind a quasi-random design has so many dimensions. */
-static void check_dimensions(const struct pound_study *study, struct problems *problems)
-{
-	if (pound_study_sampled(study) && pound_design_quasi_random(study->design.method) &&
-	    study->n_inputs > POUND_QUASI_INPUTS_MAX)
-		problems_add(problems, "/design/method", "\"%s\" takes at most %d inputs, got %d",
-		             pound_design_name(study->design.method), POUND_QUASI_INPUTS_MAX, study->n_inputs);
 }
 
 /* ---- ratios ---- */
@@ -519,7 +498,8 @@ static void check_group(const struct pound_study *study, int g, struct problems 
 		seen |= input >= 0 ? 1u << input : 0u;
 	}
 	snprintf(pointer, sizeof pointer, "/groups/%d/of", g);
-	if (study->n_inputs > 0 && seen == (1u << study->n_inputs) - 1 && !problems_over(problems, "/inputs"))
+	if (study->n_inputs > 0 && seen == pound_inputs_all(study->n_inputs) &&
+	    !problems_over(problems, "/inputs"))
 		problems_add(problems, pointer, "has every input, so its indices are 1: leave out one");
 }
 
@@ -557,8 +537,6 @@ void study_check(const struct pound_study *study, struct problems *problems)
 		return;
 	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
 		check_order(study, problems);
-	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
-		check_dimensions(study, problems);
 	check_ratios(study, problems);
 	check_groups(study, problems);
 	if (study->elsewhere) {

@@ -438,7 +438,8 @@ static void outputs_default(struct pound_study *study)
 {
 	for (int k = 0; fields_outputs_absent[k]; k++) {
 		int output = fields_choice(pound_output_name, fields_outputs_absent[k]);
-		if (study_check_applies(study, output))
+		// what takes runs of its own is run where it is named
+		if (study_check_applies(study, output) && !pound_output_observes(output, &study->scene))
 			study->outputs[study->n_outputs++] = output;
 	}
 }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/scene/building.h"
 #include "schema/study/study_check.h"
 
 static const double G = 9.80665, PGA_MOST = 3, PGA_LEAST = 0.001; /* [m/s2], [g] */
@@ -36,20 +37,46 @@ warn(struct warnings *all, const char *pointer, const char *format, ...)
 
 /* ---- before it is run ---- */
 
+/* Bodies: two oscillators, or the buildings of a row. */
+static int bodies_of(const struct pound_study *study)
+{
+	return study->scene.n_buildings ? study->scene.n_buildings : POUND_OSCILLATORS;
+}
+
+static bool is_wall(const struct pound_study *study, int i)
+{
+	return study->scene.n_buildings ? study->scene.buildings[i].rigid_wall
+	                                : study->scene.oscillators[i].rigid_wall;
+}
+
+/* The interval of the masses of a body: of the lightest to the heaviest floor, or as inputs and sweeps vary it. */
+static void masses_of(const struct pound_study *study, int i, char path[static 40], double *low, double *high)
+{
+	snprintf(path, 40, study->scene.n_buildings ? "/buildings/%d/mass_kg" : "/oscillators/%d/mass_kg", i);
+	*low = INFINITY, *high = 0;
+	for (int k = 0; study->scene.n_buildings && k < study->scene.buildings[i].mass.n; k++) {
+		*low = fmin(*low, study->scene.buildings[i].mass.values[k]);
+		*high = fmax(*high, study->scene.buildings[i].mass.values[k]);
+	}
+	if (!study->scene.n_buildings)
+		study_check_reach(study, path, low, high);
+}
+
 static void look_at_masses(struct warnings *all, const struct pound_study *study)
 {
-	static const char *const paths[] = {"/oscillators/0/mass_kg", "/oscillators/1/mass_kg"};
-	const struct pound_oscillator *both = study->scene.oscillators;
-	double low[2], high[2];
-	if (both[1].rigid_wall)
-		return;
-	for (int i = 0; i < 2; i++)
-		study_check_reach(study, paths[i], &low[i], &high[i]);
-	for (int i = 0; i < 2; i++) {
-		char pointer[40];
+	char paths[POUND_BUILDINGS_MAX][40];
+	double low[POUND_BUILDINGS_MAX], high[POUND_BUILDINGS_MAX], most = 0;
+	for (int i = 0; i < bodies_of(study); i++) {
+		if (is_wall(study, i))
+			continue;
+		masses_of(study, i, paths[i], &low[i], &high[i]);
+		most = fmax(most, low[i]);
+	}
+	for (int i = 0; i < bodies_of(study); i++) {
+		char pointer[48];
 		snprintf(pointer, sizeof pointer, "/scene%s", paths[i]);
-		if (low[i] == 1 && high[i] == 1 && low[1 - i] >= MASSES_APART)
-			warn(all, pointer, "is 1 kg beside %.6g kg: was it left out?", low[1 - i]);
+		if (!is_wall(study, i) && low[i] == 1 && high[i] == 1 && most >= MASSES_APART)
+			warn(all, pointer, "is 1 kg beside %.6g kg: was it left out?", most);
 	}
 }
 
@@ -96,17 +123,29 @@ static void look_at_peaks(struct warnings *all, const struct pound_study *study)
 		warn(all, pointer, "has a peak of %.4g m/s2, %.4g g: is its unit m/s2?", low, low / G);
 }
 
+/* Of a building's first mode [Hz]: higher ones may be missed without harm. */
+static double first_frequency(const struct pound_building *building)
+{
+	struct pound_storeys storeys;
+	pound_building_storeys(building, &storeys);
+	return storeys.frequency / (2 * 3.14159265358979323846);
+}
+
 static void look_at_steps(struct warnings *all, const struct pound_study *study)
 {
-	static const char *const paths[] = {"/oscillators/0/frequency_hz", "/oscillators/1/frequency_hz"};
 	// what one in a thousand scenes exceeds: a distribution without an upper end has no shortest period
 	double fastest = 0, low, high, step = study->scene.excitation.time_step;
-	for (int i = 0; i < 2; i++) {
-		if (study->scene.oscillators[i].rigid_wall)
+	for (int i = 0; i < bodies_of(study); i++) {
+		char path[40];
+		if (is_wall(study, i))
 			continue;
-		study_check_reach(study, paths[i], &low, &high);
+		snprintf(path, sizeof path, "/oscillators/%d/frequency_hz", i);
+		if (study->scene.n_buildings)
+			high = first_frequency(&study->scene.buildings[i]);
+		else
+			study_check_reach(study, path, &low, &high);
 		for (int j = 0; j < study->n_inputs && isinf(high); j++)
-			if (study->inputs[j].path && strcmp(study->inputs[j].path, paths[i]) == 0)
+			if (study->inputs[j].path && strcmp(study->inputs[j].path, path) == 0)
 				high = pound_distribution_quantile(&study->inputs[j].distribution, 0.999);
 		fastest = fmax(fastest, high);
 	}
@@ -169,6 +208,35 @@ static void look_at_yield(struct warnings *all, const struct pound_study *study,
 	}
 }
 
+/* Yield drifts that are given and that no run reaches. */
+static void look_at_yield_drifts(struct warnings *all, const struct pound_study *study,
+                                 const struct pound_result *result)
+{
+	bool varied = false; // storeys of a cell may then be others
+	for (int s = 0; s < study->n_sweeps; s++)
+		varied |= study->sweeps[s].field.part == POUND_PART_BUILDINGS;
+	for (int b = 0; b < study->scene.n_buildings && study->kind == POUND_KIND_RESPONSE && !varied; b++) {
+		const struct pound_building *building = &study->scene.buildings[b];
+		const bool own = building->has_law;
+		double demand = 0;
+		char pointer[64];
+		if (is_wall(study, b) ||
+		    !(own ? building->yield_drift.n > 0 : study->scene.law.yield_displacement > 0))
+			continue;
+		for (int cell = 0; cell < result->n_cells; cell++)
+			for (int s = 0; s < result->cells[cell].n_signals; s++) {
+				const struct pound_storey_response *storeys =
+				    &result->cells[cell].rows[s].storeys[pound_row_first(&study->scene, b)];
+				for (int i = 0; i < pound_row_storeys(&study->scene, b); i++)
+					demand = fmax(demand, fmax(storeys[i].demand, storeys[i].demand_free));
+			}
+		snprintf(pointer, sizeof pointer,
+		         own ? "/scene/buildings/%d/law/yield_displacement_m" : "/scene/law/yield_displacement_m", b);
+		if (demand > 0 && demand < 1)
+			warn(all, pointer, "is never reached by building %d: its largest demand is %.4g", b, demand);
+	}
+}
+
 /* Writes what is valid and probably not meant.
  *
  * Test     unit_warnings
@@ -178,14 +246,13 @@ void warnings_write(struct writer *w, const struct pound_study *study, const str
 	struct warnings all = {.w = w};
 	if (study->elsewhere)
 		return;
-	if (study->scene.n_buildings == 0) {
-		look_at_masses(&all, study);
-		look_at_steps(&all, study);
-	}
+	look_at_masses(&all, study);
+	look_at_steps(&all, study);
 	look_at_peaks(&all, study);
 	if (result) {
 		look_at_gap(&all, study, result);
 		look_at_yield(&all, study, result);
+		look_at_yield_drifts(&all, study, result);
 	}
 	if (all.open)
 		writer_end(w);

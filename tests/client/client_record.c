@@ -1,5 +1,6 @@
 /* `pound record`: files of recorded ground motions, as a user meets them. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "schema/json/json_pointer.h"
@@ -39,11 +40,10 @@ static void a_short_period_has_the_peak_of_a_jump(void **state)
 	struct program_outcome shown =
 	    POUND("record", "--format", "csv", "--periods", "0.0001", FILES "two_columns.csv");
 	program_expect(&shown, 0);
-	const char *row = strrchr(strchr(shown.out, '\n'), ',');
-	assert_non_null(row);
+	double psa;
+	assert_int_equal(sscanf(strchr(shown.out, '\n') + 1, "%*[^,],%*[^,],%lf", &psa), 1);
 	// meanwhile the acceleration changes by its slope times half a period
-	check_near(strtod(row + 1, NULL), 0.05 * (1 + exp(-pi * 0.05 / sqrt(1 - 0.05 * 0.05))),
-	           slope * period / 2);
+	check_near(psa, 0.05 * (1 + exp(-pi * 0.05 / sqrt(1 - 0.05 * 0.05))), slope * period / 2);
 	program_free(&shown);
 }
 

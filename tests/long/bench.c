@@ -145,5 +145,6 @@ int main(int argc, char **argv)
 	bench_indices();
 	bench_spectra();
 	bench_separation();
+	bench_outputs();
 	return 0;
 }

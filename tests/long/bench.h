@@ -50,5 +50,6 @@ void bench_indices(void);
 void bench_spectra(void);
 void bench_chains(void);
 void bench_separation(void);
+void bench_outputs(void);
 
 #endif

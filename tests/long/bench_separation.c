@@ -1,4 +1,4 @@
-/* bench_separation.c - what a gap curve costs beside its runs without contact. */
+/* bench_separation.c - what a gap curve costs beside its runs without contact, and outputs beside the runs that have them already. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -55,4 +55,36 @@ void bench_separation(void)
 		for (int k = 0; k < 2; k++)
 			study_free(jobs[k].of);
 	}
+}
+
+/* What outputs of a pair cost that take runs of their own; what is not asked for is not run. */
+void bench_outputs(void)
+{
+	static const struct {
+		const char *what, *outputs;
+	} asked[] = {{NULL, "\"peak_displacement_m\", \"peak_impulse_n_s\""},
+	             {"forces and approach speeds", "\"peak_contact_force_n\", \"peak_approach_speed_m_s\""},
+	             {"accelerations with and without pounding", "\"acceleration_amplification\""},
+	             {"energies lost", "\"contact_energy_ratio\""}};
+	enum { ASKED = sizeof asked / sizeof asked[0] };
+	struct bench_job jobs[ASKED];
+	for (int k = 0; k < ASKED; k++) {
+		char document[512];
+		snprintf(
+		    document, sizeof document,
+		    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1.1}, "
+		    "{\"frequency_hz\": 1.7}], \"contact\": {\"gap_m\": 0.01}, \"excitation\": {\"signals\": 500}}, "
+		    "\"outputs\": [%s]}",
+		    asked[k].outputs);
+		jobs[k] = (struct bench_job){.run = study_run, .of = bench_study(document)};
+	}
+	bench_jobs(jobs, ASKED, REPEATS);
+	for (int k = 1; k < ASKED; k++)
+		bench_print((struct bench_row){.what = bench_text("500 signals with pounding and %s", asked[k].what),
+		                               .value = 1e3 * jobs[k].seconds,
+		                               .unit = "ms",
+		                               .ratio = jobs[k].seconds / jobs[0].seconds,
+		                               .to = "of the study without that output"});
+	for (int k = 0; k < ASKED; k++)
+		study_free(jobs[k].of);
 }

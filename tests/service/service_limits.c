@@ -12,6 +12,7 @@ enum { LONG = 20000 };
 
 #define HOST "Host: localhost\r\n"
 #define JSON "Content-Type: application/json\r\n"
+#define HASH "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
 #define POST "POST /v1/studies HTTP/1.1\r\n" HOST JSON
 
 /* requests that are over one limit; what stands between the halves comes so many times */
@@ -31,6 +32,8 @@ static const struct {
     {POST "Transfer-Encoding: chunked\r\n", "", "\r\n2\r\n{}\r\n0\r\n\r\n", 0, 411,
      "a body needs a Content-Length; Transfer-Encoding is not supported"},
     {POST "Content-Length: 1048577\r\n", "", "\r\n", 0, 413, "a body may have at most 1 MiB"},
+    {"PUT /v1/records/" HASH " HTTP/1.1\r\n" HOST "Content-Length: 8388609\r\n", "", "\r\n", 0, 413,
+     "the file of a record may have at most 8 MiB"},
     {POST "Content-Length: 2\r\nIdempotency-Key: ", "k", "\r\n\r\n{}", 201, 400,
      "an Idempotency-Key must have 1 to 200 characters"},
     {POST "Content-Length: 2\r\nOrigin: http://", "e", ".example\r\n\r\n{}", 1, 403,

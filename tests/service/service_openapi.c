@@ -49,6 +49,14 @@ static const struct {
     {PLAIN, "GET", "/v1/studies/{done}/samples?format=npy", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/studies/{done}/samples", {"If-None-Match: *"}, NULL, 304},
     {PLAIN, "GET", "/v1/studies/{new}/samples", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{done}/motions", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/motions?format=npy", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/motions?format=at2&signal=0", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/motions?periods=0.5,1", {0}, NULL, 200},
+    {PLAIN, "GET", "/v1/studies/{done}/motions", {"If-None-Match: *"}, NULL, 304},
+    {PLAIN, "GET", "/v1/studies/{none}/motions", {0}, NULL, 404},
+    {PLAIN, "GET", "/v1/studies/{done}/motions?signal=99999", {0}, NULL, 409},
+    {PLAIN, "GET", "/v1/studies/{done}/motions?periods=1&format=npy", {0}, NULL, 400},
     {PLAIN, "GET", "/v1/studies/{done}/figures", {0}, NULL, 200},
     {PLAIN, "GET", "/v1/studies/{done}/figures", {"If-None-Match: *"}, NULL, 304},
     {PLAIN, "GET", "/v1/studies/{new}/figures", {0}, NULL, 404},
@@ -164,6 +172,7 @@ static const struct {
     {DAMAGED, "GET", "/v1/studies/{done}/request", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/results", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/samples", {0}, NULL, 500},
+    {DAMAGED, "GET", "/v1/studies/{done}/motions", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/figures", {0}, NULL, 500},
     {DAMAGED, "GET", "/v1/studies/{done}/figures/indices", {0}, NULL, 500},
 };
@@ -330,7 +339,7 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 	ask_all(&world, PLAIN);
 	ask_each(&world, "Host: evil.example", 421, true);
 	ask_each(&world, "X: \x01", 400, true);
-	ask_each(&world, "Content-Length: 2000000", 413, true);
+	ask_each(&world, "Content-Length: 9000000", 413, true);
 	ask_each(&world, "Transfer-Encoding: chunked", 411, true);
 	ask_each(&world, NULL, 414, true);
 	memset(world.large, 'X', HEAD_BYTES_MAX);

@@ -177,6 +177,45 @@ static void a_study_that_names_records_gives_the_bytes_of_its_samples(void **sta
 	free(study);
 }
 
+/* A record longer than any other body, and the motions of its study, which are those of the command line. */
+static void a_long_record_is_stored_and_its_motions_are_given_back(void **state)
+{
+	enum { SAMPLES = 100000 };
+	static char bytes[SAMPLES * 20];
+	struct service *service = *state;
+	char path[96], sha256[STUDY_HASH_SIZE], study[512], id[17];
+	size_t n = 0, length;
+	for (int k = 0; k < SAMPLES; k++)
+		n += (size_t)snprintf(bytes + n, sizeof bytes - n, "%.3f %.6f\n", k * 0.005, 0.001 * (k * 7 % 1013));
+	assert_true(n > 1 << 20);
+	study_digest(bytes, n, sha256);
+	snprintf(path, sizeof path, "/v1/records/%s", sha256);
+	struct answer answer =
+	    service_ask(service, &(struct ask){.method = "PUT", .path = path, .body = bytes, .length = n});
+	assert_int_equal(answer.status, 201);
+	answer_free(&answer);
+	snprintf(study, sizeof study,
+	         "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"rigid_wall\": "
+	         "true}], \"contact\": null, \"excitation\": {\"type\": \"suite\", \"directions\": \"both\", "
+	         "\"records\": [{\"sha256\": \"%s\", \"unit\": \"m/s2\"}]}}}",
+	         sha256);
+	service_submit(service, study, id);
+	answer = service_get(service, "/v1/studies/%s/motions?format=npy&signal=1", id);
+	assert_int_equal(answer.status, 200);
+	assert_true(answer.length > 20 * SAMPLES && answer.length < 20 * SAMPLES + 1000);
+	double last[2]; // time and acceleration of the last element: reversed
+	memcpy(last, answer.body + answer.length - sizeof last, sizeof last);
+	check_near(last[0], (SAMPLES - 1) * 0.005, 1e-9);
+	check_near(last[1], -0.001 * ((SAMPLES - 1) * 7 % 1013), 1e-15);
+	answer_free(&answer);
+	answer = service_get(service, "/v1/studies/%s/motions?periods=0.5", id);
+	assert_int_equal(answer.status, 200);
+	assert_memory_equal(answer.body, "signal,record,factor,period_s,psa_m_s2\n0,0,1,0.5,", 48);
+	length = answer.length;
+	assert_true(length > 60 && length < 200);
+	answer_free(&answer);
+}
+
 static void a_server_killed_anywhere_keeps_a_record_with_its_study(void **state)
 {
 	struct service *service = service_new();
@@ -226,5 +265,7 @@ CHECK_MAIN(cmocka_unit_test_setup_teardown(a_record_lives_while_a_study_names_it
            cmocka_unit_test_setup_teardown(a_record_that_no_study_names_is_deleted_after_an_hour,
                                            service_setup, service_teardown),
            cmocka_unit_test_setup_teardown(a_study_that_names_records_gives_the_bytes_of_its_samples,
+                                           service_setup, service_teardown),
+           cmocka_unit_test_setup_teardown(a_long_record_is_stored_and_its_motions_are_given_back,
                                            service_setup, service_teardown),
            cmocka_unit_test(a_server_killed_anywhere_keeps_a_record_with_its_study))

@@ -6,8 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-static const int degrees[POUND_SEQUENCE_COLUMNS] = {0, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6,
-                                                    6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
+static const int degrees[POUND_SEQUENCE_COLUMNS] = {
+    0, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7,
+    7, 7, 7, 7, 7, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9};
 
 static struct pound_sequence net_of(int column, int scramble)
 {
@@ -55,7 +56,7 @@ static int order_of_x(unsigned polynomial, int degree)
 static void polynomials_are_primitive_and_each_is_used_once(void **state)
 {
 	(void)state;
-	bool used[256] = {false};
+	bool used[1024] = {false};
 	for (int c = 1; c < POUND_SEQUENCE_COLUMNS; c++) {
 		unsigned p = polynomial_of(c);
 		assert_true(p > 0 && !used[p]);

@@ -28,7 +28,7 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 	static const struct {
 		const char *document, *pointer, *detail;
 	} refused[] = {
-	    {"{}", "/inputs", "is required: an array of 1 to 20 elements"},
+	    {"{}", "/inputs", "is required: an array of 1 to 32 elements"},
 	    {"{\"inputs\": [{" UNIFORM "]}", "/inputs/0/name", "is required: a string of 1 to 100 characters"},
 	    {"{\"inputs\": [{\"name\": \"row\", " UNIFORM "]}", "/inputs/0/name",
 	     "is already the name of a column of the samples (row, sample or an output); expected another name"},

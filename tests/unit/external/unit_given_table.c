@@ -132,7 +132,8 @@ static void what_is_wrong_with_a_table_is_reported_completely(void **state)
 	    {"a,b\n1,2\n1,1e70\n", "line 3, b", "must be at most 1e+60 in magnitude"},
 	    {"a,b\n1,inf\n2\n", "line 3", "has 1 cells, the header has 2"},
 	    {"row,sample\n1,2\n", "line 1", "has no column of an input"},
-	    {"a,b,c,d,e,f,g,h,i,j,k,l,m,n,o,p,q,r,s,t,u\n", "line 1", "has 21 inputs, expected at most 20"},
+	    {"a,b,c,d,e,f,g,h,i,j,k,l,m,n,o,p,q,r,s,t,u,v,w,x,y,z,aa,bb,cc,dd,ee,ff,gg\n", "line 1",
+	     "has 33 inputs, expected at most 32"},
 	    {"a\xff\n", "line 1", "is not UTF-8"},
 	};
 	for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {

@@ -13,7 +13,7 @@ static const struct addition {
     {"a law", "\"origin_oriented\""},
     {"a contact model", "\"rigid\""},
     {"an excitation", "\"white_noise\""},
-    {"an output", "\"peak_approach_speed_m_s\""},
+    {"an output", "\"hysteresis_energy_ratio_right\""},
     {"a damping form", "\"modal\""},
     {"a floor spectrum", "\"dirac_peaks\""},
     {"an estimator, a distribution, a design", "\"azzini_rosati\""},

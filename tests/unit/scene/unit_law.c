@@ -199,7 +199,32 @@ static void every_law_is_known_to_the_oracle_and_to_the_random_scenes_of_the_tes
 	assert_null(pound_law_name(SPECIMEN_LAWS));
 }
 
-CHECK_MAIN(cmocka_unit_test(every_law_is_known_to_the_oracle_and_to_the_random_scenes_of_the_tests),
+/* What is given back is what is done from there to no force. */
+static void a_law_gives_back_what_it_does_on_the_way_to_no_force(void **state)
+{
+	static const struct {
+		const char *law;
+		double hardening, to, back; /* displacements, the latter without force */
+	} cases[] = {{"linear", 0, 3, 0},
+	             {"elastoplastic", 0, 3, 2},
+	             {"elastoplastic", 0.2, -3, -1.6},
+	             {"elastoplastic", 0.5, 9, 1}, // r = 5 is 3 beyond 2 k d_y: it yields on the way
+	             {"nonlinear_elastic", 0.2, 3, 0},
+	             {"origin_oriented", 0.2, -4, 0}};
+	(void)state;
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		struct push push;
+		push_start(&push, law_row(cases[k].law), 1, cases[k].hardening);
+		push_to(&push, cases[k].to);
+		const double gives = pound_law_given_back(&push.backbone, &push.at, push.u), before = push.work;
+		push_to(&push, cases[k].back);
+		check_near(push.force, 0, 1e-15);
+		check_near(before - push.work, gives, 1e-14);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(a_law_gives_back_what_it_does_on_the_way_to_no_force),
+           cmocka_unit_test(every_law_is_known_to_the_oracle_and_to_the_random_scenes_of_the_tests),
            cmocka_unit_test(the_kinematic_loop_encloses_the_known_area),
            cmocka_unit_test(the_origin_oriented_law_loses_work_on_the_first_push_only),
            cmocka_unit_test(each_side_of_the_origin_oriented_law_remembers_its_own_farthest_point),

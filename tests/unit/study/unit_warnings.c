@@ -15,6 +15,9 @@
 #define SCENE(oscillators, contact, excitation)                                                       \
 	"{\"kind\": \"response\", \"scene\": {\"oscillators\": [" oscillators "], \"contact\": {" contact \
 	"}, \"excitation\": {" excitation "}}}"
+#define ROW(buildings, contact, excitation)                                                       \
+	"{\"kind\": \"response\", \"scene\": {\"buildings\": [" buildings "], \"contact\": {" contact \
+	"}, \"excitation\": {" excitation "}}}"
 #define BODIES "{\"frequency_hz\": 2}, {\"frequency_hz\": 3}"
 #define SHORT  "\"type\": \"white_noise\", \"duration_s\": 2, \"time_step_s\": 0.01, \"signals\": 2"
 
@@ -56,6 +59,16 @@ static const struct {
      "\"lognormal_cov\", \"mean\": 2, \"coefficient_of_variation\": 0.1}}, {\"path\": \"/contact/gap_m\", "
      "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 0.01}}], \"design\": {\"rows\": 4}}",
      NULL, NULL, false},
+    {ROW("{\"frequency_hz\": 2}, {\"frequency_hz\": 3}", "", SHORT), NULL, NULL, false},
+    {ROW("{\"frequency_hz\": 2, \"mass_kg\": [2e5, 3e5], \"storeys\": 2}, {\"frequency_hz\": 3}", "", SHORT),
+     "/scene/buildings/1/mass_kg", "is 1 kg beside 200000 kg: was it left out?", false},
+    {ROW("{\"frequency_hz\": 2, \"storeys\": 8}, {\"frequency_hz\": 20}", "", SHORT),
+     "/scene/excitation/time_step_s",
+     "0.01 s is more than a tenth of the shortest period, 0.05 s: linear interpolation weakens what the body "
+     "resounds to",
+     false},
+    {ROW("{\"frequency_hz\": 2}, {\"frequency_hz\": 3}", "\"gap_m\": 5", SHORT), "/scene/contacts",
+     "no run has a contact", true},
 };
 
 static struct reading *estimate_of(const struct pound_study *study)
@@ -108,6 +121,24 @@ static void what_was_probably_not_meant_is_said_before_and_after_the_run(void **
 	}
 }
 
+/* The same of a row: of one building, and of neither story of the other. */
+static void a_yield_drift_that_is_never_reached_is_named(void **state)
+{
+	(void)state;
+	static const char text[] = ROW(
+	    "{\"frequency_hz\": 2}, {\"frequency_hz\": 3, \"storeys\": 2, \"law\": {\"type\": \"elastoplastic\", "
+	    "\"yield_displacement_m\": 10}}",
+	    "", SHORT);
+	struct pound_study *study = study_documents_study(text);
+	struct reading *result = result_of(study);
+	assert_int_equal(reading_count(result, "/warnings"), 1);
+	assert_string_equal(reading_text(result, "/warnings/0/pointer"),
+	                    "/scene/buildings/1/law/yield_displacement_m");
+	assert_memory_equal(reading_text(result, "/warnings/0/detail"), "is never reached by building 1", 30);
+	reading_close(result);
+	study_free(study);
+}
+
 /* A yield displacement above all that happens, for the left body and not for the right one. */
 static void a_yield_displacement_that_is_never_reached_is_named(void **state)
 {
@@ -126,5 +157,6 @@ static void a_yield_displacement_that_is_never_reached_is_named(void **state)
 	study_free(study);
 }
 
-CHECK_MAIN(cmocka_unit_test(what_was_probably_not_meant_is_said_before_and_after_the_run),
+CHECK_MAIN(cmocka_unit_test(a_yield_drift_that_is_never_reached_is_named),
+           cmocka_unit_test(what_was_probably_not_meant_is_said_before_and_after_the_run),
            cmocka_unit_test(a_yield_displacement_that_is_never_reached_is_named))

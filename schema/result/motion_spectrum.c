@@ -1,8 +1,9 @@
 /* motion_spectrum.c - the response spectrum of a ground motion, by a study without contact that sweeps the frequency. */
-#include "client/motion_spectrum.h"
+#include "schema/result/motion_spectrum.h"
 
-#include "client/command.h"
+#include "engine/ground/excitation.h"
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,9 @@ const double motion_spectrum_damping = 0.05;
 
 static const double PI = 3.14159265358979323846, PERIOD_MAX = 1000;
 
+const char motion_spectrum_expected[] = "up to 100 numbers in (0, 1000] s between commas";
+static_assert(PERIODS_MAX == 100, "as the text says");
+
 bool motion_spectrum_periods(const char *list, struct periods *periods)
 {
 	periods->n = 0;
@@ -18,11 +22,8 @@ bool motion_spectrum_periods(const char *list, struct periods *periods)
 		char *end;
 		const double period = strtod(at, &end);
 		if (end == at || (*end && *end != ',') || !(period > 0 && period <= PERIOD_MAX) ||
-		    periods->n == PERIODS_MAX) {
-			command_complain("--periods takes up to %d numbers in (0, %g] s between commas, got '%s'",
-			                 PERIODS_MAX, PERIOD_MAX, list);
+		    periods->n == PERIODS_MAX)
 			return false;
-		}
 		periods->period[periods->n] = period;
 		at = *end ? end + 1 : NULL;
 	}
@@ -71,5 +72,18 @@ enum pound_status motion_spectrum(const struct record *motion, const struct peri
 		psa[k] = w * w * pound_run_result(run)->cells[k].signals[0].displacement_max_free_1;
 	}
 	pound_run_free(run);
+	return status;
+}
+
+enum pound_status motion_spectrum_finer(const struct record *motion, const struct periods *periods,
+                                        double *psa)
+{
+	struct record twice = {.n = 2 * motion->n - 1, .step = motion->step / 2};
+	twice.acceleration = malloc((size_t)twice.n * sizeof *twice.acceleration);
+	if (!twice.acceleration)
+		return POUND_NOMEM;
+	pound_interpolation_twice(motion->n, motion->acceleration, twice.acceleration);
+	const enum pound_status status = motion_spectrum(&twice, periods, psa);
+	record_free(&twice);
 	return status;
 }
