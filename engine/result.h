@@ -298,7 +298,7 @@ struct pound_deviation {
 	double mean, largest;
 };
 
-/* One setting of one solver against the event solver; an error is that of the left body. */
+/* One setting of one solver against the event solver; an error is that of the left body, or of the top of the left building. */
 struct pound_trial {
 	struct pound_solver solver;                           /* step: the one that was taken */
 	int runs_failed;                                      /* signals without a result */

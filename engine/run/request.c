@@ -518,11 +518,11 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	for (int stage = 0; stage < stages && more && !status; stage++) {
 		// the checks, which take longer, start first, so that no lane waits for them at the end
 		more = stage_ask(request, n_items, n_asks, stage, &work->checks, &of_checks);
-		int checks_end = request->march_keys.n;
+		int checks_end = request->march_keys.n, row_checks_end = request->rows.n;
 		more |=
 		    stage_ask(request, 0, n_items, stage, stage == 0 ? &work->free_runs : &work->yield_runs, work);
 		status = marches_run(request, &solver, checks_end, &done, stop);
-		status = status ? status : pound_row_run(&request->rows, stop);
+		status = status ? status : pound_row_run(&request->rows, &solver, row_checks_end, stop);
 	}
 	const unsigned asked = pound_outputs_asked(campaign->study);
 	request->pairs.n = 0;
@@ -540,10 +540,11 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	if (status)
 		return status;
 	pounding_ask(request, n_items, n_asks, &work->checks, &of_checks);
-	int before = request->n_before = request->march_keys.n, rows_before = request->rows.n;
+	int before = request->n_before = request->march_keys.n;
+	int rows_before = request->n_rows_before = request->rows.n;
 	pounding_ask(request, 0, n_items, &work->pounding_runs, work);
 	status = marches_run(request, &solver, before, &done, stop);
-	status = status ? status : pound_row_run(&request->rows, stop);
+	status = status ? status : pound_row_run(&request->rows, &solver, rows_before, stop);
 	if (status)
 		return status;
 	for (int j = before; j < done; j++)
@@ -573,10 +574,33 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	return POUND_OK;
 }
 
+/* The same of the top of the left building of a row, in place of the result of its march. */
+static enum pound_status row_displacement(struct pound_request *request, const struct pound_solver *solver,
+                                          int item, int sample, const atomic_bool *stop, double *u)
+{
+	const struct pound_scene scene = row_scene(request, &request->asks[item]);
+	const struct pound_storey_place top = {.building = 0, .storey = pound_row_storeys(&scene, 0)};
+	const struct pound_row_floor floor =
+	    pound_row_floor(&request->rows, &scene, &request->row_asks[item], &top);
+	const struct pound_floor_of_chain *of = floor.pounding.task ? &floor.pounding : &floor.free;
+	struct pound_chain_task task = *of->task;
+	struct pound_chain_result result = *of->result;
+	assert(sample >= 1 && sample < task.n_samples);
+	task.n_samples = sample + 1;
+	const enum pound_status status = pound_solver_rows(solver, &task, &result, 1, request->scratch, stop);
+	if (status)
+		return status;
+	*u = result.status ? NAN : result.floors[of->floor * POUND_FLOOR_MEASURES + POUND_FLOOR_END_U];
+	*u = ldexp(*u, request->motions[request->asks[item].motion].exponent);
+	return POUND_OK;
+}
+
 enum pound_status pound_request_displacement(struct pound_request *request, const struct pound_solver *solver,
                                              int item, int sample, const atomic_bool *stop, double *u)
 {
 	const struct ask *ask = &request->asks[item];
+	if (ask->scene.n_buildings)
+		return row_displacement(request, solver, item, sample, stop, u);
 	struct pound_task task = request->tasks[ask->march < 0 ? ask->bodies[0].march : ask->march];
 	struct pound_task_result result;
 	assert(sample >= 1 && sample < task.n_samples);
@@ -591,6 +615,12 @@ enum pound_status pound_request_displacement(struct pound_request *request, cons
 enum pound_status pound_request_repeat(struct pound_request *request, const struct pound_solver *solver,
                                        const atomic_bool *stop, int *n)
 {
+	const struct pound_row_asks *rows = &request->rows;
+	if (rows->n > 0) {
+		const int first = request->n_rows_before < rows->n ? request->n_rows_before : 0;
+		*n = rows->n - first;
+		return pound_row_repeat(&request->rows, solver, first, stop);
+	}
 	int from = request->n_before < request->march_keys.n ? request->n_before : 0;
 	*n = request->march_keys.n - from;
 	return pound_solver_run(solver, &request->tasks[from], &request->results[from], *n, request->scratch,

@@ -71,8 +71,8 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
                                     const atomic_bool *stop, struct pound_work *work,
                                     pound_request_take *take, void *into);
 
-/* After pound_request_run, for its items in turn where each has one sample: the displacement of the left body at a sample of
- * the ground motion, by running its march that far; NAN: it failed. */
+/* After pound_request_run, for its items in turn where each has one sample: the displacement of the left body, or of the
+ * top of the left building, at a sample of the ground motion, by running its march that far; NAN: it failed. */
 enum pound_status pound_request_displacement(struct pound_request *request, const struct pound_solver *solver,
                                              int item, int sample, const atomic_bool *stop, double *u);
 

@@ -45,10 +45,10 @@ struct pound_request {
 	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; none: no output reads them) */
 	double (*free_pair)
 	    [2]; /* closing and opening displacement of both bodies without contact, by ask  (asks; likewise) */
-	struct pound_pairs pairs; /* linear bodies that are being followed without contact */
-	void *scratch;            /* of the march */
-	int n_before;             /* marches without pounding, they are the first */
-	int n_asks, n_items;      /* of the last run; n_items without those of checks */
+	struct pound_pairs pairs;    /* linear bodies that are being followed without contact */
+	void *scratch;               /* of the march */
+	int n_before, n_rows_before; /* marches without pounding, they are the first */
+	int n_asks, n_items;         /* of the last run; n_items without those of checks */
 };
 
 #endif

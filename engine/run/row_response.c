@@ -69,6 +69,19 @@ struct pound_row_response pound_row_kept(const struct pound_scene *scene, const 
 	                                       (const struct pound_contact_response *)(const void *)contacts};
 }
 
+void pound_row_trial(const struct pound_outcome *outcome, struct pound_trial_run *trial)
+{
+	const struct pound_scene *scene = outcome->scene;
+	const int storeys = pound_row_storeys(scene, 0);
+	*trial = (struct pound_trial_run){.displacement = NAN, .demand = NAN, .impulse = NAN, .cpu = NAN};
+	if (outcome->status)
+		return;
+	trial->displacement = outcome->row->storeys[storeys - 1].displacement_max;
+	for (int i = 0; i < storeys; i++)
+		trial->demand = fmax(trial->demand, outcome->row->storeys[i].demand); // NAN where there is none
+	trial->impulse = pound_row_impulse(outcome);
+}
+
 double pound_row_impulse(const struct pound_outcome *outcome)
 {
 	double most = 0, mass = 0;

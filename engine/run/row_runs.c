@@ -196,6 +196,11 @@ static int building_march(struct pound_row_asks *asks, const struct pound_scene 
 
 /* ---- without pounding ---- */
 
+bool pound_row_takes_solver(const struct pound_study *study, int solver)
+{
+	return pound_solver_gives_of_rows(solver, pound_row_asked(study));
+}
+
 unsigned pound_row_asked(const struct pound_study *study)
 {
 	const unsigned outputs = pound_outputs_asked(study),
@@ -476,12 +481,22 @@ void pound_row_ask_pounding(struct pound_row_asks *asks, const struct pound_scen
 	ask->march = task_ask(asks, motion, &task);
 }
 
-enum pound_status pound_row_run(struct pound_row_asks *asks, const atomic_bool *stop)
+enum pound_status pound_row_repeat(struct pound_row_asks *asks, const struct pound_solver *solver, int from,
+                                   const atomic_bool *stop)
 {
+	return pound_solver_rows(solver, &asks->tasks[from], &asks->results[from], asks->n - from, asks->scratch,
+	                         stop);
+}
+
+enum pound_status pound_row_run(struct pound_row_asks *asks, const struct pound_solver *solver,
+                                int checks_end, const atomic_bool *stop)
+{
+	static const struct pound_solver exact = {.method = POUND_SOLVER_EVENT};
 	const int from = asks->done;
 	asks->done = asks->n;
-	pound_chain_lanes(0, &asks->tasks[from], &asks->results[from], asks->n - from, asks->scratch, stop);
-	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
+	const enum pound_status status = pound_solver_rows(&exact, &asks->tasks[from], &asks->results[from],
+	                                                   checks_end - from, asks->scratch, stop);
+	return status ? status : pound_row_repeat(asks, solver, checks_end, stop);
 }
 
 int64_t pound_row_contacts_run(const struct pound_row_asks *asks, int from)

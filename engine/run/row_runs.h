@@ -90,8 +90,13 @@ void pound_row_ask_pounding(struct pound_row_asks *asks, const struct pound_scen
 /* The yield drift of a storey that the document gives [m]; 0: it is found, or there is none. */
 double pound_row_yield_given(const struct pound_scene *scene, int b, int i);
 
-/* Runs the marches asked since the last time. */
-enum pound_status pound_row_run(struct pound_row_asks *asks, const atomic_bool *stop);
+/* Runs the marches asked since the last time: those before checks_end by the exact solver, the others by that of the study. */
+enum pound_status pound_row_run(struct pound_row_asks *asks, const struct pound_solver *solver,
+                                int checks_end, const atomic_bool *stop);
+
+/* Marches from one on once more. */
+enum pound_status pound_row_repeat(struct pound_row_asks *asks, const struct pound_solver *solver, int from,
+                                   const atomic_bool *stop);
 
 int64_t pound_row_contacts_run(const struct pound_row_asks *asks, int from); /* in the marches from that on */
 

@@ -397,6 +397,11 @@ static void response_keep(void *into, const struct pound_outcome *outcome)
 	const struct pound_scene *scene = outcome->scene;
 	const struct pound_response *response = outcome->pair;
 	const enum pound_status status = outcome->status;
+	if (slice->study->kind == POUND_KIND_CONVERGENCE && scene->n_buildings) {
+		pound_row_trial(outcome, (struct pound_trial_run *)slice->at);
+		slice->at += POUND_TRIAL_MEASURES;
+		return;
+	}
 	if (slice->study->kind == POUND_KIND_CONVERGENCE) {
 		struct pound_trial_run *trial = (struct pound_trial_run *)slice->at;
 		*trial = (struct pound_trial_run){.displacement = status ? NAN : response->displacement_max_1,

@@ -8,9 +8,10 @@ enum { POUND_HISTORY = 32 }; /* times at which displacements are compared, at mo
 
 /* What is kept of one signal of one trial: doubles and nothing else; NAN: failed, or the scene has none. */
 struct pound_trial_run {
-	double displacement, demand, impulse; /* the largest of the left body */
+	// of the left body; of a row of the top of the left building, of its storeys, and of all contacts
+	double displacement, demand, impulse; /* the largest */
 	double cpu;                           /* of a run [s] */
-	double history[POUND_HISTORY];        /* displacement of the left body [m] */
+	double history[POUND_HISTORY];        /* displacement of the left body, or of that top [m] */
 };
 
 int pound_convergence_times(const struct pound_study *study, int samples[static POUND_HISTORY]);

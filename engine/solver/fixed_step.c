@@ -7,19 +7,13 @@
  *    touch or part: the force that the dashpot begins with comes up to a step late.
  *
  * Newmark 1959, J. Eng. Mech. Div. ASCE 85(3), 67-94; Chopra, Dynamics of Structures, ch. 5. */
+#include "engine/solver/fixed_step.h"
+
 #include <float.h>
 #include <math.h>
 
 #include "engine/exact/counts.h"
 #include "engine/solver/solver.h"
-
-enum { ROUNDS = 16 }; /* of a step's iteration; laws alone take two or three */
-
-/* Change of an overlap in a round, over the overlap, that ends the iteration of a power's force: Newton's rounds double the digits. */
-static const double SETTLED = 1e-10;
-
-/* No response has a velocity above what the ground motion can give; one this many times larger is the integrator's. */
-static const double UNSTABLE = 10;
 
 struct stepped_task {
 	const struct pound_task *task;
@@ -43,60 +37,7 @@ struct stepped_task {
 	bool too_long[2];                    /* the step, for bodies apart and touching */
 };
 
-/* ---- laws and contact at the end of a step ---- */
-
-/* Takes a law along the straight way from one displacement to another. */
-static void law_follow(const struct pound_backbone *backbone, struct pound_law_state *at, double from,
-                       double to)
-{
-	if (at->branch.direction * (to - from) < 0)
-		pound_law_leave(backbone, at, POUND_EDGE_REVERSAL, from);
-	for (;;)
-		if (to > at->branch.high)
-			pound_law_leave(backbone, at, POUND_EDGE_HIGH, at->branch.high);
-		else if (to < at->branch.low)
-			pound_law_leave(backbone, at, POUND_EDGE_LOW, at->branch.low);
-		else
-			return;
-}
-
-static double restoring(const struct pound_law_state *at, double u)
-{
-	return at->branch.stiffness * u + at->branch.offset;
-}
-
-static bool same_law_branch(const struct pound_law_state *a, const struct pound_law_state *b)
-{
-	return a->branch.stiffness == b->branch.stiffness && a->branch.offset == b->branch.offset;
-}
-
-static bool same_branch(const struct pound_touch *a, const struct pound_touch *b)
-{
-	return a->branch == b->branch && a->on.offset == b->on.offset;
-}
-
-/* The branch of the contact where a step ends that led from one overlap to another.
- *
- * Given    rate   of the overlap before [m/s]
- */
-static struct pound_touch touch_at(const struct stepped_task *c, double from, double to, double rate)
-{
-	struct pound_touch touch = c->touch;
-	if (!c->touching) {
-		pound_contact_begin(&c->law, &touch, rate);
-		from = 0;
-	}
-	if (to > 0)
-		pound_contact_follow(&c->law, &touch, from, to);
-	return touch;
-}
-
-static bool touches(const struct stepped_task *c, const struct pound_touch *touch, double overlap,
-                    double rate)
-{
-	return c->task->contact && overlap > 0 &&
-	       (c->law.tension || pound_contact_force_on(&touch->on, overlap, rate) > 0);
-}
+/* ---- contact at the end of a step ---- */
 
 /* Share of the contact force per left mass that a body feels. */
 static double share(const struct pound_task *task, int i)
@@ -169,22 +110,6 @@ static void task_note(struct stepped_task *c, double force, bool touching, doubl
 
 /* ---- Newmark ---- */
 
-/* The contact's force over the change d of the overlap p: still + slope d + rate q1 */
-struct newmark_force {
-	double still, slope, rate;
-};
-
-/* The line or the tangent, at an overlap p1, of the force of a branch. */
-static struct newmark_force newmark_force(const struct pound_touch_branch *on, double p, double p1)
-{
-	if (on->form == POUND_TOUCH_STRAIGHT) {
-		const struct pound_touch_line line = pound_contact_line(on, p);
-		return (struct newmark_force){line.still, line.slope, line.rate};
-	}
-	const struct pound_touch_line line = pound_contact_line(on, p1);
-	return (struct newmark_force){line.still + line.slope * (p - p1), line.slope, line.rate};
-}
-
 /* One step of average acceleration; false: no equilibrium was found.
  *
  *   d = u1 - u,  v1 = 2 d/h - v,  a1 = 4 d/h^2 - 4 v/h - a,  a1 + c v1 + r(u + d) + share F(d) = -a_g
@@ -202,32 +127,33 @@ static bool newmark_advance(struct stepped_task *c, double ground)
 	struct pound_touch touch = c->touch;
 	bool touching = c->touching, settled = false;
 	double d[2], a[2], b[2];
-	for (int round = 0; round < 2 * ROUNDS && !settled; round++) {
-		struct newmark_force force = touching ? newmark_force(&touch.on, p, p1) : (struct newmark_force){0};
+	for (int round = 0; round < 2 * POUND_FIXED_ROUNDS && !settled; round++) {
+		struct pound_fixed_force force =
+		    touching ? pound_fixed_force_over(&touch.on, p, p1) : (struct pound_fixed_force){0};
 		double stiff = force.slope + force.rate * (2 / h), still = force.still + force.rate * -q;
 		for (int i = 0; i < 2; i++) {
 			const struct pound_task_body *body = &task->bodies[i];
 			a[i] = 4 / (h * h) + 2 * body->damping / h + at[i].branch.stiffness;
 			b[i] = 4 / h * c->v[i] + c->rate[i] + body->damping * c->v[i] - body->drive * ground -
-			       restoring(&at[i], c->u[i]) - share(task, i) * still;
+			       pound_fixed_restoring(&at[i], c->u[i]) - share(task, i) * still;
 		}
 		pair_solve(a, stiff, task->mass_ratio, b, d);
 		settled = true;
 		for (int i = 0; i < 2; i++) {
 			struct pound_law_state next = c->at[i];
-			law_follow(&task->bodies[i].backbone, &next, c->u[i], c->u[i] + d[i]);
-			settled &= same_law_branch(&next, &at[i]);
+			pound_fixed_follow(&task->bodies[i].backbone, &next, c->u[i], c->u[i] + d[i]);
+			settled &= pound_fixed_same_law(&next, &at[i]);
 			at[i] = next;
 		}
 		const double before = p1;
 		p1 = p + d[0] - d[1];
-		struct pound_touch next = touch_at(c, p, p1, q);
-		bool touch_now = touches(c, &next, p1, 2 / h * (d[0] - d[1]) - q);
-		if (round >= ROUNDS)
+		struct pound_touch next = pound_fixed_touch(&c->law, &c->touch, c->touching, p, p1, q);
+		bool touch_now = task->contact && pound_fixed_touches(&c->law, &next, p1, 2 / h * (d[0] - d[1]) - q);
+		if (round >= POUND_FIXED_ROUNDS)
 			touch_now = c->touching;
-		settled &=
-		    touch_now == touching && (!touching || same_branch(&next, &touch)) &&
-		    (!touching || touch.on.form == POUND_TOUCH_STRAIGHT || fabs(p1 - before) <= SETTLED * fabs(p1));
+		settled &= touch_now == touching && (!touching || pound_fixed_same_touch(&next, &touch)) &&
+		           (!touching || touch.on.form == POUND_TOUCH_STRAIGHT ||
+		            fabs(p1 - before) <= POUND_FIXED_SETTLED * fabs(p1));
 		touching = touch_now;
 		touch = next;
 	}
@@ -268,22 +194,23 @@ static bool central_advance(struct stepped_task *c, double ground)
 	for (int i = 0; i < 2; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
 		double u = c->u[i] + h * c->rate[i];
-		law_follow(&body->backbone, &c->at[i], c->u[i], u);
+		pound_fixed_follow(&body->backbone, &c->at[i], c->u[i], u);
 		c->u[i] = u;
 		a[i] = c->frequency + body->damping / 2;
-		b[i] =
-		    (c->frequency - body->damping / 2) * c->rate[i] - restoring(&c->at[i], u) - body->drive * ground;
+		b[i] = (c->frequency - body->damping / 2) * c->rate[i] - pound_fixed_restoring(&c->at[i], u) -
+		       body->drive * ground;
 	}
 	double p = c->u[0] - c->u[1] - task->gap, q = c->rate[0] - c->rate[1], force = 0;
 	bool touching = task->contact && p > 0;
 	if (touching) {
-		const struct pound_touch touch = touch_at(c, before, p, approach);
+		const struct pound_touch touch =
+		    pound_fixed_touch(&c->law, &c->touch, c->touching, before, p, approach);
 		const struct pound_touch_line line = pound_contact_line(&touch.on, p);
 		double still = line.still + line.rate * (q / 2);
 		const double pushed[2] = {b[0] - share(task, 0) * still, b[1] - share(task, 1) * still};
 		pair_solve(a, line.rate / 2, task->mass_ratio, pushed, w);
 		double rate = (q + w[0] - w[1]) / 2;
-		touching = touches(c, &touch, p, rate);
+		touching = pound_fixed_touches(&c->law, &touch, p, rate);
 		force = touching ? line.still + line.rate * rate : 0;
 		c->touch = touch;
 		if (task->force == POUND_FORCE_POWER)
@@ -318,7 +245,7 @@ static void speed_limits(struct stepped_task *c)
 		riding += mass[i] * body->drive;
 	}
 	for (int i = 0; i < 2; i++)
-		c->speed_max[i] = UNSTABLE * (sqrt(energy / mass[i]) + sqrt(riding / mass[i]) * push);
+		c->speed_max[i] = POUND_FIXED_UNSTABLE * (sqrt(energy / mass[i]) + sqrt(riding / mass[i]) * push);
 }
 
 /* The state at the start, and the accelerations there in `rate`. */
@@ -331,26 +258,26 @@ static void task_start(struct stepped_task *c, int n_steps)
 		pound_law_start(&task->bodies[i].backbone, &c->at[i]);
 		c->u[i] = task->bodies[i].u;
 		c->v[i] = task->bodies[i].v;
-		law_follow(&task->bodies[i].backbone, &c->at[i], 0, c->u[i]);
+		pound_fixed_follow(&task->bodies[i].backbone, &c->at[i], 0, c->u[i]);
 	}
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1];
 	c->law = pound_task_law(task);
 	if (task->contact)
-		c->touch = touch_at(c, 0, p, q);
-	c->touching = touches(c, &c->touch, p, q);
+		c->touch = pound_fixed_touch(&c->law, &c->touch, c->touching, 0, p, q);
+	c->touching = task->contact && pound_fixed_touches(&c->law, &c->touch, p, q);
 	c->force = c->touching ? pound_contact_force_on(&c->touch.on, p, q) : 0;
 	c->result->first_speed = c->touching ? q : 0;
 	for (int i = 0; i < 2; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
 		c->result->displacement_max[i] = fabs(c->u[i]);
 		c->rate[i] = -body->drive * task->ground[0] - body->damping * c->v[i] -
-		             restoring(&c->at[i], c->u[i]) - share(task, i) * c->force;
+		             pound_fixed_restoring(&c->at[i], c->u[i]) - share(task, i) * c->force;
 	}
 	speed_limits(c);
 }
 
 /* Whole steps of a sample interval, none longer than asked; a step that fits to rounding fits. */
-static int steps_of(double time_step, double step)
+int pound_fixed_steps(double time_step, double step)
 {
 	double steps = time_step / step;
 	return (int)fmin(fmax(1, ceil(steps * (1 - 4 * DBL_EPSILON))), INT32_MAX);
@@ -359,7 +286,7 @@ static int steps_of(double time_step, double step)
 /* The step that is taken where one is asked for [s]. */
 double pound_fixed_step(double time_step, double step)
 {
-	return time_step / steps_of(time_step, step);
+	return time_step / pound_fixed_steps(time_step, step);
 }
 
 typedef bool advance(struct stepped_task *c, double ground);
@@ -414,7 +341,7 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_t
 {
 	*result = (struct pound_task_result){0};
 	struct stepped_task c = {.task = task, .result = result};
-	int n_steps = steps_of(task->time_step, solver->step);
+	int n_steps = pound_fixed_steps(task->time_step, solver->step);
 	task_start(&c, n_steps);
 	task_run(&c, n_steps, newmark_advance, stop);
 }
@@ -436,7 +363,7 @@ void pound_fixed_central(const struct pound_solver *solver, const struct pound_t
 {
 	*result = (struct pound_task_result){0};
 	struct stepped_task c = {.task = task, .result = result};
-	int n_steps = steps_of(task->time_step, solver->step);
+	int n_steps = pound_fixed_steps(task->time_step, solver->step);
 	task_start(&c, n_steps);
 	const bool power = task->force == POUND_FORCE_POWER; // as stiff as its overlap is large
 	for (int i = 0; i < 2; i++) {

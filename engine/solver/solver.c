@@ -21,29 +21,37 @@
 		[POUND_FORCE_POWER] = true, [POUND_FORCE_IMPACT] = true                                   \
 	}
 
+#define MARCHED \
+	(POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_FORCES)
+
 static const struct solver {
 	const char *name;
 	const char *text; /* one line of documentation */
 	void (*run)(const struct pound_solver *, const struct pound_task *, struct pound_task_result *,
 	            const atomic_bool *stop);
+	void (*run_row)(const struct pound_solver *, const struct pound_chain_task *, struct pound_chain_result *,
+	                void *scratch, const atomic_bool *stop);
 	bool tolerance, step; /* the settings it takes */
-	bool rows;            /* it integrates rows of buildings */
+	unsigned rows;        /* what it gives of rows of buildings: of enum pound_chain_asked */
 	bool observed;        /* what observes a motion can follow it */
 	bool portable;        /* the same bytes on every processor */
-	bool forces
-	    [POUND_FORCES]; /* forms of contact force that it can integrate; it takes every law, as branches */
+	// forms of contact force that it can integrate, of pairs and of rows; it takes every law, as branches
+	bool forces[POUND_FORCES], row_forces[POUND_FORCES];
 } solvers[] = {
     // many tasks at once
     [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
-                            .tolerance = true, .rows = true, .observed = true, .portable = true,
-                            .forces = EVERY},
-    {"newmark", "average acceleration, one step for all", pound_fixed_newmark, .step = true, .portable = true,
-     .forces = BRANCHES},
-    {"central_difference", "central differences, one step for all", pound_fixed_central, .step = true,
-     .portable = true, .forces = BRANCHES},
+                            NULL, .tolerance = true, .rows = MARCHED | POUND_CHAIN_ENERGY, .observed = true,
+                            .portable = true, .forces = EVERY, .row_forces = EVERY},
+    {"newmark", "average acceleration, one step for all", pound_fixed_newmark, pound_fixed_newmark_row,
+     .step = true, .rows = MARCHED, .portable = true, .forces = BRANCHES, .row_forces = BRANCHES},
+    {"central_difference", "central differences, one step for all", pound_fixed_central,
+     pound_fixed_central_row, .step = true, .rows = MARCHED, .portable = true, .forces = BRANCHES,
+     .row_forces = BRANCHES},
     [POUND_SOLVER_ADAPTIVE] = {"adaptive",
                                "GSL's Runge-Kutta-Prince-Dormand (8, 9), restarted at every event",
-                               pound_adaptive_run, .tolerance = true, .forces = EVERY},
+                               pound_adaptive_run, pound_adaptive_row, .tolerance = true,
+                               .rows = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS, .forces = EVERY,
+                               .row_forces = BRANCHES},
 };
 
 static_assert(sizeof solvers / sizeof solvers[0] == POUND_SOLVERS, "a row for each solver");
@@ -64,7 +72,7 @@ const char *pound_solver_text(int row)
 	return solver_at(row)->text;
 }
 
-/* Whether a solver can integrate a form of contact force.
+/* Whether a solver can integrate a form of contact force, of two oscillators.
  *
  * A check or an estimate that runs a solver on a study's scene asserts this: it may not run another model. */
 bool pound_solver_takes_force(int row, enum pound_force force)
@@ -72,9 +80,16 @@ bool pound_solver_takes_force(int row, enum pound_force force)
 	return solver_at(row)->forces[force];
 }
 
-bool pound_solver_takes_rows(int row)
+/* The same of rows of buildings. */
+bool pound_solver_takes_row_force(int row, enum pound_force force)
 {
-	return solver_at(row)->rows;
+	return solver_at(row)->row_forces[force];
+}
+
+/* Whether a solver gives all that is asked of a row of buildings (enum pound_chain_asked). */
+bool pound_solver_gives_of_rows(int row, unsigned asked)
+{
+	return (asked & ~solver_at(row)->rows) == 0;
 }
 
 bool pound_solver_is_observed(int row)
@@ -144,6 +159,32 @@ void pound_pair_chain(const struct pound_task *task, struct pound_pair_chain *ch
 	                                        .links = &chain->link};
 }
 
+/* The result of a pair from measures of its floors; a wall may have none.
+ *
+ * Given    rows     of n_floors and one contact
+ */
+void pound_pair_result(const struct pound_task *task, const struct pound_chain_result *rows, int n_floors,
+                       struct pound_task_result *result)
+{
+	const double *row = rows->links;
+	*result = (struct pound_task_result){.status = rows->status,
+	                                     .impulse_max = row[POUND_LINK_IMPULSE_MAX],
+	                                     .contact_time = row[POUND_LINK_TIME],
+	                                     .contacts = (int64_t)row[POUND_LINK_CONTACTS],
+	                                     .energy_residual = rows->energy_residual,
+	                                     .first_contact = row[POUND_LINK_FIRST_TIME],
+	                                     .first_speed = row[POUND_LINK_FIRST_SPEED]};
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const bool moves = i < n_floors;
+		const double *floor = rows->floors + i * POUND_FLOOR_MEASURES;
+		result->displacement_max[i] = !task->bodies[i].followed ? NAN
+		                              : moves                   ? floor[POUND_FLOOR_DRIFT_MAX]
+		                                                        : 0;
+		result->u[i] = moves ? floor[POUND_FLOOR_END_U] : 0;
+		result->v[i] = moves ? floor[POUND_FLOOR_END_V] : 0;
+	}
+}
+
 /* Runs a pair as a chain.
  *
  * Returns  result   as that of the march of pairs
@@ -154,25 +195,9 @@ static void chain_run(const struct pound_task *task, struct pound_task_result *r
 	struct pound_pair_chain chain;
 	pound_pair_chain(task, &chain);
 	chain.task.asked = POUND_CHAIN_DRIFTS | (task->accounted ? POUND_CHAIN_ENERGY : 0);
-	const double *row = chain.link_measures;
 	struct pound_chain_result rows = {.floors = chain.floor_measures[0], .links = chain.link_measures};
 	pound_chain_lanes(0, &chain.task, &rows, 1, scratch, stop);
-	*result = (struct pound_task_result){.status = rows.status,
-	                                     .impulse_max = row[POUND_LINK_IMPULSE_MAX],
-	                                     .contact_time = row[POUND_LINK_TIME],
-	                                     .contacts = (int64_t)row[POUND_LINK_CONTACTS],
-	                                     .energy_residual = rows.energy_residual,
-	                                     .first_contact = row[POUND_LINK_FIRST_TIME],
-	                                     .first_speed = row[POUND_LINK_FIRST_SPEED]};
-	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		const bool moves = i < chain.task.n_floors;
-		const double *floor = chain.floor_measures[i];
-		result->displacement_max[i] = !task->bodies[i].followed ? NAN
-		                              : moves                   ? floor[POUND_FLOOR_DRIFT_MAX]
-		                                                        : 0;
-		result->u[i] = moves ? floor[POUND_FLOOR_END_U] : 0;
-		result->v[i] = moves ? floor[POUND_FLOOR_END_V] : 0;
-	}
+	pound_pair_result(task, &rows, chain.task.n_floors, result);
 }
 
 bool pound_runs_as_chain(const struct pound_task *task)
@@ -220,6 +245,34 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
 	for (int j = 0; row->run && j < n && !pound_stopped(stop); j++) {
 		row->run(solver, &tasks[j], &results[j], stop);
 		results[j].energy_residual = NAN; // only the march keeps the balance
+		if (results[j].status == POUND_NOMEM)
+			return POUND_NOMEM;
+	}
+	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
+}
+
+/* Runs rows of buildings, with the method and the setting of a solver.
+ *
+ * Given    solver    -       -       row of the solvers, and the setting it takes
+ *          tasks     (n)     -       see chain.h; what they ask for the solver gives
+ *          stop      -       -       looked at throughout; NULL: never
+ * Returns  results   (n)     -       each with a status of its own
+ * Status   POUND_STOPPED  stop was set: the results are not to be used
+ *          POUND_NOMEM    there was no memory for one of them, so too
+ * Memory   scratch: POUND_CHAIN_SCRATCH bytes, 64-byte aligned
+ * Test     unit_solver_rows
+ */
+enum pound_status pound_solver_rows(const struct pound_solver *solver, const struct pound_chain_task *tasks,
+                                    struct pound_chain_result *results, int n, void *scratch,
+                                    const atomic_bool *stop)
+{
+	const struct solver *row = solver_at(solver->method);
+	if (!row->run_row)
+		pound_chain_lanes(0, tasks, results, n, scratch, stop);
+	for (int j = 0; row->run_row && j < n && !pound_stopped(stop); j++) {
+		for (int k = 0; k < tasks[j].n_links; k++)
+			assert(row->row_forces[pound_contact_force(tasks[j].links[k].law.model)]);
+		row->run_row(solver, &tasks[j], &results[j], scratch, stop);
 		if (results[j].status == POUND_NOMEM)
 			return POUND_NOMEM;
 	}

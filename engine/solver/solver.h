@@ -17,6 +17,12 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
                                    struct pound_task_result *results, int n, void *scratch,
                                    const atomic_bool *stop);
 
+enum pound_status pound_solver_rows(const struct pound_solver *solver, const struct pound_chain_task *tasks,
+                                    struct pound_chain_result *results, int n, void *scratch,
+                                    const atomic_bool *stop);
+
+bool pound_solver_gives_of_rows(int row, unsigned asked);
+
 struct pound_contact_law pound_task_law(const struct pound_task *task); /* of its contact */
 
 /* A pair as a chain, for the forms of contact force that the march of pairs does not have; it stays where it is. */
@@ -29,6 +35,8 @@ struct pound_pair_chain {
 
 bool pound_runs_as_chain(const struct pound_task *task);
 void pound_pair_chain(const struct pound_task *task, struct pound_pair_chain *chain);
+void pound_pair_result(const struct pound_task *task, const struct pound_chain_result *rows, int n_floors,
+                       struct pound_task_result *result);
 
 /* fixed_step.c */
 double pound_fixed_step(double time_step, double step);
@@ -37,8 +45,16 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_t
 void pound_fixed_central(const struct pound_solver *solver, const struct pound_task *task,
                          struct pound_task_result *result, const atomic_bool *stop);
 
+/* fixed_chain.c */
+void pound_fixed_newmark_row(const struct pound_solver *solver, const struct pound_chain_task *task,
+                             struct pound_chain_result *result, void *scratch, const atomic_bool *stop);
+void pound_fixed_central_row(const struct pound_solver *solver, const struct pound_chain_task *task,
+                             struct pound_chain_result *result, void *scratch, const atomic_bool *stop);
+
 /* adaptive.c */
 void pound_adaptive_run(const struct pound_solver *solver, const struct pound_task *task,
                         struct pound_task_result *result, const atomic_bool *stop);
+void pound_adaptive_row(const struct pound_solver *solver, const struct pound_chain_task *task,
+                        struct pound_chain_result *result, void *scratch, const atomic_bool *stop);
 
 #endif

@@ -54,6 +54,8 @@ static const double seconds_of[OPERATIONS][KINDS] = {
     [CENTRAL] = {2e-8, 2e-8, 6.3e-10, 0},
     [ADAPT] = {8.5e-7, 8.5e-7, 4.5e-8, 0},
     [FOLLOW] = {1.0e-6, 1.0e-6, 1.5e-6, 0},
+    [ROW_STEP] = {4e-8, 4e-8, 4e-8, 4e-8},
+    [ROW_ADAPT] = {1.6e-5, 1.6e-5, 1.6e-5, 1.6e-5},
     [FLOOR] = {0, 3.9e-8, 0, 3.9e-8},
     [PART] = {0, 2.6e-6, 0, 2.6e-6},
     [FLOOR_DRIVEN] = {0, 3e-8, 0, 3e-8},
@@ -134,7 +136,8 @@ struct cost cost_of(const struct pound_study *asked, int n_workers)
 		numbers = 2 * study->n_outputs;
 		cost.bytes += cells * study->n_outputs * (study->n_inputs + 1) * INDEX_BYTES;
 	} else {
-		const double of_row = study->scene.n_buildings ? pound_row_measures(study) : 0;
+		const double of_row =
+		    study->scene.n_buildings && study->kind != POUND_KIND_CONVERGENCE ? pound_row_measures(study) : 0;
 		numbers =
 		    of_row > 0 ? of_row : sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
 		cost.bytes +=

@@ -365,18 +365,48 @@ static struct storeys storeys_of(const struct pound_building *of, int n)
 	return one;
 }
 
-/* The same of a row of buildings. */
+static void buildings_of(const struct pound_study *study, struct storeys all[POUND_BUILDINGS_MAX])
+{
+	for (int b = 0; b < study->scene.n_buildings; b++) {
+		const struct pound_building *building = &study->scene.buildings[b];
+		const int storeys = building->rigid_wall ? 0 : study_storeys_most(study, b);
+		all[b] = storeys ? storeys_of(building, storeys) : (struct storeys){.n = 0};
+	}
+}
+
+/* A row of buildings by a solver of a fixed step, or the adaptive one. */
+static void count_row_steps(const struct pound_study *study, const struct pound_solver *solver, double items,
+                            struct counts *c)
+{
+	struct storeys all[POUND_BUILDINGS_MAX] = {{0}};
+	const double samples = means_samples(study);
+	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
+	double high = 1;
+	buildings_of(study, all);
+	for (int b = 0; b < study->scene.n_buildings; b++)
+		high = fmax(high, all[b].high);
+	c->of[GROUND] += items * distinct(study, MOTION) * samples;
+	for (int b = 0; b < study->scene.n_buildings; b++) {
+		const struct pound_law *law = pound_row_law(&study->scene, b);
+		const double yields = law->type == 0 ? 0 : 1 + fmin(law->corrections, SEARCH_MEAN);
+		const double alone = items * distinct(study, b) * (1 + yields);
+		if (pound_solver_takes_step(solver->method))
+			c->of[ROW_STEP] += (alone + pounded) * all[b].wide * samples *
+			                   fmax(1, MEAN(study, excitation.time_step, 1) / solver->step);
+		else
+			c->of[ROW_ADAPT] +=
+			    all[b].n * means_duration(study) * (alone * fmax(all[b].high, 1) + pounded * high);
+	}
+}
+
+/* A row of buildings by the event solver. */
 static struct marches count_row(const struct pound_study *study, double items, struct counts *c)
 {
 	struct storeys all[POUND_BUILDINGS_MAX] = {{0}};
 	const int n = study->scene.n_buildings;
 	const double samples = means_samples(study);
 	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
-	for (int b = 0; b < n; b++) {
-		const struct pound_building *building = &study->scene.buildings[b];
-		const int storeys = building->rigid_wall ? 0 : study_storeys_most(study, b);
-		all[b] = storeys ? storeys_of(building, storeys) : (struct storeys){.n = 0};
-	}
+	buildings_of(study, all);
 	const struct marches m = count_chain(study, pounded, all, n, c);
 	c->of[BEGIN] += items * distinct(study, MOTION);
 	c->of[GROUND] += items * distinct(study, MOTION) * samples;
@@ -446,11 +476,13 @@ static struct marches count_again(const struct pound_study *study, double items,
 static struct marches count_runs(const struct pound_study *study, const struct pound_solver *solver,
                                  double items, struct counts *c)
 {
-	if (study->scene.n_buildings)
+	if (study->scene.n_buildings && solver->method == POUND_SOLVER_EVENT)
 		return count_row(study, items, c);
-	if (operations_chained(study, solver))
+	if (study->scene.n_buildings)
+		count_row_steps(study, solver, items, c);
+	else if (operations_chained(study, solver))
 		return count_pair_chain(study, items, c);
-	if (solver->method == POUND_SOLVER_EVENT)
+	else if (solver->method == POUND_SOLVER_EVENT)
 		count_event(study, items, c);
 	else
 		count_steps(study, solver, items, c);
@@ -521,6 +553,9 @@ void operations_count(const struct pound_study *study, struct counts *c)
 	struct marches m = {.n = 0};
 	c->of[STUDY] = 1;
 	count_free_pairs(study, items, c);
+	// what is run again for histories: of pairs as it was fitted, of rows up to that time
+	const double seconds = means_duration(study), history = fmin(study->convergence.history, seconds);
+	const double again = HISTORIES / 2 * (study->scene.n_buildings ? history / seconds : 1);
 	// the floors of chains are followed by marches of their own
 	if (study->kind != POUND_KIND_CONVERGENCE)
 		m = count_runs(study, &study->solver,
@@ -529,7 +564,7 @@ void operations_count(const struct pound_study *study, struct counts *c)
 		for (int j = 0; j < pound_convergence_trials(study); j++) {
 			const struct pound_solver solver = pound_convergence_solver(study, j);
 			// twice, to be timed, and for each point of a history up to that
-			count_runs(study, &solver, items * (2 + HISTORIES / 2), c);
+			count_runs(study, &solver, items * (2 + again), c);
 			c->of[CLOCK]++;
 		}
 	const struct marches again = count_again(study, items, c), *lost = study->scene.n_buildings ? &m : &again;

@@ -40,6 +40,8 @@ enum operation {
 	CENTRAL,     /* ... of the other, */
 	ADAPT,       /* ... radian of the adaptive one, by its tolerance, */
 	FOLLOW,      /* ... and radian in which the bodies are near each other, by the contact's frequency */
+	ROW_STEP,    /* step of a floor of a row by a fixed step, */
+	ROW_ADAPT,   /* ... and its radian of the fastest floors by the adaptive solver */
 	FLOOR,       /* step of a floor, */
 	PART,        /* ... radian in which the bodies are near each other, */
 	FLOOR_DRIVEN,  /* ... and of the contact while they may stay together */

@@ -4,6 +4,7 @@
  * 2. A contact follows the contact of the scene in all that it does not say itself.
  * 3. What storeys there are in every cell decides which levels, places and paths there are. */
 #include "schema/study/study_buildings.h"
+#include "schema/study/study_check.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -298,10 +299,12 @@ static void check_model(const struct pound_study *study, int c, struct problems 
 	    problems_at(problems, "/solver"))
 		return;
 	snprintf(pointer, sizeof pointer, "%s/model", at);
-	if (!pound_solver_takes_force(study->solver.method, pound_contact_force(model)) &&
-	    study->scene.contacts[c].own[offsetof(struct pound_contact, model)])
-		problems_add(problems, pointer, "the solver \"%s\" cannot integrate the contact model \"%s\"",
-		             pound_solver_name(study->solver.method), pound_contact_name(model));
+	for (int row = 0;
+	     row < POUND_SOLVERS && study->scene.contacts[c].own[offsetof(struct pound_contact, model)]; row++)
+		if (study_check_solves(study, row) && !pound_solver_takes_row_force(row, pound_contact_force(model)))
+			problems_add(problems, pointer,
+			             "the solver \"%s\" cannot integrate the contact model \"%s\" between buildings",
+			             pound_solver_name(row), pound_contact_name(model));
 	snprintf(pointer, sizeof pointer, "%s/restitution", at);
 	if (contact.contact.restitution == 0 && !pound_contact_takes_zero(&contact.contact) &&
 	    !problems_at(problems, "/scene/contact/restitution"))
@@ -395,16 +398,18 @@ static void check_kind(const struct pound_study *study, struct problems *problem
 {
 	static const bool kinds[] = {[POUND_KIND_RESPONSE] = true,
 	                             [POUND_KIND_SENSITIVITY] = true,
-	                             [POUND_KIND_CONVERGENCE] = false,
+	                             [POUND_KIND_CONVERGENCE] = true,
 	                             [POUND_KIND_FLOOR_SPECTRUM] = true,
 	                             [POUND_KIND_SEPARATION] = false};
 	if (!kinds[study->kind])
 		problems_add(problems, "/scene/buildings",
 		             "kind \"%s\" cannot be computed for buildings, only for oscillators",
 		             study_kind_name(study->kind));
-	else if (!problems_at(problems, "/solver") && !pound_solver_takes_rows(study->solver.method))
-		problems_add(problems, "/solver/method", "the solver \"%s\" cannot integrate rows of buildings",
-		             pound_solver_name(study->solver.method));
+	for (int row = 0; row < POUND_SOLVERS && !problems_at(problems, "/solver"); row++)
+		if (study_check_solves(study, row) && !pound_row_takes_solver(study, row))
+			problems_add(problems, "/solver/method",
+			             "the solver \"%s\" cannot compute accelerations and contact forces of buildings",
+			             pound_solver_name(row));
 }
 
 /* Every place has outputs of its own; those of a study without places are all storeys of the left building. */

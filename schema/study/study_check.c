@@ -382,13 +382,18 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 
 /* ---- solvers ---- */
 
-/* Whether a study's responses are computed by a solver. */
-static bool uses_solver(const struct pound_study *study, int solver)
+bool study_check_solves(const struct pound_study *study, int solver)
 {
 	bool uses = study->kind != POUND_KIND_CONVERGENCE && study->solver.method == solver;
 	for (int j = 0; study->kind == POUND_KIND_CONVERGENCE && j < pound_convergence_trials(study); j++)
 		uses |= pound_convergence_solver(study, j).method == solver;
 	return uses;
+}
+
+static bool takes_force(const struct pound_scene *scene, int solver, enum pound_force force)
+{
+	return scene->n_buildings ? pound_solver_takes_row_force(solver, force)
+	                          : pound_solver_takes_force(solver, force);
 }
 
 /* Every solver of the study must be able to integrate every contact model of its cells; what cannot is refused, as nothing
@@ -407,9 +412,11 @@ static void check_forces(const struct pound_study *study, struct problems *probl
 			continue;
 		enum pound_force force = pound_contact_force(scene.contact.model);
 		for (int row = 0; row < POUND_SOLVERS; row++)
-			if (uses_solver(study, row) && !pound_solver_takes_force(row, force))
-				problems_add(problems, pointer, "the solver \"%s\" cannot integrate the contact model \"%s\"",
-				             pound_solver_name(row), pound_contact_name(scene.contact.model));
+			if (study_check_solves(study, row) && !takes_force(&scene, row, force))
+				problems_add(problems, pointer,
+				             "the solver \"%s\" cannot integrate the contact model \"%s\"%s",
+				             pound_solver_name(row), pound_contact_name(scene.contact.model),
+				             scene.n_buildings ? " between buildings" : "");
 	}
 }
 

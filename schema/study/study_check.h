@@ -11,6 +11,9 @@ void study_check(const struct pound_study *study, struct problems *problems);
 
 bool study_check_applies(const struct pound_study *study, int output); /* in one cell at least */
 
+/* Whether a study's responses are computed by a solver. */
+bool study_check_solves(const struct pound_study *study, int solver);
+
 /* The interval of a real field of the scene, over all samples and cells. */
 void study_check_reach(const struct pound_study *study, const char *path, double *low, double *high);
 

@@ -1,8 +1,8 @@
 /* unit_chain.c - rows of buildings against known answers by two independent 113-bit programs (buildings.md 4). */
 #include "engine/exact/task.h"
 #include "engine/numeric/cpu_width.h"
-#include "tests/support/chain_scenes.h"
 #include "tests/support/check.h"
+#include "tests/support/known_rows.h"
 #include "tests/support/scenes.h"
 
 #include <math.h>
@@ -13,14 +13,6 @@ static const double rounding = 1e-12;
 enum {
 	ALL = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_FORCES
 };
-
-static int law_row(const char *name)
-{
-	int row = 0;
-	while (strcmp(pound_law_name(row), name) != 0)
-		row++;
-	return row;
-}
 
 static void row_run_all(struct row *row, int samples, unsigned asked)
 {
@@ -58,19 +50,9 @@ static void measures_check(const double *measures, int stride, int measure, int 
 
 static struct row row;
 
-/* T2 */
 static void two_and_two_stories(unsigned asked)
 {
-	row_init(&row);
-	row.contact.gap = 0.01;
-	row.n_buildings = 2;
-	row.buildings[0] = row_building(2, 1e5, 0);
-	row.buildings[1] = row_building(2, 0, 0);
-	row.buildings[0].damping = row.buildings[1].damping = ROW_STORY;
-	row.buildings[0].stiffness[0] = 4e7, row.buildings[0].stiffness[1] = 3e7;
-	row.buildings[1].stiffness[0] = 1.2e8, row.buildings[1].stiffness[1] = 9e7;
-	row.buildings[1].mass[0] = 1.5e5, row.buildings[1].mass[1] = 1e5;
-	row_run_all(&row, row_harmonic(&row, 1.7, 3, 3), asked);
+	row_run_all(&row, row_known(&row, ROW_TWO_AND_TWO), asked);
 }
 
 static void two_and_two_stories_come_out(void **state)
@@ -89,19 +71,7 @@ static void two_and_two_stories_come_out(void **state)
 static void three_and_two_stories_without_tension_come_out(void **state)
 {
 	(void)state;
-	row_init(&row);
-	row.contact.gap = 0.005;
-	row.contact.tension = false;
-	row.contact.restitution = 0.5;
-	row.contact.calibration = 1;
-	assert_string_equal(pound_calibration_name(1), "exact");
-	row.n_buildings = 2;
-	row.buildings[0] = row_building(3, 2e5, 1);
-	row.buildings[0].frequency_hz = 2;
-	row.buildings[0].stiffness[0] = 1.5, row.buildings[0].stiffness[1] = 1.2;
-	row.buildings[1] = row_building(2, 1.5e5, 1);
-	row.buildings[1].frequency_hz = 4;
-	row_run_all(&row, row_harmonic(&row, 2.2, 3, 2.5), ALL | POUND_CHAIN_ENERGY);
+	row_run_all(&row, row_known(&row, ROW_NO_TENSION), ALL | POUND_CHAIN_ENERGY);
 	LINKS(row, IMPULSE_MAX, 92064.1704763961, 171145.829011237);
 	LINKS(row, CONTACTS, 15, 24);
 }
@@ -109,18 +79,7 @@ static void three_and_two_stories_without_tension_come_out(void **state)
 static void elastoplastic_stories_come_out(void **state)
 {
 	(void)state;
-	row_init(&row);
-	row.contact.gap = 0.01;
-	row.contact.restitution = 0.65;
-	row.n_buildings = 2;
-	row.buildings[0] = row_building(5, 2e5, 2.4e8);
-	row.buildings[1] = row_building(3, 1.5e5, 2.4e8);
-	for (int b = 0; b < 2; b++) {
-		row.buildings[b].damping = ROW_STIFFNESS;
-		row.buildings[b].law = (struct pound_backbone){
-		    .law = law_row("elastoplastic"), .hardening = 0.05, .yield = b ? .004 : .006};
-	}
-	row_run_all(&row, row_harmonic(&row, 1.6, 3, 4), ALL | POUND_CHAIN_ENERGY);
+	row_run_all(&row, row_known(&row, ROW_ELASTOPLASTIC), ALL | POUND_CHAIN_ENERGY);
 	FLOORS(row, 0, DRIFT_MAX, .0543830397504243);
 	FLOORS(row, 4, DRIFT_MAX, .00437356787206889);
 	LINKS(row, IMPULSE_MAX, 20846.9044225477, 6377.99175536268, 46038.3574530376);
@@ -133,18 +92,7 @@ static void elastoplastic_stories_come_out(void **state)
 static void oriented_and_elastic_stories_come_out(void **state)
 {
 	(void)state;
-	row_init(&row);
-	row.contact.gap = 0.008;
-	row.n_buildings = 2;
-	row.buildings[0] = row_building(3, 1e5, 9e7);
-	row.buildings[0].stiffness[1] = 8e7, row.buildings[0].stiffness[2] = 7e7;
-	row.buildings[0].law =
-	    (struct pound_backbone){.law = law_row("origin_oriented"), .hardening = .05, .yield = .004};
-	row.buildings[1] = row_building(2, 1e5, 1.5e8);
-	row.buildings[1].stiffness[1] = 1.2e8;
-	row.buildings[1].law =
-	    (struct pound_backbone){.law = law_row("nonlinear_elastic"), .hardening = .05, .yield = .002};
-	row_run_all(&row, row_harmonic(&row, 2.5, 3, 5), ALL | POUND_CHAIN_ENERGY);
+	row_run_all(&row, row_known(&row, ROW_ORIENTED), ALL | POUND_CHAIN_ENERGY);
 	FLOORS(row, 0, END_U, -.0288257306792830, -.0349757137371883, .00542429407945448, -.00765103769578269,
 	       .000479404201646032);
 	LINKS(row, IMPULSE_MAX, 46379.3500931483, 32147.0962135886);
@@ -153,15 +101,7 @@ static void oriented_and_elastic_stories_come_out(void **state)
 static void a_row_of_three_comes_out(void **state)
 {
 	(void)state;
-	row_init(&row);
-	row.contact.gap = 0.01;
-	row.n_buildings = 3;
-	row.buildings[0] = row_building(2, 1e5, 1);
-	row.buildings[1] = row_building(3, 1.2e5, 1);
-	row.buildings[2] = row_building(2, 8e4, 1);
-	row.buildings[0].frequency_hz = 1.8, row.buildings[1].frequency_hz = 1.4,
-	row.buildings[2].frequency_hz = 2.9;
-	row_run_all(&row, row_harmonic(&row, 1.5, 3, 3), ALL | POUND_CHAIN_ENERGY);
+	row_run_all(&row, row_known(&row, ROW_OF_THREE), ALL | POUND_CHAIN_ENERGY);
 	LINKS(row, IMPULSE_MAX, 64417.5150918300, 154865.564934878, 89265.2187302767, 235098.891474731);
 	LINKS(row, CONTACTS, 7, 27, 11, 17);
 }
@@ -169,17 +109,7 @@ static void a_row_of_three_comes_out(void **state)
 static void a_wall_comes_out(void **state)
 {
 	(void)state;
-	row_init(&row);
-	row.contact.gap = 0.02;
-	row.n_buildings = 1;
-	row.wall = true;
-	row.buildings[0] = row_building(4, 1e5, 1);
-	row.buildings[0].frequency_hz = 1.25;
-	row.buildings[0].damping_ratio = .03;
-	row.n_contacts = 2;
-	row.contacts[0] = (struct row_contact){0, {4, 0}};
-	row.contacts[1] = (struct row_contact){0, {3, 0}};
-	row_run_all(&row, row_harmonic(&row, 1.2, 3, 1.5), ALL | POUND_CHAIN_ENERGY);
+	row_run_all(&row, row_known(&row, ROW_WALL), ALL | POUND_CHAIN_ENERGY);
 	FLOORS(row, 0, DRIFT_MAX, .0276030785389800, .0187474422578475, .0227574862260666, .0169328391209189);
 	LINKS(row, IMPULSE_MAX, 85009.0893182793, 78054.5007567976);
 }
@@ -187,54 +117,12 @@ static void a_wall_comes_out(void **state)
 static void levels_within_stories_come_out(void **state)
 {
 	(void)state;
-	row_init(&row);
-	row.contact.gap = 0.004;
-	row.n_buildings = 2;
-	row.buildings[0] = row_building(2, 1e5, 1);
-	row.buildings[1] = row_building(3, 1e5, 1);
-	row.buildings[0].frequency_hz = 2.1, row.buildings[1].frequency_hz = 3;
-	row.n_contacts = 2;
-	row.contacts[0] = (struct row_contact){0, {2, 2.6}};
-	row.contacts[1] = (struct row_contact){0, {1, 1.3}};
-	row_run_all(&row, row_harmonic(&row, 2, 2.5, 3), ALL | POUND_CHAIN_ENERGY);
+	row_run_all(&row, row_known(&row, ROW_LEVELS), ALL | POUND_CHAIN_ENERGY);
 	FLOORS(row, 2, END_U, .00352661275337169, .00678666765581637, .00704048971824242);
 	LINKS(row, IMPULSE_MAX, 85896.7700219882, 46498.6591743184);
 }
 
 /* ---- what must be the same ---- */
-
-/* A row of its own for every number: any law and damping, up to four buildings or a wall, levels within stories. */
-static int row_random(struct row *r, uint64_t number)
-{
-	uint64_t seed = number * 2654435761u + 88172645463325252u;
-	row_init(r);
-	r->n_buildings = 1 + (int)specimen_uniform(&seed, 0, 3.999);
-	r->wall = r->n_buildings == 1 || specimen_uniform(&seed, 0, 1) < 0.3;
-	r->contact.stiffness_ratio = pow(10, specimen_uniform(&seed, 1.5, 3));
-	r->contact.gap = specimen_uniform(&seed, 0, 1) < 0.2 ? 0 : specimen_uniform(&seed, 0, 0.01);
-	r->contact.restitution = specimen_uniform(&seed, 0.1, 1);
-	r->contact.tension = specimen_uniform(&seed, 0, 1) < 0.5;
-	for (int b = 0; b < r->n_buildings; b++) {
-		struct row_building *x = &r->buildings[b];
-		*x = row_building(1 + (int)specimen_uniform(&seed, 0, 11.999), 1e5, 1);
-		for (int i = 0; i < x->stories; i++) {
-			x->mass[i] *= specimen_uniform(&seed, 0.3, 3);
-			x->stiffness[i] *= specimen_uniform(&seed, 0.3, 3);
-		}
-		x->frequency_hz = specimen_uniform(&seed, 0.5, 4);
-		x->damping = (enum row_damping)specimen_uniform(&seed, 0, 3.999);
-		x->damping_ratio = specimen_uniform(&seed, 0, 0.1);
-		x->law = (struct pound_backbone){.law = (int)specimen_uniform(&seed, 0, 3.999),
-		                                 .hardening = specimen_uniform(&seed, 0, 0.2),
-		                                 .yield = pow(10, specimen_uniform(&seed, -3.5, -1.5))};
-	}
-	double a = 0;
-	for (int i = 0; i <= 400; i++) {
-		a = 0.7 * a + specimen_uniform(&seed, -2, 2);
-		r->ground[i] = i > 350 ? 0 : a;
-	}
-	return 401;
-}
 
 static void rows_have_the_same_bytes_at_every_lane_count(void **state)
 {
@@ -325,7 +213,7 @@ static void equal_buildings_do_not_meet(void **state)
 	for (int b = 0; b < 4; b++) {
 		row.buildings[b] = row_building(5, 1e5, 1e8);
 		row.buildings[b].law =
-		    (struct pound_backbone){.law = law_row("elastoplastic"), .hardening = .05, .yield = .003};
+		    (struct pound_backbone){.law = row_law("elastoplastic"), .hardening = .05, .yield = .003};
 	}
 	row_run_all(&row, row_harmonic(&row, 1.4, 5, 4), ALL);
 	assert_true(row.floor_measures[0][POUND_FLOOR_DRIFT_MAX] > .003);
@@ -342,7 +230,7 @@ static void a_linear_row_scales(void **state)
 	for (int number = 0; number < 10; number++) {
 		const int n = row_random(&once, (uint64_t)number);
 		for (int b = 0; b < once.n_buildings; b++)
-			once.buildings[b].law.law = law_row("linear");
+			once.buildings[b].law.law = row_law("linear");
 		twice = once;
 		twice.contact.gap *= 2;
 		for (int i = 0; i < n; i++)

@@ -1,0 +1,76 @@
+/* envelope.c - symmetric matrices by rows from their first entry on. */
+#include "engine/numeric/envelope.h"
+
+/* Lays the rows one behind another.
+ *
+ * Given    first   (n)   the first column with an entry of each row
+ * Returns  value   how many entries there are
+ */
+int pound_envelope_lay(struct pound_envelope *e)
+{
+	int at = 0;
+	for (int i = 0; i < e->n; i++) {
+		e->begin[i] = at - e->first[i];
+		at += i - e->first[i] + 1;
+	}
+	return at;
+}
+
+/* Adds to an entry and to the same one above the diagonal. */
+void pound_envelope_add(struct pound_envelope *e, int i, int j, double value)
+{
+	e->values[i > j ? e->begin[i] + j : e->begin[j] + i] += value;
+}
+
+/* Puts L D L' in place of a matrix.
+ *
+ * Returns  value   false: it is not positive definite, and nothing can be solved with it
+ * Source   Jennings 1966, Comput. J. 9, 281-285
+ * Test     unit_envelope
+ */
+bool pound_envelope_decompose(struct pound_envelope *e)
+{
+	for (int i = 0; i < e->n; i++) {
+		double *row = e->values + e->begin[i], diagonal = row[i];
+		for (int j = e->first[i]; j < i; j++) {
+			const double *other = e->values + e->begin[j];
+			double sum = row[j];
+			for (int k = e->first[i] > e->first[j] ? e->first[i] : e->first[j]; k < j; k++)
+				sum -= row[k] * other[k];
+			row[j] = sum; // times D
+		}
+		for (int j = e->first[i]; j < i; j++) {
+			const double entry = row[j] / e->values[e->begin[j] + j];
+			diagonal -= entry * row[j];
+			row[j] = entry;
+		}
+		row[i] = diagonal;
+		// written so that no number is not positive
+		if (!(diagonal > 0))
+			return false;
+	}
+	return true;
+}
+
+/* Solves with a decomposed matrix.
+ *
+ * Given    x   (n)   right side
+ * Returns  x   (n)   solution
+ */
+void pound_envelope_solve(const struct pound_envelope *e, double *x)
+{
+	for (int i = 0; i < e->n; i++) {
+		const double *row = e->values + e->begin[i];
+		double sum = x[i];
+		for (int j = e->first[i]; j < i; j++)
+			sum -= row[j] * x[j];
+		x[i] = sum;
+	}
+	for (int i = 0; i < e->n; i++)
+		x[i] /= e->values[e->begin[i] + i];
+	for (int i = e->n - 1; i >= 0; i--) {
+		const double *row = e->values + e->begin[i];
+		for (int j = e->first[i]; j < i; j++)
+			x[j] -= row[j] * x[i];
+	}
+}
