@@ -426,12 +426,12 @@ int pound_estimator_order(int row); /* row of the orders: which samples a row of
 const char *pound_solver_name(int row);
 bool pound_solver_takes_tolerance(int row);
 bool pound_solver_takes_step(int row);
-bool pound_solver_takes_force(int row, enum pound_force force); /* can integrate it */
+bool pound_solver_takes_force(int row, enum pound_force force);     /* can integrate it */
 bool pound_solver_takes_row_force(int row, enum pound_force force); /* ... of rows of buildings */
 bool pound_row_takes_solver(const struct pound_study *study,
-                            int solver);                        /* it gives all that the study asks of a row */
-bool pound_solver_is_observed(int row);                         /* outputs may read its whole motions */
-bool pound_solver_is_portable(int row);                         /* the same bytes on every processor */
+                            int solver); /* it gives all that the study asks of a row */
+bool pound_solver_is_observed(int row);  /* outputs may read its whole motions */
+bool pound_solver_is_portable(int row);  /* the same bytes on every processor */
 const char *pound_output_name(int row);
 const char *pound_output_needs(int row, const struct pound_scene *scene); /* from it, in words */
 bool pound_output_observes(int row,

@@ -16,7 +16,7 @@
 #include <assert.h>
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stdalign.h>
 #include <string.h>
 
 #include <gsl/gsl_errno.h>
@@ -419,7 +419,7 @@ static void task_end(struct adaptive_task *c)
 		double *m = &c->floor_measures[i * POUND_FLOOR_MEASURES];
 		u = (f->inner ? u : 0) + c->y[drift_state(i)];
 		m[POUND_FLOOR_SHEAR_MAX] = pound_law_envelope(f->story, m[POUND_FLOOR_DRIFT_MAX]);
-		m[POUND_FLOOR_CENTER] = pound_law_center(f->story, &f->at, c->y[drift_state(i)]);
+		m[POUND_FLOOR_RESIDUAL] = pound_law_residual(f->story, &f->at, c->y[drift_state(i)]);
 		m[POUND_FLOOR_END_U] = u;
 		m[POUND_FLOOR_END_V] = pound_adaptive_velocity(s, i, c->y);
 	}
@@ -453,30 +453,39 @@ static enum pound_status task_follow(struct adaptive_task *c, const struct pound
 	return status;
 }
 
-/* Gives a task all its memory; false: there is none. */
-static bool task_carve(struct adaptive_task *c, int n_floors, int n_links, void **memory)
+enum {
+	STATE_ROWS = 9, /* arrays of states: those of the task, one more behind its last one, and the scene's */
+	ROW_FLOORS = POUND_CHAIN_FLOORS,
+	ROW_LINKS = POUND_CHAIN_LINKS,
+};
+
+/* Bytes of a task of so many floors and contacts. */
+#define TASK_BYTES(floors, links)                                                          \
+	(sizeof(struct adaptive_floor) * (floors) + sizeof(struct adaptive_link) * (links) +   \
+	 sizeof(struct guard) * (4 * (floors) + 6 * (links)) + sizeof(double) * 2 * (floors) + \
+	 sizeof(double) * STATE_ROWS * (POUND_FLOOR_STATES * (floors) + POUND_LINK_STATES * (links)))
+
+static_assert(TASK_BYTES(ROW_FLOORS, ROW_LINKS) <= POUND_CHAIN_SCRATCH, "a row fits into its work space");
+
+/* Gives a task all its memory, of TASK_BYTES. */
+static void task_carve(struct adaptive_task *c, int n_floors, int n_links, char *memory)
 {
 	struct adaptive_scene *s = &c->scene;
 	const size_t n = (size_t)n_floors, m = (size_t)n_links;
-	const size_t states = POUND_FLOOR_STATES * n + POUND_LINK_STATES * m, guards = 4 * n + 6 * m;
-	double **const rows[] = {&c->y,        &c->end,    &c->middle, &c->turned,
-	                         &c->at_start, &c->at_end, &s->row,    &c->scale};
-	char *at = *memory =
-	    calloc(1, sizeof *s->floors * n + sizeof *s->links * m + sizeof *c->guards * guards +
-	                  sizeof(double) * (2 * n + states * (1 + sizeof rows / sizeof rows[0])));
-	if (!at)
-		return false;
+	const size_t states = POUND_FLOOR_STATES * n + POUND_LINK_STATES * m;
+	double **const rows[STATE_ROWS - 1] = {&c->y,        &c->end,    &c->middle, &c->turned,
+	                                       &c->at_start, &c->at_end, &s->row,    &c->scale};
+	memset(memory, 0, TASK_BYTES(n, m));
 	s->n = n_floors;
 	s->n_links = n_links;
 	s->n_states = (int)states;
-	s->floors = (void *)at, at += sizeof *s->floors * n;
-	s->links = (void *)at, at += sizeof *s->links * m;
-	c->guards = (void *)at, at += sizeof *c->guards * guards;
-	s->still = (void *)at, at += sizeof(double) * n;
-	s->push = (void *)at, at += sizeof(double) * n;
-	for (size_t j = 0; j < sizeof rows / sizeof rows[0]; j++) // the last one with a spare row behind it
-		*rows[j] = (void *)at, at += sizeof(double) * states;
-	return true;
+	s->floors = (void *)memory, memory += sizeof *s->floors * n;
+	s->links = (void *)memory, memory += sizeof *s->links * m;
+	c->guards = (void *)memory, memory += sizeof *c->guards * (4 * n + 6 * m);
+	s->still = (void *)memory, memory += sizeof(double) * n;
+	s->push = (void *)memory, memory += sizeof(double) * n;
+	for (int j = 0; j < STATE_ROWS - 1; j++) // the last one with a spare row behind it
+		*rows[j] = (void *)memory, memory += sizeof(double) * states;
 }
 
 /* The response of a row of buildings by adaptive steps.
@@ -487,8 +496,8 @@ static bool task_carve(struct adaptive_task *c, int n_floors, int n_links, void 
  * Status   POUND_TOLERANCE  the steps became too small or too many
  *          POUND_CHATTER    more events in one sample interval than allowed
  *          POUND_STOPPED    stop, which is looked at between samples, was set; NULL: never
- *          POUND_NOMEM      there was no memory, if the program has set GSL's error handler not to end it for that
- * Memory   allocates work space for the task, and frees it
+ *          POUND_NOMEM      there was no memory for that, if the program has set GSL's error handler not to end it for that
+ * Memory   scratch: POUND_CHAIN_SCRATCH bytes, 64-byte aligned; allocates GSL's work space, and frees it
  *
  * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Stiff stretches go
  *          on with msbdf where there are at most STATES_STIFF states.  Steps follow from the C library's pow, so the last digits
@@ -502,17 +511,12 @@ void pound_adaptive_row(const struct pound_solver *solver, const struct pound_ch
 {
 	struct adaptive_task c = {
 	    .samples = task->ground, .n_samples = task->n_samples, .time_step = task->time_step, .many = true};
-	void *memory;
-	(void)scratch;
 	result->energy_residual = NAN;
-	result->status = POUND_NOMEM;
-	if (!task_carve(&c, task->n_floors, task->n_links, &memory))
-		return;
+	task_carve(&c, task->n_floors, task->n_links, scratch);
 	pound_adaptive_lay_row(&c.scene, task);
 	pound_adaptive_guards_lay(&c, task->asked);
 	task_start(&c, result);
 	result->status = task_follow(&c, solver, stop);
-	free(memory);
 }
 
 /* The response of a pair by adaptive steps.
@@ -531,15 +535,12 @@ void pound_adaptive_run(const struct pound_solver *solver, const struct pound_ta
 	    .samples = task->ground, .n_samples = task->n_samples, .time_step = task->time_step};
 	double floors[POUND_OSCILLATORS][POUND_FLOOR_MEASURES], link[POUND_LINK_MEASURES];
 	struct pound_chain_result rows = {.floors = floors[0], .links = link, .energy_residual = NAN};
-	void *memory;
-	*result = (struct pound_task_result){.status = POUND_NOMEM};
-	if (!task_carve(&c, POUND_OSCILLATORS, 1, &memory))
-		return;
+	alignas(double) char memory[TASK_BYTES(POUND_OSCILLATORS, 1)];
+	task_carve(&c, POUND_OSCILLATORS, 1, memory);
 	pound_adaptive_lay_pair(&c.scene, task);
 	pound_adaptive_guards_lay(&c, POUND_CHAIN_DRIFTS);
 	task_start(&c, &rows);
 	rows.status = task_follow(&c, solver, stop);
-	free(memory);
 	if (rows.status)
 		*result = (struct pound_task_result){.status = rows.status};
 	else

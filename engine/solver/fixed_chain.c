@@ -585,7 +585,7 @@ static void chain_end(struct stepped_chain *c, struct pound_chain_result *result
 		double *m = &c->measures[i * POUND_FLOOR_MEASURES];
 		const struct pound_backbone *story = &c->task->floors[i].story;
 		m[POUND_FLOOR_SHEAR_MAX] = pound_law_envelope(story, m[POUND_FLOOR_DRIFT_MAX]);
-		m[POUND_FLOOR_CENTER] = pound_law_center(story, &c->at[i], drift(c, c->u, i));
+		m[POUND_FLOOR_RESIDUAL] = pound_law_residual(story, &c->at[i], drift(c, c->u, i));
 		m[POUND_FLOOR_END_U] = c->u[i];
 		m[POUND_FLOOR_END_V] = c->v[i];
 		if (!(asked & POUND_CHAIN_DRIFTS))
