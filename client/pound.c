@@ -121,7 +121,7 @@ static const struct command COMMANDS[] = {
 
 static const struct argp_option OPTIONS[] = {
 	{"threads", 't', "N",      0, "compute with N threads (default: number of cores)", 0},
-	{"samples", 'o', "FILE",   0, "also write every sample, or the histories, to FILE (NumPy if it ends in .npy, else CSV)", 0},
+	{"samples", 'o', "FILE",   0, "also write every sample, the histories, or the contacts, to FILE (NumPy if it ends in .npy, else CSV)", 0},
 	{"launcher",   'L', "COMMAND", 0, "command that starts worker processes, such as 'srun pound-worker'", 0},
 	{"launchers",  'B', "N",   0, "run this command N times; each is a worker group that starts and fails independently (default: 1)", 0},
 	{"worker-host", 'Q', "HOST", 0, "name or address of this machine for workers on other machines; listens on all addresses (default: loopback)", 0},

@@ -39,7 +39,7 @@ static double thread_cpu(void)
 	return seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/* Writes every sample of a sensitivity study, or the histories of a study of spectra, to a file. */
+/* Writes every sample of a sensitivity study, the histories of a study of spectra, or the contacts of responses, to a file. */
 static enum outcome write_samples(const struct pound_study *study, struct pound_run *run, const char *path)
 {
 	const char *end = strrchr(path, '.');
@@ -47,7 +47,7 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	size_t n;
 	const char *reason = NULL;
 	pound_run_stop_by(run, &interrupted); // the threads that looked for that have ended
-	char *bytes = study->spectrum.histories
+	char *bytes = histories_exist(study)
 	                  ? (npy ? histories_to_npy : histories_to_csv)(study, run, -1, &n, &reason)
 	                  : (npy ? samples_to_npy : samples_to_csv)(study, run, &n);
 	FILE *file = bytes ? fopen(path, "wb") : NULL;
@@ -138,8 +138,9 @@ enum outcome run_study(const struct options *options)
 	}
 	document_advise(study);
 	if (options->samples && !samples_exist(study)) {
-		command_complain(
-		    "only sensitivity studies, and floor spectra with \"histories\": true, have samples");
+		command_complain("only sensitivity studies, floor spectra with \"histories\": true, and responses by "
+		                 "the event solver of at most 250000 "
+		                 "ground motion samples over all signals and cells have samples");
 		study_free(study);
 		free(document);
 		return OUTCOME_USAGE;

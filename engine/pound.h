@@ -110,6 +110,18 @@ struct pound_instant {
 typedef void pound_run_take(void *into, int signal, const struct pound_instant *instant);
 enum pound_status pound_run_history(struct pound_run *run, int signal, pound_run_take *take, void *into);
 
+/* A contact of a response that counts; of rigid contacts an impact. */
+struct pound_impact {
+	int cell, contact, left_building; /* contact: in the order of the result */
+	double levels[2];      /* of the left building and of its right neighbor; NAN: of two oscillators */
+	double begin, end;     /* [s] */
+	double speed, impulse; /* of approach where it began [m/s]; of its force [N s] */
+};
+
+/* The contacts of one signal of a study of responses, in every cell.  Runs it once more, in the work space of worker 0. */
+typedef void pound_impact_take(void *into, const struct pound_impact *impact);
+enum pound_status pound_run_impacts(struct pound_run *run, int signal, pound_impact_take *take, void *into);
+
 /* What engineers quote of a ground motion: motion_measures.c. */
 struct pound_motion_measures {
 	double pga;      /* peak ground acceleration [m/s2] */

@@ -458,11 +458,12 @@ static struct reply samples(struct request *request)
 			reply = left == pound_run_blocks(opened.run) && !opened.leftovers
 			            ? problem(API_CONFLICT, "the samples of this study are no longer stored")
 			            : problem(API_CORRUPT, "stored blocks are damaged");
-	} else if (opened.study->spectrum.histories)
+	} else if (histories_exist(opened.study))
 		reply.body =
 		    (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, -1, &reply.length, &error);
 	else
-		reply = problem(API_CONFLICT, "only a sensitivity study has samples, and spectra with histories");
+		reply = problem(API_CONFLICT, "only a sensitivity study has samples, spectra with histories, and a "
+		                              "small study of responses its contacts");
 	stored_run_close(&opened);
 	return reply.body ? reply : error ? problem(API_CONFLICT, error) : no_memory();
 }
@@ -508,7 +509,7 @@ static char *history(const struct request *request, size_t *length, const char *
 	const char *error = answer_open(request, &opened), *chosen = http_argument(request, "signal");
 	const int signal = chosen ? (int)fmin(fmax(strtod(chosen, NULL), 0), POUND_ROWS_MAX) : 0;
 	char *csv = NULL;
-	if (!error && opened.study->spectrum.histories)
+	if (!error && histories_exist(opened.study))
 		csv = histories_to_csv(opened.study, opened.run, signal, length, reason);
 	stored_run_close(&opened);
 	return csv;

@@ -255,7 +255,7 @@ function notesOf(value, found = new Map()) {
 
 function data(study) {
 	const done = study.status === "succeeded";
-	const sampled = done && ["sensitivity", "floor_spectrum"].includes(study.kind);
+	const sampled = done && ["sensitivity", "floor_spectrum", "response"].includes(study.kind);
 	const links = [["request", `${id}.json`, "the study document"]];
 	if (done) links.push(["results", `${id}-result.json`, "the result, JSON"], ["results?format=csv", `${id}.csv`, "the result, CSV"]);
 	if (sampled) links.push(["samples?format=csv", `${id}-samples.csv`, "samples, CSV"], ["samples?format=npy", `${id}-samples.npy`, "samples, NumPy"]);

@@ -86,6 +86,18 @@ struct pound_chain_observer {
 	int link; /* the other one is the level at its right side; -1: none, the other one moves with the ground */
 };
 
+/* A contact that is over, as far as it counts; of rigid ones an impact. */
+struct pound_chain_contact {
+	int link;
+	double begin, end;     /* [s] */
+	double speed, impulse; /* of approach where it began [m/s]; of its force [N s] */
+};
+
+struct pound_chain_recorder {
+	void (*record)(void *into, const struct pound_chain_contact *contact);
+	void *into;
+};
+
 struct pound_chain_task {
 	const double *ground; /* acceleration at the samples, linear between  [m/s2]  (n_samples) */
 	int n_samples;        /* >= 2 */
@@ -95,6 +107,7 @@ struct pound_chain_task {
 	const struct pound_link *links;              /* (n_links); NULL: none */
 	unsigned asked;                              /* of enum pound_chain_asked */
 	const struct pound_chain_observer *observer; /* NULL: none */
+	const struct pound_chain_recorder *recorder; /* NULL: none */
 };
 
 enum pound_floor_measure {

@@ -61,7 +61,8 @@ struct link {
 	bool level;     /* without overlap, at one velocity but for a rounding; nothing has decided yet */
 	double p, q;    /* overlap [m] and its rate [m/s] */
 	double impulse; /* of this contact so far [N s] */
-	double time;    /* in contact, so far [s] */
+	double begin, speed; /* of this contact: when, and the speed of approach [s], [m/s] */
+	double time;         /* in contact, so far [s] */
 	double counted_time; /* of contacts that count [s] */
 	struct pound_counts_scale scale;
 	double *measures;

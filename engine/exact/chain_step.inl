@@ -99,6 +99,7 @@ static void contact_over(struct chain *c, struct link *l)
 	if (pound_contact_counts(&counts, &l->scale)) {
 		m[POUND_LINK_CONTACTS]++;
 		l->counted_time = l->time;
+		contact_record(c, l, chain_time(c), l->impulse);
 	} else {
 		l->time = l->counted_time;
 	}
@@ -120,8 +121,10 @@ static void contact_begins(struct chain *c, struct link *l)
 	l->touching = l->own = true;
 	l->released = l->fresh = false;
 	l->impulse = 0;
+	l->begin = chain_time(c);
+	l->speed = l->q;
 	if (m[POUND_LINK_CONTACTS] == 0) {
-		m[POUND_LINK_FIRST_TIME] = chain_time(c);
+		m[POUND_LINK_FIRST_TIME] = l->begin;
 		m[POUND_LINK_FIRST_SPEED] = l->q;
 	}
 	c->reach = 0;

@@ -219,6 +219,18 @@ static double link_acceleration(struct chain *c, const struct link *l)
 	return sum;
 }
 
+/* Reports a contact that counts. */
+static void contact_record(const struct chain *c, const struct link *l, double end, double impulse)
+{
+	const struct pound_chain_recorder *recorder = c->task->recorder;
+	if (recorder)
+		recorder->record(recorder->into, &(struct pound_chain_contact){.link = (int)(l - c->link),
+		                                                               .begin = l->begin,
+		                                                               .end = end,
+		                                                               .speed = l->speed,
+		                                                               .impulse = impulse});
+}
+
 /* Two sides meet.
  *
  * Given    l   p = 0, q >= 0
@@ -256,6 +268,9 @@ static void impact(struct chain *c, struct link *l, double time)
 			m[POUND_LINK_FIRST_TIME] = time;
 			m[POUND_LINK_FIRST_SPEED] = q;
 		}
+		l->begin = time;
+		l->speed = q;
+		contact_record(c, l, time, impulse);
 	}
 	c->reach = 0;
 	c->warp.on = warped;

@@ -671,3 +671,27 @@ struct pound_task pound_request_pair(const struct pound_request *request, int as
 	task.time_step = m->time_step;
 	return task;
 }
+
+void pound_request_chain(const struct pound_request *request, int ask, struct pound_request_chain *chain)
+{
+	const struct ask *a = &request->asks[ask];
+	const struct pound_row_ask *row = &request->row_asks[ask];
+	*chain = (struct pound_request_chain){.scene = a->scene,
+	                                      .mass = 1,
+	                                      .exponent = request->motions[a->motion].exponent,
+	                                      .scratch = request->scratch};
+	if (a->scene.n_buildings) {
+		chain->scene = row_scene(request, a);
+		if (row->march < 0)
+			return;
+		chain->task = request->rows.tasks[row->march];
+		chain->result = request->rows.results[row->march];
+	} else if (a->march >= 0) {
+		const struct pound_task task = pound_request_pair(request, ask);
+		pound_pair_chain(&task, &chain->pair);
+		chain->task = chain->pair.task;
+		chain->result = (struct pound_chain_result){.floors = chain->pair.floor_measures[0],
+		                                            .links = chain->pair.link_measures};
+		chain->mass = a->scene.oscillators[0].mass;
+	}
+}

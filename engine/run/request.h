@@ -13,6 +13,7 @@
 #include "engine/pound.h"
 #include "engine/run/outputs.h"
 #include "engine/run/row_runs.h"
+#include "engine/solver/solver.h"
 
 /* the scenes of a study by cell, row of the design and sample of the row */
 struct pound_cells {
@@ -94,6 +95,19 @@ struct pound_request_floor {
 struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask);
 /* The task that follows both bodies of an ask, its motion times 2^-exponent, too. */
 struct pound_task pound_request_pair(const struct pound_request *request, int ask);
+
+/* After pound_request_run: the response with pounding of an ask as a chain, to be followed once more; its motions are times
+ * 2^-exponent.  It points into itself and into the request. */
+struct pound_request_chain {
+	struct pound_scene scene;
+	struct pound_chain_task task; /* links NULL: the bodies do not touch */
+	struct pound_chain_result result;
+	struct pound_pair_chain pair; /* of two oscillators */
+	double mass;                  /* that impulses are over [kg] */
+	int exponent;
+	void *scratch;
+};
+void pound_request_chain(const struct pound_request *request, int ask, struct pound_request_chain *chain);
 
 /* After pound_request_run, for taking the time: its marches with pounding once more, all its marches if there is none.
  * n: how many. */

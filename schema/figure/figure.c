@@ -24,6 +24,7 @@ const struct figure_row figure_rows[] = {
 	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding"},
 	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding"},
 	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level"},
+	{"timeline",  "response",       " cell signal from to width ", NULL,              true,  "every contact in time, by its level and its impulse"},
 	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time"},
 	{"separation", "separation",    " cell width ",               NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for"},
 	{"fragility", "separation",     " cell width ",               NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares"},
@@ -128,7 +129,8 @@ enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
                              struct figure *figure)
 {
 	*figure = (struct figure){0};
-	if (row->sampled ? !source->samples : !figure_shows(row, result)) {
+	// what is drawn from samples alone needs no result
+	if ((row->sampled && !source->samples) || (plot_is_result(result) && !figure_shows(row, result))) {
 		snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s", row->name,
 		         strcmp(row->kind, plot_text(result, "kind")) == 0 ? "the study did not ask for what it shows"
 		                                                           : "only studies of another kind have it");
@@ -163,7 +165,6 @@ enum figure_status figure_draw(const char *name, const struct figure_source *sou
 	if (!result && fault.line == 0)
 		return out_of_memory(figure);
 	enum figure_status status = FIGURE_RESULT;
-	// what is drawn from samples alone needs no result
 	if (plot_is_result(result) || (cJSON_IsObject(result) && row->sampled && source->samples))
 		status = figure_of(row, result, source, choice, figure);
 	else

@@ -1,9 +1,7 @@
 /* history_plot.c - of the samples of a floor_spectrum: `history` of both oscillators, `force` of their contacts. */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "schema/figure/plot.h"
 
@@ -26,70 +24,7 @@ static const struct series {
 
 static const char *const RIGHT_DASH = "5 2";
 
-enum { N_SERIES = sizeof SERIES / sizeof SERIES[0], COLUMNS_MOST = 24 };
-
-struct table {
-	int signal;       /* the chosen one */
-	int n_columns, n; /* rows of that signal and time */
-	const char *names[COLUMNS_MOST];
-	size_t lengths[COLUMNS_MOST];
-	double *values[COLUMNS_MOST]; /* (n) of one signal */
-};
-
-/* The rows of the signal in [from, to] s.  A sample is a number or empty; the first columns are signal and time_s. */
-static bool table_read(struct plot *plot, double from, double to, struct table *table)
-{
-	const char *at = plot->source->samples, *end = at + plot->source->n_samples;
-	size_t lines = 0;
-	table->n_columns = table->n = 0;
-	for (const char *c = at; c < end; c++)
-		lines += *c == '\n' || *c == '\r';
-	while (at < end && *at != '\r' && *at != '\n' && table->n_columns < COLUMNS_MOST) {
-		size_t n = 0;
-		while (at + n < end && !strchr(",\r\n", at[n]))
-			n++;
-		table->names[table->n_columns] = at;
-		table->lengths[table->n_columns] = n;
-		table->values[table->n_columns] = plot_memory(plot, sizeof(double) * (lines + 1));
-		if (!table->values[table->n_columns++])
-			return false;
-		at += n + (at + n < end && at[n] == ',');
-	}
-	if (table->n_columns < 3 || strncmp(table->names[0], "signal,time_s,", 14) != 0)
-		return false;
-	while (at < end) {
-		double row[COLUMNS_MOST] = {0};
-		at += strspn(at, "\r\n");
-		if (at >= end || !*at)
-			break;
-		// most rows are of other signals, and their numbers are not read
-		bool wanted = true;
-		for (int c = 0; c < table->n_columns && wanted; c++) {
-			// a number does not begin on the next line
-			char *after = (char *)at;
-			row[c] = isspace((unsigned char)*at) ? NAN : strtod(at, &after);
-			row[c] = after == at ? NAN : row[c];
-			at = after + strcspn(after, ",\r\n");
-			at += *at == ',';
-			wanted = c == 0 ? row[0] == table->signal : c > 1 || (row[1] >= from && row[1] <= to);
-		}
-		at += strcspn(at, "\r\n");
-		if (wanted && isfinite(row[1])) {
-			for (int c = 0; c < table->n_columns; c++)
-				table->values[c][table->n] = row[c];
-			table->n++;
-		}
-	}
-	return true;
-}
-
-static const double *table_column(const struct table *table, const char *name)
-{
-	for (int c = 0; c < table->n_columns; c++)
-		if (table->lengths[c] == strlen(name) && strncmp(table->names[c], name, table->lengths[c]) == 0)
-			return table->values[c];
-	return NULL;
-}
+enum { N_SERIES = sizeof SERIES / sizeof SERIES[0] };
 
 /* A line through all points of a history: of each pixel across the first, lowest, highest and last. */
 static void draw_dense(struct plot *plot, const struct pen *pen, const struct panel *panel,
@@ -120,35 +55,18 @@ static void draw_dense(struct plot *plot, const struct pen *pen, const struct pa
 		draw_curve(&plot->d, pen, at, x, y);
 }
 
-static double second_of(struct plot *plot, const char *name, const char *text, double absent)
-{
-	char *end;
-	double value = text ? strtod(text, &end) : absent;
-	if (text && (!*text || *end || !isfinite(value) || isspace((unsigned char)*text)))
-		snprintf(plot->fault, sizeof plot->fault, "%s must be a time in s", name);
-	return value;
-}
-
 /* The chosen rows of the samples, at least one; false: a fault. */
-static bool table_chosen(struct plot *plot, struct table *table)
+static bool table_chosen(struct plot *plot, struct plot_table *table)
 {
-	const double from = second_of(plot, "from", plot->choice->from, 0);
-	const double to = second_of(plot, "to", plot->choice->to, INFINITY);
-	table->signal = plot->choice->signal ? atoi(plot->choice->signal) : 0;
-	if (*plot->fault)
-		return false;
-	if (!table_read(plot, from, to, table))
-		snprintf(plot->fault, sizeof plot->fault,
-		         "the samples are no histories: they begin with signal,time_s");
-	else if (table->n == 0)
+	if (plot_table(plot, table) && table->n == 0)
 		snprintf(plot->fault, sizeof plot->fault, "no sample of signal %d lies between from and to",
 		         table->signal);
 	return !*plot->fault;
 }
 
-static bool any_known(const struct table *table, const char *name)
+static bool any_known(const struct plot_table *table, const char *name)
 {
-	const double *values = table_column(table, name);
+	const double *values = plot_table_column(table, name);
 	bool any = false;
 	for (int k = 0; values && k < table->n; k++)
 		any = any || isfinite(values[k]);
@@ -163,9 +81,10 @@ bool plot_has_history(const cJSON *result)
 }
 
 /* A tick at each begin of a contact, at most one per pixel; returns the number of contacts. */
-static int draw_begins(struct plot *plot, const struct panel *panel, const struct table *table)
+static int draw_begins(struct plot *plot, const struct panel *panel, const struct plot_table *table)
 {
-	const double *time = table_column(table, "time_s"), *force = table_column(table, "contact_force_n");
+	const double *time = plot_table_column(table, "time_s"),
+	             *force = plot_table_column(table, "contact_force_n");
 	double last = -INFINITY;
 	int n = 0;
 	for (int k = 1; force && k < table->n; k++) {
@@ -183,13 +102,17 @@ static int draw_begins(struct plot *plot, const struct panel *panel, const struc
 
 void plot_history(struct plot *plot)
 {
-	struct table table;
+	struct plot_table table;
 	char more[PLOT_TEXT], number[2][32];
 	int impacts = 0;
 	struct range times = RANGE_EMPTY, ups = RANGE_EMPTY;
 	if (!table_chosen(plot, &table))
 		return;
-	const double *time = table_column(&table, "time_s");
+	const double *time = plot_table_column(&table, "time_s");
+	if (!plot_table_column(&table, "u_m")) {
+		snprintf(plot->fault, sizeof plot->fault, "the samples are no histories: they have no column u_m");
+		return;
+	}
 	for (int k = 0; k < table.n; k++)
 		range_add(&times, time[k]);
 	snprintf(more, sizeof more, "ground motion %d; ticks above the displacement: a contact begins",
@@ -205,7 +128,7 @@ void plot_history(struct plot *plot)
 		const double *columns[2] = {NULL, NULL};
 		int known = 0;
 		for (int l = 0; l < 2 && SERIES[s].lines[l].column; l++) {
-			columns[l] = table_column(&table, SERIES[s].lines[l].column);
+			columns[l] = plot_table_column(&table, SERIES[s].lines[l].column);
 			for (int k = 0; columns[l] && k < table.n; k++)
 				range_add(&range, columns[l][k]), known += isfinite(columns[l][k]);
 		}
@@ -259,7 +182,8 @@ static int by_peak(const void *one, const void *other)
 
 /* The contacts, from that of the largest force on; each begins and ends with the rows without force beside it, at which the
  * overlap is zero or the force has changed at once. */
-static int loops_of(const struct table *table, const double *gap, const double *force, struct loop *loops)
+static int loops_of(const struct plot_table *table, const double *gap, const double *force,
+                    struct loop *loops)
 {
 	int n = 0;
 	for (int k = 0; k < table->n; k++) {
@@ -298,13 +222,14 @@ static int draw_loop(struct plot *plot, const struct panel *panel, const struct 
 
 void plot_force(struct plot *plot)
 {
-	struct table table;
+	struct plot_table table;
 	struct range across = {0, 0}, up = {0, 0};
 	char more[PLOT_TEXT], number[2][32];
 	int points = 0, drawn = 0;
 	if (!table_chosen(plot, &table))
 		return;
-	const double *gap = table_column(&table, "gap_m"), *force = table_column(&table, "contact_force_n");
+	const double *gap = plot_table_column(&table, "gap_m"),
+	             *force = plot_table_column(&table, "contact_force_n");
 	struct loop *loops = plot_memory(plot, sizeof *loops * (size_t)(table.n + 1));
 	if (!gap || !force) {
 		snprintf(plot->fault, sizeof plot->fault, "the samples have no columns gap_m and contact_force_n");

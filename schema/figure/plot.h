@@ -44,6 +44,21 @@ const cJSON *plot_cell(struct plot *plot); /* the chosen one; NULL: a fault */
 /* Outputs of a cell that are drawn, at most `most`: the chosen one, or those without a frequency first.  0: a fault. */
 int plot_outputs(struct plot *plot, const cJSON *cell, int most, const cJSON **outputs);
 
+/* ---- samples in time ---- */
+
+enum { PLOT_COLUMNS_MOST = 24 };
+
+struct plot_table {
+	int signal;       /* the chosen one */
+	int n_columns, n; /* rows of that signal and time */
+	const char *names[PLOT_COLUMNS_MOST];
+	size_t lengths[PLOT_COLUMNS_MOST];
+	double *values[PLOT_COLUMNS_MOST]; /* (n) of one signal */
+};
+
+bool plot_table(struct plot *plot, struct plot_table *table);                      /* false: a fault */
+const double *plot_table_column(const struct plot_table *table, const char *name); /* NULL: none */
+
 /* ---- words ---- */
 
 /* "force amplification", "floor spectrum at 2 Hz" */

@@ -1,16 +1,19 @@
-/* histories.c - the motion of both oscillators in time, signal after signal, as CSV and as a NumPy file.
+/* histories.c - what happens in time, signal after signal, as CSV and as a NumPy file: the motion of both oscillators of a study of
+ * spectra, the contacts of a study of responses.
  *
  * Nothing of it is stored: the signals are run once more, to the same bits. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "engine/solver/solver.h"
 #include "schema/result/npy.h"
 #include "schema/result/result_json.h"
 #include "schema/study/study_json.h"
 
 // clang-format off
-#define COLUMNS(X)                                            \
+#define HISTORY(X)                                            \
 	X("time_s",                 instant->time)                \
 	X("u_m",                    instant->u[0])                \
 	X("v_m_s",                  instant->v[0])                \
@@ -21,36 +24,63 @@
 	X("acceleration_right_m_s2", instant->acceleration[1])    \
 	X("gap_m",                  instant->gap)                 \
 	X("ground_m_s2",            instant->ground)
+
+#define IMPACTS(X)                                            \
+	X("time_s",                 impact->begin)                \
+	X("duration_s",             impact->end - impact->begin)  \
+	X("cell",                   impact->cell)                 \
+	X("contact",                impact->contact)              \
+	X("left_building",          row ? impact->left_building : (double)NAN) \
+	X("left_level",             impact->levels[0])            \
+	X("right_level",            impact->levels[1])            \
+	X("approach_speed_m_s",     impact->speed)                \
+	X("impulse_n_s",            impact->impulse)
 // clang-format on
 
-#define X(name, value) name,
-static const char *const columns[] = {COLUMNS(X)};
-#undef X
-
 enum {
-	N_COLUMNS = sizeof columns / sizeof columns[0],
+	COLUMNS_MAX = 10,
 	ROWS_MAX = 16 * STUDY_HISTORIES_MAX, /* rows, twice what most contacts need: 800 MB as CSV */
 };
 
 static_assert(ROWS_MAX == 4000000, "a sentence below names it");
 
+/* What a row has beside its signal. */
+static const struct columns {
+	int n;
+	const char *names[COLUMNS_MAX];
+} HISTORY_COLUMNS =
+#define X(name, value) name,
+    {10, {HISTORY(X)}},
+  IMPACT_COLUMNS = {9, {IMPACTS(X)}};
+#undef X
+
+enum format { FORMAT_CSV, FORMAT_NPY };
+
 struct rows {
 	struct writer w;
+	enum format format;
+	const struct columns *columns;
+	int signal;
 	int64_t n;
 	const char *reason; /* why there are too many; NULL: there are not */
 };
 
-static void values_of(const struct pound_instant *instant, double values[N_COLUMNS])
+static void row_add(struct rows *rows, const double *values)
 {
-#define X(name, value) value,
-	const double all[N_COLUMNS] = {COLUMNS(X)};
-#undef X
-	for (int j = 0; j < N_COLUMNS; j++)
-		values[j] = all[j];
-}
-
-static void row_count(struct rows *rows)
-{
+	char text[WRITER_NUMBER_SIZE];
+	const int32_t number = rows->signal;
+	const int n = rows->columns->n;
+	if (rows->format == FORMAT_NPY) {
+		writer_raw(&rows->w, (const char *)&number, sizeof number);
+		writer_raw(&rows->w, (const char *)values, sizeof *values * (size_t)n);
+	} else {
+		writer_raw(&rows->w, text, (size_t)snprintf(text, sizeof text, "%d", number));
+		for (int j = 0; j < n; j++) {
+			writer_raw(&rows->w, ",", 1);
+			writer_raw(&rows->w, text, (size_t)writer_digits(values[j], text));
+		}
+		writer_raw(&rows->w, "\r\n", 2);
+	}
 	rows->n++;
 	if (rows->n > ROWS_MAX) {
 		rows->w.failed = true;
@@ -59,65 +89,78 @@ static void row_count(struct rows *rows)
 	}
 }
 
-static void line_add(void *into, int signal, const struct pound_instant *instant)
+#define X(name, value) value,
+static void instant_add(void *into, int signal, const struct pound_instant *instant)
 {
 	struct rows *rows = into;
-	char text[WRITER_NUMBER_SIZE];
-	double values[N_COLUMNS];
-	values_of(instant, values);
-	writer_raw(&rows->w, text, (size_t)snprintf(text, sizeof text, "%d", signal));
-	for (int j = 0; j < N_COLUMNS; j++) {
-		writer_raw(&rows->w, ",", 1);
-		writer_raw(&rows->w, text, (size_t)writer_digits(values[j], text));
-	}
-	writer_raw(&rows->w, "\r\n", 2);
-	row_count(rows);
+	const double values[] = {HISTORY(X)};
+	rows->signal = signal;
+	row_add(rows, values);
 }
 
-static void record_add(void *into, int signal, const struct pound_instant *instant)
+static void impact_add(void *into, const struct pound_impact *impact)
 {
-	struct rows *rows = into;
-	const int32_t number = signal;
-	double values[N_COLUMNS];
-	values_of(instant, values);
-	writer_raw(&rows->w, (const char *)&number, sizeof number);
-	writer_raw(&rows->w, (const char *)values, sizeof values);
-	row_count(rows);
+	const bool row = isfinite(impact->levels[0]);
+	const double values[] = {IMPACTS(X)};
+	row_add(into, values);
 }
+#undef X
 
 /* The history of a signal, or of every one; of one that cannot be followed to its end there is what there is, and of a run that is stopped
  * nothing at all. */
-static void rows_fill(const struct pound_study *study, struct pound_run *run, int signal,
-                      pound_run_take *take, struct rows *rows)
+static void rows_fill(const struct pound_study *study, struct pound_run *run, int signal, struct rows *rows)
 {
 	const int n = study->scene.excitation.signals, from = signal < 0 ? 0 : signal;
-	for (int k = from; k < n && (signal < 0 || k == signal) && !rows->w.failed; k++)
-		if (pound_run_history(run, k, take, rows) == POUND_STOPPED)
-			rows->w.failed = true;
+	for (int k = from; k < n && (signal < 0 || k == signal) && !rows->w.failed; k++) {
+		rows->signal = k;
+		const enum pound_status status = study->spectrum.histories
+		                                     ? pound_run_history(run, k, instant_add, rows)
+		                                     : pound_run_impacts(run, k, impact_add, rows);
+		rows->w.failed |= status == POUND_STOPPED;
+	}
+}
+
+/* Whether a study has samples that are made by running it once more: histories, or contacts of no more ground motion than they
+ * may have. */
+bool histories_exist(const struct pound_study *study)
+{
+	return study->spectrum.histories ||
+	       (study->kind == POUND_KIND_RESPONSE && study->scene.contact.present &&
+	        study->solver.method == POUND_SOLVER_EVENT &&
+	        study_samples(study) * study->scene.excitation.signals * study_cells(study) <=
+	            STUDY_HISTORIES_MAX);
+}
+
+static struct rows rows_of(const struct pound_study *study, enum format format)
+{
+	struct rows rows = {.format = format,
+	                    .columns = study->spectrum.histories ? &HISTORY_COLUMNS : &IMPACT_COLUMNS};
+	writer_init(&rows.w);
+	return rows;
 }
 
 /* Histories as CSV.
  *
- * Given    study, run  -         -       a study of spectra; blocks need not be run
+ * Given    study, run  -         -       histories_exist; blocks need not be run
  *          signal      -         -       -1: every one
  * Returns  value       (length)  -       NULL: out of memory or more than ROWS_MAX rows, or the run is stopped
  *          reason      -         -       set where there are too many rows: a sentence
  * Memory   allocates; the caller frees
  *
- * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event, a_run_that_is_stopped_leaves_no_file
+ * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event, a_run_that_is_stopped_leaves_no_file;
+ *          unit_impacts
  */
 char *histories_to_csv(const struct pound_study *study, struct pound_run *run, int signal, size_t *length,
                        const char **reason)
 {
-	struct rows rows = {0};
-	writer_init(&rows.w);
+	struct rows rows = rows_of(study, FORMAT_CSV);
 	writer_raw(&rows.w, "signal", 6);
-	for (int j = 0; j < N_COLUMNS; j++) {
+	for (int j = 0; j < rows.columns->n; j++) {
 		writer_raw(&rows.w, ",", 1);
-		writer_cell(&rows.w, columns[j]);
+		writer_cell(&rows.w, rows.columns->names[j]);
 	}
 	writer_raw(&rows.w, "\r\n", 2);
-	rows_fill(study, run, signal, line_add, &rows);
+	rows_fill(study, run, signal, &rows);
 	*reason = rows.reason;
 	return writer_take(&rows.w, length);
 }
@@ -131,18 +174,17 @@ char *histories_to_csv(const struct pound_study *study, struct pound_run *run, i
 char *histories_to_npy(const struct pound_study *study, struct pound_run *run, int signal, size_t *length,
                        const char **reason)
 {
-	struct rows rows = {0};
+	struct rows rows = rows_of(study, FORMAT_NPY);
 	struct writer file, fields;
 	size_t n;
 	*length = 0;
-	writer_init(&rows.w);
 	writer_init(&file);
 	writer_init(&fields);
-	rows_fill(study, run, signal, record_add, &rows);
+	rows_fill(study, run, signal, &rows);
 	*reason = rows.reason;
 	npy_field(&fields, "signal", "", "<i4");
-	for (int j = 0; j < N_COLUMNS; j++)
-		npy_field(&fields, columns[j], "", "<f8");
+	for (int j = 0; j < rows.columns->n; j++)
+		npy_field(&fields, rows.columns->names[j], "", "<f8");
 	char *records = writer_take(&rows.w, &n);
 	bool headed = npy_head(&file, &fields, rows.n);
 	if (records && headed)

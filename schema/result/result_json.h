@@ -33,16 +33,18 @@ void result_curves(struct writer *w, const struct pound_study *study, const stru
  * per cell, output and input of a sensitivity study, per cell and signal of a response, ... */
 char *result_to_csv(const char *json, size_t json_length, const char *table, size_t *length);
 
-/* Whether a study has samples: its runs, or the histories that it asks for. */
+/* Whether a study has samples: its runs, the histories that it asks for, or the contacts of its responses; and whether they are made
+ * by running it once more: the latter two. */
 bool samples_exist(const struct pound_study *study);
+bool histories_exist(const struct pound_study *study);
 
 /* Every input row of a sensitivity study (of no other) and its outputs: cells in order, rows i, samples A_i, B_i,
  * AB_i of each input.  Columns: sweep paths, `row`, `sample`, input names, NAME and NAME.variance of each output. */
 char *samples_to_csv(const struct pound_study *study, const struct pound_run *run, size_t *length);
 char *samples_to_npy(const struct pound_study *study, const struct pound_run *run, size_t *length);
 
-/* The motion of both oscillators in a signal of a study of spectra (of no other), or -1: in every one; at the samples, on
- * both sides of every event, and inside contacts.  NULL: out of memory, the run is stopped, or there are too many rows,
+/* Of a signal, or -1: of every one: the motion of both oscillators of a study of spectra, at the samples, on both sides of every
+ * event, and inside contacts; the contacts of a study of responses in all its cells.  NULL: out of memory, the run is stopped, or there are too many rows,
  * which is a sentence in `reason`, else NULL. */
 char *histories_to_csv(const struct pound_study *study, struct pound_run *run, int signal, size_t *length,
                        const char **reason);

@@ -135,7 +135,7 @@ static void put_line(struct writer *w, const struct sample *s)
 
 bool samples_exist(const struct pound_study *study)
 {
-	return pound_study_sampled(study) || study->spectrum.histories;
+	return pound_study_sampled(study) || histories_exist(study);
 }
 
 /* The samples as CSV; an empty cell where there is no value.

@@ -115,7 +115,7 @@ static void a_study_without_samples_is_archived_without_them(void **state)
 {
 	char id[17];
 	finished(*state,
-	         "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	         "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
 	         "{\"frequency_hz\": 3}]}}",
 	         id);
 	struct program_outcome archived = POUND("archive", id, path);

@@ -56,8 +56,12 @@ static void a_study_that_has_succeeded_has_status_results_and_samples(void **sta
 	program_free(&npy);
 	expect_words(POUND("cancel", id), 1, WORDS(id, "finished"));
 	// one that has none has not failed
-	submit("response", true, id);
+	submit("rigid_wall", true, id);
 	expect_words(POUND("samples", id), 1, WORDS("only a sensitivity study has samples"));
+	// those of a response are its contacts
+	submit("response", true, id);
+	expect_words(POUND("samples", id), 0, WORDS("signal,time_s,duration_s,cell,contact", "impulse_n_s"));
+	expect_words(POUND("plot", "timeline", id), 0, WORDS("<svg", "Contacts in time"));
 }
 
 static void a_cancelled_study_ends_wait_and_results_with_3(void **state)

@@ -532,12 +532,12 @@ static void others_are_answered_while_large_results_become_csv(void **state)
 	assert_true(others > 5 * ASKERS);
 }
 
-static void a_response_study_has_no_samples_and_the_server_lives_on(void **state)
+static void spectra_without_histories_have_no_samples_and_the_server_lives_on(void **state)
 {
 	struct service *service = *state;
 	char id[17];
 	service_submit(service,
-	               "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
+	               "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
 	               "{\"frequency_hz\": 3}]}}",
 	               id);
 	assert_true(service_wait(service, id, "succeeded", 0));
@@ -613,7 +613,7 @@ CHECK_MAIN(SERVED(a_posted_study_is_answered_with_201_its_location_and_its_statu
            SERVED(the_form_that_alone_is_named_comes_or_the_first),
            SERVED(samples_asked_for_by_many_at_once_are_the_same_for_all),
            SERVED(others_are_answered_while_large_results_become_csv),
-           SERVED(a_response_study_has_no_samples_and_the_server_lives_on),
+           SERVED(spectra_without_histories_have_no_samples_and_the_server_lives_on),
            SERVED(an_unchanged_status_is_304_to_its_etag),
            SERVED(a_live_and_ready_server_says_so_and_its_version),
            SERVED(a_path_with_a_newline_is_one_line_of_the_log))

@@ -186,7 +186,7 @@ static struct figure_source result_of(const char *document)
 	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	source.json = result_to_json(study, pound_run_result(run), &timing, &source.length);
-	if (study->spectrum.histories)
+	if (histories_exist(study))
 		source.samples = histories_to_csv(study, run, -1, &source.n_samples, &(const char *){NULL});
 	pound_run_free(run);
 	study_free(study);
@@ -377,17 +377,43 @@ static void a_force_is_drawn_for_each_contact(void **state)
 	free(figure.svg);
 }
 
+static void a_contact_in_time_has_a_mark_in_its_cell_alone(void **state)
+{
+	static const char samples[] =
+	    "signal,time_s,duration_s,cell,contact,left_building,left_level,right_level,approach_speed_m_s,"
+	    "impulse_n_s\r\n"
+	    "0,0.5,0.1,0,0,0,1,1,0.3,20\r\n0,1,0,0,1,0,2,1.5,0.2,80\r\n0,2,0,0,2,1,2,2,0.2,5\r\n"
+	    "0,3,0,1,0,,,,0.2,7\r\n1,4,0,0,0,0,1,1,1,900\r\n";
+	const struct figure_source source = {
+	    .json = "{}", .length = 2, .samples = samples, .n_samples = sizeof samples - 1};
+	(void)state;
+	struct figure figure = drawn("timeline", &source, &(struct figure_choice){0});
+	assert_non_null(strstr(
+	    figure.svg, "<desc>3 contacts; the largest impulse, 80 N s, begins at 1 s at level 2.</desc>"));
+	assert_non_null(strstr(figure.svg, "1 s, level 2: impulse 80 N s, approach 0.2 m/s, 0 s long"));
+	assert_non_null(strstr(figure.svg, ">buildings 1 and 2<"));
+	assert_null(strstr(figure.svg, "900"));
+	free(figure.svg);
+	figure = drawn("timeline", &source, &(struct figure_choice){.cell = "1"});
+	assert_non_null(
+	    strstr(figure.svg, "<desc>1 contacts; the largest impulse, 7 N s, begins at 3 s.</desc>"));
+	free(figure.svg);
+	figure = drawn("timeline", &source, &(struct figure_choice){.signal = "7"});
+	assert_non_null(strstr(figure.svg, "<desc>No contact.</desc>"));
+	free(figure.svg);
+}
+
 static void the_golden_figures_have_not_changed(void **state)
 {
 	// pound plot NAME tests/cases/figures/SOURCE >tests/cases/figures/NAME.svg, then look at it
 	static const struct {
 		const char *name, *source;
 	} golden[] = {
-	    {"indices", "indices.json"},       {"swept", "swept.json"},         {"given", "given.json"},
-	    {"widths", "given.json"},          {"pairs", "given.json"},         {"spectra", "spectra.json"},
-	    {"responses", "responses.json"},   {"history", "history.csv"},      {"errors", "errors.json"},
-	    {"heights", "heights.json"},       {"impacts", "heights.json"},     {"force", "history.csv"},
-	    {"separation", "separation.json"}, {"fragility", "separation.json"}};
+	    {"indices", "indices.json"},       {"swept", "swept.json"},          {"given", "given.json"},
+	    {"widths", "given.json"},          {"pairs", "given.json"},          {"spectra", "spectra.json"},
+	    {"responses", "responses.json"},   {"history", "history.csv"},       {"errors", "errors.json"},
+	    {"heights", "heights.json"},       {"impacts", "heights.json"},      {"force", "history.csv"},
+	    {"separation", "separation.json"}, {"fragility", "separation.json"}, {"timeline", "timeline.csv"}};
 	enum { GOLDEN = sizeof golden / sizeof golden[0] };
 	(void)state;
 	assert_null(figure_rows[GOLDEN].name); // every figure has one
@@ -513,6 +539,7 @@ int main(void)
 	    cmocka_unit_test(a_short_logarithmic_axis_has_two_ticks_at_least),
 	    cmocka_unit_test(what_has_no_value_says_so),
 	    cmocka_unit_test(a_force_is_drawn_for_each_contact),
+	    cmocka_unit_test(a_contact_in_time_has_a_mark_in_its_cell_alone),
 	    cmocka_unit_test(the_golden_figures_have_not_changed),
 	    cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
 	    cmocka_unit_test(a_result_lists_the_figures_that_it_has),

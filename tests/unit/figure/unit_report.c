@@ -18,7 +18,7 @@ static struct figure_source result_of(const char *document)
 	struct pound_study *study = study_documents_study(document);
 	struct pound_run *run = specimen_run(study);
 	source.json = result_to_json(study, pound_run_result(run), &timing, &source.length);
-	if (study->spectrum.histories)
+	if (histories_exist(study))
 		source.samples = histories_to_csv(study, run, -1, &source.n_samples, &(const char *){NULL});
 	pound_run_free(run);
 	study_free(study);
