@@ -28,6 +28,7 @@ const struct figure_row figure_rows[] = {
 	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time"},
 	{"separation", "separation",    " cell width ",               NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for"},
 	{"fragility", "separation",     " cell width ",               NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares"},
+	{"suite",     "any",            " width ",                    NULL,                true,  "response spectra of a study's ground motions, by pound motion --periods"},
 	{0},
 };
 
@@ -132,8 +133,10 @@ enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
 	// what is drawn from samples alone needs no result
 	if ((row->sampled && !source->samples) || (plot_is_result(result) && !figure_shows(row, result))) {
 		snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s", row->name,
-		         strcmp(row->kind, plot_text(result, "kind")) == 0 ? "the study did not ask for what it shows"
-		                                                           : "only studies of another kind have it");
+		         strcmp(row->kind, "any") == 0 ? "it is drawn from a table of its own"
+		         : strcmp(row->kind, plot_text(result, "kind")) == 0
+		             ? "the study did not ask for what it shows"
+		             : "only studies of another kind have it");
 		return FIGURE_ABSENT;
 	}
 	struct plot plot = {.result = result, .source = source, .choice = choice};

@@ -17,7 +17,8 @@
 // clang-format off
 /* The figures: X(name). */
 #define FIGURES(X) X(indices) X(swept) X(given) X(widths) X(pairs) X(spectra) X(history) X(force) X(responses) \
-	X(heights) X(impacts) X(timeline) X(errors) X(separation) X(fragility)
+	X(heights) X(impacts) X(timeline) X(errors) X(separation) X(fragility) \
+	X(suite)
 
 /* What can be chosen of a figure: X(name, values between spaces or NULL, lowest, highest, text). */
 #define FIGURE_ARGUMENTS(X)                                                                                   \

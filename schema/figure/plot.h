@@ -49,14 +49,15 @@ int plot_outputs(struct plot *plot, const cJSON *cell, int most, const cJSON **o
 enum { PLOT_COLUMNS_MOST = 24 };
 
 struct plot_table {
-	int signal;       /* the chosen one */
+	int signal;       /* the chosen one; -1: every one */
 	int n_columns, n; /* rows of that signal and time */
 	const char *names[PLOT_COLUMNS_MOST];
 	size_t lengths[PLOT_COLUMNS_MOST];
 	double *values[PLOT_COLUMNS_MOST]; /* (n) of one signal */
 };
 
-bool plot_table(struct plot *plot, struct plot_table *table);                      /* false: a fault */
+bool plot_table(struct plot *plot, struct plot_table *table);       /* false: a fault */
+bool plot_table_whole(struct plot *plot, struct plot_table *table); /* every row; false: a fault */
 const double *plot_table_column(const struct plot_table *table, const char *name); /* NULL: none */
 
 /* ---- words ---- */

@@ -1,4 +1,4 @@
-/* plot_table.c - samples in time as CSV: the rows of one signal. */
+/* plot_table.c - samples as CSV: the rows of one signal in time, or all rows. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,8 +7,11 @@
 
 #include "schema/figure/plot.h"
 
-/* The rows of the signal in [from, to] s.  A sample is a number or empty; the first columns are signal and time_s. */
-static bool table_read(struct plot *plot, double from, double to, struct plot_table *table)
+enum { EVERY_SIGNAL = -1 };
+
+/* The rows of the signal, or of every one, with a number in [from, to] in the second column.  A sample is a number or empty; the
+ * first columns are those of `head`. */
+static bool table_read(struct plot *plot, const char *head, double from, double to, struct plot_table *table)
 {
 	const char *at = plot->source->samples, *end = at + plot->source->n_samples;
 	size_t lines = 0;
@@ -26,7 +29,7 @@ static bool table_read(struct plot *plot, double from, double to, struct plot_ta
 			return false;
 		at += n + (at + n < end && at[n] == ',');
 	}
-	if (table->n_columns < 3 || strncmp(table->names[0], "signal,time_s,", 14) != 0)
+	if (table->n_columns < 3 || strncmp(table->names[0], head, strlen(head)) != 0)
 		return false;
 	while (at < end) {
 		double row[PLOT_COLUMNS_MOST] = {0};
@@ -42,7 +45,8 @@ static bool table_read(struct plot *plot, double from, double to, struct plot_ta
 			row[c] = after == at ? NAN : row[c];
 			at = after + strcspn(after, ",\r\n");
 			at += *at == ',';
-			wanted = c == 0 ? row[0] == table->signal : c > 1 || (row[1] >= from && row[1] <= to);
+			wanted = c == 0 ? table->signal == EVERY_SIGNAL || row[0] == table->signal
+			                : c > 1 || (row[1] >= from && row[1] <= to);
 		}
 		at += strcspn(at, "\r\n");
 		if (wanted && isfinite(row[1])) {
@@ -82,8 +86,20 @@ bool plot_table(struct plot *plot, struct plot_table *table)
 	table->signal = plot->choice->signal ? atoi(plot->choice->signal) : 0;
 	if (*plot->fault)
 		return false;
-	if (!table_read(plot, from, to, table))
+	if (!table_read(plot, "signal,time_s,", from, to, table))
 		snprintf(plot->fault, sizeof plot->fault,
 		         "the samples are no histories: they begin with signal,time_s");
+	return !*plot->fault;
+}
+
+/* Reads all rows.
+ *
+ * Returns  value  false: a fault
+ */
+bool plot_table_whole(struct plot *plot, struct plot_table *table)
+{
+	table->signal = EVERY_SIGNAL;
+	if (!table_read(plot, "signal,", -INFINITY, INFINITY, table))
+		snprintf(plot->fault, sizeof plot->fault, "the samples have no signals: they begin with signal,");
 	return !*plot->fault;
 }

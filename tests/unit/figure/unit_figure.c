@@ -408,12 +408,14 @@ static void the_golden_figures_have_not_changed(void **state)
 	// pound plot NAME tests/cases/figures/SOURCE >tests/cases/figures/NAME.svg, then look at it
 	static const struct {
 		const char *name, *source;
-	} golden[] = {
-	    {"indices", "indices.json"},       {"swept", "swept.json"},          {"given", "given.json"},
-	    {"widths", "given.json"},          {"pairs", "given.json"},          {"spectra", "spectra.json"},
-	    {"responses", "responses.json"},   {"history", "history.csv"},       {"errors", "errors.json"},
-	    {"heights", "heights.json"},       {"impacts", "heights.json"},      {"force", "history.csv"},
-	    {"separation", "separation.json"}, {"fragility", "separation.json"}, {"timeline", "timeline.csv"}};
+	} golden[] = {{"indices", "indices.json"},       {"swept", "swept.json"},
+	              {"given", "given.json"},           {"widths", "given.json"},
+	              {"pairs", "given.json"},           {"spectra", "spectra.json"},
+	              {"responses", "responses.json"},   {"history", "history.csv"},
+	              {"errors", "errors.json"},         {"heights", "heights.json"},
+	              {"impacts", "heights.json"},       {"force", "history.csv"},
+	              {"separation", "separation.json"}, {"fragility", "separation.json"},
+	              {"timeline", "timeline.csv"},      {"suite", "suite.csv"}};
 	enum { GOLDEN = sizeof golden / sizeof golden[0] };
 	(void)state;
 	assert_null(figure_rows[GOLDEN].name); // every figure has one
