@@ -132,6 +132,12 @@ double axis_at(const struct axis *axis, double value)
 	return axis->start + part * (axis->end - axis->start);
 }
 
+void axis_places(const struct axis *axis, int n, double *values)
+{
+	for (int k = 0; k < n; k++)
+		values[k] = axis_at(axis, values[k]);
+}
+
 /* ---- ticks ---- */
 
 static int superscript(char *text, size_t size, int exponent)

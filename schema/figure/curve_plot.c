@@ -24,8 +24,8 @@ bool plot_has_given(const cJSON *result)
 static double *places(struct plot *plot, const struct axis *axis, const cJSON *list, int *n)
 {
 	double *values = plot_numbers(plot, list, n);
-	for (int k = 0; values && k < *n; k++)
-		values[k] = axis_at(axis, values[k]);
+	if (values)
+		axis_places(axis, *n, values);
 	return values;
 }
 
@@ -189,8 +189,7 @@ static void draw_widths(struct plot *plot, const cJSON *output, struct panel *pa
 		}
 		j++;
 	}
-	for (int k = 0; k < n; k++)
-		widest[k] = axis_at(&panel->up, widest[k]);
+	axis_places(&panel->up, n, widest);
 	draw_curve(&plot->d, &(struct pen){.ink = INK_TEXT, .width = 2.6, .opacity = 0.55}, n, x, widest);
 	double at = axis_at(&panel->up, goal);
 	draw_line(&plot->d, &GOAL, panel->left, at, panel->right, at);
@@ -334,12 +333,10 @@ void plot_errors(struct plot *plot)
 	}
 	for (int m = 0; m < n_methods; m++) {
 		bool event = strcmp(methods[m], "event") == 0;
-		keys[m] = (struct key){.name = event ? "event: exact, only its time is drawn" : methods[m],
-		                       .mark = {.series = m},
-		                       .pen = {.ink = event ? INK_TEXT : (enum ink)(m % DRAW_SERIES),
-		                               .width = 1.8,
-		                               .dash = event ? "5 4" : draw_dash(m)},
-		                       .marked = !event};
+		keys[m] = key_of_series(methods[m], m);
+		if (event)
+			keys[m] = (struct key){.name = "event: exact, only its time is drawn",
+			                       .pen = {.ink = INK_TEXT, .width = 1.8, .dash = "5 4"}};
 	}
 	double top = draw_legend(&plot->d, n_methods, keys, plot->y) + 6;
 	struct panel panel = {.height = 420,

@@ -441,6 +441,15 @@ void draw_mark(struct drawing *drawing, const struct mark *mark, double x, doubl
 
 enum { KEY_SIGN = 30, KEY_GAP = 18, KEY_LINE = 20, KEY_WIDEST = 420 };
 
+struct key key_of_series(const char *name, int series)
+{
+	return (struct key){
+	    .name = name,
+	    .mark = {.series = series},
+	    .pen = {.ink = (enum ink)(series % DRAW_SERIES), .width = 1.8, .dash = draw_dash(series)},
+	    .marked = true};
+}
+
 double draw_legend(struct drawing *drawing, int n, const struct key *keys, double y)
 {
 	double x = MARGIN;

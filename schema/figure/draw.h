@@ -102,8 +102,9 @@ struct axis {
 /* An axis around all values of a range, which may be empty or one point; the logarithmic one around those > 0. */
 struct axis axis_linear(struct range range);
 struct axis axis_log(struct range range);
-struct axis axis_between(double low, double high);     /* linear, with these ends */
-double axis_at(const struct axis *axis, double value); /* NAN: it has no place */
+struct axis axis_between(double low, double high);                /* linear, with these ends */
+double axis_at(const struct axis *axis, double value);            /* NAN: it has no place */
+void axis_places(const struct axis *axis, int n, double *values); /* in place of each value its place */
 
 enum { TICKS_MAX = 24 };
 
@@ -149,6 +150,9 @@ struct key {
 	struct pen pen; /* width 0: no line */
 	bool marked, band;
 };
+
+/* Of a series with a line and marks. */
+struct key key_of_series(const char *name, int series);
 
 /* Names in rows from y down, to the drawing's width; returns where they end. */
 double draw_legend(struct drawing *drawing, int n, const struct key *keys, double y);

@@ -135,8 +135,7 @@ void plot_spectra(struct plot *plot)
 	panel_place(&plot->d, 1, 0, top, &panel);
 	panel_draw(&plot->d, &panel);
 	draw_harmonics(plot, &panel, periods);
-	for (int k = 0; k < n; k++)
-		x[k] = axis_at(&panel.across, x[k]);
+	axis_places(&panel.across, n, x);
 	for (int s = 0; s < n_spectra; s++) {
 		double *y[3];
 		int sizes[3], k = 0;

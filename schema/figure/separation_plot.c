@@ -49,12 +49,10 @@ static void draw_probability(struct plot *plot, const cJSON *cell, struct panel 
 	panel->across = axis_linear(gaps);
 	panel->up = axis_linear(whole);
 	panel_draw(&plot->d, panel);
-	for (int k = 0; k < n; k++) {
-		gap[k] = axis_at(&panel->across, gap[k]);
-		p[k] = axis_at(&panel->up, p[k]);
-		low[k] = axis_at(&panel->up, low[k]);
-		high[k] = axis_at(&panel->up, high[k]);
-	}
+	axis_places(&panel->across, n, gap);
+	axis_places(&panel->up, n, p);
+	axis_places(&panel->up, n, low);
+	axis_places(&panel->up, n, high);
 	draw_band(&plot->d, &(struct pen){.ink = 0, .opacity = 0.2}, n, gap, low, high);
 	draw_curve(&plot->d, &(struct pen){.ink = 0, .width = 2}, n, gap, p);
 	for (int k = 0; k < n; k++) {

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "schema/figure/plot.h"
 
@@ -71,15 +72,6 @@ static double *quantile(struct plot *plot, const struct spectra *spectra, double
 	return sorted ? at : NULL;
 }
 
-static double *quantile_places(struct plot *plot, const struct spectra *spectra, double q,
-                               const struct axis *up)
-{
-	double *at = quantile(plot, spectra, q);
-	for (int k = 0; at && k < spectra->n_periods; k++)
-		at[k] = axis_at(up, at[k]);
-	return at;
-}
-
 void plot_suite(struct plot *plot)
 {
 	static const struct key keys[] = {
@@ -117,23 +109,23 @@ void plot_suite(struct plot *plot)
 	panel_place(&plot->d, 1, 0, top, &panel);
 	panel_draw(&plot->d, &panel);
 	double *x = plot_memory(plot, 2 * sizeof *x * (size_t)n), *y = x ? x + n : NULL;
-	if (!x)
+	double *low = quantile(plot, &spectra, 0.16), *middle = quantile(plot, &spectra, 0.5),
+	       *high = quantile(plot, &spectra, 0.84);
+	if (!x || !low || !middle || !high)
 		return;
-	for (int k = 0; k < n; k++)
-		x[k] = axis_at(&panel.across, spectra.period[k]);
+	memcpy(x, spectra.period, sizeof *x * (size_t)n);
+	axis_places(&panel.across, n, x);
 	const int points = POINTS_MOST / n > 1 ? POINTS_MOST / n : 1,
 	          most = points < LINES_MOST ? points : LINES_MOST;
 	const int shown = spectra.n < most ? spectra.n : most;
 	for (int s = 0; s < shown; s++) {
-		for (int k = 0; k < n; k++)
-			y[k] = axis_at(&panel.up, spectra.psa[s * n + k]);
+		memcpy(y, spectra.psa + (size_t)s * (size_t)n, sizeof *y * (size_t)n);
+		axis_places(&panel.up, n, y);
 		draw_curve(&plot->d, &keys[1].pen, n, x, y);
 	}
-	const double *low = quantile_places(plot, &spectra, 0.16, &panel.up),
-	             *middle = quantile_places(plot, &spectra, 0.5, &panel.up),
-	             *high = quantile_places(plot, &spectra, 0.84, &panel.up);
-	if (!low || !middle || !high)
-		return;
+	axis_places(&panel.up, n, low);
+	axis_places(&panel.up, n, middle);
+	axis_places(&panel.up, n, high);
 	draw_band(&plot->d, &(struct pen){.ink = 0, .opacity = 0.18}, n, x, low, high);
 	draw_curve(&plot->d, &keys[0].pen, n, x, middle);
 	if (n == 1)

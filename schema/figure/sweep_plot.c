@@ -165,7 +165,7 @@ static void draw_input_line(struct plot *plot, const struct panel *panel, const 
 	const char *index = plot->choice->index ? plot->choice->index : "ST";
 	char low[24], high[24], text[PLOT_TEXT], words[3][32];
 	double *x = plot_memory(plot, 2 * sizeof *x * (size_t)line->n), *y = x ? x + line->n : NULL;
-	const enum ink ink = (enum ink)(input % DRAW_SERIES);
+	const struct key key = key_of_series(NULL, input);
 	snprintf(low, sizeof low, "%s_low", index);
 	snprintf(high, sizeof high, "%s_high", index);
 	if (!x)
@@ -174,11 +174,11 @@ static void draw_input_line(struct plot *plot, const struct panel *panel, const 
 		const cJSON *of = input_of(line->cells[k], row, input);
 		x[k] = axis_at(&panel->across, line->x[k]);
 		y[k] = axis_at(&panel->up, plot_number(of, index));
-		draw_line(&plot->d, &(struct pen){.ink = ink, .width = 1.4, .opacity = 0.7}, x[k],
+		draw_line(&plot->d, &(struct pen){.ink = key.pen.ink, .width = 1.4, .opacity = 0.7}, x[k],
 		          axis_at(&panel->up, plot_number(of, low)), x[k],
 		          axis_at(&panel->up, plot_number(of, high)));
 	}
-	draw_curve(&plot->d, &(struct pen){.ink = ink, .width = 1.8, .dash = draw_dash(input)}, line->n, x, y);
+	draw_curve(&plot->d, &key.pen, line->n, x, y);
 	for (int k = 0; k < line->n; k++) {
 		const cJSON *of = input_of(line->cells[k], row, input);
 		snprintf(text, sizeof text, "%.100s: %s %s [%s, %s]", plot_text(of, "name"), index,
@@ -251,11 +251,7 @@ void plot_swept(struct plot *plot)
 	{
 		if (n_inputs == INPUTS_MOST)
 			break;
-		keys[n_inputs] = (struct key){
-		    .name = plot_text(input, "name"),
-		    .mark = {.series = n_inputs},
-		    .pen = {.ink = (enum ink)(n_inputs % DRAW_SERIES), .width = 1.8, .dash = draw_dash(n_inputs)},
-		    .marked = true};
+		keys[n_inputs] = key_of_series(plot_text(input, "name"), n_inputs);
 		n_inputs++;
 	}
 	double top = draw_legend(&plot->d, n_inputs, keys, plot->y) + 8;
