@@ -34,7 +34,7 @@ static const char STYLE[] =
     "table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}"
     "caption{text-align:left;padding:.3rem 0}"
     "th,td{padding:.15rem .4rem;border-bottom:1px solid #dfe3e8;text-align:right}"
-    "th:first-child,td:first-child{text-align:left}.wide{overflow-x:auto}"
+    "th:first-child,td:first-child,.text{text-align:left}.wide{overflow-x:auto}"
     "summary{cursor:pointer;padding:.3rem 0}"
     "pre{overflow-x:auto;background:#f3f5f7;padding:.8rem;font-size:.85rem}.muted{color:#57606a}"
     "@media screen and (prefers-color-scheme:dark){body{color:#eceff2;background:#14171b}"
@@ -77,6 +77,16 @@ static void table_end(struct report *report)
 	put(report, "</tbody>\n</table>\n</div>\n");
 }
 
+/* A text without the underscores of a name. */
+static void put_words(struct report *report, const char *name)
+{
+	char words[80];
+	snprintf(words, sizeof words, "%s", name);
+	for (char *c = words; *c; c++)
+		*c = *c == '_' ? ' ' : *c;
+	put_text(report, words);
+}
+
 static void put_member(struct report *report, const cJSON *object, const char *name, const char *label)
 {
 	char text[80];
@@ -84,9 +94,12 @@ static void put_member(struct report *report, const cJSON *object, const char *n
 	if (!cJSON_IsString(value) && !cJSON_IsNumber(value))
 		return;
 	put(report, "<tr><th scope=\"row\">");
-	put_text(report, label);
-	put(report, "</th><td>");
-	snprintf(text, sizeof text, "%.10g", value->valuedouble);
+	put_words(report, label);
+	put(report, cJSON_IsString(value) ? "</th><td class=\"text\">" : "</th><td>");
+	snprintf(text, sizeof text,
+	         fabs(value->valuedouble) < 1e15 && value->valuedouble == floor(value->valuedouble) ? "%.0f"
+	                                                                                            : "%.4g",
+	         value->valuedouble);
 	put_text(report, cJSON_IsString(value) ? value->valuestring : text);
 	put(report, "</td></tr>\n");
 }
@@ -333,8 +346,9 @@ static void put_table(struct report *report, const char *table, const char *titl
 	char *csv = result_to_csv(report->source->json, report->source->length, table, &n);
 	report->failed = report->failed || !csv;
 	if (csv && n > 0) {
-		put(report, "<details>\n");
-		put_element(report, "summary", title);
+		put(report, "<details>\n<summary>");
+		put_words(report, title);
+		put(report, "</summary>\n");
 		put_csv(report, title, csv, n);
 		put(report, "</details>\n");
 	}
