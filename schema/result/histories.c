@@ -77,7 +77,8 @@ static void row_add(struct rows *rows, const double *values)
 		writer_raw(&rows->w, text, (size_t)snprintf(text, sizeof text, "%d", number));
 		for (int j = 0; j < n; j++) {
 			writer_raw(&rows->w, ",", 1);
-			writer_raw(&rows->w, text, (size_t)writer_digits(values[j], text));
+			if (isfinite(values[j])) // else there is no value
+				writer_raw(&rows->w, text, (size_t)writer_digits(values[j], text));
 		}
 		writer_raw(&rows->w, "\r\n", 2);
 	}
