@@ -74,9 +74,8 @@ static void draw_probability(struct plot *plot, const cJSON *cell, struct panel 
 void plot_separation(struct plot *plot)
 {
 	char sweep[PLOT_TEXT], names[RULES_MOST][PLOT_TEXT], number[3][32];
-	struct key keys[1 + RULES_MOST] = {{.name = "share of runs that pound, 95 % band",
-	                                    .pen = {.ink = 0, .width = 2},
-	                                    .band = true}};
+	struct key keys[1 + RULES_MOST] = {
+	    {.name = "share of runs that pound, 95 % band", .pen = {.ink = 0, .width = 2}, .band = true}};
 	const cJSON *cell = plot_cell(plot), *at_5 = NULL, *gap;
 	if (!cell)
 		return;

@@ -75,9 +75,7 @@ static double *quantile(struct plot *plot, const struct spectra *spectra, double
 void plot_suite(struct plot *plot)
 {
 	static const struct key keys[] = {
-	    {.name = "median, and 16 to 84 %",
-	     .pen = {.ink = 0, .width = 2.4},
-	     .band = true},
+	    {.name = "median, and 16 to 84 %", .pen = {.ink = 0, .width = 2.4}, .band = true},
 	    {.name = "each ground motion", .pen = {.ink = INK_MUTED, .width = 0.9, .opacity = 0.6}}};
 	struct spectra spectra;
 	struct range across = RANGE_EMPTY, up = RANGE_EMPTY;
