@@ -14,6 +14,19 @@ bool plot_has_timeline(const cJSON *result)
 	return plot_has_responses(result) || plot_has_impacts(result);
 }
 
+/* Whether the result, if there is one, has the chosen signal and cell: a list of contacts is empty without them, too. */
+static bool chosen_there(struct plot *plot, int signal)
+{
+	if (!plot_is_result(plot->result))
+		return true;
+	const cJSON *cell = plot_member(plot->result, "cells") ? plot_cell(plot) : NULL;
+	const int n = cJSON_GetArraySize(plot_member(cell ? cell : plot->result, "signals"));
+	if (!*plot->fault && signal >= n)
+		snprintf(plot->fault, sizeof plot->fault,
+		         "no sample of signal %d: signal must be a whole number in [0, %d]", signal, n - 1);
+	return !*plot->fault;
+}
+
 /* The contacts of a cell, those with the largest impulses if there are more than can be drawn. */
 struct contacts {
 	int n, all;
@@ -126,7 +139,7 @@ void plot_timeline(struct plot *plot)
 	double highest = 1;
 	bool levels = false, there[PAIRS_MOST] = {false};
 	int last = 0;
-	if (!plot_table(plot, &table))
+	if (!plot_table(plot, &table) || !chosen_there(plot, table.signal))
 		return;
 	contacts_read(plot, &table, &c);
 	if (*plot->fault || !c.rows)
