@@ -37,9 +37,9 @@ static void keep(struct program_outcome *outcome, char path[32])
 /* A figure of one signal is drawn from the history of that signal. */
 static void expect_one_signal(const struct service *service, const char *link)
 {
-	struct answer answer = service_get(service, "%s?signal=3", link);
+	struct answer answer = service_get(service, "%s?signal=2", link);
 	assert_int_equal(answer.status, 200);
-	assert_non_null(strstr(answer.body, "ground motion 3"));
+	assert_non_null(strstr(answer.body, "ground motion 2"));
 	answer_free(&answer);
 	answer = service_get(service, "%s?signal=99", link);
 	assert_int_equal(answer.status, 400);
