@@ -558,7 +558,8 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		work->chain_runs.run += request->rows.n - known;
 		work->chain_runs.asked += 1 + (request->asks[a].chain_free != request->asks[a].chain);
 	}
-	status = pound_row_run(&request->rows, stop);
+	// by the exact solver, as the pairs were
+	status = pound_row_run(&request->rows, &solver, request->rows.n, stop);
 	if (status)
 		return status;
 	for (int a = 0; a < n_asks; a++) {

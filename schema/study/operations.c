@@ -555,7 +555,7 @@ void operations_count(const struct pound_study *study, struct counts *c)
 	count_free_pairs(study, items, c);
 	// what is run again for histories: of pairs as it was fitted, of rows up to that time
 	const double seconds = means_duration(study), history = fmin(study->convergence.history, seconds);
-	const double again = HISTORIES / 2 * (study->scene.n_buildings ? history / seconds : 1);
+	const double repeated = HISTORIES / 2 * (study->scene.n_buildings ? history / seconds : 1);
 	// the floors of chains are followed by marches of their own
 	if (study->kind != POUND_KIND_CONVERGENCE)
 		m = count_runs(study, &study->solver,
@@ -564,7 +564,7 @@ void operations_count(const struct pound_study *study, struct counts *c)
 		for (int j = 0; j < pound_convergence_trials(study); j++) {
 			const struct pound_solver solver = pound_convergence_solver(study, j);
 			// twice, to be timed, and for each point of a history up to that
-			count_runs(study, &solver, items * (2 + again), c);
+			count_runs(study, &solver, items * (2 + repeated), c);
 			c->of[CLOCK]++;
 		}
 	const struct marches again = count_again(study, items, c), *lost = study->scene.n_buildings ? &m : &again;
