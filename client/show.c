@@ -166,7 +166,9 @@ static void convergence(const struct reading *result)
 		table_number(table, cpu);
 		table_number(table, cpu / event);
 	}
-	puts("\nrelative errors against the first row, means over the signals; cpu_s of one run");
+	puts("\nrelative errors against the first row, means over the signals; history: over history_s from the "
+	     "start;\n"
+	     "cpu_s of one run");
 	table_print(table, 2);
 	table_close(table);
 	const char *method, *before = "\norder over all settings: ";
@@ -174,7 +176,11 @@ static void convergence(const struct reading *result)
 		double order = reading_number(result, "/orders/%s", method);
 		if (!isfinite(order))
 			continue;
-		printf("%s%s %.2f", before, method, order);
+		// errors that do not fall with the setting are roundings: they have no order
+		if (fabs(order) < 0.005)
+			printf("%s%s -", before, method);
+		else
+			printf("%s%s %.2f", before, method, order);
 		before = ", ";
 	}
 	putchar('\n');

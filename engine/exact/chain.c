@@ -21,9 +21,21 @@
 typedef void chain_run(const struct pound_chain_task *, struct pound_chain_result *, int n, void *scratch,
                        const atomic_bool *stop);
 
+/* Bytes of work space of chains whose contacts have a form of force.
+ *
+ * Only of products and powers of the overlap a step has series of its own for every contact (struct warp, the end of struct chain).
+ *
+ * Test     unit_chain: the_largest_row_of_straight_contacts_takes_a_mebibyte
+ */
+size_t pound_chain_scratch(enum pound_force force)
+{
+	return force == POUND_FORCE_PRODUCT || force == POUND_FORCE_POWER ? POUND_CHAIN_SCRATCH
+	                                                                  : POUND_CHAIN_SCRATCH_STRAIGHT;
+}
+
 /* Runs chains at a lane count; 0: the widest there is.
  *
- * Given    scratch  POUND_CHAIN_SCRATCH bytes, 64-byte aligned
+ * Given    scratch  pound_chain_scratch bytes of their contacts' forces, 64-byte aligned
  *          stop     looked at throughout: when it is set the results are not to be used; NULL: never
  * Returns  value    false: this machine has no such lanes, nothing was run
  *          results  one for each task  (n)

@@ -7,6 +7,7 @@
 
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "engine/numeric/stop.h"
@@ -15,11 +16,12 @@
 #include "engine/scene/law.h"
 
 enum {
-	POUND_CHAIN_FLOORS = 400,      /* of a chain, at most */
-	POUND_CHAIN_LINKS = 400,       /* of a chain, at most */
-	POUND_CHAIN_GROUND = -1,       /* in place of a floor */
-	POUND_CHAIN_SCRATCH = 7 << 18, /* bytes of work space, 64-byte aligned */
-	POUND_CHAIN_ORDER = 21,        /* of the longest series of a piece */
+	POUND_CHAIN_FLOORS = 400,               /* of a chain, at most */
+	POUND_CHAIN_LINKS = 400,                /* of a chain, at most */
+	POUND_CHAIN_GROUND = -1,                /* in place of a floor */
+	POUND_CHAIN_SCRATCH = 13 << 17,         /* bytes of work space of any chain, 64-byte aligned */
+	POUND_CHAIN_SCRATCH_STRAIGHT = 1 << 20, /* ... of one without contacts of products and powers */
+	POUND_CHAIN_ORDER = 21,                 /* of the longest series of a piece */
 };
 
 /* a floor and the story below it; u is its displacement relative to the ground, d = u - u of the floor below its drift */
@@ -144,6 +146,8 @@ struct pound_chain_result {
 	double
 	    work_in; /* by the ground: -sum of masses times its acceleration times velocities [J]; NAN: not asked */
 };
+
+size_t pound_chain_scratch(enum pound_force force);
 
 bool pound_chain_lanes(int lanes, const struct pound_chain_task *tasks, struct pound_chain_result *results,
                        int n, void *scratch, const atomic_bool *stop);

@@ -108,11 +108,13 @@ static enum pound_status chain_march(struct chain *c, const atomic_bool *stop)
 }
 
 static_assert(sizeof(struct chain) <= POUND_CHAIN_SCRATCH, "a chain fits into its work space");
+static_assert(offsetof(struct chain, warp.clock) <= POUND_CHAIN_SCRATCH_STRAIGHT,
+              "so does one that has no step but in time");
 
 /* Runs every task to its end.
  *
  * Given    tasks    (n)
- *          scratch  POUND_CHAIN_SCRATCH bytes, 64-byte aligned
+ *          scratch  pound_chain_scratch bytes of their contacts' forces, 64-byte aligned
  *          stop     looked at between steps: when it is set the results are not to be used; NULL: never
  * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
  *

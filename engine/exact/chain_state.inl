@@ -134,6 +134,7 @@ struct warp {
 	int power;     /* dt = w^power ds times the length; 0: the step goes in time */
 	int master;    /* link whose overlap is w^2 or w^4; -1: none */
 	double length; /* [s], [s m^(-1/2)] or [s m^(-3/4)] */
+	// of such steps alone: from here on
 	double clock[TERMS], gauge[TERMS], w[TERMS], w2[TERMS], w3[TERMS]; /* time, g and powers of w */
 	struct column rates[TERMS], accelerations[TERMS];                  /* of drifts */
 	struct curve links[POUND_CHAIN_LINKS];
@@ -199,11 +200,11 @@ struct chain {
 	// since the last piece that was reported (chain_observer.inl)
 	bool after_event;
 	double jump; /* of the observed floor */
-	struct warp warp;
 	// energy
 	double work_in, work_gap, work_low, work_top;
 	struct column work_story; /* on the springs of stories */
 	double work_link[LINKS];
+	struct warp warp; /* the last one: without such contacts there is no room for its series */
 };
 
 /* ---- links ---- */

@@ -29,7 +29,7 @@ struct pound_floor_ask {
 	double radians;                    /* an oscillator's longest step, at most 1.5 */
 	int lanes;                         /* 0: the widest there are */
 	const atomic_bool *stop;           /* looked at throughout; NULL: never */
-	void *scratch;                     /* POUND_EXACT_SCRATCH bytes, 64-byte aligned */
+	void *scratch; /* POUND_EXACT_SCRATCH bytes, of a chain those of its march; 64-byte aligned */
 };
 
 /* what comes out; psa: [m/s2]  (n_frequencies) each */

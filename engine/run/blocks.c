@@ -42,6 +42,7 @@ static void row_size_add(struct pound_row_size *block, const struct pound_row_si
 	block->yields += times * item->yields;
 	block->modal += times * item->modal;
 	block->memory = larger(block->memory, item->memory);
+	block->scratch = larger(block->scratch, item->scratch);
 	block->storeys = (int)larger((size_t)block->storeys, (size_t)item->storeys);
 	block->contacts = (int)larger((size_t)block->contacts, (size_t)item->contacts);
 }
@@ -54,6 +55,7 @@ static void row_size_max(struct pound_row_size *largest, const struct pound_row_
 	largest->yields = (int)larger((size_t)largest->yields, (size_t)block->yields);
 	largest->modal = (int)larger((size_t)largest->modal, (size_t)block->modal);
 	largest->memory = larger(largest->memory, block->memory);
+	largest->scratch = larger(largest->scratch, block->scratch);
 	largest->storeys = (int)larger((size_t)largest->storeys, (size_t)block->storeys);
 	largest->contacts = (int)larger((size_t)largest->contacts, (size_t)block->contacts);
 }

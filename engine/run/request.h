@@ -59,6 +59,7 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 struct pound_request; /* work space of one worker */
 
 size_t pound_request_bytes(struct pound_request_size size);
+size_t pound_request_scratch(struct pound_request_size size); /* of them for marches */
 struct pound_request *pound_request_init(void *memory, struct pound_request_size size);
 
 /* Runs items [first, first + n), of one row where rows are trials, and hands every response to `take`, in the order of
@@ -89,7 +90,7 @@ struct pound_request_floor {
 	struct pound_row_floor row;               /* of a row of buildings */
 	int march;                                /* number of the task that is the answer */
 	int exponent;
-	void *scratch; /* POUND_EXACT_SCRATCH bytes for who follows it */
+	void *scratch; /* for who follows it: POUND_EXACT_SCRATCH bytes, or those of its row's marches */
 };
 
 struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask);

@@ -16,6 +16,19 @@ static void storeys_put(const struct pound_cells *campaign, int cell,
 			pound_scene_assign(scene, campaign->study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
 }
 
+/* Whether contacts of a row have models that vary: a scene is without them here. */
+static bool models_vary(const struct pound_study *study)
+{
+	bool vary = false;
+	for (int s = 0; s < study->n_sweeps; s++)
+		vary |= study->sweeps[s].field.part == POUND_PART_CONTACTS &&
+		        study->sweeps[s].field.type == POUND_FIELD_CHOICE;
+	for (int j = 0; j < study->n_inputs; j++)
+		vary |= study->inputs[j].field.part == POUND_PART_CONTACTS &&
+		        study->inputs[j].field.type == POUND_FIELD_CHOICE;
+	return vary;
+}
+
 /* Upper bounds for the items of one row: whatever may differ between its samples counts as different. */
 struct pound_request_size pound_request_size(const struct pound_cells *campaign, int row)
 {
@@ -32,6 +45,7 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 				storeys_put(campaign, cell, buildings, &scene);
 				pound_row_size_add(&size.rows, &scene);
 			}
+			size.rows.scratch = models_vary(campaign->study) ? POUND_CHAIN_SCRATCH : size.rows.scratch;
 			size.asks++;
 			size.motions++;
 			if (scene.n_buildings == 0 && asked & POUND_ASKS_CHAIN)
@@ -45,6 +59,12 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 }
 
 /* ---- work space ---- */
+
+/* Bytes of work space of the marches: rows of buildings alone take less than oscillators. */
+size_t pound_request_scratch(struct pound_request_size size)
+{
+	return size.tasks || !size.rows.tasks ? (size_t)POUND_EXACT_SCRATCH : size.rows.scratch;
+}
 
 /* Carves a request out of memory, or with memory NULL only counts the bytes. */
 static size_t request_carve(char *memory, struct pound_request *request, struct pound_request_size size)
@@ -65,7 +85,7 @@ static size_t request_carve(char *memory, struct pound_request *request, struct 
 	    {&request->results, sizeof *request->results * (size_t)size.tasks},
 	    {&request->peaks, sizeof *request->peaks * (size_t)size.peaks},
 	    {&request->free_pair, sizeof *request->free_pair * (size_t)(size.peaks ? size.asks : 0)},
-	    {&request->scratch, POUND_EXACT_SCRATCH},
+	    {&request->scratch, pound_request_scratch(size)},
 	    {&request->row_asks, sizeof *request->row_asks * (size_t)(rows->storeys ? size.asks : 0)},
 	    {&request->rows.tasks, sizeof *request->rows.tasks * (size_t)rows->tasks},
 	    {&request->rows.results, sizeof *request->rows.results * (size_t)rows->tasks},

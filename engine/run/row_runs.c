@@ -22,6 +22,17 @@ static const double PI = 3.14159265358979323846;
 
 /* ---- sizes ---- */
 
+/* Work space of the marches of a scene: that of its contact model that takes most. */
+static size_t march_scratch(const struct pound_scene *scene)
+{
+	size_t most = pound_chain_scratch(pound_contact_force(scene->contact.model));
+	for (int k = 0; k < scene->n_contacts; k++) {
+		const size_t own = pound_chain_scratch(pound_contact_force(scene->contacts[k].contact.model));
+		most = own > most ? own : most;
+	}
+	return most;
+}
+
 /* Adds what a sample of a scene takes at most. */
 void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *scene)
 {
@@ -39,6 +50,8 @@ void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *s
 	size->yields += floors;
 	const size_t memory = pound_row_bytes(scene);
 	size->memory = memory > size->memory ? memory : size->memory;
+	const size_t scratch = march_scratch(scene);
+	size->scratch = scratch > size->scratch ? scratch : size->scratch;
 	size->storeys = floors > size->storeys ? floors : size->storeys;
 	size->contacts = links > size->contacts ? links : size->contacts;
 }

@@ -63,6 +63,7 @@ struct pound_row_size {
 	int tasks, floors, links, yields;
 	int modal;             /* doubles of damping matrices */
 	size_t memory;         /* bytes of a scene's buildings and contacts */
+	size_t scratch;        /* bytes of work space of a march */
 	int storeys, contacts; /* of a scene */
 };
 

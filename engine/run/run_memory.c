@@ -41,7 +41,7 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	// a worker without a block does not touch its request
 	const int n_busy = n_workers < run.layout.n_blocks ? n_workers : run.layout.n_blocks;
 	return bytes +
-	       n_busy * ((double)pound_request_bytes(largest) - POUND_EXACT_SCRATCH +
+	       n_busy * ((double)pound_request_bytes(largest) - (double)pound_request_scratch(largest) +
 	                 (double)pound_ordinate_bytes(study, largest.tasks + largest.rows.tasks)) +
 	       n_workers * (double)sizeof(double) * (double)pound_run_reduction_size(c);
 }

@@ -73,7 +73,7 @@ struct stepped_chain {
 	double values[FLOORS * (FLOORS + 1) / 2];
 };
 
-static_assert(sizeof(struct stepped_chain) <= POUND_CHAIN_SCRATCH,
+static_assert(sizeof(struct stepped_chain) <= POUND_CHAIN_SCRATCH_STRAIGHT,
               "a row fits into the work space of chains");
 
 /* ---- the matrix ---- */
@@ -630,7 +630,7 @@ static enum pound_status chain_run(struct stepped_chain *c, int n_steps, advance
  * Returns  result    -         -       as of the exact solver; energy_residual NAN
  * Status   POUND_UNSTABLE  a step had no equilibrium, or velocities grew beyond any the ground motion can give
  *          POUND_STOPPED   stop was set
- * Memory   scratch: POUND_CHAIN_SCRATCH bytes, 64-byte aligned
+ * Memory   scratch: POUND_CHAIN_SCRATCH_STRAIGHT bytes, 64-byte aligned
  *
  * Test     unit_solver_rows
  */

@@ -259,7 +259,7 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
  * Returns  results   (n)     -       each with a status of its own
  * Status   POUND_STOPPED  stop was set: the results are not to be used
  *          POUND_NOMEM    there was no memory for one of them, so too
- * Memory   scratch: POUND_CHAIN_SCRATCH bytes, 64-byte aligned
+ * Memory   scratch: pound_chain_scratch bytes of their contacts' forces, 64-byte aligned
  * Test     unit_solver_rows
  */
 enum pound_status pound_solver_rows(const struct pound_solver *solver, const struct pound_chain_task *tasks,

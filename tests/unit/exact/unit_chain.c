@@ -1,11 +1,13 @@
 /* unit_chain.c - rows of buildings against known answers by two independent 113-bit programs (buildings.md 4). */
 #include "engine/exact/task.h"
 #include "engine/numeric/cpu_width.h"
+#include "engine/solver/solver.h"
 #include "tests/support/check.h"
 #include "tests/support/known_rows.h"
 #include "tests/support/scenes.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double rounding = 1e-12;
@@ -367,7 +369,70 @@ static void one_story_goes_as_the_pair(void **state)
 	assert_true(worst < 1e-12);
 }
 
-CHECK_MAIN(cmocka_unit_test(two_and_two_stories_come_out),
+/* ---- work space ---- */
+
+/* Eight buildings of 50 stories that meet at every floor, by every solver that has rows, in work space with a known end behind it. */
+static void the_largest_row_of_straight_contacts_takes_a_mebibyte(void **state)
+{
+	(void)state;
+	enum { SAMPLES = 61, LINKS = 350, END = 64, FILL = 0x5a };
+	static struct pound_chain_floor floors[POUND_CHAIN_FLOORS];
+	static struct pound_link links[LINKS];
+	static double ground[SAMPLES], measures[2][POUND_CHAIN_FLOORS][POUND_FLOOR_MEASURES],
+	    contacts[2][LINKS][POUND_LINK_MEASURES];
+	for (int i = 0; i < POUND_CHAIN_FLOORS; i++)
+		floors[i] = (struct pound_chain_floor){.mass = 1e5,
+		                                       .dashpot = 1e6,
+		                                       .mass_damping = 0.1,
+		                                       .story = {.law = row_law("elastoplastic"),
+		                                                 .stiffness = (1 + i / 50) * 1e9,
+		                                                 .hardening = .05,
+		                                                 .yield = .001},
+		                                       .base = i % 50 == 0};
+	for (int k = 0; k < LINKS; k++)
+		links[k] = (struct pound_link){.floor = {{k, k}, {k + 50, k + 50}},
+		                               .weight = {{0, 1}, {0, 1}},
+		                               .law = {.stiffness = 2e10, .dashpot = 5e6, .tension = true},
+		                               .gap = 1e-5};
+	for (int t = 0; t < SAMPLES; t++)
+		ground[t] = -4 * sin(0.15 * t);
+	const struct pound_chain_task task = {.ground = ground,
+	                                      .n_samples = SAMPLES,
+	                                      .time_step = 0.01,
+	                                      .n_floors = POUND_CHAIN_FLOORS,
+	                                      .n_links = LINKS,
+	                                      .floors = floors,
+	                                      .links = links,
+	                                      .asked = ALL};
+	assert_int_equal(pound_chain_scratch(POUND_FORCE_LINEAR), 1 << 20);
+	for (int method = 0; method < POUND_SOLVER_ADAPTIVE; method++) {
+		const struct pound_solver solver = {.method = method, .step = 0.001};
+		for (int spare = 0; spare < 2; spare++) {
+			const size_t bytes =
+			    spare ? (size_t)POUND_CHAIN_SCRATCH : pound_chain_scratch(POUND_FORCE_LINEAR);
+			unsigned char *scratch = aligned_alloc(64, bytes + END);
+			assert_non_null(scratch);
+			memset(scratch + bytes, FILL, END);
+			struct pound_chain_result result = {.floors = measures[spare][0], .links = contacts[spare][0]};
+			assert_int_equal(pound_solver_rows(&solver, &task, &result, 1, scratch, NULL), POUND_OK);
+			assert_int_equal(result.status, POUND_OK);
+			for (int j = 0; j < END; j++)
+				assert_int_equal(scratch[bytes + (size_t)j], FILL);
+			free(scratch);
+		}
+		assert_memory_equal(measures[0], measures[1], sizeof measures[0]);
+		assert_memory_equal(contacts[0], contacts[1], sizeof contacts[0]);
+		double met = 0;
+		for (int k = 0; k < LINKS; k++)
+			met += contacts[0][k][POUND_LINK_CONTACTS];
+		assert_true(met > 0);
+	}
+	check_report("work space of a worker: %d KiB, %d KiB with products and powers", (1 << 20) / 1024,
+	             POUND_CHAIN_SCRATCH / 1024);
+}
+
+CHECK_MAIN(cmocka_unit_test(the_largest_row_of_straight_contacts_takes_a_mebibyte),
+           cmocka_unit_test(two_and_two_stories_come_out),
            cmocka_unit_test(three_and_two_stories_without_tension_come_out),
            cmocka_unit_test(elastoplastic_stories_come_out),
            cmocka_unit_test(oriented_and_elastic_stories_come_out),

@@ -106,6 +106,20 @@ static void isolated_impacts_are_those_of_the_known_answers(void **state)
 	}
 }
 
+/* 2.943275184324705 p_max/v with p_max = (5 m v^2/(4 K))^(2/5), whatever mass and stiffness. */
+static void a_hertz_contact_lasts_as_long_as_its_closed_form(void **state)
+{
+	(void)state;
+	for (double k = 1e6; k < 2e9; k *= 30)
+		for (double m = 0.1; m < 20; m *= 5) {
+			const struct pound_contact_law law = {.model = row_of("hertz"), .stiffness = k, .tension = true};
+			struct outcome o;
+			isolated(&law, m, &o);
+			const double want = 2.943275184324705 * pow(5 * m * 0.3 * 0.3 / (4 * k), 0.4) / 0.3;
+			check_near(o.links[0][POUND_LINK_TIME], want, 1e-12 * want);
+		}
+}
+
 static void exact_calibrations_give_the_restitution_that_was_asked_for(void **state)
 {
 	(void)state;
@@ -318,6 +332,7 @@ static void every_lane_count_gives_the_same_bits(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(isolated_impacts_are_those_of_the_known_answers),
+           cmocka_unit_test(a_hertz_contact_lasts_as_long_as_its_closed_form),
            cmocka_unit_test(exact_calibrations_give_the_restitution_that_was_asked_for),
            cmocka_unit_test(contacts_that_begin_at_one_instant_are_those_of_each),
            cmocka_unit_test(hops_of_a_rigid_contact_end_at_the_wall),

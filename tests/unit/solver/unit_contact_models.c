@@ -17,6 +17,7 @@ enum { SAMPLES = 251 };
 struct known {
 	int contacts;
 	double impulse, time, u[2]; /* impulse [N s] */
+	double force;               /* largest [N] */
 };
 
 static const struct model_case {
@@ -29,38 +30,38 @@ static const struct model_case {
      false,
      false,
      0.6,
-     {9, 93876.7338786870, .0883520729825056, {.0167041542312387, .0233884675622301}}},
+     {9, 93876.7338786870, .0883520729825056, {.0167041542312387, .0233884675622301}, 14976161.9366289}},
     {"kelvin_voigt",
      true,
      true,
      0.4,
-     {9, 63415.4630085173, .0750156299231338, {.0180513561187237, .0177945545640341}}},
+     {9, 63415.4630085173, .0750156299231338, {.0180513561187237, .0177945545640341}, 11945053.1595344}},
     {"modified_kelvin_voigt",
      false,
      false,
      0.6,
-     {9, 70513.0484900248, .0807873571883122, {.0174790681878366, .0208941469792553}}},
+     {9, 70513.0484900248, .0807873571883122, {.0174790681878366, .0208941469792553}, 11988704.1109273}},
     {"hertz",
      false,
      false,
      0.6,
-     {6, 88888.9721818787, .289353302319863, {.0263221266009357, .0111931635567602}}},
+     {6, 88888.9721818787, .289353302319863, {.0263221266009357, .0111931635567602}, 2953463.48797653}},
     {"hertz_damp",
      true,
      false,
      0.6,
-     {7, 75372.1989044192, .339810866805263, {.0241256751988095, .0100156138462380}}},
+     {7, 75372.1989044192, .339810866805263, {.0241256751988095, .0100156138462380}, 2863007.08181032}},
     {"viscoelastic",
      false,
      false,
      0.6,
-     {7, 75519.0765612290, .349059823999101, {.0231502852699162, .0108801315694411}}},
+     {7, 75519.0765612290, .349059823999101, {.0231502852699162, .0108801315694411}, 2257875.94466737}},
     {"bilinear",
      false,
      false,
      0.6,
-     {9, 89678.7216022189, .130532934815042, {.0164921627556637, .0241451171318295}}},
-    {"rigid", false, false, 0.6, {9, 68044.0846871759, 0, {.0162258704777903, .0210452514521382}}},
+     {9, 89678.7216022189, .130532934815042, {.0164921627556637, .0241451171318295}, 9432222.90278947}},
+    {"rigid", false, false, 0.6, {9, 68044.0846871759, 0, {.0162258704777903, .0210452514521382}, 0}},
     {"hunt_crossley", false, false, 0.6, {0}},
     {"damped_hertz", false, false, 0.6, {0}},
     {"damped_hertz", false, true, 0.6, {0}},
@@ -131,7 +132,7 @@ static struct known known_of(const struct model_case *of)
 	const struct pound_task task = task_of(of);
 	const struct pound_solver solver = {.method = POUND_SOLVER_ADAPTIVE, .tolerance = 1e-13};
 	const struct pound_task_result r = result_of(&task, &solver);
-	return (struct known){(int)r.contacts, r.impulse_max * 1e5, r.contact_time, {r.u[0], r.u[1]}};
+	return (struct known){(int)r.contacts, r.impulse_max * 1e5, r.contact_time, {r.u[0], r.u[1]}, 0};
 }
 
 static void the_adaptive_solver_has_the_known_answers_of_every_model(void **state)
@@ -169,6 +170,28 @@ static void the_exact_solver_has_the_known_answers_of_every_model(void **state)
 	}
 }
 
+/* The same scenes as rows of one-storey buildings, which have the largest force, too. */
+static void rows_have_the_known_largest_forces(void **state)
+{
+	(void)state;
+	for (int i = 0; i < COUNT(cases); i++) {
+		if (cases[i].known.contacts == 0)
+			continue;
+		const struct pound_task task = task_of(&cases[i]);
+		struct pound_pair_chain chain;
+		pound_pair_chain(&task, &chain);
+		chain.task.asked = POUND_CHAIN_FORCES;
+		struct pound_chain_result result = {.floors = chain.floor_measures[0], .links = chain.link_measures};
+		assert_true(pound_chain_lanes(0, &chain.task, &result, 1, scratch, NULL));
+		assert_int_equal(result.status, POUND_OK);
+		// forces are over the left mass
+		check_near(chain.link_measures[POUND_LINK_FORCE_MAX] * 1e5, cases[i].known.force,
+		           1e-12 * cases[i].known.force);
+		check_near(chain.link_measures[POUND_LINK_IMPULSE_MAX] * 1e5, cases[i].known.impulse,
+		           1e-12 * cases[i].known.impulse);
+	}
+}
+
 /* Errors of the fixed steps fall with the step: to a tenth at least where that is a hundredth. */
 static void fixed_steps_converge_to_the_known_answers_of_every_model_they_take(void **state)
 {
@@ -196,4 +219,5 @@ static void fixed_steps_converge_to_the_known_answers_of_every_model_they_take(v
 
 CHECK_MAIN(cmocka_unit_test(the_exact_solver_has_the_known_answers_of_every_model),
            cmocka_unit_test(the_adaptive_solver_has_the_known_answers_of_every_model),
+           cmocka_unit_test(rows_have_the_known_largest_forces),
            cmocka_unit_test(fixed_steps_converge_to_the_known_answers_of_every_model_they_take))
