@@ -1,6 +1,6 @@
 /* problems.h - what is wrong with a request, all of it at once, and the body that says so (RFC 9457).
  *
- * Plain memory of the caller, about 50 kB; one thread at a time. */
+ * Plain memory of the caller, about 230 kB; one thread at a time. */
 #ifndef PROBLEMS_H
 #define PROBLEMS_H
 

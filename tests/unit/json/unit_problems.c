@@ -75,11 +75,11 @@ static void long_texts_end_with_dots_between_characters(void **state)
 {
 	(void)state;
 	struct problems problems;
-	char lengthy[1501] = {0};
+	char lengthy[3001] = {0};
 	problems_init(&problems);
 	for (int shift = 0; shift < 4; shift++) {
 		memset(lengthy, 'x', (size_t)shift);
-		for (int i = shift; i + 3 <= 1500; i += 3)
+		for (int i = shift; i + 3 <= 3000; i += 3)
 			memcpy(lengthy + i, "\xE2\x82\xAC", 3);
 		problems_add(&problems, lengthy, "%s", lengthy);
 		struct problem *problem = &problems.list[shift];
