@@ -166,9 +166,8 @@ static void convergence(const struct reading *result)
 		table_number(table, cpu);
 		table_number(table, cpu / event);
 	}
-	puts("\nrelative errors against the first row, means over the signals; history: over history_s from the "
-	     "start;\n"
-	     "cpu_s of one run");
+	puts("\nrelative errors against the first row, means over the signals; cpu_s of one run;\n"
+	     "history: over history_s from the start");
 	table_print(table, 2);
 	table_close(table);
 	const char *method, *before = "\norder over all settings: ";

@@ -111,7 +111,7 @@ static void every_example_gives_the_same_bytes_with_any_number_of_groups(void **
 		struct program_outcome alone = POUND("run", "--threads", "1", world.out);
 		program_expect(&alone, 0);
 		service_timeless(alone.out);
-		const bool stays = strcmp(name, "convergence") == 0; // CPU times are among its results
+		const bool stays = strncmp(name, "convergence", 11) == 0; // CPU times are among its results
 		for (int i = 0; i < 2; i++) {
 			struct program_outcome outcome = POUND("run", "--threads", "1", "--launcher", world.launcher,
 			                                       "--launchers", launchers[i], world.out);

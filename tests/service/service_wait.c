@@ -130,9 +130,6 @@ static void a_connection_goes_on_after_a_304(void **state)
 static void a_study_without_samples_is_409_whatever_tag_is_sent(void **state)
 {
 	static const char *const studies[] = {
-	    "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
-	    "3}], "
-	    "\"excitation\": {\"cycles\": 1, \"signals\": 1}}}",
 	    "{\"kind\": \"floor_spectrum\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, "
 	    "{\"frequency_hz\": 3}], \"excitation\": {\"cycles\": 1, \"signals\": 1}}, "
 	    "\"spectrum\": {\"frequencies_hz\": [1]}}"};
