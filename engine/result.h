@@ -439,7 +439,7 @@ struct pound_floor_result {
 	double pulses_mean;  /* mean number of pulses of the idealised train */
 };
 
-/* How many signals a row has, and why: choices of that number, and of the one taken the index that decided. */
+/* How many signals a row has, and why: possible numbers, and the index that decided the chosen one. */
 enum { POUND_SPLITS = 12 };
 
 struct pound_split_choice {
@@ -457,7 +457,7 @@ struct pound_split {
 	struct pound_split_choice choices[POUND_SPLITS];
 	struct pound_look decided_by; /* half width and rows as foreseen; negative: the pilot saw no variance */
 	double between, within,
-	    pairs; /* parts of that index' variance, of one row: rows + signals / R + pairs / (R (R - 1)) */
+	    pairs; /* parts of the variance of the index that decided, of one row: rows + signals / R + pairs / (R (R - 1)) */
 };
 
 struct pound_result {

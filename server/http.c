@@ -77,7 +77,7 @@ struct reply http_problem(enum api_fault fault, const char *detail, const struct
 	return reply;
 }
 
-/* What the store says no with; `absent`: what there is none of. */
+/* The answer to a failure of the store; `absent`: the sentence for a record that does not exist. */
 struct reply http_refusal(enum store_status status, const char *absent)
 {
 	static const struct {

@@ -21,7 +21,7 @@ struct partial_results {
 	struct partial_result result[PARTIAL_RESULTS];
 };
 
-/* A copy of a study's last result, for the caller to free; NULL: there is none, it is too old, or there is no memory. */
+/* A copy of a study's last result, for the caller to free; NULL: no result, one that is too old, or no memory. */
 char *partial_results_take(struct partial_results *results, int64_t id, size_t *length, int *rows);
 /* Keeps a copy of a result that took so long to make [s]. */
 void partial_results_give(struct partial_results *results, const struct partial_result *made, double took);

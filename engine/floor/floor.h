@@ -43,7 +43,7 @@ struct pound_floor_answer {
 enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       struct pound_floor_answer *answer);
 
-/* Both bodies at one time: left, right; of a chain the floor and the level of its contact, without one 0 in place of that and
+/* Both bodies at one time: left, right; of a chain the floor and the level of its contact, without a contact 0 for that level and
  * of the gap. */
 struct pound_floor_instant {
 	double time;                                       /* [s] */

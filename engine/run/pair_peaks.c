@@ -336,7 +336,7 @@ bool pound_pairs_add(struct pound_pairs *all, const struct pound_task *task, dou
 		return false;
 	if (all->n > 0 && !goes_with(task, &all->tasks[0]))
 		pound_pairs_finish(all);
-	// the first one of those before is still at hand
+	// the first of the earlier ones is still there
 	for (int i = 0; i < POUND_OSCILLATORS && all->n == 0 && !goes_with(task, &all->tasks[0]); i++)
 		map_fill(&all->maps, i, &task->bodies[i], task->time_step);
 	all->tasks[all->n] = *task;

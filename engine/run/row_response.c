@@ -78,7 +78,7 @@ void pound_row_trial(const struct pound_outcome *outcome, struct pound_trial_run
 		return;
 	trial->displacement = outcome->row->storeys[storeys - 1].displacement_max;
 	for (int i = 0; i < storeys; i++)
-		trial->demand = fmax(trial->demand, outcome->row->storeys[i].demand); // NAN where there is none
+		trial->demand = fmax(trial->demand, outcome->row->storeys[i].demand); // NAN where it has no value
 	trial->impulse = pound_row_impulse(outcome);
 }
 

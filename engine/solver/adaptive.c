@@ -465,7 +465,8 @@ enum {
 	 sizeof(struct guard) * (4 * (floors) + 6 * (links)) + sizeof(double) * 2 * (floors) + \
 	 sizeof(double) * STATE_ROWS * (POUND_FLOOR_STATES * (floors) + POUND_LINK_STATES * (links)))
 
-static_assert(TASK_BYTES(ROW_FLOORS, ROW_LINKS) <= POUND_CHAIN_SCRATCH, "a row fits into its work space");
+static_assert(TASK_BYTES(ROW_FLOORS, ROW_LINKS) <= POUND_CHAIN_SCRATCH_STRAIGHT,
+              "a row fits into the smallest work space");
 
 /* Gives a task all its memory, of TASK_BYTES. */
 static void task_carve(struct adaptive_task *c, int n_floors, int n_links, char *memory)
@@ -497,7 +498,7 @@ static void task_carve(struct adaptive_task *c, int n_floors, int n_links, char 
  *          POUND_CHATTER    more events in one sample interval than allowed
  *          POUND_STOPPED    stop, which is looked at between samples, was set; NULL: never
  *          POUND_NOMEM      there was no memory for that, if the program has set GSL's error handler not to end it for that
- * Memory   scratch: POUND_CHAIN_SCRATCH bytes, 64-byte aligned; allocates GSL's work space, and frees it
+ * Memory   scratch: POUND_CHAIN_SCRATCH_STRAIGHT bytes, 64-byte aligned; allocates GSL's work space, and frees it
  *
  * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Stiff stretches go
  *          on with msbdf where there are at most STATES_STIFF states.  Steps follow from the C library's pow, so the last digits

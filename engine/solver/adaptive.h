@@ -1,7 +1,7 @@
 /* adaptive.h - the inside of the adaptive solver: floors and contacts, and their equations.  For adaptive.c and
  * adaptive_motion.c.
  *
- * State i of floor i is the drift of the story below it and the rate of that; of contact k its overlap, the rate of that and the
+ * State i of floor i is the drift of the story below it and the drift's rate; of contact k its overlap, the overlap's rate and the
  * impulse so far.  A pair is two floors that both stand on the ground. */
 #ifndef ADAPTIVE_H
 #define ADAPTIVE_H
@@ -19,7 +19,7 @@ struct adaptive_floor {
 	double per_mass;                    /* that these are multiplied by */
 	double damping, mass_damping;       /* of the story's dashpot, and by mass [1/s] */
 	const double *modal;                /* of pound_chain_floor; NULL: none */
-	double above;                       /* mass of the floor above it over its own; 0: there is none */
+	double above;                       /* mass of the floor above it over its own; 0: no floor is above it */
 	double inverse_mass;                /* of the unit of contact forces */
 	double drive;                       /* 1: rides on the ground motion, 0: stays where the ground is */
 	bool inner;                         /* there is a floor below it */

@@ -11,7 +11,7 @@ struct pound_trial_run {
 	// of the left body; of a row of the top of the left building, of its storeys, and of all contacts
 	double displacement, demand, impulse; /* the largest */
 	double cpu;                           /* of a run [s] */
-	double history[POUND_HISTORY];        /* displacement of the left body, or of that top [m] */
+	double history[POUND_HISTORY]; /* displacement of the left body, or of the left building's top [m] */
 };
 
 int pound_convergence_times(const struct pound_study *study, int samples[static POUND_HISTORY]);

@@ -50,7 +50,7 @@ enum { PLOT_COLUMNS_MOST = 24 };
 
 struct plot_table {
 	int signal;       /* the chosen one; -1: every one */
-	int n_columns, n; /* rows of that signal and time */
+	int n_columns, n; /* rows of the signal and time */
 	const char *names[PLOT_COLUMNS_MOST];
 	size_t lengths[PLOT_COLUMNS_MOST];
 	double *values[PLOT_COLUMNS_MOST]; /* (n) of one signal */

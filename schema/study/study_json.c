@@ -71,7 +71,7 @@ static const char *instead_of(const char *name)
 
 enum { OBJECTS_MOST = 3 }; // a name that more objects have (type, name) shows nothing
 
-/* The first object of such a study that has a member of that name, as its pattern; false: none, or too many have one. */
+/* The first object of such a study with a member of this name, as its pattern; false: no object has one, or too many. */
 static bool other_object(const struct reader *r, const char *name, char text[80])
 {
 	const struct field *first = NULL;
