@@ -1,6 +1,6 @@
 /* command.h - what a subcommand takes and what it returns to the shell.
  *
- * A subcommand is one row of the table in pound.c and one function with this shape. */
+ * A subcommand is one row of the table in pound.c and one function with this shape.  The functions at the end are in command.c. */
 #ifndef COMMAND_H
 #define COMMAND_H
 

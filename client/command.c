@@ -1,0 +1,55 @@
+/* command.c - what every subcommand may call: one line of complaint, texts and memory of its own. */
+#include "client/command.h"
+#include "client/table.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Ends the program when there is no memory: nothing it has begun is worth keeping. */
+void *command_sure(void *memory)
+{
+	if (!memory) {
+		fputs("pound: out of memory\n", stderr);
+		exit(OUTCOME_FAILED);
+	}
+	return memory;
+}
+
+static char *text_of(const char *format, va_list arguments)
+{
+	char *text;
+	return command_sure(vasprintf(&text, format, arguments) < 0 ? NULL : text);
+}
+
+/* Puts a text together, however long it gets.
+ *
+ * Memory   allocates; the caller frees
+ */
+char *command_text(const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	char *text = text_of(format, arguments);
+	va_end(arguments);
+	return text;
+}
+
+/* Says one line on stderr, harmless to a terminal whatever the texts in it hold. */
+void command_complain(const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	char *line = text_of(format, arguments);
+	va_end(arguments);
+	table_tame(line);
+	fprintf(stderr, "pound: %s\n", line);
+	free(line);
+}
+
+bool command_is_id(const char *text)
+{
+	return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && access(text, F_OK) != 0;
+}
